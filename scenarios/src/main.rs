@@ -1,0 +1,2 @@
+//! The `onescan` program.
+fn main() {}
