@@ -1,1 +1,4 @@
-//! onescan
+//! onescan-server
+pub mod client;
+pub mod signal;
+pub mod time;

@@ -1,0 +1,45 @@
+//! Signals: named, typed values with exactly one writer.
+//!
+//! | module | subject |
+//! |---|---|
+//! | [`elementary`] | the types of IEC 61131-3 and their bytes |
+//! | [`name`] | what a signal and a client may be called |
+//! | [`port`] | what one client reads or writes, and how it finds its values |
+
+pub mod elementary;
+pub mod name;
+pub mod port;
+
+use serde::{Deserialize, Serialize};
+
+pub use elementary::{BadValue, ElementaryType, UnknownType};
+pub use name::{BadName, ClientName, SignalName, nearest};
+pub use port::{Port, PortLayout, Slot, SlotError, SlotType};
+
+/// The index of a signal in its session: the rank of its name.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct SignalId(pub(crate) u32);
+
+impl SignalId {
+    /// The index into tables that hold one row a signal.
+    pub const fn index(self) -> usize {
+        self.0 as usize
+    }
+}
+
+/// A signal as the scenario declares it.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct SignalDecl {
+    /// Unique in the session.
+    pub name: SignalName,
+    /// The type that every client must agree to.
+    #[serde(rename = "type")]
+    pub ty: ElementaryType,
+    /// The only client that may write it; where absent, the first that joins as its writer.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub writer: Option<ClientName>,
+    /// The unit of the value, for people.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub unit: Option<String>,
+}
