@@ -38,7 +38,7 @@ pub enum Wake {
 ///
 /// A client is a function of its state, its inputs and `t_v` alone: it reads no clock and no random
 /// source that the scenario did not seed.
-pub trait Client {
+pub trait Client: Send {
     /// What the client needs and gives.
     fn join(&self) -> JoinRequest;
 

@@ -42,6 +42,11 @@ impl VirtualTime {
         }
     }
 
+    /// This instant less a span, zero at the earliest.
+    pub const fn saturating_sub(self, span: TimeSpan) -> Self {
+        Self(self.0.saturating_sub(span.as_nanos()))
+    }
+
     /// True on the grid of `span`: a multiple of it since the session's start.
     pub const fn is_multiple_of(self, span: TimeSpan) -> bool {
         self.0.is_multiple_of(span.as_nanos())
@@ -143,8 +148,14 @@ impl fmt::Display for StepCount {
     }
 }
 
-const UNITS: [(u64, &str); 6] =
-    [(1, "ns"), (1_000, "us"), (1_000_000, "ms"), (1_000_000_000, "s"), (60_000_000_000, "min"), (3_600_000_000_000, "h")];
+const UNITS: [(u64, &str); 6] = [
+    (1, "ns"),
+    (1_000, "us"),
+    (1_000_000, "ms"),
+    (1_000_000_000, "s"),
+    (60_000_000_000, "min"),
+    (3_600_000_000_000, "h"),
+];
 
 /// Why a text is not a time.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]

@@ -111,10 +111,10 @@ impl ElementaryType {
             T::Bool | T::Byte | T::Sint | T::Usint | T::Char => 1,
             T::Word | T::Int | T::Uint | T::Wchar => 2,
             T::Dword | T::Dint | T::Udint | T::Real => 4,
-            T::Lword | T::Lint | T::Ulint | T::Lreal => 8,
-            T::Time | T::Ltime | T::Date | T::Ldate | T::Tod | T::Ltod | T::Dt | T::Ldt => 8,
             T::String(capacity) => 2 + capacity as usize,
             T::Wstring(capacity) => 2 + 2 * capacity as usize,
+            // All others: the 64-bit integers, LREAL, durations, dates.
+            _ => 8,
         }
     }
 

@@ -1,0 +1,300 @@
+//! The barrier: server and client states, virtual time, delays. No values, no clock, no wire.
+//!
+//! A state is left only when `synchronize = AND(client_i.sync)` holds, with
+//! `client_i.sync = ready_i OR t_delay_i > t_v` (seed 004 sec. IV). `t_delay_i` is kept as the
+//! virtual time of the client's next turn ([`Cycle::wake`]); a client takes part in a step if that
+//! time has come, and otherwise sleeps through it in its last state without losing synchrony.
+//!
+//! With [`Coupling::Parallel`] every client due takes its turn in one pass through pre-read to write.
+//! With [`Coupling::Sequential`] a step is one such pass for each client in the listed order.
+
+use crate::plan::Coupling;
+use crate::state::{ClientState, ServerState};
+use crate::time::{StepCount, TimeSpan, VirtualTime};
+
+/// The index of a client in its session: the rank of its name.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct ClientId(pub(crate) u32);
+
+impl ClientId {
+    /// The client of rank `index`.
+    pub const fn from_index(index: usize) -> Self {
+        Self(index as u32)
+    }
+
+    /// The index into tables that hold one row a client.
+    pub const fn index(self) -> usize {
+        self.0 as usize
+    }
+}
+
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
+struct Seat {
+    state: ClientState,
+    /// The ready signal: done with what `state` asks for.
+    ready: bool,
+    /// Takes part in this pass; `NOT t_delay > t_v`.
+    due: bool,
+    /// Virtual time of the next turn, `t_delay`.
+    wake: VirtualTime,
+}
+
+/// The state machine of a session.
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
+pub struct Cycle {
+    step: TimeSpan,
+    coupling: Coupling<ClientId>,
+    server: ServerState,
+    t_v: VirtualTime,
+    steps: StepCount,
+    /// Which pass of the step is under way; always 0 in parallel coupling.
+    pass: usize,
+    seats: Vec<Seat>,
+}
+
+impl Cycle {
+    /// A session in `start` with `clients` seats, nobody ready.
+    pub fn new(step: TimeSpan, coupling: Coupling<ClientId>, clients: usize) -> Self {
+        let seat = Seat { state: ClientState::Start, ready: false, due: true, wake: VirtualTime::ZERO };
+        Self {
+            step,
+            coupling,
+            server: ServerState::Start,
+            t_v: VirtualTime::ZERO,
+            steps: StepCount(0),
+            pass: 0,
+            seats: vec![seat; clients],
+        }
+    }
+
+    /// The server's state.
+    pub fn server(&self) -> ServerState {
+        self.server
+    }
+
+    /// The state of `client`.
+    pub fn client(&self, client: ClientId) -> ClientState {
+        self.seats[client.index()].state
+    }
+
+    /// Virtual time, the end of the step under way from state `read` on.
+    pub fn t_v(&self) -> VirtualTime {
+        self.t_v
+    }
+
+    /// The number of the step under way from state `read` on; 0 before the first.
+    pub fn steps(&self) -> StepCount {
+        self.steps
+    }
+
+    /// The smallest increment of virtual time.
+    pub fn step(&self) -> TimeSpan {
+        self.step
+    }
+
+    /// When `client` takes its next turn.
+    pub fn wake(&self, client: ClientId) -> VirtualTime {
+        self.seats[client.index()].wake
+    }
+
+    /// True while `client` takes part in the pass and has not signalled ready.
+    pub fn is_awaited(&self, client: ClientId) -> bool {
+        let seat = &self.seats[client.index()];
+        seat.due && !seat.ready
+    }
+
+    /// True if `client` takes part in the pass under way.
+    pub fn is_due(&self, client: ClientId) -> bool {
+        self.seats[client.index()].due
+    }
+
+    /// The ready signal of `client` for the state it is in.
+    pub fn signal_ready(&mut self, client: ClientId) {
+        self.seats[client.index()].ready = true;
+    }
+
+    /// Sets the delay of `client`: it sleeps through every step before `wake`.
+    pub fn sleep_until(&mut self, client: ClientId, wake: VirtualTime) {
+        self.seats[client.index()].wake = wake;
+    }
+
+    /// `synchronize = AND(client_i.sync)`.
+    pub fn is_synchronised(&self) -> bool {
+        self.seats.iter().all(|seat| seat.ready || !seat.due)
+    }
+
+    /// True when the state under way is the last of a step and all are done with it: the only
+    /// moments at which stop, pause, single step and reset act.
+    pub fn is_at_boundary(&self) -> bool {
+        let last = match self.server {
+            ServerState::InitialWrite => true,
+            ServerState::Write => self.pass + 1 == self.passes(),
+            _ => false,
+        };
+        last && self.is_synchronised()
+    }
+
+    /// True while the outputs of the step under way are all in the image.
+    pub fn ends_step(&self) -> bool {
+        self.server == ServerState::Write && self.pass + 1 == self.passes()
+    }
+
+    /// Leaves the state if the clients are synchronised, and says which one was entered.
+    /// `None` while a client is awaited, or when virtual time can not grow any more.
+    pub fn advance(&mut self) -> Option<ServerState> {
+        if !self.is_synchronised() {
+            return None;
+        }
+        if self.server == ServerState::Write {
+            self.pass = (self.pass + 1) % self.passes();
+        }
+        let entered = self.server.next();
+        match entered {
+            ServerState::PreRead => self.call_those_due()?,
+            ServerState::Read if self.pass == 0 => {
+                self.t_v = self.t_v.checked_add(self.step)?;
+                self.steps.0 += 1;
+            }
+            _ => {}
+        }
+        self.enter(entered);
+        Some(entered)
+    }
+
+    /// Back to initial-write from any state: a reset.
+    pub fn restart(&mut self) {
+        self.t_v = VirtualTime::ZERO;
+        self.steps = StepCount(0);
+        self.pass = 0;
+        for seat in &mut self.seats {
+            seat.due = true;
+            seat.wake = VirtualTime::ZERO;
+        }
+        self.enter(ServerState::InitialWrite);
+    }
+
+    /// Takes up a session at the boundary after step `steps`, with every client asleep until its
+    /// turn in `wakes`.
+    pub(crate) fn resume_at(&mut self, steps: StepCount, t_v: VirtualTime, wakes: &[VirtualTime]) {
+        self.steps = steps;
+        self.t_v = t_v;
+        self.pass = self.passes() - 1;
+        self.server = if steps.0 == 0 { ServerState::InitialWrite } else { ServerState::Write };
+        for (seat, wake) in self.seats.iter_mut().zip(wakes) {
+            *seat = Seat { state: self.server.of_clients(), ready: true, due: false, wake: *wake };
+        }
+    }
+
+    fn passes(&self) -> usize {
+        match &self.coupling {
+            Coupling::Parallel => 1,
+            Coupling::Sequential { order } => order.len().max(1),
+        }
+    }
+
+    /// Decides who takes part in the pass that begins: those whose delay has run out by the end of
+    /// the step, and in sequential coupling only the one whose pass it is.
+    fn call_those_due(&mut self) -> Option<()> {
+        let end_of_step = if self.pass == 0 { self.t_v.checked_add(self.step)? } else { self.t_v };
+        for (index, seat) in self.seats.iter_mut().enumerate() {
+            let in_turn = match &self.coupling {
+                Coupling::Parallel => true,
+                Coupling::Sequential { order } => order.get(self.pass) == Some(&ClientId::from_index(index)),
+            };
+            seat.due = in_turn && seat.wake <= end_of_step;
+        }
+        Some(())
+    }
+
+    fn enter(&mut self, server: ServerState) {
+        self.server = server;
+        for seat in self.seats.iter_mut().filter(|seat| seat.due) {
+            seat.state = server.of_clients();
+            seat.ready = false;
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const STEP: TimeSpan = TimeSpan::from_millis(1).expect("not zero");
+
+    fn at(ms: u64) -> VirtualTime {
+        VirtualTime::from_nanos(ms * 1_000_000)
+    }
+
+    /// Lets everybody be ready at once until `state` is entered.
+    fn run_to(cycle: &mut Cycle, clients: usize, state: ServerState) {
+        loop {
+            for client in (0..clients).map(ClientId::from_index) {
+                if cycle.is_awaited(client) {
+                    cycle.signal_ready(client);
+                }
+            }
+            if cycle.advance() == Some(state) {
+                return;
+            }
+        }
+    }
+
+    #[test]
+    fn nobody_passes_before_all_are_ready() {
+        let mut cycle = Cycle::new(STEP, Coupling::Parallel, 2);
+        cycle.signal_ready(ClientId(0));
+        assert_eq!(cycle.advance(), None);
+        cycle.signal_ready(ClientId(1));
+        assert_eq!(cycle.advance(), Some(ServerState::InitialWrite));
+        assert_eq!(cycle.advance(), None);
+    }
+
+    #[test]
+    fn time_grows_on_entering_read() {
+        let mut cycle = Cycle::new(STEP, Coupling::Parallel, 1);
+        run_to(&mut cycle, 1, ServerState::PreRead);
+        assert_eq!(cycle.t_v(), VirtualTime::ZERO);
+        run_to(&mut cycle, 1, ServerState::Read);
+        assert_eq!(cycle.t_v(), at(1));
+        assert_eq!(cycle.steps(), StepCount(1));
+    }
+
+    #[test]
+    fn a_delayed_client_sleeps_and_the_others_go_on() {
+        let mut cycle = Cycle::new(STEP, Coupling::Parallel, 2);
+        run_to(&mut cycle, 2, ServerState::InitialWrite);
+        cycle.sleep_until(ClientId(1), at(3));
+        for ms in 1..3 {
+            run_to(&mut cycle, 2, ServerState::PreWrite);
+            assert_eq!(cycle.t_v(), at(ms));
+            assert!(cycle.is_due(ClientId(0)) && !cycle.is_due(ClientId(1)));
+            assert_eq!(cycle.client(ClientId(1)), ClientState::Setup);
+        }
+        run_to(&mut cycle, 2, ServerState::PreWrite);
+        assert!(cycle.is_due(ClientId(1)), "due at 3 ms");
+        assert_eq!(cycle.client(ClientId(1)), ClientState::Run);
+    }
+
+    #[test]
+    fn sequential_passes_share_one_step_of_time() {
+        let order = vec![ClientId(1), ClientId(0)];
+        let mut cycle = Cycle::new(STEP, Coupling::Sequential { order }, 2);
+        let mut runs = Vec::new();
+        for _ in 0..4 {
+            run_to(&mut cycle, 2, ServerState::PreWrite);
+            let running = (0..2).map(ClientId::from_index).find(|client| cycle.is_due(*client));
+            runs.push((running.map(ClientId::index), cycle.t_v()));
+        }
+        assert_eq!(runs, [(Some(1), at(1)), (Some(0), at(1)), (Some(1), at(2)), (Some(0), at(2))]);
+    }
+
+    #[test]
+    fn a_restart_is_a_new_session() {
+        let mut fresh = Cycle::new(STEP, Coupling::Parallel, 2);
+        run_to(&mut fresh, 2, ServerState::InitialWrite);
+        let mut used = fresh.clone();
+        run_to(&mut used, 2, ServerState::Write);
+        used.restart();
+        assert_eq!(used, fresh);
+    }
+}

@@ -1,0 +1,141 @@
+//! A session that is being formed: clients join until nobody is missing.
+
+use std::time::Duration;
+
+use thiserror::Error;
+
+use crate::client::Client;
+use crate::cycle::ClientId;
+use crate::join::JoinRefusal;
+use crate::lockstep::{Link, Lockstep};
+use crate::plan::SessionPlan;
+use crate::session::Session;
+use crate::transport::tcp::{Applicant, Lobby, RemoteError, Remotes};
+
+/// A session in state `start`, and how its clients are reached.
+pub struct Formation {
+    session: Session,
+    links: Vec<Option<Link>>,
+    remotes: Option<Remotes>,
+}
+
+/// Why a session cannot begin.
+#[derive(Debug, Error)]
+pub enum FormationError {
+    /// A client of this process does not fit the plan.
+    #[error(transparent)]
+    Refused(#[from] JoinRefusal),
+    /// Nobody came.
+    #[error("client {missing} did not join within {} s", patience.as_secs_f64())]
+    Missing {
+        /// The names.
+        missing: String,
+        /// How long the server waited.
+        patience: Duration,
+    },
+    /// The wait was called off.
+    #[error("stopped while waiting for client {missing} to join")]
+    Interrupted {
+        /// The names.
+        missing: String,
+    },
+    /// A signal that nobody writes.
+    #[error("signal {0} has no writer: no client that joined writes it")]
+    Unwritten(String),
+    /// The transport cannot be set up.
+    #[error(transparent)]
+    Remote(#[from] RemoteError),
+}
+
+/// Called while the server waits: the missing clients' names. False calls the wait off.
+pub type WhileWaiting<'a> = &'a mut dyn FnMut(&str) -> bool;
+
+impl Formation {
+    /// Nobody has joined.
+    pub fn new(plan: SessionPlan) -> Self {
+        let session = Session::new(plan);
+        let links = session.clients().map(|_| None).collect();
+        Self { session, links, remotes: None }
+    }
+
+    /// A client of this process joins.
+    ///
+    /// # Errors
+    /// The session's plan has no place for it.
+    pub fn join(&mut self, client: Box<dyn Client>) -> Result<ClientId, JoinRefusal> {
+        let id = self.session.join(&client.join())?;
+        self.links[id.index()] = Some(Link::Local(client));
+        Ok(id)
+    }
+
+    /// Lets clients in through `lobby` until nobody is missing. Applicants that do not fit are told
+    /// why and sent away; the wait goes on.
+    ///
+    /// # Errors
+    /// Somebody is still missing after `patience`.
+    pub fn admit_from(
+        &mut self,
+        lobby: &Lobby,
+        patience: Duration,
+        reply_timeout: Duration,
+        while_waiting: WhileWaiting<'_>,
+    ) -> Result<(), FormationError> {
+        const LOOK_UP: Duration = Duration::from_millis(50);
+        let mut waited = Duration::ZERO;
+        while self.session.missing_clients().next().is_some() {
+            if !while_waiting(&self.missing()) {
+                return Err(FormationError::Interrupted { missing: self.missing() });
+            }
+            if let Some(applicant) = lobby.next_applicant(LOOK_UP) {
+                self.admit(applicant, reply_timeout)?;
+            } else {
+                waited += LOOK_UP;
+            }
+            if waited >= patience {
+                return Err(FormationError::Missing { missing: self.missing(), patience });
+            }
+        }
+        Ok(())
+    }
+
+    fn admit(&mut self, applicant: Applicant, reply_timeout: Duration) -> Result<(), FormationError> {
+        let remotes = match &mut self.remotes {
+            Some(remotes) => remotes,
+            empty => empty.insert(Remotes::new(self.session.clients().len(), reply_timeout)?),
+        };
+        let (peer, name) = (applicant.peer(), applicant.request().name.clone());
+        match self.session.join(applicant.request()) {
+            Ok(id) => {
+                tracing::info!(client = %name, %peer, "joined");
+                remotes.admit(id, applicant)?;
+                self.links[id.index()] = Some(Link::Remote);
+            }
+            Err(refusal) => {
+                tracing::warn!(client = %name, %peer, %refusal, "refused");
+                remotes.refuse(applicant, &refusal.to_string());
+            }
+        }
+        Ok(())
+    }
+
+    fn missing(&self) -> String {
+        let names: Vec<String> = self.session.missing_clients().map(|name| format!("`{name}`")).collect();
+        names.join(", ")
+    }
+
+    /// The session begins: everybody is in and every signal has its writer.
+    ///
+    /// # Errors
+    /// Somebody is missing, or a signal has no writer.
+    pub fn start(self) -> Result<Lockstep, FormationError> {
+        if self.session.missing_clients().next().is_some() {
+            return Err(FormationError::Missing { missing: self.missing(), patience: Duration::ZERO });
+        }
+        let unwritten: Vec<String> = self.session.unwritten_signals().map(|name| format!("`{name}`")).collect();
+        if !unwritten.is_empty() {
+            return Err(FormationError::Unwritten(unwritten.join(", ")));
+        }
+        let links = self.links.into_iter().flatten().collect();
+        Ok(Lockstep::new(self.session, links, self.remotes))
+    }
+}

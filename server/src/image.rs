@@ -1,0 +1,230 @@
+//! The image: all signals of a session in one flat, fixed byte layout.
+//!
+//! The layout follows from the signals alone: falling alignment, then name, no padding. Outputs are
+//! staged as they come and become visible together, at the commit.
+
+use crate::signal::{BadValue, ElementaryType, PortLayout, SignalDecl, SignalId};
+
+/// Where each signal lies in the image.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct ImageLayout {
+    offsets: Vec<usize>,
+    types: Vec<ElementaryType>,
+    size: usize,
+}
+
+impl ImageLayout {
+    /// Lays out `signals`, which are sorted by name.
+    pub fn new(signals: &[SignalDecl]) -> Self {
+        let mut order: Vec<usize> = (0..signals.len()).collect();
+        order.sort_by_key(|index| (std::cmp::Reverse(signals[*index].ty.alignment()), *index));
+        let mut offsets = vec![0; signals.len()];
+        let mut size = 0;
+        for index in order {
+            offsets[index] = size;
+            size += signals[index].ty.size();
+        }
+        Self { offsets, types: signals.iter().map(|signal| signal.ty).collect(), size }
+    }
+
+    /// Bytes of the image.
+    pub fn size(&self) -> usize {
+        self.size
+    }
+
+    /// The bytes of `signal` in `image`.
+    pub fn bytes<'a>(&self, signal: SignalId, image: &'a [u8]) -> &'a [u8] {
+        let offset = self.offsets[signal.index()];
+        &image[offset..offset + self.types[signal.index()].size()]
+    }
+
+    /// The type of `signal`.
+    pub fn ty(&self, signal: SignalId) -> ElementaryType {
+        self.types[signal.index()]
+    }
+
+    /// All signals in the order of their names.
+    pub fn signals(&self) -> impl ExactSizeIterator<Item = SignalId> + use<> {
+        (0..self.types.len() as u32).map(SignalId)
+    }
+}
+
+/// One run of bytes that is copied between a port and the image.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct Run {
+    image: usize,
+    port: usize,
+    len: usize,
+}
+
+/// How a port's bytes and the image's correspond.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct PortMap {
+    runs: Vec<Run>,
+    /// Signals whose bytes need a look once staged: image offset, type, and who it is.
+    to_canonicalise: Vec<(usize, ElementaryType, SignalId)>,
+    size: usize,
+}
+
+impl PortMap {
+    /// Maps `port`, whose signals have the ids `ids` in the same order, onto `layout`.
+    pub fn new(port: &PortLayout, ids: &[SignalId], layout: &ImageLayout) -> Self {
+        let mut runs: Vec<Run> = Vec::new();
+        let mut to_canonicalise = Vec::new();
+        for ((signal, offset), id) in port.iter().zip(ids) {
+            let run = Run { image: layout.offsets[id.index()], port: offset, len: signal.ty.size() };
+            match runs.last_mut() {
+                Some(last) if last.image + last.len == run.image && last.port + last.len == run.port => {
+                    last.len += run.len;
+                }
+                _ => runs.push(run),
+            }
+            if signal.ty.needs_canonical_form() {
+                to_canonicalise.push((run.image, signal.ty, *id));
+            }
+        }
+        Self { runs, to_canonicalise, size: port.size() }
+    }
+
+    /// Bytes of the port.
+    pub fn size(&self) -> usize {
+        self.size
+    }
+}
+
+/// The values of a session: those committed, and those staged for the next commit.
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
+pub struct Image {
+    committed: Vec<u8>,
+    staged: Vec<u8>,
+}
+
+impl Image {
+    /// All zero.
+    pub fn new(layout: &ImageLayout) -> Self {
+        Self { committed: vec![0; layout.size()], staged: vec![0; layout.size()] }
+    }
+
+    /// The values that clients see.
+    pub fn committed(&self) -> &[u8] {
+        &self.committed
+    }
+
+    /// Copies committed values to the bytes of a port, which has the size of `map`.
+    pub fn gather(&self, map: &PortMap, port: &mut [u8]) {
+        for run in &map.runs {
+            port[run.port..run.port + run.len].copy_from_slice(&self.committed[run.image..run.image + run.len]);
+        }
+    }
+
+    /// Stages the bytes of a port, in canonical form, for the next commit.
+    ///
+    /// # Errors
+    /// The first signal whose bytes are no value of its type. What is staged must not be committed
+    /// then; the session ends with it.
+    pub fn stage(&mut self, map: &PortMap, port: &[u8]) -> Result<(), (SignalId, BadValue)> {
+        for run in &map.runs {
+            self.staged[run.image..run.image + run.len].copy_from_slice(&port[run.port..run.port + run.len]);
+        }
+        for &(offset, ty, signal) in &map.to_canonicalise {
+            ty.canonicalise(&mut self.staged[offset..offset + ty.size()]).map_err(|bad| (signal, bad))?;
+        }
+        Ok(())
+    }
+
+    /// Makes all staged values visible at once.
+    pub fn commit(&mut self) {
+        self.committed.copy_from_slice(&self.staged);
+    }
+
+    /// Back to all zero.
+    pub fn clear(&mut self) {
+        self.committed.fill(0);
+        self.staged.fill(0);
+    }
+
+    /// Takes the values of `bytes` as committed; `bytes` has the image's size.
+    pub(crate) fn load(&mut self, bytes: &[u8]) {
+        self.committed.copy_from_slice(bytes);
+        self.staged.copy_from_slice(bytes);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::signal::{Port, SignalName};
+    use proptest::prelude::*;
+
+    fn signals(types: &[ElementaryType]) -> Vec<SignalDecl> {
+        let decl = |(index, ty): (usize, &ElementaryType)| SignalDecl {
+            name: SignalName::new(format!("s{index:03}")).unwrap(),
+            ty: *ty,
+            writer: None,
+            unit: None,
+        };
+        types.iter().enumerate().map(decl).collect()
+    }
+
+    fn map_of(signals: &[SignalDecl], ids: &[u32], layout: &ImageLayout) -> PortMap {
+        let ids: Vec<SignalId> = ids.iter().copied().map(SignalId).collect();
+        let ports = ids.iter().map(|id| Port { name: signals[id.index()].name.clone(), ty: signals[id.index()].ty });
+        PortMap::new(&PortLayout::new(ports.collect()), &ids, layout)
+    }
+
+    #[test]
+    fn wide_signals_come_first_and_nothing_is_padded() {
+        use ElementaryType::{Bool, Int, Lreal, Real};
+        let layout = ImageLayout::new(&signals(&[Bool, Lreal, Int, Real, Bool]));
+        assert_eq!(layout.size(), 16);
+        assert_eq!(layout.offsets, [14, 0, 12, 8, 15]);
+    }
+
+    #[test]
+    fn staged_values_are_seen_after_the_commit_only() {
+        let signals = signals(&[ElementaryType::Int]);
+        let layout = ImageLayout::new(&signals);
+        let map = map_of(&signals, &[0], &layout);
+        let mut image = Image::new(&layout);
+        image.stage(&map, &7_i16.to_le_bytes()).unwrap();
+        let mut port = [0xff; 2];
+        image.gather(&map, &mut port);
+        assert_eq!(port, [0, 0]);
+        image.commit();
+        image.gather(&map, &mut port);
+        assert_eq!(port, [7, 0]);
+    }
+
+    #[test]
+    fn neighbours_are_copied_in_one_run() {
+        let signals = signals(&[ElementaryType::Dint; 75]);
+        let layout = ImageLayout::new(&signals);
+        let map = map_of(&signals, &(0..75).collect::<Vec<_>>(), &layout);
+        assert_eq!(map.runs, [Run { image: 0, port: 0, len: 300 }]);
+    }
+
+    #[test]
+    fn a_value_that_is_none_is_refused_with_its_signal() {
+        let signals = signals(&[ElementaryType::Bool, ElementaryType::Bool]);
+        let layout = ImageLayout::new(&signals);
+        let map = map_of(&signals, &[0, 1], &layout);
+        assert_eq!(Image::new(&layout).stage(&map, &[1, 9]), Err((SignalId(1), BadValue::Bool(9))));
+    }
+
+    proptest! {
+        #[test]
+        fn what_is_committed_is_gathered(order in Just((0..20_u32).collect::<Vec<_>>()).prop_shuffle(), seed: [u8; 20]) {
+            let types: Vec<_> = (0..20).map(|i| [ElementaryType::Byte, ElementaryType::Int, ElementaryType::Lint][i % 3]).collect();
+            let signals = signals(&types);
+            let layout = ImageLayout::new(&signals);
+            let map = map_of(&signals, &order, &layout);
+            let bytes: Vec<u8> = (0..map.size()).map(|i| seed[i % 20].wrapping_add(i as u8)).collect();
+            let mut image = Image::new(&layout);
+            image.stage(&map, &bytes).unwrap();
+            image.commit();
+            let mut back = vec![0; map.size()];
+            image.gather(&map, &mut back);
+            prop_assert_eq!(back, bytes);
+        }
+    }
+}

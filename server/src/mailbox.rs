@@ -1,0 +1,95 @@
+//! Where wishes of operators wait for the next step boundary.
+//!
+//! The session's thread looks at one atomic a step; only when somebody left something does it lock.
+//! What is asked never reaches a client in the middle of a step, so it can delay a session or end
+//! it, but not change it.
+
+use std::collections::VecDeque;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
+use std::time::Duration;
+
+use tokio::sync::oneshot;
+
+use crate::session::Control;
+use crate::wire::message::Status;
+
+/// A wish, and who wants to hear how things are once it is taken.
+#[derive(Debug)]
+pub struct Request {
+    /// What is asked; `None` asks only for the status.
+    pub control: Option<Control>,
+    /// Where the status goes.
+    pub reply: Option<oneshot::Sender<Status>>,
+}
+
+#[derive(Debug, Default)]
+struct Inner {
+    waiting: AtomicBool,
+    queue: Mutex<VecDeque<Request>>,
+    arrived: Condvar,
+}
+
+/// A handle to a session's mailbox; clones share it.
+#[derive(Clone, Debug, Default)]
+pub struct Mailbox {
+    inner: Arc<Inner>,
+}
+
+impl Mailbox {
+    /// An empty mailbox.
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// Leaves a wish.
+    pub fn post(&self, request: Request) {
+        self.lock().push_back(request);
+        self.inner.waiting.store(true, Ordering::Release);
+        self.inner.arrived.notify_all();
+    }
+
+    /// Leaves a wish nobody wants an answer to.
+    pub fn control(&self, control: Control) {
+        self.post(Request { control: Some(control), reply: None });
+    }
+
+    /// The oldest wish, if any.
+    pub(crate) fn take(&self) -> Option<Request> {
+        if !self.inner.waiting.load(Ordering::Acquire) {
+            return None;
+        }
+        let mut queue = self.lock();
+        let request = queue.pop_front();
+        self.inner.waiting.store(!queue.is_empty(), Ordering::Release);
+        request
+    }
+
+    /// Waits until there is a wish, `patience` at most. Wall clock: only while time is held.
+    pub(crate) fn wait(&self, patience: Duration) {
+        let queue = self.lock();
+        let _unused = self.inner.arrived.wait_timeout_while(queue, patience, |queue| queue.is_empty());
+    }
+
+    /// A thread that panicked while it held the lock left a whole queue: pushes and pops are atomic.
+    fn lock(&self) -> MutexGuard<'_, VecDeque<Request>> {
+        self.inner.queue.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn wishes_are_taken_in_their_order() {
+        let mailbox = Mailbox::new();
+        assert!(mailbox.take().is_none());
+        mailbox.control(Control::Pause);
+        mailbox.clone().control(Control::Step);
+        mailbox.wait(Duration::from_mins(1));
+        assert_eq!(mailbox.take().and_then(|r| r.control), Some(Control::Pause));
+        assert_eq!(mailbox.take().and_then(|r| r.control), Some(Control::Step));
+        assert!(mailbox.take().is_none());
+    }
+}

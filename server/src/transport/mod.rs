@@ -1,0 +1,7 @@
+//! How frames travel. Clients in the server's process need no transport: they are called.
+//!
+//! | module | subject |
+//! |---|---|
+//! | [`tcp`] | clients and operators over TCP |
+
+pub mod tcp;

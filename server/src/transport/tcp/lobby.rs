@@ -1,0 +1,202 @@
+//! The lobby: listens, greets, and hands those who want to join to the session's thread.
+
+use std::net::SocketAddr;
+use std::sync::mpsc::{Receiver, Sender, channel};
+use std::sync::{Arc, Mutex, PoisonError};
+use std::time::Duration;
+
+use tokio::net::{TcpListener, TcpStream};
+use tokio::sync::{Notify, Semaphore, oneshot};
+use tokio_util::codec::Framed;
+
+use super::{AGENT, Connection, HANDSHAKE_TIMEOUT, ReceiveError, receive, runtime, send};
+use crate::client::JoinRequest;
+use crate::mailbox::{Mailbox, Request};
+use crate::plan::SessionPlan;
+use crate::wire::message::Role;
+use crate::wire::{ClientMessage, FRAME_BYTES_MAX, FrameCodec, HANDSHAKE_FRAME_BYTES_MAX, ServerMessage, VERSIONS};
+
+/// Connections that may be in the lobby at once, operators included.
+const GUESTS_MAX: usize = 64;
+
+/// How long an operator may be silent.
+const OPERATOR_PATIENCE: Duration = Duration::from_hours(24);
+
+/// Somebody who wants to join and waits for the answer.
+pub struct Applicant {
+    request: JoinRequest,
+    peer: SocketAddr,
+    pub(super) stream: std::net::TcpStream,
+}
+
+impl Applicant {
+    /// What it wants.
+    pub fn request(&self) -> &JoinRequest {
+        &self.request
+    }
+
+    /// From where.
+    pub fn peer(&self) -> SocketAddr {
+        self.peer
+    }
+}
+
+/// A listener with a thread of its own; closed when dropped.
+pub struct Lobby {
+    address: SocketAddr,
+    applicants: Mutex<Receiver<Applicant>>,
+    close: Arc<Notify>,
+    thread: Option<std::thread::JoinHandle<()>>,
+}
+
+/// What every greeting needs.
+struct Host {
+    welcome: ServerMessage,
+    applicants: Sender<Applicant>,
+    mailbox: Mailbox,
+    seats: Semaphore,
+}
+
+impl Lobby {
+    /// Listens on `address` for clients of the session `plan` and for operators, whose wishes go to
+    /// `mailbox`.
+    ///
+    /// # Errors
+    /// The address cannot be listened on.
+    pub fn open(address: SocketAddr, plan: &SessionPlan, mailbox: Mailbox) -> std::io::Result<Self> {
+        let listener = std::net::TcpListener::bind(address)?;
+        listener.set_nonblocking(true)?;
+        let address = listener.local_addr()?;
+        let (sender, receiver) = channel();
+        let welcome = ServerMessage::Welcome {
+            protocol: VERSIONS.max,
+            agent: AGENT.to_owned(),
+            step: plan.step(),
+            frame_bytes_max: FRAME_BYTES_MAX as u32,
+            signals: plan.signals().to_vec(),
+        };
+        let host = Host { welcome, applicants: sender, mailbox, seats: Semaphore::new(GUESTS_MAX) };
+        let close = Arc::new(Notify::new());
+        let closing = Arc::clone(&close);
+        let runtime = runtime()?;
+        let thread = std::thread::Builder::new()
+            .name("lobby".to_owned())
+            .spawn(move || runtime.block_on(receive_guests(listener, Arc::new(host), closing)))?;
+        Ok(Self { address, applicants: Mutex::new(receiver), close, thread: Some(thread) })
+    }
+
+    /// Where it listens; tells the port where none was asked for.
+    pub fn address(&self) -> SocketAddr {
+        self.address
+    }
+
+    /// The next applicant, if one comes within `patience`.
+    pub fn next_applicant(&self, patience: Duration) -> Option<Applicant> {
+        self.applicants.lock().unwrap_or_else(PoisonError::into_inner).recv_timeout(patience).ok()
+    }
+}
+
+impl Drop for Lobby {
+    fn drop(&mut self) {
+        self.close.notify_one();
+        if let Some(thread) = self.thread.take() {
+            // A thread that panicked has nothing left to close.
+            let _ = thread.join();
+        }
+    }
+}
+
+async fn receive_guests(listener: std::net::TcpListener, host: Arc<Host>, closing: Arc<Notify>) {
+    let listener = match TcpListener::from_std(listener) {
+        Ok(listener) => listener,
+        Err(error) => return tracing::error!(%error, "the lobby cannot listen"),
+    };
+    loop {
+        let accepted = tokio::select! {
+            () = closing.notified() => return,
+            accepted = listener.accept() => accepted,
+        };
+        match accepted {
+            Ok((stream, peer)) => {
+                let host = Arc::clone(&host);
+                tokio::spawn(async move {
+                    if let Err(error) = greet(stream, peer, &host).await {
+                        tracing::warn!(%peer, %error, "left the lobby");
+                    }
+                });
+            }
+            Err(error) => {
+                // Out of descriptors, mostly: others may leave meanwhile.
+                tracing::warn!(%error, "cannot accept a connection");
+                tokio::time::sleep(Duration::from_millis(100)).await;
+            }
+        }
+    }
+}
+
+async fn greet(stream: TcpStream, peer: SocketAddr, host: &Host) -> Result<(), ReceiveError> {
+    stream.set_nodelay(true).map_err(crate::wire::FrameError::from)?;
+    let mut connection = Framed::new(stream, FrameCodec::new(HANDSHAKE_FRAME_BYTES_MAX));
+    let Ok(_seat) = host.seats.try_acquire() else {
+        return refuse(&mut connection, "too many connections are waiting in the lobby").await;
+    };
+    let (protocol, role, agent) = match receive(&mut connection, HANDSHAKE_TIMEOUT).await {
+        Ok(ClientMessage::Hello { protocol, role, agent }) => (protocol, role, agent),
+        Ok(_) => return refuse(&mut connection, "the first message must be `hello`").await,
+        Err(error) => {
+            refuse(&mut connection, &error.to_string()).await?;
+            return Err(error);
+        }
+    };
+    tracing::debug!(%peer, %agent, ?role, "hello");
+    if VERSIONS.common(protocol).is_none() {
+        let why = format!("no common protocol version: this server speaks {VERSIONS}, {agent} speaks {protocol}");
+        return refuse(&mut connection, &why).await;
+    }
+    send(&mut connection, &host.welcome).await?;
+    match role {
+        Role::Operator => serve_operator(connection, host).await,
+        Role::Client => take_application(connection, peer, host).await,
+    }
+}
+
+async fn take_application(mut connection: Connection, peer: SocketAddr, host: &Host) -> Result<(), ReceiveError> {
+    let request = match receive(&mut connection, HANDSHAKE_TIMEOUT).await {
+        Ok(ClientMessage::Join(request)) => request,
+        Ok(_) => return refuse(&mut connection, "the second message of a client must be `join`").await,
+        Err(error) => {
+            refuse(&mut connection, &error.to_string()).await?;
+            return Err(error);
+        }
+    };
+    let parts = connection.into_parts();
+    if !parts.read_buf.is_empty() {
+        let mut connection = Framed::from_parts(parts);
+        return refuse(&mut connection, "a client must wait for the answer to `join`").await;
+    }
+    let stream = parts.io.into_std().map_err(crate::wire::FrameError::from)?;
+    // If the session no longer takes anybody the stream is closed by this.
+    let _ = host.applicants.send(Applicant { request, peer, stream });
+    Ok(())
+}
+
+async fn serve_operator(mut connection: Connection, host: &Host) -> Result<(), ReceiveError> {
+    loop {
+        let control = match receive(&mut connection, OPERATOR_PATIENCE).await {
+            Ok(ClientMessage::Control(control)) => Some(control),
+            Ok(ClientMessage::Status {}) => None,
+            Ok(_) => return refuse(&mut connection, "an operator may send `control` and `status`").await,
+            Err(ReceiveError::Closed) => return Ok(()),
+            Err(error) => return Err(error),
+        };
+        let (reply, answer) = oneshot::channel();
+        host.mailbox.post(Request { control, reply: Some(reply) });
+        let Ok(status) = answer.await else { return Ok(()) };
+        send(&mut connection, &ServerMessage::Status(status)).await?;
+    }
+}
+
+async fn refuse(connection: &mut Connection, why: &str) -> Result<(), ReceiveError> {
+    send(connection, &ServerMessage::Refused { message: why.to_owned() }).await?;
+    Ok(())
+}

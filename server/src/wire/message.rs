@@ -1,0 +1,141 @@
+//! Join and control messages. Each is one JSON object with one key, its kind.
+
+use serde::{Deserialize, Serialize};
+
+use super::VersionRange;
+use crate::client::{ClientFault, JoinRequest};
+use crate::end::SessionEnd;
+use crate::session::Control;
+use crate::signal::{ElementaryType, PortLayout, SignalDecl, SignalName};
+use crate::state::ServerState;
+use crate::time::{StepCount, TimeSpan, VirtualTime};
+
+/// What somebody who connects wants to be.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Role {
+    /// A client of the session.
+    Client,
+    /// Somebody who watches and controls it.
+    Operator,
+}
+
+/// From a client or operator to the server.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case", deny_unknown_fields)]
+pub enum ClientMessage {
+    /// First message of a connection.
+    Hello {
+        /// Versions spoken.
+        protocol: VersionRange,
+        /// Client or operator.
+        role: Role,
+        /// Program and version, for logs.
+        agent: String,
+    },
+    /// Second message of a client.
+    Join(JoinRequest),
+    /// The client cannot go on.
+    Fault(ClientFault),
+    /// The state is taken back.
+    Restored {},
+    /// An operator's wish.
+    Control(Control),
+    /// An operator asks how things are.
+    Status {},
+}
+
+/// From the server to a client or operator.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case", deny_unknown_fields)]
+pub enum ServerMessage {
+    /// Answer to `hello`.
+    Welcome {
+        /// The version spoken from here on.
+        protocol: u32,
+        /// The server's program and version.
+        agent: String,
+        /// The step of the session.
+        #[serde(rename = "step_ns")]
+        step: TimeSpan,
+        /// Largest frame that the server takes from a joined client, counted as the length field does.
+        frame_bytes_max: u32,
+        /// All signals of the session.
+        signals: Vec<SignalDecl>,
+    },
+    /// Answer to `join`.
+    Joined {
+        /// Bytes of the inputs in every grant.
+        input_bytes: u32,
+        /// Where each input lies in them.
+        inputs: Vec<PlacedSignal>,
+        /// Bytes of the outputs in every turn.
+        output_bytes: u32,
+        /// Where each output lies in them.
+        outputs: Vec<PlacedSignal>,
+    },
+    /// Answer to `hello` or `join`; the connection ends.
+    Refused {
+        /// Why, in one line.
+        message: String,
+    },
+    /// Take the initial state; answer with a turn of sequence 0.
+    Setup {},
+    /// Hand out the state; answer with a state frame.
+    Save {},
+    /// Take back the state in the frame that follows; answer with `restored`.
+    Restore {
+        /// Virtual time at which the state was saved.
+        #[serde(rename = "t_v_ns")]
+        t_v: VirtualTime,
+        /// Number of the last step it has seen; the next grant is a later one.
+        steps: StepCount,
+    },
+    /// The session is over.
+    End(SessionEnd),
+    /// Answer to `status` and to `control`.
+    Status(Status),
+}
+
+/// One signal of a port with its place.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct PlacedSignal {
+    /// The signal.
+    pub name: SignalName,
+    /// Its type.
+    #[serde(rename = "type")]
+    pub ty: ElementaryType,
+    /// First byte.
+    pub offset: u32,
+    /// Bytes.
+    pub size: u32,
+}
+
+/// The places of all signals of `layout`.
+pub fn placed(layout: &PortLayout) -> Vec<PlacedSignal> {
+    layout
+        .iter()
+        .map(|(port, offset)| PlacedSignal {
+            name: port.name.clone(),
+            ty: port.ty,
+            offset: offset as u32,
+            size: port.ty.size() as u32,
+        })
+        .collect()
+}
+
+/// How a session is, at a step boundary.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Status {
+    /// The server's state.
+    pub state: ServerState,
+    /// Virtual time.
+    #[serde(rename = "t_v_ns")]
+    pub t_v: VirtualTime,
+    /// Steps done.
+    pub steps: StepCount,
+    /// True while virtual time is held.
+    pub held: bool,
+}
