@@ -37,6 +37,8 @@ struct Seat {
     due: bool,
     /// Virtual time of the next turn, `t_delay`.
     wake: VirtualTime,
+    /// The next turn as asked for in the turn under way; in force from its commit on, as its outputs.
+    asked: VirtualTime,
 }
 
 /// The state machine of a session.
@@ -55,7 +57,13 @@ pub struct Cycle {
 impl Cycle {
     /// A session in `start` with `clients` seats, nobody ready.
     pub fn new(step: TimeSpan, coupling: Coupling<ClientId>, clients: usize) -> Self {
-        let seat = Seat { state: ClientState::Start, ready: false, due: true, wake: VirtualTime::ZERO };
+        let seat = Seat {
+            state: ClientState::Start,
+            ready: false,
+            due: true,
+            wake: VirtualTime::ZERO,
+            asked: VirtualTime::ZERO,
+        };
         Self {
             step,
             coupling,
@@ -92,6 +100,11 @@ impl Cycle {
         self.step
     }
 
+    /// The pass of the step that is under way, from 0; always 0 in parallel coupling.
+    pub fn pass(&self) -> usize {
+        self.pass
+    }
+
     /// When `client` takes its next turn.
     pub fn wake(&self, client: ClientId) -> VirtualTime {
         self.seats[client.index()].wake
@@ -113,9 +126,13 @@ impl Cycle {
         self.seats[client.index()].ready = true;
     }
 
-    /// Sets the delay of `client`: it sleeps through every step before `wake`.
+    /// Asks for a delay of `client` from the commit on: it sleeps through every step before `wake`.
     pub fn sleep_until(&mut self, client: ClientId, wake: VirtualTime) {
-        self.seats[client.index()].wake = wake;
+        let seat = &mut self.seats[client.index()];
+        seat.asked = wake;
+        if seat.state == ClientState::Setup {
+            seat.wake = wake;
+        }
     }
 
     /// `synchronize = AND(client_i.sync)`.
@@ -155,6 +172,11 @@ impl Cycle {
                 self.t_v = self.t_v.checked_add(self.step)?;
                 self.steps.0 += 1;
             }
+            ServerState::Write => {
+                for seat in self.seats.iter_mut().filter(|seat| seat.due) {
+                    seat.wake = seat.asked;
+                }
+            }
             _ => {}
         }
         self.enter(entered);
@@ -168,7 +190,7 @@ impl Cycle {
         self.pass = 0;
         for seat in &mut self.seats {
             seat.due = true;
-            seat.wake = VirtualTime::ZERO;
+            (seat.wake, seat.asked) = (VirtualTime::ZERO, VirtualTime::ZERO);
         }
         self.enter(ServerState::InitialWrite);
     }
@@ -181,7 +203,7 @@ impl Cycle {
         self.pass = self.passes() - 1;
         self.server = if steps.0 == 0 { ServerState::InitialWrite } else { ServerState::Write };
         for (seat, wake) in self.seats.iter_mut().zip(wakes) {
-            *seat = Seat { state: self.server.of_clients(), ready: true, due: false, wake: *wake };
+            *seat = Seat { state: self.server.of_clients(), ready: true, due: false, wake: *wake, asked: *wake };
         }
     }
 

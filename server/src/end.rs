@@ -85,6 +85,9 @@ pub enum FailureCause {
 #[derive(Clone, Debug, PartialEq, Eq, Hash, Serialize, Deserialize, Error)]
 #[serde(tag = "rule", rename_all = "kebab-case")]
 pub enum Violation {
+    /// Spoke when all was over; nothing has come of it.
+    #[error("the session is over")]
+    SessionOver,
     /// Spoke in a state in which it has nothing to say.
     #[error("it answered in state {state}, not in {expected}")]
     WrongState {

@@ -110,6 +110,11 @@ impl Image {
         &self.committed
     }
 
+    /// The values that the next commit makes visible.
+    pub fn staged(&self) -> &[u8] {
+        &self.staged
+    }
+
     /// Copies committed values to the bytes of a port, which has the size of `map`.
     pub fn gather(&self, map: &PortMap, port: &mut [u8]) {
         for run in &map.runs {

@@ -330,6 +330,9 @@ impl Session {
 
     /// Holds the client to `expected`: in that state, and awaited in it.
     fn expect(&mut self, client: ClientId, expected: ClientState) -> Result<(), Violation> {
+        if self.end.is_some() {
+            return Err(Violation::SessionOver);
+        }
         let state = self.cycle.client(client);
         if state != expected {
             return self.violated(client, Violation::WrongState { state, expected });
@@ -369,6 +372,11 @@ impl Session {
     /// The values that clients see, in the image's layout.
     pub fn image(&self) -> &[u8] {
         self.image.committed()
+    }
+
+    /// The values of the next commit, for those who watch over the session; no client sees them.
+    pub fn staged(&self) -> &[u8] {
+        self.image.staged()
     }
 
     /// The states and delays.

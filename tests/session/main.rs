@@ -1,0 +1,1 @@
+//! Sessions of toy clients, through the public API.
