@@ -200,8 +200,10 @@ impl Cycle {
     pub(crate) fn resume_at(&mut self, steps: StepCount, t_v: VirtualTime, wakes: &[VirtualTime]) {
         self.steps = steps;
         self.t_v = t_v;
-        self.pass = self.passes() - 1;
-        self.server = if steps.0 == 0 { ServerState::InitialWrite } else { ServerState::Write };
+        (self.server, self.pass) = match steps.0 {
+            0 => (ServerState::InitialWrite, 0),
+            _ => (ServerState::Write, self.passes() - 1),
+        };
         for (seat, wake) in self.seats.iter_mut().zip(wakes) {
             *seat = Seat { state: self.server.of_clients(), ready: true, due: false, wake: *wake, asked: *wake };
         }

@@ -1,1 +1,8 @@
-//! Sessions of toy clients, through the public API.
+//! Sessions of toy clients, through the public API of the server.
+
+mod checkpoint;
+mod control;
+mod digest;
+mod failure;
+mod joining;
+mod wire;

@@ -182,8 +182,7 @@ impl Remotes {
     pub(crate) fn send_end(&mut self, end: &SessionEnd) {
         let message = ServerMessage::End(end.clone());
         for remote in self.seats.iter_mut().flatten() {
-            let told = tokio::time::timeout(HANDSHAKE_TIMEOUT, send(&mut remote.connection, &message));
-            let _context = self.runtime.enter();
+            let told = async { tokio::time::timeout(HANDSHAKE_TIMEOUT, send(&mut remote.connection, &message)).await };
             let _ = self.runtime.block_on(told);
         }
     }

@@ -1,0 +1,88 @@
+//! Stop, pause, single step and reset: at step boundaries, for all at once, without a trace in the digest.
+
+use std::time::Duration;
+
+use onescan_server::end::SessionEnd;
+use onescan_server::lockstep::Outcome;
+use onescan_server::mailbox::Mailbox;
+use onescan_server::plan::Coupling;
+use onescan_server::session::Control;
+use onescan_server::time::StepCount;
+use onescan_server::transport::tcp::Lobby;
+use onescan_server::transport::tcp::operator::operate;
+use onescan_tests::at_ms;
+use onescan_tests::run::{PATIENCE, boxed, in_process, loopback, run};
+use onescan_tests::toy::{ring, ring_plan};
+
+fn undisturbed() -> Outcome {
+    run(in_process(ring_plan(&Coupling::Parallel), boxed(ring())), at_ms(500))
+}
+
+/// Runs the ring to 500 ms in a thread, held from the start, while `operator` uses the mailbox's address.
+fn operated(operator: impl FnOnce(&dyn Fn(Option<Control>) -> onescan_server::wire::message::Status)) -> Outcome {
+    let mailbox = Mailbox::new();
+    let lobby = Lobby::open(loopback(), &ring_plan(&Coupling::Parallel), mailbox.clone()).expect("a free port");
+    let address = lobby.address();
+    mailbox.control(Control::Pause);
+    let session = std::thread::spawn(move || {
+        let mut lockstep = in_process(ring_plan(&Coupling::Parallel), boxed(ring()));
+        lockstep.set_mailbox(mailbox);
+        run(lockstep, at_ms(500))
+    });
+    operator(&|control| operate(address, control, PATIENCE).expect("the session answers"));
+    session.join().expect("no panic")
+}
+
+#[test]
+fn pause_and_single_steps_leave_no_trace() {
+    let outcome = operated(|ask| {
+        let status = ask(None);
+        assert!(status.held && status.steps == StepCount(0));
+        for step in 1..=3 {
+            ask(Some(Control::Step));
+            let status = ask(None);
+            assert!(status.held);
+            assert_eq!(status.steps, StepCount(step), "exactly one step each");
+            assert_eq!(status.t_v, at_ms(10 * step));
+        }
+        ask(Some(Control::Resume));
+    });
+    assert_eq!(outcome, undisturbed());
+}
+
+#[test]
+fn after_a_reset_the_session_is_a_new_one() {
+    let outcome = operated(|ask| {
+        for _ in 0..7 {
+            ask(Some(Control::Step));
+        }
+        assert_eq!(ask(None).steps, StepCount(7));
+        ask(Some(Control::Reset));
+        let status = ask(None);
+        assert_eq!((status.steps, status.held), (StepCount(0), true));
+        ask(Some(Control::Resume));
+    });
+    assert_eq!(outcome, undisturbed());
+}
+
+#[test]
+fn a_stop_ends_the_session_at_the_boundary() {
+    let outcome = operated(|ask| {
+        ask(Some(Control::Step));
+        ask(Some(Control::Step));
+        assert_eq!(ask(None).steps, StepCount(2));
+        ask(Some(Control::Stop));
+    });
+    assert_eq!(outcome.end, SessionEnd::Stopped { t_v: at_ms(20) });
+    assert_eq!(outcome.digest, run(in_process(ring_plan(&Coupling::Parallel), boxed(ring())), at_ms(20)).digest);
+}
+
+#[test]
+fn an_operator_with_nobody_to_ask_is_told() {
+    let address = {
+        let lobby = Lobby::open(loopback(), &ring_plan(&Coupling::Parallel), Mailbox::new()).expect("a free port");
+        lobby.address()
+    };
+    let error = operate(address, None, Duration::from_secs(5)).expect_err("nobody listens");
+    assert!(error.to_string().starts_with("cannot connect to the server at 127.0.0.1:"), "{error}");
+}
