@@ -1,0 +1,68 @@
+//! What can be wrong with a scenario: one error, with file and line where there is one.
+
+use std::path::PathBuf;
+
+use miette::{Diagnostic, NamedSource, SourceSpan};
+use thiserror::Error;
+
+/// Why a scenario is none.
+#[derive(Debug, Error, Diagnostic)]
+pub enum ScenarioError {
+    /// A file that cannot be read.
+    #[error("cannot read {}: {source}", path.display())]
+    #[diagnostic(code(scenario::unreadable))]
+    Unreadable {
+        /// The file.
+        path: PathBuf,
+        /// Why.
+        source: std::io::Error,
+        /// What to do.
+        #[help]
+        help: Option<String>,
+    },
+    /// A place in `scenario.toml` that is wrong.
+    #[error("{message}")]
+    #[diagnostic(code(scenario::wrong))]
+    Wrong {
+        /// What is wrong.
+        message: String,
+        /// The file.
+        #[source_code]
+        file: NamedSource<String>,
+        /// The place.
+        #[label("here")]
+        place: Option<SourceSpan>,
+        /// What to do.
+        #[help]
+        help: Option<String>,
+    },
+    /// The scene of a plant is wrong.
+    #[error(transparent)]
+    #[diagnostic(transparent)]
+    Scene(#[from] Box<SceneReport>),
+    /// The sources of a soft PLC are wrong.
+    #[error(transparent)]
+    #[diagnostic(transparent)]
+    Plc(#[from] Box<onescan_plc_shim::Diagnostics>),
+}
+
+/// A scene's faults with the places they are at.
+#[derive(Debug, Error, Diagnostic)]
+#[error("{message}")]
+#[diagnostic(code(scene::wrong))]
+pub struct SceneReport {
+    /// The first fault, in words.
+    pub message: String,
+    /// The scene file.
+    #[source_code]
+    pub file: NamedSource<String>,
+    /// Its place.
+    #[label("here")]
+    pub place: Option<SourceSpan>,
+    /// What to do.
+    #[help]
+    pub help: Option<String>,
+    /// The other faults.
+    #[related]
+    pub others: Vec<SceneReport>,
+}

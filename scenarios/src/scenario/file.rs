@@ -1,0 +1,157 @@
+//! `scenario.toml` as it is written. Times are text with a unit, as in `"10ms"`.
+
+use std::collections::BTreeMap;
+use std::str::FromStr;
+
+use onescan_server::signal::{ClientName, ElementaryType, SignalName};
+use onescan_server::time::{TimeSpan, VirtualTime};
+use serde::{Deserialize, Deserializer};
+
+/// The only version of the format so far.
+pub const VERSION: u32 = 1;
+
+/// The whole file.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ScenarioFile {
+    /// Version of the format.
+    pub version: u32,
+    /// What the scenario is about, in one line.
+    #[serde(default)]
+    pub title: String,
+    /// The step of virtual time.
+    #[serde(deserialize_with = "from_text")]
+    pub step: TimeSpan,
+    /// Virtual time at which a run is complete, unless the command line says otherwise.
+    #[serde(deserialize_with = "from_text")]
+    pub until: VirtualTime,
+    /// How clients see each other within a step.
+    #[serde(default)]
+    pub coupling: CouplingFile,
+    /// The session's signals by name.
+    #[serde(default)]
+    pub signals: BTreeMap<SignalName, SignalFile>,
+    /// The session's clients by name.
+    pub clients: BTreeMap<ClientName, ClientFile>,
+    /// How the signals travel when nothing is synchronised.
+    #[serde(default)]
+    pub freewheel: FreewheelFile,
+    /// What a plot shows.
+    #[serde(default)]
+    pub plot: PlotFile,
+}
+
+/// `"parallel"` or `{ sequential = ["plc", "plant"] }`.
+#[derive(Clone, Debug, Default, Deserialize)]
+#[serde(rename_all = "kebab-case", deny_unknown_fields)]
+pub enum CouplingFile {
+    /// SDSP.
+    #[default]
+    Parallel,
+    /// OneScan, in this order.
+    Sequential(Vec<ClientName>),
+}
+
+/// One signal.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct SignalFile {
+    /// Its elementary type.
+    #[serde(rename = "type")]
+    pub ty: ElementaryType,
+    /// The client that writes it.
+    pub writer: ClientName,
+    /// Its unit, for people.
+    pub unit: Option<String>,
+    /// What it means, for people.
+    pub about: Option<String>,
+}
+
+/// One client.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(tag = "kind", rename_all = "kebab-case", deny_unknown_fields)]
+pub enum ClientFile {
+    /// A scene of rigid bodies.
+    Plant {
+        /// The scene file, relative to the scenario's folder.
+        scene: String,
+        /// Virtual time of one turn; the session's step if absent.
+        #[serde(default, deserialize_with = "from_optional_text")]
+        period: Option<TimeSpan>,
+    },
+    /// The embedded soft PLC.
+    SoftPlc {
+        /// Source files, relative to the scenario's folder.
+        sources: Vec<String>,
+        /// Its tasks.
+        tasks: Vec<TaskFile>,
+        /// Signals whose PLC variable is not found by the signal's name, with the variable's path.
+        #[serde(default)]
+        bind: BTreeMap<SignalName, String>,
+    },
+    /// A program of its own that joins over TCP.
+    External {
+        /// The program to start, with its arguments; `{server}` stands for the server's address.
+        /// Without it the server waits for somebody to start it.
+        #[serde(default)]
+        command: Vec<String>,
+    },
+}
+
+/// One task of a soft PLC (IEC 61131-3 2.7.2).
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct TaskFile {
+    /// Its name.
+    pub name: String,
+    /// Its cycle time.
+    #[serde(deserialize_with = "from_text")]
+    pub interval: TimeSpan,
+    /// Its priority; 0 is the highest.
+    #[serde(default)]
+    pub priority: u32,
+    /// The programs it runs, in this order.
+    pub programs: Vec<String>,
+}
+
+/// The OPC-like link between free-wheeling clients (seed 004 sec. II-C and III).
+#[derive(Clone, Debug, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct FreewheelFile {
+    /// How often the link looks for changes: the update rate of the OPC client group.
+    #[serde(deserialize_with = "from_text")]
+    pub update_rate: TimeSpan,
+    /// How long the link needs for one item: items that change together arrive one after the other.
+    #[serde(deserialize_with = "from_text")]
+    pub item_transfer: TimeSpan,
+}
+
+impl Default for FreewheelFile {
+    /// The update rate of seed 004 sec. III-C, and a gateway that moves a thousand items a second.
+    fn default() -> Self {
+        const MILLISECOND: TimeSpan = TimeSpan::from_millis(1).expect("not zero");
+        Self { update_rate: MILLISECOND, item_transfer: MILLISECOND }
+    }
+}
+
+/// What a plot shows.
+#[derive(Clone, Debug, Default, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct PlotFile {
+    /// The signals, a panel each, from top to bottom; all if empty.
+    #[serde(default)]
+    pub signals: Vec<SignalName>,
+}
+
+fn from_text<'de, D, T>(deserializer: D) -> Result<T, D::Error>
+where
+    D: Deserializer<'de>,
+    T: FromStr,
+    T::Err: std::fmt::Display,
+{
+    String::deserialize(deserializer)?.parse().map_err(serde::de::Error::custom)
+}
+
+fn from_optional_text<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<TimeSpan>, D::Error> {
+    from_text(deserializer).map(Some)
+}

@@ -1,0 +1,16 @@
+//! Scenarios: a folder that says everything about a session.
+//!
+//! | module | subject |
+//! |---|---|
+//! | [`file`] | `scenario.toml` as it is written |
+//! | [`load`] | `scenario.toml` read and checked |
+//! | [`compose`] | a scenario's plan and its clients |
+//! | [`error`] | what can be wrong with it, and where |
+
+pub mod compose;
+pub mod error;
+pub mod file;
+pub mod load;
+
+pub use error::ScenarioError;
+pub use load::Scenario;
