@@ -9,6 +9,7 @@ use onescan_server::client::ClientFault;
 use onescan_server::signal::{PortLayout, SignalName, Slot, SlotError};
 use rapier3d::prelude::*;
 
+use super::coordinate::Gauge;
 use super::scene::model::{self, NumberType};
 use super::setpoint::{Bounds, Setpoint};
 use super::world::{World, measured_axis};
@@ -54,6 +55,13 @@ enum Command {
     Bidirectional { forward: Slot<bool>, reverse: Slot<bool> },
     Velocity(NumberSlot),
     Position(NumberSlot),
+}
+
+/// How an axis's joint is measured, and where it was at the last look.
+#[derive(Clone, Copy)]
+pub(super) struct Measured<'m> {
+    pub(super) position: f64,
+    pub(super) gauge: &'m Gauge,
 }
 
 /// A driven axis, bound to its joint and its signals.
@@ -122,12 +130,15 @@ impl Axis {
         &self,
         name: &str,
         setpoint: &mut Setpoint,
-        measured: f64,
+        measured: Measured<'_>,
         dt_s: f64,
         inputs: &[u8],
         world: &mut World,
     ) -> Result<(), ClientFault> {
-        let from = setpoint.near(measured, self.bounds.speed * dt_s);
+        let Measured { position, gauge } = measured;
+        let speed = self.bounds.speed;
+        let velocity = || gauge.velocity(world).clamp(-speed, speed);
+        let from = setpoint.near(position, speed * dt_s, velocity);
         let to = match self.command {
             Command::Bidirectional { forward, reverse } => {
                 let speed = match (forward.get(inputs), reverse.get(inputs)) {
@@ -144,7 +155,7 @@ impl Axis {
                 from.towards_position(wanted, self.bounds, dt_s)
             }
         };
-        let correction = CORRECTED_A_PERIOD * (from.position - measured);
+        let correction = CORRECTED_A_PERIOD * (from.position - position);
         let velocity = (to.position - from.position + correction) / dt_s;
         if let Some(joint) = world.physics.impulse_joints.get_mut(self.motor, true) {
             joint.data.set_motor_velocity(self.along, velocity, MOTOR_GAIN_PER_S);

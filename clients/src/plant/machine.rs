@@ -5,7 +5,7 @@ use onescan_server::signal::{PortLayout, SlotError};
 use onescan_server::time::TimeSpan;
 use serde::{Deserialize, Serialize};
 
-use super::axis::Axis;
+use super::axis::{Axis, Measured};
 use super::coordinate::Gauge;
 use super::scene::Scene;
 use super::sensor::Sensor;
@@ -74,7 +74,8 @@ impl Machine {
     /// A command that is not finite, a world that has come apart.
     pub(super) fn turn(&mut self, scene: &Scene, inputs: &[u8], outputs: &mut [u8]) -> Result<(), ClientFault> {
         for ((axis, setpoint), described) in self.axes.iter().zip(&mut self.memory.setpoints).zip(&scene.axes) {
-            let measured = self.memory.positions[axis.joint()];
+            let joint = axis.joint();
+            let measured = Measured { position: self.memory.positions[joint], gauge: &self.gauges[joint] };
             axis.drive(&described.name, setpoint, measured, self.dt_s, inputs, &mut self.world)?;
         }
         self.world.step(scene)?;

@@ -54,9 +54,11 @@ impl Setpoint {
         Self { position: self.position + 0.5 * (self.velocity + velocity) * dt_s, velocity }
     }
 
-    /// This setpoint, held within `lag` of where the axis really is.
-    pub(super) fn near(self, measured: f64, lag: f64) -> Self {
-        Self { position: self.position.clamp(measured - lag, measured + lag), ..self }
+    /// This setpoint, held within `lag` of where the axis really is. Where it had to be held, it goes
+    /// on from the axis's real velocity, so that a drive that was overpowered does not jump when free.
+    pub(super) fn near(self, measured: f64, lag: f64, velocity: impl FnOnce() -> f64) -> Self {
+        let position = self.position.clamp(measured - lag, measured + lag);
+        if position == self.position { self } else { Self { position, velocity: velocity() } }
     }
 }
 

@@ -13,6 +13,9 @@ use super::scene::model::{Body, BodyKind, Collisions, Joint, JointKind, Mass, Sc
 /// Bodies without a group are members of this one.
 const UNGROUPED: Group = Group::GROUP_32;
 
+/// Sweeps over all joints and contacts in one solver iteration.
+const SWEEPS: usize = 4;
+
 /// The rigid bodies of a plant, and where each thing of the scene is in them.
 pub(super) struct World {
     /// All of the state that the engine keeps.
@@ -100,6 +103,8 @@ fn integration(scene: &Scene, period: TimeSpan) -> IntegrationParameters {
     IntegrationParameters {
         dt: period.as_secs_f64() / f64::from(scene.substeps),
         num_solver_iterations: scene.solver_iterations as usize,
+        // a joint between a light and a heavy body needs several sweeps to carry the load
+        num_internal_pgs_iterations: SWEEPS,
         // without it a motor below a load converges over many steps and lets the load sag meanwhile
         warmstart_joints: true,
         ..IntegrationParameters::default()

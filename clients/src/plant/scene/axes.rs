@@ -99,8 +99,8 @@ fn limits(written: &AxisTable, unit: Unit, faults: &mut Faults<'_>) -> Option<(f
         ),
     ];
     let entries = pairs.map(|(metre, radian)| faults.in_unit(&whose, unit, metre, radian));
-    for entry in &entries[..2] {
-        if entry.value.is_none() {
+    for (entry, (metre, radian)) in entries.iter().zip(&pairs[..2]) {
+        if metre.value.is_none() && radian.value.is_none() {
             faults.add(written.name.span(), SceneFaultKind::Missing { whose: whose.clone(), key: entry.key });
         }
     }

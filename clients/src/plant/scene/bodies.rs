@@ -12,6 +12,11 @@ use super::text;
 /// What joints and sensors call the world itself.
 pub(super) const GROUND: &str = "ground";
 
+// What the engine computes with for certain: beyond, products of several such numbers leave the
+// range in which a double is precise, long before it overflows.
+const LENGTH_M: Allowed = Allowed::Within(1e-4, 1e4);
+const MASS_KG: Allowed = Allowed::Within(1e-6, 1e9);
+const DENSITY_KG_M3: Allowed = Allowed::Within(1e-2, 1e5);
 const FRICTION: f64 = 0.5;
 const RESTITUTION: f64 = 0.0;
 
@@ -61,6 +66,7 @@ fn shape(table: &Spanned<BodyTable>, faults: &mut Faults<'_>) -> Option<Shape> {
         return None;
     };
     let mut measures = Measures { written, kind, faults };
+    measures.refuse_foreign();
     let shape = match kind.get_ref() {
         ShapeKind::Box => Shape::Box { size_m: measures.size()? },
         ShapeKind::Sphere => Shape::Sphere { radius_m: measures.length("radius_m", written.radius_m.as_ref())? },
@@ -73,7 +79,6 @@ fn shape(table: &Spanned<BodyTable>, faults: &mut Faults<'_>) -> Option<Shape> {
             Shape::Capsule { radius_m, length_m }
         }
     };
-    measures.refuse_foreign();
     Some(shape)
 }
 
@@ -104,7 +109,7 @@ impl Measures<'_, '_, '_> {
         if value.is_none() {
             self.missing(key);
         }
-        self.faults.number(Entry::new(key, value), Allowed::Positive)
+        self.faults.number(Entry::new(key, value), LENGTH_M)
     }
 
     fn radius_and_length(&mut self) -> Option<(f64, f64)> {
@@ -118,7 +123,7 @@ impl Measures<'_, '_, '_> {
             self.missing("size_m");
             return None;
         };
-        self.faults.components("size_m", size, Allowed::Positive)
+        self.faults.components("size_m", size, LENGTH_M)
     }
 
     /// Measures that belong to another shape are faults.
@@ -157,8 +162,8 @@ fn mass(written: &BodyTable, faults: &mut Faults<'_>) -> Option<Mass> {
         return Some(Mass::Total { kg: 0.0 });
     }
     match (total.value, density.value) {
-        (Some(_), None) => faults.number(total, Allowed::Positive).map(|kg| Mass::Total { kg }),
-        (None, Some(_)) => faults.number(density, Allowed::Positive).map(|kg_m3| Mass::Density { kg_m3 }),
+        (Some(_), None) => faults.number(total, MASS_KG).map(|kg| Mass::Total { kg }),
+        (None, Some(_)) => faults.number(density, DENSITY_KG_M3).map(|kg_m3| Mass::Density { kg_m3 }),
         (None, None) | (Some(_), Some(_)) => {
             faults.add(written.name.span(), SceneFaultKind::Mass(name.to_owned()));
             None

@@ -127,7 +127,7 @@ pub enum SceneFaultKind {
         /// The key.
         key: &'static str,
         /// What it allows.
-        wanted: &'static str,
+        wanted: String,
         /// The value in the file.
         value: String,
     },
@@ -167,8 +167,11 @@ pub enum SceneFaultKind {
         /// Key of the upper bound.
         upper: &'static str,
     },
+    /// Limits of a revolute joint that leave it a whole turn or more, which bodies cannot enforce.
+    #[error("the limits of revolute joint `{0}` are a turn or more apart, and such limits limit nothing")]
+    FullTurn(String),
     /// An axis on a joint that cannot be driven.
-    #[error("joint `{joint}` is {kind} and cannot be driven")]
+    #[error("`{joint}` is a {kind} joint and cannot be driven")]
     Undrivable {
         /// The joint.
         joint: String,
@@ -176,7 +179,7 @@ pub enum SceneFaultKind {
         kind: &'static str,
     },
     /// An end-position sensor on a joint without a coordinate.
-    #[error("joint `{joint}` is {kind} and has no position")]
+    #[error("`{joint}` is a {kind} joint and has no position")]
     Unmeasurable {
         /// The joint.
         joint: String,

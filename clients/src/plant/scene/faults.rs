@@ -46,8 +46,7 @@ impl<'t> Faults<'t> {
 
     /// The fault in the form of a file that the TOML reader stopped at.
     pub(super) fn into_form_error(mut self, error: &toml::de::Error) -> SceneError {
-        let message = error.message().to_owned();
-        let hint = nearest_key(&message);
+        let (message, hint) = reworded(error.message());
         self.add_hinted(error.span().unwrap_or(0..0), SceneFaultKind::Form(message), hint);
         SceneError::Faulty(self.found)
     }
@@ -72,11 +71,20 @@ impl<'t> Faults<'t> {
     }
 }
 
-/// The nearest right key to an unknown one, out of a message like
-/// "unknown field `masskg`, expected one of `name`, `mass_kg`".
-fn nearest_key(message: &str) -> Option<String> {
-    let unknown = message.starts_with("unknown field") || message.starts_with("unknown variant");
+/// A message of the TOML reader in the words of a scene file, with a hint: the nearest right key
+/// out of a message like "unknown field `masskg`, expected one of `name`, `mass_kg`".
+fn reworded(message: &str) -> (String, Option<String>) {
+    let told = message
+        .replacen("unknown field", "unknown key", 1)
+        .replacen("unknown variant", "unknown value", 1)
+        .replacen("missing field", "missing key", 1)
+        .replacen("expected f64", "expected a number", 1)
+        .replacen("expected i64", "expected a whole number", 1);
     let mut quoted = message.split('`').skip(1).step_by(2);
-    let wrong = quoted.next().filter(|_| unknown)?;
-    nearest(wrong, quoted).map(|near| format!("did you mean `{near}`?"))
+    let wrong = quoted.next().filter(|_| message.starts_with("unknown"));
+    let near = wrong.and_then(|wrong| nearest(wrong, quoted));
+    match (near, told.split_once(", expected")) {
+        (Some(near), Some((short, _))) => (short.to_owned(), Some(format!("did you mean `{near}`?"))),
+        _ => (told, None),
+    }
 }

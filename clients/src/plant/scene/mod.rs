@@ -1,5 +1,57 @@
 //! The scene: what the plant is made of, read from one TOML file.
 //!
+//! # The file
+//! SI units, z up. Points and directions are in world coordinates, in the pose that the scene itself
+//! gives its bodies. The order of tables is the order in which everything is built and evaluated.
+//!
+//! | at the top | meaning |
+//! |---|---|
+//! | `version` | 1 |
+//! | `gravity_m_s2` | `[0, 0, -9.81]` if absent |
+//! | `extent_m` | a body farther from the origin than this is a fault; 10 km if absent |
+//! | `substeps` | world steps in a turn, 1 if absent |
+//! | `solver_iterations` | in a world step, 8 if absent |
+//!
+//! | `[[body]]` | meaning |
+//! |---|---|
+//! | `name`, `kind` | `fixed`, `dynamic` or `kinematic` |
+//! | `shape` | `box` (`size_m`, whole edges), `sphere` (`radius_m`), `cylinder` or `capsule` (`radius_m`, `length_m`, along z; a capsule's caps come on top); only a dynamic body must have one |
+//! | `position_m`, `rpy_deg` | origin; roll about x, then pitch about y, then yaw about z |
+//! | `velocity_m_s` | at the start for a dynamic body, always for a kinematic one |
+//! | `mass_kg` or `density_kg_m3` | of a dynamic body |
+//! | `friction`, `restitution` | 0.5 and 0 if absent |
+//! | `collides`, `group` | `collides = false` for a body that only sensors see; bodies of one group do not collide with each other |
+//!
+//! | `[[joint]]` | meaning |
+//! |---|---|
+//! | `name`, `kind` | `prismatic`, `revolute`, `fixed`, `ball`, or `slot`: a pin of the child in a slot of the parent |
+//! | `parent`, `child` | bodies; `ground` is the world as a parent |
+//! | `anchor_m` | the child's origin if absent |
+//! | `axis` | of translation for a prismatic joint, of rotation for a revolute one and for a slot |
+//! | `slide` | of translation for a slot, across its `axis` |
+//! | `initial_m` or `initial_rad` | coordinate in the scene's pose, 0 if absent |
+//! | `lower_m`, `upper_m` or `lower_rad`, `upper_rad` | limits of the coordinate |
+//! | `contacts` | whether the two bodies collide, false if absent |
+//!
+//! | `[[axis]]` | meaning |
+//! |---|---|
+//! | `name`, `joint` | a prismatic or a revolute joint |
+//! | `drive` | `bidirectional` (`forward_signal`, `reverse_signal`: BOOL; both or none is stop and hold), `velocity` or `position` (`command_signal`) |
+//! | `speed_m_s` or `speed_rad_s` | greatest speed, the only one of a bidirectional drive |
+//! | `acceleration_m_s2` or `acceleration_rad_s2` | of every ramp |
+//! | `force_max_n` or `torque_max_nm` | as much as it takes if absent |
+//! | `position_signal`, `velocity_signal` | the joint's coordinate, and its velocity over the last period |
+//! | `signal_type` | `LREAL` or `REAL`, of all number signals of the axis; `LREAL` if absent |
+//!
+//! | `[[sensor]]` | meaning |
+//! |---|---|
+//! | `name`, `kind`, `signal` | `end_position` or `proximity`; a BOOL signal |
+//! | `joint` | of an end position: prismatic, revolute or slot |
+//! | `from_m`, `to_m`, `hysteresis_m` (or `_rad`) | true from here to there; false again farther outside than the hysteresis |
+//! | `body`, `point_m`, `direction`, `range_m` | of a proximity sensor: a ray that the body carries, the ground if absent |
+//! | `targets` | bodies that the ray detects, all but the carrier if absent |
+//!
+//! # Reading
 //! A scene is read in two passes. The first gives the tables as they are written and stops at the
 //! first fault of form, as TOML readers do. The second checks every value and finds every name; it
 //! goes on after a fault, so that one run reports them all.

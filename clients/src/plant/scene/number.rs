@@ -6,29 +6,39 @@ use super::error::SceneFaultKind;
 use super::faults::Faults;
 use super::format::Triple;
 
+/// The greatest number of a scene, in any unit: nothing of a machine is larger.
+const GREATEST: f64 = 1e9;
+
 /// What a number may be.
 #[derive(Clone, Copy)]
 pub(super) enum Allowed {
+    /// Of either sign.
     Finite,
+    /// Above zero.
     Positive,
+    /// Zero or above.
     NotNegative,
+    /// Between two bounds, which are allowed too.
+    Within(f64, f64),
 }
 
 impl Allowed {
-    const fn in_words(self) -> &'static str {
+    fn in_words(self) -> String {
         match self {
-            Self::Finite => "a finite number",
-            Self::Positive => "a finite number above 0",
-            Self::NotNegative => "a finite number, 0 or above",
+            Self::Finite => format!("a number from -{GREATEST:e} to {GREATEST:e}"),
+            Self::Positive => format!("a number above 0, up to {GREATEST:e}"),
+            Self::NotNegative => format!("a number from 0 to {GREATEST:e}"),
+            Self::Within(least, most) => format!("a number from {least:e} to {most:e}"),
         }
     }
 
     fn admits(self, value: f64) -> bool {
         value.is_finite()
             && match self {
-                Self::Finite => true,
-                Self::Positive => value > 0.0,
-                Self::NotNegative => value >= 0.0,
+                Self::Finite => value.abs() <= GREATEST,
+                Self::Positive => value > 0.0 && value <= GREATEST,
+                Self::NotNegative => (0.0..=GREATEST).contains(&value),
+                Self::Within(least, most) => (least..=most).contains(&value),
             }
     }
 }
@@ -74,10 +84,9 @@ impl Faults<'_> {
         let value = u32::try_from(*written.get_ref()).ok().filter(|value| (1..=max).contains(value));
         if value.is_none() {
             let value = written.get_ref().to_string();
-            self.add_hinted(
+            self.add(
                 written.span(),
-                SceneFaultKind::Number { key, wanted: "a whole number, 1 or above", value },
-                Some(format!("at most {max}")),
+                SceneFaultKind::Number { key, wanted: format!("a whole number from 1 to {max}"), value },
             );
         }
         value
@@ -126,7 +135,8 @@ impl Faults<'_> {
             return Some([x / length, y / length, z / length]);
         }
         let value = format!("[{x}, {y}, {z}]");
-        self.add(written.span(), SceneFaultKind::Number { key, wanted: "a direction", value });
+        let wanted = "a direction, of any length but 0".to_owned();
+        self.add(written.span(), SceneFaultKind::Number { key, wanted, value });
         None
     }
 }

@@ -1,0 +1,9 @@
+//! The plant as a client, driven turn by turn without a session around it.
+
+mod bench;
+mod faults;
+mod motion;
+mod robustness;
+mod sensors;
+mod shear;
+mod state;
