@@ -55,14 +55,13 @@ impl Machine {
         let axes = scene
             .axes
             .iter()
-            .map(|axis| Axis::build(axis, &scene.joints[axis.joint], &mut world, [&reads, &writes]))
+            .map(|axis| Axis::build(axis, scene, &mut world, [&reads, &writes]))
             .collect::<Result<Vec<_>, _>>()?;
         let sensors =
             scene.sensors.iter().map(|sensor| Sensor::build(sensor, &world, &writes)).collect::<Result<Vec<_>, _>>()?;
-        let rest = |axis: &Axis| Setpoint { position: scene.joints[axis.joint()].initial, velocity: 0.0 };
         let memory = Memory {
             positions: scene.joints.iter().map(|joint| joint.initial).collect(),
-            setpoints: axes.iter().map(rest).collect(),
+            setpoints: axes.iter().map(|axis| axis.rest(scene)).collect(),
             detected: vec![false; sensors.len()],
         };
         Ok(Self { world, memory, gauges, axes, sensors, dt_s: period.as_secs_f64() })
@@ -73,10 +72,10 @@ impl Machine {
     /// # Errors
     /// A command that is not finite, a world that has come apart.
     pub(super) fn turn(&mut self, scene: &Scene, inputs: &[u8], outputs: &mut [u8]) -> Result<(), ClientFault> {
-        for ((axis, setpoint), described) in self.axes.iter().zip(&mut self.memory.setpoints).zip(&scene.axes) {
-            let joint = axis.joint();
-            let measured = Measured { position: self.memory.positions[joint], gauge: &self.gauges[joint] };
-            axis.drive(&described.name, setpoint, measured, self.dt_s, inputs, &mut self.world)?;
+        let Self { world, memory, gauges, axes, dt_s, .. } = self;
+        let measured = Measured { gauges, positions: &memory.positions };
+        for ((axis, setpoint), described) in axes.iter().zip(&mut memory.setpoints).zip(&scene.axes) {
+            axis.drive(&described.name, setpoint, measured, *dt_s, inputs, world)?;
         }
         self.world.step(scene)?;
         self.observe(outputs);
@@ -89,9 +88,9 @@ impl Machine {
         for (gauge, position) in gauges.iter().zip(&mut memory.positions) {
             *position = gauge.position(world, *position);
         }
-        for axis in axes.iter() {
-            let joint = axis.joint();
-            axis.feed_back(memory.positions[joint], || gauges[joint].velocity(world), outputs);
+        let measured = Measured { gauges, positions: &memory.positions };
+        for (axis, setpoint) in axes.iter().zip(&memory.setpoints) {
+            axis.feed_back(*setpoint, measured, world, outputs);
         }
         for (sensor, detected) in sensors.iter().zip(&mut memory.detected) {
             *detected = sensor.detects(world, &memory.positions, *detected);

@@ -10,7 +10,8 @@
 //! | `world` | the scene as a world of rigid bodies |
 //! | `coordinate` | where a joint stands, measured from the poses of its bodies |
 //! | `setpoint` | the motion a drive wants: ramps and trapezoids in closed form |
-//! | `axis` | a driven axis: command, setpoint, motor, feedback |
+//! | `command` | what the PLC commands of a drive |
+//! | `axis` | a driven axis: command, setpoint, what it moves, feedback |
 //! | `sensor` | end-position and proximity sensors |
 //! | `machine` | all of these, one turn at a time |
 //! | `state` | the plant's state as bytes |
@@ -28,6 +29,7 @@
 
 mod axis;
 mod client;
+mod command;
 mod coordinate;
 mod machine;
 mod pose;

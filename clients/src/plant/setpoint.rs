@@ -12,6 +12,17 @@ pub(super) struct Bounds {
     pub(super) speed: f64,
     /// Greatest acceleration and deceleration, m/s² or rad/s².
     pub(super) acceleration: f64,
+    /// Least position that may be commanded, m or rad.
+    pub(super) lower: f64,
+    /// Greatest position that may be commanded, m or rad.
+    pub(super) upper: f64,
+}
+
+impl Bounds {
+    /// Bounds that leave every position free.
+    pub(super) const fn unlimited(speed: f64, acceleration: f64) -> Self {
+        Self { speed, acceleration, lower: f64::NEG_INFINITY, upper: f64::INFINITY }
+    }
 }
 
 /// Where an ideal axis is and how fast.
@@ -25,7 +36,7 @@ pub(super) struct Setpoint {
 
 impl Setpoint {
     /// The setpoint `dt_s` later on the way to a velocity: a ramp, then the velocity itself.
-    pub(super) fn towards_velocity(self, wanted: f64, bounds: Bounds, dt_s: f64) -> Self {
+    pub(super) fn towards_velocity(self, wanted: f64, bounds: &Bounds, dt_s: f64) -> Self {
         let wanted = wanted.clamp(-bounds.speed, bounds.speed);
         let change = wanted - self.velocity;
         let ramp_s = change.abs() / bounds.acceleration;
@@ -39,7 +50,7 @@ impl Setpoint {
     }
 
     /// The setpoint `dt_s` later on the way to a stop at a position: a trapezoid of velocity.
-    pub(super) fn towards_position(self, wanted: f64, bounds: Bounds, dt_s: f64) -> Self {
+    pub(super) fn towards_position(self, wanted: f64, bounds: &Bounds, dt_s: f64) -> Self {
         let per_period = bounds.acceleration * dt_s;
         let distance = wanted - self.position;
         if distance.abs() <= 0.5 * per_period * dt_s && self.velocity.abs() <= per_period {
@@ -66,14 +77,14 @@ impl Setpoint {
 mod tests {
     use super::*;
 
-    const BOUNDS: Bounds = Bounds { speed: 0.25, acceleration: 2.5 };
+    const BOUNDS: Bounds = Bounds::unlimited(0.25, 2.5);
 
     #[test]
     fn a_ramp_is_its_closed_form_at_any_period() {
         for dt_s in [0.001, 0.01, 0.03, 0.07] {
             let mut setpoint = Setpoint::default();
             for k in 1..=100 {
-                setpoint = setpoint.towards_velocity(0.25, BOUNDS, dt_s);
+                setpoint = setpoint.towards_velocity(0.25, &BOUNDS, dt_s);
                 let t = f64::from(k) * dt_s;
                 let exact = if t < 0.1 { 0.5 * 2.5 * t * t } else { 0.0125 + 0.25 * (t - 0.1) };
                 // a hundred additions of numbers below 2, each rounded to 2^-52
@@ -87,7 +98,7 @@ mod tests {
         for wanted in [0.3, 0.01, -0.2, 0.0004] {
             let (mut setpoint, mut turns) = (Setpoint::default(), 0);
             while setpoint != (Setpoint { position: wanted, velocity: 0.0 }) {
-                let next = setpoint.towards_position(wanted, BOUNDS, 0.01);
+                let next = setpoint.towards_position(wanted, &BOUNDS, 0.01);
                 assert!(next.velocity.abs() <= BOUNDS.speed);
                 // one rounding of the velocity, at most 0.25
                 assert!((next.velocity - setpoint.velocity).abs() <= BOUNDS.acceleration * 0.01 + 1e-16);
@@ -106,7 +117,7 @@ mod tests {
     fn a_target_that_moves_behind_is_gone_back_to() {
         let mut setpoint = Setpoint { position: 0.0, velocity: 0.25 };
         for _ in 0..100 {
-            setpoint = setpoint.towards_position(0.005, BOUNDS, 0.01);
+            setpoint = setpoint.towards_position(0.005, &BOUNDS, 0.01);
         }
         assert_eq!(setpoint, Setpoint { position: 0.005, velocity: 0.0 });
     }

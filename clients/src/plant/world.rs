@@ -23,6 +23,8 @@ pub(super) struct World {
     ground: RigidBodyHandle,
     bodies: Vec<RigidBodyHandle>,
     joints: Vec<ImpulseJointHandle>,
+    /// Belts, and where they stay while their surfaces run.
+    belts: Vec<(RigidBodyHandle, Pose)>,
     substeps: u32,
     extent_m: f64,
 }
@@ -43,7 +45,7 @@ impl World {
                 insert_joint(&mut physics, joint, parent, bodies[joint.child])
             })
             .collect();
-        Self { physics, ground, bodies, joints, substeps: scene.substeps, extent_m: scene.extent_m }
+        Self { physics, ground, bodies, joints, belts: Vec::new(), substeps: scene.substeps, extent_m: scene.extent_m }
     }
 
     /// Moves the world by one period.
@@ -53,6 +55,7 @@ impl World {
     pub(super) fn step(&mut self, scene: &Scene) -> Result<(), ClientFault> {
         for _ in 0..self.substeps {
             self.physics.step();
+            self.put_belts_back();
             if let Some(lost) = self.physics.quarantine().bodies().first() {
                 return Err(self.fault(scene, *lost, "its position or velocity is no longer a finite number"));
             }
@@ -65,6 +68,20 @@ impl World {
         match self.bodies.iter().find(|handle| !inside(**handle)) {
             None => Ok(()),
             Some(lost) => Err(self.fault(scene, *lost, "it has left the world, whose extent `extent_m` gives")),
+        }
+    }
+
+    /// From now on a body keeps its place, whatever its velocity: a belt, which carries what lies on
+    /// it and goes nowhere itself.
+    pub(super) fn keep_in_place(&mut self, body: RigidBodyHandle) {
+        self.belts.push((body, *self.body(body).position()));
+    }
+
+    fn put_belts_back(&mut self) {
+        for (handle, place) in &self.belts {
+            if let Some(body) = self.physics.bodies.get_mut(*handle) {
+                body.set_position(*place, true);
+            }
         }
     }
 

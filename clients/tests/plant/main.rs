@@ -1,5 +1,6 @@
 //! The plant as a client, driven turn by turn without a session around it.
 
+mod belt;
 mod bench;
 mod faults;
 mod motion;

@@ -5,60 +5,101 @@ use toml::Spanned;
 
 use super::error::{SceneFaultKind, Thing};
 use super::faults::Faults;
-use super::format::{AxisTable, DriveKind, JointKind, JointTable, NumberType};
+use super::format::{AxisTable, BodyKind, DriveKind, JointKind, NumberType, SceneFile};
 use super::joints::{kind_name, unit};
-use super::model::{Axis, Drive};
+use super::model::{Axis, Drive, Moved};
 use super::names::Names;
 use super::number::{Allowed, Entry, Unit};
 use super::signals::Signals;
 use super::text;
 
 pub(super) fn check(
-    tables: &[Spanned<AxisTable>],
-    joint_tables: &[Spanned<JointTable>],
+    file: &SceneFile,
+    bodies: &Names,
     joints: &Names,
     signals: &mut Signals,
     faults: &mut Faults<'_>,
 ) -> Vec<Axis> {
-    Names::gather(Thing::Axis, tables.iter().map(|axis| &axis.get_ref().name), faults);
-    let mut driven: Vec<(usize, &str)> = Vec::new();
+    Names::gather(Thing::Axis, file.axis.iter().map(|axis| &axis.get_ref().name), faults);
+    let mut driven: Vec<(Thing, &str, &str)> = Vec::new();
     let mut axes = Vec::new();
-    for table in tables {
-        let written = table.get_ref();
-        let Some(joint) = drivable(written, joint_tables, joints, faults) else { continue };
-        match driven.iter().find(|(index, _)| *index == joint) {
-            Some((_, first)) => {
-                let kind =
-                    SceneFaultKind::DrivenTwice { joint: written.joint.get_ref().clone(), first: (*first).to_owned() };
-                faults.add(written.joint.span(), kind);
+    for written in file.axis.iter().map(Spanned::get_ref) {
+        let (moved, thing, name) = match (&written.joint, &written.belt) {
+            (Some(joint), None) => (drivable(written, joint, file, joints, faults), Thing::Joint, joint),
+            (None, Some(belt)) => (runnable(written, belt, file, bodies, faults), Thing::Body, belt),
+            (None, None) | (Some(_), Some(_)) => {
+                faults.add(written.name.span(), SceneFaultKind::Undriven(text(&written.name).to_owned()));
+                continue;
             }
-            None => driven.push((joint, text(&written.name))),
+        };
+        match driven.iter().find(|(known, driven, _)| *known == thing && *driven == text(name)) {
+            Some((_, _, first)) => {
+                let (name_text, first) = (name.get_ref().clone(), (*first).to_owned());
+                faults.add(name.span(), SceneFaultKind::DrivenTwice { thing, name: name_text, first });
+            }
+            None => driven.push((thing, text(name), text(&written.name))),
         }
-        let unit = unit(*joint_tables[joint].get_ref().kind.get_ref()).unwrap_or(Unit::Metre);
-        axes.extend(axis(written, joint, unit, signals, faults));
+        if let Some((moved, unit)) = moved {
+            axes.extend(axis(written, moved, unit, signals, faults));
+        }
     }
     axes
 }
 
-/// The index of an axis's joint, which must be one that a motor moves.
+/// The joint of an axis, which must be one that a motor moves, and its unit.
 fn drivable(
     written: &AxisTable,
-    joint_tables: &[Spanned<JointTable>],
+    name: &Spanned<String>,
+    file: &SceneFile,
     joints: &Names,
     faults: &mut Faults<'_>,
-) -> Option<usize> {
-    let joint = joints.find(&written.joint, faults)?;
-    let kind = *joint_tables[joint].get_ref().kind.get_ref();
-    if matches!(kind, JointKind::Prismatic | JointKind::Revolute) {
-        return Some(joint);
+) -> Option<(Moved, Unit)> {
+    if let Some(direction) = &written.direction {
+        let whose = format!("axis `{}` of a joint", text(&written.name));
+        faults.add(direction.span(), SceneFaultKind::Misplaced { whose, key: "direction" });
     }
-    let undrivable = SceneFaultKind::Undrivable { joint: written.joint.get_ref().clone(), kind: kind_name(kind) };
+    let joint = joints.find(name, faults)?;
+    let kind = *file.joint[joint].get_ref().kind.get_ref();
+    if let (JointKind::Prismatic | JointKind::Revolute, Some(unit)) = (kind, unit(kind)) {
+        return Some((Moved::Joint(joint), unit));
+    }
+    let undrivable = SceneFaultKind::Undrivable { joint: name.get_ref().clone(), kind: kind_name(kind) };
     let hint = "an axis drives a prismatic or a revolute joint";
-    faults.add_hinted(written.joint.span(), undrivable, Some(hint.to_owned()));
+    faults.add_hinted(name.span(), undrivable, Some(hint.to_owned()));
     None
 }
 
-fn axis(written: &AxisTable, joint: usize, unit: Unit, signals: &mut Signals, faults: &mut Faults<'_>) -> Option<Axis> {
+/// The belt of an axis, which must be a kinematic body without a velocity of its own.
+fn runnable(
+    written: &AxisTable,
+    name: &Spanned<String>,
+    file: &SceneFile,
+    bodies: &Names,
+    faults: &mut Faults<'_>,
+) -> Option<(Moved, Unit)> {
+    let whose = format!("axis `{}` of a belt", text(&written.name));
+    if let Some(force) = &written.force_max_n {
+        faults.add(force.span(), SceneFaultKind::Misplaced { whose: whose.clone(), key: "force_max_n" });
+    }
+    let Some(direction) = &written.direction else {
+        faults.add(name.span(), SceneFaultKind::Missing { whose, key: "direction" });
+        return None;
+    };
+    let direction = faults.direction("direction", direction);
+    let body = bodies.find(name, faults)?;
+    let table = file.body[body].get_ref();
+    if table.kind != BodyKind::Kinematic {
+        let hint = Some("write `kind = \"kinematic\"` in its table".to_owned());
+        faults.add_hinted(name.span(), SceneFaultKind::NotKinematic(name.get_ref().clone()), hint);
+    }
+    if let Some(velocity) = &table.velocity_m_s {
+        let whose = format!("body `{}`, which axis `{}` drives,", text(name), text(&written.name));
+        faults.add(velocity.span(), SceneFaultKind::Misplaced { whose, key: "velocity_m_s" });
+    }
+    Some((Moved::Belt { body, direction: direction? }, Unit::Metre))
+}
+
+fn axis(written: &AxisTable, moved: Moved, unit: Unit, signals: &mut Signals, faults: &mut Faults<'_>) -> Option<Axis> {
     let number = match written.signal_type {
         NumberType::Real => ElementaryType::Real,
         NumberType::Lreal => ElementaryType::Lreal,
@@ -73,7 +114,7 @@ fn axis(written: &AxisTable, joint: usize, unit: Unit, signals: &mut Signals, fa
     let (speed, acceleration, effort_max) = limits?;
     Some(Axis {
         name: written.name.get_ref().clone(),
-        joint,
+        moved,
         drive: drive?,
         speed,
         acceleration,

@@ -186,14 +186,22 @@ pub enum SceneFaultKind {
         /// Its kind.
         kind: &'static str,
     },
-    /// A joint that two axes drive.
-    #[error("joint `{joint}` is driven twice; first by axis `{first}`")]
+    /// A joint or a belt that two axes drive.
+    #[error("{thing} `{name}` is driven twice; first by axis `{first}`")]
     DrivenTwice {
-        /// The joint.
-        joint: String,
+        /// What is driven.
+        thing: Thing,
+        /// The joint, or the belt's body.
+        name: String,
         /// The axis that drives it already.
         first: String,
     },
+    /// An axis that drives nothing, or two things at once.
+    #[error("axis `{0}` needs either a `joint` or a `belt`")]
+    Undriven(String),
+    /// A belt that is not a kinematic body.
+    #[error("body `{0}` is not kinematic and cannot be a belt")]
+    NotKinematic(String),
     /// A signal that is read as two types.
     #[error("signal `{0}` is read both as BOOL and as a number, or as two number types")]
     SignalType(String),

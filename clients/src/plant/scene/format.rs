@@ -135,7 +135,9 @@ pub enum NumberType {
 #[serde(deny_unknown_fields)]
 pub(super) struct AxisTable {
     pub(super) name: Spanned<String>,
-    pub(super) joint: Spanned<String>,
+    pub(super) joint: Option<Spanned<String>>,
+    pub(super) belt: Option<Spanned<String>>,
+    pub(super) direction: Option<Triple>,
     pub(super) drive: Spanned<DriveKind>,
     pub(super) forward_signal: Option<Spanned<String>>,
     pub(super) reverse_signal: Option<Spanned<String>>,

@@ -35,12 +35,14 @@
 //!
 //! | `[[axis]]` | meaning |
 //! |---|---|
-//! | `name`, `joint` | a prismatic or a revolute joint |
+//! | `name` | |
+//! | `joint` | the prismatic or revolute joint that it drives, or |
+//! | `belt`, `direction` | the kinematic body whose surface it drives; the body itself stays in place |
 //! | `drive` | `bidirectional` (`forward_signal`, `reverse_signal`: BOOL; both or none is stop and hold), `velocity` or `position` (`command_signal`) |
 //! | `speed_m_s` or `speed_rad_s` | greatest speed, the only one of a bidirectional drive |
 //! | `acceleration_m_s2` or `acceleration_rad_s2` | of every ramp |
-//! | `force_max_n` or `torque_max_nm` | as much as it takes if absent |
-//! | `position_signal`, `velocity_signal` | the joint's coordinate, and its velocity over the last period |
+//! | `force_max_n` or `torque_max_nm` | of a joint's drive, as much as it takes if absent |
+//! | `position_signal`, `velocity_signal` | coordinate of the joint or travel of the belt, and its velocity over the last period |
 //! | `signal_type` | `LREAL` or `REAL`, of all number signals of the axis; `LREAL` if absent |
 //!
 //! | `[[sensor]]` | meaning |
@@ -127,7 +129,7 @@ fn check(written: &SceneFile, faults: &mut Faults<'_>) -> Scene {
     let extent = Entry::new("extent_m", written.extent_m.as_ref());
     let scene_bodies = bodies::check(&written.body, faults);
     let scene_joints = joints::check(&written.joint, &written.body, &bodies, faults);
-    let axes = axes::check(&written.axis, &written.joint, &joints, &mut signals, faults);
+    let axes = axes::check(written, &bodies, &joints, &mut signals, faults);
     let sensors = sensors::check(written, &bodies, &joints, &mut signals, faults);
     let (reads, writes) = signals.into_ports(faults);
     Scene {

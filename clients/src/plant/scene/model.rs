@@ -148,8 +148,8 @@ pub struct Joint {
 pub struct Axis {
     /// Its name.
     pub name: String,
-    /// Index of the joint that it drives.
-    pub joint: usize,
+    /// What it moves.
+    pub moved: Moved,
     /// How it is commanded.
     pub drive: Drive,
     /// Greatest speed, m/s or rad/s.
@@ -164,6 +164,20 @@ pub struct Axis {
     pub velocity: Option<SignalName>,
     /// Type of the axis's number signals.
     pub number: NumberType,
+}
+
+/// What an axis moves.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub enum Moved {
+    /// The joint of this index, prismatic or revolute.
+    Joint(usize),
+    /// The surface of a kinematic body, which itself stays in place.
+    Belt {
+        /// Index of the body.
+        body: usize,
+        /// Unit vector that the surface runs along.
+        direction: [f64; 3],
+    },
 }
 
 /// How an axis is commanded.
