@@ -80,6 +80,7 @@ pub struct BodyPose<'p> {
 
 /// A digest of all that a plant's state depends on.
 fn identity(scene: &Scene, name: &ClientName, period: TimeSpan) -> blake3::Hash {
+    // plain data of known length always has bytes
     let bytes = postcard::to_stdvec(&(scene, name, period)).unwrap_or_default();
     blake3::hash(&bytes)
 }
