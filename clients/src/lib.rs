@@ -1,1 +1,14 @@
-//! onescan
+//! Everything that joins a onescan session: a plant, a soft PLC.
+//!
+//! | module | subject |
+//! |---|---|
+//! | [`plant`] | the simulated machine: a scene of rigid bodies, driven axes and sensors |
+//!
+//! # Invariants
+//! - A client is a function of its state, its inputs and `t_v`. Nothing here reads a clock, a random
+//!   source, a thread's identity or the order of a hash map.
+//! - Transcendental functions come from `libm`, at set-up as well as in a turn.
+//! - Files are read before a session; nothing here opens a socket or starts a thread.
+//! - Bad input is an error with a place, never a panic.
+
+pub mod plant;

@@ -1,0 +1,43 @@
+//! The plant: the simulated machine as a client of a session.
+//!
+//! A scene file says what the machine is made of; in each turn the plant takes the PLC's commands,
+//! moves the world by one period and writes what its sensors see.
+//!
+//! | module | subject |
+//! |---|---|
+//! | [`scene`] | the scene file: read, checked, plain data |
+//! | `pose` | orientations and joint frames from angles and directions |
+//! | `world` | the scene as a world of rigid bodies |
+//! | `coordinate` | where a joint stands, measured from the poses of its bodies |
+//! | `setpoint` | the motion a drive wants: ramps and trapezoids in closed form |
+//! | `command` | what the PLC commands of a drive |
+//! | `axis` | a driven axis: command, setpoint, what it moves, feedback |
+//! | `sensor` | end-position and proximity sensors |
+//! | `machine` | all of these, one turn at a time |
+//! | `state` | the plant's state as bytes |
+//! | `client` | the plant as a client of a session |
+//!
+//! # A turn
+//! 1. Every axis reads its command and moves its setpoint by one period.
+//! 2. The world takes its substeps.
+//! 3. Every joint is measured, every sensor looks, all signals are written.
+//!
+//! # Invariants
+//! - Order in the scene file is order of insertion, of evaluation and of signals.
+//! - Nothing sleeps: a body at rest costs time, but never wakes late.
+//! - A world that is no longer finite or leaves its extent is a fault that names the body.
+
+mod axis;
+mod client;
+mod command;
+mod coordinate;
+mod machine;
+mod pose;
+pub mod scene;
+mod sensor;
+mod setpoint;
+mod state;
+mod world;
+
+pub use client::{BodyPose, Plant};
+pub use scene::{Scene, SceneError, SceneFault, SceneFaultKind};

@@ -1,0 +1,50 @@
+//! Orientations and joint frames. All angles go through `libm`.
+
+use rapier3d::glamx::{DMat3, DQuat};
+use rapier3d::math::{Pose, Vector};
+
+/// The pose at a position, rolled about the world's x, then pitched about its y, then yawed about
+/// its z.
+pub(super) fn from_rpy_deg(position_m: [f64; 3], rpy_deg: [f64; 3]) -> Pose {
+    let [roll, pitch, yaw] = rpy_deg.map(|angle_deg| libm::sincos(angle_deg.to_radians() * 0.5));
+    let about_x = DQuat::from_xyzw(roll.0, 0.0, 0.0, roll.1);
+    let about_y = DQuat::from_xyzw(0.0, pitch.0, 0.0, pitch.1);
+    let about_z = DQuat::from_xyzw(0.0, 0.0, yaw.0, yaw.1);
+    Pose::from_parts(Vector::from_array(position_m), about_z * about_y * about_x)
+}
+
+/// The frame of a joint in the world: x along `axis`, y along `across`.
+pub(super) fn frame(anchor_m: [f64; 3], axis: [f64; 3], across: [f64; 3]) -> Pose {
+    let (x, y) = (Vector::from_array(axis), Vector::from_array(across));
+    let rotation = DQuat::from_mat3(&DMat3::from_cols(x, y, x.cross(y)));
+    Pose::from_parts(Vector::from_array(anchor_m), rotation)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn close(a: Vector, b: Vector) -> bool {
+        (a - b).length() < 1e-15
+    }
+
+    #[test]
+    fn no_angle_is_exactly_no_rotation() {
+        assert_eq!(from_rpy_deg([1.0, 2.0, 3.0], [0.0; 3]), Pose::translation(1.0, 2.0, 3.0));
+    }
+
+    #[test]
+    fn roll_comes_first_and_yaw_last() {
+        let pose = from_rpy_deg([0.0; 3], [90.0, 0.0, 90.0]);
+        // roll takes y to z, which yaw keeps; roll keeps x, which yaw takes to y
+        assert!(close(pose * Vector::Y, Vector::Z));
+        assert!(close(pose * Vector::X, Vector::Y));
+    }
+
+    #[test]
+    fn a_frame_has_its_axes_where_it_was_told() {
+        let frame = frame([0.0; 3], [0.0, 0.0, 1.0], [0.0, 1.0, 0.0]);
+        assert!(close(frame * Vector::X, Vector::Z));
+        assert!(close(frame * Vector::Y, Vector::Y));
+    }
+}

@@ -1,0 +1,188 @@
+//! Second pass over `[[body]]`: shape, mass, pose and what it collides with.
+
+use toml::Spanned;
+
+use super::error::SceneFaultKind;
+use super::faults::Faults;
+use super::format::{BodyKind, BodyTable, ShapeKind, Triple};
+use super::model::{Body, Collisions, GROUPS_MAX, Mass, Shape};
+use super::number::{Allowed, Entry};
+use super::text;
+
+/// What joints and sensors call the world itself.
+pub(super) const GROUND: &str = "ground";
+
+// What the engine computes with for certain: beyond, products of several such numbers leave the
+// range in which a double is precise, long before it overflows.
+const LENGTH_M: Allowed = Allowed::Within(1e-4, 1e4);
+const MASS_KG: Allowed = Allowed::Within(1e-6, 1e9);
+const DENSITY_KG_M3: Allowed = Allowed::Within(1e-2, 1e5);
+const FRICTION: f64 = 0.5;
+const RESTITUTION: f64 = 0.0;
+
+pub(super) fn check(tables: &[Spanned<BodyTable>], faults: &mut Faults<'_>) -> Vec<Body> {
+    let mut groups = Vec::new();
+    tables.iter().filter_map(|table| body(table, &mut groups, faults)).collect()
+}
+
+fn body<'f>(table: &'f Spanned<BodyTable>, groups: &mut Vec<&'f str>, faults: &mut Faults<'_>) -> Option<Body> {
+    let written = table.get_ref();
+    if text(&written.name) == GROUND {
+        faults.add(written.name.span(), SceneFaultKind::Reserved(GROUND.to_owned()));
+    }
+    let shape = shape(table, faults);
+    let mass = mass(written, faults);
+    let friction = Entry::new("friction", written.friction.as_ref());
+    let restitution = Entry::new("restitution", written.restitution.as_ref());
+    if written.kind == BodyKind::Fixed
+        && let Some(velocity) = &written.velocity_m_s
+    {
+        let whose = format!("fixed body `{}`", text(&written.name));
+        faults.add(velocity.span(), SceneFaultKind::Misplaced { whose, key: "velocity_m_s" });
+    }
+    Some(Body {
+        name: written.name.get_ref().clone(),
+        kind: written.kind,
+        shape,
+        position_m: faults.triple("position_m", written.position_m.as_ref()).unwrap_or_default(),
+        rpy_deg: faults.triple("rpy_deg", written.rpy_deg.as_ref()).unwrap_or_default(),
+        velocity_m_s: faults.triple("velocity_m_s", written.velocity_m_s.as_ref()).unwrap_or_default(),
+        mass: mass?,
+        friction: faults.number(friction, Allowed::NotNegative).unwrap_or(FRICTION),
+        restitution: faults.number(restitution, Allowed::NotNegative).unwrap_or(RESTITUTION),
+        collisions: collisions(written, groups, faults),
+    })
+}
+
+/// The shape of a body; none where none is written or where it is at fault.
+fn shape(table: &Spanned<BodyTable>, faults: &mut Faults<'_>) -> Option<Shape> {
+    let written = table.get_ref();
+    let name = text(&written.name);
+    let Some(kind) = &written.shape else {
+        if written.kind == BodyKind::Dynamic {
+            let whose = format!("dynamic body `{name}`");
+            faults.add(written.name.span(), SceneFaultKind::Missing { whose, key: "shape" });
+        }
+        return None;
+    };
+    let mut measures = Measures { written, kind, faults };
+    measures.refuse_foreign();
+    let shape = match kind.get_ref() {
+        ShapeKind::Box => Shape::Box { size_m: measures.size()? },
+        ShapeKind::Sphere => Shape::Sphere { radius_m: measures.length("radius_m", written.radius_m.as_ref())? },
+        ShapeKind::Cylinder => {
+            let (radius_m, length_m) = measures.radius_and_length()?;
+            Shape::Cylinder { radius_m, length_m }
+        }
+        ShapeKind::Capsule => {
+            let (radius_m, length_m) = measures.radius_and_length()?;
+            Shape::Capsule { radius_m, length_m }
+        }
+    };
+    Some(shape)
+}
+
+/// The measures of one shape.
+struct Measures<'m, 'f, 't> {
+    written: &'f BodyTable,
+    kind: &'f Spanned<ShapeKind>,
+    faults: &'m mut Faults<'t>,
+}
+
+impl Measures<'_, '_, '_> {
+    fn whose(&self) -> String {
+        let kind = match self.kind.get_ref() {
+            ShapeKind::Box => "box",
+            ShapeKind::Sphere => "sphere",
+            ShapeKind::Cylinder => "cylinder",
+            ShapeKind::Capsule => "capsule",
+        };
+        format!("{kind} `{}`", text(&self.written.name))
+    }
+
+    fn missing(&mut self, key: &'static str) {
+        let whose = self.whose();
+        self.faults.add(self.kind.span(), SceneFaultKind::Missing { whose, key });
+    }
+
+    fn length(&mut self, key: &'static str, value: Option<&Spanned<f64>>) -> Option<f64> {
+        if value.is_none() {
+            self.missing(key);
+        }
+        self.faults.number(Entry::new(key, value), LENGTH_M)
+    }
+
+    fn radius_and_length(&mut self) -> Option<(f64, f64)> {
+        let radius_m = self.length("radius_m", self.written.radius_m.as_ref());
+        let length_m = self.length("length_m", self.written.length_m.as_ref());
+        radius_m.zip(length_m)
+    }
+
+    fn size(&mut self) -> Option<[f64; 3]> {
+        let Some(size) = &self.written.size_m else {
+            self.missing("size_m");
+            return None;
+        };
+        self.faults.components("size_m", size, LENGTH_M)
+    }
+
+    /// Measures that belong to another shape are faults.
+    fn refuse_foreign(&mut self) {
+        let written = self.written;
+        let (size, radius, length) = match self.kind.get_ref() {
+            ShapeKind::Box => (None, written.radius_m.as_ref(), written.length_m.as_ref()),
+            ShapeKind::Sphere => (written.size_m.as_ref(), None, written.length_m.as_ref()),
+            ShapeKind::Cylinder | ShapeKind::Capsule => (written.size_m.as_ref(), None, None),
+        };
+        let foreign = [
+            (size.map(Triple::span), "size_m"),
+            (radius.map(Spanned::span), "radius_m"),
+            (length.map(Spanned::span), "length_m"),
+        ];
+        for (span, key) in foreign {
+            if let Some(span) = span {
+                let whose = self.whose();
+                self.faults.add(span, SceneFaultKind::Misplaced { whose, key });
+            }
+        }
+    }
+}
+
+fn mass(written: &BodyTable, faults: &mut Faults<'_>) -> Option<Mass> {
+    let name = text(&written.name);
+    let total = Entry::new("mass_kg", written.mass_kg.as_ref());
+    let density = Entry::new("density_kg_m3", written.density_kg_m3.as_ref());
+    if written.kind != BodyKind::Dynamic {
+        for entry in [total, density] {
+            if let Some(value) = entry.value {
+                let whose = format!("`{name}`, which no force moves,");
+                faults.add(value.span(), SceneFaultKind::Misplaced { whose, key: entry.key });
+            }
+        }
+        return Some(Mass::Total { kg: 0.0 });
+    }
+    match (total.value, density.value) {
+        (Some(_), None) => faults.number(total, MASS_KG).map(|kg| Mass::Total { kg }),
+        (None, Some(_)) => faults.number(density, DENSITY_KG_M3).map(|kg_m3| Mass::Density { kg_m3 }),
+        (None, None) | (Some(_), Some(_)) => {
+            faults.add(written.name.span(), SceneFaultKind::Mass(name.to_owned()));
+            None
+        }
+    }
+}
+
+fn collisions<'f>(written: &'f BodyTable, groups: &mut Vec<&'f str>, faults: &mut Faults<'_>) -> Collisions {
+    if written.collides == Some(false) {
+        return Collisions::None;
+    }
+    let Some(group) = &written.group else { return Collisions::All };
+    if let Some(index) = groups.iter().position(|known| *known == text(group)) {
+        return Collisions::OutsideGroup(index as u32);
+    }
+    if groups.len() == GROUPS_MAX {
+        faults.add(group.span(), SceneFaultKind::Groups(group.get_ref().clone()));
+        return Collisions::None;
+    }
+    groups.push(text(group));
+    Collisions::OutsideGroup(groups.len() as u32 - 1)
+}

@@ -1,0 +1,90 @@
+//! Gathers the faults of one file and finds their lines.
+
+use std::ops::Range;
+
+use onescan_server::client::SourcePlace;
+use onescan_server::signal::nearest;
+use toml::Spanned;
+
+use super::error::{SceneError, SceneFault, SceneFaultKind, Thing};
+
+/// The faults found so far in one file.
+pub(super) struct Faults<'t> {
+    text: &'t str,
+    file: &'t str,
+    found: Vec<SceneFault>,
+}
+
+impl<'t> Faults<'t> {
+    pub(super) fn new(text: &'t str, file: &'t str) -> Self {
+        Self { text, file, found: Vec::new() }
+    }
+
+    /// Line and column of a byte of the file.
+    pub(super) fn place(&self, byte: usize) -> SourcePlace {
+        let mut end = byte.min(self.text.len());
+        while !self.text.is_char_boundary(end) {
+            end -= 1;
+        }
+        let before = &self.text[..end];
+        let line_start = before.rfind('\n').map_or(0, |newline| newline + 1);
+        SourcePlace {
+            file: self.file.to_owned(),
+            line: before.matches('\n').count() as u32 + 1,
+            column: before[line_start..].chars().count() as u32 + 1,
+        }
+    }
+
+    pub(super) fn add(&mut self, span: Range<usize>, kind: SceneFaultKind) {
+        self.add_hinted(span, kind, None);
+    }
+
+    pub(super) fn add_hinted(&mut self, span: Range<usize>, kind: SceneFaultKind, hint: Option<String>) {
+        let place = self.place(span.start);
+        self.found.push(SceneFault { kind, place, span, hint });
+    }
+
+    /// The fault in the form of a file that the TOML reader stopped at.
+    pub(super) fn into_form_error(mut self, error: &toml::de::Error) -> SceneError {
+        let (message, hint) = reworded(error.message());
+        self.add_hinted(error.span().unwrap_or(0..0), SceneFaultKind::Form(message), hint);
+        SceneError::Faulty(self.found)
+    }
+
+    pub(super) fn unknown<'n>(
+        &mut self,
+        thing: Thing,
+        name: &Spanned<String>,
+        candidates: impl IntoIterator<Item = &'n str>,
+    ) {
+        let hint = nearest(name.get_ref(), candidates).map(|near| format!("did you mean `{near}`?"));
+        self.add_hinted(name.span(), SceneFaultKind::Unknown { thing, name: name.get_ref().clone() }, hint);
+    }
+
+    /// `value`, if nothing at all was found.
+    pub(super) fn into_result<T>(mut self, value: T) -> Result<T, SceneError> {
+        if self.found.is_empty() {
+            return Ok(value);
+        }
+        self.found.sort_by_key(|fault| fault.span.start);
+        Err(SceneError::Faulty(self.found))
+    }
+}
+
+/// A message of the TOML reader in the words of a scene file, with a hint: the nearest right key
+/// out of a message like "unknown field `masskg`, expected one of `name`, `mass_kg`".
+fn reworded(message: &str) -> (String, Option<String>) {
+    let told = message
+        .replacen("unknown field", "unknown key", 1)
+        .replacen("unknown variant", "unknown value", 1)
+        .replacen("missing field", "missing key", 1)
+        .replacen("expected f64", "expected a number", 1)
+        .replacen("expected i64", "expected a whole number", 1);
+    let mut quoted = message.split('`').skip(1).step_by(2);
+    let wrong = quoted.next().filter(|_| message.starts_with("unknown"));
+    let near = wrong.and_then(|wrong| nearest(wrong, quoted));
+    match (near, told.split_once(", expected")) {
+        (Some(near), Some((short, _))) => (short.to_owned(), Some(format!("did you mean `{near}`?"))),
+        _ => (told, None),
+    }
+}

@@ -1,0 +1,154 @@
+//! The scene: what the plant is made of, read from one TOML file.
+//!
+//! # The file
+//! SI units, z up. Points and directions are in world coordinates, in the pose that the scene itself
+//! gives its bodies. The order of tables is the order in which everything is built and evaluated.
+//!
+//! | at the top | meaning |
+//! |---|---|
+//! | `version` | 1 |
+//! | `gravity_m_s2` | `[0, 0, -9.81]` if absent |
+//! | `extent_m` | a body farther from the origin than this is a fault; 10 km if absent |
+//! | `substeps` | world steps in a turn, 1 if absent |
+//! | `solver_iterations` | in a world step, 8 if absent |
+//!
+//! | `[[body]]` | meaning |
+//! |---|---|
+//! | `name`, `kind` | `fixed`, `dynamic` or `kinematic` |
+//! | `shape` | `box` (`size_m`, whole edges), `sphere` (`radius_m`), `cylinder` or `capsule` (`radius_m`, `length_m`, along z; a capsule's caps come on top); only a dynamic body must have one |
+//! | `position_m`, `rpy_deg` | origin; roll about x, then pitch about y, then yaw about z |
+//! | `velocity_m_s` | at the start for a dynamic body, always for a kinematic one |
+//! | `mass_kg` or `density_kg_m3` | of a dynamic body |
+//! | `friction`, `restitution` | 0.5 and 0 if absent |
+//! | `collides`, `group` | `collides = false` for a body that only sensors see; bodies of one group do not collide with each other |
+//!
+//! | `[[joint]]` | meaning |
+//! |---|---|
+//! | `name`, `kind` | `prismatic`, `revolute`, `fixed`, `ball`, or `slot`: a pin of the child in a slot of the parent |
+//! | `parent`, `child` | bodies; `ground` is the world as a parent |
+//! | `anchor_m` | the child's origin if absent |
+//! | `axis` | of translation for a prismatic joint, of rotation for a revolute one and for a slot |
+//! | `slide` | of translation for a slot, across its `axis` |
+//! | `initial_m` or `initial_rad` | coordinate in the scene's pose, 0 if absent |
+//! | `lower_m`, `upper_m` or `lower_rad`, `upper_rad` | limits of the coordinate |
+//! | `contacts` | whether the two bodies collide, false if absent |
+//!
+//! | `[[axis]]` | meaning |
+//! |---|---|
+//! | `name` | |
+//! | `joint` | the prismatic or revolute joint that it drives, or |
+//! | `belt`, `direction` | the kinematic body whose surface it drives; the body itself stays in place |
+//! | `drive` | `bidirectional` (`forward_signal`, `reverse_signal`: BOOL; both or none is stop and hold), `velocity` or `position` (`command_signal`) |
+//! | `speed_m_s` or `speed_rad_s` | greatest speed, the only one of a bidirectional drive |
+//! | `acceleration_m_s2` or `acceleration_rad_s2` | of every ramp |
+//! | `force_max_n` or `torque_max_nm` | of a joint's drive, as much as it takes if absent |
+//! | `position_signal`, `velocity_signal` | coordinate of the joint or travel of the belt, and its velocity over the last period |
+//! | `signal_type` | `LREAL` or `REAL`, of all number signals of the axis; `LREAL` if absent |
+//!
+//! | `[[sensor]]` | meaning |
+//! |---|---|
+//! | `name`, `kind`, `signal` | `end_position` or `proximity`; a BOOL signal |
+//! | `joint` | of an end position: prismatic, revolute or slot |
+//! | `from_m`, `to_m`, `hysteresis_m` (or `_rad`) | true from here to there; false again farther outside than the hysteresis |
+//! | `body`, `point_m`, `direction`, `range_m` | of a proximity sensor: a ray that the body carries, the ground if absent |
+//! | `targets` | bodies that the ray detects, all but the carrier if absent |
+//!
+//! # Reading
+//! A scene is read in two passes. The first gives the tables as they are written and stops at the
+//! first fault of form, as TOML readers do. The second checks every value and finds every name; it
+//! goes on after a fault, so that one run reports them all.
+//!
+//! | module | subject |
+//! |---|---|
+//! | `format` | the tables and keys of the file |
+//! | `faults` | gathering faults, finding their lines |
+//! | `number`, `names` | what a number and a name must be |
+//! | `bodies`, `joints`, `axes`, `sensors`, `signals` | the second pass, one sort of table each |
+//! | [`model`] | the checked scene |
+//! | [`error`] | what can be wrong |
+
+mod axes;
+mod bodies;
+pub mod error;
+mod faults;
+mod format;
+mod joints;
+pub mod model;
+mod names;
+mod number;
+mod sensors;
+mod signals;
+
+use toml::Spanned;
+
+pub use error::{SceneError, SceneFault, SceneFaultKind, Thing};
+pub use model::Scene;
+
+use faults::Faults;
+use format::SceneFile;
+use names::Names;
+use number::{Allowed, Entry};
+use signals::Signals;
+
+/// The version of the scene format.
+const VERSION: i64 = 1;
+const GRAVITY_M_S2: [f64; 3] = [0.0, 0.0, -9.81];
+const EXTENT_M: f64 = 10_000.0;
+/// Enough for a jointed machine to follow its drives; a chain of many joints may need more.
+const SOLVER_ITERATIONS: u32 = 8;
+const SUBSTEPS_MAX: u32 = 10_000;
+const SOLVER_ITERATIONS_MAX: u32 = 1_000;
+
+impl Scene {
+    /// Reads a scene from the text of a file that is called `file` in faults.
+    ///
+    /// # Errors
+    /// [`SceneError::Faulty`] with every fault that was found.
+    pub fn parse(text: &str, file: &str) -> Result<Self, SceneError> {
+        let mut faults = Faults::new(text, file);
+        match toml::from_str::<SceneFile>(text) {
+            Ok(written) => {
+                let scene = check(&written, &mut faults);
+                faults.into_result(scene)
+            }
+            Err(error) => Err(faults.into_form_error(&error)),
+        }
+    }
+}
+
+/// The checked scene; of no meaning where faults were found.
+fn check(written: &SceneFile, faults: &mut Faults<'_>) -> Scene {
+    let version = *written.version.get_ref();
+    if version != VERSION {
+        let hint = Some(format!("this program reads version {VERSION}"));
+        faults.add_hinted(written.version.span(), SceneFaultKind::Version(version), hint);
+    }
+    let bodies = Names::gather(Thing::Body, written.body.iter().map(|body| &body.get_ref().name), faults);
+    let joints = Names::gather(Thing::Joint, written.joint.iter().map(|joint| &joint.get_ref().name), faults);
+    let mut signals = Signals::new();
+    let extent = Entry::new("extent_m", written.extent_m.as_ref());
+    let scene_bodies = bodies::check(&written.body, faults);
+    let scene_joints = joints::check(&written.joint, &written.body, &bodies, faults);
+    let axes = axes::check(written, &bodies, &joints, &mut signals, faults);
+    let sensors = sensors::check(written, &bodies, &joints, &mut signals, faults);
+    let (reads, writes) = signals.into_ports(faults);
+    Scene {
+        gravity_m_s2: faults.triple("gravity_m_s2", written.gravity_m_s2.as_ref()).unwrap_or(GRAVITY_M_S2),
+        extent_m: faults.number(extent, Allowed::Positive).unwrap_or(EXTENT_M),
+        substeps: faults.count("substeps", written.substeps.as_ref(), SUBSTEPS_MAX).unwrap_or(1),
+        solver_iterations: faults
+            .count("solver_iterations", written.solver_iterations.as_ref(), SOLVER_ITERATIONS_MAX)
+            .unwrap_or(SOLVER_ITERATIONS),
+        bodies: scene_bodies,
+        joints: scene_joints,
+        axes,
+        sensors,
+        reads,
+        writes,
+    }
+}
+
+/// The text of a spanned name.
+fn text(name: &Spanned<String>) -> &str {
+    name.get_ref()
+}

@@ -1,0 +1,243 @@
+//! A checked scene: plain data in SI units, names resolved to indices, everything finite.
+//!
+//! Points and directions are in world coordinates, in the pose that the scene gives its bodies.
+
+use onescan_server::signal::{Port, SignalName};
+use serde::Serialize;
+
+pub use super::format::{BodyKind, JointKind, NumberType};
+
+/// Most collision groups of a scene; one bit of 32 stands for the bodies without a group.
+pub const GROUPS_MAX: usize = 31;
+
+/// A scene that can be built.
+#[non_exhaustive]
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Scene {
+    /// Acceleration of free fall.
+    pub gravity_m_s2: [f64; 3],
+    /// Distance from the origin beyond which a body has left the world.
+    pub extent_m: f64,
+    /// World steps a turn.
+    pub substeps: u32,
+    /// Solver iterations a world step.
+    pub solver_iterations: u32,
+    /// Bodies in the file's order, which is the order of their insertion.
+    pub bodies: Vec<Body>,
+    /// Joints in the file's order, which is the order of their insertion.
+    pub joints: Vec<Joint>,
+    /// Driven axes in the file's order.
+    pub axes: Vec<Axis>,
+    /// Sensors in the file's order.
+    pub sensors: Vec<Sensor>,
+    /// Signals that the plant reads, in the order of the axes.
+    pub reads: Vec<Port>,
+    /// Signals that the plant writes: those of the axes, then those of the sensors.
+    pub writes: Vec<Port>,
+}
+
+/// One rigid body.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Body {
+    /// Its name.
+    pub name: String,
+    /// How it moves.
+    pub kind: BodyKind,
+    /// Its form, none for a body that only carries joints and sensors.
+    pub shape: Option<Shape>,
+    /// Its origin.
+    pub position_m: [f64; 3],
+    /// Its orientation: roll about x, then pitch about y, then yaw about z, all axes the world's.
+    pub rpy_deg: [f64; 3],
+    /// Its velocity at the session's start.
+    pub velocity_m_s: [f64; 3],
+    /// Its mass, of meaning for dynamic bodies only.
+    pub mass: Mass,
+    /// Coefficient of friction.
+    pub friction: f64,
+    /// Coefficient of restitution.
+    pub restitution: f64,
+    /// What it collides with.
+    pub collisions: Collisions,
+}
+
+/// The form of a body, centred on its origin.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub enum Shape {
+    /// Edges along the body's axes.
+    Box {
+        /// Whole lengths of the edges.
+        size_m: [f64; 3],
+    },
+    /// A ball.
+    Sphere {
+        /// Its radius.
+        radius_m: f64,
+    },
+    /// Its axis is the body's z.
+    Cylinder {
+        /// Its radius.
+        radius_m: f64,
+        /// Its whole length.
+        length_m: f64,
+    },
+    /// Its axis is the body's z.
+    Capsule {
+        /// Radius of the caps and between them.
+        radius_m: f64,
+        /// Its length without the caps.
+        length_m: f64,
+    },
+}
+
+/// How the mass of a body is stated.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub enum Mass {
+    /// Whole mass.
+    Total {
+        /// The mass.
+        kg: f64,
+    },
+    /// Mass from the volume of the shape.
+    Density {
+        /// The density.
+        kg_m3: f64,
+    },
+}
+
+/// What a body collides with.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+pub enum Collisions {
+    /// Nothing; sensors see it all the same.
+    None,
+    /// Every body that collides at all.
+    All,
+    /// Every body that collides at all, except those of the same group.
+    OutsideGroup(u32),
+}
+
+/// One joint.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Joint {
+    /// Its name.
+    pub name: String,
+    /// What it leaves free.
+    pub kind: JointKind,
+    /// Index of the body that it is measured from, none for the ground.
+    pub parent: Option<usize>,
+    /// Index of the body that is measured.
+    pub child: usize,
+    /// Where it joins the two.
+    pub anchor_m: [f64; 3],
+    /// Unit vector: of translation for a prismatic joint, of rotation for the others.
+    pub axis: [f64; 3],
+    /// Unit vector at a right angle to `axis`; of translation for a slot.
+    pub across: [f64; 3],
+    /// Its coordinate in the pose of the scene, m or rad.
+    pub initial: f64,
+    /// Its lowest coordinate, m or rad.
+    pub lower: Option<f64>,
+    /// Its highest coordinate, m or rad.
+    pub upper: Option<f64>,
+    /// Whether the joined bodies collide with each other.
+    pub contacts: bool,
+}
+
+/// One driven axis.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Axis {
+    /// Its name.
+    pub name: String,
+    /// What it moves.
+    pub moved: Moved,
+    /// How it is commanded.
+    pub drive: Drive,
+    /// Greatest speed, m/s or rad/s.
+    pub speed: f64,
+    /// Greatest acceleration and deceleration, m/s² or rad/s².
+    pub acceleration: f64,
+    /// Greatest force or torque, N or N·m, none for as much as it takes.
+    pub effort_max: Option<f64>,
+    /// Where the coordinate is written.
+    pub position: Option<SignalName>,
+    /// Where the coordinate's velocity is written.
+    pub velocity: Option<SignalName>,
+    /// Type of the axis's number signals.
+    pub number: NumberType,
+}
+
+/// What an axis moves.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub enum Moved {
+    /// The joint of this index, prismatic or revolute.
+    Joint(usize),
+    /// The surface of a kinematic body, which itself stays in place.
+    Belt {
+        /// Index of the body.
+        body: usize,
+        /// Unit vector that the surface runs along.
+        direction: [f64; 3],
+    },
+}
+
+/// How an axis is commanded.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub enum Drive {
+    /// Two BOOL signals and one fixed speed.
+    Bidirectional {
+        /// Moves up the coordinate.
+        forward: SignalName,
+        /// Moves down the coordinate.
+        reverse: SignalName,
+    },
+    /// A commanded velocity.
+    Velocity {
+        /// The velocity.
+        command: SignalName,
+    },
+    /// A commanded position.
+    Position {
+        /// The position.
+        command: SignalName,
+    },
+}
+
+/// One sensor.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Sensor {
+    /// Its name.
+    pub name: String,
+    /// Where it is written, a BOOL.
+    pub signal: SignalName,
+    /// What it detects.
+    pub sensing: Sensing,
+}
+
+/// What a sensor detects.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub enum Sensing {
+    /// A joint's coordinate within a range.
+    EndPosition {
+        /// Index of the joint.
+        joint: usize,
+        /// Where the range begins, m or rad.
+        from: f64,
+        /// Where the range ends, m or rad.
+        to: f64,
+        /// How far outside the range the coordinate must be before the sensor falls, m or rad.
+        hysteresis: f64,
+    },
+    /// A body that a ray meets.
+    Proximity {
+        /// Index of the body that carries the sensor, none for the ground.
+        body: Option<usize>,
+        /// Where the ray begins.
+        point_m: [f64; 3],
+        /// Unit vector of the ray.
+        direction: [f64; 3],
+        /// Length of the ray.
+        range_m: f64,
+        /// Indices of the bodies that are detected.
+        targets: Vec<usize>,
+    },
+}

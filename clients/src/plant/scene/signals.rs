@@ -1,0 +1,64 @@
+//! The signals of a scene: each written once, each read as one type.
+
+use onescan_server::signal::{ElementaryType, Port, SignalName};
+use toml::Spanned;
+
+use super::error::{SceneFaultKind, Thing};
+use super::faults::Faults;
+use super::names::Names;
+
+/// The signals found so far, in the scene's order.
+pub(super) struct Signals {
+    reads: Vec<(Port, std::ops::Range<usize>)>,
+    writes: Vec<Port>,
+    written: Names,
+}
+
+impl Signals {
+    pub(super) fn new() -> Self {
+        Self { reads: Vec::new(), writes: Vec::new(), written: Names::none(Thing::Signal) }
+    }
+
+    /// A signal that the plant reads; several axes may read the same one.
+    pub(super) fn read(
+        &mut self,
+        name: &Spanned<String>,
+        ty: ElementaryType,
+        faults: &mut Faults<'_>,
+    ) -> Option<SignalName> {
+        let signal = signal_name(name, faults)?;
+        match self.reads.iter().find(|(port, _)| port.name == signal) {
+            None => self.reads.push((Port { name: signal.clone(), ty }, name.span())),
+            Some((port, _)) if port.ty == ty => {}
+            Some(_) => faults.add(name.span(), SceneFaultKind::SignalType(signal.as_str().to_owned())),
+        }
+        Some(signal)
+    }
+
+    /// A signal that the plant writes.
+    pub(super) fn write(
+        &mut self,
+        name: &Spanned<String>,
+        ty: ElementaryType,
+        faults: &mut Faults<'_>,
+    ) -> Option<SignalName> {
+        let signal = signal_name(name, faults)?;
+        self.written.claim(name, faults);
+        self.writes.push(Port { name: signal.clone(), ty });
+        Some(signal)
+    }
+
+    /// What the plant reads and writes.
+    pub(super) fn into_ports(self, faults: &mut Faults<'_>) -> (Vec<Port>, Vec<Port>) {
+        for (port, span) in &self.reads {
+            if self.written.contains(port.name.as_str()) {
+                faults.add(span.clone(), SceneFaultKind::OwnSignal(port.name.as_str().to_owned()));
+            }
+        }
+        (self.reads.into_iter().map(|(port, _)| port).collect(), self.writes)
+    }
+}
+
+fn signal_name(name: &Spanned<String>, faults: &mut Faults<'_>) -> Option<SignalName> {
+    SignalName::new(name.get_ref().as_str()).map_err(|bad| faults.add(name.span(), bad.into())).ok()
+}

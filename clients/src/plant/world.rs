@@ -1,0 +1,221 @@
+//! The scene as a world of rigid bodies, built in the order of the file.
+
+use std::f64::consts::FRAC_1_SQRT_2;
+
+use onescan_server::client::ClientFault;
+use onescan_server::time::TimeSpan;
+use rapier3d::glamx::DQuat;
+use rapier3d::prelude::*;
+
+use super::pose;
+use super::scene::model::{Body, BodyKind, Collisions, Joint, JointKind, Mass, Scene, Shape};
+
+/// Bodies without a group are members of this one.
+const UNGROUPED: Group = Group::GROUP_32;
+
+/// Sweeps over all joints and contacts in one solver iteration.
+const SWEEPS: usize = 4;
+
+/// The rigid bodies of a plant, and where each thing of the scene is in them.
+pub(super) struct World {
+    /// All of the state that the engine keeps.
+    pub(super) physics: PhysicsWorld,
+    ground: RigidBodyHandle,
+    bodies: Vec<RigidBodyHandle>,
+    joints: Vec<ImpulseJointHandle>,
+    /// Belts, and where they stay while their surfaces run.
+    belts: Vec<(RigidBodyHandle, Pose)>,
+    substeps: u32,
+    extent_m: f64,
+}
+
+impl World {
+    /// Builds the world of a scene for turns of one `period`.
+    pub(super) fn build(scene: &Scene, period: TimeSpan) -> Self {
+        let mut physics = PhysicsWorld::new();
+        physics.gravity = Vector::from_array(scene.gravity_m_s2);
+        physics.integration_parameters = integration(scene, period);
+        let ground = physics.insert_body(RigidBodyBuilder::fixed());
+        let bodies: Vec<_> = scene.bodies.iter().map(|body| insert_body(&mut physics, body)).collect();
+        let joints = scene
+            .joints
+            .iter()
+            .map(|joint| {
+                let parent = joint.parent.map_or(ground, |index| bodies[index]);
+                insert_joint(&mut physics, joint, parent, bodies[joint.child])
+            })
+            .collect();
+        Self { physics, ground, bodies, joints, belts: Vec::new(), substeps: scene.substeps, extent_m: scene.extent_m }
+    }
+
+    /// Moves the world by one period.
+    ///
+    /// # Errors
+    /// A body whose state is no longer finite or that has left the world.
+    pub(super) fn step(&mut self, scene: &Scene) -> Result<(), ClientFault> {
+        for _ in 0..self.substeps {
+            self.physics.step();
+            self.put_belts_back();
+            if let Some(lost) = self.physics.quarantine().bodies().first() {
+                return Err(self.fault(scene, *lost, "its position or velocity is no longer a finite number"));
+            }
+        }
+        let extent_squared = self.extent_m * self.extent_m;
+        let inside = |handle: RigidBodyHandle| {
+            let distance_squared = self.body(handle).translation().length_squared();
+            distance_squared <= extent_squared
+        };
+        match self.bodies.iter().find(|handle| !inside(**handle)) {
+            None => Ok(()),
+            Some(lost) => Err(self.fault(scene, *lost, "it has left the world, whose extent `extent_m` gives")),
+        }
+    }
+
+    /// From now on a body keeps its place, whatever its velocity: a belt, which carries what lies on
+    /// it and goes nowhere itself.
+    pub(super) fn keep_in_place(&mut self, body: RigidBodyHandle) {
+        self.belts.push((body, *self.body(body).position()));
+    }
+
+    fn put_belts_back(&mut self) {
+        for (handle, place) in &self.belts {
+            if let Some(body) = self.physics.bodies.get_mut(*handle) {
+                body.set_position(*place, true);
+            }
+        }
+    }
+
+    fn fault(&self, scene: &Scene, handle: RigidBodyHandle, what: &str) -> ClientFault {
+        let index = self.bodies.iter().position(|known| *known == handle);
+        let name = index.and_then(|index| scene.bodies.get(index)).map_or("ground", |body| body.name.as_str());
+        ClientFault::new(format!("body `{name}`: {what}"))
+    }
+
+    /// The body of an index in the scene, the ground for none.
+    pub(super) fn handle(&self, index: Option<usize>) -> RigidBodyHandle {
+        index.map_or(self.ground, |index| self.bodies[index])
+    }
+
+    /// A body by its handle.
+    pub(super) fn body(&self, handle: RigidBodyHandle) -> &RigidBody {
+        &self.physics.bodies[handle]
+    }
+
+    /// The joint of an index in the scene.
+    pub(super) fn joint(&self, index: usize) -> ImpulseJointHandle {
+        self.joints[index]
+    }
+
+    /// True if a ray meets the shape of a body within its range.
+    pub(super) fn ray_meets(&self, ray: &Ray, range_m: f64, handle: RigidBodyHandle) -> bool {
+        let body = self.body(handle);
+        body.colliders().iter().filter_map(|handle| self.physics.colliders.get(*handle)).any(|collider| {
+            let local = collider.position_wrt_parent().copied().unwrap_or(Pose::IDENTITY);
+            collider.shape().intersects_ray(&(*body.position() * local), ray, range_m)
+        })
+    }
+}
+
+fn integration(scene: &Scene, period: TimeSpan) -> IntegrationParameters {
+    IntegrationParameters {
+        dt: period.as_secs_f64() / f64::from(scene.substeps),
+        num_solver_iterations: scene.solver_iterations as usize,
+        // a joint between a light and a heavy body needs several sweeps to carry the load
+        num_internal_pgs_iterations: SWEEPS,
+        // without it a motor below a load converges over many steps and lets the load sag meanwhile
+        warmstart_joints: true,
+        ..IntegrationParameters::default()
+    }
+}
+
+fn insert_body(physics: &mut PhysicsWorld, body: &Body) -> RigidBodyHandle {
+    let builder = match body.kind {
+        BodyKind::Fixed => RigidBodyBuilder::fixed(),
+        BodyKind::Dynamic => RigidBodyBuilder::dynamic(),
+        BodyKind::Kinematic => RigidBodyBuilder::kinematic_velocity_based(),
+    };
+    let builder = builder
+        .pose(pose::from_rpy_deg(body.position_m, body.rpy_deg))
+        .linvel(Vector::from_array(body.velocity_m_s))
+        .can_sleep(false);
+    match body.shape {
+        None => physics.insert_body(builder),
+        Some(shape) => physics.insert(builder, collider(body, shape)).0,
+    }
+}
+
+fn collider(body: &Body, shape: Shape) -> ColliderBuilder {
+    let builder = match shape {
+        Shape::Box { size_m: [x, y, z] } => ColliderBuilder::cuboid(x * 0.5, y * 0.5, z * 0.5),
+        Shape::Sphere { radius_m } => ColliderBuilder::ball(radius_m),
+        // the engine's cylinder stands along y; a quarter turn about x puts it along z
+        Shape::Cylinder { radius_m, length_m } => ColliderBuilder::cylinder(length_m * 0.5, radius_m)
+            .position(Pose::from_rotation(DQuat::from_xyzw(FRAC_1_SQRT_2, 0.0, 0.0, FRAC_1_SQRT_2))),
+        Shape::Capsule { radius_m, length_m } => ColliderBuilder::capsule_z(length_m * 0.5, radius_m),
+    };
+    let builder = match body.mass {
+        Mass::Total { kg } => builder.mass(kg),
+        Mass::Density { kg_m3 } => builder.density(kg_m3),
+    };
+    builder.friction(body.friction).restitution(body.restitution).collision_groups(groups(body.collisions))
+}
+
+fn groups(collisions: Collisions) -> InteractionGroups {
+    let (memberships, filter) = match collisions {
+        Collisions::None => (Group::NONE, Group::NONE),
+        Collisions::All => (UNGROUPED, Group::ALL),
+        Collisions::OutsideGroup(index) => {
+            let own = Group::from_bits_truncate(1 << index);
+            (own, Group::ALL.difference(own))
+        }
+    };
+    InteractionGroups::new(memberships, filter, InteractionTestMode::And)
+}
+
+/// Locked axes of a joint in its frame, and the one that its coordinate is measured along.
+fn axes(kind: JointKind) -> (JointAxesMask, JointAxis) {
+    match kind {
+        JointKind::Prismatic => (JointAxesMask::LOCKED_PRISMATIC_AXES, JointAxis::LinX),
+        JointKind::Revolute => (JointAxesMask::LOCKED_REVOLUTE_AXES, JointAxis::AngX),
+        JointKind::Fixed => (JointAxesMask::LOCKED_FIXED_AXES, JointAxis::LinX),
+        JointKind::Ball => (JointAxesMask::LOCKED_SPHERICAL_AXES, JointAxis::AngX),
+        JointKind::Slot => {
+            (JointAxesMask::LIN_X | JointAxesMask::LIN_Z | JointAxesMask::ANG_Y | JointAxesMask::ANG_Z, JointAxis::LinY)
+        }
+    }
+}
+
+/// The axis in a joint's frame that its coordinate is measured along.
+pub(super) fn measured_axis(kind: JointKind) -> JointAxis {
+    axes(kind).1
+}
+
+fn insert_joint(
+    physics: &mut PhysicsWorld,
+    joint: &Joint,
+    parent: RigidBodyHandle,
+    child: RigidBodyHandle,
+) -> ImpulseJointHandle {
+    let (locked, measured) = axes(joint.kind);
+    let [frame1, frame2] = local_frames(physics, joint, parent, child);
+    let mut builder =
+        GenericJointBuilder::new(locked).local_frame1(frame1).local_frame2(frame2).contacts_enabled(joint.contacts);
+    if joint.lower.is_some() || joint.upper.is_some() {
+        // the engine measures from the scene's pose
+        let lower = joint.lower.map_or(-Real::MAX, |lower| lower - joint.initial);
+        let upper = joint.upper.map_or(Real::MAX, |upper| upper - joint.initial);
+        builder = builder.limits(measured, [lower, upper]);
+    }
+    physics.insert_impulse_joint(parent, child, builder)
+}
+
+/// The joint's frame as each of its bodies sees it in the pose of the scene.
+pub(super) fn local_frames(
+    physics: &PhysicsWorld,
+    joint: &Joint,
+    parent: RigidBodyHandle,
+    child: RigidBodyHandle,
+) -> [Pose; 2] {
+    let frame = pose::frame(joint.anchor_m, joint.axis, joint.across);
+    [parent, child].map(|handle| physics.bodies[handle].position().inv_mul(&frame))
+}

@@ -1,0 +1,10 @@
+//! The plant as a client, driven turn by turn without a session around it.
+
+mod belt;
+mod bench;
+mod faults;
+mod motion;
+mod robustness;
+mod sensors;
+mod shear;
+mod state;
