@@ -3,6 +3,7 @@
 //! | module | subject |
 //! |---|---|
 //! | [`plant`] | the simulated machine: a scene of rigid bodies, driven axes and sensors |
+//! | [`replay`] | a client that repeats what another once did |
 //!
 //! # Invariants
 //! - A client is a function of its state, its inputs and `t_v`. Nothing here reads a clock, a random
@@ -12,3 +13,4 @@
 //! - Bad input is an error with a place, never a panic.
 
 pub mod plant;
+pub mod replay;

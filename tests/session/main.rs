@@ -5,4 +5,5 @@ mod control;
 mod digest;
 mod failure;
 mod joining;
+mod peer;
 mod wire;

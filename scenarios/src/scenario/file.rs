@@ -6,6 +6,7 @@ use std::str::FromStr;
 use onescan_server::signal::{ClientName, ElementaryType, SignalName};
 use onescan_server::time::{TimeSpan, VirtualTime};
 use serde::{Deserialize, Deserializer};
+use toml::Spanned;
 
 /// The only version of the format so far.
 pub const VERSION: u32 = 1;
@@ -30,9 +31,9 @@ pub struct ScenarioFile {
     pub coupling: CouplingFile,
     /// The session's signals by name.
     #[serde(default)]
-    pub signals: BTreeMap<SignalName, SignalFile>,
+    pub signals: BTreeMap<SignalName, Spanned<SignalFile>>,
     /// The session's clients by name.
-    pub clients: BTreeMap<ClientName, ClientFile>,
+    pub clients: BTreeMap<ClientName, Spanned<ClientFile>>,
     /// How the signals travel when nothing is synchronised.
     #[serde(default)]
     pub freewheel: FreewheelFile,
@@ -140,7 +141,7 @@ impl Default for FreewheelFile {
 pub struct PlotFile {
     /// The signals, a panel each, from top to bottom; all if empty.
     #[serde(default)]
-    pub signals: Vec<SignalName>,
+    pub signals: Vec<Spanned<SignalName>>,
 }
 
 fn from_text<'de, D, T>(deserializer: D) -> Result<T, D::Error>

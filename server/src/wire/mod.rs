@@ -20,7 +20,7 @@ pub use message::{ClientMessage, ServerMessage};
 pub const VERSIONS: VersionRange = VersionRange { min: 1, max: 1 };
 
 /// Largest frame before a client has joined: nobody unknown makes the server hold more.
-pub const HANDSHAKE_FRAME_BYTES_MAX: usize = 64 * 1024;
+pub const HANDSHAKE_FRAME_BYTES_MAX: usize = 1024 * 1024;
 
 /// Largest frame of a joined client unless the server says otherwise: the state of a large plant.
 pub const FRAME_BYTES_MAX: usize = 64 * 1024 * 1024;

@@ -9,7 +9,7 @@ use tokio::net::{TcpListener, TcpStream};
 use tokio::sync::{Notify, Semaphore, oneshot};
 use tokio_util::codec::Framed;
 
-use super::{AGENT, Connection, HANDSHAKE_TIMEOUT, ReceiveError, receive, runtime, send};
+use super::{AGENT, Connection, HANDSHAKE_TIMEOUT, ReceiveError, farewell, receive, runtime, send};
 use crate::client::JoinRequest;
 use crate::mailbox::{Mailbox, Request};
 use crate::plan::SessionPlan;
@@ -198,5 +198,6 @@ async fn serve_operator(mut connection: Connection, host: &Host) -> Result<(), R
 
 async fn refuse(connection: &mut Connection, why: &str) -> Result<(), ReceiveError> {
     send(connection, &ServerMessage::Refused { message: why.to_owned() }).await?;
+    farewell(connection).await;
     Ok(())
 }

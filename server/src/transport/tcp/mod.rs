@@ -88,6 +88,24 @@ async fn send<M: Serialize>(connection: &mut Connection, message: &M) -> Result<
     connection.send(FrameRef::Json(&json)).await
 }
 
+/// How long the other side may take to close after a last message.
+const FAREWELL_TIMEOUT: Duration = Duration::from_secs(1);
+
+/// Closes after a last message: no more is sent, and what still comes is thrown away, so that the
+/// operating system does not reset the connection and the last message with it.
+async fn farewell(connection: &mut Connection) {
+    use tokio::io::{AsyncReadExt, AsyncWriteExt};
+    let stream = connection.get_mut();
+    let drain = async {
+        let mut waste = [0; 4096];
+        stream.shutdown().await.ok()?;
+        while stream.read(&mut waste).await.ok()? > 0 {}
+        Some(())
+    };
+    // One who does not close in time is left.
+    let _ = tokio::time::timeout(FAREWELL_TIMEOUT, drain).await;
+}
+
 /// A runtime for one thread: tasks run only while that thread waits.
 fn runtime() -> std::io::Result<tokio::runtime::Runtime> {
     tokio::runtime::Builder::new_current_thread().enable_all().build()

@@ -7,7 +7,7 @@ use thiserror::Error;
 use tokio::net::TcpStream;
 use tokio_util::codec::Framed;
 
-use super::{AGENT, Connection, HANDSHAKE_TIMEOUT, ReceiveError, receive, runtime, send};
+use super::{AGENT, Connection, HANDSHAKE_TIMEOUT, ReceiveError, farewell, receive, runtime, send};
 use crate::client::{Client, ClientFault, Wake};
 use crate::end::SessionEnd;
 use crate::signal::PortLayout;
@@ -164,5 +164,6 @@ async fn give_up(
 ) -> Result<SessionEnd, ParticipantError> {
     // If the server is gone too, the fault is still what matters here.
     let _ = send(connection, &ClientMessage::Fault(fault.clone())).await;
+    farewell(connection).await;
     Err(ParticipantError::Fault { t_v, fault })
 }

@@ -9,7 +9,7 @@ use tokio::runtime::Runtime;
 use tokio_util::codec::Framed;
 
 use super::lobby::Applicant;
-use super::{Connection, HANDSHAKE_TIMEOUT, ReceiveError, receive_frame, runtime, send};
+use super::{Connection, HANDSHAKE_TIMEOUT, ReceiveError, farewell, receive_frame, runtime, send};
 use crate::client::StateError;
 use crate::cycle::ClientId;
 use crate::end::{FailureCause, SessionEnd};
@@ -77,7 +77,10 @@ impl Remotes {
             let mut connection = Framed::new(stream, FrameCodec::new(FRAME_BYTES_MAX));
             let message = ServerMessage::Refused { message: why.to_owned() };
             // One who is gone needs no reason.
-            let _ = self.runtime.block_on(send(&mut connection, &message));
+            self.runtime.block_on(async {
+                let _ = send(&mut connection, &message).await;
+                farewell(&mut connection).await;
+            });
         }
     }
 
@@ -181,10 +184,15 @@ impl Remotes {
     /// Tells everybody that the session is over. One who is gone, or does not read, is not waited for.
     pub(crate) fn send_end(&mut self, end: &SessionEnd) {
         let message = ServerMessage::End(end.clone());
-        for remote in self.seats.iter_mut().flatten() {
-            let told = async { tokio::time::timeout(HANDSHAKE_TIMEOUT, send(&mut remote.connection, &message)).await };
-            let _ = self.runtime.block_on(told);
-        }
+        let told = self.seats.iter_mut().flatten().map(|remote| {
+            let message = &message;
+            async move {
+                let _ = tokio::time::timeout(HANDSHAKE_TIMEOUT, send(&mut remote.connection, message)).await;
+                farewell(&mut remote.connection).await;
+            }
+        });
+        let all = futures_util::future::join_all(told);
+        self.runtime.block_on(async { all.await });
     }
 }
 

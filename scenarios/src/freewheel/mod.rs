@@ -1,0 +1,18 @@
+//! Free-wheeling: plant and PLC each on its own clock in real time, with an OPC-like link between
+//! them (seed 004 secs. II-C and III). It exists to *show* what lockstep removes: time delay, jitter,
+//! race conditions and slow sampling.
+//!
+//! | module | subject |
+//! |---|---|
+//! | [`item`] | values that both sides can reach, one by one |
+//! | [`link`] | the OPC-like exchange: update rate, one item at a time |
+//! | [`wheel`] | a client that runs on its own clock |
+//! | [`run`] | all of them for some time, and what came of it |
+//!
+//! Nothing here is deterministic and nothing here is random: all that differs between two runs comes
+//! from the clocks and the scheduler of the machine.
+
+mod item;
+mod link;
+pub mod run;
+mod wheel;
