@@ -3,6 +3,7 @@
 //! | module | subject |
 //! |---|---|
 //! | [`plant`] | the simulated machine: a scene of rigid bodies, driven axes and sensors |
+//! | [`soft_plc`] | the embedded soft PLC, which runs IEC 61131-3 source text |
 //! | [`replay`] | a client that repeats what another once did |
 //!
 //! # Invariants
@@ -14,3 +15,4 @@
 
 pub mod plant;
 pub mod replay;
+pub mod soft_plc;

@@ -1,1 +1,20 @@
-//! onescan
+//! The `onescan` program: loads a scenario, composes server, plant and PLC, runs them, reports.
+//!
+//! Modules in the order in which data flows through them:
+//!
+//! | module | subject |
+//! |---|---|
+//! | [`cli`] | the command line |
+//! | [`scenario`] | a scenario's files, read and checked |
+//! | [`run`] | runs of a scenario: in lockstep or not, recorded, reported |
+//! | [`freewheel`] | running without lockstep, to show what it is good for |
+//! | [`plot`] | trajectories as SVG |
+//!
+//! Invariants. This is the only crate that reads scenario files, starts processes and prints. What
+//! a session computes is decided in the crates below; nothing here can change a digest.
+
+pub mod cli;
+pub mod freewheel;
+pub mod plot;
+pub mod run;
+pub mod scenario;

@@ -1,2 +1,5 @@
 //! The `onescan` program.
-fn main() {}
+
+fn main() -> std::process::ExitCode {
+    onescan::cli::main()
+}

@@ -33,6 +33,8 @@ pub struct Freewheeler {
 pub struct Trace {
     /// Each client's k-th cycle is the k-th turn of the replay.
     pub replay: Lockstep,
+    /// How far all clients came, each by its own clock.
+    pub reached: VirtualTime,
     /// The end of the run if a client failed.
     pub failed: Option<SessionEnd>,
 }
@@ -60,8 +62,9 @@ pub fn run(
     if failed.is_none() {
         failed = spin(&mut wheels, &links, &requests, until, stop);
     }
+    let reached = wheels.iter().map(|wheel| wheel.reached).min().unwrap_or_default();
     let recorded = requests.into_iter().zip(wheels.into_iter().map(|wheel| wheel.recorded));
-    Ok(Trace { replay: replayed(plan, recorded)?, failed })
+    Ok(Trace { replay: replayed(plan, recorded)?, reached, failed })
 }
 
 /// Lets all clients and links run beside each other, each in a thread of its own.
@@ -72,7 +75,8 @@ fn spin(
     until: VirtualTime,
     stop: &AtomicBool,
 ) -> Option<SessionEnd> {
-    let links_stop = AtomicBool::new(false);
+    let (links_stop, halted) = (AtomicBool::new(false), AtomicBool::new(false));
+    let halted = &halted;
     std::thread::scope(|scope| {
         for link in links {
             scope.spawn(|| link.run(&links_stop));
@@ -83,9 +87,9 @@ fn spin(
             .map(|(wheel, request)| {
                 let input_bytes = PortLayout::new(request.reads.clone()).size();
                 scope.spawn(move || {
-                    let result = wheel.run(input_bytes, until, stop);
+                    let result = wheel.run(input_bytes, until, [stop, halted]);
                     if result.is_err() {
-                        stop.store(true, Ordering::Relaxed);
+                        halted.store(true, Ordering::Relaxed);
                     }
                     result
                 })
@@ -121,6 +125,7 @@ fn connect(clients: Vec<Freewheeler>, requests: &[JoinRequest], link: &Freewheel
             inputs: Arc::new(Items::new(&PortLayout::new(request.reads.clone()))),
             outputs: Arc::new(Items::new(&PortLayout::new(request.writes.clone()))),
             recorded: Vec::new(),
+            reached: VirtualTime::ZERO,
         })
         .collect();
     let mut readers: BTreeMap<&SignalName, Vec<(Arc<Items>, usize)>> = BTreeMap::new();

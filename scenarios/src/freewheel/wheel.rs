@@ -27,6 +27,8 @@ pub(super) struct Wheel {
     pub(super) outputs: Arc<Items>,
     /// Outputs after setup and after each cycle.
     pub(super) recorded: Vec<Vec<u8>>,
+    /// How far its own clock has come.
+    pub(super) reached: VirtualTime,
 }
 
 /// Why a free-wheeling client stopped before its time.
@@ -45,14 +47,14 @@ impl Wheel {
         Ok(())
     }
 
-    /// Runs cycles until its own clock has come to `until`, or until `stop`.
-    pub(super) fn run(&mut self, input_bytes: usize, until: VirtualTime, stop: &AtomicBool) -> Result<(), Halt> {
+    /// Runs cycles until its own clock has come to `until`, or until one of `stops` is set.
+    pub(super) fn run(&mut self, input_bytes: usize, until: VirtualTime, stops: [&AtomicBool; 2]) -> Result<(), Halt> {
         let period = Duration::from_nanos(self.period.as_nanos());
         let mut inputs = vec![0; input_bytes];
         let mut outputs = self.recorded.last().cloned().unwrap_or_default();
         let mut t = VirtualTime::ZERO;
         let mut due = Instant::now() + period;
-        while t < until && !stop.load(Ordering::Relaxed) {
+        while t < until && !stops.iter().any(|stop| stop.load(Ordering::Relaxed)) {
             match self.clock {
                 Clock::Grid => {
                     std::thread::sleep(due.saturating_duration_since(Instant::now()));
@@ -65,6 +67,7 @@ impl Wheel {
             self.client.turn(t, &inputs, &mut outputs).map_err(|fault| Halt { t, fault })?;
             self.outputs.copy_from(&outputs);
             self.recorded.push(outputs.clone());
+            self.reached = t;
         }
         Ok(())
     }

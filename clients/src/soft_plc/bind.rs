@@ -1,0 +1,189 @@
+//! Which signal is which variable of the PLC.
+//!
+//! A signal that the PLC writes is the `VAR_OUTPUT` of its name in one of the programs; any other
+//! signal is every `VAR_INPUT` of its name. Names are compared as the standard does, without case
+//! (IEC 61131-3 2.1.2). A path given for a signal goes before its name.
+
+use std::collections::BTreeMap;
+
+use onescan_plc_shim::{Application, ElementaryType as PlcType, Variable};
+use onescan_server::signal::{ClientName, ElementaryType, Port, SignalDecl, SignalName, nearest};
+use thiserror::Error;
+
+/// A signal and the places in the PLC's memory that hold it.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Bound {
+    /// The signal as the PLC takes part in it.
+    pub port: Port,
+    /// Where it begins in memory; several for an input that several programs read.
+    pub offsets: Vec<usize>,
+}
+
+/// All signals of a PLC.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Bindings {
+    /// What it reads.
+    pub inputs: Vec<Bound>,
+    /// What it writes.
+    pub outputs: Vec<Bound>,
+}
+
+/// Why a signal has no variable.
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
+#[error("{message}")]
+pub struct BindError {
+    /// The signal.
+    pub signal: SignalName,
+    /// What is wrong.
+    pub message: String,
+    /// What to do.
+    pub help: Option<String>,
+}
+
+/// Finds the variables of all `signals` in `application`, as seen by the PLC `plc`. `paths` names
+/// variables for signals that are not found by their own name.
+///
+/// # Errors
+/// A signal that the PLC is to write and has no variable for, a path that leads nowhere, a variable
+/// of another type.
+pub fn bind(
+    application: &Application,
+    plc: &ClientName,
+    signals: &[SignalDecl],
+    paths: &BTreeMap<SignalName, String>,
+) -> Result<Bindings, BindError> {
+    let mut bindings = Bindings::default();
+    for signal in signals {
+        let written = signal.writer.as_ref() == Some(plc);
+        let variables = match paths.get(&signal.name) {
+            Some(path) => vec![at_path(application, &signal.name, path)?],
+            None if written => vec![output_named(application, &signal.name)?],
+            None => inputs_named(application, &signal.name),
+        };
+        if variables.is_empty() {
+            continue;
+        }
+        let offsets = variables.iter().map(|variable| checked_offset(signal, variable)).collect::<Result<_, _>>()?;
+        let bound = Bound { port: Port { name: signal.name.clone(), ty: signal.ty }, offsets };
+        if written { bindings.outputs.push(bound) } else { bindings.inputs.push(bound) }
+    }
+    Ok(bindings)
+}
+
+fn at_path(application: &Application, signal: &SignalName, path: &str) -> Result<Variable, BindError> {
+    application.variable(path).map_err(|error| BindError {
+        signal: signal.clone(),
+        message: format!("signal `{signal}` is bound to `{path}`, which the PLC has not"),
+        help: error.help,
+    })
+}
+
+/// The last name of a path: `Shear.Drive_1` is `Drive_1`.
+fn own_name(variable: &Variable) -> &str {
+    variable.path.rsplit('.').next().unwrap_or(&variable.path)
+}
+
+fn output_named(application: &Application, signal: &SignalName) -> Result<Variable, BindError> {
+    let outputs: Vec<Variable> = application.programs().flat_map(|program| program.outputs).collect();
+    let found: Vec<&Variable> =
+        outputs.iter().filter(|variable| own_name(variable).eq_ignore_ascii_case(signal.as_str())).collect();
+    match found[..] {
+        [one] => Ok(one.clone()),
+        [] => Err(BindError {
+            signal: signal.clone(),
+            message: format!("the PLC is to write signal `{signal}`, but no program has a VAR_OUTPUT of that name"),
+            help: nearest(signal.as_str(), outputs.iter().map(own_name))
+                .map(|name| format!("did you mean `{name}`? Another variable is named under `bind`")),
+        }),
+        [first, second, ..] => Err(BindError {
+            signal: signal.clone(),
+            message: format!("signal `{signal}` may be `{}` or `{}`", first.path, second.path),
+            help: Some(format!("say which under `bind`: {signal} = \"{}\"", first.path)),
+        }),
+    }
+}
+
+fn inputs_named(application: &Application, signal: &SignalName) -> Vec<Variable> {
+    let inputs = application.programs().flat_map(|program| program.inputs);
+    inputs.filter(|variable| own_name(variable).eq_ignore_ascii_case(signal.as_str())).collect()
+}
+
+fn checked_offset(signal: &SignalDecl, variable: &Variable) -> Result<usize, BindError> {
+    if variable.ty.map(session_type) == Some(signal.ty) {
+        return Ok(variable.offset as usize);
+    }
+    Err(BindError {
+        signal: signal.name.clone(),
+        message: format!("signal `{}` is {}, but `{}` is {}", signal.name, signal.ty, variable.path, variable.type_name),
+        help: None,
+    })
+}
+
+/// The same type in the session's words; both follow the standard's encoding.
+fn session_type(ty: PlcType) -> ElementaryType {
+    match ty {
+        PlcType::Bool => ElementaryType::Bool,
+        PlcType::Sint => ElementaryType::Sint,
+        PlcType::Int => ElementaryType::Int,
+        PlcType::Dint => ElementaryType::Dint,
+        PlcType::Lint => ElementaryType::Lint,
+        PlcType::Usint => ElementaryType::Usint,
+        PlcType::Uint => ElementaryType::Uint,
+        PlcType::Udint => ElementaryType::Udint,
+        PlcType::Ulint => ElementaryType::Ulint,
+        PlcType::Byte => ElementaryType::Byte,
+        PlcType::Word => ElementaryType::Word,
+        PlcType::Dword => ElementaryType::Dword,
+        PlcType::Lword => ElementaryType::Lword,
+        PlcType::Real => ElementaryType::Real,
+        PlcType::Lreal => ElementaryType::Lreal,
+        PlcType::Time => ElementaryType::Time,
+        PlcType::Ltime => ElementaryType::Ltime,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const SOURCE: &str = "
+        PROGRAM A VAR_INPUT Start : BOOL; END_VAR VAR_OUTPUT Level : LREAL; END_VAR VAR n : INT; END_VAR
+        Level := 1.0; END_PROGRAM
+        PROGRAM B VAR_INPUT start : BOOL; END_VAR VAR_OUTPUT Lamp : BOOL; END_VAR Lamp := start; END_PROGRAM";
+
+    fn bound(signals: &[(&str, ElementaryType, &str)], paths: &[(&str, &str)]) -> Result<Bindings, BindError> {
+        let application = Application::from_sources([("a.st", SOURCE)]).unwrap();
+        let name = |text: &str| SignalName::new(text).unwrap();
+        let client = |text: &str| ClientName::new(text).unwrap();
+        let signals: Vec<_> = signals
+            .iter()
+            .map(|(n, ty, writer)| SignalDecl { name: name(n), ty: *ty, writer: Some(client(writer)), unit: None })
+            .collect();
+        let paths = paths.iter().map(|(n, path)| (name(n), (*path).to_owned())).collect();
+        bind(&application, &client("plc"), &signals, &paths)
+    }
+
+    #[test]
+    fn an_input_goes_to_every_program_that_reads_it() {
+        let bindings = bound(&[("Start", ElementaryType::Bool, "plant")], &[]).unwrap();
+        assert_eq!(bindings.inputs[0].offsets.len(), 2);
+    }
+
+    #[test]
+    fn any_variable_can_be_bound_by_its_path() {
+        let bindings = bound(&[("Count", ElementaryType::Int, "plc")], &[("Count", "A.n")]).unwrap();
+        assert_eq!(bindings.outputs.len(), 1);
+        assert_eq!(bound(&[("Other", ElementaryType::Int, "plant")], &[]).unwrap(), Bindings::default());
+    }
+
+    #[test]
+    fn what_cannot_be_bound_is_told() {
+        let error = bound(&[("Lmap", ElementaryType::Bool, "plc")], &[]).unwrap_err();
+        assert!(error.message.ends_with("no program has a VAR_OUTPUT of that name"));
+        assert!(error.help.unwrap().starts_with("did you mean `Lamp`?"));
+        let error = bound(&[("Level", ElementaryType::Real, "plc")], &[]).unwrap_err();
+        assert_eq!(error.to_string(), "signal `Level` is REAL, but `A.Level` is LREAL");
+        let error = bound(&[("Level", ElementaryType::Lreal, "plc")], &[("Level", "A.Levle")]).unwrap_err();
+        assert_eq!(error.to_string(), "signal `Level` is bound to `A.Levle`, which the PLC has not");
+    }
+}

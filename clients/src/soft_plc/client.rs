@@ -1,0 +1,110 @@
+//! The soft PLC as a client of a session.
+
+use onescan_plc_shim::{Application, PlcFault, RunError, SoftPlc, TaskPlan};
+use onescan_server::client::{Client, ClientFault, JoinRequest, SourcePlace, StateError, Wake};
+use onescan_server::signal::ClientName;
+use onescan_server::time::{TimeSpan, VirtualTime};
+
+use super::bind::{Bindings, Bound};
+
+/// A value's bytes in a port and in the PLC's memory.
+#[derive(Clone, Copy, Debug)]
+struct Run {
+    port: usize,
+    memory: usize,
+    len: usize,
+}
+
+/// A soft PLC that takes part in a session.
+pub struct SoftPlcClient {
+    request: JoinRequest,
+    plc: SoftPlc,
+    inputs: Vec<Run>,
+    outputs: Vec<Run>,
+}
+
+impl SoftPlcClient {
+    /// A client `name` that runs `application` by `plan`.
+    ///
+    /// # Errors
+    /// The plan does not suit the application.
+    pub fn new(
+        name: ClientName,
+        application: &Application,
+        plan: &TaskPlan,
+        bindings: &Bindings,
+    ) -> Result<Self, RunError> {
+        let plc = SoftPlc::new(application, plan)?;
+        // Every task has an interval, so there is a period.
+        let period = TimeSpan::from_nanos(plc.period_ns()).ok_or(RunError::NoTasks)?;
+        let ports = |bound: &[Bound]| bound.iter().map(|bound| bound.port.clone()).collect();
+        let request =
+            JoinRequest { name, period, reads: ports(&bindings.inputs), writes: ports(&bindings.outputs) };
+        Ok(Self { request, plc, inputs: runs(&bindings.inputs), outputs: runs(&bindings.outputs) })
+    }
+
+    /// The PLC.
+    pub fn plc(&self) -> &SoftPlc {
+        &self.plc
+    }
+
+    fn take_outputs(&self, outputs: &mut [u8]) {
+        let memory = self.plc.memory();
+        for run in &self.outputs {
+            outputs[run.port..run.port + run.len].copy_from_slice(&memory[run.memory..run.memory + run.len]);
+        }
+    }
+}
+
+/// Where the values of a port go, in its order; an input may go to several places.
+fn runs(bound: &[Bound]) -> Vec<Run> {
+    let mut port = 0;
+    let mut runs = Vec::new();
+    for bound in bound {
+        let len = bound.port.ty.size();
+        runs.extend(bound.offsets.iter().map(|&memory| Run { port, memory, len }));
+        port += len;
+    }
+    runs
+}
+
+impl Client for SoftPlcClient {
+    fn join(&self) -> JoinRequest {
+        self.request.clone()
+    }
+
+    fn setup(&mut self, outputs: &mut [u8]) -> Result<(), ClientFault> {
+        self.plc.cold_start();
+        self.take_outputs(outputs);
+        Ok(())
+    }
+
+    fn turn(&mut self, t_v: VirtualTime, inputs: &[u8], outputs: &mut [u8]) -> Result<Wake, ClientFault> {
+        let memory = self.plc.memory_mut();
+        for run in &self.inputs {
+            memory[run.memory..run.memory + run.len].copy_from_slice(&inputs[run.port..run.port + run.len]);
+        }
+        self.plc.scan(onescan_plc_shim::VirtualTime::from_ns(t_v.as_nanos())).map_err(|fault| client_fault(&fault))?;
+        self.take_outputs(outputs);
+        Ok(Wake::At(VirtualTime::from_nanos(self.plc.next_due().as_ns())))
+    }
+
+    fn save(&self) -> Result<Vec<u8>, StateError> {
+        Ok(self.plc.save())
+    }
+
+    fn restore(&mut self, state: &[u8]) -> Result<(), StateError> {
+        self.plc.restore(state).map_err(|error| StateError::Corrupt(error.to_string()))
+    }
+}
+
+/// The fault in the session's words; the session adds client and virtual time.
+fn client_fault(fault: &PlcFault) -> ClientFault {
+    let way = match fault.call_path.len() {
+        0 | 1 => String::new(),
+        _ => format!(" (called by way of {})", fault.call_path.join(", ")),
+    };
+    let place = SourcePlace { file: fault.file.clone(), line: fault.line, column: fault.column };
+    let place = (!fault.file.is_empty()).then_some(place);
+    ClientFault { message: format!("PLC fault: {} in {}{way}", fault.kind, fault.pou), place }
+}

@@ -1,0 +1,12 @@
+//! The embedded soft PLC as a client: one turn is one scan.
+//!
+//! | module | subject |
+//! |---|---|
+//! | [`bind`] | which signal is which variable of the PLC |
+//! | `client` | inputs in, scan, outputs out |
+
+pub mod bind;
+mod client;
+
+pub use bind::{BindError, Bindings, bind};
+pub use client::SoftPlcClient;

@@ -1,0 +1,230 @@
+//! What may be typed.
+
+use std::net::SocketAddr;
+use std::path::PathBuf;
+
+use clap::{ArgAction, Args as ClapArgs, Parser, Subcommand, ValueEnum};
+use onescan_server::pacing::Pace;
+use onescan_server::session::Control;
+use onescan_server::signal::{ClientName, SignalName};
+use onescan_server::time::{TimeSpan, VirtualTime};
+
+use crate::run::{Format, Mode, Transport};
+
+/// Deterministic lockstep virtual commissioning.
+///
+/// A PLC program and the model of its machine run against each other on one virtual clock: every scan
+/// sees exactly one simulation step, and every run of a scenario gives the same bits.
+#[derive(Debug, Parser)]
+#[command(name = "onescan", version, after_help = EXIT_CODES)]
+pub struct Args {
+    /// What to do.
+    #[command(subcommand)]
+    pub command: Command,
+    /// Say more on standard error: -v what happens, -vv why, -vvv everything
+    #[arg(short, long, action = ArgAction::Count, global = true)]
+    pub verbose: u8,
+}
+
+const EXIT_CODES: &str = "Exit codes:
+  0  all is well
+  1  runs that must be equal are not
+  2  wrong input: options, scenario, PLC source, scene, checkpoint
+  3  a client or a link failed, or the PLC program stopped on a fault";
+
+/// The commands.
+#[derive(Debug, Subcommand)]
+pub enum Command {
+    /// Run a scenario and print the digest of its trajectories
+    Run(Box<RunArgs>),
+    /// Take part in a session that another process serves, as one client of a scenario
+    Join(JoinArgs),
+    /// Ask a running session (see `run --listen`) how it is, or to pause, step, go on, reset or stop
+    Control(ControlArgs),
+}
+
+/// Options of `run`.
+#[derive(Debug, ClapArgs)]
+pub struct RunArgs {
+    /// The scenario: a folder with a `scenario.toml`
+    pub scenario: PathBuf,
+    /// Virtual time at which a run is complete, as in `2.5s` [default: the scenario's `until`]
+    #[arg(long, value_name = "TIME")]
+    pub until: Option<VirtualTime>,
+    /// How fast virtual time may run: `max`, or a factor of real time
+    #[arg(long, default_value = "max", value_name = "max|FACTOR", value_parser = pace)]
+    pub pace: Pace,
+    /// `lockstep`, or `freewheel` to see what it is good for: plant and PLC in real time, each on its
+    /// own clock, with an OPC-like link between them
+    #[arg(long, value_enum, default_value_t)]
+    pub mode: ModeArg,
+    /// Run so many times, and compare the digests
+    #[arg(long, default_value_t = 1, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=10_000))]
+    pub runs: u32,
+    /// `inproc`: all clients in this process; `tcp`: each in a process of its own
+    #[arg(long, value_enum, default_value_t)]
+    pub transport: TransportArg,
+    /// Record every signal of every step as CSV, in a folder `run-N` of this folder
+    #[arg(long, value_name = "DIR")]
+    pub record: Option<PathBuf>,
+    /// For people, or one JSON object a run for machines
+    #[arg(long, value_enum, default_value_t)]
+    pub format: FormatArg,
+    /// Draw chosen signals of all runs into this SVG file
+    #[arg(long, value_name = "FILE")]
+    pub plot: Option<PathBuf>,
+    /// A signal to draw; may be given several times [default: the scenario's choice]
+    #[arg(long = "signal", value_name = "NAME", requires = "plot", value_parser = signal_name)]
+    pub signals: Vec<SignalName>,
+    /// Where clients and operators may connect [default: a free port of this machine, if one is needed]
+    #[arg(long, value_name = "ADDRESS:PORT")]
+    pub listen: Option<SocketAddr>,
+    /// How long to wait for clients to join
+    #[arg(long, default_value = "60s", value_name = "TIME")]
+    pub join_timeout: TimeSpan,
+    /// How long a client in another process may leave a grant unanswered, wall clock
+    #[arg(long, default_value = "10s", value_name = "TIME")]
+    pub reply_timeout: TimeSpan,
+    /// Take a checkpoint at this virtual time
+    #[arg(long, value_name = "TIME", requires = "save")]
+    pub save_at: Option<VirtualTime>,
+    /// The file for the checkpoint
+    #[arg(long, value_name = "FILE", requires = "save_at")]
+    pub save: Option<PathBuf>,
+    /// Go on from this checkpoint
+    #[arg(long, value_name = "FILE")]
+    pub resume: Option<PathBuf>,
+}
+
+/// Options of `join`.
+#[derive(Debug, ClapArgs)]
+pub struct JoinArgs {
+    /// The scenario: a folder with a `scenario.toml`
+    pub scenario: PathBuf,
+    /// The client to be
+    #[arg(value_parser = client_name)]
+    pub client: ClientName,
+    /// The server's address
+    #[arg(long, value_name = "ADDRESS:PORT")]
+    pub server: SocketAddr,
+}
+
+/// Options of `control`.
+#[derive(Debug, ClapArgs)]
+pub struct ControlArgs {
+    /// The server's address
+    pub server: SocketAddr,
+    /// What to ask for
+    #[arg(value_enum, default_value_t)]
+    pub wish: WishArg,
+    /// For people, or a JSON object for machines
+    #[arg(long, value_enum, default_value_t)]
+    pub format: FormatArg,
+}
+
+/// See [`Mode`].
+#[derive(Clone, Copy, Debug, Default, ValueEnum)]
+pub enum ModeArg {
+    /// One scan, one step
+    #[default]
+    Lockstep,
+    /// Each on its own clock
+    Freewheel,
+}
+
+impl From<ModeArg> for Mode {
+    fn from(arg: ModeArg) -> Self {
+        match arg {
+            ModeArg::Lockstep => Self::Lockstep,
+            ModeArg::Freewheel => Self::Freewheel,
+        }
+    }
+}
+
+/// See [`Transport`].
+#[derive(Clone, Copy, Debug, Default, ValueEnum)]
+pub enum TransportArg {
+    /// Function calls in this process
+    #[default]
+    Inproc,
+    /// A process and a TCP connection a client
+    Tcp,
+}
+
+impl From<TransportArg> for Transport {
+    fn from(arg: TransportArg) -> Self {
+        match arg {
+            TransportArg::Inproc => Self::Inproc,
+            TransportArg::Tcp => Self::Tcp,
+        }
+    }
+}
+
+/// See [`Format`].
+#[derive(Clone, Copy, Debug, Default, ValueEnum)]
+pub enum FormatArg {
+    /// For people
+    #[default]
+    Human,
+    /// For machines
+    Json,
+}
+
+impl From<FormatArg> for Format {
+    fn from(arg: FormatArg) -> Self {
+        match arg {
+            FormatArg::Human => Self::Human,
+            FormatArg::Json => Self::Json,
+        }
+    }
+}
+
+/// What an operator may ask for.
+#[derive(Clone, Copy, Debug, Default, ValueEnum)]
+pub enum WishArg {
+    /// How it is
+    #[default]
+    Status,
+    /// Hold virtual time at the next step boundary
+    Pause,
+    /// Let it run again
+    Resume,
+    /// Run exactly one step, then hold
+    Step,
+    /// Begin anew at virtual time 0
+    Reset,
+    /// End the session
+    Stop,
+}
+
+impl WishArg {
+    /// The same for the server; `None` asks only for the status.
+    pub fn control(self) -> Option<Control> {
+        match self {
+            Self::Status => None,
+            Self::Pause => Some(Control::Pause),
+            Self::Resume => Some(Control::Resume),
+            Self::Step => Some(Control::Step),
+            Self::Reset => Some(Control::Reset),
+            Self::Stop => Some(Control::Stop),
+        }
+    }
+}
+
+fn pace(text: &str) -> Result<Pace, String> {
+    if text == "max" {
+        return Ok(Pace::Max);
+    }
+    match text.parse::<f64>() {
+        Ok(factor) if factor.is_finite() && factor > 0.0 => Ok(Pace::Factor(factor)),
+        _ => Err("write `max` or a factor over 0, as in `1` for real time or `0.1` for slow motion".to_owned()),
+    }
+}
+
+fn signal_name(text: &str) -> Result<SignalName, String> {
+    SignalName::new(text).map_err(|error| error.to_string())
+}
+
+fn client_name(text: &str) -> Result<ClientName, String> {
+    ClientName::new(text).map_err(|error| error.to_string())
+}

@@ -1,0 +1,87 @@
+//! What each command does.
+
+use std::io::{IsTerminal, Write};
+use std::time::Duration;
+
+use onescan_server::transport::tcp::operator::operate;
+use onescan_server::transport::tcp::participant::take_part;
+
+use super::args::{Command, ControlArgs, JoinArgs, RunArgs};
+use crate::run::config::SaveRequest;
+use crate::run::error::{ExitCode, RunError};
+use crate::run::interrupt::Interrupt;
+use crate::run::{Format, RunConfig, execute};
+use crate::scenario::Scenario;
+use crate::scenario::compose::Member;
+
+/// How long an operator waits for the next step boundary.
+const OPERATOR_PATIENCE: Duration = Duration::from_secs(30);
+
+/// Does what was typed.
+///
+/// # Errors
+/// See [`RunError`].
+pub fn dispatch(command: Command) -> Result<ExitCode, RunError> {
+    match command {
+        Command::Run(args) => run(*args),
+        Command::Join(args) => join(&args),
+        Command::Control(args) => control(&args),
+    }
+}
+
+fn run(args: RunArgs) -> Result<ExitCode, RunError> {
+    let interrupt = Interrupt::new();
+    interrupt.on_signals();
+    let verdict = execute(&config(args), &interrupt, &mut std::io::stdout().lock())?;
+    Ok(verdict.exit_code())
+}
+
+fn config(args: RunArgs) -> RunConfig {
+    let format = args.format.into();
+    RunConfig {
+        scenario: args.scenario,
+        until: args.until,
+        pace: args.pace,
+        mode: args.mode.into(),
+        runs: args.runs,
+        transport: args.transport.into(),
+        record: args.record,
+        format,
+        plot: args.plot,
+        signals: args.signals,
+        listen: args.listen,
+        join_timeout: Duration::from_nanos(args.join_timeout.as_nanos()),
+        reply_timeout: Duration::from_nanos(args.reply_timeout.as_nanos()),
+        save: args.save_at.zip(args.save).map(|(at, path)| SaveRequest { at, path }),
+        resume: args.resume,
+        progress: format == Format::Human && std::io::stderr().is_terminal(),
+    }
+}
+
+fn join(args: &JoinArgs) -> Result<ExitCode, RunError> {
+    let scenario = Scenario::load(&args.scenario)?;
+    let mut client = match scenario.member(&args.client)? {
+        Member::Plant(client) | Member::Plc(client) => client,
+        Member::External(_) => {
+            let message = format!("client `{}` is external: its own program joins", args.client);
+            return Err(RunError::usage(message, None));
+        }
+    };
+    let end = take_part(client.as_mut(), args.server)?;
+    tracing::info!(%end, "left");
+    Ok(ExitCode::Ok)
+}
+
+fn control(args: &ControlArgs) -> Result<ExitCode, RunError> {
+    let status = operate(args.server, args.wish.control(), OPERATOR_PATIENCE)?;
+    let mut out = std::io::stdout().lock();
+    let written = match Format::from(args.format) {
+        Format::Json => serde_json::to_writer(&mut out, &status).map_err(std::io::Error::from).and_then(|()| writeln!(out)),
+        Format::Human => {
+            let held = if status.held { "held" } else { "running" };
+            writeln!(out, "{held} in state {} after step {}, t_v = {}", status.state, status.steps, status.t_v)
+        }
+    };
+    written.map_err(RunError::Output)?;
+    Ok(ExitCode::Ok)
+}

@@ -1,0 +1,51 @@
+//! The command line: arguments to plain configurations, errors to exit codes. No logic of its own.
+//!
+//! | module | subject |
+//! |---|---|
+//! | [`args`] | what may be typed |
+//! | [`commands`] | what each command does |
+
+pub mod args;
+pub mod commands;
+
+use clap::Parser;
+
+/// Runs the program with the process's arguments.
+pub fn main() -> std::process::ExitCode {
+    let args = args::Args::parse();
+    start_logging(args.verbose);
+    let code = match commands::dispatch(args.command) {
+        Ok(code) => code,
+        Err(error) => {
+            let code = error.exit_code();
+            report(error);
+            code
+        }
+    };
+    std::process::ExitCode::from(code as u8)
+}
+
+/// Errors go to standard error, with the place in the source where there is one.
+#[expect(clippy::print_stderr, reason = "this is where errors leave the program")]
+fn report(error: crate::run::RunError) {
+    eprintln!("{:?}", miette::Report::new(error));
+}
+
+/// Log lines go to standard error: warnings, what is meant for the user, and more with `--verbose`.
+fn start_logging(verbose: u8) {
+    use tracing_subscriber::EnvFilter;
+    let level = match verbose {
+        0 => "warn,onescan::notice=info",
+        1 => "info",
+        2 => "debug",
+        _ => "trace",
+    };
+    let filter = EnvFilter::try_from_env("ONESCAN_LOG").unwrap_or_else(|_| EnvFilter::new(level));
+    tracing_subscriber::fmt()
+        .with_env_filter(filter)
+        .with_writer(std::io::stderr)
+        .with_ansi(std::io::IsTerminal::is_terminal(&std::io::stderr()))
+        .without_time()
+        .with_target(verbose > 1)
+        .init();
+}

@@ -1,0 +1,150 @@
+//! What is asked for.
+
+use std::net::SocketAddr;
+use std::path::PathBuf;
+use std::time::Duration;
+
+use onescan_server::pacing::Pace;
+use onescan_server::signal::{SignalName, nearest};
+use onescan_server::time::VirtualTime;
+
+use super::error::RunError;
+use crate::scenario::Scenario;
+use crate::scenario::file::ClientFile;
+
+/// How plant and PLC come together.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Mode {
+    /// One scan, one step.
+    #[default]
+    Lockstep,
+    /// Each on its own clock.
+    Freewheel,
+}
+
+/// How the server reaches the scenario's clients.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Transport {
+    /// Function calls in one process.
+    #[default]
+    Inproc,
+    /// A process and a TCP connection a client.
+    Tcp,
+}
+
+/// For whom the output is.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Format {
+    /// People.
+    #[default]
+    Human,
+    /// Machines: one JSON object a run and line.
+    Json,
+}
+
+/// A checkpoint to be taken.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct SaveRequest {
+    /// When: the first step boundary at or after this.
+    pub at: VirtualTime,
+    /// Where to.
+    pub path: PathBuf,
+}
+
+/// All options of a run.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RunConfig {
+    /// The scenario's folder or file.
+    pub scenario: PathBuf,
+    /// When a run is complete; the scenario says so if absent.
+    pub until: Option<VirtualTime>,
+    /// How fast virtual time may run.
+    pub pace: Pace,
+    /// In lockstep or not.
+    pub mode: Mode,
+    /// How many runs.
+    pub runs: u32,
+    /// How the scenario's own clients are reached.
+    pub transport: Transport,
+    /// Folder for recordings.
+    pub record: Option<PathBuf>,
+    /// For whom reports are.
+    pub format: Format,
+    /// File for a plot.
+    pub plot: Option<PathBuf>,
+    /// The signals of the plot; the scenario's choice if empty.
+    pub signals: Vec<SignalName>,
+    /// Where clients and operators may connect.
+    pub listen: Option<SocketAddr>,
+    /// How long to wait for clients to join.
+    pub join_timeout: Duration,
+    /// How long a client may leave a grant unanswered.
+    pub reply_timeout: Duration,
+    /// A checkpoint to take.
+    pub save: Option<SaveRequest>,
+    /// A checkpoint to go on from.
+    pub resume: Option<PathBuf>,
+    /// True where a progress bar would be seen.
+    pub progress: bool,
+}
+
+impl RunConfig {
+    /// When a run is complete.
+    pub fn end(&self, scenario: &Scenario) -> VirtualTime {
+        self.until.unwrap_or(scenario.file().until)
+    }
+
+    /// The signals of the plot with their panels' order.
+    pub fn plotted(&self, scenario: &Scenario) -> Vec<SignalName> {
+        if !self.signals.is_empty() {
+            return self.signals.clone();
+        }
+        let chosen: Vec<SignalName> =
+            scenario.file().plot.signals.iter().map(|signal| signal.get_ref().clone()).collect();
+        if chosen.is_empty() { scenario.file().signals.keys().cloned().collect() } else { chosen }
+    }
+
+    /// Refuses options that contradict each other or the scenario, before anything has begun.
+    pub(super) fn check(&self, scenario: &Scenario) -> Result<(), RunError> {
+        for signal in &self.signals {
+            if !scenario.file().signals.contains_key(signal) {
+                let known = scenario.file().signals.keys().map(SignalName::as_str);
+                let help = nearest(signal.as_str(), known).map(|name| format!("did you mean `{name}`?"));
+                return Err(RunError::usage(format!("the scenario has no signal `{signal}`"), help));
+            }
+        }
+        let step = scenario.file().step;
+        if let Some(save) = self.save.as_ref().filter(|save| save.at >= self.end(scenario)) {
+            let message = format!("--save-at {} is not before the end of the run at {}", save.at, self.end(scenario));
+            return Err(RunError::usage(message, Some(format!("the step is {step}"))));
+        }
+        match self.mode {
+            Mode::Lockstep => Ok(()),
+            Mode::Freewheel => self.check_freewheel(scenario),
+        }
+    }
+
+    /// Free-wheeling has no server: what only a server can do is refused, not ignored.
+    fn check_freewheel(&self, scenario: &Scenario) -> Result<(), RunError> {
+        let options = [
+            ("--transport tcp", self.transport == Transport::Tcp),
+            ("--pace", self.pace != Pace::Max),
+            ("--listen", self.listen.is_some()),
+            ("--save-at", self.save.is_some()),
+            ("--resume", self.resume.is_some()),
+        ];
+        if let Some((option, _)) = options.iter().find(|(_, given)| *given) {
+            let help = "free-wheeling clients run in real time in this process, each on its own clock".to_owned();
+            return Err(RunError::usage(format!("{option} means nothing with --mode freewheel"), Some(help)));
+        }
+        let external = |client: &toml::Spanned<ClientFile>| matches!(client.get_ref(), ClientFile::External { .. });
+        match scenario.file().clients.iter().find(|(_, client)| external(client)) {
+            Some((name, _)) => {
+                Err(RunError::usage(format!("the external client `{name}` can only take part in lockstep"), None))
+            }
+            None => Ok(()),
+        }
+    }
+}

@@ -1,0 +1,51 @@
+//! Ctrl-C: the run stops at the next step boundary, with recordings and reports whole. A second one
+//! ends the process at once.
+
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use onescan_server::mailbox::Mailbox;
+use onescan_server::session::Control;
+
+/// A wish to stop, seen by all runs of a process.
+#[derive(Clone, Debug, Default)]
+pub struct Interrupt {
+    raised: Arc<AtomicBool>,
+    mailbox: Mailbox,
+}
+
+impl Interrupt {
+    /// Nobody has asked to stop.
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// Raises it on Ctrl-C and on a polite request to end.
+    pub fn on_signals(&self) {
+        let interrupt = self.clone();
+        let handler = move || {
+            if interrupt.raised.swap(true, Ordering::SeqCst) {
+                std::process::exit(130);
+            }
+            interrupt.mailbox.control(Control::Stop);
+        };
+        if let Err(error) = ctrlc::set_handler(handler) {
+            tracing::warn!(%error, "Ctrl-C will end the program without a report");
+        }
+    }
+
+    /// True once somebody asked to stop.
+    pub fn is_raised(&self) -> bool {
+        self.raised.load(Ordering::SeqCst)
+    }
+
+    /// The flag itself, for those who spin on it.
+    pub(super) fn flag(&self) -> &AtomicBool {
+        &self.raised
+    }
+
+    /// Where the wish goes, and those of operators.
+    pub(super) fn mailbox(&self) -> Mailbox {
+        self.mailbox.clone()
+    }
+}

@@ -1,0 +1,126 @@
+//! One run in lockstep.
+
+use std::net::{Ipv4Addr, SocketAddr};
+
+use onescan_server::checkpoint::Checkpoint;
+use onescan_server::formation::{Formation, FormationError};
+use onescan_server::lockstep::{Lockstep, Outcome, Reached};
+use onescan_server::transport::tcp::Lobby;
+
+use super::config::{RunConfig, SaveRequest, Transport};
+use super::error::RunError;
+use super::interrupt::Interrupt;
+use super::output;
+use super::processes::Processes;
+use super::progress::Progress;
+use crate::scenario::Scenario;
+use crate::scenario::compose::Member;
+
+/// What is said here is for the user, also without `--verbose`.
+const NOTICE: &str = "onescan::notice";
+
+/// Runs the scenario once; `watch` adds observers before it begins.
+pub(super) fn run(
+    config: &RunConfig,
+    scenario: &Scenario,
+    number: u32,
+    interrupt: &Interrupt,
+    watch: impl FnOnce(&mut Lockstep),
+) -> Result<Outcome, RunError> {
+    let mut processes = Processes::default();
+    let (mut lockstep, _lobby) = form(config, scenario, interrupt, &mut processes)?;
+    lockstep.set_until(Some(config.end(scenario)));
+    lockstep.set_pace(config.pace);
+    lockstep.set_mailbox(interrupt.mailbox());
+    watch(&mut lockstep);
+    if config.progress {
+        let label = if config.runs == 1 { scenario.name().to_owned() } else { format!("run {number}/{}", config.runs) };
+        lockstep.observe(Box::new(Progress::new(config.end(scenario), label)));
+    }
+    if let Some(path) = &config.resume {
+        resume(&mut lockstep, path)?;
+    }
+    if let Some(request) = &config.save {
+        save(&mut lockstep, request)?;
+    }
+    Ok(lockstep.run()?)
+}
+
+/// Brings all clients together. The lobby stays open for operators.
+fn form(
+    config: &RunConfig,
+    scenario: &Scenario,
+    interrupt: &Interrupt,
+    processes: &mut Processes,
+) -> Result<(Lockstep, Option<Lobby>), RunError> {
+    let mut formation = Formation::new(scenario.plan().clone());
+    let mut remote = Vec::new();
+    for name in scenario.plan().clients() {
+        // Also a client that will run in its own process is made here: its faults are found at once.
+        match (scenario.member(name)?, config.transport) {
+            (Member::Plant(client) | Member::Plc(client), Transport::Inproc) => {
+                formation.join(client).map_err(FormationError::Refused)?;
+            }
+            (Member::Plant(_) | Member::Plc(_), Transport::Tcp) => remote.push((name, None)),
+            (Member::External(command), _) => remote.push((name, Some(command))),
+        }
+    }
+    if remote.is_empty() && config.listen.is_none() {
+        return Ok((formation.start()?, None));
+    }
+    let lobby = open_lobby(config, scenario, interrupt)?;
+    for (name, command) in &remote {
+        match command {
+            None => processes.start_client(name, &config.scenario, lobby.address())?,
+            Some(words) => processes.start_command(name, words, scenario.folder(), lobby.address())?,
+        }
+    }
+    if remote.iter().any(|(_, command)| command.as_ref().is_some_and(Vec::is_empty)) {
+        tracing::info!(target: NOTICE, "listening on {}", lobby.address());
+    }
+    wait_for_clients(config, &mut formation, &lobby, interrupt, processes)?;
+    Ok((formation.start()?, Some(lobby)))
+}
+
+fn open_lobby(config: &RunConfig, scenario: &Scenario, interrupt: &Interrupt) -> Result<Lobby, RunError> {
+    let address = config.listen.unwrap_or(SocketAddr::from((Ipv4Addr::LOCALHOST, 0)));
+    let lobby = Lobby::open(address, scenario.plan(), interrupt.mailbox())
+        .map_err(|source| RunError::Listen { address, source })?;
+    Ok(lobby)
+}
+
+fn wait_for_clients(
+    config: &RunConfig,
+    formation: &mut Formation,
+    lobby: &Lobby,
+    interrupt: &Interrupt,
+    processes: &mut Processes,
+) -> Result<(), RunError> {
+    let (mut ended, mut told) = (None, String::new());
+    let admitted = formation.admit_from(lobby, config.join_timeout, config.reply_timeout, &mut |missing| {
+        if missing != told {
+            missing.clone_into(&mut told);
+            tracing::info!(target: NOTICE, "waiting for client {missing}");
+        }
+        ended = processes.first_ended();
+        ended.is_none() && !interrupt.is_raised()
+    });
+    match (admitted, ended) {
+        (Err(FormationError::Interrupted { .. }), Some(ended)) => Err(ended),
+        (admitted, _) => Ok(admitted?),
+    }
+}
+
+fn resume(lockstep: &mut Lockstep, path: &std::path::Path) -> Result<(), RunError> {
+    let bytes = std::fs::read(path).map_err(|source| RunError::File { path: path.to_owned(), source })?;
+    let wrong = |source| RunError::Resume { path: path.to_owned(), source };
+    lockstep.resume(&Checkpoint::from_bytes(&bytes).map_err(wrong)?).map_err(wrong)
+}
+
+fn save(lockstep: &mut Lockstep, request: &SaveRequest) -> Result<(), RunError> {
+    if lockstep.run_to(request.at)? == Reached::End {
+        return Err(RunError::SaveTooLate(lockstep.session().t_v()));
+    }
+    let bytes = lockstep.checkpoint().and_then(|checkpoint| checkpoint.to_bytes()).map_err(RunError::Save)?;
+    output::write_whole(&request.path, &bytes)
+}

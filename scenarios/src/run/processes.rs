@@ -1,0 +1,99 @@
+//! Clients as processes of their own: started before the session, ended with it.
+
+use std::net::SocketAddr;
+use std::path::Path;
+use std::process::{Child, Command, Stdio};
+use std::time::{Duration, Instant};
+
+use onescan_server::signal::ClientName;
+
+use super::error::RunError;
+
+/// How long a process may take to leave once the session is over.
+const LEAVE_TIMEOUT: Duration = Duration::from_secs(5);
+
+/// What stands for the server's address in a command.
+const SERVER: &str = "{server}";
+
+/// The processes of a session; none outlives it.
+#[derive(Default)]
+pub(super) struct Processes {
+    children: Vec<(ClientName, Child)>,
+}
+
+impl Processes {
+    /// Starts this program as the client `name` of the scenario at `path`.
+    pub(super) fn start_client(
+        &mut self,
+        name: &ClientName,
+        path: &Path,
+        server: SocketAddr,
+    ) -> Result<(), RunError> {
+        let program = std::env::current_exe().map_err(|source| RunError::Spawn {
+            client: name.to_string(),
+            command: "onescan".to_owned(),
+            source,
+        })?;
+        let mut command = Command::new(program);
+        command.arg("join").arg(path).arg(name.as_str()).arg("--server").arg(server.to_string());
+        self.start(name, command)
+    }
+
+    /// Starts a client's own command in the scenario's folder.
+    pub(super) fn start_command(
+        &mut self,
+        name: &ClientName,
+        words: &[String],
+        folder: &Path,
+        server: SocketAddr,
+    ) -> Result<(), RunError> {
+        let Some((program, arguments)) = words.split_first() else { return Ok(()) };
+        let mut command = Command::new(program);
+        command.args(arguments.iter().map(|word| word.replace(SERVER, &server.to_string())));
+        if folder != Path::new("") {
+            command.current_dir(folder);
+        }
+        self.start(name, command)
+    }
+
+    fn start(&mut self, name: &ClientName, mut command: Command) -> Result<(), RunError> {
+        command.stdin(Stdio::null()).stdout(Stdio::null());
+        // Ctrl-C is for the server, which ends the session in order; clients leave when it does.
+        #[cfg(unix)]
+        std::os::unix::process::CommandExt::process_group(&mut command, 0);
+        let child = command.spawn().map_err(|source| RunError::Spawn {
+            client: name.to_string(),
+            command: command.get_program().to_string_lossy().into_owned(),
+            source,
+        })?;
+        self.children.push((name.clone(), child));
+        Ok(())
+    }
+
+    /// A process that has ended, which before the session begins it must not.
+    pub(super) fn first_ended(&mut self) -> Option<RunError> {
+        self.children.iter_mut().find_map(|(name, child)| match child.try_wait() {
+            Ok(Some(status)) => {
+                Some(RunError::ClientProcess { client: name.to_string(), status: status.to_string() })
+            }
+            _ => None,
+        })
+    }
+}
+
+impl Drop for Processes {
+    /// The server has told everybody to leave; one that does not is ended.
+    fn drop(&mut self) {
+        let patience = Instant::now() + LEAVE_TIMEOUT;
+        for (_, child) in &mut self.children {
+            while matches!(child.try_wait(), Ok(None)) {
+                if Instant::now() > patience {
+                    // It may have ended by itself meanwhile; then there is nothing to do.
+                    let _ = child.kill();
+                    let _ = child.wait();
+                }
+                std::thread::sleep(Duration::from_millis(1));
+            }
+        }
+    }
+}

@@ -1,0 +1,163 @@
+//! What came of a run, for people and for machines.
+
+use std::io::Write;
+use std::time::Duration;
+
+use onescan_server::end::{Failure, SessionEnd};
+use onescan_server::lockstep::Outcome;
+use onescan_server::record::Digest;
+use onescan_server::time::{StepCount, VirtualTime};
+use serde::Serialize;
+
+use super::config::{Format, Mode, RunConfig, Transport};
+use super::error::ExitCode;
+use crate::scenario::Scenario;
+
+/// What came of one run. Its JSON form is a contract: fields are added, never changed.
+#[derive(Clone, Debug, Serialize)]
+pub struct RunReport {
+    /// The scenario's name.
+    pub scenario: String,
+    /// Number of the run, from 1.
+    pub run: u32,
+    /// In lockstep or not.
+    pub mode: Mode,
+    /// How clients were reached.
+    pub transport: Transport,
+    /// `completed`, `stopped` or `failed`.
+    pub status: &'static str,
+    /// The digest over all steps; absent if there was none.
+    pub digest: Option<Digest>,
+    /// Steps committed.
+    pub steps: StepCount,
+    /// Virtual time of the last of them.
+    #[serde(rename = "virtual_time_ns")]
+    pub virtual_time: VirtualTime,
+    /// Wall-clock time of the run with everything around it.
+    pub wall_time_s: f64,
+    /// The failure, if one ended the run.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub failure: Option<Failure>,
+    /// The failure in words.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub error: Option<String>,
+    /// The program that ran it.
+    pub version: &'static str,
+}
+
+impl RunReport {
+    pub(super) fn new(
+        config: &RunConfig,
+        scenario: &Scenario,
+        run: u32,
+        outcome: &Outcome,
+        wall_time: Duration,
+    ) -> Self {
+        let (status, failure) = match &outcome.end {
+            SessionEnd::Completed { .. } => ("completed", None),
+            SessionEnd::Stopped { .. } => ("stopped", None),
+            SessionEnd::Failed(failure) => ("failed", Some(failure.clone())),
+        };
+        Self {
+            scenario: scenario.name().to_owned(),
+            run,
+            mode: config.mode,
+            transport: config.transport,
+            status,
+            digest: outcome.digest,
+            steps: outcome.steps,
+            virtual_time: outcome.t_v,
+            wall_time_s: wall_time.as_secs_f64(),
+            error: failure.as_ref().map(ToString::to_string),
+            failure,
+            version: env!("CARGO_PKG_VERSION"),
+        }
+    }
+
+    /// True if a client ended it.
+    pub fn is_failed(&self) -> bool {
+        self.failure.is_some()
+    }
+
+    pub(super) fn write(&self, format: Format, runs: u32, out: &mut dyn Write) -> std::io::Result<()> {
+        match format {
+            Format::Json => {
+                serde_json::to_writer(&mut *out, self)?;
+                writeln!(out)?;
+            }
+            Format::Human => {
+                let name = if runs == 1 { self.scenario.clone() } else { format!("run {}/{runs}", self.run) };
+                let digest = self.digest.map_or_else(|| "none".to_owned(), |digest| digest.to_string());
+                let (steps, t_v, wall) = (self.steps, self.virtual_time, self.wall_time_s);
+                writeln!(out, "{name}: {}, {steps} steps, {t_v} virtual in {wall:.3} s", self.status)?;
+                writeln!(out, "  digest {digest}")?;
+                if let Some(error) = &self.error {
+                    writeln!(out, "  {error}")?;
+                }
+            }
+        }
+        out.flush()
+    }
+}
+
+/// What came of all runs.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Verdict {
+    /// Every run came to its end, and those that must be equal are.
+    Good,
+    /// Runs in lockstep differ: something on a session's path is not deterministic.
+    Unequal,
+    /// A client failed.
+    Failed,
+}
+
+impl Verdict {
+    pub(super) fn of(config: &RunConfig, reports: &[RunReport]) -> Self {
+        if reports.iter().any(RunReport::is_failed) {
+            Self::Failed
+        } else if config.mode == Mode::Lockstep && distinct_digests(&completed(reports)) > 1 {
+            Self::Unequal
+        } else {
+            Self::Good
+        }
+    }
+
+    /// What the program tells the shell.
+    pub fn exit_code(self) -> ExitCode {
+        match self {
+            Self::Good => ExitCode::Ok,
+            Self::Unequal => ExitCode::Unequal,
+            Self::Failed => ExitCode::Fault,
+        }
+    }
+
+    /// The last line for people, where there is more than one run.
+    pub(super) fn write(self, config: &RunConfig, reports: &[RunReport], out: &mut dyn Write) -> std::io::Result<()> {
+        if config.format == Format::Json || reports.len() < 2 || self == Self::Failed {
+            return Ok(());
+        }
+        let runs = reports.len();
+        match distinct_digests(&completed(reports)) {
+            0 => Ok(()),
+            1 => writeln!(out, "{runs} runs, all digests equal"),
+            n if self == Self::Unequal => writeln!(
+                out,
+                "{runs} runs, {n} different digests: a client reads something that the scenario does not fix \
+                 (a clock, a random source, an order)"
+            ),
+            n => writeln!(out, "{runs} runs, {n} different digests"),
+        }
+    }
+}
+
+/// Runs that came to their end; one that was stopped half-way is equal to nothing.
+fn completed(reports: &[RunReport]) -> Vec<&RunReport> {
+    reports.iter().filter(|report| report.status == "completed").collect()
+}
+
+fn distinct_digests(reports: &[&RunReport]) -> usize {
+    let mut digests: Vec<String> = reports.iter().filter_map(|report| report.digest).map(|d| d.to_string()).collect();
+    digests.sort();
+    digests.dedup();
+    digests.len()
+}

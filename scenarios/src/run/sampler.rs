@@ -1,0 +1,99 @@
+//! What a plot shows: chosen signals of every step, and the plot of several runs.
+
+use std::cell::RefCell;
+use std::rc::Rc;
+
+use onescan_server::record::{Observer, RecordError};
+use onescan_server::session::Session;
+use onescan_server::signal::{ElementaryType, SignalId, SignalName};
+
+use super::config::{Mode, RunConfig};
+use crate::plot::{Panel, Plot, Shape, Trajectory};
+use crate::scenario::Scenario;
+
+/// Chosen signals of one run.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Samples {
+    names: Vec<SignalName>,
+    t_ns: Vec<u64>,
+    /// A row a signal.
+    values: Vec<Vec<f64>>,
+}
+
+impl Samples {
+    pub(super) fn new(names: &[SignalName]) -> Self {
+        Self { names: names.to_vec(), t_ns: Vec::new(), values: vec![Vec::new(); names.len()] }
+    }
+}
+
+/// Takes a sample of a session at every step.
+pub(super) struct Sampler {
+    samples: Rc<RefCell<Samples>>,
+    signals: Vec<SignalId>,
+}
+
+impl Sampler {
+    pub(super) fn new(samples: Rc<RefCell<Samples>>) -> Self {
+        Self { samples, signals: Vec::new() }
+    }
+}
+
+impl Observer for Sampler {
+    fn begin(&mut self, session: &Session) -> Result<(), RecordError> {
+        {
+            let mut samples = self.samples.borrow_mut();
+            let names = samples.names.clone();
+            self.signals = names.iter().filter_map(|name| session.signal_id(name.as_str())).collect();
+            *samples = Samples::new(&names);
+        }
+        self.step(session)
+    }
+
+    fn step(&mut self, session: &Session) -> Result<(), RecordError> {
+        let mut samples = self.samples.borrow_mut();
+        samples.t_ns.push(session.t_v().as_nanos());
+        for (row, signal) in samples.values.iter_mut().zip(&self.signals) {
+            let bytes = session.layout().bytes(*signal, session.image());
+            row.push(session.layout().ty(*signal).as_f64(bytes).unwrap_or(f64::NAN));
+        }
+        Ok(())
+    }
+
+    fn end(&mut self, _session: &Session) -> Result<(), RecordError> {
+        Ok(())
+    }
+}
+
+/// The plot of several runs, laid over each other.
+pub(super) fn plot(scenario: &Scenario, config: &RunConfig, runs: &[Samples]) -> Plot {
+    let mode = match config.mode {
+        Mode::Lockstep => "lockstep",
+        Mode::Freewheel => "free-wheeling",
+    };
+    let count = match runs.len() {
+        1 => String::new(),
+        n => format!(", {n} runs"),
+    };
+    let panels = config.plotted(scenario).into_iter().enumerate().map(|(row, name)| {
+        let signal = scenario.file().signals.get(&name).map(toml::Spanned::get_ref);
+        Panel {
+            shape: signal.map_or(Shape::Line, |signal| shape(signal.ty)),
+            unit: signal.and_then(|signal| signal.unit.clone()),
+            signal: name.to_string(),
+            runs: runs.iter().map(|run| Trajectory { t_ns: run.t_ns.clone(), values: run.values[row].clone() }).collect(),
+        }
+    });
+    Plot {
+        title: format!("{}: {mode}{count}", scenario.name()),
+        runs: (1..=runs.len()).map(|number| format!("run {number}")).collect(),
+        panels: panels.collect(),
+    }
+}
+
+/// Numbers with a fraction change between samples; everything else jumps.
+fn shape(ty: ElementaryType) -> Shape {
+    match ty {
+        ElementaryType::Real | ElementaryType::Lreal => Shape::Line,
+        _ => Shape::Step,
+    }
+}

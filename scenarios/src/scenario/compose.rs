@@ -1,0 +1,113 @@
+//! A scenario's clients: its files read, checked and made to run.
+
+use std::path::PathBuf;
+
+use miette::{NamedSource, SourceSpan};
+use onescan_clients::plant::{Plant, SceneError, SceneFault};
+use onescan_clients::soft_plc::{SoftPlcClient, bind};
+use onescan_plc_shim::{Application, Task, TaskPlan};
+use onescan_server::client::Client;
+use onescan_server::signal::{ClientName, SignalName, nearest};
+
+use super::error::{SceneReport, ScenarioError};
+use super::file::{ClientFile, TaskFile};
+use super::load::Scenario;
+
+/// A client of a scenario.
+pub enum Member {
+    /// A plant in this process.
+    Plant(Box<dyn Client>),
+    /// A soft PLC in this process.
+    Plc(Box<dyn Client>),
+    /// A program of its own, with the command that starts it; empty if somebody else does.
+    External(Vec<String>),
+}
+
+impl Scenario {
+    /// The client `name`, ready to join.
+    ///
+    /// # Errors
+    /// No such client, or its files are wrong.
+    pub fn member(&self, name: &ClientName) -> Result<Member, ScenarioError> {
+        let Some(entry) = self.file().clients.get(name) else {
+            let help = nearest(name.as_str(), self.file().clients.keys().map(ClientName::as_str));
+            let help = help.map(|name| format!("did you mean `{name}`?"));
+            return Err(self.wrong_client(name, format!("the scenario has no client `{name}`"), help));
+        };
+        match entry.get_ref() {
+            ClientFile::Plant { scene, period } => {
+                let path = self.folder().join(scene);
+                let text = read(&path)?;
+                let period = period.unwrap_or(self.file().step);
+                let plant = Plant::parse(&text, &path.display().to_string(), name.clone(), period);
+                let plant = plant.map_err(|error| Box::new(report(&error, &path.display().to_string(), &text)))?;
+                Ok(Member::Plant(Box::new(plant)))
+            }
+            ClientFile::SoftPlc { sources, tasks, bind } => {
+                self.soft_plc(name, sources, tasks, bind).map(|plc| Member::Plc(Box::new(plc)))
+            }
+            ClientFile::External { command } => Ok(Member::External(command.clone())),
+        }
+    }
+
+    fn soft_plc(
+        &self,
+        name: &ClientName,
+        sources: &[String],
+        tasks: &[TaskFile],
+        paths: &std::collections::BTreeMap<SignalName, String>,
+    ) -> Result<SoftPlcClient, ScenarioError> {
+        let mut files = Vec::with_capacity(sources.len());
+        for source in sources {
+            files.push((source.clone(), read(&self.folder().join(source))?));
+        }
+        let application = Application::from_sources(files).map_err(Box::new)?;
+        for warning in application.warnings().iter() {
+            tracing::warn!(code = %warning.code, "{}", warning.message);
+        }
+        if let Some(unknown) = paths.keys().find(|signal| !self.file().signals.contains_key(*signal)) {
+            let help = nearest(unknown.as_str(), self.file().signals.keys().map(SignalName::as_str));
+            let help = help.map(|name| format!("did you mean `{name}`?"));
+            return Err(self.wrong_client(name, format!("`bind` names a signal `{unknown}` that is not declared"), help));
+        }
+        let bindings = bind(&application, name, self.plan().signals(), paths)
+            .map_err(|error| self.wrong_signal(&error.signal, error.message, error.help))?;
+        let plan = TaskPlan::new(tasks.iter().map(task).collect());
+        SoftPlcClient::new(name.clone(), &application, &plan, &bindings)
+            .map_err(|error| self.wrong_client(name, error.to_string(), None))
+    }
+}
+
+fn task(file: &TaskFile) -> Task {
+    Task {
+        name: file.name.clone(),
+        interval_ns: file.interval.as_nanos(),
+        priority: file.priority,
+        programs: file.programs.clone(),
+    }
+}
+
+fn read(path: &PathBuf) -> Result<String, ScenarioError> {
+    std::fs::read_to_string(path).map_err(|source| ScenarioError::Unreadable { path: path.clone(), source, help: None })
+}
+
+/// A scene's faults, the first in front.
+fn report(error: &SceneError, file: &str, text: &str) -> SceneReport {
+    let one = |fault: &SceneFault| SceneReport {
+        message: fault.kind.to_string(),
+        file: NamedSource::new(file, text.to_owned()),
+        place: Some(SourceSpan::from(fault.span.clone())),
+        help: fault.hint.clone(),
+        others: Vec::new(),
+    };
+    match error.faults() {
+        [] => SceneReport {
+            message: error.to_string(),
+            file: NamedSource::new(file, text.to_owned()),
+            place: None,
+            help: None,
+            others: Vec::new(),
+        },
+        [first, others @ ..] => SceneReport { others: others.iter().map(one).collect(), ..one(first) },
+    }
+}
