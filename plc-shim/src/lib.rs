@@ -1,1 +1,4 @@
-//! onescan
+//! IEC 61131-3 program text, read, checked, compiled and run.
+
+pub mod diagnostic;
+pub mod syntax;
