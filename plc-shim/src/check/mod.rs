@@ -44,7 +44,7 @@ use crate::ir::{Pou, PouId, Program, TypeTable, Variable};
 use crate::syntax::ast::{CompilationUnit, PouKind};
 use crate::syntax::{FileId, Span};
 
-pub(crate) use layout::{MEMORY_LIMIT, VIRTUAL_TIME_NAME, VIRTUAL_TIME_OFFSET};
+pub(crate) use layout::VIRTUAL_TIME_OFFSET;
 
 /// The checked program.
 #[derive(Debug)]
@@ -52,6 +52,8 @@ pub(crate) struct Checked {
     pub(crate) types: TypeTable,
     /// The units that run; others have no entry.
     pub(crate) pous: BTreeMap<PouId, Pou>,
+    /// The variables of every unit that has been declared, whether it runs or not.
+    pub(crate) interfaces: BTreeMap<PouId, Vec<Variable>>,
     pub(crate) globals: Vec<Variable>,
     pub(crate) programs: Vec<Program>,
     /// The whole memory at a cold start.
@@ -71,7 +73,11 @@ pub(crate) fn check(
     checker.check_bodies();
     checker.report_recursion();
     let image = checker.memory_image();
+    let interfaces = checker.pous.iter().enumerate().filter_map(|(index, entry)| {
+        Some((PouId(index as u32), entry.scope.as_ref()?.variables.clone()))
+    });
     let checked = Checked {
+        interfaces: interfaces.collect(),
         types: checker.types,
         pous: checker.checked,
         globals: checker.globals.into_values().filter_map(|entry| entry.variable).collect(),
@@ -157,7 +163,7 @@ impl<'a> Checker<'a> {
             let span = self.pou(id).ast.name.span;
             if let Some(offset) = self.allocate(size, align, span) {
                 self.placed.push((offset, image));
-                self.programs.push(Program { pou: id, offset, size });
+                self.programs.push(Program { pou: id, offset });
             }
         }
     }

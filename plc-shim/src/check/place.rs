@@ -30,7 +30,7 @@ pub(super) struct Located {
 
 /// What a name stands for.
 enum Meaning {
-    Variable(Variable),
+    Variable,
     Value(Expr),
 }
 
@@ -136,7 +136,7 @@ impl Body<'_, '_> {
                         let kind = ExprKind::Constant(value);
                         Meaning::Value(Expr { kind, ty: variable.ty, span: name.span })
                     }
-                    None => Meaning::Variable(variable),
+                    None => Meaning::Variable,
                 });
             }
             None => {}

@@ -53,5 +53,4 @@ pub(crate) struct Pou {
 pub(crate) struct Program {
     pub(crate) pou: PouId,
     pub(crate) offset: u32,
-    pub(crate) size: u32,
 }

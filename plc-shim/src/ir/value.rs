@@ -1,7 +1,5 @@
 //! Values of elementary type.
 
-use super::elementary::{ElementaryType, Kind};
-
 /// A value; which variants occur follows from the type beside it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Value {
@@ -16,15 +14,6 @@ pub(crate) enum Value {
 }
 
 impl Value {
-    pub(crate) fn zero(ty: ElementaryType) -> Self {
-        match ty.kind() {
-            Kind::Bool => Self::Bool(false),
-            Kind::Real if ty == ElementaryType::Real => Self::Real(0.0),
-            Kind::Real => Self::Lreal(0.0),
-            _ => Self::Int(0),
-        }
-    }
-
     /// As an integer, if it is none of the reals.
     pub(crate) fn as_int(self) -> Option<i128> {
         match self {
