@@ -155,7 +155,9 @@ pub fn did_you_mean<'a>(
     candidates: impl IntoIterator<Item = &'a str>,
 ) -> Option<String> {
     let wanted = name.to_lowercase();
-    let limit = wanted.chars().count() / 3 + 1;
+    // A name of one or two letters is near to every other.
+    let length = wanted.chars().count();
+    let limit = if length < 3 { 0 } else { length / 3 };
     let distance = |text: &str| strsim::damerau_levenshtein(&wanted, &text.to_lowercase());
     candidates
         .into_iter()

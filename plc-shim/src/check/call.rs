@@ -48,7 +48,10 @@ impl Body<'_, '_> {
 
     /// Inside a function its own name is its result, and a call of it recursion.
     fn is_own_result(&self, name: &Ident) -> bool {
-        self.pou.is_some_and(|id| self.checker.pou(id).ast.name.key() == name.key())
+        self.pou.is_some_and(|id| {
+            let own = self.checker.pou(id).ast;
+            own.kind == PouKind::Function && own.name.key() == name.key()
+        })
     }
 
     fn function_named(&self, name: &Ident) -> Option<PouId> {
@@ -275,8 +278,7 @@ impl Body<'_, '_> {
         if parameter.section == SectionKind::InOut {
             return self.reference(parameter, expr, passing).map(Argument::Reference);
         }
-        let operand = self.expression(expr)?;
-        self.coerce(operand, parameter.ty).map(Argument::Value)
+        self.expression_for(expr, parameter.ty).map(Argument::Value)
     }
 
     /// The variable given for a `VAR_IN_OUT`. One that is kept in a register goes through memory.

@@ -151,8 +151,7 @@ impl Body<'_, '_> {
 
     /// The value of a constant expression as one of type `ty`.
     pub(super) fn constant_of_type(&mut self, expr: &ast::Expr, ty: TypeId) -> Option<Value> {
-        let operand = self.expression(expr)?;
-        let typed = self.coerce(operand, ty)?;
+        let typed = self.expression_for(expr, ty)?;
         self.value_of(&typed)
     }
 

@@ -175,7 +175,29 @@ impl Body<'_, '_> {
         expr: &crate::syntax::ast::Expr,
         ty: ElementaryType,
     ) -> Option<Expr> {
-        let operand = self.expression(expr)?;
-        self.coerce(operand, ty.into())
+        self.expression_for(expr, ty.into())
+    }
+
+    /// An expression that must be of type `ty`.
+    pub(super) fn expression_for(
+        &mut self,
+        expr: &crate::syntax::ast::Expr,
+        ty: TypeId,
+    ) -> Option<Expr> {
+        let context = self.elementary(ty);
+        let operand = self.within(context, |body| body.expression(expr))?;
+        self.coerce(operand, ty)
+    }
+
+    /// Runs `check` where the place wants `context`.
+    pub(super) fn within<T>(
+        &mut self,
+        context: Option<ElementaryType>,
+        check: impl FnOnce(&mut Self) -> T,
+    ) -> T {
+        let outer = std::mem::replace(&mut self.context, context);
+        let checked = check(self);
+        self.context = outer;
+        checked
     }
 }

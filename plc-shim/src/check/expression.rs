@@ -20,7 +20,11 @@ impl Body<'_, '_> {
                 self.unary(*operator, operand, expr.span)
             }
             ast::ExprKind::Binary(operator, left, right) => {
-                let (left, right) = (self.expression(left), self.expression(right));
+                // What a comparison compares has nothing to do with where its result goes.
+                let context = self.context.filter(|_| !operator.is_comparison());
+                let (left, right) = self.within(context, |body| {
+                    (body.expression(left), body.expression(right))
+                });
                 self.binary(*operator, left?, right?, expr.span)
             }
             ast::ExprKind::Call(call) => self.call_expression(call, expr.span),

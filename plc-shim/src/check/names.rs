@@ -53,6 +53,7 @@ impl PouEntry<'_> {
 pub(super) struct GlobalEntry<'a> {
     /// Nothing for what the runtime provides.
     pub(super) ast: Option<(&'a ast::Variable, &'a [Qualifier])>,
+    pub(super) name: String,
     pub(super) span: Span,
     pub(super) progress: Progress,
     pub(super) variable: Option<Variable>,
@@ -100,6 +101,13 @@ impl<'a> Checker<'a> {
     }
 
     fn collect_pou(&mut self, ast: &'a ast::Pou) {
+        // The library comes last: what it finds taken, the user has named like the standard.
+        if self.library.contains(&ast.name.span.file)
+            && let Some(user) = self.declared_at(&ast.name)
+        {
+            self.report_reserved(&ast.name, user);
+            return;
+        }
         if self.is_taken(&ast.name) {
             return;
         }
@@ -131,6 +139,7 @@ impl<'a> Checker<'a> {
                 }
                 let entry = GlobalEntry {
                     ast: Some((variable, &section.qualifiers)),
+                    name: name.text.clone(),
                     span: name.span,
                     progress: Progress::Untouched,
                     variable: None,
@@ -143,16 +152,25 @@ impl<'a> Checker<'a> {
     /// True, with a report, if a type or unit of the name exists already.
     fn is_taken(&mut self, name: &Ident) -> bool {
         if ElementaryType::find(&name.text).is_some() || super::standard_function::exists(&name.key()) {
-            let message = format!("`{}` is a name of the standard", name.text);
-            self.report(Diagnostic::error(Code::ReservedName, name.span, message));
+            self.report_reserved(name, name.span);
             return true;
         }
-        let first = self.pou_names.get(&name.key()).map(|id| self.pou(*id).ast.name.span);
-        let first = first.or_else(|| self.type_names.get(&name.key()).map(|ty| ty.ast.name.span));
+        let first = self.declared_at(name);
         if first.is_some() {
             self.report_duplicate(name, first);
         }
         first.is_some()
+    }
+
+    /// Where a unit or type of the name is declared.
+    fn declared_at(&self, name: &Ident) -> Option<Span> {
+        let pou = self.pou_names.get(&name.key()).map(|id| self.pou(*id).ast.name.span);
+        pou.or_else(|| self.type_names.get(&name.key()).map(|ty| ty.ast.name.span))
+    }
+
+    fn report_reserved(&mut self, name: &Ident, span: Span) {
+        let message = format!("`{}` is a name of the standard", name.text);
+        self.report(Diagnostic::error(Code::ReservedName, span, message));
     }
 
     pub(super) fn report_duplicate(&mut self, name: &Ident, first: Option<Span>) {
@@ -179,5 +197,6 @@ fn virtual_time() -> GlobalEntry<'static> {
         span,
         image: vec![0; 8].into(),
     };
-    GlobalEntry { ast: None, span, progress: Progress::Done, variable: Some(variable) }
+    let name = VIRTUAL_TIME_NAME.to_owned();
+    GlobalEntry { ast: None, name, span, progress: Progress::Done, variable: Some(variable) }
 }

@@ -158,8 +158,7 @@ impl Body<'_, '_> {
 
     fn report_unknown<T>(&mut self, name: &Ident) -> Option<T> {
         let own = self.scope.variables.iter().map(|variable| variable.name.as_str());
-        let globals = self.checker.globals.values();
-        let globals = globals.filter_map(|entry| Some(entry.variable.as_ref()?.name.as_str()));
+        let globals = self.checker.globals.values().map(|entry| entry.name.as_str());
         let help = did_you_mean(&name.text, own.chain(globals));
         let message = format!("`{}` is not declared", name.text);
         let found = Diagnostic::error(Code::UnknownName, name.span, message);
@@ -261,7 +260,7 @@ impl Body<'_, '_> {
     }
 
     fn index_step(&mut self, bounds: Dimension, index: &ast::Expr, stride: u32) -> Option<Step> {
-        let operand = self.expression(index)?;
+        let operand = self.within(None, |body| body.expression(index))?;
         let index = self.settle(operand)?;
         if !self.plain_elementary(&index).is_some_and(ElementaryType::is_integer) {
             let found = self.type_name(index.ty);

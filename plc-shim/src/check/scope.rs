@@ -45,6 +45,8 @@ pub(super) struct Body<'c, 'a> {
     pub(super) scope: Scope,
     /// The unit; nothing for declarations outside of any.
     pub(super) pou: Option<PouId>,
+    /// The type that the place of the expression wants, for constants that no operand types.
+    pub(super) context: Option<ElementaryType>,
     /// Loops around the statement.
     pub(super) loops: u32,
     pub(super) result_assigned: bool,
@@ -57,7 +59,7 @@ impl<'c, 'a> Body<'c, 'a> {
     }
 
     pub(super) fn new(checker: &'c mut Checker<'a>, scope: Scope, pou: Option<PouId>) -> Self {
-        Self { checker, scope, pou, loops: 0, result_assigned: false }
+        Self { checker, scope, pou, context: None, loops: 0, result_assigned: false }
     }
 
     pub(super) fn report(&mut self, diagnostic: Diagnostic) {

@@ -122,11 +122,15 @@ impl Body<'_, '_> {
     ) -> Option<Option<Operand>> {
         let key = name.key();
         if let Some(form) = find(&key) {
-            let operands = self.operands(name, form, arguments, span);
+            let comparison = matches!(form, Form::Comparison(_) | Form::Pair(BinaryOp::NotEqual));
+            let context = self.context.filter(|_| !comparison);
+            let operands =
+                self.within(context, |body| body.operands(name, form, arguments, span));
             return Some(operands.and_then(|operands| self.apply(form, operands, span)));
         }
         let conversion = conversion_function::find(&key)?;
-        let operands = self.operands(name, Form::Absolute, arguments, span);
+        let operands =
+            self.within(None, |body| body.operands(name, Form::Absolute, arguments, span));
         let operand = operands.and_then(|operands| operands.into_iter().next());
         Some(operand.and_then(|operand| self.conversion(conversion, operand, span)))
     }
@@ -255,7 +259,10 @@ impl Body<'_, '_> {
         let enumeration = typed.filter(|ty| {
             matches!(self.checker.types.get(*ty), crate::ir::Type::Enumeration { .. })
         });
-        let ty = match enumeration {
+        let context = self.context.filter(|ty| {
+            operands.iter().all(|operand| Self::adapts(operand, *ty))
+        });
+        let ty = match enumeration.or(context.map(TypeId::from)) {
             Some(ty) => ty,
             None => {
                 // Typed operands lead, so that constants adapt to them.

@@ -145,7 +145,8 @@ impl Body<'_, '_> {
 
     fn assign(&mut self, target: &ast::Expr, value: &ast::Expr, span: Span) -> Option<Statement> {
         let target = self.target(target);
-        let value = self.expression(value);
+        let context = target.as_ref().and_then(|target| self.elementary(target.ty));
+        let value = self.within(context, |body| body.expression(value));
         let (target, value) = (target?, value?);
         if matches!(self.checker.types.get(target.ty), Type::FunctionBlock { .. }) {
             let message = "instances are not assigned to one another";

@@ -336,7 +336,7 @@ impl<'c, 'a> Interface<'c, 'a> {
 
     fn report_missing_global(&mut self, name: &Ident) {
         let globals = &self.body.checker.globals;
-        let help = did_you_mean(&name.key(), globals.keys().map(String::as_str));
+        let help = did_you_mean(&name.text, globals.values().map(|entry| entry.name.as_str()));
         let message = format!("no VAR_GLOBAL declares `{}`", name.text);
         let found = Diagnostic::error(Code::ExternalWithoutGlobal, name.span, message);
         self.body.report(found.with_optional_help(help));

@@ -68,7 +68,7 @@ FUNCTION_BLOCK Inner VAR outer : Outer; END_VAR END_FUNCTION_BLOCK
 TYPE Loop : STRUCT next : ARRAY [0..1] OF Loop; END_STRUCT; END_TYPE
 FUNCTION_BLOCK I VAR_IN_OUT x : DINT; END_VAR VAR_OUTPUT q : BOOL; END_VAR q := x > 1; END_FUNCTION_BLOCK
 PROGRAM P
-VAR i : INT; d : DINT; t : TON; f : I; END_VAR
+VAR i : INT; d : DINT; t : TON; blk : I; END_VAR
 VAR CONSTANT k : INT := i; n : INT := 5; a : ARRAY [0..2] OF INT := [1, 2, 3, 4]; END_VAR
   i := F(1, 2);
   i := F(1, 2, i);
@@ -76,8 +76,8 @@ VAR CONSTANT k : INT := i; n : INT := 5; a : ARRAY [0..2] OF INT := [1, 2, 3, 4]
   i := F(a := 1, a := 2, c := d);
   F(1, 2, d);
   ABS(i);
-  f();
-  f(x := d, q => 5);
+  blk();
+  blk(x := d, q => 5);
   t.Q := TRUE;
   n := 6;
   i := t(IN := TRUE);

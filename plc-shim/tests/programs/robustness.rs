@@ -7,9 +7,9 @@ const PROGRAM: &str = "TYPE T : STRUCT a : INT; b : ARRAY [0..3] OF REAL := [1.0
 FUNCTION F : INT VAR_INPUT a : INT; b : INT := 2; END_VAR F := a * b + 1; END_FUNCTION
 FUNCTION_BLOCK B VAR_INPUT x : T; END_VAR VAR_OUTPUT y : REAL; END_VAR VAR_IN_OUT z : INT; END_VAR
 y := x.b[x.a]; z := z + 1; END_FUNCTION_BLOCK
-PROGRAM P VAR t : T; f : B; i, j : INT; c : C; q : TON; w : WORD; END_VAR
-FOR i := 0 TO 3 DO t.b[i] := INT_TO_REAL(F(i)) / 2.0; END_FOR;
-f(x := t, z := j); q(IN := j > 3, PT := T#1s);
+PROGRAM P VAR t : T; fb : B; i, j : INT; c : C; q : TON; w : WORD; END_VAR
+FOR i := 0 TO 3 DO t.b[i] := INT_TO_REAL(F(a := i)) / 2.0; END_FOR;
+fb(x := t, z := j); q(IN := j > 3, PT := T#1s);
 CASE j OF 0: c := Y; 1..5: c := C#X; ELSE w := SHL(w, 1) OR 1; END_CASE;
 WHILE j > 100 DO j := j - 1; IF q.Q THEN EXIT; END_IF; END_WHILE;
 END_PROGRAM";

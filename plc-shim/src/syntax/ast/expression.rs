@@ -168,6 +168,11 @@ impl BinaryOp {
         }
     }
 
+    /// True for what gives BOOL whatever it compares.
+    pub fn is_comparison(self) -> bool {
+        matches!(self.precedence(), 4 | 5)
+    }
+
     /// Its spelling.
     pub fn text(self) -> &'static str {
         match self {

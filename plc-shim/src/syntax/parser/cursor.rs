@@ -26,11 +26,21 @@ impl<'a> Cursor<'a> {
         let is_broken =
             |kind: TokenKind| matches!(kind, TokenKind::Unknown | TokenKind::Unterminated);
         let broken = tokens.iter().filter(|token| is_broken(token.kind)).map(|token| token.start);
-        let good = |token: &&Token| !token.kind.is_trivia() && !is_broken(token.kind);
+        let starts_string = |token: &Token| {
+            text.get(token.start as usize..).is_some_and(|rest| rest.starts_with(['\'', '"']))
+        };
+        let good = |token: &Token| match token.kind {
+            // A string without an end still stands where a value is wanted.
+            TokenKind::Unterminated if starts_string(token) => {
+                Some(Token { kind: TokenKind::String, ..*token })
+            }
+            kind if kind.is_trivia() || is_broken(kind) => None,
+            _ => Some(*token),
+        };
         Self {
             file,
             text,
-            tokens: tokens.iter().filter(good).copied().collect(),
+            tokens: tokens.iter().filter_map(good).collect(),
             at: 0,
             nesting: 0,
             diagnostics: Vec::new(),
@@ -60,7 +70,7 @@ impl<'a> Cursor<'a> {
     /// Reports an error of the grammar, unless the lexer's error at this place explains it or the
     /// rest of the file has been given up.
     pub(super) fn report_syntax(&mut self, diagnostic: Diagnostic) {
-        let (from, to) = (self.previous_span().end, self.span().start);
+        let (from, to) = (self.previous_span().start, self.span().start);
         let first = self.broken.partition_point(|start| *start < from);
         if self.abandoned || self.broken.get(first).is_some_and(|start| *start <= to) {
             self.suppressed += 1;

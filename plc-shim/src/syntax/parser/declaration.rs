@@ -3,7 +3,7 @@
 use super::cursor::Cursor;
 use crate::syntax::ast::{
     CompilationUnit, Declaration, Ident, Pou, PouKind, Qualifier, Section, SectionKind,
-    TypeDeclaration, Variable,
+    TypeDeclaration, TypeSpec, TypeSpecKind, Variable,
 };
 use crate::syntax::token::{Keyword, Punctuation, TokenKind};
 
@@ -139,8 +139,11 @@ impl Cursor<'_> {
         let names = self.identifier_list("a variable's name");
         let address = self.take_keyword(Keyword::At).then(|| self.address()).flatten();
         self.expect_mark(Punctuation::Colon);
-        let broken = self.reported() > known;
-        if !broken {
+        if self.reported() > known {
+            // The names are kept, so that their uses are not reported as well.
+            let spec = TypeSpec { kind: TypeSpecKind::Error, span: self.span() };
+            variables.push(Variable { names, address, spec, initial: None });
+        } else {
             let spec = self.type_spec();
             let initial = self.optional_initialiser();
             variables.push(Variable { names, address, spec, initial });
