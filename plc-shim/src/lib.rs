@@ -1,1 +1,34 @@
-//! onescan
+//! IEC 61131-3 program text, read, checked, compiled and run.
+//!
+//! | module | in | out |
+//! |---|---|---|
+//! | [`syntax`] | text | tokens and a tree, without loss |
+//! | [`diagnostic`] | findings | messages with code, place and hint |
+//! | `ir` | | the checked program's form |
+//! | `check` | trees | the checked program, findings |
+//! | `compile` | the checked program | one WebAssembly module, and the source behind each trap |
+//! | [`application`] | files | all of the above in one value |
+//! | [`run`] | an application and a task plan | a soft PLC that scans |
+//!
+//! Invariants:
+//! - knows no network, no server and no clock: virtual time is given to each scan;
+//! - parsing never fails, it returns a tree and a list of diagnostics;
+//! - no program text and no running program can make it panic or exhaust the stack: depth is
+//!   bounded by the parser, and every error of a running program is a [`PlcFault`];
+//! - equal text, plan and inputs give equal bytes in memory, on every machine;
+//! - names are resolved once, before the program runs; a scan looks up nothing and allocates
+//!   nothing.
+
+pub mod application;
+mod check;
+mod compile;
+pub mod diagnostic;
+mod ir;
+pub mod run;
+pub mod syntax;
+
+pub use application::{Application, Program, UnknownVariable, Variable};
+pub use compile::fault::FaultKind;
+pub use diagnostic::{Code, Diagnostic, Diagnostics, Severity};
+pub use ir::elementary::ElementaryType;
+pub use run::{PlcFault, RestoreError, RunError, SoftPlc, Task, TaskPlan, VirtualTime};

@@ -1,0 +1,117 @@
+//! Program text to something that can run: parse, check, compile.
+
+mod library;
+mod retain;
+mod variable;
+
+use std::collections::BTreeSet;
+use std::ops::Range;
+use std::sync::{Arc, OnceLock};
+
+use crate::check::{Checked, check};
+use crate::compile::fault::FaultTable;
+use crate::compile::{Compiled, compile};
+use crate::diagnostic::{Diagnostics, Severity};
+use crate::syntax::{SourceFile, SourceMap, parse};
+
+pub use variable::{Program, UnknownVariable, Variable};
+
+/// A compiled program: what it declares, its code, its memory at a cold start. Cheap to clone.
+#[derive(Debug, Clone)]
+pub struct Application {
+    inner: Arc<Inner>,
+}
+
+#[derive(Debug)]
+struct Inner {
+    sources: SourceMap,
+    checked: Checked,
+    wasm: Vec<u8>,
+    faults: FaultTable,
+    retained: Vec<Range<u32>>,
+    warnings: Diagnostics,
+    /// Machine code, made when the first PLC runs.
+    module: OnceLock<Result<wasmtime::Module, String>>,
+}
+
+impl Application {
+    /// Compiles files given as name and text, together with the standard function blocks.
+    ///
+    /// # Errors
+    /// All that is wrong with the text, and the warnings too.
+    pub fn from_sources<N, T>(files: impl IntoIterator<Item = (N, T)>) -> Result<Self, Diagnostics>
+    where
+        N: Into<String>,
+        T: Into<Arc<str>>,
+    {
+        let mut sources = SourceMap::default();
+        let mut library = BTreeSet::new();
+        for (name, text) in files {
+            sources.add(SourceFile::new(name, text));
+        }
+        for (name, text) in library::FILES {
+            library.insert(sources.add(SourceFile::new(name, text)));
+        }
+        let parsed: Vec<_> = sources.iter().map(|(id, file)| (id, parse(id, file.text()))).collect();
+        let units: Vec<_> = parsed.iter().map(|(id, parsed)| (*id, &parsed.unit)).collect();
+        let (checked, findings) = check(&units, &library);
+        let syntax = parsed.iter().flat_map(|(_, parsed)| parsed.diagnostics.iter().cloned());
+        let findings: Vec<_> = syntax.chain(findings).collect();
+        let wrong = findings.iter().any(|found| found.severity == Severity::Error);
+        let findings = Diagnostics::new(findings, &sources);
+        if wrong {
+            return Err(findings);
+        }
+        Ok(Self::compiled(sources, checked, findings))
+    }
+
+    fn compiled(sources: SourceMap, checked: Checked, warnings: Diagnostics) -> Self {
+        let Compiled { wasm, faults } = compile(&checked);
+        let retained = retain::ranges(&checked);
+        let module = OnceLock::new();
+        let inner = Inner { sources, checked, wasm, faults, retained, warnings, module };
+        Self { inner: Arc::new(inner) }
+    }
+
+    /// What is questionable in the text.
+    pub fn warnings(&self) -> &Diagnostics {
+        &self.inner.warnings
+    }
+
+    /// The files, those of the standard function blocks too.
+    pub fn sources(&self) -> &SourceMap {
+        &self.inner.sources
+    }
+
+    /// The WebAssembly module.
+    pub fn wasm(&self) -> &[u8] {
+        &self.inner.wasm
+    }
+
+    /// The whole memory at a cold start.
+    pub fn initial_memory(&self) -> &[u8] {
+        &self.inner.checked.image
+    }
+
+    /// What survives a warm start (2nd ed. 2.4.2), as ranges of memory in ascending order.
+    pub fn retained(&self) -> &[Range<u32>] {
+        &self.inner.retained
+    }
+
+    pub(crate) fn faults(&self) -> &FaultTable {
+        &self.inner.faults
+    }
+
+    /// Position of a program among all programs.
+    pub(crate) fn program_index(&self, name: &str) -> Option<usize> {
+        self.programs().position(|program| program.name.eq_ignore_ascii_case(name))
+    }
+
+    /// The machine code, made once by `make`.
+    pub(crate) fn module(
+        &self,
+        make: impl FnOnce(&[u8]) -> Result<wasmtime::Module, String>,
+    ) -> Result<wasmtime::Module, String> {
+        self.inner.module.get_or_init(|| make(&self.inner.wasm)).clone()
+    }
+}

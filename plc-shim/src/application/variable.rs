@@ -1,0 +1,234 @@
+//! Programs and variables by name, for those outside.
+
+use thiserror::Error;
+
+use super::Application;
+use crate::diagnostic::did_you_mean;
+use crate::ir::{self, ElementaryType, Storage, Type, TypeId};
+use crate::syntax::ast::SectionKind;
+
+/// A variable in the PLC's memory. A BOOL is one byte, 0 or 1; no other value may be written.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Variable {
+    /// Its full name, as in `Shear.axis[2].position`.
+    pub path: String,
+    /// Where it begins in memory.
+    pub offset: u32,
+    /// Its size in bytes.
+    pub size: u32,
+    /// Its elementary type; nothing for structures, arrays and instances. A value of an
+    /// enumeration is held as INT.
+    pub ty: Option<ElementaryType>,
+    /// The name of its type.
+    pub type_name: String,
+    /// The direct address it is located at (`AT`), as written.
+    pub address: Option<String>,
+}
+
+/// A program and its variables.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Program {
+    /// Its name.
+    pub name: String,
+    /// `VAR_INPUT`
+    pub inputs: Vec<Variable>,
+    /// `VAR_OUTPUT`
+    pub outputs: Vec<Variable>,
+    /// `VAR`
+    pub locals: Vec<Variable>,
+}
+
+/// A path that leads to no variable.
+#[derive(Debug, Clone, PartialEq, Eq, Error)]
+#[error("there is no variable `{path}`{}", .help.as_ref().map(|help| format!(" ({help})")).unwrap_or_default())]
+pub struct UnknownVariable {
+    /// The path as it was given.
+    pub path: String,
+    /// The nearest name.
+    pub help: Option<String>,
+}
+
+/// One piece of a path.
+enum Piece {
+    Name(String),
+    Index(Vec<i64>),
+}
+
+/// A place on the way along a path.
+#[derive(Clone)]
+struct Spot {
+    path: String,
+    offset: u32,
+    ty: TypeId,
+    address: Option<String>,
+}
+
+impl Application {
+    /// The programs in the order of their declaration.
+    pub fn programs(&self) -> impl Iterator<Item = Program> {
+        let checked = &self.inner.checked;
+        checked.programs.iter().filter_map(|program| {
+            let pou = checked.pous.get(&program.pou)?;
+            let of = |wanted: SectionKind| {
+                let in_section =
+                    pou.variables.iter().filter(move |variable| variable.section == wanted);
+                let spots = in_section.filter_map(|each| spot(&pou.name, each, program.offset));
+                spots.map(|spot| self.describe(spot)).collect()
+            };
+            Some(Program {
+                name: pou.name.clone(),
+                inputs: of(SectionKind::Input),
+                outputs: of(SectionKind::Output),
+                locals: of(SectionKind::Local),
+            })
+        })
+    }
+
+    /// The variable at a path: a program or global variable, members and indices, as in
+    /// `Shear.axis[2].position`.
+    ///
+    /// # Errors
+    /// The path leads nowhere; the error has the nearest name.
+    pub fn variable(&self, path: &str) -> Result<Variable, UnknownVariable> {
+        let unknown = |help| UnknownVariable { path: path.to_owned(), help };
+        let pieces = pieces(path).ok_or_else(|| unknown(None))?;
+        let mut pieces = pieces.into_iter();
+        let Some(Piece::Name(first)) = pieces.next() else { return Err(unknown(None)) };
+        let mut spot = match self.root(&first, &mut pieces) {
+            Ok(spot) => spot,
+            Err(help) => return Err(unknown(help)),
+        };
+        for piece in pieces {
+            spot = self.step(&spot, &piece).map_err(unknown)?;
+        }
+        Ok(self.describe(spot))
+    }
+
+    /// A global variable, or a program and the first of its own variables.
+    fn root(
+        &self,
+        first: &str,
+        pieces: &mut impl Iterator<Item = Piece>,
+    ) -> Result<Spot, Option<String>> {
+        let checked = &self.inner.checked;
+        let global = checked.globals.iter().find(|each| each.name.eq_ignore_ascii_case(first));
+        if let Some(found) = global.and_then(|global| spot("", global, 0)) {
+            return Ok(found);
+        }
+        let program = checked.programs.iter().find_map(|program| {
+            let pou = checked.pous.get(&program.pou)?;
+            pou.name.eq_ignore_ascii_case(first).then_some((program, pou))
+        });
+        let Some((program, pou)) = program else {
+            let globals = checked.globals.iter().map(|global| global.name.as_str());
+            let programs = checked.programs.iter().filter_map(|each| checked.pous.get(&each.pou));
+            let names = globals.chain(programs.map(|pou| pou.name.as_str()));
+            return Err(did_you_mean(first, names));
+        };
+        let Some(Piece::Name(name)) = pieces.next() else { return Err(None) };
+        member(&pou.name, &pou.variables, program.offset, &name)
+    }
+
+    fn step(&self, from: &Spot, piece: &Piece) -> Result<Spot, Option<String>> {
+        let checked = &self.inner.checked;
+        match (checked.types.get(from.ty), piece) {
+            (Type::Struct { fields, .. }, Piece::Name(name)) => {
+                let field = fields.iter().find(|field| field.name.eq_ignore_ascii_case(name));
+                let field = field.ok_or_else(|| {
+                    did_you_mean(name, fields.iter().map(|field| field.name.as_str()))
+                })?;
+                let path = format!("{}.{}", from.path, field.name);
+                Ok(Spot { path, offset: from.offset + field.offset, ty: field.ty, address: None })
+            }
+            (Type::FunctionBlock { pou, .. }, Piece::Name(name)) => {
+                let variables = checked.interfaces.get(pou).map_or(&[][..], Vec::as_slice);
+                member(&from.path, variables, from.offset, name)
+            }
+            (Type::Array { dimensions, element }, Piece::Index(indices)) => {
+                let offset = self.element(dimensions, *element, indices).ok_or(None)?;
+                let list: Vec<_> = indices.iter().map(i64::to_string).collect();
+                let path = format!("{}[{}]", from.path, list.join(","));
+                Ok(Spot { path, offset: from.offset + offset, ty: *element, address: None })
+            }
+            _ => Err(None),
+        }
+    }
+
+    /// Offset of an array's element; nothing if it is outside.
+    fn element(
+        &self,
+        dimensions: &[ir::Dimension],
+        element: TypeId,
+        indices: &[i64],
+    ) -> Option<u32> {
+        if dimensions.len() != indices.len() {
+            return None;
+        }
+        let mut number: u64 = 0;
+        for (bounds, index) in dimensions.iter().zip(indices) {
+            if !(bounds.low..=bounds.high).contains(index) {
+                return None;
+            }
+            number = number * bounds.count() + (index - bounds.low) as u64;
+        }
+        Some(number as u32 * self.inner.checked.types.size(element))
+    }
+
+    fn describe(&self, spot: Spot) -> Variable {
+        let types = &self.inner.checked.types;
+        Variable {
+            path: spot.path,
+            offset: spot.offset,
+            size: types.size(spot.ty),
+            ty: types.elementary(spot.ty),
+            type_name: types.name(spot.ty),
+            address: spot.address,
+        }
+    }
+}
+
+/// Where a variable of an instance at `base` lies, if it lies in memory for good.
+fn spot(prefix: &str, variable: &ir::Variable, base: u32) -> Option<Spot> {
+    let offset = match variable.storage {
+        Storage::Absolute(offset) if variable.section != SectionKind::Temp => offset,
+        Storage::Instance(offset) => base + offset,
+        _ => return None,
+    };
+    let dot = if prefix.is_empty() { "" } else { "." };
+    let path = format!("{prefix}{dot}{}", variable.name);
+    Some(Spot { path, offset, ty: variable.ty, address: variable.address.clone() })
+}
+
+fn member(
+    prefix: &str,
+    variables: &[ir::Variable],
+    base: u32,
+    name: &str,
+) -> Result<Spot, Option<String>> {
+    let found = variables.iter().find(|variable| variable.name.eq_ignore_ascii_case(name));
+    found.and_then(|variable| spot(prefix, variable, base)).ok_or_else(|| {
+        did_you_mean(name, variables.iter().map(|variable| variable.name.as_str()))
+    })
+}
+
+/// `a.b[1,2].c` in pieces; nothing if it is not of that form.
+fn pieces(path: &str) -> Option<Vec<Piece>> {
+    let mut pieces = Vec::new();
+    for part in path.split('.') {
+        let (name, mut rest) = part.split_at(part.find('[').unwrap_or(part.len()));
+        if name.trim().is_empty() {
+            return None;
+        }
+        pieces.push(Piece::Name(name.trim().to_owned()));
+        while let Some(inside) = rest.trim().strip_prefix('[') {
+            let (indices, tail) = inside.split_once(']')?;
+            let indices = indices.split(',').map(|index| index.trim().parse().ok());
+            pieces.push(Piece::Index(indices.collect::<Option<_>>()?));
+            rest = tail;
+        }
+        if !rest.trim().is_empty() {
+            return None;
+        }
+    }
+    Some(pieces)
+}

@@ -1,0 +1,436 @@
+//! Calls of functions and instances (2nd ed. 2.5.1.1, 2.5.2.1).
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use super::convert::{Operand, constant};
+use super::scope::{Body, Scope};
+use super::standard_function;
+use super::variables::decode;
+use crate::diagnostic::{Code, Diagnostic, did_you_mean};
+use crate::ir::{
+    Argument, ElementaryType, Expr, ExprKind, FunctionCall, InstanceCall, Place, PouId, Statement,
+    StatementKind, Storage, Type, TypeId, TypeTable, Unary, Variable,
+};
+use crate::syntax::Span;
+use crate::syntax::ast::{self, Call, Ident, PouKind, SectionKind};
+
+/// The arguments of a call by the parameter they belong to.
+#[derive(Default)]
+struct Matched<'e> {
+    inputs: BTreeMap<String, &'e ast::Expr>,
+    outputs: Vec<Wanted<'e>>,
+}
+
+/// An output that the caller wants.
+struct Wanted<'e> {
+    variable: Variable,
+    negated: bool,
+    target: &'e ast::Expr,
+}
+
+impl Body<'_, '_> {
+    pub(super) fn call_expression(&mut self, call: &Call, span: Span) -> Option<Operand> {
+        let ast::ExprKind::Name(name) = &call.callee.kind else {
+            return self.not_a_function(call, span);
+        };
+        if self.scope.by_name.contains_key(&name.key()) && !self.is_own_result(name) {
+            return self.not_a_function(call, span);
+        }
+        if let Some(id) = self.function_named(name) {
+            return self.function_call(id, name, call, span).map(Operand::Typed);
+        }
+        match self.standard_call(name, &call.arguments, span) {
+            Some(result) => result,
+            None => self.report_unknown_function(name),
+        }
+    }
+
+    /// Inside a function its own name is its result, and a call of it recursion.
+    fn is_own_result(&self, name: &Ident) -> bool {
+        self.pou.is_some_and(|id| {
+            let own = self.checker.pou(id).ast;
+            own.kind == PouKind::Function && own.name.key() == name.key()
+        })
+    }
+
+    fn function_named(&self, name: &Ident) -> Option<PouId> {
+        let id = self.checker.pou_names.get(&name.key()).copied()?;
+        (self.checker.pou(id).ast.kind == PouKind::Function).then_some(id)
+    }
+
+    fn not_a_function(&mut self, call: &Call, span: Span) -> Option<Operand> {
+        let place = self.place(&call.callee)?.place;
+        let found = self.type_name(place.ty);
+        let message = format!("this is {found}, not a function");
+        let mut report = Diagnostic::error(Code::NotCallable, span, message);
+        if matches!(self.checker.types.get(place.ty), Type::FunctionBlock { .. }) {
+            report = report.with_help("call the instance as a statement, then read its outputs");
+        }
+        self.report(report);
+        None
+    }
+
+    fn report_unknown_function<T>(&mut self, name: &Ident) -> Option<T> {
+        if let Some(id) = self.checker.pou_names.get(&name.key()) {
+            let what = match self.checker.pou(*id).ast.kind {
+                PouKind::Program => "a program",
+                PouKind::FunctionBlock | PouKind::Function => "a function block type",
+            };
+            let message = format!("`{}` is {what} and cannot be called", name.text);
+            let help = "declare an instance of it and call that";
+            let found = Diagnostic::error(Code::NotCallable, name.span, message);
+            self.report(found.with_help(help));
+            return None;
+        }
+        let functions = self.checker.pous.iter().filter(|pou| pou.ast.kind == PouKind::Function);
+        let functions = functions.map(|pou| pou.ast.name.text.as_str());
+        let variables = self.scope.variables.iter().map(|variable| variable.name.as_str());
+        let standard: Vec<&str> = standard_function::names().collect();
+        let known = functions.chain(variables).chain(standard.iter().copied());
+        let help = did_you_mean(&name.text, known);
+        let message = format!("there is no function or instance `{}`", name.text);
+        let found = Diagnostic::error(Code::UnknownFunction, name.span, message);
+        self.report(found.with_optional_help(help));
+        None
+    }
+
+    pub(super) fn call_statement(&mut self, call: &Call, span: Span) -> Option<StatementKind> {
+        let function = match &call.callee.kind {
+            ast::ExprKind::Name(name) => {
+                !self.scope.by_name.contains_key(&name.key())
+                    && !self.checker.globals.contains_key(&name.key())
+                    || self.is_own_result(name)
+            }
+            _ => false,
+        };
+        if !function {
+            return self.instance_call(call, span);
+        }
+        let Operand::Typed(result) = self.call_expression(call, span)? else { return None };
+        let effects = matches!(&result.kind, ExprKind::Call(call) if self.has_effects(call.pou));
+        if !effects {
+            let message = "the result of this call is lost";
+            self.report(Diagnostic::warning(Code::ResultIgnored, span, message));
+        }
+        Some(StatementKind::Evaluate(result))
+    }
+
+    fn has_effects(&self, id: PouId) -> bool {
+        self.checker.pou(id).scope.as_ref().is_some_and(|scope| {
+            let effect = |section| {
+                matches!(section, SectionKind::Output | SectionKind::InOut | SectionKind::External)
+            };
+            scope.result.is_none() || scope.variables.iter().any(|each| effect(each.section))
+        })
+    }
+
+    fn matched<'e>(
+        &mut self,
+        scope: &Scope,
+        callee: &str,
+        call: &'e Call,
+    ) -> Option<Matched<'e>> {
+        let mut matched = Matched::default();
+        let mut sound = true;
+        for (index, argument) in call.arguments.iter().enumerate() {
+            let (name, span, expr) = match argument {
+                ast::Argument::Positional(expr) => match scope.inputs().nth(index) {
+                    Some(variable) => (variable.name.to_ascii_uppercase(), expr.span, expr),
+                    None => {
+                        let count = scope.inputs().count();
+                        let message = format!("`{callee}` takes {count} arguments");
+                        self.report(Diagnostic::error(Code::TooManyArguments, expr.span, message));
+                        return None;
+                    }
+                },
+                ast::Argument::Input(name, expr) => {
+                    let accepts = |variable: &Variable| {
+                        matches!(variable.section, SectionKind::Input | SectionKind::InOut)
+                    };
+                    sound &= self.has_parameter(scope, callee, name, accepts).is_some();
+                    (name.key(), name.span, expr)
+                }
+                ast::Argument::Output { name, negated, target } => {
+                    let output = |variable: &Variable| variable.section == SectionKind::Output;
+                    let found = self.has_parameter(scope, callee, name, output);
+                    sound &= found.is_some();
+                    if let (Some(variable), Some(target)) = (found, target) {
+                        matched.outputs.push(Wanted { variable, negated: *negated, target });
+                    }
+                    continue;
+                }
+            };
+            if matched.inputs.insert(name, expr).is_some() {
+                let message = "this parameter is given twice";
+                self.report(Diagnostic::error(Code::DuplicateArgument, span, message));
+                sound = false;
+            }
+        }
+        sound.then_some(matched)
+    }
+
+    fn has_parameter(
+        &mut self,
+        scope: &Scope,
+        callee: &str,
+        name: &Ident,
+        accepts: impl Fn(&Variable) -> bool,
+    ) -> Option<Variable> {
+        let found = scope.find(&name.key()).filter(|variable| accepts(variable));
+        if found.is_none() && !scope.is_broken(&name.key()) {
+            let names = scope.variables.iter().filter(|variable| accepts(variable));
+            let help = did_you_mean(&name.text, names.map(|variable| variable.name.as_str()));
+            let message = format!("`{callee}` has no such parameter `{}`", name.text);
+            let found = Diagnostic::error(Code::UnknownArgument, name.span, message);
+            self.report(found.with_optional_help(help));
+        }
+        found.cloned()
+    }
+
+    fn note_call(&mut self, callee: PouId, span: Span) {
+        if let Some(caller) = self.pou {
+            self.checker.calls.entry(caller).or_default().push((callee, span));
+        }
+        self.checker.enqueue(callee);
+    }
+
+    fn function_call(
+        &mut self,
+        id: PouId,
+        name: &Ident,
+        call: &Call,
+        span: Span,
+    ) -> Option<Expr> {
+        self.note_call(id, span);
+        let scope = self.checker.interface(id, span)?;
+        let matched = self.matched(&scope, &name.text, call)?;
+        let named = call.arguments.iter().any(|each| !matches!(each, ast::Argument::Positional(_)));
+        let mut passing = Passing::default();
+        let mut arguments = Vec::new();
+        let mut sound = true;
+        for parameter in scope.inputs() {
+            let given = matched.inputs.get(&parameter.name.to_ascii_uppercase()).copied();
+            let argument = match given {
+                Some(expr) => self.argument(parameter, expr, &mut passing),
+                None => self.default_argument(parameter, named, span),
+            };
+            sound &= argument.is_some();
+            arguments.extend(argument);
+        }
+        let outputs = self.outputs(&matched.outputs, |variable, span| {
+            Place::whole(variable.storage, variable.ty, span)
+        });
+        let mut after = passing.after;
+        after.extend(outputs?);
+        if !sound {
+            return None;
+        }
+        let Some(result) = &scope.result else {
+            return self.no_result(id, arguments, passing.before, after, span);
+        };
+        let ty = result.ty;
+        let kept = match self.elementary(ty) {
+            Some(_) => None,
+            None => Some(self.temporary(ty, span)?),
+        };
+        let (before, outputs) = (passing.before, after);
+        let call = FunctionCall { pou: id, before, arguments, outputs, result: kept };
+        Some(Expr { kind: ExprKind::Call(Box::new(call)), ty, span })
+    }
+
+    /// A function without a result (3rd ed. 6.6.2.2) can only be called as a statement.
+    fn no_result(
+        &mut self,
+        pou: PouId,
+        arguments: Vec<Argument>,
+        before: Vec<Statement>,
+        outputs: Vec<Statement>,
+        span: Span,
+    ) -> Option<Expr> {
+        let call = FunctionCall { pou, before, arguments, outputs, result: None };
+        let ty = TypeTable::nothing();
+        Some(Expr { kind: ExprKind::Call(Box::new(call)), ty, span })
+    }
+
+    fn default_argument(&mut self, parameter: &Variable, named: bool, span: Span) -> Option<Argument> {
+        match self.elementary(parameter.ty) {
+            Some(ty) if named && parameter.section == SectionKind::Input => {
+                let value = constant(decode(ty, &parameter.image), ty, span);
+                Some(Argument::Value(Expr { ty: parameter.ty, ..value }))
+            }
+            _ => self.missing_argument(&parameter.name, span),
+        }
+    }
+
+    fn missing_argument<T>(&mut self, name: &str, span: Span) -> Option<T> {
+        let message = format!("parameter `{name}` is missing");
+        self.report(Diagnostic::error(Code::MissingArgument, span, message));
+        None
+    }
+
+    fn argument(
+        &mut self,
+        parameter: &Variable,
+        expr: &ast::Expr,
+        passing: &mut Passing,
+    ) -> Option<Argument> {
+        if parameter.section == SectionKind::InOut {
+            return self.reference(parameter, expr, passing).map(Argument::Reference);
+        }
+        self.expression_for(expr, parameter.ty).map(Argument::Value)
+    }
+
+    /// The variable given for a `VAR_IN_OUT`. One that is kept in a register goes through memory.
+    fn reference(
+        &mut self,
+        parameter: &Variable,
+        expr: &ast::Expr,
+        passing: &mut Passing,
+    ) -> Option<Place> {
+        let place = self.target(expr)?;
+        if place.ty != parameter.ty {
+            let (wanted, found) = (self.type_name(parameter.ty), self.type_name(place.ty));
+            let message = format!("VAR_IN_OUT `{}` is {wanted}, this is {found}", parameter.name);
+            self.report(Diagnostic::error(Code::InvalidArgument, expr.span, message));
+            return None;
+        }
+        if !matches!(place.storage, Storage::Register(_)) {
+            return Some(place);
+        }
+        let memory = self.temporary(place.ty, expr.span)?;
+        let (there, back) = (copy(&memory, &place), copy(&place, &memory));
+        passing.before.push(there);
+        passing.after.push(back);
+        Some(memory)
+    }
+
+    /// Memory of the calling unit for one value.
+    fn temporary(&mut self, ty: TypeId, span: Span) -> Option<Place> {
+        let types = &self.checker.types;
+        let (size, align) = (types.size(ty), types.align(ty));
+        let offset = self.checker.allocate(size, align, span)?;
+        Some(Place::whole(Storage::Absolute(offset), ty, span))
+    }
+
+    fn outputs(
+        &mut self,
+        wanted: &[Wanted<'_>],
+        place_of: impl Fn(&Variable, Span) -> Place,
+    ) -> Option<Vec<Statement>> {
+        let mut statements = Vec::new();
+        let mut sound = true;
+        for Wanted { variable, negated, target } in wanted {
+            let target_place = self.target(target);
+            let Some(target_place) = target_place else {
+                sound = false;
+                continue;
+            };
+            let place = place_of(variable, target.span);
+            let (ty, span) = (place.ty, target.span);
+            let mut value = Expr { kind: ExprKind::Load(place), ty, span };
+            if *negated {
+                if ty != ElementaryType::Bool.into() {
+                    let found = self.type_name(ty);
+                    return self.mismatch("BOOL", &found, span);
+                }
+                value = Expr { kind: ExprKind::Unary(Unary::Not, Box::new(value)), ty, span };
+            }
+            match self.coerce(Operand::Typed(value), target_place.ty) {
+                Some(value) => statements.push(self.assignment(target_place, value, span)),
+                None => sound = false,
+            }
+        }
+        sound.then_some(statements)
+    }
+
+    fn instance_call(&mut self, call: &Call, span: Span) -> Option<StatementKind> {
+        let instance = self.place(&call.callee)?.place;
+        let Type::FunctionBlock { name, pou } = self.checker.types.get(instance.ty).clone() else {
+            let message = format!("this is {}, which cannot be called", self.type_name(instance.ty));
+            self.report(Diagnostic::error(Code::NotCallable, call.callee.span, message));
+            return None;
+        };
+        self.note_call(pou, span);
+        let scope = self.checker.interface(pou, span)?;
+        let matched = self.matched(&scope, &name, call)?;
+        let pointer = self.scope.register(ElementaryType::Udint);
+        let base = Place::whole(Storage::RegisterPointer(pointer), instance.ty, instance.span);
+        let mut passing = Passing::default();
+        self.instance_inputs(&scope, &matched, &base, &mut passing, span)?;
+        let outputs = self.outputs(&matched.outputs, |variable, span| {
+            member_place(&base, variable, span)
+        })?;
+        let Passing { before: inputs, after: mut back } = passing;
+        back.extend(outputs);
+        let call = InstanceCall { instance, pou, pointer, inputs, outputs: back };
+        Some(StatementKind::CallInstance(Box::new(call)))
+    }
+
+    fn instance_inputs(
+        &mut self,
+        scope: &Arc<Scope>,
+        matched: &Matched<'_>,
+        base: &Place,
+        passing: &mut Passing,
+        span: Span,
+    ) -> Option<()> {
+        let mut sound = true;
+        for parameter in scope.inputs() {
+            let given = matched.inputs.get(&parameter.name.to_ascii_uppercase()).copied();
+            let Some(expr) = given else {
+                // An input that is not given keeps its value; a reference must be given anew.
+                if parameter.section == SectionKind::InOut {
+                    self.missing_argument::<()>(&parameter.name, span);
+                    sound = false;
+                }
+                continue;
+            };
+            let target = member_place(base, parameter, expr.span);
+            let statement = match self.argument(parameter, expr, passing) {
+                Some(Argument::Value(value)) => self.assignment(target, value, expr.span),
+                Some(Argument::Reference(place)) => {
+                    Statement { kind: StatementKind::Bind(target, place), span: expr.span }
+                }
+                None => {
+                    sound = false;
+                    continue;
+                }
+            };
+            passing.before.push(statement);
+        }
+        sound.then_some(())
+    }
+
+    /// An assignment of a value that has the target's type.
+    pub(super) fn assignment(&self, target: Place, value: Expr, span: Span) -> Statement {
+        let kind = match self.elementary(target.ty) {
+            Some(_) => StatementKind::Assign(target, value),
+            None => StatementKind::Copy(target, value),
+        };
+        Statement { kind, span }
+    }
+}
+
+/// What surrounds a call: copies into memory, and back.
+#[derive(Default)]
+struct Passing {
+    before: Vec<Statement>,
+    after: Vec<Statement>,
+}
+
+fn copy(target: &Place, source: &Place) -> Statement {
+    let (ty, span) = (source.ty, source.span);
+    let value = Expr { kind: ExprKind::Load(source.clone()), ty, span };
+    Statement { kind: StatementKind::Assign(target.clone(), value), span }
+}
+
+/// A variable inside an instance, seen from outside.
+fn member_place(base: &Place, variable: &Variable, span: Span) -> Place {
+    let (offset, ty) = match variable.storage {
+        Storage::Instance(offset) => (offset, variable.ty),
+        Storage::InstancePointer(offset) => (offset, ElementaryType::Udint.into()),
+        _ => (0, variable.ty),
+    };
+    Place { span, ..base.clone().member(offset, ty) }
+}

@@ -1,0 +1,174 @@
+//! Constant expressions to values, by the rules that the compiled code follows.
+
+use super::convert::Operand;
+use super::scope::Body;
+use crate::diagnostic::{Code, Diagnostic};
+use crate::ir::{
+    Binary, ElementaryType, Expr, ExprKind, Rounding, TypeId, TypeTable, Unary, Value,
+};
+use crate::syntax::{Span, ast};
+
+/// Why an expression has no constant value.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum NoValue {
+    NotConstant(Span),
+    DivisionByZero(Span),
+}
+
+/// The value of a constant expression.
+pub(super) fn fold(types: &TypeTable, expr: &Expr) -> Result<Value, NoValue> {
+    let not_constant = NoValue::NotConstant(expr.span);
+    let ty = types.elementary(expr.ty).ok_or(not_constant)?;
+    match &expr.kind {
+        ExprKind::Constant(value) => Ok(*value),
+        ExprKind::Unary(operator, operand) => unary(*operator, ty, fold(types, operand)?),
+        ExprKind::Binary(operator, left, right) => {
+            let operands = types.elementary(left.ty).ok_or(not_constant)?;
+            let (left, right) = (fold(types, left)?, fold(types, right)?);
+            binary(*operator, operands, left, right).map_err(|()| NoValue::DivisionByZero(expr.span))
+        }
+        ExprKind::Convert(rounding, operand) => Ok(convert(*rounding, ty, fold(types, operand)?)),
+        ExprKind::Load(_) | ExprKind::Intrinsic(..) | ExprKind::Call(_) => Err(not_constant),
+    }
+}
+
+fn unary(operator: Unary, ty: ElementaryType, value: Value) -> Result<Value, NoValue> {
+    Ok(match (operator, value) {
+        (Unary::Negate, Value::Int(value)) => Value::Int(ty.wrap(-value)),
+        (Unary::Negate, Value::Real(value)) => Value::Real(-value),
+        (Unary::Negate, Value::Lreal(value)) => Value::Lreal(-value),
+        (Unary::Not, Value::Int(value)) => Value::Int(ty.wrap(!value)),
+        (_, Value::Bool(value)) => Value::Bool(!value),
+        (Unary::Not, other) => other,
+    })
+}
+
+/// The error is a division by zero.
+fn binary(operator: Binary, ty: ElementaryType, left: Value, right: Value) -> Result<Value, ()> {
+    if operator.is_comparison() {
+        return Ok(Value::Bool(compare(operator, left, right)));
+    }
+    Ok(match (left, right) {
+        (Value::Real(left), Value::Real(right)) => {
+            if operator == Binary::Divide && right == 0.0 {
+                return Err(());
+            }
+            Value::Real(match operator {
+                Binary::Add => left + right,
+                Binary::Subtract => left - right,
+                Binary::Multiply => left * right,
+                _ => left / right,
+            })
+        }
+        (Value::Lreal(left), Value::Lreal(right)) => Value::Lreal(real(operator, left, right)?),
+        _ => {
+            let (left, right) = (left.as_int().ok_or(())?, right.as_int().ok_or(())?);
+            let value = ty.wrap(integer(operator, left, right)?);
+            if ty == ElementaryType::Bool { Value::Bool(value != 0) } else { Value::Int(value) }
+        }
+    })
+}
+
+pub(super) fn real(operator: Binary, left: f64, right: f64) -> Result<f64, ()> {
+    Ok(match operator {
+        Binary::Add => left + right,
+        Binary::Subtract => left - right,
+        Binary::Multiply => left * right,
+        _ if right == 0.0 => return Err(()),
+        _ => left / right,
+    })
+}
+
+/// Exact up to 64 bit operands; the caller wraps.
+pub(super) fn integer(operator: Binary, left: i128, right: i128) -> Result<i128, ()> {
+    Ok(match operator {
+        Binary::Add => left.wrapping_add(right),
+        Binary::Subtract => left.wrapping_sub(right),
+        Binary::Multiply => left.wrapping_mul(right),
+        Binary::Divide if right == 0 => return Err(()),
+        Binary::Divide => left.wrapping_div(right),
+        // 2nd ed. Table 24: the result of MOD 0 is 0.
+        Binary::Modulo if right == 0 => 0,
+        Binary::Modulo => left.wrapping_rem(right),
+        Binary::And => left & right,
+        Binary::Or => left | right,
+        _ => left ^ right,
+    })
+}
+
+fn compare(operator: Binary, left: Value, right: Value) -> bool {
+    use std::cmp::Ordering::{Equal, Greater, Less};
+    let order = match (left.as_int(), right.as_int()) {
+        (Some(left), Some(right)) => Some(left.cmp(&right)),
+        _ => left.as_f64().partial_cmp(&right.as_f64()),
+    };
+    match operator {
+        Binary::Equal => order == Some(Equal),
+        Binary::NotEqual => order != Some(Equal),
+        Binary::Less => order == Some(Less),
+        Binary::LessEqual => matches!(order, Some(Less | Equal)),
+        Binary::Greater => order == Some(Greater),
+        _ => matches!(order, Some(Greater | Equal)),
+    }
+}
+
+fn convert(rounding: Rounding, target: ElementaryType, value: Value) -> Value {
+    match (target, value) {
+        (ElementaryType::Real, Value::Int(value)) => Value::Real(value as f32),
+        (ElementaryType::Real, value) => Value::Real(value.as_f64() as f32),
+        (ElementaryType::Lreal, value) => Value::Lreal(value.as_f64()),
+        (ElementaryType::Bool, value) => Value::Bool(value.as_f64() != 0.0),
+        (_, Value::Real(_) | Value::Lreal(_)) => {
+            let real = value.as_f64();
+            let whole = match rounding {
+                Rounding::NearestEven => real.round_ties_even(),
+                Rounding::Truncate => real.trunc(),
+            };
+            // A cast saturates and makes NaN zero, as the compiled code does.
+            let (low, high) = target.range().unwrap_or((0, 0));
+            Value::Int((whole as i128).clamp(low, high))
+        }
+        (_, value) => Value::Int(target.wrap(value.as_int().unwrap_or(0))),
+    }
+}
+
+impl Body<'_, '_> {
+    /// The value of a constant expression of any integer type.
+    pub(super) fn constant_integer(&mut self, expr: &ast::Expr) -> Option<i128> {
+        match self.expression(expr)? {
+            Operand::Integer { value, .. } => Some(value),
+            Operand::Real { span, .. } => self.mismatch("an integer", "a real number", span),
+            Operand::Typed(typed) => {
+                let integer = self.elementary(typed.ty).is_some_and(ElementaryType::is_integer);
+                if !integer {
+                    let found = self.type_name(typed.ty);
+                    return self.mismatch("an integer", &found, typed.span);
+                }
+                self.value_of(&typed)?.as_int()
+            }
+        }
+    }
+
+    /// The value of a constant expression as one of type `ty`.
+    pub(super) fn constant_of_type(&mut self, expr: &ast::Expr, ty: TypeId) -> Option<Value> {
+        let typed = self.expression_for(expr, ty)?;
+        self.value_of(&typed)
+    }
+
+    /// The value of an expression that must be constant.
+    pub(super) fn value_of(&mut self, expr: &Expr) -> Option<Value> {
+        match fold(&self.checker.types, expr) {
+            Ok(value) => Some(value),
+            Err(NoValue::NotConstant(span)) => {
+                let message = "a constant is wanted here";
+                self.report(Diagnostic::error(Code::NotConstant, span, message));
+                None
+            }
+            Err(NoValue::DivisionByZero(span)) => {
+                let message = "a constant is divided by zero";
+                self.report(Diagnostic::error(Code::ConstantDivisionByZero, span, message));
+                None
+            }
+        }
+    }
+}

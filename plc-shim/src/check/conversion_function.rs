@@ -1,0 +1,136 @@
+//! `X_TO_Y`, `X_TRUNC_Y`, `TO_Y`, `TRUNC` (2nd ed. Table 22, 3rd ed. Tables 22 to 27).
+//!
+//! | from, to | value |
+//! |---|---|
+//! | integer, narrower integer | low-order bits |
+//! | real, integer | nearest, ties to even; saturates; NaN becomes 0 |
+//! | bit string, BOOL | rightmost bit |
+//! | number, BOOL | FALSE for 0 |
+//! | TIME, number | milliseconds |
+//! | LTIME, number | nanoseconds |
+
+use super::convert::{Operand, constant, converted};
+use super::scope::Body;
+use crate::diagnostic::{Code, Diagnostic};
+use crate::ir::elementary::Kind;
+use crate::ir::{Binary, ElementaryType, Expr, ExprKind, Rounding, Value};
+use crate::syntax::Span;
+
+/// A conversion function, by what its name says.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct Conversion {
+    /// Nothing for the overloaded forms of the 3rd edition.
+    pub(super) from: Option<ElementaryType>,
+    pub(super) to: ElementaryType,
+    pub(super) rounding: Rounding,
+}
+
+/// The conversion that `key`, in capitals, names.
+pub(super) fn find(key: &str) -> Option<Conversion> {
+    if key == "TRUNC" {
+        // 2nd ed. Table 22 leaves the result's type to the context; vendors give DINT.
+        return Some(Conversion { from: None, to: ElementaryType::Dint, rounding: Rounding::Truncate });
+    }
+    let marks = [("TO_", Rounding::NearestEven), ("TRUNC_", Rounding::Truncate)];
+    marks.into_iter().find_map(|(mark, rounding)| {
+        let (before, after) = key.split_once(mark)?;
+        let to = ElementaryType::find(after)?;
+        if before.is_empty() {
+            return Some(Conversion { from: None, to, rounding });
+        }
+        let from = ElementaryType::find(before.strip_suffix('_')?)?;
+        is_allowed(from, to, rounding).then_some(Conversion { from: Some(from), to, rounding })
+    })
+}
+
+/// True if `from_TO_to` exists.
+pub(super) fn is_defined(from: ElementaryType, to: ElementaryType) -> bool {
+    let bits = |ty: ElementaryType| ty.kind() == Kind::Bits;
+    // Between reals and bit strings the editions disagree on what is kept, number or bits.
+    from != to && !(from.is_real() && bits(to) || bits(from) && to.is_real())
+}
+
+fn is_allowed(from: ElementaryType, to: ElementaryType, rounding: Rounding) -> bool {
+    is_defined(from, to) && (rounding == Rounding::NearestEven || from.is_real() && to.is_integer())
+}
+
+impl Body<'_, '_> {
+    pub(super) fn conversion(
+        &mut self,
+        conversion: Conversion,
+        operand: Operand,
+        span: Span,
+    ) -> Option<Operand> {
+        let Conversion { from, to, rounding } = conversion;
+        let expr = match from {
+            Some(from) => self.coerce(operand, from.into())?,
+            None => self.settle(operand)?,
+        };
+        let Some(from) = self.elementary(expr.ty) else {
+            let found = self.type_name(expr.ty);
+            return self.mismatch("an elementary value", &found, expr.span);
+        };
+        if from != to && !is_allowed(from, to, rounding) {
+            let message = format!("there is no conversion from {from} to {to}");
+            let found = Diagnostic::error(Code::InvalidOperand, span, message);
+            self.report(found.with_help("convert to an integer type on the way"));
+            return None;
+        }
+        Some(Operand::Typed(Expr { span, ..lower(expr, from, to, rounding) }))
+    }
+}
+
+/// Nanoseconds of the unit in which a duration becomes a number.
+fn unit_ns(ty: ElementaryType) -> i128 {
+    if ty == ElementaryType::Ltime { 1 } else { 1_000_000 }
+}
+
+fn joined(operator: Binary, left: Expr, right: Expr) -> Expr {
+    let (ty, span) = (left.ty, left.span);
+    Expr { kind: ExprKind::Binary(operator, Box::new(left), Box::new(right)), ty, span }
+}
+
+fn lower(expr: Expr, from: ElementaryType, to: ElementaryType, rounding: Rounding) -> Expr {
+    let span = expr.span;
+    let lint = |value| constant(Value::Int(value), ElementaryType::Lint, span);
+    let lreal = |value: i128| constant(Value::Lreal(value as f64), ElementaryType::Lreal, span);
+    match (from.kind(), to.kind()) {
+        (Kind::Duration, Kind::Real) => {
+            let ns = converted(expr, ElementaryType::Lreal, rounding);
+            converted(joined(Binary::Divide, ns, lreal(unit_ns(from))), to, rounding)
+        }
+        (Kind::Duration, Kind::Signed | Kind::Unsigned | Kind::Bits) => {
+            let ns = converted(expr, ElementaryType::Lint, rounding);
+            converted(joined(Binary::Divide, ns, lint(unit_ns(from))), to, rounding)
+        }
+        (Kind::Real, Kind::Duration) => {
+            let number = converted(expr, ElementaryType::Lreal, rounding);
+            converted(joined(Binary::Multiply, number, lreal(unit_ns(to))), to, rounding)
+        }
+        (Kind::Bool | Kind::Signed | Kind::Unsigned | Kind::Bits, Kind::Duration) => {
+            let number = converted(expr, ElementaryType::Lint, rounding);
+            converted(joined(Binary::Multiply, number, lint(unit_ns(to))), to, rounding)
+        }
+        (Kind::Bits, Kind::Bool) => {
+            let one = constant(Value::Int(1), from, span);
+            converted(joined(Binary::And, expr, one), to, rounding)
+        }
+        _ => converted(expr, to, rounding),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_are_taken_apart() {
+        let found = find("INT_TO_REAL").map(|found| (found.from, found.to));
+        assert_eq!(found, Some((Some(ElementaryType::Int), ElementaryType::Real)));
+        let found = find("LREAL_TRUNC_DINT").map(|found| found.rounding);
+        assert_eq!(found, Some(Rounding::Truncate));
+        assert_eq!(find("TO_SINT").and_then(|found| found.from), None);
+        assert!(find("INT_TO_INT").is_none() && find("REAL_TO_WORD").is_none());
+        assert!(find("INT_TRUNC_SINT").is_none() && find("GOTO_INT").is_none());
+    }
+}

@@ -1,0 +1,203 @@
+//! Implicit conversions and constants in their context (3rd ed. 6.6.1.6).
+
+use super::scope::Body;
+use crate::diagnostic::{Code, Diagnostic};
+use crate::ir::{ElementaryType, Expr, ExprKind, Rounding, TypeId, Value};
+use crate::syntax::Span;
+
+/// What an expression has come to. A constant without a type takes that of its context.
+#[derive(Debug, Clone)]
+pub(super) enum Operand {
+    Typed(Expr),
+    Integer { value: i128, span: Span },
+    Real { value: f64, span: Span },
+}
+
+impl Operand {
+    pub(super) fn span(&self) -> Span {
+        match self {
+            Self::Typed(expr) => expr.span,
+            Self::Integer { span, .. } | Self::Real { span, .. } => *span,
+        }
+    }
+
+    pub(super) fn with_span(self, span: Span) -> Self {
+        match self {
+            Self::Typed(expr) => Self::Typed(Expr { span, ..expr }),
+            Self::Integer { value, .. } => Self::Integer { value, span },
+            Self::Real { value, .. } => Self::Real { value, span },
+        }
+    }
+}
+
+pub(super) fn constant(value: Value, ty: ElementaryType, span: Span) -> Expr {
+    Expr { kind: ExprKind::Constant(value), ty: ty.into(), span }
+}
+
+/// `expr` as one of `ty`, whatever becomes of its value.
+pub(super) fn converted(expr: Expr, ty: ElementaryType, rounding: Rounding) -> Expr {
+    if expr.ty == ty.into() {
+        return expr;
+    }
+    let span = expr.span;
+    Expr { kind: ExprKind::Convert(rounding, Box::new(expr)), ty: ty.into(), span }
+}
+
+impl Body<'_, '_> {
+    pub(super) fn mismatch<T>(&mut self, wanted: &str, found: &str, span: Span) -> Option<T> {
+        let message = format!("{wanted} is wanted, this is {found}");
+        self.report(Diagnostic::error(Code::TypeMismatch, span, message));
+        None
+    }
+
+    /// The operand as a value of `target`, or a report why it cannot be one.
+    pub(super) fn coerce(&mut self, operand: Operand, target: TypeId) -> Option<Expr> {
+        let wanted = match self.checker.types.get(target) {
+            crate::ir::Type::Elementary(ty) => Some(*ty),
+            _ => None,
+        };
+        match (operand, wanted) {
+            (Operand::Typed(expr), _) if expr.ty == target => Some(expr),
+            (Operand::Typed(expr), Some(wanted)) => self.widen(expr, wanted),
+            (Operand::Integer { value, span }, Some(wanted)) => {
+                self.literal_integer(value, wanted, span)
+            }
+            (Operand::Real { value, span }, Some(wanted)) => self.literal_real(value, wanted, span),
+            (operand, None) => {
+                let found = self.describe(&operand);
+                let wanted = self.type_name(target);
+                self.mismatch(&wanted, &found, operand.span())
+            }
+        }
+    }
+
+    pub(super) fn describe(&self, operand: &Operand) -> String {
+        match operand {
+            Operand::Typed(expr) => self.type_name(expr.ty),
+            Operand::Integer { .. } => "an integer".to_owned(),
+            Operand::Real { .. } => "a real number".to_owned(),
+        }
+    }
+
+    fn widen(&mut self, expr: Expr, wanted: ElementaryType) -> Option<Expr> {
+        use crate::ir::Type;
+        let found = match self.checker.types.get(expr.ty) {
+            Type::Elementary(found) => *found,
+            _ => {
+                let found = self.type_name(expr.ty);
+                return self.mismatch(wanted.name(), &found, expr.span);
+            }
+        };
+        if found.widens_to(wanted) {
+            return Some(converted(expr, wanted, Rounding::NearestEven));
+        }
+        let message = format!("{wanted} is wanted, this is {found}");
+        let mut report = Diagnostic::error(Code::TypeMismatch, expr.span, message);
+        if super::conversion_function::is_defined(found, wanted) {
+            report = report.with_help(format!("convert it with {found}_TO_{wanted}"));
+        }
+        self.report(report);
+        None
+    }
+
+    fn literal_integer(&mut self, value: i128, wanted: ElementaryType, span: Span) -> Option<Expr> {
+        match (wanted, wanted.range()) {
+            (ElementaryType::Real, _) => Some(constant(Value::Real(value as f32), wanted, span)),
+            (ElementaryType::Lreal, _) => Some(constant(Value::Lreal(value as f64), wanted, span)),
+            _ if wanted.is_duration() => {
+                let message = format!("{wanted} is wanted, this is an integer");
+                let found = Diagnostic::error(Code::TypeMismatch, span, message);
+                self.report(found.with_help("write a duration, as in T#200ms"));
+                None
+            }
+            (_, Some((low, high))) if (low..=high).contains(&value) => {
+                // BOOL has the literals 0 and 1 too (2nd ed. Table 1).
+                let boolean = wanted == ElementaryType::Bool;
+                let value = if boolean { Value::Bool(value == 1) } else { Value::Int(value) };
+                Some(constant(value, wanted, span))
+            }
+            (_, range) => {
+                let (low, high) = range.unwrap_or((0, 0));
+                let message = format!("{value} does not fit {wanted} ({low} to {high})");
+                self.report(Diagnostic::error(Code::OutOfRange, span, message));
+                None
+            }
+        }
+    }
+
+    fn literal_real(&mut self, value: f64, wanted: ElementaryType, span: Span) -> Option<Expr> {
+        match wanted {
+            ElementaryType::Lreal => Some(constant(Value::Lreal(value), wanted, span)),
+            ElementaryType::Real if (value as f32).is_finite() => {
+                Some(constant(Value::Real(value as f32), wanted, span))
+            }
+            ElementaryType::Real => {
+                let message = format!("{value:e} does not fit REAL");
+                self.report(Diagnostic::error(Code::OutOfRange, span, message));
+                None
+            }
+            _ => self.mismatch(wanted.name(), "a real number", span),
+        }
+    }
+
+    /// The operand with the type it has on its own: integers DINT or, if they need it, LINT or
+    /// ULINT; reals LREAL.
+    pub(super) fn settle(&mut self, operand: Operand) -> Option<Expr> {
+        match operand {
+            Operand::Typed(expr) => Some(expr),
+            Operand::Real { value, span } => {
+                Some(constant(Value::Lreal(value), ElementaryType::Lreal, span))
+            }
+            Operand::Integer { value, span } => {
+                let types = [ElementaryType::Dint, ElementaryType::Lint, ElementaryType::Ulint];
+                let fits = types.into_iter().find(|ty| ty.wrap(value) == value);
+                self.literal_integer(value, fits.unwrap_or(ElementaryType::Ulint), span)
+            }
+        }
+    }
+
+    /// True if a constant without type can be one of `ty`.
+    pub(super) fn adapts(operand: &Operand, ty: ElementaryType) -> bool {
+        match operand {
+            Operand::Typed(_) => false,
+            Operand::Real { value, .. } => {
+                ty == ElementaryType::Lreal || ty == ElementaryType::Real && (*value as f32).is_finite()
+            }
+            Operand::Integer { value, .. } => {
+                !ty.is_duration() && ty.range().is_none_or(|(low, high)| (low..=high).contains(value))
+            }
+        }
+    }
+
+    /// An expression that must be of elementary type `ty`.
+    pub(super) fn expression_of(
+        &mut self,
+        expr: &crate::syntax::ast::Expr,
+        ty: ElementaryType,
+    ) -> Option<Expr> {
+        self.expression_for(expr, ty.into())
+    }
+
+    /// An expression that must be of type `ty`.
+    pub(super) fn expression_for(
+        &mut self,
+        expr: &crate::syntax::ast::Expr,
+        ty: TypeId,
+    ) -> Option<Expr> {
+        let context = self.elementary(ty);
+        let operand = self.within(context, |body| body.expression(expr))?;
+        self.coerce(operand, ty)
+    }
+
+    /// Runs `check` where the place wants `context`.
+    pub(super) fn within<T>(
+        &mut self,
+        context: Option<ElementaryType>,
+        check: impl FnOnce(&mut Self) -> T,
+    ) -> T {
+        let outer = std::mem::replace(&mut self.context, context);
+        let checked = check(self);
+        self.context = outer;
+        checked
+    }
+}

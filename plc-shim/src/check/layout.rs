@@ -1,0 +1,64 @@
+//! Offsets in the PLC's memory.
+//!
+//! | offset | what |
+//! |---|---|
+//! | 0 | nothing; a reference of 0 refers to nothing |
+//! | 8 | virtual time in nanoseconds, `ONESCAN_TV`, written before every task |
+//! | 64 | global variables, programs, frames |
+
+use super::Checker;
+use crate::diagnostic::{Code, Diagnostic};
+use crate::syntax::Span;
+
+/// Offset of virtual time.
+pub(crate) const VIRTUAL_TIME_OFFSET: u32 = 8;
+/// Name of the global variable that holds virtual time.
+pub(crate) const VIRTUAL_TIME_NAME: &str = "ONESCAN_TV";
+/// Greatest size of all variables together.
+pub(crate) const MEMORY_LIMIT: u32 = 64 << 20;
+
+const FIRST_OFFSET: u32 = 64;
+
+/// Hands out offsets, each aligned to what lies there.
+#[derive(Debug)]
+pub(super) struct Layout {
+    next: u32,
+}
+
+impl Layout {
+    pub(super) fn new() -> Self {
+        Self { next: FIRST_OFFSET }
+    }
+
+    /// Bytes in use.
+    pub(super) fn size(&self) -> u32 {
+        self.next
+    }
+}
+
+/// `offset` rounded up to a multiple of `align`, a power of two.
+pub(super) fn align_up(offset: u32, align: u32) -> u32 {
+    offset.next_multiple_of(align.max(1))
+}
+
+impl Checker<'_> {
+    /// Offset of a new block of memory; reports at `span` if there is no more.
+    pub(super) fn allocate(&mut self, size: u32, align: u32, span: Span) -> Option<u32> {
+        let offset = align_up(self.layout.next, align);
+        match offset.checked_add(size).filter(|end| *end <= MEMORY_LIMIT) {
+            Some(end) => {
+                self.layout.next = end;
+                Some(offset)
+            }
+            None => {
+                self.report_too_large(span);
+                None
+            }
+        }
+    }
+
+    pub(super) fn report_too_large(&mut self, span: Span) {
+        let message = format!("more than {} MiB of variables", MEMORY_LIMIT >> 20);
+        self.report(Diagnostic::error(Code::TooLarge, span, message));
+    }
+}

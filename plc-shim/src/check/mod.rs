@@ -1,0 +1,187 @@
+//! Names, types, constants and calls: from syntax trees to the checked program.
+//!
+//! | module | subject |
+//! |---|---|
+//! | [`names`] | what the files declare, by name |
+//! | [`layout`] | offsets in memory |
+//! | [`scope`] | what a name means inside a unit |
+//! | [`types`] | types as written to types |
+//! | [`variables`] | sections to placed variables, units' interfaces |
+//! | [`initial`] | initial values to bytes |
+//! | [`constant`] | constant expressions to values |
+//! | [`convert`] | implicit conversions, constants in context |
+//! | [`expression`], [`operator`], [`place`] | expressions |
+//! | [`call`], [`standard_function`], [`conversion_function`] | calls |
+//! | [`statement`] | statements |
+//! | [`recursion`] | who calls whom |
+//!
+//! A unit, type or global variable is resolved when it is first needed; what is being resolved
+//! and needed again contains itself.
+
+mod call;
+mod constant;
+mod conversion_function;
+mod convert;
+mod expression;
+mod initial;
+mod layout;
+mod names;
+mod operator;
+mod place;
+mod recursion;
+mod scope;
+mod standard_function;
+mod statement;
+mod types;
+mod variables;
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use self::layout::Layout;
+use self::names::{Enumerator, GlobalEntry, PouEntry, TypeEntry};
+use crate::diagnostic::Diagnostic;
+use crate::ir::{Pou, PouId, Program, TypeTable, Variable};
+use crate::syntax::ast::{CompilationUnit, PouKind};
+use crate::syntax::{FileId, Span};
+
+pub(crate) use layout::VIRTUAL_TIME_OFFSET;
+
+/// The checked program.
+#[derive(Debug)]
+pub(crate) struct Checked {
+    pub(crate) types: TypeTable,
+    /// The units that run; others have no entry.
+    pub(crate) pous: BTreeMap<PouId, Pou>,
+    /// The variables of every unit that has been declared, whether it runs or not.
+    pub(crate) interfaces: BTreeMap<PouId, Vec<Variable>>,
+    pub(crate) globals: Vec<Variable>,
+    pub(crate) programs: Vec<Program>,
+    /// The whole memory at a cold start.
+    pub(crate) image: Vec<u8>,
+}
+
+/// Checks all units together. `library` tells the files of the standard function blocks, whose
+/// units are compiled only if they are used.
+pub(crate) fn check(
+    units: &[(FileId, &CompilationUnit)],
+    library: &BTreeSet<FileId>,
+) -> (Checked, Vec<Diagnostic>) {
+    let mut checker = Checker::new(library);
+    checker.collect(units);
+    checker.resolve_declarations();
+    checker.place_programs();
+    checker.check_bodies();
+    checker.report_recursion();
+    let image = checker.memory_image();
+    let interfaces = checker.pous.iter().enumerate().filter_map(|(index, entry)| {
+        Some((PouId(index as u32), entry.scope.as_ref()?.variables.clone()))
+    });
+    let checked = Checked {
+        interfaces: interfaces.collect(),
+        types: checker.types,
+        pous: checker.checked,
+        globals: checker.globals.into_values().filter_map(|entry| entry.variable).collect(),
+        programs: checker.programs,
+        image,
+    };
+    (checked, checker.diagnostics)
+}
+
+/// Greatest number of types, constants or instances that need each other in a row.
+const MAX_DEPTH: u32 = 64;
+
+/// What is known so far.
+struct Checker<'a> {
+    library: &'a BTreeSet<FileId>,
+    types: TypeTable,
+    type_names: BTreeMap<String, TypeEntry<'a>>,
+    pous: Vec<PouEntry<'a>>,
+    pou_names: BTreeMap<String, PouId>,
+    globals: BTreeMap<String, GlobalEntry<'a>>,
+    enumerators: BTreeMap<String, Vec<Enumerator>>,
+    layout: Layout,
+    /// Initial bytes of what has been placed.
+    placed: Vec<(u32, std::sync::Arc<[u8]>)>,
+    programs: Vec<Program>,
+    checked: BTreeMap<PouId, Pou>,
+    /// Units whose bodies are still to be checked, and all that ever were.
+    queue: Vec<PouId>,
+    queued: BTreeSet<PouId>,
+    /// Who calls whom, and where.
+    calls: BTreeMap<PouId, Vec<(PouId, Span)>>,
+    depth: u32,
+    diagnostics: Vec<Diagnostic>,
+}
+
+impl<'a> Checker<'a> {
+    fn report(&mut self, diagnostic: Diagnostic) {
+        self.diagnostics.push(diagnostic);
+    }
+
+    fn resolve_declarations(&mut self) {
+        let names: Vec<String> = self.type_names.keys().cloned().collect();
+        for name in names {
+            self.named_type(&name, None);
+        }
+        let names: Vec<String> = self.globals.keys().cloned().collect();
+        for name in names {
+            self.global(&name, None);
+        }
+        for index in 0..self.pous.len() {
+            let id = PouId(index as u32);
+            if !self.is_library(id) {
+                self.declare(id, None);
+                self.enqueue(id);
+            }
+        }
+    }
+
+    fn is_library(&self, id: PouId) -> bool {
+        self.library.contains(&self.pou(id).ast.name.span.file)
+    }
+
+    fn pou(&self, id: PouId) -> &PouEntry<'a> {
+        // Ids are made by `collect` only, one for each entry.
+        &self.pous[id.0 as usize]
+    }
+
+    /// Has the unit's body checked, once.
+    fn enqueue(&mut self, id: PouId) {
+        if self.queued.insert(id) {
+            self.queue.push(id);
+        }
+    }
+
+    /// Every program has one instance, under its own name.
+    fn place_programs(&mut self) {
+        for index in 0..self.pous.len() {
+            let id = PouId(index as u32);
+            if self.pou(id).ast.kind != PouKind::Program {
+                continue;
+            }
+            let (size, align, image) = self.pou(id).instance();
+            let span = self.pou(id).ast.name.span;
+            if let Some(offset) = self.allocate(size, align, span) {
+                self.placed.push((offset, image));
+                self.programs.push(Program { pou: id, offset });
+            }
+        }
+    }
+
+    fn check_bodies(&mut self) {
+        while let Some(id) = self.queue.pop() {
+            self.check_body(id);
+        }
+    }
+
+    fn memory_image(&self) -> Vec<u8> {
+        let mut image = vec![0; self.layout.size() as usize];
+        for (offset, bytes) in &self.placed {
+            let start = *offset as usize;
+            if let Some(target) = image.get_mut(start..start + bytes.len()) {
+                target.copy_from_slice(bytes);
+            }
+        }
+        image
+    }
+}

@@ -1,0 +1,202 @@
+//! What the files declare, by name, before any of it is resolved.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::sync::Arc;
+
+use super::layout::{Layout, VIRTUAL_TIME_NAME, VIRTUAL_TIME_OFFSET};
+use super::scope::Scope;
+use super::Checker;
+use crate::diagnostic::{Code, Diagnostic};
+use crate::ir::{ElementaryType, PouId, Storage, TypeId, TypeTable, Variable};
+use crate::syntax::ast::{
+    self, CompilationUnit, Declaration, Ident, Qualifier, SectionKind, TypeDeclaration,
+};
+use crate::syntax::{FileId, Span};
+
+/// How far something has been resolved.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Progress {
+    Untouched,
+    Running,
+    Done,
+}
+
+/// A type together with the initial bytes of its variables: an alias may give its own.
+#[derive(Debug, Clone)]
+pub(super) struct TypedImage {
+    pub(super) ty: TypeId,
+    pub(super) image: Arc<[u8]>,
+}
+
+pub(super) struct TypeEntry<'a> {
+    pub(super) ast: &'a TypeDeclaration,
+    pub(super) progress: Progress,
+    pub(super) resolved: Option<TypedImage>,
+}
+
+pub(super) struct PouEntry<'a> {
+    pub(super) ast: &'a ast::Pou,
+    pub(super) progress: Progress,
+    /// Set by `declare`.
+    pub(super) scope: Option<Arc<Scope>>,
+    pub(super) align: u32,
+    pub(super) image: Arc<[u8]>,
+}
+
+impl PouEntry<'_> {
+    /// Size, alignment and initial bytes of an instance.
+    pub(super) fn instance(&self) -> (u32, u32, Arc<[u8]>) {
+        (self.image.len() as u32, self.align, self.image.clone())
+    }
+}
+
+pub(super) struct GlobalEntry<'a> {
+    /// Nothing for what the runtime provides.
+    pub(super) ast: Option<(&'a ast::Variable, &'a [Qualifier])>,
+    pub(super) name: String,
+    pub(super) span: Span,
+    pub(super) progress: Progress,
+    pub(super) variable: Option<Variable>,
+}
+
+/// A value of an enumeration.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Enumerator {
+    pub(super) ty: TypeId,
+    pub(super) value: i128,
+}
+
+impl<'a> Checker<'a> {
+    pub(super) fn new(library: &'a BTreeSet<FileId>) -> Self {
+        Self {
+            library,
+            types: TypeTable::new(),
+            type_names: BTreeMap::new(),
+            pous: Vec::new(),
+            pou_names: BTreeMap::new(),
+            globals: BTreeMap::from([(VIRTUAL_TIME_NAME.to_owned(), virtual_time())]),
+            enumerators: BTreeMap::new(),
+            layout: Layout::new(),
+            placed: Vec::new(),
+            programs: Vec::new(),
+            checked: BTreeMap::new(),
+            queue: Vec::new(),
+            queued: BTreeSet::new(),
+            calls: BTreeMap::new(),
+            depth: 0,
+            diagnostics: Vec::new(),
+        }
+    }
+
+    pub(super) fn collect(&mut self, units: &[(FileId, &'a CompilationUnit)]) {
+        for (_, unit) in units {
+            for declaration in &unit.declarations {
+                match declaration {
+                    Declaration::Pou(pou) => self.collect_pou(pou),
+                    Declaration::Type(declaration) => self.collect_type(declaration),
+                    Declaration::Globals(section) => self.collect_globals(section),
+                }
+            }
+        }
+    }
+
+    fn collect_pou(&mut self, ast: &'a ast::Pou) {
+        // The library comes last: what it finds taken, the user has named like the standard.
+        if self.library.contains(&ast.name.span.file)
+            && let Some(user) = self.declared_at(&ast.name)
+        {
+            self.report_reserved(&ast.name, user);
+            return;
+        }
+        if self.is_taken(&ast.name) {
+            return;
+        }
+        let id = PouId(self.pous.len() as u32);
+        self.pou_names.insert(ast.name.key(), id);
+        self.pous.push(PouEntry {
+            ast,
+            progress: Progress::Untouched,
+            scope: None,
+            align: 1,
+            image: Arc::from([]),
+        });
+    }
+
+    fn collect_type(&mut self, ast: &'a TypeDeclaration) {
+        if !self.is_taken(&ast.name) {
+            let entry = TypeEntry { ast, progress: Progress::Untouched, resolved: None };
+            self.type_names.insert(ast.name.key(), entry);
+        }
+    }
+
+    fn collect_globals(&mut self, section: &'a ast::Section) {
+        for variable in &section.variables {
+            for name in &variable.names {
+                if let Some(first) = self.globals.get(&name.key()) {
+                    let first = first.ast.map(|_| first.span);
+                    self.report_duplicate(name, first);
+                    continue;
+                }
+                let entry = GlobalEntry {
+                    ast: Some((variable, &section.qualifiers)),
+                    name: name.text.clone(),
+                    span: name.span,
+                    progress: Progress::Untouched,
+                    variable: None,
+                };
+                self.globals.insert(name.key(), entry);
+            }
+        }
+    }
+
+    /// True, with a report, if a type or unit of the name exists already.
+    fn is_taken(&mut self, name: &Ident) -> bool {
+        if ElementaryType::find(&name.text).is_some() || super::standard_function::exists(&name.key()) {
+            self.report_reserved(name, name.span);
+            return true;
+        }
+        let first = self.declared_at(name);
+        if first.is_some() {
+            self.report_duplicate(name, first);
+        }
+        first.is_some()
+    }
+
+    /// Where a unit or type of the name is declared.
+    fn declared_at(&self, name: &Ident) -> Option<Span> {
+        let pou = self.pou_names.get(&name.key()).map(|id| self.pou(*id).ast.name.span);
+        pou.or_else(|| self.type_names.get(&name.key()).map(|ty| ty.ast.name.span))
+    }
+
+    fn report_reserved(&mut self, name: &Ident, span: Span) {
+        let message = format!("`{}` is a name of the standard", name.text);
+        self.report(Diagnostic::error(Code::ReservedName, span, message));
+    }
+
+    pub(super) fn report_duplicate(&mut self, name: &Ident, first: Option<Span>) {
+        let message = format!("`{}` is declared twice", name.text);
+        let mut found = Diagnostic::error(Code::DuplicateName, name.span, message);
+        if let Some(first) = first {
+            found = found.with_label(first, "first declared here");
+        }
+        self.report(found);
+    }
+}
+
+fn virtual_time() -> GlobalEntry<'static> {
+    let span = Span::new(FileId(u32::MAX), 0, 0);
+    let variable = Variable {
+        name: VIRTUAL_TIME_NAME.to_owned(),
+        section: SectionKind::Global,
+        ty: ElementaryType::Time.into(),
+        storage: Storage::Absolute(VIRTUAL_TIME_OFFSET),
+        constant: None,
+        is_constant: true,
+        retain: false,
+        address: None,
+        span,
+        image: vec![0; 8].into(),
+    };
+    let name = VIRTUAL_TIME_NAME.to_owned();
+    GlobalEntry { ast: None, name, span, progress: Progress::Done, variable: Some(variable) }
+}

@@ -1,0 +1,281 @@
+//! Names, members and indices to places (2nd ed. 2.4.1.2).
+
+use super::convert::Operand;
+use super::expression::enumeration_value;
+use super::scope::Body;
+use crate::diagnostic::{Code, Diagnostic, did_you_mean};
+use crate::ir::{
+    Dimension, ElementaryType, Expr, ExprKind, Place, Step, Storage, Type, TypeId, Variable,
+};
+use crate::syntax::Span;
+use crate::syntax::ast::{self, Ident, SectionKind};
+
+/// Who may write to a place.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Access {
+    ReadWrite,
+    /// It is `CONSTANT`.
+    Constant,
+    /// It is an input of the unit itself.
+    OwnInput,
+    /// It is an output of an instance.
+    InstanceOutput,
+}
+
+/// A place and who may write to it.
+pub(super) struct Located {
+    pub(super) place: Place,
+    pub(super) access: Access,
+}
+
+/// What a name stands for.
+enum Meaning {
+    Variable,
+    Value(Expr),
+}
+
+impl Body<'_, '_> {
+    /// The value at a place; constants are replaced by their values.
+    pub(super) fn load(&mut self, expr: &ast::Expr) -> Option<Operand> {
+        match &expr.kind {
+            ast::ExprKind::Name(name) => {
+                if let Meaning::Value(value) = self.meaning(name)? {
+                    return Some(Operand::Typed(value));
+                }
+            }
+            ast::ExprKind::Member(base, name) => {
+                if let Some(ty) = self.enumeration_named(base) {
+                    return self.enumerator_of(ty, &name.text, expr.span);
+                }
+            }
+            _ => {}
+        }
+        let place = self.place(expr)?.place;
+        let ty = place.ty;
+        Some(Operand::Typed(Expr { kind: ExprKind::Load(place), ty, span: expr.span }))
+    }
+
+    /// The enumeration that `Colour` in `Colour.Red` names, unless a variable hides it.
+    fn enumeration_named(&mut self, base: &ast::Expr) -> Option<TypeId> {
+        let ast::ExprKind::Name(name) = &base.kind else { return None };
+        let key = name.key();
+        let hidden =
+            self.scope.by_name.contains_key(&key) || self.checker.globals.contains_key(&key);
+        if hidden || !self.checker.type_names.contains_key(&key) {
+            return None;
+        }
+        let ty = self.checker.named_type(&key, Some(name.span))?.ty;
+        matches!(self.checker.types.get(ty), Type::Enumeration { .. }).then_some(ty)
+    }
+
+    pub(super) fn place(&mut self, expr: &ast::Expr) -> Option<Located> {
+        match &expr.kind {
+            ast::ExprKind::Name(name) => self.named_place(name),
+            ast::ExprKind::Member(base, name) => {
+                let base = self.place(base)?;
+                self.member(base, name, expr.span)
+            }
+            ast::ExprKind::Index(base, indices) => {
+                let base = self.place(base)?;
+                self.element(base, indices, expr.span)
+            }
+            ast::ExprKind::Paren(inner) => self.place(inner),
+            ast::ExprKind::DirectAddress(_) => self.unsupported("a direct address", expr.span),
+            ast::ExprKind::Error => None,
+            _ => {
+                let message = "a variable is wanted here";
+                self.report(Diagnostic::error(Code::NotAVariable, expr.span, message));
+                None
+            }
+        }
+    }
+
+    fn named_place(&mut self, name: &Ident) -> Option<Located> {
+        match self.variable_named(name) {
+            Some(Ok(variable)) => {
+                let access = match variable.section {
+                    _ if variable.is_constant => Access::Constant,
+                    SectionKind::Input => Access::OwnInput,
+                    _ => Access::ReadWrite,
+                };
+                let place = Place::whole(variable.storage, variable.ty, name.span);
+                Some(Located { place, access })
+            }
+            Some(Err(())) => None,
+            None => {
+                self.meaning(name)?;
+                let message = format!("`{}` is not a variable", name.text);
+                self.report(Diagnostic::error(Code::NotAVariable, name.span, message));
+                None
+            }
+        }
+    }
+
+    /// The variable of this name; an error is one that has been reported.
+    fn variable_named(&mut self, name: &Ident) -> Option<Result<Variable, ()>> {
+        let key = name.key();
+        if self.scope.is_broken(&key) {
+            return Some(Err(()));
+        }
+        if let Some(found) = self.scope.find(&key) {
+            return Some(Ok(found.clone()));
+        }
+        // Vendors make global variables visible everywhere; the standard wants VAR_EXTERNAL.
+        if self.checker.globals.contains_key(&key) {
+            return Some(self.checker.global(&key, Some(name.span)).ok_or(()));
+        }
+        None
+    }
+
+    fn meaning(&mut self, name: &Ident) -> Option<Meaning> {
+        match self.variable_named(name) {
+            Some(Err(())) => return None,
+            Some(Ok(variable)) => {
+                return Some(match variable.constant {
+                    Some(value) => {
+                        let kind = ExprKind::Constant(value);
+                        Meaning::Value(Expr { kind, ty: variable.ty, span: name.span })
+                    }
+                    None => Meaning::Variable,
+                });
+            }
+            None => {}
+        }
+        let found = self.checker.enumerators.get(&name.key()).map_or(&[][..], Vec::as_slice);
+        match found {
+            [only] => Some(Meaning::Value(enumeration_value(only.ty, only.value, name.span))),
+            [] => self.report_unknown(name),
+            several => {
+                let types: Vec<_> = several.iter().map(|each| self.type_name(each.ty)).collect();
+                let message = format!("`{}` is a value of {}", name.text, types.join(" and of "));
+                let help = format!("write {}#{}", types[0], name.text);
+                let found = Diagnostic::error(Code::UnknownName, name.span, message);
+                self.report(found.with_help(help));
+                None
+            }
+        }
+    }
+
+    fn report_unknown<T>(&mut self, name: &Ident) -> Option<T> {
+        let own = self.scope.variables.iter().map(|variable| variable.name.as_str());
+        let globals = self.checker.globals.values().map(|entry| entry.name.as_str());
+        let help = did_you_mean(&name.text, own.chain(globals));
+        let message = format!("`{}` is not declared", name.text);
+        let found = Diagnostic::error(Code::UnknownName, name.span, message);
+        self.report(found.with_optional_help(help));
+        None
+    }
+
+    fn member(&mut self, base: Located, name: &Ident, span: Span) -> Option<Located> {
+        match self.checker.types.get(base.place.ty).clone() {
+            Type::Struct { fields, .. } => {
+                let field = fields.iter().find(|field| field.name.eq_ignore_ascii_case(&name.text));
+                let Some(field) = field else {
+                    let names: Vec<_> = fields.iter().map(|field| field.name.as_str()).collect();
+                    return self.report_unknown_member(base.place.ty, name, &names);
+                };
+                let place = Place { span, ..base.place.member(field.offset, field.ty) };
+                Some(Located { place, access: base.access })
+            }
+            Type::FunctionBlock { pou, .. } => self.instance_member(base, pou, name, span),
+            _ => {
+                let message = format!("{} has no members", self.type_name(base.place.ty));
+                self.report(Diagnostic::error(Code::NotAStructure, span, message));
+                None
+            }
+        }
+    }
+
+    fn report_unknown_member<T>(&mut self, ty: TypeId, name: &Ident, known: &[&str]) -> Option<T> {
+        let message = format!("{} has no member `{}`", self.type_name(ty), name.text);
+        let help = did_you_mean(&name.text, known.iter().copied());
+        let found = Diagnostic::error(Code::UnknownMember, name.span, message);
+        self.report(found.with_optional_help(help));
+        None
+    }
+
+    /// Inputs and outputs of an instance can be reached from outside (2nd ed. 2.5.2.1).
+    fn instance_member(
+        &mut self,
+        base: Located,
+        pou: crate::ir::PouId,
+        name: &Ident,
+        span: Span,
+    ) -> Option<Located> {
+        let scope = self.checker.interface(pou, span)?;
+        if scope.is_broken(&name.key()) {
+            return None;
+        }
+        let Some(variable) = scope.find(&name.key()) else {
+            let open = |variable: &&Variable| {
+                matches!(variable.section, SectionKind::Input | SectionKind::Output)
+            };
+            let names = scope.variables.iter().filter(open).map(|variable| variable.name.as_str());
+            let names: Vec<_> = names.collect();
+            return self.report_unknown_member(base.place.ty, name, &names);
+        };
+        let access = match variable.section {
+            SectionKind::Input => Access::ReadWrite,
+            SectionKind::Output => Access::InstanceOutput,
+            _ => {
+                let ty = self.type_name(base.place.ty);
+                let message = format!("`{}` is internal to {ty}", name.text);
+                let found = Diagnostic::error(Code::UnknownMember, name.span, message);
+                self.report(found.with_label(variable.span, "declared here"));
+                return None;
+            }
+        };
+        let Storage::Instance(offset) = variable.storage else { return None };
+        let place = Place { span, ..base.place.member(offset, variable.ty) };
+        Some(Located { place, access })
+    }
+
+    fn element(&mut self, base: Located, indices: &[ast::Expr], span: Span) -> Option<Located> {
+        let Type::Array { dimensions, element } = self.checker.types.get(base.place.ty).clone()
+        else {
+            let message = format!("{} is not an array", self.type_name(base.place.ty));
+            self.report(Diagnostic::error(Code::NotIndexable, span, message));
+            return None;
+        };
+        if dimensions.len() != indices.len() {
+            let (wanted, found) = (dimensions.len(), indices.len());
+            let message = format!("the array has {wanted} dimensions, there are {found} indices");
+            self.report(Diagnostic::error(Code::WrongDimensions, span, message));
+            return None;
+        }
+        let mut place = base.place;
+        let mut stride = self.checker.types.size(element);
+        let mut steps = Vec::new();
+        // The last index runs fastest, as in the standard's own initial values (2.4.3.2).
+        for (dimension, index) in dimensions.iter().zip(indices).rev() {
+            let step = self.index_step(*dimension, index, stride);
+            stride = stride.saturating_mul(dimension.count() as u32);
+            steps.push(step);
+        }
+        let steps: Vec<Step> = steps.into_iter().rev().collect::<Option<_>>()?;
+        place.steps.extend(steps);
+        place.ty = element;
+        place.span = span;
+        Some(Located { place, access: base.access })
+    }
+
+    fn index_step(&mut self, bounds: Dimension, index: &ast::Expr, stride: u32) -> Option<Step> {
+        let operand = self.within(None, |body| body.expression(index))?;
+        let index = self.settle(operand)?;
+        if !self.plain_elementary(&index).is_some_and(ElementaryType::is_integer) {
+            let found = self.type_name(index.ty);
+            return self.mismatch("an integer", &found, index.span);
+        }
+        let Dimension { low, high } = bounds;
+        if let Ok(value) = super::constant::fold(&self.checker.types, &index) {
+            let value = value.as_int().unwrap_or(0);
+            if !(i128::from(low)..=i128::from(high)).contains(&value) {
+                let message = format!("index {value} is outside of {low}..{high}");
+                self.report(Diagnostic::error(Code::IndexOutOfRange, index.span, message));
+                return None;
+            }
+            return Some(Step::Offset((value - i128::from(low)) as u32 * stride));
+        }
+        Some(Step::Index { index: Box::new(index), low, count: bounds.count() as u32, stride })
+    }
+}

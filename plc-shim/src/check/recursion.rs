@@ -1,0 +1,44 @@
+//! Units do not call themselves, be it by way of others (2nd ed. 2.5).
+
+use std::collections::BTreeSet;
+
+use super::Checker;
+use crate::diagnostic::{Code, Diagnostic};
+use crate::ir::PouId;
+
+impl Checker<'_> {
+    /// Reports each call that closes a circle. Walks the calls depth first, with its own stack.
+    pub(super) fn report_recursion(&mut self) {
+        let mut done = BTreeSet::new();
+        for root in self.queued.clone() {
+            self.walk(root, &mut done);
+        }
+    }
+
+    fn walk(&mut self, root: PouId, done: &mut BTreeSet<PouId>) {
+        let mut path = vec![(root, 0_usize)];
+        let mut on_path = BTreeSet::from([root]);
+        while let Some((caller, next)) = path.last_mut() {
+            let caller = *caller;
+            let call = self.calls.get(&caller).and_then(|calls| calls.get(*next)).copied();
+            *next += 1;
+            match call {
+                None => {
+                    path.pop();
+                    on_path.remove(&caller);
+                    done.insert(caller);
+                }
+                Some((callee, span)) if on_path.contains(&callee) => {
+                    let name = &self.pou(callee).ast.name.text;
+                    let message = format!("this call makes `{name}` call itself");
+                    self.report(Diagnostic::error(Code::Recursion, span, message));
+                }
+                Some((callee, _)) if !done.contains(&callee) => {
+                    path.push((callee, 0));
+                    on_path.insert(callee);
+                }
+                Some(_) => {}
+            }
+        }
+    }
+}

@@ -1,0 +1,76 @@
+//! What a name means inside a unit, and the unit's registers.
+
+use std::collections::BTreeMap;
+
+use super::Checker;
+use crate::diagnostic::Diagnostic;
+use crate::ir::{ElementaryType, LocalId, Place, PouId, Variable};
+use crate::syntax::ast::SectionKind;
+
+/// The variables and registers of a unit.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Scope {
+    pub(super) variables: Vec<Variable>,
+    pub(super) by_name: BTreeMap<String, usize>,
+    pub(super) registers: Vec<ElementaryType>,
+    pub(super) parameters: u32,
+    pub(super) result: Option<Place>,
+}
+
+impl Scope {
+    pub(super) fn find(&self, key: &str) -> Option<&Variable> {
+        self.by_name.get(key).and_then(|index| self.variables.get(*index))
+    }
+
+    /// True for a name whose declaration is wrong, which has been reported.
+    pub(super) fn is_broken(&self, key: &str) -> bool {
+        self.by_name.get(key).is_some_and(|index| *index >= self.variables.len())
+    }
+
+    /// What a caller can set by position: inputs and in-outs in their order.
+    pub(super) fn inputs(&self) -> impl Iterator<Item = &Variable> {
+        let accepts = |section| matches!(section, SectionKind::Input | SectionKind::InOut);
+        self.variables.iter().filter(move |variable| accepts(variable.section))
+    }
+
+    pub(super) fn register(&mut self, ty: ElementaryType) -> LocalId {
+        self.registers.push(ty);
+        LocalId(self.registers.len() as u32 - 1)
+    }
+}
+
+/// Checks expressions and statements inside a scope.
+pub(super) struct Body<'c, 'a> {
+    pub(super) checker: &'c mut Checker<'a>,
+    pub(super) scope: Scope,
+    /// The unit; nothing for declarations outside of any.
+    pub(super) pou: Option<PouId>,
+    /// The type that the place of the expression wants, for constants that no operand types.
+    pub(super) context: Option<ElementaryType>,
+    /// Loops around the statement.
+    pub(super) loops: u32,
+    pub(super) result_assigned: bool,
+}
+
+impl<'c, 'a> Body<'c, 'a> {
+    /// For declarations outside of any unit.
+    pub(super) fn outside(checker: &'c mut Checker<'a>) -> Self {
+        Self::new(checker, Scope::default(), None)
+    }
+
+    pub(super) fn new(checker: &'c mut Checker<'a>, scope: Scope, pou: Option<PouId>) -> Self {
+        Self { checker, scope, pou, context: None, loops: 0, result_assigned: false }
+    }
+
+    pub(super) fn report(&mut self, diagnostic: Diagnostic) {
+        self.checker.report(diagnostic);
+    }
+
+    pub(super) fn type_name(&self, ty: impl Into<crate::ir::TypeId>) -> String {
+        self.checker.types.name(ty.into())
+    }
+
+    pub(super) fn elementary(&self, ty: crate::ir::TypeId) -> Option<ElementaryType> {
+        self.checker.types.elementary(ty)
+    }
+}

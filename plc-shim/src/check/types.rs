@@ -1,0 +1,248 @@
+//! Types as written to types (2nd ed. 2.3.3).
+
+use std::sync::Arc;
+
+use super::layout::{MEMORY_LIMIT, align_up};
+use super::names::{Enumerator, Progress, TypedImage};
+use super::scope::Body;
+use super::{Checker, MAX_DEPTH};
+use crate::diagnostic::{Code, Diagnostic, did_you_mean};
+use crate::ir::{Dimension, ElementaryType, Field, TypeId};
+use crate::syntax::Span;
+use crate::syntax::ast::{self, EnumValue, Ident, PouKind, TypeSpec, TypeSpecKind};
+
+/// Whether the size of a type matters where it is used.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Need {
+    /// A variable is made of it.
+    Size,
+    /// Only its address is kept.
+    Reference,
+}
+
+impl Checker<'_> {
+    /// A type of a `TYPE` block; `used` is where it is needed.
+    pub(super) fn named_type(&mut self, key: &str, used: Option<Span>) -> Option<TypedImage> {
+        let entry = self.type_names.get_mut(key)?;
+        let ast = entry.ast;
+        match entry.progress {
+            Progress::Done => return entry.resolved.clone(),
+            Progress::Running => {
+                self.report_recursive_type(&ast.name, used);
+                return None;
+            }
+            Progress::Untouched => entry.progress = Progress::Running,
+        }
+        let resolved = self.deeper(ast.name.span, |checker| {
+            Body::outside(checker).declared_type(ast)
+        });
+        if let Some(entry) = self.type_names.get_mut(key) {
+            entry.progress = Progress::Done;
+            entry.resolved.clone_from(&resolved);
+        }
+        resolved
+    }
+
+    fn report_recursive_type(&mut self, name: &Ident, used: Option<Span>) {
+        let message = format!("type `{}` contains itself", name.text);
+        let span = used.unwrap_or(name.span);
+        self.report(Diagnostic::error(Code::Recursion, span, message));
+    }
+
+    /// Runs `resolve` one level deeper; what needs too many others in a row is reported.
+    pub(super) fn deeper<T>(
+        &mut self,
+        span: Span,
+        resolve: impl FnOnce(&mut Self) -> Option<T>,
+    ) -> Option<T> {
+        if self.depth == MAX_DEPTH {
+            let message = format!("more than {MAX_DEPTH} declarations need each other in a row");
+            self.report(Diagnostic::error(Code::NestingTooDeep, span, message));
+            return None;
+        }
+        self.depth += 1;
+        let resolved = resolve(self);
+        self.depth -= 1;
+        resolved
+    }
+}
+
+impl<'a> Body<'_, 'a> {
+    fn declared_type(&mut self, ast: &'a ast::TypeDeclaration) -> Option<TypedImage> {
+        let name = &ast.name.text;
+        let mut resolved = match &ast.spec.kind {
+            TypeSpecKind::Struct(fields) => self.structure(name, fields, ast.name.span),
+            TypeSpecKind::Enumeration(values) => self.enumeration(name, values),
+            _ => self.resolve(&ast.spec, Need::Size),
+        }?;
+        if let Some(initial) = &ast.initial {
+            resolved.image = self.initial_image(&resolved, initial)?;
+        }
+        Some(resolved)
+    }
+
+    /// The type and the initial bytes of a variable declared with it.
+    pub(super) fn resolve(&mut self, spec: &'a TypeSpec, need: Need) -> Option<TypedImage> {
+        match &spec.kind {
+            TypeSpecKind::Name(name) => self.type_by_name(name, need),
+            TypeSpecKind::Array(dimensions, element) => {
+                self.array(dimensions, element, need, spec.span)
+            }
+            TypeSpecKind::Struct(fields) => self.structure("STRUCT", fields, spec.span),
+            TypeSpecKind::Enumeration(values) => self.enumeration("enumeration", values),
+            TypeSpecKind::String(name, _) => self.unsupported(&format!("type {}", name.text), spec.span),
+            TypeSpecKind::Subrange(..) => self.unsupported("a subrange type", spec.span),
+            TypeSpecKind::Error => None,
+        }
+    }
+
+    pub(super) fn unsupported<T>(&mut self, what: &str, span: Span) -> Option<T> {
+        let message = format!("{what} is not supported yet");
+        self.report(Diagnostic::error(Code::UnsupportedFeature, span, message));
+        None
+    }
+
+    fn whole(&self, ty: TypeId) -> TypedImage {
+        TypedImage { ty, image: self.checker.types.image(ty).clone() }
+    }
+
+    fn type_by_name(&mut self, name: &Ident, need: Need) -> Option<TypedImage> {
+        let key = name.key();
+        if let Some(found) = ElementaryType::find(&key) {
+            return Some(self.whole(found.into()));
+        }
+        if self.checker.type_names.contains_key(&key) {
+            return self.checker.named_type(&key, Some(name.span));
+        }
+        if let Some(id) = self.checker.pou_names.get(&key).copied() {
+            let ast = self.checker.pou(id).ast;
+            if ast.kind == PouKind::FunctionBlock {
+                let ty = self.checker.types.block(&ast.name.text, id);
+                if need == Need::Size {
+                    self.checker.declare(id, Some(name.span))?;
+                }
+                return Some(self.whole(ty));
+            }
+            let message = format!("`{}` is a unit that has no instances", name.text);
+            self.report(Diagnostic::error(Code::UnknownType, name.span, message));
+            return None;
+        }
+        self.report_unknown_type(name);
+        None
+    }
+
+    fn report_unknown_type(&mut self, name: &Ident) {
+        const LATER: [&str; 14] = [
+            "DATE", "TOD", "TIME_OF_DAY", "DT", "DATE_AND_TIME", "LDATE", "LTOD", "LDT", "CHAR",
+            "WCHAR", "POINTER", "REF_TO", "REFERENCE", "XINT",
+        ];
+        if LATER.contains(&name.key().as_str()) {
+            self.unsupported::<()>(&format!("type {}", name.key()), name.span);
+            return;
+        }
+        let elementary = ElementaryType::ALL.iter().map(|ty| ty.name());
+        let derived = self.checker.type_names.values().map(|entry| entry.ast.name.text.as_str());
+        let blocks = self.checker.pous.iter().filter(|pou| pou.ast.kind == PouKind::FunctionBlock);
+        let blocks = blocks.map(|pou| pou.ast.name.text.as_str());
+        let help = did_you_mean(&name.text, elementary.chain(derived).chain(blocks));
+        let message = format!("type `{}` is not declared", name.text);
+        let found = Diagnostic::error(Code::UnknownType, name.span, message);
+        self.report(found.with_optional_help(help));
+    }
+
+    fn array(
+        &mut self,
+        dimensions: &'a [ast::Dimension],
+        element: &'a TypeSpec,
+        need: Need,
+        span: Span,
+    ) -> Option<TypedImage> {
+        let bounds: Vec<_> = dimensions.iter().map(|each| self.dimension(each)).collect();
+        let element = self.resolve(element, if need == Need::Size { need } else { Need::Size })?;
+        let bounds: Vec<Dimension> = bounds.into_iter().collect::<Option<_>>()?;
+        let size = self.checker.types.size(element.ty);
+        let total = bounds.iter().try_fold(u64::from(size), |total, each| {
+            total.checked_mul(each.count()).filter(|size| *size <= u64::from(MEMORY_LIMIT))
+        });
+        let Some(total) = total else {
+            self.checker.report_too_large(span);
+            return None;
+        };
+        let count = total / u64::from(size.max(1));
+        let ty = self.checker.types.array(bounds, element.ty, total as u32);
+        Some(TypedImage { ty, image: element.image.repeat(count as usize).into() })
+    }
+
+    fn dimension(&mut self, ast: &'a ast::Dimension) -> Option<Dimension> {
+        let low = self.constant_integer(&ast.low);
+        let high = self.constant_integer(&ast.high);
+        let (low, high) = (low?, high?);
+        let span = ast.low.span.to(ast.high.span);
+        match (i32::try_from(low), i32::try_from(high)) {
+            (Ok(low), Ok(high)) if low <= high => {
+                Some(Dimension { low: i64::from(low), high: i64::from(high) })
+            }
+            _ => {
+                let message = format!("bounds {low}..{high} are reversed or beyond 32 bits");
+                self.report(Diagnostic::error(Code::InvalidRange, span, message));
+                None
+            }
+        }
+    }
+
+    fn structure(&mut self, name: &str, ast: &'a [ast::Field], span: Span) -> Option<TypedImage> {
+        let mut fields: Vec<Field> = Vec::new();
+        let mut image: Vec<u8> = Vec::new();
+        for field in ast {
+            if fields.iter().any(|other| other.name.eq_ignore_ascii_case(&field.name.text)) {
+                self.checker.report_duplicate(&field.name, None);
+                continue;
+            }
+            let mut resolved = self.resolve(&field.spec, Need::Size)?;
+            if let Some(initial) = &field.initial {
+                resolved.image = self.initial_image(&resolved, initial)?;
+            }
+            let offset = align_up(image.len() as u32, self.checker.types.align(resolved.ty));
+            if offset as usize + resolved.image.len() > MEMORY_LIMIT as usize {
+                self.checker.report_too_large(span);
+                return None;
+            }
+            image.resize(offset as usize, 0);
+            image.extend_from_slice(&resolved.image);
+            fields.push(Field { name: field.name.text.clone(), ty: resolved.ty, offset });
+        }
+        let align = fields.iter().map(|field| self.checker.types.align(field.ty)).max();
+        image.resize(align_up(image.len() as u32, align.unwrap_or(1)) as usize, 0);
+        let image_of_type: Arc<[u8]> = image.clone().into();
+        let ty = self.checker.types.structure(name.to_owned(), fields, image);
+        Some(TypedImage { ty, image: image_of_type })
+    }
+
+    fn enumeration(&mut self, name: &str, ast: &'a [EnumValue]) -> Option<TypedImage> {
+        let base = ElementaryType::Int;
+        let mut values: Vec<(String, i128)> = Vec::new();
+        let mut next = 0;
+        for each in ast {
+            if values.iter().any(|(other, _)| other.eq_ignore_ascii_case(&each.name.text)) {
+                self.checker.report_duplicate(&each.name, None);
+                continue;
+            }
+            if let Some(expr) = &each.value {
+                next = self.constant_integer(expr)?;
+            }
+            if base.wrap(next) != next {
+                let message = format!("{next} does not fit an enumeration ({base})");
+                self.report(Diagnostic::error(Code::OutOfRange, each.name.span, message));
+                return None;
+            }
+            values.push((each.name.text.clone(), next));
+            next += 1;
+        }
+        let ty = self.checker.types.enumeration(name.to_owned(), base, values.clone());
+        for (name, value) in values {
+            let known = self.checker.enumerators.entry(name.to_ascii_uppercase()).or_default();
+            known.push(Enumerator { ty, value });
+        }
+        Some(self.whole(ty))
+    }
+}

@@ -1,0 +1,344 @@
+//! Sections to placed variables; the interfaces of units (2nd ed. 2.4.3 and 2.5).
+
+use std::sync::Arc;
+
+use super::layout::{MEMORY_LIMIT, align_up};
+use super::names::{Progress, TypedImage};
+use super::scope::{Body, Scope};
+use super::types::Need;
+use super::Checker;
+use crate::diagnostic::{Code, Diagnostic, did_you_mean};
+use crate::ir::{ElementaryType, Place, PouId, Storage, TypeId, Value, Variable};
+use crate::syntax::Span;
+use crate::syntax::ast::{self, Ident, PouKind, Qualifier, Section, SectionKind};
+
+/// Pointers are offsets in memory.
+const POINTER: ElementaryType = ElementaryType::Udint;
+
+impl<'a> Checker<'a> {
+    /// A global variable, placed in memory; `used` is where it is needed.
+    pub(super) fn global(&mut self, key: &str, used: Option<Span>) -> Option<Variable> {
+        let entry = self.globals.get_mut(key)?;
+        let (progress, span) = (entry.progress, entry.span);
+        if progress == Progress::Done {
+            return entry.variable.clone();
+        }
+        let (ast, qualifiers) = entry.ast?;
+        if progress == Progress::Running {
+            let message = "the initial value of a variable needs the variable itself";
+            self.report(Diagnostic::error(Code::Recursion, used.unwrap_or(span), message));
+            return None;
+        }
+        entry.progress = Progress::Running;
+        let name = ast.names.iter().find(|name| name.span == span);
+        let variable = self.deeper(span, |checker| checker.place_global(name?, ast, qualifiers));
+        if let Some(entry) = self.globals.get_mut(key) {
+            entry.progress = Progress::Done;
+            entry.variable.clone_from(&variable);
+        }
+        variable
+    }
+
+    fn place_global(
+        &mut self,
+        name: &Ident,
+        ast: &'a ast::Variable,
+        qualifiers: &[Qualifier],
+    ) -> Option<Variable> {
+        let declared = Body::outside(self).declared(ast, Need::Size)?;
+        let (size, align) = (self.types.size(declared.ty), self.types.align(declared.ty));
+        let offset = self.allocate(size, align, name.span)?;
+        self.placed.push((offset, declared.image.clone()));
+        let storage = Storage::Absolute(offset);
+        Some(self.variable(name, ast, SectionKind::Global, qualifiers, &declared, storage))
+    }
+
+    fn variable(
+        &self,
+        name: &Ident,
+        ast: &ast::Variable,
+        section: SectionKind,
+        qualifiers: &[Qualifier],
+        declared: &TypedImage,
+        storage: Storage,
+    ) -> Variable {
+        let is_constant = qualifiers.contains(&Qualifier::Constant);
+        let elementary = self.types.elementary(declared.ty);
+        Variable {
+            name: name.text.clone(),
+            section,
+            ty: declared.ty,
+            storage,
+            constant: elementary.filter(|_| is_constant).map(|ty| decode(ty, &declared.image)),
+            is_constant,
+            retain: qualifiers.contains(&Qualifier::Retain),
+            address: ast.address.as_ref().map(|address| address.text.clone()),
+            span: name.span,
+            image: declared.image.clone(),
+        }
+    }
+
+    /// Resolves a unit's variables and, for what has instances, their layout. Nothing, with a
+    /// report, if the unit contains itself.
+    pub(super) fn declare(&mut self, id: PouId, used: Option<Span>) -> Option<()> {
+        let index = id.0 as usize;
+        let ast = self.pou(id).ast;
+        match self.pous[index].progress {
+            Progress::Done => return Some(()),
+            Progress::Running => {
+                let message = format!("`{}` contains itself", ast.name.text);
+                let span = used.unwrap_or(ast.name.span);
+                self.report(Diagnostic::error(Code::Recursion, span, message));
+                return None;
+            }
+            Progress::Untouched => self.pous[index].progress = Progress::Running,
+        }
+        let declared = self.deeper(ast.name.span, |checker| {
+            let mut interface = Interface::new(checker, id);
+            interface.declare(ast);
+            Some((interface.body.scope, interface.align, interface.image))
+        });
+        let (scope, align, mut image) = declared.unwrap_or_default();
+        image.resize(align_up(image.len() as u32, align) as usize, 0);
+        if ast.kind == PouKind::FunctionBlock {
+            let ty = self.types.block(&ast.name.text, id);
+            self.types.complete_block(ty, align, image.clone());
+        }
+        let entry = &mut self.pous[index];
+        entry.scope = Some(Arc::new(scope));
+        entry.align = align.max(1);
+        entry.image = image.into();
+        entry.progress = Progress::Done;
+        Some(())
+    }
+
+    /// The interface of a unit that is not being declared right now.
+    pub(super) fn interface(&mut self, id: PouId, used: Span) -> Option<Arc<Scope>> {
+        self.declare(id, Some(used))?;
+        self.pou(id).scope.clone()
+    }
+}
+
+/// The value that an elementary variable's bytes stand for.
+pub(super) fn decode(ty: ElementaryType, image: &[u8]) -> Value {
+    let mut bytes = [0; 8];
+    for (target, source) in bytes.iter_mut().zip(image) {
+        *target = *source;
+    }
+    let raw = u64::from_le_bytes(bytes);
+    match ty {
+        ElementaryType::Bool => Value::Bool(raw != 0),
+        ElementaryType::Real => Value::Real(f32::from_bits(raw as u32)),
+        ElementaryType::Lreal => Value::Lreal(f64::from_bits(raw)),
+        _ => Value::Int(ty.wrap(i128::from(raw))),
+    }
+}
+
+impl<'a> Body<'_, 'a> {
+    /// Type and initial bytes of a declaration.
+    pub(super) fn declared(&mut self, ast: &'a ast::Variable, need: Need) -> Option<TypedImage> {
+        let mut declared = self.resolve(&ast.spec, need)?;
+        if let Some(initial) = &ast.initial {
+            declared.image = self.initial_image(&declared, initial)?;
+        }
+        Some(declared)
+    }
+}
+
+/// A unit's variables while they are declared.
+struct Interface<'c, 'a> {
+    body: Body<'c, 'a>,
+    kind: PouKind,
+    align: u32,
+    /// Initial bytes of an instance so far.
+    image: Vec<u8>,
+}
+
+impl<'c, 'a> Interface<'c, 'a> {
+    fn new(checker: &'c mut Checker<'a>, id: PouId) -> Self {
+        let kind = checker.pou(id).ast.kind;
+        let body = Body::new(checker, Scope::default(), Some(id));
+        Self { body, kind, align: 1, image: Vec::new() }
+    }
+
+    fn declare(&mut self, ast: &'a ast::Pou) {
+        if self.kind == PouKind::Function {
+            self.declare_sections(ast, |kind| matches!(kind, SectionKind::Input | SectionKind::InOut));
+            self.body.scope.parameters = self.body.scope.registers.len() as u32;
+            self.declare_result(ast);
+            self.declare_sections(ast, |kind| !matches!(kind, SectionKind::Input | SectionKind::InOut));
+        } else {
+            // The first parameter is the instance's address.
+            self.body.scope.register(POINTER);
+            self.body.scope.parameters = 1;
+            self.declare_sections(ast, |_| true);
+        }
+    }
+
+    fn declare_sections(&mut self, ast: &'a ast::Pou, accept: impl Fn(SectionKind) -> bool) {
+        for section in ast.sections.iter().filter(|section| accept(section.kind)) {
+            for variable in &section.variables {
+                self.declare_variables(section, variable);
+            }
+        }
+    }
+
+    fn declare_result(&mut self, ast: &'a ast::Pou) {
+        let Some(spec) = &ast.result else { return };
+        let Some(declared) = self.body.resolve(spec, Need::Size) else { return };
+        let Some(storage) = self.temporary(&declared, ast.name.span) else { return };
+        let span = ast.name.span;
+        self.body.scope.result = Some(Place::whole(storage, declared.ty, span));
+        let shape =
+            ast::Variable { names: Vec::new(), address: None, spec: spec.clone(), initial: None };
+        let kind = SectionKind::Temp;
+        let variable = self.body.checker.variable(&ast.name, &shape, kind, &[], &declared, storage);
+        self.add(&ast.name, variable);
+    }
+
+    fn declare_variables(&mut self, section: &'a Section, ast: &'a ast::Variable) {
+        if section.kind == SectionKind::Global {
+            let message = "VAR_GLOBAL stands outside of units";
+            let span = section.span;
+            self.body.report(Diagnostic::error(Code::WrongSection, span, message));
+            return;
+        }
+        let need = if section.kind == SectionKind::InOut { Need::Reference } else { Need::Size };
+        // Every name has the same type; an error in it is told once.
+        let declared = self.body.declared(ast, need);
+        for name in &ast.names {
+            if let Some(first) = self.body.scope.find(&name.key()) {
+                let first = first.span;
+                self.body.checker.report_duplicate(name, Some(first));
+                continue;
+            }
+            let Some(declared) = &declared else {
+                self.declare_broken(name);
+                continue;
+            };
+            if section.kind == SectionKind::External {
+                self.declare_external(name, declared.ty, section);
+                continue;
+            }
+            let Some(storage) = self.storage(section, declared, name.span) else { continue };
+            let (kind, qualifiers) = (section.kind, &section.qualifiers);
+            let checker = &self.body.checker;
+            let variable = checker.variable(name, ast, kind, qualifiers, declared, storage);
+            self.add(name, variable);
+        }
+    }
+
+    /// A name whose type is wrong is known all the same, so that its uses are not reported.
+    fn declare_broken(&mut self, name: &Ident) {
+        self.body.scope.by_name.insert(name.key(), usize::MAX);
+    }
+
+    fn add(&mut self, name: &Ident, variable: Variable) {
+        self.body.scope.by_name.insert(name.key(), self.body.scope.variables.len());
+        self.body.scope.variables.push(variable);
+    }
+
+    fn storage(&mut self, section: &Section, declared: &TypedImage, span: Span) -> Option<Storage> {
+        match (self.kind, section.kind) {
+            (PouKind::Function, SectionKind::Input) => Some(self.parameter(declared, span)?),
+            (PouKind::Function, SectionKind::InOut) => {
+                Some(Storage::RegisterPointer(self.body.scope.register(POINTER)))
+            }
+            // The caller reads outputs after the call, so they outlive it.
+            (PouKind::Function, SectionKind::Output) => self.frame(declared, span),
+            (PouKind::Function, _) | (_, SectionKind::Temp) => {
+                self.reject_instance(declared.ty, span)?;
+                self.temporary(declared, span)
+            }
+            (_, SectionKind::InOut) => {
+                let pointer: TypeId = POINTER.into();
+                let image = vec![0; POINTER.size() as usize].into();
+                let offset = self.in_instance(&TypedImage { ty: pointer, image }, span)?;
+                Some(Storage::InstancePointer(offset))
+            }
+            _ => Some(Storage::Instance(self.in_instance(declared, span)?)),
+        }
+    }
+
+    /// Functions keep nothing between calls (2nd ed. 2.5.1), instances do.
+    fn reject_instance(&mut self, ty: TypeId, span: Span) -> Option<()> {
+        if matches!(self.body.checker.types.get(ty), crate::ir::Type::FunctionBlock { .. }) {
+            let message = "a function or VAR_TEMP section keeps nothing, so it has no instances";
+            let found = Diagnostic::error(Code::WrongSection, span, message);
+            self.body.report(found.with_help("declare it in VAR or pass it by VAR_IN_OUT"));
+            return None;
+        }
+        Some(())
+    }
+
+    /// A value comes in a register, an aggregate's address too; the callee copies that.
+    fn parameter(&mut self, declared: &TypedImage, span: Span) -> Option<Storage> {
+        if let Some(ty) = self.body.elementary(declared.ty) {
+            return Some(Storage::Register(self.body.scope.register(ty)));
+        }
+        self.reject_instance(declared.ty, span)?;
+        self.body.scope.register(POINTER);
+        self.frame(declared, span)
+    }
+
+    fn temporary(&mut self, declared: &TypedImage, span: Span) -> Option<Storage> {
+        if let Some(ty) = self.body.elementary(declared.ty) {
+            return Some(Storage::Register(self.body.scope.register(ty)));
+        }
+        self.frame(declared, span)
+    }
+
+    /// Fixed memory: no unit is active twice (2nd ed. 2.5, no recursion).
+    fn frame(&mut self, declared: &TypedImage, span: Span) -> Option<Storage> {
+        let types = &self.body.checker.types;
+        let (size, align) = (types.size(declared.ty), types.align(declared.ty));
+        let offset = self.body.checker.allocate(size, align, span)?;
+        self.body.checker.placed.push((offset, declared.image.clone()));
+        Some(Storage::Absolute(offset))
+    }
+
+    fn in_instance(&mut self, declared: &TypedImage, span: Span) -> Option<u32> {
+        let align = self.body.checker.types.align(declared.ty);
+        let offset = align_up(self.image.len() as u32, align);
+        if offset as usize + declared.image.len() > MEMORY_LIMIT as usize {
+            self.body.checker.report_too_large(span);
+            return None;
+        }
+        self.align = self.align.max(align);
+        self.image.resize(offset as usize, 0);
+        self.image.extend_from_slice(&declared.image);
+        Some(offset)
+    }
+
+    /// `VAR_EXTERNAL` names a global variable of the same type (2nd ed. 2.4.3).
+    fn declare_external(&mut self, name: &Ident, ty: TypeId, section: &Section) {
+        let key = name.key();
+        let known = self.body.checker.globals.contains_key(&key);
+        let global = self.body.checker.global(&key, Some(name.span));
+        let Some(mut variable) = global else {
+            if !known {
+                self.report_missing_global(name);
+            }
+            self.declare_broken(name);
+            return;
+        };
+        if variable.ty != ty {
+            let types = &self.body.checker.types;
+            let (wanted, found) = (types.name(variable.ty), types.name(ty));
+            let message = format!("`{}` is {wanted} in VAR_GLOBAL, {found} here", name.text);
+            let found = Diagnostic::error(Code::ExternalWithoutGlobal, name.span, message);
+            self.body.report(found.with_label(variable.span, "declared here"));
+        }
+        variable.is_constant |= section.qualifiers.contains(&Qualifier::Constant);
+        variable.section = SectionKind::External;
+        self.add(name, variable);
+    }
+
+    fn report_missing_global(&mut self, name: &Ident) {
+        let globals = &self.body.checker.globals;
+        let help = did_you_mean(&name.text, globals.values().map(|entry| entry.name.as_str()));
+        let message = format!("no VAR_GLOBAL declares `{}`", name.text);
+        let found = Diagnostic::error(Code::ExternalWithoutGlobal, name.span, message);
+        self.body.report(found.with_optional_help(help));
+    }
+}

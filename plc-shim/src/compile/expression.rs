@@ -1,0 +1,78 @@
+//! Expressions.
+
+use wasm_encoder::{Ieee32, Ieee64, Instruction, ValType};
+
+use super::emitter::{Emitter, value_type};
+use crate::ir::{
+    Argument, ElementaryType, Expr, ExprKind, FunctionCall, Place, Unary, Value,
+};
+
+impl Emitter<'_, '_> {
+    /// Pushes the expression's value; an aggregate's address.
+    pub(super) fn expression(&mut self, expr: &Expr) {
+        match &expr.kind {
+            ExprKind::Constant(value) => {
+                let ty = self.held_as(expr.ty);
+                self.constant(ty, *value);
+            }
+            ExprKind::Load(place) => self.load(place),
+            ExprKind::Unary(Unary::Negate, operand) => self.negate(operand),
+            ExprKind::Unary(Unary::Not, operand) => self.complement(operand),
+            ExprKind::Binary(operator, left, right) => {
+                let ty = self.held_as(left.ty);
+                self.expression(left);
+                self.expression(right);
+                self.operation(*operator, ty, expr.span);
+            }
+            ExprKind::Convert(rounding, operand) => {
+                let (from, to) = (self.held_as(operand.ty), self.held_as(expr.ty));
+                self.expression(operand);
+                self.convert(from, to, *rounding);
+            }
+            ExprKind::Intrinsic(intrinsic, operands) => {
+                self.intrinsic(*intrinsic, operands, expr);
+            }
+            ExprKind::Call(call) => self.call_function(call),
+        }
+    }
+
+    pub(super) fn constant(&mut self, ty: ElementaryType, value: Value) {
+        self.emit(match value_type(ty) {
+            ValType::F32 => {
+                let value = if let Value::Real(value) = value { value } else { value.as_f64() as f32 };
+                Instruction::F32Const(Ieee32::new(value.to_bits()))
+            }
+            ValType::F64 => Instruction::F64Const(Ieee64::new(value.as_f64().to_bits())),
+            ValType::I64 => Instruction::I64Const(value.as_int().unwrap_or(0) as i64),
+            _ => Instruction::I32Const(value.as_int().unwrap_or(0) as i32),
+        });
+    }
+
+    fn call_function(&mut self, call: &FunctionCall) {
+        self.side_statements(&call.before);
+        for argument in &call.arguments {
+            match argument {
+                Argument::Value(expr) => self.expression(expr),
+                Argument::Reference(place) => self.full_address(place),
+            }
+        }
+        self.call(call.pou);
+        if let Some(place) = &call.result {
+            self.keep_result(place);
+        }
+        self.side_statements(&call.outputs);
+    }
+
+    /// Copies the aggregate whose address is on the stack to `place` and pushes that address.
+    fn keep_result(&mut self, place: &Place) {
+        let source = self.scratch(ValType::I32);
+        self.set(source);
+        self.full_address(place);
+        self.get(source);
+        self.release(source);
+        let size = self.shared.types.size(place.ty);
+        self.emit(Instruction::I32Const(size as i32));
+        self.emit(Instruction::MemoryCopy { src_mem: 0, dst_mem: 0 });
+        self.full_address(place);
+    }
+}

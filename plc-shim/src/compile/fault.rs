@@ -1,0 +1,96 @@
+//! What stops the PLC, and where in the source.
+
+use std::fmt;
+
+use crate::syntax::Span;
+
+/// Why the PLC stopped (2nd ed. Annex E lists the errors).
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum FaultKind {
+    /// An integer or real number was divided by zero.
+    DivisionByZero,
+    /// An index was outside of its array.
+    IndexOutOfRange,
+    /// The selector of MUX was outside of its inputs.
+    SelectorOutOfRange,
+    /// A FOR statement's step was 0.
+    ZeroStep,
+    /// A task used up its budget of instructions.
+    EndlessLoop,
+    /// Units called each other too deep.
+    CallTooDeep,
+    /// The runtime itself failed; a defect, not the program's fault.
+    Internal,
+}
+
+impl FaultKind {
+    /// Every kind; the position of a kind is its number in a saved state.
+    pub const ALL: [Self; 7] = [
+        Self::DivisionByZero,
+        Self::IndexOutOfRange,
+        Self::SelectorOutOfRange,
+        Self::ZeroStep,
+        Self::EndlessLoop,
+        Self::CallTooDeep,
+        Self::Internal,
+    ];
+}
+
+impl fmt::Display for FaultKind {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        formatter.write_str(match self {
+            Self::DivisionByZero => "division by zero",
+            Self::IndexOutOfRange => "array index out of range",
+            Self::SelectorOutOfRange => "selector out of range",
+            Self::ZeroStep => "FOR with a step of 0",
+            Self::EndlessLoop => "endless loop",
+            Self::CallTooDeep => "calls nested too deep",
+            Self::Internal => "internal error",
+        })
+    }
+}
+
+/// What an instruction stands for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct Mark {
+    pub(crate) span: Span,
+    /// The fault if this very instruction traps; nothing where a statement begins.
+    pub(crate) fault: Option<FaultKind>,
+}
+
+/// The marks of one function by offset in its body, in order.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct FunctionMarks {
+    pub(crate) name: String,
+    pub(crate) marks: Vec<(u32, Mark)>,
+}
+
+impl FunctionMarks {
+    /// The fault of the trapping instruction at `offset`.
+    pub(crate) fn fault_at(&self, offset: u32) -> Option<Mark> {
+        let first = self.marks.partition_point(|(at, _)| *at < offset);
+        let here = self.marks.iter().skip(first).take_while(|(at, _)| *at == offset);
+        here.map(|(_, mark)| *mark).find(|mark| mark.fault.is_some())
+    }
+
+    /// The last statement that begins at or before `offset`.
+    pub(crate) fn statement_before(&self, offset: u32) -> Option<Span> {
+        let end = self.marks.partition_point(|(at, _)| *at <= offset);
+        let before = self.marks.iter().take(end).rev();
+        before.map(|(_, mark)| mark).find(|mark| mark.fault.is_none()).map(|mark| mark.span)
+    }
+}
+
+/// The marks of all functions by their index.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct FaultTable {
+    pub(crate) first_function: u32,
+    pub(crate) functions: Vec<FunctionMarks>,
+}
+
+impl FaultTable {
+    pub(crate) fn function(&self, index: u32) -> Option<&FunctionMarks> {
+        let index = index.checked_sub(self.first_function)?;
+        self.functions.get(index as usize)
+    }
+}

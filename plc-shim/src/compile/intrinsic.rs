@@ -1,0 +1,207 @@
+//! Standard functions that are not made of other expressions.
+
+use wasm_encoder::{Instruction, ValType};
+
+use super::emitter::{Emitter, value_type};
+use super::fault::FaultKind;
+use super::host;
+use crate::ir::{Binary, ElementaryType, Expr, Intrinsic, LocalId, Value};
+use crate::syntax::Span;
+
+impl Emitter<'_, '_> {
+    pub(super) fn intrinsic(&mut self, kind: Intrinsic, operands: &[Expr], whole: &Expr) {
+        let ty = self.held_as(whole.ty);
+        match kind {
+            Intrinsic::Abs => self.absolute(operands, ty),
+            Intrinsic::Sqrt => {
+                self.all(operands);
+                let single = ty == ElementaryType::Real;
+                self.emit(if single { Instruction::F32Sqrt } else { Instruction::F64Sqrt });
+            }
+            Intrinsic::Max | Intrinsic::Min => self.extreme(kind, operands, ty, whole.span),
+            Intrinsic::Select => self.select(operands, ty),
+            Intrinsic::Multiplex => self.multiplex(operands, ty, whole.span),
+            Intrinsic::ShiftLeft
+            | Intrinsic::ShiftRight
+            | Intrinsic::RotateLeft
+            | Intrinsic::RotateRight => self.shift(kind, operands, ty),
+            _ => {
+                self.all(operands);
+                match host::index(kind, ty == ElementaryType::Real) {
+                    Some(index) => self.emit(Instruction::Call(index)),
+                    None => self.emit(Instruction::Unreachable),
+                }
+            }
+        }
+    }
+
+    fn all(&mut self, operands: &[Expr]) {
+        for operand in operands {
+            self.expression(operand);
+        }
+    }
+
+    /// Evaluates the operands into registers.
+    fn in_registers(&mut self, operands: &[Expr]) -> Vec<LocalId> {
+        let mut registers = Vec::with_capacity(operands.len());
+        for operand in operands {
+            let held = value_type(self.held_as(operand.ty));
+            self.expression(operand);
+            let register = self.scratch(held);
+            self.set(register);
+            registers.push(register);
+        }
+        registers
+    }
+
+    fn release_all(&mut self, registers: Vec<LocalId>) {
+        for register in registers {
+            self.release(register);
+        }
+    }
+
+    fn absolute(&mut self, operands: &[Expr], ty: ElementaryType) {
+        match value_type(ty) {
+            ValType::F32 => {
+                self.all(operands);
+                self.emit(Instruction::F32Abs);
+            }
+            ValType::F64 => {
+                self.all(operands);
+                self.emit(Instruction::F64Abs);
+            }
+            _ if !ty.is_signed() => self.all(operands),
+            _ => {
+                let registers = self.in_registers(operands);
+                if let [value] = registers[..] {
+                    let span = operands.first().map(|operand| operand.span);
+                    let Some(span) = span else { return };
+                    self.constant(ty, Value::Int(0));
+                    self.get(value);
+                    self.operation(Binary::Subtract, ty, span);
+                    self.get(value);
+                    self.get(value);
+                    self.constant(ty, Value::Int(0));
+                    self.operation(Binary::Less, ty, span);
+                    self.emit(Instruction::Select);
+                }
+                self.release_all(registers);
+            }
+        }
+    }
+
+    fn extreme(&mut self, kind: Intrinsic, operands: &[Expr], ty: ElementaryType, span: Span) {
+        let max = kind == Intrinsic::Max;
+        match value_type(ty) {
+            ValType::F32 => {
+                self.all(operands);
+                self.emit(if max { Instruction::F32Max } else { Instruction::F32Min });
+            }
+            ValType::F64 => {
+                self.all(operands);
+                self.emit(if max { Instruction::F64Max } else { Instruction::F64Min });
+            }
+            _ => {
+                let registers = self.in_registers(operands);
+                if let [left, right] = registers[..] {
+                    for register in [left, right, left, right] {
+                        self.get(register);
+                    }
+                    self.operation(if max { Binary::Greater } else { Binary::Less }, ty, span);
+                    self.emit(Instruction::Select);
+                }
+                self.release_all(registers);
+            }
+        }
+    }
+
+    /// Both values are evaluated, as the arguments of any function are.
+    fn select(&mut self, operands: &[Expr], ty: ElementaryType) {
+        let registers = self.in_registers(operands);
+        if let [selector, if_false, if_true] = registers[..] {
+            self.get(if_true);
+            self.get(if_false);
+            self.get(selector);
+            self.emit(Instruction::TypedSelect(value_type(ty)));
+        }
+        self.release_all(registers);
+    }
+
+    fn multiplex(&mut self, operands: &[Expr], ty: ElementaryType, span: Span) {
+        let registers = self.in_registers(operands);
+        if let [selector, values @ .., last] = &registers[..] {
+            self.get(*selector);
+            self.emit(Instruction::I64Const(values.len() as i64));
+            self.emit(Instruction::I64GtU);
+            self.fault_if(FaultKind::SelectorOutOfRange, span);
+            for (index, value) in values.iter().enumerate() {
+                self.get(*value);
+                self.get(*last);
+                self.get(*selector);
+                self.emit(Instruction::I64Const(index as i64));
+                self.emit(Instruction::I64Eq);
+                self.emit(Instruction::TypedSelect(value_type(ty)));
+                self.set(*last);
+            }
+            self.get(*last);
+        }
+        self.release_all(registers);
+    }
+
+    /// 2nd ed. Table 25. A count of the type's width or more shifts everything out; a negative
+    /// one, which is an error there, does too. Rotation takes the count modulo the width.
+    fn shift(&mut self, kind: Intrinsic, operands: &[Expr], ty: ElementaryType) {
+        let registers = self.in_registers(operands);
+        if let [value, count] = registers[..] {
+            let bits = if ty == ElementaryType::Bool { 1 } else { i64::from(ty.size()) * 8 };
+            match kind {
+                Intrinsic::ShiftLeft | Intrinsic::ShiftRight => {
+                    self.shifted(value, count, ty, kind == Intrinsic::ShiftLeft);
+                    self.constant(ty, Value::Int(0));
+                    self.get(count);
+                    self.emit(Instruction::I64Const(bits));
+                    self.emit(Instruction::I64LtU);
+                    self.emit(Instruction::Select);
+                }
+                _ => {
+                    self.rotation_count(count, bits);
+                    let left = kind == Intrinsic::RotateLeft;
+                    self.shifted(value, count, ty, left);
+                    self.emit(Instruction::I64Const(bits));
+                    self.get(count);
+                    self.emit(Instruction::I64Sub);
+                    self.rotation_count_on_stack(count, bits);
+                    self.shifted(value, count, ty, !left);
+                    let wide = ty.size() == 8;
+                    self.emit(if wide { Instruction::I64Or } else { Instruction::I32Or });
+                }
+            }
+        }
+        self.release_all(registers);
+    }
+
+    fn rotation_count(&mut self, count: LocalId, bits: i64) {
+        self.get(count);
+        self.rotation_count_on_stack(count, bits);
+    }
+
+    /// Widths are powers of two, so that the remainder is a mask.
+    fn rotation_count_on_stack(&mut self, count: LocalId, bits: i64) {
+        self.emit(Instruction::I64Const(bits - 1));
+        self.emit(Instruction::I64And);
+        self.set(count);
+    }
+
+    /// Pushes the value shifted by the low bits of `count`.
+    fn shifted(&mut self, value: LocalId, count: LocalId, ty: ElementaryType, left: bool) {
+        self.get(value);
+        self.get(count);
+        if ty.size() == 8 {
+            self.emit(if left { Instruction::I64Shl } else { Instruction::I64ShrU });
+            return;
+        }
+        self.emit(Instruction::I32WrapI64);
+        self.emit(if left { Instruction::I32Shl } else { Instruction::I32ShrU });
+        self.wrap(ty);
+    }
+}

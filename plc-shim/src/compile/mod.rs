@@ -1,0 +1,30 @@
+//! The checked program to one WebAssembly module.
+//!
+//! | module | subject |
+//! |---|---|
+//! | [`module`] | sections, functions, exports |
+//! | [`function`] | one unit to one function |
+//! | [`emitter`] | instructions, registers, labels, marks |
+//! | [`place`] | addresses, loads and stores |
+//! | [`statement`], [`repetition`] | statements |
+//! | [`expression`], [`arithmetic`], [`conversion`], [`intrinsic`] | expressions |
+//! | [`host`] | functions that WebAssembly lacks |
+//! | [`fault`] | what stops the PLC, and the place in the source that an instruction stands for |
+//!
+//! Integers of up to 32 bits are held in an `i32`, sign- or zero-extended from their width;
+//! whatever makes one keeps to that.
+
+mod arithmetic;
+mod conversion;
+mod emitter;
+mod expression;
+pub(crate) mod fault;
+mod function;
+pub(crate) mod host;
+mod intrinsic;
+mod module;
+mod place;
+mod repetition;
+mod statement;
+
+pub(crate) use module::{Compiled, MEMORY_EXPORT, compile, program_export};

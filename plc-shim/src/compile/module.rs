@@ -1,0 +1,142 @@
+//! Sections, functions and exports of the module.
+
+use std::collections::BTreeMap;
+
+use wasm_encoder::{
+    CodeSection, DataCountSection, DataSection, EntityType, ExportKind, ExportSection, Function,
+    FunctionSection, ImportSection, Instruction, MemorySection, MemoryType, Module, TypeSection,
+    ValType,
+};
+
+use super::emitter::{Shared, value_type};
+use super::fault::{FaultTable, FunctionMarks};
+use super::{function, host};
+use crate::check::Checked;
+use crate::ir::{Pou, Program, TypeTable};
+use crate::syntax::ast::PouKind;
+
+/// Name of the exported memory.
+pub(crate) const MEMORY_EXPORT: &str = "memory";
+
+const PAGE: u64 = 65_536;
+
+/// Name of the export that runs the program at this position.
+pub(crate) fn program_export(index: usize) -> String {
+    format!("program_{index}")
+}
+
+/// The module and what its instructions stand for.
+#[derive(Debug)]
+pub(crate) struct Compiled {
+    pub(crate) wasm: Vec<u8>,
+    pub(crate) faults: FaultTable,
+}
+
+/// Compiles what has been checked without errors.
+pub(crate) fn compile(checked: &Checked) -> Compiled {
+    let first_function = host::IMPORTS.len() as u32;
+    let order = checked.pous.keys().zip(first_function..);
+    let functions: BTreeMap<_, _> = order.map(|(id, index)| (*id, index)).collect();
+    let mut shared = Shared { types: &checked.types, functions, data: Vec::new() };
+    let mut sections = Sections::default();
+    sections.add_imports();
+    let mut faults = FaultTable { first_function, functions: Vec::new() };
+    for pou in checked.pous.values() {
+        let (parameters, results) = signature(pou, &checked.types);
+        let (body, marks) = function::unit(&mut shared, pou);
+        sections.add_function(parameters, results, &body);
+        faults.functions.push(FunctionMarks { name: pou.name.clone(), marks });
+    }
+    for (index, program) in checked.programs.iter().enumerate() {
+        let body = entry(program, &shared.functions);
+        let at = sections.add_function(Vec::new(), Vec::new(), &body);
+        sections.exports.export(&program_export(index), ExportKind::Func, at);
+    }
+    Compiled { wasm: sections.finish(checked.image.len() as u64, &shared), faults }
+}
+
+/// Runs a program's body on its one instance.
+fn entry(program: &Program, functions: &BTreeMap<crate::ir::PouId, u32>) -> Function {
+    let mut body = Function::new([]);
+    body.instruction(&Instruction::I32Const(program.offset as i32));
+    if let Some(index) = functions.get(&program.pou) {
+        body.instruction(&Instruction::Call(*index));
+    }
+    body.instruction(&Instruction::End);
+    body
+}
+
+fn signature(pou: &Pou, types: &TypeTable) -> (Vec<ValType>, Vec<ValType>) {
+    let parameters = pou.registers.iter().take(pou.parameters as usize);
+    let parameters = parameters.map(|ty| value_type(*ty)).collect();
+    let result = pou.result.as_ref().filter(|_| pou.kind == PouKind::Function);
+    // An aggregate result is given by its address.
+    let result = result.map(|place| types.elementary(place.ty).map_or(ValType::I32, value_type));
+    (parameters, result.into_iter().collect())
+}
+
+#[derive(Default)]
+struct Sections {
+    types: TypeSection,
+    imports: ImportSection,
+    functions: FunctionSection,
+    exports: ExportSection,
+    code: CodeSection,
+}
+
+impl Sections {
+    fn add_type(&mut self, parameters: Vec<ValType>, results: Vec<ValType>) -> u32 {
+        let index = self.types.len();
+        self.types.ty().function(parameters, results);
+        index
+    }
+
+    fn add_imports(&mut self) {
+        for import in &host::IMPORTS {
+            let (value, count) = match import.function {
+                host::Function::Single(_) => (ValType::F32, 1),
+                host::Function::Double(_) => (ValType::F64, 1),
+                host::Function::SinglePair(_) => (ValType::F32, 2),
+                host::Function::DoublePair(_) => (ValType::F64, 2),
+            };
+            let ty = self.add_type(vec![value; count], vec![value]);
+            self.imports.import(host::MODULE, import.name, EntityType::Function(ty));
+        }
+    }
+
+    /// Adds a function and gives its index.
+    fn add_function(
+        &mut self,
+        parameters: Vec<ValType>,
+        results: Vec<ValType>,
+        body: &Function,
+    ) -> u32 {
+        let ty = self.add_type(parameters, results);
+        self.functions.function(ty);
+        self.code.function(body);
+        self.imports.len() + self.functions.len() - 1
+    }
+
+    fn finish(mut self, memory_size: u64, shared: &Shared<'_>) -> Vec<u8> {
+        let pages = memory_size.div_ceil(PAGE);
+        let mut memories = MemorySection::new();
+        memories.memory(MemoryType {
+            minimum: pages,
+            maximum: Some(pages),
+            memory64: false,
+            shared: false,
+            page_size_log2: None,
+        });
+        self.exports.export(MEMORY_EXPORT, ExportKind::Memory, 0);
+        let mut data = DataSection::new();
+        for bytes in &shared.data {
+            data.passive(bytes.iter().copied());
+        }
+        let mut module = Module::new();
+        module.section(&self.types).section(&self.imports).section(&self.functions);
+        module.section(&memories).section(&self.exports);
+        module.section(&DataCountSection { count: data.len() });
+        module.section(&self.code).section(&data);
+        module.finish()
+    }
+}

@@ -1,0 +1,176 @@
+//! FOR, WHILE and REPEAT (2nd ed. 3.3.2.4).
+
+use wasm_encoder::{Instruction, ValType};
+
+use super::emitter::{Emitter, LoopLabels};
+use super::fault::FaultKind;
+use crate::ir::elementary::Kind;
+use crate::ir::{Binary, ElementaryType, Expr, ForStatement, LocalId, Statement};
+use crate::syntax::Span;
+
+impl Emitter<'_, '_> {
+    pub(super) fn while_statement(&mut self, condition: &Expr, body: &[Statement], span: Span) {
+        let exit = self.open_block();
+        let top = self.open_loop();
+        self.mark_statement(span);
+        self.expression(condition);
+        self.emit(Instruction::I32Eqz);
+        self.branch_if(exit);
+        let next = self.open_block();
+        self.loops.push(LoopLabels { exit, next });
+        self.statements(body);
+        self.loops.pop();
+        self.close();
+        self.branch(top);
+        self.close();
+        self.close();
+    }
+
+    pub(super) fn repeat_statement(&mut self, body: &[Statement], until: &Expr, span: Span) {
+        let exit = self.open_block();
+        let top = self.open_loop();
+        self.mark_statement(span);
+        let next = self.open_block();
+        self.loops.push(LoopLabels { exit, next });
+        self.statements(body);
+        self.loops.pop();
+        self.close();
+        self.mark_statement(until.span);
+        self.expression(until);
+        self.emit(Instruction::I32Eqz);
+        self.branch_if(top);
+        self.close();
+        self.close();
+    }
+
+    /// The last value and the step are computed once, before the variable is set. Whether
+    /// another turn follows is decided from the distance to the last value, so that a variable
+    /// at its type's limit ends the loop and does not wrap into another round.
+    pub(super) fn for_statement(&mut self, inner: &ForStatement, span: Span) {
+        let ty = self.held_as(inner.variable.ty);
+        self.widened(&inner.to, ty);
+        self.set(inner.last);
+        self.widened(&inner.by, ty);
+        self.set(inner.step);
+        self.store(&inner.variable, |emitter| emitter.expression(&inner.from));
+        self.get(inner.step);
+        self.emit(Instruction::I64Eqz);
+        self.fault_if(FaultKind::ZeroStep, inner.by.span);
+        let exit = self.open_block();
+        let top = self.open_loop();
+        self.mark_statement(span);
+        self.beyond(inner, ty);
+        self.branch_if(exit);
+        let next = self.open_block();
+        self.loops.push(LoopLabels { exit, next });
+        self.statements(&inner.body);
+        self.loops.pop();
+        self.close();
+        self.mark_statement(span);
+        let finished = self.scratch(ValType::I32);
+        self.last_turn(inner, ty);
+        self.set(finished);
+        self.store(&inner.variable, |emitter| emitter.stepped(inner, ty));
+        self.get(finished);
+        self.emit(Instruction::I32Eqz);
+        self.branch_if(top);
+        self.release(finished);
+        self.close();
+        self.close();
+    }
+
+    /// Pushes an integer of type `ty` as 64 bits.
+    fn widened(&mut self, expr: &Expr, ty: ElementaryType) {
+        self.expression(expr);
+        self.extend(ty);
+    }
+
+    fn extend(&mut self, ty: ElementaryType) {
+        if ty.size() < 8 {
+            self.emit(match ty.kind() {
+                Kind::Signed => Instruction::I64ExtendI32S,
+                _ => Instruction::I64ExtendI32U,
+            });
+        }
+    }
+
+    fn widened_variable(&mut self, inner: &ForStatement, ty: ElementaryType) {
+        self.load(&inner.variable);
+        self.extend(ty);
+    }
+
+    /// Pushes whether the step is negative.
+    fn downwards(&mut self, step: LocalId, ty: ElementaryType) {
+        if ty.kind() == Kind::Signed {
+            self.get(step);
+            self.emit(Instruction::I64Const(0));
+            self.emit(Instruction::I64LtS);
+        } else {
+            self.emit(Instruction::I32Const(0));
+        }
+    }
+
+    /// Pushes whether the variable lies beyond the last value.
+    fn beyond(&mut self, inner: &ForStatement, ty: ElementaryType) {
+        let signed = ty.kind() == Kind::Signed;
+        let variable = self.scratch(ValType::I64);
+        self.widened_variable(inner, ty);
+        self.tee(variable);
+        self.get(inner.last);
+        self.emit(if signed { Instruction::I64LtS } else { Instruction::I64LtU });
+        self.get(variable);
+        self.get(inner.last);
+        self.emit(if signed { Instruction::I64GtS } else { Instruction::I64GtU });
+        self.downwards(inner.step, ty);
+        self.emit(Instruction::Select);
+        self.release(variable);
+    }
+
+    /// Pushes whether the distance to the last value is less than the step.
+    fn last_turn(&mut self, inner: &ForStatement, ty: ElementaryType) {
+        let variable = self.scratch(ValType::I64);
+        self.widened_variable(inner, ty);
+        self.set(variable);
+        self.distance_is_short(inner.last, variable, inner.step, false);
+        self.distance_is_short(variable, inner.last, inner.step, true);
+        // `select` takes the first if the condition holds.
+        let (up, down) = (self.scratch(ValType::I32), self.scratch(ValType::I32));
+        self.set(down);
+        self.set(up);
+        self.get(down);
+        self.get(up);
+        self.downwards(inner.step, ty);
+        self.emit(Instruction::Select);
+        // A body that changed the variable past the last value ends the loop too.
+        self.beyond(inner, ty);
+        self.emit(Instruction::I32Or);
+        for local in [variable, up, down] {
+            self.release(local);
+        }
+    }
+
+    /// Pushes `high - low < |step|`, unsigned: the distance of two 64 bit numbers fits.
+    fn distance_is_short(&mut self, high: LocalId, low: LocalId, step: LocalId, negative: bool) {
+        self.get(high);
+        self.get(low);
+        self.emit(Instruction::I64Sub);
+        if negative {
+            self.emit(Instruction::I64Const(0));
+        }
+        self.get(step);
+        if negative {
+            self.emit(Instruction::I64Sub);
+        }
+        self.emit(Instruction::I64LtU);
+    }
+
+    /// Pushes the variable's next value.
+    fn stepped(&mut self, inner: &ForStatement, ty: ElementaryType) {
+        self.load(&inner.variable);
+        self.get(inner.step);
+        if ty.size() < 8 {
+            self.emit(Instruction::I32WrapI64);
+        }
+        self.operation(Binary::Add, ty, inner.by.span);
+    }
+}

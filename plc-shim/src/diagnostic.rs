@@ -1,0 +1,317 @@
+//! What is told to the user about program text: a stable code, a place, a message, a hint.
+
+use std::fmt;
+use std::sync::Arc;
+
+use miette::{LabeledSpan, NamedSource};
+
+use crate::syntax::{SourceMap, Span};
+
+macro_rules! codes {
+    ($($variant:ident $text:literal $about:literal),* $(,)?) => {
+        /// Stable codes: `S` syntax, `N` names, `T` types, `C` calls, `D` declarations, `L` limits.
+        #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+        pub enum Code {
+            $(#[doc = concat!("`", $text, "`: ", $about)] $variant,)*
+        }
+
+        impl Code {
+            /// Every code, for a page that explains each.
+            pub const ALL: &'static [Self] = &[$(Self::$variant),*];
+
+            /// The code as printed.
+            pub fn text(self) -> &'static str {
+                match self { $(Self::$variant => $text,)* }
+            }
+
+            /// What the code stands for, in a line.
+            pub fn about(self) -> &'static str {
+                match self { $(Self::$variant => $about,)* }
+            }
+        }
+    };
+}
+
+codes! {
+    UnexpectedToken "S0101" "a token stands where the grammar wants another",
+    Unterminated "S0102" "a comment, pragma or string has no end",
+    InvalidLiteral "S0103" "a literal is malformed",
+    NestingTooDeep "S0104" "text is nested deeper than the limit",
+    UnknownCharacter "S0105" "a character begins no token",
+    UnknownName "N0101" "a name is not declared",
+    DuplicateName "N0102" "a name is declared twice",
+    UnknownType "N0103" "a type is not declared",
+    UnknownMember "N0104" "a structure or instance has no such member",
+    UnknownFunction "N0105" "no function or instance of that name",
+    NotAVariable "N0106" "a name stands for something that has no value",
+    ReservedName "N0107" "a name is the standard's own",
+    TypeMismatch "T0201" "a value has another type than its place wants",
+    OutOfRange "T0202" "a constant does not fit its type",
+    InvalidOperand "T0203" "an operator is not defined for its operands",
+    NotConstant "T0204" "a constant expression is wanted",
+    IndexOutOfRange "T0205" "a constant index is outside its array",
+    NotIndexable "T0206" "only arrays are indexed",
+    WrongDimensions "T0207" "an array is indexed with the wrong number of indices",
+    NotAStructure "T0208" "only structures and instances have members",
+    ConstantDivisionByZero "T0209" "a constant expression divides by zero",
+    InvalidInitialiser "T0210" "an initial value does not suit its type",
+    UnknownArgument "C0301" "a called unit has no such parameter",
+    MissingArgument "C0302" "an argument is missing",
+    TooManyArguments "C0303" "more arguments than parameters",
+    DuplicateArgument "C0304" "a parameter is given twice",
+    InvalidArgument "C0305" "an argument does not suit its parameter",
+    NotCallable "C0306" "what is called is no function or instance",
+    ResultIgnored "C0307" "a function is called as a statement and its result is lost",
+    AssignToConstant "D0401" "a constant is assigned to",
+    AssignToInput "D0402" "an input is assigned to inside its own unit",
+    NotAssignable "D0403" "the target of an assignment is not a variable",
+    Recursion "D0404" "a unit or type contains or calls itself",
+    MissingResult "D0405" "a function never assigns its result",
+    ExternalWithoutGlobal "D0406" "VAR_EXTERNAL has no matching VAR_GLOBAL",
+    WrongSection "D0407" "a declaration stands where it may not",
+    InvalidRange "D0408" "a subrange's bounds are reversed or too large",
+    MisplacedStatement "D0409" "EXIT or CONTINUE outside a loop",
+    DuplicateCase "D0410" "a CASE label occurs twice",
+    LoopVariable "D0411" "a FOR control variable is unsuitable",
+    UnsupportedFeature "L0501" "part of the language that is not supported yet",
+    TooLarge "L0502" "a type or the program needs more memory than the limit",
+}
+
+impl fmt::Display for Code {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        formatter.write_str(self.text())
+    }
+}
+
+/// How grave a diagnostic is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Severity {
+    /// The program compiles; it may not mean what was meant.
+    Warning,
+    /// The program does not compile.
+    Error,
+}
+
+/// A further place that explains the primary one.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Label {
+    /// Where.
+    pub span: Span,
+    /// What is to be seen there.
+    pub message: String,
+}
+
+/// One finding.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Diagnostic {
+    /// Its stable code.
+    pub code: Code,
+    /// How grave it is.
+    pub severity: Severity,
+    /// The primary place.
+    pub span: Span,
+    /// What is wrong, in a line.
+    pub message: String,
+    /// Further places.
+    pub labels: Vec<Label>,
+    /// What to do about it.
+    pub help: Option<String>,
+}
+
+impl Diagnostic {
+    /// An error at `span`.
+    pub fn error(code: Code, span: Span, message: impl Into<String>) -> Self {
+        let message = message.into();
+        Self { code, severity: Severity::Error, span, message, labels: Vec::new(), help: None }
+    }
+
+    /// A warning at `span`.
+    pub fn warning(code: Code, span: Span, message: impl Into<String>) -> Self {
+        Self { severity: Severity::Warning, ..Self::error(code, span, message) }
+    }
+
+    /// Adds a hint.
+    pub fn with_help(mut self, help: impl Into<String>) -> Self {
+        self.help = Some(help.into());
+        self
+    }
+
+    /// Adds a hint if there is one.
+    pub fn with_optional_help(mut self, help: Option<String>) -> Self {
+        self.help = help;
+        self
+    }
+
+    /// Adds a further place.
+    pub fn with_label(mut self, span: Span, message: impl Into<String>) -> Self {
+        self.labels.push(Label { span, message: message.into() });
+        self
+    }
+}
+
+/// "did you mean `x`?" for the candidate nearest to `name`, if one is near enough to be a slip.
+pub fn did_you_mean<'a>(
+    name: &str,
+    candidates: impl IntoIterator<Item = &'a str>,
+) -> Option<String> {
+    let wanted = name.to_lowercase();
+    // A name of one or two letters is near to every other.
+    let length = wanted.chars().count();
+    let limit = if length < 3 { 0 } else { length / 3 };
+    let distance = |text: &str| strsim::damerau_levenshtein(&wanted, &text.to_lowercase());
+    candidates
+        .into_iter()
+        .filter(|text| text.len().abs_diff(name.len()) <= limit)
+        .map(|text| (distance(text), text))
+        .filter(|(distance, _)| *distance <= limit)
+        .min()
+        .map(|(_, text)| format!("did you mean `{text}`?"))
+}
+
+/// Findings together with the text they point into.
+///
+/// As a [`miette::Diagnostic`] every finding is a related diagnostic with its own source.
+#[derive(Debug, Clone)]
+pub struct Diagnostics {
+    findings: Vec<Finding>,
+}
+
+impl Diagnostics {
+    /// Joins findings with their text, in the order of files and places.
+    pub fn new(mut diagnostics: Vec<Diagnostic>, sources: &SourceMap) -> Self {
+        diagnostics.sort_by_key(|found| (found.span.file, found.span.start, found.code));
+        let findings = diagnostics.into_iter().map(|found| Finding::new(found, sources));
+        Self { findings: findings.collect() }
+    }
+
+    /// True if there is none.
+    pub fn is_empty(&self) -> bool {
+        self.findings.is_empty()
+    }
+
+    /// How many there are.
+    pub fn len(&self) -> usize {
+        self.findings.len()
+    }
+
+    /// True if one of them is an error.
+    pub fn has_errors(&self) -> bool {
+        self.iter().any(|found| found.severity == Severity::Error)
+    }
+
+    /// The findings in order.
+    pub fn iter(&self) -> impl Iterator<Item = &Diagnostic> {
+        self.findings.iter().map(|finding| &finding.diagnostic)
+    }
+}
+
+impl fmt::Display for Diagnostics {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        for (index, finding) in self.findings.iter().enumerate() {
+            if index > 0 {
+                writeln!(formatter)?;
+            }
+            write!(formatter, "{finding}")?;
+        }
+        Ok(())
+    }
+}
+
+impl std::error::Error for Diagnostics {}
+
+impl miette::Diagnostic for Diagnostics {
+    fn related<'a>(&'a self) -> Option<Box<dyn Iterator<Item = &'a dyn miette::Diagnostic> + 'a>> {
+        let each = self.findings.iter().map(|finding| finding as &dyn miette::Diagnostic);
+        Some(Box::new(each))
+    }
+}
+
+/// A diagnostic with what is needed to show it.
+#[derive(Debug, Clone)]
+struct Finding {
+    diagnostic: Diagnostic,
+    source: NamedSource<Arc<str>>,
+    line: u32,
+    column: u32,
+}
+
+impl Finding {
+    fn new(diagnostic: Diagnostic, sources: &SourceMap) -> Self {
+        let (name, place) = sources.locate(diagnostic.span);
+        let file = sources.get(diagnostic.span.file);
+        let text = file.map_or_else(|| Arc::from(""), |file| file.text().clone());
+        let source = NamedSource::new(name, text);
+        Self { diagnostic, source, line: place.line, column: place.column }
+    }
+}
+
+impl fmt::Display for Finding {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { diagnostic, source, line, column } = self;
+        let severity = match diagnostic.severity {
+            Severity::Warning => "warning",
+            Severity::Error => "error",
+        };
+        let (name, code) = (source.name(), diagnostic.code);
+        write!(formatter, "{name}:{line}:{column}: {severity}[{code}]: {}", diagnostic.message)?;
+        if let Some(help) = &diagnostic.help {
+            write!(formatter, " ({help})")?;
+        }
+        Ok(())
+    }
+}
+
+impl std::error::Error for Finding {}
+
+impl miette::Diagnostic for Finding {
+    fn code<'a>(&'a self) -> Option<Box<dyn fmt::Display + 'a>> {
+        Some(Box::new(self.diagnostic.code))
+    }
+
+    fn severity(&self) -> Option<miette::Severity> {
+        Some(match self.diagnostic.severity {
+            Severity::Warning => miette::Severity::Warning,
+            Severity::Error => miette::Severity::Error,
+        })
+    }
+
+    fn help<'a>(&'a self) -> Option<Box<dyn fmt::Display + 'a>> {
+        let help = self.diagnostic.help.as_ref()?;
+        Some(Box::new(help))
+    }
+
+    fn source_code(&self) -> Option<&dyn miette::SourceCode> {
+        Some(&self.source)
+    }
+
+    fn labels(&self) -> Option<Box<dyn Iterator<Item = LabeledSpan> + '_>> {
+        let primary = self.diagnostic.span;
+        let at = |span: Span, text: Option<String>| {
+            LabeledSpan::new(text, span.start as usize, span.len() as usize)
+        };
+        // A renderer shows one file per diagnostic; labels in other files stay with the data.
+        let others = self.diagnostic.labels.iter().filter(move |label| label.span.file == primary.file);
+        let others = others.map(move |label| at(label.span, Some(label.message.clone())));
+        Some(Box::new(std::iter::once(at(primary, None)).chain(others)))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn codes_are_unique() {
+        let mut texts: Vec<_> = Code::ALL.iter().map(|code| code.text()).collect();
+        texts.sort_unstable();
+        texts.dedup();
+        assert_eq!(texts.len(), Code::ALL.len());
+    }
+
+    #[test]
+    fn a_slip_is_recognised_and_a_stranger_is_not() {
+        let names = ["Sensor_1", "Sensor_2", "Drive"];
+        assert_eq!(did_you_mean("sensr_1", names).as_deref(), Some("did you mean `Sensor_1`?"));
+        assert_eq!(did_you_mean("Pump", names), None);
+    }
+}

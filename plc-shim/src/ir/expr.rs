@@ -1,0 +1,176 @@
+//! Typed expressions and the places that hold values.
+
+use super::pou::PouId;
+use super::statement::Statement;
+use super::types::TypeId;
+use super::value::Value;
+use crate::syntax::Span;
+
+/// A register of a unit's function: a parameter or a local of WebAssembly.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct LocalId(pub(crate) u32);
+
+/// An expression. Of elementary type it yields a value, of any other the address of one.
+#[derive(Debug, Clone)]
+pub(crate) struct Expr {
+    pub(crate) kind: ExprKind,
+    pub(crate) ty: TypeId,
+    pub(crate) span: Span,
+}
+
+/// The forms of an expression.
+#[derive(Debug, Clone)]
+pub(crate) enum ExprKind {
+    Constant(Value),
+    Load(Place),
+    Unary(Unary, Box<Expr>),
+    /// Both operands are held alike; the left one's type says how.
+    Binary(Binary, Box<Expr>, Box<Expr>),
+    /// From the operand's type to the expression's, the number itself kept as far as it fits.
+    Convert(Rounding, Box<Expr>),
+    Intrinsic(Intrinsic, Vec<Expr>),
+    Call(Box<FunctionCall>),
+}
+
+/// What becomes of a fraction when a real becomes an integer.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Rounding {
+    /// To nearest, ties to even (2nd ed. 2.5.1.5.1 by way of IEC 60559).
+    NearestEven,
+    /// Towards zero (`TRUNC`).
+    Truncate,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Unary {
+    Negate,
+    Not,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Binary {
+    Add,
+    Subtract,
+    Multiply,
+    Divide,
+    Modulo,
+    And,
+    Or,
+    Xor,
+    Equal,
+    NotEqual,
+    Less,
+    LessEqual,
+    Greater,
+    GreaterEqual,
+}
+
+impl Binary {
+    pub(crate) fn is_comparison(self) -> bool {
+        use Binary as B;
+        matches!(
+            self,
+            B::Equal | B::NotEqual | B::Less | B::LessEqual | B::Greater | B::GreaterEqual
+        )
+    }
+}
+
+/// Standard functions that are not made of other expressions.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Intrinsic {
+    Abs,
+    Sqrt,
+    Ln,
+    Log,
+    Exp,
+    Sin,
+    Cos,
+    Tan,
+    Asin,
+    Acos,
+    Atan,
+    /// Base and exponent, both of the result's type.
+    Power,
+    Max,
+    Min,
+    /// `BOOL` selector, value if FALSE, value if TRUE.
+    Select,
+    /// `LINT` selector, then the values.
+    Multiplex,
+    /// Value and `LINT` count.
+    ShiftLeft,
+    ShiftRight,
+    RotateLeft,
+    RotateRight,
+}
+
+/// A call of a user's function.
+#[derive(Debug, Clone)]
+pub(crate) struct FunctionCall {
+    pub(crate) pou: PouId,
+    /// Puts registers that are passed by reference into memory.
+    pub(crate) before: Vec<Statement>,
+    pub(crate) arguments: Vec<Argument>,
+    /// Copies the function's outputs to where the caller wants them.
+    pub(crate) outputs: Vec<Statement>,
+    /// Where the caller keeps an aggregate result, so that the next call does not change it.
+    pub(crate) result: Option<Place>,
+}
+
+/// One argument of a function's WebAssembly signature.
+#[derive(Debug, Clone)]
+pub(crate) enum Argument {
+    /// A value, or an aggregate's address, which the callee copies.
+    Value(Expr),
+    /// `VAR_IN_OUT`: the variable's address.
+    Reference(Place),
+}
+
+/// Where a variable begins.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Storage {
+    /// At a fixed offset in memory.
+    Absolute(u32),
+    /// At an offset in the running instance.
+    Instance(u32),
+    /// The address stands at an offset in the running instance (`VAR_IN_OUT`).
+    InstancePointer(u32),
+    /// In a register.
+    Register(LocalId),
+    /// The address stands in a register.
+    RegisterPointer(LocalId),
+}
+
+/// A variable or a part of one.
+#[derive(Debug, Clone)]
+pub(crate) struct Place {
+    pub(crate) storage: Storage,
+    pub(crate) steps: Vec<Step>,
+    pub(crate) ty: TypeId,
+    pub(crate) span: Span,
+}
+
+impl Place {
+    pub(crate) fn whole(storage: Storage, ty: TypeId, span: Span) -> Self {
+        Self { storage, steps: Vec::new(), ty, span }
+    }
+
+    /// The part of type `ty` that lies `offset` bytes inside.
+    pub(crate) fn member(mut self, offset: u32, ty: TypeId) -> Self {
+        match self.steps.last_mut() {
+            Some(Step::Offset(last)) => *last += offset,
+            _ => self.steps.push(Step::Offset(offset)),
+        }
+        self.ty = ty;
+        self
+    }
+}
+
+/// The way from a variable to its part.
+#[derive(Debug, Clone)]
+pub(crate) enum Step {
+    /// So many bytes further.
+    Offset(u32),
+    /// `(index - low) * stride` bytes further; a fault unless `index - low < count`.
+    Index { index: Box<Expr>, low: i64, count: u32, stride: u32 },
+}

@@ -1,0 +1,22 @@
+//! The checked program: every name resolved, every expression typed, every variable placed.
+//!
+//! Code generation and the runtime read it and look nothing up by name.
+
+pub(crate) mod elementary;
+pub(crate) mod expr;
+pub(crate) mod pou;
+pub(crate) mod statement;
+pub(crate) mod types;
+pub(crate) mod value;
+
+pub(crate) use elementary::ElementaryType;
+pub(crate) use expr::{
+    Argument, Binary, Expr, ExprKind, FunctionCall, Intrinsic, LocalId, Place, Rounding, Step,
+    Storage, Unary,
+};
+pub(crate) use pou::{Pou, PouId, Program, Variable};
+pub(crate) use statement::{
+    CaseArm, CaseStatement, ForStatement, IfBranch, InstanceCall, Statement, StatementKind,
+};
+pub(crate) use types::{Dimension, Field, Type, TypeId, TypeTable};
+pub(crate) use value::Value;

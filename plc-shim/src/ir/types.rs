@@ -1,0 +1,187 @@
+//! Data types with their size, alignment and initial image.
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use super::elementary::ElementaryType;
+use super::pou::PouId;
+
+/// Identifies a type within its [`TypeTable`]; equal ids are equal types.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub(crate) struct TypeId(u32);
+
+impl From<ElementaryType> for TypeId {
+    fn from(ty: ElementaryType) -> Self {
+        // The table begins with the elementary types in their order.
+        Self(ty as u32)
+    }
+}
+
+/// A data type.
+#[derive(Debug, Clone)]
+pub(crate) enum Type {
+    Elementary(ElementaryType),
+    /// What a function without a result gives.
+    Nothing,
+    Enumeration { name: String, base: ElementaryType, values: Vec<(String, i128)> },
+    Array { dimensions: Vec<Dimension>, element: TypeId },
+    Struct { name: String, fields: Vec<Field> },
+    FunctionBlock { name: String, pou: PouId },
+}
+
+/// Bounds of one dimension of an array, both within 32 bits signed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) struct Dimension {
+    pub(crate) low: i64,
+    pub(crate) high: i64,
+}
+
+impl Dimension {
+    pub(crate) fn count(self) -> u64 {
+        (self.high - self.low + 1).max(0) as u64
+    }
+}
+
+/// A member of a structure.
+#[derive(Debug, Clone)]
+pub(crate) struct Field {
+    pub(crate) name: String,
+    pub(crate) ty: TypeId,
+    pub(crate) offset: u32,
+}
+
+#[derive(Debug, Clone)]
+struct Entry {
+    ty: Type,
+    size: u32,
+    align: u32,
+    image: Arc<[u8]>,
+}
+
+/// All types of an application.
+#[derive(Debug, Clone)]
+pub(crate) struct TypeTable {
+    entries: Vec<Entry>,
+    arrays: BTreeMap<(TypeId, Vec<Dimension>), TypeId>,
+    blocks: BTreeMap<PouId, TypeId>,
+}
+
+impl TypeTable {
+    /// The elementary types.
+    pub(crate) fn new() -> Self {
+        let entry = |ty: ElementaryType| Entry {
+            ty: Type::Elementary(ty),
+            size: ty.size(),
+            align: ty.size(),
+            image: vec![0; ty.size() as usize].into(),
+        };
+        let mut entries: Vec<_> = ElementaryType::ALL.iter().map(|ty| entry(*ty)).collect();
+        entries.push(Entry { ty: Type::Nothing, size: 0, align: 1, image: Arc::from([]) });
+        Self { entries, arrays: BTreeMap::new(), blocks: BTreeMap::new() }
+    }
+
+    /// The type of a function call without a result.
+    pub(crate) fn nothing() -> TypeId {
+        TypeId(ElementaryType::ALL.len() as u32)
+    }
+
+    fn add(&mut self, ty: Type, size: u32, align: u32, image: Arc<[u8]>) -> TypeId {
+        self.entries.push(Entry { ty, size, align, image });
+        TypeId(self.entries.len() as u32 - 1)
+    }
+
+    fn entry(&self, id: TypeId) -> &Entry {
+        // Ids are made by this table only, and entries are never removed.
+        &self.entries[id.0 as usize]
+    }
+
+    pub(crate) fn get(&self, id: TypeId) -> &Type {
+        &self.entry(id).ty
+    }
+
+    pub(crate) fn size(&self, id: TypeId) -> u32 {
+        self.entry(id).size
+    }
+
+    pub(crate) fn align(&self, id: TypeId) -> u32 {
+        self.entry(id).align
+    }
+
+    /// The bytes of a new variable of the type.
+    pub(crate) fn image(&self, id: TypeId) -> &Arc<[u8]> {
+        &self.entry(id).image
+    }
+
+    /// The elementary type that holds the value; nothing for aggregates.
+    pub(crate) fn elementary(&self, id: TypeId) -> Option<ElementaryType> {
+        match self.get(id) {
+            Type::Elementary(ty) | Type::Enumeration { base: ty, .. } => Some(*ty),
+            _ => None,
+        }
+    }
+
+    pub(crate) fn enumeration(
+        &mut self,
+        name: String,
+        base: ElementaryType,
+        values: Vec<(String, i128)>,
+    ) -> TypeId {
+        // A variable begins with the first value (2nd ed. Table 13).
+        let first = values.first().map_or(0, |(_, value)| *value);
+        let image = super::Value::Int(first).bytes()[..base.size() as usize].into();
+        self.add(Type::Enumeration { name, base, values }, base.size(), base.size(), image)
+    }
+
+    /// The array type; `size` is that of the whole array.
+    pub(crate) fn array(&mut self, dimensions: Vec<Dimension>, element: TypeId, size: u32) -> TypeId {
+        let key = (element, dimensions.clone());
+        if let Some(found) = self.arrays.get(&key) {
+            return *found;
+        }
+        let image = self.image(element).repeat((size / self.size(element).max(1)) as usize);
+        let align = self.align(element);
+        let id = self.add(Type::Array { dimensions, element }, size, align, image.into());
+        self.arrays.insert(key, id);
+        id
+    }
+
+    pub(crate) fn structure(&mut self, name: String, fields: Vec<Field>, image: Vec<u8>) -> TypeId {
+        let align = fields.iter().map(|field| self.align(field.ty)).max().unwrap_or(1);
+        self.add(Type::Struct { name, fields }, image.len() as u32, align, image.into())
+    }
+
+    /// The type of a function block's instances; [`Self::complete_block`] gives it its size.
+    pub(crate) fn block(&mut self, name: &str, pou: PouId) -> TypeId {
+        if let Some(found) = self.blocks.get(&pou) {
+            return *found;
+        }
+        let ty = Type::FunctionBlock { name: name.to_owned(), pou };
+        let id = self.add(ty, 0, 1, Arc::from([]));
+        self.blocks.insert(pou, id);
+        id
+    }
+
+    pub(crate) fn complete_block(&mut self, id: TypeId, align: u32, image: Vec<u8>) {
+        if let Some(entry) = self.entries.get_mut(id.0 as usize) {
+            entry.size = image.len() as u32;
+            entry.align = align;
+            entry.image = image.into();
+        }
+    }
+
+    /// The type's name as a user would write it.
+    pub(crate) fn name(&self, id: TypeId) -> String {
+        match self.get(id) {
+            Type::Elementary(ty) => ty.name().to_owned(),
+            Type::Nothing => "nothing".to_owned(),
+            Type::Enumeration { name, .. }
+            | Type::Struct { name, .. }
+            | Type::FunctionBlock { name, .. } => name.clone(),
+            Type::Array { dimensions, element } => {
+                let bounds: Vec<_> =
+                    dimensions.iter().map(|each| format!("{}..{}", each.low, each.high)).collect();
+                format!("ARRAY [{}] OF {}", bounds.join(", "), self.name(*element))
+            }
+        }
+    }
+}

@@ -1,0 +1,47 @@
+//! The soft PLC: tasks, scans, faults, saved states.
+//!
+//! | module | subject |
+//! |---|---|
+//! | [`plan`] | tasks with interval and priority, validated |
+//! | [`scheduler`] | which task is due when |
+//! | [`machine`] | the compiled module with its memory |
+//! | [`fault`] | a trap as an error in the source |
+//! | [`soft_plc`] | the PLC itself |
+//! | [`state`] | its state as bytes |
+
+mod fault;
+mod machine;
+mod plan;
+mod scheduler;
+mod soft_plc;
+mod state;
+
+pub use fault::PlcFault;
+pub use plan::{RunError, Task, TaskPlan};
+pub use soft_plc::SoftPlc;
+pub use state::RestoreError;
+
+/// Virtual time: nanoseconds since the session's start.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Default)]
+pub struct VirtualTime(u64);
+
+impl VirtualTime {
+    /// The time so many nanoseconds after the start.
+    pub const fn from_ns(ns: u64) -> Self {
+        Self(ns)
+    }
+
+    /// Nanoseconds since the start.
+    pub const fn as_ns(self) -> u64 {
+        self.0
+    }
+}
+
+/// Seconds, with as many decimals as are needed, three at least.
+impl std::fmt::Display for VirtualTime {
+    fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let decimals = format!("{:09}", self.0 % 1_000_000_000);
+        let (first, rest) = decimals.split_at(3);
+        write!(formatter, "{}.{first}{} s", self.0 / 1_000_000_000, rest.trim_end_matches('0'))
+    }
+}

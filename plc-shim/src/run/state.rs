@@ -1,0 +1,174 @@
+//! A PLC's state as bytes.
+//!
+//! | bytes | what |
+//! |---|---|
+//! | 8 | magic and version |
+//! | 8 | fingerprint of application and plan |
+//! | 8 | virtual time of the last scan |
+//! | 4 + 8 each | when each task is due |
+//! | 1 ... | 0, or 1 and the fault |
+//! | 8 + size | memory |
+//!
+//! All numbers are little-endian.
+
+use thiserror::Error;
+
+use super::fault::PlcFault;
+use super::plan::TaskPlan;
+use super::VirtualTime;
+use crate::application::Application;
+use crate::compile::fault::FaultKind;
+
+const MAGIC: [u8; 8] = *b"OSPLC\0\0\x01";
+
+/// Why bytes were not taken as a state.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
+pub enum RestoreError {
+    /// They do not begin as a state does.
+    #[error("this is not a saved PLC state, or one of another version")]
+    NotAState,
+    /// They are a state of something else.
+    #[error("the saved state belongs to another program or task plan")]
+    OtherApplication,
+    /// They end too early, go on too long or hold impossible numbers.
+    #[error("the saved state is damaged")]
+    Damaged,
+}
+
+pub(super) struct State<'m> {
+    pub(super) now: VirtualTime,
+    pub(super) due_ns: Vec<u64>,
+    pub(super) fault: Option<PlcFault>,
+    pub(super) memory: &'m [u8],
+}
+
+/// Tells applications and plans apart (FNV-1a).
+pub(super) fn fingerprint(application: &Application, plan: &TaskPlan) -> u64 {
+    let mut hash: u64 = 0xcbf2_9ce4_8422_2325;
+    let mut add = |bytes: &[u8]| {
+        for byte in bytes {
+            hash = (hash ^ u64::from(*byte)).wrapping_mul(0x0100_0000_01b3);
+        }
+    };
+    add(application.wasm());
+    add(application.initial_memory());
+    add(&plan.fuel_per_task.to_le_bytes());
+    for task in &plan.tasks {
+        add(task.name.as_bytes());
+        add(&task.interval_ns.to_le_bytes());
+        add(&task.priority.to_le_bytes());
+        for program in &task.programs {
+            add(program.to_ascii_uppercase().as_bytes());
+            add(&[0]);
+        }
+        add(&[1]);
+    }
+    hash
+}
+
+impl<'m> State<'m> {
+    pub(super) fn encode(&self, fingerprint: u64) -> Vec<u8> {
+        let mut bytes = Vec::with_capacity(self.memory.len() + 256);
+        bytes.extend_from_slice(&MAGIC);
+        bytes.extend_from_slice(&fingerprint.to_le_bytes());
+        bytes.extend_from_slice(&self.now.as_ns().to_le_bytes());
+        bytes.extend_from_slice(&(self.due_ns.len() as u32).to_le_bytes());
+        for due in &self.due_ns {
+            bytes.extend_from_slice(&due.to_le_bytes());
+        }
+        bytes.push(u8::from(self.fault.is_some()));
+        if let Some(fault) = &self.fault {
+            encode_fault(fault, &mut bytes);
+        }
+        bytes.extend_from_slice(&(self.memory.len() as u64).to_le_bytes());
+        bytes.extend_from_slice(self.memory);
+        bytes
+    }
+
+    pub(super) fn decode(
+        bytes: &'m [u8],
+        fingerprint: u64,
+        tasks: usize,
+        memory_size: usize,
+    ) -> Result<Self, RestoreError> {
+        let mut reader = Reader { rest: bytes };
+        if reader.take(MAGIC.len()).ok_or(RestoreError::NotAState)? != MAGIC {
+            return Err(RestoreError::NotAState);
+        }
+        if reader.number().ok_or(RestoreError::Damaged)? != fingerprint {
+            return Err(RestoreError::OtherApplication);
+        }
+        reader.state(tasks, memory_size).ok_or(RestoreError::Damaged)
+    }
+}
+
+fn encode_fault(fault: &PlcFault, bytes: &mut Vec<u8>) {
+    let kind = FaultKind::ALL.iter().position(|kind| *kind == fault.kind);
+    bytes.push(kind.unwrap_or(FaultKind::ALL.len() - 1) as u8);
+    bytes.extend_from_slice(&fault.virtual_time.as_ns().to_le_bytes());
+    bytes.extend_from_slice(&fault.line.to_le_bytes());
+    bytes.extend_from_slice(&fault.column.to_le_bytes());
+    bytes.extend_from_slice(&(fault.call_path.len() as u32).to_le_bytes());
+    for text in [&fault.file, &fault.pou].into_iter().chain(&fault.call_path) {
+        bytes.extend_from_slice(&(text.len() as u32).to_le_bytes());
+        bytes.extend_from_slice(text.as_bytes());
+    }
+}
+
+/// Reads from the front; nothing where the bytes end.
+struct Reader<'m> {
+    rest: &'m [u8],
+}
+
+impl<'m> Reader<'m> {
+    fn take(&mut self, count: usize) -> Option<&'m [u8]> {
+        let (front, rest) = self.rest.split_at_checked(count)?;
+        self.rest = rest;
+        Some(front)
+    }
+
+    fn number(&mut self) -> Option<u64> {
+        Some(u64::from_le_bytes(self.take(8)?.try_into().ok()?))
+    }
+
+    fn small_number(&mut self) -> Option<u32> {
+        Some(u32::from_le_bytes(self.take(4)?.try_into().ok()?))
+    }
+
+    fn byte(&mut self) -> Option<u8> {
+        self.take(1)?.first().copied()
+    }
+
+    fn text(&mut self) -> Option<String> {
+        let length = self.small_number()? as usize;
+        String::from_utf8(self.take(length)?.to_vec()).ok()
+    }
+
+    fn state(&mut self, tasks: usize, memory_size: usize) -> Option<State<'m>> {
+        let now = VirtualTime::from_ns(self.number()?);
+        if self.small_number()? as usize != tasks {
+            return None;
+        }
+        let due_ns = (0..tasks).map(|_| self.number()).collect::<Option<_>>()?;
+        let fault = match self.byte()? {
+            0 => None,
+            1 => Some(self.fault()?),
+            _ => return None,
+        };
+        if self.number()? != memory_size as u64 {
+            return None;
+        }
+        let memory = self.take(memory_size)?;
+        self.rest.is_empty().then_some(State { now, due_ns, fault, memory })
+    }
+
+    fn fault(&mut self) -> Option<PlcFault> {
+        let kind = *FaultKind::ALL.get(self.byte()? as usize)?;
+        let virtual_time = VirtualTime::from_ns(self.number()?);
+        let (line, column) = (self.small_number()?, self.small_number()?);
+        let count = self.small_number()?;
+        let (file, pou) = (self.text()?, self.text()?);
+        let call_path = (0..count).map(|_| self.text()).collect::<Option<_>>()?;
+        Some(PlcFault { kind, file, line, column, pou, call_path, virtual_time })
+    }
+}

@@ -1,0 +1,43 @@
+//! The syntax tree: what is written, with its place; no meanings.
+
+mod declaration;
+mod expression;
+mod statement;
+
+pub use declaration::{
+    Declaration, Dimension, EnumValue, Field, Initialiser, InitialiserKind, Pou, PouKind, Qualifier,
+    Section, SectionKind, StructureInit, Subrange, TypeDeclaration, TypeSpec, TypeSpecKind,
+    Variable,
+};
+pub use expression::{
+    Argument, BinaryOp, Call, Expr, ExprKind, Literal, MAX_HEIGHT, TypedValue, UnaryOp,
+};
+pub use statement::{
+    CaseBranch, CaseLabel, CaseStatement, ForStatement, IfBranch, IfStatement, RepeatStatement,
+    Statement, StatementKind, WhileStatement,
+};
+
+use super::source::Span;
+
+/// A name as written.
+#[derive(Debug, Clone)]
+pub struct Ident {
+    /// Its text; names are compared without regard to case (2nd ed. 2.1.2).
+    pub text: String,
+    /// Where it stands.
+    pub span: Span,
+}
+
+impl Ident {
+    /// The form in which names are compared.
+    pub fn key(&self) -> String {
+        self.text.to_ascii_uppercase()
+    }
+}
+
+/// What a file declares, in its order.
+#[derive(Debug, Clone, Default)]
+pub struct CompilationUnit {
+    /// The declarations.
+    pub declarations: Vec<Declaration>,
+}

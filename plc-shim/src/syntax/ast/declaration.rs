@@ -1,0 +1,208 @@
+//! Declarations of units, types and variables (2nd ed. 2.3 to 2.5).
+
+use super::{Expr, Ident, Span, Statement};
+
+/// Something a file declares.
+#[derive(Debug, Clone)]
+pub enum Declaration {
+    /// A program organisation unit.
+    Pou(Pou),
+    /// One type of a `TYPE` block.
+    Type(TypeDeclaration),
+    /// A `VAR_GLOBAL` block.
+    Globals(Section),
+}
+
+/// The kinds of program organisation unit (2nd ed. 2.5).
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum PouKind {
+    /// `PROGRAM`
+    Program,
+    /// `FUNCTION_BLOCK`
+    FunctionBlock,
+    /// `FUNCTION`
+    Function,
+}
+
+/// A program organisation unit.
+#[derive(Debug, Clone)]
+pub struct Pou {
+    /// What it is.
+    pub kind: PouKind,
+    /// Its name.
+    pub name: Ident,
+    /// The type of a function's result.
+    pub result: Option<TypeSpec>,
+    /// Its variables.
+    pub sections: Vec<Section>,
+    /// Its statements.
+    pub body: Vec<Statement>,
+    /// Where it stands.
+    pub span: Span,
+}
+
+/// The kinds of variable section (2nd ed. Table 16).
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum SectionKind {
+    /// `VAR`
+    Local,
+    /// `VAR_INPUT`
+    Input,
+    /// `VAR_OUTPUT`
+    Output,
+    /// `VAR_IN_OUT`
+    InOut,
+    /// `VAR_TEMP`
+    Temp,
+    /// `VAR_GLOBAL`
+    Global,
+    /// `VAR_EXTERNAL`
+    External,
+}
+
+/// What may stand behind a section's keyword.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Qualifier {
+    /// `CONSTANT`
+    Constant,
+    /// `RETAIN`
+    Retain,
+    /// `NON_RETAIN`
+    NonRetain,
+}
+
+/// `VAR .. END_VAR` of any kind.
+#[derive(Debug, Clone)]
+pub struct Section {
+    /// What it is.
+    pub kind: SectionKind,
+    /// What stands behind its keyword.
+    pub qualifiers: Vec<Qualifier>,
+    /// Its variables.
+    pub variables: Vec<Variable>,
+    /// Where it stands.
+    pub span: Span,
+}
+
+/// `a, b AT %MW1 : INT := 5;`
+#[derive(Debug, Clone)]
+pub struct Variable {
+    /// The names, at least one.
+    pub names: Vec<Ident>,
+    /// The direct address, as written.
+    pub address: Option<Ident>,
+    /// The type.
+    pub spec: TypeSpec,
+    /// The initial value.
+    pub initial: Option<Initialiser>,
+}
+
+/// A type as written.
+#[derive(Debug, Clone)]
+pub struct TypeSpec {
+    /// What it is.
+    pub kind: TypeSpecKind,
+    /// Where it stands.
+    pub span: Span,
+}
+
+/// The forms of a type.
+#[derive(Debug, Clone)]
+pub enum TypeSpecKind {
+    /// A name of an elementary, a derived or a function block type.
+    Name(Ident),
+    /// `STRING[80]`, of which only the name and length are kept.
+    String(Ident, Option<Box<Expr>>),
+    /// `INT (0..10)`
+    Subrange(Ident, Box<Subrange>),
+    /// `ARRAY [0..9, 1..2] OF INT`
+    Array(Vec<Dimension>, Box<TypeSpec>),
+    /// `STRUCT .. END_STRUCT`, in a `TYPE` block only.
+    Struct(Vec<Field>),
+    /// `(Red, Green := 5)`
+    Enumeration(Vec<EnumValue>),
+    /// Text that is no type; a diagnostic has been given.
+    Error,
+}
+
+/// Bounds of a subrange type.
+#[derive(Debug, Clone)]
+pub struct Subrange {
+    /// The smallest value.
+    pub low: Expr,
+    /// The greatest value.
+    pub high: Expr,
+}
+
+/// Bounds of one dimension of an array.
+#[derive(Debug, Clone)]
+pub struct Dimension {
+    /// The smallest index.
+    pub low: Expr,
+    /// The greatest index.
+    pub high: Expr,
+}
+
+/// A member of a structure.
+#[derive(Debug, Clone)]
+pub struct Field {
+    /// Its name.
+    pub name: Ident,
+    /// Its type.
+    pub spec: TypeSpec,
+    /// Its initial value.
+    pub initial: Option<Initialiser>,
+}
+
+/// A value of an enumeration.
+#[derive(Debug, Clone)]
+pub struct EnumValue {
+    /// Its name.
+    pub name: Ident,
+    /// Its number (3rd ed. Table 11).
+    pub value: Option<Expr>,
+}
+
+/// One type of a `TYPE` block.
+#[derive(Debug, Clone)]
+pub struct TypeDeclaration {
+    /// Its name.
+    pub name: Ident,
+    /// What it is.
+    pub spec: TypeSpec,
+    /// The initial value of its variables.
+    pub initial: Option<Initialiser>,
+    /// Where it stands.
+    pub span: Span,
+}
+
+/// An initial value.
+#[derive(Debug, Clone)]
+pub struct Initialiser {
+    /// What it is.
+    pub kind: InitialiserKind,
+    /// Where it stands.
+    pub span: Span,
+}
+
+/// The forms of an initial value.
+#[derive(Debug, Clone)]
+pub enum InitialiserKind {
+    /// `5 + 3`
+    Value(Expr),
+    /// `[1, 2, 3(0)]`
+    Array(Vec<Initialiser>),
+    /// `3(0)` within an array
+    Repeat(Box<Expr>, Option<Box<Initialiser>>),
+    /// `(a := 1, b := 2)`
+    Struct(Vec<StructureInit>),
+}
+
+/// One member of a structure's initial value.
+#[derive(Debug, Clone)]
+pub struct StructureInit {
+    /// The member's name.
+    pub name: Ident,
+    /// Its value.
+    pub value: Initialiser,
+}

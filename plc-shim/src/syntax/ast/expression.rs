@@ -1,0 +1,196 @@
+//! Expressions (2nd ed. 3.3.1).
+
+use super::{Ident, Span};
+
+/// Greatest height of an expression's tree. The parser keeps to it, so that later passes may
+/// recurse into an expression without exhausting the stack.
+pub const MAX_HEIGHT: u16 = 250;
+
+/// An expression and its place.
+#[derive(Debug, Clone)]
+pub struct Expr {
+    /// What it is.
+    pub kind: ExprKind,
+    /// Where it stands.
+    pub span: Span,
+    /// Nodes on the longest way down, this one counted; at most [`MAX_HEIGHT`].
+    pub height: u16,
+}
+
+/// The forms of an expression.
+#[derive(Debug, Clone)]
+pub enum ExprKind {
+    /// A constant.
+    Literal(Literal),
+    /// A name alone.
+    Name(Ident),
+    /// `%IX1.0`, as written.
+    DirectAddress(String),
+    /// `a.b`
+    Member(Box<Expr>, Ident),
+    /// `a[i, j]`
+    Index(Box<Expr>, Vec<Expr>),
+    /// `f(x, y)`, `f(IN := x, Q => y)`
+    Call(Call),
+    /// `-a`, `NOT a`
+    Unary(UnaryOp, Box<Expr>),
+    /// `a + b`
+    Binary(BinaryOp, Box<Expr>, Box<Expr>),
+    /// `(a)`
+    Paren(Box<Expr>),
+    /// Text that is no expression; a diagnostic has been given.
+    Error,
+}
+
+/// A call of a function or an instance.
+#[derive(Debug, Clone)]
+pub struct Call {
+    /// What is called.
+    pub callee: Box<Expr>,
+    /// The arguments in their order.
+    pub arguments: Vec<Argument>,
+}
+
+/// One argument of a call.
+#[derive(Debug, Clone)]
+pub enum Argument {
+    /// `x`
+    Positional(Expr),
+    /// `IN := x`
+    Input(Ident, Expr),
+    /// `Q => x`, `NOT Q => x`
+    Output {
+        /// The output's name.
+        name: Ident,
+        /// True for `NOT Q => x` (2nd ed. 3.2.3).
+        negated: bool,
+        /// Where it goes; nothing for `Q =>`.
+        target: Option<Expr>,
+    },
+}
+
+/// A constant as written.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Literal {
+    /// `TRUE`, `FALSE`
+    Bool(bool),
+    /// `12`, `16#FF`
+    Integer(i128),
+    /// `1.5`
+    Real(f64),
+    /// `INT#5`, `BOOL#TRUE`, `Colour#Red`
+    Typed {
+        /// What stands before the `#`.
+        prefix: String,
+        /// What stands behind it.
+        value: TypedValue,
+    },
+    /// `T#1s`, `LTIME#1ns`
+    Duration {
+        /// True for `LT#` and `LTIME#`.
+        long: bool,
+        /// Its length in nanoseconds.
+        ns: i64,
+    },
+    /// `'...'` or `"..."`, quotes and escapes as written.
+    String(String),
+}
+
+/// What stands behind the `#` of a typed literal.
+#[derive(Debug, Clone, PartialEq)]
+pub enum TypedValue {
+    /// `5`, `16#FF`, `-5`
+    Integer(i128),
+    /// `1.5`
+    Real(f64),
+    /// `TRUE`, `Red`
+    Name(String),
+}
+
+/// Operators with one operand.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum UnaryOp {
+    /// `-`
+    Negate,
+    /// `+`, which 2nd ed. Annex B lacks and every vendor allows
+    Plus,
+    /// `NOT`
+    Not,
+}
+
+/// Operators with two operands (2nd ed. Table 52).
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum BinaryOp {
+    /// `**`
+    Power,
+    /// `*`
+    Multiply,
+    /// `/`
+    Divide,
+    /// `MOD`
+    Modulo,
+    /// `+`
+    Add,
+    /// `-`
+    Subtract,
+    /// `<`
+    Less,
+    /// `>`
+    Greater,
+    /// `<=`
+    LessEqual,
+    /// `>=`
+    GreaterEqual,
+    /// `=`
+    Equal,
+    /// `<>`
+    NotEqual,
+    /// `AND`, `&`
+    And,
+    /// `XOR`
+    Xor,
+    /// `OR`
+    Or,
+}
+
+impl BinaryOp {
+    /// How tightly it binds; a greater number binds tighter (2nd ed. Table 52).
+    pub fn precedence(self) -> u8 {
+        match self {
+            Self::Or => 1,
+            Self::Xor => 2,
+            Self::And => 3,
+            Self::Equal | Self::NotEqual => 4,
+            Self::Less | Self::Greater | Self::LessEqual | Self::GreaterEqual => 5,
+            Self::Add | Self::Subtract => 6,
+            Self::Multiply | Self::Divide | Self::Modulo => 7,
+            Self::Power => 9,
+        }
+    }
+
+    /// True for what gives BOOL whatever it compares.
+    pub fn is_comparison(self) -> bool {
+        matches!(self.precedence(), 4 | 5)
+    }
+
+    /// Its spelling.
+    pub fn text(self) -> &'static str {
+        match self {
+            Self::Power => "**",
+            Self::Multiply => "*",
+            Self::Divide => "/",
+            Self::Modulo => "MOD",
+            Self::Add => "+",
+            Self::Subtract => "-",
+            Self::Less => "<",
+            Self::Greater => ">",
+            Self::LessEqual => "<=",
+            Self::GreaterEqual => ">=",
+            Self::Equal => "=",
+            Self::NotEqual => "<>",
+            Self::And => "AND",
+            Self::Xor => "XOR",
+            Self::Or => "OR",
+        }
+    }
+}

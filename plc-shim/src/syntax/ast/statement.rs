@@ -1,0 +1,121 @@
+//! Statements (2nd ed. 3.3.2).
+
+use super::{Call, Expr, Ident, Span};
+
+/// A statement and its place, the semicolon not included.
+#[derive(Debug, Clone)]
+pub struct Statement {
+    /// What it is.
+    pub kind: StatementKind,
+    /// Where it stands.
+    pub span: Span,
+}
+
+/// The forms of a statement.
+#[derive(Debug, Clone)]
+pub enum StatementKind {
+    /// `;`
+    Empty,
+    /// `a := b`
+    Assign(Expr, Expr),
+    /// `fb(IN := x)`
+    Call(Call),
+    /// `IF`
+    If(IfStatement),
+    /// `CASE`
+    Case(CaseStatement),
+    /// `FOR`
+    For(Box<ForStatement>),
+    /// `WHILE`
+    While(WhileStatement),
+    /// `REPEAT`
+    Repeat(RepeatStatement),
+    /// `EXIT`
+    Exit,
+    /// `CONTINUE` (3rd ed. 7.3.3.4)
+    Continue,
+    /// `RETURN`
+    Return,
+    /// Text that is no statement; a diagnostic has been given.
+    Error,
+}
+
+/// `IF a THEN .. ELSIF b THEN .. ELSE .. END_IF`
+#[derive(Debug, Clone)]
+pub struct IfStatement {
+    /// `IF` and every `ELSIF`.
+    pub branches: Vec<IfBranch>,
+    /// `ELSE`
+    pub otherwise: Vec<Statement>,
+}
+
+/// One condition and what it guards.
+#[derive(Debug, Clone)]
+pub struct IfBranch {
+    /// The condition.
+    pub condition: Expr,
+    /// What runs if it holds.
+    pub body: Vec<Statement>,
+}
+
+/// `CASE x OF 1, 3..5: .. ELSE .. END_CASE`
+#[derive(Debug, Clone)]
+pub struct CaseStatement {
+    /// What selects.
+    pub selector: Expr,
+    /// The branches in their order.
+    pub branches: Vec<CaseBranch>,
+    /// `ELSE`
+    pub otherwise: Vec<Statement>,
+}
+
+/// Labels and what they guard.
+#[derive(Debug, Clone)]
+pub struct CaseBranch {
+    /// The labels.
+    pub labels: Vec<CaseLabel>,
+    /// What runs if one of them is selected.
+    pub body: Vec<Statement>,
+}
+
+/// `1` or `1..5`
+#[derive(Debug, Clone)]
+pub struct CaseLabel {
+    /// The only value or the first of the range.
+    pub low: Expr,
+    /// The last of the range.
+    pub high: Option<Expr>,
+}
+
+/// `FOR i := a TO b BY c DO .. END_FOR`
+#[derive(Debug, Clone)]
+pub struct ForStatement {
+    /// The control variable.
+    pub variable: Ident,
+    /// Its first value.
+    pub from: Expr,
+    /// Its last value.
+    pub to: Expr,
+    /// The step; 1 if absent.
+    pub by: Option<Expr>,
+    /// What is repeated.
+    pub body: Vec<Statement>,
+}
+
+/// `WHILE a DO .. END_WHILE`
+#[derive(Debug, Clone)]
+pub struct WhileStatement {
+    /// Tested before each turn.
+    pub condition: Expr,
+    /// What is repeated.
+    pub body: Vec<Statement>,
+}
+
+/// `REPEAT .. UNTIL a END_REPEAT`
+#[derive(Debug, Clone)]
+pub struct RepeatStatement {
+    /// What is repeated.
+    pub body: Vec<Statement>,
+    /// Tested after each turn; ends the loop if it holds.
+    pub until: Expr,
+}

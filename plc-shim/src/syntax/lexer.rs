@@ -1,0 +1,262 @@
+//! Text to tokens. Every byte of the text belongs to exactly one token.
+
+use super::token::{Keyword, Punctuation, Token, TokenKind};
+
+/// Splits `text` into tokens; their texts concatenated are `text`.
+pub fn tokenize(text: &str) -> Vec<Token> {
+    let mut lexer = Lexer { text, at: 0 };
+    let mut tokens = Vec::with_capacity(text.len() / 4);
+    while lexer.at < text.len() {
+        let start = lexer.at;
+        let kind = lexer.token();
+        debug_assert!(lexer.at > start, "a token is never empty");
+        tokens.push(Token { kind, start: start as u32, end: lexer.at as u32 });
+    }
+    tokens
+}
+
+struct Lexer<'a> {
+    text: &'a str,
+    at: usize,
+}
+
+impl<'a> Lexer<'a> {
+    fn rest(&self) -> &'a str {
+        self.text.get(self.at..).unwrap_or("")
+    }
+
+    fn peek(&self, ahead: usize) -> u8 {
+        self.text.as_bytes().get(self.at + ahead).copied().unwrap_or(0)
+    }
+
+    fn take_while(&mut self, accept: impl Fn(char) -> bool) {
+        let rest = self.rest();
+        self.at += rest.find(|character| !accept(character)).unwrap_or(rest.len());
+    }
+
+    fn token(&mut self) -> TokenKind {
+        let rest = self.rest();
+        let Some(first) = rest.chars().next() else { return TokenKind::Unknown };
+        match first {
+            _ if first.is_whitespace() || first == '\u{feff}' => {
+                self.take_while(|character| character.is_whitespace() || character == '\u{feff}');
+                TokenKind::Whitespace
+            }
+            '(' if rest.starts_with("(*") => self.block_comment("(*", "*)"),
+            '/' if rest.starts_with("/*") => self.block_comment("/*", "*/"),
+            '/' if rest.starts_with("//") => {
+                self.take_while(|character| character != '\n');
+                TokenKind::LineComment
+            }
+            '{' => self.pragma(),
+            '\'' => self.string('\'', TokenKind::String),
+            '"' => self.string('"', TokenKind::WideString),
+            '%' => self.direct_address(),
+            '0'..='9' => self.number(),
+            _ if first.is_ascii_alphabetic() || first == '_' => self.word(),
+            _ => self.mark(first),
+        }
+    }
+
+    /// Comments nest in the 3rd edition (6.1.5); the 2nd forbids what nesting would change.
+    fn block_comment(&mut self, open: &str, close: &str) -> TokenKind {
+        let mut depth = 0_usize;
+        while self.at < self.text.len() {
+            let rest = self.rest();
+            if rest.starts_with(open) {
+                depth += 1;
+                self.at += open.len();
+            } else if rest.starts_with(close) {
+                depth -= 1;
+                self.at += close.len();
+                if depth == 0 {
+                    return TokenKind::BlockComment;
+                }
+            } else {
+                self.at += rest.chars().next().map_or(1, char::len_utf8);
+            }
+        }
+        TokenKind::Unterminated
+    }
+
+    fn pragma(&mut self) -> TokenKind {
+        self.take_while(|character| character != '}');
+        if self.at == self.text.len() {
+            return TokenKind::Unterminated;
+        }
+        self.at += 1;
+        TokenKind::Pragma
+    }
+
+    /// `$` escapes the quote (2nd ed. Table 6). A string does not span lines, so that a missing
+    /// quote costs one line, not the file.
+    fn string(&mut self, quote: char, kind: TokenKind) -> TokenKind {
+        self.at += 1;
+        while let Some(character) = self.rest().chars().next() {
+            if character == '\n' {
+                return TokenKind::Unterminated;
+            }
+            self.at += character.len_utf8();
+            if character == quote {
+                return kind;
+            }
+            if character == '$' {
+                let escaped = self.rest().chars().next().filter(|next| *next != '\n');
+                self.at += escaped.map_or(0, char::len_utf8);
+            }
+        }
+        TokenKind::Unterminated
+    }
+
+    fn direct_address(&mut self) -> TokenKind {
+        self.at += 1;
+        self.take_while(|character| character.is_ascii_alphanumeric() || character == '*');
+        while self.peek(0) == b'.' && self.peek(1).is_ascii_digit() {
+            self.at += 1;
+            self.take_while(|character| character.is_ascii_digit());
+        }
+        TokenKind::DirectAddress
+    }
+
+    fn digits(&mut self) {
+        self.take_while(|character| character.is_ascii_digit() || character == '_');
+    }
+
+    /// `12`, `16#FF`, `1.5`, `1.5e-3`; `1..5` is an integer and a range.
+    fn number(&mut self) -> TokenKind {
+        self.digits();
+        if self.peek(0) == b'#' && self.peek(1).is_ascii_alphanumeric() {
+            self.at += 1;
+            self.take_while(|character| character.is_ascii_alphanumeric() || character == '_');
+            return TokenKind::Integer;
+        }
+        let mut kind = TokenKind::Integer;
+        if self.peek(0) == b'.' && self.peek(1).is_ascii_digit() {
+            self.at += 1;
+            self.digits();
+            kind = TokenKind::Real;
+        }
+        if self.exponent() {
+            kind = TokenKind::Real;
+        }
+        kind
+    }
+
+    fn exponent(&mut self) -> bool {
+        if !matches!(self.peek(0), b'e' | b'E') {
+            return false;
+        }
+        let sign = usize::from(matches!(self.peek(1), b'+' | b'-'));
+        let found = self.peek(1 + sign).is_ascii_digit();
+        if found {
+            self.at += 1 + sign;
+            self.digits();
+        }
+        found
+    }
+
+    fn word(&mut self) -> TokenKind {
+        let start = self.at;
+        self.take_while(|character| character.is_ascii_alphanumeric() || character == '_');
+        let text = self.text.get(start..self.at).unwrap_or("");
+        let after_sign = usize::from(matches!(self.peek(1), b'+' | b'-'));
+        if self.peek(0) == b'#'
+            && (self.peek(1 + after_sign).is_ascii_alphanumeric() || self.peek(1 + after_sign) == b'_')
+        {
+            self.at += 1 + after_sign;
+            self.typed_value();
+            return TokenKind::Typed;
+        }
+        Keyword::find(text).map_or(TokenKind::Identifier, TokenKind::Keyword)
+    }
+
+    /// What follows `INT#`: digits with a base, a fraction, an exponent, a duration or a name.
+    fn typed_value(&mut self) {
+        if self.peek(0).is_ascii_digit() {
+            self.number();
+        }
+        let word = |character: char| character.is_ascii_alphanumeric() || character == '_';
+        self.take_while(word);
+        while self.peek(0) == b'.' && self.peek(1).is_ascii_digit() {
+            self.at += 1;
+            self.take_while(word);
+        }
+    }
+
+    fn mark(&mut self, first: char) -> TokenKind {
+        if let Some(found) = Punctuation::find(self.rest()) {
+            self.at += found.text().len();
+            return TokenKind::Punctuation(found);
+        }
+        self.at += first.len_utf8();
+        TokenKind::Unknown
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    fn kinds(text: &str) -> Vec<(TokenKind, &str)> {
+        let all = tokenize(text).into_iter();
+        all.filter(|token| !token.kind.is_trivia())
+            .map(|token| (token.kind, &text[token.start as usize..token.end as usize]))
+            .collect()
+    }
+
+    #[test]
+    fn numbers_end_where_the_standard_ends_them() {
+        use TokenKind::{Integer, Punctuation as P, Real, Typed};
+        assert_eq!(
+            kinds("1..5 1.5e-3 16#FF_FF 1_000 2e3"),
+            [
+                (Integer, "1"),
+                (P(Punctuation::Range), ".."),
+                (Integer, "5"),
+                (Real, "1.5e-3"),
+                (Integer, "16#FF_FF"),
+                (Integer, "1_000"),
+                (Real, "2e3"),
+            ]
+        );
+        assert_eq!(
+            kinds("INT#1..INT#-5 t#1d2h_3m4.5s WORD#16#FF REAL#1.0E+3 Colour#Red"),
+            [
+                (Typed, "INT#1"),
+                (P(Punctuation::Range), ".."),
+                (Typed, "INT#-5"),
+                (Typed, "t#1d2h_3m4.5s"),
+                (Typed, "WORD#16#FF"),
+                (Typed, "REAL#1.0E+3"),
+                (Typed, "Colour#Red"),
+            ]
+        );
+    }
+
+    #[test]
+    fn comments_nest_and_strings_escape() {
+        assert_eq!(kinds("(* a (* b *) c *) // d\n /* e */ {f}"), []);
+        assert_eq!(kinds("(* a (* b *)")[0].0, TokenKind::Unterminated);
+        assert_eq!(kinds("'it$'s' x")[0], (TokenKind::String, "'it$'s'"));
+        assert_eq!(kinds("'open\nx")[0], (TokenKind::Unterminated, "'open"));
+        assert_eq!(kinds("%IX1.0.2;")[0], (TokenKind::DirectAddress, "%IX1.0.2"));
+    }
+
+    #[test]
+    fn keywords_are_found_in_any_case() {
+        assert_eq!(kinds("End_If")[0].0, TokenKind::Keyword(Keyword::EndIf));
+        assert_eq!(kinds("END_IFX")[0].0, TokenKind::Identifier);
+    }
+
+    proptest! {
+        #[test]
+        fn no_byte_is_lost(text in "\\PC{0,200}|[ -~\\n]{0,200}|[(*)/{}'\"$#%.:=0-9a-fT_ \\n]{0,200}") {
+            let joined: String = tokenize(&text)
+                .iter()
+                .map(|token| &text[token.start as usize..token.end as usize])
+                .collect();
+            prop_assert_eq!(joined, text);
+        }
+    }
+}

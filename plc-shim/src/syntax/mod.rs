@@ -1,0 +1,26 @@
+//! Source text to tokens to syntax tree, without loss.
+//!
+//! | module | in | out |
+//! |---|---|---|
+//! | [`source`] | names and texts | files, spans, lines and columns |
+//! | [`token`] | | the kinds of token, keywords |
+//! | [`lexer`] | text | every token, blanks and comments too |
+//! | [`literal`] | a literal's text | its value |
+//! | [`ast`] | | the tree's nodes |
+//! | [`parser`] | tokens | a tree and a list of diagnostics |
+//! | [`printer`] | a tree | text that parses to the same tree |
+//!
+//! Invariants: the texts of a file's tokens concatenated are the file; parsing never fails, it
+//! returns a tree and a list of diagnostics; a tree knows names and spans only, never meanings.
+
+pub mod ast;
+pub mod lexer;
+pub mod literal;
+pub mod parser;
+pub mod printer;
+pub mod source;
+pub mod token;
+
+pub use lexer::tokenize;
+pub use parser::{Parsed, parse};
+pub use source::{FileId, SourceFile, SourceMap, Span};

@@ -1,0 +1,69 @@
+//! Tokens to tree: recursive descent, with precedence climbing for expressions.
+//!
+//! An error is reported once and skipped up to a token at which the grammar can go on, so that
+//! one slip makes one diagnostic.
+
+mod cursor;
+mod declaration;
+mod expression;
+mod initialiser;
+mod statement;
+mod type_spec;
+
+use self::cursor::Cursor;
+use super::ast::CompilationUnit;
+use super::lexer::tokenize;
+use super::source::FileId;
+use super::token::{Token, TokenKind};
+use crate::diagnostic::{Code, Diagnostic};
+use crate::syntax::Span;
+
+/// Greatest depth to which statements, types and parentheses may be nested.
+pub const MAX_NESTING: u16 = 200;
+
+/// A file's tree, beside its tokens.
+#[derive(Debug, Clone)]
+pub struct Parsed {
+    /// Every token of the file.
+    pub tokens: Vec<Token>,
+    /// The tree.
+    pub unit: CompilationUnit,
+    /// What is wrong with the text.
+    pub diagnostics: Vec<Diagnostic>,
+}
+
+/// Parses `text`, the text of `file`. Never fails: the tree holds what could be understood.
+pub fn parse(file: FileId, text: &str) -> Parsed {
+    let tokens = tokenize(text);
+    let mut cursor = Cursor::new(file, text, &tokens);
+    report_lexical_errors(&mut cursor, &tokens);
+    let unit = cursor.compilation_unit();
+    let diagnostics = cursor.into_diagnostics();
+    Parsed { tokens, unit, diagnostics }
+}
+
+fn report_lexical_errors(cursor: &mut Cursor<'_>, tokens: &[Token]) {
+    for token in tokens {
+        let span = Span::new(cursor.file(), token.start, token.end);
+        match token.kind {
+            TokenKind::Unterminated => {
+                // The place where it begins is the place to look at, not all that it swallowed.
+                let span = Span { end: (token.start + 1).min(token.end), ..span };
+                cursor.report(Diagnostic::error(
+                    Code::Unterminated,
+                    span,
+                    "comment, pragma or string without an end",
+                ));
+            }
+            TokenKind::Unknown => {
+                let text = cursor.text(token.start, token.end).escape_debug().to_string();
+                let message = format!("`{text}` begins no token");
+                cursor.report(Diagnostic::error(Code::UnknownCharacter, span, message));
+            }
+            _ => {}
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests;

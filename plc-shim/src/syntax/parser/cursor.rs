@@ -1,0 +1,235 @@
+//! The parser's place in the tokens, what it has reported and how deep it is.
+
+use super::MAX_NESTING;
+use crate::diagnostic::{Code, Diagnostic};
+use crate::syntax::ast::Ident;
+use crate::syntax::source::{FileId, Span};
+use crate::syntax::token::{Keyword, Punctuation, Token, TokenKind};
+
+/// Reads the tokens that matter to the grammar; trivia and broken tokens are left out.
+pub(super) struct Cursor<'a> {
+    file: FileId,
+    text: &'a str,
+    tokens: Vec<Token>,
+    at: usize,
+    nesting: u16,
+    diagnostics: Vec<Diagnostic>,
+    /// Starts of broken tokens, in order: what is missing there has been reported by the lexer.
+    broken: Vec<u32>,
+    /// Findings not shown because another one explains them.
+    suppressed: usize,
+    abandoned: bool,
+}
+
+impl<'a> Cursor<'a> {
+    pub(super) fn new(file: FileId, text: &'a str, tokens: &[Token]) -> Self {
+        let is_broken =
+            |kind: TokenKind| matches!(kind, TokenKind::Unknown | TokenKind::Unterminated);
+        let broken = tokens.iter().filter(|token| is_broken(token.kind)).map(|token| token.start);
+        let starts_string = |token: &Token| {
+            text.get(token.start as usize..).is_some_and(|rest| rest.starts_with(['\'', '"']))
+        };
+        let good = |token: &Token| match token.kind {
+            // A string without an end still stands where a value is wanted.
+            TokenKind::Unterminated if starts_string(token) => {
+                Some(Token { kind: TokenKind::String, ..*token })
+            }
+            kind if kind.is_trivia() || is_broken(kind) => None,
+            _ => Some(*token),
+        };
+        Self {
+            file,
+            text,
+            tokens: tokens.iter().filter_map(good).collect(),
+            at: 0,
+            nesting: 0,
+            diagnostics: Vec::new(),
+            broken: broken.collect(),
+            suppressed: 0,
+            abandoned: false,
+        }
+    }
+
+    pub(super) fn file(&self) -> FileId {
+        self.file
+    }
+
+    pub(super) fn into_diagnostics(self) -> Vec<Diagnostic> {
+        self.diagnostics
+    }
+
+    pub(super) fn report(&mut self, diagnostic: Diagnostic) {
+        self.diagnostics.push(diagnostic);
+    }
+
+    /// Number of findings so far; shows whether a rule has reported any.
+    pub(super) fn reported(&self) -> usize {
+        self.diagnostics.len() + self.suppressed
+    }
+
+    /// Reports an error of the grammar, unless the lexer's error at this place explains it or the
+    /// rest of the file has been given up.
+    pub(super) fn report_syntax(&mut self, diagnostic: Diagnostic) {
+        let (from, to) = (self.previous_span().start, self.span().start);
+        let first = self.broken.partition_point(|start| *start < from);
+        if self.abandoned || self.broken.get(first).is_some_and(|start| *start <= to) {
+            self.suppressed += 1;
+        } else {
+            self.diagnostics.push(diagnostic);
+        }
+    }
+
+    /// Kind of the token taken last.
+    pub(super) fn previous(&self) -> Option<TokenKind> {
+        self.at.checked_sub(1).and_then(|at| self.tokens.get(at)).map(|token| token.kind)
+    }
+
+    pub(super) fn text(&self, start: u32, end: u32) -> &'a str {
+        self.text.get(start as usize..end as usize).unwrap_or("")
+    }
+
+    pub(super) fn peek(&self) -> Option<TokenKind> {
+        self.tokens.get(self.at).map(|token| token.kind)
+    }
+
+    pub(super) fn peek_ahead(&self, ahead: usize) -> Option<TokenKind> {
+        self.tokens.get(self.at + ahead).map(|token| token.kind)
+    }
+
+    /// Number of tokens taken so far; shows whether a rule has made progress.
+    pub(super) fn position(&self) -> usize {
+        self.at
+    }
+
+    /// Span of the next token, or of the text's end.
+    pub(super) fn span(&self) -> Span {
+        let end = self.text.len() as u32;
+        let (start, end) = self.tokens.get(self.at).map_or((end, end), |next| (next.start, next.end));
+        Span::new(self.file, start, end)
+    }
+
+    /// Span of the token taken last.
+    pub(super) fn previous_span(&self) -> Span {
+        let previous = self.at.checked_sub(1).and_then(|at| self.tokens.get(at));
+        let (start, end) = previous.map_or((0, 0), |token| (token.start, token.end));
+        Span::new(self.file, start, end)
+    }
+
+    /// From `start` to the token taken last.
+    pub(super) fn span_from(&self, start: Span) -> Span {
+        let end = self.previous_span().end.max(start.start);
+        Span { end, ..start }
+    }
+
+    pub(super) fn next_text(&self) -> &'a str {
+        let span = self.span();
+        self.text(span.start, span.end)
+    }
+
+    pub(super) fn advance(&mut self) {
+        self.at = (self.at + 1).min(self.tokens.len());
+    }
+
+    pub(super) fn at_keyword(&self, keyword: Keyword) -> bool {
+        self.peek() == Some(TokenKind::Keyword(keyword))
+    }
+
+    pub(super) fn at_mark(&self, mark: Punctuation) -> bool {
+        self.peek() == Some(TokenKind::Punctuation(mark))
+    }
+
+    pub(super) fn take_keyword(&mut self, keyword: Keyword) -> bool {
+        let found = self.at_keyword(keyword);
+        if found {
+            self.advance();
+        }
+        found
+    }
+
+    pub(super) fn take_mark(&mut self, mark: Punctuation) -> bool {
+        let found = self.at_mark(mark);
+        if found {
+            self.advance();
+        }
+        found
+    }
+
+    pub(super) fn expect_keyword(&mut self, keyword: Keyword) -> bool {
+        let found = self.take_keyword(keyword);
+        if !found {
+            self.unexpected(&format!("`{}`", keyword.text()));
+        }
+        found
+    }
+
+    pub(super) fn expect_mark(&mut self, mark: Punctuation) -> bool {
+        let found = self.take_mark(mark);
+        if !found {
+            self.unexpected(&format!("`{}`", mark.text()));
+        }
+        found
+    }
+
+    pub(super) fn take_identifier(&mut self) -> Option<Ident> {
+        if self.peek() != Some(TokenKind::Identifier) {
+            return None;
+        }
+        let ident = Ident { text: self.next_text().to_owned(), span: self.span() };
+        self.advance();
+        Some(ident)
+    }
+
+    pub(super) fn expect_identifier(&mut self, what: &str) -> Option<Ident> {
+        let found = self.take_identifier();
+        if found.is_none() {
+            self.unexpected(what);
+        }
+        found
+    }
+
+    /// Reports that `wanted` should stand here, unless this place has been reported already.
+    pub(super) fn unexpected(&mut self, wanted: &str) {
+        let found = if self.peek().is_some() {
+            format!("`{}`", self.next_text())
+        } else {
+            "the end of the file".to_owned()
+        };
+        let span = self.span();
+        let repeated = self.diagnostics.last().is_some_and(|last| last.span == span);
+        if !repeated {
+            let message = format!("{wanted} expected, found {found}");
+            self.report_syntax(Diagnostic::error(Code::UnexpectedToken, span, message));
+        }
+    }
+
+    /// Runs `rule` one level deeper; past the limit it reports and gives nothing.
+    pub(super) fn nested<T>(&mut self, rule: impl FnOnce(&mut Self) -> T) -> Option<T> {
+        if self.nesting == MAX_NESTING {
+            self.too_deep();
+            return None;
+        }
+        self.nesting += 1;
+        let result = rule(self);
+        self.nesting -= 1;
+        Some(result)
+    }
+
+    /// Reports text that is nested too deep, once for a file: what follows cannot be trusted.
+    pub(super) fn too_deep(&mut self) {
+        let message = format!("nested deeper than {MAX_NESTING} levels");
+        let span = self.span();
+        self.report(Diagnostic::error(Code::NestingTooDeep, span, message));
+        self.at = self.tokens.len();
+        self.abandoned = true;
+    }
+
+    /// Skips to a token that `stop` accepts, or to the end.
+    pub(super) fn skip_until(&mut self, stop: impl Fn(TokenKind) -> bool) {
+        while let Some(kind) = self.peek() {
+            if stop(kind) {
+                return;
+            }
+            self.advance();
+        }
+    }
+}

@@ -1,0 +1,216 @@
+//! Units, types and variable sections (2nd ed. 2.3 to 2.5).
+
+use super::cursor::Cursor;
+use crate::syntax::ast::{
+    CompilationUnit, Declaration, Ident, Pou, PouKind, Qualifier, Section, SectionKind,
+    TypeDeclaration, TypeSpec, TypeSpecKind, Variable,
+};
+use crate::syntax::token::{Keyword, Punctuation, TokenKind};
+
+/// Keywords at which a file can go on after an error outside of a unit's body.
+fn begins_declaration(kind: TokenKind) -> bool {
+    matches!(
+        kind,
+        TokenKind::Keyword(
+            Keyword::Program
+                | Keyword::FunctionBlock
+                | Keyword::Function
+                | Keyword::Type
+                | Keyword::VarGlobal
+        )
+    )
+}
+
+fn section_kind(kind: Option<TokenKind>) -> Option<SectionKind> {
+    Some(match kind? {
+        TokenKind::Keyword(Keyword::Var) => SectionKind::Local,
+        TokenKind::Keyword(Keyword::VarInput) => SectionKind::Input,
+        TokenKind::Keyword(Keyword::VarOutput) => SectionKind::Output,
+        TokenKind::Keyword(Keyword::VarInOut) => SectionKind::InOut,
+        TokenKind::Keyword(Keyword::VarTemp) => SectionKind::Temp,
+        TokenKind::Keyword(Keyword::VarGlobal) => SectionKind::Global,
+        TokenKind::Keyword(Keyword::VarExternal) => SectionKind::External,
+        _ => return None,
+    })
+}
+
+impl Cursor<'_> {
+    pub(super) fn compilation_unit(&mut self) -> CompilationUnit {
+        let mut unit = CompilationUnit::default();
+        while let Some(kind) = self.peek() {
+            match kind {
+                TokenKind::Keyword(Keyword::Program) => {
+                    self.pou(PouKind::Program, Keyword::EndProgram, &mut unit);
+                }
+                TokenKind::Keyword(Keyword::FunctionBlock) => {
+                    self.pou(PouKind::FunctionBlock, Keyword::EndFunctionBlock, &mut unit);
+                }
+                TokenKind::Keyword(Keyword::Function) => {
+                    self.pou(PouKind::Function, Keyword::EndFunction, &mut unit);
+                }
+                TokenKind::Keyword(Keyword::Type) => self.type_block(&mut unit),
+                TokenKind::Keyword(Keyword::VarGlobal) => {
+                    let section = self.section(SectionKind::Global);
+                    unit.declarations.push(Declaration::Globals(section));
+                }
+                // Vendors' exports end a unit with a semicolon; it declares nothing.
+                TokenKind::Punctuation(Punctuation::Semicolon) => self.advance(),
+                _ => {
+                    self.unexpected("PROGRAM, FUNCTION_BLOCK, FUNCTION, TYPE or VAR_GLOBAL");
+                    self.advance();
+                    self.skip_until(begins_declaration);
+                }
+            }
+        }
+        unit
+    }
+
+    fn pou(&mut self, kind: PouKind, end: Keyword, unit: &mut CompilationUnit) {
+        let start = self.span();
+        self.advance();
+        let Some(name) = self.expect_identifier("the unit's name") else {
+            self.skip_until(begins_declaration);
+            return;
+        };
+        let has_result = kind == PouKind::Function && self.take_mark(Punctuation::Colon);
+        let result = has_result.then(|| self.type_spec());
+        self.take_mark(Punctuation::Semicolon);
+        let mut sections = Vec::new();
+        while let Some(kind) = section_kind(self.peek()) {
+            sections.push(self.section(kind));
+        }
+        let body = self.body(end);
+        let span = self.span_from(start);
+        let pou = Pou { kind, name, result, sections, body, span };
+        unit.declarations.push(Declaration::Pou(pou));
+    }
+
+    fn body(&mut self, end: Keyword) -> Vec<crate::syntax::ast::Statement> {
+        let mut body = self.statements();
+        // A stray closing keyword is reported and passed, so that the rest of the body is read.
+        while !self.take_keyword(end) {
+            self.unexpected(&format!("`{}`", end.text()));
+            if self.peek().is_none_or(ends_unit) {
+                break;
+            }
+            self.advance();
+            self.take_mark(Punctuation::Semicolon);
+            body.extend(self.statements());
+        }
+        body
+    }
+
+    pub(super) fn section(&mut self, kind: SectionKind) -> Section {
+        let start = self.span();
+        self.advance();
+        let qualifiers = self.qualifiers();
+        let mut variables = Vec::new();
+        while self.peek() == Some(TokenKind::Identifier) {
+            self.variable(&mut variables);
+        }
+        if !self.take_keyword(Keyword::EndVar) {
+            self.unexpected("a variable's name or `END_VAR`");
+            self.skip_until(|kind| {
+                kind == TokenKind::Keyword(Keyword::EndVar)
+                    || section_kind(Some(kind)).is_some()
+                    || ends_unit(kind)
+            });
+            self.take_keyword(Keyword::EndVar);
+        }
+        self.take_mark(Punctuation::Semicolon);
+        Section { kind, qualifiers, variables, span: self.span_from(start) }
+    }
+
+    fn qualifiers(&mut self) -> Vec<Qualifier> {
+        let mut found = Vec::new();
+        loop {
+            found.push(match self.peek() {
+                Some(TokenKind::Keyword(Keyword::Constant)) => Qualifier::Constant,
+                Some(TokenKind::Keyword(Keyword::Retain)) => Qualifier::Retain,
+                Some(TokenKind::Keyword(Keyword::NonRetain)) => Qualifier::NonRetain,
+                _ => return found,
+            });
+            self.advance();
+        }
+    }
+
+    fn variable(&mut self, variables: &mut Vec<Variable>) {
+        let known = self.reported();
+        let names = self.identifier_list("a variable's name");
+        let address = self.take_keyword(Keyword::At).then(|| self.address()).flatten();
+        self.expect_mark(Punctuation::Colon);
+        if self.reported() > known {
+            // The names are kept, so that their uses are not reported as well.
+            let spec = TypeSpec { kind: TypeSpecKind::Error, span: self.span() };
+            variables.push(Variable { names, address, spec, initial: None });
+        } else {
+            let spec = self.type_spec();
+            let initial = self.optional_initialiser();
+            variables.push(Variable { names, address, spec, initial });
+        }
+        self.end_of_declaration(known);
+    }
+
+    fn address(&mut self) -> Option<Ident> {
+        if self.peek() != Some(TokenKind::DirectAddress) {
+            self.unexpected("a direct address");
+            return None;
+        }
+        let address = Ident { text: self.next_text().to_owned(), span: self.span() };
+        self.advance();
+        Some(address)
+    }
+
+    /// The `;` of a declaration that began when `known` findings were reported.
+    pub(super) fn end_of_declaration(&mut self, known: usize) {
+        if self.take_mark(Punctuation::Semicolon) {
+            return;
+        }
+        let closes = |kind| {
+            matches!(kind, TokenKind::Keyword(Keyword::EndVar | Keyword::EndStruct | Keyword::EndType))
+                || section_kind(Some(kind)).is_some()
+                || ends_unit(kind)
+        };
+        if self.reported() == known {
+            // `END_STRUCT` and the last declaration of a block are often written without.
+            if self.previous() == Some(TokenKind::Keyword(Keyword::EndStruct)) {
+                return;
+            }
+            self.unexpected("`;`");
+        }
+        self.skip_until(|kind| {
+            kind == TokenKind::Punctuation(Punctuation::Semicolon) || closes(kind)
+        });
+        self.take_mark(Punctuation::Semicolon);
+    }
+
+    fn type_block(&mut self, unit: &mut CompilationUnit) {
+        self.advance();
+        while self.peek() == Some(TokenKind::Identifier) {
+            let (known, start) = (self.reported(), self.span());
+            let Some(name) = self.take_identifier() else { break };
+            self.expect_mark(Punctuation::Colon);
+            let spec = self.type_spec();
+            let initial = self.optional_initialiser();
+            let span = self.span_from(start);
+            unit.declarations.push(Declaration::Type(TypeDeclaration { name, spec, initial, span }));
+            self.end_of_declaration(known);
+        }
+        if !self.take_keyword(Keyword::EndType) {
+            self.unexpected("a type's name or `END_TYPE`");
+            self.skip_until(|kind| kind == TokenKind::Keyword(Keyword::EndType) || ends_unit(kind));
+            self.take_keyword(Keyword::EndType);
+        }
+    }
+}
+
+/// Keywords that end a unit or begin the next: no recovery passes them.
+fn ends_unit(kind: TokenKind) -> bool {
+    begins_declaration(kind)
+        || matches!(
+            kind,
+            TokenKind::Keyword(
+                Keyword::EndProgram | Keyword::EndFunctionBlock | Keyword::EndFunction
+            )
+        )
+}

@@ -1,0 +1,240 @@
+//! Expressions, by precedence climbing (2nd ed. 3.3.1, Table 52).
+
+use super::cursor::Cursor;
+use crate::diagnostic::{Code, Diagnostic};
+use crate::syntax::ast::{
+    Argument, BinaryOp, Call, Expr, ExprKind, Ident, Literal, MAX_HEIGHT, UnaryOp,
+};
+use crate::syntax::literal::{parse_integer, parse_real, parse_typed};
+use crate::syntax::source::Span;
+use crate::syntax::token::{Keyword, Punctuation, TokenKind};
+
+/// Unary operators bind tighter than these and looser than `**`.
+const UNARY_PRECEDENCE: u8 = 8;
+
+impl Cursor<'_> {
+    pub(super) fn expression(&mut self) -> Expr {
+        self.binary(0)
+    }
+
+    fn binary(&mut self, minimum: u8) -> Expr {
+        let span = self.span();
+        self.nested(|cursor| cursor.operator_chain(minimum)).unwrap_or_else(|| error_at(span))
+    }
+
+    fn operator_chain(&mut self, minimum: u8) -> Expr {
+        let mut left = self.unary();
+        while let Some(operator) = self.peek_operator() {
+            if operator.precedence() <= minimum {
+                break;
+            }
+            self.advance();
+            // All operators of a level are left associative (2nd ed. 3.3.1), `**` included.
+            let right = self.binary(operator.precedence());
+            let span = left.span.to(right.span);
+            let height = left.height.max(right.height);
+            let kind = ExprKind::Binary(operator, Box::new(left), Box::new(right));
+            left = self.node(kind, span, height);
+        }
+        left
+    }
+
+    fn peek_operator(&self) -> Option<BinaryOp> {
+        Some(match self.peek()? {
+            TokenKind::Keyword(Keyword::Or) => BinaryOp::Or,
+            TokenKind::Keyword(Keyword::Xor) => BinaryOp::Xor,
+            TokenKind::Keyword(Keyword::And) => BinaryOp::And,
+            TokenKind::Keyword(Keyword::Mod) => BinaryOp::Modulo,
+            TokenKind::Punctuation(mark) => match mark {
+                Punctuation::Ampersand => BinaryOp::And,
+                Punctuation::Equal => BinaryOp::Equal,
+                Punctuation::NotEqual => BinaryOp::NotEqual,
+                Punctuation::Less => BinaryOp::Less,
+                Punctuation::Greater => BinaryOp::Greater,
+                Punctuation::LessEqual => BinaryOp::LessEqual,
+                Punctuation::GreaterEqual => BinaryOp::GreaterEqual,
+                Punctuation::Plus => BinaryOp::Add,
+                Punctuation::Minus => BinaryOp::Subtract,
+                Punctuation::Star => BinaryOp::Multiply,
+                Punctuation::Slash => BinaryOp::Divide,
+                Punctuation::Power => BinaryOp::Power,
+                _ => return None,
+            },
+            _ => return None,
+        })
+    }
+
+    fn unary(&mut self) -> Expr {
+        let operator = match self.peek() {
+            Some(TokenKind::Punctuation(Punctuation::Minus)) => UnaryOp::Negate,
+            Some(TokenKind::Punctuation(Punctuation::Plus)) => UnaryOp::Plus,
+            Some(TokenKind::Keyword(Keyword::Not)) => UnaryOp::Not,
+            _ => return self.postfix(),
+        };
+        let start = self.span();
+        self.advance();
+        let operand = self.binary(UNARY_PRECEDENCE);
+        let (span, height) = (start.to(operand.span), operand.height);
+        self.node(ExprKind::Unary(operator, Box::new(operand)), span, height)
+    }
+
+    /// A primary with its members, indices and calls.
+    fn postfix(&mut self) -> Expr {
+        let mut expr = self.primary();
+        loop {
+            let (start, height) = (expr.span, expr.height);
+            let (kind, below) = if self.take_mark(Punctuation::Dot) {
+                let Some(member) = self.member_name() else { return expr };
+                (ExprKind::Member(Box::new(expr), member), 0)
+            } else if self.take_mark(Punctuation::LeftBracket) {
+                let indices = self.indices();
+                let below = indices.iter().map(|index| index.height).max().unwrap_or(0);
+                (ExprKind::Index(Box::new(expr), indices), below)
+            } else if self.at_mark(Punctuation::LeftParen) && is_callable(&expr) {
+                let arguments = self.arguments();
+                let below = arguments.iter().map(argument_height).max().unwrap_or(0);
+                (ExprKind::Call(Call { callee: Box::new(expr), arguments }), below)
+            } else {
+                return expr;
+            };
+            let span = self.span_from(start);
+            expr = self.node(kind, span, height.max(below));
+        }
+    }
+
+    fn member_name(&mut self) -> Option<Ident> {
+        self.expect_identifier("a member's name")
+    }
+
+    fn indices(&mut self) -> Vec<Expr> {
+        let mut indices = vec![self.expression()];
+        while self.take_mark(Punctuation::Comma) {
+            indices.push(self.expression());
+        }
+        self.expect_mark(Punctuation::RightBracket);
+        indices
+    }
+
+    pub(super) fn arguments(&mut self) -> Vec<Argument> {
+        self.advance();
+        let mut arguments = Vec::new();
+        if self.take_mark(Punctuation::RightParen) {
+            return arguments;
+        }
+        loop {
+            arguments.push(self.argument());
+            if !self.take_mark(Punctuation::Comma) {
+                break;
+            }
+        }
+        self.expect_mark(Punctuation::RightParen);
+        arguments
+    }
+
+    fn argument(&mut self) -> Argument {
+        let negated = self.at_keyword(Keyword::Not)
+            && self.peek_ahead(2) == Some(TokenKind::Punctuation(Punctuation::Output));
+        let after_name = self.peek_ahead(1 + usize::from(negated));
+        match after_name {
+            Some(TokenKind::Punctuation(Punctuation::Assign)) => {
+                let Some(name) = self.take_identifier() else {
+                    return Argument::Positional(self.expression());
+                };
+                self.advance();
+                Argument::Input(name, self.expression())
+            }
+            Some(TokenKind::Punctuation(Punctuation::Output)) => {
+                if negated {
+                    self.advance();
+                }
+                let Some(name) = self.take_identifier() else {
+                    return Argument::Positional(self.expression());
+                };
+                self.advance();
+                let absent = self.at_mark(Punctuation::Comma) || self.at_mark(Punctuation::RightParen);
+                let target = if absent { None } else { Some(self.expression()) };
+                Argument::Output { name, negated, target }
+            }
+            _ => Argument::Positional(self.expression()),
+        }
+    }
+
+    pub(super) fn primary(&mut self) -> Expr {
+        let span = self.span();
+        let text = self.next_text();
+        let kind = match self.peek() {
+            Some(TokenKind::Identifier) => ExprKind::Name(Ident { text: text.to_owned(), span }),
+            Some(TokenKind::Integer) => self.literal(span, parse_integer(text).map(Literal::Integer)),
+            Some(TokenKind::Real) => self.literal(span, parse_real(text).map(Literal::Real)),
+            Some(TokenKind::Typed) => self.literal(span, parse_typed(text)),
+            Some(TokenKind::String | TokenKind::WideString) => {
+                ExprKind::Literal(Literal::String(text.to_owned()))
+            }
+            Some(TokenKind::DirectAddress) => ExprKind::DirectAddress(text.to_owned()),
+            Some(TokenKind::Keyword(Keyword::True)) => ExprKind::Literal(Literal::Bool(true)),
+            Some(TokenKind::Keyword(Keyword::False)) => ExprKind::Literal(Literal::Bool(false)),
+            Some(TokenKind::Keyword(keyword)) if self.is_function_form(keyword) => {
+                ExprKind::Name(Ident { text: text.to_owned(), span })
+            }
+            Some(TokenKind::Punctuation(Punctuation::LeftParen)) => return self.parenthesised(),
+            _ => {
+                self.unexpected("an expression");
+                return error_at(Span { end: span.start, ..span });
+            }
+        };
+        self.advance();
+        Expr { kind, span, height: 1 }
+    }
+
+    /// `AND(a, b)`: operators are functions too (2nd ed. Table 26).
+    fn is_function_form(&self, keyword: Keyword) -> bool {
+        matches!(keyword, Keyword::And | Keyword::Or | Keyword::Xor | Keyword::Mod)
+            && self.peek_ahead(1) == Some(TokenKind::Punctuation(Punctuation::LeftParen))
+    }
+
+    fn literal(&mut self, span: Span, value: Result<Literal, String>) -> ExprKind {
+        match value {
+            Ok(literal) => ExprKind::Literal(literal),
+            Err(message) => {
+                self.report(Diagnostic::error(Code::InvalidLiteral, span, message));
+                ExprKind::Error
+            }
+        }
+    }
+
+    fn parenthesised(&mut self) -> Expr {
+        let start = self.span();
+        self.advance();
+        let inner = self.expression();
+        self.expect_mark(Punctuation::RightParen);
+        let (span, height) = (self.span_from(start), inner.height);
+        self.node(ExprKind::Paren(Box::new(inner)), span, height)
+    }
+
+    /// A node above others of `height`; one that is too high becomes an error, so that no tree
+    /// ever is.
+    fn node(&mut self, kind: ExprKind, span: Span, height: u16) -> Expr {
+        if height >= MAX_HEIGHT {
+            let message = format!("expression is nested or chained beyond {MAX_HEIGHT} levels");
+            let help = "assign parts of it to variables first";
+            self.report(Diagnostic::error(Code::NestingTooDeep, span, message).with_help(help));
+            return error_at(span);
+        }
+        Expr { kind, span, height: height + 1 }
+    }
+}
+
+fn error_at(span: Span) -> Expr {
+    Expr { kind: ExprKind::Error, span, height: 1 }
+}
+
+fn is_callable(expr: &Expr) -> bool {
+    matches!(expr.kind, ExprKind::Name(_) | ExprKind::Member(..) | ExprKind::Index(..))
+}
+
+fn argument_height(argument: &Argument) -> u16 {
+    match argument {
+        Argument::Positional(expr) | Argument::Input(_, expr) => expr.height,
+        Argument::Output { target, .. } => target.as_ref().map_or(0, |expr| expr.height),
+    }
+}

@@ -1,0 +1,73 @@
+//! Initial values (2nd ed. 2.4.3.2, 3rd ed. 6.5.1.3).
+
+use super::cursor::Cursor;
+use crate::syntax::ast::{Initialiser, InitialiserKind, StructureInit};
+use crate::syntax::token::{Punctuation, TokenKind};
+
+impl Cursor<'_> {
+    /// `:= value`, if there is one.
+    pub(super) fn optional_initialiser(&mut self) -> Option<Initialiser> {
+        self.take_mark(Punctuation::Assign).then(|| self.initialiser())
+    }
+
+    fn initialiser(&mut self) -> Initialiser {
+        let start = self.span();
+        let kind = self.nested(Self::initialiser_kind);
+        let kind = kind.unwrap_or(InitialiserKind::Array(Vec::new()));
+        Initialiser { kind, span: self.span_from(start) }
+    }
+
+    fn initialiser_kind(&mut self) -> InitialiserKind {
+        if self.take_mark(Punctuation::LeftBracket) {
+            return self.array_initialiser();
+        }
+        let structure = self.at_mark(Punctuation::LeftParen)
+            && self.peek_ahead(1) == Some(TokenKind::Identifier)
+            && self.peek_ahead(2) == Some(TokenKind::Punctuation(Punctuation::Assign));
+        if structure {
+            self.advance();
+            return self.structure_initialiser();
+        }
+        InitialiserKind::Value(self.expression())
+    }
+
+    fn array_initialiser(&mut self) -> InitialiserKind {
+        let mut elements = Vec::new();
+        while !self.at_mark(Punctuation::RightBracket) {
+            elements.push(self.array_element());
+            if !self.take_mark(Punctuation::Comma) {
+                break;
+            }
+        }
+        self.expect_mark(Punctuation::RightBracket);
+        InitialiserKind::Array(elements)
+    }
+
+    fn array_element(&mut self) -> Initialiser {
+        let start = self.span();
+        let repeated = self.peek() == Some(TokenKind::Integer)
+            && self.peek_ahead(1) == Some(TokenKind::Punctuation(Punctuation::LeftParen));
+        if !repeated {
+            return self.initialiser();
+        }
+        let count = Box::new(self.primary());
+        self.advance();
+        let absent = self.at_mark(Punctuation::RightParen);
+        let value = if absent { None } else { Some(Box::new(self.initialiser())) };
+        self.expect_mark(Punctuation::RightParen);
+        Initialiser { kind: InitialiserKind::Repeat(count, value), span: self.span_from(start) }
+    }
+
+    fn structure_initialiser(&mut self) -> InitialiserKind {
+        let mut members = Vec::new();
+        while let Some(name) = self.expect_identifier("a member's name") {
+            self.expect_mark(Punctuation::Assign);
+            members.push(StructureInit { name, value: self.initialiser() });
+            if !self.take_mark(Punctuation::Comma) {
+                break;
+            }
+        }
+        self.expect_mark(Punctuation::RightParen);
+        InitialiserKind::Struct(members)
+    }
+}

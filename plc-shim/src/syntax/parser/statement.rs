@@ -1,0 +1,349 @@
+//! Statements (2nd ed. 3.3.2), with recovery inside a statement.
+
+use super::cursor::Cursor;
+use crate::diagnostic::{Code, Diagnostic};
+use crate::syntax::ast::{
+    CaseBranch, CaseLabel, CaseStatement, ExprKind, ForStatement, IfBranch, IfStatement,
+    RepeatStatement, Statement, StatementKind, WhileStatement,
+};
+use crate::syntax::source::Span;
+use crate::syntax::token::{Keyword, Punctuation, TokenKind};
+
+/// Keywords that close a list of statements, whoever opened it.
+fn closes_list(keyword: Keyword) -> bool {
+    use Keyword as K;
+    matches!(
+        keyword,
+        K::EndProgram | K::EndFunctionBlock | K::EndFunction | K::EndIf | K::EndCase | K::EndFor
+            | K::EndWhile | K::EndRepeat | K::Elsif | K::Else | K::Until
+            // A new unit begins: the end of the one before is missing.
+            | K::Program | K::FunctionBlock | K::Function | K::Type | K::EndType | K::VarGlobal
+    )
+}
+
+/// Keywords that begin a statement.
+fn begins_statement(keyword: Keyword) -> bool {
+    use Keyword as K;
+    matches!(
+        keyword,
+        K::If | K::Case | K::For | K::While | K::Repeat | K::Exit | K::Continue | K::Return
+    )
+}
+
+impl Cursor<'_> {
+    pub(super) fn statements(&mut self) -> Vec<Statement> {
+        self.statements_until(|_| false)
+    }
+
+    fn statements_until(&mut self, stop: impl Fn(&Self) -> bool) -> Vec<Statement> {
+        let mut list = Vec::new();
+        loop {
+            match self.peek() {
+                None => return list,
+                Some(TokenKind::Keyword(keyword)) if closes_list(keyword) => return list,
+                _ if stop(self) => return list,
+                _ => list.push(self.statement()),
+            }
+        }
+    }
+
+    fn statement(&mut self) -> Statement {
+        let start = self.span();
+        let (position, known) = (self.position(), self.reported());
+        let kind = self.nested(Self::statement_kind).unwrap_or(StatementKind::Error);
+        let span = self.span_from(start);
+        // A compound statement that found its end has dealt with the errors inside it.
+        let ended = self.position() > position && self.previous_closes();
+        if self.reported() > known && !ended {
+            self.recover(position);
+        } else if !self.take_mark(Punctuation::Semicolon) {
+            self.missing_semicolon();
+        }
+        Statement { kind, span }
+    }
+
+    fn previous_closes(&self) -> bool {
+        matches!(self.previous(), Some(TokenKind::Keyword(keyword)) if ends_statement(keyword))
+    }
+
+    fn missing_semicolon(&mut self) {
+        let before = self.previous_span();
+        let span = Span { start: before.end.saturating_sub(1).max(before.start), ..before };
+        let message = "`;` expected after this";
+        self.report_syntax(Diagnostic::error(Code::UnexpectedToken, span, message));
+        // What follows is most often a good statement; only a stray remainder is skipped.
+        let good = match self.peek() {
+            Some(TokenKind::Identifier) | None => true,
+            Some(TokenKind::Keyword(keyword)) => closes_list(keyword) || begins_statement(keyword),
+            _ => false,
+        };
+        if !good {
+            self.recover(self.position());
+        }
+    }
+
+    /// Goes on behind the next `;` or before the next keyword that the grammar knows here.
+    /// `started` is where the broken statement began: recovery always makes progress.
+    fn recover(&mut self, started: usize) {
+        if self.position() == started {
+            if let Some(TokenKind::Keyword(keyword)) = self.peek()
+                && closes_list(keyword)
+            {
+                return;
+            }
+            if !self.at_mark(Punctuation::Semicolon) {
+                self.advance();
+            }
+        }
+        if self.position() > started && self.previous() == Some(TokenKind::Punctuation(Punctuation::Semicolon)) {
+            return;
+        }
+        self.skip_until(|kind| match kind {
+            TokenKind::Punctuation(Punctuation::Semicolon) => true,
+            TokenKind::Keyword(keyword) => closes_list(keyword) || begins_statement(keyword),
+            _ => false,
+        });
+        self.take_mark(Punctuation::Semicolon);
+    }
+
+    fn statement_kind(&mut self) -> StatementKind {
+        match self.peek() {
+            Some(TokenKind::Punctuation(Punctuation::Semicolon)) => StatementKind::Empty,
+            Some(TokenKind::Keyword(keyword)) => match keyword {
+                Keyword::If => self.if_statement(),
+                Keyword::Case => self.case_statement(),
+                Keyword::For => self.for_statement(),
+                Keyword::While => self.while_statement(),
+                Keyword::Repeat => self.repeat_statement(),
+                Keyword::Exit => self.single(StatementKind::Exit),
+                Keyword::Continue => self.single(StatementKind::Continue),
+                Keyword::Return => self.single(StatementKind::Return),
+                _ => self.assignment_or_call(),
+            },
+            _ => self.assignment_or_call(),
+        }
+    }
+
+    fn single(&mut self, kind: StatementKind) -> StatementKind {
+        self.advance();
+        kind
+    }
+
+    fn assignment_or_call(&mut self) -> StatementKind {
+        let known = self.reported();
+        let target = self.expression();
+        if self.take_mark(Punctuation::Assign) {
+            let value = self.expression();
+            return StatementKind::Assign(target, value);
+        }
+        match target.kind {
+            ExprKind::Call(call) => StatementKind::Call(call),
+            _ => {
+                if self.reported() == known {
+                    if self.at_mark(Punctuation::Equal) || is_comparison(&target.kind) {
+                        let message = "this is a comparison, not an assignment";
+                        let found = Diagnostic::error(Code::UnexpectedToken, target.span, message);
+                        self.report(found.with_help("assign with `:=`"));
+                    } else {
+                        self.unexpected("`:=` or `(`");
+                    }
+                }
+                StatementKind::Error
+            }
+        }
+    }
+
+    fn if_statement(&mut self) -> StatementKind {
+        let mut branches = Vec::new();
+        let mut otherwise = Vec::new();
+        loop {
+            self.advance();
+            let condition = self.condition(Keyword::Then);
+            let body = self.statements();
+            branches.push(IfBranch { condition, body });
+            if !self.at_keyword(Keyword::Elsif) {
+                break;
+            }
+        }
+        if self.take_keyword(Keyword::Else) {
+            otherwise = self.statements();
+        }
+        self.expect_end(Keyword::EndIf);
+        StatementKind::If(IfStatement { branches, otherwise })
+    }
+
+    /// A condition and the keyword behind it; a slip in either does not cost the body.
+    fn condition(&mut self, end: Keyword) -> crate::syntax::ast::Expr {
+        let known = self.reported();
+        let condition = self.expression();
+        if !self.at_keyword(end) {
+            if self.reported() == known {
+                self.unexpected(&format!("`{}`", end.text()));
+            }
+            self.skip_until(|kind| match kind {
+                TokenKind::Punctuation(Punctuation::Semicolon) => true,
+                TokenKind::Keyword(keyword) => {
+                    keyword == end || closes_list(keyword) || begins_statement(keyword)
+                }
+                _ => false,
+            });
+        }
+        self.take_keyword(end);
+        condition
+    }
+
+    fn expect_end(&mut self, end: Keyword) {
+        if !self.take_keyword(end) {
+            self.unexpected(&format!("`{}`", end.text()));
+        }
+    }
+
+    fn case_statement(&mut self) -> StatementKind {
+        self.advance();
+        let selector = self.condition(Keyword::Of);
+        let mut branches = Vec::new();
+        while !matches!(self.peek(), None | Some(TokenKind::Keyword(_))) {
+            let position = self.position();
+            branches.push(self.case_branch());
+            if self.position() == position {
+                self.advance();
+            }
+        }
+        let otherwise =
+            if self.take_keyword(Keyword::Else) { self.statements() } else { Vec::new() };
+        self.expect_end(Keyword::EndCase);
+        StatementKind::Case(CaseStatement { selector, branches, otherwise })
+    }
+
+    fn case_branch(&mut self) -> CaseBranch {
+        let mut labels = vec![self.case_label()];
+        while self.take_mark(Punctuation::Comma) {
+            labels.push(self.case_label());
+        }
+        if !self.expect_mark(Punctuation::Colon) {
+            self.skip_until(|kind| {
+                matches!(
+                    kind,
+                    TokenKind::Punctuation(Punctuation::Colon | Punctuation::Semicolon)
+                        | TokenKind::Keyword(_)
+                )
+            });
+            self.take_mark(Punctuation::Colon);
+        }
+        let body = self.statements_until(Self::at_case_label);
+        CaseBranch { labels, body }
+    }
+
+    fn case_label(&mut self) -> CaseLabel {
+        let low = self.expression();
+        let high = self.take_mark(Punctuation::Range).then(|| self.expression());
+        CaseLabel { low, high }
+    }
+
+    /// A label is told from a statement by the `:` behind it; a statement has `:=`.
+    fn at_case_label(&self) -> bool {
+        match self.peek() {
+            Some(
+                TokenKind::Integer
+                | TokenKind::Typed
+                | TokenKind::Real
+                | TokenKind::String
+                | TokenKind::WideString
+                | TokenKind::Punctuation(
+                    Punctuation::Minus | Punctuation::Plus | Punctuation::LeftParen,
+                ),
+            ) => true,
+            Some(TokenKind::Keyword(Keyword::True | Keyword::False)) => true,
+            Some(TokenKind::Identifier) => self.identifier_is_label(),
+            _ => false,
+        }
+    }
+
+    fn identifier_is_label(&self) -> bool {
+        // A constant expression of names and numbers, then `:`, `,` or `..`.
+        let mut ahead = 1;
+        loop {
+            match self.peek_ahead(ahead) {
+                Some(TokenKind::Punctuation(
+                    Punctuation::Colon | Punctuation::Comma | Punctuation::Range,
+                )) => return true,
+                Some(
+                    TokenKind::Integer
+                    | TokenKind::Identifier
+                    | TokenKind::Typed
+                    | TokenKind::Punctuation(
+                        Punctuation::Plus | Punctuation::Minus | Punctuation::Star | Punctuation::Dot,
+                    ),
+                ) => ahead += 1,
+                _ => return false,
+            }
+        }
+    }
+
+    fn for_statement(&mut self) -> StatementKind {
+        self.advance();
+        let Some(variable) = self.expect_identifier("the control variable's name") else {
+            return StatementKind::Error;
+        };
+        self.expect_mark(Punctuation::Assign);
+        let from = self.expression();
+        self.expect_keyword(Keyword::To);
+        let (to, by) = if self.for_has_by() {
+            let to = self.condition(Keyword::By);
+            (to, Some(self.condition(Keyword::Do)))
+        } else {
+            (self.condition(Keyword::Do), None)
+        };
+        let body = self.statements();
+        self.expect_end(Keyword::EndFor);
+        StatementKind::For(Box::new(ForStatement { variable, from, to, by, body }))
+    }
+
+    /// Looks for `BY` before `DO` on the way to the body.
+    fn for_has_by(&self) -> bool {
+        let mut ahead = 0;
+        loop {
+            match self.peek_ahead(ahead) {
+                Some(TokenKind::Keyword(Keyword::By)) => return true,
+                None
+                | Some(
+                    TokenKind::Keyword(Keyword::Do)
+                    | TokenKind::Punctuation(Punctuation::Semicolon),
+                ) => return false,
+                Some(TokenKind::Keyword(word)) if closes_list(word) || begins_statement(word) => {
+                    return false;
+                }
+                _ => ahead += 1,
+            }
+        }
+    }
+
+    fn while_statement(&mut self) -> StatementKind {
+        self.advance();
+        let condition = self.condition(Keyword::Do);
+        let body = self.statements();
+        self.expect_end(Keyword::EndWhile);
+        StatementKind::While(WhileStatement { condition, body })
+    }
+
+    fn repeat_statement(&mut self) -> StatementKind {
+        self.advance();
+        let body = self.statements();
+        if !self.take_keyword(Keyword::Until) {
+            self.unexpected("`UNTIL`");
+            return StatementKind::Error;
+        }
+        let until = self.condition(Keyword::EndRepeat);
+        StatementKind::Repeat(RepeatStatement { body, until })
+    }
+}
+
+/// Keywords that end a compound statement.
+fn ends_statement(keyword: Keyword) -> bool {
+    use Keyword as K;
+    matches!(keyword, K::EndIf | K::EndCase | K::EndFor | K::EndWhile | K::EndRepeat)
+}
+
+fn is_comparison(kind: &ExprKind) -> bool {
+    matches!(kind, ExprKind::Binary(crate::syntax::ast::BinaryOp::Equal, ..))
+}

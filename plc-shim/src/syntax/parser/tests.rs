@@ -1,0 +1,174 @@
+use proptest::prelude::*;
+
+use super::*;
+use crate::syntax::printer::{print_expression, print_unit};
+use crate::syntax::token::TokenKind;
+
+const FILE: FileId = FileId(0);
+
+fn reparse(text: &str) -> (String, Vec<Diagnostic>) {
+    let parsed = parse(FILE, text);
+    (print_unit(&parsed.unit), parsed.diagnostics)
+}
+
+#[test]
+fn a_printed_unit_parses_to_itself() {
+    let text = "
+        TYPE T : STRUCT a, b : INT := 5; c : ARRAY [0..1, 2..3] OF REAL; END_STRUCT END_TYPE
+        TYPE C : (Red, Green := 5); R : INT (0..10) := 3; END_TYPE
+        VAR_GLOBAL RETAIN g AT %MW1 : T := (a := 1, c := [1.0, 3(2.5)]); END_VAR
+        FUNCTION f : INT VAR_INPUT x : INT; END_VAR f := -x ** 2 + 1; END_FUNCTION
+        PROGRAM p VAR i : INT; t : TON; END_VAR
+          IF i = 1 AND NOT (i > 2) THEN i := f(1); ELSIF TRUE THEN ; ELSE RETURN; END_IF
+          CASE i OF 1, 2..3: i := 4; i := 5; C#Red: ; ELSE i := 6; END_CASE;
+          FOR i := 1 TO 10 BY 2 DO CONTINUE; END_FOR;
+          WHILE i < 3 DO EXIT; END_WHILE; REPEAT i := i + 1; UNTIL i > 5 END_REPEAT;
+          t(IN := TRUE, PT := T#1.5s, Q => b, NOT Q => c); a[1, 2].b := LREAL#1.0e-7 * 16#FF;
+        END_PROGRAM";
+    let (once, _) = reparse(text);
+    let (twice, diagnostics) = reparse(&once);
+    assert_eq!(diagnostics, []);
+    assert_eq!(once, twice);
+}
+
+#[test]
+fn operators_bind_as_table_52_says() {
+    let shape = |text: &str| {
+        let parsed = parse(FILE, &format!("PROGRAM p x := {text}; END_PROGRAM"));
+        assert_eq!(parsed.diagnostics, [], "{text}");
+        format!("{:?}", strip(&parsed.unit))
+    };
+    for (short, full) in [
+        ("a OR b XOR c AND d", "a OR (b XOR (c AND d))"),
+        ("a = b < c", "a = (b < c)"),
+        ("a + b * c", "a + (b * c)"),
+        ("a - b - c", "(a - b) - c"),
+        ("-a ** b", "-(a ** b)"),
+        ("a ** b ** c", "(a ** b) ** c"),
+        ("NOT a AND b", "(NOT a) AND b"),
+        ("a * -b", "a * (-b)"),
+        ("a & b = c", "a AND (b = c)"),
+    ] {
+        assert_eq!(shape(short), shape(full), "{short}");
+    }
+}
+
+/// The tree's text with every operation in parentheses.
+fn strip(unit: &CompilationUnit) -> String {
+    use crate::syntax::ast::{Declaration, Expr, ExprKind, StatementKind};
+    fn full(expr: &Expr) -> String {
+        match &expr.kind {
+            ExprKind::Paren(inner) => full(inner),
+            ExprKind::Unary(operator, a) => format!("({operator:?} {})", full(a)),
+            ExprKind::Binary(operator, a, b) => format!("({} {operator:?} {})", full(a), full(b)),
+            _ => print_expression(expr),
+        }
+    }
+    let Some(Declaration::Pou(pou)) = unit.declarations.first() else { return String::new() };
+    match &pou.body[0].kind {
+        StatementKind::Assign(_, value) => full(value),
+        _ => String::new(),
+    }
+}
+
+#[test]
+fn one_slip_makes_one_diagnostic() {
+    let body = |text: &str| {
+        let text = format!("PROGRAM p VAR a : INT; END_VAR\n{text}\na := 1;\nEND_PROGRAM");
+        parse(FILE, &text).diagnostics
+    };
+    for slip in [
+        "a := ;",
+        "a := 1 + ;",
+        "a = 1;",
+        "a := 1",
+        "IF a > 1 a := 2; END_IF;",
+        "IF a > THEN a := 2; END_IF;",
+        "FOR a := 1 TO DO a := 2; END_FOR;",
+        "CASE a OF 1 a := 2; 2: a := 3; END_CASE;",
+        "a := (1 + 2;",
+        "a[1 := 2;",
+        ") a := 2;",
+        "WHILE a < 1 a := 2; END_WHILE;",
+        "END_IF;",
+        "a := 3 ? 4;",
+        "f(1, , 2);",
+        "a := 12#5;",
+    ] {
+        assert_eq!(body(slip).len(), 1, "{slip}: {:#?}", body(slip));
+    }
+}
+
+#[test]
+fn depth_is_bounded_and_reported() {
+    let deep = |open: &str, close: &str| {
+        let (open, close) = (open.repeat(50_000), close.repeat(50_000));
+        parse(FILE, &format!("PROGRAM p {open} x {close} END_PROGRAM"))
+    };
+    for (open, close) in [("(", ")"), ("IF a THEN ", "END_IF;"), ("NOT ", ""), ("a[", "]"), ("f(", ")")] {
+        let codes: Vec<_> = deep(open, close).diagnostics.iter().map(|found| found.code).collect();
+        assert_eq!(codes, [Code::NestingTooDeep], "{open}");
+    }
+    let chain = format!("PROGRAM p x := 1{}; END_PROGRAM", "+1".repeat(100_000));
+    assert_eq!(parse(FILE, &chain).diagnostics[0].code, Code::NestingTooDeep);
+    let members = format!("PROGRAM p x := a{}; END_PROGRAM", ".b".repeat(100_000));
+    assert_eq!(parse(FILE, &members).diagnostics[0].code, Code::NestingTooDeep);
+    let arrays = format!("VAR_GLOBAL x : {} INT; END_VAR", "ARRAY [0..1] OF ".repeat(10_000));
+    assert_eq!(parse(FILE, &arrays).diagnostics[0].code, Code::NestingTooDeep);
+}
+
+fn arbitrary_expression() -> impl Strategy<Value = String> {
+    let leaf = prop_oneof![
+        "[a-e]".prop_map(String::from),
+        (0_u32..1000).prop_map(|value| value.to_string()),
+        Just("1.5e-3".to_owned()),
+        Just("T#1s".to_owned()),
+        Just("INT#-5".to_owned()),
+        Just("TRUE".to_owned()),
+    ];
+    leaf.prop_recursive(6, 60, 3, |inner| {
+        let operator = prop::sample::select(vec![
+            "+", "-", "*", "/", "MOD", "**", "AND", "OR", "XOR", "&", "=", "<>", "<", ">=",
+        ]);
+        prop_oneof![
+            (inner.clone(), operator, inner.clone()).prop_map(|(a, op, b)| format!("{a} {op} {b}")),
+            inner.clone().prop_map(|a| format!("({a})")),
+            inner.clone().prop_map(|a| format!("NOT {a}")),
+            inner.clone().prop_map(|a| format!("-{a}")),
+            (inner.clone(), inner.clone()).prop_map(|(a, b)| format!("f(x := {a}, y => q.r[{b}])")),
+            (inner.clone(), inner).prop_map(|(a, b)| format!("g({a}, {b}).z")),
+        ]
+    })
+}
+
+proptest! {
+    #[test]
+    fn printing_and_parsing_are_inverse(text in arbitrary_expression()) {
+        let text = format!("PROGRAM p x := {text}; END_PROGRAM");
+        let parsed = parse(FILE, &text);
+        prop_assume!(parsed.diagnostics.is_empty());
+        let printed = print_unit(&parsed.unit);
+        let again = parse(FILE, &printed);
+        prop_assert_eq!(&again.diagnostics, &[]);
+        prop_assert_eq!(strip(&parsed.unit), strip(&again.unit));
+        prop_assert_eq!(printed, print_unit(&again.unit));
+    }
+
+    #[test]
+    fn any_text_gives_a_tree(text in "\\PC{0,300}") {
+        parse(FILE, &text);
+    }
+
+    #[test]
+    fn any_tokens_give_a_tree(words in prop::collection::vec(prop::sample::select(vec![
+        "PROGRAM", "END_PROGRAM", "FUNCTION", "VAR", "END_VAR", "TYPE", "STRUCT", "END_STRUCT",
+        "IF", "THEN", "ELSE", "END_IF", "CASE", "OF", "END_CASE", "FOR", "TO", "BY", "DO",
+        "END_FOR", "REPEAT", "UNTIL", "a", "b", "1", "2.5", ":=", ":", ";", ",", "(", ")", "[",
+        "]", "..", "+", "-", "NOT", "AND", "=>", ".", "T#1s", "ARRAY", "INT", "%IX1", "'s'",
+    ]), 0..120)) {
+        let text = words.join(" ");
+        let parsed = parse(FILE, &text);
+        let tokens = parsed.tokens.iter().filter(|token| token.kind != TokenKind::Whitespace);
+        prop_assert_eq!(tokens.count(), words.len());
+    }
+}

@@ -1,0 +1,108 @@
+//! Types as written (2nd ed. 2.3.3).
+
+use super::cursor::Cursor;
+use crate::syntax::ast::{
+    Dimension, EnumValue, Expr, Field, Ident, Subrange, TypeSpec, TypeSpecKind,
+};
+use crate::syntax::token::{Keyword, Punctuation, TokenKind};
+
+impl Cursor<'_> {
+    pub(super) fn type_spec(&mut self) -> TypeSpec {
+        let start = self.span();
+        let kind = self.nested(Self::type_spec_kind).unwrap_or(TypeSpecKind::Error);
+        TypeSpec { kind, span: self.span_from(start) }
+    }
+
+    fn type_spec_kind(&mut self) -> TypeSpecKind {
+        if self.take_keyword(Keyword::Array) {
+            return self.array_type();
+        }
+        if self.take_keyword(Keyword::Struct) {
+            return self.struct_type();
+        }
+        if self.take_mark(Punctuation::LeftParen) {
+            return self.enumeration_type();
+        }
+        let Some(name) = self.expect_identifier("a type") else { return TypeSpecKind::Error };
+        if matches!(name.key().as_str(), "STRING" | "WSTRING") {
+            return self.string_type(name);
+        }
+        if self.take_mark(Punctuation::LeftParen) {
+            let low = self.expression();
+            self.expect_mark(Punctuation::Range);
+            let high = self.expression();
+            self.expect_mark(Punctuation::RightParen);
+            return TypeSpecKind::Subrange(name, Box::new(Subrange { low, high }));
+        }
+        TypeSpecKind::Name(name)
+    }
+
+    fn string_type(&mut self, name: Ident) -> TypeSpecKind {
+        let length = self.take_mark(Punctuation::LeftBracket).then(|| {
+            let length: Expr = self.expression();
+            self.expect_mark(Punctuation::RightBracket);
+            Box::new(length)
+        });
+        TypeSpecKind::String(name, length)
+    }
+
+    fn array_type(&mut self) -> TypeSpecKind {
+        let mut dimensions = Vec::new();
+        self.expect_mark(Punctuation::LeftBracket);
+        loop {
+            let low = self.expression();
+            self.expect_mark(Punctuation::Range);
+            let high = self.expression();
+            dimensions.push(Dimension { low, high });
+            if !self.take_mark(Punctuation::Comma) {
+                break;
+            }
+        }
+        self.expect_mark(Punctuation::RightBracket);
+        self.expect_keyword(Keyword::Of);
+        TypeSpecKind::Array(dimensions, Box::new(self.type_spec()))
+    }
+
+    fn struct_type(&mut self) -> TypeSpecKind {
+        let mut fields = Vec::new();
+        while self.peek() == Some(TokenKind::Identifier) {
+            self.fields(&mut fields);
+        }
+        self.expect_keyword(Keyword::EndStruct);
+        TypeSpecKind::Struct(fields)
+    }
+
+    /// `a, b : INT := 5;`
+    fn fields(&mut self, fields: &mut Vec<Field>) {
+        let known = self.reported();
+        let names = self.identifier_list("a member's name");
+        self.expect_mark(Punctuation::Colon);
+        let spec = self.type_spec();
+        let initial = self.optional_initialiser();
+        for name in names {
+            fields.push(Field { name, spec: spec.clone(), initial: initial.clone() });
+        }
+        self.end_of_declaration(known);
+    }
+
+    pub(super) fn identifier_list(&mut self, what: &str) -> Vec<Ident> {
+        let mut names: Vec<Ident> = self.expect_identifier(what).into_iter().collect();
+        while self.take_mark(Punctuation::Comma) {
+            names.extend(self.expect_identifier(what));
+        }
+        names
+    }
+
+    fn enumeration_type(&mut self) -> TypeSpecKind {
+        let mut values = Vec::new();
+        while let Some(name) = self.expect_identifier("a value's name") {
+            let value = self.take_mark(Punctuation::Assign).then(|| self.expression());
+            values.push(EnumValue { name, value });
+            if !self.take_mark(Punctuation::Comma) {
+                break;
+            }
+        }
+        self.expect_mark(Punctuation::RightParen);
+        TypeSpecKind::Enumeration(values)
+    }
+}

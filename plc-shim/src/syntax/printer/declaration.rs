@@ -1,0 +1,187 @@
+//! Declarations to text.
+
+use super::Printer;
+use crate::syntax::ast::{
+    Declaration, EnumValue, Field, Initialiser, InitialiserKind, Pou, PouKind, Qualifier, Section,
+    SectionKind, StructureInit, TypeDeclaration, TypeSpec, TypeSpecKind, Variable,
+};
+
+impl Printer {
+    pub(super) fn declaration(&mut self, declaration: &Declaration) {
+        match declaration {
+            Declaration::Pou(pou) => self.pou(pou),
+            Declaration::Type(declaration) => self.type_declaration(declaration),
+            Declaration::Globals(section) => self.section(section),
+        }
+        self.end_line();
+    }
+
+    fn pou(&mut self, pou: &Pou) {
+        let (begin, end) = match pou.kind {
+            PouKind::Program => ("PROGRAM ", "END_PROGRAM"),
+            PouKind::FunctionBlock => ("FUNCTION_BLOCK ", "END_FUNCTION_BLOCK"),
+            PouKind::Function => ("FUNCTION ", "END_FUNCTION"),
+        };
+        self.word(begin);
+        self.word(&pou.name.text);
+        if let Some(result) = &pou.result {
+            self.word(" : ");
+            self.type_spec(result);
+        }
+        self.end_line();
+        for section in &pou.sections {
+            self.section(section);
+        }
+        self.statements(&pou.body);
+        self.line(end);
+    }
+
+    fn section(&mut self, section: &Section) {
+        self.word(match section.kind {
+            SectionKind::Local => "VAR",
+            SectionKind::Input => "VAR_INPUT",
+            SectionKind::Output => "VAR_OUTPUT",
+            SectionKind::InOut => "VAR_IN_OUT",
+            SectionKind::Temp => "VAR_TEMP",
+            SectionKind::Global => "VAR_GLOBAL",
+            SectionKind::External => "VAR_EXTERNAL",
+        });
+        for qualifier in &section.qualifiers {
+            self.word(match qualifier {
+                Qualifier::Constant => " CONSTANT",
+                Qualifier::Retain => " RETAIN",
+                Qualifier::NonRetain => " NON_RETAIN",
+            });
+        }
+        self.end_line();
+        self.indented(|printer| {
+            for variable in &section.variables {
+                printer.variable(variable);
+            }
+        });
+        self.line("END_VAR");
+    }
+
+    fn variable(&mut self, variable: &Variable) {
+        self.begin_line();
+        self.separated(&variable.names, |printer, name| printer.word(&name.text));
+        if let Some(address) = &variable.address {
+            self.word(" AT ");
+            self.word(&address.text);
+        }
+        self.typed(&variable.spec, variable.initial.as_ref());
+    }
+
+    /// ` : INT := 5;` and the line's end.
+    fn typed(&mut self, spec: &TypeSpec, initial: Option<&Initialiser>) {
+        self.word(" : ");
+        self.type_spec(spec);
+        if let Some(initial) = initial {
+            self.word(" := ");
+            self.initialiser(initial);
+        }
+        self.word(";");
+        self.end_line();
+    }
+
+    fn type_declaration(&mut self, declaration: &TypeDeclaration) {
+        self.line("TYPE");
+        self.indented(|printer| {
+            printer.begin_line();
+            printer.word(&declaration.name.text);
+            printer.typed(&declaration.spec, declaration.initial.as_ref());
+        });
+        self.line("END_TYPE");
+    }
+
+    fn type_spec(&mut self, spec: &TypeSpec) {
+        match &spec.kind {
+            TypeSpecKind::Name(name) => self.word(&name.text),
+            TypeSpecKind::String(name, length) => {
+                self.word(&name.text);
+                if let Some(length) = length {
+                    self.word("[");
+                    self.expression(length);
+                    self.word("]");
+                }
+            }
+            TypeSpecKind::Subrange(name, range) => {
+                self.word(&name.text);
+                self.word(" (");
+                self.range(&range.low, &range.high);
+                self.word(")");
+            }
+            TypeSpecKind::Array(dimensions, element) => {
+                self.word("ARRAY [");
+                self.separated(dimensions, |printer, each| printer.range(&each.low, &each.high));
+                self.word("] OF ");
+                self.type_spec(element);
+            }
+            TypeSpecKind::Struct(fields) => self.structure(fields),
+            TypeSpecKind::Enumeration(values) => {
+                self.word("(");
+                self.separated(values, Self::enum_value);
+                self.word(")");
+            }
+            TypeSpecKind::Error => {}
+        }
+    }
+
+    fn range(&mut self, low: &crate::syntax::ast::Expr, high: &crate::syntax::ast::Expr) {
+        self.expression(low);
+        self.word("..");
+        self.expression(high);
+    }
+
+    fn structure(&mut self, fields: &[Field]) {
+        self.word("STRUCT");
+        self.end_line();
+        self.indented(|printer| {
+            for field in fields {
+                printer.begin_line();
+                printer.word(&field.name.text);
+                printer.typed(&field.spec, field.initial.as_ref());
+            }
+        });
+        self.begin_line();
+        self.word("END_STRUCT");
+    }
+
+    fn enum_value(&mut self, value: &EnumValue) {
+        self.word(&value.name.text);
+        if let Some(number) = &value.value {
+            self.word(" := ");
+            self.expression(number);
+        }
+    }
+
+    fn initialiser(&mut self, initialiser: &Initialiser) {
+        match &initialiser.kind {
+            InitialiserKind::Value(expr) => self.expression(expr),
+            InitialiserKind::Array(elements) => {
+                self.word("[");
+                self.separated(elements, Self::initialiser);
+                self.word("]");
+            }
+            InitialiserKind::Repeat(count, value) => {
+                self.expression(count);
+                self.word("(");
+                if let Some(value) = value {
+                    self.initialiser(value);
+                }
+                self.word(")");
+            }
+            InitialiserKind::Struct(members) => {
+                self.word("(");
+                self.separated(members, Self::structure_init);
+                self.word(")");
+            }
+        }
+    }
+
+    fn structure_init(&mut self, member: &StructureInit) {
+        self.word(&member.name.text);
+        self.word(" := ");
+        self.initialiser(&member.value);
+    }
+}

@@ -1,0 +1,96 @@
+//! Expressions to text.
+
+use super::Printer;
+use crate::syntax::ast::{Argument, Call, Expr, ExprKind, Literal, TypedValue, UnaryOp};
+
+impl Printer {
+    pub(super) fn expression(&mut self, expr: &Expr) {
+        match &expr.kind {
+            ExprKind::Literal(literal) => self.literal(literal),
+            ExprKind::Name(name) => self.word(&name.text),
+            ExprKind::DirectAddress(text) => self.word(text),
+            ExprKind::Member(base, name) => {
+                self.expression(base);
+                self.word(".");
+                self.word(&name.text);
+            }
+            ExprKind::Index(base, indices) => {
+                self.expression(base);
+                self.word("[");
+                self.separated(indices, Self::expression);
+                self.word("]");
+            }
+            ExprKind::Call(call) => self.call(call),
+            ExprKind::Unary(operator, operand) => {
+                self.word(match operator {
+                    UnaryOp::Negate => "-",
+                    UnaryOp::Plus => "+",
+                    UnaryOp::Not => "NOT ",
+                });
+                self.expression(operand);
+            }
+            ExprKind::Binary(operator, left, right) => {
+                self.expression(left);
+                self.word(" ");
+                self.word(operator.text());
+                self.word(" ");
+                self.expression(right);
+            }
+            ExprKind::Paren(inner) => {
+                self.word("(");
+                self.expression(inner);
+                self.word(")");
+            }
+            ExprKind::Error => {}
+        }
+    }
+
+    pub(super) fn call(&mut self, call: &Call) {
+        self.expression(&call.callee);
+        self.word("(");
+        self.separated(&call.arguments, Self::argument);
+        self.word(")");
+    }
+
+    fn argument(&mut self, argument: &Argument) {
+        match argument {
+            Argument::Positional(expr) => self.expression(expr),
+            Argument::Input(name, expr) => {
+                self.word(&name.text);
+                self.word(" := ");
+                self.expression(expr);
+            }
+            Argument::Output { name, negated, target } => {
+                if *negated {
+                    self.word("NOT ");
+                }
+                self.word(&name.text);
+                self.word(" => ");
+                if let Some(target) = target {
+                    self.expression(target);
+                }
+            }
+        }
+    }
+
+    fn literal(&mut self, literal: &Literal) {
+        let text = match literal {
+            Literal::Bool(true) => "TRUE".to_owned(),
+            Literal::Bool(false) => "FALSE".to_owned(),
+            Literal::Integer(value) => value.to_string(),
+            // The shortest text that reads back to the same number, always with `.` or `e`.
+            Literal::Real(value) => format!("{value:?}"),
+            Literal::Typed { prefix, value } => match value {
+                TypedValue::Integer(value) => format!("{prefix}#{value}"),
+                TypedValue::Real(value) => format!("{prefix}#{value:?}"),
+                TypedValue::Name(name) => format!("{prefix}#{name}"),
+            },
+            Literal::Duration { long, ns } => {
+                let (prefix, sign) = (if *long { "LT" } else { "T" }, if *ns < 0 { "-" } else { "" });
+                format!("{prefix}#{sign}{}ns", ns.unsigned_abs())
+            }
+            Literal::String(text) => text.clone(),
+        };
+        self.word(&text);
+    }
+}

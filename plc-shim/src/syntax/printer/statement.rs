@@ -1,0 +1,111 @@
+//! Statements to text.
+
+use super::Printer;
+use crate::syntax::ast::{
+    CaseLabel, CaseStatement, Expr, ForStatement, IfStatement, Statement, StatementKind,
+};
+
+impl Printer {
+    pub(super) fn statements(&mut self, list: &[Statement]) {
+        self.indented(|printer| {
+            for statement in list {
+                printer.statement(statement);
+            }
+        });
+    }
+
+    fn statement(&mut self, statement: &Statement) {
+        self.begin_line();
+        match &statement.kind {
+            StatementKind::Empty | StatementKind::Error => {}
+            StatementKind::Assign(target, value) => {
+                self.expression(target);
+                self.word(" := ");
+                self.expression(value);
+            }
+            StatementKind::Call(call) => self.call(call),
+            StatementKind::If(inner) => self.if_statement(inner),
+            StatementKind::Case(inner) => self.case_statement(inner),
+            StatementKind::For(inner) => self.for_statement(inner),
+            StatementKind::While(inner) => {
+                self.head("WHILE ", &inner.condition, " DO");
+                self.block(&inner.body, "END_WHILE");
+            }
+            StatementKind::Repeat(inner) => {
+                self.word("REPEAT");
+                self.block(&inner.body, "UNTIL ");
+                self.expression(&inner.until);
+                self.word(" END_REPEAT");
+            }
+            StatementKind::Exit => self.word("EXIT"),
+            StatementKind::Continue => self.word("CONTINUE"),
+            StatementKind::Return => self.word("RETURN"),
+        }
+        self.word(";");
+        self.end_line();
+    }
+
+    fn head(&mut self, before: &str, expr: &Expr, after: &str) {
+        self.word(before);
+        self.expression(expr);
+        self.word(after);
+    }
+
+    /// The rest of a head's line, the body, and the beginning of the line that ends it.
+    fn block(&mut self, body: &[Statement], end: &str) {
+        self.end_line();
+        self.statements(body);
+        self.begin_line();
+        self.word(end);
+    }
+
+    fn if_statement(&mut self, inner: &IfStatement) {
+        for (index, branch) in inner.branches.iter().enumerate() {
+            self.head(if index == 0 { "IF " } else { "ELSIF " }, &branch.condition, " THEN");
+            self.block(&branch.body, "");
+        }
+        if !inner.otherwise.is_empty() {
+            self.word("ELSE");
+            self.block(&inner.otherwise, "");
+        }
+        self.word("END_IF");
+    }
+
+    fn case_statement(&mut self, inner: &CaseStatement) {
+        self.head("CASE ", &inner.selector, " OF");
+        self.end_line();
+        for branch in &inner.branches {
+            self.begin_line();
+            self.separated(&branch.labels, Self::case_label);
+            self.word(":");
+            self.end_line();
+            self.statements(&branch.body);
+        }
+        self.begin_line();
+        if !inner.otherwise.is_empty() {
+            self.word("ELSE");
+            self.block(&inner.otherwise, "");
+        }
+        self.word("END_CASE");
+    }
+
+    fn case_label(&mut self, label: &CaseLabel) {
+        self.expression(&label.low);
+        if let Some(high) = &label.high {
+            self.word("..");
+            self.expression(high);
+        }
+    }
+
+    fn for_statement(&mut self, inner: &ForStatement) {
+        self.word("FOR ");
+        self.word(&inner.variable.text);
+        self.head(" := ", &inner.from, " TO ");
+        self.expression(&inner.to);
+        if let Some(by) = &inner.by {
+            self.head(" BY ", by, "");
+        }
+        self.word(" DO");
+        self.block(&inner.body, "END_FOR");
+    }
+}

@@ -1,0 +1,13 @@
+//! Programs in, traces out: the whole way from text to a scanning PLC.
+
+mod diagnostics;
+mod expressions;
+mod faults;
+mod language;
+mod rig;
+mod robustness;
+mod scheduling;
+mod shear;
+mod standard_blocks;
+mod standard_functions;
+mod states;

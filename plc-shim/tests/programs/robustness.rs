@@ -1,0 +1,108 @@
+//! Nothing that is written in a program makes the compiler or the PLC panic.
+
+use onescan_plc_shim::{Application, SoftPlc, TaskPlan, VirtualTime};
+use proptest::prelude::*;
+
+const PROGRAM: &str = "TYPE T : STRUCT a : INT; b : ARRAY [0..3] OF REAL := [1.0, 3(2.0)]; END_STRUCT; C : (X, Y); END_TYPE
+FUNCTION F : INT VAR_INPUT a : INT; b : INT := 2; END_VAR F := a * b + 1; END_FUNCTION
+FUNCTION_BLOCK B VAR_INPUT x : T; END_VAR VAR_OUTPUT y : REAL; END_VAR VAR_IN_OUT z : INT; END_VAR
+y := x.b[x.a]; z := z + 1; END_FUNCTION_BLOCK
+PROGRAM P VAR t : T; fb : B; i, j : INT; c : C; q : TON; w : WORD; END_VAR
+FOR i := 0 TO 3 DO t.b[i] := INT_TO_REAL(F(a := i)) / 2.0; END_FOR;
+fb(x := t, z := j); q(IN := j > 3, PT := T#1s);
+CASE j OF 0: c := Y; 1..5: c := C#X; ELSE w := SHL(w, 1) OR 1; END_CASE;
+WHILE j > 100 DO j := j - 1; IF q.Q THEN EXIT; END_IF; END_WHILE;
+END_PROGRAM";
+
+fn run(text: &str) {
+    let Ok(application) = Application::from_sources([("mutated.st", text)]) else { return };
+    let mut plan = TaskPlan::single(&application, 1_000_000);
+    plan.fuel_per_task = 100_000;
+    let Ok(mut plc) = SoftPlc::new(&application, &plan) else { return };
+    for scan in 1..4 {
+        if plc.scan(VirtualTime::from_ns(scan * 1_000_000)).is_err() {
+            return;
+        }
+    }
+}
+
+fn words() -> Vec<&'static str> {
+    PROGRAM.split_inclusive([' ', ';', '(', ')', '[', ']', '.', ',', '\n', ':']).collect()
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(300))]
+
+    #[test]
+    fn programs_with_words_exchanged(edits in prop::collection::vec((any::<prop::sample::Index>(), any::<prop::sample::Index>()), 1..4)) {
+        let mut list = words();
+        for (from, to) in edits {
+            let (from, to) = (from.index(list.len()), to.index(list.len()));
+            list[to] = list[from];
+        }
+        run(&list.concat());
+    }
+
+    #[test]
+    fn programs_with_words_missing(edits in prop::collection::vec(any::<prop::sample::Index>(), 1..4)) {
+        let mut list = words();
+        for edit in edits {
+            list.remove(edit.index(list.len()));
+        }
+        run(&list.concat());
+    }
+}
+
+#[test]
+fn the_program_itself_runs() {
+    let application = Application::from_sources([("p.st", PROGRAM)]);
+    let application = application.unwrap_or_else(|found| panic!("{found}"));
+    assert!(application.warnings().is_empty(), "{}", application.warnings());
+    run(PROGRAM);
+}
+
+#[test]
+fn depth_is_bounded_in_every_pass() {
+    let chain = |count: usize| {
+        format!("PROGRAM P VAR x : DINT; END_VAR x := x{}; END_PROGRAM", " + x".repeat(count))
+    };
+    assert!(Application::from_sources([("t.st", chain(240))]).is_ok());
+    run(&chain(240));
+    assert!(Application::from_sources([("t.st", chain(260))]).is_err());
+    let nested = format!(
+        "PROGRAM P VAR x : DINT; END_VAR {} x := {}x{}; {} END_PROGRAM",
+        "IF x = 0 THEN ".repeat(60),
+        "(1 + ".repeat(60),
+        ")".repeat(60),
+        "END_IF;".repeat(60),
+    );
+    assert!(Application::from_sources([("t.st", nested.as_str())]).is_ok());
+    run(&nested);
+    let types: String = (1..5000).map(|n| format!("T{n} : ARRAY [0..0] OF T{}; ", n + 1)).collect();
+    let text = format!("TYPE {types} T5000 : INT; END_TYPE");
+    assert!(Application::from_sources([("t.st", text)]).is_err());
+    let constants: String = (1..5000).map(|n| format!("c{n} : INT := c{}; ", n + 1)).collect();
+    let text = format!("VAR_GLOBAL CONSTANT {constants} c5000 : INT := 1; END_VAR");
+    assert!(Application::from_sources([("t.st", text)]).is_err());
+    let calls: String = (1..3000)
+        .map(|n| format!("FUNCTION f{n} : INT f{n} := f{}(); END_FUNCTION ", n + 1))
+        .collect();
+    run(&format!("{calls} FUNCTION f3000 : INT f3000 := 1; END_FUNCTION PROGRAM P VAR x : INT; END_VAR x := f1(); END_PROGRAM"));
+    let elsifs = "ELSIF x = 1 THEN x := 2; ".repeat(3000);
+    run(&format!("PROGRAM P VAR x : INT; END_VAR IF x = 0 THEN ; {elsifs} END_IF; END_PROGRAM"));
+}
+
+#[test]
+fn size_is_bounded() {
+    for declaration in [
+        "x : ARRAY [0..2147483647] OF LREAL;",
+        "x : ARRAY [0..99999, 0..99999, 0..99999] OF INT;",
+        "x, y : ARRAY [0..40000000] OF BYTE;",
+        "x : ARRAY [0..100] OF ARRAY [0..1000] OF ARRAY [0..1000] OF LINT;",
+        "x : ARRAY [-2147483648..2147483647] OF BOOL;",
+    ] {
+        let text = format!("PROGRAM P VAR {declaration} END_VAR END_PROGRAM");
+        let found = Application::from_sources([("t.st", text)]).expect_err("too large");
+        assert!(found.to_string().contains("L0502"), "{found}");
+    }
+}
