@@ -1,1 +1,3 @@
 //! onescan
+
+pub mod plot;
