@@ -16,7 +16,7 @@ use crate::run::{Format, Mode, Transport};
 /// A PLC program and the model of its machine run against each other on one virtual clock: every scan
 /// sees exactly one simulation step, and every run of a scenario gives the same bits.
 #[derive(Debug, Parser)]
-#[command(name = "onescan", version, after_help = EXIT_CODES)]
+#[command(name = "onescan", bin_name = "onescan", version, after_help = EXIT_CODES)]
 pub struct Args {
     /// What to do.
     #[command(subcommand)]

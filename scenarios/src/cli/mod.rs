@@ -14,6 +14,7 @@ use clap::Parser;
 pub fn main() -> std::process::ExitCode {
     let args = args::Args::parse();
     start_logging(args.verbose);
+    render_errors_in_one_piece();
     let code = match commands::dispatch(args.command) {
         Ok(code) => code,
         Err(error) => {
@@ -29,6 +30,13 @@ pub fn main() -> std::process::ExitCode {
 #[expect(clippy::print_stderr, reason = "this is where errors leave the program")]
 fn report(error: crate::run::RunError) {
     eprintln!("{:?}", miette::Report::new(error));
+}
+
+/// Messages of this program hold their causes, so that they read well anywhere; a list of causes
+/// behind them would say all of it again.
+fn render_errors_in_one_piece() {
+    // Only a second call fails, and this is the only one.
+    let _ = miette::set_hook(Box::new(|_| Box::new(miette::MietteHandlerOpts::new().without_cause_chain().build())));
 }
 
 /// Log lines go to standard error: warnings, what is meant for the user, and more with `--verbose`.

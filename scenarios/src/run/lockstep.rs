@@ -75,8 +75,8 @@ fn form(
             Some(words) => processes.start_command(name, words, scenario.folder(), lobby.address())?,
         }
     }
-    if remote.iter().any(|(_, command)| command.as_ref().is_some_and(Vec::is_empty)) {
-        tracing::info!(target: NOTICE, "listening on {}", lobby.address());
+    for (name, _) in remote.iter().filter(|(_, command)| command.as_ref().is_some_and(Vec::is_empty)) {
+        tracing::info!(target: NOTICE, "waiting at {} for client `{name}`", lobby.address());
     }
     wait_for_clients(config, &mut formation, &lobby, interrupt, processes)?;
     Ok((formation.start()?, Some(lobby)))
@@ -96,12 +96,8 @@ fn wait_for_clients(
     interrupt: &Interrupt,
     processes: &mut Processes,
 ) -> Result<(), RunError> {
-    let (mut ended, mut told) = (None, String::new());
-    let admitted = formation.admit_from(lobby, config.join_timeout, config.reply_timeout, &mut |missing| {
-        if missing != told {
-            missing.clone_into(&mut told);
-            tracing::info!(target: NOTICE, "waiting for client {missing}");
-        }
+    let mut ended = None;
+    let admitted = formation.admit_from(lobby, config.join_timeout, config.reply_timeout, &mut |_| {
         ended = processes.first_ended();
         ended.is_none() && !interrupt.is_raised()
     });

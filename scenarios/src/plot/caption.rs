@@ -1,0 +1,66 @@
+//! The words of a picture: names, units, and a description for readers who do not see it.
+
+use super::panel::Axis;
+use super::range::TimeRange;
+use super::ticks::power_of_ten;
+use super::{Panel, Plot};
+
+/// The labels of all runs that the legend or a panel has.
+pub(super) fn run_labels(plot: &Plot) -> Vec<String> {
+    let count = plot.panels.iter().map(|panel| panel.runs.len()).max().unwrap_or(0).max(plot.runs.len());
+    (0..count).map(|run| plot.runs.get(run).cloned().unwrap_or_else(|| format!("run {}", run + 1))).collect()
+}
+
+/// The name of a signal and its unit.
+pub(super) fn heading(panel: &Panel, exponent: i32) -> String {
+    format!("{}{}", panel.signal, in_unit(panel.unit.as_deref(), exponent))
+}
+
+/// What the time axis shows.
+pub(super) fn time(exponent: i32) -> String {
+    format!("time{}", in_unit(Some("s"), exponent))
+}
+
+/// What the picture shows.
+pub(super) fn description(times: TimeRange, panels: &[Axis<'_>], run_labels: &[String]) -> String {
+    let signal = |axis: &Axis<'_>| {
+        let remark = axis.agreement.remark().map(|remark| format!(": {remark}"));
+        format!("{}{}", heading(axis.panel, 0), remark.unwrap_or_default())
+    };
+    let signals: Vec<String> = panels.iter().map(signal).collect();
+    let seconds = times.seconds();
+    format!(
+        "Signals over time from {} s to {} s. Signals: {}. Runs: {}.",
+        seconds.low,
+        seconds.high,
+        listed(&signals),
+        listed(run_labels)
+    )
+}
+
+/// A unit and a power of ten in parentheses, if there is one of them.
+fn in_unit(unit: Option<&str>, exponent: i32) -> String {
+    match (unit, exponent) {
+        (None, 0) => String::new(),
+        (Some(unit), 0) => format!(" ({unit})"),
+        (None, exponent) => format!(" (\u{d7}{})", power_of_ten(exponent)),
+        (Some(unit), exponent) => format!(" ({} {unit})", power_of_ten(exponent)),
+    }
+}
+
+/// The words with commas between them, or "none".
+fn listed(words: &[String]) -> String {
+    if words.is_empty() { "none".to_owned() } else { words.join(", ") }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_power_of_ten_stands_before_the_unit() {
+        assert_eq!(in_unit(Some("m"), -3), " (10\u{207b}\u{b3} m)");
+        assert_eq!(in_unit(None, 6), " (\u{d7}10\u{2076})");
+        assert_eq!(time(0), "time (s)");
+    }
+}

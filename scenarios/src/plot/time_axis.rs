@@ -1,0 +1,47 @@
+//! The time axis that all panels share.
+
+use super::lettering::{NAME_PX, TICK_PX};
+use super::palette::FAINT_INK;
+use super::range::TimeRange;
+use super::svg::{Document, Pixels};
+use super::ticks::{Numbers, Ticks};
+use super::trace::Area;
+use super::{Plot, caption};
+
+const TICKS: u32 = 10;
+
+/// The times of a plot and the marks among them.
+#[derive(Debug)]
+pub(super) struct TimeAxis {
+    pub(super) range: TimeRange,
+    ticks: Ticks,
+}
+
+impl TimeAxis {
+    /// The axis of all samples.
+    pub(super) fn of(plot: &Plot) -> Self {
+        let range = TimeRange::of(plot);
+        Self { range, ticks: Ticks::within(range.seconds(), TICKS, Numbers::Real) }
+    }
+
+    /// Where the marks lie in a panel.
+    pub(super) fn positions(&self, area: Area) -> impl Iterator<Item = Pixels> {
+        let seconds = self.range.seconds();
+        self.ticks.marks.iter().map(move |mark| Pixels(area.x_cpx(seconds.fraction(mark.value))))
+    }
+
+    /// Draws labels beneath the last panel.
+    pub(super) fn draw(&self, document: &mut Document, area: Area) {
+        document.open("g", &[("font-size", &TICK_PX), ("fill", &FAINT_INK), ("text-anchor", &"middle")]);
+        for (mark, x) in self.ticks.marks.iter().zip(self.positions(area)) {
+            document.text("text", &[("x", &x), ("y", &(area.bottom_px() + 16))], &mark.label);
+        }
+        document.close();
+        let (middle_px, baseline_px) = (area.left_px + area.width_px / 2, area.bottom_px() + 36);
+        document.text(
+            "text",
+            &[("x", &middle_px), ("y", &baseline_px), ("font-size", &NAME_PX), ("text-anchor", &"middle")],
+            &caption::time(self.ticks.exponent),
+        );
+    }
+}
