@@ -1,0 +1,70 @@
+//! The shear saved at every step of a short run, and on the command line.
+
+use std::path::Path;
+
+use onescan::scenario::Scenario;
+use onescan::scenario::compose::Member;
+use onescan_server::checkpoint::Checkpoint;
+use onescan_server::formation::Formation;
+use onescan_server::lockstep::{Lockstep, Reached};
+use onescan_tests::at_ms;
+use onescan_tests::run::run;
+
+use crate::typed::{digests, run_shear, scenario};
+
+fn shear() -> Lockstep {
+    let scenario = Scenario::load(&scenario("shear")).unwrap();
+    let mut formation = Formation::new(scenario.plan().clone());
+    for name in scenario.plan().clients() {
+        match scenario.member(name).unwrap() {
+            Member::Plant(client) | Member::Plc(client) => formation.join(client).unwrap(),
+            Member::External(_) => panic!("the shear has none"),
+        };
+    }
+    formation.start().unwrap()
+}
+
+/// 60 steps: levelling, the first alignment and the rest before the first stroke.
+#[test]
+fn saved_at_any_step_it_ends_with_the_same_digest() {
+    const STEPS: u64 = 60;
+    let whole = run(shear(), at_ms(10 * STEPS));
+    for step in 0..STEPS {
+        let mut first = shear();
+        assert_eq!(first.run_to(at_ms(10 * step)).unwrap(), Reached::Boundary);
+        let bytes = first.checkpoint().unwrap().to_bytes().unwrap();
+        let mut second = shear();
+        second.resume(&Checkpoint::from_bytes(&bytes).unwrap()).unwrap();
+        assert_eq!(run(second, at_ms(10 * STEPS)), whole, "saved after step {step}");
+    }
+}
+
+#[test]
+fn a_checkpoint_file_goes_on_over_either_transport() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("shear.checkpoint");
+    let file = file.to_str().unwrap();
+    let (whole, _) = run_shear(&["--until", "2s"]);
+    for save_over in ["inproc", "tcp"] {
+        let words = ["--until", "2s", "--save-at", "770ms", "--save", file, "--transport", save_over];
+        let (saved, said) = run_shear(&words);
+        assert_eq!(digests(&saved), digests(&whole), "saving changes nothing: {said:?}");
+        for resume_over in ["inproc", "tcp"] {
+            let (resumed, said) = run_shear(&["--until", "2s", "--resume", file, "--transport", resume_over]);
+            assert_eq!(digests(&resumed), digests(&whole), "{save_over} to {resume_over}: {said:?}");
+        }
+        std::fs::remove_file(Path::new(file)).unwrap();
+    }
+}
+
+#[test]
+fn a_cut_checkpoint_is_wrong_input() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("shear.checkpoint");
+    run_shear(&["--until", "1s", "--save-at", "500ms", "--save", file.to_str().unwrap()]);
+    let bytes = std::fs::read(&file).unwrap();
+    std::fs::write(&file, &bytes[..bytes.len() / 2]).unwrap();
+    let (_, said) = run_shear(&["--resume", file.to_str().unwrap()]);
+    assert_eq!(said.code, Some(2));
+    assert!(said.err.contains("damaged: its check sum does not fit its bytes"), "{said:?}");
+}

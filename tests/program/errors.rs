@@ -1,0 +1,74 @@
+//! Wrong input: one clear error with file, line and what to do, exit code 2, and nothing half-written.
+
+use crate::typed::{copied_shear, edit, typed};
+
+/// What is said of a shear that was changed at one place.
+fn said_of(file: &str, from: &str, to: &str) -> String {
+    let folder = copied_shear();
+    edit(folder.path(), file, from, to);
+    let said = typed(folder.path(), &["run", ".", "--record", "record", "--plot", "plot.svg"]);
+    assert_eq!((said.code, said.out.as_str()), (Some(2), ""), "{said:?}");
+    assert!(!folder.path().join("plot.svg").exists());
+    said.err
+}
+
+macro_rules! error_snapshot {
+    ($name:ident, $file:literal, $from:literal, $to:literal) => {
+        #[test]
+        fn $name() {
+            insta::assert_snapshot!(said_of($file, $from, $to));
+        }
+    };
+}
+
+error_snapshot!(misspelt_key, "scenario.toml", "until = ", "untill = ");
+error_snapshot!(misspelt_kind, "scenario.toml", "kind = \"soft-plc\"", "kind = \"soft-plv\"");
+error_snapshot!(misspelt_writer, "scenario.toml", "Sensor_1 = { type = \"BOOL\", writer = \"plant\"", "Sensor_1 = { type = \"BOOL\", writer = \"plnat\"");
+error_snapshot!(misspelt_plotted_signal, "scenario.toml", "signals = [\"Position_1\"", "signals = [\"Positon_1\"");
+error_snapshot!(misspelt_program, "scenario.toml", "\"Shear\", \"Alignment\"", "\"Shaer\", \"Alignment\"");
+error_snapshot!(unknown_type, "scenario.toml", "type = \"LREAL\", writer = \"plant\", unit = \"m\", about = \"actuator 1", "type = \"FLOAT\", writer = \"plant\", unit = \"m\", about = \"actuator 1");
+error_snapshot!(wrong_type_for_the_plc, "scenario.toml", "Strokes = { type = \"DINT\"", "Strokes = { type = \"INT\"");
+error_snapshot!(signal_that_no_program_writes, "scenario.toml", "Strokes = {", "Stroke = {");
+error_snapshot!(time_without_unit, "scenario.toml", "step = \"10ms\"", "step = \"10\"");
+error_snapshot!(missing_source, "scenario.toml", "plc/alignment.st", "plc/alignement.st");
+error_snapshot!(error_in_the_plc_source, "plc/alignment.st", "a.Q AND b.Q", "a.Q AND bb.Q");
+error_snapshot!(misspelt_joint_in_the_scene, "plant.toml", "joint = \"guide_1\"", "joint = \"gudie_1\"");
+error_snapshot!(misspelt_signal_in_the_scene, "plant.toml", "signal = \"Sensor_1\"", "signal = \"Senosr_1\"");
+
+#[test]
+fn a_file_cut_in_half_is_an_error_and_never_a_panic() {
+    for file in ["scenario.toml", "plant.toml", "plc/shear.st", "plc/alignment.st"] {
+        let whole = std::fs::read(crate::typed::scenario("shear").join(file)).unwrap();
+        for part in 1..8 {
+            let folder = copied_shear();
+            std::fs::write(folder.path().join(file), &whole[..whole.len() * part / 8]).unwrap();
+            let said = typed(folder.path(), &["run", ".", "--until", "50ms"]);
+            assert!(matches!(said.code, Some(0 | 2)), "{file} cut at {part}/8: {said:?}");
+            assert!(!said.err.contains("panicked"), "{said:?}");
+        }
+    }
+}
+
+#[test]
+fn options_that_are_wrong_are_told() {
+    let folder = copied_shear();
+    let cases = [
+        (&["run", ".", "--until", "5"][..], "is not a time"),
+        (&["run", ".", "--pace", "0"], "write `max` or a factor over 0"),
+        (&["run", ".", "--runs", "0"], "0 is not in 1..=10000"),
+        (&["run", ".", "--signal", "Position_1"], "--plot <FILE>"),
+        (&["run", ".", "--plot", "x.svg", "--signal", "Positon_1"], "did you mean `Position_1`?"),
+        (&["run", ".", "--save-at", "1s"], "--save <FILE>"),
+        (&["run", ".", "--save-at", "9s", "--save", "x"], "is not before the end of the run"),
+        (&["run", ".", "--resume", "plant.toml"], "not a checkpoint of onescan"),
+        (&["run", ".", "--plot", "no/such/folder/x.svg"], "no/such/folder/x.svg"),
+        (&["join", ".", "plnat", "--server", "127.0.0.1:1"], "did you mean `plant`?"),
+        (&["run", "."], ""),
+    ];
+    for (words, message) in cases {
+        let said = typed(folder.path(), words);
+        let expected = if message.is_empty() { 0 } else { 2 };
+        assert_eq!(said.code, Some(expected), "{words:?} {said:?}");
+        assert!(said.err.contains(message), "{words:?} {said:?}");
+    }
+}

@@ -1,0 +1,48 @@
+//! Without lockstep no two runs are equal, and the alignment check of seed 004 Figs. 5 and 6 fails.
+
+use crate::typed::{digests, run_shear};
+
+/// Alignments seen and levellings made in the recording of a run.
+fn alignments(csv: &str) -> (u64, usize) {
+    let mut rows = csv.lines().map(|row| row.split(',').collect::<Vec<_>>());
+    let header = rows.next().unwrap();
+    let column = |name: &str| header.iter().position(|column| *column == name).unwrap();
+    let (count, one, two) = (column("AlignedCount"), column("Sensor_1"), column("Sensor_2"));
+    let rows: Vec<_> = rows.collect();
+    let level = |row: &Vec<&str>| row[one] == "1" && row[two] == "1";
+    let levelled = rows.windows(2).filter(|pair| !level(&pair[0]) && level(&pair[1])).count();
+    (rows.last().unwrap()[count].parse().unwrap(), levelled)
+}
+
+fn recorded(words: &[&str], runs: usize) -> (Vec<String>, Vec<(u64, usize)>) {
+    let folder = tempfile::tempdir().unwrap();
+    let (reports, said) = run_shear(&[words, &["--record", folder.path().to_str().unwrap()]].concat());
+    assert_eq!(said.code, Some(0), "{said:?}");
+    let read = |run| std::fs::read_to_string(folder.path().join(format!("run-{run}/trajectory.csv"))).unwrap();
+    (digests(&reports), (1..=runs).map(|run| alignments(&read(run))).collect())
+}
+
+#[test]
+fn free_wheeling_runs_differ_and_lose_alignments() {
+    let (digests, alignments) = recorded(&["--mode", "freewheel", "--runs", "6"], 6);
+    let mut distinct = digests.clone();
+    distinct.sort();
+    distinct.dedup();
+    assert!(distinct.len() > 1, "six equal runs without lockstep: {digests:?}");
+    assert!(alignments.iter().any(|(seen, levelled)| *seen < *levelled as u64), "none was lost: {alignments:?}");
+}
+
+#[test]
+fn in_lockstep_every_levelling_is_seen() {
+    let (_, alignments) = recorded(&["--runs", "2"], 2);
+    assert_eq!(alignments, [(5, 5), (5, 5)]);
+}
+
+#[test]
+fn what_means_nothing_without_a_server_is_refused() {
+    for words in [&["--transport", "tcp"][..], &["--pace", "1"], &["--listen", "127.0.0.1:0"], &["--resume", "x"]] {
+        let (_, said) = run_shear(&[&["--mode", "freewheel"], words].concat());
+        assert_eq!(said.code, Some(2), "{said:?}");
+        assert!(said.err.contains("means nothing with --mode freewheel"), "{said:?}");
+    }
+}

@@ -1,0 +1,11 @@
+//! The program as a user types it: commands, files, messages, exit codes.
+
+mod checkpoint;
+mod control;
+mod errors;
+mod faults;
+mod freewheel;
+mod help;
+mod plc_faults;
+mod run;
+mod typed;

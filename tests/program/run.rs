@@ -1,0 +1,101 @@
+//! `onescan run`: the same bits whatever is around the session.
+
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use crate::typed::{digests, run_shear, scenario, typed};
+
+/// The digest of 2 s of the shear. It changes only with the scenario, the physics or the compiler's
+/// semantics, each of which is worth a line in the changelog.
+fn shear_digest() -> String {
+    let (reports, said) = run_shear(&["--until", "2s"]);
+    assert_eq!(said.code, Some(0), "{said:?}");
+    digests(&reports).remove(0)
+}
+
+#[test]
+fn the_digest_of_the_shear_is_this() {
+    insta::assert_snapshot!(shear_digest());
+}
+
+#[test]
+fn six_runs_are_one() {
+    let (reports, said) = run_shear(&["--runs", "6"]);
+    assert_eq!((reports.len(), said.code), (6, Some(0)));
+    let digests = digests(&reports);
+    assert!(digests.iter().all(|digest| *digest == digests[0]), "{digests:?}");
+}
+
+#[test]
+fn transport_and_pace_do_not_matter() {
+    let expected = shear_digest();
+    for words in [&["--transport", "tcp"][..], &["--pace", "1"], &["--pace", "max"], &["--transport", "tcp", "--pace", "1"]] {
+        let (reports, said) = run_shear(&[&["--until", "2s"], words].concat());
+        assert_eq!(digests(&reports), [expected.clone()], "{words:?} {said:?}");
+    }
+}
+
+#[test]
+fn load_does_not_matter() {
+    let expected = shear_digest();
+    let done = AtomicBool::new(false);
+    std::thread::scope(|scope| {
+        for _ in 0..8 {
+            scope.spawn(|| while !done.load(Ordering::Relaxed) {});
+        }
+        let runs = [&["--until", "2s"][..], &["--until", "2s", "--transport", "tcp"]].map(run_shear);
+        done.store(true, Ordering::Relaxed);
+        for (reports, said) in runs {
+            assert_eq!(digests(&reports), [expected.clone()], "{said:?}");
+        }
+    });
+}
+
+#[test]
+fn log_level_recording_and_plot_do_not_matter() {
+    let folder = tempfile::tempdir().unwrap();
+    let (record, plot) = (folder.path().join("record"), folder.path().join("plot.svg"));
+    let words = ["-vvv", "--until", "2s", "--record", record.to_str().unwrap(), "--plot", plot.to_str().unwrap()];
+    let (reports, said) = run_shear(&words);
+    assert_eq!(digests(&reports), [shear_digest()]);
+    assert!(said.err.contains("INFO") || said.err.contains("TRACE") || said.err.is_empty());
+    let svg = std::fs::read_to_string(plot).unwrap();
+    assert!(svg.starts_with("<svg") && svg.contains("Position_1") && svg.trim_end().ends_with("</svg>"));
+    let summary = std::fs::read_to_string(record.join("run-1/run.json")).unwrap();
+    let summary: serde_json::Value = serde_json::from_str(&summary).unwrap();
+    assert_eq!(summary["digest"], reports[0]["digest"]);
+}
+
+/// The trajectory itself, every 100 ms: what the blade does is reviewed here.
+#[test]
+fn the_trajectory_of_the_shear() {
+    let folder = tempfile::tempdir().unwrap();
+    let (_, said) = run_shear(&["--until", "3s", "--record", folder.path().to_str().unwrap()]);
+    assert_eq!(said.code, Some(0), "{said:?}");
+    let text = std::fs::read_to_string(folder.path().join("run-1/trajectory.csv")).unwrap();
+    let rows: Vec<&str> = text.lines().collect();
+    assert_eq!(rows.len(), 1 + 1 + 300);
+    let table: Vec<&str> = std::iter::once(rows[0]).chain(rows[1..].iter().step_by(10).copied()).collect();
+    insta::assert_snapshot!(table.join("\n"));
+}
+
+#[test]
+fn the_machines_report_has_its_fields() {
+    let (reports, _) = run_shear(&["--until", "1s"]);
+    let report = reports[0].as_object().unwrap();
+    let fields: Vec<&str> = report.keys().map(String::as_str).collect();
+    insta::assert_snapshot!(fields.join(" "), @"digest mode run scenario status steps transport version virtual_time_ns wall_time_s");
+    assert_eq!(report["steps"], 100);
+    assert_eq!(report["virtual_time_ns"], 1_000_000_000);
+    assert_eq!(report["status"], "completed");
+}
+
+#[test]
+fn people_get_lines_and_nothing_on_standard_error() {
+    let said = typed(&scenario("shear"), &["run", ".", "--runs", "2", "--until", "1s"]);
+    assert_eq!((said.code, said.err.as_str()), (Some(0), ""));
+    let lines: Vec<&str> = said.out.lines().collect();
+    assert_eq!(lines.len(), 5, "{said:?}");
+    assert!(lines[0].starts_with("run 1/2: completed, 100 steps, 1.000 s virtual in "));
+    assert!(lines[1].starts_with("  digest ") && lines[1] == lines[3]);
+    assert_eq!(lines[4], "2 runs, all digests equal");
+}

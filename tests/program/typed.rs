@@ -1,0 +1,91 @@
+//! Typing a command and looking at what comes of it.
+
+use std::path::{Path, PathBuf};
+use std::process::{Child, Command, Output, Stdio};
+
+/// The folder of a scenario of the project.
+pub(crate) fn scenario(name: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenarios").join(name)
+}
+
+/// The program, to be started in `folder`.
+pub(crate) fn onescan(folder: &Path) -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_onescan-under-test"));
+    command.current_dir(folder).env_remove("ONESCAN_LOG").env("NO_COLOR", "1");
+    command
+}
+
+/// What a command said, and its exit code.
+#[derive(Debug)]
+pub(crate) struct Said {
+    pub(crate) out: String,
+    pub(crate) err: String,
+    pub(crate) code: Option<i32>,
+}
+
+impl From<Output> for Said {
+    fn from(output: Output) -> Self {
+        Self {
+            out: String::from_utf8(output.stdout).expect("text"),
+            err: String::from_utf8(output.stderr).expect("text"),
+            code: output.status.code(),
+        }
+    }
+}
+
+/// Types a command in `folder` and waits for its end.
+pub(crate) fn typed(folder: &Path, words: &[&str]) -> Said {
+    onescan(folder).args(words).output().expect("the program starts").into()
+}
+
+/// Types a command in `folder` and goes on.
+pub(crate) fn begun(folder: &Path, words: &[&str]) -> Child {
+    onescan(folder).args(words).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().expect("the program starts")
+}
+
+/// `onescan run shear` with more words and JSON output; one object a run.
+pub(crate) fn run_shear(words: &[&str]) -> (Vec<serde_json::Value>, Said) {
+    let shear = scenario("shear");
+    let mut all = vec!["run", ".", "--format", "json"];
+    all.extend_from_slice(words);
+    let said = typed(&shear, &all);
+    let reports = said.out.lines().map(|line| serde_json::from_str(line).expect("JSON lines")).collect();
+    (reports, said)
+}
+
+/// The digests of runs that must have been completed.
+pub(crate) fn digests(reports: &[serde_json::Value]) -> Vec<String> {
+    let digest = |report: &serde_json::Value| {
+        assert_eq!(report["status"], "completed", "{report}");
+        report["digest"].as_str().expect("a digest").to_owned()
+    };
+    reports.iter().map(digest).collect()
+}
+
+/// A copy of the shear in a folder of its own, to be broken.
+pub(crate) fn copied_shear() -> tempfile::TempDir {
+    let folder = tempfile::tempdir().expect("a folder");
+    copy(&scenario("shear"), folder.path());
+    folder
+}
+
+fn copy(from: &Path, to: &Path) {
+    for entry in std::fs::read_dir(from).expect("a folder") {
+        let entry = entry.expect("an entry");
+        let target = to.join(entry.file_name());
+        if entry.file_type().expect("a type").is_dir() {
+            std::fs::create_dir(&target).expect("a folder");
+            copy(&entry.path(), &target);
+        } else {
+            std::fs::copy(entry.path(), target).expect("a file");
+        }
+    }
+}
+
+/// Changes `from` to `to` in a file, which must have it.
+pub(crate) fn edit(folder: &Path, file: &str, from: &str, to: &str) {
+    let path = folder.join(file);
+    let text = std::fs::read_to_string(&path).expect("a file");
+    assert!(text.contains(from), "{file} has no {from:?}");
+    std::fs::write(path, text.replace(from, to)).expect("a file");
+}
