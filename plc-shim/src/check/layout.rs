@@ -45,15 +45,12 @@ impl Checker<'_> {
     /// Offset of a new block of memory; reports at `span` if there is no more.
     pub(super) fn allocate(&mut self, size: u32, align: u32, span: Span) -> Option<u32> {
         let offset = align_up(self.layout.next, align);
-        match offset.checked_add(size).filter(|end| *end <= MEMORY_LIMIT) {
-            Some(end) => {
-                self.layout.next = end;
-                Some(offset)
-            }
-            None => {
-                self.report_too_large(span);
-                None
-            }
+        if let Some(end) = offset.checked_add(size).filter(|end| *end <= MEMORY_LIMIT) {
+            self.layout.next = end;
+            Some(offset)
+        } else {
+            self.report_too_large(span);
+            None
         }
     }
 

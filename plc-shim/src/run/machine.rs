@@ -39,9 +39,8 @@ fn module_error(error: &wasmtime::Error) -> RunError {
 
 impl Machine {
     pub(super) fn new(application: &Application) -> Result<Self, RunError> {
-        let module = application.module(|wasm| {
-            Module::new(&engine()?, wasm).map_err(|error| format!("{error:#}"))
-        });
+        let module = application
+            .module(|wasm| Module::new(&engine()?, wasm).map_err(|error| format!("{error:#}")));
         let module = module.map_err(RunError::Module)?;
         let mut store = Store::new(module.engine(), StoreLimits::default());
         let linker = linker(module.engine()).map_err(|error| module_error(&error))?;
@@ -52,7 +51,11 @@ impl Machine {
         let count = application.programs().count();
         let programs = (0..count).map(|index| program(&instance, &mut store, index));
         let programs = programs.collect::<Result<_, _>>()?;
-        Ok(Self { store, memory, programs })
+        Ok(Self {
+            store,
+            memory,
+            programs,
+        })
     }
 
     pub(super) fn memory(&self) -> &[u8] {
@@ -71,8 +74,12 @@ impl Machine {
     }
 
     pub(super) fn run(&mut self, program: usize) -> Result<(), Trapped> {
-        let Some(function) = self.programs.get(program) else { return Ok(()) };
-        function.call(&mut self.store, ()).map_err(|error| trapped(&error))
+        let Some(function) = self.programs.get(program) else {
+            return Ok(());
+        };
+        function
+            .call(&mut self.store, ())
+            .map_err(|error| trapped(&error))
     }
 }
 
@@ -96,10 +103,16 @@ fn linker(engine: &Engine) -> Result<Linker<StoreLimits>, wasmtime::Error> {
             host::Function::Double(function) => {
                 linker.func_wrap(module, name, move |x: f64| canonical_double(function(x)))?
             }
-            host::Function::SinglePair(function) => linker
-                .func_wrap(module, name, move |x: f32, y: f32| canonical_single(function(x, y)))?,
-            host::Function::DoublePair(function) => linker
-                .func_wrap(module, name, move |x: f64, y: f64| canonical_double(function(x, y)))?,
+            host::Function::SinglePair(function) => {
+                linker.func_wrap(module, name, move |x: f32, y: f32| {
+                    canonical_single(function(x, y))
+                })?
+            }
+            host::Function::DoublePair(function) => {
+                linker.func_wrap(module, name, move |x: f64, y: f64| {
+                    canonical_double(function(x, y))
+                })?
+            }
         };
     }
     Ok(linker)
@@ -107,18 +120,35 @@ fn linker(engine: &Engine) -> Result<Linker<StoreLimits>, wasmtime::Error> {
 
 /// A NaN's bits would depend on the machine.
 fn canonical_single(value: f32) -> f32 {
-    if value.is_nan() { f32::from_bits(0x7fc0_0000) } else { value }
+    if value.is_nan() {
+        f32::from_bits(0x7fc0_0000)
+    } else {
+        value
+    }
 }
 
 fn canonical_double(value: f64) -> f64 {
-    if value.is_nan() { f64::from_bits(0x7ff8_0000_0000_0000) } else { value }
+    if value.is_nan() {
+        f64::from_bits(0x7ff8_0000_0000_0000)
+    } else {
+        value
+    }
 }
 
 fn trapped(error: &wasmtime::Error) -> Trapped {
     let backtrace = error.downcast_ref::<WasmBacktrace>();
-    let frames = backtrace.map(WasmBacktrace::frames).unwrap_or_default().iter();
+    let frames = backtrace
+        .map(WasmBacktrace::frames)
+        .unwrap_or_default()
+        .iter();
     let frames = frames.map(|frame| {
-        (frame.func_index(), frame.func_offset().map(|offset| offset as u32))
+        (
+            frame.func_index(),
+            frame.func_offset().map(|offset| offset as u32),
+        )
     });
-    Trapped { trap: error.downcast_ref::<Trap>().copied(), frames: frames.collect() }
+    Trapped {
+        trap: error.downcast_ref::<Trap>().copied(),
+        frames: frames.collect(),
+    }
 }

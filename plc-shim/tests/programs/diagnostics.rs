@@ -114,5 +114,8 @@ END_PROGRAM"
 
 #[test]
 fn a_clean_program_has_no_findings() {
-    assert_eq!(findings("PROGRAM P VAR x : INT; END_VAR x := x + 1; END_PROGRAM"), "");
+    assert_eq!(
+        findings("PROGRAM P VAR x : INT; END_VAR x := x + 1; END_PROGRAM"),
+        ""
+    );
 }
