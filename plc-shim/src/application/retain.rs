@@ -1,5 +1,6 @@
 //! Which bytes survive a warm start (2nd ed. 2.4.2, 2.4.3).
 
+use std::collections::BTreeMap;
 use std::ops::Range;
 
 use crate::check::Checked;
@@ -10,6 +11,7 @@ pub(super) fn ranges(checked: &Checked) -> Vec<Range<u32>> {
     let mut collector = Collector {
         checked,
         found: Vec::new(),
+        known: BTreeMap::new(),
     };
     collector.variables(&checked.globals, 0);
     for program in &checked.programs {
@@ -32,6 +34,8 @@ pub(super) fn ranges(checked: &Checked) -> Vec<Range<u32>> {
 struct Collector<'c> {
     checked: &'c Checked,
     found: Vec<Range<u32>>,
+    /// Which types hold something retained, as far as known.
+    known: BTreeMap<TypeId, bool>,
 }
 
 impl Collector<'_> {
@@ -75,7 +79,16 @@ impl Collector<'_> {
         }
     }
 
-    fn has_retained(&self, ty: TypeId) -> bool {
+    fn has_retained(&mut self, ty: TypeId) -> bool {
+        if let Some(known) = self.known.get(&ty) {
+            return *known;
+        }
+        let found = self.find_retained(ty);
+        self.known.insert(ty, found);
+        found
+    }
+
+    fn find_retained(&mut self, ty: TypeId) -> bool {
         match self.checked.types.get(ty) {
             Type::FunctionBlock { pou, .. } => {
                 let variables = self

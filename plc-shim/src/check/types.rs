@@ -249,6 +249,8 @@ impl<'a> Body<'_, 'a> {
                 offset,
             });
         }
+        // What has no members takes a byte, so that no array has more elements than bytes.
+        image.resize(image.len().max(1), 0);
         let align = fields
             .iter()
             .map(|field| self.checker.types.align(field.ty))

@@ -112,7 +112,8 @@ impl<'a> Checker<'a> {
             Some((interface.body.scope, interface.align, interface.image))
         });
         let (scope, align, mut image) = declared.unwrap_or_default();
-        image.resize(align_up(image.len() as u32, align) as usize, 0);
+        // At least a byte, as for structures.
+        image.resize(align_up(image.len().max(1) as u32, align) as usize, 0);
         if ast.kind == PouKind::FunctionBlock {
             let ty = self.types.block(&ast.name.text, id);
             self.types.complete_block(ty, align, image.clone());

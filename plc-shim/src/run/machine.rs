@@ -13,6 +13,8 @@ use crate::compile::{MEMORY_EXPORT, host, program_export};
 pub(super) struct Machine {
     store: Store<StoreLimits>,
     memory: Memory,
+    /// Bytes in use; the rest of the last page is never touched.
+    size: usize,
     programs: Vec<TypedFunc<(), ()>>,
 }
 
@@ -48,22 +50,27 @@ impl Machine {
         let instance = instance.map_err(|error| module_error(&error))?;
         let memory = instance.get_memory(&mut store, MEMORY_EXPORT);
         let memory = memory.ok_or_else(|| RunError::Module("memory is missing".to_owned()))?;
+        let size = application.initial_memory().len();
         let count = application.programs().count();
         let programs = (0..count).map(|index| program(&instance, &mut store, index));
         let programs = programs.collect::<Result<_, _>>()?;
         Ok(Self {
             store,
             memory,
+            size,
             programs,
         })
     }
 
     pub(super) fn memory(&self) -> &[u8] {
-        self.memory.data(&self.store)
+        let all = self.memory.data(&self.store);
+        all.get(..self.size).unwrap_or(all)
     }
 
     pub(super) fn memory_mut(&mut self) -> &mut [u8] {
-        self.memory.data_mut(&mut self.store)
+        let all = self.memory.data_mut(&mut self.store);
+        let size = self.size.min(all.len());
+        &mut all[..size]
     }
 
     /// Gives the budget for the calls up to the next refill.

@@ -2,12 +2,12 @@
 //!
 //! | module | subject |
 //! |---|---|
-//! | [`plan`] | tasks with interval and priority, validated |
-//! | [`scheduler`] | which task is due when |
-//! | [`machine`] | the compiled module with its memory |
-//! | [`fault`] | a trap as an error in the source |
-//! | [`soft_plc`] | the PLC itself |
-//! | [`state`] | its state as bytes |
+//! | `plan` | tasks with interval and priority, validated |
+//! | `scheduler` | which task is due when |
+//! | `machine` | the compiled module with its memory |
+//! | `fault` | a trap as an error in the source |
+//! | `soft_plc` | the PLC itself |
+//! | `state` | its state as bytes |
 
 mod fault;
 mod machine;

@@ -59,9 +59,7 @@ impl SoftPlc {
     /// (2nd ed. 2.4.2).
     pub fn cold_start(&mut self) {
         let image = self.application.initial_memory();
-        let memory = self.machine.memory_mut();
-        memory.fill(0);
-        copy_to(memory, 0, image);
+        copy_to(self.machine.memory_mut(), 0, image);
         self.scheduler.reset();
         self.now = VirtualTime::default();
         self.fault = None;

@@ -105,7 +105,14 @@ fn depth_is_bounded_in_every_pass() {
             close.repeat(95),
         );
         let compiled = Application::from_sources([("t.st", text.as_str())]);
-        assert!(compiled.is_ok(), "{open}: {}", compiled.unwrap_err());
+        assert!(
+            compiled.is_ok(),
+            "{open}: {}",
+            compiled
+                .err()
+                .map(|found| found.to_string())
+                .unwrap_or_default()
+        );
         run(&text);
     }
     let list = |count: u32, each: &dyn Fn(u32) -> String| {
@@ -142,4 +149,30 @@ fn size_is_bounded() {
         let found = Application::from_sources([("t.st", text)]).expect_err("too large");
         assert!(found.to_string().contains("L0502"), "{found}");
     }
+}
+
+#[test]
+fn what_is_empty_is_no_trap() {
+    run("TYPE E : STRUCT END_STRUCT; END_TYPE FUNCTION_BLOCK F END_FUNCTION_BLOCK
+        PROGRAM P VAR x : ARRAY [0..3] OF ARRAY [0..1] OF E := [3([])]; f : ARRAY [1..2] OF F; y, z : E; i : INT := 1; END_VAR
+        f[i](); y := z; x[i][0] := y; END_PROGRAM");
+    let wide = "TYPE E : STRUCT END_STRUCT; END_TYPE PROGRAM P
+        VAR x : ARRAY [0..2147483646, 0..2147483646, 0..2147483646] OF E := [1([])]; END_VAR END_PROGRAM";
+    assert!(Application::from_sources([("t.st", wide)]).is_err());
+    // Each block holds two of the one before: the number of instances doubles with every level.
+    let blocks: Vec<String> = (1..60)
+        .map(|n| {
+            format!(
+                "FUNCTION_BLOCK F{n} VAR a, b : F{}; END_VAR END_FUNCTION_BLOCK",
+                n - 1
+            )
+        })
+        .collect();
+    let text = format!(
+        "FUNCTION_BLOCK F0 END_FUNCTION_BLOCK {} PROGRAM P VAR a : F59; END_VAR END_PROGRAM",
+        blocks.join(" ")
+    );
+    assert!(Application::from_sources([("t.st", text)]).is_err());
+    run("");
+    run("PROGRAM P END_PROGRAM");
 }

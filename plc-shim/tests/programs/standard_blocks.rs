@@ -126,3 +126,16 @@ fn counters() {
         &["QU", "QD", "CV"]
     ));
 }
+
+#[test]
+fn blocks_that_are_not_used_cost_nothing() {
+    let size = |declaration: &str, call: &str| {
+        let text = format!("PROGRAM P VAR {declaration} END_VAR {call} END_PROGRAM");
+        let application = crate::rig::application(&text);
+        (application.wasm().len(), application.initial_memory().len())
+    };
+    let without = size("x : BOOL;", "x := TRUE;");
+    let with = size("x : TON;", "x(IN := TRUE);");
+    assert!(with.0 > without.0 + 100, "{with:?} {without:?}");
+    assert_eq!(without.1, 65);
+}
