@@ -16,6 +16,8 @@ impl Body<'_, '_> {
         declared: &TypedImage,
         initial: &Initialiser,
     ) -> Option<Arc<[u8]>> {
+        self.checker
+            .charge_image(declared.image.len() as u64, initial.span)?;
         let mut image = declared.image.to_vec();
         self.fill(declared.ty, initial, &mut image)?;
         Some(image.into())

@@ -195,6 +195,7 @@ impl<'a> Body<'_, 'a> {
             self.checker.report_too_large(span);
             return None;
         };
+        self.checker.charge_image(total, span)?;
         let count = total / u64::from(size.max(1));
         let ty = self.checker.types.array(bounds, element.ty, total as u32);
         Some(TypedImage {
@@ -241,6 +242,8 @@ impl<'a> Body<'_, 'a> {
                 self.checker.report_too_large(span);
                 return None;
             }
+            self.checker
+                .charge_image(resolved.image.len() as u64, span)?;
             image.resize(offset as usize, 0);
             image.extend_from_slice(&resolved.image);
             fields.push(Field {

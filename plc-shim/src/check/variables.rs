@@ -114,14 +114,15 @@ impl<'a> Checker<'a> {
         let (scope, align, mut image) = declared.unwrap_or_default();
         // At least a byte, as for structures.
         image.resize(align_up(image.len().max(1) as u32, align) as usize, 0);
+        let (align, image): (u32, Arc<[u8]>) = (align.max(1), image.into());
         if ast.kind == PouKind::FunctionBlock {
             let ty = self.types.block(&ast.name.text, id);
             self.types.complete_block(ty, align, image.clone());
         }
         let entry = &mut self.pous[index];
         entry.scope = Some(Arc::new(scope));
-        entry.align = align.max(1);
-        entry.image = image.into();
+        entry.align = align;
+        entry.image = image;
         entry.progress = Progress::Done;
         Some(())
     }
@@ -363,6 +364,8 @@ impl<'c, 'a> Interface<'c, 'a> {
             self.body.checker.report_too_large(span);
             return None;
         }
+        let size = declared.image.len() as u64;
+        self.body.checker.charge_image(size, span)?;
         self.align = self.align.max(align);
         self.image.resize(offset as usize, 0);
         self.image.extend_from_slice(&declared.image);

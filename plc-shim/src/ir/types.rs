@@ -220,11 +220,11 @@ impl TypeTable {
         id
     }
 
-    pub(crate) fn complete_block(&mut self, id: TypeId, align: u32, image: Vec<u8>) {
+    pub(crate) fn complete_block(&mut self, id: TypeId, align: u32, image: Arc<[u8]>) {
         if let Some(entry) = self.entries.get_mut(id.0 as usize) {
             entry.size = image.len() as u32;
             entry.align = align;
-            entry.image = image.into();
+            entry.image = image;
         }
     }
 
