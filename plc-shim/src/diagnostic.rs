@@ -122,12 +122,22 @@ impl Diagnostic {
     /// An error at `span`.
     pub fn error(code: Code, span: Span, message: impl Into<String>) -> Self {
         let message = message.into();
-        Self { code, severity: Severity::Error, span, message, labels: Vec::new(), help: None }
+        Self {
+            code,
+            severity: Severity::Error,
+            span,
+            message,
+            labels: Vec::new(),
+            help: None,
+        }
     }
 
     /// A warning at `span`.
     pub fn warning(code: Code, span: Span, message: impl Into<String>) -> Self {
-        Self { severity: Severity::Warning, ..Self::error(code, span, message) }
+        Self {
+            severity: Severity::Warning,
+            ..Self::error(code, span, message)
+        }
     }
 
     /// Adds a hint.
@@ -144,7 +154,10 @@ impl Diagnostic {
 
     /// Adds a further place.
     pub fn with_label(mut self, span: Span, message: impl Into<String>) -> Self {
-        self.labels.push(Label { span, message: message.into() });
+        self.labels.push(Label {
+            span,
+            message: message.into(),
+        });
         self
     }
 }
@@ -180,8 +193,12 @@ impl Diagnostics {
     /// Joins findings with their text, in the order of files and places.
     pub fn new(mut diagnostics: Vec<Diagnostic>, sources: &SourceMap) -> Self {
         diagnostics.sort_by_key(|found| (found.span.file, found.span.start, found.code));
-        let findings = diagnostics.into_iter().map(|found| Finding::new(found, sources));
-        Self { findings: findings.collect() }
+        let findings = diagnostics
+            .into_iter()
+            .map(|found| Finding::new(found, sources));
+        Self {
+            findings: findings.collect(),
+        }
     }
 
     /// True if there is none.
@@ -221,7 +238,10 @@ impl std::error::Error for Diagnostics {}
 
 impl miette::Diagnostic for Diagnostics {
     fn related<'a>(&'a self) -> Option<Box<dyn Iterator<Item = &'a dyn miette::Diagnostic> + 'a>> {
-        let each = self.findings.iter().map(|finding| finding as &dyn miette::Diagnostic);
+        let each = self
+            .findings
+            .iter()
+            .map(|finding| finding as &dyn miette::Diagnostic);
         Some(Box::new(each))
     }
 }
@@ -241,19 +261,33 @@ impl Finding {
         let file = sources.get(diagnostic.span.file);
         let text = file.map_or_else(|| Arc::from(""), |file| file.text().clone());
         let source = NamedSource::new(name, text);
-        Self { diagnostic, source, line: place.line, column: place.column }
+        Self {
+            diagnostic,
+            source,
+            line: place.line,
+            column: place.column,
+        }
     }
 }
 
 impl fmt::Display for Finding {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { diagnostic, source, line, column } = self;
+        let Self {
+            diagnostic,
+            source,
+            line,
+            column,
+        } = self;
         let severity = match diagnostic.severity {
             Severity::Warning => "warning",
             Severity::Error => "error",
         };
         let (name, code) = (source.name(), diagnostic.code);
-        write!(formatter, "{name}:{line}:{column}: {severity}[{code}]: {}", diagnostic.message)?;
+        write!(
+            formatter,
+            "{name}:{line}:{column}: {severity}[{code}]: {}",
+            diagnostic.message
+        )?;
         if let Some(help) = &diagnostic.help {
             write!(formatter, " ({help})")?;
         }
@@ -290,7 +324,11 @@ impl miette::Diagnostic for Finding {
             LabeledSpan::new(text, span.start as usize, span.len() as usize)
         };
         // A renderer shows one file per diagnostic; labels in other files stay with the data.
-        let others = self.diagnostic.labels.iter().filter(move |label| label.span.file == primary.file);
+        let others = self
+            .diagnostic
+            .labels
+            .iter()
+            .filter(move |label| label.span.file == primary.file);
         let others = others.map(move |label| at(label.span, Some(label.message.clone())));
         Some(Box::new(std::iter::once(at(primary, None)).chain(others)))
     }
@@ -311,7 +349,10 @@ mod tests {
     #[test]
     fn a_slip_is_recognised_and_a_stranger_is_not() {
         let names = ["Sensor_1", "Sensor_2", "Drive"];
-        assert_eq!(did_you_mean("sensr_1", names).as_deref(), Some("did you mean `Sensor_1`?"));
+        assert_eq!(
+            did_you_mean("sensr_1", names).as_deref(),
+            Some("did you mean `Sensor_1`?")
+        );
         assert_eq!(did_you_mean("Pump", names), None);
     }
 }

@@ -1,5 +1,6 @@
 //! Which bytes survive a warm start (2nd ed. 2.4.2, 2.4.3).
 
+use std::collections::BTreeMap;
 use std::ops::Range;
 
 use crate::check::Checked;
@@ -7,7 +8,11 @@ use crate::ir::{Storage, Type, TypeId, Variable};
 
 /// Ranges of memory in ascending order, neighbours joined.
 pub(super) fn ranges(checked: &Checked) -> Vec<Range<u32>> {
-    let mut collector = Collector { checked, found: Vec::new() };
+    let mut collector = Collector {
+        checked,
+        found: Vec::new(),
+        known: BTreeMap::new(),
+    };
     collector.variables(&checked.globals, 0);
     for program in &checked.programs {
         if let Some(variables) = checked.interfaces.get(&program.pou) {
@@ -29,6 +34,8 @@ pub(super) fn ranges(checked: &Checked) -> Vec<Range<u32>> {
 struct Collector<'c> {
     checked: &'c Checked,
     found: Vec<Range<u32>>,
+    /// Which types hold something retained, as far as known.
+    known: BTreeMap<TypeId, bool>,
 }
 
 impl Collector<'_> {
@@ -40,7 +47,8 @@ impl Collector<'_> {
                 _ => continue,
             };
             if variable.retain {
-                self.found.push(offset..offset + self.checked.types.size(variable.ty));
+                self.found
+                    .push(offset..offset + self.checked.types.size(variable.ty));
             } else if self.has_retained(variable.ty) {
                 self.inside(variable.ty, offset);
             }
@@ -71,10 +79,23 @@ impl Collector<'_> {
         }
     }
 
-    fn has_retained(&self, ty: TypeId) -> bool {
+    fn has_retained(&mut self, ty: TypeId) -> bool {
+        if let Some(known) = self.known.get(&ty) {
+            return *known;
+        }
+        let found = self.find_retained(ty);
+        self.known.insert(ty, found);
+        found
+    }
+
+    fn find_retained(&mut self, ty: TypeId) -> bool {
         match self.checked.types.get(ty) {
             Type::FunctionBlock { pou, .. } => {
-                let variables = self.checked.interfaces.get(pou).map_or(&[][..], Vec::as_slice);
+                let variables = self
+                    .checked
+                    .interfaces
+                    .get(pou)
+                    .map_or(&[][..], Vec::as_slice);
                 variables.iter().any(|variable| {
                     let held = matches!(variable.storage, Storage::Instance(_));
                     variable.retain || held && self.has_retained(variable.ty)

@@ -21,26 +21,27 @@ pub(super) fn fold(types: &TypeTable, expr: &Expr) -> Result<Value, NoValue> {
     let ty = types.elementary(expr.ty).ok_or(not_constant)?;
     match &expr.kind {
         ExprKind::Constant(value) => Ok(*value),
-        ExprKind::Unary(operator, operand) => unary(*operator, ty, fold(types, operand)?),
+        ExprKind::Unary(operator, operand) => Ok(unary(*operator, ty, fold(types, operand)?)),
         ExprKind::Binary(operator, left, right) => {
             let operands = types.elementary(left.ty).ok_or(not_constant)?;
             let (left, right) = (fold(types, left)?, fold(types, right)?);
-            binary(*operator, operands, left, right).map_err(|()| NoValue::DivisionByZero(expr.span))
+            binary(*operator, operands, left, right)
+                .map_err(|()| NoValue::DivisionByZero(expr.span))
         }
         ExprKind::Convert(rounding, operand) => Ok(convert(*rounding, ty, fold(types, operand)?)),
         ExprKind::Load(_) | ExprKind::Intrinsic(..) | ExprKind::Call(_) => Err(not_constant),
     }
 }
 
-fn unary(operator: Unary, ty: ElementaryType, value: Value) -> Result<Value, NoValue> {
-    Ok(match (operator, value) {
+fn unary(operator: Unary, ty: ElementaryType, value: Value) -> Value {
+    match (operator, value) {
         (Unary::Negate, Value::Int(value)) => Value::Int(ty.wrap(-value)),
         (Unary::Negate, Value::Real(value)) => Value::Real(-value),
         (Unary::Negate, Value::Lreal(value)) => Value::Lreal(-value),
         (Unary::Not, Value::Int(value)) => Value::Int(ty.wrap(!value)),
         (_, Value::Bool(value)) => Value::Bool(!value),
         (Unary::Not, other) => other,
-    })
+    }
 }
 
 /// The error is a division by zero.
@@ -64,7 +65,11 @@ fn binary(operator: Binary, ty: ElementaryType, left: Value, right: Value) -> Re
         _ => {
             let (left, right) = (left.as_int().ok_or(())?, right.as_int().ok_or(())?);
             let value = ty.wrap(integer(operator, left, right)?);
-            if ty == ElementaryType::Bool { Value::Bool(value != 0) } else { Value::Int(value) }
+            if ty == ElementaryType::Bool {
+                Value::Bool(value != 0)
+            } else {
+                Value::Int(value)
+            }
         }
     })
 }
@@ -139,7 +144,9 @@ impl Body<'_, '_> {
             Operand::Integer { value, .. } => Some(value),
             Operand::Real { span, .. } => self.mismatch("an integer", "a real number", span),
             Operand::Typed(typed) => {
-                let integer = self.elementary(typed.ty).is_some_and(ElementaryType::is_integer);
+                let integer = self
+                    .elementary(typed.ty)
+                    .is_some_and(ElementaryType::is_integer);
                 if !integer {
                     let found = self.type_name(typed.ty);
                     return self.mismatch("an integer", &found, typed.span);
@@ -166,7 +173,11 @@ impl Body<'_, '_> {
             }
             Err(NoValue::DivisionByZero(span)) => {
                 let message = "a constant is divided by zero";
-                self.report(Diagnostic::error(Code::ConstantDivisionByZero, span, message));
+                self.report(Diagnostic::error(
+                    Code::ConstantDivisionByZero,
+                    span,
+                    message,
+                ));
                 None
             }
         }

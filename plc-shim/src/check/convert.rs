@@ -31,7 +31,11 @@ impl Operand {
 }
 
 pub(super) fn constant(value: Value, ty: ElementaryType, span: Span) -> Expr {
-    Expr { kind: ExprKind::Constant(value), ty: ty.into(), span }
+    Expr {
+        kind: ExprKind::Constant(value),
+        ty: ty.into(),
+        span,
+    }
 }
 
 /// `expr` as one of `ty`, whatever becomes of its value.
@@ -40,7 +44,11 @@ pub(super) fn converted(expr: Expr, ty: ElementaryType, rounding: Rounding) -> E
         return expr;
     }
     let span = expr.span;
-    Expr { kind: ExprKind::Convert(rounding, Box::new(expr)), ty: ty.into(), span }
+    Expr {
+        kind: ExprKind::Convert(rounding, Box::new(expr)),
+        ty: ty.into(),
+        span,
+    }
 }
 
 impl Body<'_, '_> {
@@ -81,12 +89,11 @@ impl Body<'_, '_> {
 
     fn widen(&mut self, expr: Expr, wanted: ElementaryType) -> Option<Expr> {
         use crate::ir::Type;
-        let found = match self.checker.types.get(expr.ty) {
-            Type::Elementary(found) => *found,
-            _ => {
-                let found = self.type_name(expr.ty);
-                return self.mismatch(wanted.name(), &found, expr.span);
-            }
+        let found = if let Type::Elementary(found) = self.checker.types.get(expr.ty) {
+            *found
+        } else {
+            let found = self.type_name(expr.ty);
+            return self.mismatch(wanted.name(), &found, expr.span);
         };
         if found.widens_to(wanted) {
             return Some(converted(expr, wanted, Rounding::NearestEven));
@@ -113,7 +120,11 @@ impl Body<'_, '_> {
             (_, Some((low, high))) if (low..=high).contains(&value) => {
                 // BOOL has the literals 0 and 1 too (2nd ed. Table 1).
                 let boolean = wanted == ElementaryType::Bool;
-                let value = if boolean { Value::Bool(value == 1) } else { Value::Int(value) };
+                let value = if boolean {
+                    Value::Bool(value == 1)
+                } else {
+                    Value::Int(value)
+                };
                 Some(constant(value, wanted, span))
             }
             (_, range) => {
@@ -149,7 +160,11 @@ impl Body<'_, '_> {
                 Some(constant(Value::Lreal(value), ElementaryType::Lreal, span))
             }
             Operand::Integer { value, span } => {
-                let types = [ElementaryType::Dint, ElementaryType::Lint, ElementaryType::Ulint];
+                let types = [
+                    ElementaryType::Dint,
+                    ElementaryType::Lint,
+                    ElementaryType::Ulint,
+                ];
                 let fits = types.into_iter().find(|ty| ty.wrap(value) == value);
                 self.literal_integer(value, fits.unwrap_or(ElementaryType::Ulint), span)
             }
@@ -161,10 +176,14 @@ impl Body<'_, '_> {
         match operand {
             Operand::Typed(_) => false,
             Operand::Real { value, .. } => {
-                ty == ElementaryType::Lreal || ty == ElementaryType::Real && (*value as f32).is_finite()
+                ty == ElementaryType::Lreal
+                    || ty == ElementaryType::Real && (*value as f32).is_finite()
             }
             Operand::Integer { value, .. } => {
-                !ty.is_duration() && ty.range().is_none_or(|(low, high)| (low..=high).contains(value))
+                !ty.is_duration()
+                    && ty
+                        .range()
+                        .is_none_or(|(low, high)| (low..=high).contains(value))
             }
         }
     }

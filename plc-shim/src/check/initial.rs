@@ -16,6 +16,8 @@ impl Body<'_, '_> {
         declared: &TypedImage,
         initial: &Initialiser,
     ) -> Option<Arc<[u8]>> {
+        self.checker
+            .charge_image(declared.image.len() as u64, initial.span)?;
         let mut image = declared.image.to_vec();
         self.fill(declared.ty, initial, &mut image)?;
         Some(image.into())
@@ -27,8 +29,17 @@ impl Body<'_, '_> {
             (InitialiserKind::Value(expr), Type::Elementary(_) | Type::Enumeration { .. }) => {
                 self.fill_elementary(ty, expr, image)
             }
-            (InitialiserKind::Array(elements), Type::Array { dimensions, element }) => {
-                let count = dimensions.iter().map(|each: &Dimension| each.count()).product();
+            (
+                InitialiserKind::Array(elements),
+                Type::Array {
+                    dimensions,
+                    element,
+                },
+            ) => {
+                let count = dimensions
+                    .iter()
+                    .map(|each: &Dimension| each.count())
+                    .product();
                 self.fill_array(element, count, elements, image)
             }
             (InitialiserKind::Struct(members), Type::Struct { fields, .. }) => {
@@ -36,18 +47,27 @@ impl Body<'_, '_> {
             }
             (InitialiserKind::Struct(members), Type::FunctionBlock { pou, .. }) => {
                 let scope = self.checker.interface(pou, initial.span)?;
-                let fields = scope.variables.iter().filter_map(|variable| match variable.storage {
-                    Storage::Instance(offset) => {
-                        Some(Field { name: variable.name.clone(), ty: variable.ty, offset })
-                    }
-                    _ => None,
-                });
+                let fields = scope
+                    .variables
+                    .iter()
+                    .filter_map(|variable| match variable.storage {
+                        Storage::Instance(offset) => Some(Field {
+                            name: variable.name.clone(),
+                            ty: variable.ty,
+                            offset,
+                        }),
+                        _ => None,
+                    });
                 let fields: Vec<Field> = fields.collect();
                 self.fill_members(ty, &fields, members, image)
             }
             _ => {
                 let message = format!("this does not initialise {}", self.type_name(ty));
-                self.report(Diagnostic::error(Code::InvalidInitialiser, initial.span, message));
+                self.report(Diagnostic::error(
+                    Code::InvalidInitialiser,
+                    initial.span,
+                    message,
+                ));
                 None
             }
         }
@@ -84,10 +104,14 @@ impl Body<'_, '_> {
             let first = next as usize * size;
             let range = first..first + times as usize * size;
             next += times;
-            let (Some(value), Some(target)) = (value, image.get_mut(range)) else { continue };
+            let (Some(value), Some(target)) = (value, image.get_mut(range)) else {
+                continue;
+            };
             if let Some((target, others)) = target.split_at_mut_checked(size) {
                 self.fill(element, value, target)?;
-                others.chunks_mut(size).for_each(|other| other.copy_from_slice(target));
+                others
+                    .chunks_mut(size)
+                    .for_each(|other| other.copy_from_slice(target));
             }
         }
         Some(())
@@ -108,7 +132,9 @@ impl Body<'_, '_> {
     ) -> Option<()> {
         for member in members {
             let name = &member.name.text;
-            let field = fields.iter().find(|field| field.name.eq_ignore_ascii_case(name));
+            let field = fields
+                .iter()
+                .find(|field| field.name.eq_ignore_ascii_case(name));
             let Some(field) = field else {
                 let message = format!("{} has no member `{name}`", self.type_name(ty));
                 let help = did_you_mean(name, fields.iter().map(|field| field.name.as_str()));

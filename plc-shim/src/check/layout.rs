@@ -17,17 +17,26 @@ pub(crate) const VIRTUAL_TIME_NAME: &str = "ONESCAN_TV";
 /// Greatest size of all variables together.
 pub(crate) const MEMORY_LIMIT: u32 = 64 << 20;
 
+/// Greatest size of the initial bytes of all types together: types cost memory while compiling
+/// even if no variable is made of them.
+const IMAGE_LIMIT: u64 = 4 * MEMORY_LIMIT as u64;
+
 const FIRST_OFFSET: u32 = 64;
 
 /// Hands out offsets, each aligned to what lies there.
 #[derive(Debug)]
 pub(super) struct Layout {
     next: u32,
+    /// Bytes of initial images made so far.
+    images: u64,
 }
 
 impl Layout {
     pub(super) fn new() -> Self {
-        Self { next: FIRST_OFFSET }
+        Self {
+            next: FIRST_OFFSET,
+            images: 0,
+        }
     }
 
     /// Bytes in use.
@@ -45,16 +54,23 @@ impl Checker<'_> {
     /// Offset of a new block of memory; reports at `span` if there is no more.
     pub(super) fn allocate(&mut self, size: u32, align: u32, span: Span) -> Option<u32> {
         let offset = align_up(self.layout.next, align);
-        match offset.checked_add(size).filter(|end| *end <= MEMORY_LIMIT) {
-            Some(end) => {
-                self.layout.next = end;
-                Some(offset)
-            }
-            None => {
-                self.report_too_large(span);
-                None
-            }
+        if let Some(end) = offset.checked_add(size).filter(|end| *end <= MEMORY_LIMIT) {
+            self.layout.next = end;
+            Some(offset)
+        } else {
+            self.report_too_large(span);
+            None
         }
+    }
+
+    /// Accounts for an image before it is made; reports at `span` if it is one too many.
+    pub(super) fn charge_image(&mut self, size: u64, span: Span) -> Option<()> {
+        self.layout.images = self.layout.images.saturating_add(size);
+        if self.layout.images > IMAGE_LIMIT {
+            self.report_too_large(span);
+            return None;
+        }
+        Some(())
     }
 
     pub(super) fn report_too_large(&mut self, span: Span) {

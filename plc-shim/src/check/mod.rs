@@ -73,18 +73,26 @@ pub(crate) fn check(
     checker.check_bodies();
     checker.report_recursion();
     let image = checker.memory_image();
-    let interfaces = checker.pous.iter().enumerate().filter_map(|(index, entry)| {
-        Some((PouId(index as u32), entry.scope.as_ref()?.variables.clone()))
-    });
-    let checked = Checked {
+    let interfaces = checker
+        .pous
+        .iter()
+        .enumerate()
+        .filter_map(|(index, entry)| {
+            Some((PouId(index as u32), entry.scope.as_ref()?.variables.clone()))
+        });
+    let result = Checked {
         interfaces: interfaces.collect(),
         types: checker.types,
         pous: checker.checked,
-        globals: checker.globals.into_values().filter_map(|entry| entry.variable).collect(),
+        globals: checker
+            .globals
+            .into_values()
+            .filter_map(|entry| entry.variable)
+            .collect(),
         programs: checker.programs,
         image,
     };
-    (checked, checker.diagnostics)
+    (result, checker.diagnostics)
 }
 
 /// Greatest number of types, constants or instances that need each other in a row.

@@ -3,9 +3,9 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
+use super::Checker;
 use super::layout::{Layout, VIRTUAL_TIME_NAME, VIRTUAL_TIME_OFFSET};
 use super::scope::Scope;
-use super::Checker;
 use crate::diagnostic::{Code, Diagnostic};
 use crate::ir::{ElementaryType, PouId, Storage, TypeId, TypeTable, Variable};
 use crate::syntax::ast::{
@@ -124,7 +124,11 @@ impl<'a> Checker<'a> {
 
     fn collect_type(&mut self, ast: &'a TypeDeclaration) {
         if !self.is_taken(&ast.name) {
-            let entry = TypeEntry { ast, progress: Progress::Untouched, resolved: None };
+            let entry = TypeEntry {
+                ast,
+                progress: Progress::Untouched,
+                resolved: None,
+            };
             self.type_names.insert(ast.name.key(), entry);
         }
     }
@@ -151,7 +155,9 @@ impl<'a> Checker<'a> {
 
     /// True, with a report, if a type or unit of the name exists already.
     fn is_taken(&mut self, name: &Ident) -> bool {
-        if ElementaryType::find(&name.text).is_some() || super::standard_function::exists(&name.key()) {
+        if ElementaryType::find(&name.text).is_some()
+            || super::standard_function::exists(&name.key())
+        {
             self.report_reserved(name, name.span);
             return true;
         }
@@ -164,7 +170,10 @@ impl<'a> Checker<'a> {
 
     /// Where a unit or type of the name is declared.
     fn declared_at(&self, name: &Ident) -> Option<Span> {
-        let pou = self.pou_names.get(&name.key()).map(|id| self.pou(*id).ast.name.span);
+        let pou = self
+            .pou_names
+            .get(&name.key())
+            .map(|id| self.pou(*id).ast.name.span);
         pou.or_else(|| self.type_names.get(&name.key()).map(|ty| ty.ast.name.span))
     }
 
@@ -198,5 +207,11 @@ fn virtual_time() -> GlobalEntry<'static> {
         image: vec![0; 8].into(),
     };
     let name = VIRTUAL_TIME_NAME.to_owned();
-    GlobalEntry { ast: None, name, span, progress: Progress::Done, variable: Some(variable) }
+    GlobalEntry {
+        ast: None,
+        name,
+        span,
+        progress: Progress::Done,
+        variable: Some(variable),
+    }
 }

@@ -36,14 +36,21 @@ fn resolved(operator: BinaryOp) -> Option<Binary> {
 }
 
 impl Body<'_, '_> {
-    pub(super) fn unary(&mut self, operator: UnaryOp, operand: Operand, span: Span) -> Option<Operand> {
+    pub(super) fn unary(
+        &mut self,
+        operator: UnaryOp,
+        operand: Operand,
+        span: Span,
+    ) -> Option<Operand> {
         match (operator, operand) {
-            (UnaryOp::Negate, Operand::Integer { value, .. }) => {
-                Some(Operand::Integer { value: value.wrapping_neg(), span })
-            }
-            (UnaryOp::Negate, Operand::Real { value, .. }) => {
-                Some(Operand::Real { value: -value, span })
-            }
+            (UnaryOp::Negate, Operand::Integer { value, .. }) => Some(Operand::Integer {
+                value: value.wrapping_neg(),
+                span,
+            }),
+            (UnaryOp::Negate, Operand::Real { value, .. }) => Some(Operand::Real {
+                value: -value,
+                span,
+            }),
             (UnaryOp::Plus, operand @ (Operand::Integer { .. } | Operand::Real { .. })) => {
                 Some(operand.with_span(span))
             }
@@ -70,14 +77,19 @@ impl Body<'_, '_> {
     pub(super) fn not(&mut self, operand: Operand, span: Span) -> Option<Operand> {
         match operand {
             Operand::Typed(expr)
-                if self.plain_elementary(&expr).is_some_and(ElementaryType::is_bits) =>
+                if self
+                    .plain_elementary(&expr)
+                    .is_some_and(ElementaryType::is_bits) =>
             {
                 let ty = expr.ty;
                 let kind = ExprKind::Unary(Unary::Not, Box::new(expr));
                 Some(Operand::Typed(Expr { kind, ty, span }))
             }
             other => {
-                let message = format!("NOT is for BOOL and bit strings, not {}", self.describe(&other));
+                let message = format!(
+                    "NOT is for BOOL and bit strings, not {}",
+                    self.describe(&other)
+                );
                 self.report(Diagnostic::error(Code::InvalidOperand, span, message));
                 None
             }
@@ -112,7 +124,12 @@ impl Body<'_, '_> {
         right: Operand,
         span: Span,
     ) -> Option<Operand> {
-        if !operator.is_comparison() && !matches!((&left, &right), (Operand::Typed(_), _) | (_, Operand::Typed(_))) {
+        if !operator.is_comparison()
+            && !matches!(
+                (&left, &right),
+                (Operand::Typed(_), _) | (_, Operand::Typed(_))
+            )
+        {
             return self.fold_literals(operator, &left, &right, span);
         }
         if operator.is_comparison() {
@@ -124,13 +141,23 @@ impl Body<'_, '_> {
         if self.is_duration(&left) || self.is_duration(&right) {
             return self.duration_operation(operator, left, right, span);
         }
-        let wanted = if operator == Binary::Modulo { "integers" } else { "numbers" };
+        let wanted = if operator == Binary::Modulo {
+            "integers"
+        } else {
+            "numbers"
+        };
         let pair = self.unify(operator, left, right, wanted, span)?;
-        let allowed =
-            if operator == Binary::Modulo { pair.ty.is_integer() } else { pair.ty.is_number() };
+        let allowed = if operator == Binary::Modulo {
+            pair.ty.is_integer()
+        } else {
+            pair.ty.is_number()
+        };
         if !allowed {
             let message = format!("this operator is for {wanted}, not {}", pair.ty);
-            let help = pair.ty.is_bits().then(|| "convert bit strings to an integer type first");
+            let help = pair
+                .ty
+                .is_bits()
+                .then_some("convert bit strings to an integer type first");
             let found = Diagnostic::error(Code::InvalidOperand, span, message);
             self.report(found.with_optional_help(help.map(str::to_owned)));
             return None;
@@ -155,7 +182,8 @@ impl Body<'_, '_> {
         };
         let folded = match (left, right) {
             (Operand::Integer { value: left, .. }, Operand::Integer { value: right, .. }) => {
-                constant::integer(operator, *left, *right).map(|value| Operand::Integer { value, span })
+                constant::integer(operator, *left, *right)
+                    .map(|value| Operand::Integer { value, span })
             }
             _ if matches!(
                 operator,
@@ -169,7 +197,11 @@ impl Body<'_, '_> {
         };
         if folded.is_err() {
             let message = "a constant is divided by zero";
-            self.report(Diagnostic::error(Code::ConstantDivisionByZero, span, message));
+            self.report(Diagnostic::error(
+                Code::ConstantDivisionByZero,
+                span,
+                message,
+            ));
         }
         folded.ok()
     }
@@ -200,7 +232,11 @@ impl Body<'_, '_> {
             }
         };
         let kind = ExprKind::Binary(operator, Box::new(left), Box::new(right));
-        Some(Operand::Typed(Expr { kind, ty: ElementaryType::Bool.into(), span }))
+        Some(Operand::Typed(Expr {
+            kind,
+            ty: ElementaryType::Bool.into(),
+            span,
+        }))
     }
 
     fn bitwise(
@@ -232,7 +268,9 @@ impl Body<'_, '_> {
         span: Span,
     ) -> Option<Pair> {
         let ty = self.common_type(&left, &right);
-        let Some(ty) = ty else { return self.invalid_operands(&left, &right, span) };
+        let Some(ty) = ty else {
+            return self.invalid_operands(&left, &right, span);
+        };
         let left = self.coerce(left, ty.into())?;
         let right = self.coerce(right, ty.into())?;
         Some(Pair { left, right, ty })
@@ -267,7 +305,8 @@ impl Body<'_, '_> {
     }
 
     fn is_duration(&self, operand: &Operand) -> bool {
-        self.own_type(operand).is_some_and(ElementaryType::is_duration)
+        self.own_type(operand)
+            .is_some_and(ElementaryType::is_duration)
     }
 
     /// 2nd ed. Table 30: durations are added, and scaled by numbers.
@@ -286,7 +325,9 @@ impl Body<'_, '_> {
                 Some(Operand::Typed(Expr { kind, ty, span }))
             }
             (Binary::Multiply | Binary::Divide, Operand::Typed(left), right)
-                if self.plain_elementary(&left).is_some_and(ElementaryType::is_duration)
+                if self
+                    .plain_elementary(&left)
+                    .is_some_and(ElementaryType::is_duration)
                     && !self.is_duration(&right) =>
             {
                 self.scale(operator, left, right, span)
@@ -314,7 +355,11 @@ impl Body<'_, '_> {
         };
         let exact = |operator, left: Expr, right: Expr| {
             let ty = left.ty;
-            Expr { kind: ExprKind::Binary(operator, Box::new(left), Box::new(right)), ty, span }
+            Expr {
+                kind: ExprKind::Binary(operator, Box::new(left), Box::new(right)),
+                ty,
+                span,
+            }
         };
         if ty.is_integer() {
             let factor = converted(factor, ElementaryType::Lint, Rounding::NearestEven);
@@ -324,21 +369,41 @@ impl Body<'_, '_> {
         let duration = converted(duration, lreal, Rounding::NearestEven);
         let factor = converted(factor, lreal, Rounding::NearestEven);
         let product = exact(operator, duration, factor);
-        Some(Operand::Typed(converted(product, duration_ty, Rounding::NearestEven)))
+        Some(Operand::Typed(converted(
+            product,
+            duration_ty,
+            Rounding::NearestEven,
+        )))
     }
 
     /// 2nd ed. Table 24: the base is a real number, and so is the result.
-    pub(super) fn power(&mut self, base: Operand, exponent: Operand, span: Span) -> Option<Operand> {
+    pub(super) fn power(
+        &mut self,
+        base: Operand,
+        exponent: Operand,
+        span: Span,
+    ) -> Option<Operand> {
         let single = self.own_type(&base) == Some(ElementaryType::Real);
-        let ty = if single { ElementaryType::Real } else { ElementaryType::Lreal };
+        let ty = if single {
+            ElementaryType::Real
+        } else {
+            ElementaryType::Lreal
+        };
         let base = self.coerce(base, ty.into())?;
         let exponent = self.settle(exponent)?;
-        if !self.plain_elementary(&exponent).is_some_and(ElementaryType::is_number) {
+        if !self
+            .plain_elementary(&exponent)
+            .is_some_and(ElementaryType::is_number)
+        {
             let found = self.type_name(exponent.ty);
             return self.mismatch("a number", &found, exponent.span);
         }
         let exponent = converted(exponent, ty, Rounding::NearestEven);
         let kind = ExprKind::Intrinsic(Intrinsic::Power, vec![base, exponent]);
-        Some(Operand::Typed(Expr { kind, ty: ty.into(), span }))
+        Some(Operand::Typed(Expr {
+            kind,
+            ty: ty.into(),
+            span,
+        }))
     }
 }

@@ -52,12 +52,18 @@ impl Body<'_, '_> {
         }
         let place = self.place(expr)?.place;
         let ty = place.ty;
-        Some(Operand::Typed(Expr { kind: ExprKind::Load(place), ty, span: expr.span }))
+        Some(Operand::Typed(Expr {
+            kind: ExprKind::Load(place),
+            ty,
+            span: expr.span,
+        }))
     }
 
     /// The enumeration that `Colour` in `Colour.Red` names, unless a variable hides it.
     fn enumeration_named(&mut self, base: &ast::Expr) -> Option<TypeId> {
-        let ast::ExprKind::Name(name) = &base.kind else { return None };
+        let ast::ExprKind::Name(name) = &base.kind else {
+            return None;
+        };
         let key = name.key();
         let hidden =
             self.scope.by_name.contains_key(&key) || self.checker.globals.contains_key(&key);
@@ -134,16 +140,26 @@ impl Body<'_, '_> {
                 return Some(match variable.constant {
                     Some(value) => {
                         let kind = ExprKind::Constant(value);
-                        Meaning::Value(Expr { kind, ty: variable.ty, span: name.span })
+                        Meaning::Value(Expr {
+                            kind,
+                            ty: variable.ty,
+                            span: name.span,
+                        })
                     }
                     None => Meaning::Variable,
                 });
             }
             None => {}
         }
-        let found = self.checker.enumerators.get(&name.key()).map_or(&[][..], Vec::as_slice);
+        let found = self
+            .checker
+            .enumerators
+            .get(&name.key())
+            .map_or(&[][..], Vec::as_slice);
         match found {
-            [only] => Some(Meaning::Value(enumeration_value(only.ty, only.value, name.span))),
+            [only] => Some(Meaning::Value(enumeration_value(
+                only.ty, only.value, name.span,
+            ))),
             [] => self.report_unknown(name),
             several => {
                 let types: Vec<_> = several.iter().map(|each| self.type_name(each.ty)).collect();
@@ -157,8 +173,16 @@ impl Body<'_, '_> {
     }
 
     fn report_unknown<T>(&mut self, name: &Ident) -> Option<T> {
-        let own = self.scope.variables.iter().map(|variable| variable.name.as_str());
-        let globals = self.checker.globals.values().map(|entry| entry.name.as_str());
+        let own = self
+            .scope
+            .variables
+            .iter()
+            .map(|variable| variable.name.as_str());
+        let globals = self
+            .checker
+            .globals
+            .values()
+            .map(|entry| entry.name.as_str());
         let help = did_you_mean(&name.text, own.chain(globals));
         let message = format!("`{}` is not declared", name.text);
         let found = Diagnostic::error(Code::UnknownName, name.span, message);
@@ -169,13 +193,21 @@ impl Body<'_, '_> {
     fn member(&mut self, base: Located, name: &Ident, span: Span) -> Option<Located> {
         match self.checker.types.get(base.place.ty).clone() {
             Type::Struct { fields, .. } => {
-                let field = fields.iter().find(|field| field.name.eq_ignore_ascii_case(&name.text));
+                let field = fields
+                    .iter()
+                    .find(|field| field.name.eq_ignore_ascii_case(&name.text));
                 let Some(field) = field else {
                     let names: Vec<_> = fields.iter().map(|field| field.name.as_str()).collect();
                     return self.report_unknown_member(base.place.ty, name, &names);
                 };
-                let place = Place { span, ..base.place.member(field.offset, field.ty) };
-                Some(Located { place, access: base.access })
+                let place = Place {
+                    span,
+                    ..base.place.member(field.offset, field.ty)
+                };
+                Some(Located {
+                    place,
+                    access: base.access,
+                })
             }
             Type::FunctionBlock { pou, .. } => self.instance_member(base, pou, name, span),
             _ => {
@@ -210,7 +242,11 @@ impl Body<'_, '_> {
             let open = |variable: &&Variable| {
                 matches!(variable.section, SectionKind::Input | SectionKind::Output)
             };
-            let names = scope.variables.iter().filter(open).map(|variable| variable.name.as_str());
+            let names = scope
+                .variables
+                .iter()
+                .filter(open)
+                .map(|variable| variable.name.as_str());
             let names: Vec<_> = names.collect();
             return self.report_unknown_member(base.place.ty, name, &names);
         };
@@ -225,13 +261,21 @@ impl Body<'_, '_> {
                 return None;
             }
         };
-        let Storage::Instance(offset) = variable.storage else { return None };
-        let place = Place { span, ..base.place.member(offset, variable.ty) };
+        let Storage::Instance(offset) = variable.storage else {
+            return None;
+        };
+        let place = Place {
+            span,
+            ..base.place.member(offset, variable.ty)
+        };
         Some(Located { place, access })
     }
 
     fn element(&mut self, base: Located, indices: &[ast::Expr], span: Span) -> Option<Located> {
-        let Type::Array { dimensions, element } = self.checker.types.get(base.place.ty).clone()
+        let Type::Array {
+            dimensions,
+            element,
+        } = self.checker.types.get(base.place.ty).clone()
         else {
             let message = format!("{} is not an array", self.type_name(base.place.ty));
             self.report(Diagnostic::error(Code::NotIndexable, span, message));
@@ -256,13 +300,19 @@ impl Body<'_, '_> {
         place.steps.extend(steps);
         place.ty = element;
         place.span = span;
-        Some(Located { place, access: base.access })
+        Some(Located {
+            place,
+            access: base.access,
+        })
     }
 
     fn index_step(&mut self, bounds: Dimension, index: &ast::Expr, stride: u32) -> Option<Step> {
         let operand = self.within(None, |body| body.expression(index))?;
         let index = self.settle(operand)?;
-        if !self.plain_elementary(&index).is_some_and(ElementaryType::is_integer) {
+        if !self
+            .plain_elementary(&index)
+            .is_some_and(ElementaryType::is_integer)
+        {
             let found = self.type_name(index.ty);
             return self.mismatch("an integer", &found, index.span);
         }
@@ -271,11 +321,20 @@ impl Body<'_, '_> {
             let value = value.as_int().unwrap_or(0);
             if !(i128::from(low)..=i128::from(high)).contains(&value) {
                 let message = format!("index {value} is outside of {low}..{high}");
-                self.report(Diagnostic::error(Code::IndexOutOfRange, index.span, message));
+                self.report(Diagnostic::error(
+                    Code::IndexOutOfRange,
+                    index.span,
+                    message,
+                ));
                 return None;
             }
             return Some(Step::Offset((value - i128::from(low)) as u32 * stride));
         }
-        Some(Step::Index { index: Box::new(index), low, count: bounds.count() as u32, stride })
+        Some(Step::Index {
+            index: Box::new(index),
+            low,
+            count: bounds.count() as u32,
+            stride,
+        })
     }
 }

@@ -20,7 +20,11 @@ impl Checker<'_> {
         let mut on_path = BTreeSet::from([root]);
         while let Some((caller, next)) = path.last_mut() {
             let caller = *caller;
-            let call = self.calls.get(&caller).and_then(|calls| calls.get(*next)).copied();
+            let call = self
+                .calls
+                .get(&caller)
+                .and_then(|calls| calls.get(*next))
+                .copied();
             *next += 1;
             match call {
                 None => {
@@ -28,14 +32,14 @@ impl Checker<'_> {
                     on_path.remove(&caller);
                     done.insert(caller);
                 }
-                Some((callee, span)) if on_path.contains(&callee) => {
-                    let name = &self.pou(callee).ast.name.text;
+                Some((next_unit, span)) if on_path.contains(&next_unit) => {
+                    let name = &self.pou(next_unit).ast.name.text;
                     let message = format!("this call makes `{name}` call itself");
                     self.report(Diagnostic::error(Code::Recursion, span, message));
                 }
-                Some((callee, _)) if !done.contains(&callee) => {
-                    path.push((callee, 0));
-                    on_path.insert(callee);
+                Some((next_unit, _)) if !done.contains(&next_unit) => {
+                    path.push((next_unit, 0));
+                    on_path.insert(next_unit);
                 }
                 Some(_) => {}
             }

@@ -2,11 +2,11 @@
 
 use std::sync::Arc;
 
+use super::Checker;
 use super::layout::{MEMORY_LIMIT, align_up};
 use super::names::{Progress, TypedImage};
 use super::scope::{Body, Scope};
 use super::types::Need;
-use super::Checker;
 use crate::diagnostic::{Code, Diagnostic, did_you_mean};
 use crate::ir::{ElementaryType, Place, PouId, Storage, TypeId, Value, Variable};
 use crate::syntax::Span;
@@ -26,7 +26,11 @@ impl<'a> Checker<'a> {
         let (ast, qualifiers) = entry.ast?;
         if progress == Progress::Running {
             let message = "the initial value of a variable needs the variable itself";
-            self.report(Diagnostic::error(Code::Recursion, used.unwrap_or(span), message));
+            self.report(Diagnostic::error(
+                Code::Recursion,
+                used.unwrap_or(span),
+                message,
+            ));
             return None;
         }
         entry.progress = Progress::Running;
@@ -50,7 +54,14 @@ impl<'a> Checker<'a> {
         let offset = self.allocate(size, align, name.span)?;
         self.placed.push((offset, declared.image.clone()));
         let storage = Storage::Absolute(offset);
-        Some(self.variable(name, ast, SectionKind::Global, qualifiers, &declared, storage))
+        Some(self.variable(
+            name,
+            ast,
+            SectionKind::Global,
+            qualifiers,
+            &declared,
+            storage,
+        ))
     }
 
     fn variable(
@@ -69,7 +80,9 @@ impl<'a> Checker<'a> {
             section,
             ty: declared.ty,
             storage,
-            constant: elementary.filter(|_| is_constant).map(|ty| decode(ty, &declared.image)),
+            constant: elementary
+                .filter(|_| is_constant)
+                .map(|ty| decode(ty, &declared.image)),
             is_constant,
             retain: qualifiers.contains(&Qualifier::Retain),
             address: ast.address.as_ref().map(|address| address.text.clone()),
@@ -99,15 +112,17 @@ impl<'a> Checker<'a> {
             Some((interface.body.scope, interface.align, interface.image))
         });
         let (scope, align, mut image) = declared.unwrap_or_default();
-        image.resize(align_up(image.len() as u32, align) as usize, 0);
+        // At least a byte, as for structures.
+        image.resize(align_up(image.len().max(1) as u32, align) as usize, 0);
+        let (align, image): (u32, Arc<[u8]>) = (align.max(1), image.into());
         if ast.kind == PouKind::FunctionBlock {
             let ty = self.types.block(&ast.name.text, id);
             self.types.complete_block(ty, align, image.clone());
         }
         let entry = &mut self.pous[index];
         entry.scope = Some(Arc::new(scope));
-        entry.align = align.max(1);
-        entry.image = image.into();
+        entry.align = align;
+        entry.image = image;
         entry.progress = Progress::Done;
         Some(())
     }
@@ -158,15 +173,24 @@ impl<'c, 'a> Interface<'c, 'a> {
     fn new(checker: &'c mut Checker<'a>, id: PouId) -> Self {
         let kind = checker.pou(id).ast.kind;
         let body = Body::new(checker, Scope::default(), Some(id));
-        Self { body, kind, align: 1, image: Vec::new() }
+        Self {
+            body,
+            kind,
+            align: 1,
+            image: Vec::new(),
+        }
     }
 
     fn declare(&mut self, ast: &'a ast::Pou) {
         if self.kind == PouKind::Function {
-            self.declare_sections(ast, |kind| matches!(kind, SectionKind::Input | SectionKind::InOut));
+            self.declare_sections(ast, |kind| {
+                matches!(kind, SectionKind::Input | SectionKind::InOut)
+            });
             self.body.scope.parameters = self.body.scope.registers.len() as u32;
             self.declare_result(ast);
-            self.declare_sections(ast, |kind| !matches!(kind, SectionKind::Input | SectionKind::InOut));
+            self.declare_sections(ast, |kind| {
+                !matches!(kind, SectionKind::Input | SectionKind::InOut)
+            });
         } else {
             // The first parameter is the instance's address.
             self.body.scope.register(POINTER);
@@ -185,14 +209,25 @@ impl<'c, 'a> Interface<'c, 'a> {
 
     fn declare_result(&mut self, ast: &'a ast::Pou) {
         let Some(spec) = &ast.result else { return };
-        let Some(declared) = self.body.resolve(spec, Need::Size) else { return };
-        let Some(storage) = self.temporary(&declared, ast.name.span) else { return };
+        let Some(declared) = self.body.resolve(spec, Need::Size) else {
+            return;
+        };
+        let Some(storage) = self.temporary(&declared, ast.name.span) else {
+            return;
+        };
         let span = ast.name.span;
         self.body.scope.result = Some(Place::whole(storage, declared.ty, span));
-        let shape =
-            ast::Variable { names: Vec::new(), address: None, spec: spec.clone(), initial: None };
+        let shape = ast::Variable {
+            names: Vec::new(),
+            address: None,
+            spec: spec.clone(),
+            initial: None,
+        };
         let kind = SectionKind::Temp;
-        let variable = self.body.checker.variable(&ast.name, &shape, kind, &[], &declared, storage);
+        let variable = self
+            .body
+            .checker
+            .variable(&ast.name, &shape, kind, &[], &declared, storage);
         self.add(&ast.name, variable);
     }
 
@@ -200,10 +235,15 @@ impl<'c, 'a> Interface<'c, 'a> {
         if section.kind == SectionKind::Global {
             let message = "VAR_GLOBAL stands outside of units";
             let span = section.span;
-            self.body.report(Diagnostic::error(Code::WrongSection, span, message));
+            self.body
+                .report(Diagnostic::error(Code::WrongSection, span, message));
             return;
         }
-        let need = if section.kind == SectionKind::InOut { Need::Reference } else { Need::Size };
+        let need = if section.kind == SectionKind::InOut {
+            Need::Reference
+        } else {
+            Need::Size
+        };
         // Every name has the same type; an error in it is told once.
         let declared = self.body.declared(ast, need);
         for name in &ast.names {
@@ -220,7 +260,10 @@ impl<'c, 'a> Interface<'c, 'a> {
                 self.declare_external(name, declared.ty, section);
                 continue;
             }
-            let Some(storage) = self.storage(section, declared, name.span) else { continue };
+            let Some(storage) = self.storage(section, declared, name.span) else {
+                self.declare_broken(name);
+                continue;
+            };
             let (kind, qualifiers) = (section.kind, &section.qualifiers);
             let checker = &self.body.checker;
             let variable = checker.variable(name, ast, kind, qualifiers, declared, storage);
@@ -234,7 +277,10 @@ impl<'c, 'a> Interface<'c, 'a> {
     }
 
     fn add(&mut self, name: &Ident, variable: Variable) {
-        self.body.scope.by_name.insert(name.key(), self.body.scope.variables.len());
+        self.body
+            .scope
+            .by_name
+            .insert(name.key(), self.body.scope.variables.len());
         self.body.scope.variables.push(variable);
     }
 
@@ -250,6 +296,13 @@ impl<'c, 'a> Interface<'c, 'a> {
                 self.reject_instance(declared.ty, span)?;
                 self.temporary(declared, span)
             }
+            // Nobody calls a program, so nobody could give the variable.
+            (PouKind::Program, SectionKind::InOut) => {
+                let message = "a program has no VAR_IN_OUT";
+                self.body
+                    .report(Diagnostic::error(Code::WrongSection, span, message));
+                None
+            }
             (_, SectionKind::InOut) => {
                 let pointer: TypeId = POINTER.into();
                 let image = vec![0; POINTER.size() as usize].into();
@@ -262,10 +315,14 @@ impl<'c, 'a> Interface<'c, 'a> {
 
     /// Functions keep nothing between calls (2nd ed. 2.5.1), instances do.
     fn reject_instance(&mut self, ty: TypeId, span: Span) -> Option<()> {
-        if matches!(self.body.checker.types.get(ty), crate::ir::Type::FunctionBlock { .. }) {
+        if matches!(
+            self.body.checker.types.get(ty),
+            crate::ir::Type::FunctionBlock { .. }
+        ) {
             let message = "a function or VAR_TEMP section keeps nothing, so it has no instances";
             let found = Diagnostic::error(Code::WrongSection, span, message);
-            self.body.report(found.with_help("declare it in VAR or pass it by VAR_IN_OUT"));
+            self.body
+                .report(found.with_help("declare it in VAR or pass it by VAR_IN_OUT"));
             return None;
         }
         Some(())
@@ -293,7 +350,10 @@ impl<'c, 'a> Interface<'c, 'a> {
         let types = &self.body.checker.types;
         let (size, align) = (types.size(declared.ty), types.align(declared.ty));
         let offset = self.body.checker.allocate(size, align, span)?;
-        self.body.checker.placed.push((offset, declared.image.clone()));
+        self.body
+            .checker
+            .placed
+            .push((offset, declared.image.clone()));
         Some(Storage::Absolute(offset))
     }
 
@@ -304,6 +364,8 @@ impl<'c, 'a> Interface<'c, 'a> {
             self.body.checker.report_too_large(span);
             return None;
         }
+        let size = declared.image.len() as u64;
+        self.body.checker.charge_image(size, span)?;
         self.align = self.align.max(align);
         self.image.resize(offset as usize, 0);
         self.image.extend_from_slice(&declared.image);
@@ -327,7 +389,8 @@ impl<'c, 'a> Interface<'c, 'a> {
             let (wanted, found) = (types.name(variable.ty), types.name(ty));
             let message = format!("`{}` is {wanted} in VAR_GLOBAL, {found} here", name.text);
             let found = Diagnostic::error(Code::ExternalWithoutGlobal, name.span, message);
-            self.body.report(found.with_label(variable.span, "declared here"));
+            self.body
+                .report(found.with_label(variable.span, "declared here"));
         }
         variable.is_constant |= section.qualifiers.contains(&Qualifier::Constant);
         variable.section = SectionKind::External;
@@ -336,7 +399,10 @@ impl<'c, 'a> Interface<'c, 'a> {
 
     fn report_missing_global(&mut self, name: &Ident) {
         let globals = &self.body.checker.globals;
-        let help = did_you_mean(&name.text, globals.values().map(|entry| entry.name.as_str()));
+        let help = did_you_mean(
+            &name.text,
+            globals.values().map(|entry| entry.name.as_str()),
+        );
         let message = format!("no VAR_GLOBAL declares `{}`", name.text);
         let found = Diagnostic::error(Code::ExternalWithoutGlobal, name.span, message);
         self.body.report(found.with_optional_help(help));

@@ -76,12 +76,19 @@ impl<'s, 'p> Emitter<'s, 'p> {
 
     /// Says that a statement begins here.
     pub(super) fn mark_statement(&mut self, span: Span) {
-        self.marks.push((self.code.len(), Mark { span, fault: None }));
+        self.marks
+            .push((self.code.len(), Mark { span, fault: None }));
     }
 
     /// Says what it means if the next instruction traps.
     pub(super) fn mark_fault(&mut self, fault: FaultKind, span: Span) {
-        self.marks.push((self.code.len(), Mark { span, fault: Some(fault) }));
+        self.marks.push((
+            self.code.len(),
+            Mark {
+                span,
+                fault: Some(fault),
+            },
+        ));
     }
 
     /// Stops the PLC if the value on the stack is not 0.
@@ -94,7 +101,10 @@ impl<'s, 'p> Emitter<'s, 'p> {
 
     /// The elementary type that holds values of `ty`; an address is held like UDINT.
     pub(super) fn held_as(&self, ty: TypeId) -> ElementaryType {
-        self.shared.types.elementary(ty).unwrap_or(ElementaryType::Udint)
+        self.shared
+            .types
+            .elementary(ty)
+            .unwrap_or(ElementaryType::Udint)
     }
 
     /// A free register; [`Self::release`] gives it back.

@@ -3,9 +3,7 @@
 use wasm_encoder::{Ieee32, Ieee64, Instruction, ValType};
 
 use super::emitter::{Emitter, value_type};
-use crate::ir::{
-    Argument, ElementaryType, Expr, ExprKind, FunctionCall, Place, Unary, Value,
-};
+use crate::ir::{Argument, ElementaryType, Expr, ExprKind, FunctionCall, Place, Unary, Value};
 
 impl Emitter<'_, '_> {
     /// Pushes the expression's value; an aggregate's address.
@@ -39,7 +37,11 @@ impl Emitter<'_, '_> {
     pub(super) fn constant(&mut self, ty: ElementaryType, value: Value) {
         self.emit(match value_type(ty) {
             ValType::F32 => {
-                let value = if let Value::Real(value) = value { value } else { value.as_f64() as f32 };
+                let value = if let Value::Real(value) = value {
+                    value
+                } else {
+                    value.as_f64() as f32
+                };
                 Instruction::F32Const(Ieee32::new(value.to_bits()))
             }
             ValType::F64 => Instruction::F64Const(Ieee64::new(value.as_f64().to_bits())),
@@ -72,7 +74,10 @@ impl Emitter<'_, '_> {
         self.release(source);
         let size = self.shared.types.size(place.ty);
         self.emit(Instruction::I32Const(size as i32));
-        self.emit(Instruction::MemoryCopy { src_mem: 0, dst_mem: 0 });
+        self.emit(Instruction::MemoryCopy {
+            src_mem: 0,
+            dst_mem: 0,
+        });
         self.full_address(place);
     }
 }

@@ -68,7 +68,10 @@ impl Emitter<'_, '_> {
         self.expression(source);
         let size = self.shared.types.size(target.ty);
         self.emit(Instruction::I32Const(size as i32));
-        self.emit(Instruction::MemoryCopy { src_mem: 0, dst_mem: 0 });
+        self.emit(Instruction::MemoryCopy {
+            src_mem: 0,
+            dst_mem: 0,
+        });
     }
 
     fn initialise(&mut self, place: &Place, image: &Arc<[u8]>) {
@@ -156,7 +159,11 @@ impl Emitter<'_, '_> {
         self.get(register);
         self.constant(ty, Value::Int(low));
         if low == high {
-            self.emit(if wide { Instruction::I64Eq } else { Instruction::I32Eq });
+            self.emit(if wide {
+                Instruction::I64Eq
+            } else {
+                Instruction::I32Eq
+            });
             return;
         }
         self.emit(match (wide, signed) {

@@ -152,7 +152,12 @@ pub(crate) struct Place {
 
 impl Place {
     pub(crate) fn whole(storage: Storage, ty: TypeId, span: Span) -> Self {
-        Self { storage, steps: Vec::new(), ty, span }
+        Self {
+            storage,
+            steps: Vec::new(),
+            ty,
+            span,
+        }
     }
 
     /// The part of type `ty` that lies `offset` bytes inside.
@@ -172,5 +177,10 @@ pub(crate) enum Step {
     /// So many bytes further.
     Offset(u32),
     /// `(index - low) * stride` bytes further; a fault unless `index - low < count`.
-    Index { index: Box<Expr>, low: i64, count: u32, stride: u32 },
+    Index {
+        index: Box<Expr>,
+        low: i64,
+        count: u32,
+        stride: u32,
+    },
 }

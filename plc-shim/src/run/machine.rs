@@ -13,6 +13,8 @@ use crate::compile::{MEMORY_EXPORT, host, program_export};
 pub(super) struct Machine {
     store: Store<StoreLimits>,
     memory: Memory,
+    /// Bytes in use; the rest of the last page is never touched.
+    size: usize,
     programs: Vec<TypedFunc<(), ()>>,
 }
 
@@ -39,9 +41,8 @@ fn module_error(error: &wasmtime::Error) -> RunError {
 
 impl Machine {
     pub(super) fn new(application: &Application) -> Result<Self, RunError> {
-        let module = application.module(|wasm| {
-            Module::new(&engine()?, wasm).map_err(|error| format!("{error:#}"))
-        });
+        let module = application
+            .module(|wasm| Module::new(&engine()?, wasm).map_err(|error| format!("{error:#}")));
         let module = module.map_err(RunError::Module)?;
         let mut store = Store::new(module.engine(), StoreLimits::default());
         let linker = linker(module.engine()).map_err(|error| module_error(&error))?;
@@ -49,18 +50,27 @@ impl Machine {
         let instance = instance.map_err(|error| module_error(&error))?;
         let memory = instance.get_memory(&mut store, MEMORY_EXPORT);
         let memory = memory.ok_or_else(|| RunError::Module("memory is missing".to_owned()))?;
+        let size = application.initial_memory().len();
         let count = application.programs().count();
         let programs = (0..count).map(|index| program(&instance, &mut store, index));
         let programs = programs.collect::<Result<_, _>>()?;
-        Ok(Self { store, memory, programs })
+        Ok(Self {
+            store,
+            memory,
+            size,
+            programs,
+        })
     }
 
     pub(super) fn memory(&self) -> &[u8] {
-        self.memory.data(&self.store)
+        let all = self.memory.data(&self.store);
+        all.get(..self.size).unwrap_or(all)
     }
 
     pub(super) fn memory_mut(&mut self) -> &mut [u8] {
-        self.memory.data_mut(&mut self.store)
+        let all = self.memory.data_mut(&mut self.store);
+        let size = self.size.min(all.len());
+        &mut all[..size]
     }
 
     /// Gives the budget for the calls up to the next refill.
@@ -71,8 +81,12 @@ impl Machine {
     }
 
     pub(super) fn run(&mut self, program: usize) -> Result<(), Trapped> {
-        let Some(function) = self.programs.get(program) else { return Ok(()) };
-        function.call(&mut self.store, ()).map_err(|error| trapped(&error))
+        let Some(function) = self.programs.get(program) else {
+            return Ok(());
+        };
+        function
+            .call(&mut self.store, ())
+            .map_err(|error| trapped(&error))
     }
 }
 
@@ -96,10 +110,16 @@ fn linker(engine: &Engine) -> Result<Linker<StoreLimits>, wasmtime::Error> {
             host::Function::Double(function) => {
                 linker.func_wrap(module, name, move |x: f64| canonical_double(function(x)))?
             }
-            host::Function::SinglePair(function) => linker
-                .func_wrap(module, name, move |x: f32, y: f32| canonical_single(function(x, y)))?,
-            host::Function::DoublePair(function) => linker
-                .func_wrap(module, name, move |x: f64, y: f64| canonical_double(function(x, y)))?,
+            host::Function::SinglePair(function) => {
+                linker.func_wrap(module, name, move |x: f32, y: f32| {
+                    canonical_single(function(x, y))
+                })?
+            }
+            host::Function::DoublePair(function) => {
+                linker.func_wrap(module, name, move |x: f64, y: f64| {
+                    canonical_double(function(x, y))
+                })?
+            }
         };
     }
     Ok(linker)
@@ -107,18 +127,35 @@ fn linker(engine: &Engine) -> Result<Linker<StoreLimits>, wasmtime::Error> {
 
 /// A NaN's bits would depend on the machine.
 fn canonical_single(value: f32) -> f32 {
-    if value.is_nan() { f32::from_bits(0x7fc0_0000) } else { value }
+    if value.is_nan() {
+        f32::from_bits(0x7fc0_0000)
+    } else {
+        value
+    }
 }
 
 fn canonical_double(value: f64) -> f64 {
-    if value.is_nan() { f64::from_bits(0x7ff8_0000_0000_0000) } else { value }
+    if value.is_nan() {
+        f64::from_bits(0x7ff8_0000_0000_0000)
+    } else {
+        value
+    }
 }
 
 fn trapped(error: &wasmtime::Error) -> Trapped {
     let backtrace = error.downcast_ref::<WasmBacktrace>();
-    let frames = backtrace.map(WasmBacktrace::frames).unwrap_or_default().iter();
+    let frames = backtrace
+        .map(WasmBacktrace::frames)
+        .unwrap_or_default()
+        .iter();
     let frames = frames.map(|frame| {
-        (frame.func_index(), frame.func_offset().map(|offset| offset as u32))
+        (
+            frame.func_index(),
+            frame.func_offset().map(|offset| offset as u32),
+        )
     });
-    Trapped { trap: error.downcast_ref::<Trap>().copied(), frames: frames.collect() }
+    Trapped {
+        trap: error.downcast_ref::<Trap>().copied(),
+        frames: frames.collect(),
+    }
 }

@@ -2,12 +2,12 @@
 //!
 //! | module | subject |
 //! |---|---|
-//! | [`plan`] | tasks with interval and priority, validated |
-//! | [`scheduler`] | which task is due when |
-//! | [`machine`] | the compiled module with its memory |
-//! | [`fault`] | a trap as an error in the source |
-//! | [`soft_plc`] | the PLC itself |
-//! | [`state`] | its state as bytes |
+//! | `plan` | tasks with interval and priority, validated |
+//! | `scheduler` | which task is due when |
+//! | `machine` | the compiled module with its memory |
+//! | `fault` | a trap as an error in the source |
+//! | `soft_plc` | the PLC itself |
+//! | `state` | its state as bytes |
 
 mod fault;
 mod machine;
@@ -42,6 +42,11 @@ impl std::fmt::Display for VirtualTime {
     fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         let decimals = format!("{:09}", self.0 % 1_000_000_000);
         let (first, rest) = decimals.split_at(3);
-        write!(formatter, "{}.{first}{} s", self.0 / 1_000_000_000, rest.trim_end_matches('0'))
+        write!(
+            formatter,
+            "{}.{first}{} s",
+            self.0 / 1_000_000_000,
+            rest.trim_end_matches('0')
+        )
     }
 }

@@ -23,7 +23,9 @@ impl Scheduler {
             priority: task.priority,
             due_ns: task.interval_ns,
         };
-        Self { tasks: plan.tasks.iter().map(entry).collect() }
+        Self {
+            tasks: plan.tasks.iter().map(entry).collect(),
+        }
     }
 
     /// Every task is due one interval after the start.
@@ -44,7 +46,11 @@ impl Scheduler {
     /// then the one declared first. A task that missed intervals runs once for all of them.
     pub(super) fn take_due(&mut self, now: VirtualTime) -> Option<usize> {
         let now = now.as_ns();
-        let due = self.tasks.iter().enumerate().filter(|(_, task)| task.due_ns <= now);
+        let due = self
+            .tasks
+            .iter()
+            .enumerate()
+            .filter(|(_, task)| task.due_ns <= now);
         let next = due.min_by_key(|(index, task)| (task.priority, task.due_ns, *index));
         let (index, _) = next?;
         let task = self.tasks.get_mut(index)?;
@@ -56,7 +62,13 @@ impl Scheduler {
 
     /// When the first task is due.
     pub(super) fn next_due(&self) -> VirtualTime {
-        VirtualTime::from_ns(self.tasks.iter().map(|task| task.due_ns).min().unwrap_or(u64::MAX))
+        VirtualTime::from_ns(
+            self.tasks
+                .iter()
+                .map(|task| task.due_ns)
+                .min()
+                .unwrap_or(u64::MAX),
+        )
     }
 
     /// Greatest common divisor of the intervals.
@@ -67,7 +79,9 @@ impl Scheduler {
             }
             a
         };
-        self.tasks.iter().fold(0, |period, task| divisor(period, task.interval_ns))
+        self.tasks
+            .iter()
+            .fold(0, |period, task| divisor(period, task.interval_ns))
     }
 
     /// When each task is due.

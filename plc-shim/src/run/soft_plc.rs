@@ -1,11 +1,11 @@
 //! The PLC itself.
 
+use super::VirtualTime;
 use super::fault::{PlcFault, explain};
 use super::machine::Machine;
 use super::plan::{RunError, TaskPlan, resolve};
 use super::scheduler::Scheduler;
 use super::state::{self, RestoreError, State};
-use super::VirtualTime;
 use crate::application::{Application, UnknownVariable, Variable};
 use crate::check::VIRTUAL_TIME_OFFSET;
 
@@ -26,7 +26,10 @@ pub struct SoftPlc {
 impl std::fmt::Debug for SoftPlc {
     fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         let mut debug = formatter.debug_struct("SoftPlc");
-        debug.field("now", &self.now).field("fault", &self.fault).finish_non_exhaustive()
+        debug
+            .field("now", &self.now)
+            .field("fault", &self.fault)
+            .finish_non_exhaustive()
     }
 }
 
@@ -56,9 +59,7 @@ impl SoftPlc {
     /// (2nd ed. 2.4.2).
     pub fn cold_start(&mut self) {
         let image = self.application.initial_memory();
-        let memory = self.machine.memory_mut();
-        memory.fill(0);
-        copy_to(memory, 0, image);
+        copy_to(self.machine.memory_mut(), 0, image);
         self.scheduler.reset();
         self.now = VirtualTime::default();
         self.fault = None;
@@ -99,9 +100,19 @@ impl SoftPlc {
     fn run_task(&mut self, task: usize) -> Result<(), PlcFault> {
         let now = self.now;
         let time = now.as_ns().to_le_bytes();
-        copy_to(self.machine.memory_mut(), VIRTUAL_TIME_OFFSET as usize, &time);
+        copy_to(
+            self.machine.memory_mut(),
+            VIRTUAL_TIME_OFFSET as usize,
+            &time,
+        );
         self.machine.refuel(self.fuel_per_task);
-        let Self { machine, programs, application, fault, .. } = self;
+        let Self {
+            machine,
+            programs,
+            application,
+            fault,
+            ..
+        } = self;
         for program in programs.get(task).map_or(&[][..], Vec::as_slice) {
             if let Err(trapped) = machine.run(*program) {
                 let found = explain(application, &trapped, now);

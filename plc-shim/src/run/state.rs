@@ -13,9 +13,9 @@
 
 use thiserror::Error;
 
+use super::VirtualTime;
 use super::fault::PlcFault;
 use super::plan::TaskPlan;
-use super::VirtualTime;
 use crate::application::Application;
 use crate::compile::fault::FaultKind;
 
@@ -98,7 +98,9 @@ impl<'m> State<'m> {
         if reader.number().ok_or(RestoreError::Damaged)? != fingerprint {
             return Err(RestoreError::OtherApplication);
         }
-        reader.state(tasks, memory_size).ok_or(RestoreError::Damaged)
+        reader
+            .state(tasks, memory_size)
+            .ok_or(RestoreError::Damaged)
     }
 }
 
@@ -109,7 +111,10 @@ fn encode_fault(fault: &PlcFault, bytes: &mut Vec<u8>) {
     bytes.extend_from_slice(&fault.line.to_le_bytes());
     bytes.extend_from_slice(&fault.column.to_le_bytes());
     bytes.extend_from_slice(&(fault.call_path.len() as u32).to_le_bytes());
-    for text in [&fault.file, &fault.pou].into_iter().chain(&fault.call_path) {
+    for text in [&fault.file, &fault.pou]
+        .into_iter()
+        .chain(&fault.call_path)
+    {
         bytes.extend_from_slice(&(text.len() as u32).to_le_bytes());
         bytes.extend_from_slice(text.as_bytes());
     }
@@ -159,7 +164,12 @@ impl<'m> Reader<'m> {
             return None;
         }
         let memory = self.take(memory_size)?;
-        self.rest.is_empty().then_some(State { now, due_ns, fault, memory })
+        self.rest.is_empty().then_some(State {
+            now,
+            due_ns,
+            fault,
+            memory,
+        })
     }
 
     fn fault(&mut self) -> Option<PlcFault> {
@@ -169,6 +179,14 @@ impl<'m> Reader<'m> {
         let count = self.small_number()?;
         let (file, pou) = (self.text()?, self.text()?);
         let call_path = (0..count).map(|_| self.text()).collect::<Option<_>>()?;
-        Some(PlcFault { kind, file, line, column, pou, call_path, virtual_time })
+        Some(PlcFault {
+            kind,
+            file,
+            line,
+            column,
+            pou,
+            call_path,
+            virtual_time,
+        })
     }
 }

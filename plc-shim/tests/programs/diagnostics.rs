@@ -114,5 +114,31 @@ END_PROGRAM"
 
 #[test]
 fn a_clean_program_has_no_findings() {
-    assert_eq!(findings("PROGRAM P VAR x : INT; END_VAR x := x + 1; END_PROGRAM"), "");
+    assert_eq!(
+        findings("PROGRAM P VAR x : INT; END_VAR x := x + 1; END_PROGRAM"),
+        ""
+    );
+}
+
+#[test]
+fn every_finding_is_a_related_diagnostic_with_its_own_source() {
+    use miette::Diagnostic;
+    let text = "PROGRAM P VAR x, x : INT; END_VAR x := y; END_PROGRAM";
+    let found = onescan_plc_shim::Application::from_sources([("two.st", text)]).expect_err("wrong");
+    let related: Vec<_> = found.related().expect("findings").collect();
+    assert_eq!(related.len(), 2);
+    let labels: Vec<_> = related[0].labels().expect("labels").collect();
+    assert_eq!((labels[0].offset(), labels[1].offset()), (17, 14));
+    assert_eq!(labels[1].label(), Some("first declared here"));
+    let source = related[1].source_code().expect("a source");
+    let span = related[1]
+        .labels()
+        .expect("labels")
+        .next()
+        .expect("a label");
+    let contents = source
+        .read_span(span.inner(), 0, 0)
+        .expect("inside of the text");
+    assert_eq!(contents.name(), Some("two.st"));
+    assert_eq!(contents.data(), b"y");
 }

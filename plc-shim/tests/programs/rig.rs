@@ -48,7 +48,11 @@ impl Rig {
     pub(crate) fn with_plan(application: &Application, plan: &TaskPlan) -> Self {
         let plc = SoftPlc::new(application, plan).expect("the plan suits the application");
         let step_ns = plc.period_ns();
-        Self { plc, step_ns, now_ns: 0 }
+        Self {
+            plc,
+            step_ns,
+            now_ns: 0,
+        }
     }
 
     pub(crate) fn scan(&mut self) -> Result<(), PlcFault> {

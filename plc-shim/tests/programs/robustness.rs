@@ -15,10 +15,14 @@ WHILE j > 100 DO j := j - 1; IF q.Q THEN EXIT; END_IF; END_WHILE;
 END_PROGRAM";
 
 fn run(text: &str) {
-    let Ok(application) = Application::from_sources([("mutated.st", text)]) else { return };
+    let Ok(application) = Application::from_sources([("mutated.st", text)]) else {
+        return;
+    };
     let mut plan = TaskPlan::single(&application, 1_000_000);
     plan.fuel_per_task = 100_000;
-    let Ok(mut plc) = SoftPlc::new(&application, &plan) else { return };
+    let Ok(mut plc) = SoftPlc::new(&application, &plan) else {
+        return;
+    };
     for scan in 1..4 {
         if plc.scan(VirtualTime::from_ns(scan * 1_000_000)).is_err() {
             return;
@@ -27,7 +31,9 @@ fn run(text: &str) {
 }
 
 fn words() -> Vec<&'static str> {
-    PROGRAM.split_inclusive([' ', ';', '(', ')', '[', ']', '.', ',', '\n', ':']).collect()
+    PROGRAM
+        .split_inclusive([' ', ';', '(', ')', '[', ']', '.', ',', '\n', ':'])
+        .collect()
 }
 
 proptest! {
@@ -57,14 +63,21 @@ proptest! {
 fn the_program_itself_runs() {
     let application = Application::from_sources([("p.st", PROGRAM)]);
     let application = application.unwrap_or_else(|found| panic!("{found}"));
-    assert!(application.warnings().is_empty(), "{}", application.warnings());
+    assert!(
+        application.warnings().is_empty(),
+        "{}",
+        application.warnings()
+    );
     run(PROGRAM);
 }
 
 #[test]
 fn depth_is_bounded_in_every_pass() {
     let chain = |count: usize| {
-        format!("PROGRAM P VAR x : DINT; END_VAR x := x{}; END_PROGRAM", " + x".repeat(count))
+        format!(
+            "PROGRAM P VAR x : DINT; END_VAR x := x{}; END_PROGRAM",
+            " + x".repeat(count)
+        )
     };
     assert!(Application::from_sources([("t.st", chain(240))]).is_ok());
     run(&chain(240));
@@ -78,18 +91,49 @@ fn depth_is_bounded_in_every_pass() {
     );
     assert!(Application::from_sources([("t.st", nested.as_str())]).is_ok());
     run(&nested);
-    let types: String = (1..5000).map(|n| format!("T{n} : ARRAY [0..0] OF T{}; ", n + 1)).collect();
+    for (open, close) in [
+        ("a[", "]"),
+        ("F(", ")"),
+        ("MAX(1, ", ")"),
+        ("-(", ")"),
+        ("SEL(TRUE, 1, ", ")"),
+    ] {
+        let text = format!(
+            "FUNCTION F : DINT VAR_INPUT x : DINT; END_VAR F := x; END_FUNCTION
+            PROGRAM P VAR x : DINT; a : ARRAY [0..1] OF DINT; END_VAR x := {}x{}; END_PROGRAM",
+            open.repeat(95),
+            close.repeat(95),
+        );
+        let compiled = Application::from_sources([("t.st", text.as_str())]);
+        assert!(
+            compiled.is_ok(),
+            "{open}: {}",
+            compiled
+                .err()
+                .map(|found| found.to_string())
+                .unwrap_or_default()
+        );
+        run(&text);
+    }
+    let list = |count: u32, each: &dyn Fn(u32) -> String| {
+        (1..count).map(each).collect::<Vec<_>>().join(" ")
+    };
+    let types = list(5000, &|n| format!("T{n} : ARRAY [0..0] OF T{};", n + 1));
     let text = format!("TYPE {types} T5000 : INT; END_TYPE");
     assert!(Application::from_sources([("t.st", text)]).is_err());
-    let constants: String = (1..5000).map(|n| format!("c{n} : INT := c{}; ", n + 1)).collect();
+    let constants = list(5000, &|n| format!("c{n} : INT := c{};", n + 1));
     let text = format!("VAR_GLOBAL CONSTANT {constants} c5000 : INT := 1; END_VAR");
     assert!(Application::from_sources([("t.st", text)]).is_err());
-    let calls: String = (1..3000)
-        .map(|n| format!("FUNCTION f{n} : INT f{n} := f{}(); END_FUNCTION ", n + 1))
-        .collect();
-    run(&format!("{calls} FUNCTION f3000 : INT f3000 := 1; END_FUNCTION PROGRAM P VAR x : INT; END_VAR x := f1(); END_PROGRAM"));
+    let calls = list(3000, &|n| {
+        format!("FUNCTION f{n} : INT f{n} := f{}(); END_FUNCTION", n + 1)
+    });
+    run(&format!(
+        "{calls} FUNCTION f3000 : INT f3000 := 1; END_FUNCTION PROGRAM P VAR x : INT; END_VAR x := f1(); END_PROGRAM"
+    ));
     let elsifs = "ELSIF x = 1 THEN x := 2; ".repeat(3000);
-    run(&format!("PROGRAM P VAR x : INT; END_VAR IF x = 0 THEN ; {elsifs} END_IF; END_PROGRAM"));
+    run(&format!(
+        "PROGRAM P VAR x : INT; END_VAR IF x = 0 THEN ; {elsifs} END_IF; END_PROGRAM"
+    ));
 }
 
 #[test]
@@ -105,4 +149,30 @@ fn size_is_bounded() {
         let found = Application::from_sources([("t.st", text)]).expect_err("too large");
         assert!(found.to_string().contains("L0502"), "{found}");
     }
+}
+
+#[test]
+fn what_is_empty_is_no_trap() {
+    run("TYPE E : STRUCT END_STRUCT; END_TYPE FUNCTION_BLOCK F END_FUNCTION_BLOCK
+        PROGRAM P VAR x : ARRAY [0..3] OF ARRAY [0..1] OF E := [3([])]; f : ARRAY [1..2] OF F; y, z : E; i : INT := 1; END_VAR
+        f[i](); y := z; x[i][0] := y; END_PROGRAM");
+    let wide = "TYPE E : STRUCT END_STRUCT; END_TYPE PROGRAM P
+        VAR x : ARRAY [0..2147483646, 0..2147483646, 0..2147483646] OF E := [1([])]; END_VAR END_PROGRAM";
+    assert!(Application::from_sources([("t.st", wide)]).is_err());
+    // Each block holds two of the one before: the number of instances doubles with every level.
+    let blocks: Vec<String> = (1..60)
+        .map(|n| {
+            format!(
+                "FUNCTION_BLOCK F{n} VAR a, b : F{}; END_VAR END_FUNCTION_BLOCK",
+                n - 1
+            )
+        })
+        .collect();
+    let text = format!(
+        "FUNCTION_BLOCK F0 END_FUNCTION_BLOCK {} PROGRAM P VAR a : F59; END_VAR END_PROGRAM",
+        blocks.join(" ")
+    );
+    assert!(Application::from_sources([("t.st", text)]).is_err());
+    run("");
+    run("PROGRAM P END_PROGRAM");
 }

@@ -81,7 +81,14 @@ impl Cursor<'_> {
         }
         let body = self.body(end);
         let span = self.span_from(start);
-        let pou = Pou { kind, name, result, sections, body, span };
+        let pou = Pou {
+            kind,
+            name,
+            result,
+            sections,
+            body,
+            span,
+        };
         unit.declarations.push(Declaration::Pou(pou));
     }
 
@@ -118,7 +125,12 @@ impl Cursor<'_> {
             self.take_keyword(Keyword::EndVar);
         }
         self.take_mark(Punctuation::Semicolon);
-        Section { kind, qualifiers, variables, span: self.span_from(start) }
+        Section {
+            kind,
+            qualifiers,
+            variables,
+            span: self.span_from(start),
+        }
     }
 
     fn qualifiers(&mut self) -> Vec<Qualifier> {
@@ -137,16 +149,32 @@ impl Cursor<'_> {
     fn variable(&mut self, variables: &mut Vec<Variable>) {
         let known = self.reported();
         let names = self.identifier_list("a variable's name");
-        let address = self.take_keyword(Keyword::At).then(|| self.address()).flatten();
+        let address = self
+            .take_keyword(Keyword::At)
+            .then(|| self.address())
+            .flatten();
         self.expect_mark(Punctuation::Colon);
         if self.reported() > known {
             // The names are kept, so that their uses are not reported as well.
-            let spec = TypeSpec { kind: TypeSpecKind::Error, span: self.span() };
-            variables.push(Variable { names, address, spec, initial: None });
+            let spec = TypeSpec {
+                kind: TypeSpecKind::Error,
+                span: self.span(),
+            };
+            variables.push(Variable {
+                names,
+                address,
+                spec,
+                initial: None,
+            });
         } else {
             let spec = self.type_spec();
             let initial = self.optional_initialiser();
-            variables.push(Variable { names, address, spec, initial });
+            variables.push(Variable {
+                names,
+                address,
+                spec,
+                initial,
+            });
         }
         self.end_of_declaration(known);
     }
@@ -156,7 +184,10 @@ impl Cursor<'_> {
             self.unexpected("a direct address");
             return None;
         }
-        let address = Ident { text: self.next_text().to_owned(), span: self.span() };
+        let address = Ident {
+            text: self.next_text().to_owned(),
+            span: self.span(),
+        };
         self.advance();
         Some(address)
     }
@@ -167,8 +198,10 @@ impl Cursor<'_> {
             return;
         }
         let closes = |kind| {
-            matches!(kind, TokenKind::Keyword(Keyword::EndVar | Keyword::EndStruct | Keyword::EndType))
-                || section_kind(Some(kind)).is_some()
+            matches!(
+                kind,
+                TokenKind::Keyword(Keyword::EndVar | Keyword::EndStruct | Keyword::EndType)
+            ) || section_kind(Some(kind)).is_some()
                 || ends_unit(kind)
         };
         if self.reported() == known {
@@ -188,12 +221,19 @@ impl Cursor<'_> {
         self.advance();
         while self.peek() == Some(TokenKind::Identifier) {
             let (known, start) = (self.reported(), self.span());
-            let Some(name) = self.take_identifier() else { break };
+            let Some(name) = self.take_identifier() else {
+                break;
+            };
             self.expect_mark(Punctuation::Colon);
             let spec = self.type_spec();
             let initial = self.optional_initialiser();
             let span = self.span_from(start);
-            unit.declarations.push(Declaration::Type(TypeDeclaration { name, spec, initial, span }));
+            unit.declarations.push(Declaration::Type(TypeDeclaration {
+                name,
+                spec,
+                initial,
+                span,
+            }));
             self.end_of_declaration(known);
         }
         if !self.take_keyword(Keyword::EndType) {

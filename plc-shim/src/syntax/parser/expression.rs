@@ -19,7 +19,8 @@ impl Cursor<'_> {
 
     fn binary(&mut self, minimum: u8) -> Expr {
         let span = self.span();
-        self.nested(|cursor| cursor.operator_chain(minimum)).unwrap_or_else(|| error_at(span))
+        self.nested(|cursor| cursor.operator_chain(minimum))
+            .unwrap_or_else(|| error_at(span))
     }
 
     fn operator_chain(&mut self, minimum: u8) -> Expr {
@@ -84,7 +85,9 @@ impl Cursor<'_> {
         loop {
             let (start, height) = (expr.span, expr.height);
             let (kind, below) = if self.take_mark(Punctuation::Dot) {
-                let Some(member) = self.member_name() else { return expr };
+                let Some(member) = self.member_name() else {
+                    return expr;
+                };
                 (ExprKind::Member(Box::new(expr), member), 0)
             } else if self.take_mark(Punctuation::LeftBracket) {
                 let indices = self.indices();
@@ -93,7 +96,13 @@ impl Cursor<'_> {
             } else if self.at_mark(Punctuation::LeftParen) && is_callable(&expr) {
                 let arguments = self.arguments();
                 let below = arguments.iter().map(argument_height).max().unwrap_or(0);
-                (ExprKind::Call(Call { callee: Box::new(expr), arguments }), below)
+                (
+                    ExprKind::Call(Call {
+                        callee: Box::new(expr),
+                        arguments,
+                    }),
+                    below,
+                )
             } else {
                 return expr;
             };
@@ -151,9 +160,18 @@ impl Cursor<'_> {
                     return Argument::Positional(self.expression());
                 };
                 self.advance();
-                let absent = self.at_mark(Punctuation::Comma) || self.at_mark(Punctuation::RightParen);
-                let target = if absent { None } else { Some(self.expression()) };
-                Argument::Output { name, negated, target }
+                let absent =
+                    self.at_mark(Punctuation::Comma) || self.at_mark(Punctuation::RightParen);
+                let target = if absent {
+                    None
+                } else {
+                    Some(self.expression())
+                };
+                Argument::Output {
+                    name,
+                    negated,
+                    target,
+                }
             }
             _ => Argument::Positional(self.expression()),
         }
@@ -163,8 +181,13 @@ impl Cursor<'_> {
         let span = self.span();
         let text = self.next_text();
         let kind = match self.peek() {
-            Some(TokenKind::Identifier) => ExprKind::Name(Ident { text: text.to_owned(), span }),
-            Some(TokenKind::Integer) => self.literal(span, parse_integer(text).map(Literal::Integer)),
+            Some(TokenKind::Identifier) => ExprKind::Name(Ident {
+                text: text.to_owned(),
+                span,
+            }),
+            Some(TokenKind::Integer) => {
+                self.literal(span, parse_integer(text).map(Literal::Integer))
+            }
             Some(TokenKind::Real) => self.literal(span, parse_real(text).map(Literal::Real)),
             Some(TokenKind::Typed) => self.literal(span, parse_typed(text)),
             Some(TokenKind::String | TokenKind::WideString) => {
@@ -174,22 +197,34 @@ impl Cursor<'_> {
             Some(TokenKind::Keyword(Keyword::True)) => ExprKind::Literal(Literal::Bool(true)),
             Some(TokenKind::Keyword(Keyword::False)) => ExprKind::Literal(Literal::Bool(false)),
             Some(TokenKind::Keyword(keyword)) if self.is_function_form(keyword) => {
-                ExprKind::Name(Ident { text: text.to_owned(), span })
+                ExprKind::Name(Ident {
+                    text: text.to_owned(),
+                    span,
+                })
             }
             Some(TokenKind::Punctuation(Punctuation::LeftParen)) => return self.parenthesised(),
             _ => {
                 self.unexpected("an expression");
-                return error_at(Span { end: span.start, ..span });
+                return error_at(Span {
+                    end: span.start,
+                    ..span
+                });
             }
         };
         self.advance();
-        Expr { kind, span, height: 1 }
+        Expr {
+            kind,
+            span,
+            height: 1,
+        }
     }
 
     /// `AND(a, b)`: operators are functions too (2nd ed. Table 26).
     fn is_function_form(&self, keyword: Keyword) -> bool {
-        matches!(keyword, Keyword::And | Keyword::Or | Keyword::Xor | Keyword::Mod)
-            && self.peek_ahead(1) == Some(TokenKind::Punctuation(Punctuation::LeftParen))
+        matches!(
+            keyword,
+            Keyword::And | Keyword::Or | Keyword::Xor | Keyword::Mod
+        ) && self.peek_ahead(1) == Some(TokenKind::Punctuation(Punctuation::LeftParen))
     }
 
     fn literal(&mut self, span: Span, value: Result<Literal, String>) -> ExprKind {
@@ -220,16 +255,27 @@ impl Cursor<'_> {
             self.report(Diagnostic::error(Code::NestingTooDeep, span, message).with_help(help));
             return error_at(span);
         }
-        Expr { kind, span, height: height + 1 }
+        Expr {
+            kind,
+            span,
+            height: height + 1,
+        }
     }
 }
 
 fn error_at(span: Span) -> Expr {
-    Expr { kind: ExprKind::Error, span, height: 1 }
+    Expr {
+        kind: ExprKind::Error,
+        span,
+        height: 1,
+    }
 }
 
 fn is_callable(expr: &Expr) -> bool {
-    matches!(expr.kind, ExprKind::Name(_) | ExprKind::Member(..) | ExprKind::Index(..))
+    matches!(
+        expr.kind,
+        ExprKind::Name(_) | ExprKind::Member(..) | ExprKind::Index(..)
+    )
 }
 
 fn argument_height(argument: &Argument) -> u16 {

@@ -50,7 +50,9 @@ impl Cursor<'_> {
     fn statement(&mut self) -> Statement {
         let start = self.span();
         let (position, known) = (self.position(), self.reported());
-        let kind = self.nested(Self::statement_kind).unwrap_or(StatementKind::Error);
+        let kind = self
+            .nested(Self::statement_kind)
+            .unwrap_or(StatementKind::Error);
         let span = self.span_from(start);
         // A compound statement that found its end has dealt with the errors inside it.
         let ended = self.position() > position && self.previous_closes();
@@ -68,7 +70,10 @@ impl Cursor<'_> {
 
     fn missing_semicolon(&mut self) {
         let before = self.previous_span();
-        let span = Span { start: before.end.saturating_sub(1).max(before.start), ..before };
+        let span = Span {
+            start: before.end.saturating_sub(1).max(before.start),
+            ..before
+        };
         let message = "`;` expected after this";
         self.report_syntax(Diagnostic::error(Code::UnexpectedToken, span, message));
         // What follows is most often a good statement; only a stray remainder is skipped.
@@ -95,7 +100,9 @@ impl Cursor<'_> {
                 self.advance();
             }
         }
-        if self.position() > started && self.previous() == Some(TokenKind::Punctuation(Punctuation::Semicolon)) {
+        if self.position() > started
+            && self.previous() == Some(TokenKind::Punctuation(Punctuation::Semicolon))
+        {
             return;
         }
         self.skip_until(|kind| match kind {
@@ -136,20 +143,19 @@ impl Cursor<'_> {
             let value = self.expression();
             return StatementKind::Assign(target, value);
         }
-        match target.kind {
-            ExprKind::Call(call) => StatementKind::Call(call),
-            _ => {
-                if self.reported() == known {
-                    if self.at_mark(Punctuation::Equal) || is_comparison(&target.kind) {
-                        let message = "this is a comparison, not an assignment";
-                        let found = Diagnostic::error(Code::UnexpectedToken, target.span, message);
-                        self.report(found.with_help("assign with `:=`"));
-                    } else {
-                        self.unexpected("`:=` or `(`");
-                    }
+        if let ExprKind::Call(call) = target.kind {
+            StatementKind::Call(call)
+        } else {
+            if self.reported() == known {
+                if self.at_mark(Punctuation::Equal) || is_comparison(&target.kind) {
+                    let message = "this is a comparison, not an assignment";
+                    let found = Diagnostic::error(Code::UnexpectedToken, target.span, message);
+                    self.report(found.with_help("assign with `:=`"));
+                } else {
+                    self.unexpected("`:=` or `(`");
                 }
-                StatementKind::Error
             }
+            StatementKind::Error
         }
     }
 
@@ -169,7 +175,10 @@ impl Cursor<'_> {
             otherwise = self.statements();
         }
         self.expect_end(Keyword::EndIf);
-        StatementKind::If(IfStatement { branches, otherwise })
+        StatementKind::If(IfStatement {
+            branches,
+            otherwise,
+        })
     }
 
     /// A condition and the keyword behind it; a slip in either does not cost the body.
@@ -209,10 +218,17 @@ impl Cursor<'_> {
                 self.advance();
             }
         }
-        let otherwise =
-            if self.take_keyword(Keyword::Else) { self.statements() } else { Vec::new() };
+        let otherwise = if self.take_keyword(Keyword::Else) {
+            self.statements()
+        } else {
+            Vec::new()
+        };
         self.expect_end(Keyword::EndCase);
-        StatementKind::Case(CaseStatement { selector, branches, otherwise })
+        StatementKind::Case(CaseStatement {
+            selector,
+            branches,
+            otherwise,
+        })
     }
 
     fn case_branch(&mut self) -> CaseBranch {
@@ -236,7 +252,9 @@ impl Cursor<'_> {
 
     fn case_label(&mut self) -> CaseLabel {
         let low = self.expression();
-        let high = self.take_mark(Punctuation::Range).then(|| self.expression());
+        let high = self
+            .take_mark(Punctuation::Range)
+            .then(|| self.expression());
         CaseLabel { low, high }
     }
 
@@ -249,11 +267,11 @@ impl Cursor<'_> {
                 | TokenKind::Real
                 | TokenKind::String
                 | TokenKind::WideString
+                | TokenKind::Keyword(Keyword::True | Keyword::False)
                 | TokenKind::Punctuation(
                     Punctuation::Minus | Punctuation::Plus | Punctuation::LeftParen,
                 ),
             ) => true,
-            Some(TokenKind::Keyword(Keyword::True | Keyword::False)) => true,
             Some(TokenKind::Identifier) => self.identifier_is_label(),
             _ => false,
         }
@@ -272,7 +290,10 @@ impl Cursor<'_> {
                     | TokenKind::Identifier
                     | TokenKind::Typed
                     | TokenKind::Punctuation(
-                        Punctuation::Plus | Punctuation::Minus | Punctuation::Star | Punctuation::Dot,
+                        Punctuation::Plus
+                        | Punctuation::Minus
+                        | Punctuation::Star
+                        | Punctuation::Dot,
                     ),
                 ) => ahead += 1,
                 _ => return false,
@@ -296,7 +317,13 @@ impl Cursor<'_> {
         };
         let body = self.statements();
         self.expect_end(Keyword::EndFor);
-        StatementKind::For(Box::new(ForStatement { variable, from, to, by, body }))
+        StatementKind::For(Box::new(ForStatement {
+            variable,
+            from,
+            to,
+            by,
+            body,
+        }))
     }
 
     /// Looks for `BY` before `DO` on the way to the body.
@@ -341,9 +368,15 @@ impl Cursor<'_> {
 /// Keywords that end a compound statement.
 fn ends_statement(keyword: Keyword) -> bool {
     use Keyword as K;
-    matches!(keyword, K::EndIf | K::EndCase | K::EndFor | K::EndWhile | K::EndRepeat)
+    matches!(
+        keyword,
+        K::EndIf | K::EndCase | K::EndFor | K::EndWhile | K::EndRepeat
+    )
 }
 
 fn is_comparison(kind: &ExprKind) -> bool {
-    matches!(kind, ExprKind::Binary(crate::syntax::ast::BinaryOp::Equal, ..))
+    matches!(
+        kind,
+        ExprKind::Binary(crate::syntax::ast::BinaryOp::Equal, ..)
+    )
 }

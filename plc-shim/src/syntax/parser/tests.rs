@@ -64,7 +64,9 @@ fn strip(unit: &CompilationUnit) -> String {
             _ => print_expression(expr),
         }
     }
-    let Some(Declaration::Pou(pou)) = unit.declarations.first() else { return String::new() };
+    let Some(Declaration::Pou(pou)) = unit.declarations.first() else {
+        return String::new();
+    };
     match &pou.body[0].kind {
         StatementKind::Assign(_, value) => full(value),
         _ => String::new(),
@@ -105,16 +107,38 @@ fn depth_is_bounded_and_reported() {
         let (open, close) = (open.repeat(50_000), close.repeat(50_000));
         parse(FILE, &format!("PROGRAM p {open} x {close} END_PROGRAM"))
     };
-    for (open, close) in [("(", ")"), ("IF a THEN ", "END_IF;"), ("NOT ", ""), ("a[", "]"), ("f(", ")")] {
-        let codes: Vec<_> = deep(open, close).diagnostics.iter().map(|found| found.code).collect();
+    for (open, close) in [
+        ("(", ")"),
+        ("IF a THEN ", "END_IF;"),
+        ("NOT ", ""),
+        ("a[", "]"),
+        ("f(", ")"),
+    ] {
+        let codes: Vec<_> = deep(open, close)
+            .diagnostics
+            .iter()
+            .map(|found| found.code)
+            .collect();
         assert_eq!(codes, [Code::NestingTooDeep], "{open}");
     }
     let chain = format!("PROGRAM p x := 1{}; END_PROGRAM", "+1".repeat(100_000));
-    assert_eq!(parse(FILE, &chain).diagnostics[0].code, Code::NestingTooDeep);
+    assert_eq!(
+        parse(FILE, &chain).diagnostics[0].code,
+        Code::NestingTooDeep
+    );
     let members = format!("PROGRAM p x := a{}; END_PROGRAM", ".b".repeat(100_000));
-    assert_eq!(parse(FILE, &members).diagnostics[0].code, Code::NestingTooDeep);
-    let arrays = format!("VAR_GLOBAL x : {} INT; END_VAR", "ARRAY [0..1] OF ".repeat(10_000));
-    assert_eq!(parse(FILE, &arrays).diagnostics[0].code, Code::NestingTooDeep);
+    assert_eq!(
+        parse(FILE, &members).diagnostics[0].code,
+        Code::NestingTooDeep
+    );
+    let arrays = format!(
+        "VAR_GLOBAL x : {} INT; END_VAR",
+        "ARRAY [0..1] OF ".repeat(10_000)
+    );
+    assert_eq!(
+        parse(FILE, &arrays).diagnostics[0].code,
+        Code::NestingTooDeep
+    );
 }
 
 fn arbitrary_expression() -> impl Strategy<Value = String> {

@@ -113,7 +113,9 @@ impl Printer {
             }
             TypeSpecKind::Array(dimensions, element) => {
                 self.word("ARRAY [");
-                self.separated(dimensions, |printer, each| printer.range(&each.low, &each.high));
+                self.separated(dimensions, |printer, each| {
+                    printer.range(&each.low, &each.high);
+                });
                 self.word("] OF ");
                 self.type_spec(element);
             }

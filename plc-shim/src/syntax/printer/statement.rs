@@ -61,7 +61,11 @@ impl Printer {
 
     fn if_statement(&mut self, inner: &IfStatement) {
         for (index, branch) in inner.branches.iter().enumerate() {
-            self.head(if index == 0 { "IF " } else { "ELSIF " }, &branch.condition, " THEN");
+            self.head(
+                if index == 0 { "IF " } else { "ELSIF " },
+                &branch.condition,
+                " THEN",
+            );
             self.block(&branch.body, "");
         }
         if !inner.otherwise.is_empty() {
