@@ -52,22 +52,12 @@ impl Application {
         for (name, text) in library::FILES {
             library.insert(sources.add(SourceFile::new(name, text)));
         }
-        let parsed: Vec<_> = sources
-            .iter()
-            .map(|(id, file)| (id, parse(id, file.text())))
-            .collect();
-        let units: Vec<_> = parsed
-            .iter()
-            .map(|(id, parsed)| (*id, &parsed.unit))
-            .collect();
+        let parsed: Vec<_> = sources.iter().map(|(id, file)| (id, parse(id, file.text()))).collect();
+        let units: Vec<_> = parsed.iter().map(|(id, parsed)| (*id, &parsed.unit)).collect();
         let (checked, findings) = check(&units, &library);
-        let syntax = parsed
-            .iter()
-            .flat_map(|(_, parsed)| parsed.diagnostics.iter().cloned());
+        let syntax = parsed.iter().flat_map(|(_, parsed)| parsed.diagnostics.iter().cloned());
         let findings: Vec<_> = syntax.chain(findings).collect();
-        let wrong = findings
-            .iter()
-            .any(|found| found.severity == Severity::Error);
+        let wrong = findings.iter().any(|found| found.severity == Severity::Error);
         let findings = Diagnostics::new(findings, &sources);
         if wrong {
             return Err(findings);
@@ -79,18 +69,8 @@ impl Application {
         let Compiled { wasm, faults } = compile(&checked);
         let retained = retain::ranges(&checked);
         let module = OnceLock::new();
-        let inner = Inner {
-            sources,
-            checked,
-            wasm,
-            faults,
-            retained,
-            warnings,
-            module,
-        };
-        Self {
-            inner: Arc::new(inner),
-        }
+        let inner = Inner { sources, checked, wasm, faults, retained, warnings, module };
+        Self { inner: Arc::new(inner) }
     }
 
     /// What is questionable in the text.
@@ -124,8 +104,7 @@ impl Application {
 
     /// Position of a program among all programs.
     pub(crate) fn program_index(&self, name: &str) -> Option<usize> {
-        self.programs()
-            .position(|program| program.name.eq_ignore_ascii_case(name))
+        self.programs().position(|program| program.name.eq_ignore_ascii_case(name))
     }
 
     /// The machine code, made once by `make`.
@@ -133,9 +112,6 @@ impl Application {
         &self,
         make: impl FnOnce(&[u8]) -> Result<wasmtime::Module, String>,
     ) -> Result<wasmtime::Module, String> {
-        self.inner
-            .module
-            .get_or_init(|| make(&self.inner.wasm))
-            .clone()
+        self.inner.module.get_or_init(|| make(&self.inner.wasm)).clone()
     }
 }

@@ -122,22 +122,12 @@ impl Diagnostic {
     /// An error at `span`.
     pub fn error(code: Code, span: Span, message: impl Into<String>) -> Self {
         let message = message.into();
-        Self {
-            code,
-            severity: Severity::Error,
-            span,
-            message,
-            labels: Vec::new(),
-            help: None,
-        }
+        Self { code, severity: Severity::Error, span, message, labels: Vec::new(), help: None }
     }
 
     /// A warning at `span`.
     pub fn warning(code: Code, span: Span, message: impl Into<String>) -> Self {
-        Self {
-            severity: Severity::Warning,
-            ..Self::error(code, span, message)
-        }
+        Self { severity: Severity::Warning, ..Self::error(code, span, message) }
     }
 
     /// Adds a hint.
@@ -154,19 +144,13 @@ impl Diagnostic {
 
     /// Adds a further place.
     pub fn with_label(mut self, span: Span, message: impl Into<String>) -> Self {
-        self.labels.push(Label {
-            span,
-            message: message.into(),
-        });
+        self.labels.push(Label { span, message: message.into() });
         self
     }
 }
 
 /// "did you mean `x`?" for the candidate nearest to `name`, if one is near enough to be a slip.
-pub fn did_you_mean<'a>(
-    name: &str,
-    candidates: impl IntoIterator<Item = &'a str>,
-) -> Option<String> {
+pub fn did_you_mean<'a>(name: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<String> {
     let wanted = name.to_lowercase();
     // A name of one or two letters is near to every other.
     let length = wanted.chars().count();
@@ -193,12 +177,8 @@ impl Diagnostics {
     /// Joins findings with their text, in the order of files and places.
     pub fn new(mut diagnostics: Vec<Diagnostic>, sources: &SourceMap) -> Self {
         diagnostics.sort_by_key(|found| (found.span.file, found.span.start, found.code));
-        let findings = diagnostics
-            .into_iter()
-            .map(|found| Finding::new(found, sources));
-        Self {
-            findings: findings.collect(),
-        }
+        let findings = diagnostics.into_iter().map(|found| Finding::new(found, sources));
+        Self { findings: findings.collect() }
     }
 
     /// True if there is none.
@@ -222,13 +202,14 @@ impl Diagnostics {
     }
 }
 
+/// A line for each finding, with all there is to it: `file:line:column: error[CODE]: message (help)`.
 impl fmt::Display for Diagnostics {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         for (index, finding) in self.findings.iter().enumerate() {
             if index > 0 {
                 writeln!(formatter)?;
             }
-            write!(formatter, "{finding}")?;
+            finding.write_line(formatter)?;
         }
         Ok(())
     }
@@ -238,10 +219,7 @@ impl std::error::Error for Diagnostics {}
 
 impl miette::Diagnostic for Diagnostics {
     fn related<'a>(&'a self) -> Option<Box<dyn Iterator<Item = &'a dyn miette::Diagnostic> + 'a>> {
-        let each = self
-            .findings
-            .iter()
-            .map(|finding| finding as &dyn miette::Diagnostic);
+        let each = self.findings.iter().map(|finding| finding as &dyn miette::Diagnostic);
         Some(Box::new(each))
     }
 }
@@ -261,37 +239,30 @@ impl Finding {
         let file = sources.get(diagnostic.span.file);
         let text = file.map_or_else(|| Arc::from(""), |file| file.text().clone());
         let source = NamedSource::new(name, text);
-        Self {
-            diagnostic,
-            source,
-            line: place.line,
-            column: place.column,
-        }
+        Self { diagnostic, source, line: place.line, column: place.column }
     }
 }
 
-impl fmt::Display for Finding {
-    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self {
-            diagnostic,
-            source,
-            line,
-            column,
-        } = self;
+impl Finding {
+    fn write_line(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { diagnostic, source, line, column } = self;
         let severity = match diagnostic.severity {
             Severity::Warning => "warning",
             Severity::Error => "error",
         };
         let (name, code) = (source.name(), diagnostic.code);
-        write!(
-            formatter,
-            "{name}:{line}:{column}: {severity}[{code}]: {}",
-            diagnostic.message
-        )?;
-        if let Some(help) = &diagnostic.help {
-            write!(formatter, " ({help})")?;
+        write!(formatter, "{name}:{line}:{column}: {severity}[{code}]: {}", diagnostic.message)?;
+        match &diagnostic.help {
+            Some(help) => write!(formatter, " ({help})"),
+            None => Ok(()),
         }
-        Ok(())
+    }
+}
+
+/// The message alone: a renderer shows place, code and help by itself.
+impl fmt::Display for Finding {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        formatter.write_str(&self.diagnostic.message)
     }
 }
 
@@ -320,15 +291,9 @@ impl miette::Diagnostic for Finding {
 
     fn labels(&self) -> Option<Box<dyn Iterator<Item = LabeledSpan> + '_>> {
         let primary = self.diagnostic.span;
-        let at = |span: Span, text: Option<String>| {
-            LabeledSpan::new(text, span.start as usize, span.len() as usize)
-        };
+        let at = |span: Span, text: Option<String>| LabeledSpan::new(text, span.start as usize, span.len() as usize);
         // A renderer shows one file per diagnostic; labels in other files stay with the data.
-        let others = self
-            .diagnostic
-            .labels
-            .iter()
-            .filter(move |label| label.span.file == primary.file);
+        let others = self.diagnostic.labels.iter().filter(move |label| label.span.file == primary.file);
         let others = others.map(move |label| at(label.span, Some(label.message.clone())));
         Some(Box::new(std::iter::once(at(primary, None)).chain(others)))
     }
@@ -349,10 +314,7 @@ mod tests {
     #[test]
     fn a_slip_is_recognised_and_a_stranger_is_not() {
         let names = ["Sensor_1", "Sensor_2", "Drive"];
-        assert_eq!(
-            did_you_mean("sensr_1", names).as_deref(),
-            Some("did you mean `Sensor_1`?")
-        );
+        assert_eq!(did_you_mean("sensr_1", names).as_deref(), Some("did you mean `Sensor_1`?"));
         assert_eq!(did_you_mean("Pump", names), None);
     }
 }

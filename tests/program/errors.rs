@@ -23,10 +23,20 @@ macro_rules! error_snapshot {
 
 error_snapshot!(misspelt_key, "scenario.toml", "until = ", "untill = ");
 error_snapshot!(misspelt_kind, "scenario.toml", "kind = \"soft-plc\"", "kind = \"soft-plv\"");
-error_snapshot!(misspelt_writer, "scenario.toml", "Sensor_1 = { type = \"BOOL\", writer = \"plant\"", "Sensor_1 = { type = \"BOOL\", writer = \"plnat\"");
+error_snapshot!(
+    misspelt_writer,
+    "scenario.toml",
+    "Sensor_1 = { type = \"BOOL\", writer = \"plant\"",
+    "Sensor_1 = { type = \"BOOL\", writer = \"plnat\""
+);
 error_snapshot!(misspelt_plotted_signal, "scenario.toml", "signals = [\"Position_1\"", "signals = [\"Positon_1\"");
 error_snapshot!(misspelt_program, "scenario.toml", "\"Shear\", \"Alignment\"", "\"Shaer\", \"Alignment\"");
-error_snapshot!(unknown_type, "scenario.toml", "type = \"LREAL\", writer = \"plant\", unit = \"m\", about = \"actuator 1", "type = \"FLOAT\", writer = \"plant\", unit = \"m\", about = \"actuator 1");
+error_snapshot!(
+    unknown_type,
+    "scenario.toml",
+    "type = \"LREAL\", writer = \"plant\", unit = \"m\", about = \"actuator 1",
+    "type = \"FLOAT\", writer = \"plant\", unit = \"m\", about = \"actuator 1"
+);
 error_snapshot!(wrong_type_for_the_plc, "scenario.toml", "Strokes = { type = \"DINT\"", "Strokes = { type = \"INT\"");
 error_snapshot!(signal_that_no_program_writes, "scenario.toml", "Strokes = {", "Stroke = {");
 error_snapshot!(time_without_unit, "scenario.toml", "step = \"10ms\"", "step = \"10\"");

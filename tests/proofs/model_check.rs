@@ -20,7 +20,7 @@ use onescan_server::plan::Coupling;
 use onescan_server::session::{Progress, Session, Turn};
 use onescan_server::signal::{ClientName, ElementaryType};
 use onescan_server::state::{ClientState, ServerState};
-use onescan_server::time::{TimeSpan, VirtualTime};
+use onescan_server::time::{StepCount, TimeSpan, VirtualTime};
 use onescan_server::wire::{Duty, Endpoint, Frame, FrameCodec, FrameRef, ServerMessage};
 use onescan_tests::{client, plan, port};
 use stateright::{Checker, Model, Property};
@@ -582,7 +582,7 @@ fn client_receives(state: &mut NetworkState, i: usize, delay: u64) {
     match pipe.endpoint.receive(decoded(&bytes)) {
         Ok(Duty::Setup) => {
             let zero = VirtualTime::ZERO;
-            pipe.to_server.push_back(answer(Default::default(), zero, Wake::NextPeriod, &stamp_bytes(zero)));
+            pipe.to_server.push_back(answer(StepCount(0), zero, Wake::NextPeriod, &stamp_bytes(zero)));
         }
         Ok(Duty::Turn { sequence, t_v, inputs }) => {
             if stamps(&inputs).iter().any(|(a, b)| a != b || *a >= t_v.as_nanos()) {

@@ -19,7 +19,7 @@ fn refusal(name: &str, period_ms: u64, reads: &[(&str, ElementaryType)], writes:
     let ports = |ports: &[(&str, ElementaryType)]| -> Vec<Port> { ports.iter().map(|(n, t)| port(n, *t)).collect() };
     let (reads, writes) = (ports(reads), ports(writes));
     let request = JoinRequest { name: client(name), period: span_ms(period_ms), reads, writes };
-    session().join(&request).map(|_| String::new()).unwrap_or_else(|refusal| refusal.to_string())
+    session().join(&request).map_or_else(|refusal| refusal.to_string(), |_| String::new())
 }
 
 #[test]

@@ -15,7 +15,7 @@ use onescan_server::transport::tcp::Lobby;
 use onescan_server::transport::tcp::participant::{ParticipantError, take_part};
 
 /// Long enough for any loaded machine; only a test that hangs would wait for it.
-pub const PATIENCE: Duration = Duration::from_secs(60);
+pub const PATIENCE: Duration = Duration::from_mins(1);
 
 /// A port that the operating system chooses, on this machine only.
 pub fn loopback() -> SocketAddr {

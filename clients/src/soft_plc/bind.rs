@@ -114,7 +114,10 @@ fn checked_offset(signal: &SignalDecl, variable: &Variable) -> Result<usize, Bin
     }
     Err(BindError {
         signal: signal.name.clone(),
-        message: format!("signal `{}` is {}, but `{}` is {}", signal.name, signal.ty, variable.path, variable.type_name),
+        message: format!(
+            "signal `{}` is {}, but `{}` is {}",
+            signal.name, signal.ty, variable.path, variable.type_name
+        ),
         help: None,
     })
 }

@@ -38,8 +38,7 @@ impl SoftPlcClient {
         // Every task has an interval, so there is a period.
         let period = TimeSpan::from_nanos(plc.period_ns()).ok_or(RunError::NoTasks)?;
         let ports = |bound: &[Bound]| bound.iter().map(|bound| bound.port.clone()).collect();
-        let request =
-            JoinRequest { name, period, reads: ports(&bindings.inputs), writes: ports(&bindings.outputs) };
+        let request = JoinRequest { name, period, reads: ports(&bindings.inputs), writes: ports(&bindings.outputs) };
         Ok(Self { request, plc, inputs: runs(&bindings.inputs), outputs: runs(&bindings.outputs) })
     }
 

@@ -2,10 +2,7 @@
 
 /// File names and texts.
 pub(super) const FILES: [(&str, &str); 4] = [
-    (
-        "iec/edge_detection.st",
-        include_str!("../../iec/edge_detection.st"),
-    ),
+    ("iec/edge_detection.st", include_str!("../../iec/edge_detection.st")),
     ("iec/bistable.st", include_str!("../../iec/bistable.st")),
     ("iec/counters.st", include_str!("../../iec/counters.st")),
     ("iec/timers.st", include_str!("../../iec/timers.st")),

@@ -8,11 +8,7 @@ use crate::ir::{Storage, Type, TypeId, Variable};
 
 /// Ranges of memory in ascending order, neighbours joined.
 pub(super) fn ranges(checked: &Checked) -> Vec<Range<u32>> {
-    let mut collector = Collector {
-        checked,
-        found: Vec::new(),
-        known: BTreeMap::new(),
-    };
+    let mut collector = Collector { checked, found: Vec::new(), known: BTreeMap::new() };
     collector.variables(&checked.globals, 0);
     for program in &checked.programs {
         if let Some(variables) = checked.interfaces.get(&program.pou) {
@@ -47,8 +43,7 @@ impl Collector<'_> {
                 _ => continue,
             };
             if variable.retain {
-                self.found
-                    .push(offset..offset + self.checked.types.size(variable.ty));
+                self.found.push(offset..offset + self.checked.types.size(variable.ty));
             } else if self.has_retained(variable.ty) {
                 self.inside(variable.ty, offset);
             }
@@ -91,11 +86,7 @@ impl Collector<'_> {
     fn find_retained(&mut self, ty: TypeId) -> bool {
         match self.checked.types.get(ty) {
             Type::FunctionBlock { pou, .. } => {
-                let variables = self
-                    .checked
-                    .interfaces
-                    .get(pou)
-                    .map_or(&[][..], Vec::as_slice);
+                let variables = self.checked.interfaces.get(pou).map_or(&[][..], Vec::as_slice);
                 variables.iter().any(|variable| {
                     let held = matches!(variable.storage, Storage::Instance(_));
                     variable.retain || held && self.has_retained(variable.ty)

@@ -70,10 +70,7 @@ impl Application {
         checked.programs.iter().filter_map(|program| {
             let pou = checked.pous.get(&program.pou)?;
             let of = |wanted: SectionKind| {
-                let in_section = pou
-                    .variables
-                    .iter()
-                    .filter(move |variable| variable.section == wanted);
+                let in_section = pou.variables.iter().filter(move |variable| variable.section == wanted);
                 let spots = in_section.filter_map(|each| spot(&pou.name, each, program.offset));
                 spots.map(|spot| self.describe(spot)).collect()
             };
@@ -92,10 +89,7 @@ impl Application {
     /// # Errors
     /// The path leads nowhere; the error has the nearest name.
     pub fn variable(&self, path: &str) -> Result<Variable, UnknownVariable> {
-        let unknown = |help| UnknownVariable {
-            path: path.to_owned(),
-            help,
-        };
+        let unknown = |help| UnknownVariable { path: path.to_owned(), help };
         let pieces = pieces(path).ok_or_else(|| unknown(None))?;
         let mut pieces = pieces.into_iter();
         let Some(Piece::Name(first)) = pieces.next() else {
@@ -112,31 +106,19 @@ impl Application {
     }
 
     /// A global variable, or a program and the first of its own variables.
-    fn root(
-        &self,
-        first: &str,
-        pieces: &mut impl Iterator<Item = Piece>,
-    ) -> Result<Spot, Option<String>> {
+    fn root(&self, first: &str, pieces: &mut impl Iterator<Item = Piece>) -> Result<Spot, Option<String>> {
         let checked = &self.inner.checked;
-        let global = checked
-            .globals
-            .iter()
-            .find(|each| each.name.eq_ignore_ascii_case(first));
+        let global = checked.globals.iter().find(|each| each.name.eq_ignore_ascii_case(first));
         if let Some(found) = global.and_then(|global| spot("", global, 0)) {
             return Ok(found);
         }
         let program = checked.programs.iter().find_map(|program| {
             let pou = checked.pous.get(&program.pou)?;
-            pou.name
-                .eq_ignore_ascii_case(first)
-                .then_some((program, pou))
+            pou.name.eq_ignore_ascii_case(first).then_some((program, pou))
         });
         let Some((program, pou)) = program else {
             let globals = checked.globals.iter().map(|global| global.name.as_str());
-            let programs = checked
-                .programs
-                .iter()
-                .filter_map(|each| checked.pous.get(&each.pou));
+            let programs = checked.programs.iter().filter_map(|each| checked.pous.get(&each.pou));
             let names = globals.chain(programs.map(|pou| pou.name.as_str()));
             return Err(did_you_mean(first, names));
         };
@@ -150,52 +132,27 @@ impl Application {
         let checked = &self.inner.checked;
         match (checked.types.get(from.ty), piece) {
             (Type::Struct { fields, .. }, Piece::Name(name)) => {
-                let field = fields
-                    .iter()
-                    .find(|field| field.name.eq_ignore_ascii_case(name));
-                let field = field.ok_or_else(|| {
-                    did_you_mean(name, fields.iter().map(|field| field.name.as_str()))
-                })?;
+                let field = fields.iter().find(|field| field.name.eq_ignore_ascii_case(name));
+                let field = field.ok_or_else(|| did_you_mean(name, fields.iter().map(|field| field.name.as_str())))?;
                 let path = format!("{}.{}", from.path, field.name);
-                Ok(Spot {
-                    path,
-                    offset: from.offset + field.offset,
-                    ty: field.ty,
-                    address: None,
-                })
+                Ok(Spot { path, offset: from.offset + field.offset, ty: field.ty, address: None })
             }
             (Type::FunctionBlock { pou, .. }, Piece::Name(name)) => {
                 let variables = checked.interfaces.get(pou).map_or(&[][..], Vec::as_slice);
                 member(&from.path, variables, from.offset, name)
             }
-            (
-                Type::Array {
-                    dimensions,
-                    element,
-                },
-                Piece::Index(indices),
-            ) => {
+            (Type::Array { dimensions, element }, Piece::Index(indices)) => {
                 let offset = self.element(dimensions, *element, indices).ok_or(None)?;
                 let list: Vec<_> = indices.iter().map(i64::to_string).collect();
                 let path = format!("{}[{}]", from.path, list.join(","));
-                Ok(Spot {
-                    path,
-                    offset: from.offset + offset,
-                    ty: *element,
-                    address: None,
-                })
+                Ok(Spot { path, offset: from.offset + offset, ty: *element, address: None })
             }
             _ => Err(None),
         }
     }
 
     /// Offset of an array's element; nothing if it is outside.
-    fn element(
-        &self,
-        dimensions: &[ir::Dimension],
-        element: TypeId,
-        indices: &[i64],
-    ) -> Option<u32> {
+    fn element(&self, dimensions: &[ir::Dimension], element: TypeId, indices: &[i64]) -> Option<u32> {
         if dimensions.len() != indices.len() {
             return None;
         }
@@ -231,31 +188,14 @@ fn spot(prefix: &str, variable: &ir::Variable, base: u32) -> Option<Spot> {
     };
     let dot = if prefix.is_empty() { "" } else { "." };
     let path = format!("{prefix}{dot}{}", variable.name);
-    Some(Spot {
-        path,
-        offset,
-        ty: variable.ty,
-        address: variable.address.clone(),
-    })
+    Some(Spot { path, offset, ty: variable.ty, address: variable.address.clone() })
 }
 
-fn member(
-    prefix: &str,
-    variables: &[ir::Variable],
-    base: u32,
-    name: &str,
-) -> Result<Spot, Option<String>> {
-    let found = variables
-        .iter()
-        .find(|variable| variable.name.eq_ignore_ascii_case(name));
+fn member(prefix: &str, variables: &[ir::Variable], base: u32, name: &str) -> Result<Spot, Option<String>> {
+    let found = variables.iter().find(|variable| variable.name.eq_ignore_ascii_case(name));
     found
         .and_then(|variable| spot(prefix, variable, base))
-        .ok_or_else(|| {
-            did_you_mean(
-                name,
-                variables.iter().map(|variable| variable.name.as_str()),
-            )
-        })
+        .ok_or_else(|| did_you_mean(name, variables.iter().map(|variable| variable.name.as_str())))
 }
 
 /// `a.b[1,2].c` in pieces; nothing if it is not of that form.

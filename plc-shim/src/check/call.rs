@@ -9,8 +9,8 @@ use super::standard_function;
 use super::variables::decode;
 use crate::diagnostic::{Code, Diagnostic, did_you_mean};
 use crate::ir::{
-    Argument, ElementaryType, Expr, ExprKind, FunctionCall, InstanceCall, Place, PouId, Statement,
-    StatementKind, Storage, Type, TypeId, TypeTable, Unary, Variable,
+    Argument, ElementaryType, Expr, ExprKind, FunctionCall, InstanceCall, Place, PouId, Statement, StatementKind,
+    Storage, Type, TypeId, TypeTable, Unary, Variable,
 };
 use crate::syntax::Span;
 use crate::syntax::ast::{self, Call, Ident, PouKind, SectionKind};
@@ -83,17 +83,9 @@ impl Body<'_, '_> {
             self.report(found.with_help(help));
             return None;
         }
-        let functions = self
-            .checker
-            .pous
-            .iter()
-            .filter(|pou| pou.ast.kind == PouKind::Function);
+        let functions = self.checker.pous.iter().filter(|pou| pou.ast.kind == PouKind::Function);
         let functions = functions.map(|pou| pou.ast.name.text.as_str());
-        let variables = self
-            .scope
-            .variables
-            .iter()
-            .map(|variable| variable.name.as_str());
+        let variables = self.scope.variables.iter().map(|variable| variable.name.as_str());
         let standard: Vec<&str> = standard_function::names().collect();
         let known = functions.chain(variables).chain(standard.iter().copied());
         let help = did_you_mean(&name.text, known);
@@ -106,8 +98,7 @@ impl Body<'_, '_> {
     pub(super) fn call_statement(&mut self, call: &Call, span: Span) -> Option<StatementKind> {
         let function = match &call.callee.kind {
             ast::ExprKind::Name(name) => {
-                !self.scope.by_name.contains_key(&name.key())
-                    && !self.checker.globals.contains_key(&name.key())
+                !self.scope.by_name.contains_key(&name.key()) && !self.checker.globals.contains_key(&name.key())
                     || self.is_own_result(name)
             }
             _ => false,
@@ -128,12 +119,7 @@ impl Body<'_, '_> {
 
     fn has_effects(&self, id: PouId) -> bool {
         self.checker.pou(id).scope.as_ref().is_some_and(|scope| {
-            let effect = |section| {
-                matches!(
-                    section,
-                    SectionKind::Output | SectionKind::InOut | SectionKind::External
-                )
-            };
+            let effect = |section| matches!(section, SectionKind::Output | SectionKind::InOut | SectionKind::External);
             scope.result.is_none() || scope.variables.iter().any(|each| effect(each.section))
         })
     }
@@ -149,35 +135,22 @@ impl Body<'_, '_> {
                     } else {
                         let count = scope.inputs().count();
                         let message = format!("`{callee}` takes {count} arguments");
-                        self.report(Diagnostic::error(
-                            Code::TooManyArguments,
-                            expr.span,
-                            message,
-                        ));
+                        self.report(Diagnostic::error(Code::TooManyArguments, expr.span, message));
                         return None;
                     }
                 }
                 ast::Argument::Input(name, expr) => {
-                    let accepts = |variable: &Variable| {
-                        matches!(variable.section, SectionKind::Input | SectionKind::InOut)
-                    };
+                    let accepts =
+                        |variable: &Variable| matches!(variable.section, SectionKind::Input | SectionKind::InOut);
                     sound &= self.has_parameter(scope, callee, name, accepts).is_some();
                     (name.key(), name.span, expr)
                 }
-                ast::Argument::Output {
-                    name,
-                    negated,
-                    target,
-                } => {
+                ast::Argument::Output { name, negated, target } => {
                     let output = |variable: &Variable| variable.section == SectionKind::Output;
                     let found = self.has_parameter(scope, callee, name, output);
                     sound &= found.is_some();
                     if let (Some(variable), Some(target)) = (found, target) {
-                        matched.outputs.push(Wanted {
-                            variable,
-                            negated: *negated,
-                            target,
-                        });
+                        matched.outputs.push(Wanted { variable, negated: *negated, target });
                     }
                     continue;
                 }
@@ -211,11 +184,7 @@ impl Body<'_, '_> {
 
     fn note_call(&mut self, callee: PouId, span: Span) {
         if let Some(caller) = self.pou {
-            self.checker
-                .calls
-                .entry(caller)
-                .or_default()
-                .push((callee, span));
+            self.checker.calls.entry(caller).or_default().push((callee, span));
         }
         self.checker.enqueue(callee);
     }
@@ -224,18 +193,12 @@ impl Body<'_, '_> {
         self.note_call(id, span);
         let scope = self.checker.interface(id, span)?;
         let matched = self.matched(&scope, &name.text, call)?;
-        let named = call
-            .arguments
-            .iter()
-            .any(|each| !matches!(each, ast::Argument::Positional(_)));
+        let named = call.arguments.iter().any(|each| !matches!(each, ast::Argument::Positional(_)));
         let mut passing = Passing::default();
         let mut arguments = Vec::new();
         let mut sound = true;
         for parameter in scope.inputs() {
-            let given = matched
-                .inputs
-                .get(&parameter.name.to_ascii_uppercase())
-                .copied();
+            let given = matched.inputs.get(&parameter.name.to_ascii_uppercase()).copied();
             let argument = match given {
                 Some(expr) => self.argument(parameter, expr, &mut passing),
                 None => self.default_argument(parameter, named, span),
@@ -243,53 +206,27 @@ impl Body<'_, '_> {
             sound &= argument.is_some();
             arguments.extend(argument);
         }
-        let outputs = self.outputs(&matched.outputs, |variable, span| {
-            Place::whole(variable.storage, variable.ty, span)
-        });
+        let outputs =
+            self.outputs(&matched.outputs, |variable, span| Place::whole(variable.storage, variable.ty, span));
         let mut after = passing.after;
         after.extend(outputs?);
         if !sound {
             return None;
         }
         // A function without a result (3rd ed. 6.6.2.2) can only be called as a statement.
-        let ty = scope
-            .result
-            .as_ref()
-            .map_or(TypeTable::nothing(), |result| result.ty);
+        let ty = scope.result.as_ref().map_or(TypeTable::nothing(), |result| result.ty);
         let aggregate = scope.result.is_some() && self.elementary(ty).is_none();
-        let kept = if aggregate {
-            Some(self.temporary(ty, span)?)
-        } else {
-            None
-        };
+        let kept = if aggregate { Some(self.temporary(ty, span)?) } else { None };
         let (before, outputs) = (passing.before, after);
-        let call = FunctionCall {
-            pou: id,
-            before,
-            arguments,
-            outputs,
-            result: kept,
-        };
-        Some(Expr {
-            kind: ExprKind::Call(Box::new(call)),
-            ty,
-            span,
-        })
+        let call = FunctionCall { pou: id, before, arguments, outputs, result: kept };
+        Some(Expr { kind: ExprKind::Call(Box::new(call)), ty, span })
     }
 
-    fn default_argument(
-        &mut self,
-        parameter: &Variable,
-        named: bool,
-        span: Span,
-    ) -> Option<Argument> {
+    fn default_argument(&mut self, parameter: &Variable, named: bool, span: Span) -> Option<Argument> {
         match self.elementary(parameter.ty) {
             Some(ty) if named && parameter.section == SectionKind::Input => {
                 let value = constant(decode(ty, &parameter.image), ty, span);
-                Some(Argument::Value(Expr {
-                    ty: parameter.ty,
-                    ..value
-                }))
+                Some(Argument::Value(Expr { ty: parameter.ty, ..value }))
             }
             _ => self.missing_argument(&parameter.name, span),
         }
@@ -301,34 +238,19 @@ impl Body<'_, '_> {
         None
     }
 
-    fn argument(
-        &mut self,
-        parameter: &Variable,
-        expr: &ast::Expr,
-        passing: &mut Passing,
-    ) -> Option<Argument> {
+    fn argument(&mut self, parameter: &Variable, expr: &ast::Expr, passing: &mut Passing) -> Option<Argument> {
         if parameter.section == SectionKind::InOut {
-            return self
-                .reference(parameter, expr, passing)
-                .map(Argument::Reference);
+            return self.reference(parameter, expr, passing).map(Argument::Reference);
         }
         self.expression_for(expr, parameter.ty).map(Argument::Value)
     }
 
     /// The variable given for a `VAR_IN_OUT`. One that is kept in a register goes through memory.
-    fn reference(
-        &mut self,
-        parameter: &Variable,
-        expr: &ast::Expr,
-        passing: &mut Passing,
-    ) -> Option<Place> {
+    fn reference(&mut self, parameter: &Variable, expr: &ast::Expr, passing: &mut Passing) -> Option<Place> {
         let place = self.target(expr)?;
         if place.ty != parameter.ty {
             let (wanted, found) = (self.type_name(parameter.ty), self.type_name(place.ty));
-            let message = format!(
-                "VAR_IN_OUT `{}` is {wanted}, this is {found}",
-                parameter.name
-            );
+            let message = format!("VAR_IN_OUT `{}` is {wanted}, this is {found}", parameter.name);
             self.report(Diagnostic::error(Code::InvalidArgument, expr.span, message));
             return None;
         }
@@ -357,12 +279,7 @@ impl Body<'_, '_> {
     ) -> Option<Vec<Statement>> {
         let mut statements = Vec::new();
         let mut sound = true;
-        for Wanted {
-            variable,
-            negated,
-            target,
-        } in wanted
-        {
+        for Wanted { variable, negated, target } in wanted {
             let target_place = self.target(target);
             let Some(target_place) = target_place else {
                 sound = false;
@@ -370,21 +287,13 @@ impl Body<'_, '_> {
             };
             let place = place_of(variable, target.span);
             let (ty, span) = (place.ty, target.span);
-            let mut value = Expr {
-                kind: ExprKind::Load(place),
-                ty,
-                span,
-            };
+            let mut value = Expr { kind: ExprKind::Load(place), ty, span };
             if *negated {
                 if ty != ElementaryType::Bool.into() {
                     let found = self.type_name(ty);
                     return self.mismatch("BOOL", &found, span);
                 }
-                value = Expr {
-                    kind: ExprKind::Unary(Unary::Not, Box::new(value)),
-                    ty,
-                    span,
-                };
+                value = Expr { kind: ExprKind::Unary(Unary::Not, Box::new(value)), ty, span };
             }
             match self.coerce(Operand::Typed(value), target_place.ty) {
                 Some(value) => statements.push(self.assignment(target_place, value, span)),
@@ -397,43 +306,21 @@ impl Body<'_, '_> {
     fn instance_call(&mut self, call: &Call, span: Span) -> Option<StatementKind> {
         let instance = self.place(&call.callee)?.place;
         let Type::FunctionBlock { name, pou } = self.checker.types.get(instance.ty).clone() else {
-            let message = format!(
-                "this is {}, which cannot be called",
-                self.type_name(instance.ty)
-            );
-            self.report(Diagnostic::error(
-                Code::NotCallable,
-                call.callee.span,
-                message,
-            ));
+            let message = format!("this is {}, which cannot be called", self.type_name(instance.ty));
+            self.report(Diagnostic::error(Code::NotCallable, call.callee.span, message));
             return None;
         };
         self.note_call(pou, span);
         let scope = self.checker.interface(pou, span)?;
         let matched = self.matched(&scope, &name, call)?;
         let pointer = self.scope.register(ElementaryType::Udint);
-        let base = Place::whole(
-            Storage::RegisterPointer(pointer),
-            instance.ty,
-            instance.span,
-        );
+        let base = Place::whole(Storage::RegisterPointer(pointer), instance.ty, instance.span);
         let mut passing = Passing::default();
         self.instance_inputs(&scope, &matched, &base, &mut passing, span)?;
-        let outputs = self.outputs(&matched.outputs, |variable, span| {
-            member_place(&base, variable, span)
-        })?;
-        let Passing {
-            before: inputs,
-            after: mut back,
-        } = passing;
+        let outputs = self.outputs(&matched.outputs, |variable, span| member_place(&base, variable, span))?;
+        let Passing { before: inputs, after: mut back } = passing;
         back.extend(outputs);
-        let call = InstanceCall {
-            instance,
-            pou,
-            pointer,
-            inputs,
-            outputs: back,
-        };
+        let call = InstanceCall { instance, pou, pointer, inputs, outputs: back };
         Some(StatementKind::CallInstance(Box::new(call)))
     }
 
@@ -447,10 +334,7 @@ impl Body<'_, '_> {
     ) -> Option<()> {
         let mut sound = true;
         for parameter in scope.inputs() {
-            let given = matched
-                .inputs
-                .get(&parameter.name.to_ascii_uppercase())
-                .copied();
+            let given = matched.inputs.get(&parameter.name.to_ascii_uppercase()).copied();
             let Some(expr) = given else {
                 // An input that is not given keeps its value; a reference must be given anew.
                 if parameter.section == SectionKind::InOut {
@@ -462,10 +346,9 @@ impl Body<'_, '_> {
             let target = member_place(base, parameter, expr.span);
             let statement = match self.argument(parameter, expr, passing) {
                 Some(Argument::Value(value)) => self.assignment(target, value, expr.span),
-                Some(Argument::Reference(place)) => Statement {
-                    kind: StatementKind::Bind(target, place),
-                    span: expr.span,
-                },
+                Some(Argument::Reference(place)) => {
+                    Statement { kind: StatementKind::Bind(target, place), span: expr.span }
+                }
                 None => {
                     sound = false;
                     continue;
@@ -495,15 +378,8 @@ struct Passing {
 
 fn copy(target: &Place, source: &Place) -> Statement {
     let (ty, span) = (source.ty, source.span);
-    let value = Expr {
-        kind: ExprKind::Load(source.clone()),
-        ty,
-        span,
-    };
-    Statement {
-        kind: StatementKind::Assign(target.clone(), value),
-        span,
-    }
+    let value = Expr { kind: ExprKind::Load(source.clone()), ty, span };
+    Statement { kind: StatementKind::Assign(target.clone(), value), span }
 }
 
 /// A variable inside an instance, seen from outside.
@@ -513,8 +389,5 @@ fn member_place(base: &Place, variable: &Variable, span: Span) -> Place {
         Storage::InstancePointer(offset) => (offset, ElementaryType::Udint.into()),
         _ => (0, variable.ty),
     };
-    Place {
-        span,
-        ..base.clone().member(offset, ty)
-    }
+    Place { span, ..base.clone().member(offset, ty) }
 }

@@ -3,9 +3,7 @@
 use super::convert::Operand;
 use super::scope::Body;
 use crate::diagnostic::{Code, Diagnostic};
-use crate::ir::{
-    Binary, ElementaryType, Expr, ExprKind, Rounding, TypeId, TypeTable, Unary, Value,
-};
+use crate::ir::{Binary, ElementaryType, Expr, ExprKind, Rounding, TypeId, TypeTable, Unary, Value};
 use crate::syntax::{Span, ast};
 
 /// Why an expression has no constant value.
@@ -25,8 +23,7 @@ pub(super) fn fold(types: &TypeTable, expr: &Expr) -> Result<Value, NoValue> {
         ExprKind::Binary(operator, left, right) => {
             let operands = types.elementary(left.ty).ok_or(not_constant)?;
             let (left, right) = (fold(types, left)?, fold(types, right)?);
-            binary(*operator, operands, left, right)
-                .map_err(|()| NoValue::DivisionByZero(expr.span))
+            binary(*operator, operands, left, right).map_err(|()| NoValue::DivisionByZero(expr.span))
         }
         ExprKind::Convert(rounding, operand) => Ok(convert(*rounding, ty, fold(types, operand)?)),
         ExprKind::Load(_) | ExprKind::Intrinsic(..) | ExprKind::Call(_) => Err(not_constant),
@@ -65,11 +62,7 @@ fn binary(operator: Binary, ty: ElementaryType, left: Value, right: Value) -> Re
         _ => {
             let (left, right) = (left.as_int().ok_or(())?, right.as_int().ok_or(())?);
             let value = ty.wrap(integer(operator, left, right)?);
-            if ty == ElementaryType::Bool {
-                Value::Bool(value != 0)
-            } else {
-                Value::Int(value)
-            }
+            if ty == ElementaryType::Bool { Value::Bool(value != 0) } else { Value::Int(value) }
         }
     })
 }
@@ -144,9 +137,7 @@ impl Body<'_, '_> {
             Operand::Integer { value, .. } => Some(value),
             Operand::Real { span, .. } => self.mismatch("an integer", "a real number", span),
             Operand::Typed(typed) => {
-                let integer = self
-                    .elementary(typed.ty)
-                    .is_some_and(ElementaryType::is_integer);
+                let integer = self.elementary(typed.ty).is_some_and(ElementaryType::is_integer);
                 if !integer {
                     let found = self.type_name(typed.ty);
                     return self.mismatch("an integer", &found, typed.span);
@@ -173,11 +164,7 @@ impl Body<'_, '_> {
             }
             Err(NoValue::DivisionByZero(span)) => {
                 let message = "a constant is divided by zero";
-                self.report(Diagnostic::error(
-                    Code::ConstantDivisionByZero,
-                    span,
-                    message,
-                ));
+                self.report(Diagnostic::error(Code::ConstantDivisionByZero, span, message));
                 None
             }
         }

@@ -29,32 +29,17 @@ pub(super) struct Conversion {
 pub(super) fn find(key: &str) -> Option<Conversion> {
     if key == "TRUNC" {
         // 2nd ed. Table 22 leaves the result's type to the context; vendors give DINT.
-        return Some(Conversion {
-            from: None,
-            to: ElementaryType::Dint,
-            rounding: Rounding::Truncate,
-        });
+        return Some(Conversion { from: None, to: ElementaryType::Dint, rounding: Rounding::Truncate });
     }
-    let marks = [
-        ("TO_", Rounding::NearestEven),
-        ("TRUNC_", Rounding::Truncate),
-    ];
+    let marks = [("TO_", Rounding::NearestEven), ("TRUNC_", Rounding::Truncate)];
     marks.into_iter().find_map(|(mark, rounding)| {
         let (before, after) = key.split_once(mark)?;
         let to = ElementaryType::find(after)?;
         if before.is_empty() {
-            return Some(Conversion {
-                from: None,
-                to,
-                rounding,
-            });
+            return Some(Conversion { from: None, to, rounding });
         }
         let from = ElementaryType::find(before.strip_suffix('_')?)?;
-        is_allowed(from, to, rounding).then_some(Conversion {
-            from: Some(from),
-            to,
-            rounding,
-        })
+        is_allowed(from, to, rounding).then_some(Conversion { from: Some(from), to, rounding })
     })
 }
 
@@ -70,12 +55,7 @@ fn is_allowed(from: ElementaryType, to: ElementaryType, rounding: Rounding) -> b
 }
 
 impl Body<'_, '_> {
-    pub(super) fn conversion(
-        &mut self,
-        conversion: Conversion,
-        operand: Operand,
-        span: Span,
-    ) -> Option<Operand> {
+    pub(super) fn conversion(&mut self, conversion: Conversion, operand: Operand, span: Span) -> Option<Operand> {
         let Conversion { from, to, rounding } = conversion;
         let expr = match from {
             Some(from) => self.coerce(operand, from.into())?,
@@ -91,29 +71,18 @@ impl Body<'_, '_> {
             self.report(found.with_help("convert to an integer type on the way"));
             return None;
         }
-        Some(Operand::Typed(Expr {
-            span,
-            ..lower(expr, from, to, rounding)
-        }))
+        Some(Operand::Typed(Expr { span, ..lower(expr, from, to, rounding) }))
     }
 }
 
 /// Nanoseconds of the unit in which a duration becomes a number.
 fn unit_ns(ty: ElementaryType) -> i128 {
-    if ty == ElementaryType::Ltime {
-        1
-    } else {
-        1_000_000
-    }
+    if ty == ElementaryType::Ltime { 1 } else { 1_000_000 }
 }
 
 fn joined(operator: Binary, left: Expr, right: Expr) -> Expr {
     let (ty, span) = (left.ty, left.span);
-    Expr {
-        kind: ExprKind::Binary(operator, Box::new(left), Box::new(right)),
-        ty,
-        span,
-    }
+    Expr { kind: ExprKind::Binary(operator, Box::new(left), Box::new(right)), ty, span }
 }
 
 fn lower(expr: Expr, from: ElementaryType, to: ElementaryType, rounding: Rounding) -> Expr {
@@ -123,35 +92,19 @@ fn lower(expr: Expr, from: ElementaryType, to: ElementaryType, rounding: Roundin
     match (from.kind(), to.kind()) {
         (Kind::Duration, Kind::Real) => {
             let ns = converted(expr, ElementaryType::Lreal, rounding);
-            converted(
-                joined(Binary::Divide, ns, lreal(unit_ns(from))),
-                to,
-                rounding,
-            )
+            converted(joined(Binary::Divide, ns, lreal(unit_ns(from))), to, rounding)
         }
         (Kind::Duration, Kind::Signed | Kind::Unsigned | Kind::Bits) => {
             let ns = converted(expr, ElementaryType::Lint, rounding);
-            converted(
-                joined(Binary::Divide, ns, lint(unit_ns(from))),
-                to,
-                rounding,
-            )
+            converted(joined(Binary::Divide, ns, lint(unit_ns(from))), to, rounding)
         }
         (Kind::Real, Kind::Duration) => {
             let number = converted(expr, ElementaryType::Lreal, rounding);
-            converted(
-                joined(Binary::Multiply, number, lreal(unit_ns(to))),
-                to,
-                rounding,
-            )
+            converted(joined(Binary::Multiply, number, lreal(unit_ns(to))), to, rounding)
         }
         (Kind::Bool | Kind::Signed | Kind::Unsigned | Kind::Bits, Kind::Duration) => {
             let number = converted(expr, ElementaryType::Lint, rounding);
-            converted(
-                joined(Binary::Multiply, number, lint(unit_ns(to))),
-                to,
-                rounding,
-            )
+            converted(joined(Binary::Multiply, number, lint(unit_ns(to))), to, rounding)
         }
         (Kind::Bits, Kind::Bool) => {
             let one = constant(Value::Int(1), from, span);
@@ -168,10 +121,7 @@ mod tests {
     #[test]
     fn names_are_taken_apart() {
         let found = find("INT_TO_REAL").map(|found| (found.from, found.to));
-        assert_eq!(
-            found,
-            Some((Some(ElementaryType::Int), ElementaryType::Real))
-        );
+        assert_eq!(found, Some((Some(ElementaryType::Int), ElementaryType::Real)));
         let found = find("LREAL_TRUNC_DINT").map(|found| found.rounding);
         assert_eq!(found, Some(Rounding::Truncate));
         assert_eq!(find("TO_SINT").and_then(|found| found.from), None);

@@ -31,11 +31,7 @@ impl Operand {
 }
 
 pub(super) fn constant(value: Value, ty: ElementaryType, span: Span) -> Expr {
-    Expr {
-        kind: ExprKind::Constant(value),
-        ty: ty.into(),
-        span,
-    }
+    Expr { kind: ExprKind::Constant(value), ty: ty.into(), span }
 }
 
 /// `expr` as one of `ty`, whatever becomes of its value.
@@ -44,11 +40,7 @@ pub(super) fn converted(expr: Expr, ty: ElementaryType, rounding: Rounding) -> E
         return expr;
     }
     let span = expr.span;
-    Expr {
-        kind: ExprKind::Convert(rounding, Box::new(expr)),
-        ty: ty.into(),
-        span,
-    }
+    Expr { kind: ExprKind::Convert(rounding, Box::new(expr)), ty: ty.into(), span }
 }
 
 impl Body<'_, '_> {
@@ -67,9 +59,7 @@ impl Body<'_, '_> {
         match (operand, wanted) {
             (Operand::Typed(expr), _) if expr.ty == target => Some(expr),
             (Operand::Typed(expr), Some(wanted)) => self.widen(expr, wanted),
-            (Operand::Integer { value, span }, Some(wanted)) => {
-                self.literal_integer(value, wanted, span)
-            }
+            (Operand::Integer { value, span }, Some(wanted)) => self.literal_integer(value, wanted, span),
             (Operand::Real { value, span }, Some(wanted)) => self.literal_real(value, wanted, span),
             (operand, None) => {
                 let found = self.describe(&operand);
@@ -120,11 +110,7 @@ impl Body<'_, '_> {
             (_, Some((low, high))) if (low..=high).contains(&value) => {
                 // BOOL has the literals 0 and 1 too (2nd ed. Table 1).
                 let boolean = wanted == ElementaryType::Bool;
-                let value = if boolean {
-                    Value::Bool(value == 1)
-                } else {
-                    Value::Int(value)
-                };
+                let value = if boolean { Value::Bool(value == 1) } else { Value::Int(value) };
                 Some(constant(value, wanted, span))
             }
             (_, range) => {
@@ -156,15 +142,9 @@ impl Body<'_, '_> {
     pub(super) fn settle(&mut self, operand: Operand) -> Option<Expr> {
         match operand {
             Operand::Typed(expr) => Some(expr),
-            Operand::Real { value, span } => {
-                Some(constant(Value::Lreal(value), ElementaryType::Lreal, span))
-            }
+            Operand::Real { value, span } => Some(constant(Value::Lreal(value), ElementaryType::Lreal, span)),
             Operand::Integer { value, span } => {
-                let types = [
-                    ElementaryType::Dint,
-                    ElementaryType::Lint,
-                    ElementaryType::Ulint,
-                ];
+                let types = [ElementaryType::Dint, ElementaryType::Lint, ElementaryType::Ulint];
                 let fits = types.into_iter().find(|ty| ty.wrap(value) == value);
                 self.literal_integer(value, fits.unwrap_or(ElementaryType::Ulint), span)
             }
@@ -176,44 +156,28 @@ impl Body<'_, '_> {
         match operand {
             Operand::Typed(_) => false,
             Operand::Real { value, .. } => {
-                ty == ElementaryType::Lreal
-                    || ty == ElementaryType::Real && (*value as f32).is_finite()
+                ty == ElementaryType::Lreal || ty == ElementaryType::Real && (*value as f32).is_finite()
             }
             Operand::Integer { value, .. } => {
-                !ty.is_duration()
-                    && ty
-                        .range()
-                        .is_none_or(|(low, high)| (low..=high).contains(value))
+                !ty.is_duration() && ty.range().is_none_or(|(low, high)| (low..=high).contains(value))
             }
         }
     }
 
     /// An expression that must be of elementary type `ty`.
-    pub(super) fn expression_of(
-        &mut self,
-        expr: &crate::syntax::ast::Expr,
-        ty: ElementaryType,
-    ) -> Option<Expr> {
+    pub(super) fn expression_of(&mut self, expr: &crate::syntax::ast::Expr, ty: ElementaryType) -> Option<Expr> {
         self.expression_for(expr, ty.into())
     }
 
     /// An expression that must be of type `ty`.
-    pub(super) fn expression_for(
-        &mut self,
-        expr: &crate::syntax::ast::Expr,
-        ty: TypeId,
-    ) -> Option<Expr> {
+    pub(super) fn expression_for(&mut self, expr: &crate::syntax::ast::Expr, ty: TypeId) -> Option<Expr> {
         let context = self.elementary(ty);
         let operand = self.within(context, |body| body.expression(expr))?;
         self.coerce(operand, ty)
     }
 
     /// Runs `check` where the place wants `context`.
-    pub(super) fn within<T>(
-        &mut self,
-        context: Option<ElementaryType>,
-        check: impl FnOnce(&mut Self) -> T,
-    ) -> T {
+    pub(super) fn within<T>(&mut self, context: Option<ElementaryType>, check: impl FnOnce(&mut Self) -> T) -> T {
         let outer = std::mem::replace(&mut self.context, context);
         let checked = check(self);
         self.context = outer;

@@ -20,39 +20,23 @@ impl Body<'_, '_> {
             ast::ExprKind::Binary(operator, left, right) => {
                 // What a comparison compares has nothing to do with where its result goes.
                 let context = self.context.filter(|_| !operator.is_comparison());
-                let (left, right) = self.within(context, |body| {
-                    (body.expression(left), body.expression(right))
-                });
+                let (left, right) = self.within(context, |body| (body.expression(left), body.expression(right)));
                 self.binary(*operator, left?, right?, expr.span)
             }
             ast::ExprKind::Call(call) => self.call_expression(call, expr.span),
             ast::ExprKind::DirectAddress(_) => self.unsupported("a direct address", expr.span),
-            ast::ExprKind::Name(_) | ast::ExprKind::Member(..) | ast::ExprKind::Index(..) => {
-                self.load(expr)
-            }
+            ast::ExprKind::Name(_) | ast::ExprKind::Member(..) | ast::ExprKind::Index(..) => self.load(expr),
             ast::ExprKind::Error => None,
         }
     }
 
     fn literal(&mut self, literal: &Literal, span: Span) -> Option<Operand> {
         Some(match literal {
-            Literal::Bool(value) => {
-                Operand::Typed(constant(Value::Bool(*value), ElementaryType::Bool, span))
-            }
-            Literal::Integer(value) => Operand::Integer {
-                value: *value,
-                span,
-            },
-            Literal::Real(value) => Operand::Real {
-                value: *value,
-                span,
-            },
+            Literal::Bool(value) => Operand::Typed(constant(Value::Bool(*value), ElementaryType::Bool, span)),
+            Literal::Integer(value) => Operand::Integer { value: *value, span },
+            Literal::Real(value) => Operand::Real { value: *value, span },
             Literal::Duration { long, ns } => {
-                let ty = if *long {
-                    ElementaryType::Ltime
-                } else {
-                    ElementaryType::Time
-                };
+                let ty = if *long { ElementaryType::Ltime } else { ElementaryType::Time };
                 Operand::Typed(constant(Value::Int(i128::from(*ns)), ty, span))
             }
             Literal::Typed { prefix, value } => return self.typed_literal(prefix, value, span),
@@ -63,23 +47,14 @@ impl Body<'_, '_> {
     fn typed_literal(&mut self, prefix: &str, value: &TypedValue, span: Span) -> Option<Operand> {
         if let Some(ty) = ElementaryType::find(prefix) {
             let operand = match value {
-                TypedValue::Integer(value) => Operand::Integer {
-                    value: *value,
-                    span,
-                },
-                TypedValue::Real(value) => Operand::Real {
-                    value: *value,
-                    span,
-                },
+                TypedValue::Integer(value) => Operand::Integer { value: *value, span },
+                TypedValue::Real(value) => Operand::Real { value: *value, span },
                 TypedValue::Name(name) if ty == ElementaryType::Bool => {
                     let value = name.eq_ignore_ascii_case("TRUE");
                     if !value && !name.eq_ignore_ascii_case("FALSE") {
                         return self.malformed_literal(prefix, name, span);
                     }
-                    Operand::Integer {
-                        value: i128::from(value),
-                        span,
-                    }
+                    Operand::Integer { value: i128::from(value), span }
                 }
                 TypedValue::Name(name) => return self.malformed_literal(prefix, name, span),
             };
@@ -87,11 +62,7 @@ impl Body<'_, '_> {
         }
         let key = prefix.to_ascii_uppercase();
         if !self.checker.type_names.contains_key(&key) {
-            let names = self
-                .checker
-                .type_names
-                .values()
-                .map(|entry| entry.ast.name.text.as_str());
+            let names = self.checker.type_names.values().map(|entry| entry.ast.name.text.as_str());
             let help = did_you_mean(prefix, names);
             let message = format!("type `{prefix}` is not declared");
             let found = Diagnostic::error(Code::UnknownType, span, message);
@@ -101,20 +72,10 @@ impl Body<'_, '_> {
         let ty = self.checker.named_type(&key, Some(span))?.ty;
         match value {
             TypedValue::Name(name) => self.enumerator_of(ty, name, span),
-            TypedValue::Integer(value) => Some(Operand::Typed(self.coerce(
-                Operand::Integer {
-                    value: *value,
-                    span,
-                },
-                ty,
-            )?)),
-            TypedValue::Real(value) => Some(Operand::Typed(self.coerce(
-                Operand::Real {
-                    value: *value,
-                    span,
-                },
-                ty,
-            )?)),
+            TypedValue::Integer(value) => {
+                Some(Operand::Typed(self.coerce(Operand::Integer { value: *value, span }, ty)?))
+            }
+            TypedValue::Real(value) => Some(Operand::Typed(self.coerce(Operand::Real { value: *value, span }, ty)?)),
         }
     }
 
@@ -130,10 +91,7 @@ impl Body<'_, '_> {
             crate::ir::Type::Enumeration { values, .. } => values.clone(),
             _ => Vec::new(),
         };
-        if let Some((_, value)) = values
-            .iter()
-            .find(|(known, _)| known.eq_ignore_ascii_case(name))
-        {
+        if let Some((_, value)) = values.iter().find(|(known, _)| known.eq_ignore_ascii_case(name)) {
             return Some(Operand::Typed(enumeration_value(ty, *value, span)));
         }
         let message = format!("{} has no value `{name}`", self.type_name(ty));
@@ -145,9 +103,5 @@ impl Body<'_, '_> {
 }
 
 pub(super) fn enumeration_value(ty: TypeId, value: i128, span: Span) -> Expr {
-    Expr {
-        kind: ExprKind::Constant(Value::Int(value)),
-        ty,
-        span,
-    }
+    Expr { kind: ExprKind::Constant(Value::Int(value)), ty, span }
 }

@@ -11,13 +11,8 @@ use crate::syntax::ast::{Expr, Initialiser, InitialiserKind, StructureInit};
 
 impl Body<'_, '_> {
     /// The bytes of a variable with an initial value.
-    pub(super) fn initial_image(
-        &mut self,
-        declared: &TypedImage,
-        initial: &Initialiser,
-    ) -> Option<Arc<[u8]>> {
-        self.checker
-            .charge_image(declared.image.len() as u64, initial.span)?;
+    pub(super) fn initial_image(&mut self, declared: &TypedImage, initial: &Initialiser) -> Option<Arc<[u8]>> {
+        self.checker.charge_image(declared.image.len() as u64, initial.span)?;
         let mut image = declared.image.to_vec();
         self.fill(declared.ty, initial, &mut image)?;
         Some(image.into())
@@ -29,17 +24,8 @@ impl Body<'_, '_> {
             (InitialiserKind::Value(expr), Type::Elementary(_) | Type::Enumeration { .. }) => {
                 self.fill_elementary(ty, expr, image)
             }
-            (
-                InitialiserKind::Array(elements),
-                Type::Array {
-                    dimensions,
-                    element,
-                },
-            ) => {
-                let count = dimensions
-                    .iter()
-                    .map(|each: &Dimension| each.count())
-                    .product();
+            (InitialiserKind::Array(elements), Type::Array { dimensions, element }) => {
+                let count = dimensions.iter().map(|each: &Dimension| each.count()).product();
                 self.fill_array(element, count, elements, image)
             }
             (InitialiserKind::Struct(members), Type::Struct { fields, .. }) => {
@@ -47,27 +33,16 @@ impl Body<'_, '_> {
             }
             (InitialiserKind::Struct(members), Type::FunctionBlock { pou, .. }) => {
                 let scope = self.checker.interface(pou, initial.span)?;
-                let fields = scope
-                    .variables
-                    .iter()
-                    .filter_map(|variable| match variable.storage {
-                        Storage::Instance(offset) => Some(Field {
-                            name: variable.name.clone(),
-                            ty: variable.ty,
-                            offset,
-                        }),
-                        _ => None,
-                    });
+                let fields = scope.variables.iter().filter_map(|variable| match variable.storage {
+                    Storage::Instance(offset) => Some(Field { name: variable.name.clone(), ty: variable.ty, offset }),
+                    _ => None,
+                });
                 let fields: Vec<Field> = fields.collect();
                 self.fill_members(ty, &fields, members, image)
             }
             _ => {
                 let message = format!("this does not initialise {}", self.type_name(ty));
-                self.report(Diagnostic::error(
-                    Code::InvalidInitialiser,
-                    initial.span,
-                    message,
-                ));
+                self.report(Diagnostic::error(Code::InvalidInitialiser, initial.span, message));
                 None
             }
         }
@@ -81,20 +56,12 @@ impl Body<'_, '_> {
         Some(())
     }
 
-    fn fill_array(
-        &mut self,
-        element: TypeId,
-        count: u64,
-        elements: &[Initialiser],
-        image: &mut [u8],
-    ) -> Option<()> {
+    fn fill_array(&mut self, element: TypeId, count: u64, elements: &[Initialiser], image: &mut [u8]) -> Option<()> {
         let size = self.checker.types.size(element) as usize;
         let mut next: u64 = 0;
         for initial in elements {
             let (times, value) = match &initial.kind {
-                InitialiserKind::Repeat(times, value) => {
-                    (self.constant_integer(times)?, value.as_deref())
-                }
+                InitialiserKind::Repeat(times, value) => (self.constant_integer(times)?, value.as_deref()),
                 _ => (1, Some(initial)),
             };
             let times = u64::try_from(times).unwrap_or(u64::MAX);
@@ -109,9 +76,7 @@ impl Body<'_, '_> {
             };
             if let Some((target, others)) = target.split_at_mut_checked(size) {
                 self.fill(element, value, target)?;
-                others
-                    .chunks_mut(size)
-                    .for_each(|other| other.copy_from_slice(target));
+                others.chunks_mut(size).for_each(|other| other.copy_from_slice(target));
             }
         }
         Some(())
@@ -132,9 +97,7 @@ impl Body<'_, '_> {
     ) -> Option<()> {
         for member in members {
             let name = &member.name.text;
-            let field = fields
-                .iter()
-                .find(|field| field.name.eq_ignore_ascii_case(name));
+            let field = fields.iter().find(|field| field.name.eq_ignore_ascii_case(name));
             let Some(field) = field else {
                 let message = format!("{} has no member `{name}`", self.type_name(ty));
                 let help = did_you_mean(name, fields.iter().map(|field| field.name.as_str()));

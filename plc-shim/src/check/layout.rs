@@ -33,10 +33,7 @@ pub(super) struct Layout {
 
 impl Layout {
     pub(super) fn new() -> Self {
-        Self {
-            next: FIRST_OFFSET,
-            images: 0,
-        }
+        Self { next: FIRST_OFFSET, images: 0 }
     }
 
     /// Bytes in use.

@@ -62,10 +62,7 @@ pub(crate) struct Checked {
 
 /// Checks all units together. `library` tells the files of the standard function blocks, whose
 /// units are compiled only if they are used.
-pub(crate) fn check(
-    units: &[(FileId, &CompilationUnit)],
-    library: &BTreeSet<FileId>,
-) -> (Checked, Vec<Diagnostic>) {
+pub(crate) fn check(units: &[(FileId, &CompilationUnit)], library: &BTreeSet<FileId>) -> (Checked, Vec<Diagnostic>) {
     let mut checker = Checker::new(library);
     checker.collect(units);
     checker.resolve_declarations();
@@ -77,18 +74,12 @@ pub(crate) fn check(
         .pous
         .iter()
         .enumerate()
-        .filter_map(|(index, entry)| {
-            Some((PouId(index as u32), entry.scope.as_ref()?.variables.clone()))
-        });
+        .filter_map(|(index, entry)| Some((PouId(index as u32), entry.scope.as_ref()?.variables.clone())));
     let result = Checked {
         interfaces: interfaces.collect(),
         types: checker.types,
         pous: checker.checked,
-        globals: checker
-            .globals
-            .into_values()
-            .filter_map(|entry| entry.variable)
-            .collect(),
+        globals: checker.globals.into_values().filter_map(|entry| entry.variable).collect(),
         programs: checker.programs,
         image,
     };

@@ -8,9 +8,7 @@ use super::layout::{Layout, VIRTUAL_TIME_NAME, VIRTUAL_TIME_OFFSET};
 use super::scope::Scope;
 use crate::diagnostic::{Code, Diagnostic};
 use crate::ir::{ElementaryType, PouId, Storage, TypeId, TypeTable, Variable};
-use crate::syntax::ast::{
-    self, CompilationUnit, Declaration, Ident, Qualifier, SectionKind, TypeDeclaration,
-};
+use crate::syntax::ast::{self, CompilationUnit, Declaration, Ident, Qualifier, SectionKind, TypeDeclaration};
 use crate::syntax::{FileId, Span};
 
 /// How far something has been resolved.
@@ -113,22 +111,12 @@ impl<'a> Checker<'a> {
         }
         let id = PouId(self.pous.len() as u32);
         self.pou_names.insert(ast.name.key(), id);
-        self.pous.push(PouEntry {
-            ast,
-            progress: Progress::Untouched,
-            scope: None,
-            align: 1,
-            image: Arc::from([]),
-        });
+        self.pous.push(PouEntry { ast, progress: Progress::Untouched, scope: None, align: 1, image: Arc::from([]) });
     }
 
     fn collect_type(&mut self, ast: &'a TypeDeclaration) {
         if !self.is_taken(&ast.name) {
-            let entry = TypeEntry {
-                ast,
-                progress: Progress::Untouched,
-                resolved: None,
-            };
+            let entry = TypeEntry { ast, progress: Progress::Untouched, resolved: None };
             self.type_names.insert(ast.name.key(), entry);
         }
     }
@@ -155,9 +143,7 @@ impl<'a> Checker<'a> {
 
     /// True, with a report, if a type or unit of the name exists already.
     fn is_taken(&mut self, name: &Ident) -> bool {
-        if ElementaryType::find(&name.text).is_some()
-            || super::standard_function::exists(&name.key())
-        {
+        if ElementaryType::find(&name.text).is_some() || super::standard_function::exists(&name.key()) {
             self.report_reserved(name, name.span);
             return true;
         }
@@ -170,10 +156,7 @@ impl<'a> Checker<'a> {
 
     /// Where a unit or type of the name is declared.
     fn declared_at(&self, name: &Ident) -> Option<Span> {
-        let pou = self
-            .pou_names
-            .get(&name.key())
-            .map(|id| self.pou(*id).ast.name.span);
+        let pou = self.pou_names.get(&name.key()).map(|id| self.pou(*id).ast.name.span);
         pou.or_else(|| self.type_names.get(&name.key()).map(|ty| ty.ast.name.span))
     }
 
@@ -207,11 +190,5 @@ fn virtual_time() -> GlobalEntry<'static> {
         image: vec![0; 8].into(),
     };
     let name = VIRTUAL_TIME_NAME.to_owned();
-    GlobalEntry {
-        ast: None,
-        name,
-        span,
-        progress: Progress::Done,
-        variable: Some(variable),
-    }
+    GlobalEntry { ast: None, name, span, progress: Progress::Done, variable: Some(variable) }
 }

@@ -36,21 +36,12 @@ fn resolved(operator: BinaryOp) -> Option<Binary> {
 }
 
 impl Body<'_, '_> {
-    pub(super) fn unary(
-        &mut self,
-        operator: UnaryOp,
-        operand: Operand,
-        span: Span,
-    ) -> Option<Operand> {
+    pub(super) fn unary(&mut self, operator: UnaryOp, operand: Operand, span: Span) -> Option<Operand> {
         match (operator, operand) {
-            (UnaryOp::Negate, Operand::Integer { value, .. }) => Some(Operand::Integer {
-                value: value.wrapping_neg(),
-                span,
-            }),
-            (UnaryOp::Negate, Operand::Real { value, .. }) => Some(Operand::Real {
-                value: -value,
-                span,
-            }),
+            (UnaryOp::Negate, Operand::Integer { value, .. }) => {
+                Some(Operand::Integer { value: value.wrapping_neg(), span })
+            }
+            (UnaryOp::Negate, Operand::Real { value, .. }) => Some(Operand::Real { value: -value, span }),
             (UnaryOp::Plus, operand @ (Operand::Integer { .. } | Operand::Real { .. })) => {
                 Some(operand.with_span(span))
             }
@@ -76,20 +67,13 @@ impl Body<'_, '_> {
 
     pub(super) fn not(&mut self, operand: Operand, span: Span) -> Option<Operand> {
         match operand {
-            Operand::Typed(expr)
-                if self
-                    .plain_elementary(&expr)
-                    .is_some_and(ElementaryType::is_bits) =>
-            {
+            Operand::Typed(expr) if self.plain_elementary(&expr).is_some_and(ElementaryType::is_bits) => {
                 let ty = expr.ty;
                 let kind = ExprKind::Unary(Unary::Not, Box::new(expr));
                 Some(Operand::Typed(Expr { kind, ty, span }))
             }
             other => {
-                let message = format!(
-                    "NOT is for BOOL and bit strings, not {}",
-                    self.describe(&other)
-                );
+                let message = format!("NOT is for BOOL and bit strings, not {}", self.describe(&other));
                 self.report(Diagnostic::error(Code::InvalidOperand, span, message));
                 None
             }
@@ -104,32 +88,15 @@ impl Body<'_, '_> {
         }
     }
 
-    pub(super) fn binary(
-        &mut self,
-        operator: BinaryOp,
-        left: Operand,
-        right: Operand,
-        span: Span,
-    ) -> Option<Operand> {
+    pub(super) fn binary(&mut self, operator: BinaryOp, left: Operand, right: Operand, span: Span) -> Option<Operand> {
         match resolved(operator) {
             Some(operator) => self.operation(operator, left, right, span),
             None => self.power(left, right, span),
         }
     }
 
-    pub(super) fn operation(
-        &mut self,
-        operator: Binary,
-        left: Operand,
-        right: Operand,
-        span: Span,
-    ) -> Option<Operand> {
-        if !operator.is_comparison()
-            && !matches!(
-                (&left, &right),
-                (Operand::Typed(_), _) | (_, Operand::Typed(_))
-            )
-        {
+    pub(super) fn operation(&mut self, operator: Binary, left: Operand, right: Operand, span: Span) -> Option<Operand> {
+        if !operator.is_comparison() && !matches!((&left, &right), (Operand::Typed(_), _) | (_, Operand::Typed(_))) {
             return self.fold_literals(operator, &left, &right, span);
         }
         if operator.is_comparison() {
@@ -141,23 +108,12 @@ impl Body<'_, '_> {
         if self.is_duration(&left) || self.is_duration(&right) {
             return self.duration_operation(operator, left, right, span);
         }
-        let wanted = if operator == Binary::Modulo {
-            "integers"
-        } else {
-            "numbers"
-        };
+        let wanted = if operator == Binary::Modulo { "integers" } else { "numbers" };
         let pair = self.unify(operator, left, right, wanted, span)?;
-        let allowed = if operator == Binary::Modulo {
-            pair.ty.is_integer()
-        } else {
-            pair.ty.is_number()
-        };
+        let allowed = if operator == Binary::Modulo { pair.ty.is_integer() } else { pair.ty.is_number() };
         if !allowed {
             let message = format!("this operator is for {wanted}, not {}", pair.ty);
-            let help = pair
-                .ty
-                .is_bits()
-                .then_some("convert bit strings to an integer type first");
+            let help = pair.ty.is_bits().then_some("convert bit strings to an integer type first");
             let found = Diagnostic::error(Code::InvalidOperand, span, message);
             self.report(found.with_optional_help(help.map(str::to_owned)));
             return None;
@@ -168,13 +124,7 @@ impl Body<'_, '_> {
     }
 
     /// Two constants without type make a third.
-    fn fold_literals(
-        &mut self,
-        operator: Binary,
-        left: &Operand,
-        right: &Operand,
-        span: Span,
-    ) -> Option<Operand> {
+    fn fold_literals(&mut self, operator: Binary, left: &Operand, right: &Operand, span: Span) -> Option<Operand> {
         let real = |operand: &Operand| match operand {
             Operand::Integer { value, .. } => *value as f64,
             Operand::Real { value, .. } => *value,
@@ -182,14 +132,9 @@ impl Body<'_, '_> {
         };
         let folded = match (left, right) {
             (Operand::Integer { value: left, .. }, Operand::Integer { value: right, .. }) => {
-                constant::integer(operator, *left, *right)
-                    .map(|value| Operand::Integer { value, span })
+                constant::integer(operator, *left, *right).map(|value| Operand::Integer { value, span })
             }
-            _ if matches!(
-                operator,
-                Binary::Add | Binary::Subtract | Binary::Multiply | Binary::Divide
-            ) =>
-            {
+            _ if matches!(operator, Binary::Add | Binary::Subtract | Binary::Multiply | Binary::Divide) => {
                 let value = constant::real(operator, real(left), real(right));
                 value.map(|value| Operand::Real { value, span })
             }
@@ -197,11 +142,7 @@ impl Body<'_, '_> {
         };
         if folded.is_err() {
             let message = "a constant is divided by zero";
-            self.report(Diagnostic::error(
-                Code::ConstantDivisionByZero,
-                span,
-                message,
-            ));
+            self.report(Diagnostic::error(Code::ConstantDivisionByZero, span, message));
         }
         folded.ok()
     }
@@ -213,13 +154,7 @@ impl Body<'_, '_> {
         None
     }
 
-    fn comparison(
-        &mut self,
-        operator: Binary,
-        left: Operand,
-        right: Operand,
-        span: Span,
-    ) -> Option<Operand> {
+    fn comparison(&mut self, operator: Binary, left: Operand, right: Operand, span: Span) -> Option<Operand> {
         let (left, right) = match (left, right) {
             (Operand::Typed(left), Operand::Typed(right))
                 if left.ty == right.ty && self.elementary(left.ty).is_some() =>
@@ -232,20 +167,10 @@ impl Body<'_, '_> {
             }
         };
         let kind = ExprKind::Binary(operator, Box::new(left), Box::new(right));
-        Some(Operand::Typed(Expr {
-            kind,
-            ty: ElementaryType::Bool.into(),
-            span,
-        }))
+        Some(Operand::Typed(Expr { kind, ty: ElementaryType::Bool.into(), span }))
     }
 
-    fn bitwise(
-        &mut self,
-        operator: Binary,
-        left: Operand,
-        right: Operand,
-        span: Span,
-    ) -> Option<Operand> {
+    fn bitwise(&mut self, operator: Binary, left: Operand, right: Operand, span: Span) -> Option<Operand> {
         let pair = self.unify(operator, left, right, "BOOL and bit strings", span)?;
         if !pair.ty.is_bits() {
             let message = format!("AND, OR, XOR are for BOOL and bit strings, not {}", pair.ty);
@@ -305,18 +230,11 @@ impl Body<'_, '_> {
     }
 
     fn is_duration(&self, operand: &Operand) -> bool {
-        self.own_type(operand)
-            .is_some_and(ElementaryType::is_duration)
+        self.own_type(operand).is_some_and(ElementaryType::is_duration)
     }
 
     /// 2nd ed. Table 30: durations are added, and scaled by numbers.
-    fn duration_operation(
-        &mut self,
-        operator: Binary,
-        left: Operand,
-        right: Operand,
-        span: Span,
-    ) -> Option<Operand> {
+    fn duration_operation(&mut self, operator: Binary, left: Operand, right: Operand, span: Span) -> Option<Operand> {
         match (operator, left, right) {
             (Binary::Add | Binary::Subtract, left, right) => {
                 let pair = self.unify(operator, left, right, "durations", span)?;
@@ -325,9 +243,7 @@ impl Body<'_, '_> {
                 Some(Operand::Typed(Expr { kind, ty, span }))
             }
             (Binary::Multiply | Binary::Divide, Operand::Typed(left), right)
-                if self
-                    .plain_elementary(&left)
-                    .is_some_and(ElementaryType::is_duration)
+                if self.plain_elementary(&left).is_some_and(ElementaryType::is_duration)
                     && !self.is_duration(&right) =>
             {
                 self.scale(operator, left, right, span)
@@ -340,13 +256,7 @@ impl Body<'_, '_> {
         }
     }
 
-    fn scale(
-        &mut self,
-        operator: Binary,
-        duration: Expr,
-        factor: Operand,
-        span: Span,
-    ) -> Option<Operand> {
+    fn scale(&mut self, operator: Binary, duration: Expr, factor: Operand, span: Span) -> Option<Operand> {
         let factor = self.settle(factor)?;
         let duration_ty = self.plain_elementary(&duration)?;
         let Some(ty) = self.plain_elementary(&factor).filter(|ty| ty.is_number()) else {
@@ -355,11 +265,7 @@ impl Body<'_, '_> {
         };
         let exact = |operator, left: Expr, right: Expr| {
             let ty = left.ty;
-            Expr {
-                kind: ExprKind::Binary(operator, Box::new(left), Box::new(right)),
-                ty,
-                span,
-            }
+            Expr { kind: ExprKind::Binary(operator, Box::new(left), Box::new(right)), ty, span }
         };
         if ty.is_integer() {
             let factor = converted(factor, ElementaryType::Lint, Rounding::NearestEven);
@@ -369,41 +275,21 @@ impl Body<'_, '_> {
         let duration = converted(duration, lreal, Rounding::NearestEven);
         let factor = converted(factor, lreal, Rounding::NearestEven);
         let product = exact(operator, duration, factor);
-        Some(Operand::Typed(converted(
-            product,
-            duration_ty,
-            Rounding::NearestEven,
-        )))
+        Some(Operand::Typed(converted(product, duration_ty, Rounding::NearestEven)))
     }
 
     /// 2nd ed. Table 24: the base is a real number, and so is the result.
-    pub(super) fn power(
-        &mut self,
-        base: Operand,
-        exponent: Operand,
-        span: Span,
-    ) -> Option<Operand> {
+    pub(super) fn power(&mut self, base: Operand, exponent: Operand, span: Span) -> Option<Operand> {
         let single = self.own_type(&base) == Some(ElementaryType::Real);
-        let ty = if single {
-            ElementaryType::Real
-        } else {
-            ElementaryType::Lreal
-        };
+        let ty = if single { ElementaryType::Real } else { ElementaryType::Lreal };
         let base = self.coerce(base, ty.into())?;
         let exponent = self.settle(exponent)?;
-        if !self
-            .plain_elementary(&exponent)
-            .is_some_and(ElementaryType::is_number)
-        {
+        if !self.plain_elementary(&exponent).is_some_and(ElementaryType::is_number) {
             let found = self.type_name(exponent.ty);
             return self.mismatch("a number", &found, exponent.span);
         }
         let exponent = converted(exponent, ty, Rounding::NearestEven);
         let kind = ExprKind::Intrinsic(Intrinsic::Power, vec![base, exponent]);
-        Some(Operand::Typed(Expr {
-            kind,
-            ty: ty.into(),
-            span,
-        }))
+        Some(Operand::Typed(Expr { kind, ty: ty.into(), span }))
     }
 }

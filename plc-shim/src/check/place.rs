@@ -4,9 +4,7 @@ use super::convert::Operand;
 use super::expression::enumeration_value;
 use super::scope::Body;
 use crate::diagnostic::{Code, Diagnostic, did_you_mean};
-use crate::ir::{
-    Dimension, ElementaryType, Expr, ExprKind, Place, Step, Storage, Type, TypeId, Variable,
-};
+use crate::ir::{Dimension, ElementaryType, Expr, ExprKind, Place, Step, Storage, Type, TypeId, Variable};
 use crate::syntax::Span;
 use crate::syntax::ast::{self, Ident, SectionKind};
 
@@ -52,11 +50,7 @@ impl Body<'_, '_> {
         }
         let place = self.place(expr)?.place;
         let ty = place.ty;
-        Some(Operand::Typed(Expr {
-            kind: ExprKind::Load(place),
-            ty,
-            span: expr.span,
-        }))
+        Some(Operand::Typed(Expr { kind: ExprKind::Load(place), ty, span: expr.span }))
     }
 
     /// The enumeration that `Colour` in `Colour.Red` names, unless a variable hides it.
@@ -65,8 +59,7 @@ impl Body<'_, '_> {
             return None;
         };
         let key = name.key();
-        let hidden =
-            self.scope.by_name.contains_key(&key) || self.checker.globals.contains_key(&key);
+        let hidden = self.scope.by_name.contains_key(&key) || self.checker.globals.contains_key(&key);
         if hidden || !self.checker.type_names.contains_key(&key) {
             return None;
         }
@@ -140,26 +133,16 @@ impl Body<'_, '_> {
                 return Some(match variable.constant {
                     Some(value) => {
                         let kind = ExprKind::Constant(value);
-                        Meaning::Value(Expr {
-                            kind,
-                            ty: variable.ty,
-                            span: name.span,
-                        })
+                        Meaning::Value(Expr { kind, ty: variable.ty, span: name.span })
                     }
                     None => Meaning::Variable,
                 });
             }
             None => {}
         }
-        let found = self
-            .checker
-            .enumerators
-            .get(&name.key())
-            .map_or(&[][..], Vec::as_slice);
+        let found = self.checker.enumerators.get(&name.key()).map_or(&[][..], Vec::as_slice);
         match found {
-            [only] => Some(Meaning::Value(enumeration_value(
-                only.ty, only.value, name.span,
-            ))),
+            [only] => Some(Meaning::Value(enumeration_value(only.ty, only.value, name.span))),
             [] => self.report_unknown(name),
             several => {
                 let types: Vec<_> = several.iter().map(|each| self.type_name(each.ty)).collect();
@@ -173,16 +156,8 @@ impl Body<'_, '_> {
     }
 
     fn report_unknown<T>(&mut self, name: &Ident) -> Option<T> {
-        let own = self
-            .scope
-            .variables
-            .iter()
-            .map(|variable| variable.name.as_str());
-        let globals = self
-            .checker
-            .globals
-            .values()
-            .map(|entry| entry.name.as_str());
+        let own = self.scope.variables.iter().map(|variable| variable.name.as_str());
+        let globals = self.checker.globals.values().map(|entry| entry.name.as_str());
         let help = did_you_mean(&name.text, own.chain(globals));
         let message = format!("`{}` is not declared", name.text);
         let found = Diagnostic::error(Code::UnknownName, name.span, message);
@@ -193,21 +168,13 @@ impl Body<'_, '_> {
     fn member(&mut self, base: Located, name: &Ident, span: Span) -> Option<Located> {
         match self.checker.types.get(base.place.ty).clone() {
             Type::Struct { fields, .. } => {
-                let field = fields
-                    .iter()
-                    .find(|field| field.name.eq_ignore_ascii_case(&name.text));
+                let field = fields.iter().find(|field| field.name.eq_ignore_ascii_case(&name.text));
                 let Some(field) = field else {
                     let names: Vec<_> = fields.iter().map(|field| field.name.as_str()).collect();
                     return self.report_unknown_member(base.place.ty, name, &names);
                 };
-                let place = Place {
-                    span,
-                    ..base.place.member(field.offset, field.ty)
-                };
-                Some(Located {
-                    place,
-                    access: base.access,
-                })
+                let place = Place { span, ..base.place.member(field.offset, field.ty) };
+                Some(Located { place, access: base.access })
             }
             Type::FunctionBlock { pou, .. } => self.instance_member(base, pou, name, span),
             _ => {
@@ -227,26 +194,14 @@ impl Body<'_, '_> {
     }
 
     /// Inputs and outputs of an instance can be reached from outside (2nd ed. 2.5.2.1).
-    fn instance_member(
-        &mut self,
-        base: Located,
-        pou: crate::ir::PouId,
-        name: &Ident,
-        span: Span,
-    ) -> Option<Located> {
+    fn instance_member(&mut self, base: Located, pou: crate::ir::PouId, name: &Ident, span: Span) -> Option<Located> {
         let scope = self.checker.interface(pou, span)?;
         if scope.is_broken(&name.key()) {
             return None;
         }
         let Some(variable) = scope.find(&name.key()) else {
-            let open = |variable: &&Variable| {
-                matches!(variable.section, SectionKind::Input | SectionKind::Output)
-            };
-            let names = scope
-                .variables
-                .iter()
-                .filter(open)
-                .map(|variable| variable.name.as_str());
+            let open = |variable: &&Variable| matches!(variable.section, SectionKind::Input | SectionKind::Output);
+            let names = scope.variables.iter().filter(open).map(|variable| variable.name.as_str());
             let names: Vec<_> = names.collect();
             return self.report_unknown_member(base.place.ty, name, &names);
         };
@@ -264,19 +219,12 @@ impl Body<'_, '_> {
         let Storage::Instance(offset) = variable.storage else {
             return None;
         };
-        let place = Place {
-            span,
-            ..base.place.member(offset, variable.ty)
-        };
+        let place = Place { span, ..base.place.member(offset, variable.ty) };
         Some(Located { place, access })
     }
 
     fn element(&mut self, base: Located, indices: &[ast::Expr], span: Span) -> Option<Located> {
-        let Type::Array {
-            dimensions,
-            element,
-        } = self.checker.types.get(base.place.ty).clone()
-        else {
+        let Type::Array { dimensions, element } = self.checker.types.get(base.place.ty).clone() else {
             let message = format!("{} is not an array", self.type_name(base.place.ty));
             self.report(Diagnostic::error(Code::NotIndexable, span, message));
             return None;
@@ -300,19 +248,13 @@ impl Body<'_, '_> {
         place.steps.extend(steps);
         place.ty = element;
         place.span = span;
-        Some(Located {
-            place,
-            access: base.access,
-        })
+        Some(Located { place, access: base.access })
     }
 
     fn index_step(&mut self, bounds: Dimension, index: &ast::Expr, stride: u32) -> Option<Step> {
         let operand = self.within(None, |body| body.expression(index))?;
         let index = self.settle(operand)?;
-        if !self
-            .plain_elementary(&index)
-            .is_some_and(ElementaryType::is_integer)
-        {
+        if !self.plain_elementary(&index).is_some_and(ElementaryType::is_integer) {
             let found = self.type_name(index.ty);
             return self.mismatch("an integer", &found, index.span);
         }
@@ -321,20 +263,11 @@ impl Body<'_, '_> {
             let value = value.as_int().unwrap_or(0);
             if !(i128::from(low)..=i128::from(high)).contains(&value) {
                 let message = format!("index {value} is outside of {low}..{high}");
-                self.report(Diagnostic::error(
-                    Code::IndexOutOfRange,
-                    index.span,
-                    message,
-                ));
+                self.report(Diagnostic::error(Code::IndexOutOfRange, index.span, message));
                 return None;
             }
             return Some(Step::Offset((value - i128::from(low)) as u32 * stride));
         }
-        Some(Step::Index {
-            index: Box::new(index),
-            low,
-            count: bounds.count() as u32,
-            stride,
-        })
+        Some(Step::Index { index: Box::new(index), low, count: bounds.count() as u32, stride })
     }
 }

@@ -20,11 +20,7 @@ impl Checker<'_> {
         let mut on_path = BTreeSet::from([root]);
         while let Some((caller, next)) = path.last_mut() {
             let caller = *caller;
-            let call = self
-                .calls
-                .get(&caller)
-                .and_then(|calls| calls.get(*next))
-                .copied();
+            let call = self.calls.get(&caller).and_then(|calls| calls.get(*next)).copied();
             *next += 1;
             match call {
                 None => {

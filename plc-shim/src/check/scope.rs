@@ -19,24 +19,18 @@ pub(super) struct Scope {
 
 impl Scope {
     pub(super) fn find(&self, key: &str) -> Option<&Variable> {
-        self.by_name
-            .get(key)
-            .and_then(|index| self.variables.get(*index))
+        self.by_name.get(key).and_then(|index| self.variables.get(*index))
     }
 
     /// True for a name whose declaration is wrong, which has been reported.
     pub(super) fn is_broken(&self, key: &str) -> bool {
-        self.by_name
-            .get(key)
-            .is_some_and(|index| *index >= self.variables.len())
+        self.by_name.get(key).is_some_and(|index| *index >= self.variables.len())
     }
 
     /// What a caller can set by position: inputs and in-outs in their order.
     pub(super) fn inputs(&self) -> impl Iterator<Item = &Variable> {
         let accepts = |section| matches!(section, SectionKind::Input | SectionKind::InOut);
-        self.variables
-            .iter()
-            .filter(move |variable| accepts(variable.section))
+        self.variables.iter().filter(move |variable| accepts(variable.section))
     }
 
     pub(super) fn register(&mut self, ty: ElementaryType) -> LocalId {
@@ -65,14 +59,7 @@ impl<'c, 'a> Body<'c, 'a> {
     }
 
     pub(super) fn new(checker: &'c mut Checker<'a>, scope: Scope, pou: Option<PouId>) -> Self {
-        Self {
-            checker,
-            scope,
-            pou,
-            context: None,
-            loops: 0,
-            result_assigned: false,
-        }
+        Self { checker, scope, pou, context: None, loops: 0, result_assigned: false }
     }
 
     pub(super) fn report(&mut self, diagnostic: Diagnostic) {

@@ -70,10 +70,7 @@ const FUNCTIONS: &[(&str, Form)] = &[
 ];
 
 fn find(key: &str) -> Option<Form> {
-    FUNCTIONS
-        .iter()
-        .find(|(name, _)| *name == key)
-        .map(|(_, form)| *form)
+    FUNCTIONS.iter().find(|(name, _)| *name == key).map(|(_, form)| *form)
 }
 
 /// True if the standard has a function of this name, in capitals.
@@ -93,9 +90,7 @@ impl Form {
             Self::Absolute | Self::Real(_) | Self::Move | Self::Not => (1, 1),
             Self::Power | Self::Pair(_) | Self::Shift(_) => (2, 2),
             Self::Limit | Self::Select => (3, 3),
-            Self::Operator(_) | Self::Comparison(_) | Self::Extreme(_) | Self::Multiplex => {
-                (2, usize::MAX)
-            }
+            Self::Operator(_) | Self::Comparison(_) | Self::Extreme(_) | Self::Multiplex => (2, usize::MAX),
         }
     }
 
@@ -118,12 +113,7 @@ impl Form {
 
 impl Body<'_, '_> {
     /// A call of the standard function `name`, which exists.
-    pub(super) fn standard_call(
-        &mut self,
-        name: &Ident,
-        arguments: &[Argument],
-        span: Span,
-    ) -> Option<Operand> {
+    pub(super) fn standard_call(&mut self, name: &Ident, arguments: &[Argument], span: Span) -> Option<Operand> {
         let key = name.key();
         if let Some(form) = find(&key) {
             let comparison = matches!(form, Form::Comparison(_) | Form::Pair(BinaryOp::NotEqual));
@@ -132,20 +122,12 @@ impl Body<'_, '_> {
             return self.apply(form, operands?, span);
         }
         let conversion = conversion_function::find(&key)?;
-        let operands = self.within(None, |body| {
-            body.operands(name, Form::Absolute, arguments, span)
-        });
+        let operands = self.within(None, |body| body.operands(name, Form::Absolute, arguments, span));
         let operand = operands?.into_iter().next()?;
         self.conversion(conversion, operand, span)
     }
 
-    fn operands(
-        &mut self,
-        name: &Ident,
-        form: Form,
-        arguments: &[Argument],
-        span: Span,
-    ) -> Option<Vec<Operand>> {
+    fn operands(&mut self, name: &Ident, form: Form, arguments: &[Argument], span: Span) -> Option<Vec<Operand>> {
         let mut slots: Vec<Option<Option<Operand>>> = vec![None; arguments.len()];
         for (index, argument) in arguments.iter().enumerate() {
             let (position, expr) = match argument {
@@ -167,17 +149,9 @@ impl Body<'_, '_> {
         }
         let (fewest, most) = form.arity();
         if arguments.len() < fewest || arguments.len() > most {
-            let code = if arguments.len() < fewest {
-                Code::MissingArgument
-            } else {
-                Code::TooManyArguments
-            };
+            let code = if arguments.len() < fewest { Code::MissingArgument } else { Code::TooManyArguments };
             let more = if most == fewest { "" } else { " or more" };
-            let message = format!(
-                "{} takes {fewest}{more} arguments, not {}",
-                name.key(),
-                arguments.len()
-            );
+            let message = format!("{} takes {fewest}{more} arguments, not {}", name.key(), arguments.len());
             self.report(Diagnostic::error(code, span, message));
             return None;
         }
@@ -186,11 +160,7 @@ impl Body<'_, '_> {
 
     fn unknown_parameter<T>(&mut self, name: &Ident, formal: &Ident) -> Option<T> {
         let message = format!("{} has no parameter `{}`", name.key(), formal.text);
-        self.report(Diagnostic::error(
-            Code::UnknownArgument,
-            formal.span,
-            message,
-        ));
+        self.report(Diagnostic::error(Code::UnknownArgument, formal.span, message));
         None
     }
 
@@ -203,10 +173,9 @@ impl Body<'_, '_> {
             Form::Power => self.power(first, operands.next()?, span),
             Form::Absolute => self.absolute(first, span),
             Form::Real(intrinsic) => self.real_function(intrinsic, first, span),
-            Form::Pair(operator) | Form::Operator(operator) => operands
-                .try_fold(first, |left, right| {
-                    self.binary(operator, left, right, span)
-                }),
+            Form::Pair(operator) | Form::Operator(operator) => {
+                operands.try_fold(first, |left, right| self.binary(operator, left, right, span))
+            }
             Form::Comparison(operator) => self.chain(operator, first, operands.collect(), span),
             Form::Extreme(intrinsic) => {
                 let all = std::iter::once(first).chain(operands).collect();
@@ -223,19 +192,12 @@ impl Body<'_, '_> {
     }
 
     fn intrinsic(kind: Intrinsic, operands: Vec<Expr>, ty: TypeId, span: Span) -> Operand {
-        Operand::Typed(Expr {
-            kind: ExprKind::Intrinsic(kind, operands),
-            ty,
-            span,
-        })
+        Operand::Typed(Expr { kind: ExprKind::Intrinsic(kind, operands), ty, span })
     }
 
     fn absolute(&mut self, operand: Operand, span: Span) -> Option<Operand> {
         let expr = self.settle(operand)?;
-        if !self
-            .plain_elementary(&expr)
-            .is_some_and(ElementaryType::is_number)
-        {
+        if !self.plain_elementary(&expr).is_some_and(ElementaryType::is_number) {
             let found = self.type_name(expr.ty);
             return self.mismatch("a number", &found, expr.span);
         }
@@ -246,23 +208,13 @@ impl Body<'_, '_> {
     fn real_function(&mut self, kind: Intrinsic, operand: Operand, span: Span) -> Option<Operand> {
         let real: TypeId = ElementaryType::Real.into();
         let single = matches!(&operand, Operand::Typed(expr) if expr.ty == real);
-        let ty = if single {
-            real
-        } else {
-            ElementaryType::Lreal.into()
-        };
+        let ty = if single { real } else { ElementaryType::Lreal.into() };
         let expr = self.coerce(operand, ty)?;
         Some(Self::intrinsic(kind, vec![expr], ty, span))
     }
 
     /// `GT(a, b, c)` is `a > b AND b > c` (2nd ed. Table 28).
-    fn chain(
-        &mut self,
-        operator: Binary,
-        first: Operand,
-        others: Vec<Operand>,
-        span: Span,
-    ) -> Option<Operand> {
+    fn chain(&mut self, operator: Binary, first: Operand, others: Vec<Operand>, span: Span) -> Option<Operand> {
         let mut left = first;
         let mut whole: Option<Operand> = None;
         for right in others {
@@ -282,15 +234,8 @@ impl Body<'_, '_> {
             Operand::Typed(expr) => Some(expr.ty),
             _ => None,
         });
-        let enumeration = typed.filter(|ty| {
-            matches!(
-                self.checker.types.get(*ty),
-                crate::ir::Type::Enumeration { .. }
-            )
-        });
-        let context = self
-            .context
-            .filter(|ty| operands.iter().all(|operand| Self::adapts(operand, *ty)));
+        let enumeration = typed.filter(|ty| matches!(self.checker.types.get(*ty), crate::ir::Type::Enumeration { .. }));
+        let context = self.context.filter(|ty| operands.iter().all(|operand| Self::adapts(operand, *ty)));
         let ty = if let Some(ty) = enumeration.or(context.map(TypeId::from)) {
             ty
         } else {
@@ -326,11 +271,7 @@ impl Body<'_, '_> {
     fn limit(&mut self, operands: Vec<Operand>, span: Span) -> Option<Operand> {
         let (all, ty) = self.unify_all(operands, span)?;
         let [low, value, high] = <[Expr; 3]>::try_from(all).ok()?;
-        let node = |kind, operands| Expr {
-            kind: ExprKind::Intrinsic(kind, operands),
-            ty,
-            span,
-        };
+        let node = |kind, operands| Expr { kind: ExprKind::Intrinsic(kind, operands), ty, span };
         let raised = node(Intrinsic::Max, vec![value, low]);
         Some(Operand::Typed(node(Intrinsic::Min, vec![raised, high])))
     }
@@ -343,12 +284,7 @@ impl Body<'_, '_> {
         Some(Self::intrinsic(Intrinsic::Select, all, ty, span))
     }
 
-    fn multiplex(
-        &mut self,
-        selector: Operand,
-        values: Vec<Operand>,
-        span: Span,
-    ) -> Option<Operand> {
+    fn multiplex(&mut self, selector: Operand, values: Vec<Operand>, span: Span) -> Option<Operand> {
         let selector = self.integer_as_lint(selector)?;
         let (mut all, ty) = self.unify_all(values, span)?;
         self.require_elementary(ty, span)?;
@@ -366,31 +302,16 @@ impl Body<'_, '_> {
 
     fn integer_as_lint(&mut self, operand: Operand) -> Option<Expr> {
         let expr = self.settle(operand)?;
-        if !self
-            .plain_elementary(&expr)
-            .is_some_and(ElementaryType::is_integer)
-        {
+        if !self.plain_elementary(&expr).is_some_and(ElementaryType::is_integer) {
             let found = self.type_name(expr.ty);
             return self.mismatch("an integer", &found, expr.span);
         }
         Some(converted(expr, ElementaryType::Lint, Rounding::NearestEven))
     }
 
-    fn shift(
-        &mut self,
-        kind: Intrinsic,
-        value: Operand,
-        count: Operand,
-        span: Span,
-    ) -> Option<Operand> {
+    fn shift(&mut self, kind: Intrinsic, value: Operand, count: Operand, span: Span) -> Option<Operand> {
         let value = match value {
-            Operand::Typed(expr)
-                if self
-                    .plain_elementary(&expr)
-                    .is_some_and(ElementaryType::is_bits) =>
-            {
-                expr
-            }
+            Operand::Typed(expr) if self.plain_elementary(&expr).is_some_and(ElementaryType::is_bits) => expr,
             other => {
                 let found = self.describe(&other);
                 return self.mismatch("a bit string", &found, other.span());

@@ -9,8 +9,8 @@ use super::scope::Body;
 use super::variables::decode;
 use crate::diagnostic::{Code, Diagnostic};
 use crate::ir::{
-    CaseArm, CaseStatement, ElementaryType, Expr, ExprKind, ForStatement, IfBranch, LocalId, Place,
-    Pou, PouId, Statement, StatementKind, Storage, Type, TypeId, Value, Variable,
+    CaseArm, CaseStatement, ElementaryType, Expr, ExprKind, ForStatement, IfBranch, LocalId, Place, Pou, PouId,
+    Statement, StatementKind, Storage, Type, TypeId, Value, Variable,
 };
 use crate::syntax::Span;
 use crate::syntax::ast::{self, PouKind, SectionKind};
@@ -26,11 +26,7 @@ impl Checker<'_> {
         statements.extend(body.statements(&ast.body));
         if body.scope.result.is_some() && !body.result_assigned {
             let message = format!("function `{}` never assigns its result", ast.name.text);
-            body.report(Diagnostic::warning(
-                Code::MissingResult,
-                ast.name.span,
-                message,
-            ));
+            body.report(Diagnostic::warning(Code::MissingResult, ast.name.span, message));
         }
         let scope = body.scope;
         let pou = Pou {
@@ -86,9 +82,7 @@ impl Body<'_, '_> {
     }
 
     fn statements(&mut self, list: &[ast::Statement]) -> Vec<Statement> {
-        list.iter()
-            .filter_map(|statement| self.statement(statement))
-            .collect()
+        list.iter().filter_map(|statement| self.statement(statement)).collect()
     }
 
     fn statement(&mut self, statement: &ast::Statement) -> Option<Statement> {
@@ -110,21 +104,14 @@ impl Body<'_, '_> {
                 StatementKind::Repeat(body, self.condition(&inner.until)?)
             }
             ast::StatementKind::Exit => self.inside_loop("EXIT", StatementKind::Exit, span)?,
-            ast::StatementKind::Continue => {
-                self.inside_loop("CONTINUE", StatementKind::Continue, span)?
-            }
+            ast::StatementKind::Continue => self.inside_loop("CONTINUE", StatementKind::Continue, span)?,
             ast::StatementKind::Return => StatementKind::Return,
         };
         // Statements that contain others are pointed at by their first line's beginning.
         Some(Statement { kind, span })
     }
 
-    fn inside_loop(
-        &mut self,
-        word: &str,
-        kind: StatementKind,
-        span: Span,
-    ) -> Option<StatementKind> {
+    fn inside_loop(&mut self, word: &str, kind: StatementKind, span: Span) -> Option<StatementKind> {
         if self.loops > 0 {
             return Some(kind);
         }
@@ -146,15 +133,10 @@ impl Body<'_, '_> {
 
     fn assign(&mut self, target: &ast::Expr, value: &ast::Expr, span: Span) -> Option<Statement> {
         let target = self.target(target);
-        let context = target
-            .as_ref()
-            .and_then(|target| self.elementary(target.ty));
+        let context = target.as_ref().and_then(|target| self.elementary(target.ty));
         let value = self.within(context, |body| body.expression(value));
         let (target, value) = (target?, value?);
-        if matches!(
-            self.checker.types.get(target.ty),
-            Type::FunctionBlock { .. }
-        ) {
+        if matches!(self.checker.types.get(target.ty), Type::FunctionBlock { .. }) {
             let message = "instances are not assigned to one another";
             self.report(Diagnostic::error(Code::NotAssignable, span, message));
             return None;
@@ -170,11 +152,7 @@ impl Body<'_, '_> {
             Access::ReadWrite => {}
             Access::Constant => {
                 let message = "a constant is not assigned to";
-                self.report(Diagnostic::error(
-                    Code::AssignToConstant,
-                    expr.span,
-                    message,
-                ));
+                self.report(Diagnostic::error(Code::AssignToConstant, expr.span, message));
                 return None;
             }
             Access::InstanceOutput => {
@@ -204,9 +182,7 @@ impl Body<'_, '_> {
     }
 
     fn case_statement(&mut self, inner: &ast::CaseStatement) -> Option<StatementKind> {
-        let selector = self
-            .expression(&inner.selector)
-            .and_then(|operand| self.settle(operand));
+        let selector = self.expression(&inner.selector).and_then(|operand| self.settle(operand));
         let selector = selector.and_then(|selector| self.selectable(selector));
         let ty = selector.as_ref().map(|(selector, _)| selector.ty);
         let mut known = BTreeMap::new();
@@ -214,20 +190,12 @@ impl Body<'_, '_> {
         for branch in &inner.branches {
             let labels = ty.map(|ty| self.case_labels(&branch.labels, ty, &mut known));
             let body = self.statements(&branch.body);
-            arms.push(CaseArm {
-                labels: labels.unwrap_or_default(),
-                body,
-            });
+            arms.push(CaseArm { labels: labels.unwrap_or_default(), body });
         }
         let otherwise = self.statements(&inner.otherwise);
         let (selector, elementary) = selector?;
         let register = self.scope.register(elementary);
-        let case = CaseStatement {
-            selector,
-            register,
-            arms,
-            otherwise,
-        };
+        let case = CaseStatement { selector, register, arms, otherwise };
         Some(StatementKind::Case(Box::new(case)))
     }
 
@@ -250,9 +218,7 @@ impl Body<'_, '_> {
     ) -> Vec<(i128, i128)> {
         let mut ranges = Vec::new();
         for label in labels {
-            let low = self
-                .constant_of_type(&label.low, ty)
-                .and_then(Value::as_int);
+            let low = self.constant_of_type(&label.low, ty).and_then(Value::as_int);
             let high = match &label.high {
                 Some(high) => self.constant_of_type(high, ty).and_then(Value::as_int),
                 None => low,
@@ -260,10 +226,7 @@ impl Body<'_, '_> {
             let (Some(low), Some(high)) = (low, high) else {
                 continue;
             };
-            let span = label
-                .high
-                .as_ref()
-                .map_or(label.low.span, |high| label.low.span.to(high.span));
+            let span = label.high.as_ref().map_or(label.low.span, |high| label.low.span.to(high.span));
             if low > high {
                 let message = format!("range {low}..{high} is reversed");
                 self.report(Diagnostic::error(Code::InvalidRange, span, message));
@@ -282,14 +245,9 @@ impl Body<'_, '_> {
     }
 
     fn for_statement(&mut self, inner: &ast::ForStatement) -> Option<StatementKind> {
-        let name = ast::Expr {
-            kind: ast::ExprKind::Name(inner.variable.clone()),
-            span: inner.variable.span,
-            height: 1,
-        };
-        let variable = self
-            .target(&name)
-            .and_then(|place| self.control_variable(place));
+        let name =
+            ast::Expr { kind: ast::ExprKind::Name(inner.variable.clone()), span: inner.variable.span, height: 1 };
+        let variable = self.target(&name).and_then(|place| self.control_variable(place));
         let header = variable.and_then(|(place, ty)| {
             let from = self.expression_of(&inner.from, ty);
             let to = self.expression_of(&inner.to, ty);
@@ -303,15 +261,7 @@ impl Body<'_, '_> {
         let (variable, from, to, by) = header?;
         let last = self.scope.register(ElementaryType::Lint);
         let step = self.scope.register(ElementaryType::Lint);
-        let inner = ForStatement {
-            variable,
-            from,
-            to,
-            by,
-            last,
-            step,
-            body,
-        };
+        let inner = ForStatement { variable, from, to, by, last, step, body };
         Some(StatementKind::For(Box::new(inner)))
     }
 
@@ -322,10 +272,7 @@ impl Body<'_, '_> {
                 Some((place, ty))
             }
             _ => {
-                let message = format!(
-                    "a FOR control variable is an integer, this is {}",
-                    self.type_name(place.ty)
-                );
+                let message = format!("a FOR control variable is an integer, this is {}", self.type_name(place.ty));
                 self.report(Diagnostic::error(Code::LoopVariable, place.span, message));
                 None
             }
@@ -341,13 +288,6 @@ fn copied_parameter(variable: &Variable, register: LocalId) -> Option<Statement>
     let (ty, span) = (variable.ty, variable.span);
     let source = Place::whole(Storage::RegisterPointer(register), ty, span);
     let target = Place::whole(variable.storage, ty, span);
-    let value = Expr {
-        kind: ExprKind::Load(source),
-        ty,
-        span,
-    };
-    Some(Statement {
-        kind: StatementKind::Copy(target, value),
-        span,
-    })
+    let value = Expr { kind: ExprKind::Load(source), ty, span };
+    Some(Statement { kind: StatementKind::Copy(target, value), span })
 }

@@ -33,9 +33,7 @@ impl Checker<'_> {
             }
             Progress::Untouched => entry.progress = Progress::Running,
         }
-        let resolved = self.deeper(ast.name.span, |checker| {
-            Body::outside(checker).declared_type(ast)
-        });
+        let resolved = self.deeper(ast.name.span, |checker| Body::outside(checker).declared_type(ast));
         if let Some(entry) = self.type_names.get_mut(key) {
             entry.progress = Progress::Done;
             entry.resolved.clone_from(&resolved);
@@ -50,11 +48,7 @@ impl Checker<'_> {
     }
 
     /// Runs `resolve` one level deeper; what needs too many others in a row is reported.
-    pub(super) fn deeper<T>(
-        &mut self,
-        span: Span,
-        resolve: impl FnOnce(&mut Self) -> Option<T>,
-    ) -> Option<T> {
+    pub(super) fn deeper<T>(&mut self, span: Span, resolve: impl FnOnce(&mut Self) -> Option<T>) -> Option<T> {
         if self.depth == MAX_DEPTH {
             let message = format!("more than {MAX_DEPTH} declarations need each other in a row");
             self.report(Diagnostic::error(Code::NestingTooDeep, span, message));
@@ -85,14 +79,10 @@ impl<'a> Body<'_, 'a> {
     pub(super) fn resolve(&mut self, spec: &'a TypeSpec, need: Need) -> Option<TypedImage> {
         match &spec.kind {
             TypeSpecKind::Name(name) => self.type_by_name(name, need),
-            TypeSpecKind::Array(dimensions, element) => {
-                self.array(dimensions, element, need, spec.span)
-            }
+            TypeSpecKind::Array(dimensions, element) => self.array(dimensions, element, need, spec.span),
             TypeSpecKind::Struct(fields) => self.structure("STRUCT", fields, spec.span),
             TypeSpecKind::Enumeration(values) => self.enumeration("enumeration", values),
-            TypeSpecKind::String(name, _) => {
-                self.unsupported(&format!("type {}", name.text), spec.span)
-            }
+            TypeSpecKind::String(name, _) => self.unsupported(&format!("type {}", name.text), spec.span),
             TypeSpecKind::Subrange(..) => self.unsupported("a subrange type", spec.span),
             TypeSpecKind::Error => None,
         }
@@ -105,10 +95,7 @@ impl<'a> Body<'_, 'a> {
     }
 
     fn whole(&self, ty: TypeId) -> TypedImage {
-        TypedImage {
-            ty,
-            image: self.checker.types.image(ty).clone(),
-        }
+        TypedImage { ty, image: self.checker.types.image(ty).clone() }
     }
 
     fn type_by_name(&mut self, name: &Ident, need: Need) -> Option<TypedImage> {
@@ -158,16 +145,8 @@ impl<'a> Body<'_, 'a> {
             return;
         }
         let elementary = ElementaryType::ALL.iter().map(|ty| ty.name());
-        let derived = self
-            .checker
-            .type_names
-            .values()
-            .map(|entry| entry.ast.name.text.as_str());
-        let blocks = self
-            .checker
-            .pous
-            .iter()
-            .filter(|pou| pou.ast.kind == PouKind::FunctionBlock);
+        let derived = self.checker.type_names.values().map(|entry| entry.ast.name.text.as_str());
+        let blocks = self.checker.pous.iter().filter(|pou| pou.ast.kind == PouKind::FunctionBlock);
         let blocks = blocks.map(|pou| pou.ast.name.text.as_str());
         let help = did_you_mean(&name.text, elementary.chain(derived).chain(blocks));
         let message = format!("type `{}` is not declared", name.text);
@@ -187,9 +166,7 @@ impl<'a> Body<'_, 'a> {
         let bounds: Vec<Dimension> = bounds.into_iter().collect::<Option<_>>()?;
         let size = self.checker.types.size(element.ty);
         let total = bounds.iter().try_fold(u64::from(size), |total, each| {
-            total
-                .checked_mul(each.count())
-                .filter(|size| *size <= u64::from(MEMORY_LIMIT))
+            total.checked_mul(each.count()).filter(|size| *size <= u64::from(MEMORY_LIMIT))
         });
         let Some(total) = total else {
             self.checker.report_too_large(span);
@@ -198,10 +175,7 @@ impl<'a> Body<'_, 'a> {
         self.checker.charge_image(total, span)?;
         let count = total / u64::from(size.max(1));
         let ty = self.checker.types.array(bounds, element.ty, total as u32);
-        Some(TypedImage {
-            ty,
-            image: element.image.repeat(count as usize).into(),
-        })
+        Some(TypedImage { ty, image: element.image.repeat(count as usize).into() })
     }
 
     fn dimension(&mut self, ast: &'a ast::Dimension) -> Option<Dimension> {
@@ -210,10 +184,7 @@ impl<'a> Body<'_, 'a> {
         let (low, high) = (low?, high?);
         let span = ast.low.span.to(ast.high.span);
         match (i32::try_from(low), i32::try_from(high)) {
-            (Ok(low), Ok(high)) if low <= high => Some(Dimension {
-                low: i64::from(low),
-                high: i64::from(high),
-            }),
+            (Ok(low), Ok(high)) if low <= high => Some(Dimension { low: i64::from(low), high: i64::from(high) }),
             _ => {
                 let message = format!("bounds {low}..{high} are reversed or beyond 32 bits");
                 self.report(Diagnostic::error(Code::InvalidRange, span, message));
@@ -226,10 +197,7 @@ impl<'a> Body<'_, 'a> {
         let mut fields: Vec<Field> = Vec::new();
         let mut image: Vec<u8> = Vec::new();
         for field in ast {
-            if fields
-                .iter()
-                .any(|other| other.name.eq_ignore_ascii_case(&field.name.text))
-            {
+            if fields.iter().any(|other| other.name.eq_ignore_ascii_case(&field.name.text)) {
                 self.checker.report_duplicate(&field.name, None);
                 continue;
             }
@@ -242,29 +210,18 @@ impl<'a> Body<'_, 'a> {
                 self.checker.report_too_large(span);
                 return None;
             }
-            self.checker
-                .charge_image(resolved.image.len() as u64, span)?;
+            self.checker.charge_image(resolved.image.len() as u64, span)?;
             image.resize(offset as usize, 0);
             image.extend_from_slice(&resolved.image);
-            fields.push(Field {
-                name: field.name.text.clone(),
-                ty: resolved.ty,
-                offset,
-            });
+            fields.push(Field { name: field.name.text.clone(), ty: resolved.ty, offset });
         }
         // What has no members takes a byte, so that no array has more elements than bytes.
         image.resize(image.len().max(1), 0);
-        let align = fields
-            .iter()
-            .map(|field| self.checker.types.align(field.ty))
-            .max();
+        let align = fields.iter().map(|field| self.checker.types.align(field.ty)).max();
         image.resize(align_up(image.len() as u32, align.unwrap_or(1)) as usize, 0);
         let image_of_type: Arc<[u8]> = image.clone().into();
         let ty = self.checker.types.structure(name.to_owned(), fields, image);
-        Some(TypedImage {
-            ty,
-            image: image_of_type,
-        })
+        Some(TypedImage { ty, image: image_of_type })
     }
 
     fn enumeration(&mut self, name: &str, ast: &'a [EnumValue]) -> Option<TypedImage> {
@@ -272,10 +229,7 @@ impl<'a> Body<'_, 'a> {
         let mut values: Vec<(String, i128)> = Vec::new();
         let mut next = 0;
         for each in ast {
-            if values
-                .iter()
-                .any(|(other, _)| other.eq_ignore_ascii_case(&each.name.text))
-            {
+            if values.iter().any(|(other, _)| other.eq_ignore_ascii_case(&each.name.text)) {
                 self.checker.report_duplicate(&each.name, None);
                 continue;
             }
@@ -290,16 +244,9 @@ impl<'a> Body<'_, 'a> {
             values.push((each.name.text.clone(), next));
             next += 1;
         }
-        let ty = self
-            .checker
-            .types
-            .enumeration(name.to_owned(), base, values.clone());
+        let ty = self.checker.types.enumeration(name.to_owned(), base, values.clone());
         for (name, value) in values {
-            let known = self
-                .checker
-                .enumerators
-                .entry(name.to_ascii_uppercase())
-                .or_default();
+            let known = self.checker.enumerators.entry(name.to_ascii_uppercase()).or_default();
             known.push(Enumerator { ty, value });
         }
         Some(self.whole(ty))

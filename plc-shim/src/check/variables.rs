@@ -26,11 +26,7 @@ impl<'a> Checker<'a> {
         let (ast, qualifiers) = entry.ast?;
         if progress == Progress::Running {
             let message = "the initial value of a variable needs the variable itself";
-            self.report(Diagnostic::error(
-                Code::Recursion,
-                used.unwrap_or(span),
-                message,
-            ));
+            self.report(Diagnostic::error(Code::Recursion, used.unwrap_or(span), message));
             return None;
         }
         entry.progress = Progress::Running;
@@ -43,25 +39,13 @@ impl<'a> Checker<'a> {
         variable
     }
 
-    fn place_global(
-        &mut self,
-        name: &Ident,
-        ast: &'a ast::Variable,
-        qualifiers: &[Qualifier],
-    ) -> Option<Variable> {
+    fn place_global(&mut self, name: &Ident, ast: &'a ast::Variable, qualifiers: &[Qualifier]) -> Option<Variable> {
         let declared = Body::outside(self).declared(ast, Need::Size)?;
         let (size, align) = (self.types.size(declared.ty), self.types.align(declared.ty));
         let offset = self.allocate(size, align, name.span)?;
         self.placed.push((offset, declared.image.clone()));
         let storage = Storage::Absolute(offset);
-        Some(self.variable(
-            name,
-            ast,
-            SectionKind::Global,
-            qualifiers,
-            &declared,
-            storage,
-        ))
+        Some(self.variable(name, ast, SectionKind::Global, qualifiers, &declared, storage))
     }
 
     fn variable(
@@ -80,9 +64,7 @@ impl<'a> Checker<'a> {
             section,
             ty: declared.ty,
             storage,
-            constant: elementary
-                .filter(|_| is_constant)
-                .map(|ty| decode(ty, &declared.image)),
+            constant: elementary.filter(|_| is_constant).map(|ty| decode(ty, &declared.image)),
             is_constant,
             retain: qualifiers.contains(&Qualifier::Retain),
             address: ast.address.as_ref().map(|address| address.text.clone()),
@@ -173,24 +155,15 @@ impl<'c, 'a> Interface<'c, 'a> {
     fn new(checker: &'c mut Checker<'a>, id: PouId) -> Self {
         let kind = checker.pou(id).ast.kind;
         let body = Body::new(checker, Scope::default(), Some(id));
-        Self {
-            body,
-            kind,
-            align: 1,
-            image: Vec::new(),
-        }
+        Self { body, kind, align: 1, image: Vec::new() }
     }
 
     fn declare(&mut self, ast: &'a ast::Pou) {
         if self.kind == PouKind::Function {
-            self.declare_sections(ast, |kind| {
-                matches!(kind, SectionKind::Input | SectionKind::InOut)
-            });
+            self.declare_sections(ast, |kind| matches!(kind, SectionKind::Input | SectionKind::InOut));
             self.body.scope.parameters = self.body.scope.registers.len() as u32;
             self.declare_result(ast);
-            self.declare_sections(ast, |kind| {
-                !matches!(kind, SectionKind::Input | SectionKind::InOut)
-            });
+            self.declare_sections(ast, |kind| !matches!(kind, SectionKind::Input | SectionKind::InOut));
         } else {
             // The first parameter is the instance's address.
             self.body.scope.register(POINTER);
@@ -217,17 +190,9 @@ impl<'c, 'a> Interface<'c, 'a> {
         };
         let span = ast.name.span;
         self.body.scope.result = Some(Place::whole(storage, declared.ty, span));
-        let shape = ast::Variable {
-            names: Vec::new(),
-            address: None,
-            spec: spec.clone(),
-            initial: None,
-        };
+        let shape = ast::Variable { names: Vec::new(), address: None, spec: spec.clone(), initial: None };
         let kind = SectionKind::Temp;
-        let variable = self
-            .body
-            .checker
-            .variable(&ast.name, &shape, kind, &[], &declared, storage);
+        let variable = self.body.checker.variable(&ast.name, &shape, kind, &[], &declared, storage);
         self.add(&ast.name, variable);
     }
 
@@ -235,15 +200,10 @@ impl<'c, 'a> Interface<'c, 'a> {
         if section.kind == SectionKind::Global {
             let message = "VAR_GLOBAL stands outside of units";
             let span = section.span;
-            self.body
-                .report(Diagnostic::error(Code::WrongSection, span, message));
+            self.body.report(Diagnostic::error(Code::WrongSection, span, message));
             return;
         }
-        let need = if section.kind == SectionKind::InOut {
-            Need::Reference
-        } else {
-            Need::Size
-        };
+        let need = if section.kind == SectionKind::InOut { Need::Reference } else { Need::Size };
         // Every name has the same type; an error in it is told once.
         let declared = self.body.declared(ast, need);
         for name in &ast.names {
@@ -277,10 +237,7 @@ impl<'c, 'a> Interface<'c, 'a> {
     }
 
     fn add(&mut self, name: &Ident, variable: Variable) {
-        self.body
-            .scope
-            .by_name
-            .insert(name.key(), self.body.scope.variables.len());
+        self.body.scope.by_name.insert(name.key(), self.body.scope.variables.len());
         self.body.scope.variables.push(variable);
     }
 
@@ -299,8 +256,7 @@ impl<'c, 'a> Interface<'c, 'a> {
             // Nobody calls a program, so nobody could give the variable.
             (PouKind::Program, SectionKind::InOut) => {
                 let message = "a program has no VAR_IN_OUT";
-                self.body
-                    .report(Diagnostic::error(Code::WrongSection, span, message));
+                self.body.report(Diagnostic::error(Code::WrongSection, span, message));
                 None
             }
             (_, SectionKind::InOut) => {
@@ -315,14 +271,10 @@ impl<'c, 'a> Interface<'c, 'a> {
 
     /// Functions keep nothing between calls (2nd ed. 2.5.1), instances do.
     fn reject_instance(&mut self, ty: TypeId, span: Span) -> Option<()> {
-        if matches!(
-            self.body.checker.types.get(ty),
-            crate::ir::Type::FunctionBlock { .. }
-        ) {
+        if matches!(self.body.checker.types.get(ty), crate::ir::Type::FunctionBlock { .. }) {
             let message = "a function or VAR_TEMP section keeps nothing, so it has no instances";
             let found = Diagnostic::error(Code::WrongSection, span, message);
-            self.body
-                .report(found.with_help("declare it in VAR or pass it by VAR_IN_OUT"));
+            self.body.report(found.with_help("declare it in VAR or pass it by VAR_IN_OUT"));
             return None;
         }
         Some(())
@@ -350,10 +302,7 @@ impl<'c, 'a> Interface<'c, 'a> {
         let types = &self.body.checker.types;
         let (size, align) = (types.size(declared.ty), types.align(declared.ty));
         let offset = self.body.checker.allocate(size, align, span)?;
-        self.body
-            .checker
-            .placed
-            .push((offset, declared.image.clone()));
+        self.body.checker.placed.push((offset, declared.image.clone()));
         Some(Storage::Absolute(offset))
     }
 
@@ -389,8 +338,7 @@ impl<'c, 'a> Interface<'c, 'a> {
             let (wanted, found) = (types.name(variable.ty), types.name(ty));
             let message = format!("`{}` is {wanted} in VAR_GLOBAL, {found} here", name.text);
             let found = Diagnostic::error(Code::ExternalWithoutGlobal, name.span, message);
-            self.body
-                .report(found.with_label(variable.span, "declared here"));
+            self.body.report(found.with_label(variable.span, "declared here"));
         }
         variable.is_constant |= section.qualifiers.contains(&Qualifier::Constant);
         variable.section = SectionKind::External;
@@ -399,10 +347,7 @@ impl<'c, 'a> Interface<'c, 'a> {
 
     fn report_missing_global(&mut self, name: &Ident) {
         let globals = &self.body.checker.globals;
-        let help = did_you_mean(
-            &name.text,
-            globals.values().map(|entry| entry.name.as_str()),
-        );
+        let help = did_you_mean(&name.text, globals.values().map(|entry| entry.name.as_str()));
         let message = format!("no VAR_GLOBAL declares `{}`", name.text);
         let found = Diagnostic::error(Code::ExternalWithoutGlobal, name.span, message);
         self.body.report(found.with_optional_help(help));

@@ -83,11 +83,7 @@ impl Emitter<'_, '_> {
         self.get(divisor);
         let single = held == ValType::F32;
         self.emit(zero);
-        self.emit(if single {
-            Instruction::F32Eq
-        } else {
-            Instruction::F64Eq
-        });
+        self.emit(if single { Instruction::F32Eq } else { Instruction::F64Eq });
         self.fault_if(FaultKind::DivisionByZero, span);
         self.release(divisor);
     }
@@ -189,11 +185,7 @@ impl Emitter<'_, '_> {
         let wide = ty.size() == 8;
         if !ty.is_signed() {
             self.mark_fault(FaultKind::DivisionByZero, span);
-            self.emit(if wide {
-                Instruction::I64DivU
-            } else {
-                Instruction::I32DivU
-            });
+            self.emit(if wide { Instruction::I64DivU } else { Instruction::I32DivU });
             return;
         }
         let held = value_type(ty);
@@ -202,28 +194,16 @@ impl Emitter<'_, '_> {
         self.set(left);
         self.get(right);
         self.constant(ty, Value::Int(-1));
-        self.emit(if wide {
-            Instruction::I64Eq
-        } else {
-            Instruction::I32Eq
-        });
+        self.emit(if wide { Instruction::I64Eq } else { Instruction::I32Eq });
         self.emit(Instruction::If(BlockType::Result(held)));
         self.constant(ty, Value::Int(0));
         self.get(left);
-        self.emit(if wide {
-            Instruction::I64Sub
-        } else {
-            Instruction::I32Sub
-        });
+        self.emit(if wide { Instruction::I64Sub } else { Instruction::I32Sub });
         self.emit(Instruction::Else);
         self.get(left);
         self.get(right);
         self.mark_fault(FaultKind::DivisionByZero, span);
-        self.emit(if wide {
-            Instruction::I64DivS
-        } else {
-            Instruction::I32DivS
-        });
+        self.emit(if wide { Instruction::I64DivS } else { Instruction::I32DivS });
         self.emit(Instruction::End);
         self.release(left);
         self.release(right);
@@ -237,11 +217,7 @@ impl Emitter<'_, '_> {
         self.set(right);
         self.set(left);
         self.get(right);
-        self.emit(if wide {
-            Instruction::I64Eqz
-        } else {
-            Instruction::I32Eqz
-        });
+        self.emit(if wide { Instruction::I64Eqz } else { Instruction::I32Eqz });
         self.emit(Instruction::If(BlockType::Result(held)));
         self.constant(ty, Value::Int(0));
         self.emit(Instruction::Else);

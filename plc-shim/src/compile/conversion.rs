@@ -81,11 +81,7 @@ impl Emitter<'_, '_> {
         });
         if to.size() == 8 {
             let signed = to.is_signed();
-            self.emit(if signed {
-                Instruction::I64TruncSatF64S
-            } else {
-                Instruction::I64TruncSatF64U
-            });
+            self.emit(if signed { Instruction::I64TruncSatF64S } else { Instruction::I64TruncSatF64U });
             return;
         }
         self.emit(Instruction::I64TruncSatF64S);

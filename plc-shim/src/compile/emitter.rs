@@ -52,11 +52,7 @@ pub(super) struct Emitter<'s, 'p> {
 }
 
 impl<'s, 'p> Emitter<'s, 'p> {
-    pub(super) fn new(
-        shared: &'s mut Shared<'p>,
-        registers: &[ElementaryType],
-        parameters: u32,
-    ) -> Self {
+    pub(super) fn new(shared: &'s mut Shared<'p>, registers: &[ElementaryType], parameters: u32) -> Self {
         Self {
             shared,
             code: Vec::new(),
@@ -76,19 +72,12 @@ impl<'s, 'p> Emitter<'s, 'p> {
 
     /// Says that a statement begins here.
     pub(super) fn mark_statement(&mut self, span: Span) {
-        self.marks
-            .push((self.code.len(), Mark { span, fault: None }));
+        self.marks.push((self.code.len(), Mark { span, fault: None }));
     }
 
     /// Says what it means if the next instruction traps.
     pub(super) fn mark_fault(&mut self, fault: FaultKind, span: Span) {
-        self.marks.push((
-            self.code.len(),
-            Mark {
-                span,
-                fault: Some(fault),
-            },
-        ));
+        self.marks.push((self.code.len(), Mark { span, fault: Some(fault) }));
     }
 
     /// Stops the PLC if the value on the stack is not 0.
@@ -101,10 +90,7 @@ impl<'s, 'p> Emitter<'s, 'p> {
 
     /// The elementary type that holds values of `ty`; an address is held like UDINT.
     pub(super) fn held_as(&self, ty: TypeId) -> ElementaryType {
-        self.shared
-            .types
-            .elementary(ty)
-            .unwrap_or(ElementaryType::Udint)
+        self.shared.types.elementary(ty).unwrap_or(ElementaryType::Udint)
     }
 
     /// A free register; [`Self::release`] gives it back.

@@ -37,11 +37,7 @@ impl Emitter<'_, '_> {
     pub(super) fn constant(&mut self, ty: ElementaryType, value: Value) {
         self.emit(match value_type(ty) {
             ValType::F32 => {
-                let value = if let Value::Real(value) = value {
-                    value
-                } else {
-                    value.as_f64() as f32
-                };
+                let value = if let Value::Real(value) = value { value } else { value.as_f64() as f32 };
                 Instruction::F32Const(Ieee32::new(value.to_bits()))
             }
             ValType::F64 => Instruction::F64Const(Ieee64::new(value.as_f64().to_bits())),
@@ -74,10 +70,7 @@ impl Emitter<'_, '_> {
         self.release(source);
         let size = self.shared.types.size(place.ty);
         self.emit(Instruction::I32Const(size as i32));
-        self.emit(Instruction::MemoryCopy {
-            src_mem: 0,
-            dst_mem: 0,
-        });
+        self.emit(Instruction::MemoryCopy { src_mem: 0, dst_mem: 0 });
         self.full_address(place);
     }
 }

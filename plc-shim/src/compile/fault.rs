@@ -69,23 +69,15 @@ impl FunctionMarks {
     /// The fault of the trapping instruction at `offset`.
     pub(crate) fn fault_at(&self, offset: u32) -> Option<Mark> {
         let first = self.marks.partition_point(|(at, _)| *at < offset);
-        let here = self
-            .marks
-            .iter()
-            .skip(first)
-            .take_while(|(at, _)| *at == offset);
-        here.map(|(_, mark)| *mark)
-            .find(|mark| mark.fault.is_some())
+        let here = self.marks.iter().skip(first).take_while(|(at, _)| *at == offset);
+        here.map(|(_, mark)| *mark).find(|mark| mark.fault.is_some())
     }
 
     /// The last statement that begins at or before `offset`.
     pub(crate) fn statement_before(&self, offset: u32) -> Option<Span> {
         let end = self.marks.partition_point(|(at, _)| *at <= offset);
         let before = self.marks.iter().take(end).rev();
-        before
-            .map(|(_, mark)| mark)
-            .find(|mark| mark.fault.is_none())
-            .map(|mark| mark.span)
+        before.map(|(_, mark)| mark).find(|mark| mark.fault.is_none()).map(|mark| mark.span)
     }
 }
 

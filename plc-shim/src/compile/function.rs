@@ -16,11 +16,7 @@ pub(super) fn unit(shared: &mut Shared<'_>, pou: &Pou) -> (Function, Vec<(u32, M
     emitter.close();
     if let Some(result) = &pou.result {
         let kind = ExprKind::Load(result.clone());
-        emitter.expression(&Expr {
-            kind,
-            ty: result.ty,
-            span: result.span,
-        });
+        emitter.expression(&Expr { kind, ty: result.ty, span: result.span });
     }
     emitter.finish()
 }

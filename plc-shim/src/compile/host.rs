@@ -24,11 +24,7 @@ pub(crate) struct Import {
 }
 
 const fn import(name: &'static str, intrinsic: Intrinsic, function: Function) -> Import {
-    Import {
-        name,
-        intrinsic,
-        function,
-    }
+    Import { name, intrinsic, function }
 }
 
 /// All imports; their position is their function index.
@@ -58,10 +54,7 @@ pub(crate) const IMPORTS: [Import; 20] = [
 /// Function index of an intrinsic for REAL or LREAL, if the host gives it.
 pub(crate) fn index(intrinsic: Intrinsic, single: bool) -> Option<u32> {
     let matches = |import: &Import| {
-        let is_single = matches!(
-            import.function,
-            Function::Single(_) | Function::SinglePair(_)
-        );
+        let is_single = matches!(import.function, Function::Single(_) | Function::SinglePair(_));
         import.intrinsic == intrinsic && is_single == single
     };
     IMPORTS.iter().position(matches).map(|index| index as u32)

@@ -16,19 +16,14 @@ impl Emitter<'_, '_> {
             Intrinsic::Sqrt => {
                 self.all(operands);
                 let single = ty == ElementaryType::Real;
-                self.emit(if single {
-                    Instruction::F32Sqrt
-                } else {
-                    Instruction::F64Sqrt
-                });
+                self.emit(if single { Instruction::F32Sqrt } else { Instruction::F64Sqrt });
             }
             Intrinsic::Max | Intrinsic::Min => self.extreme(kind, operands, ty, whole.span),
             Intrinsic::Select => self.select(operands, ty),
             Intrinsic::Multiplex => self.multiplex(operands, ty, whole.span),
-            Intrinsic::ShiftLeft
-            | Intrinsic::ShiftRight
-            | Intrinsic::RotateLeft
-            | Intrinsic::RotateRight => self.shift(kind, operands, ty),
+            Intrinsic::ShiftLeft | Intrinsic::ShiftRight | Intrinsic::RotateLeft | Intrinsic::RotateRight => {
+                self.shift(kind, operands, ty);
+            }
             _ => {
                 self.all(operands);
                 match host::index(kind, ty == ElementaryType::Real) {
@@ -99,19 +94,11 @@ impl Emitter<'_, '_> {
         match value_type(ty) {
             ValType::F32 => {
                 self.all(operands);
-                self.emit(if max {
-                    Instruction::F32Max
-                } else {
-                    Instruction::F32Min
-                });
+                self.emit(if max { Instruction::F32Max } else { Instruction::F32Min });
             }
             ValType::F64 => {
                 self.all(operands);
-                self.emit(if max {
-                    Instruction::F64Max
-                } else {
-                    Instruction::F64Min
-                });
+                self.emit(if max { Instruction::F64Max } else { Instruction::F64Min });
             }
             _ => {
                 let registers = self.in_registers(operands);
@@ -165,11 +152,7 @@ impl Emitter<'_, '_> {
     fn shift(&mut self, kind: Intrinsic, operands: &[Expr], ty: ElementaryType) {
         let registers = self.in_registers(operands);
         if let [value, count] = registers[..] {
-            let bits = if ty == ElementaryType::Bool {
-                1
-            } else {
-                i64::from(ty.size()) * 8
-            };
+            let bits = if ty == ElementaryType::Bool { 1 } else { i64::from(ty.size()) * 8 };
             match kind {
                 Intrinsic::ShiftLeft | Intrinsic::ShiftRight => {
                     self.shifted(value, count, ty, kind == Intrinsic::ShiftLeft);
@@ -189,11 +172,7 @@ impl Emitter<'_, '_> {
                     self.rotation_count_on_stack(count, bits);
                     self.shifted(value, count, ty, !left);
                     let wide = ty.size() == 8;
-                    self.emit(if wide {
-                        Instruction::I64Or
-                    } else {
-                        Instruction::I32Or
-                    });
+                    self.emit(if wide { Instruction::I64Or } else { Instruction::I32Or });
                 }
             }
         }
@@ -217,19 +196,11 @@ impl Emitter<'_, '_> {
         self.get(value);
         self.get(count);
         if ty.size() == 8 {
-            self.emit(if left {
-                Instruction::I64Shl
-            } else {
-                Instruction::I64ShrU
-            });
+            self.emit(if left { Instruction::I64Shl } else { Instruction::I64ShrU });
             return;
         }
         self.emit(Instruction::I32WrapI64);
-        self.emit(if left {
-            Instruction::I32Shl
-        } else {
-            Instruction::I32ShrU
-        });
+        self.emit(if left { Instruction::I32Shl } else { Instruction::I32ShrU });
         self.wrap(ty);
     }
 }

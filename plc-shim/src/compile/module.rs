@@ -3,9 +3,8 @@
 use std::collections::BTreeMap;
 
 use wasm_encoder::{
-    CodeSection, DataCountSection, DataSection, EntityType, ExportKind, ExportSection, Function,
-    FunctionSection, ImportSection, Instruction, MemorySection, MemoryType, Module, TypeSection,
-    ValType,
+    CodeSection, DataCountSection, DataSection, EntityType, ExportKind, ExportSection, Function, FunctionSection,
+    ImportSection, Instruction, MemorySection, MemoryType, Module, TypeSection, ValType,
 };
 
 use super::emitter::{Shared, value_type};
@@ -37,37 +36,22 @@ pub(crate) fn compile(checked: &Checked) -> Compiled {
     let first_function = host::IMPORTS.len() as u32;
     let order = checked.pous.keys().zip(first_function..);
     let functions: BTreeMap<_, _> = order.map(|(id, index)| (*id, index)).collect();
-    let mut shared = Shared {
-        types: &checked.types,
-        functions,
-        data: Vec::new(),
-    };
+    let mut shared = Shared { types: &checked.types, functions, data: Vec::new() };
     let mut sections = Sections::default();
     sections.add_imports();
-    let mut faults = FaultTable {
-        first_function,
-        functions: Vec::new(),
-    };
+    let mut faults = FaultTable { first_function, functions: Vec::new() };
     for pou in checked.pous.values() {
         let (parameters, results) = signature(pou, &checked.types);
         let (body, marks) = function::unit(&mut shared, pou);
         sections.add_function(parameters, results, &body);
-        faults.functions.push(FunctionMarks {
-            name: pou.name.clone(),
-            marks,
-        });
+        faults.functions.push(FunctionMarks { name: pou.name.clone(), marks });
     }
     for (index, program) in checked.programs.iter().enumerate() {
         let body = entry(program, &shared.functions);
         let at = sections.add_function(Vec::new(), Vec::new(), &body);
-        sections
-            .exports
-            .export(&program_export(index), ExportKind::Func, at);
+        sections.exports.export(&program_export(index), ExportKind::Func, at);
     }
-    Compiled {
-        wasm: sections.finish(checked.image.len() as u64, &shared),
-        faults,
-    }
+    Compiled { wasm: sections.finish(checked.image.len() as u64, &shared), faults }
 }
 
 /// Runs a program's body on its one instance.
@@ -84,10 +68,7 @@ fn entry(program: &Program, functions: &BTreeMap<crate::ir::PouId, u32>) -> Func
 fn signature(pou: &Pou, types: &TypeTable) -> (Vec<ValType>, Vec<ValType>) {
     let parameters = pou.registers.iter().take(pou.parameters as usize);
     let parameters = parameters.map(|ty| value_type(*ty)).collect();
-    let result = pou
-        .result
-        .as_ref()
-        .filter(|_| pou.kind == PouKind::Function);
+    let result = pou.result.as_ref().filter(|_| pou.kind == PouKind::Function);
     // An aggregate result is given by its address.
     let result = result.map(|place| types.elementary(place.ty).map_or(ValType::I32, value_type));
     (parameters, result.into_iter().collect())
@@ -118,18 +99,12 @@ impl Sections {
                 host::Function::DoublePair(_) => (ValType::F64, 2),
             };
             let ty = self.add_type(vec![value; count], vec![value]);
-            self.imports
-                .import(host::MODULE, import.name, EntityType::Function(ty));
+            self.imports.import(host::MODULE, import.name, EntityType::Function(ty));
         }
     }
 
     /// Adds a function and gives its index.
-    fn add_function(
-        &mut self,
-        parameters: Vec<ValType>,
-        results: Vec<ValType>,
-        body: &Function,
-    ) -> u32 {
+    fn add_function(&mut self, parameters: Vec<ValType>, results: Vec<ValType>, body: &Function) -> u32 {
         let ty = self.add_type(parameters, results);
         self.functions.function(ty);
         self.code.function(body);
@@ -152,10 +127,7 @@ impl Sections {
             data.passive(bytes.iter().copied());
         }
         let mut module = Module::new();
-        module
-            .section(&self.types)
-            .section(&self.imports)
-            .section(&self.functions);
+        module.section(&self.types).section(&self.imports).section(&self.functions);
         module.section(&memories).section(&self.exports);
         module.section(&DataCountSection { count: data.len() });
         module.section(&self.code).section(&data);

@@ -12,11 +12,7 @@ use crate::syntax::Span;
 const INSTANCE: LocalId = LocalId(0);
 
 fn argument(offset: u64, ty: ElementaryType) -> MemArg {
-    MemArg {
-        offset,
-        align: ty.size().trailing_zeros(),
-        memory_index: 0,
-    }
+    MemArg { offset, align: ty.size().trailing_zeros(), memory_index: 0 }
 }
 
 impl Emitter<'_, '_> {
@@ -30,10 +26,7 @@ impl Emitter<'_, '_> {
             }
             Storage::InstancePointer(offset) => {
                 self.get(INSTANCE);
-                self.emit(Instruction::I32Load(argument(
-                    u64::from(offset),
-                    ElementaryType::Udint,
-                )));
+                self.emit(Instruction::I32Load(argument(u64::from(offset), ElementaryType::Udint)));
                 (0, true)
             }
             Storage::RegisterPointer(register) => {
@@ -46,12 +39,7 @@ impl Emitter<'_, '_> {
         for step in &place.steps {
             match step {
                 Step::Offset(further) => offset += u64::from(*further),
-                Step::Index {
-                    index,
-                    low,
-                    count,
-                    stride,
-                } => {
+                Step::Index { index, low, count, stride } => {
                     self.index(index, *low, *count, *stride, place.span);
                     if pushed {
                         self.emit(Instruction::I32Add);

@@ -117,18 +117,10 @@ impl Emitter<'_, '_> {
         self.widened_variable(inner, ty);
         self.tee(variable);
         self.get(inner.last);
-        self.emit(if signed {
-            Instruction::I64LtS
-        } else {
-            Instruction::I64LtU
-        });
+        self.emit(if signed { Instruction::I64LtS } else { Instruction::I64LtU });
         self.get(variable);
         self.get(inner.last);
-        self.emit(if signed {
-            Instruction::I64GtS
-        } else {
-            Instruction::I64GtU
-        });
+        self.emit(if signed { Instruction::I64GtS } else { Instruction::I64GtU });
         self.downwards(inner.step, ty);
         self.emit(Instruction::Select);
         self.release(variable);

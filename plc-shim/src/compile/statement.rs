@@ -7,8 +7,8 @@ use wasm_encoder::Instruction;
 use super::emitter::Emitter;
 use crate::ir::elementary::Kind;
 use crate::ir::{
-    CaseStatement, ElementaryType, Expr, IfBranch, InstanceCall, LocalId, Place, Statement,
-    StatementKind, TypeTable, Value,
+    CaseStatement, ElementaryType, Expr, IfBranch, InstanceCall, LocalId, Place, Statement, StatementKind, TypeTable,
+    Value,
 };
 
 impl Emitter<'_, '_> {
@@ -68,10 +68,7 @@ impl Emitter<'_, '_> {
         self.expression(source);
         let size = self.shared.types.size(target.ty);
         self.emit(Instruction::I32Const(size as i32));
-        self.emit(Instruction::MemoryCopy {
-            src_mem: 0,
-            dst_mem: 0,
-        });
+        self.emit(Instruction::MemoryCopy { src_mem: 0, dst_mem: 0 });
     }
 
     fn initialise(&mut self, place: &Place, image: &Arc<[u8]>) {
@@ -159,11 +156,7 @@ impl Emitter<'_, '_> {
         self.get(register);
         self.constant(ty, Value::Int(low));
         if low == high {
-            self.emit(if wide {
-                Instruction::I64Eq
-            } else {
-                Instruction::I32Eq
-            });
+            self.emit(if wide { Instruction::I64Eq } else { Instruction::I32Eq });
             return;
         }
         self.emit(match (wide, signed) {

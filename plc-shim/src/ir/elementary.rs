@@ -64,10 +64,7 @@ pub(crate) enum Kind {
 impl ElementaryType {
     /// The type of this keyword, in any case.
     pub fn find(name: &str) -> Option<Self> {
-        Self::ALL
-            .iter()
-            .copied()
-            .find(|ty| ty.name().eq_ignore_ascii_case(name))
+        Self::ALL.iter().copied().find(|ty| ty.name().eq_ignore_ascii_case(name))
     }
 
     /// `ANY_INT`
@@ -121,9 +118,7 @@ impl ElementaryType {
             (Kind::Signed, Kind::Signed)
             | (Kind::Unsigned, Kind::Unsigned | Kind::Signed)
             | (Kind::Bits, Kind::Bits)
-            | (Kind::Real | Kind::Signed | Kind::Unsigned, Kind::Real) => {
-                self.size() < target.size()
-            }
+            | (Kind::Real | Kind::Signed | Kind::Unsigned, Kind::Real) => self.size() < target.size(),
             (Kind::Bool, Kind::Bits) => true,
             (Kind::Duration, Kind::Duration) => self == Self::Time,
             _ => false,
@@ -133,11 +128,7 @@ impl ElementaryType {
     /// The smallest type that both widen to.
     pub fn common(self, other: Self) -> Option<Self> {
         let fits = |ty: &Self| self.widens_to(*ty) && other.widens_to(*ty);
-        Self::ALL
-            .iter()
-            .copied()
-            .filter(fits)
-            .min_by_key(|ty| ty.size())
+        Self::ALL.iter().copied().filter(fits).min_by_key(|ty| ty.size())
     }
 
     /// `value` cut to the type's width, two's complement.
@@ -165,13 +156,9 @@ mod tests {
 
     #[test]
     fn implicit_conversions_lose_nothing() {
-        assert!(
-            E::Sint.widens_to(E::Int) && E::Usint.widens_to(E::Int) && E::Int.widens_to(E::Real)
-        );
+        assert!(E::Sint.widens_to(E::Int) && E::Usint.widens_to(E::Int) && E::Int.widens_to(E::Real));
         assert!(E::Dint.widens_to(E::Lreal) && E::Bool.widens_to(E::Byte));
-        assert!(
-            !E::Int.widens_to(E::Sint) && !E::Uint.widens_to(E::Int) && !E::Int.widens_to(E::Uint)
-        );
+        assert!(!E::Int.widens_to(E::Sint) && !E::Uint.widens_to(E::Int) && !E::Int.widens_to(E::Uint));
         assert!(!E::Dint.widens_to(E::Real) && !E::Lint.widens_to(E::Lreal));
         assert!(!E::Word.widens_to(E::Uint) && !E::Byte.widens_to(E::Bool));
         assert!(E::Time.widens_to(E::Ltime) && !E::Ltime.widens_to(E::Time));

@@ -68,10 +68,7 @@ pub(crate) enum Binary {
 impl Binary {
     pub(crate) fn is_comparison(self) -> bool {
         use Binary as B;
-        matches!(
-            self,
-            B::Equal | B::NotEqual | B::Less | B::LessEqual | B::Greater | B::GreaterEqual
-        )
+        matches!(self, B::Equal | B::NotEqual | B::Less | B::LessEqual | B::Greater | B::GreaterEqual)
     }
 }
 
@@ -152,12 +149,7 @@ pub(crate) struct Place {
 
 impl Place {
     pub(crate) fn whole(storage: Storage, ty: TypeId, span: Span) -> Self {
-        Self {
-            storage,
-            steps: Vec::new(),
-            ty,
-            span,
-        }
+        Self { storage, steps: Vec::new(), ty, span }
     }
 
     /// The part of type `ty` that lies `offset` bytes inside.
@@ -177,10 +169,5 @@ pub(crate) enum Step {
     /// So many bytes further.
     Offset(u32),
     /// `(index - low) * stride` bytes further; a fault unless `index - low < count`.
-    Index {
-        index: Box<Expr>,
-        low: i64,
-        count: u32,
-        stride: u32,
-    },
+    Index { index: Box<Expr>, low: i64, count: u32, stride: u32 },
 }

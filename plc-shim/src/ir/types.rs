@@ -89,17 +89,8 @@ impl TypeTable {
             image: vec![0; ty.size() as usize].into(),
         };
         let mut entries: Vec<_> = ElementaryType::ALL.iter().map(|ty| entry(*ty)).collect();
-        entries.push(Entry {
-            ty: Type::Nothing,
-            size: 0,
-            align: 1,
-            image: Arc::from([]),
-        });
-        Self {
-            entries,
-            arrays: BTreeMap::new(),
-            blocks: BTreeMap::new(),
-        }
+        entries.push(Entry { ty: Type::Nothing, size: 0, align: 1, image: Arc::from([]) });
+        Self { entries, arrays: BTreeMap::new(), blocks: BTreeMap::new() }
     }
 
     /// The type of a function call without a result.
@@ -108,12 +99,7 @@ impl TypeTable {
     }
 
     fn add(&mut self, ty: Type, size: u32, align: u32, image: Arc<[u8]>) -> TypeId {
-        self.entries.push(Entry {
-            ty,
-            size,
-            align,
-            image,
-        });
+        self.entries.push(Entry { ty, size, align, image });
         TypeId(self.entries.len() as u32 - 1)
     }
 
@@ -147,63 +133,29 @@ impl TypeTable {
         }
     }
 
-    pub(crate) fn enumeration(
-        &mut self,
-        name: String,
-        base: ElementaryType,
-        values: Vec<(String, i128)>,
-    ) -> TypeId {
+    pub(crate) fn enumeration(&mut self, name: String, base: ElementaryType, values: Vec<(String, i128)>) -> TypeId {
         // A variable begins with the first value (2nd ed. Table 13).
         let first = values.first().map_or(0, |(_, value)| *value);
         let image = super::Value::Int(first).bytes()[..base.size() as usize].into();
-        self.add(
-            Type::Enumeration { name, base, values },
-            base.size(),
-            base.size(),
-            image,
-        )
+        self.add(Type::Enumeration { name, base, values }, base.size(), base.size(), image)
     }
 
     /// The array type; `size` is that of the whole array.
-    pub(crate) fn array(
-        &mut self,
-        dimensions: Vec<Dimension>,
-        element: TypeId,
-        size: u32,
-    ) -> TypeId {
+    pub(crate) fn array(&mut self, dimensions: Vec<Dimension>, element: TypeId, size: u32) -> TypeId {
         let key = (element, dimensions.clone());
         if let Some(found) = self.arrays.get(&key) {
             return *found;
         }
-        let image = self
-            .image(element)
-            .repeat((size / self.size(element).max(1)) as usize);
+        let image = self.image(element).repeat((size / self.size(element).max(1)) as usize);
         let align = self.align(element);
-        let id = self.add(
-            Type::Array {
-                dimensions,
-                element,
-            },
-            size,
-            align,
-            image.into(),
-        );
+        let id = self.add(Type::Array { dimensions, element }, size, align, image.into());
         self.arrays.insert(key, id);
         id
     }
 
     pub(crate) fn structure(&mut self, name: String, fields: Vec<Field>, image: Vec<u8>) -> TypeId {
-        let align = fields
-            .iter()
-            .map(|field| self.align(field.ty))
-            .max()
-            .unwrap_or(1);
-        self.add(
-            Type::Struct { name, fields },
-            image.len() as u32,
-            align,
-            image.into(),
-        )
+        let align = fields.iter().map(|field| self.align(field.ty)).max().unwrap_or(1);
+        self.add(Type::Struct { name, fields }, image.len() as u32, align, image.into())
     }
 
     /// The type of a function block's instances; [`Self::complete_block`] gives it its size.
@@ -211,10 +163,7 @@ impl TypeTable {
         if let Some(found) = self.blocks.get(&pou) {
             return *found;
         }
-        let ty = Type::FunctionBlock {
-            name: name.to_owned(),
-            pou,
-        };
+        let ty = Type::FunctionBlock { name: name.to_owned(), pou };
         let id = self.add(ty, 0, 1, Arc::from([]));
         self.blocks.insert(pou, id);
         id
@@ -233,17 +182,11 @@ impl TypeTable {
         match self.get(id) {
             Type::Elementary(ty) => ty.name().to_owned(),
             Type::Nothing => "nothing".to_owned(),
-            Type::Enumeration { name, .. }
-            | Type::Struct { name, .. }
-            | Type::FunctionBlock { name, .. } => name.clone(),
-            Type::Array {
-                dimensions,
-                element,
-            } => {
-                let bounds: Vec<_> = dimensions
-                    .iter()
-                    .map(|each| format!("{}..{}", each.low, each.high))
-                    .collect();
+            Type::Enumeration { name, .. } | Type::Struct { name, .. } | Type::FunctionBlock { name, .. } => {
+                name.clone()
+            }
+            Type::Array { dimensions, element } => {
+                let bounds: Vec<_> = dimensions.iter().map(|each| format!("{}..{}", each.low, each.high)).collect();
                 format!("ARRAY [{}] OF {}", bounds.join(", "), self.name(*element))
             }
         }

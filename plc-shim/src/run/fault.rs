@@ -31,15 +31,7 @@ pub struct PlcFault {
 
 impl fmt::Display for PlcFault {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self {
-            kind,
-            file,
-            line,
-            column,
-            pou,
-            call_path,
-            virtual_time,
-        } = self;
+        let Self { kind, file, line, column, pou, call_path, virtual_time } = self;
         write!(formatter, "{kind} at {file}:{line}:{column} in {pou}")?;
         if call_path.len() > 1 {
             write!(formatter, " (called by way of {})", call_path.join(", "))?;
@@ -54,23 +46,15 @@ impl std::error::Error for PlcFault {}
 const MAX_PATH: usize = 64;
 
 /// What the trap means in the source.
-pub(super) fn explain(
-    application: &Application,
-    trapped: &Trapped,
-    virtual_time: VirtualTime,
-) -> PlcFault {
+pub(super) fn explain(application: &Application, trapped: &Trapped, virtual_time: VirtualTime) -> PlcFault {
     let table = application.faults();
     let frames = trapped.frames.iter();
     let mut known = frames.filter_map(|(index, offset)| Some((table.function(*index)?, *offset)));
     let innermost = known.next();
-    let outer = known
-        .map(|(function, _)| function.name.clone())
-        .take(MAX_PATH);
+    let outer = known.map(|(function, _)| function.name.clone()).take(MAX_PATH);
     let mut call_path: Vec<String> = outer.collect();
     call_path.reverse();
-    let pou = innermost
-        .map(|(function, _)| function.name.clone())
-        .unwrap_or_default();
+    let pou = innermost.map(|(function, _)| function.name.clone()).unwrap_or_default();
     call_path.push(pou.clone());
     let (kind, span) = cause(trapped.trap, innermost);
     let (file, place) = span.map_or(("", None), |span| {
@@ -88,10 +72,7 @@ pub(super) fn explain(
     }
 }
 
-fn cause(
-    trap: Option<Trap>,
-    innermost: Option<(&FunctionMarks, Option<u32>)>,
-) -> (FaultKind, Option<Span>) {
+fn cause(trap: Option<Trap>, innermost: Option<(&FunctionMarks, Option<u32>)>) -> (FaultKind, Option<Span>) {
     let statement = innermost.and_then(|(function, offset)| function.statement_before(offset?));
     match trap {
         Some(Trap::OutOfFuel) => (FaultKind::EndlessLoop, statement),

@@ -1,9 +1,6 @@
 //! The compiled module with its memory, in wasmtime.
 
-use wasmtime::{
-    Config, Engine, Instance, Linker, Memory, Module, Store, StoreLimits, Trap, TypedFunc,
-    WasmBacktrace,
-};
+use wasmtime::{Config, Engine, Instance, Linker, Memory, Module, Store, StoreLimits, Trap, TypedFunc, WasmBacktrace};
 
 use super::plan::RunError;
 use crate::application::Application;
@@ -41,8 +38,7 @@ fn module_error(error: &wasmtime::Error) -> RunError {
 
 impl Machine {
     pub(super) fn new(application: &Application) -> Result<Self, RunError> {
-        let module = application
-            .module(|wasm| Module::new(&engine()?, wasm).map_err(|error| format!("{error:#}")));
+        let module = application.module(|wasm| Module::new(&engine()?, wasm).map_err(|error| format!("{error:#}")));
         let module = module.map_err(RunError::Module)?;
         let mut store = Store::new(module.engine(), StoreLimits::default());
         let linker = linker(module.engine()).map_err(|error| module_error(&error))?;
@@ -54,12 +50,7 @@ impl Machine {
         let count = application.programs().count();
         let programs = (0..count).map(|index| program(&instance, &mut store, index));
         let programs = programs.collect::<Result<_, _>>()?;
-        Ok(Self {
-            store,
-            memory,
-            size,
-            programs,
-        })
+        Ok(Self { store, memory, size, programs })
     }
 
     pub(super) fn memory(&self) -> &[u8] {
@@ -84,17 +75,11 @@ impl Machine {
         let Some(function) = self.programs.get(program) else {
             return Ok(());
         };
-        function
-            .call(&mut self.store, ())
-            .map_err(|error| trapped(&error))
+        function.call(&mut self.store, ()).map_err(|error| trapped(&error))
     }
 }
 
-fn program(
-    instance: &Instance,
-    store: &mut Store<StoreLimits>,
-    index: usize,
-) -> Result<TypedFunc<(), ()>, RunError> {
+fn program(instance: &Instance, store: &mut Store<StoreLimits>, index: usize) -> Result<TypedFunc<(), ()>, RunError> {
     let function = instance.get_typed_func(store, &program_export(index));
     function.map_err(|error| module_error(&error))
 }
@@ -111,14 +96,10 @@ fn linker(engine: &Engine) -> Result<Linker<StoreLimits>, wasmtime::Error> {
                 linker.func_wrap(module, name, move |x: f64| canonical_double(function(x)))?
             }
             host::Function::SinglePair(function) => {
-                linker.func_wrap(module, name, move |x: f32, y: f32| {
-                    canonical_single(function(x, y))
-                })?
+                linker.func_wrap(module, name, move |x: f32, y: f32| canonical_single(function(x, y)))?
             }
             host::Function::DoublePair(function) => {
-                linker.func_wrap(module, name, move |x: f64, y: f64| {
-                    canonical_double(function(x, y))
-                })?
+                linker.func_wrap(module, name, move |x: f64, y: f64| canonical_double(function(x, y)))?
             }
         };
     }
@@ -127,35 +108,16 @@ fn linker(engine: &Engine) -> Result<Linker<StoreLimits>, wasmtime::Error> {
 
 /// A NaN's bits would depend on the machine.
 fn canonical_single(value: f32) -> f32 {
-    if value.is_nan() {
-        f32::from_bits(0x7fc0_0000)
-    } else {
-        value
-    }
+    if value.is_nan() { f32::from_bits(0x7fc0_0000) } else { value }
 }
 
 fn canonical_double(value: f64) -> f64 {
-    if value.is_nan() {
-        f64::from_bits(0x7ff8_0000_0000_0000)
-    } else {
-        value
-    }
+    if value.is_nan() { f64::from_bits(0x7ff8_0000_0000_0000) } else { value }
 }
 
 fn trapped(error: &wasmtime::Error) -> Trapped {
     let backtrace = error.downcast_ref::<WasmBacktrace>();
-    let frames = backtrace
-        .map(WasmBacktrace::frames)
-        .unwrap_or_default()
-        .iter();
-    let frames = frames.map(|frame| {
-        (
-            frame.func_index(),
-            frame.func_offset().map(|offset| offset as u32),
-        )
-    });
-    Trapped {
-        trap: error.downcast_ref::<Trap>().copied(),
-        frames: frames.collect(),
-    }
+    let frames = backtrace.map(WasmBacktrace::frames).unwrap_or_default().iter();
+    let frames = frames.map(|frame| (frame.func_index(), frame.func_offset().map(|offset| offset as u32)));
+    Trapped { trap: error.downcast_ref::<Trap>().copied(), frames: frames.collect() }
 }

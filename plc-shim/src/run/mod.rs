@@ -42,11 +42,6 @@ impl std::fmt::Display for VirtualTime {
     fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         let decimals = format!("{:09}", self.0 % 1_000_000_000);
         let (first, rest) = decimals.split_at(3);
-        write!(
-            formatter,
-            "{}.{first}{} s",
-            self.0 / 1_000_000_000,
-            rest.trim_end_matches('0')
-        )
+        write!(formatter, "{}.{first}{} s", self.0 / 1_000_000_000, rest.trim_end_matches('0'))
     }
 }

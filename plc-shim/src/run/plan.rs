@@ -36,21 +36,13 @@ impl TaskPlan {
 
     /// A plan with the default budget of instructions.
     pub fn new(tasks: Vec<Task>) -> Self {
-        Self {
-            tasks,
-            fuel_per_task: Self::DEFAULT_FUEL,
-        }
+        Self { tasks, fuel_per_task: Self::DEFAULT_FUEL }
     }
 
     /// One task that runs all programs of the application in their order.
     pub fn single(application: &Application, interval_ns: u64) -> Self {
         let programs = application.programs().map(|program| program.name).collect();
-        Self::new(vec![Task {
-            name: "main".to_owned(),
-            interval_ns,
-            priority: 0,
-            programs,
-        }])
+        Self::new(vec![Task { name: "main".to_owned(), interval_ns, priority: 0, programs }])
     }
 }
 
@@ -94,10 +86,7 @@ fn suffix(help: Option<&String>) -> String {
 }
 
 /// The programs of each task by position.
-pub(super) fn resolve(
-    plan: &TaskPlan,
-    application: &Application,
-) -> Result<Vec<Vec<usize>>, RunError> {
+pub(super) fn resolve(plan: &TaskPlan, application: &Application) -> Result<Vec<Vec<usize>>, RunError> {
     if plan.tasks.is_empty() {
         return Err(RunError::NoTasks);
     }

@@ -23,9 +23,7 @@ impl Scheduler {
             priority: task.priority,
             due_ns: task.interval_ns,
         };
-        Self {
-            tasks: plan.tasks.iter().map(entry).collect(),
-        }
+        Self { tasks: plan.tasks.iter().map(entry).collect() }
     }
 
     /// Every task is due one interval after the start.
@@ -46,11 +44,7 @@ impl Scheduler {
     /// then the one declared first. A task that missed intervals runs once for all of them.
     pub(super) fn take_due(&mut self, now: VirtualTime) -> Option<usize> {
         let now = now.as_ns();
-        let due = self
-            .tasks
-            .iter()
-            .enumerate()
-            .filter(|(_, task)| task.due_ns <= now);
+        let due = self.tasks.iter().enumerate().filter(|(_, task)| task.due_ns <= now);
         let next = due.min_by_key(|(index, task)| (task.priority, task.due_ns, *index));
         let (index, _) = next?;
         let task = self.tasks.get_mut(index)?;
@@ -62,13 +56,7 @@ impl Scheduler {
 
     /// When the first task is due.
     pub(super) fn next_due(&self) -> VirtualTime {
-        VirtualTime::from_ns(
-            self.tasks
-                .iter()
-                .map(|task| task.due_ns)
-                .min()
-                .unwrap_or(u64::MAX),
-        )
+        VirtualTime::from_ns(self.tasks.iter().map(|task| task.due_ns).min().unwrap_or(u64::MAX))
     }
 
     /// Greatest common divisor of the intervals.
@@ -79,9 +67,7 @@ impl Scheduler {
             }
             a
         };
-        self.tasks
-            .iter()
-            .fold(0, |period, task| divisor(period, task.interval_ns))
+        self.tasks.iter().fold(0, |period, task| divisor(period, task.interval_ns))
     }
 
     /// When each task is due.

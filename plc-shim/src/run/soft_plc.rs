@@ -26,10 +26,7 @@ pub struct SoftPlc {
 impl std::fmt::Debug for SoftPlc {
     fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         let mut debug = formatter.debug_struct("SoftPlc");
-        debug
-            .field("now", &self.now)
-            .field("fault", &self.fault)
-            .finish_non_exhaustive()
+        debug.field("now", &self.now).field("fault", &self.fault).finish_non_exhaustive()
     }
 }
 
@@ -100,19 +97,9 @@ impl SoftPlc {
     fn run_task(&mut self, task: usize) -> Result<(), PlcFault> {
         let now = self.now;
         let time = now.as_ns().to_le_bytes();
-        copy_to(
-            self.machine.memory_mut(),
-            VIRTUAL_TIME_OFFSET as usize,
-            &time,
-        );
+        copy_to(self.machine.memory_mut(), VIRTUAL_TIME_OFFSET as usize, &time);
         self.machine.refuel(self.fuel_per_task);
-        let Self {
-            machine,
-            programs,
-            application,
-            fault,
-            ..
-        } = self;
+        let Self { machine, programs, application, fault, .. } = self;
         for program in programs.get(task).map_or(&[][..], Vec::as_slice) {
             if let Err(trapped) = machine.run(*program) {
                 let found = explain(application, &trapped, now);

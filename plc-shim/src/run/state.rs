@@ -98,9 +98,7 @@ impl<'m> State<'m> {
         if reader.number().ok_or(RestoreError::Damaged)? != fingerprint {
             return Err(RestoreError::OtherApplication);
         }
-        reader
-            .state(tasks, memory_size)
-            .ok_or(RestoreError::Damaged)
+        reader.state(tasks, memory_size).ok_or(RestoreError::Damaged)
     }
 }
 
@@ -111,10 +109,7 @@ fn encode_fault(fault: &PlcFault, bytes: &mut Vec<u8>) {
     bytes.extend_from_slice(&fault.line.to_le_bytes());
     bytes.extend_from_slice(&fault.column.to_le_bytes());
     bytes.extend_from_slice(&(fault.call_path.len() as u32).to_le_bytes());
-    for text in [&fault.file, &fault.pou]
-        .into_iter()
-        .chain(&fault.call_path)
-    {
+    for text in [&fault.file, &fault.pou].into_iter().chain(&fault.call_path) {
         bytes.extend_from_slice(&(text.len() as u32).to_le_bytes());
         bytes.extend_from_slice(text.as_bytes());
     }
@@ -164,12 +159,7 @@ impl<'m> Reader<'m> {
             return None;
         }
         let memory = self.take(memory_size)?;
-        self.rest.is_empty().then_some(State {
-            now,
-            due_ns,
-            fault,
-            memory,
-        })
+        self.rest.is_empty().then_some(State { now, due_ns, fault, memory })
     }
 
     fn fault(&mut self) -> Option<PlcFault> {
@@ -179,14 +169,6 @@ impl<'m> Reader<'m> {
         let count = self.small_number()?;
         let (file, pou) = (self.text()?, self.text()?);
         let call_path = (0..count).map(|_| self.text()).collect::<Option<_>>()?;
-        Some(PlcFault {
-            kind,
-            file,
-            line,
-            column,
-            pou,
-            call_path,
-            virtual_time,
-        })
+        Some(PlcFault { kind, file, line, column, pou, call_path, virtual_time })
     }
 }

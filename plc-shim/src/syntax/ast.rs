@@ -5,16 +5,13 @@ mod expression;
 mod statement;
 
 pub use declaration::{
-    Declaration, Dimension, EnumValue, Field, Initialiser, InitialiserKind, Pou, PouKind,
-    Qualifier, Section, SectionKind, StructureInit, Subrange, TypeDeclaration, TypeSpec,
-    TypeSpecKind, Variable,
+    Declaration, Dimension, EnumValue, Field, Initialiser, InitialiserKind, Pou, PouKind, Qualifier, Section,
+    SectionKind, StructureInit, Subrange, TypeDeclaration, TypeSpec, TypeSpecKind, Variable,
 };
-pub use expression::{
-    Argument, BinaryOp, Call, Expr, ExprKind, Literal, MAX_HEIGHT, TypedValue, UnaryOp,
-};
+pub use expression::{Argument, BinaryOp, Call, Expr, ExprKind, Literal, MAX_HEIGHT, TypedValue, UnaryOp};
 pub use statement::{
-    CaseBranch, CaseLabel, CaseStatement, ForStatement, IfBranch, IfStatement, RepeatStatement,
-    Statement, StatementKind, WhileStatement,
+    CaseBranch, CaseLabel, CaseStatement, ForStatement, IfBranch, IfStatement, RepeatStatement, Statement,
+    StatementKind, WhileStatement,
 };
 
 use super::source::Span;

@@ -10,11 +10,7 @@ pub fn tokenize(text: &str) -> Vec<Token> {
         let start = lexer.at;
         let kind = lexer.token();
         debug_assert!(lexer.at > start, "a token is never empty");
-        tokens.push(Token {
-            kind,
-            start: start as u32,
-            end: lexer.at as u32,
-        });
+        tokens.push(Token { kind, start: start as u32, end: lexer.at as u32 });
     }
     tokens
 }
@@ -30,18 +26,12 @@ impl<'a> Lexer<'a> {
     }
 
     fn peek(&self, ahead: usize) -> u8 {
-        self.text
-            .as_bytes()
-            .get(self.at + ahead)
-            .copied()
-            .unwrap_or(0)
+        self.text.as_bytes().get(self.at + ahead).copied().unwrap_or(0)
     }
 
     fn take_while(&mut self, accept: impl Fn(char) -> bool) {
         let rest = self.rest();
-        self.at += rest
-            .find(|character| !accept(character))
-            .unwrap_or(rest.len());
+        self.at += rest.find(|character| !accept(character)).unwrap_or(rest.len());
     }
 
     fn token(&mut self) -> TokenKind {
@@ -173,8 +163,7 @@ impl<'a> Lexer<'a> {
         let text = self.text.get(start..self.at).unwrap_or("");
         let after_sign = usize::from(matches!(self.peek(1), b'+' | b'-'));
         if self.peek(0) == b'#'
-            && (self.peek(1 + after_sign).is_ascii_alphanumeric()
-                || self.peek(1 + after_sign) == b'_')
+            && (self.peek(1 + after_sign).is_ascii_alphanumeric() || self.peek(1 + after_sign) == b'_')
         {
             self.at += 1 + after_sign;
             self.typed_value();
@@ -253,10 +242,7 @@ mod tests {
         assert_eq!(kinds("(* a (* b *)")[0].0, TokenKind::Unterminated);
         assert_eq!(kinds("'it$'s' x")[0], (TokenKind::String, "'it$'s'"));
         assert_eq!(kinds("'open\nx")[0], (TokenKind::Unterminated, "'open"));
-        assert_eq!(
-            kinds("%IX1.0.2;")[0],
-            (TokenKind::DirectAddress, "%IX1.0.2")
-        );
+        assert_eq!(kinds("%IX1.0.2;")[0], (TokenKind::DirectAddress, "%IX1.0.2"));
     }
 
     #[test]

@@ -27,14 +27,8 @@ pub fn parse_integer(text: &str) -> Result<i128, String> {
 /// A sentence that says what is wrong.
 pub fn parse_real(text: &str) -> Result<f64, String> {
     let digits = without_underscores(text)?;
-    let value: f64 = digits
-        .parse()
-        .map_err(|_| format!("`{text}` is no real number"))?;
-    if value.is_finite() {
-        Ok(value)
-    } else {
-        Err("real number is too large".to_owned())
-    }
+    let value: f64 = digits.parse().map_err(|_| format!("`{text}` is no real number"))?;
+    if value.is_finite() { Ok(value) } else { Err("real number is too large".to_owned()) }
 }
 
 /// Value of a literal with a type before its `#`.
@@ -44,18 +38,9 @@ pub fn parse_real(text: &str) -> Result<f64, String> {
 pub fn parse_typed(text: &str) -> Result<Literal, String> {
     let (prefix, body) = text.split_once('#').ok_or("`#` is missing")?;
     match prefix.to_ascii_uppercase().as_str() {
-        "T" | "TIME" => Ok(Literal::Duration {
-            long: false,
-            ns: parse_duration(body)?,
-        }),
-        "LT" | "LTIME" => Ok(Literal::Duration {
-            long: true,
-            ns: parse_duration(body)?,
-        }),
-        _ => Ok(Literal::Typed {
-            prefix: prefix.to_owned(),
-            value: parse_typed_value(body)?,
-        }),
+        "T" | "TIME" => Ok(Literal::Duration { long: false, ns: parse_duration(body)? }),
+        "LT" | "LTIME" => Ok(Literal::Duration { long: true, ns: parse_duration(body)? }),
+        _ => Ok(Literal::Typed { prefix: prefix.to_owned(), value: parse_typed_value(body)? }),
     }
 }
 
@@ -94,20 +79,14 @@ const UNITS: [(&str, i128); 7] = [
 /// A sentence that says what is wrong.
 pub fn parse_duration(text: &str) -> Result<i64, String> {
     let lower = text.to_ascii_lowercase();
-    let (negative, mut rest) = lower
-        .strip_prefix('-')
-        .map_or((false, &*lower), |rest| (true, rest));
+    let (negative, mut rest) = lower.strip_prefix('-').map_or((false, &*lower), |rest| (true, rest));
     rest = rest.strip_prefix('+').unwrap_or(rest);
     let mut total: i128 = 0;
     let mut last_unit = None;
     while !rest.is_empty() {
-        let end = rest
-            .find(|first: char| first.is_ascii_alphabetic())
-            .ok_or("unit is missing")?;
+        let end = rest.find(|first: char| first.is_ascii_alphabetic()).ok_or("unit is missing")?;
         let (number, tail) = rest.split_at(end);
-        let end = tail
-            .find(|first: char| !first.is_ascii_alphabetic())
-            .unwrap_or(tail.len());
+        let end = tail.find(|first: char| !first.is_ascii_alphabetic()).unwrap_or(tail.len());
         let (unit, tail) = tail.split_at(end);
         let index = UNITS.iter().position(|(name, _)| *name == unit);
         let index = index.ok_or_else(|| format!("`{unit}` is no unit of time"))?;
@@ -132,16 +111,10 @@ fn scaled(number: &str, unit_ns: i128, fraction_allowed: bool) -> Result<i128, S
     if !fraction.is_empty() && !fraction_allowed {
         return Err("only the last unit may have a fraction".to_owned());
     }
-    let whole: i128 = without_underscores(whole)?
-        .parse()
-        .map_err(|_| "number is missing")?;
+    let whole: i128 = without_underscores(whole)?.parse().map_err(|_| "number is missing")?;
     let mut value = whole.checked_mul(unit_ns).ok_or("duration is too long")?;
     let mut weight = unit_ns;
-    let digits = if fraction.is_empty() {
-        String::new()
-    } else {
-        without_underscores(fraction)?
-    };
+    let digits = if fraction.is_empty() { String::new() } else { without_underscores(fraction)? };
     if !digits.bytes().all(|digit| digit.is_ascii_digit()) {
         return Err(format!("`{number}` is no number"));
     }
@@ -184,9 +157,7 @@ mod tests {
         assert_eq!(parse_duration("25h"), Ok(90_000_000_000_000));
         assert_eq!(parse_duration("0.0000000009s"), Ok(0));
         assert_eq!(parse_duration("0.333333333333s"), Ok(333_333_333));
-        for wrong in [
-            "", "5", "1.5s2ms", "1ms2s", "1s1s", "1x", "s", "300000d", "1.5.3s",
-        ] {
+        for wrong in ["", "5", "1.5s2ms", "1ms2s", "1s1s", "1x", "s", "300000d", "1.5.3s"] {
             assert!(parse_duration(wrong).is_err(), "{wrong}");
         }
     }

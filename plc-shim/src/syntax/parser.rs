@@ -39,11 +39,7 @@ pub fn parse(file: FileId, text: &str) -> Parsed {
     report_lexical_errors(&mut cursor, &tokens);
     let unit = cursor.compilation_unit();
     let diagnostics = cursor.into_diagnostics();
-    Parsed {
-        tokens,
-        unit,
-        diagnostics,
-    }
+    Parsed { tokens, unit, diagnostics }
 }
 
 fn report_lexical_errors(cursor: &mut Cursor<'_>, tokens: &[Token]) {
@@ -52,21 +48,11 @@ fn report_lexical_errors(cursor: &mut Cursor<'_>, tokens: &[Token]) {
         match token.kind {
             TokenKind::Unterminated => {
                 // The place where it begins is the place to look at, not all that it swallowed.
-                let span = Span {
-                    end: (token.start + 1).min(token.end),
-                    ..span
-                };
-                cursor.report(Diagnostic::error(
-                    Code::Unterminated,
-                    span,
-                    "comment, pragma or string without an end",
-                ));
+                let span = Span { end: (token.start + 1).min(token.end), ..span };
+                cursor.report(Diagnostic::error(Code::Unterminated, span, "comment, pragma or string without an end"));
             }
             TokenKind::Unknown => {
-                let text = cursor
-                    .text(token.start, token.end)
-                    .escape_debug()
-                    .to_string();
+                let text = cursor.text(token.start, token.end).escape_debug().to_string();
                 let message = format!("`{text}` begins no token");
                 cursor.report(Diagnostic::error(Code::UnknownCharacter, span, message));
             }

@@ -25,11 +25,7 @@ impl Span {
 
     /// The smallest span that covers both; `other` is taken to be in the same file.
     pub fn to(self, other: Self) -> Self {
-        Self {
-            file: self.file,
-            start: self.start.min(other.start),
-            end: self.end.max(other.end),
-        }
+        Self { file: self.file, start: self.start.min(other.start), end: self.end.max(other.end) }
     }
 
     /// Length in bytes.
@@ -56,14 +52,8 @@ impl SourceFile {
     pub fn new(name: impl Into<String>, text: impl Into<Arc<str>>) -> Self {
         let text = text.into();
         let breaks = text.bytes().enumerate().filter(|(_, byte)| *byte == b'\n');
-        let line_starts = std::iter::once(0)
-            .chain(breaks.map(|(at, _)| at as u32 + 1))
-            .collect();
-        Self {
-            name: name.into(),
-            text,
-            line_starts,
-        }
+        let line_starts = std::iter::once(0).chain(breaks.map(|(at, _)| at as u32 + 1)).collect();
+        Self { name: name.into(), text, line_starts }
     }
 
     /// The name that diagnostics show.
@@ -78,20 +68,11 @@ impl SourceFile {
 
     /// Line and column of a byte offset, both counted from 1; columns count characters.
     pub fn line_column(&self, offset: u32) -> LineColumn {
-        let line = self
-            .line_starts
-            .partition_point(|start| *start <= offset)
-            .saturating_sub(1);
+        let line = self.line_starts.partition_point(|start| *start <= offset).saturating_sub(1);
         let start = self.line_starts.get(line).copied().unwrap_or(0) as usize;
         let end = (offset as usize).min(self.text.len());
-        let column = self
-            .text
-            .get(start..end)
-            .map_or(1, |before| before.chars().count() + 1);
-        LineColumn {
-            line: line as u32 + 1,
-            column: column as u32,
-        }
+        let column = self.text.get(start..end).map_or(1, |before| before.chars().count() + 1);
+        LineColumn { line: line as u32 + 1, column: column as u32 }
     }
 }
 
@@ -124,25 +105,18 @@ impl SourceMap {
 
     /// All files in the order they were added.
     pub fn iter(&self) -> impl Iterator<Item = (FileId, &SourceFile)> {
-        self.files
-            .iter()
-            .enumerate()
-            .map(|(index, file)| (FileId(index as u32), file))
+        self.files.iter().enumerate().map(|(index, file)| (FileId(index as u32), file))
     }
 
     /// The text under a span; empty if the span is not of this map.
     pub fn text(&self, span: Span) -> &str {
-        self.get(span.file)
-            .and_then(|file| file.text.get(span.start as usize..span.end as usize))
-            .unwrap_or("")
+        self.get(span.file).and_then(|file| file.text.get(span.start as usize..span.end as usize)).unwrap_or("")
     }
 
     /// File name, line and column of a span's start.
     pub fn locate(&self, span: Span) -> (&str, LineColumn) {
         self.get(span.file)
-            .map_or(("", LineColumn { line: 0, column: 0 }), |file| {
-                (file.name(), file.line_column(span.start))
-            })
+            .map_or(("", LineColumn { line: 0, column: 0 }), |file| (file.name(), file.line_column(span.start)))
     }
 }
 

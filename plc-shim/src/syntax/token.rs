@@ -49,10 +49,7 @@ pub enum TokenKind {
 impl TokenKind {
     /// True for what may stand between any two tokens (2nd ed. 2.1.4 and 2.1.5).
     pub fn is_trivia(self) -> bool {
-        matches!(
-            self,
-            Self::Whitespace | Self::BlockComment | Self::LineComment | Self::Pragma
-        )
+        matches!(self, Self::Whitespace | Self::BlockComment | Self::LineComment | Self::Pragma)
     }
 }
 

@@ -114,10 +114,7 @@ END_PROGRAM"
 
 #[test]
 fn a_clean_program_has_no_findings() {
-    assert_eq!(
-        findings("PROGRAM P VAR x : INT; END_VAR x := x + 1; END_PROGRAM"),
-        ""
-    );
+    assert_eq!(findings("PROGRAM P VAR x : INT; END_VAR x := x + 1; END_PROGRAM"), "");
 }
 
 #[test]
@@ -131,14 +128,8 @@ fn every_finding_is_a_related_diagnostic_with_its_own_source() {
     assert_eq!((labels[0].offset(), labels[1].offset()), (17, 14));
     assert_eq!(labels[1].label(), Some("first declared here"));
     let source = related[1].source_code().expect("a source");
-    let span = related[1]
-        .labels()
-        .expect("labels")
-        .next()
-        .expect("a label");
-    let contents = source
-        .read_span(span.inner(), 0, 0)
-        .expect("inside of the text");
+    let span = related[1].labels().expect("labels").next().expect("a label");
+    let contents = source.read_span(span.inner(), 0, 0).expect("inside of the text");
     assert_eq!(contents.name(), Some("two.st"));
     assert_eq!(contents.data(), b"y");
 }

@@ -54,14 +54,9 @@ fn tree(operators: &'static [&'static str]) -> impl Strategy<Value = Tree> {
         let boxed = |tree: Tree| Box::new(tree);
         prop_oneof![
             inner.clone().prop_map(move |a| Tree::Negate(boxed(a))),
-            (operator, inner.clone(), inner.clone()).prop_map(move |(op, a, b)| Tree::Binary(
-                op,
-                boxed(a),
-                boxed(b)
-            )),
+            (operator, inner.clone(), inner.clone()).prop_map(move |(op, a, b)| Tree::Binary(op, boxed(a), boxed(b))),
             (inner.clone(), inner.clone()).prop_map(move |(a, b)| Tree::Max(boxed(a), boxed(b))),
-            (comparison, prop::array::uniform4(inner))
-                .prop_map(|(op, trees)| Tree::Select(op, Box::new(trees))),
+            (comparison, prop::array::uniform4(inner)).prop_map(|(op, trees)| Tree::Select(op, Box::new(trees))),
         ]
     })
 }
@@ -76,13 +71,7 @@ fn text(tree: &Tree, signed: bool) -> String {
         Tree::Binary(op, a, b) => format!("({} {op} {})", sub(a), sub(b)),
         Tree::Max(a, b) => format!("MAX({}, {})", sub(a), sub(b)),
         Tree::Select(op, t) => {
-            format!(
-                "SEL({} {op} {}, {}, {})",
-                sub(&t[0]),
-                sub(&t[1]),
-                sub(&t[2]),
-                sub(&t[3])
-            )
+            format!("SEL({} {op} {}, {}, {})", sub(&t[0]), sub(&t[1]), sub(&t[2]), sub(&t[3]))
         }
     }
 }
@@ -119,11 +108,7 @@ fn integer(tree: &Tree, width: Width, leaves: &[i128]) -> Option<i128> {
         Tree::Select(op, t) => {
             let (left, right) = (sub(&t[0])?, sub(&t[1])?);
             let (if_false, if_true) = (sub(&t[2])?, sub(&t[3])?);
-            if holds(op, &left, &right) {
-                if_true
-            } else {
-                if_false
-            }
+            if holds(op, &left, &right) { if_true } else { if_false }
         }
     }))
 }
@@ -157,11 +142,7 @@ fn real(tree: &Tree, leaves: &[f64], round: fn(f64) -> f64) -> Option<f64> {
         Tree::Select(op, t) => {
             let (left, right) = (sub(&t[0])?, sub(&t[1])?);
             let (if_false, if_true) = (sub(&t[2])?, sub(&t[3])?);
-            if holds(op, &left, &right) {
-                if_true
-            } else {
-                if_false
-            }
+            if holds(op, &left, &right) { if_true } else { if_false }
         }
     }))
 }
@@ -241,14 +222,9 @@ proptest! {
 fn boolean(text: &str, bits: [bool; 4]) -> bool {
     let text = text.replace('&', "AND");
     let operand = |word: &str| {
-        let (negated, name) = word
-            .strip_prefix("NOT ")
-            .map_or((false, word), |name| (true, name));
+        let (negated, name) = word.strip_prefix("NOT ").map_or((false, word), |name| (true, name));
         bits[(name.as_bytes()[0] - b'a') as usize] != negated
     };
-    text.split(" OR ").any(|term| {
-        term.split(" XOR ").fold(false, |sum, factor| {
-            sum ^ factor.split(" AND ").all(operand)
-        })
-    })
+    text.split(" OR ")
+        .any(|term| term.split(" XOR ").fold(false, |sum, factor| sum ^ factor.split(" AND ").all(operand)))
 }

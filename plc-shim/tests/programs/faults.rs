@@ -5,11 +5,7 @@ fn fault(text: &str) -> String {
     loop {
         if let Err(fault) = rig.scan() {
             assert_eq!(rig.plc.fault(), Some(&fault));
-            assert_eq!(
-                rig.scan(),
-                Err(fault.clone()),
-                "a stopped PLC stays stopped"
-            );
+            assert_eq!(rig.scan(), Err(fault.clone()), "a stopped PLC stays stopped");
             return fault.to_string();
         }
         assert!(rig.now_ns < 1_000_000_000, "the program never fails");

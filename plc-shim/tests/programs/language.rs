@@ -8,21 +8,9 @@ const TABLE: &[(&str, &str, i64)] = &[
     ("r : INT := 32767;", "r := r * 2;", -2),
     ("r : DINT := 2147483647;", "r := r + 1;", -2_147_483_648),
     ("r : LINT := 9223372036854775807;", "r := r + 1;", i64::MIN),
-    (
-        "a, b : INT := 300; r : DINT;",
-        "r := a * b;",
-        300 * 300 - 65536,
-    ),
-    (
-        "r : DINT := -2147483648; m : DINT := -1;",
-        "r := r / m;",
-        -2_147_483_648,
-    ),
-    (
-        "r : LINT; m : LINT := -1;",
-        "r := (-9223372036854775807 - 1) / m;",
-        i64::MIN,
-    ),
+    ("a, b : INT := 300; r : DINT;", "r := a * b;", 300 * 300 - 65536),
+    ("r : DINT := -2147483648; m : DINT := -1;", "r := r / m;", -2_147_483_648),
+    ("r : LINT; m : LINT := -1;", "r := (-9223372036854775807 - 1) / m;", i64::MIN),
     ("r : SINT := -128; m : SINT := -1;", "r := r / m;", -128),
     ("r : INT := -7;", "r := r / 2;", -3),
     ("r : INT := -7;", "r := r MOD 2;", -1),
@@ -31,93 +19,33 @@ const TABLE: &[(&str, &str, i64)] = &[
     ("a : UDINT := 16#FFFF_FFFF; r : BOOL;", "r := a > 1;", 1),
     // Precedence and operators.
     ("r : INT;", "r := 2 + 3 * 4 - 1;", 13),
-    (
-        "r : DINT; x : LREAL := 3.0;",
-        "r := LREAL_TO_DINT(-x ** 2);",
-        -9,
-    ),
-    (
-        "r : BOOL; a, b : BOOL := TRUE;",
-        "r := NOT a OR b XOR a AND NOT b;",
-        1,
-    ),
+    ("r : DINT; x : LREAL := 3.0;", "r := LREAL_TO_DINT(-x ** 2);", -9),
+    ("r : BOOL; a, b : BOOL := TRUE;", "r := NOT a OR b XOR a AND NOT b;", 1),
     ("r : BYTE := 16#0F;", "r := NOT r AND 16#3C;", 0x30),
-    (
-        "r : WORD; b : BYTE := 16#80;",
-        "r := b OR WORD#16#100;",
-        0x180,
-    ),
-    (
-        "r : BOOL; t : TIME := T#2s;",
-        "r := t * 2 - T#1s = T#3s;",
-        1,
-    ),
+    ("r : WORD; b : BYTE := 16#80;", "r := b OR WORD#16#100;", 0x180),
+    ("r : BOOL; t : TIME := T#2s;", "r := t * 2 - T#1s = T#3s;", 1),
     ("r : TIME := T#1s;", "r := r / 4 + r * 0.5;", 750_000_000),
     ("r : LTIME; t : TIME := T#-1.5s;", "r := t;", -1_500_000_000),
     // Statements.
-    (
-        "r : INT;",
-        "IF r > 0 THEN r := 1; ELSIF r = 0 THEN r := 2; ELSE r := 3; END_IF;",
-        2,
-    ),
-    (
-        "r, i : INT := 7;",
-        "CASE i OF 1, 2: r := 1; 5..8: r := 2; ELSE r := 3; END_CASE;",
-        2,
-    ),
-    (
-        "r, i : INT := -7;",
-        "CASE i OF -7: r := 1; ELSE r := 3; END_CASE;",
-        1,
-    ),
-    (
-        "r, i : INT;",
-        "FOR i := 1 TO 10 DO r := r + i; END_FOR;",
-        55,
-    ),
-    (
-        "r, i : INT;",
-        "FOR i := 10 TO 1 BY -3 DO r := r + i; END_FOR;",
-        10 + 7 + 4 + 1,
-    ),
+    ("r : INT;", "IF r > 0 THEN r := 1; ELSIF r = 0 THEN r := 2; ELSE r := 3; END_IF;", 2),
+    ("r, i : INT := 7;", "CASE i OF 1, 2: r := 1; 5..8: r := 2; ELSE r := 3; END_CASE;", 2),
+    ("r, i : INT := -7;", "CASE i OF -7: r := 1; ELSE r := 3; END_CASE;", 1),
+    ("r, i : INT;", "FOR i := 1 TO 10 DO r := r + i; END_FOR;", 55),
+    ("r, i : INT;", "FOR i := 10 TO 1 BY -3 DO r := r + i; END_FOR;", 10 + 7 + 4 + 1),
     ("r, i : INT;", "FOR i := 1 TO 10 DO ; END_FOR; r := i;", 11),
-    (
-        "r : INT; i : SINT;",
-        "FOR i := 120 TO 127 DO r := r + 1; END_FOR;",
-        8,
-    ),
-    (
-        "r : INT; i : USINT;",
-        "FOR i := 250 TO 255 BY 2 DO r := r + 1; END_FOR;",
-        3,
-    ),
-    (
-        "r : INT; i : SINT;",
-        "FOR i := -120 TO -128 BY -1 DO r := r + 1; END_FOR;",
-        9,
-    ),
-    (
-        "r : INT; i : ULINT;",
-        "FOR i := 18446744073709551614 TO 18446744073709551615 DO r := r + 1; END_FOR;",
-        2,
-    ),
+    ("r : INT; i : SINT;", "FOR i := 120 TO 127 DO r := r + 1; END_FOR;", 8),
+    ("r : INT; i : USINT;", "FOR i := 250 TO 255 BY 2 DO r := r + 1; END_FOR;", 3),
+    ("r : INT; i : SINT;", "FOR i := -120 TO -128 BY -1 DO r := r + 1; END_FOR;", 9),
+    ("r : INT; i : ULINT;", "FOR i := 18446744073709551614 TO 18446744073709551615 DO r := r + 1; END_FOR;", 2),
     ("r, i : INT;", "FOR i := 5 TO 1 DO r := 1; END_FOR;", 0),
-    (
-        "r, i, n : INT := 3;",
-        "FOR i := 1 TO n DO n := 100; r := r + 1; END_FOR;",
-        6,
-    ),
+    ("r, i, n : INT := 3;", "FOR i := 1 TO n DO n := 100; r := r + 1; END_FOR;", 6),
     (
         "r, i : INT;",
         "FOR i := 1 TO 10 DO IF i = 3 THEN CONTINUE; END_IF; IF i = 6 THEN EXIT; END_IF; r := r + i; END_FOR;",
         12,
     ),
     ("r : INT;", "WHILE r < 5 DO r := r + 2; END_WHILE;", 6),
-    (
-        "r : INT := 9;",
-        "REPEAT r := r + 1; UNTIL TRUE END_REPEAT;",
-        10,
-    ),
+    ("r : INT := 9;", "REPEAT r := r + 1; UNTIL TRUE END_REPEAT;", 10),
     ("r : INT;", "r := 1; RETURN; r := 2;", 1),
     (
         "r, i, j : INT;",
@@ -125,27 +53,15 @@ const TABLE: &[(&str, &str, i64)] = &[
         3,
     ),
     // Aggregates.
-    (
-        "a : ARRAY [-1..1, 2..3] OF INT := [1, 2, 3(7), 9]; r, i : INT := 1;",
-        "r := a[i, 3] * 100 + a[-1, i + 2];",
-        902,
-    ),
-    (
-        "a, b : ARRAY [0..3] OF DINT := [4(5)]; r : DINT;",
-        "a[2] := 1; b := a; a[2] := 0; r := b[2] + b[3];",
-        6,
-    ),
+    ("a : ARRAY [-1..1, 2..3] OF INT := [1, 2, 3(7), 9]; r, i : INT := 1;", "r := a[i, 3] * 100 + a[-1, i + 2];", 902),
+    ("a, b : ARRAY [0..3] OF DINT := [4(5)]; r : DINT;", "a[2] := 1; b := a; a[2] := 0; r := b[2] + b[3];", 6),
     (
         "a : ARRAY [0..1] OF ARRAY [0..1] OF INT := [[1, 2], [3, 4]]; r, i : INT := 1;",
         "r := a[i][0] * 10 + a[0][i];",
         32,
     ),
     // Constants.
-    (
-        "r : INT; b : BYTE := 255;",
-        "r := BYTE_TO_INT(b) + 2#1010 + 8#17 + 16#1F;",
-        255 + 10 + 15 + 31,
-    ),
+    ("r : INT; b : BYTE := 255;", "r := BYTE_TO_INT(b) + 2#1010 + 8#17 + 16#1F;", 255 + 10 + 15 + 31),
 ];
 
 #[test]

@@ -1,8 +1,6 @@
 //! A PLC under test, with its variables by name.
 
-use onescan_plc_shim::{
-    Application, ElementaryType, PlcFault, SoftPlc, Task, TaskPlan, Variable, VirtualTime,
-};
+use onescan_plc_shim::{Application, ElementaryType, PlcFault, SoftPlc, Task, TaskPlan, Variable, VirtualTime};
 
 pub(crate) const MS: u64 = 1_000_000;
 
@@ -48,11 +46,7 @@ impl Rig {
     pub(crate) fn with_plan(application: &Application, plan: &TaskPlan) -> Self {
         let plc = SoftPlc::new(application, plan).expect("the plan suits the application");
         let step_ns = plc.period_ns();
-        Self {
-            plc,
-            step_ns,
-            now_ns: 0,
-        }
+        Self { plc, step_ns, now_ns: 0 }
     }
 
     pub(crate) fn scan(&mut self) -> Result<(), PlcFault> {
@@ -88,9 +82,7 @@ impl Rig {
     pub(crate) fn real(&self, path: &str) -> f64 {
         let bytes = self.bytes(path);
         match self.variable(path).ty {
-            Some(ElementaryType::Real) => {
-                f64::from(f32::from_bits(u64::from_le_bytes(bytes) as u32))
-            }
+            Some(ElementaryType::Real) => f64::from(f32::from_bits(u64::from_le_bytes(bytes) as u32)),
             _ => f64::from_le_bytes(bytes),
         }
     }

@@ -3,7 +3,8 @@
 use onescan_plc_shim::{Application, SoftPlc, TaskPlan, VirtualTime};
 use proptest::prelude::*;
 
-const PROGRAM: &str = "TYPE T : STRUCT a : INT; b : ARRAY [0..3] OF REAL := [1.0, 3(2.0)]; END_STRUCT; C : (X, Y); END_TYPE
+const PROGRAM: &str =
+    "TYPE T : STRUCT a : INT; b : ARRAY [0..3] OF REAL := [1.0, 3(2.0)]; END_STRUCT; C : (X, Y); END_TYPE
 FUNCTION F : INT VAR_INPUT a : INT; b : INT := 2; END_VAR F := a * b + 1; END_FUNCTION
 FUNCTION_BLOCK B VAR_INPUT x : T; END_VAR VAR_OUTPUT y : REAL; END_VAR VAR_IN_OUT z : INT; END_VAR
 y := x.b[x.a]; z := z + 1; END_FUNCTION_BLOCK
@@ -31,9 +32,7 @@ fn run(text: &str) {
 }
 
 fn words() -> Vec<&'static str> {
-    PROGRAM
-        .split_inclusive([' ', ';', '(', ')', '[', ']', '.', ',', '\n', ':'])
-        .collect()
+    PROGRAM.split_inclusive([' ', ';', '(', ')', '[', ']', '.', ',', '\n', ':']).collect()
 }
 
 proptest! {
@@ -63,22 +62,13 @@ proptest! {
 fn the_program_itself_runs() {
     let application = Application::from_sources([("p.st", PROGRAM)]);
     let application = application.unwrap_or_else(|found| panic!("{found}"));
-    assert!(
-        application.warnings().is_empty(),
-        "{}",
-        application.warnings()
-    );
+    assert!(application.warnings().is_empty(), "{}", application.warnings());
     run(PROGRAM);
 }
 
 #[test]
 fn depth_is_bounded_in_every_pass() {
-    let chain = |count: usize| {
-        format!(
-            "PROGRAM P VAR x : DINT; END_VAR x := x{}; END_PROGRAM",
-            " + x".repeat(count)
-        )
-    };
+    let chain = |count: usize| format!("PROGRAM P VAR x : DINT; END_VAR x := x{}; END_PROGRAM", " + x".repeat(count));
     assert!(Application::from_sources([("t.st", chain(240))]).is_ok());
     run(&chain(240));
     assert!(Application::from_sources([("t.st", chain(260))]).is_err());
@@ -91,13 +81,7 @@ fn depth_is_bounded_in_every_pass() {
     );
     assert!(Application::from_sources([("t.st", nested.as_str())]).is_ok());
     run(&nested);
-    for (open, close) in [
-        ("a[", "]"),
-        ("F(", ")"),
-        ("MAX(1, ", ")"),
-        ("-(", ")"),
-        ("SEL(TRUE, 1, ", ")"),
-    ] {
+    for (open, close) in [("a[", "]"), ("F(", ")"), ("MAX(1, ", ")"), ("-(", ")"), ("SEL(TRUE, 1, ", ")")] {
         let text = format!(
             "FUNCTION F : DINT VAR_INPUT x : DINT; END_VAR F := x; END_FUNCTION
             PROGRAM P VAR x : DINT; a : ARRAY [0..1] OF DINT; END_VAR x := {}x{}; END_PROGRAM",
@@ -105,35 +89,22 @@ fn depth_is_bounded_in_every_pass() {
             close.repeat(95),
         );
         let compiled = Application::from_sources([("t.st", text.as_str())]);
-        assert!(
-            compiled.is_ok(),
-            "{open}: {}",
-            compiled
-                .err()
-                .map(|found| found.to_string())
-                .unwrap_or_default()
-        );
+        assert!(compiled.is_ok(), "{open}: {}", compiled.err().map(|found| found.to_string()).unwrap_or_default());
         run(&text);
     }
-    let list = |count: u32, each: &dyn Fn(u32) -> String| {
-        (1..count).map(each).collect::<Vec<_>>().join(" ")
-    };
+    let list = |count: u32, each: &dyn Fn(u32) -> String| (1..count).map(each).collect::<Vec<_>>().join(" ");
     let types = list(5000, &|n| format!("T{n} : ARRAY [0..0] OF T{};", n + 1));
     let text = format!("TYPE {types} T5000 : INT; END_TYPE");
     assert!(Application::from_sources([("t.st", text)]).is_err());
     let constants = list(5000, &|n| format!("c{n} : INT := c{};", n + 1));
     let text = format!("VAR_GLOBAL CONSTANT {constants} c5000 : INT := 1; END_VAR");
     assert!(Application::from_sources([("t.st", text)]).is_err());
-    let calls = list(3000, &|n| {
-        format!("FUNCTION f{n} : INT f{n} := f{}(); END_FUNCTION", n + 1)
-    });
+    let calls = list(3000, &|n| format!("FUNCTION f{n} : INT f{n} := f{}(); END_FUNCTION", n + 1));
     run(&format!(
         "{calls} FUNCTION f3000 : INT f3000 := 1; END_FUNCTION PROGRAM P VAR x : INT; END_VAR x := f1(); END_PROGRAM"
     ));
     let elsifs = "ELSIF x = 1 THEN x := 2; ".repeat(3000);
-    run(&format!(
-        "PROGRAM P VAR x : INT; END_VAR IF x = 0 THEN ; {elsifs} END_IF; END_PROGRAM"
-    ));
+    run(&format!("PROGRAM P VAR x : INT; END_VAR IF x = 0 THEN ; {elsifs} END_IF; END_PROGRAM"));
 }
 
 #[test]
@@ -160,18 +131,10 @@ fn what_is_empty_is_no_trap() {
         VAR x : ARRAY [0..2147483646, 0..2147483646, 0..2147483646] OF E := [1([])]; END_VAR END_PROGRAM";
     assert!(Application::from_sources([("t.st", wide)]).is_err());
     // Each block holds two of the one before: the number of instances doubles with every level.
-    let blocks: Vec<String> = (1..60)
-        .map(|n| {
-            format!(
-                "FUNCTION_BLOCK F{n} VAR a, b : F{}; END_VAR END_FUNCTION_BLOCK",
-                n - 1
-            )
-        })
-        .collect();
-    let text = format!(
-        "FUNCTION_BLOCK F0 END_FUNCTION_BLOCK {} PROGRAM P VAR a : F59; END_VAR END_PROGRAM",
-        blocks.join(" ")
-    );
+    let blocks: Vec<String> =
+        (1..60).map(|n| format!("FUNCTION_BLOCK F{n} VAR a, b : F{}; END_VAR END_FUNCTION_BLOCK", n - 1)).collect();
+    let text =
+        format!("FUNCTION_BLOCK F0 END_FUNCTION_BLOCK {} PROGRAM P VAR a : F59; END_VAR END_PROGRAM", blocks.join(" "));
     assert!(Application::from_sources([("t.st", text)]).is_err());
     run("");
     run("PROGRAM P END_PROGRAM");

@@ -43,8 +43,7 @@ fn a_warm_start_keeps_what_is_retained() {
     for _ in 0..5 {
         rig.scan().expect("no fault");
     }
-    let values =
-        |rig: &Rig| ["Fast.n", "kept", "Fast.h[1].h", "Fast.h[1].n"].map(|path| rig.int(path));
+    let values = |rig: &Rig| ["Fast.n", "kept", "Fast.h[1].h", "Fast.h[1].n"].map(|path| rig.int(path));
     assert_eq!(values(&rig), [5, 6, 5, 5]);
     rig.plc.warm_start();
     assert_eq!(values(&rig), [0, 6, 5, 0]);

@@ -42,9 +42,7 @@ fn a_program_lists_its_variables() {
     let application = application(SHEAR);
     let programs: Vec<_> = application.programs().collect();
     let names = |list: &[onescan_plc_shim::Variable]| {
-        let each = list
-            .iter()
-            .map(|variable| format!("{}: {}", variable.path, variable.type_name));
+        let each = list.iter().map(|variable| format!("{}: {}", variable.path, variable.type_name));
         each.collect::<Vec<_>>().join(", ")
     };
     assert_eq!(programs.len(), 1);
@@ -54,11 +52,6 @@ fn a_program_lists_its_variables() {
     );
     assert_eq!(programs[0].outputs.len(), 5);
     assert_eq!(programs[0].locals[1].type_name, "TON");
-    let unknown = application
-        .variable("Shear.Sensor_3")
-        .expect_err("not declared");
-    assert!(
-        unknown.to_string().contains("did you mean `Sensor_"),
-        "{unknown}"
-    );
+    let unknown = application.variable("Shear.Sensor_3").expect_err("not declared");
+    assert!(unknown.to_string().contains("did you mean `Sensor_"), "{unknown}");
 }

@@ -6,9 +6,7 @@ use crate::rig::Rig;
 
 /// Draws `IN` as given and the outputs after each scan of 10 ms; times in ms.
 fn diagram(block: &str, preset: &str, inputs: &[(&str, &str)], outputs: &[&str]) -> String {
-    let mut rig = Rig::new(&format!(
-        "PROGRAM P VAR b : {block} := ({preset}); END_VAR b(); END_PROGRAM"
-    ));
+    let mut rig = Rig::new(&format!("PROGRAM P VAR b : {block} := ({preset}); END_VAR b(); END_PROGRAM"));
     let columns = inputs.first().map_or(0, |(_, levels)| levels.len());
     let mut rows: Vec<String> = outputs.iter().map(|name| format!("{name:4}")).collect();
     for column in 0..columns {
@@ -40,89 +38,39 @@ fn diagram(block: &str, preset: &str, inputs: &[(&str, &str)], outputs: &[&str])
 
 #[test]
 fn ton() {
-    insta::assert_snapshot!(diagram(
-        "TON",
-        "PT := T#30ms",
-        &[("IN", "..######..##..#####")],
-        &["Q", "ET"]
-    ));
+    insta::assert_snapshot!(diagram("TON", "PT := T#30ms", &[("IN", "..######..##..#####")], &["Q", "ET"]));
 }
 
 #[test]
 fn tof() {
-    insta::assert_snapshot!(diagram(
-        "TOF",
-        "PT := T#30ms",
-        &[("IN", "..###......###..##....")],
-        &["Q", "ET"]
-    ));
+    insta::assert_snapshot!(diagram("TOF", "PT := T#30ms", &[("IN", "..###......###..##....")], &["Q", "ET"]));
 }
 
 #[test]
 fn tp() {
-    insta::assert_snapshot!(diagram(
-        "TP",
-        "PT := T#30ms",
-        &[("IN", "..######...#....#.#.##...")],
-        &["Q", "ET"]
-    ));
+    insta::assert_snapshot!(diagram("TP", "PT := T#30ms", &[("IN", "..######...#....#.#.##...")], &["Q", "ET"]));
 }
 
 #[test]
 fn edges() {
-    insta::assert_snapshot!(diagram(
-        "R_TRIG",
-        "CLK := FALSE",
-        &[("CLK", "#..##.#.")],
-        &["Q"]
-    ));
-    insta::assert_snapshot!(diagram(
-        "F_TRIG",
-        "CLK := FALSE",
-        &[("CLK", "..##.##..")],
-        &["Q"]
-    ));
+    insta::assert_snapshot!(diagram("R_TRIG", "CLK := FALSE", &[("CLK", "#..##.#.")], &["Q"]));
+    insta::assert_snapshot!(diagram("F_TRIG", "CLK := FALSE", &[("CLK", "..##.##..")], &["Q"]));
 }
 
 #[test]
 fn bistables() {
-    insta::assert_snapshot!(diagram(
-        "SR",
-        "S1 := FALSE",
-        &[("S1", ".#...#.."), ("R", "...#.##.")],
-        &["Q1"]
-    ));
-    insta::assert_snapshot!(diagram(
-        "RS",
-        "S := FALSE",
-        &[("S", ".#...#.#"), ("R1", "...#.##.")],
-        &["Q1"]
-    ));
+    insta::assert_snapshot!(diagram("SR", "S1 := FALSE", &[("S1", ".#...#.."), ("R", "...#.##.")], &["Q1"]));
+    insta::assert_snapshot!(diagram("RS", "S := FALSE", &[("S", ".#...#.#"), ("R1", "...#.##.")], &["Q1"]));
 }
 
 #[test]
 fn counters() {
-    insta::assert_snapshot!(diagram(
-        "CTU",
-        "PV := 2",
-        &[("CU", "#.##.#.#.."), ("R", "......##..")],
-        &["Q", "CV"]
-    ));
-    insta::assert_snapshot!(diagram(
-        "CTD",
-        "PV := 2",
-        &[("CD", "#.#.#.#.."), ("LD", ".#.....#.")],
-        &["Q", "CV"]
-    ));
+    insta::assert_snapshot!(diagram("CTU", "PV := 2", &[("CU", "#.##.#.#.."), ("R", "......##..")], &["Q", "CV"]));
+    insta::assert_snapshot!(diagram("CTD", "PV := 2", &[("CD", "#.#.#.#.."), ("LD", ".#.....#.")], &["Q", "CV"]));
     insta::assert_snapshot!(diagram(
         "CTUD",
         "PV := 2",
-        &[
-            ("CU", "#.#.#..#..."),
-            ("CD", "....#.#...."),
-            ("R", "........#.."),
-            ("LD", ".........#.")
-        ],
+        &[("CU", "#.#.#..#..."), ("CD", "....#.#...."), ("R", "........#.."), ("LD", ".........#.")],
         &["QU", "QD", "CV"]
     ));
 }

@@ -55,12 +55,7 @@ fn damaged_states_are_refused_and_change_nothing() {
     for bytes in [&state[..0], &state[..7], b"OSPLC\0\0\x02........"] {
         assert_eq!(rig.plc.restore(bytes), Err(RestoreError::NotAState));
     }
-    for bytes in [
-        &long[..],
-        &state[..state.len() - 1],
-        &state[..20],
-        &state[..30],
-    ] {
+    for bytes in [&long[..], &state[..state.len() - 1], &state[..20], &state[..30]] {
         assert_eq!(rig.plc.restore(bytes), Err(RestoreError::Damaged));
     }
     let other = application("PROGRAM P VAR x : INT; END_VAR x := 1; END_PROGRAM");

@@ -76,7 +76,9 @@ fn control(args: &ControlArgs) -> Result<ExitCode, RunError> {
     let status = operate(args.server, args.wish.control(), OPERATOR_PATIENCE)?;
     let mut out = std::io::stdout().lock();
     let written = match Format::from(args.format) {
-        Format::Json => serde_json::to_writer(&mut out, &status).map_err(std::io::Error::from).and_then(|()| writeln!(out)),
+        Format::Json => {
+            serde_json::to_writer(&mut out, &status).map_err(std::io::Error::from).and_then(|()| writeln!(out))
+        }
         Format::Human => {
             let held = if status.held { "held" } else { "running" };
             writeln!(out, "{held} in state {} after step {}, t_v = {}", status.state, status.steps, status.t_v)

@@ -40,7 +40,7 @@ impl OpcLink {
             match queue.pop_front() {
                 Some(route) => {
                     std::thread::sleep(self.item_transfer);
-                    self.deliver(&self.routes[route], &taken[route]);
+                    deliver(&self.routes[route], &taken[route]);
                 }
                 None => std::thread::sleep(next_update.saturating_duration_since(Instant::now())),
             }
@@ -60,10 +60,10 @@ impl OpcLink {
             }
         }
     }
+}
 
-    fn deliver(&self, route: &Route, value: &[u8]) {
-        for (items, index) in &route.targets {
-            items.put(*index, value);
-        }
+fn deliver(route: &Route, value: &[u8]) {
+    for (items, index) in &route.targets {
+        items.put(*index, value);
     }
 }

@@ -108,13 +108,15 @@ impl RunError {
     /// Whose fault it is.
     pub fn exit_code(&self) -> ExitCode {
         match self {
-            Self::Scenario(_) | Self::Usage { .. } | Self::Resume { .. } | Self::File { .. } => ExitCode::WrongInput,
-            Self::Formation(FormationError::Refused(_) | FormationError::Unwritten(_)) => ExitCode::WrongInput,
-            Self::Listen { .. } | Self::Record(_) | Self::Output(_) => ExitCode::WrongInput,
-            Self::Formation(_) | Self::ClientProcess { .. } | Self::Spawn { .. } => ExitCode::Fault,
-            Self::Save(_) | Self::SaveTooLate(_) => ExitCode::Fault,
-            Self::Participant(ParticipantError::Refused(_)) => ExitCode::WrongInput,
-            Self::Participant(_) => ExitCode::Fault,
+            Self::Formation(
+                FormationError::Missing { .. } | FormationError::Interrupted { .. } | FormationError::Remote(_),
+            )
+            | Self::ClientProcess { .. }
+            | Self::Spawn { .. }
+            | Self::Save(_)
+            | Self::SaveTooLate(_) => ExitCode::Fault,
+            Self::Participant(error) if !matches!(error, ParticipantError::Refused(_)) => ExitCode::Fault,
+            _ => ExitCode::WrongInput,
         }
     }
 }

@@ -4,6 +4,7 @@ use std::net::{Ipv4Addr, SocketAddr};
 
 use onescan_server::checkpoint::Checkpoint;
 use onescan_server::formation::{Formation, FormationError};
+use onescan_server::join::JoinRefusal;
 use onescan_server::lockstep::{Lockstep, Outcome, Reached};
 use onescan_server::transport::tcp::Lobby;
 
@@ -59,7 +60,8 @@ fn form(
         // Also a client that will run in its own process is made here: its faults are found at once.
         match (scenario.member(name)?, config.transport) {
             (Member::Plant(client) | Member::Plc(client), Transport::Inproc) => {
-                formation.join(client).map_err(FormationError::Refused)?;
+                let refused = |refusal: JoinRefusal| scenario.wrong_client(name, refusal.to_string(), None);
+                formation.join(client).map_err(refused)?;
             }
             (Member::Plant(_) | Member::Plc(_), Transport::Tcp) => remote.push((name, None)),
             (Member::External(command), _) => remote.push((name, Some(command))),

@@ -23,12 +23,7 @@ pub(super) struct Processes {
 
 impl Processes {
     /// Starts this program as the client `name` of the scenario at `path`.
-    pub(super) fn start_client(
-        &mut self,
-        name: &ClientName,
-        path: &Path,
-        server: SocketAddr,
-    ) -> Result<(), RunError> {
+    pub(super) fn start_client(&mut self, name: &ClientName, path: &Path, server: SocketAddr) -> Result<(), RunError> {
         let program = std::env::current_exe().map_err(|source| RunError::Spawn {
             client: name.to_string(),
             command: "onescan".to_owned(),
@@ -73,9 +68,7 @@ impl Processes {
     /// A process that has ended, which before the session begins it must not.
     pub(super) fn first_ended(&mut self) -> Option<RunError> {
         self.children.iter_mut().find_map(|(name, child)| match child.try_wait() {
-            Ok(Some(status)) => {
-                Some(RunError::ClientProcess { client: name.to_string(), status: status.to_string() })
-            }
+            Ok(Some(status)) => Some(RunError::ClientProcess { client: name.to_string(), status: status.to_string() }),
             _ => None,
         })
     }

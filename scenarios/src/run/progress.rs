@@ -18,7 +18,8 @@ pub(super) struct Progress {
 impl Progress {
     /// A bar that is full at `end`.
     pub(super) fn new(end: VirtualTime, label: String) -> Self {
-        let bar = ProgressBar::with_draw_target(Some(end.as_nanos() / 1_000_000), ProgressDrawTarget::stderr_with_hz(10));
+        let bar =
+            ProgressBar::with_draw_target(Some(end.as_nanos() / 1_000_000), ProgressDrawTarget::stderr_with_hz(10));
         if let Ok(style) = ProgressStyle::with_template("{msg:12} [{bar:40}] {pos} / {len} ms virtual  {elapsed} ") {
             bar.set_style(style.progress_chars("=> "));
         }

@@ -80,7 +80,10 @@ pub(super) fn plot(scenario: &Scenario, config: &RunConfig, runs: &[Samples]) ->
             shape: signal.map_or(Shape::Line, |signal| shape(signal.ty)),
             unit: signal.and_then(|signal| signal.unit.clone()),
             signal: name.to_string(),
-            runs: runs.iter().map(|run| Trajectory { t_ns: run.t_ns.clone(), values: run.values[row].clone() }).collect(),
+            runs: runs
+                .iter()
+                .map(|run| Trajectory { t_ns: run.t_ns.clone(), values: run.values[row].clone() })
+                .collect(),
         }
     });
     Plot {

@@ -9,7 +9,7 @@ use onescan_plc_shim::{Application, Task, TaskPlan};
 use onescan_server::client::Client;
 use onescan_server::signal::{ClientName, SignalName, nearest};
 
-use super::error::{SceneReport, ScenarioError};
+use super::error::{PlcReport, ScenarioError, SceneReport};
 use super::file::{ClientFile, TaskFile};
 use super::load::Scenario;
 
@@ -61,14 +61,19 @@ impl Scenario {
         for source in sources {
             files.push((source.clone(), read(&self.folder().join(source))?));
         }
-        let application = Application::from_sources(files).map_err(Box::new)?;
+        let application = Application::from_sources(files)
+            .map_err(|findings| Box::new(PlcReport { client: name.clone(), findings }))?;
         for warning in application.warnings().iter() {
             tracing::warn!(code = %warning.code, "{}", warning.message);
         }
         if let Some(unknown) = paths.keys().find(|signal| !self.file().signals.contains_key(*signal)) {
             let help = nearest(unknown.as_str(), self.file().signals.keys().map(SignalName::as_str));
             let help = help.map(|name| format!("did you mean `{name}`?"));
-            return Err(self.wrong_client(name, format!("`bind` names a signal `{unknown}` that is not declared"), help));
+            return Err(self.wrong_client(
+                name,
+                format!("`bind` names a signal `{unknown}` that is not declared"),
+                help,
+            ));
         }
         let bindings = bind(&application, name, self.plan().signals(), paths)
             .map_err(|error| self.wrong_signal(&error.signal, error.message, error.help))?;

@@ -3,6 +3,8 @@
 use std::path::PathBuf;
 
 use miette::{Diagnostic, NamedSource, SourceSpan};
+use onescan_plc_shim::Diagnostics;
+use onescan_server::signal::ClientName;
 use thiserror::Error;
 
 /// Why a scenario is none.
@@ -43,7 +45,23 @@ pub enum ScenarioError {
     /// The sources of a soft PLC are wrong.
     #[error(transparent)]
     #[diagnostic(transparent)]
-    Plc(#[from] Box<onescan_plc_shim::Diagnostics>),
+    Plc(#[from] Box<PlcReport>),
+}
+
+/// What was found in a PLC's sources, each with its place.
+#[derive(Debug, Error)]
+#[error("the sources of client `{client}` do not compile")]
+pub struct PlcReport {
+    /// The PLC.
+    pub client: ClientName,
+    /// Errors and warnings.
+    pub findings: Diagnostics,
+}
+
+impl Diagnostic for PlcReport {
+    fn related<'a>(&'a self) -> Option<Box<dyn Iterator<Item = &'a dyn Diagnostic> + 'a>> {
+        self.findings.related()
+    }
 }
 
 /// A scene's faults with the places they are at.

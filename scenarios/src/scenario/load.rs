@@ -90,7 +90,7 @@ impl Scenario {
     }
 
     /// An error at the entry of client `name`.
-    pub(super) fn wrong_client(&self, name: &ClientName, message: String, help: Option<String>) -> ScenarioError {
+    pub(crate) fn wrong_client(&self, name: &ClientName, message: String, help: Option<String>) -> ScenarioError {
         let place = self.file.clients.get(name).map(toml::Spanned::span);
         wrong(&self.path, &self.text, message, place, help)
     }
@@ -130,12 +130,7 @@ fn plan_of(file: &ScenarioFile) -> Result<SessionPlan, PlanError> {
     };
     let signals = file.signals.iter().map(|(name, signal)| {
         let signal = signal.get_ref();
-        SignalDecl {
-            name: name.clone(),
-            ty: signal.ty,
-            writer: Some(signal.writer.clone()),
-            unit: signal.unit.clone(),
-        }
+        SignalDecl { name: name.clone(), ty: signal.ty, writer: Some(signal.writer.clone()), unit: signal.unit.clone() }
     });
     SessionPlan::new(file.step, &coupling, signals.collect(), file.clients.keys().cloned().collect())
 }
@@ -144,7 +139,9 @@ fn place_of_plan_error(error: &PlanError, file: &ScenarioFile, text: &str) -> Op
     match error {
         PlanError::NoClients => place_of(text, "[clients"),
         PlanError::DoubleClient(name) => file.clients.get(name).map(toml::Spanned::span),
-        PlanError::DoubleSignal(name) | PlanError::CaseTwins(_, name) => file.signals.get(name).map(toml::Spanned::span),
+        PlanError::DoubleSignal(name) | PlanError::CaseTwins(_, name) => {
+            file.signals.get(name).map(toml::Spanned::span)
+        }
         PlanError::UnknownWriter { signal, .. } => file.signals.get(signal).map(toml::Spanned::span),
         PlanError::Order(_) => place_of(text, "coupling"),
     }

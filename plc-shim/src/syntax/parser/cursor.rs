@@ -23,22 +23,13 @@ pub(super) struct Cursor<'a> {
 
 impl<'a> Cursor<'a> {
     pub(super) fn new(file: FileId, text: &'a str, tokens: &[Token]) -> Self {
-        let is_broken =
-            |kind: TokenKind| matches!(kind, TokenKind::Unknown | TokenKind::Unterminated);
-        let broken = tokens
-            .iter()
-            .filter(|token| is_broken(token.kind))
-            .map(|token| token.start);
-        let starts_string = |token: &Token| {
-            text.get(token.start as usize..)
-                .is_some_and(|rest| rest.starts_with(['\'', '"']))
-        };
+        let is_broken = |kind: TokenKind| matches!(kind, TokenKind::Unknown | TokenKind::Unterminated);
+        let broken = tokens.iter().filter(|token| is_broken(token.kind)).map(|token| token.start);
+        let starts_string =
+            |token: &Token| text.get(token.start as usize..).is_some_and(|rest| rest.starts_with(['\'', '"']));
         let good = |token: &Token| match token.kind {
             // A string without an end still stands where a value is wanted.
-            TokenKind::Unterminated if starts_string(token) => Some(Token {
-                kind: TokenKind::String,
-                ..*token
-            }),
+            TokenKind::Unterminated if starts_string(token) => Some(Token { kind: TokenKind::String, ..*token }),
             kind if kind.is_trivia() || is_broken(kind) => None,
             _ => Some(*token),
         };
@@ -86,10 +77,7 @@ impl<'a> Cursor<'a> {
 
     /// Kind of the token taken last.
     pub(super) fn previous(&self) -> Option<TokenKind> {
-        self.at
-            .checked_sub(1)
-            .and_then(|at| self.tokens.get(at))
-            .map(|token| token.kind)
+        self.at.checked_sub(1).and_then(|at| self.tokens.get(at)).map(|token| token.kind)
     }
 
     pub(super) fn text(&self, start: u32, end: u32) -> &'a str {
@@ -112,10 +100,7 @@ impl<'a> Cursor<'a> {
     /// Span of the next token, or of the text's end.
     pub(super) fn span(&self) -> Span {
         let end = self.text.len() as u32;
-        let (start, end) = self
-            .tokens
-            .get(self.at)
-            .map_or((end, end), |next| (next.start, next.end));
+        let (start, end) = self.tokens.get(self.at).map_or((end, end), |next| (next.start, next.end));
         Span::new(self.file, start, end)
     }
 
@@ -185,10 +170,7 @@ impl<'a> Cursor<'a> {
         if self.peek() != Some(TokenKind::Identifier) {
             return None;
         }
-        let ident = Ident {
-            text: self.next_text().to_owned(),
-            span: self.span(),
-        };
+        let ident = Ident { text: self.next_text().to_owned(), span: self.span() };
         self.advance();
         Some(ident)
     }
@@ -203,16 +185,10 @@ impl<'a> Cursor<'a> {
 
     /// Reports that `wanted` should stand here, unless this place has been reported already.
     pub(super) fn unexpected(&mut self, wanted: &str) {
-        let found = if self.peek().is_some() {
-            format!("`{}`", self.next_text())
-        } else {
-            "the end of the file".to_owned()
-        };
+        let found =
+            if self.peek().is_some() { format!("`{}`", self.next_text()) } else { "the end of the file".to_owned() };
         let span = self.span();
-        let repeated = self
-            .diagnostics
-            .last()
-            .is_some_and(|last| last.span == span);
+        let repeated = self.diagnostics.last().is_some_and(|last| last.span == span);
         if !repeated {
             let message = format!("{wanted} expected, found {found}");
             self.report_syntax(Diagnostic::error(Code::UnexpectedToken, span, message));

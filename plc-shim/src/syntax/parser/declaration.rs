@@ -2,8 +2,8 @@
 
 use super::cursor::Cursor;
 use crate::syntax::ast::{
-    CompilationUnit, Declaration, Ident, Pou, PouKind, Qualifier, Section, SectionKind,
-    TypeDeclaration, TypeSpec, TypeSpecKind, Variable,
+    CompilationUnit, Declaration, Ident, Pou, PouKind, Qualifier, Section, SectionKind, TypeDeclaration, TypeSpec,
+    TypeSpecKind, Variable,
 };
 use crate::syntax::token::{Keyword, Punctuation, TokenKind};
 
@@ -12,11 +12,7 @@ fn begins_declaration(kind: TokenKind) -> bool {
     matches!(
         kind,
         TokenKind::Keyword(
-            Keyword::Program
-                | Keyword::FunctionBlock
-                | Keyword::Function
-                | Keyword::Type
-                | Keyword::VarGlobal
+            Keyword::Program | Keyword::FunctionBlock | Keyword::Function | Keyword::Type | Keyword::VarGlobal
         )
     )
 }
@@ -81,14 +77,7 @@ impl Cursor<'_> {
         }
         let body = self.body(end);
         let span = self.span_from(start);
-        let pou = Pou {
-            kind,
-            name,
-            result,
-            sections,
-            body,
-            span,
-        };
+        let pou = Pou { kind, name, result, sections, body, span };
         unit.declarations.push(Declaration::Pou(pou));
     }
 
@@ -118,19 +107,12 @@ impl Cursor<'_> {
         if !self.take_keyword(Keyword::EndVar) {
             self.unexpected("a variable's name or `END_VAR`");
             self.skip_until(|kind| {
-                kind == TokenKind::Keyword(Keyword::EndVar)
-                    || section_kind(Some(kind)).is_some()
-                    || ends_unit(kind)
+                kind == TokenKind::Keyword(Keyword::EndVar) || section_kind(Some(kind)).is_some() || ends_unit(kind)
             });
             self.take_keyword(Keyword::EndVar);
         }
         self.take_mark(Punctuation::Semicolon);
-        Section {
-            kind,
-            qualifiers,
-            variables,
-            span: self.span_from(start),
-        }
+        Section { kind, qualifiers, variables, span: self.span_from(start) }
     }
 
     fn qualifiers(&mut self) -> Vec<Qualifier> {
@@ -149,32 +131,16 @@ impl Cursor<'_> {
     fn variable(&mut self, variables: &mut Vec<Variable>) {
         let known = self.reported();
         let names = self.identifier_list("a variable's name");
-        let address = self
-            .take_keyword(Keyword::At)
-            .then(|| self.address())
-            .flatten();
+        let address = self.take_keyword(Keyword::At).then(|| self.address()).flatten();
         self.expect_mark(Punctuation::Colon);
         if self.reported() > known {
             // The names are kept, so that their uses are not reported as well.
-            let spec = TypeSpec {
-                kind: TypeSpecKind::Error,
-                span: self.span(),
-            };
-            variables.push(Variable {
-                names,
-                address,
-                spec,
-                initial: None,
-            });
+            let spec = TypeSpec { kind: TypeSpecKind::Error, span: self.span() };
+            variables.push(Variable { names, address, spec, initial: None });
         } else {
             let spec = self.type_spec();
             let initial = self.optional_initialiser();
-            variables.push(Variable {
-                names,
-                address,
-                spec,
-                initial,
-            });
+            variables.push(Variable { names, address, spec, initial });
         }
         self.end_of_declaration(known);
     }
@@ -184,10 +150,7 @@ impl Cursor<'_> {
             self.unexpected("a direct address");
             return None;
         }
-        let address = Ident {
-            text: self.next_text().to_owned(),
-            span: self.span(),
-        };
+        let address = Ident { text: self.next_text().to_owned(), span: self.span() };
         self.advance();
         Some(address)
     }
@@ -198,10 +161,8 @@ impl Cursor<'_> {
             return;
         }
         let closes = |kind| {
-            matches!(
-                kind,
-                TokenKind::Keyword(Keyword::EndVar | Keyword::EndStruct | Keyword::EndType)
-            ) || section_kind(Some(kind)).is_some()
+            matches!(kind, TokenKind::Keyword(Keyword::EndVar | Keyword::EndStruct | Keyword::EndType))
+                || section_kind(Some(kind)).is_some()
                 || ends_unit(kind)
         };
         if self.reported() == known {
@@ -211,9 +172,7 @@ impl Cursor<'_> {
             }
             self.unexpected("`;`");
         }
-        self.skip_until(|kind| {
-            kind == TokenKind::Punctuation(Punctuation::Semicolon) || closes(kind)
-        });
+        self.skip_until(|kind| kind == TokenKind::Punctuation(Punctuation::Semicolon) || closes(kind));
         self.take_mark(Punctuation::Semicolon);
     }
 
@@ -228,12 +187,7 @@ impl Cursor<'_> {
             let spec = self.type_spec();
             let initial = self.optional_initialiser();
             let span = self.span_from(start);
-            unit.declarations.push(Declaration::Type(TypeDeclaration {
-                name,
-                spec,
-                initial,
-                span,
-            }));
+            unit.declarations.push(Declaration::Type(TypeDeclaration { name, spec, initial, span }));
             self.end_of_declaration(known);
         }
         if !self.take_keyword(Keyword::EndType) {
@@ -247,10 +201,5 @@ impl Cursor<'_> {
 /// Keywords that end a unit or begin the next: no recovery passes them.
 fn ends_unit(kind: TokenKind) -> bool {
     begins_declaration(kind)
-        || matches!(
-            kind,
-            TokenKind::Keyword(
-                Keyword::EndProgram | Keyword::EndFunctionBlock | Keyword::EndFunction
-            )
-        )
+        || matches!(kind, TokenKind::Keyword(Keyword::EndProgram | Keyword::EndFunctionBlock | Keyword::EndFunction))
 }

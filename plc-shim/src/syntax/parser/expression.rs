@@ -2,9 +2,7 @@
 
 use super::cursor::Cursor;
 use crate::diagnostic::{Code, Diagnostic};
-use crate::syntax::ast::{
-    Argument, BinaryOp, Call, Expr, ExprKind, Ident, Literal, MAX_HEIGHT, UnaryOp,
-};
+use crate::syntax::ast::{Argument, BinaryOp, Call, Expr, ExprKind, Ident, Literal, MAX_HEIGHT, UnaryOp};
 use crate::syntax::literal::{parse_integer, parse_real, parse_typed};
 use crate::syntax::source::Span;
 use crate::syntax::token::{Keyword, Punctuation, TokenKind};
@@ -19,8 +17,7 @@ impl Cursor<'_> {
 
     fn binary(&mut self, minimum: u8) -> Expr {
         let span = self.span();
-        self.nested(|cursor| cursor.operator_chain(minimum))
-            .unwrap_or_else(|| error_at(span))
+        self.nested(|cursor| cursor.operator_chain(minimum)).unwrap_or_else(|| error_at(span))
     }
 
     fn operator_chain(&mut self, minimum: u8) -> Expr {
@@ -96,13 +93,7 @@ impl Cursor<'_> {
             } else if self.at_mark(Punctuation::LeftParen) && is_callable(&expr) {
                 let arguments = self.arguments();
                 let below = arguments.iter().map(argument_height).max().unwrap_or(0);
-                (
-                    ExprKind::Call(Call {
-                        callee: Box::new(expr),
-                        arguments,
-                    }),
-                    below,
-                )
+                (ExprKind::Call(Call { callee: Box::new(expr), arguments }), below)
             } else {
                 return expr;
             };
@@ -141,8 +132,8 @@ impl Cursor<'_> {
     }
 
     fn argument(&mut self) -> Argument {
-        let negated = self.at_keyword(Keyword::Not)
-            && self.peek_ahead(2) == Some(TokenKind::Punctuation(Punctuation::Output));
+        let negated =
+            self.at_keyword(Keyword::Not) && self.peek_ahead(2) == Some(TokenKind::Punctuation(Punctuation::Output));
         let after_name = self.peek_ahead(1 + usize::from(negated));
         match after_name {
             Some(TokenKind::Punctuation(Punctuation::Assign)) => {
@@ -160,18 +151,9 @@ impl Cursor<'_> {
                     return Argument::Positional(self.expression());
                 };
                 self.advance();
-                let absent =
-                    self.at_mark(Punctuation::Comma) || self.at_mark(Punctuation::RightParen);
-                let target = if absent {
-                    None
-                } else {
-                    Some(self.expression())
-                };
-                Argument::Output {
-                    name,
-                    negated,
-                    target,
-                }
+                let absent = self.at_mark(Punctuation::Comma) || self.at_mark(Punctuation::RightParen);
+                let target = if absent { None } else { Some(self.expression()) };
+                Argument::Output { name, negated, target }
             }
             _ => Argument::Positional(self.expression()),
         }
@@ -181,50 +163,31 @@ impl Cursor<'_> {
         let span = self.span();
         let text = self.next_text();
         let kind = match self.peek() {
-            Some(TokenKind::Identifier) => ExprKind::Name(Ident {
-                text: text.to_owned(),
-                span,
-            }),
-            Some(TokenKind::Integer) => {
-                self.literal(span, parse_integer(text).map(Literal::Integer))
-            }
+            Some(TokenKind::Identifier) => ExprKind::Name(Ident { text: text.to_owned(), span }),
+            Some(TokenKind::Integer) => self.literal(span, parse_integer(text).map(Literal::Integer)),
             Some(TokenKind::Real) => self.literal(span, parse_real(text).map(Literal::Real)),
             Some(TokenKind::Typed) => self.literal(span, parse_typed(text)),
-            Some(TokenKind::String | TokenKind::WideString) => {
-                ExprKind::Literal(Literal::String(text.to_owned()))
-            }
+            Some(TokenKind::String | TokenKind::WideString) => ExprKind::Literal(Literal::String(text.to_owned())),
             Some(TokenKind::DirectAddress) => ExprKind::DirectAddress(text.to_owned()),
             Some(TokenKind::Keyword(Keyword::True)) => ExprKind::Literal(Literal::Bool(true)),
             Some(TokenKind::Keyword(Keyword::False)) => ExprKind::Literal(Literal::Bool(false)),
             Some(TokenKind::Keyword(keyword)) if self.is_function_form(keyword) => {
-                ExprKind::Name(Ident {
-                    text: text.to_owned(),
-                    span,
-                })
+                ExprKind::Name(Ident { text: text.to_owned(), span })
             }
             Some(TokenKind::Punctuation(Punctuation::LeftParen)) => return self.parenthesised(),
             _ => {
                 self.unexpected("an expression");
-                return error_at(Span {
-                    end: span.start,
-                    ..span
-                });
+                return error_at(Span { end: span.start, ..span });
             }
         };
         self.advance();
-        Expr {
-            kind,
-            span,
-            height: 1,
-        }
+        Expr { kind, span, height: 1 }
     }
 
     /// `AND(a, b)`: operators are functions too (2nd ed. Table 26).
     fn is_function_form(&self, keyword: Keyword) -> bool {
-        matches!(
-            keyword,
-            Keyword::And | Keyword::Or | Keyword::Xor | Keyword::Mod
-        ) && self.peek_ahead(1) == Some(TokenKind::Punctuation(Punctuation::LeftParen))
+        matches!(keyword, Keyword::And | Keyword::Or | Keyword::Xor | Keyword::Mod)
+            && self.peek_ahead(1) == Some(TokenKind::Punctuation(Punctuation::LeftParen))
     }
 
     fn literal(&mut self, span: Span, value: Result<Literal, String>) -> ExprKind {
@@ -255,27 +218,16 @@ impl Cursor<'_> {
             self.report(Diagnostic::error(Code::NestingTooDeep, span, message).with_help(help));
             return error_at(span);
         }
-        Expr {
-            kind,
-            span,
-            height: height + 1,
-        }
+        Expr { kind, span, height: height + 1 }
     }
 }
 
 fn error_at(span: Span) -> Expr {
-    Expr {
-        kind: ExprKind::Error,
-        span,
-        height: 1,
-    }
+    Expr { kind: ExprKind::Error, span, height: 1 }
 }
 
 fn is_callable(expr: &Expr) -> bool {
-    matches!(
-        expr.kind,
-        ExprKind::Name(_) | ExprKind::Member(..) | ExprKind::Index(..)
-    )
+    matches!(expr.kind, ExprKind::Name(_) | ExprKind::Member(..) | ExprKind::Index(..))
 }
 
 fn argument_height(argument: &Argument) -> u16 {

@@ -7,18 +7,14 @@ use crate::syntax::token::{Punctuation, TokenKind};
 impl Cursor<'_> {
     /// `:= value`, if there is one.
     pub(super) fn optional_initialiser(&mut self) -> Option<Initialiser> {
-        self.take_mark(Punctuation::Assign)
-            .then(|| self.initialiser())
+        self.take_mark(Punctuation::Assign).then(|| self.initialiser())
     }
 
     fn initialiser(&mut self) -> Initialiser {
         let start = self.span();
         let kind = self.nested(Self::initialiser_kind);
         let kind = kind.unwrap_or(InitialiserKind::Array(Vec::new()));
-        Initialiser {
-            kind,
-            span: self.span_from(start),
-        }
+        Initialiser { kind, span: self.span_from(start) }
     }
 
     fn initialiser_kind(&mut self) -> InitialiserKind {
@@ -57,26 +53,16 @@ impl Cursor<'_> {
         let count = Box::new(self.primary());
         self.advance();
         let absent = self.at_mark(Punctuation::RightParen);
-        let value = if absent {
-            None
-        } else {
-            Some(Box::new(self.initialiser()))
-        };
+        let value = if absent { None } else { Some(Box::new(self.initialiser())) };
         self.expect_mark(Punctuation::RightParen);
-        Initialiser {
-            kind: InitialiserKind::Repeat(count, value),
-            span: self.span_from(start),
-        }
+        Initialiser { kind: InitialiserKind::Repeat(count, value), span: self.span_from(start) }
     }
 
     fn structure_initialiser(&mut self) -> InitialiserKind {
         let mut members = Vec::new();
         while let Some(name) = self.expect_identifier("a member's name") {
             self.expect_mark(Punctuation::Assign);
-            members.push(StructureInit {
-                name,
-                value: self.initialiser(),
-            });
+            members.push(StructureInit { name, value: self.initialiser() });
             if !self.take_mark(Punctuation::Comma) {
                 break;
             }

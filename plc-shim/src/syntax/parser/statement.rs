@@ -3,8 +3,8 @@
 use super::cursor::Cursor;
 use crate::diagnostic::{Code, Diagnostic};
 use crate::syntax::ast::{
-    CaseBranch, CaseLabel, CaseStatement, ExprKind, ForStatement, IfBranch, IfStatement,
-    RepeatStatement, Statement, StatementKind, WhileStatement,
+    CaseBranch, CaseLabel, CaseStatement, ExprKind, ForStatement, IfBranch, IfStatement, RepeatStatement, Statement,
+    StatementKind, WhileStatement,
 };
 use crate::syntax::source::Span;
 use crate::syntax::token::{Keyword, Punctuation, TokenKind};
@@ -24,10 +24,7 @@ fn closes_list(keyword: Keyword) -> bool {
 /// Keywords that begin a statement.
 fn begins_statement(keyword: Keyword) -> bool {
     use Keyword as K;
-    matches!(
-        keyword,
-        K::If | K::Case | K::For | K::While | K::Repeat | K::Exit | K::Continue | K::Return
-    )
+    matches!(keyword, K::If | K::Case | K::For | K::While | K::Repeat | K::Exit | K::Continue | K::Return)
 }
 
 impl Cursor<'_> {
@@ -50,9 +47,7 @@ impl Cursor<'_> {
     fn statement(&mut self) -> Statement {
         let start = self.span();
         let (position, known) = (self.position(), self.reported());
-        let kind = self
-            .nested(Self::statement_kind)
-            .unwrap_or(StatementKind::Error);
+        let kind = self.nested(Self::statement_kind).unwrap_or(StatementKind::Error);
         let span = self.span_from(start);
         // A compound statement that found its end has dealt with the errors inside it.
         let ended = self.position() > position && self.previous_closes();
@@ -70,10 +65,7 @@ impl Cursor<'_> {
 
     fn missing_semicolon(&mut self) {
         let before = self.previous_span();
-        let span = Span {
-            start: before.end.saturating_sub(1).max(before.start),
-            ..before
-        };
+        let span = Span { start: before.end.saturating_sub(1).max(before.start), ..before };
         let message = "`;` expected after this";
         self.report_syntax(Diagnostic::error(Code::UnexpectedToken, span, message));
         // What follows is most often a good statement; only a stray remainder is skipped.
@@ -100,9 +92,7 @@ impl Cursor<'_> {
                 self.advance();
             }
         }
-        if self.position() > started
-            && self.previous() == Some(TokenKind::Punctuation(Punctuation::Semicolon))
-        {
+        if self.position() > started && self.previous() == Some(TokenKind::Punctuation(Punctuation::Semicolon)) {
             return;
         }
         self.skip_until(|kind| match kind {
@@ -175,10 +165,7 @@ impl Cursor<'_> {
             otherwise = self.statements();
         }
         self.expect_end(Keyword::EndIf);
-        StatementKind::If(IfStatement {
-            branches,
-            otherwise,
-        })
+        StatementKind::If(IfStatement { branches, otherwise })
     }
 
     /// A condition and the keyword behind it; a slip in either does not cost the body.
@@ -191,9 +178,7 @@ impl Cursor<'_> {
             }
             self.skip_until(|kind| match kind {
                 TokenKind::Punctuation(Punctuation::Semicolon) => true,
-                TokenKind::Keyword(keyword) => {
-                    keyword == end || closes_list(keyword) || begins_statement(keyword)
-                }
+                TokenKind::Keyword(keyword) => keyword == end || closes_list(keyword) || begins_statement(keyword),
                 _ => false,
             });
         }
@@ -218,17 +203,9 @@ impl Cursor<'_> {
                 self.advance();
             }
         }
-        let otherwise = if self.take_keyword(Keyword::Else) {
-            self.statements()
-        } else {
-            Vec::new()
-        };
+        let otherwise = if self.take_keyword(Keyword::Else) { self.statements() } else { Vec::new() };
         self.expect_end(Keyword::EndCase);
-        StatementKind::Case(CaseStatement {
-            selector,
-            branches,
-            otherwise,
-        })
+        StatementKind::Case(CaseStatement { selector, branches, otherwise })
     }
 
     fn case_branch(&mut self) -> CaseBranch {
@@ -240,8 +217,7 @@ impl Cursor<'_> {
             self.skip_until(|kind| {
                 matches!(
                     kind,
-                    TokenKind::Punctuation(Punctuation::Colon | Punctuation::Semicolon)
-                        | TokenKind::Keyword(_)
+                    TokenKind::Punctuation(Punctuation::Colon | Punctuation::Semicolon) | TokenKind::Keyword(_)
                 )
             });
             self.take_mark(Punctuation::Colon);
@@ -252,9 +228,7 @@ impl Cursor<'_> {
 
     fn case_label(&mut self) -> CaseLabel {
         let low = self.expression();
-        let high = self
-            .take_mark(Punctuation::Range)
-            .then(|| self.expression());
+        let high = self.take_mark(Punctuation::Range).then(|| self.expression());
         CaseLabel { low, high }
     }
 
@@ -268,9 +242,7 @@ impl Cursor<'_> {
                 | TokenKind::String
                 | TokenKind::WideString
                 | TokenKind::Keyword(Keyword::True | Keyword::False)
-                | TokenKind::Punctuation(
-                    Punctuation::Minus | Punctuation::Plus | Punctuation::LeftParen,
-                ),
+                | TokenKind::Punctuation(Punctuation::Minus | Punctuation::Plus | Punctuation::LeftParen),
             ) => true,
             Some(TokenKind::Identifier) => self.identifier_is_label(),
             _ => false,
@@ -282,18 +254,15 @@ impl Cursor<'_> {
         let mut ahead = 1;
         loop {
             match self.peek_ahead(ahead) {
-                Some(TokenKind::Punctuation(
-                    Punctuation::Colon | Punctuation::Comma | Punctuation::Range,
-                )) => return true,
+                Some(TokenKind::Punctuation(Punctuation::Colon | Punctuation::Comma | Punctuation::Range)) => {
+                    return true;
+                }
                 Some(
                     TokenKind::Integer
                     | TokenKind::Identifier
                     | TokenKind::Typed
                     | TokenKind::Punctuation(
-                        Punctuation::Plus
-                        | Punctuation::Minus
-                        | Punctuation::Star
-                        | Punctuation::Dot,
+                        Punctuation::Plus | Punctuation::Minus | Punctuation::Star | Punctuation::Dot,
                     ),
                 ) => ahead += 1,
                 _ => return false,
@@ -317,13 +286,7 @@ impl Cursor<'_> {
         };
         let body = self.statements();
         self.expect_end(Keyword::EndFor);
-        StatementKind::For(Box::new(ForStatement {
-            variable,
-            from,
-            to,
-            by,
-            body,
-        }))
+        StatementKind::For(Box::new(ForStatement { variable, from, to, by, body }))
     }
 
     /// Looks for `BY` before `DO` on the way to the body.
@@ -332,11 +295,9 @@ impl Cursor<'_> {
         loop {
             match self.peek_ahead(ahead) {
                 Some(TokenKind::Keyword(Keyword::By)) => return true,
-                None
-                | Some(
-                    TokenKind::Keyword(Keyword::Do)
-                    | TokenKind::Punctuation(Punctuation::Semicolon),
-                ) => return false,
+                None | Some(TokenKind::Keyword(Keyword::Do) | TokenKind::Punctuation(Punctuation::Semicolon)) => {
+                    return false;
+                }
                 Some(TokenKind::Keyword(word)) if closes_list(word) || begins_statement(word) => {
                     return false;
                 }
@@ -368,15 +329,9 @@ impl Cursor<'_> {
 /// Keywords that end a compound statement.
 fn ends_statement(keyword: Keyword) -> bool {
     use Keyword as K;
-    matches!(
-        keyword,
-        K::EndIf | K::EndCase | K::EndFor | K::EndWhile | K::EndRepeat
-    )
+    matches!(keyword, K::EndIf | K::EndCase | K::EndFor | K::EndWhile | K::EndRepeat)
 }
 
 fn is_comparison(kind: &ExprKind) -> bool {
-    matches!(
-        kind,
-        ExprKind::Binary(crate::syntax::ast::BinaryOp::Equal, ..)
-    )
+    matches!(kind, ExprKind::Binary(crate::syntax::ast::BinaryOp::Equal, ..))
 }

@@ -107,38 +107,16 @@ fn depth_is_bounded_and_reported() {
         let (open, close) = (open.repeat(50_000), close.repeat(50_000));
         parse(FILE, &format!("PROGRAM p {open} x {close} END_PROGRAM"))
     };
-    for (open, close) in [
-        ("(", ")"),
-        ("IF a THEN ", "END_IF;"),
-        ("NOT ", ""),
-        ("a[", "]"),
-        ("f(", ")"),
-    ] {
-        let codes: Vec<_> = deep(open, close)
-            .diagnostics
-            .iter()
-            .map(|found| found.code)
-            .collect();
+    for (open, close) in [("(", ")"), ("IF a THEN ", "END_IF;"), ("NOT ", ""), ("a[", "]"), ("f(", ")")] {
+        let codes: Vec<_> = deep(open, close).diagnostics.iter().map(|found| found.code).collect();
         assert_eq!(codes, [Code::NestingTooDeep], "{open}");
     }
     let chain = format!("PROGRAM p x := 1{}; END_PROGRAM", "+1".repeat(100_000));
-    assert_eq!(
-        parse(FILE, &chain).diagnostics[0].code,
-        Code::NestingTooDeep
-    );
+    assert_eq!(parse(FILE, &chain).diagnostics[0].code, Code::NestingTooDeep);
     let members = format!("PROGRAM p x := a{}; END_PROGRAM", ".b".repeat(100_000));
-    assert_eq!(
-        parse(FILE, &members).diagnostics[0].code,
-        Code::NestingTooDeep
-    );
-    let arrays = format!(
-        "VAR_GLOBAL x : {} INT; END_VAR",
-        "ARRAY [0..1] OF ".repeat(10_000)
-    );
-    assert_eq!(
-        parse(FILE, &arrays).diagnostics[0].code,
-        Code::NestingTooDeep
-    );
+    assert_eq!(parse(FILE, &members).diagnostics[0].code, Code::NestingTooDeep);
+    let arrays = format!("VAR_GLOBAL x : {} INT; END_VAR", "ARRAY [0..1] OF ".repeat(10_000));
+    assert_eq!(parse(FILE, &arrays).diagnostics[0].code, Code::NestingTooDeep);
 }
 
 fn arbitrary_expression() -> impl Strategy<Value = String> {
@@ -151,9 +129,8 @@ fn arbitrary_expression() -> impl Strategy<Value = String> {
         Just("TRUE".to_owned()),
     ];
     leaf.prop_recursive(6, 60, 3, |inner| {
-        let operator = prop::sample::select(vec![
-            "+", "-", "*", "/", "MOD", "**", "AND", "OR", "XOR", "&", "=", "<>", "<", ">=",
-        ]);
+        let operator =
+            prop::sample::select(vec!["+", "-", "*", "/", "MOD", "**", "AND", "OR", "XOR", "&", "=", "<>", "<", ">="]);
         prop_oneof![
             (inner.clone(), operator, inner.clone()).prop_map(|(a, op, b)| format!("{a} {op} {b}")),
             inner.clone().prop_map(|a| format!("({a})")),

@@ -1,21 +1,14 @@
 //! Types as written (2nd ed. 2.3.3).
 
 use super::cursor::Cursor;
-use crate::syntax::ast::{
-    Dimension, EnumValue, Expr, Field, Ident, Subrange, TypeSpec, TypeSpecKind,
-};
+use crate::syntax::ast::{Dimension, EnumValue, Expr, Field, Ident, Subrange, TypeSpec, TypeSpecKind};
 use crate::syntax::token::{Keyword, Punctuation, TokenKind};
 
 impl Cursor<'_> {
     pub(super) fn type_spec(&mut self) -> TypeSpec {
         let start = self.span();
-        let kind = self
-            .nested(Self::type_spec_kind)
-            .unwrap_or(TypeSpecKind::Error);
-        TypeSpec {
-            kind,
-            span: self.span_from(start),
-        }
+        let kind = self.nested(Self::type_spec_kind).unwrap_or(TypeSpecKind::Error);
+        TypeSpec { kind, span: self.span_from(start) }
     }
 
     fn type_spec_kind(&mut self) -> TypeSpecKind {
@@ -87,11 +80,7 @@ impl Cursor<'_> {
         let spec = self.type_spec();
         let initial = self.optional_initialiser();
         for name in names {
-            fields.push(Field {
-                name,
-                spec: spec.clone(),
-                initial: initial.clone(),
-            });
+            fields.push(Field { name, spec: spec.clone(), initial: initial.clone() });
         }
         self.end_of_declaration(known);
     }
@@ -107,9 +96,7 @@ impl Cursor<'_> {
     fn enumeration_type(&mut self) -> TypeSpecKind {
         let mut values = Vec::new();
         while let Some(name) = self.expect_identifier("a value's name") {
-            let value = self
-                .take_mark(Punctuation::Assign)
-                .then(|| self.expression());
+            let value = self.take_mark(Punctuation::Assign).then(|| self.expression());
             values.push(EnumValue { name, value });
             if !self.take_mark(Punctuation::Comma) {
                 break;

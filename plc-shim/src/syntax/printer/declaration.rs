@@ -2,8 +2,8 @@
 
 use super::Printer;
 use crate::syntax::ast::{
-    Declaration, EnumValue, Field, Initialiser, InitialiserKind, Pou, PouKind, Qualifier, Section,
-    SectionKind, StructureInit, TypeDeclaration, TypeSpec, TypeSpecKind, Variable,
+    Declaration, EnumValue, Field, Initialiser, InitialiserKind, Pou, PouKind, Qualifier, Section, SectionKind,
+    StructureInit, TypeDeclaration, TypeSpec, TypeSpecKind, Variable,
 };
 
 impl Printer {

@@ -60,11 +60,7 @@ impl Printer {
                 self.word(" := ");
                 self.expression(expr);
             }
-            Argument::Output {
-                name,
-                negated,
-                target,
-            } => {
+            Argument::Output { name, negated, target } => {
                 if *negated {
                     self.word("NOT ");
                 }
@@ -90,10 +86,7 @@ impl Printer {
                 TypedValue::Name(name) => format!("{prefix}#{name}"),
             },
             Literal::Duration { long, ns } => {
-                let (prefix, sign) = (
-                    if *long { "LT" } else { "T" },
-                    if *ns < 0 { "-" } else { "" },
-                );
+                let (prefix, sign) = (if *long { "LT" } else { "T" }, if *ns < 0 { "-" } else { "" });
                 format!("{prefix}#{sign}{}ns", ns.unsigned_abs())
             }
             Literal::String(text) => text.clone(),

@@ -1,9 +1,7 @@
 //! Statements to text.
 
 use super::Printer;
-use crate::syntax::ast::{
-    CaseLabel, CaseStatement, Expr, ForStatement, IfStatement, Statement, StatementKind,
-};
+use crate::syntax::ast::{CaseLabel, CaseStatement, Expr, ForStatement, IfStatement, Statement, StatementKind};
 
 impl Printer {
     pub(super) fn statements(&mut self, list: &[Statement]) {
@@ -61,11 +59,7 @@ impl Printer {
 
     fn if_statement(&mut self, inner: &IfStatement) {
         for (index, branch) in inner.branches.iter().enumerate() {
-            self.head(
-                if index == 0 { "IF " } else { "ELSIF " },
-                &branch.condition,
-                " THEN",
-            );
+            self.head(if index == 0 { "IF " } else { "ELSIF " }, &branch.condition, " THEN");
             self.block(&branch.body, "");
         }
         if !inner.otherwise.is_empty() {

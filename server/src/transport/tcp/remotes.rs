@@ -192,7 +192,7 @@ impl Remotes {
             }
         });
         let all = futures_util::future::join_all(told);
-        self.runtime.block_on(async { all.await });
+        self.runtime.block_on(all);
     }
 }
 
