@@ -101,7 +101,7 @@ impl Formation {
     fn admit(&mut self, applicant: Applicant, reply_timeout: Duration) -> Result<(), FormationError> {
         let remotes = match &mut self.remotes {
             Some(remotes) => remotes,
-            empty => empty.insert(Remotes::new(self.session.clients().len(), reply_timeout)?),
+            empty => empty.insert(Remotes::new(self.session.clients().len(), reply_timeout)),
         };
         let (peer, name) = (applicant.peer(), applicant.request().name.clone());
         match self.session.join(applicant.request()) {
@@ -112,7 +112,7 @@ impl Formation {
             }
             Err(refusal) => {
                 tracing::warn!(client = %name, %peer, %refusal, "refused");
-                remotes.refuse(applicant, &refusal.to_string());
+                Remotes::refuse(applicant, &refusal.to_string());
             }
         }
         Ok(())

@@ -1,5 +1,6 @@
 //! Fixtures of the end-to-end tests, proofs and benches: plans and small clients.
 
+pub mod bench;
 pub mod run;
 pub mod toy;
 

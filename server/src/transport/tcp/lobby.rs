@@ -5,19 +5,27 @@ use std::sync::mpsc::{Receiver, Sender, channel};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
 
+use futures_util::{SinkExt, StreamExt};
+use serde::Serialize;
+use serde::de::DeserializeOwned;
 use tokio::net::{TcpListener, TcpStream};
 use tokio::sync::{Notify, Semaphore, oneshot};
 use tokio_util::codec::Framed;
 
-use super::{AGENT, Connection, HANDSHAKE_TIMEOUT, ReceiveError, farewell, receive, runtime, send};
+use super::{AGENT, FAREWELL_TIMEOUT, HANDSHAKE_TIMEOUT, ReceiveError};
 use crate::client::JoinRequest;
 use crate::mailbox::{Mailbox, Request};
 use crate::plan::SessionPlan;
 use crate::wire::message::Role;
-use crate::wire::{ClientMessage, FRAME_BYTES_MAX, FrameCodec, HANDSHAKE_FRAME_BYTES_MAX, ServerMessage, VERSIONS};
+use crate::wire::{
+    ClientMessage, FRAME_BYTES_MAX, Frame, FrameCodec, FrameError, FrameRef, HANDSHAKE_FRAME_BYTES_MAX, ServerMessage,
+    VERSIONS,
+};
 
 /// Connections that may be in the lobby at once, operators included.
 const GUESTS_MAX: usize = 64;
+
+type Connection = Framed<TcpStream, FrameCodec>;
 
 /// How long an operator may be silent.
 const OPERATOR_PATIENCE: Duration = Duration::from_hours(24);
@@ -78,7 +86,7 @@ impl Lobby {
         let host = Host { welcome, applicants: sender, mailbox, seats: Semaphore::new(GUESTS_MAX) };
         let close = Arc::new(Notify::new());
         let closing = Arc::clone(&close);
-        let runtime = runtime()?;
+        let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build()?;
         let thread = std::thread::Builder::new()
             .name("lobby".to_owned())
             .spawn(move || runtime.block_on(receive_guests(listener, Arc::new(host), closing)))?;
@@ -135,7 +143,7 @@ async fn receive_guests(listener: std::net::TcpListener, host: Arc<Host>, closin
 }
 
 async fn greet(stream: TcpStream, peer: SocketAddr, host: &Host) -> Result<(), ReceiveError> {
-    stream.set_nodelay(true).map_err(crate::wire::FrameError::from)?;
+    stream.set_nodelay(true).map_err(FrameError::from)?;
     let mut connection = Framed::new(stream, FrameCodec::new(HANDSHAKE_FRAME_BYTES_MAX));
     let Ok(_seat) = host.seats.try_acquire() else {
         return refuse(&mut connection, "too many connections are waiting in the lobby").await;
@@ -174,7 +182,7 @@ async fn take_application(mut connection: Connection, peer: SocketAddr, host: &H
         let mut connection = Framed::from_parts(parts);
         return refuse(&mut connection, "a client must wait for the answer to `join`").await;
     }
-    let stream = parts.io.into_std().map_err(crate::wire::FrameError::from)?;
+    let stream = parts.io.into_std().map_err(FrameError::from)?;
     // If the session no longer takes anybody the stream is closed by this.
     let _ = host.applicants.send(Applicant { request, peer, stream });
     Ok(())
@@ -200,4 +208,34 @@ async fn refuse(connection: &mut Connection, why: &str) -> Result<(), ReceiveErr
     send(connection, &ServerMessage::Refused { message: why.to_owned() }).await?;
     farewell(connection).await;
     Ok(())
+}
+
+async fn receive<M: DeserializeOwned>(connection: &mut Connection, patience: Duration) -> Result<M, ReceiveError> {
+    match tokio::time::timeout(patience, connection.next()).await {
+        Err(_) => Err(ReceiveError::TimedOut(patience)),
+        Ok(None) => Err(ReceiveError::Closed),
+        Ok(Some(Ok(Frame::Json(text)))) => Ok(serde_json::from_slice(&text)?),
+        Ok(Some(Ok(_))) => Err(ReceiveError::NotJson),
+        Ok(Some(Err(error))) => Err(error.into()),
+    }
+}
+
+async fn send<M: Serialize>(connection: &mut Connection, message: &M) -> Result<(), FrameError> {
+    let json = crate::wire::frame::to_json(message).map_err(std::io::Error::from)?;
+    connection.send(FrameRef::Json(&json)).await
+}
+
+/// Closes after a last message: no more is sent, and what still comes is thrown away, so that the
+/// operating system does not reset the connection and the last message with it.
+async fn farewell(connection: &mut Connection) {
+    use tokio::io::{AsyncReadExt, AsyncWriteExt};
+    let stream = connection.get_mut();
+    let drain = async {
+        let mut waste = [0; 4096];
+        stream.shutdown().await.ok()?;
+        while stream.read(&mut waste).await.ok()? > 0 {}
+        Some(())
+    };
+    // One who does not close in time is left.
+    let _ = tokio::time::timeout(FAREWELL_TIMEOUT, drain).await;
 }

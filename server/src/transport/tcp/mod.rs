@@ -2,37 +2,39 @@
 //!
 //! | module | subject |
 //! |---|---|
-//! | [`lobby`] | the listener: handshakes, applicants, operators; a thread of its own |
+//! | [`lobby`] | the listener: handshakes, applicants, operators; a thread of its own, asynchronous |
+//! | `stream` | frames over a blocking socket |
 //! | [`remotes`] | the joined clients, seen from the session's thread |
 //! | [`participant`] | the client's side: join and take part |
 //! | [`operator`] | the operator's side: one wish, one answer |
+//!
+//! Many strangers may come and go in the lobby, so it is asynchronous. A client that has joined is
+//! waited for by exactly one thread on either side, so from there on sockets block: see
+//! `docs/decisions/002-blocking-steps.md`.
 
 pub mod lobby;
 pub mod operator;
 pub mod participant;
 pub mod remotes;
+mod stream;
 
 use std::time::Duration;
 
-use futures_util::{SinkExt, StreamExt};
-use serde::Serialize;
-use serde::de::DeserializeOwned;
 use thiserror::Error;
-use tokio::net::TcpStream;
-use tokio_util::codec::Framed;
 
 pub use lobby::{Applicant, Lobby};
 pub use remotes::{RemoteError, Remotes};
 
-use crate::wire::{Frame, FrameCodec, FrameError, FrameRef};
+use crate::wire::FrameError;
 
 /// How long the other side may take for a message of the handshake.
 pub const HANDSHAKE_TIMEOUT: Duration = Duration::from_secs(5);
 
+/// How long the other side may take to close after a last message.
+const FAREWELL_TIMEOUT: Duration = Duration::from_secs(1);
+
 /// What this program calls itself to the other side.
 const AGENT: &str = concat!("onescan ", env!("CARGO_PKG_VERSION"));
-
-type Connection = Framed<TcpStream, FrameCodec>;
 
 /// Why no message came of a connection.
 #[derive(Debug, Error)]
@@ -66,47 +68,4 @@ impl ReceiveError {
             _ => false,
         }
     }
-}
-
-async fn receive_frame(connection: &mut Connection, patience: Duration) -> Result<Frame, ReceiveError> {
-    match tokio::time::timeout(patience, connection.next()).await {
-        Err(_) => Err(ReceiveError::TimedOut(patience)),
-        Ok(None) => Err(ReceiveError::Closed),
-        Ok(Some(frame)) => Ok(frame?),
-    }
-}
-
-async fn receive<M: DeserializeOwned>(connection: &mut Connection, patience: Duration) -> Result<M, ReceiveError> {
-    match receive_frame(connection, patience).await? {
-        Frame::Json(text) => Ok(serde_json::from_slice(&text)?),
-        _ => Err(ReceiveError::NotJson),
-    }
-}
-
-async fn send<M: Serialize>(connection: &mut Connection, message: &M) -> Result<(), FrameError> {
-    let json = crate::wire::frame::to_json(message).map_err(std::io::Error::from)?;
-    connection.send(FrameRef::Json(&json)).await
-}
-
-/// How long the other side may take to close after a last message.
-const FAREWELL_TIMEOUT: Duration = Duration::from_secs(1);
-
-/// Closes after a last message: no more is sent, and what still comes is thrown away, so that the
-/// operating system does not reset the connection and the last message with it.
-async fn farewell(connection: &mut Connection) {
-    use tokio::io::{AsyncReadExt, AsyncWriteExt};
-    let stream = connection.get_mut();
-    let drain = async {
-        let mut waste = [0; 4096];
-        stream.shutdown().await.ok()?;
-        while stream.read(&mut waste).await.ok()? > 0 {}
-        Some(())
-    };
-    // One who does not close in time is left.
-    let _ = tokio::time::timeout(FAREWELL_TIMEOUT, drain).await;
-}
-
-/// A runtime for one thread: tasks run only while that thread waits.
-fn runtime() -> std::io::Result<tokio::runtime::Runtime> {
-    tokio::runtime::Builder::new_current_thread().enable_all().build()
 }

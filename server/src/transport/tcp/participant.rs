@@ -1,21 +1,18 @@
 //! The client's side of TCP: joins a session and takes part until it ends.
 
-use std::net::SocketAddr;
+use std::net::{SocketAddr, TcpStream};
 
-use futures_util::{SinkExt, StreamExt};
 use thiserror::Error;
-use tokio::net::TcpStream;
-use tokio_util::codec::Framed;
 
-use super::{AGENT, Connection, HANDSHAKE_TIMEOUT, ReceiveError, farewell, receive, runtime, send};
+use super::stream::FrameStream;
+use super::{AGENT, HANDSHAKE_TIMEOUT, ReceiveError};
 use crate::client::{Client, ClientFault, Wake};
 use crate::end::SessionEnd;
 use crate::signal::PortLayout;
 use crate::time::{StepCount, VirtualTime};
 use crate::wire::message::Role;
 use crate::wire::{
-    ClientMessage, Duty, Endpoint, EndpointError, FRAME_BYTES_MAX, FrameCodec, FrameError, FrameRef, ServerMessage,
-    VERSIONS,
+    ClientMessage, Duty, Endpoint, EndpointError, FRAME_BYTES_MAX, Frame, FrameError, FrameRef, ServerMessage, VERSIONS,
 };
 
 /// Why a client did not stay to the end.
@@ -61,109 +58,113 @@ pub enum ParticipantError {
 /// # Errors
 /// See [`ParticipantError`].
 pub fn take_part(client: &mut dyn Client, address: SocketAddr) -> Result<SessionEnd, ParticipantError> {
-    let no_runtime = |source| ParticipantError::Connect { address, source };
-    runtime().map_err(no_runtime)?.block_on(async {
-        let mut connection = connect(address).await?;
-        shake_hands(&mut connection, client).await?;
-        connection.codec_mut().set_limit(FRAME_BYTES_MAX);
-        serve(connection, client).await
-    })
+    let mut connection = connect(address)?;
+    shake_hands(&mut connection, client)?;
+    serve(connection, client)
 }
 
-/// A connection without delays for small frames.
-pub(super) async fn connect(address: SocketAddr) -> Result<Connection, ParticipantError> {
+/// A connection, not yet greeted.
+pub(super) fn connect(address: SocketAddr) -> Result<FrameStream, ParticipantError> {
     let refused = |source| ParticipantError::Connect { address, source };
-    let connecting = tokio::time::timeout(HANDSHAKE_TIMEOUT, TcpStream::connect(address));
-    let stream = match connecting.await {
-        Ok(stream) => stream.map_err(refused)?,
-        Err(_) => return Err(refused(std::io::ErrorKind::TimedOut.into())),
-    };
-    stream.set_nodelay(true).map_err(refused)?;
-    Ok(Framed::new(stream, FrameCodec::new(FRAME_BYTES_MAX)))
+    let stream = TcpStream::connect_timeout(&address, HANDSHAKE_TIMEOUT).map_err(refused)?;
+    FrameStream::new(stream, FRAME_BYTES_MAX, HANDSHAKE_TIMEOUT).map_err(refused)
 }
 
 /// `hello` and its answer.
-pub(super) async fn greet(connection: &mut Connection, role: Role) -> Result<(), ParticipantError> {
+pub(super) fn greet(connection: &mut FrameStream, role: Role) -> Result<(), ParticipantError> {
     let broken = |e: FrameError| ParticipantError::Handshake(e.into());
     let hello = ClientMessage::Hello { protocol: VERSIONS, role, agent: AGENT.to_owned() };
-    send(connection, &hello).await.map_err(broken)?;
-    match receive(connection, HANDSHAKE_TIMEOUT).await.map_err(ParticipantError::Handshake)? {
+    connection.send_message(&hello).map_err(broken)?;
+    match connection.receive_message(HANDSHAKE_TIMEOUT).map_err(ParticipantError::Handshake)? {
         ServerMessage::Welcome { .. } => Ok(()),
         ServerMessage::Refused { message } => Err(ParticipantError::Refused(message)),
         _ => Err(ParticipantError::Refused("its answer to `hello` is none".to_owned())),
     }
 }
 
-async fn shake_hands(connection: &mut Connection, client: &dyn Client) -> Result<(), ParticipantError> {
-    greet(connection, Role::Client).await?;
+/// `hello` and `join`. The answer to `join` may take as long as the session takes to form.
+fn shake_hands(connection: &mut FrameStream, client: &dyn Client) -> Result<(), ParticipantError> {
+    greet(connection, Role::Client)?;
     let broken = |e: FrameError| ParticipantError::Handshake(e.into());
-    send(connection, &ClientMessage::Join(client.join())).await.map_err(broken)?;
-    match receive(connection, HANDSHAKE_TIMEOUT).await.map_err(ParticipantError::Handshake)? {
+    connection.send_message(&ClientMessage::Join(client.join())).map_err(broken)?;
+    let Frame::Json(text) = connection.receive(None).map_err(ParticipantError::Handshake)? else {
+        return Err(ParticipantError::Handshake(ReceiveError::NotJson));
+    };
+    match serde_json::from_slice(&text).map_err(|e| ParticipantError::Handshake(e.into()))? {
         ServerMessage::Joined { .. } => Ok(()),
         ServerMessage::Refused { message } => Err(ParticipantError::Refused(message)),
         _ => Err(ParticipantError::Refused("its answer to `join` is none".to_owned())),
     }
 }
 
-async fn serve(mut connection: Connection, client: &mut dyn Client) -> Result<SessionEnd, ParticipantError> {
+fn serve(mut connection: FrameStream, client: &mut dyn Client) -> Result<SessionEnd, ParticipantError> {
     let request = client.join();
     let mut endpoint = Endpoint::new(PortLayout::new(request.reads).size());
     let mut outputs = vec![0; PortLayout::new(request.writes).size()];
     loop {
-        let lost = |source| ParticipantError::Lost { t_v: endpoint.t_v(), source };
-        let frame = match connection.next().await {
-            None => return Err(lost(ReceiveError::Closed)),
-            Some(frame) => frame.map_err(|e| lost(e.into()))?,
-        };
+        let frame =
+            connection.receive(None).map_err(|source| ParticipantError::Lost { t_v: endpoint.t_v(), source })?;
         let duty = endpoint.receive(frame)?;
         let t_v = endpoint.t_v();
-        let sent = match duty {
-            Duty::Leave(end) => return Ok(end),
-            Duty::Nothing => Ok(()),
-            Duty::Setup => {
-                outputs.fill(0);
-                match client.setup(&mut outputs) {
-                    Ok(()) => answer(&mut connection, StepCount(0), t_v, Wake::NextPeriod, &outputs).await,
-                    Err(fault) => return give_up(&mut connection, t_v, fault).await,
-                }
+        if let Duty::Leave(end) = duty {
+            return Ok(end);
+        }
+        match do_duty(&mut connection, client, duty, t_v, &mut outputs) {
+            Ok(Ok(())) => endpoint.answered(),
+            Ok(Err(fault)) => {
+                // If the server is gone too, the fault is still what matters here.
+                let _ = connection.send_message(&ClientMessage::Fault(fault.clone()));
+                connection.farewell();
+                return Err(ParticipantError::Fault { t_v, fault });
             }
-            Duty::Turn { sequence, t_v, inputs } => match client.turn(t_v, &inputs, &mut outputs) {
-                Ok(wake) => answer(&mut connection, sequence, t_v, wake, &outputs).await,
-                Err(fault) => return give_up(&mut connection, t_v, fault).await,
-            },
-            Duty::Save => match client.save() {
-                Ok(state) => connection.send(FrameRef::State(&state)).await,
-                // The session goes on; it is just not saved.
-                Err(error) => send(&mut connection, &ClientMessage::Fault(ClientFault::new(error.to_string()))).await,
-            },
-            Duty::Restore(state) => match client.restore(&state) {
-                Ok(()) => send(&mut connection, &ClientMessage::Restored {}).await,
-                Err(error) => return give_up(&mut connection, t_v, ClientFault::new(error.to_string())).await,
-            },
-        };
-        sent.map_err(|e| ParticipantError::Lost { t_v, source: e.into() })?;
-        endpoint.answered();
+            Err(error) => return Err(ParticipantError::Lost { t_v, source: error.into() }),
+        }
     }
 }
 
-async fn answer(
-    connection: &mut Connection,
-    sequence: StepCount,
+/// Does what the server asks for and answers. The inner error is the client's own.
+fn do_duty(
+    connection: &mut FrameStream,
+    client: &mut dyn Client,
+    duty: Duty,
     t_v: VirtualTime,
-    wake: Wake,
-    outputs: &[u8],
-) -> Result<(), FrameError> {
-    connection.send(FrameRef::Turn { sequence, t_v, wake, outputs }).await
-}
-
-/// Tells the server why this client cannot go on.
-async fn give_up(
-    connection: &mut Connection,
-    t_v: VirtualTime,
-    fault: ClientFault,
-) -> Result<SessionEnd, ParticipantError> {
-    // If the server is gone too, the fault is still what matters here.
-    let _ = send(connection, &ClientMessage::Fault(fault.clone())).await;
-    farewell(connection).await;
-    Err(ParticipantError::Fault { t_v, fault })
+    outputs: &mut [u8],
+) -> Result<Result<(), ClientFault>, FrameError> {
+    let done = match duty {
+        Duty::Leave(_) | Duty::Nothing => Ok(()),
+        Duty::Setup => {
+            outputs.fill(0);
+            match client.setup(outputs) {
+                Ok(()) => {
+                    let (sequence, wake) = (StepCount(0), Wake::NextPeriod);
+                    connection.send(FrameRef::Turn { sequence, t_v, wake, outputs })?;
+                    Ok(())
+                }
+                Err(fault) => Err(fault),
+            }
+        }
+        Duty::Turn { sequence, t_v, inputs } => match client.turn(t_v, &inputs, outputs) {
+            Ok(wake) => {
+                connection.send(FrameRef::Turn { sequence, t_v, wake, outputs })?;
+                Ok(())
+            }
+            Err(fault) => Err(fault),
+        },
+        Duty::Save => {
+            match client.save() {
+                Ok(state) => connection.send(FrameRef::State(&state))?,
+                // The session goes on; it is just not saved.
+                Err(error) => connection.send_message(&ClientMessage::Fault(ClientFault::new(error.to_string())))?,
+            }
+            Ok(())
+        }
+        Duty::Restore(state) => match client.restore(&state) {
+            Ok(()) => {
+                connection.send_message(&ClientMessage::Restored {})?;
+                Ok(())
+            }
+            Err(error) => Err(ClientFault::new(error.to_string())),
+        },
+    };
+    Ok(done)
 }

@@ -2,14 +2,11 @@
 
 use std::time::Duration;
 
-use futures_util::SinkExt;
 use thiserror::Error;
-use tokio::net::TcpStream;
-use tokio::runtime::Runtime;
-use tokio_util::codec::Framed;
 
 use super::lobby::Applicant;
-use super::{Connection, HANDSHAKE_TIMEOUT, ReceiveError, farewell, receive_frame, runtime, send};
+use super::stream::FrameStream;
+use super::{HANDSHAKE_TIMEOUT, ReceiveError};
 use crate::client::StateError;
 use crate::cycle::ClientId;
 use crate::end::{FailureCause, SessionEnd};
@@ -17,7 +14,7 @@ use crate::lockstep::Answer;
 use crate::signal::PortLayout;
 use crate::time::{StepCount, VirtualTime};
 use crate::wire::message::placed;
-use crate::wire::{ClientMessage, FRAME_BYTES_MAX, Frame, FrameCodec, FrameError, FrameRef, ServerMessage};
+use crate::wire::{ClientMessage, FRAME_BYTES_MAX, Frame, FrameError, FrameRef, ServerMessage};
 
 /// The transport cannot be set up.
 #[derive(Debug, Error)]
@@ -26,13 +23,12 @@ pub struct RemoteError(#[from] std::io::Error);
 
 /// A client's connection, and what broke it if it is broken.
 struct Remote {
-    connection: Connection,
+    connection: FrameStream,
     broken: Option<FailureCause>,
 }
 
 /// All clients that joined over TCP.
 pub struct Remotes {
-    runtime: Runtime,
     seats: Vec<Option<Remote>>,
     reply_timeout: Duration,
 }
@@ -40,11 +36,8 @@ pub struct Remotes {
 impl Remotes {
     /// No client yet, of at most `seats`. A client that leaves a grant unanswered for
     /// `reply_timeout` ends the session.
-    ///
-    /// # Errors
-    /// The operating system gives no event queue.
-    pub fn new(seats: usize, reply_timeout: Duration) -> Result<Self, RemoteError> {
-        Ok(Self { runtime: runtime()?, seats: (0..seats).map(|_| None).collect(), reply_timeout })
+    pub fn new(seats: usize, reply_timeout: Duration) -> Self {
+        Self { seats: (0..seats).map(|_| None).collect(), reply_timeout }
     }
 
     /// Tells an applicant that it is in, and where its signals lie.
@@ -60,35 +53,26 @@ impl Remotes {
             output_bytes: outputs.size() as u32,
             outputs: placed(&outputs),
         };
-        let _context = self.runtime.enter();
-        let stream = TcpStream::from_std(applicant.stream)?;
-        let connection = Framed::new(stream, FrameCodec::new(FRAME_BYTES_MAX));
+        let connection = FrameStream::new(applicant.stream, FRAME_BYTES_MAX, self.reply_timeout)?;
         let mut remote = Remote { connection, broken: None };
-        let sent = self.runtime.block_on(send(&mut remote.connection, &joined));
-        remote.note(sent);
+        remote.send_message(&joined);
         self.seats[id.index()] = Some(remote);
         Ok(())
     }
 
     /// Tells an applicant why it is not in.
-    pub fn refuse(&mut self, applicant: Applicant, why: &str) {
-        let _context = self.runtime.enter();
-        if let Ok(stream) = TcpStream::from_std(applicant.stream) {
-            let mut connection = Framed::new(stream, FrameCodec::new(FRAME_BYTES_MAX));
-            let message = ServerMessage::Refused { message: why.to_owned() };
-            // One who is gone needs no reason.
-            self.runtime.block_on(async {
-                let _ = send(&mut connection, &message).await;
-                farewell(&mut connection).await;
-            });
+    pub fn refuse(applicant: Applicant, why: &str) {
+        // One who is gone needs no reason.
+        if let Ok(mut connection) = FrameStream::new(applicant.stream, FRAME_BYTES_MAX, HANDSHAKE_TIMEOUT) {
+            let _ = connection.send_message(&ServerMessage::Refused { message: why.to_owned() });
+            connection.farewell();
         }
     }
 
     pub(crate) fn send_setup(&mut self, clients: impl Iterator<Item = ClientId>) {
         for client in clients {
             if let Some(remote) = &mut self.seats[client.index()] {
-                let sent = self.runtime.block_on(send(&mut remote.connection, &ServerMessage::Setup {}));
-                remote.note(sent);
+                remote.send_message(&ServerMessage::Setup {});
             }
         }
     }
@@ -100,15 +84,12 @@ impl Remotes {
         sequence: StepCount,
         t_v: VirtualTime,
     ) {
-        let seats = &mut self.seats;
-        self.runtime.block_on(async {
-            for (client, inputs) in due {
-                if let Some(remote) = &mut seats[client.index()] {
-                    let sent = remote.connection.send(FrameRef::Grant { sequence, t_v, inputs }).await;
-                    remote.note(sent);
-                }
+        for (client, inputs) in due {
+            if let Some(remote) = &mut self.seats[client.index()] {
+                let sent = remote.connection.send(FrameRef::Grant { sequence, t_v, inputs });
+                remote.note(sent);
             }
-        });
+        }
     }
 
     /// The client's answer to its setup or grant; its outputs replace `outputs`.
@@ -117,7 +98,7 @@ impl Remotes {
         // What a client said before it broke the connection tells more than the broken connection.
         let broken = remote.broken.take();
         let patience = if broken.is_some() { Duration::from_millis(100) } else { self.reply_timeout };
-        match (self.runtime.block_on(receive_frame(&mut remote.connection, patience)), broken) {
+        match (remote.connection.receive(Some(patience)), broken) {
             (Ok(Frame::Turn { sequence, t_v, wake, outputs: bytes }), None) => {
                 outputs.clear();
                 outputs.extend_from_slice(&bytes);
@@ -134,7 +115,7 @@ impl Remotes {
         const GLANCE: Duration = Duration::from_millis(1);
         for (index, remote) in self.seats.iter_mut().enumerate() {
             let Some(remote) = remote else { continue };
-            let cause = match self.runtime.block_on(receive_frame(&mut remote.connection, GLANCE)) {
+            let cause = match remote.connection.receive(Some(GLANCE)) {
                 Err(ReceiveError::TimedOut(_)) => continue,
                 Err(error) => cause_of(&error),
                 Ok(frame) => broken_promise(&frame, None),
@@ -147,15 +128,12 @@ impl Remotes {
     /// The client's state.
     pub(crate) fn save(&mut self, client: ClientId) -> Result<Vec<u8>, StateError> {
         let Some(remote) = &mut self.seats[client.index()] else { return Err(StateError::Unsupported) };
-        let patience = self.reply_timeout;
-        self.runtime.block_on(async {
-            send(&mut remote.connection, &ServerMessage::Save {}).await.map_err(|e| corrupt(&e))?;
-            match receive_frame(&mut remote.connection, patience).await {
-                Ok(Frame::State(state)) => Ok(state.to_vec()),
-                Ok(frame) => Err(StateError::Corrupt(broken_promise(&frame, None).to_string())),
-                Err(error) => Err(corrupt(&error)),
-            }
-        })
+        remote.connection.send_message(&ServerMessage::Save {}).map_err(|e| corrupt(&e))?;
+        match remote.connection.receive(Some(self.reply_timeout)) {
+            Ok(Frame::State(state)) => Ok(state.to_vec()),
+            Ok(frame) => Err(StateError::Corrupt(broken_promise(&frame, None).to_string())),
+            Err(error) => Err(corrupt(&error)),
+        }
     }
 
     /// Gives the client a state back; `steps` and `t_v` are those of the checkpoint.
@@ -167,36 +145,35 @@ impl Remotes {
         state: &[u8],
     ) -> Result<(), StateError> {
         let Some(remote) = &mut self.seats[client.index()] else { return Err(StateError::Unsupported) };
-        let patience = self.reply_timeout;
-        self.runtime.block_on(async {
-            let message = ServerMessage::Restore { t_v, steps };
-            send(&mut remote.connection, &message).await.map_err(|e| corrupt(&e))?;
-            remote.connection.send(FrameRef::State(state)).await.map_err(|e| corrupt(&e))?;
-            match super::receive(&mut remote.connection, patience).await {
-                Ok(ClientMessage::Restored {}) => Ok(()),
-                Ok(ClientMessage::Fault(fault)) => Err(StateError::Corrupt(fault.to_string())),
-                Ok(_) => Err(StateError::Corrupt("it answered `restore` with another message".to_owned())),
-                Err(error) => Err(corrupt(&error)),
-            }
-        })
+        remote.connection.send_message(&ServerMessage::Restore { t_v, steps }).map_err(|e| corrupt(&e))?;
+        remote.connection.send(FrameRef::State(state)).map_err(|e| corrupt(&e))?;
+        match remote.connection.receive_message(self.reply_timeout) {
+            Ok(ClientMessage::Restored {}) => Ok(()),
+            Ok(ClientMessage::Fault(fault)) => Err(StateError::Corrupt(fault.to_string())),
+            Ok(_) => Err(StateError::Corrupt("it answered `restore` with another message".to_owned())),
+            Err(error) => Err(corrupt(&error)),
+        }
     }
 
-    /// Tells everybody that the session is over. One who is gone, or does not read, is not waited for.
+    /// Tells everybody that the session is over. One who is gone, or does not read, is not waited
+    /// for longer than a farewell takes.
     pub(crate) fn send_end(&mut self, end: &SessionEnd) {
         let message = ServerMessage::End(end.clone());
-        let told = self.seats.iter_mut().flatten().map(|remote| {
-            let message = &message;
-            async move {
-                let _ = tokio::time::timeout(HANDSHAKE_TIMEOUT, send(&mut remote.connection, message)).await;
-                farewell(&mut remote.connection).await;
-            }
-        });
-        let all = futures_util::future::join_all(told);
-        self.runtime.block_on(all);
+        for remote in self.seats.iter_mut().flatten() {
+            remote.send_message(&message);
+        }
+        for remote in self.seats.iter_mut().flatten() {
+            remote.connection.farewell();
+        }
     }
 }
 
 impl Remote {
+    fn send_message(&mut self, message: &ServerMessage) {
+        let sent = self.connection.send_message(message);
+        self.note(sent);
+    }
+
     fn note(&mut self, sent: Result<(), FrameError>) {
         if let Err(error) = sent {
             self.broken.get_or_insert(cause_of(&ReceiveError::Frame(error)));
