@@ -76,6 +76,7 @@ pub struct Session {
     cycle: Cycle,
     image: Image,
     mode: Mode,
+    start_logic: bool,
     stop: bool,
     reset: bool,
     until: Option<VirtualTime>,
@@ -94,6 +95,7 @@ impl Session {
             layout: Arc::new(layout),
             plan: Arc::new(plan),
             mode: Mode::Running,
+            start_logic: true,
             stop: false,
             reset: false,
             until: None,
@@ -104,6 +106,12 @@ impl Session {
     /// Ends the session as completed at the first boundary at or after `until`.
     pub fn set_until(&mut self, until: Option<VirtualTime>) {
         self.until = until;
+    }
+
+    /// The condition for a start beside those of the clients: `start = AND(start logic, client_i.start)`
+    /// (seed 004 sec. IV). True unless said otherwise; it means nothing once the session has begun.
+    pub fn set_start_logic(&mut self, start_logic: bool) {
+        self.start_logic = start_logic;
     }
 
     /// Lets a client in. Its start signal is part of `start = AND(start logic, client_i.start)`.
@@ -151,7 +159,7 @@ impl Session {
             if self.stop {
                 return self.finish(SessionEnd::Stopped { t_v: VirtualTime::ZERO });
             }
-            if self.unwritten_signals().next().is_some() {
+            if !self.start_logic || self.unwritten_signals().next().is_some() {
                 return Progress::Waiting;
             }
         }
@@ -469,5 +477,62 @@ impl SessionState {
     /// Virtual time of the checkpoint.
     pub fn t_v(&self) -> VirtualTime {
         self.t_v
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::plan::Coupling;
+    use crate::signal::{ElementaryType, Port, SignalDecl};
+
+    fn formed() -> Session {
+        let name = ClientName::new("plc").unwrap();
+        let signal = SignalName::new("x").unwrap();
+        let ty = ElementaryType::Bool;
+        let step = TimeSpan::from_millis(10).unwrap();
+        let decl = SignalDecl { name: signal.clone(), ty, writer: Some(name.clone()), unit: None };
+        let mut session =
+            Session::new(SessionPlan::new(step, &Coupling::Parallel, vec![decl], vec![name.clone()]).unwrap());
+        let writes = vec![Port { name: signal, ty }];
+        session.join(&JoinRequest { name, period: step, reads: vec![], writes }).unwrap();
+        session
+    }
+
+    #[test]
+    fn a_session_starts_when_all_clients_and_the_start_logic_say_so() {
+        let mut session = formed();
+        session.set_start_logic(false);
+        assert_eq!(session.advance(), Progress::Waiting);
+        session.set_start_logic(true);
+        assert_eq!(session.advance(), Progress::Entered(ServerState::InitialWrite));
+    }
+
+    #[test]
+    fn an_output_that_is_no_value_ends_the_session() {
+        let mut session = formed();
+        session.advance();
+        let violation = session.initialise(ClientId(0), &[2]).unwrap_err();
+        assert_eq!(violation.to_string(), "its output `x` is no value: a BOOL must be 0 or 1, not 2");
+        assert_eq!(session.advance(), Progress::Ended);
+        assert_eq!(session.image(), [0], "nothing of it was committed");
+        assert_eq!(session.initialise(ClientId(0), &[1]), Err(Violation::SessionOver));
+    }
+
+    #[test]
+    fn a_wake_must_be_later_and_on_the_grid() {
+        for wake in [0, 10_000_000, 15_000_000] {
+            let mut session = formed();
+            session.advance();
+            session.initialise(ClientId(0), &[0]).unwrap();
+            session.advance();
+            session.ready(ClientId(0)).unwrap();
+            session.advance();
+            session.read(ClientId(0), &mut []).unwrap();
+            session.advance();
+            let wake = VirtualTime::from_nanos(wake);
+            let turn = Turn { sequence: StepCount(1), t_v: session.t_v(), wake: Wake::At(wake), outputs: &[1] };
+            assert_eq!(session.submit(ClientId(0), &turn), Err(Violation::BadWake { wake }));
+        }
     }
 }

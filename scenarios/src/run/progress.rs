@@ -8,7 +8,7 @@ use onescan_server::session::Session;
 use onescan_server::time::VirtualTime;
 
 /// Steps between two looks at the bar; a power of two.
-const STRIDE: u64 = 256;
+const STRIDE: u64 = 16;
 
 /// Shows how far virtual time has come.
 pub(super) struct Progress {
