@@ -8,6 +8,22 @@ use thiserror::Error;
 use crate::signal::{ClientName, Port};
 use crate::time::{TimeSpan, VirtualTime};
 
+/// The index of a client in its session: the rank of its name.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct ClientId(pub(crate) u32);
+
+impl ClientId {
+    /// The client of rank `index`.
+    pub const fn from_index(index: usize) -> Self {
+        Self(index as u32)
+    }
+
+    /// The index into tables that hold one row a client.
+    pub const fn index(self) -> usize {
+        self.0 as usize
+    }
+}
+
 /// What a client says of itself when it joins.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]

@@ -8,25 +8,10 @@
 //! With [`Coupling::Parallel`] every client due takes its turn in one pass through pre-read to write.
 //! With [`Coupling::Sequential`] a step is one such pass for each client in the listed order.
 
+use crate::client::ClientId;
 use crate::plan::Coupling;
 use crate::state::{ClientState, ServerState};
 use crate::time::{StepCount, TimeSpan, VirtualTime};
-
-/// The index of a client in its session: the rank of its name.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub struct ClientId(pub(crate) u32);
-
-impl ClientId {
-    /// The client of rank `index`.
-    pub const fn from_index(index: usize) -> Self {
-        Self(index as u32)
-    }
-
-    /// The index into tables that hold one row a client.
-    pub const fn index(self) -> usize {
-        self.0 as usize
-    }
-}
 
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 struct Seat {

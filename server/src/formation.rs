@@ -4,8 +4,7 @@ use std::time::Duration;
 
 use thiserror::Error;
 
-use crate::client::Client;
-use crate::cycle::ClientId;
+use crate::client::{Client, ClientId};
 use crate::join::JoinRefusal;
 use crate::lockstep::{Link, Lockstep};
 use crate::plan::SessionPlan;

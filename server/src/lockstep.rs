@@ -4,8 +4,7 @@
 //! A step of clients in this process is plain function calls, without a channel or an allocation.
 
 use crate::checkpoint::{Checkpoint, CheckpointError};
-use crate::client::{Client, StateError, Wake};
-use crate::cycle::ClientId;
+use crate::client::{Client, ClientId, StateError, Wake};
 use crate::end::{FailureCause, SessionEnd, Violation};
 use crate::mailbox::Mailbox;
 use crate::pacing::{Pace, Pacer};

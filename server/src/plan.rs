@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
-use crate::cycle::ClientId;
+use crate::client::ClientId;
 use crate::signal::{ClientName, SignalDecl, SignalName, nearest};
 use crate::time::TimeSpan;
 

@@ -19,8 +19,8 @@ use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 
-use crate::client::{JoinRequest, Wake};
-use crate::cycle::{ClientId, Cycle};
+use crate::client::{ClientId, JoinRequest, Wake};
+use crate::cycle::Cycle;
 use crate::end::{Failure, FailureCause, SessionEnd, Violation};
 use crate::image::{Image, ImageLayout};
 use crate::join::{JoinRefusal, Membership, admit};

@@ -14,8 +14,7 @@ use std::collections::{HashMap, VecDeque};
 use std::hash::{DefaultHasher, Hash, Hasher};
 use std::io::Write;
 
-use onescan_server::client::{ClientFault, JoinRequest, Wake};
-use onescan_server::cycle::ClientId;
+use onescan_server::client::{ClientFault, ClientId, JoinRequest, Wake};
 use onescan_server::end::{FailureCause, SessionEnd};
 use onescan_server::plan::Coupling;
 use onescan_server::session::{Progress, Session, Turn};
