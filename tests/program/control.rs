@@ -4,6 +4,33 @@ use std::io::{BufRead, BufReader};
 
 use crate::typed::{begun, copied_shear, digests, edit, onescan, run_shear, scenario, typed};
 
+/// Where a session that was begun with `--listen` says that it listens.
+fn listening_at(said: &mut impl BufRead) -> String {
+    let mut line = String::new();
+    said.read_line(&mut line).unwrap();
+    line.split("listening at ").nth(1).and_then(|rest| rest.split(' ').next()).expect("an address").to_owned()
+}
+
+#[cfg(unix)]
+#[test]
+fn ctrl_c_stops_at_a_step_and_leaves_everything_whole() {
+    let folder = tempfile::tempdir().unwrap();
+    let record = folder.path().to_str().unwrap();
+    let words = ["run", ".", "--format", "json", "--until", "1h", "--pace", "1", "--listen", "127.0.0.1:0"];
+    let mut server = begun(&scenario("shear"), &[&words[..], &["--transport", "tcp", "--record", record]].concat());
+    let mut said = BufReader::new(server.stderr.take().unwrap());
+    let address = listening_at(&mut said);
+    while typed(&scenario("shear"), &["control", &address]).code != Some(0) {}
+    let signalled = std::process::Command::new("kill").args(["-INT", &server.id().to_string()]).status().unwrap();
+    assert!(signalled.success());
+    let output = server.wait_with_output().unwrap();
+    assert_eq!(output.status.code(), Some(0));
+    let report: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert_eq!(report["status"], "stopped");
+    let csv = std::fs::read_to_string(folder.path().join("run-1/trajectory.csv")).unwrap();
+    assert_eq!(csv.lines().count() as u64, 2 + report["steps"].as_u64().unwrap());
+}
+
 #[test]
 fn a_session_is_paused_stepped_reset_and_released_without_a_trace() {
     let folder = copied_shear();
@@ -11,9 +38,7 @@ fn a_session_is_paused_stepped_reset_and_released_without_a_trace() {
     let words = ["run", ".", "--format", "json", "--until", "2s", "--pace", "1", "--listen", "127.0.0.1:0"];
     let mut server = begun(folder.path(), &words);
     let mut said = BufReader::new(server.stderr.take().unwrap());
-    let mut line = String::new();
-    said.read_line(&mut line).unwrap();
-    let address = line.split("waiting at ").nth(1).and_then(|rest| rest.split(' ').next()).unwrap().to_owned();
+    let address = listening_at(&mut said);
     let here = scenario("shear");
     let ask = |wish: &str| -> serde_json::Value {
         let said = typed(&here, &["control", &address, wish, "--format", "json"]);

@@ -1,11 +1,15 @@
-//! Ctrl-C: the run stops at the next step boundary, with recordings and reports whole. A second one
-//! ends the process at once.
+//! Ctrl-C: the run stops at the next step boundary, with recordings and reports whole. Another one
+//! after a while ends the process at once.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::{Duration, Instant};
 
 use onescan_server::mailbox::Mailbox;
 use onescan_server::session::Control;
+
+/// A second signal before this is an echo of the first: some programs signal a process and its group.
+const IMPATIENCE: Duration = Duration::from_secs(1);
 
 /// A wish to stop, seen by all runs of a process.
 #[derive(Clone, Debug, Default)]
@@ -23,11 +27,15 @@ impl Interrupt {
     /// Raises it on Ctrl-C and on a polite request to end.
     pub fn on_signals(&self) {
         let interrupt = self.clone();
-        let handler = move || {
-            if interrupt.raised.swap(true, Ordering::SeqCst) {
-                std::process::exit(130);
+        let mut first: Option<Instant> = None;
+        let handler = move || match first {
+            None => {
+                first = Some(Instant::now());
+                interrupt.raised.store(true, Ordering::SeqCst);
+                interrupt.mailbox.control(Control::Stop);
             }
-            interrupt.mailbox.control(Control::Stop);
+            Some(first) if first.elapsed() > IMPATIENCE => std::process::exit(130),
+            Some(_) => {}
         };
         if let Err(error) = ctrlc::set_handler(handler) {
             tracing::warn!(%error, "Ctrl-C will end the program without a report");

@@ -77,6 +77,9 @@ fn form(
             Some(words) => processes.start_command(name, words, scenario.folder(), lobby.address())?,
         }
     }
+    if config.listen.is_some() {
+        tracing::info!(target: NOTICE, "listening at {} for operators", lobby.address());
+    }
     for (name, _) in remote.iter().filter(|(_, command)| command.as_ref().is_some_and(Vec::is_empty)) {
         tracing::info!(target: NOTICE, "waiting at {} for client `{name}`", lobby.address());
     }
