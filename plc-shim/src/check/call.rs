@@ -228,6 +228,11 @@ impl Body<'_, '_> {
                 let value = constant(decode(ty, &parameter.image), ty, span);
                 Some(Argument::Value(Expr { ty: parameter.ty, ..value }))
             }
+            None if named && parameter.section == SectionKind::Input => {
+                let place = self.checker.constant_bytes(parameter.ty, parameter.image.clone(), span)?;
+                let kind = ExprKind::Load(place);
+                Some(Argument::Value(Expr { kind, ty: parameter.ty, span }))
+            }
             _ => self.missing_argument(&parameter.name, span),
         }
     }
@@ -265,7 +270,7 @@ impl Body<'_, '_> {
     }
 
     /// Memory of the calling unit for one value.
-    fn temporary(&mut self, ty: TypeId, span: Span) -> Option<Place> {
+    pub(super) fn temporary(&mut self, ty: TypeId, span: Span) -> Option<Place> {
         let types = &self.checker.types;
         let (size, align) = (types.size(ty), types.align(ty));
         let offset = self.checker.allocate(size, align, span)?;

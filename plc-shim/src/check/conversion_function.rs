@@ -61,6 +61,9 @@ impl Body<'_, '_> {
             Some(from) => self.coerce(operand, from.into())?,
             None => self.settle(operand)?,
         };
+        if self.shape(expr.ty).is_some() && rounding == Rounding::NearestEven {
+            return self.parsed(expr, to, span);
+        }
         let Some(from) = self.elementary(expr.ty) else {
             let found = self.type_name(expr.ty);
             return self.mismatch("an elementary value", &found, expr.span);

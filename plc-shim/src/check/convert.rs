@@ -4,6 +4,7 @@ use super::scope::Body;
 use crate::diagnostic::{Code, Diagnostic};
 use crate::ir::{ElementaryType, Expr, ExprKind, Rounding, TypeId, Value};
 use crate::syntax::Span;
+use crate::syntax::text_literal::Text;
 
 /// What an expression has come to. A constant without a type takes that of its context.
 #[derive(Debug, Clone)]
@@ -11,13 +12,14 @@ pub(super) enum Operand {
     Typed(Expr),
     Integer { value: i128, span: Span },
     Real { value: f64, span: Span },
+    Text { text: Text, span: Span },
 }
 
 impl Operand {
     pub(super) fn span(&self) -> Span {
         match self {
             Self::Typed(expr) => expr.span,
-            Self::Integer { span, .. } | Self::Real { span, .. } => *span,
+            Self::Integer { span, .. } | Self::Real { span, .. } | Self::Text { span, .. } => *span,
         }
     }
 
@@ -26,6 +28,7 @@ impl Operand {
             Self::Typed(expr) => Self::Typed(Expr { span, ..expr }),
             Self::Integer { value, .. } => Self::Integer { value, span },
             Self::Real { value, .. } => Self::Real { value, span },
+            Self::Text { text, .. } => Self::Text { text, span },
         }
     }
 }
@@ -52,6 +55,9 @@ impl Body<'_, '_> {
 
     /// The operand as a value of `target`, or a report why it cannot be one.
     pub(super) fn coerce(&mut self, operand: Operand, target: TypeId) -> Option<Expr> {
+        if let Some(shape) = self.shape(target) {
+            return self.coerce_text(operand, shape);
+        }
         let wanted = match self.checker.types.get(target) {
             crate::ir::Type::Elementary(ty) => Some(*ty),
             _ => None,
@@ -61,7 +67,7 @@ impl Body<'_, '_> {
             (Operand::Typed(expr), Some(wanted)) => self.widen(expr, wanted),
             (Operand::Integer { value, span }, Some(wanted)) => self.literal_integer(value, wanted, span),
             (Operand::Real { value, span }, Some(wanted)) => self.literal_real(value, wanted, span),
-            (operand, None) => {
+            (operand, _) => {
                 let found = self.describe(&operand);
                 let wanted = self.type_name(target);
                 self.mismatch(&wanted, &found, operand.span())
@@ -74,6 +80,7 @@ impl Body<'_, '_> {
             Operand::Typed(expr) => self.type_name(expr.ty),
             Operand::Integer { .. } => "an integer".to_owned(),
             Operand::Real { .. } => "a real number".to_owned(),
+            Operand::Text { text, .. } => if text.wide { "a WSTRING" } else { "a STRING" }.to_owned(),
         }
     }
 
@@ -142,6 +149,7 @@ impl Body<'_, '_> {
     pub(super) fn settle(&mut self, operand: Operand) -> Option<Expr> {
         match operand {
             Operand::Typed(expr) => Some(expr),
+            Operand::Text { text, span } => self.settled_text(&text, span),
             Operand::Real { value, span } => Some(constant(Value::Lreal(value), ElementaryType::Lreal, span)),
             Operand::Integer { value, span } => {
                 let types = [ElementaryType::Dint, ElementaryType::Lint, ElementaryType::Ulint];
@@ -154,7 +162,7 @@ impl Body<'_, '_> {
     /// True if a constant without type can be one of `ty`.
     pub(super) fn adapts(operand: &Operand, ty: ElementaryType) -> bool {
         match operand {
-            Operand::Typed(_) => false,
+            Operand::Typed(_) | Operand::Text { .. } => false,
             Operand::Real { value, .. } => {
                 ty == ElementaryType::Lreal || ty == ElementaryType::Real && (*value as f32).is_finite()
             }

@@ -40,11 +40,14 @@ impl Body<'_, '_> {
                 Operand::Typed(constant(Value::Int(i128::from(*ns)), ty, span))
             }
             Literal::Typed { prefix, value } => return self.typed_literal(prefix, value, span),
-            Literal::String(_) => return self.unsupported("a string", span),
+            Literal::String(text) => return self.text_literal(text, span),
         })
     }
 
     fn typed_literal(&mut self, prefix: &str, value: &TypedValue, span: Span) -> Option<Operand> {
+        if let TypedValue::Text(text) = value {
+            return self.typed_text(prefix, text, span);
+        }
         if let Some(ty) = ElementaryType::find(prefix) {
             let operand = match value {
                 TypedValue::Integer(value) => Operand::Integer { value: *value, span },
@@ -56,7 +59,7 @@ impl Body<'_, '_> {
                     }
                     Operand::Integer { value: i128::from(value), span }
                 }
-                TypedValue::Name(name) => return self.malformed_literal(prefix, name, span),
+                TypedValue::Name(name) | TypedValue::Text(name) => return self.malformed_literal(prefix, name, span),
             };
             return Some(Operand::Typed(self.coerce(operand, ty.into())?));
         }
@@ -71,7 +74,7 @@ impl Body<'_, '_> {
         }
         let ty = self.checker.named_type(&key, Some(span))?.ty;
         match value {
-            TypedValue::Name(name) => self.enumerator_of(ty, name, span),
+            TypedValue::Name(name) | TypedValue::Text(name) => self.enumerator_of(ty, name, span),
             TypedValue::Integer(value) => {
                 Some(Operand::Typed(self.coerce(Operand::Integer { value: *value, span }, ty)?))
             }
@@ -79,7 +82,7 @@ impl Body<'_, '_> {
         }
     }
 
-    fn malformed_literal(&mut self, prefix: &str, value: &str, span: Span) -> Option<Operand> {
+    pub(super) fn malformed_literal(&mut self, prefix: &str, value: &str, span: Span) -> Option<Operand> {
         let message = format!("`{value}` is no value of {}", prefix.to_ascii_uppercase());
         self.report(Diagnostic::error(Code::InvalidLiteral, span, message));
         None

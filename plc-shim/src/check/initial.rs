@@ -24,6 +24,11 @@ impl Body<'_, '_> {
             (InitialiserKind::Value(expr), Type::Elementary(_) | Type::Enumeration { .. }) => {
                 self.fill_elementary(ty, expr, image)
             }
+            (InitialiserKind::Value(expr), Type::Text(shape)) => {
+                let bytes = self.text_image(shape, expr)?;
+                image.iter_mut().zip(bytes).for_each(|(target, source)| *target = source);
+                Some(())
+            }
             (InitialiserKind::Array(elements), Type::Array { dimensions, element }) => {
                 let count = dimensions.iter().map(|each: &Dimension| each.count()).product();
                 self.fill_array(element, count, elements, image)

@@ -12,6 +12,7 @@
 //! | [`convert`] | implicit conversions, constants in context |
 //! | [`expression`], [`operator`], [`place`] | expressions |
 //! | [`call`], [`standard_function`], [`conversion_function`] | calls |
+//! | [`text`], [`text_function`], [`text_conversion`] | character strings |
 //! | [`statement`] | statements |
 //! | [`recursion`] | who calls whom |
 //!
@@ -32,6 +33,9 @@ mod recursion;
 mod scope;
 mod standard_function;
 mod statement;
+mod text;
+mod text_conversion;
+mod text_function;
 mod types;
 mod variables;
 
@@ -40,7 +44,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use self::layout::Layout;
 use self::names::{Enumerator, GlobalEntry, PouEntry, TypeEntry};
 use crate::diagnostic::Diagnostic;
-use crate::ir::{Pou, PouId, Program, TypeTable, Variable};
+use crate::ir::{Pou, PouId, Program, TypeId, TypeTable, Variable};
 use crate::syntax::ast::{CompilationUnit, PouKind};
 use crate::syntax::{FileId, Span};
 
@@ -99,6 +103,8 @@ struct Checker<'a> {
     globals: BTreeMap<String, GlobalEntry<'a>>,
     enumerators: BTreeMap<String, Vec<Enumerator>>,
     layout: Layout,
+    /// Offsets of string literals by type and bytes.
+    literals: BTreeMap<(TypeId, std::sync::Arc<[u8]>), u32>,
     /// Initial bytes of what has been placed.
     placed: Vec<(u32, std::sync::Arc<[u8]>)>,
     programs: Vec<Program>,

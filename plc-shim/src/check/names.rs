@@ -75,6 +75,7 @@ impl<'a> Checker<'a> {
             globals: BTreeMap::from([(VIRTUAL_TIME_NAME.to_owned(), virtual_time())]),
             enumerators: BTreeMap::new(),
             layout: Layout::new(),
+            literals: BTreeMap::new(),
             placed: Vec::new(),
             programs: Vec::new(),
             checked: BTreeMap::new(),
@@ -143,7 +144,10 @@ impl<'a> Checker<'a> {
 
     /// True, with a report, if a type or unit of the name exists already.
     fn is_taken(&mut self, name: &Ident) -> bool {
-        if ElementaryType::find(&name.text).is_some() || super::standard_function::exists(&name.key()) {
+        if ElementaryType::find(&name.text).is_some()
+            || matches!(name.key().as_str(), "STRING" | "WSTRING")
+            || super::standard_function::exists(&name.key())
+        {
             self.report_reserved(name, name.span);
             return true;
         }

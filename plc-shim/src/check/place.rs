@@ -111,7 +111,7 @@ impl Body<'_, '_> {
     }
 
     /// The variable of this name; an error is one that has been reported.
-    fn variable_named(&mut self, name: &Ident) -> Option<Result<Variable, ()>> {
+    pub(super) fn variable_named(&mut self, name: &Ident) -> Option<Result<Variable, ()>> {
         let key = name.key();
         if self.scope.is_broken(&key) {
             return Some(Err(()));

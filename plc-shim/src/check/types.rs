@@ -82,7 +82,11 @@ impl<'a> Body<'_, 'a> {
             TypeSpecKind::Array(dimensions, element) => self.array(dimensions, element, need, spec.span),
             TypeSpecKind::Struct(fields) => self.structure("STRUCT", fields, spec.span),
             TypeSpecKind::Enumeration(values) => self.enumeration("enumeration", values),
-            TypeSpecKind::String(name, _) => self.unsupported(&format!("type {}", name.text), spec.span),
+            TypeSpecKind::String(name, length) => {
+                let ty = self.text_type(name.key() == "WSTRING", length.as_deref())?;
+                self.checker.charge_image(u64::from(self.checker.types.size(ty)), spec.span)?;
+                Some(self.whole(ty))
+            }
             TypeSpecKind::Subrange(..) => self.unsupported("a subrange type", spec.span),
             TypeSpecKind::Error => None,
         }

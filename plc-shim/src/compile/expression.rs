@@ -30,6 +30,7 @@ impl Emitter<'_, '_> {
             ExprKind::Intrinsic(intrinsic, operands) => {
                 self.intrinsic(*intrinsic, operands, expr);
             }
+            ExprKind::Text(call) => self.text_call(call, expr),
             ExprKind::Call(call) => self.call_function(call),
         }
     }

@@ -18,6 +18,9 @@ impl Emitter<'_, '_> {
                 let single = ty == ElementaryType::Real;
                 self.emit(if single { Instruction::F32Sqrt } else { Instruction::F64Sqrt });
             }
+            Intrinsic::Max | Intrinsic::Min if self.shared.types.text(whole.ty).is_some() => {
+                self.text_extreme(operands, kind == Intrinsic::Max);
+            }
             Intrinsic::Max | Intrinsic::Min => self.extreme(kind, operands, ty, whole.span),
             Intrinsic::Select => self.select(operands, ty),
             Intrinsic::Multiplex => self.multiplex(operands, ty, whole.span),

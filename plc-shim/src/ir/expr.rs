@@ -2,6 +2,7 @@
 
 use super::pou::PouId;
 use super::statement::Statement;
+use super::text::TextCall;
 use super::types::TypeId;
 use super::value::Value;
 use crate::syntax::Span;
@@ -29,6 +30,8 @@ pub(crate) enum ExprKind {
     /// From the operand's type to the expression's, the number itself kept as far as it fits.
     Convert(Rounding, Box<Expr>),
     Intrinsic(Intrinsic, Vec<Expr>),
+    /// On character strings.
+    Text(Box<TextCall>),
     Call(Box<FunctionCall>),
 }
 

@@ -6,6 +6,7 @@ pub(crate) mod elementary;
 pub(crate) mod expr;
 pub(crate) mod pou;
 pub(crate) mod statement;
+pub(crate) mod text;
 pub(crate) mod types;
 pub(crate) mod value;
 

@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use super::elementary::ElementaryType;
 use super::pou::PouId;
+use super::text::TextShape;
 
 /// Identifies a type within its [`TypeTable`]; equal ids are equal types.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -23,6 +24,8 @@ pub(crate) enum Type {
     Elementary(ElementaryType),
     /// What a function without a result gives.
     Nothing,
+    /// A string and what it may hold.
+    Text(TextShape),
     Enumeration {
         name: String,
         base: ElementaryType,
@@ -77,6 +80,7 @@ pub(crate) struct TypeTable {
     entries: Vec<Entry>,
     arrays: BTreeMap<(TypeId, Vec<Dimension>), TypeId>,
     blocks: BTreeMap<PouId, TypeId>,
+    texts: BTreeMap<TextShape, TypeId>,
 }
 
 impl TypeTable {
@@ -90,7 +94,7 @@ impl TypeTable {
         };
         let mut entries: Vec<_> = ElementaryType::ALL.iter().map(|ty| entry(*ty)).collect();
         entries.push(Entry { ty: Type::Nothing, size: 0, align: 1, image: Arc::from([]) });
-        Self { entries, arrays: BTreeMap::new(), blocks: BTreeMap::new() }
+        Self { entries, arrays: BTreeMap::new(), blocks: BTreeMap::new(), texts: BTreeMap::new() }
     }
 
     /// The type of a function call without a result.
@@ -131,6 +135,25 @@ impl TypeTable {
             Type::Elementary(ty) | Type::Enumeration { base: ty, .. } => Some(*ty),
             _ => None,
         }
+    }
+
+    /// The shape of a string type; nothing for all others.
+    pub(crate) fn text(&self, id: TypeId) -> Option<TextShape> {
+        match self.get(id) {
+            Type::Text(shape) => Some(*shape),
+            _ => None,
+        }
+    }
+
+    /// The string type. A count may stand at any address, so that strings lie close in arrays.
+    pub(crate) fn string(&mut self, shape: TextShape) -> TypeId {
+        if let Some(found) = self.texts.get(&shape) {
+            return *found;
+        }
+        let image = vec![0; shape.size() as usize];
+        let id = self.add(Type::Text(shape), shape.size(), shape.unit(), image.into());
+        self.texts.insert(shape, id);
+        id
     }
 
     pub(crate) fn enumeration(&mut self, name: String, base: ElementaryType, values: Vec<(String, i128)>) -> TypeId {
@@ -182,6 +205,7 @@ impl TypeTable {
         match self.get(id) {
             Type::Elementary(ty) => ty.name().to_owned(),
             Type::Nothing => "nothing".to_owned(),
+            Type::Text(shape) => format!("{}[{}]", shape.keyword(), shape.capacity),
             Type::Enumeration { name, .. } | Type::Struct { name, .. } | Type::FunctionBlock { name, .. } => {
                 name.clone()
             }

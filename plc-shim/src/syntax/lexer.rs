@@ -161,6 +161,10 @@ impl<'a> Lexer<'a> {
         let start = self.at;
         self.take_while(|character| character.is_ascii_alphanumeric() || character == '_');
         let text = self.text.get(start..self.at).unwrap_or("");
+        if self.peek(0) == b'#' && matches!(self.peek(1), b'\'' | b'"') {
+            self.at += 1;
+            return self.string(char::from(self.peek(0)), TokenKind::Typed);
+        }
         let after_sign = usize::from(matches!(self.peek(1), b'+' | b'-'));
         if self.peek(0) == b'#'
             && (self.peek(1 + after_sign).is_ascii_alphanumeric() || self.peek(1 + after_sign) == b'_')
@@ -242,6 +246,7 @@ mod tests {
         assert_eq!(kinds("(* a (* b *)")[0].0, TokenKind::Unterminated);
         assert_eq!(kinds("'it$'s' x")[0], (TokenKind::String, "'it$'s'"));
         assert_eq!(kinds("'open\nx")[0], (TokenKind::Unterminated, "'open"));
+        assert_eq!(kinds("STRING#'a''b'")[0], (TokenKind::Typed, "STRING#'a'"));
         assert_eq!(kinds("%IX1.0.2;")[0], (TokenKind::DirectAddress, "%IX1.0.2"));
     }
 

@@ -45,6 +45,9 @@ pub fn parse_typed(text: &str) -> Result<Literal, String> {
 }
 
 fn parse_typed_value(body: &str) -> Result<TypedValue, String> {
+    if body.starts_with(['\'', '"']) {
+        return Ok(TypedValue::Text(body.to_owned()));
+    }
     let (negative, magnitude) = match body.as_bytes().first() {
         Some(b'-') => (true, &body[1..]),
         Some(b'+') => (false, &body[1..]),

@@ -5,7 +5,7 @@
 //! | [`source`] | names and texts | files, spans, lines and columns |
 //! | [`token`] | | the kinds of token, keywords |
 //! | [`lexer`] | text | every token, blanks and comments too |
-//! | [`literal`] | a literal's text | its value |
+//! | [`literal`], [`text_literal`] | a literal's text | its value |
 //! | [`ast`] | | the tree's nodes |
 //! | [`parser`] | tokens | a tree and a list of diagnostics |
 //! | [`printer`] | a tree | text that parses to the same tree |
@@ -19,6 +19,7 @@ pub mod literal;
 pub mod parser;
 pub mod printer;
 pub mod source;
+pub mod text_literal;
 pub mod token;
 
 pub use lexer::tokenize;

@@ -11,3 +11,4 @@ mod shear;
 mod standard_blocks;
 mod standard_functions;
 mod states;
+mod strings;

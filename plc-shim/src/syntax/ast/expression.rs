@@ -105,6 +105,8 @@ pub enum TypedValue {
     Real(f64),
     /// `TRUE`, `Red`
     Name(String),
+    /// `'...'` or `"..."`, quotes and escapes as written.
+    Text(String),
 }
 
 /// Operators with one operand.

@@ -38,11 +38,17 @@ impl Cursor<'_> {
     }
 
     fn string_type(&mut self, name: Ident) -> TypeSpecKind {
-        let length = self.take_mark(Punctuation::LeftBracket).then(|| {
-            let length: Expr = self.expression();
-            self.expect_mark(Punctuation::RightBracket);
-            Box::new(length)
-        });
+        // Vendors write the length in parentheses too.
+        let close = if self.take_mark(Punctuation::LeftBracket) {
+            Punctuation::RightBracket
+        } else if self.take_mark(Punctuation::LeftParen) {
+            Punctuation::RightParen
+        } else {
+            return TypeSpecKind::String(name, None);
+        };
+        let length: Expr = self.expression();
+        self.expect_mark(close);
+        let length = Some(Box::new(length));
         TypeSpecKind::String(name, length)
     }
 

@@ -83,7 +83,7 @@ impl Printer {
             Literal::Typed { prefix, value } => match value {
                 TypedValue::Integer(value) => format!("{prefix}#{value}"),
                 TypedValue::Real(value) => format!("{prefix}#{value:?}"),
-                TypedValue::Name(name) => format!("{prefix}#{name}"),
+                TypedValue::Name(name) | TypedValue::Text(name) => format!("{prefix}#{name}"),
             },
             Literal::Duration { long, ns } => {
                 let (prefix, sign) = (if *long { "LT" } else { "T" }, if *ns < 0 { "-" } else { "" });
