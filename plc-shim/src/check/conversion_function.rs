@@ -7,8 +7,12 @@
 //! | bit string, BOOL | rightmost bit |
 //! | number, BOOL | FALSE for 0 |
 //! | TIME, number | milliseconds |
-//! | LTIME, number | nanoseconds |
+//! | TOD, number | milliseconds |
+//! | DATE, DT, number | seconds |
+//! | LTIME, LDATE, LTOD, LDT, number | nanoseconds |
+//! | number, DATE or TOD | the day it lies in, the time of its day |
 
+use super::calendar::{day_start, within_day};
 use super::convert::{Operand, constant, converted};
 use super::scope::Body;
 use crate::diagnostic::{Code, Diagnostic};
@@ -46,8 +50,24 @@ pub(super) fn find(key: &str) -> Option<Conversion> {
 /// True if `from_TO_to` exists.
 pub(super) fn is_defined(from: ElementaryType, to: ElementaryType) -> bool {
     let bits = |ty: ElementaryType| ty.kind() == Kind::Bits;
-    // Between reals and bit strings the editions disagree on what is kept, number or bits.
-    from != to && !(from.is_real() && bits(to) || bits(from) && to.is_real())
+    let numeric = |ty: ElementaryType| ty.is_number() || bits(ty);
+    if from == to {
+        return false;
+    }
+    match (from.kind(), to.kind()) {
+        // A date and time has both parts; neither part has the other.
+        (Kind::DateTime, _) if to.is_calendar() => true,
+        (Kind::Date, Kind::Date | Kind::DateTime)
+        | (Kind::TimeOfDay, Kind::TimeOfDay | Kind::Duration)
+        | (Kind::Duration, Kind::TimeOfDay)
+        | (Kind::Character, Kind::Character) => true,
+        _ if from.is_calendar() => numeric(to),
+        _ if to.is_calendar() => numeric(from),
+        _ if from.is_character() => to.is_integer() || bits(to),
+        _ if to.is_character() => from.is_integer() || bits(from),
+        // Between reals and bit strings the editions disagree on what is kept, number or bits.
+        _ => !(from.is_real() && bits(to) || bits(from) && to.is_real()),
+    }
 }
 
 fn is_allowed(from: ElementaryType, to: ElementaryType, rounding: Rounding) -> bool {
@@ -78,9 +98,13 @@ impl Body<'_, '_> {
     }
 }
 
-/// Nanoseconds of the unit in which a duration becomes a number.
+/// Nanoseconds of the unit in which a duration or date becomes a number.
 fn unit_ns(ty: ElementaryType) -> i128 {
-    if ty == ElementaryType::Ltime { 1 } else { 1_000_000 }
+    match ty {
+        ElementaryType::Date | ElementaryType::Dt => 1_000_000_000,
+        ElementaryType::Time | ElementaryType::Tod => 1_000_000,
+        _ => 1,
+    }
 }
 
 fn joined(operator: Binary, left: Expr, right: Expr) -> Expr {
@@ -88,26 +112,39 @@ fn joined(operator: Binary, left: Expr, right: Expr) -> Expr {
     Expr { kind: ExprKind::Binary(operator, Box::new(left), Box::new(right)), ty, span }
 }
 
+/// A DATE is a midnight, a TOD less than a day.
+fn normalised(expr: Expr, ty: ElementaryType) -> Expr {
+    match ty.kind() {
+        Kind::Date => day_start(expr),
+        Kind::TimeOfDay => within_day(expr),
+        _ => expr,
+    }
+}
+
 fn lower(expr: Expr, from: ElementaryType, to: ElementaryType, rounding: Rounding) -> Expr {
     let span = expr.span;
     let lint = |value| constant(Value::Int(value), ElementaryType::Lint, span);
     let lreal = |value: i128| constant(Value::Lreal(value as f64), ElementaryType::Lreal, span);
+    let counts = |ty: ElementaryType| ty.is_duration() || ty.is_calendar();
     match (from.kind(), to.kind()) {
-        (Kind::Duration, Kind::Real) => {
+        (Kind::DateTime, Kind::Date) => converted(day_start(expr), to, rounding),
+        (Kind::DateTime | Kind::Duration, Kind::TimeOfDay) => converted(within_day(expr), to, rounding),
+        _ if counts(from) && counts(to) => converted(expr, to, rounding),
+        (_, Kind::Real) if counts(from) => {
             let ns = converted(expr, ElementaryType::Lreal, rounding);
             converted(joined(Binary::Divide, ns, lreal(unit_ns(from))), to, rounding)
         }
-        (Kind::Duration, Kind::Signed | Kind::Unsigned | Kind::Bits) => {
+        (_, Kind::Signed | Kind::Unsigned | Kind::Bits) if counts(from) => {
             let ns = converted(expr, ElementaryType::Lint, rounding);
             converted(joined(Binary::Divide, ns, lint(unit_ns(from))), to, rounding)
         }
-        (Kind::Real, Kind::Duration) => {
+        (Kind::Real, _) if counts(to) => {
             let number = converted(expr, ElementaryType::Lreal, rounding);
-            converted(joined(Binary::Multiply, number, lreal(unit_ns(to))), to, rounding)
+            normalised(converted(joined(Binary::Multiply, number, lreal(unit_ns(to))), to, rounding), to)
         }
-        (Kind::Bool | Kind::Signed | Kind::Unsigned | Kind::Bits, Kind::Duration) => {
+        (Kind::Bool | Kind::Signed | Kind::Unsigned | Kind::Bits, _) if counts(to) => {
             let number = converted(expr, ElementaryType::Lint, rounding);
-            converted(joined(Binary::Multiply, number, lint(unit_ns(to))), to, rounding)
+            normalised(converted(joined(Binary::Multiply, number, lint(unit_ns(to))), to, rounding), to)
         }
         (Kind::Bits, Kind::Bool) => {
             let one = constant(Value::Int(1), from, span);

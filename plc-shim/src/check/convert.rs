@@ -67,6 +67,9 @@ impl Body<'_, '_> {
             (Operand::Typed(expr), Some(wanted)) => self.widen(expr, wanted),
             (Operand::Integer { value, span }, Some(wanted)) => self.literal_integer(value, wanted, span),
             (Operand::Real { value, span }, Some(wanted)) => self.literal_real(value, wanted, span),
+            (Operand::Text { text, span }, Some(wanted)) if wanted.is_character() => {
+                self.literal_character(&text, wanted, span)
+            }
             (operand, _) => {
                 let found = self.describe(&operand);
                 let wanted = self.type_name(target);
@@ -108,10 +111,11 @@ impl Body<'_, '_> {
         match (wanted, wanted.range()) {
             (ElementaryType::Real, _) => Some(constant(Value::Real(value as f32), wanted, span)),
             (ElementaryType::Lreal, _) => Some(constant(Value::Lreal(value as f64), wanted, span)),
-            _ if wanted.is_duration() => {
+            _ if !wanted.takes_integers() => {
                 let message = format!("{wanted} is wanted, this is an integer");
                 let found = Diagnostic::error(Code::TypeMismatch, span, message);
-                self.report(found.with_help("write a duration, as in T#200ms"));
+                let help = wanted.is_duration().then(|| "write a duration, as in T#200ms".to_owned());
+                self.report(found.with_optional_help(help));
                 None
             }
             (_, Some((low, high))) if (low..=high).contains(&value) => {
@@ -162,12 +166,13 @@ impl Body<'_, '_> {
     /// True if a constant without type can be one of `ty`.
     pub(super) fn adapts(operand: &Operand, ty: ElementaryType) -> bool {
         match operand {
-            Operand::Typed(_) | Operand::Text { .. } => false,
+            Operand::Typed(_) => false,
+            Operand::Text { text, .. } => Self::as_character(text, ty).is_some(),
             Operand::Real { value, .. } => {
                 ty == ElementaryType::Lreal || ty == ElementaryType::Real && (*value as f32).is_finite()
             }
             Operand::Integer { value, .. } => {
-                !ty.is_duration() && ty.range().is_none_or(|(low, high)| (low..=high).contains(value))
+                ty.takes_integers() && ty.range().is_none_or(|(low, high)| (low..=high).contains(value))
             }
         }
     }

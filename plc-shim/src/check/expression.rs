@@ -6,6 +6,7 @@ use crate::diagnostic::{Code, Diagnostic, did_you_mean};
 use crate::ir::{ElementaryType, Expr, ExprKind, TypeId, Value};
 use crate::syntax::Span;
 use crate::syntax::ast::{self, Literal, TypedValue};
+use crate::syntax::calendar::CalendarKind;
 
 impl Body<'_, '_> {
     /// The meaning of an expression, or nothing after a report.
@@ -38,6 +39,10 @@ impl Body<'_, '_> {
             Literal::Duration { long, ns } => {
                 let ty = if *long { ElementaryType::Ltime } else { ElementaryType::Time };
                 Operand::Typed(constant(Value::Int(i128::from(*ns)), ty, span))
+            }
+            Literal::Calendar { kind, long, ns, .. } => {
+                let value = Value::Int(i128::from(*ns));
+                Operand::Typed(constant(value, calendar_type(*kind, *long), span))
             }
             Literal::Typed { prefix, value } => return self.typed_literal(prefix, value, span),
             Literal::String(text) => return self.text_literal(text, span),
@@ -102,6 +107,17 @@ impl Body<'_, '_> {
         let found = Diagnostic::error(Code::UnknownMember, span, message);
         self.report(found.with_optional_help(help));
         None
+    }
+}
+
+fn calendar_type(kind: CalendarKind, long: bool) -> ElementaryType {
+    match (kind, long) {
+        (CalendarKind::Date, false) => ElementaryType::Date,
+        (CalendarKind::Date, true) => ElementaryType::Ldate,
+        (CalendarKind::TimeOfDay, false) => ElementaryType::Tod,
+        (CalendarKind::TimeOfDay, true) => ElementaryType::Ltod,
+        (CalendarKind::DateAndTime, false) => ElementaryType::Dt,
+        (CalendarKind::DateAndTime, true) => ElementaryType::Ldt,
     }
 }
 

@@ -10,7 +10,7 @@
 //! | [`initial`] | initial values to bytes |
 //! | [`constant`] | constant expressions to values |
 //! | [`convert`] | implicit conversions, constants in context |
-//! | [`expression`], [`operator`], [`place`] | expressions |
+//! | [`expression`], [`operator`], [`calendar`], [`place`] | expressions |
 //! | [`call`], [`standard_function`], [`conversion_function`] | calls |
 //! | [`text`], [`text_function`], [`text_conversion`] | character strings |
 //! | [`statement`] | statements |
@@ -19,6 +19,7 @@
 //! A unit, type or global variable is resolved when it is first needed; what is being resolved
 //! and needed again contains itself.
 
+mod calendar;
 mod call;
 mod constant;
 mod conversion_function;

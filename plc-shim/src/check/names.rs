@@ -104,7 +104,10 @@ impl<'a> Checker<'a> {
         if self.library.contains(&ast.name.span.file)
             && let Some(user) = self.declared_at(&ast.name)
         {
-            self.report_reserved(&ast.name, user);
+            // Functions of the 3rd edition are younger than many programs, whose own go before.
+            if ast.kind != ast::PouKind::Function {
+                self.report_reserved(&ast.name, user);
+            }
             return;
         }
         if self.is_taken(&ast.name) {

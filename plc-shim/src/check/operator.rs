@@ -56,7 +56,7 @@ impl Body<'_, '_> {
 
     fn signed(&mut self, operator: UnaryOp, expr: Expr, span: Span) -> Option<Operand> {
         let ty = self.plain_elementary(&expr);
-        if !ty.is_some_and(|ty| ty.is_signed() || ty.is_real()) {
+        if !ty.is_some_and(|ty| ty.is_signed() && !ty.is_calendar() || ty.is_real()) {
             let message = format!("{} has no sign", self.type_name(expr.ty));
             self.report(Diagnostic::error(Code::InvalidOperand, span, message));
             return None;
@@ -108,6 +108,9 @@ impl Body<'_, '_> {
         }
         if matches!(operator, Binary::And | Binary::Or | Binary::Xor) {
             return self.bitwise(operator, left, right, span);
+        }
+        if self.is_calendar(&left) || self.is_calendar(&right) {
+            return self.calendar_operation(operator, left, right, span);
         }
         if self.is_duration(&left) || self.is_duration(&right) {
             return self.duration_operation(operator, left, right, span);

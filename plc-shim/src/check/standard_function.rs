@@ -1,5 +1,6 @@
 //! Standard functions (2nd ed. 2.5.1.5, 3rd ed. 6.6.2.5).
 
+use super::calendar::{self, TimedFunction};
 use super::conversion_function;
 use super::convert::{Operand, converted};
 use super::scope::Body;
@@ -31,6 +32,7 @@ enum Form {
     Multiplex,
     Shift(Intrinsic),
     Text(TextForm),
+    Timed(TimedFunction),
 }
 
 const FUNCTIONS: &[(&str, Form)] = &[
@@ -76,7 +78,9 @@ const FUNCTIONS: &[(&str, Form)] = &[
 fn find(key: &str) -> Option<Form> {
     let text = || text_function::FUNCTIONS.iter().find(|(name, _)| *name == key);
     let found = FUNCTIONS.iter().find(|(name, _)| *name == key).map(|(_, form)| *form);
-    found.or_else(|| text().map(|(_, form)| Form::Text(*form)))
+    let timed = || calendar::FUNCTIONS.iter().find(|function| function.name == key);
+    let found = found.or_else(|| text().map(|(_, form)| Form::Text(*form)));
+    found.or_else(|| timed().map(|function| Form::Timed(*function)))
 }
 
 /// True if the standard has a function of this name, in capitals.
@@ -94,7 +98,7 @@ impl Form {
     fn arity(self) -> (usize, usize) {
         match self {
             Self::Absolute | Self::Real(_) | Self::Move | Self::Not => (1, 1),
-            Self::Power | Self::Pair(_) | Self::Shift(_) => (2, 2),
+            Self::Timed(_) | Self::Power | Self::Pair(_) | Self::Shift(_) => (2, 2),
             Self::Limit | Self::Select => (3, 3),
             Self::Text(form) if form != TextForm::Edit(Edit::Concat) => {
                 (form.parameters().len(), form.parameters().len())
@@ -206,6 +210,7 @@ impl Body<'_, '_> {
                 let all = std::iter::once(first).chain(operands).collect();
                 self.text_function(form, all, span)
             }
+            Form::Timed(function) => self.timed_function(function, first, operands.next()?, span),
             Form::Select => self.select(first, operands.collect(), span),
             Form::Multiplex => self.multiplex(first, operands.collect(), span),
             Form::Shift(intrinsic) => self.shift(intrinsic, first, operands.next()?, span),

@@ -68,6 +68,9 @@ impl<'a> Body<'_, 'a> {
     /// `STRING#'...'`
     pub(super) fn typed_text(&mut self, prefix: &str, text: &str, span: Span) -> Option<Operand> {
         let literal = self.text_literal(text, span)?;
+        if let Some(ty) = ElementaryType::find(prefix).filter(|ty| ty.is_character()) {
+            return Some(Operand::Typed(self.coerce(literal, ty.into())?));
+        }
         let wide = match prefix.to_ascii_uppercase().as_str() {
             "STRING" => false,
             "WSTRING" => true,
@@ -104,6 +107,22 @@ impl Body<'_, '_> {
         let ty = self.checker.types.string(shape);
         let place = self.checker.constant_bytes(ty, shape.encode(&text.units).into(), span)?;
         Some(Expr { kind: ExprKind::Load(place), ty, span })
+    }
+
+    /// The one character of a literal, as one of `ty` (3rd ed. 6.3.3).
+    pub(super) fn as_character(text: &Text, ty: ElementaryType) -> Option<u16> {
+        let fits = ty.is_character() && text.wide == (ty == ElementaryType::Wchar);
+        text.units.first().copied().filter(|_| fits && text.units.len() == 1)
+    }
+
+    pub(super) fn literal_character(&mut self, text: &Text, ty: ElementaryType, span: Span) -> Option<Expr> {
+        if let Some(unit) = Self::as_character(text, ty) {
+            return Some(constant(Value::Int(i128::from(unit)), ty, span));
+        }
+        let quotes = if ty == ElementaryType::Wchar { "double" } else { "single" };
+        let message = format!("{ty} is one character between {quotes} quotes");
+        self.report(Diagnostic::error(Code::TypeMismatch, span, message));
+        None
     }
 
     /// The operand as a string of `shape`; what does not fit is cut off (2nd ed. 2.4.3.2).
@@ -179,6 +198,12 @@ impl Body<'_, '_> {
         right: Operand,
         span: Span,
     ) -> Option<Operand> {
+        let character = |operand: &Operand| matches!(operand, Operand::Typed(expr) if self.plain_elementary(expr).is_some_and(ElementaryType::is_character));
+        if character(&left) != character(&right) {
+            let pair = self.unify(operator, left, right, "characters", span)?;
+            let kind = ExprKind::Binary(operator, Box::new(pair.left), Box::new(pair.right));
+            return Some(Operand::Typed(Expr { kind, ty: ElementaryType::Bool.into(), span }));
+        }
         if !self.is_text(&left) || !self.is_text(&right) {
             return self.invalid_operands(&left, &right, span);
         }

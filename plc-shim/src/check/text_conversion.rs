@@ -6,6 +6,8 @@
 //! | integers, bit strings | decimal |
 //! | REAL, LREAL | the shortest that reads back as the same number: `1.5`, `100.0`, `1.0E+20` |
 //! | TIME, LTIME | `T#1h2m3s4ms`, `LT#...` |
+//! | dates | `D#1994-06-15`, `TOD#15:36:55.36`, `DT#1994-06-15-15:36:55.36`, `LD#...` |
+//! | CHAR, WCHAR | the character; the first one the other way |
 //!
 //! The other way blanks in front are passed and the longest text that is a value is taken; what
 //! is out of range becomes the nearest limit, what has no value 0.

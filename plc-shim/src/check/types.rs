@@ -128,22 +128,7 @@ impl<'a> Body<'_, 'a> {
     }
 
     fn report_unknown_type(&mut self, name: &Ident) {
-        const LATER: [&str; 14] = [
-            "DATE",
-            "TOD",
-            "TIME_OF_DAY",
-            "DT",
-            "DATE_AND_TIME",
-            "LDATE",
-            "LTOD",
-            "LDT",
-            "CHAR",
-            "WCHAR",
-            "POINTER",
-            "REF_TO",
-            "REFERENCE",
-            "XINT",
-        ];
+        const LATER: [&str; 4] = ["POINTER", "REF_TO", "REFERENCE", "XINT"];
         if LATER.contains(&name.key().as_str()) {
             self.unsupported::<()>(&format!("type {}", name.key()), name.span);
             return;

@@ -27,6 +27,7 @@ impl Emitter<'_, '_> {
             Intrinsic::ShiftLeft | Intrinsic::ShiftRight | Intrinsic::RotateLeft | Intrinsic::RotateRight => {
                 self.shift(kind, operands, ty);
             }
+            Intrinsic::FloorRemainder | Intrinsic::FloorMultiple => self.floored(kind, operands),
             _ => {
                 self.all(operands);
                 match host::index(kind, ty == ElementaryType::Real) {
@@ -178,6 +179,36 @@ impl Emitter<'_, '_> {
                     self.emit(if wide { Instruction::I64Or } else { Instruction::I32Or });
                 }
             }
+        }
+        self.release_all(registers);
+    }
+
+    /// Of 64 bit numbers; the divisor is a constant greater than 0.
+    fn floored(&mut self, kind: Intrinsic, operands: &[Expr]) {
+        let registers = self.in_registers(operands);
+        if let [value, divisor] = registers[..] {
+            let rest = self.scratch(ValType::I64);
+            self.get(value);
+            self.get(value);
+            self.get(divisor);
+            self.emit(Instruction::I64RemS);
+            self.tee(rest);
+            self.get(divisor);
+            self.emit(Instruction::I64Const(0));
+            self.get(rest);
+            self.emit(Instruction::I64Const(0));
+            self.emit(Instruction::I64LtS);
+            self.emit(Instruction::Select);
+            self.emit(Instruction::I64Add);
+            self.set(rest);
+            if kind == Intrinsic::FloorRemainder {
+                self.emit(Instruction::Drop);
+                self.get(rest);
+            } else {
+                self.get(rest);
+                self.emit(Instruction::I64Sub);
+            }
+            self.release(rest);
         }
         self.release_all(registers);
     }

@@ -102,6 +102,10 @@ pub(crate) enum Intrinsic {
     ShiftRight,
     RotateLeft,
     RotateRight,
+    /// The remainder of a 64 bit number by a positive one, never negative.
+    FloorRemainder,
+    /// The greatest multiple of the second that is not greater than the first.
+    FloorMultiple,
 }
 
 /// A call of a user's function.

@@ -5,7 +5,7 @@
 //! | [`source`] | names and texts | files, spans, lines and columns |
 //! | [`token`] | | the kinds of token, keywords |
 //! | [`lexer`] | text | every token, blanks and comments too |
-//! | [`literal`], [`text_literal`] | a literal's text | its value |
+//! | [`literal`], [`text_literal`], [`calendar`] | a literal's text | its value |
 //! | [`ast`] | | the tree's nodes |
 //! | [`parser`] | tokens | a tree and a list of diagnostics |
 //! | [`printer`] | a tree | text that parses to the same tree |
@@ -14,6 +14,7 @@
 //! returns a tree and a list of diagnostics; a tree knows names and spans only, never meanings.
 
 pub mod ast;
+pub mod calendar;
 pub mod lexer;
 pub mod literal;
 pub mod parser;

@@ -4,6 +4,7 @@ use std::fmt::{self, Write};
 
 use crate::ir::ElementaryType;
 use crate::ir::elementary::Kind;
+use crate::syntax::calendar::{DAY_NS, civil_from_days};
 
 /// Text of at most so many bytes, all of them ASCII.
 #[derive(Debug, Clone)]
@@ -39,7 +40,6 @@ impl Write for Line {
 /// The text of a value of type `ty`, given by its bits.
 pub(super) fn format(ty: ElementaryType, bits: i64) -> Line {
     let mut line = Line::new();
-    let long = ty == ElementaryType::Ltime;
     // Writing to a line never fails.
     let _ = match (ty.kind(), ty.size()) {
         (Kind::Bool, _) => line.write_str(if bits == 0 { "FALSE" } else { "TRUE" }),
@@ -48,7 +48,10 @@ pub(super) fn format(ty: ElementaryType, bits: i64) -> Line {
             let value = f64::from_bits(bits.cast_unsigned());
             real(&mut line, value, value)
         }
-        (Kind::Duration, _) => duration(&mut line, if long { "LT#" } else { "T#" }, bits),
+        (Kind::Duration, _) => duration(&mut line, if ty == ElementaryType::Ltime { "LT#" } else { "T#" }, bits),
+        (Kind::Date | Kind::TimeOfDay | Kind::DateTime, _) => calendar(&mut line, ty, bits),
+        // A character is its own text.
+        (Kind::Character, _) => Ok(()),
         (Kind::Signed, _) => write!(line, "{bits}"),
         (Kind::Unsigned | Kind::Bits, _) => write!(line, "{}", bits.cast_unsigned()),
     };
@@ -100,6 +103,36 @@ fn duration(line: &mut Line, prefix: &str, ns: i64) -> fmt::Result {
         if rest >= unit {
             write!(line, "{}{name}", rest / unit)?;
             rest %= unit;
+        }
+    }
+    Ok(())
+}
+
+/// `D#1984-06-25`, `TOD#15:36:55.36`, `DT#1984-06-25-15:36:55.36` (2nd ed. Table 8).
+fn calendar(line: &mut Line, ty: ElementaryType, ns: i64) -> fmt::Result {
+    let (days, ns) = (ns.div_euclid(DAY_NS), ns.rem_euclid(DAY_NS));
+    let short = if ty == ElementaryType::Date { "D" } else { ty.name() };
+    let prefix = if ty == ElementaryType::Ldate { "LD" } else { short };
+    write!(line, "{prefix}#")?;
+    if ty.kind() != Kind::TimeOfDay {
+        let (year, month, day) = civil_from_days(days);
+        write!(line, "{year:04}-{month:02}-{day:02}")?;
+    }
+    if ty.kind() == Kind::DateTime {
+        line.push(b'-');
+    }
+    if ty.kind() != Kind::Date {
+        let seconds = ns / 1_000_000_000;
+        write!(line, "{:02}:{:02}:{:02}", seconds / 3600, seconds / 60 % 60, seconds % 60)?;
+        let mut rest = ns % 1_000_000_000;
+        if rest > 0 {
+            line.push(b'.');
+        }
+        let mut weight = 100_000_000;
+        while rest > 0 {
+            write!(line, "{}", rest / weight)?;
+            rest %= weight;
+            weight /= 10;
         }
     }
     Ok(())

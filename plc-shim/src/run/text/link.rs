@@ -98,7 +98,11 @@ fn format_value(
 ) -> Result<i32, Error> {
     with_memory(&mut caller, |memory| {
         let mut made = Target::new(memory, target, target_code)?;
-        let line = format(type_of(ty), bits);
+        let ty = type_of(ty);
+        if ty.is_character() {
+            made.push(memory, bits as u16);
+        }
+        let line = format(ty, bits);
         for byte in line.text().bytes() {
             made.push(memory, u16::from(byte));
         }
@@ -111,6 +115,13 @@ fn format_value(
 fn parse_value(mut caller: Caller<'_, HostState>, ty: i32, a: i32, a_code: i32) -> Result<i64, Error> {
     with_memory(&mut caller, |memory| {
         let text = View::new(memory, a, a_code)?;
+        let ty = type_of(ty);
+        if ty.is_character() {
+            let first = if text.used == 0 { 0 } else { text.get(memory, 0) };
+            // What a CHAR cannot be becomes `?`, as in a STRING.
+            let fits = ty.size() > 1 || first <= 0xff;
+            return Ok((i64::from(if fits { first } else { u16::from(b'?') }), 1));
+        }
         let mut line = Line::new();
         for index in 0..text.used {
             match u8::try_from(text.get(memory, index)) {
@@ -118,6 +129,6 @@ fn parse_value(mut caller: Caller<'_, HostState>, ty: i32, a: i32, a_code: i32) 
                 _ => break,
             }
         }
-        Ok((parse::parse(type_of(ty), line.text()), line.text().len() as u64))
+        Ok((parse::parse(ty, line.text()), line.text().len() as u64))
     })
 }

@@ -2,6 +2,7 @@
 
 use crate::ir::ElementaryType;
 use crate::ir::elementary::Kind;
+use crate::syntax::calendar::{CalendarKind, parse_calendar};
 use crate::syntax::literal::parse_duration;
 
 /// The bits of the value of type `ty` that `text` begins with; 0 if there is none.
@@ -12,6 +13,11 @@ pub(super) fn parse(ty: ElementaryType, text: &str) -> i64 {
         (Kind::Real, 4) => i64::from(number(text).parse::<f32>().unwrap_or(0.0).to_bits()),
         (Kind::Real, _) => number(text).parse::<f64>().unwrap_or(0.0).to_bits().cast_signed(),
         (Kind::Duration, _) => duration(text),
+        (Kind::Date, _) => calendar(CalendarKind::Date, text),
+        (Kind::TimeOfDay, _) => calendar(CalendarKind::TimeOfDay, text),
+        (Kind::DateTime, _) => calendar(CalendarKind::DateAndTime, text),
+        // A text's first character is taken as it is.
+        (Kind::Character, _) => 0,
         (Kind::Signed | Kind::Unsigned | Kind::Bits, _) => {
             let (low, high) = ty.range().unwrap_or((0, 0));
             integer(text).clamp(low, high) as i64
@@ -86,6 +92,16 @@ fn after_prefix<'t>(text: &'t str, prefixes: &[&str]) -> &'t str {
         Some((prefix, rest)) if prefixes.iter().any(|known| known.eq_ignore_ascii_case(prefix)) => rest,
         _ => text,
     }
+}
+
+/// `D#1984-06-25` or `1984-06-25`.
+fn calendar(kind: CalendarKind, text: &str) -> i64 {
+    let prefixes = match kind {
+        CalendarKind::Date => ["D", "DATE", "LD", "LDATE"],
+        CalendarKind::TimeOfDay => ["TOD", "TIME_OF_DAY", "LTOD", "LTIME_OF_DAY"],
+        CalendarKind::DateAndTime => ["DT", "DATE_AND_TIME", "LDT", "LDATE_AND_TIME"],
+    };
+    parse_calendar(kind, after_prefix(text, &prefixes)).unwrap_or(0)
 }
 
 #[cfg(test)]

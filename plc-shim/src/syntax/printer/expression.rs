@@ -89,7 +89,7 @@ impl Printer {
                 let (prefix, sign) = (if *long { "LT" } else { "T" }, if *ns < 0 { "-" } else { "" });
                 format!("{prefix}#{sign}{}ns", ns.unsigned_abs())
             }
-            Literal::String(text) => text.clone(),
+            Literal::String(text) | Literal::Calendar { text, .. } => text.clone(),
         };
         self.word(&text);
     }
