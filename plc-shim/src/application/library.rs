@@ -1,10 +1,13 @@
-//! The standard function blocks (2nd ed. 2.5.2.3), as program text like any other.
+//! The standard function blocks (2nd ed. 2.5.2.3) and some functions, as program text like any other.
 
 /// File names and texts.
-pub(super) const FILES: [(&str, &str); 5] = [
-    ("iec/edge_detection.st", include_str!("../../iec/edge_detection.st")),
+pub(super) const FILES: [(&str, &str); 8] = [
     ("iec/bistable.st", include_str!("../../iec/bistable.st")),
+    ("iec/clock_and_semaphore.st", include_str!("../../iec/clock_and_semaphore.st")),
     ("iec/counters.st", include_str!("../../iec/counters.st")),
+    ("iec/counters_by_type.st", include_str!("../../iec/counters_by_type.st")),
     ("iec/date_and_time.st", include_str!("../../iec/date_and_time.st")),
+    ("iec/edge_detection.st", include_str!("../../iec/edge_detection.st")),
     ("iec/timers.st", include_str!("../../iec/timers.st")),
+    ("iec/timers_by_type.st", include_str!("../../iec/timers_by_type.st")),
 ];

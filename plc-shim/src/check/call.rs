@@ -219,6 +219,7 @@ impl Body<'_, '_> {
         let kept = if aggregate { Some(self.temporary(ty, span)?) } else { None };
         let (before, outputs) = (passing.before, after);
         let call = FunctionCall { pou: id, before, arguments, outputs, result: kept };
+        let ty = self.checker.types.of_value(ty);
         Some(Expr { kind: ExprKind::Call(Box::new(call)), ty, span })
     }
 
@@ -291,7 +292,7 @@ impl Body<'_, '_> {
                 continue;
             };
             let place = place_of(variable, target.span);
-            let (ty, span) = (place.ty, target.span);
+            let (ty, span) = (self.checker.types.of_value(place.ty), target.span);
             let mut value = Expr { kind: ExprKind::Load(place), ty, span };
             if *negated {
                 if ty != ElementaryType::Bool.into() {

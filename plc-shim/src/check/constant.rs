@@ -26,6 +26,7 @@ pub(super) fn fold(types: &TypeTable, expr: &Expr) -> Result<Value, NoValue> {
             binary(*operator, operands, left, right).map_err(|()| NoValue::DivisionByZero(expr.span))
         }
         ExprKind::Convert(rounding, operand) => Ok(convert(*rounding, ty, fold(types, operand)?)),
+        ExprKind::Limited(_, _, operand) => fold(types, operand),
         ExprKind::Load(_) | ExprKind::Intrinsic(..) | ExprKind::Text(_) | ExprKind::Call(_) => Err(not_constant),
     }
 }

@@ -2,7 +2,7 @@
 
 use super::scope::Body;
 use crate::diagnostic::{Code, Diagnostic};
-use crate::ir::{ElementaryType, Expr, ExprKind, Rounding, TypeId, Value};
+use crate::ir::{ElementaryType, Expr, ExprKind, Rounding, Type, TypeId, Value};
 use crate::syntax::Span;
 use crate::syntax::text_literal::Text;
 
@@ -58,8 +58,12 @@ impl Body<'_, '_> {
         if let Some(shape) = self.shape(target) {
             return self.coerce_text(operand, shape);
         }
+        if let Type::Subrange { base, low, high } = *self.checker.types.get(target) {
+            let expr = self.coerce(operand, base.into())?;
+            return self.limited(expr, target, low, high);
+        }
         let wanted = match self.checker.types.get(target) {
-            crate::ir::Type::Elementary(ty) => Some(*ty),
+            Type::Elementary(ty) => Some(*ty),
             _ => None,
         };
         match (operand, wanted) {
@@ -88,7 +92,6 @@ impl Body<'_, '_> {
     }
 
     fn widen(&mut self, expr: Expr, wanted: ElementaryType) -> Option<Expr> {
-        use crate::ir::Type;
         let found = if let Type::Elementary(found) = self.checker.types.get(expr.ty) {
             *found
         } else {

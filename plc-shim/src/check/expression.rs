@@ -78,13 +78,13 @@ impl Body<'_, '_> {
             return None;
         }
         let ty = self.checker.named_type(&key, Some(span))?.ty;
-        match value {
-            TypedValue::Name(name) | TypedValue::Text(name) => self.enumerator_of(ty, name, span),
-            TypedValue::Integer(value) => {
-                Some(Operand::Typed(self.coerce(Operand::Integer { value: *value, span }, ty)?))
-            }
-            TypedValue::Real(value) => Some(Operand::Typed(self.coerce(Operand::Real { value: *value, span }, ty)?)),
-        }
+        let operand = match value {
+            TypedValue::Name(name) | TypedValue::Text(name) => return self.enumerator_of(ty, name, span),
+            TypedValue::Integer(value) => Operand::Integer { value: *value, span },
+            TypedValue::Real(value) => Operand::Real { value: *value, span },
+        };
+        let typed = self.coerce(operand, ty)?;
+        Some(Operand::Typed(Expr { ty: self.checker.types.of_value(ty), ..typed }))
     }
 
     pub(super) fn malformed_literal(&mut self, prefix: &str, value: &str, span: Span) -> Option<Operand> {

@@ -5,7 +5,7 @@
 //! | [`names`] | what the files declare, by name |
 //! | [`layout`] | offsets in memory |
 //! | [`scope`] | what a name means inside a unit |
-//! | [`types`] | types as written to types |
+//! | [`types`], [`subrange`] | types as written to types |
 //! | [`variables`] | sections to placed variables, units' interfaces |
 //! | [`initial`] | initial values to bytes |
 //! | [`constant`] | constant expressions to values |
@@ -34,6 +34,7 @@ mod recursion;
 mod scope;
 mod standard_function;
 mod statement;
+mod subrange;
 mod text;
 mod text_conversion;
 mod text_function;

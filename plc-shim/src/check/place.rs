@@ -49,7 +49,7 @@ impl Body<'_, '_> {
             _ => {}
         }
         let place = self.place(expr)?.place;
-        let ty = place.ty;
+        let ty = self.checker.types.of_value(place.ty);
         Some(Operand::Typed(Expr { kind: ExprKind::Load(place), ty, span: expr.span }))
     }
 
@@ -133,7 +133,7 @@ impl Body<'_, '_> {
                 return Some(match variable.constant {
                     Some(value) => {
                         let kind = ExprKind::Constant(value);
-                        Meaning::Value(Expr { kind, ty: variable.ty, span: name.span })
+                        Meaning::Value(Expr { kind, ty: self.checker.types.of_value(variable.ty), span: name.span })
                     }
                     None => Meaning::Variable,
                 });

@@ -267,7 +267,7 @@ impl Body<'_, '_> {
 
     fn control_variable(&mut self, place: Place) -> Option<(Place, ElementaryType)> {
         match self.checker.types.get(place.ty) {
-            Type::Elementary(ty) if ty.is_integer() => {
+            Type::Elementary(ty) | Type::Subrange { base: ty, .. } if ty.is_integer() => {
                 let ty = *ty;
                 Some((place, ty))
             }

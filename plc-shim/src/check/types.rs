@@ -66,7 +66,7 @@ impl<'a> Body<'_, 'a> {
         let name = &ast.name.text;
         let mut resolved = match &ast.spec.kind {
             TypeSpecKind::Struct(fields) => self.structure(name, fields, ast.name.span),
-            TypeSpecKind::Enumeration(values) => self.enumeration(name, values),
+            TypeSpecKind::Enumeration(values, base) => self.enumeration(name, values, base.as_ref()),
             _ => self.resolve(&ast.spec, Need::Size),
         }?;
         if let Some(initial) = &ast.initial {
@@ -81,13 +81,13 @@ impl<'a> Body<'_, 'a> {
             TypeSpecKind::Name(name) => self.type_by_name(name, need),
             TypeSpecKind::Array(dimensions, element) => self.array(dimensions, element, need, spec.span),
             TypeSpecKind::Struct(fields) => self.structure("STRUCT", fields, spec.span),
-            TypeSpecKind::Enumeration(values) => self.enumeration("enumeration", values),
+            TypeSpecKind::Enumeration(values, base) => self.enumeration("enumeration", values, base.as_ref()),
             TypeSpecKind::String(name, length) => {
                 let ty = self.text_type(name.key() == "WSTRING", length.as_deref())?;
                 self.checker.charge_image(u64::from(self.checker.types.size(ty)), spec.span)?;
                 Some(self.whole(ty))
             }
-            TypeSpecKind::Subrange(..) => self.unsupported("a subrange type", spec.span),
+            TypeSpecKind::Subrange(name, range) => self.subrange(name, range),
             TypeSpecKind::Error => None,
         }
     }
@@ -98,7 +98,7 @@ impl<'a> Body<'_, 'a> {
         None
     }
 
-    fn whole(&self, ty: TypeId) -> TypedImage {
+    pub(super) fn whole(&self, ty: TypeId) -> TypedImage {
         TypedImage { ty, image: self.checker.types.image(ty).clone() }
     }
 
@@ -213,8 +213,9 @@ impl<'a> Body<'_, 'a> {
         Some(TypedImage { ty, image: image_of_type })
     }
 
-    fn enumeration(&mut self, name: &str, ast: &'a [EnumValue]) -> Option<TypedImage> {
-        let base = ElementaryType::Int;
+    /// Values count on from the one before, from 0 (3rd ed. 6.4.4.2, Table 11).
+    fn enumeration(&mut self, name: &str, ast: &'a [EnumValue], base: Option<&Ident>) -> Option<TypedImage> {
+        let base = base.map_or(Some(ElementaryType::Int), |base| self.integer_base(base))?;
         let mut values: Vec<(String, i128)> = Vec::new();
         let mut next = 0;
         for each in ast {

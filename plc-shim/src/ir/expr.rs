@@ -30,6 +30,8 @@ pub(crate) enum ExprKind {
     /// From the operand's type to the expression's, the number itself kept as far as it fits.
     Convert(Rounding, Box<Expr>),
     Intrinsic(Intrinsic, Vec<Expr>),
+    /// The operand, which must lie between the two numbers.
+    Limited(i128, i128, Box<Expr>),
     /// On character strings.
     Text(Box<TextCall>),
     Call(Box<FunctionCall>),

@@ -24,6 +24,12 @@ pub(crate) enum Type {
     Elementary(ElementaryType),
     /// What a function without a result gives.
     Nothing,
+    /// Some values of an integer type. Values of it are of that type; places check them.
+    Subrange {
+        base: ElementaryType,
+        low: i128,
+        high: i128,
+    },
     /// A string and what it may hold.
     Text(TextShape),
     Enumeration {
@@ -81,6 +87,7 @@ pub(crate) struct TypeTable {
     arrays: BTreeMap<(TypeId, Vec<Dimension>), TypeId>,
     blocks: BTreeMap<PouId, TypeId>,
     texts: BTreeMap<TextShape, TypeId>,
+    subranges: BTreeMap<(ElementaryType, i128, i128), TypeId>,
 }
 
 impl TypeTable {
@@ -94,7 +101,13 @@ impl TypeTable {
         };
         let mut entries: Vec<_> = ElementaryType::ALL.iter().map(|ty| entry(*ty)).collect();
         entries.push(Entry { ty: Type::Nothing, size: 0, align: 1, image: Arc::from([]) });
-        Self { entries, arrays: BTreeMap::new(), blocks: BTreeMap::new(), texts: BTreeMap::new() }
+        Self {
+            entries,
+            arrays: BTreeMap::new(),
+            blocks: BTreeMap::new(),
+            texts: BTreeMap::new(),
+            subranges: BTreeMap::new(),
+        }
     }
 
     /// The type of a function call without a result.
@@ -132,7 +145,7 @@ impl TypeTable {
     /// The elementary type that holds the value; nothing for aggregates.
     pub(crate) fn elementary(&self, id: TypeId) -> Option<ElementaryType> {
         match self.get(id) {
-            Type::Elementary(ty) | Type::Enumeration { base: ty, .. } => Some(*ty),
+            Type::Elementary(ty) | Type::Enumeration { base: ty, .. } | Type::Subrange { base: ty, .. } => Some(*ty),
             _ => None,
         }
     }
@@ -143,6 +156,25 @@ impl TypeTable {
             Type::Text(shape) => Some(*shape),
             _ => None,
         }
+    }
+
+    /// The type that a value from a place of type `id` has.
+    pub(crate) fn of_value(&self, id: TypeId) -> TypeId {
+        match self.get(id) {
+            Type::Subrange { base, .. } => (*base).into(),
+            _ => id,
+        }
+    }
+
+    /// The subrange type. A variable begins with the lowest value (2nd ed. Table 13).
+    pub(crate) fn subrange(&mut self, base: ElementaryType, low: i128, high: i128) -> TypeId {
+        if let Some(found) = self.subranges.get(&(base, low, high)) {
+            return *found;
+        }
+        let image = super::Value::Int(low).bytes()[..base.size() as usize].into();
+        let id = self.add(Type::Subrange { base, low, high }, base.size(), base.size(), image);
+        self.subranges.insert((base, low, high), id);
+        id
     }
 
     /// The string type. A count may stand at any address, so that strings lie close in arrays.
@@ -205,6 +237,7 @@ impl TypeTable {
         match self.get(id) {
             Type::Elementary(ty) => ty.name().to_owned(),
             Type::Nothing => "nothing".to_owned(),
+            Type::Subrange { base, low, high } => format!("{base} ({low}..{high})"),
             Type::Text(shape) => format!("{}[{}]", shape.keyword(), shape.capacity),
             Type::Enumeration { name, .. } | Type::Struct { name, .. } | Type::FunctionBlock { name, .. } => {
                 name.clone()

@@ -171,7 +171,7 @@ impl<'a> Lexer<'a> {
             && (self.peek(1 + after_sign).is_ascii_alphanumeric() || self.peek(1 + after_sign) == b'_')
         {
             self.at += 1 + after_sign;
-            if calendar_prefix(text).is_some() {
+            if self.peek(0).is_ascii_digit() && calendar_prefix(text).is_some() {
                 self.calendar_value();
             } else {
                 self.typed_value();

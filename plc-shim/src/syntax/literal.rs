@@ -38,7 +38,9 @@ pub fn parse_real(text: &str) -> Result<f64, String> {
 /// A sentence that says what is wrong.
 pub fn parse_typed(text: &str) -> Result<Literal, String> {
     let (prefix, body) = text.split_once('#').ok_or("`#` is missing")?;
-    if let Some((kind, long)) = calendar_prefix(prefix) {
+    // `D#Red` is a value of a user's own enumeration.
+    let calendar = calendar_prefix(prefix).filter(|_| body.starts_with(|first: char| first.is_ascii_digit()));
+    if let Some((kind, long)) = calendar {
         let ns = parse_calendar(kind, body)?;
         return Ok(Literal::Calendar { kind, long, ns, text: text.to_owned() });
     }

@@ -13,3 +13,4 @@ mod standard_blocks;
 mod standard_functions;
 mod states;
 mod strings;
+mod subranges;

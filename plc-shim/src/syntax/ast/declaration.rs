@@ -119,8 +119,8 @@ pub enum TypeSpecKind {
     Array(Vec<Dimension>, Box<TypeSpec>),
     /// `STRUCT .. END_STRUCT`, in a `TYPE` block only.
     Struct(Vec<Field>),
-    /// `(Red, Green := 5)`
-    Enumeration(Vec<EnumValue>),
+    /// `(Red, Green := 5)`, `(Red, Green) USINT` or `USINT (Red, Green)`
+    Enumeration(Vec<EnumValue>, Option<Ident>),
     /// Text that is no type; a diagnostic has been given.
     Error,
 }

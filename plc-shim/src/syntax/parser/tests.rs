@@ -15,7 +15,7 @@ fn reparse(text: &str) -> (String, Vec<Diagnostic>) {
 fn a_printed_unit_parses_to_itself() {
     let text = "
         TYPE T : STRUCT a, b : INT := 5; c : ARRAY [0..1, 2..3] OF REAL; END_STRUCT END_TYPE
-        TYPE C : (Red, Green := 5); R : INT (0..10) := 3; END_TYPE
+        TYPE C : (Red, Green := 5); R : INT (0..10) := 3; E : (One := 1, Two) USINT := Two; F : DINT (Three); END_TYPE
         VAR_GLOBAL RETAIN g AT %MW1 : T := (a := 1, c := [1.0, 3(2.5)]); END_VAR
         FUNCTION f : INT VAR_INPUT x : INT; END_VAR f := -x ** 2 + 1; END_FUNCTION
         PROGRAM p VAR i : INT; t : TON; END_VAR

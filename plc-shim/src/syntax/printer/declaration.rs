@@ -120,10 +120,14 @@ impl Printer {
                 self.type_spec(element);
             }
             TypeSpecKind::Struct(fields) => self.structure(fields),
-            TypeSpecKind::Enumeration(values) => {
+            TypeSpecKind::Enumeration(values, base) => {
                 self.word("(");
                 self.separated(values, Self::enum_value);
                 self.word(")");
+                if let Some(base) = base {
+                    self.word(" ");
+                    self.word(&base.text);
+                }
             }
             TypeSpecKind::Error => {}
         }
