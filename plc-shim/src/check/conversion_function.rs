@@ -6,6 +6,7 @@
 //! | real, integer | nearest, ties to even; saturates; NaN becomes 0 |
 //! | bit string, BOOL | rightmost bit |
 //! | number, BOOL | FALSE for 0 |
+//! | REAL, DWORD and LREAL, LWORD | the same bits; other pairs of reals and bit strings do not exist |
 //! | TIME, number | milliseconds |
 //! | TOD, number | milliseconds |
 //! | DATE, DT, number | seconds |
@@ -17,7 +18,7 @@ use super::convert::{Operand, constant, converted};
 use super::scope::Body;
 use crate::diagnostic::{Code, Diagnostic};
 use crate::ir::elementary::Kind;
-use crate::ir::{Binary, ElementaryType, Expr, ExprKind, Rounding, Value};
+use crate::ir::{Binary, ElementaryType, Expr, ExprKind, Intrinsic, Rounding, Value};
 use crate::syntax::Span;
 
 /// A conversion function, by what its name says.
@@ -65,8 +66,8 @@ pub(super) fn is_defined(from: ElementaryType, to: ElementaryType) -> bool {
         _ if to.is_calendar() => numeric(from),
         _ if from.is_character() => to.is_integer() || bits(to),
         _ if to.is_character() => from.is_integer() || bits(from),
-        // Between reals and bit strings the editions disagree on what is kept, number or bits.
-        _ => !(from.is_real() && bits(to) || bits(from) && to.is_real()),
+        _ if from.is_real() && bits(to) || bits(from) && to.is_real() => from.size() == to.size(),
+        _ => true,
     }
 }
 
@@ -127,6 +128,11 @@ fn lower(expr: Expr, from: ElementaryType, to: ElementaryType, rounding: Roundin
     let lreal = |value: i128| constant(Value::Lreal(value as f64), ElementaryType::Lreal, span);
     let counts = |ty: ElementaryType| ty.is_duration() || ty.is_calendar();
     match (from.kind(), to.kind()) {
+        // 3rd ed. Table 25: the bits are transferred, between types of one size only.
+        (Kind::Real, Kind::Bits) | (Kind::Bits, Kind::Real) => {
+            let kind = ExprKind::Intrinsic(Intrinsic::Reinterpret, vec![expr]);
+            Expr { kind, ty: to.into(), span }
+        }
         (Kind::DateTime, Kind::Date) => converted(day_start(expr), to, rounding),
         (Kind::DateTime | Kind::Duration, Kind::TimeOfDay) => converted(within_day(expr), to, rounding),
         _ if counts(from) && counts(to) => converted(expr, to, rounding),

@@ -27,6 +27,13 @@ impl Emitter<'_, '_> {
             Intrinsic::ShiftLeft | Intrinsic::ShiftRight | Intrinsic::RotateLeft | Intrinsic::RotateRight => {
                 self.shift(kind, operands, ty);
             }
+            Intrinsic::Reinterpret => {
+                self.all(operands);
+                if let [operand] = operands {
+                    self.widen_to_bits(self.held_as(operand.ty));
+                    self.narrow_from_bits(ty);
+                }
+            }
             Intrinsic::FloorRemainder | Intrinsic::FloorMultiple => self.floored(kind, operands),
             _ => {
                 self.all(operands);

@@ -104,6 +104,8 @@ pub(crate) enum Intrinsic {
     ShiftRight,
     RotateLeft,
     RotateRight,
+    /// The same bits as another type of the same size.
+    Reinterpret,
     /// The remainder of a 64 bit number by a positive one, never negative.
     FloorRemainder,
     /// The greatest multiple of the second that is not greater than the first.
