@@ -13,7 +13,7 @@
 //! | [`expression`], [`operator`], [`calendar`], [`place`] | expressions |
 //! | [`call`], [`standard_function`], [`conversion_function`] | calls |
 //! | [`text`], [`text_function`], [`text_conversion`] | character strings |
-//! | [`statement`] | statements |
+//! | [`statement`], [`edge`] | statements |
 //! | [`recursion`] | who calls whom |
 //!
 //! A unit, type or global variable is resolved when it is first needed; what is being resolved
@@ -24,6 +24,7 @@ mod call;
 mod constant;
 mod conversion_function;
 mod convert;
+mod edge;
 mod expression;
 mod initial;
 mod layout;

@@ -195,6 +195,7 @@ fn virtual_time() -> GlobalEntry<'static> {
         address: None,
         span,
         image: vec![0; 8].into(),
+        edge: None,
     };
     let name = VIRTUAL_TIME_NAME.to_owned();
     GlobalEntry { ast: None, name, span, progress: Progress::Done, variable: Some(variable) }

@@ -97,7 +97,9 @@ impl Body<'_, '_> {
                     SectionKind::Input => Access::OwnInput,
                     _ => Access::ReadWrite,
                 };
-                let place = Place::whole(variable.storage, variable.ty, name.span);
+                // Inside of its unit an input with an edge is that edge.
+                let storage = variable.edge.map_or(variable.storage, |edge| Storage::Register(edge.seen));
+                let place = Place::whole(storage, variable.ty, name.span);
                 Some(Located { place, access })
             }
             Some(Err(())) => None,

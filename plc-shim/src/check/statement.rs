@@ -56,6 +56,9 @@ impl Body<'_, '_> {
                 register += 1;
                 continue;
             }
+            if let Some(detection) = variable.edge {
+                statements.extend(Self::detected(variable, detection));
+            }
             let fleeting = match variable.section {
                 SectionKind::Temp => true,
                 SectionKind::External | SectionKind::Global => false,

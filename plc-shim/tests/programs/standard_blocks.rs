@@ -169,3 +169,19 @@ fn iec1_table_34_a_semaphore_is_claimed_once() {
     };
     assert_eq!([step(1, 0), step(1, 0), step(0, 0), step(0, 1), step(0, 0)], [false, true, true, false, false]);
 }
+
+#[test]
+fn iec2_2_5_2_2_table_33_inputs_with_edges_are_seen_as_triggers() {
+    let mut rig = Rig::new(
+        "FUNCTION_BLOCK Counter VAR_INPUT up : BOOL R_EDGE; down : BOOL F_EDGE; END_VAR VAR_OUTPUT n, m : INT; END_VAR
+           IF up THEN n := n + 1; END_IF; IF down THEN m := m + 1; END_IF; END_FUNCTION_BLOCK
+         PROGRAM P VAR c : Counter; r : R_TRIG; f : F_TRIG; x : BOOL; n, m, k : INT; END_VAR
+           k := k + 1; x := k MOD 5 > 2; c(up := x, down := x); r(CLK := x); f(CLK := x);
+           IF r.Q THEN n := n + 1; END_IF; IF f.Q THEN m := m + 1; END_IF; END_PROGRAM",
+    );
+    for _ in 0..20 {
+        rig.scan().expect("no fault");
+        assert_eq!((rig.int("P.c.n"), rig.int("P.c.m")), (rig.int("P.n"), rig.int("P.m")));
+    }
+    assert_eq!(rig.int("P.n"), 4);
+}

@@ -93,8 +93,19 @@ pub struct Variable {
     pub address: Option<Ident>,
     /// The type.
     pub spec: TypeSpec,
+    /// `R_EDGE` or `F_EDGE` behind the type.
+    pub edge: Option<Edge>,
     /// The initial value.
     pub initial: Option<Initialiser>,
+}
+
+/// What of an input its unit sees (2nd ed. 2.5.2.2, Table 33).
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Edge {
+    /// `R_EDGE`
+    Rising,
+    /// `F_EDGE`
+    Falling,
 }
 
 /// A type as written.
