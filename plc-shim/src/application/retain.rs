@@ -70,7 +70,7 @@ impl Collector<'_> {
                     self.inside(field.ty, offset + field.offset);
                 }
             }
-            Type::Elementary(_) | Type::Enumeration { .. } | Type::Nothing => {}
+            Type::Elementary(_) | Type::Enumeration { .. } | Type::Subrange { .. } | Type::Text(_) | Type::Nothing => {}
         }
     }
 
@@ -94,7 +94,9 @@ impl Collector<'_> {
             }
             Type::Array { element, .. } => self.has_retained(*element),
             Type::Struct { fields, .. } => fields.iter().any(|field| self.has_retained(field.ty)),
-            Type::Elementary(_) | Type::Enumeration { .. } | Type::Nothing => false,
+            Type::Elementary(_) | Type::Enumeration { .. } | Type::Subrange { .. } | Type::Text(_) | Type::Nothing => {
+                false
+            }
         }
     }
 }

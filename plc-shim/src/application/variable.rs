@@ -17,7 +17,7 @@ pub struct Variable {
     /// Its size in bytes.
     pub size: u32,
     /// Its elementary type; nothing for structures, arrays and instances. A value of an
-    /// enumeration is held as INT.
+    /// enumeration or subrange is one of its base type.
     pub ty: Option<ElementaryType>,
     /// The name of its type.
     pub type_name: String,

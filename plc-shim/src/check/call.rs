@@ -219,6 +219,7 @@ impl Body<'_, '_> {
         let kept = if aggregate { Some(self.temporary(ty, span)?) } else { None };
         let (before, outputs) = (passing.before, after);
         let call = FunctionCall { pou: id, before, arguments, outputs, result: kept };
+        let ty = self.checker.types.of_value(ty);
         Some(Expr { kind: ExprKind::Call(Box::new(call)), ty, span })
     }
 
@@ -227,6 +228,11 @@ impl Body<'_, '_> {
             Some(ty) if named && parameter.section == SectionKind::Input => {
                 let value = constant(decode(ty, &parameter.image), ty, span);
                 Some(Argument::Value(Expr { ty: parameter.ty, ..value }))
+            }
+            None if named && parameter.section == SectionKind::Input => {
+                let place = self.checker.constant_bytes(parameter.ty, parameter.image.clone(), span)?;
+                let kind = ExprKind::Load(place);
+                Some(Argument::Value(Expr { kind, ty: parameter.ty, span }))
             }
             _ => self.missing_argument(&parameter.name, span),
         }
@@ -265,7 +271,7 @@ impl Body<'_, '_> {
     }
 
     /// Memory of the calling unit for one value.
-    fn temporary(&mut self, ty: TypeId, span: Span) -> Option<Place> {
+    pub(super) fn temporary(&mut self, ty: TypeId, span: Span) -> Option<Place> {
         let types = &self.checker.types;
         let (size, align) = (types.size(ty), types.align(ty));
         let offset = self.checker.allocate(size, align, span)?;
@@ -286,7 +292,7 @@ impl Body<'_, '_> {
                 continue;
             };
             let place = place_of(variable, target.span);
-            let (ty, span) = (place.ty, target.span);
+            let (ty, span) = (self.checker.types.of_value(place.ty), target.span);
             let mut value = Expr { kind: ExprKind::Load(place), ty, span };
             if *negated {
                 if ty != ElementaryType::Bool.into() {

@@ -26,7 +26,8 @@ pub(super) fn fold(types: &TypeTable, expr: &Expr) -> Result<Value, NoValue> {
             binary(*operator, operands, left, right).map_err(|()| NoValue::DivisionByZero(expr.span))
         }
         ExprKind::Convert(rounding, operand) => Ok(convert(*rounding, ty, fold(types, operand)?)),
-        ExprKind::Load(_) | ExprKind::Intrinsic(..) | ExprKind::Call(_) => Err(not_constant),
+        ExprKind::Limited(_, _, operand) => fold(types, operand),
+        ExprKind::Load(_) | ExprKind::Intrinsic(..) | ExprKind::Text(_) | ExprKind::Call(_) => Err(not_constant),
     }
 }
 
@@ -136,6 +137,7 @@ impl Body<'_, '_> {
         match self.expression(expr)? {
             Operand::Integer { value, .. } => Some(value),
             Operand::Real { span, .. } => self.mismatch("an integer", "a real number", span),
+            Operand::Text { span, .. } => self.mismatch("an integer", "a string", span),
             Operand::Typed(typed) => {
                 let integer = self.elementary(typed.ty).is_some_and(ElementaryType::is_integer);
                 if !integer {

@@ -6,14 +6,19 @@
 //! | real, integer | nearest, ties to even; saturates; NaN becomes 0 |
 //! | bit string, BOOL | rightmost bit |
 //! | number, BOOL | FALSE for 0 |
+//! | REAL, DWORD and LREAL, LWORD | the same bits; other pairs of reals and bit strings do not exist |
 //! | TIME, number | milliseconds |
-//! | LTIME, number | nanoseconds |
+//! | TOD, number | milliseconds |
+//! | DATE, DT, number | seconds |
+//! | LTIME, LDATE, LTOD, LDT, number | nanoseconds |
+//! | number, DATE or TOD | the day it lies in, the time of its day |
 
+use super::calendar::{day_start, within_day};
 use super::convert::{Operand, constant, converted};
 use super::scope::Body;
 use crate::diagnostic::{Code, Diagnostic};
 use crate::ir::elementary::Kind;
-use crate::ir::{Binary, ElementaryType, Expr, ExprKind, Rounding, Value};
+use crate::ir::{Binary, ElementaryType, Expr, ExprKind, Intrinsic, Rounding, Value};
 use crate::syntax::Span;
 
 /// A conversion function, by what its name says.
@@ -46,8 +51,24 @@ pub(super) fn find(key: &str) -> Option<Conversion> {
 /// True if `from_TO_to` exists.
 pub(super) fn is_defined(from: ElementaryType, to: ElementaryType) -> bool {
     let bits = |ty: ElementaryType| ty.kind() == Kind::Bits;
-    // Between reals and bit strings the editions disagree on what is kept, number or bits.
-    from != to && !(from.is_real() && bits(to) || bits(from) && to.is_real())
+    let numeric = |ty: ElementaryType| ty.is_number() || bits(ty);
+    if from == to {
+        return false;
+    }
+    match (from.kind(), to.kind()) {
+        // A date and time has both parts; neither part has the other.
+        (Kind::DateTime, _) if to.is_calendar() => true,
+        (Kind::Date, Kind::Date | Kind::DateTime)
+        | (Kind::TimeOfDay, Kind::TimeOfDay | Kind::Duration)
+        | (Kind::Duration, Kind::TimeOfDay)
+        | (Kind::Character, Kind::Character) => true,
+        _ if from.is_calendar() => numeric(to),
+        _ if to.is_calendar() => numeric(from),
+        _ if from.is_character() => to.is_integer() || bits(to),
+        _ if to.is_character() => from.is_integer() || bits(from),
+        _ if from.is_real() && bits(to) || bits(from) && to.is_real() => from.size() == to.size(),
+        _ => true,
+    }
 }
 
 fn is_allowed(from: ElementaryType, to: ElementaryType, rounding: Rounding) -> bool {
@@ -61,6 +82,9 @@ impl Body<'_, '_> {
             Some(from) => self.coerce(operand, from.into())?,
             None => self.settle(operand)?,
         };
+        if self.shape(expr.ty).is_some() && rounding == Rounding::NearestEven {
+            return self.parsed(expr, to, span);
+        }
         let Some(from) = self.elementary(expr.ty) else {
             let found = self.type_name(expr.ty);
             return self.mismatch("an elementary value", &found, expr.span);
@@ -75,9 +99,13 @@ impl Body<'_, '_> {
     }
 }
 
-/// Nanoseconds of the unit in which a duration becomes a number.
+/// Nanoseconds of the unit in which a duration or date becomes a number.
 fn unit_ns(ty: ElementaryType) -> i128 {
-    if ty == ElementaryType::Ltime { 1 } else { 1_000_000 }
+    match ty {
+        ElementaryType::Date | ElementaryType::Dt => 1_000_000_000,
+        ElementaryType::Time | ElementaryType::Tod => 1_000_000,
+        _ => 1,
+    }
 }
 
 fn joined(operator: Binary, left: Expr, right: Expr) -> Expr {
@@ -85,26 +113,44 @@ fn joined(operator: Binary, left: Expr, right: Expr) -> Expr {
     Expr { kind: ExprKind::Binary(operator, Box::new(left), Box::new(right)), ty, span }
 }
 
+/// A DATE is a midnight, a TOD less than a day.
+fn normalised(expr: Expr, ty: ElementaryType) -> Expr {
+    match ty.kind() {
+        Kind::Date => day_start(expr),
+        Kind::TimeOfDay => within_day(expr),
+        _ => expr,
+    }
+}
+
 fn lower(expr: Expr, from: ElementaryType, to: ElementaryType, rounding: Rounding) -> Expr {
     let span = expr.span;
     let lint = |value| constant(Value::Int(value), ElementaryType::Lint, span);
     let lreal = |value: i128| constant(Value::Lreal(value as f64), ElementaryType::Lreal, span);
+    let counts = |ty: ElementaryType| ty.is_duration() || ty.is_calendar();
     match (from.kind(), to.kind()) {
-        (Kind::Duration, Kind::Real) => {
+        // 3rd ed. Table 25: the bits are transferred, between types of one size only.
+        (Kind::Real, Kind::Bits) | (Kind::Bits, Kind::Real) => {
+            let kind = ExprKind::Intrinsic(Intrinsic::Reinterpret, vec![expr]);
+            Expr { kind, ty: to.into(), span }
+        }
+        (Kind::DateTime, Kind::Date) => converted(day_start(expr), to, rounding),
+        (Kind::DateTime | Kind::Duration, Kind::TimeOfDay) => converted(within_day(expr), to, rounding),
+        _ if counts(from) && counts(to) => converted(expr, to, rounding),
+        (_, Kind::Real) if counts(from) => {
             let ns = converted(expr, ElementaryType::Lreal, rounding);
             converted(joined(Binary::Divide, ns, lreal(unit_ns(from))), to, rounding)
         }
-        (Kind::Duration, Kind::Signed | Kind::Unsigned | Kind::Bits) => {
+        (_, Kind::Signed | Kind::Unsigned | Kind::Bits) if counts(from) => {
             let ns = converted(expr, ElementaryType::Lint, rounding);
             converted(joined(Binary::Divide, ns, lint(unit_ns(from))), to, rounding)
         }
-        (Kind::Real, Kind::Duration) => {
+        (Kind::Real, _) if counts(to) => {
             let number = converted(expr, ElementaryType::Lreal, rounding);
-            converted(joined(Binary::Multiply, number, lreal(unit_ns(to))), to, rounding)
+            normalised(converted(joined(Binary::Multiply, number, lreal(unit_ns(to))), to, rounding), to)
         }
-        (Kind::Bool | Kind::Signed | Kind::Unsigned | Kind::Bits, Kind::Duration) => {
+        (Kind::Bool | Kind::Signed | Kind::Unsigned | Kind::Bits, _) if counts(to) => {
             let number = converted(expr, ElementaryType::Lint, rounding);
-            converted(joined(Binary::Multiply, number, lint(unit_ns(to))), to, rounding)
+            normalised(converted(joined(Binary::Multiply, number, lint(unit_ns(to))), to, rounding), to)
         }
         (Kind::Bits, Kind::Bool) => {
             let one = constant(Value::Int(1), from, span);

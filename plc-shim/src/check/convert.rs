@@ -2,8 +2,9 @@
 
 use super::scope::Body;
 use crate::diagnostic::{Code, Diagnostic};
-use crate::ir::{ElementaryType, Expr, ExprKind, Rounding, TypeId, Value};
+use crate::ir::{ElementaryType, Expr, ExprKind, Rounding, Type, TypeId, Value};
 use crate::syntax::Span;
+use crate::syntax::text_literal::Text;
 
 /// What an expression has come to. A constant without a type takes that of its context.
 #[derive(Debug, Clone)]
@@ -11,13 +12,14 @@ pub(super) enum Operand {
     Typed(Expr),
     Integer { value: i128, span: Span },
     Real { value: f64, span: Span },
+    Text { text: Text, span: Span },
 }
 
 impl Operand {
     pub(super) fn span(&self) -> Span {
         match self {
             Self::Typed(expr) => expr.span,
-            Self::Integer { span, .. } | Self::Real { span, .. } => *span,
+            Self::Integer { span, .. } | Self::Real { span, .. } | Self::Text { span, .. } => *span,
         }
     }
 
@@ -26,6 +28,7 @@ impl Operand {
             Self::Typed(expr) => Self::Typed(Expr { span, ..expr }),
             Self::Integer { value, .. } => Self::Integer { value, span },
             Self::Real { value, .. } => Self::Real { value, span },
+            Self::Text { text, .. } => Self::Text { text, span },
         }
     }
 }
@@ -52,8 +55,15 @@ impl Body<'_, '_> {
 
     /// The operand as a value of `target`, or a report why it cannot be one.
     pub(super) fn coerce(&mut self, operand: Operand, target: TypeId) -> Option<Expr> {
+        if let Some(shape) = self.shape(target) {
+            return self.coerce_text(operand, shape);
+        }
+        if let Type::Subrange { base, low, high } = *self.checker.types.get(target) {
+            let expr = self.coerce(operand, base.into())?;
+            return self.limited(expr, target, low, high);
+        }
         let wanted = match self.checker.types.get(target) {
-            crate::ir::Type::Elementary(ty) => Some(*ty),
+            Type::Elementary(ty) => Some(*ty),
             _ => None,
         };
         match (operand, wanted) {
@@ -61,7 +71,10 @@ impl Body<'_, '_> {
             (Operand::Typed(expr), Some(wanted)) => self.widen(expr, wanted),
             (Operand::Integer { value, span }, Some(wanted)) => self.literal_integer(value, wanted, span),
             (Operand::Real { value, span }, Some(wanted)) => self.literal_real(value, wanted, span),
-            (operand, None) => {
+            (Operand::Text { text, span }, Some(wanted)) if wanted.is_character() => {
+                self.literal_character(&text, wanted, span)
+            }
+            (operand, _) => {
                 let found = self.describe(&operand);
                 let wanted = self.type_name(target);
                 self.mismatch(&wanted, &found, operand.span())
@@ -74,11 +87,11 @@ impl Body<'_, '_> {
             Operand::Typed(expr) => self.type_name(expr.ty),
             Operand::Integer { .. } => "an integer".to_owned(),
             Operand::Real { .. } => "a real number".to_owned(),
+            Operand::Text { text, .. } => if text.wide { "a WSTRING" } else { "a STRING" }.to_owned(),
         }
     }
 
     fn widen(&mut self, expr: Expr, wanted: ElementaryType) -> Option<Expr> {
-        use crate::ir::Type;
         let found = if let Type::Elementary(found) = self.checker.types.get(expr.ty) {
             *found
         } else {
@@ -101,10 +114,11 @@ impl Body<'_, '_> {
         match (wanted, wanted.range()) {
             (ElementaryType::Real, _) => Some(constant(Value::Real(value as f32), wanted, span)),
             (ElementaryType::Lreal, _) => Some(constant(Value::Lreal(value as f64), wanted, span)),
-            _ if wanted.is_duration() => {
+            _ if !wanted.takes_integers() => {
                 let message = format!("{wanted} is wanted, this is an integer");
                 let found = Diagnostic::error(Code::TypeMismatch, span, message);
-                self.report(found.with_help("write a duration, as in T#200ms"));
+                let help = wanted.is_duration().then(|| "write a duration, as in T#200ms".to_owned());
+                self.report(found.with_optional_help(help));
                 None
             }
             (_, Some((low, high))) if (low..=high).contains(&value) => {
@@ -142,6 +156,7 @@ impl Body<'_, '_> {
     pub(super) fn settle(&mut self, operand: Operand) -> Option<Expr> {
         match operand {
             Operand::Typed(expr) => Some(expr),
+            Operand::Text { text, span } => self.settled_text(&text, span),
             Operand::Real { value, span } => Some(constant(Value::Lreal(value), ElementaryType::Lreal, span)),
             Operand::Integer { value, span } => {
                 let types = [ElementaryType::Dint, ElementaryType::Lint, ElementaryType::Ulint];
@@ -155,11 +170,12 @@ impl Body<'_, '_> {
     pub(super) fn adapts(operand: &Operand, ty: ElementaryType) -> bool {
         match operand {
             Operand::Typed(_) => false,
+            Operand::Text { text, .. } => Self::as_character(text, ty).is_some(),
             Operand::Real { value, .. } => {
                 ty == ElementaryType::Lreal || ty == ElementaryType::Real && (*value as f32).is_finite()
             }
             Operand::Integer { value, .. } => {
-                !ty.is_duration() && ty.range().is_none_or(|(low, high)| (low..=high).contains(value))
+                ty.takes_integers() && ty.range().is_none_or(|(low, high)| (low..=high).contains(value))
             }
         }
     }

@@ -6,6 +6,7 @@ use crate::diagnostic::{Code, Diagnostic, did_you_mean};
 use crate::ir::{ElementaryType, Expr, ExprKind, TypeId, Value};
 use crate::syntax::Span;
 use crate::syntax::ast::{self, Literal, TypedValue};
+use crate::syntax::calendar::CalendarKind;
 
 impl Body<'_, '_> {
     /// The meaning of an expression, or nothing after a report.
@@ -39,12 +40,19 @@ impl Body<'_, '_> {
                 let ty = if *long { ElementaryType::Ltime } else { ElementaryType::Time };
                 Operand::Typed(constant(Value::Int(i128::from(*ns)), ty, span))
             }
+            Literal::Calendar { kind, long, ns, .. } => {
+                let value = Value::Int(i128::from(*ns));
+                Operand::Typed(constant(value, calendar_type(*kind, *long), span))
+            }
             Literal::Typed { prefix, value } => return self.typed_literal(prefix, value, span),
-            Literal::String(_) => return self.unsupported("a string", span),
+            Literal::String(text) => return self.text_literal(text, span),
         })
     }
 
     fn typed_literal(&mut self, prefix: &str, value: &TypedValue, span: Span) -> Option<Operand> {
+        if let TypedValue::Text(text) = value {
+            return self.typed_text(prefix, text, span);
+        }
         if let Some(ty) = ElementaryType::find(prefix) {
             let operand = match value {
                 TypedValue::Integer(value) => Operand::Integer { value: *value, span },
@@ -56,7 +64,7 @@ impl Body<'_, '_> {
                     }
                     Operand::Integer { value: i128::from(value), span }
                 }
-                TypedValue::Name(name) => return self.malformed_literal(prefix, name, span),
+                TypedValue::Name(name) | TypedValue::Text(name) => return self.malformed_literal(prefix, name, span),
             };
             return Some(Operand::Typed(self.coerce(operand, ty.into())?));
         }
@@ -70,16 +78,16 @@ impl Body<'_, '_> {
             return None;
         }
         let ty = self.checker.named_type(&key, Some(span))?.ty;
-        match value {
-            TypedValue::Name(name) => self.enumerator_of(ty, name, span),
-            TypedValue::Integer(value) => {
-                Some(Operand::Typed(self.coerce(Operand::Integer { value: *value, span }, ty)?))
-            }
-            TypedValue::Real(value) => Some(Operand::Typed(self.coerce(Operand::Real { value: *value, span }, ty)?)),
-        }
+        let operand = match value {
+            TypedValue::Name(name) | TypedValue::Text(name) => return self.enumerator_of(ty, name, span),
+            TypedValue::Integer(value) => Operand::Integer { value: *value, span },
+            TypedValue::Real(value) => Operand::Real { value: *value, span },
+        };
+        let typed = self.coerce(operand, ty)?;
+        Some(Operand::Typed(Expr { ty: self.checker.types.of_value(ty), ..typed }))
     }
 
-    fn malformed_literal(&mut self, prefix: &str, value: &str, span: Span) -> Option<Operand> {
+    pub(super) fn malformed_literal(&mut self, prefix: &str, value: &str, span: Span) -> Option<Operand> {
         let message = format!("`{value}` is no value of {}", prefix.to_ascii_uppercase());
         self.report(Diagnostic::error(Code::InvalidLiteral, span, message));
         None
@@ -99,6 +107,17 @@ impl Body<'_, '_> {
         let found = Diagnostic::error(Code::UnknownMember, span, message);
         self.report(found.with_optional_help(help));
         None
+    }
+}
+
+fn calendar_type(kind: CalendarKind, long: bool) -> ElementaryType {
+    match (kind, long) {
+        (CalendarKind::Date, false) => ElementaryType::Date,
+        (CalendarKind::Date, true) => ElementaryType::Ldate,
+        (CalendarKind::TimeOfDay, false) => ElementaryType::Tod,
+        (CalendarKind::TimeOfDay, true) => ElementaryType::Ltod,
+        (CalendarKind::DateAndTime, false) => ElementaryType::Dt,
+        (CalendarKind::DateAndTime, true) => ElementaryType::Ldt,
     }
 }
 

@@ -5,23 +5,26 @@
 //! | [`names`] | what the files declare, by name |
 //! | [`layout`] | offsets in memory |
 //! | [`scope`] | what a name means inside a unit |
-//! | [`types`] | types as written to types |
+//! | [`types`], [`subrange`] | types as written to types |
 //! | [`variables`] | sections to placed variables, units' interfaces |
 //! | [`initial`] | initial values to bytes |
 //! | [`constant`] | constant expressions to values |
 //! | [`convert`] | implicit conversions, constants in context |
-//! | [`expression`], [`operator`], [`place`] | expressions |
+//! | [`expression`], [`operator`], [`calendar`], [`place`] | expressions |
 //! | [`call`], [`standard_function`], [`conversion_function`] | calls |
-//! | [`statement`] | statements |
+//! | [`text`], [`text_function`], [`text_conversion`] | character strings |
+//! | [`statement`], [`edge`] | statements |
 //! | [`recursion`] | who calls whom |
 //!
 //! A unit, type or global variable is resolved when it is first needed; what is being resolved
 //! and needed again contains itself.
 
+mod calendar;
 mod call;
 mod constant;
 mod conversion_function;
 mod convert;
+mod edge;
 mod expression;
 mod initial;
 mod layout;
@@ -32,6 +35,10 @@ mod recursion;
 mod scope;
 mod standard_function;
 mod statement;
+mod subrange;
+mod text;
+mod text_conversion;
+mod text_function;
 mod types;
 mod variables;
 
@@ -40,7 +47,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use self::layout::Layout;
 use self::names::{Enumerator, GlobalEntry, PouEntry, TypeEntry};
 use crate::diagnostic::Diagnostic;
-use crate::ir::{Pou, PouId, Program, TypeTable, Variable};
+use crate::ir::{Pou, PouId, Program, TypeId, TypeTable, Variable};
 use crate::syntax::ast::{CompilationUnit, PouKind};
 use crate::syntax::{FileId, Span};
 
@@ -99,6 +106,8 @@ struct Checker<'a> {
     globals: BTreeMap<String, GlobalEntry<'a>>,
     enumerators: BTreeMap<String, Vec<Enumerator>>,
     layout: Layout,
+    /// Offsets of string literals by type and bytes.
+    literals: BTreeMap<(TypeId, std::sync::Arc<[u8]>), u32>,
     /// Initial bytes of what has been placed.
     placed: Vec<(u32, std::sync::Arc<[u8]>)>,
     programs: Vec<Program>,

@@ -75,6 +75,7 @@ impl<'a> Checker<'a> {
             globals: BTreeMap::from([(VIRTUAL_TIME_NAME.to_owned(), virtual_time())]),
             enumerators: BTreeMap::new(),
             layout: Layout::new(),
+            literals: BTreeMap::new(),
             placed: Vec::new(),
             programs: Vec::new(),
             checked: BTreeMap::new(),
@@ -103,7 +104,10 @@ impl<'a> Checker<'a> {
         if self.library.contains(&ast.name.span.file)
             && let Some(user) = self.declared_at(&ast.name)
         {
-            self.report_reserved(&ast.name, user);
+            // Functions of the 3rd edition are younger than many programs, whose own go before.
+            if ast.kind != ast::PouKind::Function {
+                self.report_reserved(&ast.name, user);
+            }
             return;
         }
         if self.is_taken(&ast.name) {
@@ -143,7 +147,10 @@ impl<'a> Checker<'a> {
 
     /// True, with a report, if a type or unit of the name exists already.
     fn is_taken(&mut self, name: &Ident) -> bool {
-        if ElementaryType::find(&name.text).is_some() || super::standard_function::exists(&name.key()) {
+        if ElementaryType::find(&name.text).is_some()
+            || matches!(name.key().as_str(), "STRING" | "WSTRING")
+            || super::standard_function::exists(&name.key())
+        {
             self.report_reserved(name, name.span);
             return true;
         }
@@ -188,6 +195,7 @@ fn virtual_time() -> GlobalEntry<'static> {
         address: None,
         span,
         image: vec![0; 8].into(),
+        edge: None,
     };
     let name = VIRTUAL_TIME_NAME.to_owned();
     GlobalEntry { ast: None, name, span, progress: Progress::Done, variable: Some(variable) }

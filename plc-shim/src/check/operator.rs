@@ -47,12 +47,16 @@ impl Body<'_, '_> {
             }
             (UnaryOp::Not, operand) => self.not(operand, span),
             (operator, Operand::Typed(expr)) => self.signed(operator, expr, span),
+            (operator, operand @ Operand::Text { .. }) => {
+                let expr = self.settle(operand)?;
+                self.signed(operator, expr, span)
+            }
         }
     }
 
     fn signed(&mut self, operator: UnaryOp, expr: Expr, span: Span) -> Option<Operand> {
         let ty = self.plain_elementary(&expr);
-        if !ty.is_some_and(|ty| ty.is_signed() || ty.is_real()) {
+        if !ty.is_some_and(|ty| ty.is_signed() && !ty.is_calendar() || ty.is_real()) {
             let message = format!("{} has no sign", self.type_name(expr.ty));
             self.report(Diagnostic::error(Code::InvalidOperand, span, message));
             return None;
@@ -105,6 +109,9 @@ impl Body<'_, '_> {
         if matches!(operator, Binary::And | Binary::Or | Binary::Xor) {
             return self.bitwise(operator, left, right, span);
         }
+        if self.is_calendar(&left) || self.is_calendar(&right) {
+            return self.calendar_operation(operator, left, right, span);
+        }
         if self.is_duration(&left) || self.is_duration(&right) {
             return self.duration_operation(operator, left, right, span);
         }
@@ -128,9 +135,10 @@ impl Body<'_, '_> {
         let real = |operand: &Operand| match operand {
             Operand::Integer { value, .. } => *value as f64,
             Operand::Real { value, .. } => *value,
-            Operand::Typed(_) => 0.0,
+            Operand::Typed(_) | Operand::Text { .. } => 0.0,
         };
         let folded = match (left, right) {
+            (Operand::Text { .. }, _) | (_, Operand::Text { .. }) => return self.invalid_operands(left, right, span),
             (Operand::Integer { value: left, .. }, Operand::Integer { value: right, .. }) => {
                 constant::integer(operator, *left, *right).map(|value| Operand::Integer { value, span })
             }
@@ -147,7 +155,7 @@ impl Body<'_, '_> {
         folded.ok()
     }
 
-    fn invalid_operands<T>(&mut self, left: &Operand, right: &Operand, span: Span) -> Option<T> {
+    pub(super) fn invalid_operands<T>(&mut self, left: &Operand, right: &Operand, span: Span) -> Option<T> {
         let (left, right) = (self.describe(left), self.describe(right));
         let message = format!("this operator does not join {left} and {right}");
         self.report(Diagnostic::error(Code::InvalidOperand, span, message));
@@ -155,6 +163,9 @@ impl Body<'_, '_> {
     }
 
     fn comparison(&mut self, operator: Binary, left: Operand, right: Operand, span: Span) -> Option<Operand> {
+        if self.is_text(&left) || self.is_text(&right) {
+            return self.text_comparison(operator, left, right, span);
+        }
         let (left, right) = match (left, right) {
             (Operand::Typed(left), Operand::Typed(right))
                 if left.ty == right.ty && self.elementary(left.ty).is_some() =>

@@ -49,7 +49,7 @@ impl Body<'_, '_> {
             _ => {}
         }
         let place = self.place(expr)?.place;
-        let ty = place.ty;
+        let ty = self.checker.types.of_value(place.ty);
         Some(Operand::Typed(Expr { kind: ExprKind::Load(place), ty, span: expr.span }))
     }
 
@@ -97,7 +97,9 @@ impl Body<'_, '_> {
                     SectionKind::Input => Access::OwnInput,
                     _ => Access::ReadWrite,
                 };
-                let place = Place::whole(variable.storage, variable.ty, name.span);
+                // Inside of its unit an input with an edge is that edge.
+                let storage = variable.edge.map_or(variable.storage, |edge| Storage::Register(edge.seen));
+                let place = Place::whole(storage, variable.ty, name.span);
                 Some(Located { place, access })
             }
             Some(Err(())) => None,
@@ -111,7 +113,7 @@ impl Body<'_, '_> {
     }
 
     /// The variable of this name; an error is one that has been reported.
-    fn variable_named(&mut self, name: &Ident) -> Option<Result<Variable, ()>> {
+    pub(super) fn variable_named(&mut self, name: &Ident) -> Option<Result<Variable, ()>> {
         let key = name.key();
         if self.scope.is_broken(&key) {
             return Some(Err(()));
@@ -133,7 +135,7 @@ impl Body<'_, '_> {
                 return Some(match variable.constant {
                     Some(value) => {
                         let kind = ExprKind::Constant(value);
-                        Meaning::Value(Expr { kind, ty: variable.ty, span: name.span })
+                        Meaning::Value(Expr { kind, ty: self.checker.types.of_value(variable.ty), span: name.span })
                     }
                     None => Meaning::Variable,
                 });

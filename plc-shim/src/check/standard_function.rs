@@ -1,9 +1,13 @@
 //! Standard functions (2nd ed. 2.5.1.5, 3rd ed. 6.6.2.5).
 
+use super::calendar::{self, TimedFunction};
 use super::conversion_function;
 use super::convert::{Operand, converted};
 use super::scope::Body;
+use super::text_conversion;
+use super::text_function::{self, TextForm};
 use crate::diagnostic::{Code, Diagnostic};
+use crate::ir::text::Edit;
 use crate::ir::{Binary, ElementaryType, Expr, ExprKind, Intrinsic, Rounding, TypeId};
 use crate::syntax::Span;
 use crate::syntax::ast::{Argument, BinaryOp, Ident};
@@ -27,6 +31,8 @@ enum Form {
     Select,
     Multiplex,
     Shift(Intrinsic),
+    Text(TextForm),
+    Timed(TimedFunction),
 }
 
 const FUNCTIONS: &[(&str, Form)] = &[
@@ -70,17 +76,21 @@ const FUNCTIONS: &[(&str, Form)] = &[
 ];
 
 fn find(key: &str) -> Option<Form> {
-    FUNCTIONS.iter().find(|(name, _)| *name == key).map(|(_, form)| *form)
+    let text = || text_function::FUNCTIONS.iter().find(|(name, _)| *name == key);
+    let found = FUNCTIONS.iter().find(|(name, _)| *name == key).map(|(_, form)| *form);
+    let timed = || calendar::FUNCTIONS.iter().find(|function| function.name == key);
+    let found = found.or_else(|| text().map(|(_, form)| Form::Text(*form)));
+    found.or_else(|| timed().map(|function| Form::Timed(*function)))
 }
 
 /// True if the standard has a function of this name, in capitals.
 pub(super) fn exists(key: &str) -> bool {
-    find(key).is_some() || conversion_function::find(key).is_some()
+    find(key).is_some() || conversion_function::find(key).is_some() || text_conversion::find(key).is_some()
 }
 
 /// Names of all but the conversions.
 pub(super) fn names() -> impl Iterator<Item = &'static str> {
-    FUNCTIONS.iter().map(|(name, _)| *name)
+    FUNCTIONS.iter().map(|(name, _)| *name).chain(text_function::FUNCTIONS.iter().map(|(name, _)| *name))
 }
 
 impl Form {
@@ -88,9 +98,14 @@ impl Form {
     fn arity(self) -> (usize, usize) {
         match self {
             Self::Absolute | Self::Real(_) | Self::Move | Self::Not => (1, 1),
-            Self::Power | Self::Pair(_) | Self::Shift(_) => (2, 2),
+            Self::Timed(_) | Self::Power | Self::Pair(_) | Self::Shift(_) => (2, 2),
             Self::Limit | Self::Select => (3, 3),
-            Self::Operator(_) | Self::Comparison(_) | Self::Extreme(_) | Self::Multiplex => (2, usize::MAX),
+            Self::Text(form) if form != TextForm::Edit(Edit::Concat) => {
+                (form.parameters().len(), form.parameters().len())
+            }
+            Self::Text(_) | Self::Operator(_) | Self::Comparison(_) | Self::Extreme(_) | Self::Multiplex => {
+                (2, usize::MAX)
+            }
         }
     }
 
@@ -98,6 +113,9 @@ impl Form {
     fn position(self, name: &str) -> Option<usize> {
         let numbered = || name.strip_prefix("IN")?.parse::<usize>().ok();
         match (self, name) {
+            (Self::Text(form), _) if form != TextForm::Edit(Edit::Concat) => {
+                form.parameters().iter().position(|known| *known == name)
+            }
             (Self::Absolute | Self::Real(_) | Self::Move | Self::Not | Self::Shift(_), "IN")
             | (Self::Limit, "MN")
             | (Self::Select, "G")
@@ -121,10 +139,13 @@ impl Body<'_, '_> {
             let operands = self.within(context, |body| body.operands(name, form, arguments, span));
             return self.apply(form, operands?, span);
         }
-        let conversion = conversion_function::find(&key)?;
+        let conversion = conversion_function::find(&key);
         let operands = self.within(None, |body| body.operands(name, Form::Absolute, arguments, span));
         let operand = operands?.into_iter().next()?;
-        self.conversion(conversion, operand, span)
+        match (conversion, text_conversion::find(&key)) {
+            (Some(conversion), _) => self.conversion(conversion, operand, span),
+            (None, conversion) => self.text_conversion(conversion?, operand, span),
+        }
     }
 
     fn operands(&mut self, name: &Ident, form: Form, arguments: &[Argument], span: Span) -> Option<Vec<Operand>> {
@@ -185,6 +206,11 @@ impl Body<'_, '_> {
                 let all = std::iter::once(first).chain(operands).collect();
                 self.limit(all, span)
             }
+            Form::Text(form) => {
+                let all = std::iter::once(first).chain(operands).collect();
+                self.text_function(form, all, span)
+            }
+            Form::Timed(function) => self.timed_function(function, first, operands.next()?, span),
             Form::Select => self.select(first, operands.collect(), span),
             Form::Multiplex => self.multiplex(first, operands.collect(), span),
             Form::Shift(intrinsic) => self.shift(intrinsic, first, operands.next()?, span),
@@ -230,6 +256,9 @@ impl Body<'_, '_> {
 
     /// All operands in the smallest type that holds each.
     fn unify_all(&mut self, operands: Vec<Operand>, span: Span) -> Option<(Vec<Expr>, TypeId)> {
+        if operands.iter().any(|operand| self.is_text(operand)) {
+            return self.unify_texts(operands, span);
+        }
         let typed = operands.iter().find_map(|operand| match operand {
             Operand::Typed(expr) => Some(expr.ty),
             _ => None,
@@ -293,14 +322,14 @@ impl Body<'_, '_> {
     }
 
     fn require_elementary(&mut self, ty: TypeId, span: Span) -> Option<()> {
-        if self.elementary(ty).is_some() {
+        if self.elementary(ty).is_some() || self.shape(ty).is_some() {
             return Some(());
         }
         let found = self.type_name(ty);
         self.mismatch("an elementary value", &found, span)
     }
 
-    fn integer_as_lint(&mut self, operand: Operand) -> Option<Expr> {
+    pub(super) fn integer_as_lint(&mut self, operand: Operand) -> Option<Expr> {
         let expr = self.settle(operand)?;
         if !self.plain_elementary(&expr).is_some_and(ElementaryType::is_integer) {
             let found = self.type_name(expr.ty);

@@ -56,6 +56,9 @@ impl Body<'_, '_> {
                 register += 1;
                 continue;
             }
+            if let Some(detection) = variable.edge {
+                statements.extend(Self::detected(variable, detection));
+            }
             let fleeting = match variable.section {
                 SectionKind::Temp => true,
                 SectionKind::External | SectionKind::Global => false,
@@ -267,7 +270,7 @@ impl Body<'_, '_> {
 
     fn control_variable(&mut self, place: Place) -> Option<(Place, ElementaryType)> {
         match self.checker.types.get(place.ty) {
-            Type::Elementary(ty) if ty.is_integer() => {
+            Type::Elementary(ty) | Type::Subrange { base: ty, .. } if ty.is_integer() => {
                 let ty = *ty;
                 Some((place, ty))
             }

@@ -66,7 +66,7 @@ impl<'a> Body<'_, 'a> {
         let name = &ast.name.text;
         let mut resolved = match &ast.spec.kind {
             TypeSpecKind::Struct(fields) => self.structure(name, fields, ast.name.span),
-            TypeSpecKind::Enumeration(values) => self.enumeration(name, values),
+            TypeSpecKind::Enumeration(values, base) => self.enumeration(name, values, base.as_ref()),
             _ => self.resolve(&ast.spec, Need::Size),
         }?;
         if let Some(initial) = &ast.initial {
@@ -81,9 +81,13 @@ impl<'a> Body<'_, 'a> {
             TypeSpecKind::Name(name) => self.type_by_name(name, need),
             TypeSpecKind::Array(dimensions, element) => self.array(dimensions, element, need, spec.span),
             TypeSpecKind::Struct(fields) => self.structure("STRUCT", fields, spec.span),
-            TypeSpecKind::Enumeration(values) => self.enumeration("enumeration", values),
-            TypeSpecKind::String(name, _) => self.unsupported(&format!("type {}", name.text), spec.span),
-            TypeSpecKind::Subrange(..) => self.unsupported("a subrange type", spec.span),
+            TypeSpecKind::Enumeration(values, base) => self.enumeration("enumeration", values, base.as_ref()),
+            TypeSpecKind::String(name, length) => {
+                let ty = self.text_type(name.key() == "WSTRING", length.as_deref())?;
+                self.checker.charge_image(u64::from(self.checker.types.size(ty)), spec.span)?;
+                Some(self.whole(ty))
+            }
+            TypeSpecKind::Subrange(name, range) => self.subrange(name, range),
             TypeSpecKind::Error => None,
         }
     }
@@ -94,7 +98,7 @@ impl<'a> Body<'_, 'a> {
         None
     }
 
-    fn whole(&self, ty: TypeId) -> TypedImage {
+    pub(super) fn whole(&self, ty: TypeId) -> TypedImage {
         TypedImage { ty, image: self.checker.types.image(ty).clone() }
     }
 
@@ -124,22 +128,7 @@ impl<'a> Body<'_, 'a> {
     }
 
     fn report_unknown_type(&mut self, name: &Ident) {
-        const LATER: [&str; 14] = [
-            "DATE",
-            "TOD",
-            "TIME_OF_DAY",
-            "DT",
-            "DATE_AND_TIME",
-            "LDATE",
-            "LTOD",
-            "LDT",
-            "CHAR",
-            "WCHAR",
-            "POINTER",
-            "REF_TO",
-            "REFERENCE",
-            "XINT",
-        ];
+        const LATER: [&str; 4] = ["POINTER", "REF_TO", "REFERENCE", "XINT"];
         if LATER.contains(&name.key().as_str()) {
             self.unsupported::<()>(&format!("type {}", name.key()), name.span);
             return;
@@ -224,8 +213,9 @@ impl<'a> Body<'_, 'a> {
         Some(TypedImage { ty, image: image_of_type })
     }
 
-    fn enumeration(&mut self, name: &str, ast: &'a [EnumValue]) -> Option<TypedImage> {
-        let base = ElementaryType::Int;
+    /// Values count on from the one before, from 0 (3rd ed. 6.4.4.2, Table 11).
+    fn enumeration(&mut self, name: &str, ast: &'a [EnumValue], base: Option<&Ident>) -> Option<TypedImage> {
+        let base = base.map_or(Some(ElementaryType::Int), |base| self.integer_base(base))?;
         let mut values: Vec<(String, i128)> = Vec::new();
         let mut next = 0;
         for each in ast {

@@ -8,7 +8,7 @@ use super::names::{Progress, TypedImage};
 use super::scope::{Body, Scope};
 use super::types::Need;
 use crate::diagnostic::{Code, Diagnostic, did_you_mean};
-use crate::ir::{ElementaryType, Place, PouId, Storage, TypeId, Value, Variable};
+use crate::ir::{EdgeDetection, ElementaryType, Place, PouId, Storage, TypeId, Value, Variable};
 use crate::syntax::Span;
 use crate::syntax::ast::{self, Ident, PouKind, Qualifier, Section, SectionKind};
 
@@ -70,6 +70,7 @@ impl<'a> Checker<'a> {
             address: ast.address.as_ref().map(|address| address.text.clone()),
             span: name.span,
             image: declared.image.clone(),
+            edge: None,
         }
     }
 
@@ -190,7 +191,7 @@ impl<'c, 'a> Interface<'c, 'a> {
         };
         let span = ast.name.span;
         self.body.scope.result = Some(Place::whole(storage, declared.ty, span));
-        let shape = ast::Variable { names: Vec::new(), address: None, spec: spec.clone(), initial: None };
+        let shape = ast::Variable { names: Vec::new(), address: None, spec: spec.clone(), edge: None, initial: None };
         let kind = SectionKind::Temp;
         let variable = self.body.checker.variable(&ast.name, &shape, kind, &[], &declared, storage);
         self.add(&ast.name, variable);
@@ -226,7 +227,10 @@ impl<'c, 'a> Interface<'c, 'a> {
             };
             let (kind, qualifiers) = (section.kind, &section.qualifiers);
             let checker = &self.body.checker;
-            let variable = checker.variable(name, ast, kind, qualifiers, declared, storage);
+            let mut variable = checker.variable(name, ast, kind, qualifiers, declared, storage);
+            if let Some(edge) = ast.edge {
+                variable.edge = self.edge_detection(edge, &variable);
+            }
             self.add(name, variable);
         }
     }
@@ -267,6 +271,21 @@ impl<'c, 'a> Interface<'c, 'a> {
             }
             _ => Some(Storage::Instance(self.in_instance(declared, span)?)),
         }
+    }
+
+    /// The trigger of an input with `R_EDGE` or `F_EDGE`.
+    fn edge_detection(&mut self, edge: ast::Edge, variable: &Variable) -> Option<EdgeDetection> {
+        let bool_type: TypeId = ElementaryType::Bool.into();
+        let suitable = variable.section == SectionKind::Input && self.kind != PouKind::Function;
+        if !suitable || variable.ty != bool_type {
+            let message = "R_EDGE and F_EDGE are for BOOL inputs of function blocks and programs";
+            self.body.report(Diagnostic::error(Code::WrongSection, variable.span, message));
+            return None;
+        }
+        let image = Arc::from([0]);
+        let memory = Storage::Instance(self.in_instance(&TypedImage { ty: bool_type, image }, variable.span)?);
+        let seen = self.body.scope.register(ElementaryType::Bool);
+        Some(EdgeDetection { edge, memory, seen })
     }
 
     /// Functions keep nothing between calls (2nd ed. 2.5.1), instances do.

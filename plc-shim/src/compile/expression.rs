@@ -3,7 +3,8 @@
 use wasm_encoder::{Ieee32, Ieee64, Instruction, ValType};
 
 use super::emitter::{Emitter, value_type};
-use crate::ir::{Argument, ElementaryType, Expr, ExprKind, FunctionCall, Place, Unary, Value};
+use super::fault::FaultKind;
+use crate::ir::{Argument, Binary, ElementaryType, Expr, ExprKind, FunctionCall, Place, Unary, Value};
 
 impl Emitter<'_, '_> {
     /// Pushes the expression's value; an aggregate's address.
@@ -27,9 +28,11 @@ impl Emitter<'_, '_> {
                 self.expression(operand);
                 self.convert(from, to, *rounding);
             }
+            ExprKind::Limited(low, high, operand) => self.limited(*low, *high, operand),
             ExprKind::Intrinsic(intrinsic, operands) => {
                 self.intrinsic(*intrinsic, operands, expr);
             }
+            ExprKind::Text(call) => self.text_call(call, expr),
             ExprKind::Call(call) => self.call_function(call),
         }
     }
@@ -44,6 +47,27 @@ impl Emitter<'_, '_> {
             ValType::I64 => Instruction::I64Const(value.as_int().unwrap_or(0) as i64),
             _ => Instruction::I32Const(value.as_int().unwrap_or(0) as i32),
         });
+    }
+
+    /// Stops the PLC unless the value lies between the two, which the type's own limits do not
+    /// need.
+    fn limited(&mut self, low: i128, high: i128, operand: &Expr) {
+        let ty = self.held_as(operand.ty);
+        let (least, greatest) = ty.range().unwrap_or((low, high));
+        self.expression(operand);
+        let value = self.scratch(value_type(ty));
+        self.set(value);
+        let bounds = [(low, Binary::Less, low > least), (high, Binary::Greater, high < greatest)];
+        for (bound, beyond, needed) in bounds {
+            if needed {
+                self.get(value);
+                self.constant(ty, Value::Int(bound));
+                self.operation(beyond, ty, operand.span);
+                self.fault_if(FaultKind::OutOfSubrange, operand.span);
+            }
+        }
+        self.get(value);
+        self.release(value);
     }
 
     fn call_function(&mut self, call: &FunctionCall) {

@@ -21,11 +21,13 @@ pub enum FaultKind {
     CallTooDeep,
     /// The runtime itself failed; a defect, not the program's fault.
     Internal,
+    /// A value was assigned that its subrange type does not have.
+    OutOfSubrange,
 }
 
 impl FaultKind {
     /// Every kind; the position of a kind is its number in a saved state.
-    pub const ALL: [Self; 7] = [
+    pub const ALL: [Self; 8] = [
         Self::DivisionByZero,
         Self::IndexOutOfRange,
         Self::SelectorOutOfRange,
@@ -33,6 +35,7 @@ impl FaultKind {
         Self::EndlessLoop,
         Self::CallTooDeep,
         Self::Internal,
+        Self::OutOfSubrange,
     ];
 }
 
@@ -46,6 +49,7 @@ impl fmt::Display for FaultKind {
             Self::EndlessLoop => "endless loop",
             Self::CallTooDeep => "calls nested too deep",
             Self::Internal => "internal error",
+            Self::OutOfSubrange => "value out of subrange",
         })
     }
 }

@@ -18,12 +18,23 @@ impl Emitter<'_, '_> {
                 let single = ty == ElementaryType::Real;
                 self.emit(if single { Instruction::F32Sqrt } else { Instruction::F64Sqrt });
             }
+            Intrinsic::Max | Intrinsic::Min if self.shared.types.text(whole.ty).is_some() => {
+                self.text_extreme(operands, kind == Intrinsic::Max);
+            }
             Intrinsic::Max | Intrinsic::Min => self.extreme(kind, operands, ty, whole.span),
             Intrinsic::Select => self.select(operands, ty),
             Intrinsic::Multiplex => self.multiplex(operands, ty, whole.span),
             Intrinsic::ShiftLeft | Intrinsic::ShiftRight | Intrinsic::RotateLeft | Intrinsic::RotateRight => {
                 self.shift(kind, operands, ty);
             }
+            Intrinsic::Reinterpret => {
+                self.all(operands);
+                if let [operand] = operands {
+                    self.widen_to_bits(self.held_as(operand.ty));
+                    self.narrow_from_bits(ty);
+                }
+            }
+            Intrinsic::FloorRemainder | Intrinsic::FloorMultiple => self.floored(kind, operands),
             _ => {
                 self.all(operands);
                 match host::index(kind, ty == ElementaryType::Real) {
@@ -175,6 +186,36 @@ impl Emitter<'_, '_> {
                     self.emit(if wide { Instruction::I64Or } else { Instruction::I32Or });
                 }
             }
+        }
+        self.release_all(registers);
+    }
+
+    /// Of 64 bit numbers; the divisor is a constant greater than 0.
+    fn floored(&mut self, kind: Intrinsic, operands: &[Expr]) {
+        let registers = self.in_registers(operands);
+        if let [value, divisor] = registers[..] {
+            let rest = self.scratch(ValType::I64);
+            self.get(value);
+            self.get(value);
+            self.get(divisor);
+            self.emit(Instruction::I64RemS);
+            self.tee(rest);
+            self.get(divisor);
+            self.emit(Instruction::I64Const(0));
+            self.get(rest);
+            self.emit(Instruction::I64Const(0));
+            self.emit(Instruction::I64LtS);
+            self.emit(Instruction::Select);
+            self.emit(Instruction::I64Add);
+            self.set(rest);
+            if kind == Intrinsic::FloorRemainder {
+                self.emit(Instruction::Drop);
+                self.get(rest);
+            } else {
+                self.get(rest);
+                self.emit(Instruction::I64Sub);
+            }
+            self.release(rest);
         }
         self.release_all(registers);
     }

@@ -9,6 +9,7 @@
 //! | [`statement`], [`repetition`] | statements |
 //! | [`expression`], [`arithmetic`], [`conversion`], [`intrinsic`] | expressions |
 //! | [`host`] | functions that WebAssembly lacks |
+//! | [`text`], [`text_host`] | character strings |
 //! | [`fault`] | what stops the PLC, and the place in the source that an instruction stands for |
 //!
 //! Integers of up to 32 bits are held in an `i32`, sign- or zero-extended from their width;
@@ -26,5 +27,7 @@ mod module;
 mod place;
 mod repetition;
 mod statement;
+mod text;
+pub(crate) mod text_host;
 
 pub(crate) use module::{Compiled, MEMORY_EXPORT, compile, program_export};

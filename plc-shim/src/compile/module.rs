@@ -9,7 +9,7 @@ use wasm_encoder::{
 
 use super::emitter::{Shared, value_type};
 use super::fault::{FaultTable, FunctionMarks};
-use super::{function, host};
+use super::{function, host, text_host};
 use crate::check::Checked;
 use crate::ir::{Pou, Program, TypeTable};
 use crate::syntax::ast::PouKind;
@@ -33,7 +33,7 @@ pub(crate) struct Compiled {
 
 /// Compiles what has been checked without errors.
 pub(crate) fn compile(checked: &Checked) -> Compiled {
-    let first_function = host::IMPORTS.len() as u32;
+    let first_function = (host::IMPORTS.len() + text_host::IMPORTS.len()) as u32;
     let order = checked.pous.keys().zip(first_function..);
     let functions: BTreeMap<_, _> = order.map(|(id, index)| (*id, index)).collect();
     let mut shared = Shared { types: &checked.types, functions, data: Vec::new() };
@@ -100,6 +100,11 @@ impl Sections {
             };
             let ty = self.add_type(vec![value; count], vec![value]);
             self.imports.import(host::MODULE, import.name, EntityType::Function(ty));
+        }
+        for import in text_host::IMPORTS {
+            let (parameters, result) = import.signature();
+            let ty = self.add_type(parameters, vec![result]);
+            self.imports.import(text_host::MODULE, import.name(), EntityType::Function(ty));
         }
     }
 

@@ -48,6 +48,14 @@ elementary_types! {
     Lreal "LREAL" 8 Real "IEC 60559 binary64",
     Time "TIME" 8 Duration "signed 64 bit count of nanoseconds",
     Ltime "LTIME" 8 Duration "signed 64 bit count of nanoseconds",
+    Date "DATE" 8 Date "midnight in signed 64 bit nanoseconds since 1970-01-01",
+    Ldate "LDATE" 8 Date "midnight in signed 64 bit nanoseconds since 1970-01-01",
+    Tod "TOD" 8 TimeOfDay "nanoseconds since midnight, 64 bit",
+    Ltod "LTOD" 8 TimeOfDay "nanoseconds since midnight, 64 bit",
+    Dt "DT" 8 DateTime "signed 64 bit nanoseconds since 1970-01-01",
+    Ldt "LDT" 8 DateTime "signed 64 bit nanoseconds since 1970-01-01",
+    Char "CHAR" 1 Character "an ISO 8859-1 character",
+    Wchar "WCHAR" 2 Character "a UTF-16 code unit",
 }
 
 /// The generic types (2nd ed. Table 11) as far as they matter to operators.
@@ -59,12 +67,23 @@ pub(crate) enum Kind {
     Bits,
     Real,
     Duration,
+    Date,
+    TimeOfDay,
+    DateTime,
+    Character,
 }
 
 impl ElementaryType {
     /// The type of this keyword, in any case.
     pub fn find(name: &str) -> Option<Self> {
-        Self::ALL.iter().copied().find(|ty| ty.name().eq_ignore_ascii_case(name))
+        const LONG: [(&str, ElementaryType); 4] = [
+            ("TIME_OF_DAY", ElementaryType::Tod),
+            ("LTIME_OF_DAY", ElementaryType::Ltod),
+            ("DATE_AND_TIME", ElementaryType::Dt),
+            ("LDATE_AND_TIME", ElementaryType::Ldt),
+        ];
+        let long = || LONG.iter().find(|(long, _)| long.eq_ignore_ascii_case(name)).map(|(_, ty)| *ty);
+        Self::ALL.iter().copied().find(|ty| ty.name().eq_ignore_ascii_case(name)).or_else(long)
     }
 
     /// `ANY_INT`
@@ -92,9 +111,24 @@ impl ElementaryType {
         self.kind() == Kind::Duration
     }
 
+    /// `ANY_DATE`: dates and times of day.
+    pub fn is_calendar(self) -> bool {
+        matches!(self.kind(), Kind::Date | Kind::TimeOfDay | Kind::DateTime)
+    }
+
+    /// `ANY_CHAR`
+    pub fn is_character(self) -> bool {
+        self.kind() == Kind::Character
+    }
+
+    /// True if an integer constant can be one of its values.
+    pub(crate) fn takes_integers(self) -> bool {
+        !(self.is_duration() || self.is_calendar() || self.is_character())
+    }
+
     /// True if negative values exist.
     pub fn is_signed(self) -> bool {
-        matches!(self.kind(), Kind::Signed | Kind::Duration)
+        matches!(self.kind(), Kind::Signed | Kind::Duration) || self.is_calendar()
     }
 
     /// Smallest and greatest value; nothing for reals.
@@ -102,8 +136,10 @@ impl ElementaryType {
         let bits = self.size() * 8;
         match self.kind() {
             Kind::Bool => Some((0, 1)),
-            Kind::Signed | Kind::Duration => Some((-(1 << (bits - 1)), (1 << (bits - 1)) - 1)),
-            Kind::Unsigned | Kind::Bits => Some((0, (1 << bits) - 1)),
+            Kind::Signed | Kind::Duration | Kind::Date | Kind::TimeOfDay | Kind::DateTime => {
+                Some((-(1 << (bits - 1)), (1 << (bits - 1)) - 1))
+            }
+            Kind::Unsigned | Kind::Bits | Kind::Character => Some((0, (1 << bits) - 1)),
             Kind::Real => None,
         }
     }
@@ -120,7 +156,10 @@ impl ElementaryType {
             | (Kind::Bits, Kind::Bits)
             | (Kind::Real | Kind::Signed | Kind::Unsigned, Kind::Real) => self.size() < target.size(),
             (Kind::Bool, Kind::Bits) => true,
-            (Kind::Duration, Kind::Duration) => self == Self::Time,
+            (Kind::Duration, Kind::Duration)
+            | (Kind::Date, Kind::Date)
+            | (Kind::TimeOfDay, Kind::TimeOfDay)
+            | (Kind::DateTime, Kind::DateTime) => matches!(self, Self::Time | Self::Date | Self::Tod | Self::Dt),
             _ => false,
         }
     }

@@ -2,6 +2,7 @@
 
 use super::pou::PouId;
 use super::statement::Statement;
+use super::text::TextCall;
 use super::types::TypeId;
 use super::value::Value;
 use crate::syntax::Span;
@@ -29,6 +30,10 @@ pub(crate) enum ExprKind {
     /// From the operand's type to the expression's, the number itself kept as far as it fits.
     Convert(Rounding, Box<Expr>),
     Intrinsic(Intrinsic, Vec<Expr>),
+    /// The operand, which must lie between the two numbers.
+    Limited(i128, i128, Box<Expr>),
+    /// On character strings.
+    Text(Box<TextCall>),
     Call(Box<FunctionCall>),
 }
 
@@ -99,6 +104,12 @@ pub(crate) enum Intrinsic {
     ShiftRight,
     RotateLeft,
     RotateRight,
+    /// The same bits as another type of the same size.
+    Reinterpret,
+    /// The remainder of a 64 bit number by a positive one, never negative.
+    FloorRemainder,
+    /// The greatest multiple of the second that is not greater than the first.
+    FloorMultiple,
 }
 
 /// A call of a user's function.

@@ -6,6 +6,7 @@ pub(crate) mod elementary;
 pub(crate) mod expr;
 pub(crate) mod pou;
 pub(crate) mod statement;
+pub(crate) mod text;
 pub(crate) mod types;
 pub(crate) mod value;
 
@@ -13,7 +14,7 @@ pub(crate) use elementary::ElementaryType;
 pub(crate) use expr::{
     Argument, Binary, Expr, ExprKind, FunctionCall, Intrinsic, LocalId, Place, Rounding, Step, Storage, Unary,
 };
-pub(crate) use pou::{Pou, PouId, Program, Variable};
+pub(crate) use pou::{EdgeDetection, Pou, PouId, Program, Variable};
 pub(crate) use statement::{CaseArm, CaseStatement, ForStatement, IfBranch, InstanceCall, Statement, StatementKind};
 pub(crate) use types::{Dimension, Field, Type, TypeId, TypeTable};
 pub(crate) use value::Value;

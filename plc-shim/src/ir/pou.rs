@@ -1,14 +1,14 @@
 //! Program organisation units and their variables.
 
 use super::elementary::ElementaryType;
-use super::expr::{Place, Storage};
+use super::expr::{LocalId, Place, Storage};
 use super::statement::Statement;
 use super::types::TypeId;
 use super::value::Value;
 use std::sync::Arc;
 
 use crate::syntax::Span;
-use crate::syntax::ast::{PouKind, SectionKind};
+use crate::syntax::ast::{Edge, PouKind, SectionKind};
 
 /// Identifies a unit.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -30,6 +30,18 @@ pub(crate) struct Variable {
     pub(crate) span: Span,
     /// Initial bytes.
     pub(crate) image: Arc<[u8]>,
+    /// What the unit itself sees of an input with `R_EDGE` or `F_EDGE`.
+    pub(crate) edge: Option<EdgeDetection>,
+}
+
+/// Where an input's edge is kept (2nd ed. Table 33): the unit has its own trigger.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct EdgeDetection {
+    pub(crate) edge: Edge,
+    /// The trigger's memory, a BOOL of the instance.
+    pub(crate) memory: Storage,
+    /// Whether there is an edge in this call.
+    pub(crate) seen: LocalId,
 }
 
 /// A unit ready for code generation.

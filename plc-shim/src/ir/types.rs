@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use super::elementary::ElementaryType;
 use super::pou::PouId;
+use super::text::TextShape;
 
 /// Identifies a type within its [`TypeTable`]; equal ids are equal types.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -23,6 +24,14 @@ pub(crate) enum Type {
     Elementary(ElementaryType),
     /// What a function without a result gives.
     Nothing,
+    /// Some values of an integer type. Values of it are of that type; places check them.
+    Subrange {
+        base: ElementaryType,
+        low: i128,
+        high: i128,
+    },
+    /// A string and what it may hold.
+    Text(TextShape),
     Enumeration {
         name: String,
         base: ElementaryType,
@@ -77,6 +86,8 @@ pub(crate) struct TypeTable {
     entries: Vec<Entry>,
     arrays: BTreeMap<(TypeId, Vec<Dimension>), TypeId>,
     blocks: BTreeMap<PouId, TypeId>,
+    texts: BTreeMap<TextShape, TypeId>,
+    subranges: BTreeMap<(ElementaryType, i128, i128), TypeId>,
 }
 
 impl TypeTable {
@@ -90,7 +101,13 @@ impl TypeTable {
         };
         let mut entries: Vec<_> = ElementaryType::ALL.iter().map(|ty| entry(*ty)).collect();
         entries.push(Entry { ty: Type::Nothing, size: 0, align: 1, image: Arc::from([]) });
-        Self { entries, arrays: BTreeMap::new(), blocks: BTreeMap::new() }
+        Self {
+            entries,
+            arrays: BTreeMap::new(),
+            blocks: BTreeMap::new(),
+            texts: BTreeMap::new(),
+            subranges: BTreeMap::new(),
+        }
     }
 
     /// The type of a function call without a result.
@@ -128,9 +145,47 @@ impl TypeTable {
     /// The elementary type that holds the value; nothing for aggregates.
     pub(crate) fn elementary(&self, id: TypeId) -> Option<ElementaryType> {
         match self.get(id) {
-            Type::Elementary(ty) | Type::Enumeration { base: ty, .. } => Some(*ty),
+            Type::Elementary(ty) | Type::Enumeration { base: ty, .. } | Type::Subrange { base: ty, .. } => Some(*ty),
             _ => None,
         }
+    }
+
+    /// The shape of a string type; nothing for all others.
+    pub(crate) fn text(&self, id: TypeId) -> Option<TextShape> {
+        match self.get(id) {
+            Type::Text(shape) => Some(*shape),
+            _ => None,
+        }
+    }
+
+    /// The type that a value from a place of type `id` has.
+    pub(crate) fn of_value(&self, id: TypeId) -> TypeId {
+        match self.get(id) {
+            Type::Subrange { base, .. } => (*base).into(),
+            _ => id,
+        }
+    }
+
+    /// The subrange type. A variable begins with the lowest value (2nd ed. Table 13).
+    pub(crate) fn subrange(&mut self, base: ElementaryType, low: i128, high: i128) -> TypeId {
+        if let Some(found) = self.subranges.get(&(base, low, high)) {
+            return *found;
+        }
+        let image = super::Value::Int(low).bytes()[..base.size() as usize].into();
+        let id = self.add(Type::Subrange { base, low, high }, base.size(), base.size(), image);
+        self.subranges.insert((base, low, high), id);
+        id
+    }
+
+    /// The string type. A count may stand at any address, so that strings lie close in arrays.
+    pub(crate) fn string(&mut self, shape: TextShape) -> TypeId {
+        if let Some(found) = self.texts.get(&shape) {
+            return *found;
+        }
+        let image = vec![0; shape.size() as usize];
+        let id = self.add(Type::Text(shape), shape.size(), shape.unit(), image.into());
+        self.texts.insert(shape, id);
+        id
     }
 
     pub(crate) fn enumeration(&mut self, name: String, base: ElementaryType, values: Vec<(String, i128)>) -> TypeId {
@@ -182,6 +237,8 @@ impl TypeTable {
         match self.get(id) {
             Type::Elementary(ty) => ty.name().to_owned(),
             Type::Nothing => "nothing".to_owned(),
+            Type::Subrange { base, low, high } => format!("{base} ({low}..{high})"),
+            Type::Text(shape) => format!("{}[{}]", shape.keyword(), shape.capacity),
             Type::Enumeration { name, .. } | Type::Struct { name, .. } | Type::FunctionBlock { name, .. } => {
                 name.clone()
             }

@@ -1,14 +1,15 @@
 //! The compiled module with its memory, in wasmtime.
 
-use wasmtime::{Config, Engine, Instance, Linker, Memory, Module, Store, StoreLimits, Trap, TypedFunc, WasmBacktrace};
+use wasmtime::{Config, Engine, Instance, Linker, Memory, Module, Store, Trap, TypedFunc, WasmBacktrace};
 
 use super::plan::RunError;
+use super::text::link::{HostState, link};
 use crate::application::Application;
 use crate::compile::{MEMORY_EXPORT, host, program_export};
 
 /// One instance of the module.
 pub(super) struct Machine {
-    store: Store<StoreLimits>,
+    store: Store<HostState>,
     memory: Memory,
     /// Bytes in use; the rest of the last page is never touched.
     size: usize,
@@ -40,12 +41,13 @@ impl Machine {
     pub(super) fn new(application: &Application) -> Result<Self, RunError> {
         let module = application.module(|wasm| Module::new(&engine()?, wasm).map_err(|error| format!("{error:#}")));
         let module = module.map_err(RunError::Module)?;
-        let mut store = Store::new(module.engine(), StoreLimits::default());
+        let mut store = Store::new(module.engine(), HostState::default());
         let linker = linker(module.engine()).map_err(|error| module_error(&error))?;
         let instance = linker.instantiate(&mut store, &module);
         let instance = instance.map_err(|error| module_error(&error))?;
         let memory = instance.get_memory(&mut store, MEMORY_EXPORT);
         let memory = memory.ok_or_else(|| RunError::Module("memory is missing".to_owned()))?;
+        store.data_mut().memory = Some(memory);
         let size = application.initial_memory().len();
         let count = application.programs().count();
         let programs = (0..count).map(|index| program(&instance, &mut store, index));
@@ -79,12 +81,12 @@ impl Machine {
     }
 }
 
-fn program(instance: &Instance, store: &mut Store<StoreLimits>, index: usize) -> Result<TypedFunc<(), ()>, RunError> {
+fn program(instance: &Instance, store: &mut Store<HostState>, index: usize) -> Result<TypedFunc<(), ()>, RunError> {
     let function = instance.get_typed_func(store, &program_export(index));
     function.map_err(|error| module_error(&error))
 }
 
-fn linker(engine: &Engine) -> Result<Linker<StoreLimits>, wasmtime::Error> {
+fn linker(engine: &Engine) -> Result<Linker<HostState>, wasmtime::Error> {
     let mut linker = Linker::new(engine);
     for import in &host::IMPORTS {
         let (module, name) = (host::MODULE, import.name);
@@ -103,6 +105,7 @@ fn linker(engine: &Engine) -> Result<Linker<StoreLimits>, wasmtime::Error> {
             }
         };
     }
+    link(&mut linker)?;
     Ok(linker)
 }
 

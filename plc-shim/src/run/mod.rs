@@ -7,6 +7,7 @@
 //! | `machine` | the compiled module with its memory |
 //! | `fault` | a trap as an error in the source |
 //! | `soft_plc` | the PLC itself |
+//! | `text` | functions on character strings |
 //! | `state` | its state as bytes |
 
 mod fault;
@@ -15,6 +16,7 @@ mod plan;
 mod scheduler;
 mod soft_plc;
 mod state;
+mod text;
 
 pub use fault::PlcFault;
 pub use plan::{RunError, Task, TaskPlan};

@@ -5,7 +5,7 @@ mod expression;
 mod statement;
 
 pub use declaration::{
-    Declaration, Dimension, EnumValue, Field, Initialiser, InitialiserKind, Pou, PouKind, Qualifier, Section,
+    Declaration, Dimension, Edge, EnumValue, Field, Initialiser, InitialiserKind, Pou, PouKind, Qualifier, Section,
     SectionKind, StructureInit, Subrange, TypeDeclaration, TypeSpec, TypeSpecKind, Variable,
 };
 pub use expression::{Argument, BinaryOp, Call, Expr, ExprKind, Literal, MAX_HEIGHT, TypedValue, UnaryOp};

@@ -1,5 +1,6 @@
 //! Text to tokens. Every byte of the text belongs to exactly one token.
 
+use super::calendar::calendar_prefix;
 use super::token::{Keyword, Punctuation, Token, TokenKind};
 
 /// Splits `text` into tokens; their texts concatenated are `text`.
@@ -161,12 +162,20 @@ impl<'a> Lexer<'a> {
         let start = self.at;
         self.take_while(|character| character.is_ascii_alphanumeric() || character == '_');
         let text = self.text.get(start..self.at).unwrap_or("");
+        if self.peek(0) == b'#' && matches!(self.peek(1), b'\'' | b'"') {
+            self.at += 1;
+            return self.string(char::from(self.peek(0)), TokenKind::Typed);
+        }
         let after_sign = usize::from(matches!(self.peek(1), b'+' | b'-'));
         if self.peek(0) == b'#'
             && (self.peek(1 + after_sign).is_ascii_alphanumeric() || self.peek(1 + after_sign) == b'_')
         {
             self.at += 1 + after_sign;
-            self.typed_value();
+            if self.peek(0).is_ascii_digit() && calendar_prefix(text).is_some() {
+                self.calendar_value();
+            } else {
+                self.typed_value();
+            }
             return TokenKind::Typed;
         }
         Keyword::find(text).map_or(TokenKind::Identifier, TokenKind::Keyword)
@@ -182,6 +191,17 @@ impl<'a> Lexer<'a> {
         while self.peek(0) == b'.' && self.peek(1).is_ascii_digit() {
             self.at += 1;
             self.take_while(word);
+        }
+    }
+
+    /// What follows `DT#`: digits with `-`, `:` and `.` between them.
+    fn calendar_value(&mut self) {
+        loop {
+            self.digits();
+            if !matches!(self.peek(0), b'-' | b':' | b'.') || !self.peek(1).is_ascii_digit() {
+                return;
+            }
+            self.at += 1;
         }
     }
 
@@ -242,6 +262,8 @@ mod tests {
         assert_eq!(kinds("(* a (* b *)")[0].0, TokenKind::Unterminated);
         assert_eq!(kinds("'it$'s' x")[0], (TokenKind::String, "'it$'s'"));
         assert_eq!(kinds("'open\nx")[0], (TokenKind::Unterminated, "'open"));
+        assert_eq!(kinds("dt#1984-06-25-15:36:55.360..1")[0], (TokenKind::Typed, "dt#1984-06-25-15:36:55.360"));
+        assert_eq!(kinds("STRING#'a''b'")[0], (TokenKind::Typed, "STRING#'a'"));
         assert_eq!(kinds("%IX1.0.2;")[0], (TokenKind::DirectAddress, "%IX1.0.2"));
     }
 

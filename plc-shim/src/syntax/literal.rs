@@ -1,6 +1,7 @@
 //! A literal's text to its value (2nd ed. 2.2, 3rd ed. 6.3).
 
 use super::ast::{Literal, TypedValue};
+use super::calendar::{calendar_prefix, parse_calendar};
 
 /// Value of a literal's text, or what is wrong with it.
 ///
@@ -37,6 +38,12 @@ pub fn parse_real(text: &str) -> Result<f64, String> {
 /// A sentence that says what is wrong.
 pub fn parse_typed(text: &str) -> Result<Literal, String> {
     let (prefix, body) = text.split_once('#').ok_or("`#` is missing")?;
+    // `D#Red` is a value of a user's own enumeration.
+    let calendar = calendar_prefix(prefix).filter(|_| body.starts_with(|first: char| first.is_ascii_digit()));
+    if let Some((kind, long)) = calendar {
+        let ns = parse_calendar(kind, body)?;
+        return Ok(Literal::Calendar { kind, long, ns, text: text.to_owned() });
+    }
     match prefix.to_ascii_uppercase().as_str() {
         "T" | "TIME" => Ok(Literal::Duration { long: false, ns: parse_duration(body)? }),
         "LT" | "LTIME" => Ok(Literal::Duration { long: true, ns: parse_duration(body)? }),
@@ -45,6 +52,9 @@ pub fn parse_typed(text: &str) -> Result<Literal, String> {
 }
 
 fn parse_typed_value(body: &str) -> Result<TypedValue, String> {
+    if body.starts_with(['\'', '"']) {
+        return Ok(TypedValue::Text(body.to_owned()));
+    }
     let (negative, magnitude) = match body.as_bytes().first() {
         Some(b'-') => (true, &body[1..]),
         Some(b'+') => (false, &body[1..]),

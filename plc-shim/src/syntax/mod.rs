@@ -5,7 +5,7 @@
 //! | [`source`] | names and texts | files, spans, lines and columns |
 //! | [`token`] | | the kinds of token, keywords |
 //! | [`lexer`] | text | every token, blanks and comments too |
-//! | [`literal`] | a literal's text | its value |
+//! | [`literal`], [`text_literal`], [`calendar`] | a literal's text | its value |
 //! | [`ast`] | | the tree's nodes |
 //! | [`parser`] | tokens | a tree and a list of diagnostics |
 //! | [`printer`] | a tree | text that parses to the same tree |
@@ -14,11 +14,13 @@
 //! returns a tree and a list of diagnostics; a tree knows names and spans only, never meanings.
 
 pub mod ast;
+pub mod calendar;
 pub mod lexer;
 pub mod literal;
 pub mod parser;
 pub mod printer;
 pub mod source;
+pub mod text_literal;
 pub mod token;
 
 pub use lexer::tokenize;

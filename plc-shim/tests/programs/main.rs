@@ -1,5 +1,6 @@
 //! Programs in, traces out: the whole way from text to a scanning PLC.
 
+mod dates;
 mod diagnostics;
 mod expressions;
 mod faults;
@@ -11,3 +12,5 @@ mod shear;
 mod standard_blocks;
 mod standard_functions;
 mod states;
+mod strings;
+mod subranges;

@@ -66,6 +66,23 @@ impl Rig {
         bytes
     }
 
+    pub(crate) fn memory_of(&self, path: &str) -> &[u8] {
+        let variable = self.variable(path);
+        &self.plc.memory()[variable.offset as usize..][..variable.size as usize]
+    }
+
+    /// A STRING or WSTRING.
+    pub(crate) fn text(&self, path: &str) -> String {
+        let bytes = self.memory_of(path);
+        let used = usize::from(u16::from_le_bytes([bytes[0], bytes[1]]));
+        if self.variable(path).type_name.starts_with('W') {
+            let units = bytes[2..].chunks_exact(2).map(|unit| u16::from_le_bytes([unit[0], unit[1]]));
+            String::from_utf16_lossy(&units.take(used).collect::<Vec<_>>())
+        } else {
+            bytes[2..2 + used].iter().map(|byte| char::from(*byte)).collect()
+        }
+    }
+
     /// Any integer, bit string, duration or BOOL.
     pub(crate) fn int(&self, path: &str) -> i64 {
         let ty = self.variable(path).ty.expect("an elementary type");

@@ -93,8 +93,19 @@ pub struct Variable {
     pub address: Option<Ident>,
     /// The type.
     pub spec: TypeSpec,
+    /// `R_EDGE` or `F_EDGE` behind the type.
+    pub edge: Option<Edge>,
     /// The initial value.
     pub initial: Option<Initialiser>,
+}
+
+/// What of an input its unit sees (2nd ed. 2.5.2.2, Table 33).
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Edge {
+    /// `R_EDGE`
+    Rising,
+    /// `F_EDGE`
+    Falling,
 }
 
 /// A type as written.
@@ -119,8 +130,8 @@ pub enum TypeSpecKind {
     Array(Vec<Dimension>, Box<TypeSpec>),
     /// `STRUCT .. END_STRUCT`, in a `TYPE` block only.
     Struct(Vec<Field>),
-    /// `(Red, Green := 5)`
-    Enumeration(Vec<EnumValue>),
+    /// `(Red, Green := 5)`, `(Red, Green) USINT` or `USINT (Red, Green)`
+    Enumeration(Vec<EnumValue>, Option<Ident>),
     /// Text that is no type; a diagnostic has been given.
     Error,
 }

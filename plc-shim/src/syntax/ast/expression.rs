@@ -1,6 +1,7 @@
 //! Expressions (2nd ed. 3.3.1).
 
 use super::{Ident, Span};
+use crate::syntax::calendar::CalendarKind;
 
 /// Greatest height of an expression's tree. The parser keeps to it, so that later passes may
 /// recurse into an expression without exhausting the stack.
@@ -92,6 +93,17 @@ pub enum Literal {
         /// Its length in nanoseconds.
         ns: i64,
     },
+    /// `D#1994-06-15`, `TOD#15:36:55.36`, `DT#1994-06-15-15:36:55.36`
+    Calendar {
+        /// What it stands for.
+        kind: CalendarKind,
+        /// True for the L-forms of the 3rd edition.
+        long: bool,
+        /// Nanoseconds since 1970-01-01 or midnight.
+        ns: i64,
+        /// As written.
+        text: String,
+    },
     /// `'...'` or `"..."`, quotes and escapes as written.
     String(String),
 }
@@ -105,6 +117,8 @@ pub enum TypedValue {
     Real(f64),
     /// `TRUE`, `Red`
     Name(String),
+    /// `'...'` or `"..."`, quotes and escapes as written.
+    Text(String),
 }
 
 /// Operators with one operand.

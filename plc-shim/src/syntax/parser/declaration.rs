@@ -2,8 +2,8 @@
 
 use super::cursor::Cursor;
 use crate::syntax::ast::{
-    CompilationUnit, Declaration, Ident, Pou, PouKind, Qualifier, Section, SectionKind, TypeDeclaration, TypeSpec,
-    TypeSpecKind, Variable,
+    CompilationUnit, Declaration, Edge, Ident, Pou, PouKind, Qualifier, Section, SectionKind, TypeDeclaration,
+    TypeSpec, TypeSpecKind, Variable,
 };
 use crate::syntax::token::{Keyword, Punctuation, TokenKind};
 
@@ -136,13 +136,25 @@ impl Cursor<'_> {
         if self.reported() > known {
             // The names are kept, so that their uses are not reported as well.
             let spec = TypeSpec { kind: TypeSpecKind::Error, span: self.span() };
-            variables.push(Variable { names, address, spec, initial: None });
+            variables.push(Variable { names, address, spec, edge: None, initial: None });
         } else {
             let spec = self.type_spec();
+            let edge = self.edge();
             let initial = self.optional_initialiser();
-            variables.push(Variable { names, address, spec, initial });
+            variables.push(Variable { names, address, spec, edge, initial });
         }
         self.end_of_declaration(known);
+    }
+
+    fn edge(&mut self) -> Option<Edge> {
+        let word = (self.peek() == Some(TokenKind::Identifier)).then(|| self.next_text().to_ascii_uppercase())?;
+        let edge = match word.as_str() {
+            "R_EDGE" => Edge::Rising,
+            "F_EDGE" => Edge::Falling,
+            _ => return None,
+        };
+        self.advance();
+        Some(edge)
     }
 
     fn address(&mut self) -> Option<Ident> {

@@ -15,9 +15,10 @@ fn reparse(text: &str) -> (String, Vec<Diagnostic>) {
 fn a_printed_unit_parses_to_itself() {
     let text = "
         TYPE T : STRUCT a, b : INT := 5; c : ARRAY [0..1, 2..3] OF REAL; END_STRUCT END_TYPE
-        TYPE C : (Red, Green := 5); R : INT (0..10) := 3; END_TYPE
+        TYPE C : (Red, Green := 5); R : INT (0..10) := 3; E : (One := 1, Two) USINT := Two; F : DINT (Three); END_TYPE
         VAR_GLOBAL RETAIN g AT %MW1 : T := (a := 1, c := [1.0, 3(2.5)]); END_VAR
         FUNCTION f : INT VAR_INPUT x : INT; END_VAR f := -x ** 2 + 1; END_FUNCTION
+        FUNCTION_BLOCK e VAR_INPUT c : BOOL R_EDGE; d : BOOL F_EDGE := TRUE; END_VAR END_FUNCTION_BLOCK
         PROGRAM p VAR i : INT; t : TON; END_VAR
           IF i = 1 AND NOT (i > 2) THEN i := f(1); ELSIF TRUE THEN ; ELSE RETURN; END_IF
           CASE i OF 1, 2..3: i := 4; i := 5; C#Red: ; ELSE i := 6; END_CASE;

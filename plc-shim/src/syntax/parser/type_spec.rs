@@ -19,7 +19,10 @@ impl Cursor<'_> {
             return self.struct_type();
         }
         if self.take_mark(Punctuation::LeftParen) {
-            return self.enumeration_type();
+            let values = self.enumeration_values();
+            // Vendors write the base type behind the values.
+            let base = if self.peek() == Some(TokenKind::Identifier) { self.take_identifier() } else { None };
+            return TypeSpecKind::Enumeration(values, base);
         }
         let Some(name) = self.expect_identifier("a type") else {
             return TypeSpecKind::Error;
@@ -28,6 +31,13 @@ impl Cursor<'_> {
             return self.string_type(name);
         }
         if self.take_mark(Punctuation::LeftParen) {
+            // The 3rd edition writes it in front (6.4.4.2).
+            let named = self.peek() == Some(TokenKind::Identifier);
+            let after = self.peek_ahead(1);
+            let lists = [Punctuation::Assign, Punctuation::Comma, Punctuation::RightParen];
+            if named && lists.iter().any(|mark| after == Some(TokenKind::Punctuation(*mark))) {
+                return TypeSpecKind::Enumeration(self.enumeration_values(), Some(name));
+            }
             let low = self.expression();
             self.expect_mark(Punctuation::Range);
             let high = self.expression();
@@ -38,11 +48,17 @@ impl Cursor<'_> {
     }
 
     fn string_type(&mut self, name: Ident) -> TypeSpecKind {
-        let length = self.take_mark(Punctuation::LeftBracket).then(|| {
-            let length: Expr = self.expression();
-            self.expect_mark(Punctuation::RightBracket);
-            Box::new(length)
-        });
+        // Vendors write the length in parentheses too.
+        let close = if self.take_mark(Punctuation::LeftBracket) {
+            Punctuation::RightBracket
+        } else if self.take_mark(Punctuation::LeftParen) {
+            Punctuation::RightParen
+        } else {
+            return TypeSpecKind::String(name, None);
+        };
+        let length: Expr = self.expression();
+        self.expect_mark(close);
+        let length = Some(Box::new(length));
         TypeSpecKind::String(name, length)
     }
 
@@ -93,7 +109,7 @@ impl Cursor<'_> {
         names
     }
 
-    fn enumeration_type(&mut self) -> TypeSpecKind {
+    fn enumeration_values(&mut self) -> Vec<EnumValue> {
         let mut values = Vec::new();
         while let Some(name) = self.expect_identifier("a value's name") {
             let value = self.take_mark(Punctuation::Assign).then(|| self.expression());
@@ -103,6 +119,6 @@ impl Cursor<'_> {
             }
         }
         self.expect_mark(Punctuation::RightParen);
-        TypeSpecKind::Enumeration(values)
+        values
     }
 }

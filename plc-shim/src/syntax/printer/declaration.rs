@@ -2,7 +2,7 @@
 
 use super::Printer;
 use crate::syntax::ast::{
-    Declaration, EnumValue, Field, Initialiser, InitialiserKind, Pou, PouKind, Qualifier, Section, SectionKind,
+    Declaration, Edge, EnumValue, Field, Initialiser, InitialiserKind, Pou, PouKind, Qualifier, Section, SectionKind,
     StructureInit, TypeDeclaration, TypeSpec, TypeSpecKind, Variable,
 };
 
@@ -69,13 +69,25 @@ impl Printer {
             self.word(" AT ");
             self.word(&address.text);
         }
-        self.typed(&variable.spec, variable.initial.as_ref());
+        self.word(" : ");
+        self.type_spec(&variable.spec);
+        self.word(match variable.edge {
+            Some(Edge::Rising) => " R_EDGE",
+            Some(Edge::Falling) => " F_EDGE",
+            None => "",
+        });
+        self.initial(variable.initial.as_ref());
     }
 
     /// ` : INT := 5;` and the line's end.
     fn typed(&mut self, spec: &TypeSpec, initial: Option<&Initialiser>) {
         self.word(" : ");
         self.type_spec(spec);
+        self.initial(initial);
+    }
+
+    /// ` := 5;` and the line's end.
+    fn initial(&mut self, initial: Option<&Initialiser>) {
         if let Some(initial) = initial {
             self.word(" := ");
             self.initialiser(initial);
@@ -120,10 +132,14 @@ impl Printer {
                 self.type_spec(element);
             }
             TypeSpecKind::Struct(fields) => self.structure(fields),
-            TypeSpecKind::Enumeration(values) => {
+            TypeSpecKind::Enumeration(values, base) => {
                 self.word("(");
                 self.separated(values, Self::enum_value);
                 self.word(")");
+                if let Some(base) = base {
+                    self.word(" ");
+                    self.word(&base.text);
+                }
             }
             TypeSpecKind::Error => {}
         }

@@ -83,13 +83,13 @@ impl Printer {
             Literal::Typed { prefix, value } => match value {
                 TypedValue::Integer(value) => format!("{prefix}#{value}"),
                 TypedValue::Real(value) => format!("{prefix}#{value:?}"),
-                TypedValue::Name(name) => format!("{prefix}#{name}"),
+                TypedValue::Name(name) | TypedValue::Text(name) => format!("{prefix}#{name}"),
             },
             Literal::Duration { long, ns } => {
                 let (prefix, sign) = (if *long { "LT" } else { "T" }, if *ns < 0 { "-" } else { "" });
                 format!("{prefix}#{sign}{}ns", ns.unsigned_abs())
             }
-            Literal::String(text) => text.clone(),
+            Literal::String(text) | Literal::Calendar { text, .. } => text.clone(),
         };
         self.word(&text);
     }

@@ -1,0 +1,57 @@
+//! The functions on character strings that the host gives.
+//!
+//! A string goes as two numbers: its address and its [`TextShape::code`](crate::ir::text::TextShape).
+
+use wasm_encoder::ValType;
+
+use super::host;
+
+/// Module name of the imports.
+pub(crate) const MODULE: &str = "text";
+
+/// An import. Its position follows those of the mathematical functions.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum TextImport {
+    /// Two strings to their order.
+    Compare,
+    /// Two strings to a position.
+    Find,
+    /// Form, two strings, length, position, target to the target's address.
+    Edit,
+    /// Type, a value's bits, target to the target's address.
+    Format,
+    /// Type and string to a value's bits.
+    Parse,
+}
+
+/// All imports in their order.
+pub(crate) const IMPORTS: [TextImport; 5] =
+    [TextImport::Compare, TextImport::Find, TextImport::Edit, TextImport::Format, TextImport::Parse];
+
+impl TextImport {
+    pub(crate) fn name(self) -> &'static str {
+        match self {
+            Self::Compare => "compare",
+            Self::Find => "find",
+            Self::Edit => "edit",
+            Self::Format => "format",
+            Self::Parse => "parse",
+        }
+    }
+
+    /// Its function index.
+    pub(crate) fn index(self) -> u32 {
+        host::IMPORTS.len() as u32 + self as u32
+    }
+
+    /// Parameters and result.
+    pub(crate) fn signature(self) -> (Vec<ValType>, ValType) {
+        let (word, long) = (ValType::I32, ValType::I64);
+        match self {
+            Self::Compare | Self::Find => (vec![word; 4], word),
+            Self::Edit => (vec![word, word, word, word, word, long, long, word, word], word),
+            Self::Format => (vec![word, long, word, word], word),
+            Self::Parse => (vec![word; 3], long),
+        }
+    }
+}

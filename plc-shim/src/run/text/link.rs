@@ -1,0 +1,134 @@
+//! The imports of the module, bound to the PLC's memory.
+
+use wasmtime::{Caller, Error, Linker, Memory, Trap};
+
+use super::format::{Line, format};
+use super::view::{Outside, Target, View};
+use super::{edit, parse};
+use crate::compile::text_host::{MODULE, TextImport};
+use crate::ir::ElementaryType;
+use crate::ir::text::Edit;
+
+/// What host functions work on.
+#[derive(Debug, Default)]
+pub(in crate::run) struct HostState {
+    /// Set as soon as the module has one.
+    pub(in crate::run) memory: Option<Memory>,
+}
+
+/// Characters that cost as much as one instruction.
+const CHARACTERS_PER_FUEL: u64 = 4;
+
+impl From<Outside> for Error {
+    fn from(_: Outside) -> Self {
+        Trap::MemoryOutOfBounds.into()
+    }
+}
+
+fn with_memory<T>(
+    caller: &mut Caller<'_, HostState>,
+    work: impl FnOnce(&mut [u8]) -> Result<(T, u64), Outside>,
+) -> Result<T, Error> {
+    let memory = caller.data().memory.ok_or(Outside)?;
+    let (result, characters) = work(memory.data_mut(&mut *caller))?;
+    // What the budget does not cover ends it; the next instruction that is counted stops.
+    let left = caller.get_fuel()?.saturating_sub(characters / CHARACTERS_PER_FUEL);
+    caller.set_fuel(left)?;
+    Ok(result)
+}
+
+/// Gives the module its functions on strings.
+pub(in crate::run) fn link(linker: &mut Linker<HostState>) -> Result<(), Error> {
+    linker.func_wrap(MODULE, TextImport::Compare.name(), compare)?;
+    linker.func_wrap(MODULE, TextImport::Find.name(), find)?;
+    linker.func_wrap(MODULE, TextImport::Edit.name(), edit_strings)?;
+    linker.func_wrap(MODULE, TextImport::Format.name(), format_value)?;
+    linker.func_wrap(MODULE, TextImport::Parse.name(), parse_value)?;
+    Ok(())
+}
+
+fn compare(mut caller: Caller<'_, HostState>, a: i32, a_code: i32, b: i32, b_code: i32) -> Result<i32, Error> {
+    with_memory(&mut caller, |memory| {
+        let (left, right) = (View::new(memory, a, a_code)?, View::new(memory, b, b_code)?);
+        Ok((edit::compare(memory, &left, &right), left.used.min(right.used) as u64))
+    })
+}
+
+fn find(mut caller: Caller<'_, HostState>, a: i32, a_code: i32, b: i32, b_code: i32) -> Result<i32, Error> {
+    with_memory(&mut caller, |memory| {
+        let (whole, part) = (View::new(memory, a, a_code)?, View::new(memory, b, b_code)?);
+        Ok(edit::find(memory, &whole, &part))
+    })
+}
+
+#[expect(clippy::too_many_arguments, reason = "the import's signature")]
+fn edit_strings(
+    mut caller: Caller<'_, HostState>,
+    form: i32,
+    a: i32,
+    a_code: i32,
+    b: i32,
+    b_code: i32,
+    length: i64,
+    position: i64,
+    target: i32,
+    target_code: i32,
+) -> Result<i32, Error> {
+    let form = Edit::ALL.get(form.cast_unsigned() as usize).copied().unwrap_or(Edit::Fit);
+    with_memory(&mut caller, |memory| {
+        let strings = [View::new(memory, a, a_code)?, View::new(memory, b, b_code)?];
+        let made = Target::new(memory, target, target_code)?;
+        let work = strings.iter().map(|view| view.used as u64).sum();
+        edit::edit(memory, form, strings, length, position, made);
+        Ok((target, work))
+    })
+}
+
+fn type_of(number: i32) -> ElementaryType {
+    let known = ElementaryType::ALL.get(number.cast_unsigned() as usize);
+    known.copied().unwrap_or(ElementaryType::Bool)
+}
+
+fn format_value(
+    mut caller: Caller<'_, HostState>,
+    ty: i32,
+    bits: i64,
+    target: i32,
+    target_code: i32,
+) -> Result<i32, Error> {
+    with_memory(&mut caller, |memory| {
+        let mut made = Target::new(memory, target, target_code)?;
+        let ty = type_of(ty);
+        if ty.is_character() {
+            made.push(memory, bits as u16);
+        }
+        let line = format(ty, bits);
+        for byte in line.text().bytes() {
+            made.push(memory, u16::from(byte));
+        }
+        made.finish(memory);
+        Ok((target, line.text().len() as u64))
+    })
+}
+
+/// Characters beyond ASCII, and those beyond a line's length, belong to no value.
+fn parse_value(mut caller: Caller<'_, HostState>, ty: i32, a: i32, a_code: i32) -> Result<i64, Error> {
+    with_memory(&mut caller, |memory| {
+        let text = View::new(memory, a, a_code)?;
+        let ty = type_of(ty);
+        if ty.is_character() {
+            let first = if text.used == 0 { 0 } else { text.get(memory, 0) };
+            // What a CHAR cannot be becomes `?`, as in a STRING.
+            let fits = ty.size() > 1 || first <= 0xff;
+            return Ok((i64::from(if fits { first } else { u16::from(b'?') }), 1));
+        }
+        let mut line = Line::new();
+        for index in 0..text.used {
+            match u8::try_from(text.get(memory, index)) {
+                Ok(byte) if byte.is_ascii() => line.push(byte),
+                _ => break,
+            }
+        }
+        Ok((parse::parse(ty, line.text()), line.text().len() as u64))
+    })
+}
