@@ -2,6 +2,7 @@
 //!
 //! | module | in | out |
 //! |---|---|---|
+//! | [`input`] | files as they are found | program text, and the way back into the file |
 //! | [`syntax`] | text | tokens and a tree, without loss |
 //! | [`diagnostic`] | findings | messages with code, place and hint |
 //! | `ir` | | the checked program's form |
@@ -23,12 +24,14 @@ pub mod application;
 mod check;
 mod compile;
 pub mod diagnostic;
+pub mod input;
 mod ir;
 pub mod run;
 pub mod syntax;
 
 pub use application::{Application, Program, UnknownVariable, Variable};
 pub use compile::fault::FaultKind;
-pub use diagnostic::{Code, Diagnostic, Diagnostics, Severity};
+pub use diagnostic::{Code, Diagnostic, Diagnostics, Finding, Severity};
+pub use input::Input;
 pub use ir::elementary::ElementaryType;
 pub use run::{PlcFault, RestoreError, RunError, SoftPlc, Task, TaskPlan, VirtualTime};
