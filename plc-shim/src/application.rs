@@ -1,6 +1,7 @@
 //! Program text to something that can run: parse, check, compile.
 
 mod front;
+mod inspect;
 mod library;
 mod retain;
 mod variable;
@@ -16,7 +17,8 @@ use crate::input::Input;
 use crate::input::kind::SourceKind;
 use crate::syntax::SourceMap;
 
-use front::Front;
+pub(crate) use front::Front;
+pub use inspect::inspect;
 pub use variable::{Program, UnknownVariable, Variable};
 
 /// A compiled program: what it declares, its code, its memory at a cold start. Cheap to clone.

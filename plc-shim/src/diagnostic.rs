@@ -11,7 +11,7 @@ use crate::syntax::{SourceMap, Span};
 macro_rules! codes {
     ($($variant:ident $text:literal $about:literal),* $(,)?) => {
         /// Stable codes: `S` syntax, `N` names, `T` types, `C` calls, `D` declarations, `L` limits,
-        /// `F` files.
+        /// `F` files, `W` warnings of what is legal and seldom meant.
         #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
         pub enum Code {
             $(#[doc = concat!("`", $text, "`: ", $about)] $variant,)*
@@ -79,6 +79,13 @@ codes! {
     TooLarge "L0502" "a type or the program needs more memory than the limit",
     NotText "F0601" "a file is not text in an encoding that is read",
     MalformedXml "F0602" "a file is not the XML that its name promises",
+    OutputNeverWritten "W0701" "an output is never written",
+    InstanceNeverCalled "W0702" "a function block's instance is never called",
+    RealEquality "W0703" "real numbers are compared for equality",
+    CallInBranch "W0704" "a timer, counter or edge detection is called in a branch or loop",
+    UnreachableCode "W0705" "statements can never be reached",
+    UnusedVariable "W0706" "a variable is never used",
+    WrittenByTwoTasks "W0707" "a variable is written by two tasks",
 }
 
 impl fmt::Display for Code {

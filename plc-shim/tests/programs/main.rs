@@ -4,6 +4,7 @@ mod diagnostics;
 mod expressions;
 mod faults;
 mod language;
+mod lints;
 mod rig;
 mod robustness;
 mod scheduling;
