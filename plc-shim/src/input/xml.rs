@@ -74,7 +74,10 @@ pub(super) fn parse(text: &str) -> Result<Element, XmlError> {
         let event = reader.read_event();
         let end = reader.buffer_position() as u32;
         match event {
-            Err(error) => return Err(XmlError { at: reader.error_position() as u32, message: error.to_string() }),
+            Err(error) => {
+                let at = text.floor_char_boundary(reader.error_position() as usize) as u32;
+                return Err(XmlError { at, message: error.to_string() });
+            }
             Ok(Event::Start(tag)) => {
                 if open.len() > MAX_DEPTH {
                     let message = format!("elements are nested deeper than {MAX_DEPTH} levels");
