@@ -3,6 +3,7 @@
 mod diagnostics;
 mod expressions;
 mod faults;
+mod inputs;
 mod language;
 mod lints;
 mod rig;

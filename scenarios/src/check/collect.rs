@@ -90,7 +90,9 @@ impl Files {
         }
         match kind {
             FileKind::Source(kind) => {
-                self.inputs.push(Input::read(&path.display().to_string(), kind, &bytes));
+                // A file of the folder `.` is named as if the folder had not been.
+                let name = path.strip_prefix(".").unwrap_or(path).display().to_string();
+                self.inputs.push(Input::read(&name, kind, &bytes));
                 Ok(())
             }
             FileKind::Project => self.project(path, &bytes),
