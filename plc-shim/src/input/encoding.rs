@@ -131,9 +131,8 @@ fn declared(bytes: &[u8]) -> Option<String> {
 
 fn named(name: &str) -> Result<Charset, EncodingError> {
     match name.to_ascii_lowercase().as_str() {
-        "utf-8" | "utf8" | "us-ascii" => Ok(Charset::Utf8),
-        // Said by programs that write another encoding than they declare; a mark would tell.
-        "utf-16" | "unicode" => Ok(Charset::Utf8),
+        // UTF-16 is said by programs that write another encoding than they declare: it would have shown.
+        "utf-8" | "utf8" | "us-ascii" | "utf-16" | "unicode" => Ok(Charset::Utf8),
         "windows-1252" | "cp1252" | "iso-8859-1" | "latin1" => Ok(Charset::Windows1252),
         _ => Err(EncodingError::Unknown(name.to_owned())),
     }
@@ -146,13 +145,11 @@ fn utf16(bytes: &[u8], skipped: usize, charset: Charset, unit: fn([u8; 2]) -> u1
     }
     let mut text = String::with_capacity(pairs.len());
     for decoded in char::decode_utf16(pairs.iter().map(|pair| unit(*pair))) {
-        match decoded {
-            Ok(one) => text.push(one),
-            Err(_) => {
-                let units = text.encode_utf16().count();
-                return Err(EncodingError::Malformed(charset, skipped + 2 * units));
-            }
-        }
+        let Ok(one) = decoded else {
+            let units = text.encode_utf16().count();
+            return Err(EncodingError::Malformed(charset, skipped + 2 * units));
+        };
+        text.push(one);
     }
     Ok(text)
 }

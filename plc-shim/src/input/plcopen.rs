@@ -59,12 +59,11 @@ impl Writer<'_> {
 
     /// Writes an attribute's value; what has none is told.
     fn attribute(&mut self, element: &Element, name: &str) {
-        match element.attribute(name) {
-            Some(found) => self.write(&found.value, &found.span),
-            None => {
-                let message = format!("`<{}>` has no attribute `{name}`", element.name);
-                self.taken.report(element.open.clone(), Code::MalformedXml, &message);
-            }
+        if let Some(found) = element.attribute(name) {
+            self.write(&found.value, &found.span);
+        } else {
+            let message = format!("`<{}>` has no attribute `{name}`", element.name);
+            self.taken.report(element.open.clone(), Code::MalformedXml, &message);
         }
     }
 
@@ -181,12 +180,11 @@ impl Writer<'_> {
 
     /// The type in the child `name`.
     fn inner_type(&mut self, element: &Element, name: &str) {
-        match element.child(name) {
-            Some(inner) => self.type_in(inner),
-            None => {
-                let message = format!("`<{}>` has no `<{name}>`", element.name);
-                self.taken.report(element.open.clone(), Code::MalformedXml, &message);
-            }
+        if let Some(inner) = element.child(name) {
+            self.type_in(inner);
+        } else {
+            let message = format!("`<{}>` has no `<{name}>`", element.name);
+            self.taken.report(element.open.clone(), Code::MalformedXml, &message);
         }
     }
 

@@ -181,8 +181,7 @@ mod tests {
         assert_eq!(name.value, "x<y");
         assert_eq!(&text[name.span.start as usize..name.span.end as usize], "x&lt;y");
         let parts = b.children.iter().map(|node| match node {
-            Node::Verbatim(span) => &text[span.start as usize..span.end as usize],
-            Node::Reference('<', span) => &text[span.start as usize..span.end as usize],
+            Node::Verbatim(span) | Node::Reference('<', span) => &text[span.start as usize..span.end as usize],
             other => panic!("{other:?}"),
         });
         assert_eq!(parts.collect::<Vec<_>>(), ["<c>", "&lt;", "d"]);

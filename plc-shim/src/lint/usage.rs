@@ -113,7 +113,9 @@ impl Collector<'_> {
             InitialiserKind::Array(values) => values.iter().for_each(|value| self.initialiser(value)),
             InitialiserKind::Repeat(times, value) => {
                 walk::expression(times, self);
-                value.iter().for_each(|value| self.initialiser(value));
+                if let Some(value) = value {
+                    self.initialiser(value);
+                }
             }
             InitialiserKind::Struct(members) => members.iter().for_each(|member| self.initialiser(&member.value)),
         }

@@ -99,7 +99,9 @@ fn indices(place: &Expr, visitor: &mut impl Visitor) {
         ExprKind::Member(inner, _) | ExprKind::Paren(inner) => indices(inner, visitor),
         ExprKind::Index(inner, list) => {
             indices(inner, visitor);
-            list.iter().for_each(|index| expression(index, visitor));
+            for index in list {
+                expression(index, visitor);
+            }
         }
         _ => {}
     }
@@ -111,7 +113,9 @@ pub(super) fn expression(expr: &Expr, visitor: &mut impl Visitor) {
         ExprKind::Member(inner, _) | ExprKind::Unary(_, inner) | ExprKind::Paren(inner) => expression(inner, visitor),
         ExprKind::Index(inner, list) => {
             expression(inner, visitor);
-            list.iter().for_each(|index| expression(index, visitor));
+            for index in list {
+                expression(index, visitor);
+            }
         }
         ExprKind::Binary(_, left, right) => {
             expression(left, visitor);
