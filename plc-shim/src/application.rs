@@ -1,19 +1,24 @@
 //! Program text to something that can run: parse, check, compile.
 
+mod front;
+mod inspect;
 mod library;
 mod retain;
 mod variable;
 
-use std::collections::BTreeSet;
 use std::ops::Range;
 use std::sync::{Arc, OnceLock};
 
-use crate::check::{Checked, check};
+use crate::check::Checked;
 use crate::compile::fault::FaultTable;
 use crate::compile::{Compiled, compile};
-use crate::diagnostic::{Diagnostics, Severity};
-use crate::syntax::{SourceFile, SourceMap, parse};
+use crate::diagnostic::Diagnostics;
+use crate::input::Input;
+use crate::input::kind::SourceKind;
+use crate::syntax::SourceMap;
 
+pub(crate) use front::Front;
+pub use inspect::inspect;
 pub use variable::{Program, UnknownVariable, Variable};
 
 /// A compiled program: what it declares, its code, its memory at a cold start. Cheap to clone.
@@ -44,25 +49,18 @@ impl Application {
         N: Into<String>,
         T: Into<Arc<str>>,
     {
-        let mut sources = SourceMap::default();
-        let mut library = BTreeSet::new();
-        for (name, text) in files {
-            sources.add(SourceFile::new(name, text));
-        }
-        for (name, text) in library::FILES {
-            library.insert(sources.add(SourceFile::new(name, text)));
-        }
-        let parsed: Vec<_> = sources.iter().map(|(id, file)| (id, parse(id, file.text()))).collect();
-        let units: Vec<_> = parsed.iter().map(|(id, parsed)| (*id, &parsed.unit)).collect();
-        let (checked, findings) = check(&units, &library);
-        let syntax = parsed.iter().flat_map(|(_, parsed)| parsed.diagnostics.iter().cloned());
-        let findings: Vec<_> = syntax.chain(findings).collect();
-        let wrong = findings.iter().any(|found| found.severity == Severity::Error);
+        let text = |(name, text): (N, T)| Input::from_text(&name.into(), SourceKind::Text, text);
+        Self::from_inputs(files.into_iter().map(text))
+    }
+
+    /// Compiles files as they are found, together with the standard function blocks.
+    ///
+    /// # Errors
+    /// All that is wrong with them, and the warnings too.
+    pub fn from_inputs(inputs: impl IntoIterator<Item = Input>) -> Result<Self, Diagnostics> {
+        let Front { sources, checked, findings, .. } = Front::new(inputs);
         let findings = Diagnostics::new(findings, &sources);
-        if wrong {
-            return Err(findings);
-        }
-        Ok(Self::compiled(sources, checked, findings))
+        if findings.has_errors() { Err(findings) } else { Ok(Self::compiled(sources, checked, findings)) }
     }
 
     fn compiled(sources: SourceMap, checked: Checked, warnings: Diagnostics) -> Self {

@@ -5,11 +5,13 @@ use std::sync::Arc;
 
 use miette::{LabeledSpan, NamedSource};
 
+use crate::syntax::source::LineColumn;
 use crate::syntax::{SourceMap, Span};
 
 macro_rules! codes {
     ($($variant:ident $text:literal $about:literal),* $(,)?) => {
-        /// Stable codes: `S` syntax, `N` names, `T` types, `C` calls, `D` declarations, `L` limits.
+        /// Stable codes: `S` syntax, `N` names, `T` types, `C` calls, `D` declarations, `L` limits,
+        /// `F` files, `W` warnings of what is legal and seldom meant.
         #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
         pub enum Code {
             $(#[doc = concat!("`", $text, "`: ", $about)] $variant,)*
@@ -75,6 +77,15 @@ codes! {
     LoopVariable "D0411" "a FOR control variable is unsuitable",
     UnsupportedFeature "L0501" "part of the language that is not supported yet",
     TooLarge "L0502" "a type or the program needs more memory than the limit",
+    NotText "F0601" "a file is not text in an encoding that is read",
+    MalformedXml "F0602" "a file is not the XML that its name promises",
+    OutputNeverWritten "W0701" "an output is never written",
+    InstanceNeverCalled "W0702" "a function block's instance is never called",
+    RealEquality "W0703" "real numbers are compared for equality",
+    CallInBranch "W0704" "a timer, counter or edge detection is called in a branch or loop",
+    UnreachableCode "W0705" "statements can never be reached",
+    UnusedVariable "W0706" "a variable is never used",
+    WrittenByTwoTasks "W0707" "a variable is written by two tasks",
 }
 
 impl fmt::Display for Code {
@@ -90,6 +101,15 @@ pub enum Severity {
     Warning,
     /// The program does not compile.
     Error,
+}
+
+impl fmt::Display for Severity {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        formatter.write_str(match self {
+            Self::Warning => "warning",
+            Self::Error => "error",
+        })
+    }
 }
 
 /// A further place that explains the primary one.
@@ -196,7 +216,17 @@ impl Diagnostics {
         self.iter().any(|found| found.severity == Severity::Error)
     }
 
-    /// The findings in order.
+    /// The findings in order, each with its file and place.
+    pub fn findings(&self) -> &[Finding] {
+        &self.findings
+    }
+
+    /// How many errors there are.
+    pub fn error_count(&self) -> usize {
+        self.iter().filter(|found| found.severity == Severity::Error).count()
+    }
+
+    /// What was found, in order.
     pub fn iter(&self) -> impl Iterator<Item = &Diagnostic> {
         self.findings.iter().map(|finding| &finding.diagnostic)
     }
@@ -224,33 +254,75 @@ impl miette::Diagnostic for Diagnostics {
     }
 }
 
-/// A diagnostic with what is needed to show it.
+/// A diagnostic with what is needed to show it. Its spans are places in the file as its author
+/// sees it.
 #[derive(Debug, Clone)]
-struct Finding {
+pub struct Finding {
     diagnostic: Diagnostic,
     source: NamedSource<Arc<str>>,
-    line: u32,
-    column: u32,
+    start: LineColumn,
+    end: LineColumn,
 }
 
 impl Finding {
-    fn new(diagnostic: Diagnostic, sources: &SourceMap) -> Self {
-        let (name, place) = sources.locate(diagnostic.span);
-        let file = sources.get(diagnostic.span.file);
-        let text = file.map_or_else(|| Arc::from(""), |file| file.text().clone());
-        let source = NamedSource::new(name, text);
-        Self { diagnostic, source, line: place.line, column: place.column }
+    fn new(mut diagnostic: Diagnostic, sources: &SourceMap) -> Self {
+        let nowhere = LineColumn { line: 0, column: 0 };
+        let Some(file) = sources.get(diagnostic.span.file) else {
+            let source = NamedSource::new("", Arc::from(""));
+            return Self { diagnostic, source, start: nowhere, end: nowhere };
+        };
+        let source = NamedSource::new(file.name(), file.shown_text().clone());
+        diagnostic.span = shown(diagnostic.span, sources);
+        for label in &mut diagnostic.labels {
+            label.span = shown(label.span, sources);
+        }
+        let Span { start, end, .. } = diagnostic.span;
+        let (start, end) = (file.shown_line_column(start), file.shown_line_column(end));
+        Self { diagnostic, source, start, end }
+    }
+
+    /// What was found.
+    pub fn diagnostic(&self) -> &Diagnostic {
+        &self.diagnostic
+    }
+
+    /// Name of the file.
+    pub fn file(&self) -> &str {
+        self.source.name()
+    }
+
+    /// Text of the file, which the diagnostic's spans are ranges of.
+    pub fn text(&self) -> &str {
+        self.source.inner()
+    }
+
+    /// Where it begins.
+    pub fn start(&self) -> LineColumn {
+        self.start
+    }
+
+    /// Where it ends: the place behind its last character.
+    pub fn end(&self) -> LineColumn {
+        self.end
     }
 }
 
+fn shown(span: Span, sources: &SourceMap) -> Span {
+    sources.get(span.file).map_or(span, |file| {
+        let range = file.shown_range(span.start, span.end);
+        Span { start: range.start, end: range.end, ..span }
+    })
+}
+
 impl Finding {
-    fn write_line(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { diagnostic, source, line, column } = self;
-        let severity = match diagnostic.severity {
-            Severity::Warning => "warning",
-            Severity::Error => "error",
-        };
-        let (name, code) = (source.name(), diagnostic.code);
+    /// All there is to it in a line: `file:line:column: error[CODE]: message (help)`.
+    ///
+    /// # Errors
+    /// The formatter's own.
+    pub fn write_line(&self, formatter: &mut dyn fmt::Write) -> fmt::Result {
+        let Self { diagnostic, source, start, .. } = self;
+        let (name, code, severity) = (source.name(), diagnostic.code, diagnostic.severity);
+        let LineColumn { line, column } = start;
         write!(formatter, "{name}:{line}:{column}: {severity}[{code}]: {}", diagnostic.message)?;
         match &diagnostic.help {
             Some(help) => write!(formatter, " ({help})"),

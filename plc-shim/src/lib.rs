@@ -2,10 +2,13 @@
 //!
 //! | module | in | out |
 //! |---|---|---|
+//! | [`input`] | files as they are found | program text, and the way back into the file |
 //! | [`syntax`] | text | tokens and a tree, without loss |
 //! | [`diagnostic`] | findings | messages with code, place and hint |
+//! | [`explain`] | codes | the page behind each |
 //! | `ir` | | the checked program's form |
 //! | `check` | trees | the checked program, findings |
+//! | `lint` | trees | warnings of what is legal and seldom meant |
 //! | `compile` | the checked program | one WebAssembly module, and the source behind each trap |
 //! | [`application`] | files | all of the above in one value |
 //! | [`run`] | an application and a task plan | a soft PLC that scans |
@@ -23,12 +26,16 @@ pub mod application;
 mod check;
 mod compile;
 pub mod diagnostic;
+pub mod explain;
+pub mod input;
 mod ir;
+mod lint;
 pub mod run;
 pub mod syntax;
 
-pub use application::{Application, Program, UnknownVariable, Variable};
+pub use application::{Application, Program, UnknownVariable, Variable, inspect};
 pub use compile::fault::FaultKind;
-pub use diagnostic::{Code, Diagnostic, Diagnostics, Severity};
+pub use diagnostic::{Code, Diagnostic, Diagnostics, Finding, Severity};
+pub use input::Input;
 pub use ir::elementary::ElementaryType;
 pub use run::{PlcFault, RestoreError, RunError, SoftPlc, Task, TaskPlan, VirtualTime};

@@ -7,12 +7,14 @@
 //! | [`cli`] | the command line |
 //! | [`scenario`] | a scenario's files, read and checked |
 //! | [`run`] | runs of a scenario: in lockstep or not, recorded, reported |
+//! | [`check`] | PLC sources checked without being run |
 //! | [`freewheel`] | running without lockstep, to show what it is good for |
 //! | [`plot`] | trajectories as SVG |
 //!
 //! Invariants. This is the only crate that reads scenario files, starts processes and prints. What
 //! a session computes is decided in the crates below; nothing here can change a digest.
 
+pub mod check;
 pub mod cli;
 pub mod freewheel;
 pub mod plot;

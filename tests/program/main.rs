@@ -1,5 +1,6 @@
 //! The program as a user types it: commands, files, messages, exit codes.
 
+mod check;
 mod checkpoint;
 mod control;
 mod errors;
@@ -8,4 +9,5 @@ mod freewheel;
 mod help;
 mod plc_faults;
 mod run;
+mod third_party;
 mod typed;

@@ -3,6 +3,7 @@
 //! | module | in | out |
 //! |---|---|---|
 //! | [`source`] | names and texts | files, spans, lines and columns |
+//! | [`origin`] | parts of a file | program text, and the way back into the file |
 //! | [`token`] | | the kinds of token, keywords |
 //! | [`lexer`] | text | every token, blanks and comments too |
 //! | [`literal`], [`text_literal`], [`calendar`] | a literal's text | its value |
@@ -17,6 +18,7 @@ pub mod ast;
 pub mod calendar;
 pub mod lexer;
 pub mod literal;
+pub mod origin;
 pub mod parser;
 pub mod printer;
 pub mod source;

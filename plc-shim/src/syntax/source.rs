@@ -1,6 +1,9 @@
 //! Source files and places in them.
 
+use std::ops::Range;
 use std::sync::Arc;
+
+use super::origin::Origin;
 
 /// Identifies a file within its [`SourceMap`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -39,11 +42,14 @@ impl Span {
     }
 }
 
-/// One file of program text.
+/// One file of program text. Of a file that holds program text among other things it has the
+/// program text, and shows places in the file.
 #[derive(Debug, Clone)]
 pub struct SourceFile {
     name: String,
     text: Arc<str>,
+    origin: Option<Origin>,
+    /// Of the text that is shown.
     line_starts: Vec<u32>,
 }
 
@@ -51,9 +57,14 @@ impl SourceFile {
     /// Takes the text and notes where its lines begin.
     pub fn new(name: impl Into<String>, text: impl Into<Arc<str>>) -> Self {
         let text = text.into();
-        let breaks = text.bytes().enumerate().filter(|(_, byte)| *byte == b'\n');
-        let line_starts = std::iter::once(0).chain(breaks.map(|(at, _)| at as u32 + 1)).collect();
-        Self { name: name.into(), text, line_starts }
+        let line_starts = line_starts(&text);
+        Self { name: name.into(), text, origin: None, line_starts }
+    }
+
+    /// Takes program text that was taken out of a file.
+    pub fn extracted(name: impl Into<String>, text: impl Into<Arc<str>>, origin: Origin) -> Self {
+        let line_starts = line_starts(origin.text());
+        Self { name: name.into(), text: text.into(), origin: Some(origin), line_starts }
     }
 
     /// The name that diagnostics show.
@@ -61,19 +72,41 @@ impl SourceFile {
         &self.name
     }
 
-    /// The whole text.
+    /// The whole program text.
     pub fn text(&self) -> &Arc<str> {
         &self.text
     }
 
-    /// Line and column of a byte offset, both counted from 1; columns count characters.
+    /// The file's text as its author sees it: the program text, unless that was taken out of it.
+    pub fn shown_text(&self) -> &Arc<str> {
+        self.origin.as_ref().map_or(&self.text, Origin::text)
+    }
+
+    /// Where a range of the program text stands in [`Self::shown_text`].
+    pub fn shown_range(&self, start: u32, end: u32) -> Range<u32> {
+        self.origin.as_ref().map_or(start..end, |origin| origin.place(start..end))
+    }
+
+    /// Line and column of a byte offset of the program text, both counted from 1 in the text that
+    /// is shown; columns count characters.
     pub fn line_column(&self, offset: u32) -> LineColumn {
+        self.shown_line_column(self.shown_range(offset, offset).start)
+    }
+
+    /// Line and column of a byte offset of the text that is shown.
+    pub fn shown_line_column(&self, offset: u32) -> LineColumn {
+        let text = self.shown_text();
         let line = self.line_starts.partition_point(|start| *start <= offset).saturating_sub(1);
         let start = self.line_starts.get(line).copied().unwrap_or(0) as usize;
-        let end = (offset as usize).min(self.text.len());
-        let column = self.text.get(start..end).map_or(1, |before| before.chars().count() + 1);
+        let end = (offset as usize).min(text.len());
+        let column = text.get(start..end).map_or(1, |before| before.chars().count() + 1);
         LineColumn { line: line as u32 + 1, column: column as u32 }
     }
+}
+
+fn line_starts(text: &str) -> Vec<u32> {
+    let breaks = text.bytes().enumerate().filter(|(_, byte)| *byte == b'\n');
+    std::iter::once(0).chain(breaks.map(|(at, _)| at as u32 + 1)).collect()
 }
 
 /// A place as an editor shows it.

@@ -9,6 +9,7 @@ use onescan_server::session::Control;
 use onescan_server::signal::{ClientName, SignalName};
 use onescan_server::time::{TimeSpan, VirtualTime};
 
+use crate::check::CheckFormat;
 use crate::run::{Format, Mode, Transport};
 
 /// Deterministic lockstep virtual commissioning.
@@ -28,7 +29,7 @@ pub struct Args {
 
 const EXIT_CODES: &str = "Exit codes:
   0  all is well
-  1  runs that must be equal are not
+  1  runs that must be equal are not; a check found warnings that are denied
   2  wrong input: options, scenario, PLC source, scene, checkpoint
   3  a client or a link failed, or the PLC program stopped on a fault";
 
@@ -41,6 +42,10 @@ pub enum Command {
     Join(JoinArgs),
     /// Ask a running session (see `run --listen`) how it is, or to pause, step, go on, reset or stop
     Control(ControlArgs),
+    /// Check PLC sources without running them
+    Check(CheckArgs),
+    /// Explain a code of `check`, with an example that is wrong and one that is right
+    Explain(ExplainArgs),
 }
 
 /// Options of `run`.
@@ -120,6 +125,55 @@ pub struct ControlArgs {
     /// For people, or a JSON object for machines
     #[arg(long, value_enum, default_value_t)]
     pub format: FormatArg,
+}
+
+/// Options of `check`.
+#[derive(Debug, ClapArgs)]
+pub struct CheckArgs {
+    /// Source files (.st .iec .exp .scl .TcPOU .TcDUT .TcGVL .TcIO .plcproj .xml), folders with such
+    /// files, or scenarios; files and folders are checked together, as one program
+    #[arg(required = true, value_name = "FILE|FOLDER|SCENARIO")]
+    pub paths: Vec<PathBuf>,
+    /// `human`; `json`: an object a finding with code, severity, file, line, column, end_line,
+    /// end_column, message, help; `sarif`: a SARIF 2.1.0 log
+    #[arg(long, value_enum, default_value_t)]
+    pub format: CheckFormatArg,
+    /// Fail with exit code 1 if there are warnings
+    #[arg(long)]
+    pub deny_warnings: bool,
+}
+
+/// Options of `explain`.
+#[derive(Debug, ClapArgs)]
+pub struct ExplainArgs {
+    /// The code, as in `N0101`
+    #[arg(required_unless_present = "list")]
+    pub code: Option<String>,
+    /// Name every code
+    #[arg(long, conflicts_with = "code")]
+    pub list: bool,
+}
+
+/// See [`CheckFormat`].
+#[derive(Clone, Copy, Debug, Default, ValueEnum)]
+pub enum CheckFormatArg {
+    /// For people
+    #[default]
+    Human,
+    /// For machines
+    Json,
+    /// For code hosts and editors
+    Sarif,
+}
+
+impl From<CheckFormatArg> for CheckFormat {
+    fn from(arg: CheckFormatArg) -> Self {
+        match arg {
+            CheckFormatArg::Human => Self::Human,
+            CheckFormatArg::Json => Self::Json,
+            CheckFormatArg::Sarif => Self::Sarif,
+        }
+    }
 }
 
 /// See [`Mode`].

@@ -6,7 +6,8 @@ use std::time::Duration;
 use onescan_server::transport::tcp::operator::operate;
 use onescan_server::transport::tcp::participant::take_part;
 
-use super::args::{Command, ControlArgs, JoinArgs, RunArgs};
+use super::args::{CheckArgs, Command, ControlArgs, ExplainArgs, JoinArgs, RunArgs};
+use crate::check::{self, CheckConfig, Warnings};
 use crate::run::config::SaveRequest;
 use crate::run::error::{ExitCode, RunError};
 use crate::run::interrupt::Interrupt;
@@ -26,6 +27,8 @@ pub fn dispatch(command: Command) -> Result<ExitCode, RunError> {
         Command::Run(args) => run(*args),
         Command::Join(args) => join(&args),
         Command::Control(args) => control(&args),
+        Command::Check(args) => check(args),
+        Command::Explain(args) => explain(&args),
     }
 }
 
@@ -85,5 +88,20 @@ fn control(args: &ControlArgs) -> Result<ExitCode, RunError> {
         }
     };
     written.map_err(RunError::Output)?;
+    Ok(ExitCode::Ok)
+}
+
+fn check(args: CheckArgs) -> Result<ExitCode, RunError> {
+    let warnings = if args.deny_warnings { Warnings::Denied } else { Warnings::Allowed };
+    let config = CheckConfig { paths: args.paths, format: args.format.into(), warnings };
+    check::check(&config, &mut std::io::stdout().lock())
+}
+
+fn explain(args: &ExplainArgs) -> Result<ExitCode, RunError> {
+    let mut out = std::io::stdout().lock();
+    match &args.code {
+        Some(code) => check::explain::page(code, &mut out)?,
+        None => check::explain::list(&mut out).map_err(RunError::Output)?,
+    }
     Ok(ExitCode::Ok)
 }

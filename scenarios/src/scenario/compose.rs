@@ -50,6 +50,16 @@ impl Scenario {
         }
     }
 
+    /// The sources and tasks of each soft PLC.
+    pub(crate) fn plcs(&self) -> impl Iterator<Item = (&[String], TaskPlan)> {
+        self.file().clients.values().filter_map(|client| match client.get_ref() {
+            ClientFile::SoftPlc { sources, tasks, .. } => {
+                Some((sources.as_slice(), TaskPlan::new(tasks.iter().map(task).collect())))
+            }
+            _ => None,
+        })
+    }
+
     fn soft_plc(
         &self,
         name: &ClientName,

@@ -1,0 +1,69 @@
+//! A page for each code: what it means, an example that is wrong, one that is right.
+//!
+//! The pages are Markdown in `docs/codes`, each with a block marked `wrong` and one marked `right`;
+//! a test asserts that they are what they say.
+
+use crate::diagnostic::Code;
+
+macro_rules! pages {
+    ($($code:literal),* $(,)?) => {
+        &[$(($code, include_str!(concat!("../docs/codes/", $code, ".md")))),*]
+    };
+}
+
+/// In the order of the codes.
+const PAGES: &[(&str, &str)] = pages![
+    "C0301", "C0302", "C0303", "C0304", "C0305", "C0306", "C0307", "D0401", "D0402", "D0403", "D0404", "D0405",
+    "D0406", "D0407", "D0408", "D0409", "D0410", "D0411", "F0601", "F0602", "L0501", "L0502", "N0101", "N0102",
+    "N0103", "N0104", "N0105", "N0106", "N0107", "S0101", "S0102", "S0103", "S0104", "S0105", "T0201", "T0202",
+    "T0203", "T0204", "T0205", "T0206", "T0207", "T0208", "T0209", "T0210", "W0701", "W0702", "W0703", "W0704",
+    "W0705", "W0706", "W0707",
+];
+
+/// The page that explains `code`, as Markdown.
+pub fn page(code: Code) -> Option<&'static str> {
+    PAGES.iter().find(|(text, _)| *text == code.text()).map(|(_, page)| *page)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::input::Input;
+    use crate::input::kind::SourceKind;
+
+    /// The block marked `mark`: its language and its text.
+    fn block<'a>(page: &'a str, mark: &str) -> (&'a str, &'a str) {
+        let (before, rest) = page.split_once(&format!(" {mark}\n")).expect(mark);
+        let language = before.rsplit("```").next().expect("a language");
+        (language, rest.split_once("\n```\n").expect("an end").0)
+    }
+
+    /// The codes that an example yields.
+    fn codes_of((language, text): (&str, &str)) -> Vec<&'static str> {
+        let input = match language {
+            "st" => Input::from_text("example.st", SourceKind::Text, text),
+            "xml" => Input::from_text("example.TcPOU", SourceKind::TwinCat, text),
+            "hex" => {
+                let bytes = text.split_whitespace().map(|byte| u8::from_str_radix(byte, 16).expect("a byte"));
+                Input::read("example.st", SourceKind::Text, &bytes.collect::<Vec<_>>())
+            }
+            other => panic!("{other:?} is no language of examples"),
+        };
+        let findings = crate::inspect([input], None);
+        let mut codes: Vec<_> = findings.iter().map(|found| found.code.text()).collect();
+        codes.dedup();
+        codes
+    }
+
+    #[test]
+    fn every_code_has_a_page_whose_examples_are_what_they_say() {
+        for code in Code::ALL {
+            let page = page(*code).unwrap_or_else(|| panic!("{code} has no page in docs/codes"));
+            let title = format!("# {code}: {}\n", code.about());
+            assert!(page.starts_with(&title), "{code}: the page begins with {title:?}");
+            assert_eq!(codes_of(block(page, "wrong")), [code.text()], "the wrong example of {code}");
+            assert_eq!(codes_of(block(page, "right")), [""; 0], "the right example of {code}");
+        }
+        assert_eq!(PAGES.len(), Code::ALL.len(), "a page is left over");
+    }
+}

@@ -1,0 +1,137 @@
+//! Files as they are found in the field, to program text.
+//!
+//! | module | in | out |
+//! |---|---|---|
+//! | [`encoding`] | bytes | text, and the way back |
+//! | [`kind`] | a file's name | what kind of file it is |
+//! | `xml` | text | a tree whose nodes know their place |
+//! | `twincat` | TwinCAT's objects | program text |
+//! | `plcopen` | PLCopen XML | program text |
+//! | [`project`] | a TwinCAT project | the names of its files |
+//!
+//! Invariants: no file can make it fail, what is wrong with one is a diagnostic; what is not read is
+//! told; every place in program text leads back into the file that it was taken out of.
+
+pub mod encoding;
+pub mod kind;
+mod plcopen;
+pub mod project;
+mod twincat;
+mod xml;
+
+use std::sync::Arc;
+
+use self::encoding::{Encoding, decode};
+use self::kind::SourceKind;
+use self::xml::XmlError;
+use crate::diagnostic::{Code, Diagnostic};
+use crate::syntax::origin::Extract;
+use crate::syntax::{FileId, SourceFile, SourceMap, Span};
+
+/// Greatest size of a file in bytes.
+const MAX_SIZE: usize = 256 << 20;
+
+/// A file's program text.
+#[derive(Debug, Clone)]
+pub struct Input {
+    file: SourceFile,
+    encoding: Option<Encoding>,
+    diagnostics: Vec<Diagnostic>,
+}
+
+impl Input {
+    /// Reads the bytes of the file `name`.
+    pub fn read(name: &str, kind: SourceKind, bytes: &[u8]) -> Self {
+        if bytes.len() > MAX_SIZE {
+            return Self::unreadable(name, Code::TooLarge, format!("the file is larger than {MAX_SIZE} bytes"));
+        }
+        match decode(bytes) {
+            Ok((text, encoding)) => Self { encoding: Some(encoding), ..Self::from_text(name, kind, text) },
+            Err(error) => Self::unreadable(name, Code::NotText, error.to_string()),
+        }
+    }
+
+    /// Takes the text of the file `name`.
+    pub fn from_text(name: &str, kind: SourceKind, text: impl Into<Arc<str>>) -> Self {
+        let text = text.into();
+        let read = match kind {
+            SourceKind::Text => {
+                return Self { file: SourceFile::new(name, text), encoding: None, diagnostics: Vec::new() };
+            }
+            SourceKind::TwinCat => twincat::extract(&text),
+            SourceKind::PlcOpen => plcopen::extract(&text),
+        };
+        let taken = read.unwrap_or_else(|error| Taken::malformed(&error));
+        let (extracted, origin) = taken.extract.finish(text);
+        let file = SourceFile::extracted(name, extracted, origin);
+        Self { file, encoding: None, diagnostics: taken.diagnostics }
+    }
+
+    /// A file of which nothing is read.
+    pub fn unreadable(name: &str, code: Code, message: impl Into<String>) -> Self {
+        let found = Diagnostic::error(code, Span::new(UNNUMBERED, 0, 0), message);
+        Self { file: SourceFile::new(name, ""), encoding: None, diagnostics: vec![found] }
+    }
+
+    /// Its program text.
+    pub fn file(&self) -> &SourceFile {
+        &self.file
+    }
+
+    /// How the file is written; nothing if it was never bytes.
+    pub fn encoding(&self) -> Option<Encoding> {
+        self.encoding
+    }
+
+    /// Adds the file to `sources`, and gives what is wrong with it.
+    pub(crate) fn add_to(self, sources: &mut SourceMap) -> Vec<Diagnostic> {
+        let mut diagnostics = self.diagnostics;
+        let id = sources.add(self.file);
+        for found in &mut diagnostics {
+            found.span.file = id;
+        }
+        diagnostics
+    }
+}
+
+/// Stands in a span until its file has a number.
+const UNNUMBERED: FileId = FileId(0);
+
+/// Program text while it is taken out of a file, and what is wrong with it.
+#[derive(Debug, Default)]
+struct Taken {
+    extract: Extract,
+    diagnostics: Vec<Diagnostic>,
+}
+
+impl Taken {
+    fn malformed(error: &XmlError) -> Self {
+        let mut taken = Self::default();
+        taken.report(error.at..error.at, Code::MalformedXml, &error.message);
+        taken
+    }
+
+    /// Reports what stands at `place` of the file.
+    fn report(&mut self, place: std::ops::Range<u32>, code: Code, message: &str) {
+        // A blank stands in the program text for the place that the finding is about.
+        let start = self.extract.text().len() as u32;
+        self.extract.instead("\n", place);
+        let span = Span::new(UNNUMBERED, start, start + 1);
+        self.diagnostics.push(Diagnostic::error(code, span, message));
+    }
+
+    fn unsupported(&mut self, place: std::ops::Range<u32>, what: &str) {
+        self.report(place, Code::UnsupportedFeature, &format!("{what} is not supported yet"));
+    }
+
+    /// Appends the text that an element holds.
+    fn text_of(&mut self, file: &str, element: &xml::Element) {
+        for node in &element.children {
+            match node {
+                xml::Node::Verbatim(span) => self.extract.verbatim(file, span.clone()),
+                xml::Node::Reference(character, span) => self.extract.instead(&character.to_string(), span.clone()),
+                xml::Node::Element(_) => {}
+            }
+        }
+    }
+}

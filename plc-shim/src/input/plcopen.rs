@@ -1,0 +1,327 @@
+//! PLCopen XML (TC6 2.01, IEC 61131-10): declarations that are elements, and bodies in ST, to text.
+//!
+//! Only what is text in the file is taken over as it is; the rest is written as the standard would
+//! have it, and every word of it leads back to the element that it stands for.
+
+use std::ops::Range;
+
+use super::Taken;
+use super::xml::{Element, XmlError, parse};
+use crate::diagnostic::Code;
+
+/// Program text of a project.
+pub(super) fn extract(file: &str) -> Result<Taken, XmlError> {
+    let root = parse(file)?;
+    let mut writer = Writer { taken: Taken::default(), file };
+    if root.name != "project" {
+        let message = "`<project>` is wanted here: only PLCopen XML is read";
+        writer.taken.report(root.open.clone(), Code::MalformedXml, message);
+        return Ok(writer.taken);
+    }
+    if let Some(types) = root.child("types") {
+        for data_type in types.child("dataTypes").into_iter().flat_map(Element::elements) {
+            writer.data_type(data_type);
+        }
+        for pou in types.child("pous").into_iter().flat_map(Element::elements) {
+            writer.pou(pou);
+        }
+    }
+    let configurations = root.child("instances").and_then(|instances| instances.child("configurations"));
+    for configuration in configurations.into_iter().flat_map(Element::elements) {
+        writer.globals(configuration);
+        for resource in configuration.elements().filter(|inner| inner.name == "resource") {
+            writer.globals(resource);
+        }
+    }
+    Ok(writer.taken)
+}
+
+struct Writer<'a> {
+    taken: Taken,
+    file: &'a str,
+}
+
+/// Sections of an interface and their keywords (TC6 2.01, `interface`).
+const SECTIONS: [(&str, &str); 7] = [
+    ("localVars", "VAR"),
+    ("inputVars", "VAR_INPUT"),
+    ("outputVars", "VAR_OUTPUT"),
+    ("inOutVars", "VAR_IN_OUT"),
+    ("tempVars", "VAR_TEMP"),
+    ("externalVars", "VAR_EXTERNAL"),
+    ("globalVars", "VAR_GLOBAL"),
+];
+
+impl Writer<'_> {
+    fn write(&mut self, text: &str, place: &Range<u32>) {
+        self.taken.extract.instead(text, place.clone());
+    }
+
+    /// Writes an attribute's value; what has none is told.
+    fn attribute(&mut self, element: &Element, name: &str) {
+        if let Some(found) = element.attribute(name) {
+            self.write(&found.value, &found.span);
+        } else {
+            let message = format!("`<{}>` has no attribute `{name}`", element.name);
+            self.taken.report(element.open.clone(), Code::MalformedXml, &message);
+        }
+    }
+
+    fn data_type(&mut self, element: &Element) {
+        self.write("TYPE ", &element.open);
+        self.attribute(element, "name");
+        self.write(" : ", &element.open);
+        self.inner_type(element, "baseType");
+        self.initial_value(element);
+        self.write(";\nEND_TYPE\n", &element.close);
+    }
+
+    fn pou(&mut self, element: &Element) {
+        let (keyword, end) = match element.attribute("pouType").map(|kind| kind.value.as_str()) {
+            Some("function") => ("FUNCTION ", "END_FUNCTION\n"),
+            Some("functionBlock") => ("FUNCTION_BLOCK ", "END_FUNCTION_BLOCK\n"),
+            Some("program") => ("PROGRAM ", "END_PROGRAM\n"),
+            _ => {
+                let message = "`pouType` is `function`, `functionBlock` or `program`";
+                self.taken.report(element.open.clone(), Code::MalformedXml, message);
+                return;
+            }
+        };
+        self.write(keyword, &element.open);
+        self.attribute(element, "name");
+        let interface = element.child("interface");
+        if let Some(result) = interface.and_then(|interface| interface.child("returnType")) {
+            self.write(" : ", &result.open);
+            self.type_in(result);
+        }
+        self.write("\n", &element.open);
+        for section in interface.into_iter().flat_map(Element::elements) {
+            self.section(section);
+        }
+        for body in element.elements().filter(|inner| inner.name == "body") {
+            self.body(body);
+        }
+        for part in element.elements().filter(|inner| matches!(inner.name.as_str(), "actions" | "transitions")) {
+            for inner in part.elements() {
+                let name = inner.attribute("name").map_or("", |name| name.value.as_str());
+                let what = format!("{} `{name}`", inner.name.to_uppercase());
+                self.taken.unsupported(inner.open.clone(), &what);
+            }
+        }
+        self.write(end, &element.close);
+    }
+
+    fn body(&mut self, body: &Element) {
+        for language in body.elements() {
+            match language.name.as_str() {
+                "ST" => {
+                    self.text_below(language);
+                    self.write("\n", &language.close);
+                }
+                "documentation" | "addData" => {}
+                other => self.taken.unsupported(language.open.clone(), &format!("a body in {other}")),
+            }
+        }
+    }
+
+    /// The text of an element and of the XHTML in it, each paragraph a line.
+    fn text_below(&mut self, element: &Element) {
+        self.taken.text_of(self.file, element);
+        for inner in element.elements() {
+            if inner.name == "br" {
+                self.write("\n", &inner.open);
+            } else {
+                self.text_below(inner);
+                self.write(if inner.name == "p" { "\n" } else { " " }, &inner.close);
+            }
+        }
+    }
+
+    fn globals(&mut self, element: &Element) {
+        for section in element.elements().filter(|inner| inner.name == "globalVars") {
+            self.section(section);
+        }
+    }
+
+    fn section(&mut self, element: &Element) {
+        let name = element.name.as_str();
+        let Some((_, keyword)) = SECTIONS.iter().find(|(known, _)| *known == name) else {
+            if !matches!(name, "returnType" | "documentation" | "addData") {
+                self.taken.unsupported(element.open.clone(), &format!("`<{name}>`"));
+            }
+            return;
+        };
+        self.write(keyword, &element.open);
+        for (qualifier, text) in [("constant", " CONSTANT"), ("retain", " RETAIN"), ("nonretain", " NON_RETAIN")] {
+            let set = element.attribute(qualifier).filter(|found| found.value == "true");
+            if let Some(set) = set {
+                self.write(text, &set.span);
+            }
+        }
+        self.write("\n", &element.open);
+        for variable in element.elements().filter(|inner| inner.name == "variable") {
+            self.write("    ", &variable.open);
+            self.variable(variable);
+        }
+        self.write("END_VAR\n", &element.close);
+    }
+
+    fn variable(&mut self, element: &Element) {
+        self.attribute(element, "name");
+        if let Some(address) = element.attribute("address") {
+            self.write(" AT ", &address.span);
+            self.write(&address.value, &address.span);
+        }
+        self.write(" : ", &element.open);
+        self.inner_type(element, "type");
+        self.initial_value(element);
+        self.write(";\n", &element.close);
+    }
+
+    /// The type in the child `name`.
+    fn inner_type(&mut self, element: &Element, name: &str) {
+        if let Some(inner) = element.child(name) {
+            self.type_in(inner);
+        } else {
+            let message = format!("`<{}>` has no `<{name}>`", element.name);
+            self.taken.report(element.open.clone(), Code::MalformedXml, &message);
+        }
+    }
+
+    fn type_in(&mut self, holder: &Element) {
+        let Some(element) = holder.elements().next() else {
+            let message = format!("`<{}>` is empty", holder.name);
+            self.taken.report(holder.open.clone(), Code::MalformedXml, &message);
+            return;
+        };
+        match element.name.as_str() {
+            "derived" => self.attribute(element, "name"),
+            "string" | "wstring" => {
+                self.write(&element.name.to_uppercase(), &element.open);
+                if let Some(length) = element.attribute("length") {
+                    self.write(&format!("[{}]", length.value), &length.span);
+                }
+            }
+            "array" => {
+                self.write("ARRAY [", &element.open);
+                self.ranges(element);
+                self.write("] OF ", &element.open);
+                self.inner_type(element, "baseType");
+            }
+            "struct" => {
+                self.write("STRUCT\n", &element.open);
+                for field in element.elements().filter(|inner| inner.name == "variable") {
+                    self.variable(field);
+                }
+                self.write("END_STRUCT", &element.close);
+            }
+            "enum" => self.enumeration(element),
+            "subrangeSigned" | "subrangeUnsigned" => {
+                self.inner_type(element, "baseType");
+                self.write(" (", &element.open);
+                self.ranges(element);
+                self.write(")", &element.open);
+            }
+            "pointer" => {
+                self.write("POINTER TO ", &element.open);
+                self.inner_type(element, "baseType");
+            }
+            elementary => self.write(elementary, &element.open),
+        }
+    }
+
+    /// `1..2, 3..4`
+    fn ranges(&mut self, element: &Element) {
+        let ranges = element.elements().filter(|inner| matches!(inner.name.as_str(), "dimension" | "range"));
+        for (index, range) in ranges.enumerate() {
+            if index > 0 {
+                self.write(", ", &range.open);
+            }
+            self.attribute(range, "lower");
+            self.write("..", &range.open);
+            self.attribute(range, "upper");
+        }
+    }
+
+    fn enumeration(&mut self, element: &Element) {
+        self.write("(", &element.open);
+        let values = element.child("values").into_iter().flat_map(Element::elements);
+        for (index, value) in values.filter(|inner| inner.name == "value").enumerate() {
+            if index > 0 {
+                self.write(", ", &value.open);
+            }
+            self.attribute(value, "name");
+            if let Some(number) = value.attribute("value") {
+                self.write(" := ", &number.span);
+                self.write(&number.value, &number.span);
+            }
+        }
+        self.write(")", &element.close);
+    }
+
+    fn initial_value(&mut self, element: &Element) {
+        if let Some(value) = element.child("initialValue") {
+            self.write(" := ", &value.open);
+            self.value_in(value);
+        }
+    }
+
+    fn value_in(&mut self, holder: &Element) {
+        for value in holder.elements() {
+            match value.name.as_str() {
+                "simpleValue" => self.attribute(value, "value"),
+                "arrayValue" => self.list(value, "[", "]"),
+                "structValue" => self.list(value, "(", ")"),
+                _ => {}
+            }
+        }
+    }
+
+    fn list(&mut self, element: &Element, open: &str, close: &str) {
+        self.write(open, &element.open);
+        for (index, value) in element.elements().filter(|inner| inner.name == "value").enumerate() {
+            if index > 0 {
+                self.write(", ", &value.open);
+            }
+            if let Some(member) = value.attribute("member") {
+                self.write(&format!("{} := ", member.value), &member.span);
+            }
+            match value.attribute("repetitionValue").filter(|times| times.value != "1") {
+                Some(times) => {
+                    self.write(&format!("{}(", times.value), &times.span);
+                    self.value_in(value);
+                    self.write(")", &times.span);
+                }
+                None => self.value_in(value),
+            }
+        }
+        self.write(close, &element.close);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::input::Input;
+    use crate::input::kind::SourceKind;
+
+    const PROJECT: &str = include_str!("../../tests/inputs/ramp.xml");
+
+    #[test]
+    fn elements_become_text() {
+        let input = Input::from_text("ramp.xml", SourceKind::PlcOpen, PROJECT);
+        insta::assert_snapshot!(input.file().text());
+        let messages: Vec<_> = input.diagnostics.iter().map(|found| found.message.as_str()).collect();
+        assert_eq!(messages, ["a body in LD is not supported yet"]);
+    }
+
+    #[test]
+    fn every_word_leads_back() {
+        let input = Input::from_text("ramp.xml", SourceKind::PlcOpen, PROJECT);
+        let text = input.file().text();
+        for (word, in_the_file) in [("Gain", "Gain"), ("40", "40"), ("<", "&lt;"), ("STRUCT", "<struct>")] {
+            let at = text.find(word).expect(word) as u32;
+            let place = input.file().shown_range(at, at + word.len() as u32);
+            assert_eq!(&PROJECT[place.start as usize..place.end as usize], in_the_file);
+        }
+    }
+}

@@ -1,0 +1,126 @@
+//! What the files declare, by name.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use crate::application::Front;
+use crate::syntax::ast::{Declaration, Ident, Pou, PouKind, Section, SectionKind, TypeSpec, TypeSpecKind, Variable};
+
+/// Declarations by the key of their name.
+pub(super) struct Index<'a> {
+    own: Vec<&'a Pou>,
+    units: BTreeMap<String, &'a Pou>,
+    library: BTreeSet<String>,
+    types: BTreeMap<String, &'a TypeSpec>,
+    globals: Vec<&'a Section>,
+    /// Names that some unit has for a `VAR_IN_OUT`.
+    in_outs: BTreeSet<String>,
+}
+
+impl<'a> Index<'a> {
+    pub(super) fn new(front: &'a Front) -> Self {
+        let mut index = Self {
+            own: Vec::new(),
+            units: BTreeMap::new(),
+            library: BTreeSet::new(),
+            types: BTreeMap::new(),
+            globals: Vec::new(),
+            in_outs: BTreeSet::new(),
+        };
+        for (file, unit) in &front.units {
+            let library = front.library.contains(file);
+            for declaration in &unit.declarations {
+                index.add(declaration, library);
+            }
+        }
+        index
+    }
+
+    fn add(&mut self, declaration: &'a Declaration, library: bool) {
+        match declaration {
+            Declaration::Pou(pou) => {
+                let in_outs = variables(pou, SectionKind::InOut).flat_map(|variable| &variable.names);
+                self.in_outs.extend(in_outs.map(Ident::key));
+                self.units.insert(pou.name.key(), pou);
+                if library {
+                    self.library.insert(pou.name.key());
+                } else {
+                    self.own.push(pou);
+                }
+            }
+            Declaration::Type(named) => {
+                self.types.insert(named.name.key(), &named.spec);
+            }
+            Declaration::Globals(section) => self.globals.push(section),
+        }
+    }
+
+    /// The user's units in their order.
+    pub(super) fn own(&self) -> impl Iterator<Item = &'a Pou> {
+        self.own.iter().copied()
+    }
+
+    pub(super) fn unit(&self, key: &str) -> Option<&'a Pou> {
+        self.units.get(key).copied()
+    }
+
+    pub(super) fn globals(&self) -> impl Iterator<Item = &'a Section> {
+        self.globals.iter().copied()
+    }
+
+    /// What the user's types are.
+    pub(super) fn type_specs(&self) -> impl Iterator<Item = &'a TypeSpec> {
+        self.types.values().copied()
+    }
+
+    pub(super) fn global(&self, key: &str) -> Option<&'a Variable> {
+        let all = self.globals.iter().flat_map(|section| &section.variables);
+        all.into_iter().find(|variable| variable.names.iter().any(|name| name.key() == key))
+    }
+
+    /// True for a name that a `VAR_IN_OUT` has in some unit: an argument of that name may be written.
+    pub(super) fn is_in_out(&self, key: &str) -> bool {
+        self.in_outs.contains(key)
+    }
+
+    /// What a type's name stands for, aliases followed.
+    pub(super) fn resolved(&self, spec: &'a TypeSpec) -> &'a TypeSpec {
+        let mut spec = spec;
+        // A longer chain of aliases is an error of its own.
+        for _ in 0..16 {
+            let TypeSpecKind::Name(name) = &spec.kind else { return spec };
+            match self.types.get(&name.key()) {
+                Some(next) => spec = next,
+                None => return spec,
+            }
+        }
+        spec
+    }
+
+    /// The function block whose instance, or array of instances, a type is.
+    pub(super) fn block(&self, spec: &'a TypeSpec) -> Option<&'a Pou> {
+        match &self.resolved(spec).kind {
+            TypeSpecKind::Name(name) => self.unit(&name.key()).filter(|pou| pou.kind == PouKind::FunctionBlock),
+            TypeSpecKind::Array(_, element) => self.block(element),
+            _ => None,
+        }
+    }
+
+    /// True for timers, counters and edge detections of the standard: they must see every scan.
+    pub(super) fn needs_every_scan(&self, block: &Pou) -> bool {
+        let key = block.name.key();
+        self.library.contains(&key)
+            && (matches!(key.as_str(), "TON" | "TOF" | "TP" | "R_TRIG" | "F_TRIG") || key.starts_with("CT"))
+    }
+}
+
+/// The variables of one kind of section.
+pub(super) fn variables(pou: &Pou, kind: SectionKind) -> impl Iterator<Item = &Variable> {
+    pou.sections.iter().filter(move |section| section.kind == kind).flat_map(|section| &section.variables)
+}
+
+/// The declaration of a name in a unit, with its section.
+pub(super) fn declared<'a>(pou: &'a Pou, key: &str) -> Option<(&'a Section, &'a Variable)> {
+    let all = pou.sections.iter().flat_map(|section| section.variables.iter().map(move |variable| (section, variable)));
+    let mut all = all.into_iter();
+    all.find(|(_, variable)| variable.names.iter().any(|name| name.key() == key))
+}

@@ -1,0 +1,162 @@
+//! What a unit does with each name.
+
+use std::collections::BTreeMap;
+
+use super::index::Index;
+use super::walk::{self, Visitor, root};
+use crate::syntax::Span;
+use crate::syntax::ast::{
+    Argument, Call, Expr, ExprKind, Ident, Initialiser, InitialiserKind, Pou, Section, TypeSpec, TypeSpecKind,
+};
+
+/// What is done with the variables of each name, whatever they are.
+#[derive(Debug, Default)]
+pub(super) struct Usage {
+    names: BTreeMap<String, Uses>,
+}
+
+/// What is done with one name.
+#[derive(Debug, Default, Clone, Copy)]
+pub(super) struct Uses {
+    pub(super) is_read: bool,
+    /// Where it is written first.
+    pub(super) written: Option<Span>,
+    pub(super) is_called: bool,
+    /// It is an argument of a call, which may do anything with it.
+    pub(super) is_passed: bool,
+}
+
+impl Uses {
+    pub(super) fn is_used(self) -> bool {
+        self.is_read || self.written.is_some() || self.is_called || self.is_passed
+    }
+}
+
+impl Usage {
+    pub(super) fn of(pou: &Pou, index: &Index<'_>) -> Self {
+        let mut collector = Collector { index, usage: Self::default() };
+        for section in &pou.sections {
+            collector.section(section);
+        }
+        walk::statements(&pou.body, &mut collector);
+        collector.usage
+    }
+
+    /// What declarations outside of units do: constants in bounds and initial values.
+    pub(super) fn of_globals(index: &Index<'_>) -> Self {
+        let mut collector = Collector { index, usage: Self::default() };
+        for section in index.globals() {
+            collector.section(section);
+        }
+        for spec in index.type_specs() {
+            collector.spec(spec);
+        }
+        collector.usage
+    }
+
+    pub(super) fn get(&self, key: &str) -> Uses {
+        self.names.get(key).copied().unwrap_or_default()
+    }
+
+    pub(super) fn iter(&self) -> impl Iterator<Item = (&str, Uses)> {
+        self.names.iter().map(|(key, uses)| (key.as_str(), *uses))
+    }
+}
+
+struct Collector<'a> {
+    index: &'a Index<'a>,
+    usage: Usage,
+}
+
+impl Collector<'_> {
+    fn uses(&mut self, name: &Ident) -> &mut Uses {
+        self.usage.names.entry(name.key()).or_default()
+    }
+
+    fn section(&mut self, section: &Section) {
+        for variable in &section.variables {
+            self.spec(&variable.spec);
+            variable.initial.iter().for_each(|initial| self.initialiser(initial));
+        }
+    }
+
+    fn spec(&mut self, spec: &TypeSpec) {
+        match &spec.kind {
+            TypeSpecKind::Array(dimensions, element) => {
+                for dimension in dimensions {
+                    walk::expression(&dimension.low, self);
+                    walk::expression(&dimension.high, self);
+                }
+                self.spec(element);
+            }
+            TypeSpecKind::String(_, Some(length)) => walk::expression(length, self),
+            TypeSpecKind::Subrange(_, bounds) => {
+                walk::expression(&bounds.low, self);
+                walk::expression(&bounds.high, self);
+            }
+            TypeSpecKind::Struct(fields) => {
+                for field in fields {
+                    self.spec(&field.spec);
+                    field.initial.iter().for_each(|initial| self.initialiser(initial));
+                }
+            }
+            TypeSpecKind::Enumeration(values) => {
+                values.iter().filter_map(|value| value.value.as_ref()).for_each(|value| walk::expression(value, self));
+            }
+            _ => {}
+        }
+    }
+
+    fn initialiser(&mut self, initialiser: &Initialiser) {
+        match &initialiser.kind {
+            InitialiserKind::Value(value) => walk::expression(value, self),
+            InitialiserKind::Array(values) => values.iter().for_each(|value| self.initialiser(value)),
+            InitialiserKind::Repeat(times, value) => {
+                walk::expression(times, self);
+                if let Some(value) = value {
+                    self.initialiser(value);
+                }
+            }
+            InitialiserKind::Struct(members) => members.iter().for_each(|member| self.initialiser(&member.value)),
+        }
+    }
+
+    fn written(&mut self, name: &Ident) {
+        let uses = self.uses(name);
+        uses.written = uses.written.or(Some(name.span));
+    }
+}
+
+impl Visitor for Collector<'_> {
+    fn target(&mut self, target: &Expr) {
+        if let Some(name) = root(target) {
+            self.written(name);
+        }
+    }
+
+    fn control(&mut self, name: &Ident) {
+        self.written(name);
+    }
+
+    fn call(&mut self, call: &Call) {
+        if let Some(name) = root(&call.callee) {
+            self.uses(name).is_called = true;
+        }
+        for argument in &call.arguments {
+            let (value, may_write) = match argument {
+                Argument::Positional(value) => (value, true),
+                Argument::Input(name, value) => (value, self.index.is_in_out(&name.key())),
+                Argument::Output { .. } => continue,
+            };
+            if let Some(name) = root(value).filter(|_| may_write) {
+                self.uses(name).is_passed = true;
+            }
+        }
+    }
+
+    fn expression(&mut self, expr: &Expr) {
+        if let ExprKind::Name(name) = &expr.kind {
+            self.uses(name).is_read = true;
+        }
+    }
+}

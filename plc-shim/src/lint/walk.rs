@@ -1,0 +1,136 @@
+//! Every statement and expression of a body, in the order of the text.
+
+use crate::syntax::ast::{Argument, Call, Expr, ExprKind, Statement, StatementKind};
+
+/// Looks at the parts of a body; what it does not care for it leaves out.
+pub(super) trait Visitor {
+    /// A statement, before its parts.
+    fn statement(&mut self, _statement: &Statement) {}
+    /// The statements of a branch or loop begin.
+    fn enter(&mut self) {}
+    /// They end.
+    fn leave(&mut self) {}
+    /// Where a value goes to.
+    fn target(&mut self, _target: &Expr) {}
+    /// A name alone that a value goes to: the control variable of `FOR`.
+    fn control(&mut self, _name: &crate::syntax::ast::Ident) {}
+    /// A call, before its arguments.
+    fn call(&mut self, _call: &Call) {}
+    /// An expression, before its parts; of targets and callees only their indices.
+    fn expression(&mut self, _expr: &Expr) {}
+}
+
+pub(super) fn statements(list: &[Statement], visitor: &mut impl Visitor) {
+    for each in list {
+        visitor.statement(each);
+        statement(&each.kind, visitor);
+    }
+}
+
+fn branch(list: &[Statement], visitor: &mut impl Visitor) {
+    visitor.enter();
+    statements(list, visitor);
+    visitor.leave();
+}
+
+fn statement(kind: &StatementKind, visitor: &mut impl Visitor) {
+    match kind {
+        StatementKind::Assign(place, value) => {
+            target(place, visitor);
+            expression(value, visitor);
+        }
+        StatementKind::Call(inner) => call(inner, visitor),
+        StatementKind::If(inner) => {
+            for each in &inner.branches {
+                expression(&each.condition, visitor);
+                branch(&each.body, visitor);
+            }
+            branch(&inner.otherwise, visitor);
+        }
+        StatementKind::Case(inner) => {
+            expression(&inner.selector, visitor);
+            for each in &inner.branches {
+                for label in &each.labels {
+                    expression(&label.low, visitor);
+                    label.high.iter().for_each(|high| expression(high, visitor));
+                }
+                branch(&each.body, visitor);
+            }
+            branch(&inner.otherwise, visitor);
+        }
+        StatementKind::For(inner) => {
+            visitor.control(&inner.variable);
+            expression(&inner.from, visitor);
+            expression(&inner.to, visitor);
+            inner.by.iter().for_each(|by| expression(by, visitor));
+            branch(&inner.body, visitor);
+        }
+        StatementKind::While(inner) => {
+            expression(&inner.condition, visitor);
+            branch(&inner.body, visitor);
+        }
+        StatementKind::Repeat(inner) => {
+            branch(&inner.body, visitor);
+            expression(&inner.until, visitor);
+        }
+        _ => {}
+    }
+}
+
+fn call(call: &Call, visitor: &mut impl Visitor) {
+    visitor.call(call);
+    indices(&call.callee, visitor);
+    for argument in &call.arguments {
+        match argument {
+            Argument::Positional(value) | Argument::Input(_, value) => expression(value, visitor),
+            Argument::Output { target: place, .. } => place.iter().for_each(|place| target(place, visitor)),
+        }
+    }
+}
+
+fn target(place: &Expr, visitor: &mut impl Visitor) {
+    visitor.target(place);
+    indices(place, visitor);
+}
+
+/// The indices on the way to a place: they are read, whatever becomes of the place.
+fn indices(place: &Expr, visitor: &mut impl Visitor) {
+    match &place.kind {
+        ExprKind::Member(inner, _) | ExprKind::Paren(inner) => indices(inner, visitor),
+        ExprKind::Index(inner, list) => {
+            indices(inner, visitor);
+            for index in list {
+                expression(index, visitor);
+            }
+        }
+        _ => {}
+    }
+}
+
+pub(super) fn expression(expr: &Expr, visitor: &mut impl Visitor) {
+    visitor.expression(expr);
+    match &expr.kind {
+        ExprKind::Member(inner, _) | ExprKind::Unary(_, inner) | ExprKind::Paren(inner) => expression(inner, visitor),
+        ExprKind::Index(inner, list) => {
+            expression(inner, visitor);
+            for index in list {
+                expression(index, visitor);
+            }
+        }
+        ExprKind::Binary(_, left, right) => {
+            expression(left, visitor);
+            expression(right, visitor);
+        }
+        ExprKind::Call(inner) => call(inner, visitor),
+        _ => {}
+    }
+}
+
+/// The variable that a place is or is a part of.
+pub(super) fn root(place: &Expr) -> Option<&crate::syntax::ast::Ident> {
+    match &place.kind {
+        ExprKind::Name(name) => Some(name),
+        ExprKind::Member(inner, _) | ExprKind::Index(inner, _) | ExprKind::Paren(inner) => root(inner),
+        _ => None,
+    }
+}

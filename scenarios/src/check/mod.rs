@@ -1,0 +1,78 @@
+//! PLC sources checked without being run.
+//!
+//! | module | subject |
+//! |---|---|
+//! | [`collect`] | which files are meant, and what is in them |
+//! | [`report`] | how the findings are shown |
+//! | [`human`] | for people |
+//! | [`json`] | a JSON object a finding |
+//! | [`sarif`] | SARIF 2.1.0, which code hosts and editors read |
+//! | [`explain`] | the page behind a code |
+
+pub mod collect;
+pub mod explain;
+pub mod human;
+pub mod json;
+pub mod report;
+pub mod sarif;
+
+use std::io::Write;
+use std::path::PathBuf;
+
+use onescan_plc_shim::inspect;
+
+use crate::run::RunError;
+use crate::run::error::ExitCode;
+use report::Report;
+
+/// For whom the findings are.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum CheckFormat {
+    /// People.
+    #[default]
+    Human,
+    /// Machines: one JSON object a finding and line.
+    Json,
+    /// Machines: one SARIF log.
+    Sarif,
+}
+
+/// What is asked for.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct CheckConfig {
+    /// Files, folders and scenarios.
+    pub paths: Vec<PathBuf>,
+    /// For whom the findings are.
+    pub format: CheckFormat,
+    /// Whether warnings alone make the check fail.
+    pub warnings: Warnings,
+}
+
+/// What becomes of a check that has found nothing but warnings.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Warnings {
+    /// They are told.
+    #[default]
+    Allowed,
+    /// They make it fail.
+    Denied,
+}
+
+/// Checks the sources and writes what is found to `out`.
+///
+/// # Errors
+/// A file cannot be read, or the report not be written. What is wrong with the sources is no error
+/// here but an exit code.
+pub fn check(config: &CheckConfig, out: &mut dyn Write) -> Result<ExitCode, RunError> {
+    let programs = collect::programs(&config.paths)?;
+    let files = programs.iter().map(|program| program.inputs.len()).sum();
+    let findings = programs.into_iter().map(|program| inspect(program.inputs, program.plan.as_ref()));
+    let report = Report { files, findings: findings.collect() };
+    let written = match config.format {
+        CheckFormat::Human => human::write(&report, out),
+        CheckFormat::Json => json::write(&report, out),
+        CheckFormat::Sarif => sarif::write(&report, out),
+    };
+    written.map_err(RunError::Output)?;
+    Ok(report.exit_code(config.warnings))
+}

@@ -1,0 +1,45 @@
+//! What was found in all programs.
+
+use std::collections::BTreeSet;
+
+use onescan_plc_shim::{Diagnostics, Finding, Severity};
+
+use super::Warnings;
+use crate::run::error::ExitCode;
+
+/// What was found.
+#[derive(Debug)]
+pub struct Report {
+    /// How many files were read.
+    pub files: usize,
+    /// The findings of each program.
+    pub findings: Vec<Diagnostics>,
+}
+
+impl Report {
+    /// Every finding, in order of programs, files and places.
+    pub fn iter(&self) -> impl Iterator<Item = &Finding> {
+        self.findings.iter().flat_map(Diagnostics::findings)
+    }
+
+    /// How many findings are this grave.
+    pub fn count(&self, severity: Severity) -> usize {
+        self.iter().filter(|finding| finding.diagnostic().severity == severity).count()
+    }
+
+    /// How many files have findings.
+    pub fn concerned(&self) -> usize {
+        self.iter().map(Finding::file).collect::<BTreeSet<_>>().len()
+    }
+
+    /// What the program tells the shell.
+    pub fn exit_code(&self, warnings: Warnings) -> ExitCode {
+        if self.count(Severity::Error) > 0 {
+            ExitCode::WrongInput
+        } else if warnings == Warnings::Denied && self.count(Severity::Warning) > 0 {
+            ExitCode::Unequal
+        } else {
+            ExitCode::Ok
+        }
+    }
+}

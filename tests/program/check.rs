@@ -1,0 +1,196 @@
+//! `check` and `explain` as they are typed: what is found, for people and for machines.
+
+use std::path::Path;
+
+use crate::typed::{Said, copied_shear, edit, scenario, typed};
+
+/// A folder with these files.
+fn folder(files: &[(&str, &[u8])]) -> tempfile::TempDir {
+    let folder = tempfile::tempdir().unwrap();
+    for (name, bytes) in files {
+        let path = folder.path().join(name);
+        std::fs::create_dir_all(path.parent().unwrap()).unwrap();
+        std::fs::write(path, bytes).unwrap();
+    }
+    folder
+}
+
+fn checked(folder: &Path, words: &[&str]) -> Said {
+    let mut all = vec!["check"];
+    all.extend_from_slice(words);
+    let said = typed(folder, &all);
+    assert!(!said.err.contains("panicked"), "{said:?}");
+    said
+}
+
+const CLEAN: &[u8] = b"PROGRAM Main VAR_OUTPUT o : INT; END_VAR o := o + 1; END_PROGRAM\n";
+
+/// An error, a warning of the compiler, and a file that is good.
+const WRONG: &[(&str, &[u8])] = &[
+    ("a.st", b"PROGRAM A\nVAR level : INT; END_VAR\n  level := levle + 1;\n  ABS(level);\nEND_PROGRAM\n"),
+    ("b/good.st", CLEAN),
+];
+
+const POU: &[u8] = br#"<?xml version="1.0" encoding="utf-8"?>
+<TcPlcObject Version="1.1.0.1">
+  <POU Name="FB_Ramp">
+    <Declaration><![CDATA[FUNCTION_BLOCK FB_Ramp
+VAR_INPUT up : BOOL; END_VAR
+VAR_OUTPUT level : INT; END_VAR]]></Declaration>
+    <Implementation>
+      <ST><![CDATA[IF up THEN
+  level := levle + 1;
+END_IF]]></ST>
+    </Implementation>
+    <Method Name="Reset"><Declaration><![CDATA[METHOD Reset]]></Declaration></Method>
+  </POU>
+</TcPlcObject>
+"#;
+
+#[test]
+fn all_is_well() {
+    let folder = folder(&[("main.st", CLEAN)]);
+    let said = checked(folder.path(), &["main.st"]);
+    assert_eq!((said.code, said.out.as_str(), said.err.as_str()), (Some(0), "1 file, no findings\n", ""));
+    assert_eq!(checked(folder.path(), &["main.st", "./main.st", "."]).out, "1 file, no findings\n");
+    assert_eq!(checked(folder.path(), &["main.st", "--format", "json"]).out, "");
+}
+
+#[test]
+fn findings_read_well() {
+    let said = checked(folder(WRONG).path(), &["."]);
+    assert_eq!((said.code, said.err.as_str()), (Some(2), ""), "{said:?}");
+    insta::assert_snapshot!(said.out);
+}
+
+#[test]
+fn findings_are_json_lines() {
+    let said = checked(folder(WRONG).path(), &[".", "--format", "json"]);
+    assert_eq!(said.code, Some(2));
+    insta::assert_snapshot!(said.out);
+}
+
+#[test]
+fn findings_are_a_sarif_log() {
+    let said = checked(folder(WRONG).path(), &[".", "--format", "sarif"]);
+    assert_eq!(said.code, Some(2));
+    let mut log: serde_json::Value = serde_json::from_str(&said.out).unwrap();
+    let driver = &mut log["runs"][0]["tool"]["driver"];
+    let rules = driver["rules"].as_array_mut().unwrap();
+    assert!(rules.len() > 40 && rules.iter().all(|rule| rule["id"].is_string()));
+    let named = rules.iter().position(|rule| rule["id"] == "N0101").unwrap();
+    assert_eq!(log["runs"][0]["results"][0]["ruleIndex"], named);
+    log["runs"][0]["tool"]["driver"]["rules"] = "left out".into();
+    log["runs"][0]["tool"]["driver"]["version"] = "left out".into();
+    for result in log["runs"][0]["results"].as_array_mut().unwrap() {
+        result["ruleIndex"] = "left out".into();
+    }
+    insta::assert_snapshot!(serde_json::to_string_pretty(&log).unwrap());
+}
+
+#[test]
+fn places_in_twincat_files_are_those_of_the_file() {
+    let folder = folder(&[("POUs/FB_Ramp.TcPOU", POU)]);
+    let said = checked(folder.path(), &["."]);
+    assert_eq!(said.code, Some(2), "{said:?}");
+    insta::assert_snapshot!(said.out);
+}
+
+#[test]
+fn a_project_says_which_files_are_meant() {
+    let project = br#"<Project><ItemGroup>
+        <Compile Include="POUs\Main.TcPOU"/><Compile Include="Task.TcTTO"/>
+    </ItemGroup></Project>"#;
+    let main = br"<TcPlcObject><POU Name='Main'><Declaration><![CDATA[PROGRAM Main]]></Declaration>
+        <Implementation><ST><![CDATA[]]></ST></Implementation></POU></TcPlcObject>";
+    let folder = folder(&[("plc.plcproj", project), ("POUs/Main.TcPOU", main), ("POUs/Old.TcPOU", b"left over")]);
+    for words in ["plc.plcproj", "."] {
+        assert_eq!(checked(folder.path(), &[words]).out, "1 file, no findings\n");
+    }
+}
+
+#[test]
+fn the_sources_of_a_scenario_are_clean() {
+    let said = checked(&scenario("shear"), &["."]);
+    assert_eq!((said.code, said.out.as_str()), (Some(0), "2 files, no findings\n"), "{said:?}");
+    let folder = copied_shear();
+    edit(folder.path(), "plc/alignment.st", "a.Q AND b.Q", "a.Q AND bb.Q");
+    let said = checked(folder.path(), &["scenario.toml"]);
+    assert_eq!(said.code, Some(2));
+    assert!(said.out.ends_with("1 error in 1 file\n"), "{said:?}");
+}
+
+#[test]
+fn warnings_fail_only_where_they_are_denied() {
+    let folder = folder(&[("w.st", b"PROGRAM P VAR x : INT; END_VAR END_PROGRAM")]);
+    let said = checked(folder.path(), &["w.st"]);
+    assert!(said.code == Some(0) && said.out.ends_with("1 warning in 1 file\n"), "{said:?}");
+    assert_eq!(checked(folder.path(), &["w.st", "--deny-warnings"]).code, Some(1));
+    std::fs::write(folder.path().join("e.st"), "PROGRAM E x := 1; END_PROGRAM").unwrap();
+    assert_eq!(checked(folder.path(), &["w.st", "e.st", "--deny-warnings"]).code, Some(2));
+}
+
+#[test]
+fn files_that_are_no_sources_are_told() {
+    let folder = folder(&[("notes.txt", b"x"), ("empty/readme.md", b"")]);
+    let cases = [
+        (&["missing.st"][..], "missing.st: "),
+        (&["missing.txt"], "missing.txt: "),
+        (&["notes.txt"], "notes.txt is of no kind that is read"),
+        (&["empty"], "there are no PLC sources here"),
+        (&[], "<FILE|FOLDER|SCENARIO>"),
+    ];
+    for (words, message) in cases {
+        let said = checked(folder.path(), words);
+        assert_eq!((said.code, said.out.as_str()), (Some(2), ""), "{said:?}");
+        assert!(said.err.contains(message), "{words:?} {said:?}");
+    }
+}
+
+#[test]
+fn strange_files_give_findings_and_never_a_panic() {
+    let huge = format!("PROGRAM P VAR x : INT; END_VAR {} y := 1; END_PROGRAM", "x := x + 1;".repeat(50_000));
+    let garbage: Vec<u8> = (0..20_000_u32).map(|at| (at.wrapping_mul(2_654_435_761) >> 13) as u8 | 1).collect();
+    let files: &[(&str, &[u8])] = &[
+        ("empty.st", b""),
+        ("blank.TcPOU", b""),
+        ("binary.st", b"\x7fELF\x02\x01\0\0"),
+        ("garbage.st", &garbage),
+        ("garbage.TcPOU", &garbage),
+        ("garbage.xml", &garbage),
+        ("huge.st", huge.as_bytes()),
+        ("half.TcPOU", &POU[..POU.len() / 2]),
+        ("latin.st", b"(* F\xf6rderband *) PROGRAM P VAR_OUTPUT x : INT; END_VAR x := 1; END_PROGRAM"),
+        ("wide.st", b"\xff\xfe;\0\n\0"),
+        ("odd.st", b"\xff\xfe;\0\n"),
+        ("page.xml", b"<html/>"),
+    ];
+    let folder = folder(files);
+    let mut table = String::new();
+    for (name, _) in files {
+        let said = checked(folder.path(), &[name]);
+        let last = said.out.lines().last().unwrap_or_default();
+        let first = said.out.lines().find(|line| !line.trim().is_empty()).unwrap_or_default();
+        let first: String = first.chars().take(90).collect();
+        // What is found in garbage is of no interest, only that it is.
+        let shown = if name.starts_with("garbage.st") { "garbage" } else { first.trim() };
+        let last = if name.starts_with("garbage.st") { "" } else { last };
+        table.push_str(&format!("{name}: {} | {shown} | {last}\n", said.code.unwrap()));
+        assert!(said.out.len() < 200_000, "{name}: {} bytes", said.out.len());
+    }
+    insta::assert_snapshot!(table);
+}
+
+#[test]
+fn codes_are_explained() {
+    let here = Path::new(".");
+    let said = typed(here, &["explain", "w0703"]);
+    assert_eq!(said.code, Some(0), "{said:?}");
+    insta::assert_snapshot!(said.out);
+    let list = typed(here, &["explain", "--list"]).out;
+    assert!(list.contains("N0101  a name is not declared\n") && list.lines().count() > 40, "{list}");
+    let said = typed(here, &["explain", "X1"]);
+    assert_eq!((said.code, said.out.as_str()), (Some(2), ""));
+    assert!(said.err.contains("there is no code `X1`"), "{said:?}");
+    assert_eq!(typed(here, &["explain"]).code, Some(2));
+}
