@@ -16,7 +16,8 @@ pub struct Variable {
     pub offset: u32,
     /// Its size in bytes.
     pub size: u32,
-    /// Its elementary type; nothing for structures, arrays and instances. A value of an
+    /// Its elementary type; nothing for structures, arrays, instances and strings, whose
+    /// length stands in `type_name` (`STRING[80]`). A value of an
     /// enumeration or subrange is one of its base type.
     pub ty: Option<ElementaryType>,
     /// The name of its type.

@@ -1,6 +1,6 @@
 //! Inputs of which a unit sees the edges, `R_EDGE` and `F_EDGE` (2nd ed. 2.5.2.2, Table 33).
 //!
-//! The unit behaves as if it had an instance of R_TRIG or F_TRIG for the input, called once at its
+//! The unit behaves as if it had an instance of `R_TRIG` or `F_TRIG` for the input, called once at its
 //! beginning, and used its Q instead of the input.
 
 use super::scope::Body;

@@ -14,5 +14,6 @@ mod shear;
 mod standard_blocks;
 mod standard_functions;
 mod states;
+mod string_expressions;
 mod strings;
 mod subranges;
