@@ -6,7 +6,7 @@
 
 use std::collections::BTreeMap;
 
-use onescan_plc_shim::{Application, ElementaryType as PlcType, Variable};
+use onescan_plc_shim::{Application, Variable};
 use onescan_server::signal::{ClientName, ElementaryType, Port, SignalDecl, SignalName, nearest};
 use thiserror::Error;
 
@@ -109,7 +109,7 @@ fn inputs_named(application: &Application, signal: &SignalName) -> Vec<Variable>
 }
 
 fn checked_offset(signal: &SignalDecl, variable: &Variable) -> Result<usize, BindError> {
-    if variable.ty.map(session_type) == Some(signal.ty) {
+    if session_type(variable) == Some(signal.ty) {
         return Ok(variable.offset as usize);
     }
     Err(BindError {
@@ -122,27 +122,10 @@ fn checked_offset(signal: &SignalDecl, variable: &Variable) -> Result<usize, Bin
     })
 }
 
-/// The same type in the session's words; both follow the standard's encoding.
-fn session_type(ty: PlcType) -> ElementaryType {
-    match ty {
-        PlcType::Bool => ElementaryType::Bool,
-        PlcType::Sint => ElementaryType::Sint,
-        PlcType::Int => ElementaryType::Int,
-        PlcType::Dint => ElementaryType::Dint,
-        PlcType::Lint => ElementaryType::Lint,
-        PlcType::Usint => ElementaryType::Usint,
-        PlcType::Uint => ElementaryType::Uint,
-        PlcType::Udint => ElementaryType::Udint,
-        PlcType::Ulint => ElementaryType::Ulint,
-        PlcType::Byte => ElementaryType::Byte,
-        PlcType::Word => ElementaryType::Word,
-        PlcType::Dword => ElementaryType::Dword,
-        PlcType::Lword => ElementaryType::Lword,
-        PlcType::Real => ElementaryType::Real,
-        PlcType::Lreal => ElementaryType::Lreal,
-        PlcType::Time => ElementaryType::Time,
-        PlcType::Ltime => ElementaryType::Ltime,
-    }
+/// The variable's type in the session's words. Both sides name types as the standard does and hold
+/// their values in the same bytes; a string's type is its name with its length.
+fn session_type(variable: &Variable) -> Option<ElementaryType> {
+    variable.ty.map_or(variable.type_name.as_str(), |ty| ty.name()).parse().ok()
 }
 
 #[cfg(test)]
@@ -152,7 +135,8 @@ mod tests {
     const SOURCE: &str = "
         PROGRAM A VAR_INPUT Start : BOOL; END_VAR VAR_OUTPUT Level : LREAL; END_VAR VAR n : INT; END_VAR
         Level := 1.0; END_PROGRAM
-        PROGRAM B VAR_INPUT start : BOOL; END_VAR VAR_OUTPUT Lamp : BOOL; END_VAR Lamp := start; END_PROGRAM";
+        PROGRAM B VAR_INPUT start : BOOL; END_VAR VAR_OUTPUT Lamp : BOOL; Text : STRING[12]; END_VAR
+        Lamp := start; END_PROGRAM";
 
     fn bound(signals: &[(&str, ElementaryType, &str)], paths: &[(&str, &str)]) -> Result<Bindings, BindError> {
         let application = Application::from_sources([("a.st", SOURCE)]).unwrap();
@@ -177,6 +161,17 @@ mod tests {
         let bindings = bound(&[("Count", ElementaryType::Int, "plc")], &[("Count", "A.n")]).unwrap();
         assert_eq!(bindings.outputs.len(), 1);
         assert_eq!(bound(&[("Other", ElementaryType::Int, "plant")], &[]).unwrap(), Bindings::default());
+    }
+
+    #[test]
+    fn every_elementary_type_of_the_plc_is_one_of_the_session() {
+        for ty in onescan_plc_shim::ElementaryType::ALL {
+            let parsed: ElementaryType = ty.name().parse().unwrap();
+            assert_eq!(parsed.size(), ty.size() as usize, "{}", ty.name());
+        }
+        assert_eq!(bound(&[("Text", ElementaryType::String(12), "plc")], &[]).unwrap().outputs.len(), 1);
+        let error = bound(&[("Text", ElementaryType::String(80), "plc")], &[]).unwrap_err();
+        assert_eq!(error.to_string(), "signal `Text` is STRING[80], but `B.Text` is STRING[12]");
     }
 
     #[test]

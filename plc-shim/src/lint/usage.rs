@@ -100,7 +100,7 @@ impl Collector<'_> {
                     field.initial.iter().for_each(|initial| self.initialiser(initial));
                 }
             }
-            TypeSpecKind::Enumeration(values) => {
+            TypeSpecKind::Enumeration(values, _) => {
                 values.iter().filter_map(|value| value.value.as_ref()).for_each(|value| walk::expression(value, self));
             }
             _ => {}
