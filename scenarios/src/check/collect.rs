@@ -69,16 +69,14 @@ struct Files {
 impl Files {
     /// A file that was named: it must be one that is read.
     fn named(&mut self, path: &Path) -> Result<(), RunError> {
-        match FileKind::of(path) {
-            Some(kind) => self.file(path, kind),
-            None => {
-                // A missing file is told before its wrong name.
-                std::fs::metadata(path).map_err(|source| unreadable(path, source))?;
-                let known: Vec<_> = EXTENSIONS.iter().map(|(extension, _)| format!(".{extension}")).collect();
-                let help = format!("files with PLC sources end in {}", known.join(" "));
-                Err(RunError::usage(format!("{} is of no kind that is read", path.display()), Some(help)))
-            }
+        if let Some(kind) = FileKind::of(path) {
+            return self.file(path, kind);
         }
+        // A missing file is told before its wrong name.
+        std::fs::metadata(path).map_err(|source| unreadable(path, source))?;
+        let known: Vec<_> = EXTENSIONS.iter().map(|(extension, _)| format!(".{extension}")).collect();
+        let help = format!("files with PLC sources end in {}", known.join(" "));
+        Err(RunError::usage(format!("{} is of no kind that is read", path.display()), Some(help)))
     }
 
     fn file(&mut self, path: &Path, kind: FileKind) -> Result<(), RunError> {

@@ -130,12 +130,12 @@ pub struct ControlArgs {
 /// Options of `check`.
 #[derive(Debug, ClapArgs)]
 pub struct CheckArgs {
-    /// Source files (.st .iec .exp .scl .TcPOU .TcDUT .TcGVL .TcIO .plcproj .xml), folders with such
+    /// Source files (`.st .iec .exp .scl .TcPOU .TcDUT .TcGVL .TcIO .plcproj .xml`), folders with such
     /// files, or scenarios; files and folders are checked together, as one program
     #[arg(required = true, value_name = "FILE|FOLDER|SCENARIO")]
     pub paths: Vec<PathBuf>,
-    /// `human`; `json`: an object a finding with code, severity, file, line, column, end_line,
-    /// end_column, message, help; `sarif`: a SARIF 2.1.0 log
+    /// `human`; `json`: an object a finding with `code`, `severity`, `file`, `line`, `column`,
+    /// `end_line`, `end_column`, `message`, `help`; `sarif`: a SARIF 2.1.0 log
     #[arg(long, value_enum, default_value_t)]
     pub format: CheckFormatArg,
     /// Fail with exit code 1 if there are warnings

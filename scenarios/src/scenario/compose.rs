@@ -5,7 +5,8 @@ use std::path::PathBuf;
 use miette::{NamedSource, SourceSpan};
 use onescan_clients::plant::{Plant, SceneError, SceneFault};
 use onescan_clients::soft_plc::{SoftPlcClient, bind};
-use onescan_plc_shim::{Application, Task, TaskPlan};
+use onescan_plc_shim::input::kind::{FileKind, SourceKind};
+use onescan_plc_shim::{Application, Input, Task, TaskPlan};
 use onescan_server::client::Client;
 use onescan_server::signal::{ClientName, SignalName, nearest};
 
@@ -60,6 +61,21 @@ impl Scenario {
         })
     }
 
+    /// A source of PLC `name`, in whatever form and encoding it is; one of an unknown kind is text.
+    fn source(&self, name: &ClientName, source: &str) -> Result<Input, ScenarioError> {
+        let path = self.folder().join(source);
+        let kind = match FileKind::of(&path) {
+            Some(FileKind::Source(kind)) => kind,
+            Some(FileKind::Project) => {
+                let help = "name its files, or run `onescan check` on it to see them".to_owned();
+                return Err(self.wrong_client(name, format!("`{source}` is a project, not a source"), Some(help)));
+            }
+            None => SourceKind::Text,
+        };
+        let bytes = std::fs::read(&path).map_err(|source| ScenarioError::Unreadable { path, source, help: None })?;
+        Ok(Input::read(source, kind, &bytes))
+    }
+
     fn soft_plc(
         &self,
         name: &ClientName,
@@ -67,11 +83,11 @@ impl Scenario {
         tasks: &[TaskFile],
         paths: &std::collections::BTreeMap<SignalName, String>,
     ) -> Result<SoftPlcClient, ScenarioError> {
-        let mut files = Vec::with_capacity(sources.len());
+        let mut inputs = Vec::with_capacity(sources.len());
         for source in sources {
-            files.push((source.clone(), read(&self.folder().join(source))?));
+            inputs.push(self.source(name, source)?);
         }
-        let application = Application::from_sources(files)
+        let application = Application::from_inputs(inputs)
             .map_err(|findings| Box::new(PlcReport { client: name.clone(), findings }))?;
         for warning in application.warnings().iter() {
             tracing::warn!(code = %warning.code, "{}", warning.message);
