@@ -56,6 +56,19 @@ fn load_does_not_matter() {
     });
 }
 
+/// A source is the same program in any encoding, with any line ends.
+#[test]
+fn encoding_of_the_sources_does_not_matter() {
+    let folder = crate::typed::copied_shear();
+    let path = folder.path().join("plc/shear.st");
+    let text = std::fs::read_to_string(&path).unwrap().replace('\n', "\r\n");
+    let utf16: Vec<u8> = std::iter::once(0xfeff).chain(text.encode_utf16()).flat_map(u16::to_le_bytes).collect();
+    std::fs::write(&path, utf16).unwrap();
+    let said = typed(folder.path(), &["run", ".", "--format", "json", "--until", "2s"]);
+    let report = serde_json::from_str(&said.out).unwrap_or_else(|_| panic!("{said:?}"));
+    assert_eq!(digests(&[report]), [shear_digest()]);
+}
+
 #[test]
 fn log_level_recording_and_plot_do_not_matter() {
     let folder = tempfile::tempdir().unwrap();
