@@ -13,7 +13,7 @@
 //! | any | [`Session::fail`], [`Session::control`] |
 //!
 //! There is no other way to change it, so what holds for every order of these calls holds for every
-//! transport. `tests/model_check.rs` explores those orders.
+//! transport. `tests/proofs` explores those orders.
 
 use std::sync::Arc;
 
