@@ -224,8 +224,9 @@ impl Lockstep {
                 self.begin()?;
             }
             ServerState::PreRead => {
-                let next = self.session.t_v() + self.session.step();
-                self.pacer.hold_until(next);
+                if self.session.cycle().pass() == 0 {
+                    self.pacer.hold_until(self.session.t_v() + self.session.step());
+                }
                 self.acknowledge();
             }
             ServerState::Read => {
