@@ -17,15 +17,17 @@ use onescan_server::time::VirtualTime;
 
 use super::item::Items;
 use super::link::{OpcLink, Route};
-use super::wheel::{Clock, Halt, Wheel};
+use super::wheel::{Halt, Wheel};
 use crate::scenario::file::FreewheelFile;
+
+pub use super::wheel::Clock;
 
 /// A client and the clock it keeps.
 pub struct Freewheeler {
     /// The client.
     pub client: Box<dyn Client>,
-    /// True for a PLC, which keeps its cycle by a timer; a simulation tool pauses between its steps.
-    pub is_plc: bool,
+    /// How it keeps its cycle.
+    pub clock: Clock,
 }
 
 /// What free-wheeling left: a session that replays it, cycle by cycle, so that it is digested,
@@ -121,7 +123,7 @@ fn connect(clients: Vec<Freewheeler>, requests: &[JoinRequest], link: &Freewheel
         .map(|(client, request)| Wheel {
             client: client.client,
             period: request.period,
-            clock: if client.is_plc { Clock::Grid } else { Clock::Pause },
+            clock: client.clock,
             inputs: Arc::new(Items::new(&PortLayout::new(request.reads.clone()))),
             outputs: Arc::new(Items::new(&PortLayout::new(request.writes.clone()))),
             recorded: Vec::new(),

@@ -11,7 +11,7 @@ use super::item::Items;
 
 /// How a client keeps its cycle.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Clock {
+pub enum Clock {
     /// A timer that fires on a grid, as a PLC's: a late cycle does not delay those after it.
     Grid,
     /// A pause after each cycle, as a simulation tool's: a late cycle delays all after it.

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use std::time::Duration;
 
 use onescan_server::pacing::Pace;
-use onescan_server::signal::{SignalName, nearest};
+use onescan_server::signal::{SignalName, did_you_mean};
 use onescan_server::time::VirtualTime;
 
 use super::error::RunError;
@@ -111,7 +111,7 @@ impl RunConfig {
         for signal in &self.signals {
             if !scenario.file().signals.contains_key(signal) {
                 let known = scenario.file().signals.keys().map(SignalName::as_str);
-                let help = nearest(signal.as_str(), known).map(|name| format!("did you mean `{name}`?"));
+                let help = did_you_mean(signal.as_str(), known);
                 return Err(RunError::usage(format!("the scenario has no signal `{signal}`"), help));
             }
         }

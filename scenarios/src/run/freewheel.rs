@@ -11,7 +11,7 @@ use super::config::RunConfig;
 use super::error::RunError;
 use super::interrupt::Interrupt;
 use super::progress::Progress;
-use crate::freewheel::run::{Freewheeler, Trace};
+use crate::freewheel::run::{Clock, Freewheeler, Trace};
 use crate::scenario::Scenario;
 use crate::scenario::compose::Member;
 
@@ -26,8 +26,8 @@ pub(super) fn run(
     let mut clients = Vec::new();
     for name in scenario.plan().clients() {
         match scenario.member(name)? {
-            Member::Plant(client) => clients.push(Freewheeler { client, is_plc: false }),
-            Member::Plc(client) => clients.push(Freewheeler { client, is_plc: true }),
+            Member::Plant(client) => clients.push(Freewheeler { client, clock: Clock::Pause }),
+            Member::Plc(client) => clients.push(Freewheeler { client, clock: Clock::Grid }),
             Member::External(_) => {
                 return Err(RunError::usage(format!("client `{name}` can only take part in lockstep"), None));
             }

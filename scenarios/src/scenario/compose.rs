@@ -8,7 +8,7 @@ use onescan_clients::soft_plc::{SoftPlcClient, bind};
 use onescan_plc_shim::input::kind::{FileKind, SourceKind};
 use onescan_plc_shim::{Application, Input, Task, TaskPlan};
 use onescan_server::client::Client;
-use onescan_server::signal::{ClientName, SignalName, nearest};
+use onescan_server::signal::{ClientName, SignalName, did_you_mean};
 
 use super::error::{PlcReport, ScenarioError, SceneReport};
 use super::file::{ClientFile, TaskFile};
@@ -31,8 +31,7 @@ impl Scenario {
     /// No such client, or its files are wrong.
     pub fn member(&self, name: &ClientName) -> Result<Member, ScenarioError> {
         let Some(entry) = self.file().clients.get(name) else {
-            let help = nearest(name.as_str(), self.file().clients.keys().map(ClientName::as_str));
-            let help = help.map(|name| format!("did you mean `{name}`?"));
+            let help = did_you_mean(name.as_str(), self.file().clients.keys().map(ClientName::as_str));
             return Err(self.wrong_client(name, format!("the scenario has no client `{name}`"), help));
         };
         match entry.get_ref() {
@@ -93,8 +92,7 @@ impl Scenario {
             tracing::warn!(code = %warning.code, "{}", warning.message);
         }
         if let Some(unknown) = paths.keys().find(|signal| !self.file().signals.contains_key(*signal)) {
-            let help = nearest(unknown.as_str(), self.file().signals.keys().map(SignalName::as_str));
-            let help = help.map(|name| format!("did you mean `{name}`?"));
+            let help = did_you_mean(unknown.as_str(), self.file().signals.keys().map(SignalName::as_str));
             return Err(self.wrong_client(
                 name,
                 format!("`bind` names a signal `{unknown}` that is not declared"),

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use miette::{NamedSource, SourceSpan};
 use onescan_server::plan::{Coupling, PlanError, SessionPlan};
-use onescan_server::signal::{ClientName, SignalDecl, SignalName, nearest};
+use onescan_server::signal::{ClientName, SignalDecl, SignalName, did_you_mean};
 use onescan_server::time::TimeSpan;
 
 use super::error::ScenarioError;
@@ -57,8 +57,7 @@ impl Scenario {
         for signal in &file.plot.signals {
             if !file.signals.contains_key(signal.get_ref()) {
                 let message = format!("the plot shows a signal `{}` that is not declared", signal.get_ref());
-                let help = nearest(signal.get_ref().as_str(), file.signals.keys().map(SignalName::as_str));
-                let help = help.map(|name| format!("did you mean `{name}`?"));
+                let help = did_you_mean(signal.get_ref().as_str(), file.signals.keys().map(SignalName::as_str));
                 return Err(wrong(message, Some(signal.span()), help));
             }
         }

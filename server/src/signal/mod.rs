@@ -13,7 +13,7 @@ pub mod port;
 use serde::{Deserialize, Serialize};
 
 pub use elementary::{BadValue, ElementaryType, UnknownType};
-pub use name::{BadName, ClientName, SignalName, nearest};
+pub use name::{BadName, ClientName, SignalName, did_you_mean, nearest};
 pub use port::{Port, PortLayout, Slot, SlotError, SlotType};
 
 /// The index of a signal in its session: the rank of its name.
