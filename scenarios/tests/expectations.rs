@@ -21,7 +21,7 @@ fn known() -> Vec<KnownSignal> {
 /// Judges samples 100 ms apart of the signals in the order in which the formula names them.
 fn judge(formula: &str, samples: &[&[f64]]) -> Outcome {
     let mut columns = Vec::new();
-    let expectation = Expectation::parse(formula, &known(), &mut columns).unwrap();
+    let expectation = Expectation::parse(formula, &known(), &mut columns).expect("a formula");
     expectation.judge(&trace(samples))
 }
 
@@ -34,7 +34,7 @@ fn trace(samples: &[&[f64]]) -> Trace {
 }
 
 fn refused(formula: &str) -> FormulaError {
-    Expectation::parse(formula, &known(), &mut Vec::new()).unwrap_err()
+    Expectation::parse(formula, &known(), &mut Vec::new()).expect_err("no formula")
 }
 
 /// The sample at which an expectation is violated.

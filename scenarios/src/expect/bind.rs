@@ -98,6 +98,8 @@ struct Binder<'a> {
 }
 
 type Measured = (Box<Term<usize>>, Measure);
+/// Two terms in one unit.
+type Alike = (Box<Term<usize>>, Box<Term<usize>>, Measure);
 
 impl<'a> Binder<'a> {
     fn formula(&mut self, formula: Formula<Written>) -> Bound<Formula<usize>> {
@@ -225,11 +227,7 @@ impl<'a> Binder<'a> {
 
     /// Two terms in one unit: that of the left one, unless the left one is a number and the right
     /// one is not, so that what is measured is compared as it is.
-    fn alike(
-        &mut self,
-        left: Term<Written>,
-        right: Term<Written>,
-    ) -> Bound<(Box<Term<usize>>, Box<Term<usize>>, Measure)> {
+    fn alike(&mut self, left: Term<Written>, right: Term<Written>) -> Bound<Alike> {
         let place = left.place.start..right.place.end;
         let ((left, left_measure), (right, right_measure)) = (self.term(left)?, self.term(right)?);
         let incommensurable = || {
@@ -243,20 +241,20 @@ impl<'a> Binder<'a> {
             (Measure::Unit(one), Measure::Unit(other)) => {
                 if matches!(left.kind, TermKind::Number(..)) {
                     let factor = one.factor_to(*other).ok_or_else(incommensurable)?;
-                    return Ok((scaled(left, factor), right, right_measure));
+                    return Ok((Box::new(scaled(*left, factor)), right, right_measure));
                 }
                 let factor = other.factor_to(*one).ok_or_else(incommensurable)?;
-                Ok((left, scaled(right, factor), left_measure))
+                Ok((left, Box::new(scaled(*right, factor)), left_measure))
             }
             _ => Err(incommensurable()),
         }
     }
 }
 
-fn scaled(term: Box<Term<usize>>, (times, by): (f64, f64)) -> Box<Term<usize>> {
+fn scaled(term: Term<usize>, (times, by): (f64, f64)) -> Term<usize> {
     if times == by {
         return term;
     }
     let place = term.place.clone();
-    Box::new(Term { kind: TermKind::Scaled(term, times, by), place })
+    Term { kind: TermKind::Scaled(Box::new(term), times, by), place }
 }
