@@ -139,6 +139,8 @@ pub(crate) enum Argument {
 pub(crate) enum Storage {
     /// At a fixed offset in memory.
     Absolute(u32),
+    /// The address stands at a fixed offset (a global of the running resource).
+    AbsolutePointer(u32),
     /// At an offset in the running instance.
     Instance(u32),
     /// The address stands at an offset in the running instance (`VAR_IN_OUT`).
