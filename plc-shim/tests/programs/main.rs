@@ -2,6 +2,7 @@
 
 mod dates;
 mod diagnostics;
+mod dialects;
 mod expressions;
 mod faults;
 mod inputs;
@@ -10,6 +11,7 @@ mod lints;
 mod rig;
 mod robustness;
 mod scheduling;
+mod scl;
 mod shear;
 mod standard_blocks;
 mod standard_functions;
