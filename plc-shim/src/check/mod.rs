@@ -12,6 +12,7 @@
 //! | [`convert`] | implicit conversions, constants in context |
 //! | [`expression`], [`operator`], [`calendar`], [`place`] | expressions |
 //! | [`call`], [`standard_function`], [`conversion_function`] | calls |
+//! | [`enable`], [`enable_error`] | EN and ENO |
 //! | [`text`], [`text_function`], [`text_conversion`] | character strings |
 //! | [`statement`], [`edge`] | statements |
 //! | [`recursion`] | who calls whom |
@@ -25,6 +26,8 @@ mod constant;
 mod conversion_function;
 mod convert;
 mod edge;
+mod enable;
+mod enable_error;
 mod expression;
 mod initial;
 mod layout;

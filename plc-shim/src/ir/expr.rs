@@ -35,6 +35,8 @@ pub(crate) enum ExprKind {
     /// On character strings.
     Text(Box<TextCall>),
     Call(Box<FunctionCall>),
+    /// Runs the statements, then yields the value; none for what has no result.
+    After(Vec<Statement>, Option<Box<Expr>>),
 }
 
 /// What becomes of a fraction when a real becomes an integer.
