@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use super::convert::{Operand, constant};
 use super::enable;
+use super::function_form;
 use super::scope::{Body, Scope};
 use super::standard_function;
 use super::variables::decode;
@@ -106,7 +107,7 @@ impl Body<'_, '_> {
         let functions = self.checker.pous.iter().filter(|pou| pou.ast.kind == PouKind::Function);
         let functions = functions.map(|pou| pou.ast.name.text.as_str());
         let variables = self.scope.variables.iter().map(|variable| variable.name.as_str());
-        let standard: Vec<&str> = standard_function::names().collect();
+        let standard: Vec<&str> = function_form::names().collect();
         let known = functions.chain(variables).chain(standard.iter().copied());
         let help = did_you_mean(&name.text, known);
         let message = format!("there is no function or instance `{}`", name.text);

@@ -124,6 +124,8 @@ fn convert(rounding: Rounding, target: ElementaryType, value: Value) -> Value {
             let whole = match rounding {
                 Rounding::NearestEven => real.round_ties_even(),
                 Rounding::Truncate => real.trunc(),
+                Rounding::Up => real.ceil(),
+                Rounding::Down => real.floor(),
             };
             // A cast saturates and makes NaN zero, as the compiled code does.
             let (low, high) = target.range().unwrap_or((0, 0));

@@ -76,7 +76,7 @@ impl Body<'_, '_> {
     }
 
     /// A value that is used twice.
-    fn once(&mut self, expr: Expr) -> (Vec<Statement>, Expr) {
+    pub(super) fn once(&mut self, expr: Expr) -> (Vec<Statement>, Expr) {
         let mut before = Vec::new();
         let again = self.once_more(expr, &mut before);
         (before, again)
@@ -106,14 +106,14 @@ impl Body<'_, '_> {
             (Some(from), Some(to)) => Bounds::new(from, to, rounding),
             _ => None,
         };
-        let Some(Bounds { held, low, strict, high }) = bounds else {
+        let Some(Bounds { held, low, strict, high, closed }) = bounds else {
             let kind = ExprKind::Convert(rounding, Box::new(operand));
             return Guard { before: Vec::new(), sound: None, called: Expr { kind, ty, span }, after: None };
         };
         let (before, operand) = self.once(operand);
         let value = converted(operand.clone(), held, rounding);
         let above = if strict { Binary::Greater } else { Binary::GreaterEqual };
-        let below = if held.is_real() { Binary::Less } else { Binary::LessEqual };
+        let below = if closed { Binary::LessEqual } else { Binary::Less };
         let sound = both(
             comparison(above, value.clone(), constant(low, held, span)),
             comparison(below, value, constant(high, held, span)),
@@ -130,8 +130,9 @@ struct Bounds {
     low: Value,
     /// True if `low` itself is too small.
     strict: bool,
-    /// The greatest integer, or the smallest real that is too great.
     high: Value,
+    /// True if `high` itself is not too great.
+    closed: bool,
 }
 
 impl Bounds {
@@ -144,15 +145,22 @@ impl Bounds {
         if let Some((least, greatest)) = from.range() {
             let narrower = least < low || greatest > high;
             let (low, high) = (Value::Int(low.max(least)), Value::Int(high.min(greatest)));
-            return narrower.then_some(Self { held: from, low, strict: false, high });
+            return narrower.then_some(Self { held: from, low, strict: false, high, closed: true });
         }
-        // Limits are even below and odd above, so that ties go to the first and beyond the second.
-        // A 64 bit limit's neighbour is no LREAL; there the limit itself stands in.
-        let (reach, strict) = match rounding {
+        // Limits are even below and odd above, so that ties go to the first and beyond the second. A 64 bit
+        // limit's neighbour is no LREAL; there the limit itself stands in.
+        let narrow = to.size() < 8;
+        let (down, strict) = match rounding {
             Rounding::NearestEven => (0.5, false),
-            Rounding::Truncate => (1.0, to.size() < 8 || low == 0),
+            Rounding::Down => (0.0, false),
+            Rounding::Truncate | Rounding::Up => (1.0, narrow || low == 0),
         };
-        let (low, high) = (Value::Lreal(low as f64 - reach), Value::Lreal(high as f64 + reach));
-        Some(Self { held: ElementaryType::Lreal, low, strict, high })
+        let (up, closed) = match rounding {
+            Rounding::NearestEven => (0.5, false),
+            Rounding::Up => (0.0, narrow),
+            Rounding::Truncate | Rounding::Down => (1.0, false),
+        };
+        let (low, high) = (Value::Lreal(low as f64 - down), Value::Lreal(high as f64 + up));
+        Some(Self { held: ElementaryType::Lreal, low, strict, high, closed })
     }
 }

@@ -11,7 +11,7 @@
 //! | [`constant`] | constant expressions to values |
 //! | [`convert`] | implicit conversions, constants in context |
 //! | [`expression`], [`operator`], [`calendar`], [`place`] | expressions |
-//! | [`call`], [`standard_function`], [`conversion_function`] | calls |
+//! | [`call`], [`standard_function`], [`function_form`], [`conversion_function`] | calls |
 //! | [`enable`], [`enable_error`] | EN and ENO |
 //! | [`text`], [`text_function`], [`text_conversion`] | character strings |
 //! | [`statement`], [`edge`] | statements |
@@ -29,6 +29,7 @@ mod edge;
 mod enable;
 mod enable_error;
 mod expression;
+mod function_form;
 mod initial;
 mod layout;
 mod names;

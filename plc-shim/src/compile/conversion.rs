@@ -78,6 +78,8 @@ impl Emitter<'_, '_> {
         self.emit(match rounding {
             Rounding::NearestEven => Instruction::F64Nearest,
             Rounding::Truncate => Instruction::F64Trunc,
+            Rounding::Up => Instruction::F64Ceil,
+            Rounding::Down => Instruction::F64Floor,
         });
         if to.size() == 8 {
             let signed = to.is_signed();

@@ -46,6 +46,10 @@ pub(crate) enum Rounding {
     NearestEven,
     /// Towards zero (`TRUNC`).
     Truncate,
+    /// To the next greater one (`CEIL` of vendors).
+    Up,
+    /// To the next smaller one (`FLOOR` of vendors).
+    Down,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -93,6 +97,12 @@ pub(crate) enum Intrinsic {
     Asin,
     Acos,
     Atan,
+    /// Of Y and X (3rd ed. Table 28).
+    Atan2,
+    /// What lies behind the point (`FRAC` of vendors).
+    Fraction,
+    /// The same bytes in reverse order.
+    SwapBytes,
     /// Base and exponent, both of the result's type.
     Power,
     Max,
