@@ -2,11 +2,13 @@
 
 mod dates;
 mod diagnostics;
+mod direct_addresses;
 mod expressions;
 mod faults;
 mod inputs;
 mod language;
 mod lints;
+mod partial_access;
 mod rig;
 mod robustness;
 mod scheduling;
