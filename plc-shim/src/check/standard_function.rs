@@ -156,7 +156,7 @@ impl Body<'_, '_> {
         Some(Self::intrinsic(kind, operands, ty, span))
     }
 
-    /// 3rd ed. Table 38. Only a finite number lies within the limits of its type.
+    /// 3rd ed. Table 39. Only a finite number lies within the limits of its type.
     fn is_valid(&mut self, operand: Operand, span: Span) -> Option<Operand> {
         let expr = self.settle(operand)?;
         let (ty, greatest) = match self.plain_elementary(&expr) {

@@ -46,8 +46,10 @@ impl Run {
         own.or_else(|_| self.plc.variable(path)).map_err(|error| error.to_string())
     }
 
-    fn held(&self, variable: &Variable) -> &[u8] {
-        &self.plc.memory()[variable.offset as usize..][..variable.size as usize]
+    /// The bytes of a variable; a BOOL that is a bit of one as a byte.
+    fn held(&self, variable: &Variable) -> Vec<u8> {
+        let bytes = &self.plc.memory()[variable.offset as usize..][..variable.size as usize];
+        variable.bit.map_or(bytes.to_vec(), |bit| vec![bytes[0] >> bit & 1])
     }
 
     fn scan(&mut self, case: &Case, scan: usize) -> Result<(), String> {
@@ -72,7 +74,11 @@ impl Run {
     fn give(&mut self, row: &Row, scan: usize) -> Result<(), String> {
         let Some(value) = row.given(scan) else { return Ok(()) };
         let variable = self.variable(&row.path)?;
-        let bytes = encoded(value, &variable)?;
+        let mut bytes = encoded(value, &variable)?;
+        if let Some(bit) = variable.bit {
+            let others = self.plc.memory()[variable.offset as usize] & !(1 << bit);
+            bytes[0] = others | bytes[0] << bit;
+        }
         self.plc.memory_mut()[variable.offset as usize..][..bytes.len()].copy_from_slice(&bytes);
         Ok(())
     }
@@ -82,8 +88,8 @@ impl Run {
         let Some(value) = row.wanted(scan) else { return Ok(None) };
         let variable = self.variable(&row.path)?;
         let (wanted, found) = (encoded(value, &variable)?, self.held(&variable));
-        let same = cell::same(&wanted, found, &variable);
-        Ok((!same).then(|| format!("{} is {}, not {value}", row.path, cell::text(found, &variable))))
+        let same = cell::same(&wanted, &found, &variable);
+        Ok((!same).then(|| format!("{} is {}, not {value}", row.path, cell::text(&found, &variable))))
     }
 }
 
