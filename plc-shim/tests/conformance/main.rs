@@ -38,6 +38,7 @@
 mod calendar;
 mod case;
 mod cell;
+mod table;
 mod trace;
 
 use std::path::{Path, PathBuf};
