@@ -1,6 +1,7 @@
 //! Programs in, traces out: the whole way from text to a scanning PLC.
 
 mod configurations;
+mod conversions;
 mod dates;
 mod diagnostics;
 mod direct_addresses;
