@@ -2,7 +2,7 @@
 
 mod front;
 mod inspect;
-mod library;
+pub(crate) mod library;
 mod retain;
 mod variable;
 
@@ -98,11 +98,6 @@ impl Application {
 
     pub(crate) fn faults(&self) -> &FaultTable {
         &self.inner.faults
-    }
-
-    /// Position of a program among all programs.
-    pub(crate) fn program_index(&self, name: &str) -> Option<usize> {
-        self.programs().position(|program| program.name.eq_ignore_ascii_case(name))
     }
 
     /// The machine code, made once by `make`.

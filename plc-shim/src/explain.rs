@@ -17,7 +17,7 @@ const PAGES: &[(&str, &str)] = pages![
     "D0406", "D0407", "D0408", "D0409", "D0410", "D0411", "F0601", "F0602", "L0501", "L0502", "N0101", "N0102",
     "N0103", "N0104", "N0105", "N0106", "N0107", "S0101", "S0102", "S0103", "S0104", "S0105", "T0201", "T0202",
     "T0203", "T0204", "T0205", "T0206", "T0207", "T0208", "T0209", "T0210", "W0701", "W0702", "W0703", "W0704",
-    "W0705", "W0706", "W0707",
+    "W0705", "W0706", "W0707", "I1001", "I1002", "I1003", "I1004",
 ];
 
 /// The page that explains `code`, as Markdown.
@@ -40,6 +40,7 @@ mod tests {
 
     /// The codes that an example yields.
     fn codes_of((language, text): (&str, &str)) -> Vec<&'static str> {
+        let (language, instrumented) = language.strip_suffix(" instrument").map_or((language, false), |st| (st, true));
         let input = match language {
             "st" => Input::from_text("example.st", SourceKind::Text, text),
             "xml" => Input::from_text("example.TcPOU", SourceKind::TwinCat, text),
@@ -49,7 +50,15 @@ mod tests {
             }
             other => panic!("{other:?} is no language of examples"),
         };
-        let findings = crate::inspect([input], None);
+        let findings = if instrumented {
+            match crate::instrument::instrument(&[input], &crate::instrument::Options::default()) {
+                Ok(project) => project.warnings,
+                Err(crate::instrument::InstrumentError::Text(findings)) => findings,
+                Err(error) => panic!("{error}"),
+            }
+        } else {
+            crate::inspect([input], None)
+        };
         let mut codes: Vec<_> = findings.iter().map(|found| found.code.text()).collect();
         codes.dedup();
         codes

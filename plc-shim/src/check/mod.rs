@@ -51,7 +51,8 @@ use crate::ir::{Pou, PouId, Program, TypeId, TypeTable, Variable};
 use crate::syntax::ast::{CompilationUnit, PouKind};
 use crate::syntax::{FileId, Span};
 
-pub(crate) use layout::VIRTUAL_TIME_OFFSET;
+pub(crate) use layout::{VIRTUAL_TIME_NAME, VIRTUAL_TIME_OFFSET};
+pub(crate) use standard_function::exists as is_standard_function;
 
 /// The checked program.
 #[derive(Debug)]

@@ -84,7 +84,7 @@ fn find(key: &str) -> Option<Form> {
 }
 
 /// True if the standard has a function of this name, in capitals.
-pub(super) fn exists(key: &str) -> bool {
+pub(crate) fn exists(key: &str) -> bool {
     find(key).is_some() || conversion_function::find(key).is_some() || text_conversion::find(key).is_some()
 }
 

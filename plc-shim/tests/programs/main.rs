@@ -7,6 +7,7 @@ mod faults;
 mod inputs;
 mod language;
 mod lints;
+mod lockstep;
 mod rig;
 mod robustness;
 mod scheduling;

@@ -1,0 +1,274 @@
+//! The shim, attached to a project: any program made to run in lockstep (seed: Carlsson et al. 2012,
+//! sec. V).
+//!
+//! | module | subject |
+//! |---|---|
+//! | [`edits`] | changes of a text, and where its lines come from |
+//! | [`marks`] | comments that tell what was changed, and the way back |
+//! | [`diff`] | a changed file as a unified diff |
+//! | [`template`] | the shim's sources in `iec/shim` |
+//! | [`clock`] | what reads the clock, and what replaces it |
+//! | [`survey`] | programs and sources of time in a project |
+//! | [`tasks`] | the task table |
+//! | [`controller`] | execution controllers |
+//! | [`target`], [`twincat`] | the shim's sources as a vendor's tool takes them |
+//!
+//! Invariants: text goes in and comes out, no file is touched; what is not marked stays byte for byte;
+//! instrumenting twice is instrumenting once; what cannot be replaced is told.
+
+mod clock;
+mod controller;
+pub mod diff;
+pub mod edits;
+mod marks;
+mod survey;
+mod target;
+mod tasks;
+mod template;
+mod twincat;
+
+use std::path::Path;
+use std::sync::Arc;
+
+use thiserror::Error;
+
+pub use self::target::Target;
+
+use self::edits::{Conflict, Edited, Edits, LineMap};
+use self::marks::Original;
+use self::survey::{Survey, survey};
+use self::tasks::TaskTable;
+use crate::diagnostic::{Code, Diagnostic, Diagnostics, Severity};
+use crate::input::Input;
+use crate::input::encoding::Encoding;
+use crate::input::kind::{FileKind, SourceKind};
+use crate::run::{RunError, Task};
+use crate::syntax::{FileId, SourceMap, Span, parse};
+
+/// How a project is to be instrumented.
+#[derive(Debug, Clone, Default)]
+pub struct Options {
+    /// Who is to take the result.
+    pub target: Target,
+    /// The tasks; without any, all programs that no other calls run in one of 10 ms.
+    pub tasks: Option<Vec<Task>>,
+}
+
+/// Why a project cannot be instrumented.
+#[derive(Debug, Clone, Error)]
+pub enum InstrumentError {
+    /// The text is wrong.
+    #[error("{0}")]
+    Text(Diagnostics),
+    /// The tasks are wrong.
+    #[error(transparent)]
+    Tasks(#[from] RunError),
+    /// There is nothing to run.
+    #[error("there is no PROGRAM that a task could run")]
+    NoPrograms,
+    /// Two changes want the same part of a file.
+    #[error("{file}: {conflict}")]
+    Conflict {
+        /// The file.
+        file: String,
+        /// Where.
+        conflict: Conflict,
+    },
+}
+
+/// A project that has been instrumented, or whose shim has been taken off.
+#[derive(Debug, Clone)]
+pub struct Project {
+    /// Its files in their order, those of the shim last.
+    pub files: Vec<File>,
+    /// What could not be replaced.
+    pub warnings: Diagnostics,
+}
+
+/// A file of a project.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct File {
+    /// Its name; a file of the shim's own belongs beside the first file of the project.
+    pub name: String,
+    /// What it was; nothing for a new file.
+    pub before: Option<Arc<str>>,
+    /// What it is; nothing for a file that is to be deleted.
+    pub text: Option<Arc<str>>,
+    /// How it is stored.
+    pub encoding: Option<Encoding>,
+    /// Where its lines come from, without the shim.
+    pub lines: LineMap,
+}
+
+impl File {
+    /// True if it is not what it was.
+    pub fn is_changed(&self) -> bool {
+        self.before != self.text
+    }
+}
+
+/// Attaches scheduler, execution controllers and replacement timers to a project.
+///
+/// # Errors
+/// Text or tasks are wrong; see [`InstrumentError`].
+pub fn instrument(inputs: &[Input], options: &Options) -> Result<Project, InstrumentError> {
+    let plain = Plain::of(inputs)?;
+    let mut units = Vec::new();
+    let mut findings = plain.findings.clone();
+    for (id, file) in plain.sources.iter() {
+        let parsed = parse(id, file.text());
+        findings.extend(parsed.diagnostics);
+        units.push((id, parsed.unit));
+    }
+    let trees: Vec<_> = units.iter().map(|(id, unit)| (*id, unit)).collect();
+    let mut survey = survey(&trees);
+    findings.append(&mut survey.findings);
+    if findings.iter().any(|found| found.severity == Severity::Error) {
+        return Err(InstrumentError::Text(Diagnostics::new(findings, &plain.sources)));
+    }
+    let tasks = TaskTable::new(&tasks(&survey, options)?, &survey.programs)?;
+    let mut files = plain.edited(&survey, &tasks)?;
+    let mut forms: Vec<_> = survey.renames.iter().map(|(_, form)| *form).collect();
+    forms.sort_by_key(|form| form.name);
+    forms.dedup();
+    for source in target::sources(options.target, &tasks, &forms) {
+        plain.add_own(source, &mut files);
+    }
+    Ok(Project { files, warnings: Diagnostics::new(findings, &plain.sources) })
+}
+
+/// Takes the shim off: every file as it was before.
+///
+/// # Errors
+/// Marks have been damaged.
+pub fn remove(inputs: &[Input]) -> Result<Project, InstrumentError> {
+    let plain = Plain::of(inputs)?;
+    let mut files = plain.edited(&Survey::default(), &TaskTable::default())?;
+    plain.delete_own(&mut files);
+    Ok(Project { files, warnings: Diagnostics::new(Vec::new(), &plain.sources) })
+}
+
+fn tasks(survey: &Survey<'_>, options: &Options) -> Result<Vec<Task>, InstrumentError> {
+    if let Some(tasks) = &options.tasks {
+        return Ok(tasks.clone());
+    }
+    let scheduled = survey.programs.iter().filter(|program| !survey.called.contains(&program.name.key()));
+    let programs: Vec<String> = scheduled.map(|program| program.name.text.clone()).collect();
+    if programs.is_empty() {
+        return Err(InstrumentError::NoPrograms);
+    }
+    Ok(vec![Task { name: "main".to_owned(), interval_ns: 10_000_000, priority: 0, programs }])
+}
+
+/// A project without the shim.
+struct Plain {
+    sources: SourceMap,
+    /// Of each file in `sources` what it was when it was given.
+    given: Vec<Given>,
+    /// The shim's own files that were given.
+    own: Vec<Given>,
+    findings: Vec<Diagnostic>,
+}
+
+struct Given {
+    name: String,
+    text: Arc<str>,
+    encoding: Option<Encoding>,
+}
+
+impl Plain {
+    fn of(inputs: &[Input]) -> Result<Self, InstrumentError> {
+        let mut plain =
+            Self { sources: SourceMap::default(), given: Vec::new(), own: Vec::new(), findings: Vec::new() };
+        for input in inputs {
+            plain.add(input);
+        }
+        if plain.findings.iter().any(|found| found.code == Code::DamagedMarks) {
+            return Err(InstrumentError::Text(Diagnostics::new(plain.findings, &plain.sources)));
+        }
+        Ok(plain)
+    }
+
+    fn add(&mut self, input: &Input) {
+        let (name, text) = (input.file().name(), input.file().shown_text());
+        let given = Given { name: name.to_owned(), text: text.clone(), encoding: input.encoding() };
+        let kind = match FileKind::of(Path::new(name)) {
+            Some(FileKind::Source(kind)) => kind,
+            _ => SourceKind::Text,
+        };
+        let plain = match marks::original(text) {
+            Ok(Original::Nothing) => return self.own.push(given),
+            Ok(Original::Same) => input.clone(),
+            Ok(Original::Text(text)) => Input::from_text(name, kind, text),
+            Err(damaged) => return self.damaged(name, text, &damaged),
+        };
+        self.given.push(given);
+        let id = FileId(self.sources.iter().count() as u32);
+        self.findings.extend(plain.add_to(&mut self.sources));
+        if kind == SourceKind::PlcOpen {
+            let message = "PLCopen XML is not instrumented yet";
+            self.findings.push(Diagnostic::error(Code::UnsupportedFeature, Span::new(id, 0, 0), message));
+        }
+    }
+
+    fn damaged(&mut self, name: &str, text: &Arc<str>, damaged: &marks::DamagedMarks) {
+        let id = self.sources.add(crate::syntax::SourceFile::new(name, text.clone()));
+        let span = Span::new(id, damaged.at.start, damaged.at.end);
+        let found = Diagnostic::error(Code::DamagedMarks, span, damaged.message);
+        let help = "take the file from before it was instrumented, or take the marks out by hand";
+        self.findings.push(found.with_help(help));
+    }
+
+    /// The project's files with their changes.
+    fn edited(&self, survey: &Survey<'_>, tasks: &TaskTable<'_>) -> Result<Vec<File>, InstrumentError> {
+        let mut edits: Vec<Edits> = self.given.iter().map(|_| Edits::default()).collect();
+        let mut changes = |id: FileId, change: &mut dyn FnMut(&crate::syntax::SourceFile, &mut Edits)| {
+            if let (Some(file), Some(edits)) = (self.sources.get(id), edits.get_mut(id.0 as usize)) {
+                change(file, edits);
+            }
+        };
+        for (name, form) in &survey.renames {
+            changes(name.span.file, &mut |file, edits| {
+                let at = file.shown_range(name.span.start, name.span.end);
+                edits.replace(at, marks::renamed(&form.new_name(), &name.text));
+            });
+        }
+        for (index, pou) in tasks.programs.iter().enumerate() {
+            changes(pou.name.span.file, &mut |file, edits| {
+                controller::control(pou, index + 1, tasks.programs.len(), file, edits);
+            });
+        }
+        let each = self.given.iter().zip(self.sources.iter()).zip(edits);
+        each.map(|((given, (_, file)), edits)| {
+            let conflict = |conflict| InstrumentError::Conflict { file: given.name.clone(), conflict };
+            let Edited { text, lines } = edits.apply(file.shown_text()).map_err(conflict)?;
+            Ok(given.file(Some(text.into()), lines))
+        })
+        .collect()
+    }
+
+    /// Adds a file of the shim's own, or puts it in the place of the one that was given.
+    fn add_own(&self, source: target::Source, files: &mut Vec<File>) {
+        let is_it = |given: &&Given| Path::new(&given.name).file_name().is_some_and(|name| *name == *source.name);
+        let text = Some(Arc::from(source.text));
+        files.push(match self.own.iter().find(is_it) {
+            Some(given) => given.file(text, LineMap::default()),
+            None => {
+                let folder = self.given.first().and_then(|first| Path::new(&first.name).parent());
+                let name = folder.unwrap_or(Path::new("")).join(&source.name).display().to_string();
+                File { name, before: None, text, encoding: None, lines: LineMap::default() }
+            }
+        });
+    }
+
+    /// Files of the shim's own that were given are to be deleted.
+    fn delete_own(&self, files: &mut Vec<File>) {
+        files.extend(self.own.iter().map(|given| given.file(None, LineMap::default())));
+    }
+}
+
+impl Given {
+    fn file(&self, text: Option<Arc<str>>, lines: LineMap) -> File {
+        File { name: self.name.clone(), before: Some(self.text.clone()), text, encoding: self.encoding, lines }
+    }
+}
