@@ -64,10 +64,10 @@ pub(crate) struct Driver {
 }
 
 impl Driver {
-    /// A PLC that has joined session 1.
+    /// A PLC that has joined session 1000.
     pub(crate) fn joined(application: &Application, plan: &TaskPlan) -> Self {
         let mut driver = Self::started(application, plan);
-        driver.join(1);
+        driver.join(1000);
         driver
     }
 
@@ -80,7 +80,7 @@ impl Driver {
     pub(crate) fn join(&mut self, session: i64) {
         self.rig.set("SDSP_Limit", i64::from(u32::MAX));
         self.rig.set("SDSP_TV", 0);
-        self.rig.set("SDSP_Grant", 0);
+        self.rig.set("SDSP_Grant", session);
         self.rig.set("SDSP_Session", session);
         (self.session, self.grant) = (session, 0);
         self.cycles(1);
@@ -94,9 +94,15 @@ impl Driver {
         }
     }
 
+    /// Writes a grant; its number counts from the session's.
     pub(crate) fn write_grant(&mut self, number: i64, t_v: u64) {
         self.rig.set("SDSP_TV", t_v as i64);
-        self.rig.set("SDSP_Grant", number);
+        self.rig.set("SDSP_Grant", self.session + number);
+    }
+
+    /// The last grant that is done, from the session's number.
+    pub(crate) fn done(&self) -> i64 {
+        self.rig.int("SDSP_Done") - self.session
     }
 
     pub(crate) fn answer(&self) -> i64 {
@@ -110,7 +116,7 @@ impl Driver {
         (1..1000)
             .find(|_| {
                 self.cycles(1);
-                self.rig.int("SDSP_Done") == self.grant
+                self.done() == self.grant
             })
             .expect("the grant is done some time")
     }

@@ -29,14 +29,14 @@ fn a_program_runs_once_for_a_grant_however_often_it_comes() {
             (3, 3 * STEP, answer::OLD),
             (1, 9 * STEP, answer::OLD),
             (6, 6 * STEP, answer::MISSING),
-            (i64::from(u32::MAX), 6 * STEP, answer::MISSING),
+            (i64::from(u32::MAX) - 1000, 6 * STEP, answer::MISSING),
             (5, 4 * STEP, answer::TIME),
             (5, STEP, answer::TIME),
         ] {
             driver.write_grant(number, t_v);
             driver.cycles(30);
             assert_eq!(driver.answer(), expected, "grant {number} at {t_v}");
-            assert_eq!((driver.rig.int("SDSP_Done"), state(&driver.rig.plc)), (4, before.clone()));
+            assert_eq!((driver.done(), state(&driver.rig.plc)), (4, before.clone()));
         }
         driver.step(6 * STEP);
         assert_eq!(runs(&driver), [1, 3, 3, 2]);
@@ -55,31 +55,31 @@ fn grants_while_one_is_run_change_nothing() {
         assert_eq!(driver.rig.int("SDSP_Now"), 4 * STEP as i64);
     }
     driver.cycles(60);
-    assert_eq!((driver.rig.int("SDSP_Done"), runs(&driver)), (1, vec![1, 1, 1, 1]));
+    assert_eq!((driver.done(), runs(&driver)), (1, vec![1, 1, 1, 1]));
 }
 
 #[test]
 fn a_limit_stops_and_steps() {
     let mut driver = counting(Tasks::Moved);
-    driver.rig.set("SDSP_Limit", 2);
+    driver.rig.set("SDSP_Limit", 1002);
     driver.step(2 * STEP);
     driver.step(4 * STEP);
     driver.write_grant(3, 6 * STEP);
     driver.cycles(20);
-    assert_eq!((driver.answer(), driver.rig.int("SDSP_Done")), (answer::HELD, 2));
+    assert_eq!((driver.answer(), driver.done()), (answer::HELD, 2));
     // A single step.
-    driver.rig.set("SDSP_Limit", 3);
+    driver.rig.set("SDSP_Limit", 1003);
     driver.cycles(20);
-    assert_eq!((driver.answer(), driver.rig.int("SDSP_Done")), (answer::READY, 3));
+    assert_eq!((driver.answer(), driver.done()), (answer::READY, 3));
 }
 
 #[test]
 fn a_session_begins_before_any_program_has_run() {
     let mut driver = counting(Tasks::Moved);
     driver.step(2 * STEP);
-    driver.rig.set("SDSP_Session", 2);
+    driver.rig.set("SDSP_Session", 2000);
     driver.cycles(20);
-    assert_eq!((driver.answer(), driver.rig.int("SDSP_Joined")), (answer::NOT_FRESH, 1));
+    assert_eq!((driver.answer(), driver.rig.int("SDSP_Joined")), (answer::NOT_FRESH, 1000));
     // Reset: the session is left, and the PLC must be started for the next.
     driver.rig.set("SDSP_Session", 0);
     driver.cycles(20);
@@ -87,11 +87,11 @@ fn a_session_begins_before_any_program_has_run() {
     driver.write_grant(2, 4 * STEP);
     driver.cycles(20);
     assert_eq!(runs(&driver), [0, 1, 1, 0]);
-    driver.rig.set("SDSP_Session", 2);
+    driver.rig.set("SDSP_Session", 2000);
     driver.cycles(20);
     assert_eq!((driver.answer(), driver.rig.int("SDSP_Joined")), (answer::NOT_FRESH, 0));
     driver.restart();
-    driver.join(2);
+    driver.join(2000);
     driver.step(4 * STEP);
     assert_eq!(runs(&driver), [1, 1, 1, 1]);
 }
@@ -110,11 +110,14 @@ fn a_start_of_the_plc_is_seen() {
         driver.cycles(50);
         assert_eq!((driver.rig.int("SDSP_Joined"), driver.rig.int("SDSP_Done")), (0, 0));
         assert_eq!(runs(&driver), [0; 4], "nothing runs after {cycles} cycles");
-        driver.join(7);
+        driver.join(7000);
         driver.write_grant(2, 4 * STEP);
         driver.cycles(50);
         assert_eq!((driver.answer(), runs(&driver)), (answer::MISSING, vec![0; 4]));
-        driver.grant = 0;
+        // Nor does a grant of the session that is over.
+        driver.rig.set("SDSP_Grant", 1001);
+        driver.cycles(50);
+        assert_eq!((driver.answer(), runs(&driver)), (answer::OLD, vec![0; 4]));
         driver.step(4 * STEP);
         assert_eq!(runs(&driver), [1; 4]);
     }
