@@ -10,6 +10,7 @@
 //! | [`check`] | PLC sources checked without being run |
 //! | [`instrument`] | PLC projects made to run in lockstep, and back |
 //! | [`freewheel`] | running without lockstep, to show what it is good for |
+//! | [`expect`] | what a run must show: signal temporal logic |
 //! | [`plot`] | trajectories as SVG |
 //!
 //! Invariants. This is the only crate that reads scenario files, starts processes and prints. What
@@ -17,6 +18,7 @@
 
 pub mod check;
 pub mod cli;
+pub mod expect;
 pub mod freewheel;
 pub mod instrument;
 pub mod plot;
