@@ -24,6 +24,7 @@ mod function;
 pub(crate) mod host;
 mod intrinsic;
 mod module;
+mod part;
 mod place;
 mod repetition;
 mod statement;

@@ -2,6 +2,7 @@
 //!
 //! Code generation and the runtime read it and look nothing up by name.
 
+pub(crate) mod area;
 pub(crate) mod elementary;
 pub(crate) mod expr;
 pub(crate) mod pou;
@@ -10,9 +11,10 @@ pub(crate) mod text;
 pub(crate) mod types;
 pub(crate) mod value;
 
+pub(crate) use area::{Areas, Location};
 pub(crate) use elementary::ElementaryType;
 pub(crate) use expr::{
-    Argument, Binary, Expr, ExprKind, FunctionCall, Intrinsic, LocalId, Place, Rounding, Step, Storage, Unary,
+    Argument, Binary, Expr, ExprKind, FunctionCall, Intrinsic, LocalId, Part, Place, Rounding, Step, Storage, Unary,
 };
 pub(crate) use pou::{EdgeDetection, Pou, PouId, Program, Variable};
 pub(crate) use statement::{CaseArm, CaseStatement, ForStatement, IfBranch, InstanceCall, Statement, StatementKind};

@@ -2,19 +2,10 @@
 
 mod dates;
 mod diagnostics;
+mod direct_addresses;
 mod expressions;
 mod faults;
 mod inputs;
 mod language;
 mod lints;
-mod lockstep;
-mod rig;
-mod robustness;
-mod scheduling;
-mod shear;
-mod standard_blocks;
-mod standard_functions;
-mod states;
-mod string_expressions;
-mod strings;
-mod subranges;
+mod partial_access;
