@@ -11,11 +11,8 @@ use crate::syntax::{SourceMap, Span};
 macro_rules! codes {
     ($($variant:ident $text:literal $about:literal),* $(,)?) => {
         /// Stable codes: `S` syntax, `N` names, `T` types, `C` calls, `D` declarations, `L` limits,
-<<<<<<< HEAD
-        /// `F` files, `W` warnings of what is legal and seldom meant, `I` lockstep instrumentation.
-=======
-        /// `R` addresses and references, `F` files, `W` warnings of what is legal and seldom meant.
->>>>>>> main
+        /// `R` addresses and references, `F` files, `W` warnings of what is legal and seldom meant,
+        /// `I` instrumentation for lockstep.
         #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
         pub enum Code {
             $(#[doc = concat!("`", $text, "`: ", $about)] $variant,)*
