@@ -100,6 +100,11 @@ impl Application {
         &self.inner.faults
     }
 
+    /// Position of a program among all programs.
+    pub(crate) fn program_index(&self, name: &str) -> Option<usize> {
+        self.programs().position(|program| program.name.eq_ignore_ascii_case(name))
+    }
+
     /// The machine code, made once by `make`.
     pub(crate) fn module(
         &self,

@@ -48,14 +48,24 @@ impl Places {
         };
         // Declarations and statements are parts of their own; what ends a unit is not in the file.
         let declared = pou.sections.last().map_or(pou.name.span.end, |section| section.span.end);
-        let declarations = origin.verbatim_end(declared).unwrap_or(0);
-        let footer = origin.verbatim_end(end).unwrap_or(0);
-        if pou.body.is_empty() {
-            let body = footer.max(empty_body(shown, declarations));
-            return Self { declarations, header: body, footer: body };
-        }
-        Self { declarations, header: line_start(shown, file.shown_range(first, first + 1).start), footer }
+        let declarations = line_end(shown, file.shown_range(declared.saturating_sub(1), declared).end);
+        let body = empty_body(shown, declarations);
+        let (header, footer) = match pou.body.as_slice() {
+            [] => (body, body),
+            [.., last] => {
+                let first = line_start(shown, file.shown_range(first, first + 1).start);
+                (first, origin.verbatim_end(last.span.end).unwrap_or(first))
+            }
+        };
+        Self { declarations, header, footer }
     }
+}
+
+/// The start of the next line if only blanks are behind `at`.
+fn line_end(text: &str, at: u32) -> u32 {
+    let rest = text.get(at as usize..).unwrap_or("");
+    let line = rest.trim_start_matches([' ', '\t', '\r']);
+    if line.starts_with('\n') { at + (rest.len() - line.len()) as u32 + 1 } else { at }
 }
 
 /// The start of the line if only blanks are before `at`, so that lines keep their indentation.

@@ -32,11 +32,10 @@ use std::sync::Arc;
 
 use thiserror::Error;
 
-pub use self::target::Target;
-
 use self::edits::{Conflict, Edited, Edits, LineMap};
 use self::marks::Original;
 use self::survey::{Survey, survey};
+pub use self::target::Target;
 use self::tasks::TaskTable;
 use crate::diagnostic::{Code, Diagnostic, Diagnostics, Severity};
 use crate::input::Input;
@@ -134,6 +133,7 @@ pub fn instrument(inputs: &[Input], options: &Options) -> Result<Project, Instru
     for source in target::sources(options.target, &tasks, &forms) {
         plain.add_own(source, &mut files);
     }
+    plain.list_own(&mut files)?;
     Ok(Project { files, warnings: Diagnostics::new(findings, &plain.sources) })
 }
 
@@ -145,6 +145,7 @@ pub fn remove(inputs: &[Input]) -> Result<Project, InstrumentError> {
     let plain = Plain::of(inputs)?;
     let mut files = plain.edited(&Survey::default(), &TaskTable::default())?;
     plain.delete_own(&mut files);
+    plain.list_own(&mut files)?;
     Ok(Project { files, warnings: Diagnostics::new(Vec::new(), &plain.sources) })
 }
 
@@ -167,6 +168,8 @@ struct Plain {
     given: Vec<Given>,
     /// The shim's own files that were given.
     own: Vec<Given>,
+    /// TwinCAT projects, and what they are without the shim.
+    manifests: Vec<(Given, Arc<str>)>,
     findings: Vec<Diagnostic>,
 }
 
@@ -178,8 +181,13 @@ struct Given {
 
 impl Plain {
     fn of(inputs: &[Input]) -> Result<Self, InstrumentError> {
-        let mut plain =
-            Self { sources: SourceMap::default(), given: Vec::new(), own: Vec::new(), findings: Vec::new() };
+        let mut plain = Self {
+            sources: SourceMap::default(),
+            given: Vec::new(),
+            own: Vec::new(),
+            manifests: Vec::new(),
+            findings: Vec::new(),
+        };
         for input in inputs {
             plain.add(input);
         }
@@ -192,11 +200,16 @@ impl Plain {
     fn add(&mut self, input: &Input) {
         let (name, text) = (input.file().name(), input.file().shown_text());
         let given = Given { name: name.to_owned(), text: text.clone(), encoding: input.encoding() };
-        let kind = match FileKind::of(Path::new(name)) {
-            Some(FileKind::Source(kind)) => kind,
+        let original = marks::original(text);
+        let kind = match (FileKind::of(Path::new(name)), &original) {
+            (Some(FileKind::Project), Ok(Original::Text(plain))) => {
+                return self.manifests.push((given, plain.as_str().into()));
+            }
+            (Some(FileKind::Project), Ok(_)) => return self.manifests.push((given, text.clone())),
+            (Some(FileKind::Source(kind)), _) => kind,
             _ => SourceKind::Text,
         };
-        let plain = match marks::original(text) {
+        let plain = match original {
             Ok(Original::Nothing) => return self.own.push(given),
             Ok(Original::Same) => input.clone(),
             Ok(Original::Text(text)) => Input::from_text(name, kind, text),
@@ -259,6 +272,18 @@ impl Plain {
                 File { name, before: None, text, encoding: None, lines: LineMap::default() }
             }
         });
+    }
+
+    /// Tells TwinCAT projects of the shim's own files.
+    fn list_own(&self, files: &mut Vec<File>) -> Result<(), InstrumentError> {
+        let is_own = |file: &&File| file.text.is_some() && !self.given.iter().any(|given| given.name == file.name);
+        let own: Vec<String> = files.iter().filter(is_own).map(|file| file.name.clone()).collect();
+        for (given, plain) in &self.manifests {
+            let conflict = |conflict| InstrumentError::Conflict { file: given.name.clone(), conflict };
+            let Edited { text, lines } = twincat::listing(&given.name, plain, &own).apply(plain).map_err(conflict)?;
+            files.push(given.file(Some(text.into()), lines));
+        }
+        Ok(())
     }
 
     /// Files of the shim's own that were given are to be deleted.

@@ -1,5 +1,8 @@
 //! The task table: which programs run in which task, and the number of each.
 
+use std::collections::BTreeSet;
+
+use crate::diagnostic::did_you_mean;
 use crate::run::{RunError, Task};
 use crate::syntax::ast::Pou;
 
@@ -28,14 +31,19 @@ impl<'a> TaskTable<'a> {
     /// # Errors
     /// What would be wrong with the tasks in a soft PLC is wrong here.
     pub(super) fn new(tasks: &[Task], programs: &[&'a Pou]) -> Result<Self, RunError> {
-        let names: Vec<&str> = programs.iter().map(|program| program.name.text.as_str()).collect();
-        let resolved = crate::run::resolve(tasks, &names)?;
-        let mut order: Vec<(&Task, Vec<usize>)> = tasks.iter().zip(resolved).collect();
-        order.sort_by_key(|(task, _)| task.priority);
-        let mut table = Self { rows: Vec::new(), programs: Vec::new() };
-        for (task, indices) in order {
+        check(tasks)?;
+        let mut order: Vec<&Task> = tasks.iter().collect();
+        order.sort_by_key(|task| task.priority);
+        let mut table = Self::default();
+        for task in order {
             let first = table.programs.len() + 1;
-            table.programs.extend(indices.iter().filter_map(|index| programs.get(*index).copied()));
+            for name in &task.programs {
+                let program = find(name, task, programs)?;
+                if table.programs.iter().any(|other| other.name.key() == program.name.key()) {
+                    return Err(RunError::ProgramTwice { program: name.clone(), task: task.name.clone() });
+                }
+                table.programs.push(program);
+            }
             let count = table.programs.len() + 1 - first;
             let Task { interval_ns, priority, .. } = *task;
             table.rows.push(Row { interval_ns, priority, first, count });
@@ -58,4 +66,29 @@ impl<'a> TaskTable<'a> {
             ("SDSP_COUNTS", list(&|row| row.count as u64)),
         ]
     }
+}
+
+fn check(tasks: &[Task]) -> Result<(), RunError> {
+    if tasks.is_empty() {
+        return Err(RunError::NoTasks);
+    }
+    let mut names = BTreeSet::new();
+    for task in tasks {
+        if !names.insert(task.name.to_ascii_uppercase()) {
+            return Err(RunError::DuplicateTask(task.name.clone()));
+        }
+        if task.interval_ns == 0 {
+            return Err(RunError::ZeroInterval(task.name.clone()));
+        }
+    }
+    Ok(())
+}
+
+fn find<'a>(name: &str, task: &Task, programs: &[&'a Pou]) -> Result<&'a Pou, RunError> {
+    let found = programs.iter().find(|program| program.name.text.eq_ignore_ascii_case(name));
+    found.copied().ok_or_else(|| RunError::UnknownProgram {
+        task: task.name.clone(),
+        program: name.to_owned(),
+        help: did_you_mean(name, programs.iter().map(|program| program.name.text.as_str())),
+    })
 }

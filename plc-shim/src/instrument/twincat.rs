@@ -1,5 +1,9 @@
 //! The shim's sources as objects of a TwinCAT 3 project.
 
+use std::path::{Component, Path};
+
+use super::edits::Edits;
+use super::marks;
 use super::target::Source;
 use crate::syntax::token::{Keyword, TokenKind};
 use crate::syntax::tokenize;
@@ -36,6 +40,26 @@ fn object(kind: &str, name: &str, parts: &str) -> String {
          <{kind} Name=\"{name}\" Id=\"{}\"{special}>\n{parts}  </{kind}>\n</TcPlcObject>\n",
         identity(name)
     )
+}
+
+/// Lists `files` in the project `name`.
+pub(super) fn listing(name: &str, project: &str, files: &[String]) -> Edits {
+    let mut edits = Edits::default();
+    let Some(end) = project.rfind("</Project>").filter(|_| !files.is_empty()) else {
+        return edits;
+    };
+    let folder = Path::new(name).parent().unwrap_or(Path::new(""));
+    let mut items = String::from("  <ItemGroup>\n");
+    for file in files {
+        let path = Path::new(file).strip_prefix(folder).unwrap_or(Path::new(file));
+        let parts: Vec<_> = path.components().filter(|part| *part != Component::CurDir).collect();
+        let parts: Vec<_> = parts.iter().map(|part| part.as_os_str().to_string_lossy()).collect();
+        items += &format!("    <Compile Include=\"{}\">\n", parts.join("\\"));
+        items += "      <SubType>Code</SubType>\n    </Compile>\n";
+    }
+    items += "  </ItemGroup>";
+    edits.insert(end as u32, marks::xml_lines(&items, marks::line_break(project)));
+    edits
 }
 
 /// An object's id, the same for the same name: two FNV-1a hashes, marked as made from a name (RFC 9562,

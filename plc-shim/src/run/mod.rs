@@ -19,7 +19,6 @@ mod state;
 mod text;
 
 pub use fault::PlcFault;
-pub(crate) use plan::resolve;
 pub use plan::{RunError, Task, TaskPlan};
 pub use soft_plc::SoftPlc;
 pub use state::RestoreError;

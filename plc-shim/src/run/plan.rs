@@ -85,15 +85,15 @@ fn suffix(help: Option<&String>) -> String {
     help.map(|help| format!(" ({help})")).unwrap_or_default()
 }
 
-/// The programs of each task by position in `declared`, the names of all programs.
-pub(crate) fn resolve(tasks: &[Task], declared: &[&str]) -> Result<Vec<Vec<usize>>, RunError> {
-    if tasks.is_empty() {
+/// The programs of each task by position.
+pub(super) fn resolve(plan: &TaskPlan, application: &Application) -> Result<Vec<Vec<usize>>, RunError> {
+    if plan.tasks.is_empty() {
         return Err(RunError::NoTasks);
     }
     let mut names = BTreeSet::new();
     let mut running = BTreeSet::new();
     let mut resolved = Vec::new();
-    for task in tasks {
+    for task in &plan.tasks {
         if !names.insert(task.name.to_ascii_uppercase()) {
             return Err(RunError::DuplicateTask(task.name.clone()));
         }
@@ -102,7 +102,7 @@ pub(crate) fn resolve(tasks: &[Task], declared: &[&str]) -> Result<Vec<Vec<usize
         }
         let mut programs = Vec::new();
         for name in &task.programs {
-            let index = program(declared, task, name)?;
+            let index = program(application, task, name)?;
             if !running.insert(index) {
                 let (program, task) = (name.clone(), task.name.clone());
                 return Err(RunError::ProgramTwice { program, task });
@@ -114,10 +114,13 @@ pub(crate) fn resolve(tasks: &[Task], declared: &[&str]) -> Result<Vec<Vec<usize
     Ok(resolved)
 }
 
-fn program(declared: &[&str], task: &Task, name: &str) -> Result<usize, RunError> {
-    declared.iter().position(|known| known.eq_ignore_ascii_case(name)).ok_or_else(|| RunError::UnknownProgram {
-        task: task.name.clone(),
-        program: name.to_owned(),
-        help: did_you_mean(name, declared.iter().copied()),
+fn program(application: &Application, task: &Task, name: &str) -> Result<usize, RunError> {
+    application.program_index(name).ok_or_else(|| {
+        let known: Vec<String> = application.programs().map(|program| program.name).collect();
+        RunError::UnknownProgram {
+            task: task.name.clone(),
+            program: name.to_owned(),
+            help: did_you_mean(name, known.iter().map(String::as_str)),
+        }
     })
 }

@@ -36,9 +36,7 @@ impl SoftPlc {
     /// # Errors
     /// The plan does not suit the application.
     pub fn new(application: &Application, plan: &TaskPlan) -> Result<Self, RunError> {
-        let names: Vec<String> = application.programs().map(|program| program.name).collect();
-        let names: Vec<&str> = names.iter().map(String::as_str).collect();
-        let programs = resolve(&plan.tasks, &names)?;
+        let programs = resolve(plan, application)?;
         let machine = Machine::new(application)?;
         let mut plc = Self {
             application: application.clone(),

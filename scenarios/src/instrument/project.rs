@@ -4,7 +4,7 @@ use std::path::{Component, Path, PathBuf};
 
 use onescan_plc_shim::Input;
 use onescan_plc_shim::input::encoding::{Charset, Encoding, encode};
-use onescan_plc_shim::input::kind::FileKind;
+use onescan_plc_shim::input::kind::{FileKind, SourceKind};
 use onescan_plc_shim::instrument::{File, Project};
 
 use super::{Destination, InstrumentConfig};
@@ -24,7 +24,34 @@ pub fn program(project: &Path) -> Result<Program, RunError> {
         return Err(RunError::usage(format!("there are {count} PLCs here"), Some(help)));
     };
     add_own(&mut program.inputs)?;
+    add_manifests(project, &mut program.inputs)?;
     Ok(program)
+}
+
+/// TwinCAT projects say themselves which files they have.
+fn add_manifests(path: &Path, inputs: &mut Vec<Input>) -> Result<(), RunError> {
+    let unreadable = |source| RunError::File { path: path.to_owned(), source };
+    if path.is_dir() {
+        let mut entries = Vec::new();
+        for entry in std::fs::read_dir(path).map_err(unreadable)? {
+            entries.push(entry.map_err(unreadable)?.path());
+        }
+        entries.sort();
+        // A link to a folder may lead in a circle.
+        let inner = |entry: &&PathBuf| !entry.is_symlink() && (entry.is_dir() || is_manifest(entry));
+        entries.iter().filter(inner).try_for_each(|entry| add_manifests(entry, inputs))
+    } else if is_manifest(path) {
+        let bytes = std::fs::read(path).map_err(unreadable)?;
+        let name = path.strip_prefix(".").unwrap_or(path).display().to_string();
+        inputs.push(Input::read(&name, SourceKind::Text, &bytes));
+        Ok(())
+    } else {
+        Ok(())
+    }
+}
+
+fn is_manifest(path: &Path) -> bool {
+    FileKind::of(path) == Some(FileKind::Project)
 }
 
 /// A scenario names its sources, and so not those that were added to it.

@@ -5,5 +5,6 @@ mod corpus;
 mod driver;
 mod equivalence;
 mod grants;
+mod overhead;
 mod random;
 mod rewriting;

@@ -99,6 +99,28 @@ fn twincat_objects_stay_objects() {
 }
 
 #[test]
+fn a_twincat_project_lists_the_shim() {
+    let options = Options { target: Target::TwinCat, ..Options::default() };
+    let listing = "<?xml version=\"1.0\"?>\r\n<Project>\r\n  <ItemGroup>\r\n    \
+        <Compile Include=\"POUs\\MAIN.TcPOU\"/>\r\n  </ItemGroup>\r\n</Project>";
+    let given = [
+        Input::from_text("plc/POUs/MAIN.TcPOU", SourceKind::TwinCat, POU.replace("BODY", "t(IN := TRUE);")),
+        Input::from_text("plc/plc.plcproj", SourceKind::Text, listing),
+    ];
+    let project = instrument(&given, &options).expect("it is right");
+    let listed = project.files.last().expect("files");
+    let names = onescan_plc_shim::input::project::files(listed.text.as_deref().expect("a text").as_bytes());
+    assert_eq!(
+        names.expect("a project"),
+        ["POUs/MAIN.TcPOU", "POUs/SDSP.TcGVL", "POUs/SDSP_Scheduler.TcPOU", "POUs/SDSP_TON.TcPOU"]
+    );
+    let twice = instrument(&again(&project), &options).expect("it is right");
+    assert!(twice.files.iter().all(|file| !file.is_changed()));
+    let back = remove(&again(&project)).expect("it is marked");
+    assert_eq!(back.files.last().expect("files").text.as_deref(), Some(listing));
+}
+
+#[test]
 fn what_cannot_be_replaced_is_told() {
     let text = "
         FUNCTION_BLOCK F VAR a : MC_MoveAbsolute; b : GETSYSTEMTIME; c : Strange; TIME : INT; END_VAR
