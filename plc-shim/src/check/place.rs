@@ -130,6 +130,7 @@ impl Body<'_, '_> {
         }
         // Vendors make global variables visible everywhere; the standard wants VAR_EXTERNAL.
         if self.checker.globals.contains_key(&key) {
+            self.checker.note_global_use(self.pou, &key, name.span);
             return Some(self.checker.global(&key, Some(name.span)).ok_or(()));
         }
         None

@@ -143,6 +143,8 @@ pub(crate) enum Storage {
     Absolute(u32),
     /// At a direct address.
     Located(Location),
+    /// The address stands at a fixed offset (a global of the running resource).
+    AbsolutePointer(u32),
     /// At an offset in the running instance.
     Instance(u32),
     /// The address stands at an offset in the running instance (`VAR_IN_OUT`).

@@ -1,5 +1,6 @@
 //! Programs in, traces out: the whole way from text to a scanning PLC.
 
+mod configurations;
 mod dates;
 mod diagnostics;
 mod direct_addresses;
