@@ -43,6 +43,7 @@ impl Plc {
             interval_ns: ms * 1_000_000,
             priority,
             programs: vec![program.to_owned()],
+            ..Task::default()
         };
         let tasks = vec![task("fast", 1, 2, "Fast"), task("slow", 2, 1, "Slow")];
         let input = Input::from_text("p.st", SourceKind::Text, TEXT);

@@ -126,6 +126,7 @@ fn gateway(signals: &[SignalDecl], request: JoinRequest) -> Gateway {
         interval_ns: interval_ms * MS,
         priority,
         programs: programs.iter().map(|program| (*program).to_owned()).collect(),
+        ..Task::default()
     };
     let tasks = vec![task("main", 10, 0, &["Shear", "Alignment"])];
     let sources = ["shear.st", "alignment.st"].map(|name| {

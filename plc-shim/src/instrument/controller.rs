@@ -3,14 +3,14 @@
 
 use super::edits::Edits;
 use super::marks;
-use super::template::{self, Controller};
+use super::template::{self, Controller, Number};
 use crate::lint::walk::{self, Visitor};
 use crate::syntax::SourceFile;
 use crate::syntax::ast::{Pou, Statement, StatementKind};
 use crate::syntax::token::Keyword;
 
-/// Adds the execution controller of `pou`, the program with this number among so many.
-pub(super) fn control(pou: &Pou, number: usize, programs: usize, file: &SourceFile, edits: &mut Edits) {
+/// Adds the execution controller of `pou`, one of so many programs.
+pub(super) fn control(pou: &Pou, number: Number, programs: usize, file: &SourceFile, edits: &mut Edits) {
     let Controller { declarations, header, close, footer } = template::controller(number, programs);
     let line_break = marks::line_break(file.shown_text());
     let places = Places::of(pou, file);
@@ -43,36 +43,22 @@ impl Places {
         let first = pou.body.first().map_or(end, |statement| statement.span.start);
         let shown = file.shown_text();
         let Some(origin) = file.origin() else {
-            let header = line_start(shown, first);
-            return Self { declarations: header, header, footer: line_start(shown, end) };
+            let header = marks::line_start(shown, first);
+            return Self { declarations: header, header, footer: marks::line_start(shown, end) };
         };
         // Declarations and statements are parts of their own; what ends a unit is not in the file.
         let declared = pou.sections.last().map_or(pou.name.span.end, |section| section.span.end);
-        let declarations = line_end(shown, file.shown_range(declared.saturating_sub(1), declared).end);
+        let declarations = marks::line_end(shown, file.shown_range(declared.saturating_sub(1), declared).end);
         let body = empty_body(shown, declarations);
         let (header, footer) = match pou.body.as_slice() {
             [] => (body, body),
             [.., last] => {
-                let first = line_start(shown, file.shown_range(first, first + 1).start);
+                let first = marks::line_start(shown, file.shown_range(first, first + 1).start);
                 (first, origin.verbatim_end(last.span.end).unwrap_or(first))
             }
         };
         Self { declarations, header, footer }
     }
-}
-
-/// The start of the next line if only blanks are behind `at`.
-fn line_end(text: &str, at: u32) -> u32 {
-    let rest = text.get(at as usize..).unwrap_or("");
-    let line = rest.trim_start_matches([' ', '\t', '\r']);
-    if line.starts_with('\n') { at + (rest.len() - line.len()) as u32 + 1 } else { at }
-}
-
-/// The start of the line if only blanks are before `at`, so that lines keep their indentation.
-fn line_start(text: &str, at: u32) -> u32 {
-    let before = text.get(..at as usize).unwrap_or("");
-    let line = before.trim_end_matches([' ', '\t']);
-    if line.is_empty() || line.ends_with('\n') { line.len() as u32 } else { at }
 }
 
 /// The place in a TwinCAT object for the first statement of a body without any.

@@ -28,6 +28,20 @@ pub(super) fn line_break(text: &str) -> &'static str {
     if first.ends_with('\r') { "\r\n" } else { "\n" }
 }
 
+/// The start of the line if only blanks are before `at`, so that lines keep their indentation.
+pub(super) fn line_start(text: &str, at: u32) -> u32 {
+    let before = text.get(..at as usize).unwrap_or("");
+    let line = before.trim_end_matches([' ', '\t']);
+    if line.is_empty() || line.ends_with('\n') { line.len() as u32 } else { at }
+}
+
+/// The start of the next line if only blanks are behind `at`.
+pub(super) fn line_end(text: &str, at: u32) -> u32 {
+    let rest = text.get(at as usize..).unwrap_or("");
+    let line = rest.trim_start_matches([' ', '\t', '\r']);
+    if line.starts_with('\n') { at + (rest.len() - line.len()) as u32 + 1 } else { at }
+}
+
 /// Lines to put in, ending as those of the file do.
 pub(super) fn lines(text: &str, line_break: &str) -> String {
     let mut marked = format!("{OPENING}begin{CLOSING}{line_break}");

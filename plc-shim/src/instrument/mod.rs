@@ -10,6 +10,7 @@
 //! | [`clock`] | what reads the clock, and what replaces it |
 //! | [`survey`] | programs and sources of time in a project |
 //! | [`tasks`] | the task table |
+//! | [`configuration`] | a project's CONFIGURATION |
 //! | [`controller`] | execution controllers |
 //! | [`target`], [`twincat`] | the shim's sources as a vendor's tool takes them |
 //!
@@ -17,6 +18,7 @@
 //! instrumenting twice is instrumenting once; what cannot be replaced is told.
 
 mod clock;
+mod configuration;
 mod controller;
 pub mod diff;
 pub mod edits;
@@ -36,12 +38,14 @@ use self::edits::{Conflict, Edited, Edits, LineMap};
 use self::marks::Original;
 use self::survey::{Survey, survey};
 pub use self::target::Target;
-use self::tasks::TaskTable;
+use self::target::{Globals, Sources};
+use self::tasks::{Entry, TaskTable};
 use crate::diagnostic::{Code, Diagnostic, Diagnostics, Severity};
 use crate::input::Input;
 use crate::input::encoding::Encoding;
 use crate::input::kind::{FileKind, SourceKind};
 use crate::run::{RunError, Task};
+use crate::syntax::ast::ProgramDeclaration;
 use crate::syntax::{FileId, SourceMap, Span, parse};
 
 /// How a project is to be instrumented.
@@ -49,7 +53,8 @@ use crate::syntax::{FileId, SourceMap, Span, parse};
 pub struct Options {
     /// Who is to take the result.
     pub target: Target,
-    /// The tasks; without any, all programs that no other calls run in one of 10 ms.
+    /// The tasks; without any, those of the project's CONFIGURATION, or one of 10 ms for all programs
+    /// that no other calls.
     pub tasks: Option<Vec<Task>>,
 }
 
@@ -125,12 +130,14 @@ pub fn instrument(inputs: &[Input], options: &Options) -> Result<Project, Instru
     if findings.iter().any(|found| found.severity == Severity::Error) {
         return Err(InstrumentError::Text(Diagnostics::new(findings, &plain.sources)));
     }
-    let tasks = TaskTable::new(&tasks(&survey, options)?, &survey.programs)?;
-    let mut files = plain.edited(&survey, &tasks)?;
+    let tasks = TaskTable::new(&plain.tasks(&survey, options)?, &entries(&survey))?;
     let mut forms: Vec<_> = survey.renames.iter().map(|(_, form)| *form).collect();
     forms.sort_by_key(|form| form.name);
     forms.dedup();
-    for source in target::sources(options.target, &tasks, &forms) {
+    let sources = Sources::new(options.target, &tasks, &forms);
+    let mut files = plain.edited(&survey, &tasks, &sources.globals)?;
+    let globals = if survey.configuration.is_some() { Globals::InConfiguration } else { Globals::InFile };
+    for source in sources.files(options.target, globals) {
         plain.add_own(source, &mut files);
     }
     plain.list_own(&mut files)?;
@@ -143,22 +150,25 @@ pub fn instrument(inputs: &[Input], options: &Options) -> Result<Project, Instru
 /// Marks have been damaged.
 pub fn remove(inputs: &[Input]) -> Result<Project, InstrumentError> {
     let plain = Plain::of(inputs)?;
-    let mut files = plain.edited(&Survey::default(), &TaskTable::default())?;
+    let mut files = plain.edited(&Survey::default(), &TaskTable::default(), "")?;
     plain.delete_own(&mut files);
     plain.list_own(&mut files)?;
     Ok(Project { files, warnings: Diagnostics::new(Vec::new(), &plain.sources) })
 }
 
-fn tasks(survey: &Survey<'_>, options: &Options) -> Result<Vec<Task>, InstrumentError> {
-    if let Some(tasks) = &options.tasks {
-        return Ok(tasks.clone());
-    }
-    let scheduled = survey.programs.iter().filter(|program| !survey.called.contains(&program.name.key()));
-    let programs: Vec<String> = scheduled.map(|program| program.name.text.clone()).collect();
-    if programs.is_empty() {
-        return Err(InstrumentError::NoPrograms);
-    }
-    Ok(vec![Task { name: "main".to_owned(), interval_ns: 10_000_000, priority: 0, programs }])
+/// What tasks may run: the instances of a configuration, or else the programs themselves.
+fn entries<'a>(survey: &Survey<'a>) -> Vec<Entry<'a>> {
+    let Some(configuration) = survey.configuration else {
+        return survey.programs.iter().map(|pou| Entry { name: pou.name.text.clone(), pou }).collect();
+    };
+    let declared = configuration.resources.iter().flat_map(|resource| {
+        resource.programs.iter().map(|instance| (configuration::entry_name(resource, &instance.name), instance))
+    });
+    let entry = |(name, instance): (String, &ProgramDeclaration)| {
+        let pou = survey.programs.iter().find(|pou| pou.name.key() == instance.program.key())?;
+        Some(Entry { name, pou })
+    };
+    declared.filter_map(entry).collect()
 }
 
 /// A project without the shim.
@@ -232,8 +242,24 @@ impl Plain {
         self.findings.push(found.with_help(help));
     }
 
+    fn tasks(&self, survey: &Survey<'_>, options: &Options) -> Result<Vec<Task>, InstrumentError> {
+        if let Some(tasks) = &options.tasks {
+            return Ok(tasks.clone());
+        }
+        if let Some(configuration) = survey.configuration {
+            let wrong = |found| InstrumentError::Text(Diagnostics::new(vec![found], &self.sources));
+            return configuration::tasks(configuration).map_err(wrong);
+        }
+        let scheduled = survey.programs.iter().filter(|program| !survey.called.contains(&program.name.key()));
+        let programs: Vec<String> = scheduled.map(|program| program.name.text.clone()).collect();
+        if programs.is_empty() {
+            return Err(InstrumentError::NoPrograms);
+        }
+        Ok(vec![Task { name: "main".to_owned(), interval_ns: 10_000_000, programs, ..Task::default() }])
+    }
+
     /// The project's files with their changes.
-    fn edited(&self, survey: &Survey<'_>, tasks: &TaskTable<'_>) -> Result<Vec<File>, InstrumentError> {
+    fn edited(&self, survey: &Survey<'_>, tasks: &TaskTable<'_>, globals: &str) -> Result<Vec<File>, InstrumentError> {
         let mut edits: Vec<Edits> = self.given.iter().map(|_| Edits::default()).collect();
         let mut changes = |id: FileId, change: &mut dyn FnMut(&crate::syntax::SourceFile, &mut Edits)| {
             if let (Some(file), Some(edits)) = (self.sources.get(id), edits.get_mut(id.0 as usize)) {
@@ -246,9 +272,14 @@ impl Plain {
                 edits.replace(at, marks::renamed(&form.new_name(), &name.text));
             });
         }
-        for (index, pou) in tasks.programs.iter().enumerate() {
+        for (pou, number) in tasks.numbered() {
             changes(pou.name.span.file, &mut |file, edits| {
-                controller::control(pou, index + 1, tasks.programs.len(), file, edits);
+                controller::control(pou, number, tasks.programs.len(), file, edits);
+            });
+        }
+        if let Some(configuration) = survey.configuration {
+            changes(configuration.name.span.file, &mut |file, edits| {
+                configuration::attach(configuration, tasks, globals, file, edits);
             });
         }
         let each = self.given.iter().zip(self.sources.iter()).zip(edits);

@@ -9,8 +9,8 @@ use crate::diagnostic::{Code, Diagnostic};
 use crate::ir::ElementaryType;
 use crate::lint::walk::{self, Visitor};
 use crate::syntax::ast::{
-    Call, CompilationUnit, Declaration, Expr, ExprKind, Ident, Initialiser, InitialiserKind, Pou, PouKind, Section,
-    TypeSpec, TypeSpecKind,
+    Call, CompilationUnit, Configuration, Declaration, Expr, ExprKind, Ident, Initialiser, InitialiserKind, Pou,
+    PouKind, Section, TypeSpec, TypeSpecKind,
 };
 use crate::syntax::{FileId, Span, parse};
 
@@ -19,6 +19,8 @@ use crate::syntax::{FileId, Span, parse};
 pub(super) struct Survey<'a> {
     /// The programs in their order.
     pub(super) programs: Vec<&'a Pou>,
+    /// The first configuration.
+    pub(super) configuration: Option<&'a Configuration>,
     /// Programs that others call.
     pub(super) called: BTreeSet<String>,
     /// Names to be replaced.
@@ -41,10 +43,8 @@ pub(super) fn survey<'a>(units: &[(FileId, &'a CompilationUnit)]) -> Survey<'a> 
                 surveyor.spec(&named.spec);
                 named.initial.iter().for_each(|initial| surveyor.initialiser(initial));
             }
-            Declaration::Globals(section) => {
-                section.variables.iter().flat_map(|each| &each.names).for_each(|name| surveyor.own_name(name));
-                surveyor.section(section);
-            }
+            Declaration::Globals(section) => surveyor.globals(section),
+            Declaration::Configuration(configuration) => surveyor.configuration(configuration),
         }
     }
     surveyor.survey
@@ -71,6 +71,11 @@ impl Names {
                 self.units_and_types.insert(named.name.key());
             }
             Declaration::Globals(section) => self.globals.extend(variable_names(section)),
+            Declaration::Configuration(configuration) => {
+                let resources = configuration.resources.iter().flat_map(|resource| &resource.sections);
+                let sections = configuration.sections.iter().chain(resources);
+                self.globals.extend(sections.flat_map(variable_names));
+            }
         }
     }
 }
@@ -109,6 +114,19 @@ impl<'a> Surveyor<'_, 'a> {
         pou.sections.iter().for_each(|section| self.section(section));
         walk::statements(&pou.body, self);
         self.local.clear();
+    }
+
+    fn globals(&mut self, section: &Section) {
+        section.variables.iter().flat_map(|each| &each.names).for_each(|name| self.own_name(name));
+        self.section(section);
+    }
+
+    fn configuration(&mut self, configuration: &'a Configuration) {
+        self.survey.configuration = self.survey.configuration.or(Some(configuration));
+        let resources = configuration.resources.iter().flat_map(|resource| &resource.sections);
+        configuration.sections.iter().chain(resources).for_each(|section| self.globals(section));
+        configuration.access.iter().for_each(|access| self.spec(&access.spec));
+        configuration.instances.iter().for_each(|instance| self.spec(&instance.spec));
     }
 
     /// A name that a project gives must not be one of the shim's.

@@ -2,6 +2,7 @@
 
 use std::collections::BTreeSet;
 
+use super::template::Number;
 use crate::diagnostic::did_you_mean;
 use crate::run::{RunError, Task};
 use crate::syntax::ast::Pou;
@@ -11,7 +12,15 @@ use crate::syntax::ast::Pou;
 #[derive(Debug, Default)]
 pub(super) struct TaskTable<'a> {
     pub(super) rows: Vec<Row>,
-    pub(super) programs: Vec<&'a Pou>,
+    pub(super) programs: Vec<Entry<'a>>,
+}
+
+/// A program that a task runs.
+#[derive(Debug, Clone)]
+pub(super) struct Entry<'a> {
+    /// Its name, or that of its instance in the configuration.
+    pub(super) name: String,
+    pub(super) pou: &'a Pou,
 }
 
 /// One task.
@@ -30,7 +39,7 @@ impl<'a> TaskTable<'a> {
     ///
     /// # Errors
     /// What would be wrong with the tasks in a soft PLC is wrong here.
-    pub(super) fn new(tasks: &[Task], programs: &[&'a Pou]) -> Result<Self, RunError> {
+    pub(super) fn new(tasks: &[Task], entries: &[Entry<'a>]) -> Result<Self, RunError> {
         check(tasks)?;
         let mut order: Vec<&Task> = tasks.iter().collect();
         order.sort_by_key(|task| task.priority);
@@ -38,17 +47,35 @@ impl<'a> TaskTable<'a> {
         for task in order {
             let first = table.programs.len() + 1;
             for name in &task.programs {
-                let program = find(name, task, programs)?;
-                if table.programs.iter().any(|other| other.name.key() == program.name.key()) {
+                let entry = find(name, task, entries)?;
+                if table.programs.iter().any(|other| other.name == entry.name) {
                     return Err(RunError::ProgramTwice { program: name.clone(), task: task.name.clone() });
                 }
-                table.programs.push(program);
+                table.programs.push(entry);
             }
             let count = table.programs.len() + 1 - first;
-            let Task { interval_ns, priority, .. } = *task;
+            let (interval_ns, priority) = (task.interval_ns, task.priority);
             table.rows.push(Row { interval_ns, priority, first, count });
         }
         Ok(table)
+    }
+
+    /// The programs that run, each once, and how each knows its number.
+    pub(super) fn numbered(&self) -> impl Iterator<Item = (&'a Pou, Number)> {
+        self.programs.iter().enumerate().filter_map(|(index, entry)| {
+            let mut same = self.programs.iter().enumerate().filter(|(_, other)| std::ptr::eq(other.pou, entry.pou));
+            let (first, _) = same.next()?;
+            let number = if same.next().is_some() { Number::OfInstance } else { Number::Fixed(index + 1) };
+            (first == index).then_some((entry.pou, number))
+        })
+    }
+
+    /// The number of an instance that must be told it.
+    pub(super) fn number_of_instance(&self, name: &str) -> Option<usize> {
+        let at = self.programs.iter().position(|entry| entry.name == name)?;
+        let pou = self.programs.get(at)?.pou;
+        let same = self.programs.iter().filter(|other| std::ptr::eq(other.pou, pou)).count();
+        (same > 1).then_some(at + 1)
     }
 
     /// What the scheduler's names stand for.
@@ -77,18 +104,18 @@ fn check(tasks: &[Task]) -> Result<(), RunError> {
         if !names.insert(task.name.to_ascii_uppercase()) {
             return Err(RunError::DuplicateTask(task.name.clone()));
         }
-        if task.interval_ns == 0 {
+        if task.interval_ns == 0 || task.single.is_some() {
             return Err(RunError::ZeroInterval(task.name.clone()));
         }
     }
     Ok(())
 }
 
-fn find<'a>(name: &str, task: &Task, programs: &[&'a Pou]) -> Result<&'a Pou, RunError> {
-    let found = programs.iter().find(|program| program.name.text.eq_ignore_ascii_case(name));
-    found.copied().ok_or_else(|| RunError::UnknownProgram {
+fn find<'a>(name: &str, task: &Task, entries: &[Entry<'a>]) -> Result<Entry<'a>, RunError> {
+    let found = entries.iter().find(|entry| entry.name.eq_ignore_ascii_case(name));
+    found.cloned().ok_or_else(|| RunError::UnknownProgram {
         task: task.name.clone(),
         program: name.to_owned(),
-        help: did_you_mean(name, programs.iter().map(|program| program.name.text.as_str())),
+        help: did_you_mean(name, entries.iter().map(|entry| entry.name.as_str())),
     })
 }

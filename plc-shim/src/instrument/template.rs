@@ -1,7 +1,8 @@
 //! The shim's sources, and what becomes of them: names in them stand for a project's data.
 //!
 //! Each is program text that can be read and parsed as it is. A line with `(*$ltime` in it is for
-//! projects that use LTIME only, since older systems do not know that type.
+//! projects that use LTIME only, since older systems do not know that type; one with `(*$instances`
+//! for programs of which a configuration has several.
 
 use crate::syntax::tokenize;
 
@@ -14,28 +15,37 @@ pub(super) const PULSE: &str = include_str!("../../iec/shim/pulse.st");
 pub(super) const REAL_TIME_CLOCK: &str = include_str!("../../iec/shim/real_time_clock.st");
 pub(super) const TIME_FUNCTION: &str = include_str!("../../iec/shim/time_function.st");
 
-const LTIME_LINE: &str = "(*$ltime";
-
-/// Whether a project uses LTIME.
+/// Whom a line marked `(*$..` is for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum LongTime {
-    Used,
-    Unused,
+pub(super) enum Only {
+    /// Projects that use LTIME.
+    LongTime,
+    /// Programs of which there are several instances.
+    Instances,
 }
 
-/// The template without the lines that are for others.
-pub(super) fn lines_for(template: &str, long_time: LongTime) -> String {
+impl Only {
+    fn named(text: &str) -> Option<Self> {
+        match text.split(|one: char| !one.is_ascii_alphabetic()).next() {
+            Some("ltime") => Some(Self::LongTime),
+            Some("instances") => Some(Self::Instances),
+            _ => None,
+        }
+    }
+}
+
+/// The template without the lines that are for others than `wanted`.
+pub(super) fn lines_for(template: &str, wanted: &[Only]) -> String {
     let mut text = String::with_capacity(template.len());
     for line in template.lines() {
-        match (line.split_once(LTIME_LINE), long_time) {
-            (Some(_), LongTime::Unused) => continue,
-            (Some((before, "*)")), LongTime::Used) => text.push_str(before.trim_end()),
-            (Some((before, about)), LongTime::Used) => {
-                text.push_str(before);
-                text.push_str("(*");
-                text.push_str(about);
+        match line.split_once("(*$").and_then(|(before, about)| Some((before, Only::named(about)?, about))) {
+            None => text.push_str(line),
+            Some((before, only, about)) if wanted.contains(&only) => {
+                let about = about.trim_start_matches(|one: char| one.is_ascii_alphabetic());
+                let comment = if about == "*)" { String::new() } else { format!("(*{about}") };
+                text.push_str(format!("{before}{comment}").trim_end());
             }
-            (None, _) => text.push_str(line),
+            Some(_) => continue,
         }
         text.push('\n');
     }
@@ -53,10 +63,23 @@ pub(super) fn fill(template: &str, names: &[(&str, String)]) -> String {
     text
 }
 
-/// The execution controller of the program with this number among so many.
-pub(super) fn controller(number: usize, programs: usize) -> Controller {
-    let names = [("SDSP_NUMBER", number.to_string()), ("SDSP_PROGRAMS", programs.to_string())];
-    let text = fill(EXECUTION_CONTROLLER, &names);
+/// How a program knows its number.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Number {
+    /// There is one instance of it.
+    Fixed(usize),
+    /// Each instance is told by the configuration.
+    OfInstance,
+}
+
+/// The execution controller of one of so many programs.
+pub(super) fn controller(number: Number, programs: usize) -> Controller {
+    let (number, wanted): (_, &[Only]) = match number {
+        Number::Fixed(number) => (number.to_string(), &[]),
+        Number::OfInstance => ("SDSP_Number".to_owned(), &[Only::Instances]),
+    };
+    let names = [("SDSP_NUMBER", number), ("SDSP_PROGRAMS", programs.to_string())];
+    let text = fill(&lines_for(EXECUTION_CONTROLLER, wanted), &names);
     let between = |from: &str, to: &str| {
         let rest = text.split_once(from).map_or("", |(_, rest)| rest);
         rest.split_once(to).map_or("", |(part, _)| part).trim_matches('\n').to_owned()
@@ -116,16 +139,23 @@ mod tests {
     #[test]
     fn lines_for_ltime_come_and_go() {
         let template = "a\nb (*$ltime*)\nc (*$ltime about it *)\n";
-        assert_eq!(lines_for(template, LongTime::Unused), "a\n");
-        assert_eq!(lines_for(template, LongTime::Used), "a\nb\nc (* about it *)\n");
+        assert_eq!(lines_for(template, &[]), "a\n");
+        assert_eq!(lines_for(template, &[Only::LongTime]), "a\nb\nc (* about it *)\n");
     }
 
     #[test]
     fn a_controller_has_all_its_parts() {
-        let controller = controller(2, 3);
+        let controller = controller(Number::Fixed(2), 3);
         assert!(controller.declarations.contains("ARRAY [0..3] OF INT"));
         assert!(controller.header.ends_with("OR SDSP_Granted THEN"), "{}", controller.header);
         assert_eq!(controller.close.trim(), "END_IF;");
         assert_eq!(controller.footer.trim(), "IF SDSP_Granted THEN SDSP_Turn := SDSP_Next[2]; END_IF;");
+        let controller = super::controller(Number::OfInstance, 3);
+        assert!(
+            controller.declarations.contains("VAR_INPUT SDSP_Number : INT; END_VAR"),
+            "{}",
+            controller.declarations
+        );
+        assert!(controller.header.contains("SDSP_Turn = SDSP_Number;"));
     }
 }

@@ -346,6 +346,7 @@ fn plc_task(text: &str) -> Result<Task, String> {
         interval_ns: interval.as_nanos(),
         priority: priority.parse().map_err(|_| format!("`{priority}` is no priority: 0 comes first"))?,
         programs: programs.split(',').map(|program| program.trim().to_owned()).collect(),
+        ..Task::default()
     })
 }
 
