@@ -51,6 +51,10 @@ const PAGES: &[(&str, &str)] = pages![
     "I1004",
     "L0501",
     "L0502",
+    "L0510",
+    "L0511",
+    "L0512",
+    "L0513",
     "N0101",
     "N0102",
     "N0103",
@@ -66,6 +70,8 @@ const PAGES: &[(&str, &str)] = pages![
     "S0103",
     "S0104",
     "S0105",
+    "S0110",
+    "S0111",
     "T0201",
     "T0202",
     "T0203",
@@ -107,7 +113,7 @@ mod tests {
     fn codes_of((language, text): (&str, &str)) -> Vec<&'static str> {
         let (language, instrumented) = language.strip_suffix(" instrument").map_or((language, false), |st| (st, true));
         let input = match language {
-            "st" => Input::from_text("example.st", SourceKind::Text, text),
+            "st" | "exp" | "scl" => Input::from_text(&format!("example.{language}"), SourceKind::Text, text),
             "xml" => Input::from_text("example.TcPOU", SourceKind::TwinCat, text),
             "hex" => {
                 let bytes = text.split_whitespace().map(|byte| u8::from_str_radix(byte, 16).expect("a byte"));
