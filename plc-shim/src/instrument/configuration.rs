@@ -5,8 +5,9 @@ use super::marks;
 use super::tasks::TaskTable;
 use crate::diagnostic::{Code, Diagnostic};
 use crate::run::Task;
+use crate::syntax::SourceFile;
 use crate::syntax::ast::{Configuration, Connection, ExprKind, Ident, Literal, Resource, TaskDeclaration};
-use crate::syntax::{SourceFile, tokenize};
+use crate::syntax::lexer::tokenize_in;
 
 /// What is due at every grant has this interval.
 const ALWAYS_NS: u64 = 1;
@@ -68,9 +69,11 @@ fn task(declared: &TaskDeclaration) -> Result<Task, Diagnostic> {
         match (input.key().as_str(), &value.kind) {
             ("INTERVAL", ExprKind::Literal(Literal::Duration { ns, .. })) if *ns > 0 => task.interval_ns = *ns as u64,
             ("PRIORITY", ExprKind::Literal(Literal::Integer(rank))) => {
-                task.priority = u32::try_from(*rank).map_err(|_| unsupported(input, "this PRIORITY"))?;
+                task.priority =
+                    u32::try_from(*rank).map_err(|_| unsupported(input, "PRIORITY other than a literal"))?;
             }
-            _ => return Err(unsupported(input, &format!("a task with this {}", input.key()))),
+            ("SINGLE", _) => return Err(unsupported(input, "a task with SINGLE")),
+            (input_name, _) => return Err(unsupported(input, &format!("{input_name} other than a literal"))),
         }
     }
     if task.interval_ns == 0 {
@@ -110,23 +113,23 @@ pub(super) fn attach(
     let before_program = marks::line_start(text, program.span.start);
     match resource.tasks.first() {
         Some(task) => {
-            let keyword = token_before(text, task.name.span.start).unwrap_or(task.name.span.start);
+            let keyword = token_before(file, task.name.span.start).unwrap_or(task.name.span.start);
             edits.insert(marks::line_start(text, keyword), marks::lines(&cycle, line_break));
             edits.insert(before_program, marks::lines(run, line_break));
         }
         None => edits.insert(before_program, marks::lines(&format!("{cycle}\n{run}"), line_break)),
     }
-    number(configuration, tasks, text, edits);
+    number(configuration, tasks, file, edits);
 }
 
 /// Tells each of several instances of a program its number.
-fn number(configuration: &Configuration, tasks: &TaskTable<'_>, text: &str, edits: &mut Edits) {
+fn number(configuration: &Configuration, tasks: &TaskTable<'_>, file: &SourceFile, edits: &mut Edits) {
     for resource in &configuration.resources {
         for program in &resource.programs {
             let name = entry_name(resource, &program.name);
             let Some(number) = tasks.number_of_instance(&name) else { continue };
             let behind = program.program.span.end;
-            let open = token_behind(text, behind).filter(|next| text.get(next.clone()) == Some("("));
+            let open = token_behind(file, behind).filter(|next| file.text().get(next.clone()) == Some("("));
             let (at, told) = match (open, program.connections.is_empty()) {
                 (None, _) => (behind, format!("(SDSP_Number := {number})")),
                 (Some(open), true) => (open.end as u32, format!("SDSP_Number := {number}")),
@@ -142,15 +145,15 @@ fn rest(text: &str, from: u32) -> &str {
 }
 
 /// The first token behind `at` that is no blank or comment.
-fn token_behind(text: &str, at: u32) -> Option<std::ops::Range<usize>> {
-    let tokens = tokenize(text);
+fn token_behind(file: &SourceFile, at: u32) -> Option<std::ops::Range<usize>> {
+    let tokens = tokenize_in(file.dialect(), file.text());
     let behind = tokens.iter().find(|token| token.start >= at && !token.kind.is_trivia());
     behind.map(|token| token.start as usize..token.end as usize)
 }
 
 /// Where the last token before `at` begins that is no blank or comment.
-fn token_before(text: &str, at: u32) -> Option<u32> {
-    let tokens = tokenize(text);
+fn token_before(file: &SourceFile, at: u32) -> Option<u32> {
+    let tokens = tokenize_in(file.dialect(), file.text());
     let before = tokens.iter().rev().find(|token| token.end <= at && !token.kind.is_trivia());
     before.map(|token| token.start)
 }

@@ -41,12 +41,14 @@ pub use self::target::Target;
 use self::target::{Globals, Sources};
 use self::tasks::{Entry, TaskTable};
 use crate::diagnostic::{Code, Diagnostic, Diagnostics, Severity};
+use crate::dialect::Dialect;
 use crate::input::Input;
 use crate::input::encoding::Encoding;
 use crate::input::kind::{FileKind, SourceKind};
 use crate::run::{RunError, Task};
 use crate::syntax::ast::ProgramDeclaration;
-use crate::syntax::{FileId, SourceMap, Span, parse};
+use crate::syntax::parser::parse_in;
+use crate::syntax::{FileId, SourceMap, Span};
 
 /// How a project is to be instrumented.
 #[derive(Debug, Clone, Default)]
@@ -120,7 +122,7 @@ pub fn instrument(inputs: &[Input], options: &Options) -> Result<Project, Instru
     let mut units = Vec::new();
     let mut findings = plain.findings.clone();
     for (id, file) in plain.sources.iter() {
-        let parsed = parse(id, file.text());
+        let parsed = parse_in(file.dialect(), id, file.text());
         findings.extend(parsed.diagnostics);
         units.push((id, parsed.unit));
     }
@@ -222,16 +224,18 @@ impl Plain {
         let plain = match original {
             Ok(Original::Nothing) => return self.own.push(given),
             Ok(Original::Same) => input.clone(),
-            Ok(Original::Text(text)) => Input::from_text(name, kind, text),
+            Ok(Original::Text(text)) => Input::from_text(name, kind, text).in_dialect(input.file().dialect()),
             Err(damaged) => return self.damaged(name, text, &damaged),
         };
         self.given.push(given);
         let id = FileId(self.sources.iter().count() as u32);
         self.findings.extend(plain.add_to(&mut self.sources));
-        if kind == SourceKind::PlcOpen {
-            let message = "PLCopen XML is not instrumented yet";
-            self.findings.push(Diagnostic::error(Code::UnsupportedFeature, Span::new(id, 0, 0), message));
-        }
+        let refused = match (kind, input.file().dialect()) {
+            (SourceKind::PlcOpen, _) => "PLCopen XML is not instrumented yet",
+            (_, Dialect::SiemensScl) => "SCL is not instrumented yet",
+            _ => return,
+        };
+        self.findings.push(Diagnostic::error(Code::UnsupportedFeature, Span::new(id, 0, 0), refused));
     }
 
     fn damaged(&mut self, name: &str, text: &Arc<str>, damaged: &marks::DamagedMarks) {

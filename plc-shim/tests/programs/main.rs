@@ -3,8 +3,8 @@
 mod configurations;
 mod dates;
 mod diagnostics;
-mod direct_addresses;
 mod dialects;
+mod direct_addresses;
 mod expressions;
 mod faults;
 mod inputs;

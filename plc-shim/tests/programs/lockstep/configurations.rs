@@ -95,6 +95,6 @@ fn tasks_that_nothing_stands_for_are_refused() {
         let input = Input::from_text("c.st", SourceKind::Text, text);
         instrument(&[input], &Options::default()).expect_err("refused").to_string()
     };
-    insta::assert_snapshot!(refused("TASK t (SINGLE := g, PRIORITY := 1);"), @"");
-    insta::assert_snapshot!(refused("TASK t (PRIORITY := 1);"), @"");
+    insta::assert_snapshot!(refused("TASK t (SINGLE := g, PRIORITY := 1);"), @"c.st:2:37: error[L0501]: a task with SINGLE is not instrumented yet");
+    insta::assert_snapshot!(refused("TASK t (PRIORITY := 1);"), @"c.st:2:34: error[L0501]: a task without INTERVAL is not instrumented yet");
 }

@@ -83,8 +83,12 @@ impl Driver {
         self.rig.set("SDSP_Grant", session);
         self.rig.set("SDSP_Session", session);
         (self.session, self.grant) = (session, 0);
-        self.cycles(1);
-        assert_eq!(self.rig.int("SDSP_Joined"), session);
+        let mut cycles = 0;
+        while self.rig.int("SDSP_Joined") != session {
+            cycles += 1;
+            assert!(cycles < 100, "the PLC does not join and answers {}", self.answer());
+            self.cycles(1);
+        }
     }
 
     /// Cycles of the PLC, a millisecond each by its own clock.
