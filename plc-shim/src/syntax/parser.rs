@@ -3,9 +3,9 @@
 //! An error is reported once and skipped up to a token at which the grammar can go on, so that
 //! one slip makes one diagnostic.
 
-mod configuration;
 mod assignment;
 mod conditional;
+mod configuration;
 mod cursor;
 mod declaration;
 mod expression;
