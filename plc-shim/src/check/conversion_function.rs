@@ -36,6 +36,8 @@ pub(super) fn find(key: &str) -> Option<Conversion> {
         // 2nd ed. Table 22 leaves the result's type to the context; vendors give DINT.
         return Some(Conversion { from: None, to: ElementaryType::Dint, rounding: Rounding::Truncate });
     }
+    // What the 3rd edition calls TO_INT, others call ANY_TO_INT.
+    let key = key.strip_prefix("ANY_").filter(|rest| rest.starts_with("TO_")).unwrap_or(key);
     let marks = [("TO_", Rounding::NearestEven), ("TRUNC_", Rounding::Truncate)];
     marks.into_iter().find_map(|(mark, rounding)| {
         let (before, after) = key.split_once(mark)?;

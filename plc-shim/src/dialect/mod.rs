@@ -95,6 +95,21 @@ impl Dialect {
     }
 }
 
+/// A name that is no dialect's.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error("`{name}` is no dialect: {}", Dialect::ALL.map(Dialect::name).join(", "))]
+pub struct UnknownDialect {
+    name: String,
+}
+
+impl std::str::FromStr for Dialect {
+    type Err = UnknownDialect;
+
+    fn from_str(name: &str) -> Result<Self, UnknownDialect> {
+        Self::find(name).ok_or_else(|| UnknownDialect { name: name.to_owned() })
+    }
+}
+
 impl std::fmt::Display for Dialect {
     fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         formatter.write_str(self.name())

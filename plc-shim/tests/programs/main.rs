@@ -8,6 +8,7 @@ mod faults;
 mod inputs;
 mod language;
 mod lints;
+mod recovery;
 mod rig;
 mod robustness;
 mod scheduling;
