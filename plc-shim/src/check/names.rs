@@ -4,11 +4,13 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 use super::Checker;
+use super::configuration::Configured;
 use super::layout::{Layout, VIRTUAL_TIME_NAME, VIRTUAL_TIME_OFFSET};
 use super::scope::Scope;
 use crate::diagnostic::{Code, Diagnostic};
-use crate::ir::{ElementaryType, PouId, Storage, TypeId, TypeTable, Variable};
+use crate::ir::{Areas, ElementaryType, PouId, Storage, TypeId, TypeTable, Variable};
 use crate::syntax::ast::{self, CompilationUnit, Declaration, Ident, Qualifier, SectionKind, TypeDeclaration};
+use crate::syntax::direct_address::AddressUnit;
 use crate::syntax::{FileId, Span};
 
 /// How far something has been resolved.
@@ -55,6 +57,8 @@ pub(super) struct GlobalEntry<'a> {
     pub(super) span: Span,
     pub(super) progress: Progress,
     pub(super) variable: Option<Variable>,
+    /// The resource that declares it.
+    pub(super) home: Option<usize>,
 }
 
 /// A value of an enumeration.
@@ -76,9 +80,13 @@ impl<'a> Checker<'a> {
             globals: BTreeMap::from([(VIRTUAL_TIME_NAME.to_owned(), virtual_time())]),
             enumerators: BTreeMap::new(),
             layout: Layout::new(),
+            areas: Areas::default(),
+            address_unit: AddressUnit::default(),
+            located: Vec::new(),
             literals: BTreeMap::new(),
             placed: Vec::new(),
             programs: Vec::new(),
+            configured: Configured::default(),
             checked: BTreeMap::new(),
             queue: Vec::new(),
             queued: BTreeSet::new(),
@@ -89,6 +97,8 @@ impl<'a> Checker<'a> {
     }
 
     pub(super) fn collect(&mut self, units: &[(FileId, &'a CompilationUnit)]) {
+        // Who looks from outside sees the addresses as the first file has them.
+        self.address_unit = units.first().map_or_else(AddressUnit::default, |(_, unit)| unit.dialect.address_unit());
         self.dialects = units.iter().map(|(file, unit)| (*file, unit.dialect)).collect();
         for (_, unit) in units {
             for declaration in &unit.declarations {
@@ -96,9 +106,11 @@ impl<'a> Checker<'a> {
                     Declaration::Pou(pou) => self.collect_pou(pou),
                     Declaration::Type(declaration) => self.collect_type(declaration),
                     Declaration::Globals(section) => self.collect_globals(section),
+                    Declaration::Configuration(configuration) => self.collect_configuration(configuration),
                 }
             }
         }
+        self.collect_resource_globals();
     }
 
     fn collect_pou(&mut self, ast: &'a ast::Pou) {
@@ -127,7 +139,7 @@ impl<'a> Checker<'a> {
         }
     }
 
-    fn collect_globals(&mut self, section: &'a ast::Section) {
+    pub(super) fn collect_globals(&mut self, section: &'a ast::Section) {
         for variable in &section.variables {
             for name in &variable.names {
                 if let Some(first) = self.globals.get(&name.key()) {
@@ -141,6 +153,7 @@ impl<'a> Checker<'a> {
                     span: name.span,
                     progress: Progress::Untouched,
                     variable: None,
+                    home: None,
                 };
                 self.globals.insert(name.key(), entry);
             }
@@ -193,12 +206,12 @@ fn virtual_time() -> GlobalEntry<'static> {
         storage: Storage::Absolute(VIRTUAL_TIME_OFFSET),
         constant: None,
         is_constant: true,
-        retain: false,
+        retention: None,
         address: None,
         span,
         image: vec![0; 8].into(),
         edge: None,
     };
     let name = VIRTUAL_TIME_NAME.to_owned();
-    GlobalEntry { ast: None, name, span, progress: Progress::Done, variable: Some(variable) }
+    GlobalEntry { ast: None, name, span, progress: Progress::Done, variable: Some(variable), home: None }
 }

@@ -5,9 +5,9 @@ use std::sync::Arc;
 
 use wasm_encoder::{BlockType, Function, Instruction, ValType};
 
-use super::fault::{FaultKind, Mark};
+use super::fault::{Callee, FaultKind, Mark, MarkKind};
 use crate::ir::elementary::Kind;
-use crate::ir::{ElementaryType, LocalId, PouId, TypeId, TypeTable};
+use crate::ir::{Areas, ElementaryType, LocalId, PouId, TypeId, TypeTable};
 use crate::syntax::Span;
 
 /// How a value of the type is held.
@@ -35,6 +35,7 @@ pub(super) struct LoopLabels {
 pub(super) struct Shared<'p> {
     pub(super) types: &'p TypeTable,
     pub(super) functions: BTreeMap<PouId, u32>,
+    pub(super) areas: Areas,
     /// Initial bytes of temporary aggregates, by data segment.
     pub(super) data: Vec<Arc<[u8]>>,
 }
@@ -72,12 +73,17 @@ impl<'s, 'p> Emitter<'s, 'p> {
 
     /// Says that a statement begins here.
     pub(super) fn mark_statement(&mut self, span: Span) {
-        self.marks.push((self.code.len(), Mark { span, fault: None }));
+        self.marks.push((self.code.len(), Mark { span, kind: MarkKind::Statement }));
     }
 
     /// Says what it means if the next instruction traps.
     pub(super) fn mark_fault(&mut self, fault: FaultKind, span: Span) {
-        self.marks.push((self.code.len(), Mark { span, fault: Some(fault) }));
+        self.marks.push((self.code.len(), Mark { span, kind: MarkKind::Fault(fault) }));
+    }
+
+    /// Says what the next instruction calls.
+    pub(super) fn mark_call(&mut self, callee: Callee, span: Span) {
+        self.marks.push((self.code.len(), Mark { span, kind: MarkKind::Call(callee) }));
     }
 
     /// Stops the PLC if the value on the stack is not 0.

@@ -4,6 +4,7 @@
 //! |---|---|
 //! | [`module`] | sections, functions, exports |
 //! | [`function`] | one unit to one function |
+//! | [`entry`] | what a task runs |
 //! | [`emitter`] | instructions, registers, labels, marks |
 //! | [`place`] | addresses, loads and stores |
 //! | [`statement`], [`repetition`] | statements |
@@ -18,16 +19,18 @@
 mod arithmetic;
 mod conversion;
 mod emitter;
+mod entry;
 mod expression;
 pub(crate) mod fault;
 mod function;
 pub(crate) mod host;
 mod intrinsic;
 mod module;
+mod part;
 mod place;
 mod repetition;
 mod statement;
 mod text;
 pub(crate) mod text_host;
 
-pub(crate) use module::{Compiled, MEMORY_EXPORT, compile, program_export};
+pub(crate) use module::{Compiled, MEMORY_EXPORT, compile, entry_export};

@@ -5,6 +5,7 @@
 
 mod assignment;
 mod conditional;
+mod configuration;
 mod cursor;
 mod declaration;
 mod expression;

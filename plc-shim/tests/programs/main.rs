@@ -1,13 +1,16 @@
 //! Programs in, traces out: the whole way from text to a scanning PLC.
 
+mod configurations;
 mod dates;
 mod diagnostics;
 mod dialects;
+mod direct_addresses;
 mod expressions;
 mod faults;
 mod inputs;
 mod language;
 mod lints;
+mod partial_access;
 mod recovery;
 mod rig;
 mod robustness;

@@ -55,7 +55,7 @@ fn scenario(path: &Path, chosen: Option<Dialect>) -> Result<Vec<Program>, RunErr
         for source in sources {
             files.named(&scenario.folder().join(source))?;
         }
-        programs.push(Program { inputs: files.inputs, plan: Some(plan) });
+        programs.push(Program { inputs: files.inputs, plan });
     }
     Ok(programs)
 }

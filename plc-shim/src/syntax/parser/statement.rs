@@ -77,7 +77,7 @@ impl Cursor<'_> {
         let good = match self.peek() {
             // A name with nothing behind it is what remains of the statement before.
             Some(TokenKind::Identifier) => self.peek_ahead(1) != Some(TokenKind::Punctuation(Punctuation::Semicolon)),
-            None => true,
+            Some(TokenKind::DirectAddress) | None => true,
             Some(TokenKind::Keyword(keyword)) => closes_list(keyword) || begins_statement(keyword),
             _ => false,
         };
