@@ -13,6 +13,7 @@ mod language;
 mod lints;
 mod lockstep;
 mod partial_access;
+mod recovery;
 mod rig;
 mod robustness;
 mod scheduling;
