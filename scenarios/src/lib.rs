@@ -8,6 +8,7 @@
 //! | [`scenario`] | a scenario's files, read and checked |
 //! | [`run`] | runs of a scenario: in lockstep or not, recorded, reported |
 //! | [`check`] | PLC sources checked without being run |
+//! | [`plant`] | scenes and components, told without a session |
 //! | [`freewheel`] | running without lockstep, to show what it is good for |
 //! | [`plot`] | trajectories as SVG |
 //!
@@ -17,6 +18,7 @@
 pub mod check;
 pub mod cli;
 pub mod freewheel;
+pub mod plant;
 pub mod plot;
 pub mod run;
 pub mod scenario;

@@ -7,6 +7,7 @@ mod errors;
 mod faults;
 mod freewheel;
 mod help;
+mod plant;
 mod plc_faults;
 mod run;
 mod third_party;

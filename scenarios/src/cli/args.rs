@@ -44,6 +44,10 @@ pub enum Command {
     Control(ControlArgs),
     /// Check PLC sources without running them
     Check(CheckArgs),
+    /// List the library of components, or tell all about one kind
+    Components(ComponentsArgs),
+    /// Tell what a scene is made of: bodies, joints, components, signals
+    Describe(DescribeArgs),
     /// Explain a code of `check`, with an example that is wrong and one that is right
     Explain(ExplainArgs),
 }
@@ -141,6 +145,26 @@ pub struct CheckArgs {
     /// Fail with exit code 1 if there are warnings
     #[arg(long)]
     pub deny_warnings: bool,
+}
+
+/// Options of `components`.
+#[derive(Debug, ClapArgs)]
+pub struct ComponentsArgs {
+    /// A kind, for its equations, parameters, signals and failure modes
+    pub kind: Option<String>,
+    /// For people, or JSON for machines
+    #[arg(long, value_enum, default_value_t)]
+    pub format: FormatArg,
+}
+
+/// Options of `describe`.
+#[derive(Debug, ClapArgs)]
+pub struct DescribeArgs {
+    /// The scene, a `plant.toml`
+    pub scene: PathBuf,
+    /// For people, or JSON for machines
+    #[arg(long, value_enum, default_value_t)]
+    pub format: FormatArg,
 }
 
 /// Options of `explain`.

@@ -8,6 +8,7 @@ use onescan_server::transport::tcp::participant::take_part;
 
 use super::args::{CheckArgs, Command, ControlArgs, ExplainArgs, JoinArgs, RunArgs};
 use crate::check::{self, CheckConfig, Warnings};
+use crate::plant;
 use crate::run::config::SaveRequest;
 use crate::run::error::{ExitCode, RunError};
 use crate::run::interrupt::Interrupt;
@@ -29,6 +30,14 @@ pub fn dispatch(command: Command) -> Result<ExitCode, RunError> {
         Command::Control(args) => control(&args),
         Command::Check(args) => check(args),
         Command::Explain(args) => explain(&args),
+        Command::Components(args) => {
+            plant::components::write(args.kind.as_deref(), args.format.into(), &mut std::io::stdout().lock())?;
+            Ok(ExitCode::Ok)
+        }
+        Command::Describe(args) => {
+            plant::describe::write(&args.scene, args.format.into(), &mut std::io::stdout().lock())?;
+            Ok(ExitCode::Ok)
+        }
     }
 }
 
