@@ -10,6 +10,7 @@ mod inputs;
 mod language;
 mod lints;
 mod partial_access;
+mod random_programs;
 mod rig;
 mod robustness;
 mod scheduling;
