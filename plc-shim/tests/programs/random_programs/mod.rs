@@ -9,9 +9,12 @@
 mod interpret;
 mod program;
 
+use onescan_plc_shim::syntax::printer::print_unit;
+use onescan_plc_shim::syntax::{FileId, parse};
 use proptest::prelude::*;
+use proptest::test_runner::TestRunner;
 
-use crate::rig::Rig;
+use crate::rig::{Rig, application};
 use interpret::{Memory, Stop};
 use program::{DEPTH, program, text};
 
@@ -58,4 +61,24 @@ proptest! {
             }
         }
     }
+}
+
+/// Spans aside, a printed tree is the tree: it prints alike and compiles to the same code.
+#[test]
+fn are_printed_as_what_they_are() {
+    let printed = |source: &str| {
+        let parsed = parse(FileId(0), source);
+        assert_eq!(parsed.diagnostics, [], "{source}");
+        print_unit(&parsed.unit)
+    };
+    let config = ProptestConfig { failure_persistence: None, ..ProptestConfig::with_cases(60) };
+    let outcome = TestRunner::new(config).run(&program(), |body| {
+        let source = text(&body);
+        let once = printed(&source);
+        prop_assert_eq!(&printed(&once), &once);
+        let (before, after) = (application(&source), application(&once));
+        prop_assert_eq!(before.wasm(), after.wasm());
+        Ok(())
+    });
+    outcome.unwrap_or_else(|failure| panic!("{failure}"));
 }

@@ -43,7 +43,12 @@ pub(super) enum Statement {
     If(Vec<(Truth, Vec<Statement>)>, Vec<Statement>),
     /// Labels are ranges; both ends of a single value are it.
     Case(Number, Vec<(Vec<(i16, i16)>, Vec<Statement>)>, Vec<Statement>),
-    For { from: Number, to: Number, by: i16, body: Vec<Statement> },
+    For {
+        from: Number,
+        to: Number,
+        by: i16,
+        body: Vec<Statement>,
+    },
     /// At most so many turns.
     While(i16, Truth, Vec<Statement>),
     Repeat(i16, Truth, Vec<Statement>),
@@ -70,8 +75,7 @@ fn number() -> impl Strategy<Value = Number> {
             boxed.clone().prop_map(Number::Negate),
             boxed.clone().prop_map(Number::Call),
             (operator, boxed.clone(), boxed.clone()).prop_map(|(op, a, b)| Number::Binary(op, a, b)),
-            (0_usize..3, boxed.clone(), boxed)
-                .prop_map(|(c, a, b)| Number::Select(Box::new(Truth::Variable(c)), a, b)),
+            (0_usize..3, boxed.clone(), boxed).prop_map(|(c, a, b)| Number::Select(Box::new(Truth::Variable(c)), a, b)),
         ]
     })
 }
@@ -211,7 +215,8 @@ fn write_compound(text: &mut String, statement: &Statement, loops: usize) {
         Statement::Case(value, arms, otherwise) => {
             line(format!("CASE {} OF", number_text(value)));
             for (labels, body) in arms {
-                let label = |(low, high): &(i16, i16)| if low == high { low.to_string() } else { format!("{low}..{high}") };
+                let label =
+                    |(low, high): &(i16, i16)| if low == high { low.to_string() } else { format!("{low}..{high}") };
                 let labels: Vec<String> = labels.iter().map(label).collect();
                 writeln!(text, "{}: ;", labels.join(", ")).expect("a string takes all");
                 write_block(text, body, loops);
@@ -228,7 +233,10 @@ fn write_compound(text: &mut String, statement: &Statement, loops: usize) {
         }
         Statement::While(limit, condition, body) => {
             let control = control(1, loops);
-            line(format!("i{control} := {limit}; WHILE i{control} > 0 AND {} DO i{control} := i{control} - 1;", truth_text(condition)));
+            line(format!(
+                "i{control} := {limit}; WHILE i{control} > 0 AND {} DO i{control} := i{control} - 1;",
+                truth_text(condition)
+            ));
             write_block(text, body, loops + 1);
             text.push_str("END_WHILE;\n");
         }
