@@ -11,7 +11,8 @@ use crate::syntax::{SourceMap, Span};
 macro_rules! codes {
     ($($variant:ident $text:literal $about:literal),* $(,)?) => {
         /// Stable codes: `S` syntax, `N` names, `T` types, `C` calls, `D` declarations, `L` limits,
-        /// `R` addresses and references, `F` files, `W` warnings of what is legal and seldom meant.
+        /// `R` addresses and references, `F` files, `W` warnings of what is legal and seldom meant,
+        /// `I` instrumentation for lockstep.
         #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
         pub enum Code {
             $(#[doc = concat!("`", $text, "`: ", $about)] $variant,)*
@@ -40,6 +41,8 @@ codes! {
     InvalidLiteral "S0103" "a literal is malformed",
     NestingTooDeep "S0104" "text is nested deeper than the limit",
     UnknownCharacter "S0105" "a character begins no token",
+    WrongDialect "S0110" "a construct that the file's dialect lacks",
+    UnbalancedPragma "S0111" "conditional pragmas do not match",
     UnknownName "N0101" "a name is not declared",
     DuplicateName "N0102" "a name is declared twice",
     UnknownType "N0103" "a type is not declared",
@@ -76,11 +79,26 @@ codes! {
     MisplacedStatement "D0409" "EXIT or CONTINUE outside a loop",
     DuplicateCase "D0410" "a CASE label occurs twice",
     LoopVariable "D0411" "a FOR control variable is unsuitable",
+    UnknownTask "D0430" "a program or function block names a task that is not declared",
+    UnknownProgram "D0431" "a configuration makes an instance of what is no program",
+    TaskInput "D0432" "a task's input is unknown or unsuitable",
+    TaskNeverRuns "D0433" "a task has neither SINGLE nor an INTERVAL",
+    UnknownPath "D0434" "a path in a configuration leads to no variable",
+    UnsuitableConnection "D0435" "a program's variable cannot be connected in this way",
+    NoInstanceValue "D0436" "VAR_CONFIG names what has no value of its own",
+    SecondConfiguration "D0437" "there are two configurations",
+    BlockCalledTwice "D0438" "an instance with a task of its own is called by its program, too",
+    ForeignGlobal "D0439" "a program uses a global variable of another resource",
+    ProgramNeverRuns "D0440" "a program has no instance in the configuration",
     UnsupportedFeature "L0501" "part of the language that is not supported yet",
     TooLarge "L0502" "a type or the program needs more memory than the limit",
     InvalidAddress "R0901" "a direct address is malformed or out of range",
     UnsuitableAddress "R0902" "a variable does not suit its direct address",
     InvalidPart "R0903" "a value has no such part",
+    Jump "L0510" "a jump or a label",
+    UnknownCondition "L0511" "a pragma's condition that is not evaluated",
+    ClassicTimer "L0512" "a timer or counter of S5",
+    VendorRuntime "L0513" "a part of a vendor's runtime",
     NotText "F0601" "a file is not text in an encoding that is read",
     MalformedXml "F0602" "a file is not the XML that its name promises",
     OutputNeverWritten "W0701" "an output is never written",
@@ -89,6 +107,10 @@ codes! {
     CallInBranch "W0704" "a timer, counter or edge detection is called in a branch or loop",
     UnreachableCode "W0705" "statements can never be reached",
     UnusedVariable "W0706" "a variable is never used",
+    ClockNotReplaced "I1001" "a source of time cannot be replaced for lockstep",
+    MotionNotReplaced "I1002" "a motion block cannot be replaced for lockstep yet",
+    ShimNameTaken "I1003" "a name is one of the shim's",
+    DamagedMarks "I1004" "marks of the shim do not fit together",
     WrittenByTwoTasks "W0707" "a variable is written by two tasks",
 }
 

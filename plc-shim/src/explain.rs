@@ -12,12 +12,84 @@ macro_rules! pages {
 }
 
 /// In the order of the codes.
+#[rustfmt::skip]
 const PAGES: &[(&str, &str)] = pages![
-    "C0301", "C0302", "C0303", "C0304", "C0305", "C0306", "C0307", "C0310", "D0401", "D0402", "D0403", "D0404",
-    "D0405", "D0406", "D0407", "D0408", "D0409", "D0410", "D0411", "F0601", "F0602", "L0501", "L0502", "N0101",
-    "N0102", "N0103", "N0104", "N0105", "N0106", "N0107", "R0901", "R0902", "R0903", "S0101", "S0102", "S0103",
-    "S0104", "S0105", "T0201", "T0202", "T0203", "T0204", "T0205", "T0206", "T0207", "T0208", "T0209", "T0210",
-    "W0701", "W0702", "W0703", "W0704", "W0705", "W0706", "W0707",
+    "C0301",
+    "C0302",
+    "C0303",
+    "C0304",
+    "C0305",
+    "C0306",
+    "C0307",
+    "C0310",
+    "D0401",
+    "D0402",
+    "D0403",
+    "D0404",
+    "D0405",
+    "D0406",
+    "D0407",
+    "D0408",
+    "D0409",
+    "D0410",
+    "D0411",
+    "D0430",
+    "D0431",
+    "D0432",
+    "D0433",
+    "D0434",
+    "D0435",
+    "D0436",
+    "D0437",
+    "D0438",
+    "D0439",
+    "D0440",
+    "F0601",
+    "F0602",
+    "I1001",
+    "I1002",
+    "I1003",
+    "I1004",
+    "L0501",
+    "L0502",
+    "L0510",
+    "L0511",
+    "L0512",
+    "L0513",
+    "N0101",
+    "N0102",
+    "N0103",
+    "N0104",
+    "N0105",
+    "N0106",
+    "N0107",
+    "R0901",
+    "R0902",
+    "R0903",
+    "S0101",
+    "S0102",
+    "S0103",
+    "S0104",
+    "S0105",
+    "S0110",
+    "S0111",
+    "T0201",
+    "T0202",
+    "T0203",
+    "T0204",
+    "T0205",
+    "T0206",
+    "T0207",
+    "T0208",
+    "T0209",
+    "T0210",
+    "W0701",
+    "W0702",
+    "W0703",
+    "W0704",
+    "W0705",
+    "W0706",
+    "W0707",
 ];
 
 /// The page that explains `code`, as Markdown.
@@ -40,8 +112,9 @@ mod tests {
 
     /// The codes that an example yields.
     fn codes_of((language, text): (&str, &str)) -> Vec<&'static str> {
+        let (language, instrumented) = language.strip_suffix(" instrument").map_or((language, false), |st| (st, true));
         let input = match language {
-            "st" => Input::from_text("example.st", SourceKind::Text, text),
+            "st" | "exp" | "scl" => Input::from_text(&format!("example.{language}"), SourceKind::Text, text),
             "xml" => Input::from_text("example.TcPOU", SourceKind::TwinCat, text),
             "hex" => {
                 let bytes = text.split_whitespace().map(|byte| u8::from_str_radix(byte, 16).expect("a byte"));
@@ -49,7 +122,15 @@ mod tests {
             }
             other => panic!("{other:?} is no language of examples"),
         };
-        let findings = crate::inspect([input], None);
+        let findings = if instrumented {
+            match crate::instrument::instrument(&[input], &crate::instrument::Options::default()) {
+                Ok(project) => project.warnings,
+                Err(crate::instrument::InstrumentError::Text(findings)) => findings,
+                Err(error) => panic!("{error}"),
+            }
+        } else {
+            crate::inspect([input], None)
+        };
         let mut codes: Vec<_> = findings.iter().map(|found| found.code.text()).collect();
         codes.dedup();
         codes

@@ -152,11 +152,12 @@ impl Bounds {
         let narrow = to.size() < 8;
         let (down, strict) = match rounding {
             Rounding::NearestEven => (0.5, false),
+            Rounding::NearestAway => (0.5, narrow || low == 0),
             Rounding::Down => (0.0, false),
             Rounding::Truncate | Rounding::Up => (1.0, narrow || low == 0),
         };
         let (up, closed) = match rounding {
-            Rounding::NearestEven => (0.5, false),
+            Rounding::NearestEven | Rounding::NearestAway => (0.5, false),
             Rounding::Up => (0.0, narrow),
             Rounding::Truncate | Rounding::Down => (1.0, false),
         };

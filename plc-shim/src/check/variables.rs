@@ -8,7 +8,7 @@ use super::names::{Progress, TypedImage};
 use super::scope::{Body, Scope};
 use super::types::Need;
 use crate::diagnostic::{Code, Diagnostic, did_you_mean};
-use crate::ir::{EdgeDetection, ElementaryType, Place, PouId, Storage, TypeId, Value, Variable};
+use crate::ir::{EdgeDetection, ElementaryType, Place, PouId, Retention, Storage, TypeId, Value, Variable};
 use crate::syntax::Span;
 use crate::syntax::ast::{self, Ident, PouKind, Qualifier, Section, SectionKind};
 
@@ -18,6 +18,11 @@ const POINTER: ElementaryType = ElementaryType::Udint;
 impl<'a> Checker<'a> {
     /// A global variable, placed in memory; `used` is where it is needed.
     pub(super) fn global(&mut self, key: &str, used: Option<Span>) -> Option<Variable> {
+        if self.globals.get(key)?.progress == Progress::Untouched
+            && let Some(found) = self.alternative_global(key, used)
+        {
+            return Some(found);
+        }
         let entry = self.globals.get_mut(key)?;
         let (progress, span) = (entry.progress, entry.span);
         if progress == Progress::Done {
@@ -71,7 +76,7 @@ impl<'a> Checker<'a> {
             storage,
             constant: elementary.filter(|_| is_constant).map(|ty| decode(ty, &declared.image)),
             is_constant,
-            retain: qualifiers.contains(&Qualifier::Retain),
+            retention: Retention::of(qualifiers),
             address: ast.address.as_ref().map(|address| address.text.clone()),
             span: name.span,
             image: declared.image.clone(),
@@ -274,7 +279,7 @@ impl<'c, 'a> Interface<'c, 'a> {
                 Some(Storage::RegisterPointer(self.body.scope.register(POINTER)))
             }
             // The caller reads outputs after the call, so they outlive it.
-            (PouKind::Function, SectionKind::Output) => self.frame(declared, span),
+            (PouKind::Function, SectionKind::Output) | (_, SectionKind::Static) => self.frame(declared, span),
             (PouKind::Function, _) | (_, SectionKind::Temp) => {
                 self.reject_instance(declared.ty, span)?;
                 self.temporary(declared, span)
@@ -366,6 +371,7 @@ impl<'c, 'a> Interface<'c, 'a> {
     fn declare_external(&mut self, name: &Ident, ty: TypeId, section: &Section) {
         let key = name.key();
         let known = self.body.checker.globals.contains_key(&key);
+        self.body.checker.note_global_use(self.body.pou, &key, name.span);
         let global = self.body.checker.global(&key, Some(name.span));
         let Some(mut variable) = global else {
             if !known {

@@ -4,6 +4,7 @@
 //! |---|---|
 //! | [`module`] | sections, functions, exports |
 //! | [`function`] | one unit to one function |
+//! | [`entry`] | what a task runs |
 //! | [`emitter`] | instructions, registers, labels, marks |
 //! | [`place`] | addresses, loads and stores |
 //! | [`statement`], [`repetition`] | statements |
@@ -19,6 +20,7 @@ mod arithmetic;
 mod bytes;
 mod conversion;
 mod emitter;
+mod entry;
 mod expression;
 pub(crate) mod fault;
 mod function;
@@ -32,4 +34,4 @@ mod statement;
 mod text;
 pub(crate) mod text_host;
 
-pub(crate) use module::{Compiled, MEMORY_EXPORT, compile, program_export};
+pub(crate) use module::{Compiled, MEMORY_EXPORT, compile, entry_export};
