@@ -14,6 +14,7 @@ mod lints;
 mod lockstep;
 mod partial_access;
 mod recovery;
+mod random_programs;
 mod rig;
 mod robustness;
 mod scheduling;
