@@ -2,7 +2,7 @@
 //! or without the names of its configuration and resource in front.
 
 use super::Application;
-use super::variable::{Piece, Spot, spot};
+use super::variable::{Piece, Spot, VariableAccess, spot};
 use crate::diagnostic::did_you_mean;
 use crate::ir::{Program, Resource};
 
@@ -37,7 +37,8 @@ impl Application {
         let mut access = checked.configuration.iter().flat_map(|configuration| &configuration.access);
         if let Some(access) = access.find(|access| access.name.eq_ignore_ascii_case(name)) {
             let path = access.name.clone();
-            return Some(Spot { path, offset: access.offset, ty: access.ty, address: None });
+            let rights = if access.writable { VariableAccess::ReadWrite } else { VariableAccess::ReadOnly };
+            return Some(Spot { path, offset: access.offset, ty: access.ty, address: None, access: rights });
         }
         let global = checked.globals.iter().find(|each| each.name.eq_ignore_ascii_case(name));
         if let Some(found) = global.and_then(|global| spot("", global, 0)) {
@@ -70,7 +71,7 @@ impl Application {
 
     fn program_spot(&self, path: &str, program: &Program) -> Option<Spot> {
         let ty = self.inner.checked.types.known_block(program.pou)?;
-        Some(Spot { path: path.to_owned(), offset: program.offset, ty, address: None })
+        Some(Spot { path: path.to_owned(), offset: program.offset, ty, address: None, access: VariableAccess::ReadWrite })
     }
 
     fn similar_root(&self, name: &str) -> NoRoot {

@@ -24,6 +24,21 @@ pub struct Variable {
     pub type_name: String,
     /// The direct address it is located at (`AT`), as written.
     pub address: Option<String>,
+    /// Whether it may be written from outside.
+    pub access: VariableAccess,
+    /// Its type in the application it belongs to.
+    pub(crate) type_id: TypeId,
+}
+
+/// What those outside may do with a variable.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum VariableAccess {
+    /// Read and write it.
+    ReadWrite,
+    /// Read it: `VAR_ACCESS` says so.
+    ReadOnly,
+    /// Read it: it is `CONSTANT`, and programs hold its value.
+    Constant,
 }
 
 /// A program and its variables.
@@ -63,6 +78,7 @@ pub(super) struct Spot {
     pub(super) offset: u32,
     pub(super) ty: TypeId,
     pub(super) address: Option<String>,
+    pub(super) access: VariableAccess,
 }
 
 impl Application {
@@ -116,17 +132,19 @@ impl Application {
                 let field = fields.iter().find(|field| field.name.eq_ignore_ascii_case(name));
                 let field = field.ok_or_else(|| did_you_mean(name, fields.iter().map(|field| field.name.as_str())))?;
                 let path = format!("{}.{}", from.path, field.name);
-                Ok(Spot { path, offset: from.offset + field.offset, ty: field.ty, address: None })
+                Ok(Spot { path, offset: from.offset + field.offset, ty: field.ty, address: None, access: from.access })
             }
             (Type::FunctionBlock { pou, .. }, Piece::Name(name)) => {
                 let variables = checked.interfaces.get(pou).map_or(&[][..], Vec::as_slice);
-                member(&from.path, variables, from.offset, name)
+                let found = member(&from.path, variables, from.offset, name)?;
+                let access = if from.access == VariableAccess::ReadWrite { found.access } else { from.access };
+                Ok(Spot { access, ..found })
             }
             (Type::Array { dimensions, element }, Piece::Index(indices)) => {
                 let offset = self.element(dimensions, *element, indices).ok_or(None)?;
                 let list: Vec<_> = indices.iter().map(i64::to_string).collect();
                 let path = format!("{}[{}]", from.path, list.join(","));
-                Ok(Spot { path, offset: from.offset + offset, ty: *element, address: None })
+                Ok(Spot { path, offset: from.offset + offset, ty: *element, address: None, access: from.access })
             }
             _ => Err(None),
         }
@@ -156,6 +174,8 @@ impl Application {
             ty: types.elementary(spot.ty),
             type_name: types.name(spot.ty),
             address: spot.address,
+            access: spot.access,
+            type_id: spot.ty,
         }
     }
 }
@@ -169,7 +189,8 @@ pub(super) fn spot(prefix: &str, variable: &ir::Variable, base: u32) -> Option<S
     };
     let dot = if prefix.is_empty() { "" } else { "." };
     let path = format!("{prefix}{dot}{}", variable.name);
-    Some(Spot { path, offset, ty: variable.ty, address: variable.address.clone() })
+    let access = if variable.is_constant { VariableAccess::Constant } else { VariableAccess::ReadWrite };
+    Some(Spot { path, offset, ty: variable.ty, address: variable.address.clone(), access })
 }
 
 fn member(prefix: &str, variables: &[ir::Variable], base: u32, name: &str) -> Result<Spot, Option<String>> {

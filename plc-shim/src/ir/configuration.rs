@@ -21,8 +21,9 @@ pub(crate) struct Program {
 pub(crate) struct Entry {
     /// The name by which a task runs it: the shortest that no other entry has.
     pub(crate) name: String,
-    /// Called without parameters.
-    pub(crate) unit: Pou,
+    /// Called one after the other, without parameters; forced values are set in between.
+    pub(crate) units: Vec<Pou>,
+
 }
 
 /// The one configuration of an application.
