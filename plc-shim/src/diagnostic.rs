@@ -11,7 +11,7 @@ use crate::syntax::{SourceMap, Span};
 macro_rules! codes {
     ($($variant:ident $text:literal $about:literal),* $(,)?) => {
         /// Stable codes: `S` syntax, `N` names, `T` types, `C` calls, `D` declarations, `L` limits,
-        /// `F` files, `W` warnings of what is legal and seldom meant.
+        /// `R` addresses and references, `F` files, `W` warnings of what is legal and seldom meant.
         #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
         pub enum Code {
             $(#[doc = concat!("`", $text, "`: ", $about)] $variant,)*
@@ -88,6 +88,9 @@ codes! {
     ProgramNeverRuns "D0440" "a program has no instance in the configuration",
     UnsupportedFeature "L0501" "part of the language that is not supported yet",
     TooLarge "L0502" "a type or the program needs more memory than the limit",
+    InvalidAddress "R0901" "a direct address is malformed or out of range",
+    UnsuitableAddress "R0902" "a variable does not suit its direct address",
+    InvalidPart "R0903" "a value has no such part",
     NotText "F0601" "a file is not text in an encoding that is read",
     MalformedXml "F0602" "a file is not the XML that its name promises",
     OutputNeverWritten "W0701" "an output is never written",

@@ -10,15 +10,17 @@ impl Application {
     pub fn leaves(&self) -> impl Iterator<Item = Variable> {
         let checked = &self.inner.checked;
         let resources = checked.configuration.iter().flat_map(|configuration| &configuration.resources);
-        let shared = checked.globals.iter().filter_map(|global| spot("", global, 0));
+        let shared = checked.globals.iter().filter_map(|global| spot(checked, "", global, 0));
         let own = resources.flat_map(|resource| {
             let home = resource.name.as_deref().unwrap_or_default();
-            resource.globals.iter().filter_map(move |global| spot(home, global, 0))
+            resource.globals.iter().filter_map(move |global| spot(checked, home, global, 0))
         });
         let programs = checked.programs.iter().zip(self.entry_names()).flat_map(|(program, name)| {
             let variables = checked.interfaces.get(&program.pou).map_or(&[][..], Vec::as_slice);
-            let held = variables.iter().filter(|variable| matches!(variable.storage, Storage::Instance(_)));
-            held.filter_map(move |variable| spot(name, variable, program.offset))
+            let held = variables
+                .iter()
+                .filter(|variable| matches!(variable.storage, Storage::Instance(_) | Storage::Located(_)));
+            held.filter_map(move |variable| spot(checked, name, variable, program.offset))
         });
         let roots: Vec<Spot> = shared.chain(own).chain(programs).collect();
         roots.into_iter().flat_map(|root| Leaves { application: self, open: vec![Open::new(root)] })
@@ -76,9 +78,7 @@ impl Application {
         let index = usize::try_from(at).ok()?;
         match checked.types.get(of.ty) {
             Type::Struct { fields, .. } => Some(Piece::Name(fields.get(index)?.name.clone())),
-            Type::FunctionBlock { pou, .. } => {
-                Some(Piece::Name(checked.interfaces.get(pou)?.get(index)?.name.clone()))
-            }
+            Type::FunctionBlock { pou, .. } => Some(Piece::Name(checked.interfaces.get(pou)?.get(index)?.name.clone())),
             Type::Array { dimensions, .. } => {
                 let mut rest = at;
                 let mut indices = Vec::with_capacity(dimensions.len());

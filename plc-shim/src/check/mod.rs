@@ -7,10 +7,11 @@
 //! | [`scope`] | what a name means inside a unit |
 //! | [`types`], [`subrange`] | types as written to types |
 //! | [`variables`] | sections to placed variables, units' interfaces |
+//! | [`located`] | direct addresses to places |
 //! | [`initial`] | initial values to bytes |
 //! | [`constant`] | constant expressions to values |
 //! | [`convert`] | implicit conversions, constants in context |
-//! | [`expression`], [`operator`], [`calendar`], [`place`] | expressions |
+//! | [`expression`], [`operator`], [`calendar`], [`place`], [`part`] | expressions |
 //! | [`call`], [`standard_function`], [`conversion_function`] | calls |
 //! | [`text`], [`text_function`], [`text_conversion`] | character strings |
 //! | [`statement`], [`edge`] | statements |
@@ -30,8 +31,10 @@ mod edge;
 mod expression;
 mod initial;
 mod layout;
+mod located;
 mod names;
 mod operator;
+mod part;
 mod place;
 mod recursion;
 mod scope;
@@ -50,8 +53,9 @@ use self::configuration::Configured;
 use self::layout::Layout;
 use self::names::{Enumerator, GlobalEntry, PouEntry, TypeEntry};
 use crate::diagnostic::Diagnostic;
-use crate::ir::{Configuration, Entry, Pou, PouId, Program, TypeId, TypeTable, Variable};
+use crate::ir::{Areas, Configuration, Entry, Pou, PouId, Program, TypeId, TypeTable, Variable};
 use crate::syntax::ast::CompilationUnit;
+use crate::syntax::direct_address::AddressUnit;
 use crate::syntax::{FileId, Span};
 
 pub(crate) use layout::VIRTUAL_TIME_OFFSET;
@@ -70,6 +74,10 @@ pub(crate) struct Checked {
     pub(crate) configuration: Option<Configuration>,
     /// What tasks can run; those of the programs first.
     pub(crate) entries: Vec<Entry>,
+    /// Where direct addresses lie.
+    pub(crate) areas: Areas,
+    /// What the numbers of direct addresses count.
+    pub(crate) address_unit: AddressUnit,
     /// The whole memory at a cold start.
     pub(crate) image: Vec<u8>,
 }
@@ -84,6 +92,7 @@ pub(crate) fn check(units: &[(FileId, &CompilationUnit)], library: &BTreeSet<Fil
     checker.check_bodies();
     checker.report_recursion();
     checker.check_configuration();
+    checker.place_areas();
     let image = checker.memory_image();
     let globals = checker.shared_globals();
     let (configuration, entries) = checker.take_configuration();
@@ -100,6 +109,8 @@ pub(crate) fn check(units: &[(FileId, &CompilationUnit)], library: &BTreeSet<Fil
         programs: checker.programs,
         configuration,
         entries,
+        areas: checker.areas,
+        address_unit: checker.address_unit,
         image,
     };
     (result, checker.diagnostics)
@@ -118,6 +129,10 @@ struct Checker<'a> {
     globals: BTreeMap<String, GlobalEntry<'a>>,
     enumerators: BTreeMap<String, Vec<Enumerator>>,
     layout: Layout,
+    areas: Areas,
+    address_unit: AddressUnit,
+    /// Initial values of what is located.
+    located: Vec<located::Initial>,
     /// Offsets of string literals by type and bytes.
     literals: BTreeMap<(TypeId, std::sync::Arc<[u8]>), u32>,
     /// Initial bytes of what has been placed.
@@ -187,6 +202,7 @@ impl<'a> Checker<'a> {
                 target.copy_from_slice(bytes);
             }
         }
+        self.initialise_located(&mut image);
         image
     }
 }

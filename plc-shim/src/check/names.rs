@@ -8,8 +8,9 @@ use super::configuration::Configured;
 use super::layout::{Layout, VIRTUAL_TIME_NAME, VIRTUAL_TIME_OFFSET};
 use super::scope::Scope;
 use crate::diagnostic::{Code, Diagnostic};
-use crate::ir::{ElementaryType, PouId, Storage, TypeId, TypeTable, Variable};
+use crate::ir::{Areas, ElementaryType, PouId, Storage, TypeId, TypeTable, Variable};
 use crate::syntax::ast::{self, CompilationUnit, Declaration, Ident, Qualifier, SectionKind, TypeDeclaration};
+use crate::syntax::direct_address::AddressUnit;
 use crate::syntax::{FileId, Span};
 
 /// How far something has been resolved.
@@ -78,6 +79,9 @@ impl<'a> Checker<'a> {
             globals: BTreeMap::from([(VIRTUAL_TIME_NAME.to_owned(), virtual_time())]),
             enumerators: BTreeMap::new(),
             layout: Layout::new(),
+            areas: Areas::default(),
+            address_unit: AddressUnit::default(),
+            located: Vec::new(),
             literals: BTreeMap::new(),
             placed: Vec::new(),
             programs: Vec::new(),

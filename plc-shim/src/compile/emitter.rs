@@ -7,7 +7,7 @@ use wasm_encoder::{BlockType, Function, Instruction, ValType};
 
 use super::fault::{Callee, FaultKind, Mark, MarkKind};
 use crate::ir::elementary::Kind;
-use crate::ir::{ElementaryType, LocalId, PouId, TypeId, TypeTable};
+use crate::ir::{Areas, ElementaryType, LocalId, PouId, TypeId, TypeTable};
 use crate::syntax::Span;
 
 /// How a value of the type is held.
@@ -35,6 +35,7 @@ pub(super) struct LoopLabels {
 pub(super) struct Shared<'p> {
     pub(super) types: &'p TypeTable,
     pub(super) functions: BTreeMap<PouId, u32>,
+    pub(super) areas: Areas,
     /// Initial bytes of temporary aggregates, by data segment.
     pub(super) data: Vec<Arc<[u8]>>,
 }

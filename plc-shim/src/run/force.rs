@@ -25,10 +25,7 @@ pub(super) struct Forces {
 impl Forces {
     pub(super) fn apply(&self, memory: &mut [u8]) {
         for Force { variable, bytes } in &self.list {
-            let start = variable.offset as usize;
-            if let Some(target) = memory.get_mut(start..start + bytes.len()) {
-                target.copy_from_slice(bytes);
-            }
+            variable.store(bytes, memory);
         }
     }
 
@@ -44,7 +41,8 @@ impl Forces {
     /// False if it was not forced.
     pub(super) fn release(&mut self, variable: &Variable) -> bool {
         let before = self.list.len();
-        self.list.retain(|force| (force.variable.offset, force.variable.size) != (variable.offset, variable.size));
+        let same = |force: &Force| force.variable.place() == variable.place();
+        self.list.retain(|force| !same(force));
         self.list.len() < before
     }
 
@@ -108,10 +106,7 @@ impl SoftPlc {
     /// type.
     pub fn write(&mut self, path: &str, value: &str) -> Result<(), WriteError> {
         let (variable, bytes) = self.parsed(path, value)?;
-        let start = variable.offset as usize;
-        if let Some(target) = self.memory_mut().get_mut(start..start + bytes.len()) {
-            target.copy_from_slice(&bytes);
-        }
+        variable.store(&bytes, self.memory_mut());
         self.apply_forces();
         Ok(())
     }

@@ -238,6 +238,45 @@ fn iec2_2_7_1_table_49_var_config_gives_instances_their_own_values() {
 }
 
 #[test]
+fn iec2_2_4_3_1_var_config_completes_open_addresses() {
+    let mut rig = configured(
+        "FUNCTION_BLOCK Io VAR lamp AT %Q* : BOOL; END_VAR VAR_INPUT on : BOOL; END_VAR lamp := on; END_FUNCTION_BLOCK
+        PROGRAM P VAR key AT %I* : BOOL; n AT %M* : INT; level AT %I* : WORD; io : Io; got : WORD; END_VAR
+            io(on := key); n := n + 1; got := level;
+        END_PROGRAM
+        PROGRAM Area VAR a AT %IX0.0 : BOOL; b AT %IX0.1 : BOOL; c AT %QX0.3 : BOOL; d AT %QX0.4 : BOOL;
+            w AT %IW1 : WORD; m AT %MW0 : INT := 7; END_VAR ; END_PROGRAM
+        CONFIGURATION c
+            TASK t (INTERVAL := T#10ms);
+            PROGRAM area WITH t : Area; PROGRAM P1 WITH t : P; PROGRAM P2 WITH t : P;
+            VAR_CONFIG
+                P1.key AT %IX0.0 : BOOL; P2.key AT %IX0.1 : BOOL; P1.io.lamp AT %QX0.3 : BOOL; P2.io.lamp AT %QX0.4 : BOOL;
+                P1.n AT %MW0 : INT; P2.level AT %IW1 : WORD;
+            END_VAR
+        END_CONFIGURATION",
+    );
+    rig.plc.write("area.b", "TRUE").expect("a BOOL");
+    rig.plc.write("area.w", "16#1234").expect("a WORD");
+    rig.scan().expect("no fault");
+    rig.scan().expect("no fault");
+    let read = |path| rig.plc.read(path).expect(path);
+    assert_eq!(
+        ["area.c", "area.d", "P2.key", "P1.got", "P2.got"].map(read),
+        ["FALSE", "TRUE", "TRUE", "16#0000", "16#1234"]
+    );
+    assert_eq!(["area.m", "P1.n", "P2.n"].map(read), ["9", "9", "2"]);
+    insta::assert_snapshot!(findings(
+        "PROGRAM P VAR key AT %I* : BOOL; n : BOOL; w AT %I* : WORD; END_VAR n := key AND w.0; END_PROGRAM
+CONFIGURATION c
+    PROGRAM P1 : P;
+    VAR_CONFIG
+        P1.key AT %QX0.0 : BOOL; P1.n AT %IX0.0 : BOOL; P1.w AT %IB3 : WORD; P1.key AT %IX0.9 : BOOL;
+    END_VAR
+END_CONFIGURATION"
+    ));
+}
+
+#[test]
 fn iec2_2_7_1_table_49_var_access_names_variables() {
     let rig = configured(&format!(
         "{PUMPS} CONFIGURATION c

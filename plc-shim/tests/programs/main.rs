@@ -3,11 +3,15 @@
 mod configurations;
 mod dates;
 mod diagnostics;
+mod direct_addresses;
 mod expressions;
 mod faults;
+mod forcing;
 mod inputs;
 mod language;
 mod lints;
+mod partial_access;
+mod restarts;
 mod rig;
 mod robustness;
 mod scheduling;

@@ -41,6 +41,21 @@ pub enum WriteError {
 }
 
 impl Variable {
+    /// Offset, size and bit: what it takes of memory.
+    pub(crate) fn place(&self) -> (u32, u32, Option<u8>) {
+        (self.offset, self.size, self.bit)
+    }
+
+    /// Writes its bytes; of a bit, the bit alone.
+    pub(crate) fn store(&self, bytes: &[u8], memory: &mut [u8]) {
+        let start = self.offset as usize;
+        match (self.bit, memory.get_mut(start..start + bytes.len()), bytes) {
+            (Some(bit), Some([byte]), [value]) => *byte = *byte & !(1 << bit) | (value & 1) << bit,
+            (_, Some(target), bytes) => target.copy_from_slice(bytes),
+            (_, None, _) => {}
+        }
+    }
+
     /// An error unless it may be written.
     pub(crate) fn writable(&self) -> Result<(), WriteError> {
         match self.access {

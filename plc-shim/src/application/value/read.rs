@@ -45,12 +45,7 @@ impl Application {
     }
 }
 
-fn enumerated(
-    name: &str,
-    base: ElementaryType,
-    values: &[(String, i128)],
-    text: &str,
-) -> Result<Value, String> {
+fn enumerated(name: &str, base: ElementaryType, values: &[(String, i128)], text: &str) -> Result<Value, String> {
     let value = text.trim();
     let value = match value.split_once('#') {
         Some((prefix, value)) if prefix.eq_ignore_ascii_case(name) => value,

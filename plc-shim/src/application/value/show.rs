@@ -15,6 +15,10 @@ impl Application {
     pub fn value_text(&self, variable: &Variable, memory: &[u8]) -> String {
         let mut text = String::new();
         let bytes = memory.get(variable.offset as usize..).unwrap_or_default();
+        if let (Some(bit), [byte, ..]) = (variable.bit, bytes) {
+            show_elementary(ElementaryType::Bool, &[byte >> bit & 1], &mut text);
+            return text;
+        }
         self.show(variable.type_id, bytes, &mut text);
         text
     }
@@ -111,7 +115,7 @@ fn show_text(shape: TextShape, bytes: &[u8], text: &mut String) {
 
 /// Characters as they stand between quotes (2nd ed. Tables 5 and 6).
 fn show_units(units: impl Iterator<Item = u16>, wide: bool, text: &mut String) {
-    let mut escape = |text: &mut String, unit: u16| {
+    let escape = |text: &mut String, unit: u16| {
         let width = if wide { 4 } else { 2 };
         let _ = write!(text, "${unit:0width$X}");
     };

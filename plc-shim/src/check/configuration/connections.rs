@@ -3,25 +3,25 @@
 use super::super::Checker;
 use super::super::convert::Operand;
 use super::super::scope::{Body, Scope};
-use super::path::Target;
 use crate::diagnostic::{Code, Diagnostic};
 use crate::ir::{
-    ElementaryType, Entry, Expr, ExprKind, InstanceCall, Place, Pou, PouId, Statement, StatementKind, Storage, Type,
+    ElementaryType, Entry, Expr, ExprKind, InstanceCall, Place, Pou, PouId, Statement, StatementKind, Storage, Target,
+    Type,
 };
 use crate::syntax::Span;
 use crate::syntax::ast::{self, Connection, Ident, PouKind, ProgramDeclaration, SectionKind};
 
 /// The statements around an instance's call.
 #[derive(Default)]
-struct Around {
-    before: Side,
-    after: Side,
+pub(super) struct Around {
+    pub(super) before: Side,
+    pub(super) after: Side,
 }
 
 /// Statements with the registers that they need.
 #[derive(Default)]
-struct Side {
-    statements: Vec<Statement>,
+pub(super) struct Side {
+    pub(super) statements: Vec<Statement>,
     scope: Scope,
 }
 
@@ -49,6 +49,7 @@ impl<'a> Checker<'a> {
             let span = declared.map_or(self.pou(program.pou).ast.name.span, |(_, declared)| declared.name.span);
             let mut around = Around::default();
             around.before.statements = self.select_globals(program.resource, span);
+            self.copy_locations(at, &mut around);
             for connection in declared.into_iter().flat_map(|(_, declared)| &declared.connections) {
                 match connection {
                     Connection::Input(input, source) => self.connect_input(at, input, source, &mut around.before),
@@ -198,12 +199,12 @@ impl<'a> Checker<'a> {
             return None;
         }
         let program = self.programs[at].clone();
-        self.configured.task_blocks.push((at, target.offset - program.offset, block.span));
+        self.configured.task_blocks.push((at, target.inside - program.offset, block.span));
         let mut around = Around::default();
         around.before.statements = self.select_globals(program.resource, block.span);
         let inside = target.path.strip_prefix(&self.program_target(at).path).unwrap_or(&target.path).to_owned();
         let name = format!("{}{inside}", self.entry_name(at));
-        let entry = self.entry(name, pou, target.offset, around, block.span);
+        let entry = self.entry(name, pou, target.inside, around, block.span);
         Some((program.resource, task?, entry))
     }
 
@@ -223,11 +224,12 @@ impl<'a> Checker<'a> {
     }
 }
 
-fn place(target: &Target, span: Span) -> Place {
-    Place::whole(Storage::Absolute(target.offset), target.ty, span)
+pub(super) fn place(target: &Target, span: Span) -> Place {
+    let place = Place::whole(target.storage, target.ty, span);
+    if target.inside == 0 { place } else { place.member(target.inside, target.ty) }
 }
 
-fn loaded(target: &Target, span: Span) -> Expr {
+pub(super) fn loaded(target: &Target, span: Span) -> Expr {
     Expr { kind: ExprKind::Load(place(target, span)), ty: target.ty, span }
 }
 
