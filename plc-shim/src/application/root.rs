@@ -69,7 +69,8 @@ impl Application {
     }
 
     fn global_in(&self, resource: usize, name: &str) -> Option<Spot> {
-        let resource = self.inner.checked.configuration.as_ref()?.resources.get(resource)?;
+        let checked = &self.inner.checked;
+        let resource = checked.configuration.as_ref()?.resources.get(resource)?;
         let global = resource.globals.iter().find(|each| each.name.eq_ignore_ascii_case(name))?;
         spot(&self.inner.checked, resource.name.as_deref().unwrap_or_default(), global, 0)
     }

@@ -34,7 +34,7 @@ impl Body<'_, '_> {
         let ast::ExprKind::Name(name) = &call.callee.kind else {
             return self.not_a_function(call, span);
         };
-        if self.scope.by_name.contains_key(&name.key()) && !self.is_own_result(name) {
+        if self.is_local(name) && !self.is_own_result(name) {
             return self.not_a_function(call, span);
         }
         if let Some(id) = self.function_named(name) {
@@ -43,11 +43,21 @@ impl Body<'_, '_> {
         if standard_function::exists(&name.key()) {
             return self.standard_call(name, &call.arguments, span);
         }
+        if Self::is_clock(name) {
+            return self.clock_function(name, call, span);
+        }
+        if self.report_vendor_function(name) {
+            return None;
+        }
         self.report_unknown_function(name)
     }
 
+    fn is_local(&self, name: &Ident) -> bool {
+        !name.is_quoted() && self.scope.by_name.contains_key(&name.key())
+    }
+
     /// Inside a function its own name is its result, and a call of it recursion.
-    fn is_own_result(&self, name: &Ident) -> bool {
+    pub(super) fn is_own_result(&self, name: &Ident) -> bool {
         self.pou.is_some_and(|id| {
             let own = self.checker.pou(id).ast;
             own.kind == PouKind::Function && own.name.key() == name.key()
@@ -98,8 +108,7 @@ impl Body<'_, '_> {
     pub(super) fn call_statement(&mut self, call: &Call, span: Span) -> Option<StatementKind> {
         let function = match &call.callee.kind {
             ast::ExprKind::Name(name) => {
-                !self.scope.by_name.contains_key(&name.key()) && !self.checker.globals.contains_key(&name.key())
-                    || self.is_own_result(name)
+                !self.is_local(name) && !self.checker.globals.contains_key(&name.key()) || self.is_own_result(name)
             }
             _ => false,
         };
@@ -310,7 +319,8 @@ impl Body<'_, '_> {
     }
 
     fn instance_call(&mut self, call: &Call, span: Span) -> Option<StatementKind> {
-        let instance = self.place(&call.callee)?.place;
+        let callee = self.instance_of(&call.callee);
+        let instance = self.place(callee)?.place;
         let Type::FunctionBlock { name, pou } = self.checker.types.get(instance.ty).clone() else {
             let message = format!("this is {}, which cannot be called", self.type_name(instance.ty));
             self.report(Diagnostic::error(Code::NotCallable, call.callee.span, message));

@@ -95,7 +95,9 @@ impl Body<'_, '_> {
             self.report(found.with_help("convert to an integer type on the way"));
             return None;
         }
-        Some(Operand::Typed(Expr { span, ..lower(expr, from, to, rounding) }))
+        let rounding = if rounding == Rounding::NearestEven { self.checker.dialect(span).rounding() } else { rounding };
+        let value = Expr { span, ..lower(expr, from, to, rounding) };
+        Some(Operand::Typed(self.time_value(value)))
     }
 }
 

@@ -14,19 +14,22 @@
 //! | [`expression`], [`operator`], [`calendar`], [`place`], [`part`] | expressions |
 //! | [`call`], [`standard_function`], [`conversion_function`] | calls |
 //! | [`text`], [`text_function`], [`text_conversion`] | character strings |
-//! | [`statement`], [`edge`] | statements |
+//! | [`statement`], [`assignment`], [`edge`] | statements |
 //! | [`configuration`] | resources, tasks, instances of programs |
+//! | [`dialect`] | what dialects do their own way |
 //! | [`recursion`] | who calls whom |
 //!
 //! A unit, type or global variable is resolved when it is first needed; what is being resolved
 //! and needed again contains itself.
 
+mod assignment;
 mod calendar;
 mod call;
 mod configuration;
 mod constant;
 mod conversion_function;
 mod convert;
+mod dialect;
 mod edge;
 mod expression;
 mod initial;
@@ -53,6 +56,7 @@ use self::configuration::Configured;
 use self::layout::Layout;
 use self::names::{Enumerator, GlobalEntry, PouEntry, TypeEntry};
 use crate::diagnostic::Diagnostic;
+use crate::dialect::Dialect;
 use crate::ir::{Areas, Configuration, Entry, Pou, PouId, Program, TypeId, TypeTable, Variable};
 use crate::syntax::ast::CompilationUnit;
 use crate::syntax::direct_address::AddressUnit;
@@ -71,13 +75,13 @@ pub(crate) struct Checked {
     /// The global variables that belong to no resource.
     pub(crate) globals: Vec<Variable>,
     pub(crate) programs: Vec<Program>,
-    pub(crate) configuration: Option<Configuration>,
-    /// What tasks can run; those of the programs first.
-    pub(crate) entries: Vec<Entry>,
     /// Where direct addresses lie.
     pub(crate) areas: Areas,
     /// What the numbers of direct addresses count.
     pub(crate) address_unit: AddressUnit,
+    pub(crate) configuration: Option<Configuration>,
+    /// What tasks can run; those of the programs first.
+    pub(crate) entries: Vec<Entry>,
     /// The whole memory at a cold start.
     pub(crate) image: Vec<u8>,
 }
@@ -91,8 +95,8 @@ pub(crate) fn check(units: &[(FileId, &CompilationUnit)], library: &BTreeSet<Fil
     checker.configure();
     checker.check_bodies();
     checker.report_recursion();
-    checker.check_configuration();
     checker.place_areas();
+    checker.check_configuration();
     let image = checker.memory_image();
     let globals = checker.shared_globals();
     let (configuration, entries) = checker.take_configuration();
@@ -107,10 +111,10 @@ pub(crate) fn check(units: &[(FileId, &CompilationUnit)], library: &BTreeSet<Fil
         pous: checker.checked,
         globals,
         programs: checker.programs,
-        configuration,
-        entries,
         areas: checker.areas,
         address_unit: checker.address_unit,
+        configuration,
+        entries,
         image,
     };
     (result, checker.diagnostics)
@@ -122,6 +126,7 @@ const MAX_DEPTH: u32 = 64;
 /// What is known so far.
 struct Checker<'a> {
     library: &'a BTreeSet<FileId>,
+    dialects: BTreeMap<FileId, Dialect>,
     types: TypeTable,
     type_names: BTreeMap<String, TypeEntry<'a>>,
     pous: Vec<PouEntry<'a>>,

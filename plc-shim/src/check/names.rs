@@ -72,6 +72,7 @@ impl<'a> Checker<'a> {
     pub(super) fn new(library: &'a BTreeSet<FileId>) -> Self {
         Self {
             library,
+            dialects: BTreeMap::new(),
             types: TypeTable::new(),
             type_names: BTreeMap::new(),
             pous: Vec::new(),
@@ -96,6 +97,7 @@ impl<'a> Checker<'a> {
     }
 
     pub(super) fn collect(&mut self, units: &[(FileId, &'a CompilationUnit)]) {
+        self.dialects = units.iter().map(|(file, unit)| (*file, unit.dialect)).collect();
         for (_, unit) in units {
             for declaration in &unit.declarations {
                 match declaration {

@@ -31,6 +31,8 @@ pub(crate) enum ExprKind {
     Binary(Binary, Box<Expr>, Box<Expr>),
     /// From the operand's type to the expression's, the number itself kept as far as it fits.
     Convert(Rounding, Box<Expr>),
+    /// The second or, if the first is FALSE, the third; the other is not evaluated.
+    Conditional(Box<[Expr; 3]>),
     Intrinsic(Intrinsic, Vec<Expr>),
     /// The operand, which must lie between the two numbers.
     Limited(i128, i128, Box<Expr>),
@@ -44,6 +46,8 @@ pub(crate) enum ExprKind {
 pub(crate) enum Rounding {
     /// To nearest, ties to even (2nd ed. 2.5.1.5.1 by way of IEC 60559).
     NearestEven,
+    /// To nearest, ties away from zero: a vendor's choice.
+    NearestAway,
     /// Towards zero (`TRUNC`).
     Truncate,
 }
@@ -59,7 +63,10 @@ pub(crate) enum Binary {
     Add,
     Subtract,
     Multiply,
+    /// A division by zero stops the PLC.
     Divide,
+    /// A division by zero gives 0 for integers, an infinity or NaN for reals.
+    DivideAnyway,
     Modulo,
     And,
     Or,

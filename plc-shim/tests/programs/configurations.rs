@@ -2,7 +2,8 @@
 
 use std::fmt::Write;
 
-use onescan_plc_shim::{Application, SoftPlc, TaskPlan, VirtualTime};
+use onescan_plc_shim::input::kind::SourceKind;
+use onescan_plc_shim::{Application, Input, SoftPlc, TaskPlan, VirtualTime};
 
 use crate::rig::{MS, Rig, application, findings};
 
@@ -366,6 +367,54 @@ fn a_configured_plc_is_restored_to_the_last_bit() {
         }
         assert_eq!(rig.plc.save(), other.plc.save(), "scan {scan}");
     }
+}
+
+#[test]
+fn iec2_2_7_tasks_of_plcopen_xml_run() {
+    let project = Input::from_text("line.xml", SourceKind::PlcOpen, include_str!("../inputs/line.xml"));
+    let application = Application::from_inputs([project]).unwrap_or_else(|found| panic!("{found}"));
+    let plan = TaskPlan::configured(&application).expect("a configuration");
+    let mut rig = Rig::with_plan(&application, &plan);
+    rig.set("Go", 1);
+    for _ in 0..3 {
+        rig.scan().expect("no fault");
+    }
+    assert_eq!(rig.now_ns, 60 * MS);
+    assert_eq!(
+        ["P1.Runs", "P2.Runs", "P3.Runs", "Count", "Line_1.Station.P2.Step"].map(|path| rig.int(path)),
+        [3, 5, 3, 3, 5]
+    );
+}
+
+#[test]
+fn tasks_of_a_twincat_project_are_one_configuration() {
+    let object = |name: &str, text: String| Input::from_text(name, SourceKind::TwinCat, text);
+    let program = |name: &str| {
+        let declared = format!("PROGRAM {name} VAR n : INT; END_VAR");
+        let text = format!(
+            "<TcPlcObject><POU Name=\"{name}\"><Declaration>{declared}</Declaration>
+            <Implementation><ST>n := n + 1;</ST></Implementation></POU></TcPlcObject>"
+        );
+        object(&format!("{name}.TcPOU"), text)
+    };
+    let task = |name: &str, cycle: u32, called: &str| {
+        let text = format!(
+            "<TcPlcObject><Task Name=\"{name}\"><CycleTime>{cycle}</CycleTime><Priority>20</Priority>
+            <PouCall><Name>{called}</Name></PouCall></Task></TcPlcObject>"
+        );
+        object(&format!("{name}.TcTTO"), text)
+    };
+    let files = [program("MAIN"), program("Slow"), task("Fast", 10_000, "MAIN"), task("Other", 20_000, "Slow")];
+    let application = Application::from_inputs(files).unwrap_or_else(|found| panic!("{found}"));
+    let plan = TaskPlan::configured(&application).expect("a configuration");
+    let mut rig = Rig::with_plan(&application, &plan);
+    for _ in 0..4 {
+        rig.scan().expect("no fault");
+    }
+    assert_eq!(["MAIN.n", "Slow.n"].map(|path| rig.int(path)), [4, 2]);
+    let unknown = [program("MAIN"), task("Fast", 10_000, "MIAN")];
+    let found = Application::from_inputs(unknown).expect_err("there is no MIAN");
+    insta::assert_snapshot!(found.to_string());
 }
 
 #[test]

@@ -3,6 +3,7 @@
 mod configurations;
 mod dates;
 mod diagnostics;
+mod dialects;
 mod direct_addresses;
 mod expressions;
 mod faults;
@@ -15,6 +16,7 @@ mod restarts;
 mod rig;
 mod robustness;
 mod scheduling;
+mod scl;
 mod shear;
 mod standard_blocks;
 mod standard_functions;

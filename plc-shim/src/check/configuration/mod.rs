@@ -85,6 +85,7 @@ impl<'a> Checker<'a> {
 
     /// What can be said only when every unit's body is known.
     pub(super) fn check_configuration(&mut self) {
+        self.report_idle_programs();
         self.report_foreign_globals();
         self.report_double_calls();
     }

@@ -1,6 +1,7 @@
 //! Units, types and variable sections (2nd ed. 2.3 to 2.5).
 
 use super::cursor::Cursor;
+use crate::dialect::Feature;
 use crate::syntax::ast::{
     CompilationUnit, Declaration, Edge, Ident, Pou, PouKind, Qualifier, Section, SectionKind, TypeDeclaration,
     TypeSpec, TypeSpecKind, Variable,
@@ -8,22 +9,29 @@ use crate::syntax::ast::{
 use crate::syntax::token::{Keyword, Punctuation, TokenKind};
 
 /// Keywords at which a file can go on after an error outside of a unit's body.
-fn begins_declaration(kind: TokenKind) -> bool {
+pub(super) fn begins_declaration(kind: TokenKind) -> bool {
     matches!(
         kind,
         TokenKind::Keyword(
-            Keyword::Program | Keyword::FunctionBlock | Keyword::Function | Keyword::Type | Keyword::VarGlobal
+            Keyword::Program
+                | Keyword::FunctionBlock
+                | Keyword::Function
+                | Keyword::Type
+                | Keyword::VarGlobal
+                | Keyword::OrganizationBlock
+                | Keyword::DataBlock
         )
     )
 }
 
-fn section_kind(kind: Option<TokenKind>) -> Option<SectionKind> {
+pub(super) fn section_kind(kind: Option<TokenKind>) -> Option<SectionKind> {
     Some(match kind? {
         TokenKind::Keyword(Keyword::Var) => SectionKind::Local,
         TokenKind::Keyword(Keyword::VarInput) => SectionKind::Input,
         TokenKind::Keyword(Keyword::VarOutput) => SectionKind::Output,
         TokenKind::Keyword(Keyword::VarInOut) => SectionKind::InOut,
         TokenKind::Keyword(Keyword::VarTemp) => SectionKind::Temp,
+        TokenKind::Keyword(Keyword::VarStat) => SectionKind::Static,
         TokenKind::Keyword(Keyword::VarGlobal) => SectionKind::Global,
         TokenKind::Keyword(Keyword::VarExternal) => SectionKind::External,
         _ => return None,
@@ -53,9 +61,12 @@ impl Cursor<'_> {
                     Some(found) => unit.declarations.push(found),
                     None => self.skip_until(begins_declaration),
                 },
+                TokenKind::Keyword(Keyword::OrganizationBlock) => self.organization_block(&mut unit),
+                TokenKind::Keyword(Keyword::DataBlock) => self.data_block(&mut unit),
                 // Vendors' exports end a unit with a semicolon; it declares nothing.
                 TokenKind::Punctuation(Punctuation::Semicolon) => self.advance(),
                 _ => {
+                    self.report_block_of_other_dialect();
                     self.unexpected("PROGRAM, FUNCTION_BLOCK, FUNCTION, TYPE or VAR_GLOBAL");
                     self.advance();
                     self.skip_until(begins_declaration);
@@ -65,7 +76,7 @@ impl Cursor<'_> {
         unit
     }
 
-    fn pou(&mut self, kind: PouKind, end: Keyword, unit: &mut CompilationUnit) {
+    pub(super) fn pou(&mut self, kind: PouKind, end: Keyword, unit: &mut CompilationUnit) {
         let start = self.span();
         self.advance();
         let Some(name) = self.expect_identifier("the unit's name") else {
@@ -73,16 +84,26 @@ impl Cursor<'_> {
             return;
         };
         let has_result = kind == PouKind::Function && self.take_mark(Punctuation::Colon);
-        let result = has_result.then(|| self.type_spec());
+        let result = has_result.then(|| self.type_spec()).filter(|result| !self.is_void(result));
         self.take_mark(Punctuation::Semicolon);
         let mut sections = Vec::new();
-        while let Some(kind) = section_kind(self.peek()) {
+        while let Some(kind) = self.next_section() {
             sections.push(self.section(kind));
         }
+        self.take_keyword(Keyword::Begin);
         let body = self.body(end);
         let span = self.span_from(start);
         let pou = Pou { kind, name, result, sections, body, span };
         unit.declarations.push(Declaration::Pou(pou));
+    }
+
+    /// The kind of the section that begins here.
+    fn next_section(&mut self) -> Option<SectionKind> {
+        if self.at_word("VAR_STAT") {
+            self.require(Feature::StaticSection, self.span());
+            return Some(SectionKind::Static);
+        }
+        section_kind(self.peek())
     }
 
     fn body(&mut self, end: Keyword) -> Vec<crate::syntax::ast::Statement> {
@@ -207,7 +228,9 @@ impl Cursor<'_> {
             let Some(name) = self.take_identifier() else {
                 break;
             };
-            self.expect_mark(Punctuation::Colon);
+            if !self.at_bare_structure() {
+                self.expect_mark(Punctuation::Colon);
+            }
             let spec = self.type_spec();
             let initial = self.optional_initialiser();
             let span = self.span_from(start);
@@ -225,5 +248,14 @@ impl Cursor<'_> {
 /// Keywords that end a unit or begin the next: no recovery passes them.
 fn ends_unit(kind: TokenKind) -> bool {
     begins_declaration(kind)
-        || matches!(kind, TokenKind::Keyword(Keyword::EndProgram | Keyword::EndFunctionBlock | Keyword::EndFunction))
+        || matches!(
+            kind,
+            TokenKind::Keyword(
+                Keyword::EndProgram
+                    | Keyword::EndFunctionBlock
+                    | Keyword::EndFunction
+                    | Keyword::EndOrganizationBlock
+                    | Keyword::EndDataBlock
+            )
+        )
 }
