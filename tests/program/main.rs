@@ -2,6 +2,7 @@
 
 mod check;
 mod checkpoint;
+mod configuration;
 mod control;
 mod errors;
 mod expectations;
