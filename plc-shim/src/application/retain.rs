@@ -71,7 +71,7 @@ impl Collector<'_> {
                     self.inside(field.ty, offset + field.offset);
                 }
             }
-            Type::Elementary(_) | Type::Enumeration { .. } | Type::Subrange { .. } | Type::Text(_) | Type::Nothing => {}
+            _ => {}
         }
     }
 
@@ -95,9 +95,7 @@ impl Collector<'_> {
             }
             Type::Array { element, .. } => self.has_retained(*element),
             Type::Struct { fields, .. } => fields.iter().any(|field| self.has_retained(field.ty)),
-            Type::Elementary(_) | Type::Enumeration { .. } | Type::Subrange { .. } | Type::Text(_) | Type::Nothing => {
-                false
-            }
+            _ => false,
         }
     }
 }

@@ -27,6 +27,7 @@ pub(super) fn fold(types: &TypeTable, expr: &Expr) -> Result<Value, NoValue> {
         }
         ExprKind::Convert(rounding, operand) => Ok(convert(*rounding, ty, fold(types, operand)?)),
         ExprKind::Limited(_, _, operand) => fold(types, operand),
+        ExprKind::Address(place) => place.fixed_address().map(|at| Value::Int(i128::from(at))).ok_or(not_constant),
         ExprKind::Load(_) | ExprKind::Intrinsic(..) | ExprKind::Text(_) | ExprKind::Call(_) => Err(not_constant),
     }
 }

@@ -12,6 +12,7 @@
 //! | [`constant`] | constant expressions to values |
 //! | [`convert`] | implicit conversions, constants in context |
 //! | [`expression`], [`operator`], [`calendar`], [`place`], [`part`] | expressions |
+//! | [`reference`], [`address`], [`referred`] | references and pointers |
 //! | [`call`], [`standard_function`], [`conversion_function`] | calls |
 //! | [`text`], [`text_function`], [`text_conversion`] | character strings |
 //! | [`statement`], [`edge`] | statements |
@@ -20,6 +21,7 @@
 //! A unit, type or global variable is resolved when it is first needed; what is being resolved
 //! and needed again contains itself.
 
+mod address;
 mod calendar;
 mod call;
 mod constant;
@@ -35,6 +37,8 @@ mod operator;
 mod part;
 mod place;
 mod recursion;
+mod reference;
+mod referred;
 mod scope;
 mod standard_function;
 mod statement;

@@ -5,7 +5,7 @@
 //! | [`module`] | sections, functions, exports |
 //! | [`function`] | one unit to one function |
 //! | [`emitter`] | instructions, registers, labels, marks |
-//! | [`place`] | addresses, loads and stores |
+//! | [`place`], [`part`], [`pointer`] | addresses, loads and stores |
 //! | [`statement`], [`repetition`] | statements |
 //! | [`expression`], [`arithmetic`], [`conversion`], [`intrinsic`] | expressions |
 //! | [`host`] | functions that WebAssembly lacks |
@@ -26,6 +26,7 @@ mod intrinsic;
 mod module;
 mod part;
 mod place;
+mod pointer;
 mod repetition;
 mod statement;
 mod text;

@@ -71,6 +71,10 @@ fn spec_of<'a>(expr: &Expr, pou: &'a Pou, index: &Index<'a>) -> Option<&'a TypeS
             }
         }
         ExprKind::Paren(inner) => spec_of(inner, pou, index),
+        ExprKind::Dereference(inner) => match &index.resolved(spec_of(inner, pou, index)?).kind {
+            TypeSpecKind::Reference(_, target) => Some(target),
+            _ => None,
+        },
         ExprKind::Index(inner, _) => match &index.resolved(spec_of(inner, pou, index)?).kind {
             TypeSpecKind::Array(_, element) => Some(element),
             _ => None,

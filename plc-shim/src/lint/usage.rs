@@ -3,11 +3,11 @@
 use std::collections::BTreeMap;
 
 use super::index::Index;
-use super::walk::{self, Visitor, root};
 use crate::syntax::Span;
 use crate::syntax::ast::{
     Argument, Call, Expr, ExprKind, Ident, Initialiser, InitialiserKind, Pou, Section, TypeSpec, TypeSpecKind,
 };
+use crate::syntax::walk::{self, Visitor, root};
 
 /// What is done with the variables of each name, whatever they are.
 #[derive(Debug, Default)]
@@ -91,6 +91,7 @@ impl Collector<'_> {
                 }
                 self.spec(element);
             }
+            TypeSpecKind::Reference(_, target) => self.spec(target),
             TypeSpecKind::String(_, Some(length)) => walk::expression(length, self),
             TypeSpecKind::Subrange(_, bounds) => {
                 walk::expression(&bounds.low, self);
@@ -163,6 +164,12 @@ impl Visitor for Collector<'_> {
             if let Some(name) = root(value).filter(|_| may_write) {
                 self.uses(name).is_passed = true;
             }
+        }
+    }
+
+    fn referred(&mut self, place: &Expr) {
+        if let Some(name) = root(place) {
+            self.uses(name).is_passed = true;
         }
     }
 

@@ -77,6 +77,7 @@ fn cause(trap: Option<Trap>, innermost: Option<(&FunctionMarks, Option<u32>)>) -
     match trap {
         Some(Trap::OutOfFuel) => (FaultKind::EndlessLoop, statement),
         Some(Trap::StackOverflow) => (FaultKind::CallTooDeep, statement),
+        Some(Trap::MemoryOutOfBounds) => (FaultKind::InvalidPointer, statement),
         _ => {
             let mark = innermost.and_then(|(function, offset)| function.fault_at(offset?));
             match mark.and_then(|mark| Some((mark.fault?, mark.span))) {

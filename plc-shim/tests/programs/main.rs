@@ -9,6 +9,7 @@ mod inputs;
 mod language;
 mod lints;
 mod partial_access;
+mod references;
 mod rig;
 mod robustness;
 mod scheduling;

@@ -18,6 +18,10 @@ pub enum StatementKind {
     Empty,
     /// `a := b`
     Assign(Expr, Expr),
+    /// `a REF= b` of vendors: `a` refers to `b` from now on
+    Refer(Expr, Expr),
+    /// `a ?= b` (3rd ed. 6.6.6.7)
+    Attempt(Expr, Expr),
     /// `fb(IN := x)`
     Call(Call),
     /// `IF`

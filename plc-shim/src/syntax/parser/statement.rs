@@ -133,6 +133,14 @@ impl Cursor<'_> {
             let value = self.expression();
             return StatementKind::Assign(target, value);
         }
+        if self.take_mark(Punctuation::Attempt) {
+            return StatementKind::Attempt(target, self.expression());
+        }
+        if self.at_reference_assignment() {
+            self.advance();
+            self.advance();
+            return StatementKind::Refer(target, self.expression());
+        }
         if let ExprKind::Call(call) = target.kind {
             StatementKind::Call(call)
         } else {
@@ -147,6 +155,13 @@ impl Cursor<'_> {
             }
             StatementKind::Error
         }
+    }
+
+    /// `REF=`, which the lexer takes for a name and a mark.
+    fn at_reference_assignment(&self) -> bool {
+        self.peek() == Some(TokenKind::Identifier)
+            && self.next_text().eq_ignore_ascii_case("REF")
+            && self.peek_ahead(1) == Some(TokenKind::Punctuation(Punctuation::Equal))
     }
 
     fn if_statement(&mut self) -> StatementKind {

@@ -1,7 +1,7 @@
 //! Types as written (2nd ed. 2.3.3).
 
 use super::cursor::Cursor;
-use crate::syntax::ast::{Dimension, EnumValue, Expr, Field, Ident, Subrange, TypeSpec, TypeSpecKind};
+use crate::syntax::ast::{Dimension, EnumValue, Expr, Field, Ident, ReferenceKind, Subrange, TypeSpec, TypeSpecKind};
 use crate::syntax::token::{Keyword, Punctuation, TokenKind};
 
 impl Cursor<'_> {
@@ -24,6 +24,9 @@ impl Cursor<'_> {
             let base = if self.peek() == Some(TokenKind::Identifier) { self.take_identifier() } else { None };
             return TypeSpecKind::Enumeration(values, base);
         }
+        if let Some(kind) = self.reference_kind() {
+            return TypeSpecKind::Reference(kind, Box::new(self.type_spec()));
+        }
         let Some(name) = self.expect_identifier("a type") else {
             return TypeSpecKind::Error;
         };
@@ -45,6 +48,21 @@ impl Cursor<'_> {
             return TypeSpecKind::Subrange(name, Box::new(Subrange { low, high }));
         }
         TypeSpecKind::Name(name)
+    }
+
+    /// `REF_TO`, `POINTER TO` or `REFERENCE TO`; none of them is a keyword of the 2nd edition.
+    fn reference_kind(&mut self) -> Option<ReferenceKind> {
+        let word = (self.peek() == Some(TokenKind::Identifier)).then(|| self.next_text().to_ascii_uppercase())?;
+        let to = self.peek_ahead(1) == Some(TokenKind::Keyword(Keyword::To));
+        let kind = match word.as_str() {
+            "REF_TO" => ReferenceKind::RefTo,
+            "POINTER" if to => ReferenceKind::Pointer,
+            "REFERENCE" if to => ReferenceKind::Reference,
+            _ => return None,
+        };
+        self.advance();
+        self.take_keyword(Keyword::To);
+        Some(kind)
     }
 
     fn string_type(&mut self, name: Ident) -> TypeSpecKind {

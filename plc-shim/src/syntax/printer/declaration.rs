@@ -131,6 +131,11 @@ impl Printer {
                 self.word("] OF ");
                 self.type_spec(element);
             }
+            TypeSpecKind::Reference(kind, target) => {
+                self.word(kind.text());
+                self.word(" ");
+                self.type_spec(target);
+            }
             TypeSpecKind::Struct(fields) => self.structure(fields),
             TypeSpecKind::Enumeration(values, base) => {
                 self.word("(");

@@ -3,7 +3,7 @@
 use crate::syntax::ast::{Argument, Call, Expr, ExprKind, Statement, StatementKind};
 
 /// Looks at the parts of a body; what it does not care for it leaves out.
-pub(super) trait Visitor {
+pub(crate) trait Visitor {
     /// A statement, before its parts.
     fn statement(&mut self, _statement: &Statement) {}
     /// The statements of a branch or loop begin.
@@ -16,11 +16,13 @@ pub(super) trait Visitor {
     fn control(&mut self, _name: &crate::syntax::ast::Ident) {}
     /// A call, before its arguments.
     fn call(&mut self, _call: &Call) {}
+    /// What a reference is made to refer to.
+    fn referred(&mut self, _place: &Expr) {}
     /// An expression, before its parts; of targets and callees only their indices.
     fn expression(&mut self, _expr: &Expr) {}
 }
 
-pub(super) fn statements(list: &[Statement], visitor: &mut impl Visitor) {
+pub(crate) fn statements(list: &[Statement], visitor: &mut impl Visitor) {
     for each in list {
         visitor.statement(each);
         statement(&each.kind, visitor);
@@ -37,6 +39,15 @@ fn statement(kind: &StatementKind, visitor: &mut impl Visitor) {
     match kind {
         StatementKind::Assign(place, value) => {
             target(place, visitor);
+            expression(value, visitor);
+        }
+        StatementKind::Attempt(place, value) => {
+            target(place, visitor);
+            expression(value, visitor);
+        }
+        StatementKind::Refer(place, value) => {
+            target(place, visitor);
+            visitor.referred(value);
             expression(value, visitor);
         }
         StatementKind::Call(inner) => call(inner, visitor),
@@ -97,6 +108,8 @@ fn target(place: &Expr, visitor: &mut impl Visitor) {
 fn indices(place: &Expr, visitor: &mut impl Visitor) {
     match &place.kind {
         ExprKind::Member(inner, _) | ExprKind::Part(inner, _) | ExprKind::Paren(inner) => indices(inner, visitor),
+        // The reference itself is read.
+        ExprKind::Dereference(inner) => expression(inner, visitor),
         ExprKind::Index(inner, list) => {
             indices(inner, visitor);
             for index in list {
@@ -107,12 +120,14 @@ fn indices(place: &Expr, visitor: &mut impl Visitor) {
     }
 }
 
-pub(super) fn expression(expr: &Expr, visitor: &mut impl Visitor) {
+pub(crate) fn expression(expr: &Expr, visitor: &mut impl Visitor) {
     visitor.expression(expr);
     match &expr.kind {
-        ExprKind::Member(inner, _) | ExprKind::Part(inner, _) | ExprKind::Unary(_, inner) | ExprKind::Paren(inner) => {
-            expression(inner, visitor)
-        }
+        ExprKind::Member(inner, _)
+        | ExprKind::Part(inner, _)
+        | ExprKind::Dereference(inner)
+        | ExprKind::Unary(_, inner)
+        | ExprKind::Paren(inner) => expression(inner, visitor),
         ExprKind::Index(inner, list) => {
             expression(inner, visitor);
             for index in list {
@@ -129,7 +144,7 @@ pub(super) fn expression(expr: &Expr, visitor: &mut impl Visitor) {
 }
 
 /// The variable that a place is or is a part of.
-pub(super) fn root(place: &Expr) -> Option<&crate::syntax::ast::Ident> {
+pub(crate) fn root(place: &Expr) -> Option<&crate::syntax::ast::Ident> {
     match &place.kind {
         ExprKind::Name(name) => Some(name),
         ExprKind::Member(inner, _) | ExprKind::Part(inner, _) | ExprKind::Index(inner, _) | ExprKind::Paren(inner) => {
