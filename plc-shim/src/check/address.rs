@@ -16,6 +16,8 @@ pub(super) enum PlaceFunction {
     Adr,
     SizeOf,
     IsValidRef,
+    LowerBound,
+    UpperBound,
 }
 
 impl PlaceFunction {
@@ -26,8 +28,17 @@ impl PlaceFunction {
             "ADR" => Self::Adr,
             "SIZEOF" => Self::SizeOf,
             "__ISVALIDREF" => Self::IsValidRef,
+            "LOWER_BOUND" => Self::LowerBound,
+            "UPPER_BOUND" => Self::UpperBound,
             _ => return None,
         })
+    }
+}
+
+fn positional(argument: &Argument) -> Option<&ast::Expr> {
+    match argument {
+        Argument::Positional(expr) | Argument::Input(_, expr) => Some(expr),
+        Argument::Output { .. } => None,
     }
 }
 
@@ -39,9 +50,17 @@ impl Body<'_, '_> {
         call: &Call,
         span: Span,
     ) -> Option<Operand> {
-        let [Argument::Positional(argument)] = &call.arguments[..] else {
-            let code = if call.arguments.is_empty() { Code::MissingArgument } else { Code::TooManyArguments };
-            let message = format!("{} takes one variable", name.key());
+        let given: Vec<&ast::Expr> = call.arguments.iter().filter_map(positional).collect();
+        if let (PlaceFunction::LowerBound | PlaceFunction::UpperBound, [array, number]) = (function, &given[..]) {
+            return self.bound(function, array, number, span);
+        }
+        let bounds = matches!(function, PlaceFunction::LowerBound | PlaceFunction::UpperBound);
+        let wanted = if bounds { 2 } else { 1 };
+        let ([argument], false) = (&given[..], bounds) else {
+            let missing = call.arguments.len() < wanted;
+            let code = if missing { Code::MissingArgument } else { Code::TooManyArguments };
+            let what = if bounds { "an array and a dimension" } else { "one variable" };
+            let message = format!("{} takes {what}", name.key());
             self.report(Diagnostic::error(code, span, message));
             return None;
         };
@@ -50,6 +69,7 @@ impl Body<'_, '_> {
             PlaceFunction::Adr => self.address_of(argument, span),
             PlaceFunction::SizeOf => self.size_of(argument, span),
             PlaceFunction::IsValidRef => self.is_valid(argument, span),
+            PlaceFunction::LowerBound | PlaceFunction::UpperBound => None,
         }
     }
 

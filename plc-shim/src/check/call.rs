@@ -249,6 +249,9 @@ impl Body<'_, '_> {
     }
 
     fn argument(&mut self, parameter: &Variable, expr: &ast::Expr, passing: &mut Passing) -> Option<Argument> {
+        if matches!(self.checker.types.get(parameter.ty), Type::OpenArray { .. }) {
+            return self.described(parameter, expr, &mut passing.before).map(Argument::Reference);
+        }
         if parameter.section == SectionKind::InOut {
             return self.reference(parameter, expr, passing).map(Argument::Reference);
         }

@@ -58,6 +58,9 @@ impl Body<'_, '_> {
         if let Some(shape) = self.shape(target) {
             return self.coerce_text(operand, shape);
         }
+        if matches!(self.checker.types.get(target), Type::OpenArray { .. }) {
+            return self.reject_whole_array(operand.span());
+        }
         if super::reference::target_of(&self.checker.types, target).is_some() {
             return self.coerce_reference(operand, target);
         }

@@ -5,7 +5,7 @@
 //! | [`names`] | what the files declare, by name |
 //! | [`layout`] | offsets in memory |
 //! | [`scope`] | what a name means inside a unit |
-//! | [`types`], [`subrange`] | types as written to types |
+//! | [`types`], [`subrange`], [`union`] | types as written to types |
 //! | [`variables`] | sections to placed variables, units' interfaces |
 //! | [`located`] | direct addresses to places |
 //! | [`initial`] | initial values to bytes |
@@ -13,9 +13,11 @@
 //! | [`convert`] | implicit conversions, constants in context |
 //! | [`expression`], [`operator`], [`calendar`], [`place`], [`part`] | expressions |
 //! | [`reference`], [`address`], [`referred`] | references and pointers |
+//! | [`open_array`] | arrays that come with their bounds |
 //! | [`call`], [`standard_function`], [`conversion_function`] | calls |
 //! | [`text`], [`text_function`], [`text_conversion`] | character strings |
 //! | [`statement`], [`edge`] | statements |
+//! | [`configuration`] | resources, tasks, instances of programs |
 //! | [`recursion`] | who calls whom |
 //!
 //! A unit, type or global variable is resolved when it is first needed; what is being resolved
@@ -24,6 +26,7 @@
 mod address;
 mod calendar;
 mod call;
+mod configuration;
 mod constant;
 mod conversion_function;
 mod convert;
@@ -33,6 +36,7 @@ mod initial;
 mod layout;
 mod located;
 mod names;
+mod open_array;
 mod operator;
 mod part;
 mod place;
@@ -47,15 +51,17 @@ mod text;
 mod text_conversion;
 mod text_function;
 mod types;
+mod union;
 mod variables;
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use self::configuration::Configured;
 use self::layout::Layout;
 use self::names::{Enumerator, GlobalEntry, PouEntry, TypeEntry};
 use crate::diagnostic::Diagnostic;
-use crate::ir::{Areas, Pou, PouId, Program, TypeId, TypeTable, Variable};
-use crate::syntax::ast::{CompilationUnit, PouKind};
+use crate::ir::{Areas, Configuration, Entry, Pou, PouId, Program, TypeId, TypeTable, Variable};
+use crate::syntax::ast::CompilationUnit;
 use crate::syntax::direct_address::AddressUnit;
 use crate::syntax::{FileId, Span};
 
@@ -69,12 +75,16 @@ pub(crate) struct Checked {
     pub(crate) pous: BTreeMap<PouId, Pou>,
     /// The variables of every unit that has been declared, whether it runs or not.
     pub(crate) interfaces: BTreeMap<PouId, Vec<Variable>>,
+    /// The global variables that belong to no resource.
     pub(crate) globals: Vec<Variable>,
     pub(crate) programs: Vec<Program>,
     /// Where direct addresses lie.
     pub(crate) areas: Areas,
     /// What the numbers of direct addresses count.
     pub(crate) address_unit: AddressUnit,
+    pub(crate) configuration: Option<Configuration>,
+    /// What tasks can run; those of the programs first.
+    pub(crate) entries: Vec<Entry>,
     /// The whole memory at a cold start.
     pub(crate) image: Vec<u8>,
 }
@@ -85,11 +95,14 @@ pub(crate) fn check(units: &[(FileId, &CompilationUnit)], library: &BTreeSet<Fil
     let mut checker = Checker::new(library);
     checker.collect(units);
     checker.resolve_declarations();
-    checker.place_programs();
+    checker.configure();
     checker.check_bodies();
     checker.report_recursion();
     checker.place_areas();
+    checker.check_configuration();
     let image = checker.memory_image();
+    let globals = checker.shared_globals();
+    let (configuration, entries) = checker.take_configuration();
     let interfaces = checker
         .pous
         .iter()
@@ -99,10 +112,12 @@ pub(crate) fn check(units: &[(FileId, &CompilationUnit)], library: &BTreeSet<Fil
         interfaces: interfaces.collect(),
         types: checker.types,
         pous: checker.checked,
-        globals: checker.globals.into_values().filter_map(|entry| entry.variable).collect(),
+        globals,
         programs: checker.programs,
         areas: checker.areas,
         address_unit: checker.address_unit,
+        configuration,
+        entries,
         image,
     };
     (result, checker.diagnostics)
@@ -130,6 +145,7 @@ struct Checker<'a> {
     /// Initial bytes of what has been placed.
     placed: Vec<(u32, std::sync::Arc<[u8]>)>,
     programs: Vec<Program>,
+    configured: Configured<'a>,
     checked: BTreeMap<PouId, Pou>,
     /// Units whose bodies are still to be checked, and all that ever were.
     queue: Vec<PouId>,
@@ -176,22 +192,6 @@ impl<'a> Checker<'a> {
     fn enqueue(&mut self, id: PouId) {
         if self.queued.insert(id) {
             self.queue.push(id);
-        }
-    }
-
-    /// Every program has one instance, under its own name.
-    fn place_programs(&mut self) {
-        for index in 0..self.pous.len() {
-            let id = PouId(index as u32);
-            if self.pou(id).ast.kind != PouKind::Program {
-                continue;
-            }
-            let (size, align, image) = self.pou(id).instance();
-            let span = self.pou(id).ast.name.span;
-            if let Some(offset) = self.allocate(size, align, span) {
-                self.placed.push((offset, image));
-                self.programs.push(Program { pou: id, offset });
-            }
         }
     }
 

@@ -4,6 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 use super::Checker;
+use super::configuration::Configured;
 use super::layout::{Layout, VIRTUAL_TIME_NAME, VIRTUAL_TIME_OFFSET};
 use super::scope::Scope;
 use crate::diagnostic::{Code, Diagnostic};
@@ -58,6 +59,8 @@ pub(super) struct GlobalEntry<'a> {
     pub(super) span: Span,
     pub(super) progress: Progress,
     pub(super) variable: Option<Variable>,
+    /// The resource that declares it.
+    pub(super) home: Option<usize>,
 }
 
 /// A value of an enumeration.
@@ -84,6 +87,7 @@ impl<'a> Checker<'a> {
             literals: BTreeMap::new(),
             placed: Vec::new(),
             programs: Vec::new(),
+            configured: Configured::default(),
             checked: BTreeMap::new(),
             queue: Vec::new(),
             queued: BTreeSet::new(),
@@ -100,9 +104,11 @@ impl<'a> Checker<'a> {
                     Declaration::Pou(pou) => self.collect_pou(pou),
                     Declaration::Type(declaration) => self.collect_type(declaration),
                     Declaration::Globals(section) => self.collect_globals(section),
+                    Declaration::Configuration(configuration) => self.collect_configuration(configuration),
                 }
             }
         }
+        self.collect_resource_globals();
     }
 
     fn collect_pou(&mut self, ast: &'a ast::Pou) {
@@ -131,7 +137,7 @@ impl<'a> Checker<'a> {
         }
     }
 
-    fn collect_globals(&mut self, section: &'a ast::Section) {
+    pub(super) fn collect_globals(&mut self, section: &'a ast::Section) {
         for variable in &section.variables {
             for name in &variable.names {
                 if let Some(first) = self.globals.get(&name.key()) {
@@ -145,6 +151,7 @@ impl<'a> Checker<'a> {
                     span: name.span,
                     progress: Progress::Untouched,
                     variable: None,
+                    home: None,
                 };
                 self.globals.insert(name.key(), entry);
             }
@@ -197,12 +204,12 @@ fn virtual_time() -> GlobalEntry<'static> {
         storage: Storage::Absolute(VIRTUAL_TIME_OFFSET),
         constant: None,
         is_constant: true,
-        retain: false,
+        retention: None,
         address: None,
         span,
         image: vec![0; 8].into(),
         edge: None,
     };
     let name = VIRTUAL_TIME_NAME.to_owned();
-    GlobalEntry { ast: None, name, span, progress: Progress::Done, variable: Some(variable) }
+    GlobalEntry { ast: None, name, span, progress: Progress::Done, variable: Some(variable), home: None }
 }

@@ -106,7 +106,9 @@ impl Body<'_, '_> {
     fn named_place(&mut self, name: &Ident) -> Option<Located> {
         match self.variable_named(name) {
             Some(Ok(variable)) => {
+                let open = super::open_array::access(&self.checker.types, &variable);
                 let access = match variable.section {
+                    _ if open.is_some() => Access::Constant,
                     _ if variable.is_constant => Access::Constant,
                     SectionKind::Input => Access::OwnInput,
                     _ if super::located::is_machine_input(variable.storage) => Access::MachineInput,
@@ -138,6 +140,7 @@ impl Body<'_, '_> {
         }
         // Vendors make global variables visible everywhere; the standard wants VAR_EXTERNAL.
         if self.checker.globals.contains_key(&key) {
+            self.checker.note_global_use(self.pou, &key, name.span);
             return Some(self.checker.global(&key, Some(name.span)).ok_or(()));
         }
         None
@@ -248,6 +251,9 @@ impl Body<'_, '_> {
         {
             let target = *target;
             return self.pointed_element(base, target, index, span);
+        }
+        if matches!(self.checker.types.get(base.place.ty), Type::OpenArray { .. }) {
+            return self.open_element(base, indices, span);
         }
         let Type::Array { dimensions, element } = self.checker.types.get(base.place.ty).clone() else {
             let message = format!("{} is not an array", self.type_name(base.place.ty));

@@ -44,7 +44,7 @@ impl Checker<'_> {
     /// The type of a structure that may not be resolved yet; nothing for other types.
     pub(super) fn reserved(&mut self, key: &str) -> Option<TypeId> {
         let entry = self.type_names.get_mut(key)?;
-        if !matches!(entry.ast.spec.kind, TypeSpecKind::Struct(_)) {
+        if !matches!(entry.ast.spec.kind, TypeSpecKind::Struct(_) | TypeSpecKind::Union(_)) {
             return None;
         }
         let name = &entry.ast.name.text;
@@ -79,6 +79,10 @@ impl<'a> Body<'_, 'a> {
                 let ty = self.checker.reserved(&ast.name.key());
                 self.structure(name, ty, fields, ast.name.span)
             }
+            TypeSpecKind::Union(fields) => {
+                let ty = self.checker.reserved(&ast.name.key());
+                self.union(name, ty, fields, ast.name.span)
+            }
             TypeSpecKind::Enumeration(values, base) => self.enumeration(name, values, base.as_ref()),
             _ => self.resolve(&ast.spec, Need::Size),
         }?;
@@ -95,6 +99,13 @@ impl<'a> Body<'_, 'a> {
             TypeSpecKind::Array(dimensions, element) => self.array(dimensions, element, need, spec.span),
             TypeSpecKind::Struct(fields) => self.structure("STRUCT", None, fields, spec.span),
             TypeSpecKind::Reference(kind, target) => self.reference_type(*kind, target),
+            TypeSpecKind::OpenArray(dimensions, element) => {
+                let element = self.resolve(element, Need::Size)?.ty;
+                self.reject_open_array(element, spec.span)?;
+                let ty = self.checker.types.open_array(*dimensions, element);
+                Some(self.whole(ty))
+            }
+            TypeSpecKind::Union(fields) => self.union("UNION", None, fields, spec.span),
             TypeSpecKind::Enumeration(values, base) => self.enumeration("enumeration", values, base.as_ref()),
             TypeSpecKind::String(name, length) => {
                 let ty = self.text_type(name.key() == "WSTRING", length.as_deref())?;
@@ -122,11 +133,12 @@ impl<'a> Body<'_, 'a> {
             TypeSpecKind::Name(name) => self.checker.reserved(&name.key()),
             _ => None,
         };
-        let target = match reserved {
+        let target_ty = match reserved {
             Some(ty) => ty,
             None => self.resolve(target, Need::Reference)?.ty,
         };
-        let ty = self.checker.types.reference(Some(kind), target);
+        self.reject_open_array(target_ty, target.span)?;
+        let ty = self.checker.types.reference(Some(kind), target_ty);
         Some(self.whole(ty))
     }
 
@@ -175,6 +187,7 @@ impl<'a> Body<'_, 'a> {
     ) -> Option<TypedImage> {
         let bounds: Vec<_> = dimensions.iter().map(|each| self.dimension(each)).collect();
         let element = self.resolve(element, if need == Need::Size { need } else { Need::Size })?;
+        self.reject_open_array(element.ty, span)?;
         let bounds: Vec<Dimension> = bounds.into_iter().collect::<Option<_>>()?;
         let size = self.checker.types.size(element.ty);
         let total = bounds.iter().try_fold(u64::from(size), |total, each| {
@@ -220,6 +233,7 @@ impl<'a> Body<'_, 'a> {
                 continue;
             }
             let mut resolved = self.resolve(&field.spec, Need::Size)?;
+            self.reject_open_array(resolved.ty, field.spec.span)?;
             if let Some(initial) = &field.initial {
                 resolved.image = self.initial_image(&resolved, initial)?;
             }

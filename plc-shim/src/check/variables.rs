@@ -6,11 +6,12 @@ use std::sync::Arc;
 use super::Checker;
 use super::layout::{MEMORY_LIMIT, align_up};
 use super::names::{Progress, TypedImage};
+use super::open_array::takes_open_arrays;
 use super::referred::referred;
 use super::scope::{Body, Scope};
 use super::types::Need;
 use crate::diagnostic::{Code, Diagnostic, did_you_mean};
-use crate::ir::{EdgeDetection, ElementaryType, Place, PouId, Storage, TypeId, Value, Variable};
+use crate::ir::{EdgeDetection, ElementaryType, Place, PouId, Retention, Storage, TypeId, Value, Variable};
 use crate::syntax::Span;
 use crate::syntax::ast::{self, Ident, PouKind, Qualifier, Section, SectionKind};
 
@@ -20,6 +21,11 @@ const POINTER: ElementaryType = ElementaryType::Udint;
 impl<'a> Checker<'a> {
     /// A global variable, placed in memory; `used` is where it is needed.
     pub(super) fn global(&mut self, key: &str, used: Option<Span>) -> Option<Variable> {
+        if self.globals.get(key)?.progress == Progress::Untouched
+            && let Some(found) = self.alternative_global(key, used)
+        {
+            return Some(found);
+        }
         let entry = self.globals.get_mut(key)?;
         let (progress, span) = (entry.progress, entry.span);
         if progress == Progress::Done {
@@ -43,6 +49,7 @@ impl<'a> Checker<'a> {
 
     fn place_global(&mut self, name: &Ident, ast: &'a ast::Variable, qualifiers: &[Qualifier]) -> Option<Variable> {
         let declared = Body::outside(self).declared(ast, Need::Size)?;
+        Body::outside(self).reject_open_array(declared.ty, name.span)?;
         let storage = match self.located(ast, &declared)? {
             Some(storage) => storage,
             None => {
@@ -73,7 +80,7 @@ impl<'a> Checker<'a> {
             storage,
             constant: elementary.filter(|_| is_constant).map(|ty| decode(ty, &declared.image)),
             is_constant,
-            retain: qualifiers.contains(&Qualifier::Retain),
+            retention: Retention::of(qualifiers),
             address: ast.address.as_ref().map(|address| address.text.clone()),
             span: name.span,
             image: declared.image.clone(),
@@ -200,6 +207,7 @@ impl<'c, 'a> Interface<'c, 'a> {
             return;
         };
         let span = ast.name.span;
+        self.body.reject_open_array(declared.ty, spec.span);
         self.body.scope.result = Some(Place::whole(storage, declared.ty, span));
         let shape = ast::Variable { names: Vec::new(), address: None, spec: spec.clone(), edge: None, initial: None };
         let kind = SectionKind::Temp;
@@ -273,6 +281,11 @@ impl<'c, 'a> Interface<'c, 'a> {
 
     fn storage(&mut self, section: &Section, declared: &TypedImage, name: &Ident) -> Option<Storage> {
         let span = name.span;
+        if !takes_open_arrays(self.kind, section.kind) {
+            self.body.reject_open_array(declared.ty, span)?;
+        } else if section.kind == SectionKind::Input && self.is_open(declared.ty) {
+            return Some(Storage::RegisterPointer(self.body.scope.register(POINTER)));
+        }
         match (self.kind, section.kind) {
             (PouKind::Function, SectionKind::Input) => Some(self.parameter(declared, name)?),
             (PouKind::Function, SectionKind::InOut) => {
@@ -298,6 +311,10 @@ impl<'c, 'a> Interface<'c, 'a> {
             }
             _ => Some(Storage::Instance(self.in_instance(declared, span)?)),
         }
+    }
+
+    fn is_open(&self, ty: TypeId) -> bool {
+        matches!(self.body.checker.types.get(ty), crate::ir::Type::OpenArray { .. })
     }
 
     /// The trigger of an input with `R_EDGE` or `F_EDGE`.
@@ -373,6 +390,7 @@ impl<'c, 'a> Interface<'c, 'a> {
     fn declare_external(&mut self, name: &Ident, ty: TypeId, section: &Section) {
         let key = name.key();
         let known = self.body.checker.globals.contains_key(&key);
+        self.body.checker.note_global_use(self.body.pou, &key, name.span);
         let global = self.body.checker.global(&key, Some(name.span));
         let Some(mut variable) = global else {
             if !known {

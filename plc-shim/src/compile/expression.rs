@@ -3,8 +3,9 @@
 use wasm_encoder::{Ieee32, Ieee64, Instruction, ValType};
 
 use super::emitter::{Emitter, value_type};
-use super::fault::FaultKind;
+use super::fault::{Callee, FaultKind};
 use crate::ir::{Argument, Binary, ElementaryType, Expr, ExprKind, FunctionCall, Place, Unary, Value};
+use crate::syntax::Span;
 
 impl Emitter<'_, '_> {
     /// Pushes the expression's value; an aggregate's address.
@@ -34,7 +35,7 @@ impl Emitter<'_, '_> {
                 self.intrinsic(*intrinsic, operands, expr);
             }
             ExprKind::Text(call) => self.text_call(call, expr),
-            ExprKind::Call(call) => self.call_function(call),
+            ExprKind::Call(call) => self.call_function(call, expr.span),
         }
     }
 
@@ -71,7 +72,7 @@ impl Emitter<'_, '_> {
         self.release(value);
     }
 
-    fn call_function(&mut self, call: &FunctionCall) {
+    fn call_function(&mut self, call: &FunctionCall, span: Span) {
         self.side_statements(&call.before);
         for argument in &call.arguments {
             match argument {
@@ -79,6 +80,7 @@ impl Emitter<'_, '_> {
                 Argument::Reference(place) => self.full_address(place),
             }
         }
+        self.mark_call(Callee::Function, span);
         self.call(call.pou);
         if let Some(place) = &call.result {
             self.keep_result(place);

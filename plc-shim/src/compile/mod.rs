@@ -4,8 +4,9 @@
 //! |---|---|
 //! | [`module`] | sections, functions, exports |
 //! | [`function`] | one unit to one function |
+//! | [`entry`] | what a task runs |
 //! | [`emitter`] | instructions, registers, labels, marks |
-//! | [`place`], [`part`], [`pointer`] | addresses, loads and stores |
+//! | [`place`], [`part`], [`pointer`], [`open_array`] | addresses, loads and stores |
 //! | [`statement`], [`repetition`] | statements |
 //! | [`expression`], [`arithmetic`], [`conversion`], [`intrinsic`] | expressions |
 //! | [`host`] | functions that WebAssembly lacks |
@@ -18,12 +19,14 @@
 mod arithmetic;
 mod conversion;
 mod emitter;
+mod entry;
 mod expression;
 pub(crate) mod fault;
 mod function;
 pub(crate) mod host;
 mod intrinsic;
 mod module;
+mod open_array;
 mod part;
 mod place;
 mod pointer;
@@ -32,4 +35,4 @@ mod statement;
 mod text;
 pub(crate) mod text_host;
 
-pub(crate) use module::{Compiled, MEMORY_EXPORT, compile, program_export};
+pub(crate) use module::{Compiled, MEMORY_EXPORT, compile, entry_export};

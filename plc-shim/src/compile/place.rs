@@ -30,6 +30,11 @@ impl Emitter<'_, '_> {
                 self.emit(Instruction::I32Load(argument(u64::from(offset), ElementaryType::Udint)));
                 (0, true)
             }
+            Storage::AbsolutePointer(offset) => {
+                self.emit(Instruction::I32Const(0));
+                self.emit(Instruction::I32Load(argument(u64::from(offset), ElementaryType::Udint)));
+                (0, true)
+            }
             Storage::RegisterPointer(register) => {
                 self.get(register);
                 (0, true)
@@ -43,6 +48,10 @@ impl Emitter<'_, '_> {
                 Step::Pointer { address, target } => {
                     self.pointer(address, *target, place.span);
                     pushed = true;
+                }
+                Step::Open { description, indices, stride } => {
+                    self.open_element(description, indices, *stride, place.span);
+                    self.emit(Instruction::I32Add);
                 }
                 Step::Index { index, low, count, stride } => {
                     self.index(index, *low, *count, *stride, place.span);

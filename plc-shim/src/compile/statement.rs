@@ -5,10 +5,11 @@ use std::sync::Arc;
 use wasm_encoder::Instruction;
 
 use super::emitter::Emitter;
+use super::fault::Callee;
 use crate::ir::elementary::Kind;
 use crate::ir::{
-    CaseStatement, ElementaryType, Expr, IfBranch, InstanceCall, LocalId, Place, Statement, StatementKind, TypeTable,
-    Value,
+    CaseStatement, ElementaryType, Expr, IfBranch, InstanceCall, LocalId, Place, Statement, StatementKind, Storage,
+    TypeTable, Value,
 };
 
 impl Emitter<'_, '_> {
@@ -92,6 +93,9 @@ impl Emitter<'_, '_> {
             self.statement(input);
         }
         self.get(call.pointer);
+        let global = matches!(call.instance.storage, Storage::Absolute(_) | Storage::AbsolutePointer(_));
+        let callee = if global { Callee::Global } else { Callee::Inner };
+        self.mark_call(callee, call.instance.span);
         self.call(call.pou);
         for output in &call.outputs {
             self.statement(output);

@@ -145,6 +145,8 @@ pub(crate) enum Storage {
     Absolute(u32),
     /// At a direct address.
     Located(Location),
+    /// The address stands at a fixed offset (a global of the running resource).
+    AbsolutePointer(u32),
     /// At an offset in the running instance.
     Instance(u32),
     /// The address stands at an offset in the running instance (`VAR_IN_OUT`).
@@ -226,6 +228,8 @@ pub(crate) enum Step {
     Pointer { address: Box<Expr>, target: TypeId },
     /// So many bytes further.
     Offset(u32),
+    /// To an element of an array that `description` describes; a fault if an index is out of bounds.
+    Open { description: Box<Place>, indices: Vec<Expr>, stride: u32 },
     /// `(index - low) * stride` bytes further; a fault unless `index - low < count`.
     Index { index: Box<Expr>, low: i64, count: u32, stride: u32 },
 }

@@ -103,12 +103,16 @@ struct Entry {
 pub(crate) struct TypeTable {
     entries: Vec<Entry>,
     arrays: BTreeMap<(TypeId, Vec<Dimension>), TypeId>,
+    open_arrays: BTreeMap<(TypeId, u32), TypeId>,
     blocks: BTreeMap<PouId, TypeId>,
     texts: BTreeMap<TextShape, TypeId>,
     subranges: BTreeMap<(ElementaryType, i128, i128), TypeId>,
     /// By kind, none for addresses.
     references: BTreeMap<(Option<ReferenceKind>, TypeId), TypeId>,
 }
+
+/// Bytes of one dimension's bounds in the description of an array.
+pub(crate) const OPEN_BOUNDS: u32 = 8;
 
 /// References are offsets in memory.
 const REFERENCE: ElementaryType = ElementaryType::Udint;
@@ -128,6 +132,7 @@ impl TypeTable {
         Self {
             entries,
             arrays: BTreeMap::new(),
+            open_arrays: BTreeMap::new(),
             blocks: BTreeMap::new(),
             texts: BTreeMap::new(),
             subranges: BTreeMap::new(),
@@ -250,6 +255,18 @@ impl TypeTable {
         id
     }
 
+    /// The type of an array without bounds of its own; `size` is that of the description.
+    pub(crate) fn open_array(&mut self, dimensions: u32, element: TypeId) -> TypeId {
+        if let Some(found) = self.open_arrays.get(&(element, dimensions)) {
+            return *found;
+        }
+        let size = REFERENCE.size() + dimensions * OPEN_BOUNDS;
+        let ty = Type::OpenArray { dimensions, element };
+        let id = self.add(ty, size, REFERENCE.size(), vec![0; size as usize].into());
+        self.open_arrays.insert((element, dimensions), id);
+        id
+    }
+
     /// A structure that [`Self::complete_structure`] gives its members: they may refer to it.
     pub(crate) fn structure(&mut self, name: String) -> TypeId {
         self.add(Type::Struct { name, fields: Vec::new() }, 0, 1, Arc::from([]))
@@ -276,6 +293,11 @@ impl TypeTable {
         let id = self.add(ty, 0, 1, Arc::from([]));
         self.blocks.insert(pou, id);
         id
+    }
+
+    /// The type of a unit's instances, if there are any.
+    pub(crate) fn known_block(&self, pou: PouId) -> Option<TypeId> {
+        self.blocks.get(&pou).copied()
     }
 
     pub(crate) fn complete_block(&mut self, id: TypeId, align: u32, image: Arc<[u8]>) {

@@ -2,6 +2,7 @@
 
 use super::Unit;
 use super::index::Index;
+use super::usage::Usage;
 use crate::diagnostic::{Code, Diagnostic};
 use crate::syntax::ast::{Ident, SectionKind, Variable};
 
@@ -41,10 +42,11 @@ pub(super) fn lint_globals(units: &[Unit<'_>], index: &Index<'_>, findings: &mut
     if writes_outputs(units) {
         return;
     }
+    let declarations = Usage::of_globals(index);
     let located = index.globals().flat_map(|section| &section.variables).filter(|each| is_located_output(each));
     for name in located.flat_map(|variable| &variable.names) {
         let key = name.key();
-        let touched = units.iter().map(|unit| unit.usage.get(&key));
+        let touched = units.iter().map(|unit| unit.usage.get(&key)).chain([declarations.get(&key)]);
         if touched.into_iter().all(|uses| uses.written.is_none() && !uses.is_passed && !uses.is_called) {
             report(name, findings);
         }

@@ -53,6 +53,13 @@ impl Usage {
         for spec in index.type_specs() {
             collector.spec(spec);
         }
+        let (read, written) = index.configured();
+        for expr in read {
+            walk::expression(expr, &mut collector);
+        }
+        for expr in written {
+            collector.target(expr);
+        }
         collector.usage
     }
 
@@ -91,13 +98,13 @@ impl Collector<'_> {
                 }
                 self.spec(element);
             }
-            TypeSpecKind::Reference(_, target) => self.spec(target),
+            TypeSpecKind::Reference(_, target) | TypeSpecKind::OpenArray(_, target) => self.spec(target),
             TypeSpecKind::String(_, Some(length)) => walk::expression(length, self),
             TypeSpecKind::Subrange(_, bounds) => {
                 walk::expression(&bounds.low, self);
                 walk::expression(&bounds.high, self);
             }
-            TypeSpecKind::Struct(fields) => {
+            TypeSpecKind::Struct(fields) | TypeSpecKind::Union(fields) => {
                 for field in fields {
                     self.spec(&field.spec);
                     field.initial.iter().for_each(|initial| self.initialiser(initial));

@@ -1,5 +1,6 @@
 //! Programs in, traces out: the whole way from text to a scanning PLC.
 
+mod configurations;
 mod dates;
 mod diagnostics;
 mod direct_addresses;
@@ -8,6 +9,7 @@ mod faults;
 mod inputs;
 mod language;
 mod lints;
+mod open_arrays;
 mod partial_access;
 mod references;
 mod rig;
@@ -20,3 +22,4 @@ mod states;
 mod string_expressions;
 mod strings;
 mod subranges;
+mod unions;

@@ -31,6 +31,7 @@ pub(crate) fn task(name: &str, interval_ms: u64, priority: u32, programs: &[&str
         name: name.to_owned(),
         interval_ns: interval_ms * MS,
         priority,
+        single: None,
         programs: programs.iter().map(|name| (*name).to_owned()).collect(),
     }
 }

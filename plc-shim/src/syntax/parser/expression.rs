@@ -77,7 +77,7 @@ impl Cursor<'_> {
     }
 
     /// A primary with its members, indices and calls.
-    fn postfix(&mut self) -> Expr {
+    pub(super) fn postfix(&mut self) -> Expr {
         let mut expr = self.primary();
         loop {
             let (start, height) = (expr.span, expr.height);

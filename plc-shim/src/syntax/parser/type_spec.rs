@@ -16,7 +16,10 @@ impl Cursor<'_> {
             return self.array_type();
         }
         if self.take_keyword(Keyword::Struct) {
-            return self.struct_type();
+            return TypeSpecKind::Struct(self.members(Keyword::EndStruct));
+        }
+        if self.take_keyword(Keyword::Union) {
+            return TypeSpecKind::Union(self.members(Keyword::EndUnion));
         }
         if self.take_mark(Punctuation::LeftParen) {
             let values = self.enumeration_values();
@@ -83,6 +86,9 @@ impl Cursor<'_> {
     fn array_type(&mut self) -> TypeSpecKind {
         let mut dimensions = Vec::new();
         self.expect_mark(Punctuation::LeftBracket);
+        if self.at_mark(Punctuation::Star) {
+            return self.open_array_type();
+        }
         loop {
             let low = self.expression();
             self.expect_mark(Punctuation::Range);
@@ -97,13 +103,27 @@ impl Cursor<'_> {
         TypeSpecKind::Array(dimensions, Box::new(self.type_spec()))
     }
 
-    fn struct_type(&mut self) -> TypeSpecKind {
+    /// `*, *] OF INT`
+    fn open_array_type(&mut self) -> TypeSpecKind {
+        let mut dimensions = 0;
+        while self.expect_mark(Punctuation::Star) {
+            dimensions += 1;
+            if !self.take_mark(Punctuation::Comma) {
+                break;
+            }
+        }
+        self.expect_mark(Punctuation::RightBracket);
+        self.expect_keyword(Keyword::Of);
+        TypeSpecKind::OpenArray(dimensions, Box::new(self.type_spec()))
+    }
+
+    fn members(&mut self, end: Keyword) -> Vec<Field> {
         let mut fields = Vec::new();
         while self.peek() == Some(TokenKind::Identifier) {
             self.fields(&mut fields);
         }
-        self.expect_keyword(Keyword::EndStruct);
-        TypeSpecKind::Struct(fields)
+        self.expect_keyword(end);
+        fields
     }
 
     /// `a, b : INT := 5;`
