@@ -97,6 +97,8 @@ impl<'a> Checker<'a> {
     }
 
     pub(super) fn collect(&mut self, units: &[(FileId, &'a CompilationUnit)]) {
+        // Who looks from outside sees the addresses as the first file has them.
+        self.address_unit = units.first().map_or_else(AddressUnit::default, |(_, unit)| unit.dialect.address_unit());
         self.dialects = units.iter().map(|(file, unit)| (*file, unit.dialect)).collect();
         for (_, unit) in units {
             for declaration in &unit.declarations {

@@ -4,8 +4,8 @@ use std::net::SocketAddr;
 use std::path::PathBuf;
 
 use clap::{ArgAction, Args as ClapArgs, Parser, Subcommand, ValueEnum};
-use onescan_plc_shim::Task;
 use onescan_plc_shim::instrument::Target;
+use onescan_plc_shim::{Dialect, Task};
 use onescan_server::pacing::Pace;
 use onescan_server::session::Control;
 use onescan_server::signal::{ClientName, SignalName};
@@ -50,6 +50,10 @@ pub enum Command {
     /// Make a PLC project run in lockstep on any PLC: scheduler, execution controllers and timers on virtual
     /// time are attached; or take them off again
     Instrument(Box<InstrumentArgs>),
+    /// List the library of components, or tell all about one kind
+    Components(ComponentsArgs),
+    /// Tell what a scene is made of: bodies, joints, components, signals
+    Describe(DescribeArgs),
     /// Explain a code of `check`, with an example that is wrong and one that is right
     Explain(ExplainArgs),
 }
@@ -140,6 +144,10 @@ pub struct CheckArgs {
     /// files, or scenarios; files and folders are checked together, as one program
     #[arg(required = true, value_name = "FILE|FOLDER|SCENARIO")]
     pub paths: Vec<PathBuf>,
+    /// Read all files in this dialect: iec2, iec3, codesys, twincat or siemens-scl [default: what a file's
+    /// name or PLCopen XML tells, as in `.scl`, else iec3]
+    #[arg(long, value_name = "NAME")]
+    pub dialect: Option<Dialect>,
     /// `human`; `json`: an object a finding with `code`, `severity`, `file`, `line`, `column`,
     /// `end_line`, `end_column`, `message`, `help`; `sarif`: a SARIF 2.1.0 log
     #[arg(long, value_enum, default_value_t)]
@@ -179,6 +187,26 @@ pub struct InstrumentArgs {
     #[arg(long)]
     pub deny_warnings: bool,
     /// For people, or one JSON object for machines: `files` with `file`, `change`, `lines`, and `findings`
+    #[arg(long, value_enum, default_value_t)]
+    pub format: FormatArg,
+}
+
+/// Options of `components`.
+#[derive(Debug, ClapArgs)]
+pub struct ComponentsArgs {
+    /// A kind, for its equations, parameters, signals and failure modes
+    pub kind: Option<String>,
+    /// For people, or JSON for machines
+    #[arg(long, value_enum, default_value_t)]
+    pub format: FormatArg,
+}
+
+/// Options of `describe`.
+#[derive(Debug, ClapArgs)]
+pub struct DescribeArgs {
+    /// The scene, a `plant.toml`
+    pub scene: PathBuf,
+    /// For people, or JSON for machines
     #[arg(long, value_enum, default_value_t)]
     pub format: FormatArg,
 }
