@@ -2,7 +2,7 @@
 
 mod front;
 mod inspect;
-mod library;
+pub(crate) mod library;
 mod retain;
 mod root;
 mod variable;

@@ -8,6 +8,7 @@
 //! | [`scenario`] | a scenario's files, read and checked |
 //! | [`run`] | runs of a scenario: in lockstep or not, recorded, reported |
 //! | [`check`] | PLC sources checked without being run |
+//! | [`instrument`] | PLC projects made to run in lockstep, and back |
 //! | [`freewheel`] | running without lockstep, to show what it is good for |
 //! | [`expect`] | what a run must show: signal temporal logic |
 //! | [`plot`] | trajectories as SVG |
@@ -19,6 +20,7 @@ pub mod check;
 pub mod cli;
 pub mod expect;
 pub mod freewheel;
+pub mod instrument;
 pub mod plot;
 pub mod run;
 pub mod scenario;

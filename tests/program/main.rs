@@ -8,6 +8,7 @@ mod expectations;
 mod faults;
 mod freewheel;
 mod help;
+mod instrument;
 mod plc_faults;
 mod run;
 mod third_party;

@@ -164,7 +164,7 @@ impl<'a> Checker<'a> {
     fn is_taken(&mut self, name: &Ident) -> bool {
         if ElementaryType::find(&name.text).is_some()
             || matches!(name.key().as_str(), "STRING" | "WSTRING")
-            || super::standard_function::exists(&name.key())
+            || super::standard_function::is_reserved(&name.key())
         {
             self.report_reserved(name, name.span);
             return true;

@@ -204,6 +204,11 @@ impl<'a> Cursor<'a> {
         Some(ident)
     }
 
+    /// True if the next token is this word, in any case.
+    pub(super) fn at_word(&self, word: &str) -> bool {
+        self.peek() == Some(TokenKind::Identifier) && self.next_text().eq_ignore_ascii_case(word)
+    }
+
     pub(super) fn expect_identifier(&mut self, what: &str) -> Option<Ident> {
         let found = self.take_identifier();
         if found.is_none() {

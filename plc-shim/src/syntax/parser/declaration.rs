@@ -59,12 +59,12 @@ impl Cursor<'_> {
                     let section = self.section(SectionKind::Global);
                     unit.declarations.push(Declaration::Globals(section));
                 }
-                TokenKind::Keyword(Keyword::OrganizationBlock) => self.organization_block(&mut unit),
-                TokenKind::Keyword(Keyword::DataBlock) => self.data_block(&mut unit),
                 TokenKind::Identifier if self.at_word("CONFIGURATION") => match self.configuration() {
                     Some(found) => unit.declarations.push(found),
                     None => self.skip_until(begins_declaration),
                 },
+                TokenKind::Keyword(Keyword::OrganizationBlock) => self.organization_block(&mut unit),
+                TokenKind::Keyword(Keyword::DataBlock) => self.data_block(&mut unit),
                 // Vendors' exports end a unit with a semicolon; it declares nothing.
                 TokenKind::Punctuation(Punctuation::Semicolon) => self.advance(),
                 _ => {
