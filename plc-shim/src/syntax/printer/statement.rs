@@ -119,7 +119,7 @@ impl Printer {
 
     fn for_statement(&mut self, inner: &ForStatement) {
         self.word("FOR ");
-        self.word(&inner.variable.text);
+        self.variable_name(&inner.variable);
         self.head(" := ", &inner.from, " TO ");
         self.expression(&inner.to);
         if let Some(by) = &inner.by {
