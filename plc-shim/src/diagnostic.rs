@@ -67,6 +67,7 @@ codes! {
     InvalidArgument "C0305" "an argument does not suit its parameter",
     NotCallable "C0306" "what is called is no function or instance",
     ResultIgnored "C0307" "a function is called as a statement and its result is lost",
+    InvalidEnable "C0310" "EN or ENO is declared as what it is not",
     AssignToConstant "D0401" "a constant is assigned to",
     AssignToInput "D0402" "an input is assigned to inside its own unit",
     NotAssignable "D0403" "the target of an assignment is not a variable",

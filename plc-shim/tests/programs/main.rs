@@ -1,6 +1,7 @@
 //! Programs in, traces out: the whole way from text to a scanning PLC.
 
 mod configurations;
+mod conversions;
 mod dates;
 mod diagnostics;
 mod dialects;
@@ -12,6 +13,7 @@ mod language;
 mod lints;
 mod lockstep;
 mod partial_access;
+mod recovery;
 mod rig;
 mod robustness;
 mod scheduling;

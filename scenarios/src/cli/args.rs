@@ -4,8 +4,8 @@ use std::net::SocketAddr;
 use std::path::PathBuf;
 
 use clap::{ArgAction, Args as ClapArgs, Parser, Subcommand, ValueEnum};
-use onescan_plc_shim::Task;
 use onescan_plc_shim::instrument::Target;
+use onescan_plc_shim::{Dialect, Task};
 use onescan_server::pacing::Pace;
 use onescan_server::session::Control;
 use onescan_server::signal::{ClientName, SignalName};
@@ -140,6 +140,10 @@ pub struct CheckArgs {
     /// files, or scenarios; files and folders are checked together, as one program
     #[arg(required = true, value_name = "FILE|FOLDER|SCENARIO")]
     pub paths: Vec<PathBuf>,
+    /// Read all files in this dialect: iec2, iec3, codesys, twincat or siemens-scl [default: what a file's
+    /// name or PLCopen XML tells, as in `.scl`, else iec3]
+    #[arg(long, value_name = "NAME")]
+    pub dialect: Option<Dialect>,
     /// `human`; `json`: an object a finding with `code`, `severity`, `file`, `line`, `column`,
     /// `end_line`, `end_column`, `message`, `help`; `sarif`: a SARIF 2.1.0 log
     #[arg(long, value_enum, default_value_t)]

@@ -95,7 +95,7 @@ fn control(args: &ControlArgs) -> Result<ExitCode, RunError> {
 
 fn check(args: CheckArgs) -> Result<ExitCode, RunError> {
     let warnings = if args.deny_warnings { Warnings::Denied } else { Warnings::Allowed };
-    let config = CheckConfig { paths: args.paths, format: args.format.into(), warnings };
+    let config = CheckConfig { paths: args.paths, dialect: args.dialect, format: args.format.into(), warnings };
     check::check(&config, &mut std::io::stdout().lock())
 }
 
