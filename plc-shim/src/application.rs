@@ -3,7 +3,7 @@
 mod front;
 mod inspect;
 mod leaves;
-mod library;
+pub(crate) mod library;
 mod retain;
 mod root;
 mod value;

@@ -9,6 +9,8 @@ mod expectations;
 mod faults;
 mod freewheel;
 mod help;
+mod instrument;
+mod plant;
 mod plc_faults;
 mod run;
 mod third_party;

@@ -32,7 +32,9 @@ pub(super) fn fold(types: &TypeTable, expr: &Expr) -> Result<Value, NoValue> {
             fold(types, if holds { then } else { otherwise })
         }
         ExprKind::Limited(_, _, operand) => fold(types, operand),
-        ExprKind::Load(_) | ExprKind::Intrinsic(..) | ExprKind::Text(_) | ExprKind::Call(_) => Err(not_constant),
+        ExprKind::Load(_) | ExprKind::Intrinsic(..) | ExprKind::Text(_) | ExprKind::Call(_) | ExprKind::After(..) => {
+            Err(not_constant)
+        }
     }
 }
 
@@ -128,6 +130,8 @@ fn convert(rounding: Rounding, target: ElementaryType, value: Value) -> Value {
                 Rounding::NearestEven => real.round_ties_even(),
                 Rounding::NearestAway => real.round(),
                 Rounding::Truncate => real.trunc(),
+                Rounding::Up => real.ceil(),
+                Rounding::Down => real.floor(),
             };
             // A cast saturates and makes NaN zero, as the compiled code does.
             let (low, high) = target.range().unwrap_or((0, 0));

@@ -12,7 +12,8 @@
 //! | [`constant`] | constant expressions to values |
 //! | [`convert`] | implicit conversions, constants in context |
 //! | [`expression`], [`operator`], [`calendar`], [`place`], [`part`] | expressions |
-//! | [`call`], [`standard_function`], [`conversion_function`] | calls |
+//! | [`call`], [`standard_function`], [`function_form`], [`conversion_function`] | calls |
+//! | [`enable`], [`enable_error`] | EN and ENO |
 //! | [`text`], [`text_function`], [`text_conversion`] | character strings |
 //! | [`statement`], [`assignment`], [`edge`] | statements |
 //! | [`configuration`] | resources, tasks, instances of programs |
@@ -31,7 +32,10 @@ mod conversion_function;
 mod convert;
 mod dialect;
 mod edge;
+mod enable;
+mod enable_error;
 mod expression;
+mod function_form;
 mod initial;
 mod layout;
 mod located;
@@ -62,7 +66,8 @@ use crate::syntax::ast::CompilationUnit;
 use crate::syntax::direct_address::AddressUnit;
 use crate::syntax::{FileId, Span};
 
-pub(crate) use layout::VIRTUAL_TIME_OFFSET;
+pub(crate) use layout::{VIRTUAL_TIME_NAME, VIRTUAL_TIME_OFFSET};
+pub(crate) use standard_function::exists as is_standard_function;
 
 /// The checked program.
 #[derive(Debug)]

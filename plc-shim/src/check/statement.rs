@@ -67,6 +67,7 @@ impl Body<'_, '_> {
             if fleeting {
                 statements.push(self.initialised(variable));
             }
+            statements.extend(Self::outcome_begins(variable));
         }
         statements
     }

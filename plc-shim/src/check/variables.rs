@@ -241,6 +241,7 @@ impl<'c, 'a> Interface<'c, 'a> {
             if let Some(edge) = ast.edge {
                 variable.edge = self.edge_detection(edge, &variable);
             }
+            self.body.check_control(&variable);
             self.add(name, variable);
         }
     }

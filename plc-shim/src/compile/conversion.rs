@@ -79,6 +79,8 @@ impl Emitter<'_, '_> {
             Rounding::NearestEven => self.emit(Instruction::F64Nearest),
             Rounding::NearestAway => self.round_away(),
             Rounding::Truncate => self.emit(Instruction::F64Trunc),
+            Rounding::Up => self.emit(Instruction::F64Ceil),
+            Rounding::Down => self.emit(Instruction::F64Floor),
         }
         if to.size() == 8 {
             let signed = to.is_signed();

@@ -36,6 +36,12 @@ impl Emitter<'_, '_> {
             }
             ExprKind::Text(call) => self.text_call(call, expr),
             ExprKind::Call(call) => self.call_function(call, expr.span),
+            ExprKind::After(statements, value) => {
+                self.side_statements(statements);
+                if let Some(value) = value {
+                    self.expression(value);
+                }
+            }
         }
     }
 

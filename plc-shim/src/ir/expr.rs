@@ -39,6 +39,8 @@ pub(crate) enum ExprKind {
     /// On character strings.
     Text(Box<TextCall>),
     Call(Box<FunctionCall>),
+    /// Runs the statements, then yields the value; none for what has no result.
+    After(Vec<Statement>, Option<Box<Expr>>),
 }
 
 /// What becomes of a fraction when a real becomes an integer.
@@ -50,6 +52,10 @@ pub(crate) enum Rounding {
     NearestAway,
     /// Towards zero (`TRUNC`).
     Truncate,
+    /// To the next greater one (`CEIL` of vendors).
+    Up,
+    /// To the next smaller one (`FLOOR` of vendors).
+    Down,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -100,6 +106,12 @@ pub(crate) enum Intrinsic {
     Asin,
     Acos,
     Atan,
+    /// Of Y and X (3rd ed. Table 28).
+    Atan2,
+    /// What lies behind the point (`FRAC` of vendors).
+    Fraction,
+    /// The same bytes in reverse order.
+    SwapBytes,
     /// Base and exponent, both of the result's type.
     Power,
     Max,

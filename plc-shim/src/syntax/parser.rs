@@ -79,7 +79,13 @@ fn report_lexical_errors(cursor: &mut Cursor<'_>, tokens: &[Token]) {
             TokenKind::Unknown => {
                 let text = cursor.text(token.start, token.end).escape_debug().to_string();
                 let message = format!("`{text}` begins no token");
-                cursor.report(Diagnostic::error(Code::UnknownCharacter, span, message));
+                let help = match text.as_str() {
+                    "|" | "||" => Some("write `OR`".to_owned()),
+                    "!" => Some("write `NOT`, or `<>` for `!=`".to_owned()),
+                    _ => None,
+                };
+                let found = Diagnostic::error(Code::UnknownCharacter, span, message);
+                cursor.report(found.with_optional_help(help));
             }
             _ => {}
         }

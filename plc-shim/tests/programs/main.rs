@@ -1,6 +1,7 @@
 //! Programs in, traces out: the whole way from text to a scanning PLC.
 
 mod configurations;
+mod conversions;
 mod dates;
 mod diagnostics;
 mod dialects;
@@ -11,7 +12,10 @@ mod forcing;
 mod inputs;
 mod language;
 mod lints;
+mod lockstep;
 mod partial_access;
+mod random_programs;
+mod recovery;
 mod restarts;
 mod rig;
 mod robustness;
