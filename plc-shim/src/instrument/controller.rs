@@ -4,7 +4,7 @@
 use super::edits::Edits;
 use super::marks;
 use super::template::{self, Controller, Number};
-use crate::lint::walk::{self, Visitor};
+use crate::syntax::walk::{self, Visitor};
 use crate::syntax::SourceFile;
 use crate::syntax::ast::{Pou, Statement, StatementKind};
 use crate::syntax::token::Keyword;
