@@ -168,6 +168,10 @@ impl Body<'_, '_> {
         for (index, argument) in call.arguments.iter().enumerate() {
             let (name, span, expr) = match argument {
                 ast::Argument::Positional(expr) => {
+                    // With a parameter whose declaration is wrong the others cannot be counted.
+                    if scope.has_broken() {
+                        return None;
+                    }
                     if let Some(variable) = scope.positional().nth(index) {
                         (variable.name.to_ascii_uppercase(), expr.span, expr)
                     } else {
