@@ -7,11 +7,11 @@ use crate::application::library;
 use crate::check::{VIRTUAL_TIME_NAME, is_standard_function};
 use crate::diagnostic::{Code, Diagnostic};
 use crate::ir::ElementaryType;
-use crate::syntax::walk::{self, Visitor};
 use crate::syntax::ast::{
     Call, CompilationUnit, Configuration, Declaration, Expr, ExprKind, Ident, Initialiser, InitialiserKind, Pou,
     PouKind, Section, TypeSpec, TypeSpecKind,
 };
+use crate::syntax::walk::{self, Visitor};
 use crate::syntax::{FileId, Span, parse};
 
 /// What was found.
