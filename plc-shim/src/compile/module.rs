@@ -36,7 +36,8 @@ pub(crate) fn compile(checked: &Checked) -> Compiled {
     let first_function = (host::IMPORTS.len() + text_host::IMPORTS.len()) as u32;
     let order = checked.pous.keys().zip(first_function..);
     let functions: BTreeMap<_, _> = order.map(|(id, index)| (*id, index)).collect();
-    let mut shared = Shared { types: &checked.types, functions, areas: checked.areas, data: Vec::new() };
+    let (types, areas, memory_size) = (&checked.types, checked.areas, checked.image.len() as u32);
+    let mut shared = Shared { types, functions, areas, memory_size, data: Vec::new() };
     let mut sections = Sections::default();
     sections.add_imports();
     let mut faults = FaultTable { first_function, functions: Vec::new() };

@@ -14,6 +14,10 @@ impl Printer {
                 self.word(".");
                 self.word(&name.text);
             }
+            ExprKind::Dereference(base) => {
+                self.expression(base);
+                self.word("^");
+            }
             ExprKind::Index(base, indices) => {
                 self.expression(base);
                 self.word("[");
