@@ -5,13 +5,14 @@ use std::sync::Arc;
 
 use super::address::PlaceFunction;
 use super::convert::{Operand, constant};
+use super::memory_function;
 use super::scope::{Body, Scope};
 use super::standard_function;
 use super::variables::decode;
 use crate::diagnostic::{Code, Diagnostic, did_you_mean};
 use crate::ir::{
-    Argument, ElementaryType, Expr, ExprKind, FunctionCall, InstanceCall, Place, PouId, Statement, StatementKind,
-    Storage, Type, TypeId, TypeTable, Unary, Variable,
+    Argument, ElementaryType, Expr, ExprKind, FunctionCall, InstanceCall, Intrinsic, MemoryFunction, Place, PouId,
+    Statement, StatementKind, Storage, Type, TypeId, TypeTable, Unary, Variable,
 };
 use crate::syntax::Span;
 use crate::syntax::ast::{self, Call, Ident, PouKind, ReferenceKind, SectionKind};
@@ -40,6 +41,9 @@ impl Body<'_, '_> {
         }
         if let Some(id) = self.function_named(name) {
             return self.function_call(id, name, call, span).map(Operand::Typed);
+        }
+        if memory_function::exists(&name.key()) {
+            return self.memory_call(name, call, span);
         }
         if let Some(function) = PlaceFunction::find(&name.key()) {
             return self.place_call(function, name, call, span);
@@ -113,7 +117,11 @@ impl Body<'_, '_> {
         let Operand::Typed(result) = self.call_expression(call, span)? else {
             return None;
         };
-        let effects = matches!(&result.kind, ExprKind::Call(call) if self.has_effects(call.pou));
+        let effects = match &result.kind {
+            ExprKind::Call(call) => self.has_effects(call.pou),
+            ExprKind::Intrinsic(Intrinsic::Memory(function), _) => *function != MemoryFunction::Compare,
+            _ => false,
+        };
         if !effects {
             let message = "the result of this call is lost";
             self.report(Diagnostic::warning(Code::ResultIgnored, span, message));

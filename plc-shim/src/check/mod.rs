@@ -14,7 +14,7 @@
 //! | [`expression`], [`operator`], [`calendar`], [`place`], [`part`] | expressions |
 //! | [`reference`], [`address`], [`referred`] | references and pointers |
 //! | [`open_array`] | arrays that come with their bounds |
-//! | [`call`], [`standard_function`], [`conversion_function`] | calls |
+//! | [`call`], [`standard_function`], [`conversion_function`], [`memory_function`] | calls |
 //! | [`text`], [`text_function`], [`text_conversion`] | character strings |
 //! | [`statement`], [`edge`] | statements |
 //! | [`configuration`] | resources, tasks, instances of programs |
@@ -35,6 +35,7 @@ mod expression;
 mod initial;
 mod layout;
 mod located;
+mod memory_function;
 mod names;
 mod open_array;
 mod operator;

@@ -34,6 +34,7 @@ impl Emitter<'_, '_> {
                     self.narrow_from_bits(ty);
                 }
             }
+            Intrinsic::Memory(function) => self.memory_function(function, operands, whole.span),
             Intrinsic::FloorRemainder | Intrinsic::FloorMultiple => self.floored(kind, operands),
             _ => {
                 self.all(operands);

@@ -37,11 +37,7 @@ fn branch(list: &[Statement], visitor: &mut impl Visitor) {
 
 fn statement(kind: &StatementKind, visitor: &mut impl Visitor) {
     match kind {
-        StatementKind::Assign(place, value) => {
-            target(place, visitor);
-            expression(value, visitor);
-        }
-        StatementKind::Attempt(place, value) => {
+        StatementKind::Assign(place, value) | StatementKind::Attempt(place, value) => {
             target(place, visitor);
             expression(value, visitor);
         }
