@@ -68,7 +68,7 @@ impl Body<'_, '_> {
             PlaceFunction::Ref => self.reference_to(argument, span),
             PlaceFunction::Adr => self.address_of(argument, span),
             PlaceFunction::SizeOf => self.size_of(argument, span),
-            PlaceFunction::IsValidRef => self.is_valid(argument, span),
+            PlaceFunction::IsValidRef => self.is_valid_reference(argument, span),
             PlaceFunction::LowerBound | PlaceFunction::UpperBound => None,
         }
     }
@@ -157,7 +157,7 @@ impl Body<'_, '_> {
         self.type_by_name(name, super::types::Need::Size).map(|found| found.ty)
     }
 
-    fn is_valid(&mut self, argument: &ast::Expr, span: Span) -> Option<Operand> {
+    fn is_valid_reference(&mut self, argument: &ast::Expr, span: Span) -> Option<Operand> {
         let place = self.declared_place(argument)?.place;
         if super::reference::target_of(&self.checker.types, place.ty).is_none() {
             let message = format!("a reference is wanted, this is {}", self.type_name(place.ty));

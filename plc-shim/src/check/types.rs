@@ -118,7 +118,7 @@ impl<'a> Body<'_, 'a> {
             TypeSpecKind::Union(fields) => self.union("UNION", None, fields, spec.span),
             TypeSpecKind::Enumeration(values, base) => self.enumeration("enumeration", values, base.as_ref()),
             TypeSpecKind::String(name, length) => {
-                let ty = self.text_type(name.key() == "WSTRING", length.as_deref())?;
+                let ty = self.text_type(name.key() == "WSTRING", length.as_deref(), spec.span)?;
                 self.checker.charge_image(u64::from(self.checker.types.size(ty)), spec.span)?;
                 Some(self.whole(ty))
             }

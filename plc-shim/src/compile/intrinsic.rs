@@ -35,6 +35,8 @@ impl Emitter<'_, '_> {
                 }
             }
             Intrinsic::Memory(function) => self.memory_function(function, operands, whole.span),
+            Intrinsic::SwapBytes => self.swapped_bytes(operands, ty),
+            Intrinsic::Fraction => self.fraction(operands, ty),
             Intrinsic::FloorRemainder | Intrinsic::FloorMultiple => self.floored(kind, operands),
             _ => {
                 self.all(operands);

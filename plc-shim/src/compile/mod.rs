@@ -8,7 +8,7 @@
 //! | [`emitter`] | instructions, registers, labels, marks |
 //! | [`place`], [`part`], [`pointer`], [`open_array`], [`memory`] | addresses, loads and stores |
 //! | [`statement`], [`repetition`] | statements |
-//! | [`expression`], [`arithmetic`], [`conversion`], [`intrinsic`] | expressions |
+//! | [`expression`], [`arithmetic`], [`conversion`], [`intrinsic`], [`bytes`] | expressions |
 //! | [`host`] | functions that WebAssembly lacks |
 //! | [`text`], [`text_host`] | character strings |
 //! | [`fault`] | what stops the PLC, and the place in the source that an instruction stands for |
@@ -17,6 +17,7 @@
 //! whatever makes one keeps to that.
 
 mod arithmetic;
+mod bytes;
 mod conversion;
 mod emitter;
 mod entry;

@@ -29,6 +29,6 @@ pub mod text_literal;
 pub mod token;
 pub(crate) mod walk;
 
-pub use lexer::tokenize;
-pub use parser::{Parsed, parse};
+pub use lexer::{tokenize, tokenize_in};
+pub use parser::{Parsed, parse, parse_in};
 pub use source::{FileId, SourceFile, SourceMap, Span};
