@@ -60,12 +60,22 @@ pub(crate) struct Mark {
     pub(crate) span: Span,
     /// The fault if this very instruction traps; nothing where a statement begins.
     pub(crate) fault: Option<FaultKind>,
+    /// The unit that the instruction belongs to, by its place in [`FunctionMarks::units`].
+    pub(crate) unit: u32,
+}
+
+/// A unit that a function is made of: its own, or one put in the place of a call.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(crate) struct Unit {
+    pub(crate) name: String,
+    /// The unit that contains the call.
+    pub(crate) caller: Option<u32>,
 }
 
 /// The marks of one function by offset in its body, in order.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct FunctionMarks {
-    pub(crate) name: String,
+    pub(crate) units: Vec<Unit>,
     pub(crate) marks: Vec<(u32, Mark)>,
 }
 
@@ -78,10 +88,17 @@ impl FunctionMarks {
     }
 
     /// The last statement that begins at or before `offset`.
-    pub(crate) fn statement_before(&self, offset: u32) -> Option<Span> {
+    pub(crate) fn statement_before(&self, offset: u32) -> Option<Mark> {
         let end = self.marks.partition_point(|(at, _)| *at <= offset);
         let before = self.marks.iter().take(end).rev();
-        before.map(|(_, mark)| mark).find(|mark| mark.fault.is_none()).map(|mark| mark.span)
+        before.map(|(_, mark)| *mark).find(|mark| mark.fault.is_none())
+    }
+
+    /// The names of the units that are active where an instruction belongs to `unit`, innermost
+    /// first.
+    pub(crate) fn active(&self, unit: u32) -> impl Iterator<Item = &str> {
+        let at = |index: u32| self.units.get(index as usize);
+        std::iter::successors(at(unit), move |unit| unit.caller.and_then(at)).map(|unit| unit.name.as_str())
     }
 }
 

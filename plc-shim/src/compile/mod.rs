@@ -4,9 +4,13 @@
 //! |---|---|
 //! | [`module`] | sections, functions, exports |
 //! | [`function`] | one unit to one function |
-//! | [`emitter`] | instructions, registers, labels, marks |
-//! | [`place`] | addresses, loads and stores |
-//! | [`statement`], [`repetition`] | statements |
+//! | [`emitter`], [`registers`] | instructions, labels, marks; locals |
+//! | [`frame`], [`inline`] | a unit's own terms; calls, and units put in their place |
+//! | [`cost`], [`calls`], [`budget`] | what units cost, and how endless loops end |
+//! | [`address`], [`place`] | addresses, loads and stores |
+//! | [`known`], [`effect`], [`survey`] | values that registers hold already, also through loops |
+//! | [`interval`] | ranges of integers, for checks that cannot fail |
+//! | [`statement`], [`selection`], [`repetition`], [`counting`] | statements |
 //! | [`expression`], [`arithmetic`], [`conversion`], [`intrinsic`] | expressions |
 //! | [`host`] | functions that WebAssembly lacks |
 //! | [`text`], [`text_host`] | character strings |
@@ -15,19 +19,33 @@
 //! Integers of up to 32 bits are held in an `i32`, sign- or zero-extended from their width;
 //! whatever makes one keeps to that.
 
+mod address;
 mod arithmetic;
+mod budget;
+mod calls;
 mod conversion;
+mod cost;
+mod counting;
+mod effect;
 mod emitter;
 mod expression;
 pub(crate) mod fault;
+mod frame;
 mod function;
 pub(crate) mod host;
+mod inline;
+mod interval;
 mod intrinsic;
+mod known;
 mod module;
 mod place;
+mod registers;
 mod repetition;
+mod selection;
 mod statement;
+mod survey;
 mod text;
 pub(crate) mod text_host;
 
+pub(crate) use budget::BUDGET_EXPORT;
 pub(crate) use module::{Compiled, MEMORY_EXPORT, compile, program_export};

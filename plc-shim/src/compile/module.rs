@@ -7,11 +7,14 @@ use wasm_encoder::{
     ImportSection, Instruction, MemorySection, MemoryType, Module, TypeSection, ValType,
 };
 
+use super::budget::{self, BUDGET_EXPORT};
+use super::cost::Costs;
 use super::emitter::{Shared, value_type};
 use super::fault::{FaultTable, FunctionMarks};
+use super::function::Made;
 use super::{function, host, text_host};
 use crate::check::Checked;
-use crate::ir::{Pou, Program, TypeTable};
+use crate::ir::{Pou, PouId, Program, TypeTable};
 use crate::syntax::ast::PouKind;
 
 /// Name of the exported memory.
@@ -36,15 +39,22 @@ pub(crate) fn compile(checked: &Checked) -> Compiled {
     let first_function = (host::IMPORTS.len() + text_host::IMPORTS.len()) as u32;
     let order = checked.pous.keys().zip(first_function..);
     let functions: BTreeMap<_, _> = order.map(|(id, index)| (*id, index)).collect();
-    let mut shared = Shared { types: &checked.types, functions, data: Vec::new() };
+    let (costs, order) = Costs::new(&checked.pous);
+    let mut shared = Shared { types: &checked.types, pous: &checked.pous, costs, functions, data: Vec::new() };
+    // Callees first: a call must know what it costs.
+    let mut made: BTreeMap<PouId, Made> = BTreeMap::new();
+    for id in order {
+        if let Some(pou) = checked.pous.get(&id) {
+            made.insert(id, function::unit(&mut shared, id, pou, only_instance(checked, id)));
+        }
+    }
     let mut sections = Sections::default();
     sections.add_imports();
     let mut faults = FaultTable { first_function, functions: Vec::new() };
-    for pou in checked.pous.values() {
+    for (pou, Made { body, marks, units }) in checked.pous.values().zip(made.into_values()) {
         let (parameters, results) = signature(pou, &checked.types);
-        let (body, marks) = function::unit(&mut shared, pou);
         sections.add_function(parameters, results, &body);
-        faults.functions.push(FunctionMarks { name: pou.name.clone(), marks });
+        faults.functions.push(FunctionMarks { units, marks });
     }
     for (index, program) in checked.programs.iter().enumerate() {
         let body = entry(program, &shared.functions);
@@ -52,6 +62,12 @@ pub(crate) fn compile(checked: &Checked) -> Compiled {
         sections.exports.export(&program_export(index), ExportKind::Func, at);
     }
     Compiled { wasm: sections.finish(checked.image.len() as u64, &shared), faults }
+}
+
+/// Offset of the program's instance if there is just one.
+fn only_instance(checked: &Checked, id: PouId) -> Option<u32> {
+    let mut instances = checked.programs.iter().filter(|program| program.pou == id);
+    instances.next().filter(|_| instances.next().is_none()).map(|program| program.offset)
 }
 
 /// Runs a program's body on its one instance.
@@ -127,13 +143,14 @@ impl Sections {
             page_size_log2: None,
         });
         self.exports.export(MEMORY_EXPORT, ExportKind::Memory, 0);
+        self.exports.export(BUDGET_EXPORT, ExportKind::Global, 0);
         let mut data = DataSection::new();
         for bytes in &shared.data {
             data.passive(bytes.iter().copied());
         }
         let mut module = Module::new();
         module.section(&self.types).section(&self.imports).section(&self.functions);
-        module.section(&memories).section(&self.exports);
+        module.section(&memories).section(&budget::globals()).section(&self.exports);
         module.section(&DataCountSection { count: data.len() });
         module.section(&self.code).section(&data);
         module.finish()

@@ -7,8 +7,7 @@ use wasmtime::Trap;
 use super::VirtualTime;
 use super::machine::Trapped;
 use crate::application::Application;
-use crate::compile::fault::{FaultKind, FunctionMarks};
-use crate::syntax::Span;
+use crate::compile::fault::{FaultKind, FunctionMarks, Mark};
 
 /// The PLC stopped because of an error in its program.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -51,12 +50,19 @@ pub(super) fn explain(application: &Application, trapped: &Trapped, virtual_time
     let frames = trapped.frames.iter();
     let mut known = frames.filter_map(|(index, offset)| Some((table.function(*index)?, *offset)));
     let innermost = known.next();
-    let outer = known.map(|(function, _)| function.name.clone()).take(MAX_PATH);
-    let mut call_path: Vec<String> = outer.collect();
+    let (kind, mark) = cause(trapped.trap, innermost);
+    let mut call_path: Vec<String> = Vec::new();
+    if let Some((function, _)) = innermost {
+        call_path.extend(function.active(mark.map_or(0, |mark| mark.unit)).map(str::to_owned));
+    }
+    for (function, offset) in known {
+        let call = offset.and_then(|offset| function.statement_before(offset));
+        call_path.extend(function.active(call.map_or(0, |mark| mark.unit)).map(str::to_owned));
+    }
+    let pou = call_path.first().cloned().unwrap_or_default();
+    call_path.truncate(MAX_PATH + 1);
     call_path.reverse();
-    let pou = innermost.map(|(function, _)| function.name.clone()).unwrap_or_default();
-    call_path.push(pou.clone());
-    let (kind, span) = cause(trapped.trap, innermost);
+    let span = mark.map(|mark| mark.span);
     let (file, place) = span.map_or(("", None), |span| {
         let (file, place) = application.sources().locate(span);
         (file, Some(place))
@@ -72,15 +78,15 @@ pub(super) fn explain(application: &Application, trapped: &Trapped, virtual_time
     }
 }
 
-fn cause(trap: Option<Trap>, innermost: Option<(&FunctionMarks, Option<u32>)>) -> (FaultKind, Option<Span>) {
+fn cause(trap: Option<Trap>, innermost: Option<(&FunctionMarks, Option<u32>)>) -> (FaultKind, Option<Mark>) {
     let statement = innermost.and_then(|(function, offset)| function.statement_before(offset?));
     match trap {
         Some(Trap::OutOfFuel) => (FaultKind::EndlessLoop, statement),
         Some(Trap::StackOverflow) => (FaultKind::CallTooDeep, statement),
         _ => {
             let mark = innermost.and_then(|(function, offset)| function.fault_at(offset?));
-            match mark.and_then(|mark| Some((mark.fault?, mark.span))) {
-                Some((kind, span)) => (kind, Some(span)),
+            match mark.and_then(|mark| Some((mark.fault?, mark))) {
+                Some((kind, mark)) => (kind, Some(mark)),
                 None => (FaultKind::Internal, statement),
             }
         }

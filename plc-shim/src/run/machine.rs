@@ -1,16 +1,17 @@
 //! The compiled module with its memory, in wasmtime.
 
-use wasmtime::{Config, Engine, Instance, Linker, Memory, Module, Store, Trap, TypedFunc, WasmBacktrace};
+use wasmtime::{Config, Engine, Global, Instance, Linker, Memory, Module, Store, Trap, TypedFunc, Val, WasmBacktrace};
 
 use super::plan::RunError;
 use super::text::link::{HostState, link};
 use crate::application::Application;
-use crate::compile::{MEMORY_EXPORT, host, program_export};
+use crate::compile::{BUDGET_EXPORT, MEMORY_EXPORT, host, program_export};
 
 /// One instance of the module.
 pub(super) struct Machine {
     store: Store<HostState>,
     memory: Memory,
+    budget: Global,
     /// Bytes in use; the rest of the last page is never touched.
     size: usize,
     programs: Vec<TypedFunc<(), ()>>,
@@ -26,9 +27,9 @@ pub(super) struct Trapped {
 
 fn engine() -> Result<Engine, String> {
     let mut config = Config::new();
-    // Fuel, unlike an epoch, stops an endless loop at the same instruction in every run.
-    config.consume_fuel(true);
-    config.cranelift_nan_canonicalization(true);
+    // The module counts its instructions itself and makes every NaN that it stores the same one:
+    // both are needed at few places only.
+    config.cranelift_nan_canonicalization(false);
     config.relaxed_simd_deterministic(true);
     Engine::new(&config).map_err(|error| error.to_string())
 }
@@ -47,12 +48,14 @@ impl Machine {
         let instance = instance.map_err(|error| module_error(&error))?;
         let memory = instance.get_memory(&mut store, MEMORY_EXPORT);
         let memory = memory.ok_or_else(|| RunError::Module("memory is missing".to_owned()))?;
-        store.data_mut().memory = Some(memory);
+        let budget = instance.get_global(&mut store, BUDGET_EXPORT);
+        let budget = budget.ok_or_else(|| RunError::Module("the budget is missing".to_owned()))?;
+        *store.data_mut() = HostState { memory: Some(memory), budget: Some(budget) };
         let size = application.initial_memory().len();
         let count = application.programs().count();
         let programs = (0..count).map(|index| program(&instance, &mut store, index));
         let programs = programs.collect::<Result<_, _>>()?;
-        Ok(Self { store, memory, size, programs })
+        Ok(Self { store, memory, budget, size, programs })
     }
 
     pub(super) fn memory(&self) -> &[u8] {
@@ -68,9 +71,10 @@ impl Machine {
 
     /// Gives the budget for the calls up to the next refill.
     pub(super) fn refuel(&mut self, fuel: u64) {
-        // Fails only if the engine does not count fuel, and this one does.
-        let counted = self.store.set_fuel(fuel);
-        debug_assert!(counted.is_ok(), "the engine counts fuel");
+        let budget = Val::I64(i64::try_from(fuel).unwrap_or(i64::MAX));
+        // Fails only if the global were of another type or could not be set.
+        let set = self.budget.set(&mut self.store, budget);
+        debug_assert!(set.is_ok(), "the module has a budget");
     }
 
     pub(super) fn run(&mut self, program: usize) -> Result<(), Trapped> {
