@@ -11,7 +11,7 @@ use crate::syntax::{SourceMap, Span};
 macro_rules! codes {
     ($($variant:ident $text:literal $about:literal),* $(,)?) => {
         /// Stable codes: `S` syntax, `N` names, `T` types, `C` calls, `D` declarations, `L` limits,
-        /// `F` files, `W` warnings of what is legal and seldom meant.
+        /// `R` addresses and references, `F` files, `W` warnings of what is legal and seldom meant.
         #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
         pub enum Code {
             $(#[doc = concat!("`", $text, "`: ", $about)] $variant,)*
@@ -75,8 +75,22 @@ codes! {
     MisplacedStatement "D0409" "EXIT or CONTINUE outside a loop",
     DuplicateCase "D0410" "a CASE label occurs twice",
     LoopVariable "D0411" "a FOR control variable is unsuitable",
+    UnknownTask "D0430" "a program or function block names a task that is not declared",
+    UnknownProgram "D0431" "a configuration makes an instance of what is no program",
+    TaskInput "D0432" "a task's input is unknown or unsuitable",
+    TaskNeverRuns "D0433" "a task has neither SINGLE nor an INTERVAL",
+    UnknownPath "D0434" "a path in a configuration leads to no variable",
+    UnsuitableConnection "D0435" "a program's variable cannot be connected in this way",
+    NoInstanceValue "D0436" "VAR_CONFIG names what has no value of its own",
+    SecondConfiguration "D0437" "there are two configurations",
+    BlockCalledTwice "D0438" "an instance with a task of its own is called by its program, too",
+    ForeignGlobal "D0439" "a program uses a global variable of another resource",
+    ProgramNeverRuns "D0440" "a program has no instance in the configuration",
     UnsupportedFeature "L0501" "part of the language that is not supported yet",
     TooLarge "L0502" "a type or the program needs more memory than the limit",
+    InvalidAddress "R0901" "a direct address is malformed or out of range",
+    UnsuitableAddress "R0902" "a variable does not suit its direct address",
+    InvalidPart "R0903" "a value has no such part",
     NotText "F0601" "a file is not text in an encoding that is read",
     MalformedXml "F0602" "a file is not the XML that its name promises",
     OutputNeverWritten "W0701" "an output is never written",

@@ -38,4 +38,4 @@ pub use compile::fault::FaultKind;
 pub use diagnostic::{Code, Diagnostic, Diagnostics, Finding, Severity};
 pub use input::Input;
 pub use ir::elementary::ElementaryType;
-pub use run::{PlcFault, RestoreError, RunError, SoftPlc, Task, TaskPlan, VirtualTime};
+pub use run::{FaultSite, PlcFault, RestoreError, RunError, SoftPlc, Task, TaskPlan, VirtualTime};

@@ -5,14 +5,32 @@ use onescan_server::client::{Client, ClientFault, JoinRequest, SourcePlace, Stat
 use onescan_server::signal::ClientName;
 use onescan_server::time::{TimeSpan, VirtualTime};
 
-use super::bind::{Bindings, Bound};
+use super::bind::{Bindings, Bound, Place};
 
 /// A value's bytes in a port and in the PLC's memory.
 #[derive(Clone, Copy, Debug)]
 struct Run {
     port: usize,
-    memory: usize,
+    memory: Place,
     len: usize,
+}
+
+impl Run {
+    fn take(&self, memory: &[u8], port: &mut [u8]) {
+        let Place { offset, bit } = self.memory;
+        match bit {
+            Some(bit) => port[self.port] = memory[offset] >> bit & 1,
+            None => port[self.port..self.port + self.len].copy_from_slice(&memory[offset..offset + self.len]),
+        }
+    }
+
+    fn give(&self, port: &[u8], memory: &mut [u8]) {
+        let Place { offset, bit } = self.memory;
+        match bit {
+            Some(bit) => memory[offset] = memory[offset] & !(1 << bit) | (port[self.port] & 1) << bit,
+            None => memory[offset..offset + self.len].copy_from_slice(&port[self.port..self.port + self.len]),
+        }
+    }
 }
 
 /// A soft PLC that takes part in a session.
@@ -24,7 +42,8 @@ pub struct SoftPlcClient {
 }
 
 impl SoftPlcClient {
-    /// A client `name` that runs `application` by `plan`.
+    /// A client `name` that runs `application` by `plan`. It takes part in every `step` if tasks wait
+    /// for an edge or programs have no task, else as often as its tasks' intervals want.
     ///
     /// # Errors
     /// The plan does not suit the application.
@@ -33,10 +52,11 @@ impl SoftPlcClient {
         application: &Application,
         plan: &TaskPlan,
         bindings: &Bindings,
+        step: TimeSpan,
     ) -> Result<Self, RunError> {
         let plc = SoftPlc::new(application, plan)?;
-        // Every task has an interval, so there is a period.
-        let period = TimeSpan::from_nanos(plc.period_ns()).ok_or(RunError::NoTasks)?;
+        let period = if plc.wants_every_step() { Some(step) } else { TimeSpan::from_nanos(plc.period_ns()) };
+        let period = period.ok_or(RunError::NoTasks)?;
         let ports = |bound: &[Bound]| bound.iter().map(|bound| bound.port.clone()).collect();
         let request = JoinRequest { name, period, reads: ports(&bindings.inputs), writes: ports(&bindings.outputs) };
         Ok(Self { request, plc, inputs: runs(&bindings.inputs), outputs: runs(&bindings.outputs) })
@@ -50,7 +70,7 @@ impl SoftPlcClient {
     fn take_outputs(&self, outputs: &mut [u8]) {
         let memory = self.plc.memory();
         for run in &self.outputs {
-            outputs[run.port..run.port + run.len].copy_from_slice(&memory[run.memory..run.memory + run.len]);
+            run.take(memory, outputs);
         }
     }
 }
@@ -61,7 +81,7 @@ fn runs(bound: &[Bound]) -> Vec<Run> {
     let mut runs = Vec::new();
     for bound in bound {
         let len = bound.port.ty.size();
-        runs.extend(bound.offsets.iter().map(|&memory| Run { port, memory, len }));
+        runs.extend(bound.places.iter().map(|&memory| Run { port, memory, len }));
         port += len;
     }
     runs
@@ -81,11 +101,15 @@ impl Client for SoftPlcClient {
     fn turn(&mut self, t_v: VirtualTime, inputs: &[u8], outputs: &mut [u8]) -> Result<Wake, ClientFault> {
         let memory = self.plc.memory_mut();
         for run in &self.inputs {
-            memory[run.memory..run.memory + run.len].copy_from_slice(&inputs[run.port..run.port + run.len]);
+            run.give(inputs, memory);
         }
         self.plc.scan(onescan_plc_shim::VirtualTime::from_ns(t_v.as_nanos())).map_err(|fault| client_fault(&fault))?;
         self.take_outputs(outputs);
-        Ok(Wake::At(VirtualTime::from_nanos(self.plc.next_due().as_ns())))
+        Ok(if self.plc.wants_every_step() {
+            Wake::NextPeriod
+        } else {
+            Wake::At(VirtualTime::from_nanos(self.plc.next_due().as_ns()))
+        })
     }
 
     fn save(&self) -> Result<Vec<u8>, StateError> {
@@ -99,11 +123,8 @@ impl Client for SoftPlcClient {
 
 /// The fault in the session's words; the session adds client and virtual time.
 fn client_fault(fault: &PlcFault) -> ClientFault {
-    let way = match fault.call_path.len() {
-        0 | 1 => String::new(),
-        _ => format!(" (called by way of {})", fault.call_path.join(", ")),
-    };
-    let place = SourcePlace { file: fault.file.clone(), line: fault.line, column: fault.column };
-    let place = (!fault.file.is_empty()).then_some(place);
-    ClientFault { message: format!("PLC fault: {} in {}{way}", fault.kind, fault.pou), place }
+    let at = &fault.at;
+    let place = SourcePlace { file: at.file.clone(), line: at.line, column: at.column };
+    let place = (!at.file.is_empty()).then_some(place);
+    ClientFault { message: format!("PLC fault: {} in {at}{}", fault.kind, fault.way()), place }
 }

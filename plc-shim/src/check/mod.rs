@@ -7,13 +7,15 @@
 //! | [`scope`] | what a name means inside a unit |
 //! | [`types`], [`subrange`] | types as written to types |
 //! | [`variables`] | sections to placed variables, units' interfaces |
+//! | [`located`] | direct addresses to places |
 //! | [`initial`] | initial values to bytes |
 //! | [`constant`] | constant expressions to values |
 //! | [`convert`] | implicit conversions, constants in context |
-//! | [`expression`], [`operator`], [`calendar`], [`place`] | expressions |
+//! | [`expression`], [`operator`], [`calendar`], [`place`], [`part`] | expressions |
 //! | [`call`], [`standard_function`], [`conversion_function`] | calls |
 //! | [`text`], [`text_function`], [`text_conversion`] | character strings |
 //! | [`statement`], [`edge`] | statements |
+//! | [`configuration`] | resources, tasks, instances of programs |
 //! | [`recursion`] | who calls whom |
 //!
 //! A unit, type or global variable is resolved when it is first needed; what is being resolved
@@ -21,6 +23,7 @@
 
 mod calendar;
 mod call;
+mod configuration;
 mod constant;
 mod conversion_function;
 mod convert;
@@ -28,8 +31,10 @@ mod edge;
 mod expression;
 mod initial;
 mod layout;
+mod located;
 mod names;
 mod operator;
+mod part;
 mod place;
 mod recursion;
 mod scope;
@@ -44,11 +49,13 @@ mod variables;
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use self::configuration::Configured;
 use self::layout::Layout;
 use self::names::{Enumerator, GlobalEntry, PouEntry, TypeEntry};
 use crate::diagnostic::Diagnostic;
-use crate::ir::{Pou, PouId, Program, TypeId, TypeTable, Variable};
-use crate::syntax::ast::{CompilationUnit, PouKind};
+use crate::ir::{Areas, Configuration, Entry, Pou, PouId, Program, TypeId, TypeTable, Variable};
+use crate::syntax::ast::CompilationUnit;
+use crate::syntax::direct_address::AddressUnit;
 use crate::syntax::{FileId, Span};
 
 pub(crate) use layout::VIRTUAL_TIME_OFFSET;
@@ -61,8 +68,16 @@ pub(crate) struct Checked {
     pub(crate) pous: BTreeMap<PouId, Pou>,
     /// The variables of every unit that has been declared, whether it runs or not.
     pub(crate) interfaces: BTreeMap<PouId, Vec<Variable>>,
+    /// The global variables that belong to no resource.
     pub(crate) globals: Vec<Variable>,
     pub(crate) programs: Vec<Program>,
+    /// Where direct addresses lie.
+    pub(crate) areas: Areas,
+    /// What the numbers of direct addresses count.
+    pub(crate) address_unit: AddressUnit,
+    pub(crate) configuration: Option<Configuration>,
+    /// What tasks can run; those of the programs first.
+    pub(crate) entries: Vec<Entry>,
     /// The whole memory at a cold start.
     pub(crate) image: Vec<u8>,
 }
@@ -73,10 +88,14 @@ pub(crate) fn check(units: &[(FileId, &CompilationUnit)], library: &BTreeSet<Fil
     let mut checker = Checker::new(library);
     checker.collect(units);
     checker.resolve_declarations();
-    checker.place_programs();
+    checker.configure();
     checker.check_bodies();
     checker.report_recursion();
+    checker.place_areas();
+    checker.check_configuration();
     let image = checker.memory_image();
+    let globals = checker.shared_globals();
+    let (configuration, entries) = checker.take_configuration();
     let interfaces = checker
         .pous
         .iter()
@@ -86,8 +105,12 @@ pub(crate) fn check(units: &[(FileId, &CompilationUnit)], library: &BTreeSet<Fil
         interfaces: interfaces.collect(),
         types: checker.types,
         pous: checker.checked,
-        globals: checker.globals.into_values().filter_map(|entry| entry.variable).collect(),
+        globals,
         programs: checker.programs,
+        areas: checker.areas,
+        address_unit: checker.address_unit,
+        configuration,
+        entries,
         image,
     };
     (result, checker.diagnostics)
@@ -106,11 +129,16 @@ struct Checker<'a> {
     globals: BTreeMap<String, GlobalEntry<'a>>,
     enumerators: BTreeMap<String, Vec<Enumerator>>,
     layout: Layout,
+    areas: Areas,
+    address_unit: AddressUnit,
+    /// Initial values of what is located.
+    located: Vec<located::Initial>,
     /// Offsets of string literals by type and bytes.
     literals: BTreeMap<(TypeId, std::sync::Arc<[u8]>), u32>,
     /// Initial bytes of what has been placed.
     placed: Vec<(u32, std::sync::Arc<[u8]>)>,
     programs: Vec<Program>,
+    configured: Configured<'a>,
     checked: BTreeMap<PouId, Pou>,
     /// Units whose bodies are still to be checked, and all that ever were.
     queue: Vec<PouId>,
@@ -160,22 +188,6 @@ impl<'a> Checker<'a> {
         }
     }
 
-    /// Every program has one instance, under its own name.
-    fn place_programs(&mut self) {
-        for index in 0..self.pous.len() {
-            let id = PouId(index as u32);
-            if self.pou(id).ast.kind != PouKind::Program {
-                continue;
-            }
-            let (size, align, image) = self.pou(id).instance();
-            let span = self.pou(id).ast.name.span;
-            if let Some(offset) = self.allocate(size, align, span) {
-                self.placed.push((offset, image));
-                self.programs.push(Program { pou: id, offset });
-            }
-        }
-    }
-
     fn check_bodies(&mut self) {
         while let Some(id) = self.queue.pop() {
             self.check_body(id);
@@ -190,6 +202,7 @@ impl<'a> Checker<'a> {
                 target.copy_from_slice(bytes);
             }
         }
+        self.initialise_located(&mut image);
         image
     }
 }

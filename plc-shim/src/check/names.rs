@@ -4,11 +4,13 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 use super::Checker;
+use super::configuration::Configured;
 use super::layout::{Layout, VIRTUAL_TIME_NAME, VIRTUAL_TIME_OFFSET};
 use super::scope::Scope;
 use crate::diagnostic::{Code, Diagnostic};
-use crate::ir::{ElementaryType, PouId, Storage, TypeId, TypeTable, Variable};
+use crate::ir::{Areas, ElementaryType, PouId, Storage, TypeId, TypeTable, Variable};
 use crate::syntax::ast::{self, CompilationUnit, Declaration, Ident, Qualifier, SectionKind, TypeDeclaration};
+use crate::syntax::direct_address::AddressUnit;
 use crate::syntax::{FileId, Span};
 
 /// How far something has been resolved.
@@ -55,6 +57,8 @@ pub(super) struct GlobalEntry<'a> {
     pub(super) span: Span,
     pub(super) progress: Progress,
     pub(super) variable: Option<Variable>,
+    /// The resource that declares it.
+    pub(super) home: Option<usize>,
 }
 
 /// A value of an enumeration.
@@ -75,9 +79,13 @@ impl<'a> Checker<'a> {
             globals: BTreeMap::from([(VIRTUAL_TIME_NAME.to_owned(), virtual_time())]),
             enumerators: BTreeMap::new(),
             layout: Layout::new(),
+            areas: Areas::default(),
+            address_unit: AddressUnit::default(),
+            located: Vec::new(),
             literals: BTreeMap::new(),
             placed: Vec::new(),
             programs: Vec::new(),
+            configured: Configured::default(),
             checked: BTreeMap::new(),
             queue: Vec::new(),
             queued: BTreeSet::new(),
@@ -94,9 +102,11 @@ impl<'a> Checker<'a> {
                     Declaration::Pou(pou) => self.collect_pou(pou),
                     Declaration::Type(declaration) => self.collect_type(declaration),
                     Declaration::Globals(section) => self.collect_globals(section),
+                    Declaration::Configuration(configuration) => self.collect_configuration(configuration),
                 }
             }
         }
+        self.collect_resource_globals();
     }
 
     fn collect_pou(&mut self, ast: &'a ast::Pou) {
@@ -125,7 +135,7 @@ impl<'a> Checker<'a> {
         }
     }
 
-    fn collect_globals(&mut self, section: &'a ast::Section) {
+    pub(super) fn collect_globals(&mut self, section: &'a ast::Section) {
         for variable in &section.variables {
             for name in &variable.names {
                 if let Some(first) = self.globals.get(&name.key()) {
@@ -139,6 +149,7 @@ impl<'a> Checker<'a> {
                     span: name.span,
                     progress: Progress::Untouched,
                     variable: None,
+                    home: None,
                 };
                 self.globals.insert(name.key(), entry);
             }
@@ -191,12 +202,12 @@ fn virtual_time() -> GlobalEntry<'static> {
         storage: Storage::Absolute(VIRTUAL_TIME_OFFSET),
         constant: None,
         is_constant: true,
-        retain: false,
+        retention: None,
         address: None,
         span,
         image: vec![0; 8].into(),
         edge: None,
     };
     let name = VIRTUAL_TIME_NAME.to_owned();
-    GlobalEntry { ast: None, name, span, progress: Progress::Done, variable: Some(variable) }
+    GlobalEntry { ast: None, name, span, progress: Progress::Done, variable: Some(variable), home: None }
 }

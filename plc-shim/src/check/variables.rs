@@ -8,7 +8,7 @@ use super::names::{Progress, TypedImage};
 use super::scope::{Body, Scope};
 use super::types::Need;
 use crate::diagnostic::{Code, Diagnostic, did_you_mean};
-use crate::ir::{EdgeDetection, ElementaryType, Place, PouId, Storage, TypeId, Value, Variable};
+use crate::ir::{EdgeDetection, ElementaryType, Place, PouId, Retention, Storage, TypeId, Value, Variable};
 use crate::syntax::Span;
 use crate::syntax::ast::{self, Ident, PouKind, Qualifier, Section, SectionKind};
 
@@ -18,6 +18,11 @@ const POINTER: ElementaryType = ElementaryType::Udint;
 impl<'a> Checker<'a> {
     /// A global variable, placed in memory; `used` is where it is needed.
     pub(super) fn global(&mut self, key: &str, used: Option<Span>) -> Option<Variable> {
+        if self.globals.get(key)?.progress == Progress::Untouched
+            && let Some(found) = self.alternative_global(key, used)
+        {
+            return Some(found);
+        }
         let entry = self.globals.get_mut(key)?;
         let (progress, span) = (entry.progress, entry.span);
         if progress == Progress::Done {
@@ -41,10 +46,15 @@ impl<'a> Checker<'a> {
 
     fn place_global(&mut self, name: &Ident, ast: &'a ast::Variable, qualifiers: &[Qualifier]) -> Option<Variable> {
         let declared = Body::outside(self).declared(ast, Need::Size)?;
-        let (size, align) = (self.types.size(declared.ty), self.types.align(declared.ty));
-        let offset = self.allocate(size, align, name.span)?;
-        self.placed.push((offset, declared.image.clone()));
-        let storage = Storage::Absolute(offset);
+        let storage = match self.located(ast, &declared)? {
+            Some(storage) => storage,
+            None => {
+                let (size, align) = (self.types.size(declared.ty), self.types.align(declared.ty));
+                let offset = self.allocate(size, align, name.span)?;
+                self.placed.push((offset, declared.image.clone()));
+                Storage::Absolute(offset)
+            }
+        };
         Some(self.variable(name, ast, SectionKind::Global, qualifiers, &declared, storage))
     }
 
@@ -66,7 +76,7 @@ impl<'a> Checker<'a> {
             storage,
             constant: elementary.filter(|_| is_constant).map(|ty| decode(ty, &declared.image)),
             is_constant,
-            retain: qualifiers.contains(&Qualifier::Retain),
+            retention: Retention::of(qualifiers),
             address: ast.address.as_ref().map(|address| address.text.clone()),
             span: name.span,
             image: declared.image.clone(),
@@ -221,7 +231,7 @@ impl<'c, 'a> Interface<'c, 'a> {
                 self.declare_external(name, declared.ty, section);
                 continue;
             }
-            let Some(storage) = self.storage(section, declared, name.span) else {
+            let Some(storage) = self.declared_storage(section, ast, declared, name.span) else {
                 self.declare_broken(name);
                 continue;
             };
@@ -243,6 +253,22 @@ impl<'c, 'a> Interface<'c, 'a> {
     fn add(&mut self, name: &Ident, variable: Variable) {
         self.body.scope.by_name.insert(name.key(), self.body.scope.variables.len());
         self.body.scope.variables.push(variable);
+    }
+
+    fn declared_storage(
+        &mut self,
+        section: &Section,
+        ast: &ast::Variable,
+        declared: &TypedImage,
+        span: Span,
+    ) -> Option<Storage> {
+        if let Some(address) = &ast.address {
+            self.body.checker.may_be_located(self.kind, section.kind, address)?;
+            if let Some(located) = self.body.checker.located(ast, declared)? {
+                return Some(located);
+            }
+        }
+        self.storage(section, declared, span)
     }
 
     fn storage(&mut self, section: &Section, declared: &TypedImage, span: Span) -> Option<Storage> {
@@ -344,6 +370,7 @@ impl<'c, 'a> Interface<'c, 'a> {
     fn declare_external(&mut self, name: &Ident, ty: TypeId, section: &Section) {
         let key = name.key();
         let known = self.body.checker.globals.contains_key(&key);
+        self.body.checker.note_global_use(self.body.pou, &key, name.span);
         let global = self.body.checker.global(&key, Some(name.span));
         let Some(mut variable) = global else {
             if !known {

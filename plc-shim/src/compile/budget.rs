@@ -7,7 +7,7 @@
 use wasm_encoder::{BlockType, ConstExpr, GlobalSection, GlobalType, Instruction, ValType};
 
 use super::emitter::Emitter;
-use super::fault::{FaultKind, Mark};
+use super::fault::{FaultKind, Mark, MarkKind};
 use crate::syntax::Span;
 
 /// Name of the exported global.
@@ -109,7 +109,7 @@ impl Emitter<'_, '_> {
         }
         // The unit itself is the first that a mark tells of.
         if let Some((_, Mark { span, unit, .. })) = self.marks.first().copied() {
-            let mark = Mark { span, unit, fault: Some(FaultKind::EndlessLoop) };
+            let mark = Mark { span, unit, kind: MarkKind::Fault(FaultKind::EndlessLoop) };
             self.marks.splice(0..0, [(count - 3, mark), (count - 2, mark)]);
         }
         1

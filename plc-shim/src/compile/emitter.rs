@@ -8,14 +8,14 @@ use wasm_encoder::{BlockType, Function, Instruction, ValType};
 use super::address::{Extent, Roots};
 use super::cost::Costs;
 use super::effect::Effects;
-use super::fault::{FaultKind, Mark, Unit};
+use super::fault::{Callee, FaultKind, Mark, MarkKind, Unit};
 use super::frame::Frame;
 use super::interval::Facts;
 use super::known::{Entry, Known};
 pub(super) use super::registers::Register;
 use super::registers::Registers;
 use crate::ir::elementary::Kind;
-use crate::ir::{ElementaryType, LocalId, Pou, PouId, TypeId, TypeTable};
+use crate::ir::{Areas, ElementaryType, LocalId, Pou, PouId, TypeId, TypeTable};
 use crate::syntax::Span;
 
 /// How a value of the type is held.
@@ -38,6 +38,7 @@ pub(super) struct Shared<'p> {
     pub(super) pous: &'p BTreeMap<PouId, Pou>,
     pub(super) costs: Costs,
     pub(super) functions: BTreeMap<PouId, u32>,
+    pub(super) areas: Areas,
     /// Initial bytes of temporary aggregates, by data segment.
     pub(super) data: Vec<Arc<[u8]>>,
 }
@@ -104,18 +105,23 @@ impl<'s, 'p> Emitter<'s, 'p> {
     }
 
     /// The unit that marks belong to.
-    fn unit(&self) -> u32 {
+    pub(super) fn unit(&self) -> u32 {
         self.frames.last().map_or(0, |frame| frame.unit)
     }
 
     /// Says that a statement begins here.
     pub(super) fn mark_statement(&mut self, span: Span) {
-        self.marks.push((self.code.len(), Mark { span, fault: None, unit: self.unit() }));
+        self.marks.push((self.code.len(), Mark { span, kind: MarkKind::Statement, unit: self.unit() }));
     }
 
     /// Says what it means if the next instruction traps.
     pub(super) fn mark_fault(&mut self, fault: FaultKind, span: Span) {
-        self.marks.push((self.code.len(), Mark { span, fault: Some(fault), unit: self.unit() }));
+        self.marks.push((self.code.len(), Mark { span, kind: MarkKind::Fault(fault), unit: self.unit() }));
+    }
+
+    /// Says what the next instruction calls.
+    pub(super) fn mark_call(&mut self, callee: Callee, span: Span) {
+        self.marks.push((self.code.len(), Mark { span, kind: MarkKind::Call(callee), unit: self.unit() }));
     }
 
     /// Stops the PLC if the value on the stack is not 0.

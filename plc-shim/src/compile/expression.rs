@@ -30,7 +30,7 @@ impl Emitter<'_, '_> {
                 self.intrinsic(*intrinsic, operands, expr);
             }
             ExprKind::Text(call) => self.text_call(call, expr),
-            ExprKind::Call(call) => self.call_function(call),
+            ExprKind::Call(call) => self.call_function(call, expr.span),
         }
     }
 

@@ -19,7 +19,7 @@ pub(super) struct Made {
 pub(super) fn unit(shared: &mut Shared<'_>, id: PouId, pou: &Pou, instance: Option<u32>) -> Made {
     let parameters = pou.registers.iter().take(pou.parameters as usize).map(|ty| value_type(*ty)).collect();
     let mut emitter = Emitter::new(shared, parameters);
-    emitter.enter(id, pou, pou.parameters);
+    emitter.enter(id, pou, pou.parameters, None);
     if let (Some(offset), Some(frame)) = (instance, emitter.frames.last_mut()) {
         frame.pointers.insert(INSTANCE, Address::absolute(offset));
     }

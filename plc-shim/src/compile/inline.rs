@@ -4,19 +4,21 @@ use wasm_encoder::Instruction;
 
 use super::address::Address;
 use super::emitter::{Emitter, value_type};
-use super::fault::Unit;
+use super::fault::{Callee, Unit};
 use super::frame::Frame;
 use super::place::INSTANCE;
-use crate::ir::{Argument, Expr, ExprKind, FunctionCall, LocalId, Place, Pou, PouId};
+use crate::ir::{Argument, Expr, ExprKind, FunctionCall, InstanceCall, LocalId, Place, Pou, PouId};
+use crate::syntax::Span;
 use crate::syntax::ast::PouKind;
 
 impl<'p> Emitter<'_, 'p> {
     /// Calls a function of the module. What it changes is not known.
-    pub(super) fn call(&mut self, pou: PouId) {
+    pub(super) fn call(&mut self, pou: PouId, callee: Callee, span: Span) {
         let metered = self.shared.costs.is_metered(pou);
         if metered {
             self.put_budget_back();
         }
+        self.mark_call(callee, span);
         match self.shared.functions.get(&pou).copied() {
             Some(index) => self.emit(Instruction::Call(index)),
             None => self.emit(Instruction::Unreachable),
@@ -35,8 +37,8 @@ impl<'p> Emitter<'_, 'p> {
     }
 
     /// Opens a frame for the unit; `registers` beyond the given ones are new.
-    pub(super) fn enter(&mut self, id: PouId, pou: &Pou, parameters: u32) {
-        let caller = self.frames.last().map(|frame| frame.unit);
+    pub(super) fn enter(&mut self, id: PouId, pou: &Pou, parameters: u32, call: Option<(Callee, Span)>) {
+        let caller = call.map(|(callee, span)| (self.unit(), callee, span));
         let given = parameters as usize;
         let mut registers: Vec<_> = (0..parameters).map(super::registers::Register).collect();
         for ty in pou.registers.iter().skip(given) {
@@ -85,8 +87,8 @@ impl<'p> Emitter<'_, 'p> {
         }
     }
 
-    pub(super) fn inline_instance(&mut self, id: PouId, pou: &Pou, instance: Address) {
-        self.enter(id, pou, 0);
+    pub(super) fn inline_instance(&mut self, call: &InstanceCall, pou: &Pou, callee: Callee, instance: Address) {
+        self.enter(call.pou, pou, 0, Some((callee, call.instance.span)));
         if let Some(frame) = self.frames.last_mut() {
             frame.pointers.insert(INSTANCE, instance);
         }
@@ -94,14 +96,14 @@ impl<'p> Emitter<'_, 'p> {
         self.leave();
     }
 
-    pub(super) fn call_function(&mut self, call: &FunctionCall) {
+    pub(super) fn call_function(&mut self, call: &FunctionCall, span: Span) {
         self.side_statements(&call.before);
         let inlined = self.inlinable(call.pou);
         match inlined {
-            Some(pou) => self.inline_function(call, pou),
+            Some(pou) => self.inline_function(call, pou, span),
             None => {
                 self.push_arguments(&call.arguments);
-                self.call(call.pou);
+                self.call(call.pou, Callee::Function, span);
             }
         }
         if let Some(place) = &call.result {
@@ -120,7 +122,7 @@ impl<'p> Emitter<'_, 'p> {
     }
 
     /// The arguments are evaluated where the caller is, then become the unit's registers.
-    fn inline_function(&mut self, call: &FunctionCall, pou: &Pou) {
+    fn inline_function(&mut self, call: &FunctionCall, pou: &Pou, span: Span) {
         let targets: Vec<_> = call
             .arguments
             .iter()
@@ -135,7 +137,7 @@ impl<'p> Emitter<'_, 'p> {
             })
             .collect();
         self.push_arguments(&call.arguments);
-        self.enter(call.pou, pou, 0);
+        self.enter(call.pou, pou, 0, Some((Callee::Function, span)));
         for (index, (address, extent)) in targets.into_iter().enumerate().rev() {
             let local = LocalId(index as u32);
             let register = self.register(local);

@@ -80,6 +80,7 @@ impl Emitter<'_, '_> {
     /// The variable, if its place is known.
     pub(super) fn slot(&self, place: &Place) -> Option<Slot> {
         match place.storage {
+            _ if place.part.is_some() => None,
             Storage::Register(local) => Some(Slot::Register(self.register(local))),
             _ => self.fixed_address(place).map(Slot::Memory),
         }

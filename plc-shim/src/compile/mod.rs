@@ -4,13 +4,14 @@
 //! |---|---|
 //! | [`module`] | sections, functions, exports |
 //! | [`function`] | one unit to one function |
+//! | [`entry`] | what a task runs |
 //! | [`emitter`], [`registers`] | instructions, labels, marks; locals |
 //! | [`frame`], [`inline`] | a unit's own terms; calls, and units put in their place |
 //! | [`cost`], [`calls`], [`budget`] | what units cost, and how endless loops end |
-//! | [`address`], [`place`] | addresses, loads and stores |
+//! | [`address`], [`place`], [`part`] | addresses, loads and stores |
 //! | [`known`], [`effect`], [`survey`] | values that registers hold already, also through loops |
 //! | [`interval`] | ranges of integers, for checks that cannot fail |
-//! | [`statement`], [`selection`], [`repetition`], [`counting`] | statements |
+//! | [`statement`], [`selection`], [`choice`], [`repetition`], [`counting`] | statements |
 //! | [`expression`], [`arithmetic`], [`conversion`], [`intrinsic`] | expressions |
 //! | [`host`] | functions that WebAssembly lacks |
 //! | [`text`], [`text_host`] | character strings |
@@ -23,11 +24,13 @@ mod address;
 mod arithmetic;
 mod budget;
 mod calls;
+mod choice;
 mod conversion;
 mod cost;
 mod counting;
 mod effect;
 mod emitter;
+mod entry;
 mod expression;
 pub(crate) mod fault;
 mod frame;
@@ -38,6 +41,7 @@ mod interval;
 mod intrinsic;
 mod known;
 mod module;
+mod part;
 mod place;
 mod registers;
 mod repetition;
@@ -48,4 +52,4 @@ mod text;
 pub(crate) mod text_host;
 
 pub(crate) use budget::BUDGET_EXPORT;
-pub(crate) use module::{Compiled, MEMORY_EXPORT, compile, program_export};
+pub(crate) use module::{Compiled, MEMORY_EXPORT, compile, entry_export};

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use wasm_encoder::{
     CodeSection, DataCountSection, DataSection, EntityType, ExportKind, ExportSection, Function, FunctionSection,
-    ImportSection, Instruction, MemorySection, MemoryType, Module, TypeSection, ValType,
+    ImportSection, MemorySection, MemoryType, Module, TypeSection, ValType,
 };
 
 use super::budget::{self, BUDGET_EXPORT};
@@ -12,9 +12,9 @@ use super::cost::Costs;
 use super::emitter::{Shared, value_type};
 use super::fault::{FaultTable, FunctionMarks};
 use super::function::Made;
-use super::{function, host, text_host};
+use super::{entry, function, host, text_host};
 use crate::check::Checked;
-use crate::ir::{Pou, PouId, Program, TypeTable};
+use crate::ir::{Pou, PouId, TypeTable};
 use crate::syntax::ast::PouKind;
 
 /// Name of the exported memory.
@@ -22,9 +22,9 @@ pub(crate) const MEMORY_EXPORT: &str = "memory";
 
 const PAGE: u64 = 65_536;
 
-/// Name of the export that runs the program at this position.
-pub(crate) fn program_export(index: usize) -> String {
-    format!("program_{index}")
+/// Name of the export that runs the entry at this position.
+pub(crate) fn entry_export(index: usize) -> String {
+    format!("entry_{index}")
 }
 
 /// The module and what its instructions stand for.
@@ -40,12 +40,14 @@ pub(crate) fn compile(checked: &Checked) -> Compiled {
     let order = checked.pous.keys().zip(first_function..);
     let functions: BTreeMap<_, _> = order.map(|(id, index)| (*id, index)).collect();
     let (costs, order) = Costs::new(&checked.pous);
-    let mut shared = Shared { types: &checked.types, pous: &checked.pous, costs, functions, data: Vec::new() };
+    let mut shared =
+        Shared { types: &checked.types, pous: &checked.pous, costs, functions, areas: checked.areas, data: Vec::new() };
+    let instances = entry::only_instances(&checked.entries);
     // Callees first: a call must know what it costs.
     let mut made: BTreeMap<PouId, Made> = BTreeMap::new();
     for id in order {
         if let Some(pou) = checked.pous.get(&id) {
-            made.insert(id, function::unit(&mut shared, id, pou, only_instance(checked, id)));
+            made.insert(id, function::unit(&mut shared, id, pou, instances.get(&id).copied()));
         }
     }
     let mut sections = Sections::default();
@@ -54,31 +56,15 @@ pub(crate) fn compile(checked: &Checked) -> Compiled {
     for (pou, Made { body, marks, units }) in checked.pous.values().zip(made.into_values()) {
         let (parameters, results) = signature(pou, &checked.types);
         sections.add_function(parameters, results, &body);
-        faults.functions.push(FunctionMarks { units, marks });
+        faults.functions.push(FunctionMarks { units, is_entry: false, marks });
     }
-    for (index, program) in checked.programs.iter().enumerate() {
-        let body = entry(program, &shared.functions);
+    for (index, entry) in checked.entries.iter().enumerate() {
+        let (body, marks) = entry::entry(&mut shared, entry);
         let at = sections.add_function(Vec::new(), Vec::new(), &body);
-        sections.exports.export(&program_export(index), ExportKind::Func, at);
+        sections.exports.export(&entry_export(index), ExportKind::Func, at);
+        faults.functions.push(marks);
     }
     Compiled { wasm: sections.finish(checked.image.len() as u64, &shared), faults }
-}
-
-/// Offset of the program's instance if there is just one.
-fn only_instance(checked: &Checked, id: PouId) -> Option<u32> {
-    let mut instances = checked.programs.iter().filter(|program| program.pou == id);
-    instances.next().filter(|_| instances.next().is_none()).map(|program| program.offset)
-}
-
-/// Runs a program's body on its one instance.
-fn entry(program: &Program, functions: &BTreeMap<crate::ir::PouId, u32>) -> Function {
-    let mut body = Function::new([]);
-    body.instruction(&Instruction::I32Const(program.offset as i32));
-    if let Some(index) = functions.get(&program.pou) {
-        body.instruction(&Instruction::Call(*index));
-    }
-    body.instruction(&Instruction::End);
-    body
 }
 
 fn signature(pou: &Pou, types: &TypeTable) -> (Vec<ValType>, Vec<ValType>) {

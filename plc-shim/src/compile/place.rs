@@ -41,9 +41,10 @@ impl Emitter<'_, '_> {
     fn beginning(&self, storage: Storage) -> Option<Address> {
         match storage {
             Storage::Absolute(offset) => Some(Address::absolute(offset)),
+            Storage::Located(location) => Some(Address::absolute(self.shared.areas.offset(location))),
             Storage::Instance(offset) => Some(self.pointer(INSTANCE).further(offset)),
             Storage::RegisterPointer(register) => Some(self.pointer(register)),
-            Storage::InstancePointer(_) | Storage::Register(_) => None,
+            Storage::InstancePointer(_) | Storage::AbsolutePointer(_) | Storage::Register(_) => None,
         }
     }
 
@@ -89,6 +90,9 @@ impl Emitter<'_, '_> {
             }
         } else if let Storage::InstancePointer(at) = place.storage {
             self.load_at(self.pointer(INSTANCE).further(at), ElementaryType::Udint);
+            pushed = true;
+        } else if let Storage::AbsolutePointer(at) = place.storage {
+            self.load_at(Address::absolute(at), ElementaryType::Udint);
             pushed = true;
         }
         for step in &place.steps {
@@ -192,7 +196,9 @@ impl Emitter<'_, '_> {
             self.full_address(place);
             return;
         };
-        if let Storage::Register(register) = place.storage {
+        if let Some(part) = place.part {
+            self.load_part(place, part, ty);
+        } else if let Storage::Register(register) = place.storage {
             self.get(self.register(register));
         } else if let Some(address) = self.fixed_address(place) {
             self.load_at(address, ty);
@@ -248,7 +254,10 @@ impl Emitter<'_, '_> {
     /// Puts what `value` pushes at an elementary place.
     pub(super) fn store(&mut self, place: &Place, value: impl FnOnce(&mut Self)) {
         let ty = self.held_as(place.ty);
-        if let Storage::Register(register) = place.storage {
+        if let Some(part) = place.part {
+            self.store_part(place, part, ty, value);
+            self.changed(self.extent(place));
+        } else if let Storage::Register(register) = place.storage {
             value(self);
             let register = self.register(register);
             self.set(register);

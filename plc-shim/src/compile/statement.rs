@@ -6,6 +6,7 @@ use wasm_encoder::Instruction;
 
 use super::address::Address;
 use super::emitter::Emitter;
+use super::fault::Callee;
 use crate::ir::{Expr, ExprKind, IfBranch, InstanceCall, Place, Statement, StatementKind, Storage, TypeTable};
 
 impl Emitter<'_, '_> {
@@ -49,13 +50,25 @@ impl Emitter<'_, '_> {
 
     fn assign(&mut self, target: &Place, value: &Expr) {
         let ty = self.held_as(target.ty);
-        let computed = ty.is_real() && !matches!(target.storage, Storage::Register(_)) && may_be_nan(value);
+        let fetched = matches!(target.storage, Storage::Register(_)) || self.is_number(value);
+        let computed = ty.is_real() && !fetched;
         self.store(target, |emitter| {
             emitter.expression(value);
             if computed {
                 emitter.canonical(ty);
             }
         });
+    }
+
+    /// True if a real value is no NaN that was just computed: it is a constant, a converted
+    /// integer, or comes from memory.
+    fn is_number(&self, expr: &Expr) -> bool {
+        match &expr.kind {
+            ExprKind::Constant(_) => true,
+            ExprKind::Load(place) => !matches!(place.storage, Storage::Register(_)),
+            ExprKind::Convert(_, operand) => !self.held_as(operand.ty).is_real(),
+            _ => false,
+        }
     }
 
     pub(super) fn copy(&mut self, target: &Place, source: &Expr) {
@@ -88,11 +101,13 @@ impl Emitter<'_, '_> {
         }
         // The inputs and outputs are part of the call: a fault in one points at itself.
         self.side_statements(&call.inputs);
+        let global = matches!(call.instance.storage, Storage::Absolute(_) | Storage::AbsolutePointer(_));
+        let callee = if global { Callee::Global } else { Callee::Inner };
         match self.inlinable(call.pou) {
-            Some(pou) => self.inline_instance(call.pou, pou, address),
+            Some(pou) => self.inline_instance(call, pou, callee, address),
             None => {
                 self.push_address(address);
-                self.call(call.pou);
+                self.call(call.pou, callee, call.instance.span);
             }
         }
         self.side_statements(&call.outputs);
@@ -134,6 +149,9 @@ impl Emitter<'_, '_> {
 
     /// Branches lie side by side, so that many of them are not nested deep.
     fn if_statement(&mut self, branches: &[IfBranch], otherwise: &[Statement]) {
+        if self.choice(branches, otherwise) {
+            return;
+        }
         let end = self.open_block();
         self.held += 1;
         let mut after = None;
@@ -189,14 +207,5 @@ impl Emitter<'_, '_> {
         if let Some(after) = after {
             self.known.meet(&after);
         }
-    }
-}
-
-/// True if the expression computes a real number and does not just fetch one from memory.
-fn may_be_nan(expr: &Expr) -> bool {
-    match &expr.kind {
-        ExprKind::Constant(_) => false,
-        ExprKind::Load(place) => matches!(place.storage, Storage::Register(_)),
-        _ => true,
     }
 }

@@ -2,6 +2,8 @@
 //!
 //! Code generation and the runtime read it and look nothing up by name.
 
+pub(crate) mod area;
+pub(crate) mod configuration;
 pub(crate) mod elementary;
 pub(crate) mod expr;
 pub(crate) mod pou;
@@ -10,11 +12,13 @@ pub(crate) mod text;
 pub(crate) mod types;
 pub(crate) mod value;
 
+pub(crate) use area::{Areas, Location};
+pub(crate) use configuration::{Access, Configuration, Entry, Program, Resource, Task};
 pub(crate) use elementary::ElementaryType;
 pub(crate) use expr::{
-    Argument, Binary, Expr, ExprKind, FunctionCall, Intrinsic, LocalId, Place, Rounding, Step, Storage, Unary,
+    Argument, Binary, Expr, ExprKind, FunctionCall, Intrinsic, LocalId, Part, Place, Rounding, Step, Storage, Unary,
 };
-pub(crate) use pou::{EdgeDetection, Pou, PouId, Program, Variable};
+pub(crate) use pou::{EdgeDetection, Pou, PouId, Retention, Variable};
 pub(crate) use statement::{CaseArm, CaseStatement, ForStatement, IfBranch, InstanceCall, Statement, StatementKind};
 pub(crate) use types::{Dimension, Field, Type, TypeId, TypeTable};
 pub(crate) use value::Value;

@@ -7,88 +7,152 @@ use wasmtime::Trap;
 use super::VirtualTime;
 use super::machine::Trapped;
 use crate::application::Application;
-use crate::compile::fault::{FaultKind, FunctionMarks, Mark};
+use crate::compile::fault::{Callee, FaultKind, FunctionMarks, Mark};
+use crate::syntax::Span;
 
 /// The PLC stopped because of an error in its program.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct PlcFault {
     /// What happened.
     pub kind: FaultKind,
+    /// The unit in which it happened, and where.
+    pub at: FaultSite,
+    /// The units that were active, each where it called the next; the innermost first.
+    pub callers: Vec<FaultSite>,
+    /// The virtual time of the scan.
+    pub virtual_time: VirtualTime,
+}
+
+/// A place in a unit that was active.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct FaultSite {
+    /// The unit.
+    pub pou: String,
+    /// The instance that ran, as in `P1.axis[i].ramp` with indices as they are written; the unit's
+    /// name for a function.
+    pub instance: String,
     /// The file; empty if it is not known.
     pub file: String,
     /// Line, from 1.
     pub line: u32,
     /// Column in characters, from 1.
     pub column: u32,
-    /// The unit in which it happened.
-    pub pou: String,
-    /// The units that were active, the program first, `pou` last.
-    pub call_path: Vec<String>,
-    /// The virtual time of the scan.
-    pub virtual_time: VirtualTime,
+}
+
+/// `Ramp`, or `P1.axis.ramp (Ramp)` if the instance has another name.
+impl fmt::Display for FaultSite {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { pou, instance, .. } = self;
+        if pou == instance { formatter.write_str(pou) } else { write!(formatter, "{instance} ({pou})") }
+    }
+}
+
+impl PlcFault {
+    /// Who called whom: `, called by P1.axis (Axis) at axis.st:5, called by P1 (P) at main.st:9`;
+    /// nothing for a program.
+    pub fn way(&self) -> String {
+        let site = |site: &FaultSite| format!(", called by {site} at {}:{}", site.file, site.line);
+        self.callers.iter().map(site).collect()
+    }
 }
 
 impl fmt::Display for PlcFault {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { kind, file, line, column, pou, call_path, virtual_time } = self;
-        write!(formatter, "{kind} at {file}:{line}:{column} in {pou}")?;
-        if call_path.len() > 1 {
-            write!(formatter, " (called by way of {})", call_path.join(", "))?;
-        }
-        write!(formatter, ", t_v = {virtual_time}")
+        let Self { kind, at, virtual_time, .. } = self;
+        let FaultSite { file, line, column, .. } = at;
+        write!(formatter, "{kind} at {file}:{line}:{column} in {at}{}, t_v = {virtual_time}", self.way())
     }
 }
 
 impl std::error::Error for PlcFault {}
 
-/// Longest call path that a fault reports.
-const MAX_PATH: usize = 64;
+/// Most callers that a fault reports, the innermost.
+const MAX_CALLERS: usize = 64;
 
 /// What the trap means in the source.
 pub(super) fn explain(application: &Application, trapped: &Trapped, virtual_time: VirtualTime) -> PlcFault {
     let table = application.faults();
     let frames = trapped.frames.iter();
-    let mut known = frames.filter_map(|(index, offset)| Some((table.function(*index)?, *offset)));
-    let innermost = known.next();
-    let (kind, mark) = cause(trapped.trap, innermost);
-    let mut call_path: Vec<String> = Vec::new();
-    if let Some((function, _)) = innermost {
-        call_path.extend(function.active(mark.map_or(0, |mark| mark.unit)).map(str::to_owned));
-    }
-    for (function, offset) in known {
-        let call = offset.and_then(|offset| function.statement_before(offset));
-        call_path.extend(function.active(call.map_or(0, |mark| mark.unit)).map(str::to_owned));
-    }
-    let pou = call_path.first().cloned().unwrap_or_default();
-    call_path.truncate(MAX_PATH + 1);
-    call_path.reverse();
-    let span = mark.map(|mark| mark.span);
-    let (file, place) = span.map_or(("", None), |span| {
-        let (file, place) = application.sources().locate(span);
-        (file, Some(place))
-    });
-    PlcFault {
-        kind,
-        file: file.to_owned(),
-        line: place.map_or(0, |place| place.line),
-        column: place.map_or(0, |place| place.column),
-        pou,
-        call_path,
-        virtual_time,
-    }
+    let known: Vec<Frame<'_>> = frames.filter_map(|(index, offset)| Some((table.function(*index)?, *offset))).collect();
+    let (kind, mark) = cause(trapped.trap, known.first().copied());
+    let mut sites = sites(application, &active(&known, mark));
+    let mut at = sites.pop().unwrap_or_default();
+    place(application, mark.map(|mark| mark.span), &mut at);
+    sites.reverse();
+    sites.truncate(MAX_CALLERS);
+    PlcFault { kind, at, callers: sites, virtual_time }
 }
 
-fn cause(trap: Option<Trap>, innermost: Option<(&FunctionMarks, Option<u32>)>) -> (FaultKind, Option<Mark>) {
+/// A function that was active, and the offset in its body.
+type Frame<'a> = (&'a FunctionMarks, Option<u32>);
+
+/// A unit that was active, and the call that it had made.
+struct Active<'a> {
+    unit: &'a str,
+    is_entry: bool,
+    made: Option<(Callee, Span)>,
+}
+
+/// The units that were active, the innermost first: in each function those put in the place of
+/// calls, then its own. `mark` is where the innermost function stopped.
+fn active<'a>(frames: &[Frame<'a>], mark: Option<Mark>) -> Vec<Active<'a>> {
+    let mut found = Vec::new();
+    for (index, (function, offset)) in frames.iter().enumerate() {
+        let call = offset.and_then(|offset| function.call_at(offset)).filter(|_| index > 0);
+        let mut made = call.map(|(callee, mark)| (callee, mark.span));
+        let stopped = if index == 0 { mark } else { call.map(|(_, mark)| mark) };
+        let mut next = Some(stopped.map_or(0, |mark| mark.unit));
+        while let Some(unit) = next.and_then(|unit| function.units.get(unit as usize)) {
+            let is_entry = function.is_entry && unit.caller.is_none();
+            found.push(Active { unit: &unit.name, is_entry, made });
+            made = unit.caller.map(|(_, callee, span)| (callee, span));
+            next = unit.caller.map(|(caller, _, _)| caller);
+        }
+    }
+    found
+}
+
+/// The sites of units that were active, the outermost first. What a task runs is no unit of its
+/// own, unless the fault is in it.
+fn sites(application: &Application, active: &[Active<'_>]) -> Vec<FaultSite> {
+    let mut sites = Vec::new();
+    let mut instance = String::new();
+    let mut call: Option<(Callee, Span)> = None;
+    for (index, Active { unit, is_entry, made }) in active.iter().enumerate().rev() {
+        let name = |span| application.sources().text(span).split_whitespace().collect::<String>();
+        instance = match call {
+            _ if *is_entry => (*unit).to_owned(),
+            Some((Callee::Inner, span)) => format!("{instance}.{}", name(span)),
+            Some((Callee::Global, span)) => name(span),
+            Some((Callee::Function, _)) => (*unit).to_owned(),
+            None => instance,
+        };
+        call = if *is_entry { None } else { *made };
+        if *is_entry && index > 0 {
+            continue;
+        }
+        let mut site = FaultSite { pou: (*unit).to_owned(), instance: instance.clone(), ..FaultSite::default() };
+        place(application, made.map(|(_, span)| span), &mut site);
+        sites.push(site);
+    }
+    sites
+}
+
+fn place(application: &Application, span: Option<Span>, site: &mut FaultSite) {
+    let Some(span) = span else { return };
+    let (file, place) = application.sources().locate(span);
+    file.clone_into(&mut site.file);
+    (site.line, site.column) = (place.line, place.column);
+}
+
+fn cause(trap: Option<Trap>, innermost: Option<Frame<'_>>) -> (FaultKind, Option<Mark>) {
     let statement = innermost.and_then(|(function, offset)| function.statement_before(offset?));
     match trap {
         Some(Trap::OutOfFuel) => (FaultKind::EndlessLoop, statement),
         Some(Trap::StackOverflow) => (FaultKind::CallTooDeep, statement),
-        _ => {
-            let mark = innermost.and_then(|(function, offset)| function.fault_at(offset?));
-            match mark.and_then(|mark| Some((mark.fault?, mark))) {
-                Some((kind, mark)) => (kind, Some(mark)),
-                None => (FaultKind::Internal, statement),
-            }
-        }
+        _ => match innermost.and_then(|(function, offset)| function.fault_at(offset?)) {
+            Some((kind, mark)) => (kind, Some(mark)),
+            None => (FaultKind::Internal, statement),
+        },
     }
 }

@@ -1,9 +1,14 @@
 //! The syntax tree: what is written, with its place; no meanings.
 
+mod configuration;
 mod declaration;
 mod expression;
 mod statement;
 
+pub use configuration::{
+    AccessDirection, AccessPath, Configuration, Connection, InstanceValue, ProgramDeclaration, Resource,
+    TaskDeclaration,
+};
 pub use declaration::{
     Declaration, Dimension, Edge, EnumValue, Field, Initialiser, InitialiserKind, Pou, PouKind, Qualifier, Section,
     SectionKind, StructureInit, Subrange, TypeDeclaration, TypeSpec, TypeSpecKind, Variable,

@@ -3,6 +3,7 @@
 //! An error is reported once and skipped up to a token at which the grammar can go on, so that
 //! one slip makes one diagnostic.
 
+mod configuration;
 mod cursor;
 mod declaration;
 mod expression;

@@ -1,12 +1,15 @@
 //! Programs in, traces out: the whole way from text to a scanning PLC.
 
+mod configurations;
 mod dates;
 mod diagnostics;
+mod direct_addresses;
 mod expressions;
 mod faults;
 mod inputs;
 mod language;
 mod lints;
+mod partial_access;
 mod rig;
 mod robustness;
 mod scheduling;

@@ -31,6 +31,7 @@ pub(crate) fn task(name: &str, interval_ms: u64, priority: u32, programs: &[&str
         name: name.to_owned(),
         interval_ns: interval_ms * MS,
         priority,
+        single: None,
         programs: programs.iter().map(|name| (*name).to_owned()).collect(),
     }
 }
@@ -63,6 +64,9 @@ impl Rig {
         let mut bytes = [0; 8];
         let (offset, size) = (variable.offset as usize, variable.size as usize);
         bytes[..size].copy_from_slice(&self.plc.memory()[offset..offset + size]);
+        if let Some(bit) = variable.bit {
+            bytes[0] = bytes[0] >> bit & 1;
+        }
         bytes
     }
 

@@ -34,6 +34,9 @@ pub struct ScenarioFile {
     pub signals: BTreeMap<SignalName, Spanned<SignalFile>>,
     /// The session's clients by name.
     pub clients: BTreeMap<ClientName, Spanned<ClientFile>>,
+    /// What every run must show.
+    #[serde(default)]
+    pub expect: Vec<ExpectFile>,
     /// How the signals travel when nothing is synchronised.
     #[serde(default)]
     pub freewheel: FreewheelFile,
@@ -84,7 +87,8 @@ pub enum ClientFile {
     SoftPlc {
         /// Source files, relative to the scenario's folder.
         sources: Vec<String>,
-        /// Its tasks.
+        /// Its tasks, in place of those of its own CONFIGURATION.
+        #[serde(default)]
         tasks: Vec<TaskFile>,
         /// Signals whose PLC variable is not found by the signal's name, with the variable's path.
         #[serde(default)]
@@ -106,13 +110,28 @@ pub struct TaskFile {
     /// Its name.
     pub name: String,
     /// Its cycle time.
-    #[serde(deserialize_with = "from_text")]
-    pub interval: TimeSpan,
+    #[serde(default, deserialize_with = "from_optional_text")]
+    pub interval: Option<TimeSpan>,
+    /// Path of a BOOL of the PLC whose rising edges start it.
+    #[serde(default)]
+    pub single: Option<String>,
     /// Its priority; 0 is the highest.
     #[serde(default)]
     pub priority: u32,
-    /// The programs it runs, in this order.
+    /// The programs it runs, in this order; with a CONFIGURATION, their instances.
     pub programs: Vec<String>,
+}
+
+/// Something that every run must show (see [`crate::expect`]).
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ExpectFile {
+    /// Its name, for reports.
+    pub name: Spanned<String>,
+    /// Signal temporal logic over the scenario's signals.
+    pub formula: Spanned<String>,
+    /// What it means, for people.
+    pub about: Option<String>,
 }
 
 /// The OPC-like link between free-wheeling clients (seed 004 sec. II-C and III).

@@ -1,6 +1,6 @@
 //! Declarations of units, types and variables (2nd ed. 2.3 to 2.5).
 
-use super::{Expr, Ident, Span, Statement};
+use super::{Configuration, Expr, Ident, Span, Statement};
 
 /// Something a file declares.
 #[derive(Debug, Clone)]
@@ -11,6 +11,8 @@ pub enum Declaration {
     Type(TypeDeclaration),
     /// A `VAR_GLOBAL` block.
     Globals(Section),
+    /// A configuration.
+    Configuration(Configuration),
 }
 
 /// The kinds of program organisation unit (2nd ed. 2.5).
@@ -69,6 +71,8 @@ pub enum Qualifier {
     Retain,
     /// `NON_RETAIN`
     NonRetain,
+    /// `PERSISTENT`, of vendors.
+    Persistent,
 }
 
 /// `VAR .. END_VAR` of any kind.

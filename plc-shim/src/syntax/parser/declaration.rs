@@ -49,6 +49,10 @@ impl Cursor<'_> {
                     let section = self.section(SectionKind::Global);
                     unit.declarations.push(Declaration::Globals(section));
                 }
+                TokenKind::Identifier if self.at_word("CONFIGURATION") => match self.configuration() {
+                    Some(found) => unit.declarations.push(found),
+                    None => self.skip_until(begins_declaration),
+                },
                 // Vendors' exports end a unit with a semicolon; it declares nothing.
                 TokenKind::Punctuation(Punctuation::Semicolon) => self.advance(),
                 _ => {
@@ -122,10 +126,18 @@ impl Cursor<'_> {
                 Some(TokenKind::Keyword(Keyword::Constant)) => Qualifier::Constant,
                 Some(TokenKind::Keyword(Keyword::Retain)) => Qualifier::Retain,
                 Some(TokenKind::Keyword(Keyword::NonRetain)) => Qualifier::NonRetain,
+                Some(TokenKind::Identifier) if self.at_persistent() => Qualifier::Persistent,
                 _ => return found,
             });
             self.advance();
         }
+    }
+
+    /// `PERSISTENT` behind a section's keyword; a variable may have the name, too.
+    fn at_persistent(&self) -> bool {
+        use Punctuation::{Colon, Comma};
+        let declared = matches!(self.peek_ahead(1), Some(TokenKind::Punctuation(Colon | Comma)));
+        self.at_word("PERSISTENT") && !declared && self.peek_ahead(1) != Some(TokenKind::Keyword(Keyword::At))
     }
 
     fn variable(&mut self, variables: &mut Vec<Variable>) {
@@ -157,7 +169,7 @@ impl Cursor<'_> {
         Some(edge)
     }
 
-    fn address(&mut self) -> Option<Ident> {
+    pub(super) fn address(&mut self) -> Option<Ident> {
         if self.peek() != Some(TokenKind::DirectAddress) {
             self.unexpected("a direct address");
             return None;

@@ -12,6 +12,7 @@ impl Printer {
             Declaration::Pou(pou) => self.pou(pou),
             Declaration::Type(declaration) => self.type_declaration(declaration),
             Declaration::Globals(section) => self.section(section),
+            Declaration::Configuration(configuration) => self.configuration(configuration),
         }
         self.end_line();
     }
@@ -36,7 +37,8 @@ impl Printer {
         self.line(end);
     }
 
-    fn section(&mut self, section: &Section) {
+    pub(super) fn section(&mut self, section: &Section) {
+        self.begin_line();
         self.word(match section.kind {
             SectionKind::Local => "VAR",
             SectionKind::Input => "VAR_INPUT",
@@ -51,6 +53,7 @@ impl Printer {
                 Qualifier::Constant => " CONSTANT",
                 Qualifier::Retain => " RETAIN",
                 Qualifier::NonRetain => " NON_RETAIN",
+                Qualifier::Persistent => " PERSISTENT",
             });
         }
         self.end_line();
@@ -80,7 +83,7 @@ impl Printer {
     }
 
     /// ` : INT := 5;` and the line's end.
-    fn typed(&mut self, spec: &TypeSpec, initial: Option<&Initialiser>) {
+    pub(super) fn typed(&mut self, spec: &TypeSpec, initial: Option<&Initialiser>) {
         self.word(" : ");
         self.type_spec(spec);
         self.initial(initial);
@@ -106,7 +109,7 @@ impl Printer {
         self.line("END_TYPE");
     }
 
-    fn type_spec(&mut self, spec: &TypeSpec) {
+    pub(super) fn type_spec(&mut self, spec: &TypeSpec) {
         match &spec.kind {
             TypeSpecKind::Name(name) => self.word(&name.text),
             TypeSpecKind::String(name, length) => {

@@ -1,0 +1,40 @@
+//! What a task runs: a function without parameters (2nd ed. 2.7.2).
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use super::emitter::Shared;
+use super::fault::FunctionMarks;
+use super::function::{self, Made};
+use crate::ir::{Entry, PouId, StatementKind, Storage};
+
+/// No unit has it.
+const NONE: PouId = PouId(u32::MAX);
+
+/// The function of an entry, and what its instructions stand for.
+pub(super) fn entry(shared: &mut Shared<'_>, entry: &Entry) -> (wasm_encoder::Function, FunctionMarks) {
+    let Made { body, marks, mut units } = function::unit(shared, NONE, &entry.unit, None);
+    if let Some(unit) = units.first_mut() {
+        unit.name.clone_from(&entry.name);
+    }
+    (body, FunctionMarks { units, is_entry: true, marks })
+}
+
+/// The programs that have one instance in all entries, with its offset in memory.
+pub(super) fn only_instances(entries: &[Entry]) -> BTreeMap<PouId, u32> {
+    let mut known: BTreeMap<PouId, BTreeSet<Option<u32>>> = BTreeMap::new();
+    for statement in entries.iter().flat_map(|entry| &entry.unit.body) {
+        if let StatementKind::CallInstance(call) = &statement.kind {
+            let fixed = call.instance.steps.is_empty();
+            let offset = match call.instance.storage {
+                Storage::Absolute(offset) if fixed => Some(offset),
+                _ => None,
+            };
+            known.entry(call.pou).or_default().insert(offset);
+        }
+    }
+    let only = |(pou, offsets): (PouId, BTreeSet<Option<u32>>)| match offsets.first() {
+        Some(Some(offset)) if offsets.len() == 1 => Some((pou, *offset)),
+        _ => None,
+    };
+    known.into_iter().filter_map(only).collect()
+}
