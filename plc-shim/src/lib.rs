@@ -12,6 +12,7 @@
 //! | `compile` | the checked program | one WebAssembly module, and the source behind each trap |
 //! | [`application`] | files | all of the above in one value |
 //! | [`run`] | an application and a task plan | a soft PLC that scans |
+//! | [`coverage`] | what has been executed | reports of it |
 //!
 //! Invariants:
 //! - knows no network, no server and no clock: virtual time is given to each scan;
@@ -25,6 +26,7 @@
 pub mod application;
 mod check;
 mod compile;
+pub mod coverage;
 pub mod diagnostic;
 pub mod explain;
 pub mod input;
@@ -35,6 +37,7 @@ pub mod syntax;
 
 pub use application::{Application, Program, UnknownVariable, Variable, inspect};
 pub use compile::fault::FaultKind;
+pub use coverage::Coverage;
 pub use diagnostic::{Code, Diagnostic, Diagnostics, Finding, Severity};
 pub use input::Input;
 pub use ir::elementary::ElementaryType;

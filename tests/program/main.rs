@@ -3,6 +3,7 @@
 mod check;
 mod checkpoint;
 mod control;
+mod coverage;
 mod errors;
 mod expectations;
 mod faults;

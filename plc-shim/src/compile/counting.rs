@@ -8,6 +8,7 @@ use super::budget::SMALL;
 use super::emitter::{Emitter, value_type};
 use super::interval::{Interval, Slot};
 use super::registers::Register;
+use super::repetition::{DONE, TURN};
 use super::survey::Survey;
 use crate::ir::{Binary, ElementaryType, ForStatement, Value};
 use crate::syntax::Span;
@@ -109,6 +110,7 @@ impl Emitter<'_, '_> {
 
     fn counted_turns(&mut self, inner: &ForStatement, count: &Count, (last, small): (Register, bool), span: Span) {
         let exit = self.open_block();
+        let done = self.open_block();
         if !count.begins() {
             self.load(&inner.variable);
             if count.wide {
@@ -117,11 +119,12 @@ impl Emitter<'_, '_> {
             self.get(last);
             self.compare(count, span);
             self.emit(Instruction::I32Eqz);
-            self.branch_if(exit);
+            self.branch_if(done);
         }
         let top = self.open_loop();
         let cost = self.cost;
         self.mark_statement(span);
+        self.cover(TURN, span);
         self.facts.push(count.slot, count.range());
         self.turn(exit, &inner.body);
         self.facts.pop();
@@ -132,6 +135,8 @@ impl Emitter<'_, '_> {
         self.step(inner, count, last, span);
         self.branch_if(top);
         self.close();
+        self.close();
+        self.cover(DONE, span);
         self.close();
     }
 

@@ -12,6 +12,7 @@ use super::fault::{Callee, FaultKind, Mark, MarkKind, Unit};
 use super::frame::Frame;
 use super::interval::Facts;
 use super::known::{Entry, Known};
+use super::points::Points;
 pub(super) use super::registers::Register;
 use super::registers::Registers;
 use crate::ir::elementary::Kind;
@@ -39,6 +40,8 @@ pub(super) struct Shared<'p> {
     pub(super) costs: Costs,
     pub(super) functions: BTreeMap<PouId, u32>,
     pub(super) areas: Areas,
+    /// What is noted while the program runs, if anything.
+    pub(super) points: Option<Points>,
     /// Initial bytes of temporary aggregates, by data segment.
     pub(super) data: Vec<Arc<[u8]>>,
 }

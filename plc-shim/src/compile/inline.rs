@@ -7,6 +7,7 @@ use super::emitter::{Emitter, value_type};
 use super::fault::{Callee, Unit};
 use super::frame::Frame;
 use super::place::INSTANCE;
+use super::points::PointKind;
 use crate::ir::{Argument, Expr, ExprKind, FunctionCall, InstanceCall, LocalId, Place, Pou, PouId};
 use crate::syntax::Span;
 use crate::syntax::ast::PouKind;
@@ -59,6 +60,7 @@ impl<'p> Emitter<'_, 'p> {
     /// The unit's statements and its result.
     pub(super) fn body(&mut self, pou: &Pou) {
         self.mark_statement(pou.span);
+        self.cover(PointKind::Unit, pou.span);
         let end = self.open_block();
         if let Some(frame) = self.frames.last_mut() {
             frame.end = Some(end);

@@ -15,6 +15,7 @@
 //! | [`expression`], [`arithmetic`], [`conversion`], [`intrinsic`] | expressions |
 //! | [`host`] | functions that WebAssembly lacks |
 //! | [`text`], [`text_host`] | character strings |
+//! | [`points`] | what is noted for coverage |
 //! | [`fault`] | what stops the PLC, and the place in the source that an instruction stands for |
 //!
 //! Integers of up to 32 bits are held in an `i32`, sign- or zero-extended from their width;
@@ -43,6 +44,7 @@ mod known;
 mod module;
 mod part;
 mod place;
+pub(crate) mod points;
 mod registers;
 mod repetition;
 mod selection;
@@ -52,4 +54,4 @@ mod text;
 pub(crate) mod text_host;
 
 pub(crate) use budget::BUDGET_EXPORT;
-pub(crate) use module::{Compiled, MEMORY_EXPORT, compile, entry_export};
+pub(crate) use module::{Compiled, MEMORY_EXPORT, Noted, compile, entry_export};

@@ -1,6 +1,6 @@
 //! Sections, functions and exports of the module.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use wasm_encoder::{
     CodeSection, DataCountSection, DataSection, EntityType, ExportKind, ExportSection, Function, FunctionSection,
@@ -12,9 +12,11 @@ use super::cost::Costs;
 use super::emitter::{Shared, value_type};
 use super::fault::{FaultTable, FunctionMarks};
 use super::function::Made;
+use super::points::{Point, Points};
 use super::{entry, function, host, text_host};
 use crate::check::Checked;
 use crate::ir::{Pou, PouId, TypeTable};
+use crate::syntax::FileId;
 use crate::syntax::ast::PouKind;
 
 /// Name of the exported memory.
@@ -32,16 +34,37 @@ pub(crate) fn entry_export(index: usize) -> String {
 pub(crate) struct Compiled {
     pub(crate) wasm: Vec<u8>,
     pub(crate) faults: FaultTable,
+    /// What is noted while it runs.
+    pub(crate) points: Vec<Point>,
+}
+
+/// What the program notes of its execution.
+#[derive(Debug, Clone, Copy)]
+pub(crate) enum Noted<'l> {
+    Nothing,
+    /// All that is not in these files.
+    AllBut(&'l BTreeSet<FileId>),
 }
 
 /// Compiles what has been checked without errors.
-pub(crate) fn compile(checked: &Checked) -> Compiled {
+pub(crate) fn compile(checked: &Checked, noted: Noted<'_>) -> Compiled {
     let first_function = (host::IMPORTS.len() + text_host::IMPORTS.len()) as u32;
     let order = checked.pous.keys().zip(first_function..);
     let functions: BTreeMap<_, _> = order.map(|(id, index)| (*id, index)).collect();
     let (costs, order) = Costs::new(&checked.pous);
-    let mut shared =
-        Shared { types: &checked.types, pous: &checked.pous, costs, functions, areas: checked.areas, data: Vec::new() };
+    let points = match noted {
+        Noted::Nothing => None,
+        Noted::AllBut(library) => Some(Points::new(checked.image.len() as u32, library)),
+    };
+    let mut shared = Shared {
+        points,
+        types: &checked.types,
+        pous: &checked.pous,
+        costs,
+        functions,
+        areas: checked.areas,
+        data: Vec::new(),
+    };
     let instances = entry::only_instances(&checked.entries);
     // Callees first: a call must know what it costs.
     let mut made: BTreeMap<PouId, Made> = BTreeMap::new();
@@ -64,7 +87,9 @@ pub(crate) fn compile(checked: &Checked) -> Compiled {
         sections.exports.export(&entry_export(index), ExportKind::Func, at);
         faults.functions.push(marks);
     }
-    Compiled { wasm: sections.finish(checked.image.len() as u64, &shared), faults }
+    let points = shared.points.as_ref().map_or(0, Points::len);
+    let wasm = sections.finish((checked.image.len() + points) as u64, &shared);
+    Compiled { wasm, faults, points: shared.points.map(Points::into_list).unwrap_or_default() }
 }
 
 fn signature(pou: &Pou, types: &TypeTable) -> (Vec<ValType>, Vec<ValType>) {

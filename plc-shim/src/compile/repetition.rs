@@ -5,25 +5,35 @@ use wasm_encoder::{Instruction, ValType};
 use super::emitter::Emitter;
 use super::fault::FaultKind;
 use super::frame::LoopLabels;
+use super::points::PointKind;
 use super::registers::Register;
 use crate::ir::elementary::Kind;
 use crate::ir::{Binary, ElementaryType, Expr, ForStatement, LocalId, Statement};
 use crate::syntax::Span;
 
+/// A loop's body runs.
+pub(super) const TURN: PointKind = PointKind::Outcome(0);
+/// A loop ends by its own condition.
+pub(super) const DONE: PointKind = PointKind::Outcome(1);
+
 impl Emitter<'_, '_> {
     pub(super) fn while_statement(&mut self, condition: &Expr, body: &[Statement], span: Span) {
         self.repeated(|emitter| {
             let exit = emitter.open_block();
+            let done = emitter.open_block();
             let top = emitter.open_loop();
             let cost = emitter.cost;
             emitter.mark_statement(span);
             emitter.expression(condition);
             emitter.emit(Instruction::I32Eqz);
-            emitter.branch_if(exit);
+            emitter.branch_if(done);
+            emitter.cover(TURN, span);
             emitter.turn(exit, body);
             emitter.pay_turn(cost, span);
             emitter.branch(top);
             emitter.close();
+            emitter.close();
+            emitter.cover(DONE, span);
             emitter.close();
         });
     }
@@ -31,6 +41,7 @@ impl Emitter<'_, '_> {
     pub(super) fn repeat_statement(&mut self, body: &[Statement], until: &Expr, span: Span) {
         self.repeated(|emitter| {
             let exit = emitter.open_block();
+            let done = emitter.open_block();
             let top = emitter.open_loop();
             let cost = emitter.cost;
             emitter.mark_statement(span);
@@ -38,9 +49,12 @@ impl Emitter<'_, '_> {
             emitter.pay_turn(cost, span);
             emitter.mark_statement(until.span);
             emitter.expression(until);
-            emitter.emit(Instruction::I32Eqz);
-            emitter.branch_if(top);
+            emitter.branch_if(done);
+            emitter.cover(TURN, span);
+            emitter.branch(top);
             emitter.close();
+            emitter.close();
+            emitter.cover(DONE, span);
             emitter.close();
         });
     }
@@ -103,11 +117,13 @@ impl Emitter<'_, '_> {
     /// variable at its type's limit ends the loop and does not wrap into another round.
     fn turns_of_any(&mut self, inner: &ForStatement, ty: ElementaryType, span: Span) {
         let exit = self.open_block();
+        let done = self.open_block();
         let top = self.open_loop();
         let cost = self.cost;
         self.mark_statement(span);
         self.beyond(inner, ty);
-        self.branch_if(exit);
+        self.branch_if(done);
+        self.cover(TURN, span);
         self.turn(exit, &inner.body);
         self.mark_statement(span);
         self.pay_turn(cost, span);
@@ -120,6 +136,8 @@ impl Emitter<'_, '_> {
         self.branch_if(top);
         self.release(finished);
         self.close();
+        self.close();
+        self.cover(DONE, span);
         self.close();
     }
 

@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use wasm_encoder::Instruction;
 
 use super::emitter::{Emitter, Label};
+use super::points::PointKind;
 use super::registers::Register;
 use crate::ir::elementary::Kind;
 use crate::ir::{Binary, CaseStatement, ElementaryType, Value};
@@ -39,7 +40,7 @@ fn disjoint(inner: &CaseStatement) -> Vec<Range> {
 }
 
 impl Emitter<'_, '_> {
-    pub(super) fn case_statement(&mut self, inner: &CaseStatement) {
+    pub(super) fn case_statement(&mut self, inner: &CaseStatement, span: Span) {
         let ty = self.held_as(inner.selector.ty);
         let register = self.register(inner.register);
         self.expression(&inner.selector);
@@ -52,14 +53,16 @@ impl Emitter<'_, '_> {
         self.dispatch(&disjoint(inner), (register, ty, inner.selector.span), &labels, otherwise);
         self.held += 1;
         let mut after = None;
-        for arm in &inner.arms {
+        for (outcome, arm) in (0..).zip(&inner.arms) {
             self.close();
             let before = self.known.clone();
+            self.cover(PointKind::Outcome(outcome), span);
             self.statements(&arm.body);
             self.branch(end);
             self.join(&mut after, before);
         }
         self.close();
+        self.cover(PointKind::Outcome(inner.arms.len() as u32), span);
         self.statements(&inner.otherwise);
         self.meet(after);
         self.held -= 1;

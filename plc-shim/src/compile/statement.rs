@@ -7,13 +7,16 @@ use wasm_encoder::Instruction;
 use super::address::Address;
 use super::emitter::Emitter;
 use super::fault::Callee;
+use super::points::PointKind;
 use crate::ir::{Expr, ExprKind, IfBranch, InstanceCall, Place, Statement, StatementKind, Storage, TypeTable};
+use crate::syntax::Span;
 
 impl Emitter<'_, '_> {
     pub(super) fn statements(&mut self, list: &[Statement]) {
         for statement in list {
             self.sweep();
             self.mark_statement(statement.span);
+            self.cover(PointKind::Statement, statement.span);
             self.statement(statement);
         }
     }
@@ -33,8 +36,8 @@ impl Emitter<'_, '_> {
                 }
             }
             StatementKind::CallInstance(call) => self.call_instance(call),
-            StatementKind::If(branches, otherwise) => self.if_statement(branches, otherwise),
-            StatementKind::Case(inner) => self.case_statement(inner),
+            StatementKind::If(branches, otherwise) => self.if_statement(branches, otherwise, statement.span),
+            StatementKind::Case(inner) => self.case_statement(inner, statement.span),
             StatementKind::For(inner) => self.for_statement(inner, statement.span),
             StatementKind::While(condition, body) => {
                 self.while_statement(condition, body, statement.span);
@@ -148,24 +151,26 @@ impl Emitter<'_, '_> {
     }
 
     /// Branches lie side by side, so that many of them are not nested deep.
-    fn if_statement(&mut self, branches: &[IfBranch], otherwise: &[Statement]) {
-        if self.choice(branches, otherwise) {
+    fn if_statement(&mut self, branches: &[IfBranch], otherwise: &[Statement], span: Span) {
+        if !self.is_covered() && self.choice(branches, otherwise) {
             return;
         }
         let end = self.open_block();
         self.held += 1;
         let mut after = None;
-        for branch in branches {
+        for (outcome, branch) in (0..).zip(branches) {
             let next = self.open_block();
             self.expression(&branch.condition);
             self.emit(Instruction::I32Eqz);
             self.branch_if(next);
             let before = self.known.clone();
+            self.cover(PointKind::Outcome(outcome), span);
             self.statements(&branch.body);
             self.branch(end);
             self.join(&mut after, before);
             self.close();
         }
+        self.cover(PointKind::Outcome(branches.len() as u32), span);
         self.statements(otherwise);
         self.meet(after);
         self.held -= 1;

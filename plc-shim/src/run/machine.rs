@@ -12,7 +12,7 @@ pub(super) struct Machine {
     store: Store<HostState>,
     memory: Memory,
     budget: Global,
-    /// Bytes in use; the rest of the last page is never touched.
+    /// Bytes in use; behind them the program notes what it executes, if that is asked for.
     size: usize,
     entries: Vec<TypedFunc<(), ()>>,
 }
@@ -66,6 +66,11 @@ impl Machine {
         let all = self.memory.data_mut(&mut self.store);
         let size = self.size.min(all.len());
         &mut all[..size]
+    }
+
+    /// The bytes behind those in use, which the program may set and nobody else reads.
+    pub(super) fn notes(&self) -> &[u8] {
+        self.memory.data(&self.store).get(self.size..).unwrap_or(&[])
     }
 
     /// Gives the budget for the calls up to the next refill.

@@ -1,7 +1,9 @@
 //! Programs in, traces out: the whole way from text to a scanning PLC.
 
 mod configurations;
+mod coverage;
 mod dates;
+mod depth;
 mod diagnostics;
 mod direct_addresses;
 mod expressions;

@@ -9,6 +9,7 @@ use onescan_server::transport::tcp::participant::take_part;
 use super::args::{CheckArgs, Command, ControlArgs, ExplainArgs, JoinArgs, RunArgs};
 use crate::check::{self, CheckConfig, Warnings};
 use crate::run::config::SaveRequest;
+use crate::run::coverage::CoverageRequest;
 use crate::run::error::{ExitCode, RunError};
 use crate::run::interrupt::Interrupt;
 use crate::run::{Format, RunConfig, execute};
@@ -52,6 +53,7 @@ fn config(args: RunArgs) -> RunConfig {
         format,
         plot: args.plot,
         signals: args.signals,
+        coverage: args.coverage.map(|path| CoverageRequest::new(path, args.coverage_format.map(Into::into))),
         listen: args.listen,
         join_timeout: Duration::from_nanos(args.join_timeout.as_nanos()),
         reply_timeout: Duration::from_nanos(args.reply_timeout.as_nanos()),

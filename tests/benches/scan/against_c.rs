@@ -56,9 +56,10 @@ fn run(plc: &mut SoftPlc, scans: u64) -> (f64, u64) {
     (time, u64::from_le_bytes(*bytes))
 }
 
-fn median(mut times: Vec<f64>) -> f64 {
-    times.sort_by(f64::total_cmp);
-    times[times.len() / 2]
+fn median(mut ratios: Vec<f64>) -> f64 {
+    ratios.sort_by(f64::total_cmp);
+    let middle = ratios.len() / 2;
+    if ratios.len() % 2 == 1 { ratios[middle] } else { f64::midpoint(ratios[middle - 1], ratios[middle]) }
 }
 
 /// Nanoseconds of one scan, ours and in C.
