@@ -11,7 +11,8 @@ use crate::syntax::{SourceMap, Span};
 macro_rules! codes {
     ($($variant:ident $text:literal $about:literal),* $(,)?) => {
         /// Stable codes: `S` syntax, `N` names, `T` types, `C` calls, `D` declarations, `L` limits,
-        /// `R` addresses and references, `F` files, `W` warnings of what is legal and seldom meant.
+        /// `R` addresses and references, `F` files, `W` warnings of what is legal and seldom meant,
+        /// `I` instrumentation for lockstep.
         #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
         pub enum Code {
             $(#[doc = concat!("`", $text, "`: ", $about)] $variant,)*
@@ -40,6 +41,8 @@ codes! {
     InvalidLiteral "S0103" "a literal is malformed",
     NestingTooDeep "S0104" "text is nested deeper than the limit",
     UnknownCharacter "S0105" "a character begins no token",
+    WrongDialect "S0110" "a construct that the file's dialect lacks",
+    UnbalancedPragma "S0111" "conditional pragmas do not match",
     UnknownName "N0101" "a name is not declared",
     DuplicateName "N0102" "a name is declared twice",
     UnknownType "N0103" "a type is not declared",
@@ -64,6 +67,7 @@ codes! {
     InvalidArgument "C0305" "an argument does not suit its parameter",
     NotCallable "C0306" "what is called is no function or instance",
     ResultIgnored "C0307" "a function is called as a statement and its result is lost",
+    InvalidEnable "C0310" "EN or ENO is declared as what it is not",
     AssignToConstant "D0401" "a constant is assigned to",
     AssignToInput "D0402" "an input is assigned to inside its own unit",
     NotAssignable "D0403" "the target of an assignment is not a variable",
@@ -91,6 +95,10 @@ codes! {
     InvalidAddress "R0901" "a direct address is malformed or out of range",
     UnsuitableAddress "R0902" "a variable does not suit its direct address",
     InvalidPart "R0903" "a value has no such part",
+    Jump "L0510" "a jump or a label",
+    UnknownCondition "L0511" "a pragma's condition that is not evaluated",
+    ClassicTimer "L0512" "a timer or counter of S5",
+    VendorRuntime "L0513" "a part of a vendor's runtime",
     NotText "F0601" "a file is not text in an encoding that is read",
     MalformedXml "F0602" "a file is not the XML that its name promises",
     OutputNeverWritten "W0701" "an output is never written",
@@ -99,6 +107,10 @@ codes! {
     CallInBranch "W0704" "a timer, counter or edge detection is called in a branch or loop",
     UnreachableCode "W0705" "statements can never be reached",
     UnusedVariable "W0706" "a variable is never used",
+    ClockNotReplaced "I1001" "a source of time cannot be replaced for lockstep",
+    MotionNotReplaced "I1002" "a motion block cannot be replaced for lockstep yet",
+    ShimNameTaken "I1003" "a name is one of the shim's",
+    DamagedMarks "I1004" "marks of the shim do not fit together",
     WrittenByTwoTasks "W0707" "a variable is written by two tasks",
 }
 

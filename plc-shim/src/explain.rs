@@ -21,6 +21,7 @@ const PAGES: &[(&str, &str)] = pages![
     "C0305",
     "C0306",
     "C0307",
+    "C0310",
     "D0401",
     "D0402",
     "D0403",
@@ -45,8 +46,16 @@ const PAGES: &[(&str, &str)] = pages![
     "D0440",
     "F0601",
     "F0602",
+    "I1001",
+    "I1002",
+    "I1003",
+    "I1004",
     "L0501",
     "L0502",
+    "L0510",
+    "L0511",
+    "L0512",
+    "L0513",
     "N0101",
     "N0102",
     "N0103",
@@ -62,6 +71,8 @@ const PAGES: &[(&str, &str)] = pages![
     "S0103",
     "S0104",
     "S0105",
+    "S0110",
+    "S0111",
     "T0201",
     "T0202",
     "T0203",
@@ -101,8 +112,9 @@ mod tests {
 
     /// The codes that an example yields.
     fn codes_of((language, text): (&str, &str)) -> Vec<&'static str> {
+        let (language, instrumented) = language.strip_suffix(" instrument").map_or((language, false), |st| (st, true));
         let input = match language {
-            "st" => Input::from_text("example.st", SourceKind::Text, text),
+            "st" | "exp" | "scl" => Input::from_text(&format!("example.{language}"), SourceKind::Text, text),
             "xml" => Input::from_text("example.TcPOU", SourceKind::TwinCat, text),
             "hex" => {
                 let bytes = text.split_whitespace().map(|byte| u8::from_str_radix(byte, 16).expect("a byte"));
@@ -110,7 +122,15 @@ mod tests {
             }
             other => panic!("{other:?} is no language of examples"),
         };
-        let findings = crate::inspect([input], None);
+        let findings = if instrumented {
+            match crate::instrument::instrument(&[input], &crate::instrument::Options::default()) {
+                Ok(project) => project.warnings,
+                Err(crate::instrument::InstrumentError::Text(findings)) => findings,
+                Err(error) => panic!("{error}"),
+            }
+        } else {
+            crate::inspect([input], None)
+        };
         let mut codes: Vec<_> = findings.iter().map(|found| found.code.text()).collect();
         codes.dedup();
         codes

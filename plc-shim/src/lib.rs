@@ -2,6 +2,7 @@
 //!
 //! | module | in | out |
 //! |---|---|---|
+//! | [`dialect`] | | what vendors do their own way, as a table |
 //! | [`input`] | files as they are found | program text, and the way back into the file |
 //! | [`syntax`] | text | tokens and a tree, without loss |
 //! | [`diagnostic`] | findings | messages with code, place and hint |
@@ -11,6 +12,7 @@
 //! | `lint` | trees | warnings of what is legal and seldom meant |
 //! | `compile` | the checked program | one WebAssembly module, and the source behind each trap |
 //! | [`application`] | files | all of the above in one value |
+//! | [`instrument`] | a project | the same, made to run in lockstep |
 //! | [`run`] | an application and a task plan | a soft PLC that scans |
 //! | [`coverage`] | what has been executed | reports of it |
 //!
@@ -28,17 +30,20 @@ mod check;
 mod compile;
 pub mod coverage;
 pub mod diagnostic;
+pub mod dialect;
 pub mod explain;
 pub mod input;
+pub mod instrument;
 mod ir;
 mod lint;
 pub mod run;
 pub mod syntax;
 
-pub use application::{Application, Program, UnknownVariable, Variable, inspect};
+pub use application::{Application, Program, UnknownVariable, Variable, VariableAccess, WriteError, inspect};
 pub use compile::fault::FaultKind;
 pub use coverage::Coverage;
 pub use diagnostic::{Code, Diagnostic, Diagnostics, Finding, Severity};
+pub use dialect::Dialect;
 pub use input::Input;
 pub use ir::elementary::ElementaryType;
 pub use run::{FaultSite, PlcFault, RestoreError, RunError, SoftPlc, Task, TaskPlan, VirtualTime};

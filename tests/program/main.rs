@@ -2,6 +2,7 @@
 
 mod check;
 mod checkpoint;
+mod configuration;
 mod control;
 mod coverage;
 mod errors;
@@ -9,6 +10,8 @@ mod expectations;
 mod faults;
 mod freewheel;
 mod help;
+mod instrument;
+mod plant;
 mod plc_faults;
 mod run;
 mod third_party;

@@ -12,23 +12,30 @@
 //! | [`constant`] | constant expressions to values |
 //! | [`convert`] | implicit conversions, constants in context |
 //! | [`expression`], [`operator`], [`calendar`], [`place`], [`part`] | expressions |
-//! | [`call`], [`standard_function`], [`conversion_function`] | calls |
+//! | [`call`], [`standard_function`], [`function_form`], [`conversion_function`] | calls |
+//! | [`enable`], [`enable_error`] | EN and ENO |
 //! | [`text`], [`text_function`], [`text_conversion`] | character strings |
-//! | [`statement`], [`edge`] | statements |
+//! | [`statement`], [`assignment`], [`edge`] | statements |
 //! | [`configuration`] | resources, tasks, instances of programs |
+//! | [`dialect`] | what dialects do their own way |
 //! | [`recursion`] | who calls whom |
 //!
 //! A unit, type or global variable is resolved when it is first needed; what is being resolved
 //! and needed again contains itself.
 
+mod assignment;
 mod calendar;
 mod call;
 mod configuration;
 mod constant;
 mod conversion_function;
 mod convert;
+mod dialect;
 mod edge;
+mod enable;
+mod enable_error;
 mod expression;
+mod function_form;
 mod initial;
 mod layout;
 mod located;
@@ -53,12 +60,14 @@ use self::configuration::Configured;
 use self::layout::Layout;
 use self::names::{Enumerator, GlobalEntry, PouEntry, TypeEntry};
 use crate::diagnostic::Diagnostic;
+use crate::dialect::Dialect;
 use crate::ir::{Areas, Configuration, Entry, Pou, PouId, Program, TypeId, TypeTable, Variable};
 use crate::syntax::ast::CompilationUnit;
 use crate::syntax::direct_address::AddressUnit;
 use crate::syntax::{FileId, Span};
 
-pub(crate) use layout::VIRTUAL_TIME_OFFSET;
+pub(crate) use layout::{VIRTUAL_TIME_NAME, VIRTUAL_TIME_OFFSET};
+pub(crate) use standard_function::exists as is_standard_function;
 
 /// The checked program.
 #[derive(Debug)]
@@ -122,6 +131,7 @@ const MAX_DEPTH: u32 = 64;
 /// What is known so far.
 struct Checker<'a> {
     library: &'a BTreeSet<FileId>,
+    dialects: BTreeMap<FileId, Dialect>,
     types: TypeTable,
     type_names: BTreeMap<String, TypeEntry<'a>>,
     pous: Vec<PouEntry<'a>>,

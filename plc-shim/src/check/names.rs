@@ -72,6 +72,7 @@ impl<'a> Checker<'a> {
     pub(super) fn new(library: &'a BTreeSet<FileId>) -> Self {
         Self {
             library,
+            dialects: BTreeMap::new(),
             types: TypeTable::new(),
             type_names: BTreeMap::new(),
             pous: Vec::new(),
@@ -96,6 +97,9 @@ impl<'a> Checker<'a> {
     }
 
     pub(super) fn collect(&mut self, units: &[(FileId, &'a CompilationUnit)]) {
+        // Who looks from outside sees the addresses as the first file has them.
+        self.address_unit = units.first().map_or_else(AddressUnit::default, |(_, unit)| unit.dialect.address_unit());
+        self.dialects = units.iter().map(|(file, unit)| (*file, unit.dialect)).collect();
         for (_, unit) in units {
             for declaration in &unit.declarations {
                 match declaration {
@@ -160,7 +164,7 @@ impl<'a> Checker<'a> {
     fn is_taken(&mut self, name: &Ident) -> bool {
         if ElementaryType::find(&name.text).is_some()
             || matches!(name.key().as_str(), "STRING" | "WSTRING")
-            || super::standard_function::exists(&name.key())
+            || super::standard_function::is_reserved(&name.key())
         {
             self.report_reserved(name, name.span);
             return true;

@@ -83,7 +83,7 @@ impl<'a> Body<'_, 'a> {
             TypeSpecKind::Struct(fields) => self.structure("STRUCT", fields, spec.span),
             TypeSpecKind::Enumeration(values, base) => self.enumeration("enumeration", values, base.as_ref()),
             TypeSpecKind::String(name, length) => {
-                let ty = self.text_type(name.key() == "WSTRING", length.as_deref())?;
+                let ty = self.text_type(name.key() == "WSTRING", length.as_deref(), spec.span)?;
                 self.checker.charge_image(u64::from(self.checker.types.size(ty)), spec.span)?;
                 Some(self.whole(ty))
             }

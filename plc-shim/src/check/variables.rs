@@ -241,6 +241,7 @@ impl<'c, 'a> Interface<'c, 'a> {
             if let Some(edge) = ast.edge {
                 variable.edge = self.edge_detection(edge, &variable);
             }
+            self.body.check_control(&variable);
             self.add(name, variable);
         }
     }
@@ -278,7 +279,7 @@ impl<'c, 'a> Interface<'c, 'a> {
                 Some(Storage::RegisterPointer(self.body.scope.register(POINTER)))
             }
             // The caller reads outputs after the call, so they outlive it.
-            (PouKind::Function, SectionKind::Output) => self.frame(declared, span),
+            (PouKind::Function, SectionKind::Output) | (_, SectionKind::Static) => self.frame(declared, span),
             (PouKind::Function, _) | (_, SectionKind::Temp) => {
                 self.reject_instance(declared.ty, span)?;
                 self.temporary(declared, span)

@@ -103,6 +103,13 @@ impl Size {
                 self.expression(right);
             }
             ExprKind::Intrinsic(_, operands) => self.expressions(operands),
+            ExprKind::Conditional(parts) => self.expressions(&parts[..]),
+            ExprKind::After(statements, value) => {
+                self.statements(statements);
+                if let Some(value) = value {
+                    self.expression(value);
+                }
+            }
             ExprKind::Text(call) => self.text(call),
             ExprKind::Call(call) => self.function(call),
         }

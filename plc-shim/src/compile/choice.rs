@@ -15,7 +15,7 @@ fn harmless(expr: &Expr) -> Option<u32> {
         ExprKind::Constant(_) => 0,
         ExprKind::Load(place) => simple(place).then_some(0)?,
         ExprKind::Unary(_, operand) => harmless(operand)?,
-        ExprKind::Binary(Binary::Divide | Binary::Modulo, _, _) => return None,
+        ExprKind::Binary(Binary::Divide | Binary::DivideAnyway | Binary::Modulo, _, _) => return None,
         ExprKind::Binary(_, left, right) => harmless(left)? + harmless(right)?,
         ExprKind::Intrinsic(Intrinsic::ShiftLeft | Intrinsic::ShiftRight, operands) => {
             operands.iter().map(harmless).sum::<Option<u32>>()?

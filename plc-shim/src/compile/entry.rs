@@ -1,28 +1,25 @@
-//! What a task runs: a function without parameters (2nd ed. 2.7.2).
+//! What a task runs: functions without parameters, one after the other (2nd ed. 2.7.2).
 
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::emitter::Shared;
 use super::fault::FunctionMarks;
 use super::function::{self, Made};
-use crate::ir::{Entry, PouId, StatementKind, Storage};
+use crate::ir::{Entry, Pou, PouId, StatementKind, Storage};
 
 /// No unit has it.
 const NONE: PouId = PouId(u32::MAX);
 
-/// The function of an entry, and what its instructions stand for.
-pub(super) fn entry(shared: &mut Shared<'_>, entry: &Entry) -> (wasm_encoder::Function, FunctionMarks) {
-    let Made { body, marks, mut units } = function::unit(shared, NONE, &entry.unit, None);
-    if let Some(unit) = units.first_mut() {
-        unit.name.clone_from(&entry.name);
-    }
+/// A function of an entry, and what its instructions stand for.
+pub(super) fn function(shared: &mut Shared<'_>, unit: &Pou) -> (wasm_encoder::Function, FunctionMarks) {
+    let Made { body, marks, units } = function::unit(shared, NONE, unit, None);
     (body, FunctionMarks { units, is_entry: true, marks })
 }
 
 /// The programs that have one instance in all entries, with its offset in memory.
 pub(super) fn only_instances(entries: &[Entry]) -> BTreeMap<PouId, u32> {
     let mut known: BTreeMap<PouId, BTreeSet<Option<u32>>> = BTreeMap::new();
-    for statement in entries.iter().flat_map(|entry| &entry.unit.body) {
+    for statement in entries.iter().flat_map(|entry| &entry.units).flat_map(|unit| &unit.body) {
         if let StatementKind::CallInstance(call) = &statement.kind {
             let fixed = call.instance.steps.is_empty();
             let offset = match call.instance.storage {

@@ -1,6 +1,6 @@
 //! Expressions.
 
-use wasm_encoder::{Ieee32, Ieee64, Instruction, ValType};
+use wasm_encoder::{BlockType, Ieee32, Ieee64, Instruction, ValType};
 
 use super::emitter::{Emitter, value_type};
 use super::fault::FaultKind;
@@ -25,13 +25,36 @@ impl Emitter<'_, '_> {
                 self.expression(operand);
                 self.convert(operand, to, *rounding);
             }
+            ExprKind::Conditional(parts) => self.conditional(parts),
             ExprKind::Limited(low, high, operand) => self.limited(*low, *high, operand),
             ExprKind::Intrinsic(intrinsic, operands) => {
                 self.intrinsic(*intrinsic, operands, expr);
             }
             ExprKind::Text(call) => self.text_call(call, expr),
             ExprKind::Call(call) => self.call_function(call, expr.span),
+            ExprKind::After(statements, value) => {
+                self.side_statements(statements);
+                if let Some(value) = value {
+                    self.expression(value);
+                }
+            }
         }
+    }
+
+    fn conditional(&mut self, parts: &[Expr; 3]) {
+        let [condition, then, otherwise] = parts;
+        let held = value_type(self.held_as(then.ty));
+        self.expression(condition);
+        self.emit(Instruction::If(BlockType::Result(held)));
+        self.held += 1;
+        let (before, mut after) = (self.known.clone(), None);
+        self.expression(then);
+        self.join(&mut after, before);
+        self.emit(Instruction::Else);
+        self.expression(otherwise);
+        self.meet(after);
+        self.held -= 1;
+        self.emit(Instruction::End);
     }
 
     pub(super) fn constant(&mut self, ty: ElementaryType, value: Value) {

@@ -117,7 +117,7 @@ impl<'p> Emitter<'_, 'p> {
     fn push_arguments(&mut self, arguments: &[Argument]) {
         for argument in arguments {
             match argument {
-                Argument::Value(expr) => self.expression(expr),
+                Argument::Value(expr) => self.settled(expr),
                 Argument::Reference(place) => self.full_address(place),
             }
         }

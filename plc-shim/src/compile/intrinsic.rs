@@ -29,15 +29,14 @@ impl Emitter<'_, '_> {
                 self.shift(kind, operands, ty);
             }
             Intrinsic::Reinterpret => {
-                self.all(operands);
                 if let [operand] = operands {
-                    if self.held_as(operand.ty).is_real() {
-                        self.canonical(self.held_as(operand.ty));
-                    }
+                    self.settled(operand);
                     self.widen_to_bits(self.held_as(operand.ty));
                     self.narrow_from_bits(ty);
                 }
             }
+            Intrinsic::SwapBytes => self.swapped_bytes(operands, ty),
+            Intrinsic::Fraction => self.fraction(operands, ty),
             Intrinsic::FloorRemainder | Intrinsic::FloorMultiple => self.floored(kind, operands),
             _ => {
                 self.all(operands);
@@ -77,11 +76,11 @@ impl Emitter<'_, '_> {
     fn absolute(&mut self, operands: &[Expr], ty: ElementaryType) {
         match value_type(ty) {
             ValType::F32 => {
-                self.all(operands);
+                operands.iter().for_each(|operand| self.settled(operand));
                 self.emit(Instruction::F32Abs);
             }
             ValType::F64 => {
-                self.all(operands);
+                operands.iter().for_each(|operand| self.settled(operand));
                 self.emit(Instruction::F64Abs);
             }
             _ if !ty.is_signed() => self.all(operands),

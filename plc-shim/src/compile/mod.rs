@@ -12,7 +12,7 @@
 //! | [`known`], [`effect`], [`survey`] | values that registers hold already, also through loops |
 //! | [`interval`] | ranges of integers, for checks that cannot fail |
 //! | [`statement`], [`selection`], [`choice`], [`repetition`], [`counting`] | statements |
-//! | [`expression`], [`arithmetic`], [`conversion`], [`intrinsic`] | expressions |
+//! | [`expression`], [`arithmetic`], [`conversion`], [`intrinsic`], [`bytes`] | expressions |
 //! | [`host`] | functions that WebAssembly lacks |
 //! | [`text`], [`text_host`] | character strings |
 //! | [`points`] | what is noted for coverage |
@@ -24,6 +24,7 @@
 mod address;
 mod arithmetic;
 mod budget;
+mod bytes;
 mod calls;
 mod choice;
 mod conversion;

@@ -24,9 +24,9 @@ pub(crate) const MEMORY_EXPORT: &str = "memory";
 
 const PAGE: u64 = 65_536;
 
-/// Name of the export that runs the entry at this position.
-pub(crate) fn entry_export(index: usize) -> String {
-    format!("entry_{index}")
+/// Name of the export that runs a part of the entry at this position.
+pub(crate) fn entry_export(index: usize, part: usize) -> String {
+    format!("entry_{index}_{part}")
 }
 
 /// The module and what its instructions stand for.
@@ -82,10 +82,12 @@ pub(crate) fn compile(checked: &Checked, noted: Noted<'_>) -> Compiled {
         faults.functions.push(FunctionMarks { units, is_entry: false, marks });
     }
     for (index, entry) in checked.entries.iter().enumerate() {
-        let (body, marks) = entry::entry(&mut shared, entry);
-        let at = sections.add_function(Vec::new(), Vec::new(), &body);
-        sections.exports.export(&entry_export(index), ExportKind::Func, at);
-        faults.functions.push(marks);
+        for (part, unit) in entry.units.iter().enumerate() {
+            let (body, marks) = entry::function(&mut shared, unit);
+            let at = sections.add_function(Vec::new(), Vec::new(), &body);
+            sections.exports.export(&entry_export(index, part), ExportKind::Func, at);
+            faults.functions.push(marks);
+        }
     }
     let points = shared.points.as_ref().map_or(0, Points::len);
     let wasm = sections.finish((checked.image.len() + points) as u64, &shared);

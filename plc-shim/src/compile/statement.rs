@@ -8,7 +8,9 @@ use super::address::Address;
 use super::emitter::Emitter;
 use super::fault::Callee;
 use super::points::PointKind;
-use crate::ir::{Expr, ExprKind, IfBranch, InstanceCall, Place, Statement, StatementKind, Storage, TypeTable};
+use crate::ir::{
+    Expr, ExprKind, IfBranch, InstanceCall, Intrinsic, Place, Statement, StatementKind, Storage, TypeTable,
+};
 use crate::syntax::Span;
 
 impl Emitter<'_, '_> {
@@ -52,25 +54,30 @@ impl Emitter<'_, '_> {
     }
 
     fn assign(&mut self, target: &Place, value: &Expr) {
-        let ty = self.held_as(target.ty);
-        let fetched = matches!(target.storage, Storage::Register(_)) || self.is_number(value);
-        let computed = ty.is_real() && !fetched;
-        self.store(target, |emitter| {
-            emitter.expression(value);
-            if computed {
-                emitter.canonical(ty);
-            }
-        });
+        self.store(target, |emitter| emitter.settled(value));
     }
 
-    /// True if a real value is no NaN that was just computed: it is a constant, a converted
-    /// integer, or comes from memory.
-    fn is_number(&self, expr: &Expr) -> bool {
-        match &expr.kind {
-            ExprKind::Constant(_) => true,
-            ExprKind::Load(place) => !matches!(place.storage, Storage::Register(_)),
-            ExprKind::Convert(_, operand) => !self.held_as(operand.ty).is_real(),
-            _ => false,
+    /// True if a real value is computed: if it is NaN, the machine has chosen which. What is
+    /// fetched, chosen or has its sign changed keeps its bits; variables never hold such a NaN.
+    pub(super) fn may_be_any_nan(&self, expr: &Expr) -> bool {
+        let real = |expr: &Expr| self.held_as(expr.ty).is_real();
+        real(expr)
+            && match &expr.kind {
+                ExprKind::Constant(_) | ExprKind::Load(_) | ExprKind::Call(_) | ExprKind::Unary(..) => false,
+                ExprKind::Intrinsic(Intrinsic::Reinterpret | Intrinsic::Abs, _) => false,
+                ExprKind::Intrinsic(Intrinsic::Select | Intrinsic::Multiplex, operands) => {
+                    operands.iter().any(|operand| self.may_be_any_nan(operand))
+                }
+                ExprKind::Convert(_, operand) => real(operand),
+                _ => true,
+            }
+    }
+
+    /// Pushes a value; a NaN is one that is the same on every machine.
+    pub(super) fn settled(&mut self, expr: &Expr) {
+        self.expression(expr);
+        if self.may_be_any_nan(expr) {
+            self.canonical(self.held_as(expr.ty));
         }
     }
 

@@ -112,10 +112,7 @@ impl Emitter<'_, '_> {
     fn format(&mut self, ty: ElementaryType, call: &TextCall) {
         self.emit(Instruction::I32Const(type_number(ty)));
         for operand in &call.operands {
-            self.expression(operand);
-        }
-        if ty.is_real() {
-            self.canonical(ty);
+            self.settled(operand);
         }
         self.widen_to_bits(ty);
         self.text_target(call);

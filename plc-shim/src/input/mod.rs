@@ -5,8 +5,8 @@
 //! | [`encoding`] | bytes | text, and the way back |
 //! | [`kind`] | a file's name | what kind of file it is |
 //! | `xml` | text | a tree whose nodes know their place |
-//! | `twincat` | TwinCAT's objects | program text |
-//! | `plcopen` | PLCopen XML | program text |
+//! | `twincat`, `twincat_task` | TwinCAT's objects | program text |
+//! | `plcopen`, `plcopen_instances` | PLCopen XML | program text |
 //! | [`project`] | a TwinCAT project | the names of its files |
 //!
 //! Invariants: no file can make it fail, what is wrong with one is a diagnostic; what is not read is
@@ -15,8 +15,10 @@
 pub mod encoding;
 pub mod kind;
 mod plcopen;
+mod plcopen_instances;
 pub mod project;
 mod twincat;
+mod twincat_task;
 mod xml;
 
 use std::sync::Arc;
@@ -25,6 +27,7 @@ use self::encoding::{Encoding, decode};
 use self::kind::SourceKind;
 use self::xml::XmlError;
 use crate::diagnostic::{Code, Diagnostic};
+use crate::dialect::Dialect;
 use crate::syntax::origin::Extract;
 use crate::syntax::{FileId, SourceFile, SourceMap, Span};
 
@@ -56,14 +59,15 @@ impl Input {
         let text = text.into();
         let read = match kind {
             SourceKind::Text => {
-                return Self { file: SourceFile::new(name, text), encoding: None, diagnostics: Vec::new() };
+                let file = SourceFile::new(name, text).in_dialect(Dialect::of_file(name));
+                return Self { file, encoding: None, diagnostics: Vec::new() };
             }
             SourceKind::TwinCat => twincat::extract(&text),
             SourceKind::PlcOpen => plcopen::extract(&text),
         };
         let taken = read.unwrap_or_else(|error| Taken::malformed(&error));
         let (extracted, origin) = taken.extract.finish(text);
-        let file = SourceFile::extracted(name, extracted, origin);
+        let file = SourceFile::extracted(name, extracted, origin).in_dialect(taken.dialect);
         Self { file, encoding: None, diagnostics: taken.diagnostics }
     }
 
@@ -71,6 +75,12 @@ impl Input {
     pub fn unreadable(name: &str, code: Code, message: impl Into<String>) -> Self {
         let found = Diagnostic::error(code, Span::new(UNNUMBERED, 0, 0), message);
         Self { file: SourceFile::new(name, ""), encoding: None, diagnostics: vec![found] }
+    }
+
+    /// The same file, read as `dialect` whatever its name says.
+    #[must_use]
+    pub fn in_dialect(self, dialect: Dialect) -> Self {
+        Self { file: self.file.in_dialect(dialect), ..self }
     }
 
     /// Its program text.
@@ -101,6 +111,7 @@ const UNNUMBERED: FileId = FileId(0);
 #[derive(Debug, Default)]
 struct Taken {
     extract: Extract,
+    dialect: Dialect,
     diagnostics: Vec<Diagnostic>,
 }
 

@@ -8,11 +8,12 @@ use std::ops::Range;
 use super::Taken;
 use super::xml::{Element, XmlError, parse};
 use crate::diagnostic::Code;
+use crate::dialect::Dialect;
 
 /// Program text of a project.
 pub(super) fn extract(file: &str) -> Result<Taken, XmlError> {
     let root = parse(file)?;
-    let mut writer = Writer { taken: Taken::default(), file };
+    let mut writer = Writer { taken: Taken { dialect: dialect(file, &root), ..Taken::default() }, file };
     if root.name != "project" {
         let message = "`<project>` is wanted here: only PLCopen XML is read";
         writer.taken.report(root.open.clone(), Code::MalformedXml, message);
@@ -28,16 +29,26 @@ pub(super) fn extract(file: &str) -> Result<Taken, XmlError> {
     }
     let configurations = root.child("instances").and_then(|instances| instances.child("configurations"));
     for configuration in configurations.into_iter().flat_map(Element::elements) {
-        writer.globals(configuration);
-        for resource in configuration.elements().filter(|inner| inner.name == "resource") {
-            writer.globals(resource);
-        }
+        writer.configuration(configuration);
     }
     Ok(writer.taken)
 }
 
-struct Writer<'a> {
-    taken: Taken,
+/// The dialect of the tool that wrote the file: its name, or CODESYS' own data in it.
+fn dialect(file: &str, root: &Element) -> Dialect {
+    let product = root.child("fileHeader").and_then(|header| header.attribute("productName"));
+    let product = product.map_or_else(String::new, |name| name.value.to_ascii_uppercase());
+    if product.contains("TWINCAT") {
+        Dialect::TwinCat
+    } else if product.contains("CODESYS") || file.contains("3s-software.com/plcopenxml/") {
+        Dialect::Codesys
+    } else {
+        Dialect::default()
+    }
+}
+
+pub(super) struct Writer<'a> {
+    pub(super) taken: Taken,
     file: &'a str,
 }
 
@@ -53,12 +64,12 @@ const SECTIONS: [(&str, &str); 7] = [
 ];
 
 impl Writer<'_> {
-    fn write(&mut self, text: &str, place: &Range<u32>) {
+    pub(super) fn write(&mut self, text: &str, place: &Range<u32>) {
         self.taken.extract.instead(text, place.clone());
     }
 
     /// Writes an attribute's value; what has none is told.
-    fn attribute(&mut self, element: &Element, name: &str) {
+    pub(super) fn attribute(&mut self, element: &Element, name: &str) {
         if let Some(found) = element.attribute(name) {
             self.write(&found.value, &found.span);
         } else {
@@ -137,13 +148,13 @@ impl Writer<'_> {
         }
     }
 
-    fn globals(&mut self, element: &Element) {
+    pub(super) fn globals(&mut self, element: &Element) {
         for section in element.elements().filter(|inner| inner.name == "globalVars") {
             self.section(section);
         }
     }
 
-    fn section(&mut self, element: &Element) {
+    pub(super) fn section(&mut self, element: &Element) {
         let name = element.name.as_str();
         let Some((_, keyword)) = SECTIONS.iter().find(|(known, _)| *known == name) else {
             if !matches!(name, "returnType" | "documentation" | "addData") {
@@ -168,7 +179,12 @@ impl Writer<'_> {
 
     fn variable(&mut self, element: &Element) {
         self.attribute(element, "name");
-        if let Some(address) = element.attribute("address") {
+        self.address_and_type(element);
+    }
+
+    /// ` AT %IX0.0 : BOOL := TRUE;`
+    pub(super) fn address_and_type(&mut self, element: &Element) {
+        if let Some(address) = element.attribute("address").filter(|address| !address.value.is_empty()) {
             self.write(" AT ", &address.span);
             self.write(&address.value, &address.span);
         }
@@ -179,7 +195,7 @@ impl Writer<'_> {
     }
 
     /// The type in the child `name`.
-    fn inner_type(&mut self, element: &Element, name: &str) {
+    pub(super) fn inner_type(&mut self, element: &Element, name: &str) {
         if let Some(inner) = element.child(name) {
             self.type_in(inner);
         } else {

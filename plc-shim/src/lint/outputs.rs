@@ -31,7 +31,8 @@ pub(super) fn lint(unit: &Unit<'_>, units: &[Unit<'_>], findings: &mut Vec<Diagn
         };
         for name in section.variables.iter().filter(|variable| is_output(variable)).flat_map(|each| &each.names) {
             let uses = unit.usage.get(&name.key());
-            if uses.written.is_none() && !uses.is_passed && !uses.is_called {
+            // ENO is written by the call itself (2nd ed. 2.5.1.2).
+            if name.key() != "ENO" && uses.written.is_none() && !uses.is_passed && !uses.is_called {
                 report(name, findings);
             }
         }

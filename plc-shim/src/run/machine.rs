@@ -14,7 +14,8 @@ pub(super) struct Machine {
     budget: Global,
     /// Bytes in use; behind them the program notes what it executes, if that is asked for.
     size: usize,
-    entries: Vec<TypedFunc<(), ()>>,
+    /// The functions in a row of each thing that tasks can run.
+    entries: Vec<Vec<TypedFunc<(), ()>>>,
 }
 
 /// A trap: its cause and the functions that were active, innermost first, each with the offset
@@ -52,7 +53,8 @@ impl Machine {
         let budget = budget.ok_or_else(|| RunError::Module("the budget is missing".to_owned()))?;
         *store.data_mut() = HostState { memory: Some(memory), budget: Some(budget) };
         let size = application.initial_memory().len();
-        let entries = (0..application.entry_count()).map(|index| entry(&instance, &mut store, index));
+        let parts = application.entry_parts().enumerate();
+        let entries = parts.map(|(index, count)| entry(&instance, &mut store, index, count));
         let entries = entries.collect::<Result<_, _>>()?;
         Ok(Self { store, memory, budget, size, entries })
     }
@@ -81,17 +83,26 @@ impl Machine {
         debug_assert!(set.is_ok(), "the module has a budget");
     }
 
-    pub(super) fn run(&mut self, entry: usize) -> Result<(), Trapped> {
-        let Some(function) = self.entries.get(entry) else {
+    pub(super) fn parts(&self, entry: usize) -> usize {
+        self.entries.get(entry).map_or(0, Vec::len)
+    }
+
+    pub(super) fn run(&mut self, entry: usize, part: usize) -> Result<(), Trapped> {
+        let Some(function) = self.entries.get(entry).and_then(|parts| parts.get(part)) else {
             return Ok(());
         };
         function.call(&mut self.store, ()).map_err(|error| trapped(&error))
     }
 }
 
-fn entry(instance: &Instance, store: &mut Store<HostState>, index: usize) -> Result<TypedFunc<(), ()>, RunError> {
-    let function = instance.get_typed_func(store, &entry_export(index));
-    function.map_err(|error| module_error(&error))
+fn entry(
+    instance: &Instance,
+    store: &mut Store<HostState>,
+    index: usize,
+    count: usize,
+) -> Result<Vec<TypedFunc<(), ()>>, RunError> {
+    let mut part = |part| instance.get_typed_func(&mut *store, &entry_export(index, part));
+    (0..count).map(|at| part(at).map_err(|error| module_error(&error))).collect()
 }
 
 fn linker(engine: &Engine) -> Result<Linker<HostState>, wasmtime::Error> {

@@ -16,10 +16,11 @@ pub use declaration::{
 pub use expression::{Argument, BinaryOp, Call, Expr, ExprKind, Literal, MAX_HEIGHT, TypedValue, UnaryOp};
 pub use statement::{
     CaseBranch, CaseLabel, CaseStatement, ForStatement, IfBranch, IfStatement, RepeatStatement, Statement,
-    StatementKind, WhileStatement,
+    StatementKind, UpdateOp, WhileStatement,
 };
 
 use super::source::Span;
+use crate::dialect::Dialect;
 
 /// A name as written.
 #[derive(Debug, Clone)]
@@ -33,13 +34,20 @@ pub struct Ident {
 impl Ident {
     /// The form in which names are compared.
     pub fn key(&self) -> String {
-        self.text.to_ascii_uppercase()
+        self.text.trim_matches('"').to_ascii_uppercase()
+    }
+
+    /// True for `"name"`, which in SCL is never a local one.
+    pub fn is_quoted(&self) -> bool {
+        self.text.starts_with('"')
     }
 }
 
 /// What a file declares, in its order.
 #[derive(Debug, Clone, Default)]
 pub struct CompilationUnit {
+    /// The dialect it is written in.
+    pub dialect: Dialect,
     /// The declarations.
     pub declarations: Vec<Declaration>,
 }

@@ -3,20 +3,24 @@
 //! An error is reported once and skipped up to a token at which the grammar can go on, so that
 //! one slip makes one diagnostic.
 
+mod assignment;
+mod conditional;
 mod configuration;
 mod cursor;
 mod declaration;
 mod expression;
 mod initialiser;
+mod scl;
 mod statement;
 mod type_spec;
 
 use self::cursor::Cursor;
-use super::ast::CompilationUnit;
-use super::lexer::tokenize;
+use super::ast::{CompilationUnit, Expr};
+use super::lexer::{tokenize, tokenize_in};
 use super::source::FileId;
 use super::token::{Token, TokenKind};
 use crate::diagnostic::{Code, Diagnostic};
+use crate::dialect::{Dialect, Feature};
 use crate::syntax::Span;
 
 /// Greatest depth to which statements, types and parentheses may be nested.
@@ -33,14 +37,30 @@ pub struct Parsed {
     pub diagnostics: Vec<Diagnostic>,
 }
 
-/// Parses `text`, the text of `file`. Never fails: the tree holds what could be understood.
+/// Parses `text`, the text of `file`, in the default dialect. Never fails: the tree holds what could be
+/// understood.
 pub fn parse(file: FileId, text: &str) -> Parsed {
-    let tokens = tokenize(text);
-    let mut cursor = Cursor::new(file, text, &tokens);
+    parse_in(Dialect::default(), file, text)
+}
+
+/// Parses `text`, the text of `file`, as `dialect`. Never fails either.
+pub fn parse_in(dialect: Dialect, file: FileId, text: &str) -> Parsed {
+    let tokens = tokenize_in(dialect, text);
+    let mut cursor = Cursor::new(dialect, file, text, &tokens);
     report_lexical_errors(&mut cursor, &tokens);
-    let unit = cursor.compilation_unit();
+    conditional::apply(&mut cursor, &tokens);
+    let unit = CompilationUnit { dialect, ..cursor.compilation_unit() };
     let diagnostics = cursor.into_diagnostics();
     Parsed { tokens, unit, diagnostics }
+}
+
+/// The expression that `text` is, if it is one without errors.
+pub(crate) fn parse_expression(text: &str) -> Option<Expr> {
+    let tokens = tokenize(text);
+    let mut cursor = Cursor::new(Dialect::default(), FileId(0), text, &tokens);
+    report_lexical_errors(&mut cursor, &tokens);
+    let expression = cursor.expression();
+    (cursor.peek().is_none() && cursor.reported() == 0).then_some(expression)
 }
 
 fn report_lexical_errors(cursor: &mut Cursor<'_>, tokens: &[Token]) {
@@ -52,10 +72,20 @@ fn report_lexical_errors(cursor: &mut Cursor<'_>, tokens: &[Token]) {
                 let span = Span { end: (token.start + 1).min(token.end), ..span };
                 cursor.report(Diagnostic::error(Code::Unterminated, span, "comment, pragma or string without an end"));
             }
+            TokenKind::LineComment => cursor.require(Feature::LineComments, span),
+            TokenKind::BlockComment if cursor.text(span.start, span.end).starts_with('/') => {
+                cursor.require(Feature::StarComments, span);
+            }
             TokenKind::Unknown => {
                 let text = cursor.text(token.start, token.end).escape_debug().to_string();
                 let message = format!("`{text}` begins no token");
-                cursor.report(Diagnostic::error(Code::UnknownCharacter, span, message));
+                let help = match text.as_str() {
+                    "|" | "||" => Some("write `OR`".to_owned()),
+                    "!" => Some("write `NOT`, or `<>` for `!=`".to_owned()),
+                    _ => None,
+                };
+                let found = Diagnostic::error(Code::UnknownCharacter, span, message);
+                cursor.report(found.with_optional_help(help));
             }
             _ => {}
         }

@@ -1,20 +1,28 @@
 //! Programs in, traces out: the whole way from text to a scanning PLC.
 
 mod configurations;
+mod conversions;
 mod coverage;
 mod dates;
 mod depth;
 mod diagnostics;
+mod dialects;
 mod direct_addresses;
 mod expressions;
 mod faults;
+mod forcing;
 mod inputs;
 mod language;
 mod lints;
+mod lockstep;
 mod partial_access;
+mod random_programs;
+mod recovery;
+mod restarts;
 mod rig;
 mod robustness;
 mod scheduling;
+mod scl;
 mod shear;
 mod standard_blocks;
 mod standard_functions;

@@ -56,6 +56,8 @@ pub enum SectionKind {
     InOut,
     /// `VAR_TEMP`
     Temp,
+    /// `VAR_STAT`: one variable for all instances and calls (vendors).
+    Static,
     /// `VAR_GLOBAL`
     Global,
     /// `VAR_EXTERNAL`

@@ -13,11 +13,6 @@ use crate::syntax::token::{Keyword, Punctuation, TokenKind};
 const ANCHORS: [&str; 6] = ["RESOURCE", "TASK", "VAR_ACCESS", "VAR_CONFIG", "END_RESOURCE", "END_CONFIGURATION"];
 
 impl Cursor<'_> {
-    /// True if the next token is this word, in any case.
-    pub(super) fn at_word(&self, word: &str) -> bool {
-        self.peek() == Some(TokenKind::Identifier) && self.next_text().eq_ignore_ascii_case(word)
-    }
-
     fn take_word(&mut self, word: &str) -> bool {
         let found = self.at_word(word);
         if found {

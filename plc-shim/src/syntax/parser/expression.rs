@@ -2,8 +2,9 @@
 
 use super::cursor::Cursor;
 use crate::diagnostic::{Code, Diagnostic};
+use crate::dialect::Feature;
 use crate::syntax::ast::{Argument, BinaryOp, Call, Expr, ExprKind, Ident, Literal, MAX_HEIGHT, UnaryOp};
-use crate::syntax::literal::{parse_integer, parse_real, parse_typed};
+use crate::syntax::literal::{parse_integer, parse_real};
 use crate::syntax::source::Span;
 use crate::syntax::token::{Keyword, Punctuation, TokenKind};
 
@@ -26,6 +27,7 @@ impl Cursor<'_> {
             if operator.precedence() <= minimum {
                 break;
             }
+            self.require_operator(operator);
             self.advance();
             // All operators of a level are left associative (2nd ed. 3.3.1), `**` included.
             let right = self.binary(operator.precedence());
@@ -43,6 +45,7 @@ impl Cursor<'_> {
             TokenKind::Keyword(Keyword::Xor) => BinaryOp::Xor,
             TokenKind::Keyword(Keyword::And) => BinaryOp::And,
             TokenKind::Keyword(Keyword::Mod) => BinaryOp::Modulo,
+            TokenKind::Identifier => return self.peek_word_operator(),
             TokenKind::Punctuation(mark) => match mark {
                 Punctuation::Ampersand => BinaryOp::And,
                 Punctuation::Equal => BinaryOp::Equal,
@@ -60,6 +63,32 @@ impl Cursor<'_> {
             },
             _ => return None,
         })
+    }
+
+    /// Operators that the standard does not reserve: a name stands nowhere behind an operand.
+    fn peek_word_operator(&self) -> Option<BinaryOp> {
+        let word = self.next_text().to_ascii_uppercase();
+        let next = self.peek_ahead(1);
+        Some(match word.as_str() {
+            "AND_THEN" => BinaryOp::AndThen,
+            "OR_ELSE" => BinaryOp::OrElse,
+            // As a name it would be followed by `:=` or the like.
+            "DIV" if !matches!(next, Some(TokenKind::Punctuation(Punctuation::Assign))) => BinaryOp::Divide,
+            _ => return None,
+        })
+    }
+
+    /// Reports an operator that the dialect lacks.
+    fn require_operator(&mut self, operator: BinaryOp) {
+        let span = self.span();
+        match operator {
+            BinaryOp::AndThen | BinaryOp::OrElse => self.require(Feature::ShortCircuit, span),
+            BinaryOp::Power => self.require(Feature::Power, span),
+            BinaryOp::Divide if self.peek() == Some(TokenKind::Identifier) => {
+                self.require(Feature::DivOperator, span);
+            }
+            _ => {}
+        }
     }
 
     fn unary(&mut self) -> Expr {
@@ -175,13 +204,14 @@ impl Cursor<'_> {
     }
 
     pub(super) fn primary(&mut self) -> Expr {
+        self.pass_hash();
         let span = self.span();
         let text = self.next_text();
         let kind = match self.peek() {
-            Some(TokenKind::Identifier) => ExprKind::Name(Ident { text: text.to_owned(), span }),
+            Some(TokenKind::Identifier) => ExprKind::Name(Self::written_name(text, span)),
             Some(TokenKind::Integer) => self.literal(span, parse_integer(text).map(Literal::Integer)),
             Some(TokenKind::Real) => self.literal(span, parse_real(text).map(Literal::Real)),
-            Some(TokenKind::Typed) => self.literal(span, parse_typed(text)),
+            Some(TokenKind::Typed) => self.typed_literal(text, span),
             Some(TokenKind::String | TokenKind::WideString) => ExprKind::Literal(Literal::String(text.to_owned())),
             Some(TokenKind::DirectAddress) => ExprKind::DirectAddress(text.to_owned()),
             Some(TokenKind::Keyword(Keyword::True)) => ExprKind::Literal(Literal::Bool(true)),
@@ -191,12 +221,46 @@ impl Cursor<'_> {
             }
             Some(TokenKind::Punctuation(Punctuation::LeftParen)) => return self.parenthesised(),
             _ => {
-                self.unexpected("an expression");
+                self.unexpected_operand();
                 return error_at(Span { end: span.start, ..span });
             }
         };
         self.advance();
+        if matches!(kind, ExprKind::Literal(Literal::Integer(_) | Literal::Real(_))) && self.pass_unit(span) {
+            return error_at(span);
+        }
         Expr { kind, span, height: 1 }
+    }
+
+    /// Reports the letters of `10ms`, a number with a unit.
+    fn pass_unit(&mut self, number: Span) -> bool {
+        let unit = self.span();
+        if unit.start != number.end || self.peek() != Some(TokenKind::Identifier) {
+            return false;
+        }
+        let message = format!("`{}` is no number", self.text(number.start, unit.end));
+        let help = format!("a duration is written `T#{}`", self.text(number.start, unit.end));
+        let times = ["d", "h", "m", "s", "ms", "us", "ns"];
+        let help = times.iter().any(|name| self.at_word(name)).then_some(help);
+        let found = Diagnostic::error(Code::InvalidLiteral, number.to(unit), message);
+        self.report(found.with_optional_help(help));
+        self.advance();
+        true
+    }
+
+    /// Reports what is no operand, with a hint for what other languages write.
+    fn unexpected_operand(&mut self) {
+        use Punctuation as P;
+        let previous = self.previous();
+        let help = match (previous, self.peek()) {
+            (Some(TokenKind::Punctuation(P::Equal)), Some(TokenKind::Punctuation(P::Equal))) => "compare with `=`",
+            (Some(TokenKind::Punctuation(P::Ampersand)), Some(TokenKind::Punctuation(P::Ampersand))) => "write `AND`",
+            (Some(TokenKind::Punctuation(P::Equal)), Some(TokenKind::Punctuation(P::Colon))) => "assign with `:=`",
+            _ => return self.unexpected("an expression"),
+        };
+        let found = format!("an expression expected, found `{}`", self.next_text());
+        let span = self.span();
+        self.report_syntax(Diagnostic::error(Code::UnexpectedToken, span, found).with_help(help));
     }
 
     /// `AND(a, b)`: operators are functions too (2nd ed. Table 26).
@@ -205,7 +269,7 @@ impl Cursor<'_> {
             && self.peek_ahead(1) == Some(TokenKind::Punctuation(Punctuation::LeftParen))
     }
 
-    fn literal(&mut self, span: Span, value: Result<Literal, String>) -> ExprKind {
+    pub(super) fn literal(&mut self, span: Span, value: Result<Literal, String>) -> ExprKind {
         match value {
             Ok(literal) => ExprKind::Literal(literal),
             Err(message) => {
@@ -215,7 +279,7 @@ impl Cursor<'_> {
         }
     }
 
-    fn parenthesised(&mut self) -> Expr {
+    pub(super) fn parenthesised(&mut self) -> Expr {
         let start = self.span();
         self.advance();
         let inner = self.expression();

@@ -2,8 +2,9 @@
 
 use super::cursor::Cursor;
 use crate::diagnostic::{Code, Diagnostic};
+use crate::dialect::Feature;
 use crate::syntax::ast::{
-    CaseBranch, CaseLabel, CaseStatement, ExprKind, ForStatement, IfBranch, IfStatement, RepeatStatement, Statement,
+    CaseBranch, CaseLabel, CaseStatement, ForStatement, IfBranch, IfStatement, RepeatStatement, Statement,
     StatementKind, WhileStatement,
 };
 use crate::syntax::source::Span;
@@ -16,8 +17,10 @@ fn closes_list(keyword: Keyword) -> bool {
         keyword,
         K::EndProgram | K::EndFunctionBlock | K::EndFunction | K::EndIf | K::EndCase | K::EndFor
             | K::EndWhile | K::EndRepeat | K::Elsif | K::Else | K::Until
+            | K::Var | K::VarInput | K::VarOutput | K::VarInOut | K::VarTemp | K::VarExternal | K::VarStat
             // A new unit begins: the end of the one before is missing.
             | K::Program | K::FunctionBlock | K::Function | K::Type | K::EndType | K::VarGlobal
+            | K::OrganizationBlock | K::EndOrganizationBlock | K::DataBlock | K::EndDataBlock
     )
 }
 
@@ -39,6 +42,7 @@ impl Cursor<'_> {
                 None => return list,
                 Some(TokenKind::Keyword(keyword)) if closes_list(keyword) => return list,
                 _ if stop(self) => return list,
+                Some(TokenKind::Identifier) if self.pass_exception_word() => {}
                 _ => list.push(self.statement()),
             }
         }
@@ -53,8 +57,8 @@ impl Cursor<'_> {
         let ended = self.position() > position && self.previous_closes();
         if self.reported() > known && !ended {
             self.recover(position);
-        } else if !self.take_mark(Punctuation::Semicolon) {
-            self.missing_semicolon();
+        } else if !(self.take_mark(Punctuation::Semicolon) || ended && self.dialect().has(Feature::LooseEnds)) {
+            self.missing_semicolon(ended);
         }
         Statement { kind, span }
     }
@@ -63,14 +67,17 @@ impl Cursor<'_> {
         matches!(self.previous(), Some(TokenKind::Keyword(keyword)) if ends_statement(keyword))
     }
 
-    fn missing_semicolon(&mut self) {
+    fn missing_semicolon(&mut self, behind_end: bool) {
         let before = self.previous_span();
         let span = Span { start: before.end.saturating_sub(1).max(before.start), ..before };
         let message = "`;` expected after this";
-        self.report_syntax(Diagnostic::error(Code::UnexpectedToken, span, message));
+        let help = behind_end.then(|| format!("{} may leave it out: --dialect chooses", Feature::LooseEnds.homes()));
+        self.report_syntax(Diagnostic::error(Code::UnexpectedToken, span, message).with_optional_help(help));
         // What follows is most often a good statement; only a stray remainder is skipped.
         let good = match self.peek() {
-            Some(TokenKind::Identifier | TokenKind::DirectAddress) | None => true,
+            // A name with nothing behind it is what remains of the statement before.
+            Some(TokenKind::Identifier) => self.peek_ahead(1) != Some(TokenKind::Punctuation(Punctuation::Semicolon)),
+            Some(TokenKind::DirectAddress) | None => true,
             Some(TokenKind::Keyword(keyword)) => closes_list(keyword) || begins_statement(keyword),
             _ => false,
         };
@@ -103,7 +110,7 @@ impl Cursor<'_> {
         self.take_mark(Punctuation::Semicolon);
     }
 
-    fn statement_kind(&mut self) -> StatementKind {
+    pub(super) fn statement_kind(&mut self) -> StatementKind {
         match self.peek() {
             Some(TokenKind::Punctuation(Punctuation::Semicolon)) => StatementKind::Empty,
             Some(TokenKind::Keyword(keyword)) => match keyword {
@@ -124,29 +131,6 @@ impl Cursor<'_> {
     fn single(&mut self, kind: StatementKind) -> StatementKind {
         self.advance();
         kind
-    }
-
-    fn assignment_or_call(&mut self) -> StatementKind {
-        let known = self.reported();
-        let target = self.expression();
-        if self.take_mark(Punctuation::Assign) {
-            let value = self.expression();
-            return StatementKind::Assign(target, value);
-        }
-        if let ExprKind::Call(call) = target.kind {
-            StatementKind::Call(call)
-        } else {
-            if self.reported() == known {
-                if self.at_mark(Punctuation::Equal) || is_comparison(&target.kind) {
-                    let message = "this is a comparison, not an assignment";
-                    let found = Diagnostic::error(Code::UnexpectedToken, target.span, message);
-                    self.report(found.with_help("assign with `:=`"));
-                } else {
-                    self.unexpected("`:=` or `(`");
-                }
-            }
-            StatementKind::Error
-        }
     }
 
     fn if_statement(&mut self) -> StatementKind {
@@ -175,6 +159,9 @@ impl Cursor<'_> {
         if !self.at_keyword(end) {
             if self.reported() == known {
                 self.unexpected(&format!("`{}`", end.text()));
+            }
+            if end == Keyword::Of && self.at_case_label() {
+                return condition;
             }
             self.skip_until(|kind| match kind {
                 TokenKind::Punctuation(Punctuation::Semicolon) => true,
@@ -276,9 +263,16 @@ impl Cursor<'_> {
             return StatementKind::Error;
         };
         self.expect_mark(Punctuation::Assign);
+        self.take_mark(Punctuation::Equal);
         let from = self.expression();
-        self.expect_keyword(Keyword::To);
-        let (to, by) = if self.for_has_by() {
+        let (to, by) = if !self.expect_keyword(Keyword::To) {
+            self.skip_until(|kind| match kind {
+                TokenKind::Keyword(word) => word != Keyword::Until && (word == Keyword::Do || closes_list(word)),
+                kind => kind == TokenKind::Punctuation(Punctuation::Semicolon),
+            });
+            self.take_keyword(Keyword::Do);
+            (from.clone(), None)
+        } else if self.for_has_by() {
             let to = self.condition(Keyword::By);
             (to, Some(self.condition(Keyword::Do)))
         } else {
@@ -321,7 +315,13 @@ impl Cursor<'_> {
             self.unexpected("`UNTIL`");
             return StatementKind::Error;
         }
+        let known = self.reported();
         let until = self.condition(Keyword::EndRepeat);
+        if self.reported() > known && self.at_mark(Punctuation::Semicolon) {
+            // `UNTIL a; END_REPEAT` ends all the same.
+            self.advance();
+            self.take_keyword(Keyword::EndRepeat);
+        }
         StatementKind::Repeat(RepeatStatement { body, until })
     }
 }
@@ -330,8 +330,4 @@ impl Cursor<'_> {
 fn ends_statement(keyword: Keyword) -> bool {
     use Keyword as K;
     matches!(keyword, K::EndIf | K::EndCase | K::EndFor | K::EndWhile | K::EndRepeat)
-}
-
-fn is_comparison(kind: &ExprKind) -> bool {
-    matches!(kind, ExprKind::Binary(crate::syntax::ast::BinaryOp::Equal, ..))
 }

@@ -45,6 +45,7 @@ impl Printer {
             SectionKind::Output => "VAR_OUTPUT",
             SectionKind::InOut => "VAR_IN_OUT",
             SectionKind::Temp => "VAR_TEMP",
+            SectionKind::Static => "VAR_STAT",
             SectionKind::Global => "VAR_GLOBAL",
             SectionKind::External => "VAR_EXTERNAL",
         });

@@ -1,0 +1,336 @@
+//! What happens to signals between the plant and the PLC: sampling, noise, quantisation, delay and
+//! jitter, scaling to raw values. What is real about a signal is modelled; nothing else remains.
+//!
+//! A signal that the plant writes passes, in this order: sample, noise, quantum, delay, scale. One
+//! that it reads is scaled back first, and then passes the same. Signals without a `[[signal]]` in
+//! the scene are copied. Delayed values arrive in the order in which they were sent, as on a wire.
+
+use std::collections::VecDeque;
+
+use onescan_server::signal::{ElementaryType, Port};
+use serde::{Deserialize, Serialize};
+
+use super::random::{Random, seed_for};
+use super::scene::Scene;
+use super::scene::model::Condition;
+
+/// The ports as the plant's inside has them.
+pub(super) fn inner_ports(outer: &[Port], conditions: &[Condition]) -> Vec<Port> {
+    let inner = |port: &Port| {
+        let condition = conditions.iter().find(|condition| condition.signal == port.name);
+        Port { name: port.name.clone(), ty: condition.map_or(port.ty, |condition| condition.inner) }
+    };
+    outer.iter().map(inner).collect()
+}
+
+/// One signal on its way.
+struct Channel {
+    condition: Condition,
+    outer: (usize, ElementaryType),
+    inner: (usize, ElementaryType),
+    memory: ChannelMemory,
+}
+
+/// What a channel remembers.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+struct ChannelMemory {
+    random: Random,
+    /// When the signal is looked at again.
+    next_sample_ns: u64,
+    /// What is on its way, and when it arrives.
+    sent: VecDeque<(u64, f64)>,
+    /// What arrived last.
+    arrived: f64,
+}
+
+/// All signals of one direction.
+pub(super) struct Channels {
+    /// What is only copied: outer offset, inner offset, bytes.
+    copies: Vec<(usize, usize, usize)>,
+    conditioned: Vec<Channel>,
+    inner: Vec<u8>,
+}
+
+/// What the channels of one direction remember.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub(super) struct ChannelsMemory {
+    channels: Vec<ChannelMemory>,
+    inner: Vec<u8>,
+}
+
+impl Channels {
+    /// The channels of what a scene reads, and of what it writes.
+    pub(super) fn pair(scene: &Scene, seed: u64) -> [Self; 2] {
+        [&scene.reads, &scene.writes].map(|ports| Self::new(ports, &scene.conditions, seed))
+    }
+
+    fn new(ports: &[Port], conditions: &[Condition], seed: u64) -> Self {
+        let (mut copies, mut channels) = (Vec::new(), Vec::new());
+        let (mut outer, mut inner) = (0, 0);
+        for port in ports {
+            match conditions.iter().find(|condition| condition.signal == port.name) {
+                None => copies.push((outer, inner, port.ty.size())),
+                Some(condition) => channels.push(Channel {
+                    outer: (outer, port.ty),
+                    inner: (inner, condition.inner),
+                    memory: ChannelMemory {
+                        random: Random::new(seed_for(seed, "signal", port.name.as_str())),
+                        next_sample_ns: 0,
+                        sent: VecDeque::new(),
+                        arrived: 0.0,
+                    },
+                    condition: condition.clone(),
+                }),
+            }
+            outer += port.ty.size();
+            inner +=
+                inner_ports(std::slice::from_ref(port), conditions).iter().map(|port| port.ty.size()).sum::<usize>();
+        }
+        Self { copies, conditioned: channels, inner: vec![0; inner] }
+    }
+
+    /// The bytes inside.
+    pub(super) fn inner(&self) -> &[u8] {
+        &self.inner
+    }
+
+    /// The bytes inside, to be written.
+    pub(super) fn inner_mut(&mut self) -> &mut [u8] {
+        &mut self.inner
+    }
+
+    pub(super) fn memory(&self) -> ChannelsMemory {
+        let channels = self.conditioned.iter().map(|channel| channel.memory.clone()).collect();
+        ChannelsMemory { channels, inner: self.inner.clone() }
+    }
+
+    /// True if the memory is one of such channels, which then have it.
+    pub(super) fn restore(&mut self, memory: ChannelsMemory) -> bool {
+        let fits = memory.channels.len() == self.conditioned.len() && memory.inner.len() == self.inner.len();
+        if fits {
+            self.inner = memory.inner;
+            for (channel, memory) in self.conditioned.iter_mut().zip(memory.channels) {
+                channel.memory = memory;
+            }
+        }
+        fits
+    }
+
+    /// Takes the session's bytes in.
+    pub(super) fn take(&mut self, now_ns: u64, outer: &[u8]) {
+        for (from, to, size) in &self.copies {
+            self.inner[*to..to + size].copy_from_slice(&outer[*from..from + size]);
+        }
+        for channel in &mut self.conditioned {
+            let raw = channel.outer.1.as_f64(&outer[channel.outer.0..]).unwrap_or_default();
+            let value = channel.pass(now_ns, channel.condition.scaled_back(raw));
+            write(channel.inner.1, &mut self.inner[channel.inner.0..], value);
+        }
+    }
+
+    /// Gives the plant's bytes to the session.
+    pub(super) fn give(&mut self, now_ns: u64, outer: &mut [u8]) {
+        for (to, from, size) in &self.copies {
+            outer[*to..to + size].copy_from_slice(&self.inner[*from..from + size]);
+        }
+        for channel in &mut self.conditioned {
+            let value = channel.inner.1.as_f64(&self.inner[channel.inner.0..]).unwrap_or_default();
+            let passed = channel.pass(now_ns, value);
+            write(channel.outer.1, &mut outer[channel.outer.0..], channel.condition.scaled(passed));
+        }
+    }
+
+    /// Gives the plant's bytes at the set-up, when nothing is on its way yet: as if they had long
+    /// stood so.
+    pub(super) fn give_at_once(&mut self, outer: &mut [u8]) {
+        for (to, from, size) in &self.copies {
+            outer[*to..to + size].copy_from_slice(&self.inner[*from..from + size]);
+        }
+        for channel in &mut self.conditioned {
+            let value = channel.inner.1.as_f64(&self.inner[channel.inner.0..]).unwrap_or_default();
+            channel.memory.arrived = channel.disturbed(value);
+            let raw = channel.condition.scaled(channel.memory.arrived);
+            write(channel.outer.1, &mut outer[channel.outer.0..], raw);
+        }
+    }
+}
+
+impl Channel {
+    /// A sample with its noise, rounded to the quantum.
+    fn disturbed(&mut self, value: f64) -> f64 {
+        let Condition { quantum, noise_mean, noise_sigma, .. } = self.condition;
+        let noise = if noise_sigma > 0.0 { noise_mean + noise_sigma * self.memory.random.normal() } else { noise_mean };
+        let noisy = value + noise;
+        if quantum > 0.0 { (noisy / quantum).round() * quantum } else { noisy }
+    }
+
+    /// What arrives now, where `value` is sent now.
+    fn pass(&mut self, now_ns: u64, value: f64) -> f64 {
+        if now_ns >= self.memory.next_sample_ns {
+            if let Some(passed) = now_ns.checked_div(self.condition.sample_ns) {
+                self.memory.next_sample_ns = (passed + 1) * self.condition.sample_ns;
+            }
+            let sent = self.disturbed(value);
+            let late_ns = match self.condition.jitter_ns {
+                0 => 0,
+                jitter_ns => (jitter_ns as f64 * self.memory.random.uniform()) as u64,
+            };
+            let last_ns = self.memory.sent.back().map_or(0, |(at, _)| *at);
+            self.memory.sent.push_back(((now_ns + self.condition.delay_ns + late_ns).max(last_ns), sent));
+        }
+        while let Some((at, value)) = self.memory.sent.front().copied()
+            && at <= now_ns
+        {
+            self.memory.arrived = value;
+            self.memory.sent.pop_front();
+        }
+        self.memory.arrived
+    }
+}
+
+impl Condition {
+    /// The raw value of a value in the signal's unit; limited to the raw range.
+    fn scaled(&self, value: f64) -> f64 {
+        let Some(scale) = self.scale else { return value };
+        let ([low, high], [raw_low, raw_high]) = (scale.range, scale.raw);
+        (raw_low + (value - low) / (high - low) * (raw_high - raw_low)).clamp(raw_low, raw_high)
+    }
+
+    /// The value in the signal's unit of a raw one.
+    fn scaled_back(&self, raw: f64) -> f64 {
+        let Some(scale) = self.scale else { return raw };
+        let ([low, high], [raw_low, raw_high]) = (scale.range, scale.raw);
+        low + (raw - raw_low) / (raw_high - raw_low) * (high - low)
+    }
+}
+
+/// Writes a number as a value of a type: whole numbers are rounded and limited to their range.
+fn write(ty: ElementaryType, bytes: &mut [u8], value: f64) {
+    use ElementaryType as T;
+    let whole = value.round();
+    match ty {
+        T::Bool => bytes[0] = u8::from(value != 0.0),
+        T::Sint => bytes[..1].copy_from_slice(&(whole as i8).to_le_bytes()),
+        T::Usint | T::Byte => bytes[..1].copy_from_slice(&(whole as u8).to_le_bytes()),
+        T::Int => bytes[..2].copy_from_slice(&(whole as i16).to_le_bytes()),
+        T::Uint | T::Word => bytes[..2].copy_from_slice(&(whole as u16).to_le_bytes()),
+        T::Dint => bytes[..4].copy_from_slice(&(whole as i32).to_le_bytes()),
+        T::Udint | T::Dword => bytes[..4].copy_from_slice(&(whole as u32).to_le_bytes()),
+        T::Real => bytes[..4].copy_from_slice(&(value as f32).to_le_bytes()),
+        // the scene's check lets no other type through
+        _ => bytes[..8].copy_from_slice(&value.to_le_bytes()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use onescan_server::signal::SignalName;
+
+    use super::super::scene::model::Range;
+    use super::*;
+
+    /// A signal to which nothing happens.
+    fn plain(inner: ElementaryType) -> Condition {
+        Condition {
+            signal: SignalName::new("x").expect("a name"),
+            inner,
+            scale: None,
+            delay_ns: 0,
+            jitter_ns: 0,
+            sample_ns: 0,
+            quantum: 0.0,
+            noise_mean: 0.0,
+            noise_sigma: 0.0,
+        }
+    }
+
+    /// What arrives of a ramp of 1 in each of so many milliseconds.
+    fn ramp(condition: &Condition, count: u64) -> Vec<f64> {
+        let ports = [Port { name: condition.signal.clone(), ty: ElementaryType::Lreal }];
+        let mut channels = Channels::new(&ports, std::slice::from_ref(condition), 1);
+        let mut outer = [0; 8];
+        (1..=count)
+            .map(|k| {
+                write(ElementaryType::Lreal, channels.inner_mut(), k as f64);
+                channels.give(k * 1_000_000, &mut outer);
+                f64::from_le_bytes(outer)
+            })
+            .collect()
+    }
+
+    #[test]
+    fn a_delay_is_whole_and_keeps_every_value() {
+        let late = Condition { delay_ns: 3_000_000, ..plain(ElementaryType::Lreal) };
+        assert_eq!(ramp(&late, 6), [0.0, 0.0, 0.0, 1.0, 2.0, 3.0]);
+        assert_eq!(ramp(&plain(ElementaryType::Lreal), 2), [1.0, 2.0]);
+    }
+
+    #[test]
+    fn samples_and_quanta_make_steps() {
+        let sampled = Condition { sample_ns: 4_000_000, ..plain(ElementaryType::Lreal) };
+        assert_eq!(ramp(&sampled, 9), [1.0, 1.0, 1.0, 4.0, 4.0, 4.0, 4.0, 8.0, 8.0]);
+        let coarse = Condition { quantum: 2.5, ..plain(ElementaryType::Lreal) };
+        assert_eq!(ramp(&coarse, 4), [0.0, 2.5, 2.5, 5.0]);
+    }
+
+    #[test]
+    fn jitter_is_within_its_bound_and_never_turns_the_order() {
+        let shaky = Condition { delay_ns: 2_000_000, jitter_ns: 5_000_000, ..plain(ElementaryType::Lreal) };
+        let arrived = ramp(&shaky, 500);
+        assert!(arrived.windows(2).all(|pair| pair[0] <= pair[1]));
+        let ages: Vec<_> = arrived.iter().enumerate().skip(10).map(|(k, value)| (k + 1) as f64 - value).collect();
+        assert!(ages.iter().all(|age| (2.0..=8.0).contains(age)), "{ages:?}");
+        assert!(ages.iter().any(|age| *age > 3.0) && ages.iter().any(|age| *age < 7.0));
+    }
+
+    #[test]
+    fn noise_has_its_mean_and_its_deviation() {
+        let noisy = Condition { noise_mean: 3.0, noise_sigma: 0.5, ..plain(ElementaryType::Lreal) };
+        let count = 10_000;
+        let noise: Vec<_> = ramp(&noisy, count).iter().zip(1..).map(|(seen, k)| seen - f64::from(k)).collect();
+        let mean = noise.iter().sum::<f64>() / count as f64;
+        let variance = noise.iter().map(|x| (x - mean) * (x - mean)).sum::<f64>() / count as f64;
+        // five standard errors: σ/√n of the mean, √(2/n) of the variance
+        assert!((mean - 3.0).abs() < 0.025 && (variance / 0.25 - 1.0).abs() < 0.071, "{mean} {variance}");
+    }
+
+    #[test]
+    fn raw_values_are_scaled_limited_and_scaled_back() {
+        let scaled = Condition {
+            scale: Some(Range { range: [0.0, 10.0], raw: [0.0, 27_648.0] }),
+            ..plain(ElementaryType::Lreal)
+        };
+        assert_eq!([-1.0, 0.0, 5.0, 12.0].map(|value| scaled.scaled(value)), [0.0, 0.0, 13_824.0, 27_648.0]);
+        assert_eq!(scaled.scaled_back(13_824.0), 5.0);
+        let ports = [Port { name: scaled.signal.clone(), ty: ElementaryType::Int }];
+        let mut channels = Channels::new(&ports, &[scaled], 1);
+        channels.take(1_000_000, &6_912_i16.to_le_bytes());
+        assert_eq!(channels.inner(), 2.5_f64.to_le_bytes());
+    }
+
+    #[test]
+    fn a_saved_channel_goes_on_to_the_bit() {
+        let all = Condition {
+            delay_ns: 2_000_000,
+            jitter_ns: 3_000_000,
+            noise_sigma: 1.0,
+            sample_ns: 2_000_000,
+            ..plain(ElementaryType::Lreal)
+        };
+        let ports = [Port { name: all.signal.clone(), ty: ElementaryType::Lreal }];
+        let new = |seed: u64| Channels::new(&ports, std::slice::from_ref(&all), seed);
+        let (mut first, mut second, mut outer) = (new(1), new(2), [[0; 8]; 2]);
+        for k in 1..200 {
+            write(ElementaryType::Lreal, first.inner_mut(), k as f64);
+            first.give(k * 1_000_000, &mut outer[0]);
+            if k > 100 {
+                write(ElementaryType::Lreal, second.inner_mut(), k as f64);
+                second.give(k * 1_000_000, &mut outer[1]);
+                assert_eq!(outer[0], outer[1], "{k}");
+            } else if k == 100 {
+                assert!(second.restore(first.memory()));
+            }
+        }
+        assert_eq!(first.memory(), second.memory());
+    }
+}
