@@ -14,7 +14,8 @@ use std::sync::{Arc, OnceLock};
 
 use crate::check::Checked;
 use crate::compile::fault::FaultTable;
-use crate::compile::{Compiled, compile};
+use crate::compile::points::Point;
+use crate::compile::{Compiled, Noted, compile};
 use crate::diagnostic::Diagnostics;
 use crate::input::Input;
 use crate::input::kind::SourceKind;
@@ -38,6 +39,7 @@ struct Inner {
     checked: Checked,
     wasm: Vec<u8>,
     faults: FaultTable,
+    points: Vec<Point>,
     retained: Vec<Range<u32>>,
     persistent: Vec<Range<u32>>,
     warnings: Diagnostics,
@@ -66,15 +68,31 @@ impl Application {
     pub fn from_inputs(inputs: impl IntoIterator<Item = Input>) -> Result<Self, Diagnostics> {
         let Front { sources, checked, findings, .. } = Front::new(inputs);
         let findings = Diagnostics::new(findings, &sources);
-        if findings.has_errors() { Err(findings) } else { Ok(Self::compiled(sources, checked, findings)) }
+        if findings.has_errors() {
+            Err(findings)
+        } else {
+            Ok(Self::compiled(sources, checked, findings, Noted::Nothing))
+        }
     }
 
-    fn compiled(sources: SourceMap, checked: Checked, warnings: Diagnostics) -> Self {
-        let Compiled { wasm, faults } = compile(&checked);
+    /// Like [`Self::from_inputs`], to be run with [`SoftPlc::coverage`](crate::SoftPlc::coverage).
+    /// It computes the same; its saved states are its own.
+    ///
+    /// # Errors
+    /// All that is wrong with the files, and the warnings too.
+    pub fn from_inputs_with_coverage(inputs: impl IntoIterator<Item = Input>) -> Result<Self, Diagnostics> {
+        let Front { sources, checked, findings, library, .. } = Front::new(inputs);
+        let findings = Diagnostics::new(findings, &sources);
+        let noted = Noted::AllBut(&library);
+        if findings.has_errors() { Err(findings) } else { Ok(Self::compiled(sources, checked, findings, noted)) }
+    }
+
+    fn compiled(sources: SourceMap, checked: Checked, warnings: Diagnostics, noted: Noted<'_>) -> Self {
+        let Compiled { wasm, faults, points } = compile(&checked, noted);
         let retained = retain::ranges(&checked, Retention::Retain);
         let persistent = retain::ranges(&checked, Retention::Persistent);
         let module = OnceLock::new();
-        let inner = Inner { sources, checked, wasm, faults, retained, persistent, warnings, module };
+        let inner = Inner { sources, checked, wasm, faults, points, retained, persistent, warnings, module };
         Self { inner: Arc::new(inner) }
     }
 
@@ -106,6 +124,11 @@ impl Application {
     /// What survives a cold start too (`PERSISTENT`), as ranges of memory in ascending order.
     pub fn persistent(&self) -> &[Range<u32>] {
         &self.inner.persistent
+    }
+
+    /// What is noted while the program runs; nothing unless it was compiled for that.
+    pub(crate) fn points(&self) -> &[Point] {
+        &self.inner.points
     }
 
     pub(crate) fn faults(&self) -> &FaultTable {

@@ -14,6 +14,7 @@
 //! | [`application`] | files | all of the above in one value |
 //! | [`instrument`] | a project | the same, made to run in lockstep |
 //! | [`run`] | an application and a task plan | a soft PLC that scans |
+//! | [`coverage`] | what has been executed | reports of it |
 //!
 //! Invariants:
 //! - knows no network, no server and no clock: virtual time is given to each scan;
@@ -27,6 +28,7 @@
 pub mod application;
 mod check;
 mod compile;
+pub mod coverage;
 pub mod diagnostic;
 pub mod dialect;
 pub mod explain;
@@ -39,6 +41,7 @@ pub mod syntax;
 
 pub use application::{Application, Program, UnknownVariable, Variable, VariableAccess, WriteError, inspect};
 pub use compile::fault::FaultKind;
+pub use coverage::Coverage;
 pub use diagnostic::{Code, Diagnostic, Diagnostics, Finding, Severity};
 pub use dialect::Dialect;
 pub use input::Input;

@@ -4,6 +4,7 @@ mod check;
 mod checkpoint;
 mod configuration;
 mod control;
+mod coverage;
 mod errors;
 mod expectations;
 mod faults;

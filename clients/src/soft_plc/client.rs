@@ -1,6 +1,8 @@
 //! The soft PLC as a client of a session.
 
-use onescan_plc_shim::{Application, PlcFault, RunError, SoftPlc, TaskPlan};
+use std::sync::{Arc, Mutex};
+
+use onescan_plc_shim::{Application, Coverage, PlcFault, RunError, SoftPlc, TaskPlan};
 use onescan_server::client::{Client, ClientFault, JoinRequest, SourcePlace, StateError, Wake};
 use onescan_server::signal::ClientName;
 use onescan_server::time::{TimeSpan, VirtualTime};
@@ -39,7 +41,12 @@ pub struct SoftPlcClient {
     plc: SoftPlc,
     inputs: Vec<Run>,
     outputs: Vec<Run>,
+    /// Where what was executed goes when the client's part is over.
+    coverage: Option<CoverageSink>,
 }
+
+/// What the PLCs of a run have executed together.
+pub type CoverageSink = Arc<Mutex<Coverage>>;
 
 impl SoftPlcClient {
     /// A client `name` that runs `application` by `plan`. It takes part in every `step` if tasks wait
@@ -59,7 +66,13 @@ impl SoftPlcClient {
         let period = period.ok_or(RunError::NoTasks)?;
         let ports = |bound: &[Bound]| bound.iter().map(|bound| bound.port.clone()).collect();
         let request = JoinRequest { name, period, reads: ports(&bindings.inputs), writes: ports(&bindings.outputs) };
-        Ok(Self { request, plc, inputs: runs(&bindings.inputs), outputs: runs(&bindings.outputs) })
+        Ok(Self { request, plc, inputs: runs(&bindings.inputs), outputs: runs(&bindings.outputs), coverage: None })
+    }
+
+    /// Gives what has been executed to `sink` when the client is dropped. The application must have
+    /// been compiled for it.
+    pub fn cover(&mut self, sink: CoverageSink) {
+        self.coverage = Some(sink);
     }
 
     /// The PLC.
@@ -85,6 +98,15 @@ fn runs(bound: &[Bound]) -> Vec<Run> {
         port += len;
     }
     runs
+}
+
+impl Drop for SoftPlcClient {
+    fn drop(&mut self) {
+        let executed = self.coverage.as_ref().zip(self.plc.coverage());
+        if let Some((Ok(mut sink), coverage)) = executed.map(|(sink, coverage)| (sink.lock(), coverage)) {
+            sink.merge(&coverage);
+        }
+    }
 }
 
 impl Client for SoftPlcClient {

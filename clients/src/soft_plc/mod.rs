@@ -9,4 +9,4 @@ pub mod bind;
 mod client;
 
 pub use bind::{BindError, Bindings, bind};
-pub use client::SoftPlcClient;
+pub use client::{CoverageSink, SoftPlcClient};

@@ -4,8 +4,9 @@ use wasm_encoder::{BlockType, Instruction, ValType};
 
 use super::emitter::{Emitter, value_type};
 use super::fault::FaultKind;
+use super::interval::combined;
 use crate::ir::elementary::Kind;
-use crate::ir::{Binary, ElementaryType, Expr, Value};
+use crate::ir::{Binary, ElementaryType, Expr, ExprKind, Value};
 use crate::syntax::Span;
 
 impl Emitter<'_, '_> {
@@ -29,11 +30,11 @@ impl Emitter<'_, '_> {
         let ty = self.held_as(operand.ty);
         match value_type(ty) {
             ValType::F32 => {
-                self.expression(operand);
+                self.settled(operand);
                 self.emit(Instruction::F32Neg);
             }
             ValType::F64 => {
-                self.expression(operand);
+                self.settled(operand);
                 self.emit(Instruction::F64Neg);
             }
             _ => {
@@ -74,6 +75,68 @@ impl Emitter<'_, '_> {
                 }
             }
         }
+    }
+
+    /// Like [`Self::operation`] where the result is known to lie in the type.
+    pub(super) fn unwrapped(&mut self, operator: Binary, ty: ElementaryType, span: Span) {
+        match value_type(ty) {
+            ValType::I64 => self.wide(operator, ty, span),
+            _ => self.narrow(operator, ty, span),
+        }
+    }
+
+    /// A binary expression; what its constants and ranges make unnecessary is left out.
+    pub(super) fn binary(&mut self, operator: Binary, left: &Expr, right: &Expr, whole: &Expr) {
+        let ty = self.held_as(left.ty);
+        let divides = matches!(operator, Binary::Divide | Binary::Modulo);
+        self.expression(left);
+        self.expression(right);
+        match right.kind {
+            ExprKind::Constant(Value::Int(divisor)) if divides && divisor > 0 => {
+                self.by_constant(operator, left, ty);
+            }
+            ExprKind::Constant(Value::Lreal(divisor)) if operator == Binary::Divide && divisor != 0.0 => {
+                self.emit(Instruction::F64Div);
+            }
+            ExprKind::Constant(Value::Real(divisor)) if operator == Binary::Divide && divisor != 0.0 => {
+                self.emit(Instruction::F32Div);
+            }
+            _ if self.stays_inside(operator, left, right, ty) => self.unwrapped(operator, ty, whole.span),
+            _ => self.operation(operator, ty, whole.span),
+        }
+    }
+
+    /// True if the operands' ranges leave no need to cut the result of a short type.
+    fn stays_inside(&self, operator: Binary, left: &Expr, right: &Expr, ty: ElementaryType) -> bool {
+        if ty.is_real() || ty.size() > 2 || ty == ElementaryType::Bool {
+            return false;
+        }
+        match operator {
+            Binary::And | Binary::Or | Binary::Xor => true,
+            Binary::Add | Binary::Subtract | Binary::Multiply => {
+                let found = self.interval(left).zip(self.interval(right));
+                let found = found.and_then(|(left, right)| combined(operator, left, right));
+                found.zip(ty.range()).is_some_and(|(found, range)| range.0 <= found.0 && found.1 <= range.1)
+            }
+            _ => false,
+        }
+    }
+
+    /// Division by a constant greater than 0 neither traps nor leaves the type. What is never
+    /// negative is divided as an unsigned number, which often is a shift.
+    fn by_constant(&mut self, operator: Binary, dividend: &Expr, ty: ElementaryType) {
+        let wide = ty.size() == 8;
+        let signed = ty.is_signed() && self.interval(dividend).is_none_or(|(least, _)| least < 0);
+        self.emit(match (operator == Binary::Divide, wide, signed) {
+            (true, false, true) => Instruction::I32DivS,
+            (true, false, false) => Instruction::I32DivU,
+            (true, true, true) => Instruction::I64DivS,
+            (true, true, false) => Instruction::I64DivU,
+            (false, false, true) => Instruction::I32RemS,
+            (false, false, false) => Instruction::I32RemU,
+            (false, true, true) => Instruction::I64RemS,
+            (false, true, false) => Instruction::I64RemU,
+        });
     }
 
     /// Division of reals by zero is an error (2nd ed. Annex E), so it stops the PLC too.

@@ -3,7 +3,8 @@
 use wasm_encoder::{Instruction, ValType};
 
 use super::emitter::{Emitter, value_type};
-use crate::ir::{ElementaryType, Expr, LocalId};
+use super::registers::Register;
+use crate::ir::{ElementaryType, Expr};
 
 impl Emitter<'_, '_> {
     /// 3rd ed. Table 37. All eight bytes of a 64 bit number are reversed; those of the value then stand in front.
@@ -26,7 +27,7 @@ impl Emitter<'_, '_> {
     }
 
     /// Exchanges neighbouring groups of `bits`; `mask` has the lower of each two.
-    fn exchange(&mut self, number: LocalId, bits: i64, mask: i64) {
+    fn exchange(&mut self, number: Register, bits: i64, mask: i64) {
         self.get(number);
         self.emit(Instruction::I64Const(mask));
         self.emit(Instruction::I64And);

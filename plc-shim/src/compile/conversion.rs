@@ -4,11 +4,12 @@ use wasm_encoder::{Ieee32, Ieee64, Instruction, ValType};
 
 use super::emitter::{Emitter, value_type};
 use crate::ir::elementary::Kind;
-use crate::ir::{ElementaryType, Rounding};
+use crate::ir::{ElementaryType, Expr, Rounding};
 
 impl Emitter<'_, '_> {
     /// Turns the value on the stack from one type into another.
-    pub(super) fn convert(&mut self, from: ElementaryType, to: ElementaryType, rounding: Rounding) {
+    pub(super) fn convert(&mut self, operand: &Expr, to: ElementaryType, rounding: Rounding) {
+        let from = self.held_as(operand.ty);
         match (from.kind(), to.kind()) {
             (_, Kind::Bool) => self.is_not_zero(from),
             (Kind::Real, Kind::Real) => match (from.size(), to.size()) {
@@ -17,7 +18,7 @@ impl Emitter<'_, '_> {
                 _ => {}
             },
             (Kind::Real, _) => self.real_to_integer(from, to, rounding),
-            (_, Kind::Real) => self.integer_to_real(from, to),
+            (_, Kind::Real) => self.integer_to_real(operand, from, to),
             _ => self.integer_to_integer(from, to),
         }
     }
@@ -56,8 +57,12 @@ impl Emitter<'_, '_> {
         }
     }
 
-    fn integer_to_real(&mut self, from: ElementaryType, to: ElementaryType) {
-        self.emit(match (from.size() == 8, from.is_signed(), to.size()) {
+    /// What never is as large as the sign is converted as a signed number, which machines do
+    /// faster.
+    fn integer_to_real(&mut self, operand: &Expr, from: ElementaryType, to: ElementaryType) {
+        let small = |(_, greatest): (i128, i128)| greatest < 1 << 31 || (from.size() == 8 && greatest < 1 << 63);
+        let signed = from.is_signed() || self.interval(operand).is_some_and(small);
+        self.emit(match (from.size() == 8, signed, to.size()) {
             (false, true, 4) => Instruction::F32ConvertI32S,
             (false, false, 4) => Instruction::F32ConvertI32U,
             (true, true, 4) => Instruction::F32ConvertI64S,

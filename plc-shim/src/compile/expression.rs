@@ -3,9 +3,8 @@
 use wasm_encoder::{BlockType, Ieee32, Ieee64, Instruction, ValType};
 
 use super::emitter::{Emitter, value_type};
-use super::fault::{Callee, FaultKind};
-use crate::ir::{Argument, Binary, ElementaryType, Expr, ExprKind, FunctionCall, Place, Unary, Value};
-use crate::syntax::Span;
+use super::fault::FaultKind;
+use crate::ir::{Binary, ElementaryType, Expr, ExprKind, Unary, Value};
 
 impl Emitter<'_, '_> {
     /// Pushes the expression's value; an aggregate's address.
@@ -20,15 +19,12 @@ impl Emitter<'_, '_> {
             ExprKind::Unary(Unary::Negate, operand) => self.negate(operand),
             ExprKind::Unary(Unary::Not, operand) => self.complement(operand),
             ExprKind::Binary(operator, left, right) => {
-                let ty = self.held_as(left.ty);
-                self.expression(left);
-                self.expression(right);
-                self.operation(*operator, ty, expr.span);
+                self.binary(*operator, left, right, expr);
             }
             ExprKind::Convert(rounding, operand) => {
-                let (from, to) = (self.held_as(operand.ty), self.held_as(expr.ty));
+                let to = self.held_as(expr.ty);
                 self.expression(operand);
-                self.convert(from, to, *rounding);
+                self.convert(operand, to, *rounding);
             }
             ExprKind::Conditional(parts) => self.conditional(parts),
             ExprKind::Limited(low, high, operand) => self.limited(*low, *high, operand),
@@ -51,9 +47,14 @@ impl Emitter<'_, '_> {
         let held = value_type(self.held_as(then.ty));
         self.expression(condition);
         self.emit(Instruction::If(BlockType::Result(held)));
+        self.held += 1;
+        let (before, mut after) = (self.known.clone(), None);
         self.expression(then);
+        self.join(&mut after, before);
         self.emit(Instruction::Else);
         self.expression(otherwise);
+        self.meet(after);
+        self.held -= 1;
         self.emit(Instruction::End);
     }
 
@@ -88,34 +89,5 @@ impl Emitter<'_, '_> {
         }
         self.get(value);
         self.release(value);
-    }
-
-    fn call_function(&mut self, call: &FunctionCall, span: Span) {
-        self.side_statements(&call.before);
-        for argument in &call.arguments {
-            match argument {
-                Argument::Value(expr) => self.expression(expr),
-                Argument::Reference(place) => self.full_address(place),
-            }
-        }
-        self.mark_call(Callee::Function, span);
-        self.call(call.pou);
-        if let Some(place) = &call.result {
-            self.keep_result(place);
-        }
-        self.side_statements(&call.outputs);
-    }
-
-    /// Copies the aggregate whose address is on the stack to `place` and pushes that address.
-    fn keep_result(&mut self, place: &Place) {
-        let source = self.scratch(ValType::I32);
-        self.set(source);
-        self.full_address(place);
-        self.get(source);
-        self.release(source);
-        let size = self.shared.types.size(place.ty);
-        self.emit(Instruction::I32Const(size as i32));
-        self.emit(Instruction::MemoryCopy { src_mem: 0, dst_mem: 0 });
-        self.full_address(place);
     }
 }

@@ -67,6 +67,16 @@ impl fmt::Display for FaultKind {
 pub(crate) struct Mark {
     pub(crate) span: Span,
     pub(crate) kind: MarkKind,
+    /// The unit that the instruction belongs to, by its place in [`FunctionMarks::units`].
+    pub(crate) unit: u32,
+}
+
+/// A unit that a function is made of: its own, or one put in the place of a call.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(crate) struct Unit {
+    pub(crate) name: String,
+    /// The call, of the unit that contains it.
+    pub(crate) caller: Option<(u32, Callee, Span)>,
 }
 
 /// What the instruction at a mark does.
@@ -94,25 +104,26 @@ pub(crate) enum Callee {
 /// The marks of one function by offset in its body, in order.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct FunctionMarks {
-    pub(crate) name: String,
-    /// It is what a task runs; `name` is that of an instance.
+    /// The function's own unit, then those inlined.
+    pub(crate) units: Vec<Unit>,
+    /// It is what a task runs; its unit's name is that of an instance.
     pub(crate) is_entry: bool,
     pub(crate) marks: Vec<(u32, Mark)>,
 }
 
 impl FunctionMarks {
     /// The fault of the trapping instruction at `offset`.
-    pub(crate) fn fault_at(&self, offset: u32) -> Option<(FaultKind, Span)> {
+    pub(crate) fn fault_at(&self, offset: u32) -> Option<(FaultKind, Mark)> {
         self.marks_at(offset).find_map(|mark| match mark.kind {
-            MarkKind::Fault(fault) => Some((fault, mark.span)),
+            MarkKind::Fault(fault) => Some((fault, mark)),
             _ => None,
         })
     }
 
     /// What the instruction at `offset` calls.
-    pub(crate) fn call_at(&self, offset: u32) -> Option<(Callee, Span)> {
+    pub(crate) fn call_at(&self, offset: u32) -> Option<(Callee, Mark)> {
         self.marks_at(offset).find_map(|mark| match mark.kind {
-            MarkKind::Call(callee) => Some((callee, mark.span)),
+            MarkKind::Call(callee) => Some((callee, mark)),
             _ => None,
         })
     }
@@ -124,10 +135,10 @@ impl FunctionMarks {
     }
 
     /// The last statement that begins at or before `offset`.
-    pub(crate) fn statement_before(&self, offset: u32) -> Option<Span> {
+    pub(crate) fn statement_before(&self, offset: u32) -> Option<Mark> {
         let end = self.marks.partition_point(|(at, _)| *at <= offset);
         let before = self.marks.iter().take(end).rev();
-        before.map(|(_, mark)| mark).find(|mark| mark.kind == MarkKind::Statement).map(|mark| mark.span)
+        before.map(|(_, mark)| *mark).find(|mark| mark.kind == MarkKind::Statement)
     }
 }
 

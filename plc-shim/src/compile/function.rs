@@ -2,21 +2,28 @@
 
 use wasm_encoder::Function;
 
-use super::emitter::{Emitter, Shared};
-use super::fault::Mark;
-use crate::ir::{Expr, ExprKind, Pou};
+use super::address::Address;
+use super::emitter::{Emitter, Shared, value_type};
+use super::fault::{Mark, Unit};
+use super::place::INSTANCE;
+use crate::ir::{Pou, PouId};
 
-/// The function of a unit, and what its instructions stand for.
-pub(super) fn unit(shared: &mut Shared<'_>, pou: &Pou) -> (Function, Vec<(u32, Mark)>) {
-    let mut emitter = Emitter::new(shared, &pou.registers, pou.parameters);
-    emitter.mark_statement(pou.span);
-    let end = emitter.open_block();
-    emitter.end = Some(end);
-    emitter.statements(&pou.body);
-    emitter.close();
-    if let Some(result) = &pou.result {
-        let kind = ExprKind::Load(result.clone());
-        emitter.expression(&Expr { kind, ty: result.ty, span: result.span });
+/// A function's code and what its instructions stand for.
+pub(super) struct Made {
+    pub(super) body: Function,
+    pub(super) marks: Vec<(u32, Mark)>,
+    pub(super) units: Vec<Unit>,
+}
+
+/// The function of a unit. A program with one instance only is given its address.
+pub(super) fn unit(shared: &mut Shared<'_>, id: PouId, pou: &Pou, instance: Option<u32>) -> Made {
+    let parameters = pou.registers.iter().take(pou.parameters as usize).map(|ty| value_type(*ty)).collect();
+    let mut emitter = Emitter::new(shared, parameters);
+    emitter.enter(id, pou, pou.parameters, None);
+    if let (Some(offset), Some(frame)) = (instance, emitter.frames.last_mut()) {
+        frame.pointers.insert(INSTANCE, Address::absolute(offset));
     }
-    emitter.finish()
+    emitter.body(pou);
+    let (body, marks, units) = emitter.finish(id);
+    Made { body, marks, units }
 }

@@ -5,7 +5,8 @@ use wasm_encoder::{Instruction, ValType};
 use super::emitter::{Emitter, value_type};
 use super::fault::FaultKind;
 use super::host;
-use crate::ir::{Binary, ElementaryType, Expr, Intrinsic, LocalId, Value};
+use super::registers::Register;
+use crate::ir::{Binary, ElementaryType, Expr, ExprKind, Intrinsic, Value};
 use crate::syntax::Span;
 
 impl Emitter<'_, '_> {
@@ -28,8 +29,8 @@ impl Emitter<'_, '_> {
                 self.shift(kind, operands, ty);
             }
             Intrinsic::Reinterpret => {
-                self.all(operands);
                 if let [operand] = operands {
+                    self.settled(operand);
                     self.widen_to_bits(self.held_as(operand.ty));
                     self.narrow_from_bits(ty);
                 }
@@ -55,7 +56,7 @@ impl Emitter<'_, '_> {
     }
 
     /// Evaluates the operands into registers.
-    fn in_registers(&mut self, operands: &[Expr]) -> Vec<LocalId> {
+    fn in_registers(&mut self, operands: &[Expr]) -> Vec<Register> {
         let mut registers = Vec::with_capacity(operands.len());
         for operand in operands {
             let held = value_type(self.held_as(operand.ty));
@@ -67,7 +68,7 @@ impl Emitter<'_, '_> {
         registers
     }
 
-    fn release_all(&mut self, registers: Vec<LocalId>) {
+    fn release_all(&mut self, registers: Vec<Register>) {
         for register in registers {
             self.release(register);
         }
@@ -76,11 +77,11 @@ impl Emitter<'_, '_> {
     fn absolute(&mut self, operands: &[Expr], ty: ElementaryType) {
         match value_type(ty) {
             ValType::F32 => {
-                self.all(operands);
+                operands.iter().for_each(|operand| self.settled(operand));
                 self.emit(Instruction::F32Abs);
             }
             ValType::F64 => {
-                self.all(operands);
+                operands.iter().for_each(|operand| self.settled(operand));
                 self.emit(Instruction::F64Abs);
             }
             _ if !ty.is_signed() => self.all(operands),
@@ -164,6 +165,12 @@ impl Emitter<'_, '_> {
     /// 2nd ed. Table 25. A count of the type's width or more shifts everything out; a negative
     /// one, which is an error there, does too. Rotation takes the count modulo the width.
     fn shift(&mut self, kind: Intrinsic, operands: &[Expr], ty: ElementaryType) {
+        if let [value, Expr { kind: ExprKind::Constant(Value::Int(count)), .. }] = operands
+            && matches!(kind, Intrinsic::ShiftLeft | Intrinsic::ShiftRight)
+        {
+            self.shift_by_constant(kind == Intrinsic::ShiftLeft, value, *count, ty);
+            return;
+        }
         let registers = self.in_registers(operands);
         if let [value, count] = registers[..] {
             let bits = if ty == ElementaryType::Bool { 1 } else { i64::from(ty.size()) * 8 };
@@ -191,6 +198,22 @@ impl Emitter<'_, '_> {
             }
         }
         self.release_all(registers);
+    }
+
+    fn shift_by_constant(&mut self, left: bool, value: &Expr, count: i128, ty: ElementaryType) {
+        let bits = if ty == ElementaryType::Bool { 1 } else { i128::from(ty.size()) * 8 };
+        self.expression(value);
+        if !(0..bits).contains(&count) {
+            self.emit(Instruction::Drop);
+            self.constant(ty, Value::Int(0));
+        } else if ty.size() == 8 {
+            self.emit(Instruction::I64Const(count as i64));
+            self.emit(if left { Instruction::I64Shl } else { Instruction::I64ShrU });
+        } else if count > 0 {
+            self.emit(Instruction::I32Const(count as i32));
+            self.emit(if left { Instruction::I32Shl } else { Instruction::I32ShrU });
+            self.wrap(ty);
+        }
     }
 
     /// Of 64 bit numbers; the divisor is a constant greater than 0.
@@ -223,20 +246,20 @@ impl Emitter<'_, '_> {
         self.release_all(registers);
     }
 
-    fn rotation_count(&mut self, count: LocalId, bits: i64) {
+    fn rotation_count(&mut self, count: Register, bits: i64) {
         self.get(count);
         self.rotation_count_on_stack(count, bits);
     }
 
     /// Widths are powers of two, so that the remainder is a mask.
-    fn rotation_count_on_stack(&mut self, count: LocalId, bits: i64) {
+    fn rotation_count_on_stack(&mut self, count: Register, bits: i64) {
         self.emit(Instruction::I64Const(bits - 1));
         self.emit(Instruction::I64And);
         self.set(count);
     }
 
     /// Pushes the value shifted by the low bits of `count`.
-    fn shifted(&mut self, value: LocalId, count: LocalId, ty: ElementaryType, left: bool) {
+    fn shifted(&mut self, value: Register, count: Register, ty: ElementaryType, left: bool) {
         self.get(value);
         self.get(count);
         if ty.size() == 8 {

@@ -4,7 +4,8 @@ use wasm_encoder::{Instruction, MemArg, ValType};
 
 use super::emitter::Emitter;
 use super::fault::FaultKind;
-use crate::ir::{Expr, LocalId, MemoryFunction};
+use super::registers::Register;
+use crate::ir::{Expr, MemoryFunction};
 use crate::syntax::Span;
 
 const BYTE: MemArg = MemArg { offset: 0, align: 0, memory_index: 0 };
@@ -31,6 +32,7 @@ impl Emitter<'_, '_> {
                     MemoryFunction::Fill => Instruction::MemoryFill(0),
                     _ => Instruction::MemoryCopy { src_mem: 0, dst_mem: 0 },
                 });
+                self.changed(None);
                 self.get(length);
             }
         }
@@ -38,7 +40,7 @@ impl Emitter<'_, '_> {
     }
 
     /// A fault unless `length` bytes at `address`, which is not NULL, lie in memory.
-    fn require_memory(&mut self, address: LocalId, length: LocalId, span: Span) {
+    fn require_memory(&mut self, address: Register, length: Register, span: Span) {
         self.get(address);
         self.emit(Instruction::I32Eqz);
         self.fault_if(FaultKind::NullReference, span);
@@ -53,7 +55,7 @@ impl Emitter<'_, '_> {
     }
 
     /// Pushes how the first bytes that differ are ordered.
-    fn compare_memory(&mut self, left: LocalId, right: LocalId, length: LocalId) {
+    fn compare_memory(&mut self, left: Register, right: Register, length: Register) {
         let order = self.scratch(ValType::I32);
         self.emit(Instruction::I32Const(0));
         self.set(order);

@@ -1,17 +1,22 @@
 //! Sections, functions and exports of the module.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use wasm_encoder::{
     CodeSection, DataCountSection, DataSection, EntityType, ExportKind, ExportSection, Function, FunctionSection,
     ImportSection, MemorySection, MemoryType, Module, TypeSection, ValType,
 };
 
+use super::budget::{self, BUDGET_EXPORT};
+use super::cost::Costs;
 use super::emitter::{Shared, value_type};
 use super::fault::{FaultTable, FunctionMarks};
+use super::function::Made;
+use super::points::{Point, Points};
 use super::{entry, function, host, text_host};
 use crate::check::Checked;
-use crate::ir::{Pou, TypeTable};
+use crate::ir::{Pou, PouId, TypeTable};
+use crate::syntax::FileId;
 use crate::syntax::ast::PouKind;
 
 /// Name of the exported memory.
@@ -29,23 +34,53 @@ pub(crate) fn entry_export(index: usize, part: usize) -> String {
 pub(crate) struct Compiled {
     pub(crate) wasm: Vec<u8>,
     pub(crate) faults: FaultTable,
+    /// What is noted while it runs.
+    pub(crate) points: Vec<Point>,
+}
+
+/// What the program notes of its execution.
+#[derive(Debug, Clone, Copy)]
+pub(crate) enum Noted<'l> {
+    Nothing,
+    /// All that is not in these files.
+    AllBut(&'l BTreeSet<FileId>),
 }
 
 /// Compiles what has been checked without errors.
-pub(crate) fn compile(checked: &Checked) -> Compiled {
+pub(crate) fn compile(checked: &Checked, noted: Noted<'_>) -> Compiled {
     let first_function = (host::IMPORTS.len() + text_host::IMPORTS.len()) as u32;
     let order = checked.pous.keys().zip(first_function..);
     let functions: BTreeMap<_, _> = order.map(|(id, index)| (*id, index)).collect();
-    let (types, areas, memory_size) = (&checked.types, checked.areas, checked.image.len() as u32);
-    let mut shared = Shared { types, functions, areas, memory_size, data: Vec::new() };
+    let (costs, order) = Costs::new(&checked.pous);
+    let points = match noted {
+        Noted::Nothing => None,
+        Noted::AllBut(library) => Some(Points::new(checked.image.len() as u32, library)),
+    };
+    let mut shared = Shared {
+        points,
+        types: &checked.types,
+        pous: &checked.pous,
+        costs,
+        functions,
+        areas: checked.areas,
+        memory_size: checked.image.len() as u32,
+        data: Vec::new(),
+    };
+    let instances = entry::only_instances(checked);
+    // Callees first: a call must know what it costs.
+    let mut made: BTreeMap<PouId, Made> = BTreeMap::new();
+    for id in order {
+        if let Some(pou) = checked.pous.get(&id) {
+            made.insert(id, function::unit(&mut shared, id, pou, instances.get(&id).copied()));
+        }
+    }
     let mut sections = Sections::default();
     sections.add_imports();
     let mut faults = FaultTable { first_function, functions: Vec::new() };
-    for pou in checked.pous.values() {
+    for (pou, Made { body, marks, units }) in checked.pous.values().zip(made.into_values()) {
         let (parameters, results) = signature(pou, &checked.types);
-        let (body, marks) = function::unit(&mut shared, pou);
         sections.add_function(parameters, results, &body);
-        faults.functions.push(FunctionMarks { name: pou.name.clone(), is_entry: false, marks });
+        faults.functions.push(FunctionMarks { units, is_entry: false, marks });
     }
     for (index, entry) in checked.entries.iter().enumerate() {
         for (part, unit) in entry.units.iter().enumerate() {
@@ -55,7 +90,9 @@ pub(crate) fn compile(checked: &Checked) -> Compiled {
             faults.functions.push(marks);
         }
     }
-    Compiled { wasm: sections.finish(checked.image.len() as u64, &shared), faults }
+    let points = shared.points.as_ref().map_or(0, Points::len);
+    let wasm = sections.finish((checked.image.len() + points) as u64, &shared);
+    Compiled { wasm, faults, points: shared.points.map(Points::into_list).unwrap_or_default() }
 }
 
 fn signature(pou: &Pou, types: &TypeTable) -> (Vec<ValType>, Vec<ValType>) {
@@ -120,13 +157,14 @@ impl Sections {
             page_size_log2: None,
         });
         self.exports.export(MEMORY_EXPORT, ExportKind::Memory, 0);
+        self.exports.export(BUDGET_EXPORT, ExportKind::Global, 0);
         let mut data = DataSection::new();
         for bytes in &shared.data {
             data.passive(bytes.iter().copied());
         }
         let mut module = Module::new();
         module.section(&self.types).section(&self.imports).section(&self.functions);
-        module.section(&memories).section(&self.exports);
+        module.section(&memories).section(&budget::globals()).section(&self.exports);
         module.section(&DataCountSection { count: data.len() });
         module.section(&self.code).section(&data);
         module.finish()

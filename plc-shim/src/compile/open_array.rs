@@ -5,7 +5,8 @@ use wasm_encoder::{Instruction, MemArg, ValType};
 use super::emitter::{Emitter, value_type};
 use super::fault::FaultKind;
 use crate::ir::types::OPEN_BOUNDS;
-use crate::ir::{Expr, LocalId, Place};
+use super::registers::Register;
+use crate::ir::{Expr, Place};
 use crate::syntax::Span;
 
 fn bound(offset: u64) -> MemArg {
@@ -33,7 +34,7 @@ impl Emitter<'_, '_> {
 
     /// `number` becomes `number * count + (index - low)`; a fault unless `index - low < count`. Both
     /// bounds are of 32 bits, so nothing overflows in 64 that passes the comparison.
-    fn open_index(&mut self, bounds: LocalId, number: LocalId, offset: u64, index: &Expr, span: Span) {
+    fn open_index(&mut self, bounds: Register, number: Register, offset: u64, index: &Expr, span: Span) {
         let (count, difference) = (self.scratch(ValType::I64), self.scratch(ValType::I64));
         self.get(bounds);
         self.emit(Instruction::I64Load32S(bound(offset + 4)));

@@ -3,7 +3,8 @@
 use wasm_encoder::{Instruction, MemArg, ValType};
 
 use super::emitter::{Emitter, value_type};
-use crate::ir::{ElementaryType, LocalId, Part, Place, Storage};
+use super::registers::Register;
+use crate::ir::{ElementaryType, Part, Place, Storage};
 
 /// The bits of a value of this type, at the lower end.
 fn mask(ty: ElementaryType) -> u64 {
@@ -17,7 +18,7 @@ impl Emitter<'_, '_> {
     /// Pushes the bits as a value of `ty`.
     pub(super) fn load_part(&mut self, place: &Place, part: Part, ty: ElementaryType) {
         if let Storage::Register(register) = place.storage {
-            self.get(register);
+            self.get(self.register(register));
         } else {
             let offset = self.address(place);
             self.emit(Instruction::I32Load8U(byte(offset)));
@@ -42,6 +43,7 @@ impl Emitter<'_, '_> {
         let wide = value_type(part.whole) == ValType::I64;
         let new = self.scratch(value_type(ty));
         if let Storage::Register(register) = place.storage {
+            let register = self.register(register);
             value(self);
             self.set(new);
             self.get(register);
@@ -65,7 +67,7 @@ impl Emitter<'_, '_> {
     }
 
     /// The whole on the stack with the bits of `new` in their place.
-    fn joined(&mut self, part: Part, wide: bool, ty: ElementaryType, new: LocalId) {
+    fn joined(&mut self, part: Part, wide: bool, ty: ElementaryType, new: Register) {
         self.bits(wide, !(mask(ty) << part.shift));
         self.emit(if wide { Instruction::I64And } else { Instruction::I32And });
         self.get(new);

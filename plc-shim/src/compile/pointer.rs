@@ -10,7 +10,7 @@ use crate::syntax::Span;
 impl Emitter<'_, '_> {
     /// Pushes the address that a reference has, after one comparison: the address less 1 is below the
     /// last at which `target` fits, and NULL less 1 is the greatest of all.
-    pub(super) fn pointer(&mut self, reference: &Expr, target: TypeId, span: Span) {
+    pub(super) fn referred(&mut self, reference: &Expr, target: TypeId, span: Span) {
         let places = self.shared.memory_size.saturating_sub(self.shared.types.size(target));
         let address = self.scratch(ValType::I32);
         self.expression(reference);

@@ -2,71 +2,131 @@
 
 use wasm_encoder::{Instruction, ValType};
 
-use super::emitter::{Emitter, LoopLabels};
+use super::emitter::Emitter;
 use super::fault::FaultKind;
+use super::frame::LoopLabels;
+use super::points::PointKind;
+use super::registers::Register;
 use crate::ir::elementary::Kind;
 use crate::ir::{Binary, ElementaryType, Expr, ForStatement, LocalId, Statement};
 use crate::syntax::Span;
 
+/// A loop's body runs.
+pub(super) const TURN: PointKind = PointKind::Outcome(0);
+/// A loop ends by its own condition.
+pub(super) const DONE: PointKind = PointKind::Outcome(1);
+
 impl Emitter<'_, '_> {
     pub(super) fn while_statement(&mut self, condition: &Expr, body: &[Statement], span: Span) {
-        let exit = self.open_block();
-        let top = self.open_loop();
-        self.mark_statement(span);
-        self.expression(condition);
-        self.emit(Instruction::I32Eqz);
-        self.branch_if(exit);
-        let next = self.open_block();
-        self.loops.push(LoopLabels { exit, next });
-        self.statements(body);
-        self.loops.pop();
-        self.close();
-        self.branch(top);
-        self.close();
-        self.close();
+        self.repeated(|emitter| {
+            let exit = emitter.open_block();
+            let done = emitter.open_block();
+            let top = emitter.open_loop();
+            let cost = emitter.cost;
+            emitter.mark_statement(span);
+            emitter.expression(condition);
+            emitter.emit(Instruction::I32Eqz);
+            emitter.branch_if(done);
+            emitter.cover(TURN, span);
+            emitter.turn(exit, body);
+            emitter.pay_turn(cost, span);
+            emitter.branch(top);
+            emitter.close();
+            emitter.close();
+            emitter.cover(DONE, span);
+            emitter.close();
+        });
     }
 
     pub(super) fn repeat_statement(&mut self, body: &[Statement], until: &Expr, span: Span) {
-        let exit = self.open_block();
-        let top = self.open_loop();
-        self.mark_statement(span);
-        let next = self.open_block();
-        self.loops.push(LoopLabels { exit, next });
-        self.statements(body);
-        self.loops.pop();
-        self.close();
-        self.mark_statement(until.span);
-        self.expression(until);
-        self.emit(Instruction::I32Eqz);
-        self.branch_if(top);
-        self.close();
-        self.close();
+        self.repeated(|emitter| {
+            let exit = emitter.open_block();
+            let done = emitter.open_block();
+            let top = emitter.open_loop();
+            let cost = emitter.cost;
+            emitter.mark_statement(span);
+            emitter.turn(exit, body);
+            emitter.pay_turn(cost, span);
+            emitter.mark_statement(until.span);
+            emitter.expression(until);
+            emitter.branch_if(done);
+            emitter.cover(TURN, span);
+            emitter.branch(top);
+            emitter.close();
+            emitter.close();
+            emitter.cover(DONE, span);
+            emitter.close();
+        });
     }
 
-    /// The last value and the step are computed once, before the variable is set. Whether
-    /// another turn follows is decided from the distance to the last value, so that a variable
-    /// at its type's limit ends the loop and does not wrap into another round.
+    /// A loop that pays for its turns.
+    fn repeated(&mut self, turns: impl Fn(&mut Self)) {
+        let survey = self.survey(&turns);
+        let pins = self.enter_loop(&survey);
+        let opened = self.open_budget();
+        turns(self);
+        if opened {
+            self.close_budget();
+        }
+        self.leave_loop(pins);
+    }
+
+    /// The body, with CONTINUE leading behind it.
+    pub(super) fn turn(&mut self, exit: super::emitter::Label, body: &[Statement]) {
+        let next = self.open_block();
+        if let Some(frame) = self.frames.last_mut() {
+            frame.loops.push(LoopLabels { exit, next });
+        }
+        self.statements(body);
+        if let Some(frame) = self.frames.last_mut() {
+            frame.loops.pop();
+        }
+        self.close();
+        // CONTINUE may have come here from anywhere.
+        self.known = super::known::Known::default();
+    }
+
+    /// The last value and the step are computed once, before the variable is set.
     pub(super) fn for_statement(&mut self, inner: &ForStatement, span: Span) {
         let ty = self.held_as(inner.variable.ty);
+        let survey = self.survey_body(inner);
+        if let Some(count) = self.counted(inner, ty, &survey) {
+            self.counted_loop(inner, &count, survey, span);
+            return;
+        }
+        let survey = self.survey(&|emitter: &mut Self| emitter.turns_of_any(inner, ty, span));
+        let (last, step) = (self.register(inner.last), self.register(inner.step));
         self.widened(&inner.to, ty);
-        self.set(inner.last);
+        self.set(last);
         self.widened(&inner.by, ty);
-        self.set(inner.step);
+        self.set(step);
         self.store(&inner.variable, |emitter| emitter.expression(&inner.from));
-        self.get(inner.step);
+        self.get(step);
         self.emit(Instruction::I64Eqz);
         self.fault_if(FaultKind::ZeroStep, inner.by.span);
+        let pins = self.enter_loop(&survey);
+        let opened = self.open_budget();
+        self.turns_of_any(inner, ty, span);
+        if opened {
+            self.close_budget();
+        }
+        self.leave_loop(pins);
+    }
+
+    /// Whether another turn follows is decided from the distance to the last value, so that a
+    /// variable at its type's limit ends the loop and does not wrap into another round.
+    fn turns_of_any(&mut self, inner: &ForStatement, ty: ElementaryType, span: Span) {
         let exit = self.open_block();
+        let done = self.open_block();
         let top = self.open_loop();
+        let cost = self.cost;
         self.mark_statement(span);
         self.beyond(inner, ty);
-        self.branch_if(exit);
-        let next = self.open_block();
-        self.loops.push(LoopLabels { exit, next });
-        self.statements(&inner.body);
-        self.loops.pop();
-        self.close();
+        self.branch_if(done);
+        self.cover(TURN, span);
+        self.turn(exit, &inner.body);
         self.mark_statement(span);
+        self.pay_turn(cost, span);
         let finished = self.scratch(ValType::I32);
         self.last_turn(inner, ty);
         self.set(finished);
@@ -77,6 +137,8 @@ impl Emitter<'_, '_> {
         self.release(finished);
         self.close();
         self.close();
+        self.cover(DONE, span);
+        self.close();
     }
 
     /// Pushes an integer of type `ty` as 64 bits.
@@ -85,7 +147,7 @@ impl Emitter<'_, '_> {
         self.extend(ty);
     }
 
-    fn extend(&mut self, ty: ElementaryType) {
+    pub(super) fn extend(&mut self, ty: ElementaryType) {
         if ty.size() < 8 {
             self.emit(match ty.kind() {
                 Kind::Signed => Instruction::I64ExtendI32S,
@@ -102,7 +164,7 @@ impl Emitter<'_, '_> {
     /// Pushes whether the step is negative.
     fn downwards(&mut self, step: LocalId, ty: ElementaryType) {
         if ty.kind() == Kind::Signed {
-            self.get(step);
+            self.get(self.register(step));
             self.emit(Instruction::I64Const(0));
             self.emit(Instruction::I64LtS);
         } else {
@@ -114,12 +176,13 @@ impl Emitter<'_, '_> {
     fn beyond(&mut self, inner: &ForStatement, ty: ElementaryType) {
         let signed = ty.kind() == Kind::Signed;
         let variable = self.scratch(ValType::I64);
+        let last = self.register(inner.last);
         self.widened_variable(inner, ty);
         self.tee(variable);
-        self.get(inner.last);
+        self.get(last);
         self.emit(if signed { Instruction::I64LtS } else { Instruction::I64LtU });
         self.get(variable);
-        self.get(inner.last);
+        self.get(last);
         self.emit(if signed { Instruction::I64GtS } else { Instruction::I64GtU });
         self.downwards(inner.step, ty);
         self.emit(Instruction::Select);
@@ -129,10 +192,11 @@ impl Emitter<'_, '_> {
     /// Pushes whether the distance to the last value is less than the step.
     fn last_turn(&mut self, inner: &ForStatement, ty: ElementaryType) {
         let variable = self.scratch(ValType::I64);
+        let (last, step) = (self.register(inner.last), self.register(inner.step));
         self.widened_variable(inner, ty);
         self.set(variable);
-        self.distance_is_short(inner.last, variable, inner.step, false);
-        self.distance_is_short(variable, inner.last, inner.step, true);
+        self.distance_is_short(last, variable, step, false);
+        self.distance_is_short(variable, last, step, true);
         // `select` takes the first if the condition holds.
         let (up, down) = (self.scratch(ValType::I32), self.scratch(ValType::I32));
         self.set(down);
@@ -144,13 +208,13 @@ impl Emitter<'_, '_> {
         // A body that changed the variable past the last value ends the loop too.
         self.beyond(inner, ty);
         self.emit(Instruction::I32Or);
-        for local in [variable, up, down] {
-            self.release(local);
+        for register in [variable, up, down] {
+            self.release(register);
         }
     }
 
     /// Pushes `high - low < |step|`, unsigned: the distance of two 64 bit numbers fits.
-    fn distance_is_short(&mut self, high: LocalId, low: LocalId, step: LocalId, negative: bool) {
+    fn distance_is_short(&mut self, high: Register, low: Register, step: Register, negative: bool) {
         self.get(high);
         self.get(low);
         self.emit(Instruction::I64Sub);
@@ -167,7 +231,7 @@ impl Emitter<'_, '_> {
     /// Pushes the variable's next value.
     fn stepped(&mut self, inner: &ForStatement, ty: ElementaryType) {
         self.load(&inner.variable);
-        self.get(inner.step);
+        self.get(self.register(inner.step));
         if ty.size() < 8 {
             self.emit(Instruction::I32WrapI64);
         }

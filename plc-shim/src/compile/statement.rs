@@ -4,27 +4,28 @@ use std::sync::Arc;
 
 use wasm_encoder::Instruction;
 
+use super::address::Address;
 use super::emitter::Emitter;
 use super::fault::Callee;
-use crate::ir::elementary::Kind;
+use super::points::PointKind;
 use crate::ir::{
-    CaseStatement, ElementaryType, Expr, IfBranch, InstanceCall, LocalId, Place, Statement, StatementKind, Storage,
-    TypeTable, Value,
+    Expr, ExprKind, IfBranch, InstanceCall, Intrinsic, Place, Statement, StatementKind, Storage, TypeTable,
 };
+use crate::syntax::Span;
 
 impl Emitter<'_, '_> {
     pub(super) fn statements(&mut self, list: &[Statement]) {
         for statement in list {
+            self.sweep();
             self.mark_statement(statement.span);
+            self.cover(PointKind::Statement, statement.span);
             self.statement(statement);
         }
     }
 
     fn statement(&mut self, statement: &Statement) {
         match &statement.kind {
-            StatementKind::Assign(target, value) => {
-                self.store(target, |emitter| emitter.expression(value));
-            }
+            StatementKind::Assign(target, value) => self.assign(target, value),
             StatementKind::Copy(target, source) => self.copy(target, source),
             StatementKind::Bind(pointer, place) => {
                 self.store(pointer, |emitter| emitter.full_address(place));
@@ -37,8 +38,8 @@ impl Emitter<'_, '_> {
                 }
             }
             StatementKind::CallInstance(call) => self.call_instance(call),
-            StatementKind::If(branches, otherwise) => self.if_statement(branches, otherwise),
-            StatementKind::Case(inner) => self.case_statement(inner),
+            StatementKind::If(branches, otherwise) => self.if_statement(branches, otherwise, statement.span),
+            StatementKind::Case(inner) => self.case_statement(inner, statement.span),
             StatementKind::For(inner) => self.for_statement(inner, statement.span),
             StatementKind::While(condition, body) => {
                 self.while_statement(condition, body, statement.span);
@@ -46,21 +47,37 @@ impl Emitter<'_, '_> {
             StatementKind::Repeat(body, until) => {
                 self.repeat_statement(body, until, statement.span);
             }
-            StatementKind::Exit => {
-                if let Some(labels) = self.loops.last().copied() {
-                    self.branch(labels.exit);
+            StatementKind::Exit => self.leave_to(|labels| labels.exit),
+            StatementKind::Continue => self.leave_to(|labels| labels.next),
+            StatementKind::Return => self.return_statement(),
+        }
+    }
+
+    fn assign(&mut self, target: &Place, value: &Expr) {
+        self.store(target, |emitter| emitter.settled(value));
+    }
+
+    /// True if a real value is computed: if it is NaN, the machine has chosen which. What is
+    /// fetched, chosen or has its sign changed keeps its bits; variables never hold such a NaN.
+    pub(super) fn may_be_any_nan(&self, expr: &Expr) -> bool {
+        let real = |expr: &Expr| self.held_as(expr.ty).is_real();
+        real(expr)
+            && match &expr.kind {
+                ExprKind::Constant(_) | ExprKind::Load(_) | ExprKind::Call(_) | ExprKind::Unary(..) => false,
+                ExprKind::Intrinsic(Intrinsic::Reinterpret | Intrinsic::Abs, _) => false,
+                ExprKind::Intrinsic(Intrinsic::Select | Intrinsic::Multiplex, operands) => {
+                    operands.iter().any(|operand| self.may_be_any_nan(operand))
                 }
+                ExprKind::Convert(_, operand) => real(operand),
+                _ => true,
             }
-            StatementKind::Continue => {
-                if let Some(labels) = self.loops.last().copied() {
-                    self.branch(labels.next);
-                }
-            }
-            StatementKind::Return => {
-                if let Some(end) = self.end {
-                    self.branch(end);
-                }
-            }
+    }
+
+    /// Pushes a value; a NaN is one that is the same on every machine.
+    pub(super) fn settled(&mut self, expr: &Expr) {
+        self.expression(expr);
+        if self.may_be_any_nan(expr) {
+            self.canonical(self.held_as(expr.ty));
         }
     }
 
@@ -70,12 +87,14 @@ impl Emitter<'_, '_> {
         let size = self.shared.types.size(target.ty);
         self.emit(Instruction::I32Const(size as i32));
         self.emit(Instruction::MemoryCopy { src_mem: 0, dst_mem: 0 });
+        self.changed(self.extent(target));
     }
 
     fn initialise(&mut self, place: &Place, image: &Arc<[u8]>) {
         self.full_address(place);
         self.emit(Instruction::I32Const(0));
         self.emit(Instruction::I32Const(image.len() as i32));
+        self.changed(self.extent(place));
         if image.iter().all(|byte| *byte == 0) {
             self.emit(Instruction::MemoryFill(0));
             return;
@@ -86,26 +105,49 @@ impl Emitter<'_, '_> {
     }
 
     fn call_instance(&mut self, call: &InstanceCall) {
-        self.full_address(&call.instance);
-        self.set(call.pointer);
-        // The inputs and outputs are part of the call: a fault in one points at itself.
-        for input in &call.inputs {
-            self.statement(input);
+        let address = self.instance_address(call);
+        if let Some(frame) = self.frames.last_mut() {
+            frame.pointers.insert(call.pointer, address);
         }
-        self.get(call.pointer);
+        // The inputs and outputs are part of the call: a fault in one points at itself.
+        self.side_statements(&call.inputs);
         let global = matches!(call.instance.storage, Storage::Absolute(_) | Storage::AbsolutePointer(_));
         let callee = if global { Callee::Global } else { Callee::Inner };
-        self.mark_call(callee, call.instance.span);
-        self.call(call.pou);
-        for output in &call.outputs {
-            self.statement(output);
+        match self.inlinable(call.pou) {
+            Some(pou) => self.inline_instance(call, pou, callee, address),
+            None => {
+                self.push_address(address);
+                self.call(call.pou, callee, call.instance.span);
+            }
         }
+        self.side_statements(&call.outputs);
     }
 
-    pub(super) fn call(&mut self, pou: crate::ir::PouId) {
-        match self.shared.functions.get(&pou).copied() {
-            Some(index) => self.emit(Instruction::Call(index)),
-            None => self.emit(Instruction::Unreachable),
+    /// The instance's address; one that is not known goes to the call's register.
+    fn instance_address(&mut self, call: &InstanceCall) -> Address {
+        if let Some(address) = self.fixed_address(&call.instance) {
+            return address;
+        }
+        let extent = self.extent(&call.instance);
+        self.full_address(&call.instance);
+        let register = self.register(call.pointer);
+        self.set(register);
+        self.known.forget_base(register);
+        self.roots.lead(register, extent);
+        Address::of_register(register)
+    }
+
+    /// Pushes an address as a number.
+    pub(super) fn push_address(&mut self, address: Address) {
+        match address.base {
+            super::address::Base::Memory => self.emit(Instruction::I32Const(address.offset as i32)),
+            super::address::Base::Register(register) => {
+                self.get(register);
+                if address.offset > 0 {
+                    self.emit(Instruction::I32Const(address.offset as i32));
+                    self.emit(Instruction::I32Add);
+                }
+            }
         }
     }
 
@@ -116,67 +158,66 @@ impl Emitter<'_, '_> {
     }
 
     /// Branches lie side by side, so that many of them are not nested deep.
-    fn if_statement(&mut self, branches: &[IfBranch], otherwise: &[Statement]) {
+    fn if_statement(&mut self, branches: &[IfBranch], otherwise: &[Statement], span: Span) {
+        if !self.is_covered() && self.choice(branches, otherwise) {
+            return;
+        }
         let end = self.open_block();
-        for branch in branches {
+        self.held += 1;
+        let mut after = None;
+        for (outcome, branch) in (0..).zip(branches) {
             let next = self.open_block();
             self.expression(&branch.condition);
             self.emit(Instruction::I32Eqz);
             self.branch_if(next);
+            let before = self.known.clone();
+            self.cover(PointKind::Outcome(outcome), span);
             self.statements(&branch.body);
             self.branch(end);
+            self.join(&mut after, before);
             self.close();
         }
+        self.cover(PointKind::Outcome(branches.len() as u32), span);
         self.statements(otherwise);
+        self.meet(after);
+        self.held -= 1;
         self.close();
     }
 
-    fn case_statement(&mut self, inner: &CaseStatement) {
-        let ty = self.held_as(inner.selector.ty);
-        self.expression(&inner.selector);
-        self.set(inner.register);
-        let end = self.open_block();
-        for arm in &inner.arms {
-            let next = self.open_block();
-            self.emit(Instruction::I32Const(0));
-            for (low, high) in &arm.labels {
-                self.within(inner.register, ty, *low, *high);
-                self.emit(Instruction::I32Or);
-            }
-            self.emit(Instruction::I32Eqz);
-            self.branch_if(next);
-            self.statements(&arm.body);
-            self.branch(end);
-            self.close();
+    fn leave_to(&mut self, label: impl FnOnce(super::frame::LoopLabels) -> super::emitter::Label) {
+        if let Some(labels) = self.frames.last().and_then(|frame| frame.loops.last()).copied() {
+            self.branch(label(labels));
+            self.known.leave();
+            self.leaves = true;
         }
-        self.statements(&inner.otherwise);
-        self.close();
     }
 
-    /// Pushes whether the register lies in `low..=high`.
-    fn within(&mut self, register: LocalId, ty: ElementaryType, low: i128, high: i128) {
-        let wide = ty.size() == 8;
-        let signed = ty.kind() == Kind::Signed;
-        self.get(register);
-        self.constant(ty, Value::Int(low));
-        if low == high {
-            self.emit(if wide { Instruction::I64Eq } else { Instruction::I32Eq });
-            return;
+    fn return_statement(&mut self) {
+        let Some(frame) = self.frames.last_mut() else { return };
+        let Some(end) = frame.end else { return };
+        match &mut frame.returned {
+            Some(returned) => returned.meet(&self.known),
+            None => frame.returned = Some(self.known.clone()),
         }
-        self.emit(match (wide, signed) {
-            (false, true) => Instruction::I32GeS,
-            (false, false) => Instruction::I32GeU,
-            (true, true) => Instruction::I64GeS,
-            (true, false) => Instruction::I64GeU,
-        });
-        self.get(register);
-        self.constant(ty, Value::Int(high));
-        self.emit(match (wide, signed) {
-            (false, true) => Instruction::I32LeS,
-            (false, false) => Instruction::I32LeU,
-            (true, true) => Instruction::I64LeS,
-            (true, false) => Instruction::I64LeU,
-        });
-        self.emit(Instruction::I32And);
+        self.put_budget_back();
+        self.branch(end);
+        self.known.leave();
+        self.leaves = true;
+    }
+
+    /// One of several ways ends here; the next begins with what was known `before` it.
+    pub(super) fn join(&mut self, after: &mut Option<super::known::Known>, before: super::known::Known) {
+        let here = std::mem::replace(&mut self.known, before);
+        match after {
+            Some(after) => after.meet(&here),
+            None => *after = Some(here),
+        }
+    }
+
+    /// The ways that ended before come together with this one.
+    pub(super) fn meet(&mut self, after: Option<super::known::Known>) {
+        if let Some(after) = after {
+            self.known.meet(&after);
+        }
     }
 }

@@ -7,6 +7,9 @@ use super::text_host::TextImport;
 use crate::ir::text::{Edit, TextCall, TextFunction, TextShape};
 use crate::ir::{ElementaryType, Expr};
 
+/// What a call of the host costs, in instructions.
+const CALL_COST: u64 = 20;
+
 /// Number of a type in calls of the host.
 fn type_number(ty: ElementaryType) -> i32 {
     ty as i32
@@ -30,8 +33,18 @@ impl Emitter<'_, '_> {
         }
     }
 
+    /// The host pays for long strings from the budget.
     fn host(&mut self, import: TextImport) {
+        self.put_budget_back();
         self.emit(Instruction::Call(import.index()));
+        self.charge(CALL_COST);
+        self.take_budget();
+    }
+
+    /// The target of a function that makes a string has been written.
+    fn text_made(&mut self, call: &TextCall) {
+        let extent = call.target.as_ref().and_then(|target| self.extent(target));
+        self.changed(extent);
     }
 
     fn shape_of(&self, expr: &Expr) -> TextShape {
@@ -86,6 +99,7 @@ impl Emitter<'_, '_> {
         }
         self.text_target(call);
         self.host(TextImport::Edit);
+        self.text_made(call);
     }
 
     fn text_target(&mut self, call: &TextCall) {
@@ -98,11 +112,12 @@ impl Emitter<'_, '_> {
     fn format(&mut self, ty: ElementaryType, call: &TextCall) {
         self.emit(Instruction::I32Const(type_number(ty)));
         for operand in &call.operands {
-            self.expression(operand);
+            self.settled(operand);
         }
         self.widen_to_bits(ty);
         self.text_target(call);
         self.host(TextImport::Format);
+        self.text_made(call);
     }
 
     /// Widens the value on the stack to 64 bits.

@@ -10,7 +10,7 @@ use super::value::Value;
 use crate::syntax::Span;
 
 /// A register of a unit's function: a parameter or a local of WebAssembly.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) struct LocalId(pub(crate) u32);
 
 /// An expression. Of elementary type it yields a value, of any other the address of one.

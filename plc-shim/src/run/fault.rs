@@ -7,7 +7,7 @@ use wasmtime::Trap;
 use super::VirtualTime;
 use super::machine::Trapped;
 use crate::application::Application;
-use crate::compile::fault::{Callee, FaultKind, FunctionMarks};
+use crate::compile::fault::{Callee, FaultKind, FunctionMarks, Mark};
 use crate::syntax::Span;
 
 /// The PLC stopped because of an error in its program.
@@ -74,10 +74,10 @@ pub(super) fn explain(application: &Application, trapped: &Trapped, virtual_time
     let table = application.faults();
     let frames = trapped.frames.iter();
     let known: Vec<Frame<'_>> = frames.filter_map(|(index, offset)| Some((table.function(*index)?, *offset))).collect();
-    let (kind, span) = cause(trapped.trap, known.first().copied());
-    let mut sites = sites(application, &known);
+    let (kind, mark) = cause(trapped.trap, known.first().copied());
+    let mut sites = sites(application, &active(&known, mark));
     let mut at = sites.pop().unwrap_or_default();
-    place(application, span, &mut at);
+    place(application, mark.map(|mark| mark.span), &mut at);
     sites.reverse();
     sites.truncate(MAX_CALLERS);
     PlcFault { kind, at, callers: sites, virtual_time }
@@ -86,27 +86,52 @@ pub(super) fn explain(application: &Application, trapped: &Trapped, virtual_time
 /// A function that was active, and the offset in its body.
 type Frame<'a> = (&'a FunctionMarks, Option<u32>);
 
-/// The units that were active, the outermost first. What a task runs is no unit of its own, unless
-/// the fault is in it.
-fn sites(application: &Application, frames: &[Frame<'_>]) -> Vec<FaultSite> {
+/// A unit that was active, and the call that it had made.
+struct Active<'a> {
+    unit: &'a str,
+    is_entry: bool,
+    made: Option<(Callee, Span)>,
+}
+
+/// The units that were active, the innermost first: in each function those put in the place of
+/// calls, then its own. `mark` is where the innermost function stopped.
+fn active<'a>(frames: &[Frame<'a>], mark: Option<Mark>) -> Vec<Active<'a>> {
+    let mut found = Vec::new();
+    for (index, (function, offset)) in frames.iter().enumerate() {
+        let call = offset.and_then(|offset| function.call_at(offset)).filter(|_| index > 0);
+        let mut made = call.map(|(callee, mark)| (callee, mark.span));
+        let stopped = if index == 0 { mark } else { call.map(|(_, mark)| mark) };
+        let mut next = Some(stopped.map_or(0, |mark| mark.unit));
+        while let Some(unit) = next.and_then(|unit| function.units.get(unit as usize)) {
+            let is_entry = function.is_entry && unit.caller.is_none();
+            found.push(Active { unit: &unit.name, is_entry, made });
+            made = unit.caller.map(|(_, callee, span)| (callee, span));
+            next = unit.caller.map(|(caller, _, _)| caller);
+        }
+    }
+    found
+}
+
+/// The sites of units that were active, the outermost first. What a task runs is no unit of its
+/// own, unless the fault is in it.
+fn sites(application: &Application, active: &[Active<'_>]) -> Vec<FaultSite> {
     let mut sites = Vec::new();
     let mut instance = String::new();
     let mut call: Option<(Callee, Span)> = None;
-    for (index, (function, offset)) in frames.iter().enumerate().rev() {
+    for (index, Active { unit, is_entry, made }) in active.iter().enumerate().rev() {
         let name = |span| application.sources().text(span).split_whitespace().collect::<String>();
         instance = match call {
-            _ if function.is_entry => function.name.clone(),
+            _ if *is_entry => (*unit).to_owned(),
             Some((Callee::Inner, span)) => format!("{instance}.{}", name(span)),
             Some((Callee::Global, span)) => name(span),
-            Some((Callee::Function, _)) => function.name.clone(),
+            Some((Callee::Function, _)) => (*unit).to_owned(),
             None => instance,
         };
-        let made = offset.and_then(|offset| function.call_at(offset));
-        call = if function.is_entry { None } else { made };
-        if function.is_entry && index > 0 {
+        call = if *is_entry { None } else { *made };
+        if *is_entry && index > 0 {
             continue;
         }
-        let mut site = FaultSite { pou: function.name.clone(), instance: instance.clone(), ..FaultSite::default() };
+        let mut site = FaultSite { pou: (*unit).to_owned(), instance: instance.clone(), ..FaultSite::default() };
         place(application, made.map(|(_, span)| span), &mut site);
         sites.push(site);
     }
@@ -120,14 +145,14 @@ fn place(application: &Application, span: Option<Span>, site: &mut FaultSite) {
     (site.line, site.column) = (place.line, place.column);
 }
 
-fn cause(trap: Option<Trap>, innermost: Option<Frame<'_>>) -> (FaultKind, Option<Span>) {
+fn cause(trap: Option<Trap>, innermost: Option<Frame<'_>>) -> (FaultKind, Option<Mark>) {
     let statement = innermost.and_then(|(function, offset)| function.statement_before(offset?));
     match trap {
         Some(Trap::OutOfFuel) => (FaultKind::EndlessLoop, statement),
         Some(Trap::StackOverflow) => (FaultKind::CallTooDeep, statement),
         Some(Trap::MemoryOutOfBounds) => (FaultKind::InvalidPointer, statement),
         _ => match innermost.and_then(|(function, offset)| function.fault_at(offset?)) {
-            Some((kind, span)) => (kind, Some(span)),
+            Some((kind, mark)) => (kind, Some(mark)),
             None => (FaultKind::Internal, statement),
         },
     }

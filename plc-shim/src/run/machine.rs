@@ -1,17 +1,18 @@
 //! The compiled module with its memory, in wasmtime.
 
-use wasmtime::{Config, Engine, Instance, Linker, Memory, Module, Store, Trap, TypedFunc, WasmBacktrace};
+use wasmtime::{Config, Engine, Global, Instance, Linker, Memory, Module, Store, Trap, TypedFunc, Val, WasmBacktrace};
 
 use super::plan::RunError;
 use super::text::link::{HostState, link};
 use crate::application::Application;
-use crate::compile::{MEMORY_EXPORT, entry_export, host};
+use crate::compile::{BUDGET_EXPORT, MEMORY_EXPORT, entry_export, host};
 
 /// One instance of the module.
 pub(super) struct Machine {
     store: Store<HostState>,
     memory: Memory,
-    /// Bytes in use; the rest of the last page is never touched.
+    budget: Global,
+    /// Bytes in use; behind them the program notes what it executes, if that is asked for.
     size: usize,
     /// The functions in a row of each thing that tasks can run.
     entries: Vec<Vec<TypedFunc<(), ()>>>,
@@ -27,9 +28,9 @@ pub(super) struct Trapped {
 
 fn engine() -> Result<Engine, String> {
     let mut config = Config::new();
-    // Fuel, unlike an epoch, stops an endless loop at the same instruction in every run.
-    config.consume_fuel(true);
-    config.cranelift_nan_canonicalization(true);
+    // The module counts its instructions itself and makes every NaN that it stores the same one:
+    // both are needed at few places only.
+    config.cranelift_nan_canonicalization(false);
     config.relaxed_simd_deterministic(true);
     Engine::new(&config).map_err(|error| error.to_string())
 }
@@ -48,12 +49,14 @@ impl Machine {
         let instance = instance.map_err(|error| module_error(&error))?;
         let memory = instance.get_memory(&mut store, MEMORY_EXPORT);
         let memory = memory.ok_or_else(|| RunError::Module("memory is missing".to_owned()))?;
-        store.data_mut().memory = Some(memory);
+        let budget = instance.get_global(&mut store, BUDGET_EXPORT);
+        let budget = budget.ok_or_else(|| RunError::Module("the budget is missing".to_owned()))?;
+        *store.data_mut() = HostState { memory: Some(memory), budget: Some(budget) };
         let size = application.initial_memory().len();
         let parts = application.entry_parts().enumerate();
         let entries = parts.map(|(index, count)| entry(&instance, &mut store, index, count));
         let entries = entries.collect::<Result<_, _>>()?;
-        Ok(Self { store, memory, size, entries })
+        Ok(Self { store, memory, budget, size, entries })
     }
 
     pub(super) fn memory(&self) -> &[u8] {
@@ -67,11 +70,17 @@ impl Machine {
         &mut all[..size]
     }
 
+    /// The bytes behind those in use, which the program may set and nobody else reads.
+    pub(super) fn notes(&self) -> &[u8] {
+        self.memory.data(&self.store).get(self.size..).unwrap_or(&[])
+    }
+
     /// Gives the budget for the calls up to the next refill.
     pub(super) fn refuel(&mut self, fuel: u64) {
-        // Fails only if the engine does not count fuel, and this one does.
-        let counted = self.store.set_fuel(fuel);
-        debug_assert!(counted.is_ok(), "the engine counts fuel");
+        let budget = Val::I64(i64::try_from(fuel).unwrap_or(i64::MAX));
+        // Fails only if the global were of another type or could not be set.
+        let set = self.budget.set(&mut self.store, budget);
+        debug_assert!(set.is_ok(), "the module has a budget");
     }
 
     pub(super) fn parts(&self, entry: usize) -> usize {

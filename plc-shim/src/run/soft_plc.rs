@@ -11,6 +11,7 @@ use super::scheduler::Scheduler;
 use super::state::{self, RestoreError, State};
 use crate::application::{Application, UnknownVariable, Variable};
 use crate::check::VIRTUAL_TIME_OFFSET;
+use crate::coverage::Coverage;
 
 /// Runs an application's programs by a task plan, one scan at a time.
 pub struct SoftPlc {
@@ -198,6 +199,14 @@ impl SoftPlc {
     /// fault; what lies outside of variables is the PLC's own.
     pub fn memory_mut(&mut self) -> &mut [u8] {
         self.machine.memory_mut()
+    }
+
+    /// What has been executed since the PLC was made, whatever was started or restored meanwhile;
+    /// nothing unless the application was compiled for it.
+    pub fn coverage(&self) -> Option<Coverage> {
+        let points = self.application.points();
+        let sources = self.application.sources();
+        (!points.is_empty()).then(|| Coverage::new(sources, points, self.machine.notes()))
     }
 
     /// The complete state as bytes.

@@ -3,7 +3,9 @@
 mod bit_strings;
 mod configurations;
 mod conversions;
+mod coverage;
 mod dates;
+mod depth;
 mod diagnostics;
 mod dialects;
 mod direct_addresses;

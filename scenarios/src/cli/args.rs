@@ -12,6 +12,7 @@ use onescan_server::signal::{ClientName, SignalName};
 use onescan_server::time::{TimeSpan, VirtualTime};
 
 use crate::check::CheckFormat;
+use crate::run::coverage::CoverageFormat;
 use crate::run::{Format, Mode, Transport};
 
 /// Deterministic lockstep virtual commissioning.
@@ -91,6 +92,12 @@ pub struct RunArgs {
     /// A signal to draw; may be given several times [default: the scenario's choice]
     #[arg(long = "signal", value_name = "NAME", requires = "plot", value_parser = signal_name)]
     pub signals: Vec<SignalName>,
+    /// Write which statements and branches of the soft PLCs were executed, in all runs together
+    #[arg(long, value_name = "FILE")]
+    pub coverage: Option<PathBuf>,
+    /// `lcov` or `cobertura` [default: by the file's name: `.xml` is Cobertura]
+    #[arg(long, value_enum, requires = "coverage", value_name = "FORMAT")]
+    pub coverage_format: Option<CoverageArg>,
     /// Where clients and operators may connect [default: a free port of this machine, if one is needed]
     #[arg(long, value_name = "ADDRESS:PORT")]
     pub listen: Option<SocketAddr>,
@@ -316,6 +323,24 @@ impl From<FormatArg> for Format {
         match arg {
             FormatArg::Human => Self::Human,
             FormatArg::Json => Self::Json,
+        }
+    }
+}
+
+/// See [`CoverageFormat`].
+#[derive(Clone, Copy, Debug, ValueEnum)]
+pub enum CoverageArg {
+    /// An lcov tracefile
+    Lcov,
+    /// A Cobertura report
+    Cobertura,
+}
+
+impl From<CoverageArg> for CoverageFormat {
+    fn from(arg: CoverageArg) -> Self {
+        match arg {
+            CoverageArg::Lcov => Self::Lcov,
+            CoverageArg::Cobertura => Self::Cobertura,
         }
     }
 }

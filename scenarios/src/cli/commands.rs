@@ -11,6 +11,7 @@ use crate::check::{self, CheckConfig, Warnings};
 use crate::instrument::{Destination, Diff, Direction, InstrumentConfig};
 use crate::plant;
 use crate::run::config::SaveRequest;
+use crate::run::coverage::CoverageRequest;
 use crate::run::error::{ExitCode, RunError};
 use crate::run::interrupt::Interrupt;
 use crate::run::{Format, RunConfig, execute};
@@ -63,6 +64,7 @@ fn config(args: RunArgs) -> RunConfig {
         format,
         plot: args.plot,
         signals: args.signals,
+        coverage: args.coverage.map(|path| CoverageRequest::new(path, args.coverage_format.map(Into::into))),
         listen: args.listen,
         join_timeout: Duration::from_nanos(args.join_timeout.as_nanos()),
         reply_timeout: Duration::from_nanos(args.reply_timeout.as_nanos()),

@@ -8,6 +8,7 @@ use onescan_server::pacing::Pace;
 use onescan_server::signal::{SignalName, did_you_mean};
 use onescan_server::time::VirtualTime;
 
+use super::coverage::CoverageRequest;
 use super::error::RunError;
 use crate::scenario::Scenario;
 use crate::scenario::file::ClientFile;
@@ -76,6 +77,8 @@ pub struct RunConfig {
     pub plot: Option<PathBuf>,
     /// The signals of the plot; the scenario's choice if empty.
     pub signals: Vec<SignalName>,
+    /// A coverage report to write.
+    pub coverage: Option<CoverageRequest>,
     /// Where clients and operators may connect.
     pub listen: Option<SocketAddr>,
     /// How long to wait for clients to join.
@@ -119,6 +122,10 @@ impl RunConfig {
         if let Some(save) = self.save.as_ref().filter(|save| save.at >= self.end(scenario)) {
             let message = format!("--save-at {} is not before the end of the run at {}", save.at, self.end(scenario));
             return Err(RunError::usage(message, Some(format!("the step is {step}"))));
+        }
+        if self.coverage.is_some() && self.transport == Transport::Tcp {
+            let help = "what a client in another process executes is not seen here".to_owned();
+            return Err(RunError::usage("--coverage means nothing with --transport tcp".to_owned(), Some(help)));
         }
         match self.mode {
             Mode::Lockstep => Ok(()),

@@ -3,6 +3,7 @@
 //! | module | subject |
 //! |---|---|
 //! | [`config`] | what is asked for |
+//! | [`coverage`] | which statements and branches were executed |
 //! | [`error`] | why nothing came of it |
 //! | [`lockstep`] | one run in lockstep |
 //! | [`processes`] | clients as processes of their own |
@@ -15,6 +16,7 @@
 //! | [`output`] | files that appear whole or not at all |
 
 pub mod config;
+pub mod coverage;
 pub mod error;
 pub mod expectation;
 mod freewheel;
@@ -51,7 +53,10 @@ use sampler::{Sampler, Samples};
 /// See [`RunError`]. A failed client is no error here but a verdict: what there is of the run is
 /// recorded, plotted and reported.
 pub fn execute(config: &RunConfig, interrupt: &Interrupt, out: &mut dyn Write) -> Result<Verdict, RunError> {
-    let scenario = Scenario::load(&config.scenario)?;
+    let mut scenario = Scenario::load(&config.scenario)?;
+    if config.coverage.is_some() {
+        scenario.cover();
+    }
     config.check(&scenario)?;
     let mut reports: Vec<RunReport> = Vec::new();
     let mut samples = Vec::new();
@@ -63,6 +68,9 @@ pub fn execute(config: &RunConfig, interrupt: &Interrupt, out: &mut dyn Write) -
         if interrupt.is_raised() || reports.iter().any(RunReport::is_failed) {
             break;
         }
+    }
+    if let (Some(request), Some(sink)) = (&config.coverage, scenario.coverage()) {
+        request.write(sink)?;
     }
     if let Some(path) = &config.plot {
         let plot = sampler::plot(&scenario, config, &samples, &reports);

@@ -86,8 +86,11 @@ impl Scenario {
         tasks: &[TaskFile],
         paths: &std::collections::BTreeMap<SignalName, String>,
     ) -> Result<SoftPlcClient, ScenarioError> {
-        let application = Application::from_inputs(inputs)
-            .map_err(|findings| Box::new(PlcReport { client: name.clone(), findings }))?;
+        let compiled = match self.coverage() {
+            Some(_) => Application::from_inputs_with_coverage(inputs),
+            None => Application::from_inputs(inputs),
+        };
+        let application = compiled.map_err(|findings| Box::new(PlcReport { client: name.clone(), findings }))?;
         for warning in application.warnings().iter() {
             tracing::warn!(code = %warning.code, "{}", warning.message);
         }
@@ -107,8 +110,12 @@ impl Scenario {
             self.wrong_client(name, format!("nothing says when the programs of `{name}` run"), Some(help))
         })?;
         self.fits_step(name, &plan)?;
-        SoftPlcClient::new(name.clone(), &application, &plan, &bindings, self.file().step)
-            .map_err(|error| self.wrong_client(name, error.to_string(), None))
+        let mut client = SoftPlcClient::new(name.clone(), &application, &plan, &bindings, self.file().step)
+            .map_err(|error| self.wrong_client(name, error.to_string(), None))?;
+        if let Some(sink) = self.coverage() {
+            client.cover(sink.clone());
+        }
+        Ok(client)
     }
 
     /// A task can be due at the steps of the session only.

@@ -4,6 +4,7 @@ use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 use miette::{NamedSource, SourceSpan};
+use onescan_clients::soft_plc::CoverageSink;
 use onescan_server::plan::{Coupling, PlanError, SessionPlan};
 use onescan_server::signal::{ClientName, SignalDecl, SignalName, did_you_mean};
 use onescan_server::time::TimeSpan;
@@ -25,6 +26,8 @@ pub struct Scenario {
     file: ScenarioFile,
     plan: SessionPlan,
     expectations: Expectations,
+    /// Where soft PLCs give what they executed, if that is asked for.
+    coverage: Option<CoverageSink>,
 }
 
 impl Scenario {
@@ -69,7 +72,17 @@ impl Scenario {
             .ok()
             .and_then(|folder| folder.file_name().map(|name| name.to_string_lossy().into_owned()))
             .unwrap_or_else(|| "scenario".to_owned());
-        Ok(Self { name, folder, path, text, file, plan, expectations })
+        Ok(Self { name, folder, path, text, file, plan, expectations, coverage: None })
+    }
+
+    /// Lets soft PLCs note what they execute.
+    pub fn cover(&mut self) {
+        self.coverage.get_or_insert_default();
+    }
+
+    /// What soft PLCs have executed, if they note it; complete once they are gone.
+    pub fn coverage(&self) -> Option<&CoverageSink> {
+        self.coverage.as_ref()
     }
 
     /// The folder's name.

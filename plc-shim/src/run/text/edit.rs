@@ -8,6 +8,9 @@ use crate::ir::text::Edit;
 
 /// How two strings are ordered, character by character; a beginning comes before its whole.
 pub(super) fn compare(memory: &[u8], left: &View, right: &View) -> i32 {
+    if let (Some(left), Some(right)) = (left.narrow(memory), right.narrow(memory)) {
+        return left.cmp(right) as i32;
+    }
     let common = left.used.min(right.used);
     let differing = (0..common).map(|index| left.get(memory, index).cmp(&right.get(memory, index)));
     let order = differing.into_iter().find(|order| order.is_ne());
@@ -25,6 +28,9 @@ pub(super) fn find(memory: &[u8], whole: &View, part: &View) -> (i32, u64) {
     if part.used == 0 || part.used > whole.used {
         return (0, steps);
     }
+    if let (Some(whole), Some(part)) = (whole.narrow(memory), part.narrow(memory)) {
+        return find_narrow(whole, part);
+    }
     for start in 0..=whole.used - part.used {
         let mut index = 0;
         while index < part.used && whole.get(memory, start + index) == part.get(memory, index) {
@@ -33,6 +39,21 @@ pub(super) fn find(memory: &[u8], whole: &View, part: &View) -> (i32, u64) {
         steps += index as u64 + 1;
         if index == part.used {
             return (start as i32 + 1, steps);
+        }
+    }
+    (0, steps)
+}
+
+/// Compares only where the first character is found.
+fn find_narrow(whole: &[u8], part: &[u8]) -> (i32, u64) {
+    let (Some((first, rest)), mut from, mut steps) = (part.split_first(), 0, 0) else { return (0, 0) };
+    let last = whole.len().saturating_sub(part.len());
+    while let Some(starts) = whole.get(from..=last) {
+        let Some(found) = starts.iter().position(|byte| byte == first) else { return (0, steps + starts.len() as u64) };
+        steps += (found + part.len()) as u64;
+        from += found + 1;
+        if whole.get(from..from + rest.len()) == Some(rest) {
+            return (from as i32, steps);
         }
     }
     (0, steps)

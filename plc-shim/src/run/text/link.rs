@@ -1,6 +1,6 @@
 //! The imports of the module, bound to the PLC's memory.
 
-use wasmtime::{Caller, Error, Linker, Memory, Trap};
+use wasmtime::{Caller, Error, Global, Linker, Memory, Trap, Val};
 
 use super::format::{Line, format};
 use super::view::{Outside, Target, View};
@@ -14,10 +14,15 @@ use crate::ir::text::Edit;
 pub(in crate::run) struct HostState {
     /// Set as soon as the module has one.
     pub(in crate::run) memory: Option<Memory>,
+    /// What is left of the task's budget of instructions.
+    pub(in crate::run) budget: Option<Global>,
 }
 
 /// Characters that cost as much as one instruction.
-const CHARACTERS_PER_FUEL: u64 = 4;
+const CHARACTERS_PER_INSTRUCTION: u64 = 4;
+
+/// So many characters are paid for with the call.
+const FREE_CHARACTERS: u64 = 80;
 
 impl From<Outside> for Error {
     fn from(_: Outside) -> Self {
@@ -31,10 +36,17 @@ fn with_memory<T>(
 ) -> Result<T, Error> {
     let memory = caller.data().memory.ok_or(Outside)?;
     let (result, characters) = work(memory.data_mut(&mut *caller))?;
-    // What the budget does not cover ends it; the next instruction that is counted stops.
-    let left = caller.get_fuel()?.saturating_sub(characters / CHARACTERS_PER_FUEL);
-    caller.set_fuel(left)?;
+    if characters > FREE_CHARACTERS {
+        pay(caller, characters / CHARACTERS_PER_INSTRUCTION)?;
+    }
     Ok(result)
+}
+
+fn pay(caller: &mut Caller<'_, HostState>, cost: u64) -> Result<(), Error> {
+    let Some(budget) = caller.data().budget else { return Ok(()) };
+    let left = budget.get(&mut *caller).i64().unwrap_or(0).saturating_sub(cost.cast_signed());
+    budget.set(&mut *caller, Val::I64(left))?;
+    if left < 0 { Err(Trap::OutOfFuel.into()) } else { Ok(()) }
 }
 
 /// Gives the module its functions on strings.

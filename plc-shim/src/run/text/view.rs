@@ -29,6 +29,11 @@ impl View {
         Ok(Self { start: address + 2, shape, used: usize::from(count.min(shape.capacity)) })
     }
 
+    /// The characters in use of a STRING; nothing of a WSTRING.
+    pub(super) fn narrow<'m>(&self, memory: &'m [u8]) -> Option<&'m [u8]> {
+        if self.shape.wide { None } else { memory.get(self.start..self.start + self.used) }
+    }
+
     /// The character at a position from 0.
     pub(super) fn get(&self, memory: &[u8], index: usize) -> u16 {
         let byte = |at: usize| memory.get(at).copied().map_or(0, u16::from);

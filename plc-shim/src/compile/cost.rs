@@ -1,0 +1,104 @@
+//! How large units are and who calls them: what is put in the place of a call, and what a call
+//! costs.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use super::calls::{Size, measure};
+use crate::ir::{Pou, PouId};
+
+/// A unit of at most this size goes wherever it is called.
+const TINY: u32 = 60;
+
+/// So does one that is called from one place only, up to this size.
+const LONE: u32 = 250;
+
+/// Greatest size of all units together that are inside of one another.
+const MAX_NESTED: u32 = 400;
+
+/// What is known of one unit.
+#[derive(Debug, Clone, Copy, Default)]
+struct Cost {
+    /// Of its own statements and of all that is put in place of calls inside.
+    size: u32,
+    /// How many calls of it there are.
+    sites: u32,
+    inlined: bool,
+    /// What a call costs that the unit does not pay for itself.
+    call: u64,
+    metered: bool,
+}
+
+/// What is known of all units.
+#[derive(Debug, Default)]
+pub(super) struct Costs {
+    units: BTreeMap<PouId, Cost>,
+}
+
+impl Costs {
+    /// Measures the units; returns them in an order in which each follows all that it calls.
+    pub(super) fn new(pous: &BTreeMap<PouId, Pou>) -> (Self, Vec<PouId>) {
+        let sizes: BTreeMap<PouId, Size> = pous.iter().map(|(id, pou)| (*id, measure(&pou.body))).collect();
+        let order = callees_first(&sizes);
+        let mut costs = Self::default();
+        for callee in sizes.values().flat_map(|size| &size.calls) {
+            costs.units.entry(*callee).or_default().sites += 1;
+        }
+        for id in &order {
+            let Some(own) = sizes.get(id) else { continue };
+            let inside = own.calls.iter().filter_map(|callee| costs.units.get(callee));
+            let inside: u32 = inside.filter(|cost| cost.inlined).map(|cost| cost.size).fold(0, u32::saturating_add);
+            let cost = costs.units.entry(*id).or_default();
+            cost.size = own.nodes.saturating_add(inside);
+            cost.inlined = cost.size <= TINY || (cost.sites == 1 && cost.size <= LONE);
+        }
+        (costs, order)
+    }
+
+    /// True if the unit goes in the place of its call inside of the `active` units, of which the
+    /// first has the function.
+    pub(super) fn is_inlined(&self, pou: PouId, active: impl Iterator<Item = PouId>) -> bool {
+        let Some(cost) = self.units.get(&pou).filter(|cost| cost.inlined) else { return false };
+        let inside = active.skip(1).filter_map(|id| self.units.get(&id));
+        inside.map(|cost| cost.size).fold(cost.size, u32::saturating_add) <= MAX_NESTED
+    }
+
+    /// What the function of a unit has turned out to cost.
+    pub(super) fn found(&mut self, pou: PouId, call: u64, metered: bool) {
+        let cost = self.units.entry(pou).or_default();
+        (cost.call, cost.metered) = (call, metered);
+    }
+
+    pub(super) fn of_call(&self, pou: PouId) -> u64 {
+        self.units.get(&pou).map_or(1, |cost| cost.call)
+    }
+
+    /// True if the unit's function changes the budget itself.
+    pub(super) fn is_metered(&self, pou: PouId) -> bool {
+        self.units.get(&pou).is_none_or(|cost| cost.metered)
+    }
+}
+
+/// Depth first with its own stack; the checker has refused circles.
+fn callees_first(sizes: &BTreeMap<PouId, Size>) -> Vec<PouId> {
+    let mut order = Vec::with_capacity(sizes.len());
+    let mut seen = BTreeSet::new();
+    for root in sizes.keys() {
+        let mut path = vec![(*root, 0_usize)];
+        if !seen.insert(*root) {
+            continue;
+        }
+        while let Some((id, next)) = path.last_mut() {
+            let callee = sizes.get(id).and_then(|size| size.calls.get(*next)).copied();
+            *next += 1;
+            match callee {
+                None => {
+                    order.push(*id);
+                    path.pop();
+                }
+                Some(callee) if sizes.contains_key(&callee) && seen.insert(callee) => path.push((callee, 0)),
+                Some(_) => {}
+            }
+        }
+    }
+    order
+}

@@ -1,0 +1,87 @@
+//! What a piece of code reads and changes, found by compiling it once for trial.
+
+use std::collections::BTreeSet;
+
+use super::address::{Address, Base, Extent, Roots};
+use super::registers::Register;
+use crate::ir::ElementaryType;
+
+/// Most different accesses that are told apart.
+const MAX_ACCESSES: usize = 512;
+
+/// Accesses of one loop's body.
+#[derive(Debug, Default)]
+pub(super) struct Effects {
+    /// Loads of elementary places at known addresses, and how many of each.
+    loads: Vec<(Address, ElementaryType, u32)>,
+    /// Stores likewise.
+    stores: BTreeSet<(Address, ElementaryType)>,
+    /// All other changes of memory.
+    changes: BTreeSet<Extent>,
+    /// Registers that are set.
+    registers: BTreeSet<Register>,
+    /// Something is changed that could lie anywhere.
+    anything: bool,
+}
+
+impl Effects {
+    pub(super) fn load(&mut self, address: Address, ty: ElementaryType) {
+        let known = self.loads.iter_mut().find(|(known, known_ty, _)| *known == address && *known_ty == ty);
+        if let Some((_, _, count)) = known {
+            *count += 1;
+        } else if self.loads.len() < MAX_ACCESSES {
+            self.loads.push((address, ty, 1));
+        }
+    }
+
+    pub(super) fn store(&mut self, address: Address, ty: ElementaryType) {
+        self.stores.insert((address, ty));
+        self.anything |= self.stores.len() > MAX_ACCESSES;
+    }
+
+    pub(super) fn change(&mut self, extent: Option<Extent>) {
+        match extent {
+            Some(extent) if self.changes.len() < MAX_ACCESSES => {
+                self.changes.insert(extent);
+            }
+            _ => self.anything = true,
+        }
+    }
+
+    pub(super) fn set(&mut self, register: Register) {
+        self.registers.insert(register);
+    }
+
+    pub(super) fn sets(&self, register: Register) -> bool {
+        self.registers.contains(&register)
+    }
+
+    /// True if memory there may change.
+    pub(super) fn changes(&self, extent: Extent, roots: &Roots) -> bool {
+        let stored = |(address, ty): &(Address, ElementaryType)| Extent::new(*address, ty.size());
+        self.anything
+            || self.stores.iter().any(|store| roots.overlap(stored(store), extent))
+            || self.changes.iter().any(|change| roots.overlap(*change, extent))
+    }
+
+    /// What is worth a register through all turns of the loop, most used first: only stores to
+    /// this very place change it.
+    pub(super) fn candidates(&self, roots: &Roots) -> Vec<(Address, ElementaryType)> {
+        if self.anything {
+            return Vec::new();
+        }
+        let mut found: Vec<_> = self.loads.iter().filter(|(address, ty, _)| self.keeps(*address, *ty, roots)).collect();
+        found.sort_by_key(|(address, _, count)| (std::cmp::Reverse(*count), *address));
+        found.into_iter().map(|(address, ty, _)| (*address, *ty)).collect()
+    }
+
+    fn keeps(&self, address: Address, ty: ElementaryType, roots: &Roots) -> bool {
+        let extent = Extent::new(address, ty.size());
+        let steady = !matches!(address.base, Base::Register(register) if self.registers.contains(&register));
+        let itself = |store: &(Address, ElementaryType)| *store == (address, ty);
+        let apart = |store: &(Address, ElementaryType)| {
+            itself(store) || !roots.overlap(Extent::new(store.0, store.1.size()), extent)
+        };
+        steady && self.stores.iter().all(apart) && !self.changes.iter().any(|change| roots.overlap(*change, extent))
+    }
+}

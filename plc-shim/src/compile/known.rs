@@ -1,0 +1,93 @@
+//! What is known to be in memory at one point of a function: values that registers hold already.
+//!
+//! Every store goes to memory at once, so that a fault finds the state as the program left it;
+//! only loads are saved.
+
+use super::address::{Address, Extent, Roots};
+use super::registers::Register;
+use crate::ir::ElementaryType;
+
+/// Most values that are remembered: as many as a machine can hold, roughly.
+const MAX_ENTRIES: usize = 24;
+
+/// A register holds what a load of this type from this address would give.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct Entry {
+    pub(super) address: Address,
+    pub(super) ty: ElementaryType,
+    pub(super) register: Register,
+}
+
+impl Entry {
+    pub(super) fn extent(&self) -> Extent {
+        Extent::new(self.address, self.ty.size())
+    }
+}
+
+/// The entries, oldest first.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Known {
+    entries: Vec<Entry>,
+    /// No execution comes here.
+    unreachable: bool,
+}
+
+impl Known {
+    pub(super) fn find(&self, address: Address, ty: ElementaryType) -> Option<Entry> {
+        self.entries.iter().find(|entry| entry.address == address && entry.ty == ty).copied()
+    }
+
+    pub(super) fn is_unreachable(&self) -> bool {
+        self.unreachable
+    }
+
+    pub(super) fn insert(&mut self, entry: Entry) {
+        if self.unreachable {
+            return;
+        }
+        self.entries.retain(|other| other.address != entry.address || other.ty != entry.ty);
+        if self.entries.len() >= MAX_ENTRIES {
+            self.entries.remove(0);
+        }
+        self.entries.push(entry);
+    }
+
+    /// Forgets what a store to `extent` may change.
+    pub(super) fn forget(&mut self, extent: Extent, roots: &Roots) {
+        self.entries.retain(|entry| !roots.overlap(entry.extent(), extent));
+    }
+
+    /// Forgets what was found by way of this register.
+    pub(super) fn forget_base(&mut self, register: Register) {
+        let base = super::address::Base::Register(register);
+        self.entries.retain(|entry| entry.address.base != base);
+    }
+
+    /// Forgets what does not fulfil the condition.
+    pub(super) fn retain(&mut self, keep: impl Fn(Extent) -> bool) {
+        self.entries.retain(|entry| keep(entry.extent()));
+    }
+
+    pub(super) fn forget_all(&mut self) {
+        self.entries.clear();
+    }
+
+    /// A jump away: what follows is not executed.
+    pub(super) fn leave(&mut self) {
+        self.entries.clear();
+        self.unreachable = true;
+    }
+
+    /// What holds whichever way execution came.
+    pub(super) fn meet(&mut self, other: &Self) {
+        if self.unreachable {
+            self.clone_from(other);
+        } else if !other.unreachable {
+            self.entries.retain(|entry| other.entries.contains(entry));
+        }
+    }
+
+    pub(super) fn registers(&self) -> impl Iterator<Item = Register> {
+        self.entries.iter().map(|entry| entry.register)
+    }
+}

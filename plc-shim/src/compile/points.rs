@@ -1,0 +1,89 @@
+//! Points of the program whose execution is noted, if that is asked for: a byte each, behind the
+//! PLC's own memory, so that it is no part of its state.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use wasm_encoder::{Instruction, MemArg};
+
+use super::emitter::Emitter;
+use crate::syntax::{FileId, Span};
+
+/// What a point is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) enum PointKind {
+    /// A unit was called.
+    Unit,
+    /// A statement was executed.
+    Statement,
+    /// A decision had this outcome: a branch or arm by its position, ELSE behind them whether
+    /// written or not; of a loop, 0 for a turn and 1 for its end.
+    Outcome(u32),
+}
+
+/// A point, the name of its unit, and the place that it is shown at.
+#[derive(Debug, Clone)]
+pub(crate) struct Point {
+    pub(crate) kind: PointKind,
+    pub(crate) unit: String,
+    pub(crate) span: Span,
+}
+
+/// All points in the order of their bytes.
+#[derive(Debug, Default)]
+pub(super) struct Points {
+    /// Offset of the first byte.
+    base: u32,
+    /// Files that are not the user's.
+    library: BTreeSet<FileId>,
+    /// A unit may be compiled in several places.
+    known: BTreeMap<(FileId, u32, u32, PointKind), u32>,
+    list: Vec<Point>,
+}
+
+impl Points {
+    pub(super) fn new(base: u32, library: &BTreeSet<FileId>) -> Self {
+        Self { base, library: library.clone(), ..Self::default() }
+    }
+
+    /// Offset of the point's byte; nothing if it is not the user's.
+    fn offset(&mut self, kind: PointKind, unit: &str, span: Span) -> Option<u32> {
+        if self.library.contains(&span.file) {
+            return None;
+        }
+        let next = self.list.len() as u32;
+        let index = *self.known.entry((span.file, span.start, span.end, kind)).or_insert(next);
+        if index == next {
+            self.list.push(Point { kind, unit: unit.to_owned(), span });
+        }
+        self.base.checked_add(index)
+    }
+
+    pub(super) fn into_list(self) -> Vec<Point> {
+        self.list
+    }
+
+    pub(super) fn len(&self) -> usize {
+        self.list.len()
+    }
+}
+
+impl Emitter<'_, '_> {
+    /// True if points are noted: then every one of them has code of its own.
+    pub(super) fn is_covered(&self) -> bool {
+        self.shared.points.is_some()
+    }
+
+    /// Notes that execution comes here.
+    pub(super) fn cover(&mut self, kind: PointKind, span: Span) {
+        let pou = self.frames.last().and_then(|frame| self.shared.pous.get(&frame.pou));
+        let (Some(points), Some(pou)) = (&mut self.shared.points, pou) else { return };
+        // Initial values are given by declarations, which are no statements.
+        if kind == PointKind::Statement && pou.variables.iter().any(|variable| variable.span == span) {
+            return;
+        }
+        let Some(offset) = points.offset(kind, &pou.name, span) else { return };
+        self.emit(Instruction::I32Const(0));
+        self.emit(Instruction::I32Const(1));
+        self.emit(Instruction::I32Store8(MemArg { offset: u64::from(offset), align: 0, memory_index: 0 }));
+    }
+}

@@ -1,0 +1,72 @@
+//! Seeded mutations of program text: whatever comes of it, the parser and the checker neither
+//! panic nor hang, and what parses is printed so that it parses to the same text again.
+//!
+//! A small number of them runs with all tests. For more:
+//!
+//! ```sh
+//! ONESCAN_MUTATIONS=1000000 cargo test --release -p onescan-plc-shim --test mutations -- --nocapture
+//! ```
+//!
+//! A panic names the seed; `ONESCAN_MUTATION_SEED=n ONESCAN_MUTATIONS=1` repeats it.
+
+mod mutator;
+
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::time::{Duration, Instant};
+
+use mutator::{Mutator, corpus};
+use onescan_plc_shim::Input;
+use onescan_plc_shim::application::inspect;
+use onescan_plc_shim::input::kind::SourceKind;
+use onescan_plc_shim::syntax::printer::print_unit;
+use onescan_plc_shim::syntax::{FileId, parse};
+
+/// Longer than this for a few kilobytes is a hang, on any machine and under any load.
+const HANG: Duration = Duration::from_secs(60);
+
+fn number(name: &str, usual: u64) -> u64 {
+    std::env::var(name).ok().and_then(|text| text.parse().ok()).unwrap_or(usual)
+}
+
+/// What came of a text.
+#[derive(Debug, Default)]
+struct Tally {
+    inputs: u64,
+    parsed: u64,
+    sound: u64,
+    slowest: Duration,
+}
+
+fn examine(text: &str, tally: &mut Tally) {
+    let started = Instant::now();
+    let parsed = parse(FileId(0), text);
+    if parsed.diagnostics.is_empty() {
+        tally.parsed += 1;
+        let printed = print_unit(&parsed.unit);
+        let again = parse(FileId(0), &printed);
+        assert!(again.diagnostics.is_empty(), "what is printed parses: {printed}");
+        assert_eq!(print_unit(&again.unit), printed, "what is printed is stable");
+    }
+    let findings = inspect([Input::from_text("mutated.st", SourceKind::Text, text)], None);
+    tally.sound += u64::from(!findings.has_errors());
+    tally.inputs += 1;
+    let time = started.elapsed();
+    assert!(time < HANG, "{time:?}");
+    tally.slowest = tally.slowest.max(time);
+}
+
+#[test]
+fn no_mutation_makes_the_front_end_panic() {
+    let (count, first) = (number("ONESCAN_MUTATIONS", 300), number("ONESCAN_MUTATION_SEED", 0));
+    let corpus = corpus();
+    let mut tally = Tally::default();
+    let started = Instant::now();
+    for seed in first..first + count {
+        let text = Mutator::new(seed).mutant(&corpus);
+        if catch_unwind(AssertUnwindSafe(|| examine(&text, &mut tally))).is_err() {
+            panic!("seed {seed}:\n{text}");
+        }
+    }
+    println!("{tally:?} in {:.0?}", started.elapsed());
+    assert!(count < 100 || tally.parsed > 0, "some mutants still parse");
+}

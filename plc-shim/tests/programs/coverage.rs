@@ -1,0 +1,119 @@
+//! Statement and branch coverage.
+
+use onescan_plc_shim::input::kind::SourceKind;
+use onescan_plc_shim::{Application, Coverage, Input, SoftPlc, TaskPlan, VirtualTime};
+
+const PROGRAM: &str = "FUNCTION_BLOCK Unused
+VAR x : INT; END_VAR
+  x := 1;
+END_FUNCTION_BLOCK
+FUNCTION Half : INT
+VAR_INPUT x : INT; END_VAR
+  IF x < 0 THEN
+    Half := 0;
+    RETURN;
+  END_IF;
+  Half := x / 2;
+END_FUNCTION
+PROGRAM P
+VAR n, i, sum : INT; t : TON; never : Unused; END_VAR
+  n := n + 1;
+  IF n > 1 THEN
+    sum := Half(n);
+  ELSIF n > 100 THEN
+    sum := 0;
+  ELSE sum := 1; END_IF;
+  CASE n OF
+    1: sum := 5;
+    2, 3: sum := 6;
+    4: never();
+  END_CASE;
+  FOR i := 0 TO 3 DO
+    IF i = n THEN EXIT; END_IF;
+  END_FOR;
+  WHILE i > 100 DO
+    i := i - 1;
+  END_WHILE;
+  REPEAT i := i + 1; UNTIL i > 2 END_REPEAT;
+  t(IN := TRUE, PT := T#1s);
+END_PROGRAM
+";
+
+fn input(name: &str) -> Input {
+    Input::from_text(name, SourceKind::Text, PROGRAM)
+}
+
+/// After so many scans; and the PLC's memory.
+fn run(application: &Application, scans: u64) -> (Option<Coverage>, Vec<u8>) {
+    let mut plc = SoftPlc::new(application, &TaskPlan::single(application, 1_000_000)).expect("it can run");
+    for scan in 1..=scans {
+        plc.scan(VirtualTime::from_ns(scan * 1_000_000)).expect("no fault");
+    }
+    (plc.coverage(), plc.memory().to_vec())
+}
+
+fn covered(scans: u64) -> (Coverage, Vec<u8>) {
+    let application = Application::from_inputs_with_coverage([input("plc.st")]).expect("a sound program");
+    let (coverage, memory) = run(&application, scans);
+    (coverage.expect("it was asked for"), memory)
+}
+
+#[test]
+fn lcov_tells_units_lines_and_outcomes() {
+    insta::assert_snapshot!(covered(2).0.to_lcov());
+}
+
+#[test]
+fn cobertura_tells_the_same() {
+    let (coverage, _) = covered(2);
+    insta::assert_snapshot!(coverage.to_cobertura());
+}
+
+#[test]
+fn the_program_computes_the_same() {
+    let plain = Application::from_inputs([input("plc.st")]).expect("a sound program");
+    for scans in [1, 2, 50] {
+        let (nothing, memory) = run(&plain, scans);
+        assert_eq!(nothing, None);
+        assert_eq!(covered(scans).1, memory);
+    }
+}
+
+#[test]
+fn runs_are_merged_by_counting() {
+    let (mut coverage, _) = covered(1);
+    let (lines, first) = coverage.lines();
+    coverage.merge(&covered(2).0);
+    let (all, both) = coverage.lines();
+    assert_eq!(all, lines);
+    assert!(first < both && both < all);
+    let text = coverage.to_lcov();
+    assert!(text.contains("\nDA:15,2\n"), "executed in both runs: {text}");
+    assert!(text.contains("\nDA:17,1\n"), "executed in the second: {text}");
+    assert!(text.contains("\nDA:3,0\n"), "executed in none: {text}");
+}
+
+/// A place in a file that holds program text among other things is one of that file.
+#[test]
+fn lines_are_those_of_the_file() {
+    let xml = "<?xml version=\"1.0\"?>
+<TcPlcObject>
+  <POU Name=\"P\">
+    <Declaration><![CDATA[PROGRAM P
+VAR n : INT; END_VAR]]></Declaration>
+    <Implementation>
+      <ST><![CDATA[n := n + 1;
+IF n > 1 THEN
+  n := 0;
+END_IF;]]></ST>
+    </Implementation>
+  </POU>
+</TcPlcObject>";
+    let input = Input::from_text("P.TcPOU", SourceKind::TwinCat, xml);
+    let application = Application::from_inputs_with_coverage([input]).unwrap_or_else(|found| panic!("{found}"));
+    let (coverage, _) = run(&application, 1);
+    let text = coverage.expect("it was asked for").to_lcov();
+    for line in ["SF:P.TcPOU", "FN:4,P", "DA:7,1", "DA:8,1", "DA:9,0", "BRDA:8,0,0,0", "BRDA:8,0,1,1"] {
+        assert!(text.lines().any(|found| found == line), "{line} in {text}");
+    }
+}
