@@ -31,8 +31,8 @@ pub struct TaskPlan {
     pub tasks: Vec<Task>,
     /// Programs without a task: each scan runs them at its end, in their order (2nd ed. 2.7.2).
     pub background: Vec<String>,
-    /// How many units of WebAssembly fuel, about one for each instruction, a task may use in one
-    /// execution before it counts as an endless loop.
+    /// How many instructions of WebAssembly, about, a task may use in one execution before it
+    /// counts as an endless loop; what is small and has no loops of unknown length is not counted.
     pub fuel_per_task: u64,
 }
 
