@@ -129,31 +129,27 @@ fn one(component: &Component, scene: &Scene) -> String {
         }
         Bound::Place { body, targets } => format!(", {} bodies at {}", targets.len(), scene.bodies[*body].name),
     };
-    let mut told = format!("{}: {}{bound}", component.name, component.kind);
-    let Some(kind) = kinds().into_iter().find(|kind| kind.name == component.kind) else { return told };
+    let mut lines = vec![format!("{}: {}{bound}", component.name, component.kind)];
+    let Some(kind) = kinds().into_iter().find(|kind| kind.name == component.kind) else { return lines.concat() };
     for (parameter, setting) in kind.parameters.iter().zip(&component.settings) {
         if parameter.preset != *setting {
-            told += &format!("\n    {} = {setting}", parameter.key);
+            lines.push(format!("{} = {setting}", parameter.key));
         }
     }
     for (input, wire) in kind.inputs.iter().zip(&component.inputs) {
         match wire {
             Wire::Open => {}
-            Wire::Signal(name) => told += &format!("\n    {} <- {name}", input.key),
+            Wire::Signal(name) => lines.push(format!("{} <- {name}", input.key)),
             Wire::Output { component, output } => {
                 let from = &scene.components[*component];
                 let key = kinds().into_iter().find(|kind| kind.name == from.kind).map(|kind| kind.outputs[*output].key);
-                told += &format!("\n    {} <- {}.{}", input.key, from.name, key.unwrap_or_default());
+                lines.push(format!("{} <- {}.{}", input.key, from.name, key.unwrap_or_default()));
             }
         }
     }
     for (output, name) in kind.outputs.iter().zip(&component.outputs) {
-        if let Some(name) = name {
-            told += &format!("\n    {} -> {name}", output.key);
-        }
+        lines.extend(name.as_ref().map(|name| format!("{} -> {name}", output.key)));
     }
-    for failure in &component.failures {
-        told += &format!("\n    may fail: {}", kind.failures[failure.mode].mode);
-    }
-    told
+    lines.extend(component.failures.iter().map(|failure| format!("may fail: {}", kind.failures[failure.mode].mode)));
+    lines.join("\n    ")
 }
