@@ -1,5 +1,7 @@
 //! Reading, writing and forcing variables by their path.
 
+use std::fmt::Write;
+
 use onescan_plc_shim::{Application, SoftPlc, TaskPlan, VirtualTime};
 
 use crate::rig::{MS, Rig, application};
@@ -121,7 +123,7 @@ fn what_is_no_value_of_the_type_is_told() {
         ("Q.x", "5"),
     ] {
         let error = rig.plc.write(path, text).expect_err(text);
-        refused.push_str(&format!("{error}\n"));
+        writeln!(refused, "{error}").expect("a string");
     }
     insta::assert_snapshot!(refused);
     assert_eq!(rig.plc.save(), before);

@@ -1,5 +1,7 @@
 //! What survives a warm start, a cold start and a reset (2nd ed. 2.4.2, 3rd ed. 6.5.6).
 
+use std::fmt::Write;
+
 use onescan_plc_shim::{SoftPlc, TaskPlan};
 
 use crate::rig::{Rig, application};
@@ -22,7 +24,7 @@ fn starts(text: &str, paths: &[&str]) -> String {
     }
     for (path, row) in paths.iter().zip(rows) {
         let values: Vec<String> = row.iter().map(i64::to_string).collect();
-        table.push_str(&format!("{path}: {}\n", values.join(" ")));
+        writeln!(table, "{path}: {}", values.join(" ")).expect("a string");
     }
     table
 }
