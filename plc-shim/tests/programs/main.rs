@@ -8,6 +8,7 @@ mod dialects;
 mod direct_addresses;
 mod expressions;
 mod faults;
+mod field;
 mod inputs;
 mod language;
 mod lints;
