@@ -37,7 +37,7 @@ mod lint;
 pub mod run;
 pub mod syntax;
 
-pub use application::{Application, Program, UnknownVariable, Variable, inspect};
+pub use application::{Application, Program, UnknownVariable, Variable, VariableAccess, WriteError, inspect};
 pub use compile::fault::FaultKind;
 pub use diagnostic::{Code, Diagnostic, Diagnostics, Finding, Severity};
 pub use dialect::Dialect;

@@ -9,6 +9,7 @@
 //! | [`run`] | runs of a scenario: in lockstep or not, recorded, reported |
 //! | [`check`] | PLC sources checked without being run |
 //! | [`instrument`] | PLC projects made to run in lockstep, and back |
+//! | [`plant`] | scenes and components, told without a session |
 //! | [`freewheel`] | running without lockstep, to show what it is good for |
 //! | [`expect`] | what a run must show: signal temporal logic |
 //! | [`plot`] | trajectories as SVG |
@@ -21,6 +22,7 @@ pub mod cli;
 pub mod expect;
 pub mod freewheel;
 pub mod instrument;
+pub mod plant;
 pub mod plot;
 pub mod run;
 pub mod scenario;

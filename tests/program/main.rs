@@ -2,6 +2,7 @@
 
 mod check;
 mod checkpoint;
+mod configuration;
 mod control;
 mod errors;
 mod expectations;
@@ -9,6 +10,7 @@ mod faults;
 mod freewheel;
 mod help;
 mod instrument;
+mod plant;
 mod plc_faults;
 mod run;
 mod third_party;

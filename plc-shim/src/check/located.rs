@@ -95,7 +95,7 @@ impl Checker<'_> {
     }
 
     /// An elementary variable is as wide as its address says; others begin at a byte.
-    fn require_width(&mut self, width: Width, ty: TypeId, address: &Ident) -> Option<()> {
+    pub(super) fn require_width(&mut self, width: Width, ty: TypeId, address: &Ident) -> Option<()> {
         let found = self.types.name(ty);
         let elementary = self.types.elementary(ty);
         let (suitable, help) = match (elementary, self.types.get(ty)) {

@@ -5,24 +5,27 @@
 //! | [`names`] | what the files declare, by name |
 //! | [`layout`] | offsets in memory |
 //! | [`scope`] | what a name means inside a unit |
-//! | [`types`], [`subrange`] | types as written to types |
+//! | [`types`], [`subrange`], [`union`] | types as written to types |
 //! | [`variables`] | sections to placed variables, units' interfaces |
 //! | [`located`] | direct addresses to places |
 //! | [`initial`] | initial values to bytes |
 //! | [`constant`] | constant expressions to values |
 //! | [`convert`] | implicit conversions, constants in context |
 //! | [`expression`], [`operator`], [`calendar`], [`place`], [`part`] | expressions |
+//! | [`reference`], [`address`], [`referred`] | references and pointers |
+//! | [`open_array`] | arrays that come with their bounds |
 //! | [`call`], [`standard_function`], [`function_form`], [`conversion_function`] | calls |
 //! | [`enable`], [`enable_error`] | EN and ENO |
 //! | [`text`], [`text_function`], [`text_conversion`] | character strings |
 //! | [`statement`], [`assignment`], [`edge`] | statements |
-//! | [`dialect`] | what dialects do their own way |
 //! | [`configuration`] | resources, tasks, instances of programs |
+//! | [`dialect`] | what dialects do their own way |
 //! | [`recursion`] | who calls whom |
 //!
 //! A unit, type or global variable is resolved when it is first needed; what is being resolved
 //! and needed again contains itself.
 
+mod address;
 mod assignment;
 mod calendar;
 mod call;
@@ -40,10 +43,13 @@ mod initial;
 mod layout;
 mod located;
 mod names;
+mod open_array;
 mod operator;
 mod part;
 mod place;
 mod recursion;
+mod reference;
+mod referred;
 mod scope;
 mod standard_function;
 mod statement;
@@ -52,6 +58,7 @@ mod text;
 mod text_conversion;
 mod text_function;
 mod types;
+mod union;
 mod variables;
 
 use std::collections::{BTreeMap, BTreeSet};

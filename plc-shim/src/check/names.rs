@@ -31,6 +31,8 @@ pub(super) struct TypedImage {
 pub(super) struct TypeEntry<'a> {
     pub(super) ast: &'a TypeDeclaration,
     pub(super) progress: Progress,
+    /// The type of a structure as soon as something refers to it.
+    pub(super) reserved: Option<TypeId>,
     pub(super) resolved: Option<TypedImage>,
 }
 
@@ -134,7 +136,7 @@ impl<'a> Checker<'a> {
 
     fn collect_type(&mut self, ast: &'a TypeDeclaration) {
         if !self.is_taken(&ast.name) {
-            let entry = TypeEntry { ast, progress: Progress::Untouched, resolved: None };
+            let entry = TypeEntry { ast, progress: Progress::Untouched, reserved: None, resolved: None };
             self.type_names.insert(ast.name.key(), entry);
         }
     }

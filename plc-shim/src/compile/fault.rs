@@ -23,11 +23,15 @@ pub enum FaultKind {
     Internal,
     /// A value was assigned that its subrange type does not have.
     OutOfSubrange,
+    /// What a reference refers to was used, and it refers to nothing (3rd ed. 6.4.4.10.4).
+    NullReference,
+    /// A pointer led out of memory.
+    InvalidPointer,
 }
 
 impl FaultKind {
     /// Every kind; the position of a kind is its number in a saved state.
-    pub const ALL: [Self; 8] = [
+    pub const ALL: [Self; 10] = [
         Self::DivisionByZero,
         Self::IndexOutOfRange,
         Self::SelectorOutOfRange,
@@ -36,6 +40,8 @@ impl FaultKind {
         Self::CallTooDeep,
         Self::Internal,
         Self::OutOfSubrange,
+        Self::NullReference,
+        Self::InvalidPointer,
     ];
 }
 
@@ -50,6 +56,8 @@ impl fmt::Display for FaultKind {
             Self::CallTooDeep => "calls nested too deep",
             Self::Internal => "internal error",
             Self::OutOfSubrange => "value out of subrange",
+            Self::NullReference => "use of a NULL reference",
+            Self::InvalidPointer => "pointer out of memory",
         })
     }
 }

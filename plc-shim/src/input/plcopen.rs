@@ -29,10 +29,7 @@ pub(super) fn extract(file: &str) -> Result<Taken, XmlError> {
     }
     let configurations = root.child("instances").and_then(|instances| instances.child("configurations"));
     for configuration in configurations.into_iter().flat_map(Element::elements) {
-        writer.globals(configuration);
-        for resource in configuration.elements().filter(|inner| inner.name == "resource") {
-            writer.globals(resource);
-        }
+        writer.configuration(configuration);
     }
     Ok(writer.taken)
 }
@@ -50,8 +47,8 @@ fn dialect(file: &str, root: &Element) -> Dialect {
     }
 }
 
-struct Writer<'a> {
-    taken: Taken,
+pub(super) struct Writer<'a> {
+    pub(super) taken: Taken,
     file: &'a str,
 }
 
@@ -67,12 +64,12 @@ const SECTIONS: [(&str, &str); 7] = [
 ];
 
 impl Writer<'_> {
-    fn write(&mut self, text: &str, place: &Range<u32>) {
+    pub(super) fn write(&mut self, text: &str, place: &Range<u32>) {
         self.taken.extract.instead(text, place.clone());
     }
 
     /// Writes an attribute's value; what has none is told.
-    fn attribute(&mut self, element: &Element, name: &str) {
+    pub(super) fn attribute(&mut self, element: &Element, name: &str) {
         if let Some(found) = element.attribute(name) {
             self.write(&found.value, &found.span);
         } else {
@@ -151,13 +148,13 @@ impl Writer<'_> {
         }
     }
 
-    fn globals(&mut self, element: &Element) {
+    pub(super) fn globals(&mut self, element: &Element) {
         for section in element.elements().filter(|inner| inner.name == "globalVars") {
             self.section(section);
         }
     }
 
-    fn section(&mut self, element: &Element) {
+    pub(super) fn section(&mut self, element: &Element) {
         let name = element.name.as_str();
         let Some((_, keyword)) = SECTIONS.iter().find(|(known, _)| *known == name) else {
             if !matches!(name, "returnType" | "documentation" | "addData") {
@@ -182,7 +179,12 @@ impl Writer<'_> {
 
     fn variable(&mut self, element: &Element) {
         self.attribute(element, "name");
-        if let Some(address) = element.attribute("address") {
+        self.address_and_type(element);
+    }
+
+    /// ` AT %IX0.0 : BOOL := TRUE;`
+    pub(super) fn address_and_type(&mut self, element: &Element) {
+        if let Some(address) = element.attribute("address").filter(|address| !address.value.is_empty()) {
             self.write(" AT ", &address.span);
             self.write(&address.value, &address.span);
         }
@@ -193,7 +195,7 @@ impl Writer<'_> {
     }
 
     /// The type in the child `name`.
-    fn inner_type(&mut self, element: &Element, name: &str) {
+    pub(super) fn inner_type(&mut self, element: &Element, name: &str) {
         if let Some(inner) = element.child(name) {
             self.type_in(inner);
         } else {

@@ -15,8 +15,8 @@ mod statement;
 mod type_spec;
 
 use self::cursor::Cursor;
-use super::ast::CompilationUnit;
-use super::lexer::tokenize_in;
+use super::ast::{CompilationUnit, Expr};
+use super::lexer::{tokenize, tokenize_in};
 use super::source::FileId;
 use super::token::{Token, TokenKind};
 use crate::diagnostic::{Code, Diagnostic};
@@ -52,6 +52,15 @@ pub fn parse_in(dialect: Dialect, file: FileId, text: &str) -> Parsed {
     let unit = CompilationUnit { dialect, ..cursor.compilation_unit() };
     let diagnostics = cursor.into_diagnostics();
     Parsed { tokens, unit, diagnostics }
+}
+
+/// The expression that `text` is, if it is one without errors.
+pub(crate) fn parse_expression(text: &str) -> Option<Expr> {
+    let tokens = tokenize(text);
+    let mut cursor = Cursor::new(Dialect::default(), FileId(0), text, &tokens);
+    report_lexical_errors(&mut cursor, &tokens);
+    let expression = cursor.expression();
+    (cursor.peek().is_none() && cursor.reported() == 0).then_some(expression)
 }
 
 fn report_lexical_errors(cursor: &mut Cursor<'_>, tokens: &[Token]) {

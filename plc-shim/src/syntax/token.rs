@@ -82,7 +82,7 @@ keywords! {
     Program "PROGRAM", EndProgram "END_PROGRAM",
     FunctionBlock "FUNCTION_BLOCK", EndFunctionBlock "END_FUNCTION_BLOCK",
     Function "FUNCTION", EndFunction "END_FUNCTION",
-    Type "TYPE", EndType "END_TYPE", Struct "STRUCT", EndStruct "END_STRUCT",
+    Type "TYPE", EndType "END_TYPE", Struct "STRUCT", EndStruct "END_STRUCT", Union "UNION", EndUnion "END_UNION",
     Array "ARRAY", Of "OF", At "AT",
     Var "VAR", VarInput "VAR_INPUT", VarOutput "VAR_OUTPUT", VarInOut "VAR_IN_OUT",
     VarTemp "VAR_TEMP", VarGlobal "VAR_GLOBAL", VarExternal "VAR_EXTERNAL", EndVar "END_VAR",
@@ -139,7 +139,7 @@ macro_rules! punctuation {
 }
 
 punctuation! {
-    Assign ":=", PlusAssign "+=", MinusAssign "-=", StarAssign "*=", SlashAssign "/=", Output "=>", Power "**", LessEqual "<=", GreaterEqual ">=", NotEqual "<>",
+    Assign ":=", Attempt "?=", PlusAssign "+=", MinusAssign "-=", StarAssign "*=", SlashAssign "/=", Output "=>", Power "**", LessEqual "<=", GreaterEqual ">=", NotEqual "<>",
     Range "..", Less "<", Greater ">", Equal "=", Plus "+", Minus "-", Star "*", Slash "/",
     Ampersand "&", LeftParen "(", RightParen ")", LeftBracket "[", RightBracket "]",
     Comma ",", Semicolon ";", Colon ":", Dot ".", Hash "#", Caret "^",

@@ -18,7 +18,8 @@
 //! | `a := 1 2 -` | values given before the scans; `-` leaves it as it is; one alone is given before the first |
 //! | `a = 1 2 -` | values wanted after the scans; `-` is not looked at; one alone is wanted after each |
 //! | `scans: 5` | how many scans; else as many as the longest line has values |
-//! | `interval: 20ms` | interval of the task that runs the programs; else 10 ms |
+//! | `interval: 20ms` | interval of the task that runs the programs, if no configuration says it; else 10 ms |
+//! | `dialect: codesys` | how the text is read; else as in the 3rd edition |
 //! | `restart: - warm - cold` | starts before the scans |
 //! | `fault: DivisionByZero` | the last scan, and only it, stops the PLC with this fault |
 //! | `findings: T0201 W0703` | all that the compiler says, in the text's order; with an error nothing runs |
@@ -44,6 +45,9 @@ mod trace;
 use std::path::{Path, PathBuf};
 
 use case::Case;
+use onescan_plc_shim::Application;
+use onescan_plc_shim::syntax::printer::print_unit;
+use onescan_plc_shim::syntax::{FileId, parse};
 
 /// The files in `cases/`, by name.
 fn files() -> Vec<PathBuf> {
@@ -82,6 +86,24 @@ fn every_case_has_its_trace() {
         parts.into_iter().flat_map(|part| part.join().expect("a worker does not panic")).collect()
     });
     assert!(failures.is_empty(), "{} of {} cases fail\n\n{}", failures.len(), files.len(), failures.join("\n\n"));
+}
+
+/// A printed tree is the tree: it prints alike, and compiles to the same code and memory.
+#[test]
+fn every_case_is_printed_as_what_it_is() {
+    for path in files() {
+        let (name, text) = (stem(&path), std::fs::read_to_string(&path).expect("a case"));
+        let Ok(application) = Application::from_sources([("case.st", text.as_str())]) else {
+            continue;
+        };
+        let print = |text: &str| print_unit(&parse(FileId(0), text).unit);
+        let printed = print(&text);
+        assert_eq!(print(&printed), printed, "{name}");
+        let again = Application::from_sources([("case.st", printed.as_str())]);
+        let again = again.unwrap_or_else(|found| panic!("{name}: {found}\n{printed}"));
+        assert_eq!(application.wasm(), again.wasm(), "{name}");
+        assert_eq!(application.initial_memory(), again.initial_memory(), "{name}");
+    }
 }
 
 #[test]

@@ -1,5 +1,6 @@
 //! Programs in, traces out: the whole way from text to a scanning PLC.
 
+mod bit_strings;
 mod configurations;
 mod conversions;
 mod dates;
@@ -9,12 +10,17 @@ mod direct_addresses;
 mod expressions;
 mod faults;
 mod field;
+mod forcing;
 mod inputs;
 mod language;
 mod lints;
 mod lockstep;
+mod open_arrays;
 mod partial_access;
+mod random_programs;
 mod recovery;
+mod references;
+mod restarts;
 mod rig;
 mod robustness;
 mod scheduling;
@@ -26,3 +32,4 @@ mod states;
 mod string_expressions;
 mod strings;
 mod subranges;
+mod unions;

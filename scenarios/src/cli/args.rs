@@ -50,6 +50,10 @@ pub enum Command {
     /// Make a PLC project run in lockstep on any PLC: scheduler, execution controllers and timers on virtual
     /// time are attached; or take them off again
     Instrument(Box<InstrumentArgs>),
+    /// List the library of components, or tell all about one kind
+    Components(ComponentsArgs),
+    /// Tell what a scene is made of: bodies, joints, components, signals
+    Describe(DescribeArgs),
     /// Explain a code of `check`, with an example that is wrong and one that is right
     Explain(ExplainArgs),
 }
@@ -183,6 +187,26 @@ pub struct InstrumentArgs {
     #[arg(long)]
     pub deny_warnings: bool,
     /// For people, or one JSON object for machines: `files` with `file`, `change`, `lines`, and `findings`
+    #[arg(long, value_enum, default_value_t)]
+    pub format: FormatArg,
+}
+
+/// Options of `components`.
+#[derive(Debug, ClapArgs)]
+pub struct ComponentsArgs {
+    /// A kind, for its equations, parameters, signals and failure modes
+    pub kind: Option<String>,
+    /// For people, or JSON for machines
+    #[arg(long, value_enum, default_value_t)]
+    pub format: FormatArg,
+}
+
+/// Options of `describe`.
+#[derive(Debug, ClapArgs)]
+pub struct DescribeArgs {
+    /// The scene, a `plant.toml`
+    pub scene: PathBuf,
+    /// For people, or JSON for machines
     #[arg(long, value_enum, default_value_t)]
     pub format: FormatArg,
 }

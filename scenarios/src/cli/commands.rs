@@ -9,6 +9,7 @@ use onescan_server::transport::tcp::participant::take_part;
 use super::args::{CheckArgs, Command, ControlArgs, ExplainArgs, InstrumentArgs, JoinArgs, RunArgs};
 use crate::check::{self, CheckConfig, Warnings};
 use crate::instrument::{Destination, Diff, Direction, InstrumentConfig};
+use crate::plant;
 use crate::run::config::SaveRequest;
 use crate::run::error::{ExitCode, RunError};
 use crate::run::interrupt::Interrupt;
@@ -31,6 +32,14 @@ pub fn dispatch(command: Command) -> Result<ExitCode, RunError> {
         Command::Check(args) => check(args),
         Command::Instrument(args) => instrument(*args),
         Command::Explain(args) => explain(&args),
+        Command::Components(args) => {
+            plant::components::write(args.kind.as_deref(), args.format.into(), &mut std::io::stdout().lock())?;
+            Ok(ExitCode::Ok)
+        }
+        Command::Describe(args) => {
+            plant::describe::write(&args.scene, args.format.into(), &mut std::io::stdout().lock())?;
+            Ok(ExitCode::Ok)
+        }
     }
 }
 

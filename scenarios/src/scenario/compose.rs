@@ -41,7 +41,7 @@ impl Scenario {
                 let period = period.unwrap_or(self.file().step);
                 let plant = Plant::parse(&text, &path.display().to_string(), name.clone(), period);
                 let plant = plant.map_err(|error| Box::new(report(&error, &path.display().to_string(), &text)))?;
-                Ok(Member::Plant(Box::new(plant)))
+                Ok(Member::Plant(Box::new(plant.seeded(self.file().seed))))
             }
             ClientFile::SoftPlc { sources, dialect, tasks, bind } => {
                 let inputs = sources.iter().map(|source| self.source(name, source, *dialect));
@@ -145,7 +145,7 @@ fn read(path: &PathBuf) -> Result<String, ScenarioError> {
 }
 
 /// A scene's faults, the first in front.
-fn report(error: &SceneError, file: &str, text: &str) -> SceneReport {
+pub(crate) fn report(error: &SceneError, file: &str, text: &str) -> SceneReport {
     let one = |fault: &SceneFault| SceneReport {
         message: fault.kind.to_string(),
         file: NamedSource::new(file, text.to_owned()),

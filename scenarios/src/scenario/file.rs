@@ -27,6 +27,9 @@ pub struct ScenarioFile {
     /// Virtual time at which a run is complete, unless the command line says otherwise.
     #[serde(deserialize_with = "from_text")]
     pub until: VirtualTime,
+    /// What noise, jitter and other chance begin with.
+    #[serde(default)]
+    pub seed: u64,
     /// How clients see each other within a step.
     #[serde(default)]
     pub coupling: CouplingFile,

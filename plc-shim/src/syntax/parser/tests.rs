@@ -14,6 +14,9 @@ fn reparse(text: &str) -> (String, Vec<Diagnostic>) {
 #[test]
 fn a_printed_unit_parses_to_itself() {
     let text = "
+        TYPE U : UNION a : INT; b : BYTE := 3; END_UNION; END_TYPE
+        FUNCTION o VAR_IN_OUT a : ARRAY [*, *] OF INT; END_VAR END_FUNCTION
+        TYPE N : STRUCT next : REF_TO N; p : POINTER TO ARRAY [0..1] OF REFERENCE TO INT := NULL; END_STRUCT; END_TYPE
         TYPE T : STRUCT a, b : INT := 5; c : ARRAY [0..1, 2..3] OF REAL; END_STRUCT END_TYPE
         TYPE C : (Red, Green := 5); R : INT (0..10) := 3; E : (One := 1, Two) USINT := Two; F : DINT (Three); END_TYPE
         VAR_GLOBAL RETAIN g AT %MW1 : T := (a := 1, c := [1.0, 3(2.5)]); END_VAR
@@ -25,7 +28,7 @@ fn a_printed_unit_parses_to_itself() {
           FOR i := 1 TO 10 BY 2 DO CONTINUE; END_FOR;
           WHILE i < 3 DO EXIT; END_WHILE; REPEAT i := i + 1; UNTIL i > 5 END_REPEAT;
           t(IN := TRUE, PT := T#1.5s, Q => b, NOT Q => c); a[1, 2].b := LREAL#1.0e-7 * 16#FF;
-          %QX0.1 := %IX0.0 AND %MD3.%X31; w.%B1 := w.3 OR a[1].w.%W0;
+          %QX0.1 := %IX0.0 AND %MD3.%X31; r REF= a^.b[1]^.c; r ?= REF(x^); p^(IN := q^[1].%X1); w.%B1 := w.3 OR a[1].w.%W0;
         END_PROGRAM";
     let (once, _) = reparse(text);
     let (twice, diagnostics) = reparse(&once);

@@ -135,7 +135,19 @@ impl Printer {
                 self.word("] OF ");
                 self.type_spec(element);
             }
-            TypeSpecKind::Struct(fields) => self.structure(fields),
+            TypeSpecKind::Reference(kind, target) => {
+                self.word(kind.text());
+                self.word(" ");
+                self.type_spec(target);
+            }
+            TypeSpecKind::OpenArray(dimensions, element) => {
+                self.word("ARRAY [");
+                self.separated(&vec!["*"; *dimensions as usize], |printer, star| printer.word(star));
+                self.word("] OF ");
+                self.type_spec(element);
+            }
+            TypeSpecKind::Struct(fields) => self.members("STRUCT", fields),
+            TypeSpecKind::Union(fields) => self.members("UNION", fields),
             TypeSpecKind::Enumeration(values, base) => {
                 self.word("(");
                 self.separated(values, Self::enum_value);
@@ -155,8 +167,8 @@ impl Printer {
         self.expression(high);
     }
 
-    fn structure(&mut self, fields: &[Field]) {
-        self.word("STRUCT");
+    fn members(&mut self, word: &str, fields: &[Field]) {
+        self.word(word);
         self.end_line();
         self.indented(|printer| {
             for field in fields {
@@ -166,7 +178,8 @@ impl Printer {
             }
         });
         self.begin_line();
-        self.word("END_STRUCT");
+        self.word("END_");
+        self.word(word);
     }
 
     fn enum_value(&mut self, value: &EnumValue) {

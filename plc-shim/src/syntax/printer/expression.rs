@@ -14,6 +14,10 @@ impl Printer {
                 self.word(".");
                 self.name(name);
             }
+            ExprKind::Dereference(base) => {
+                self.expression(base);
+                self.word("^");
+            }
             ExprKind::Index(base, indices) => {
                 self.expression(base);
                 self.word("[");

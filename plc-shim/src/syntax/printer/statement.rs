@@ -35,6 +35,14 @@ impl Printer {
                 self.word(" ");
                 self.expression(value);
             }
+            StatementKind::Refer(target, value) => {
+                self.expression(target);
+                self.head(" REF= ", value, "");
+            }
+            StatementKind::Attempt(target, value) => {
+                self.expression(target);
+                self.head(" ?= ", value, "");
+            }
             StatementKind::Call(call) => self.call(call),
             StatementKind::If(inner) => self.if_statement(inner),
             StatementKind::Case(inner) => self.case_statement(inner),
