@@ -7,13 +7,14 @@ use super::address::PlaceFunction;
 use super::convert::{Operand, constant};
 use super::enable;
 use super::function_form;
+use super::memory_function;
 use super::scope::{Body, Scope};
 use super::standard_function;
 use super::variables::decode;
 use crate::diagnostic::{Code, Diagnostic, did_you_mean};
 use crate::ir::{
-    Argument, ElementaryType, Expr, ExprKind, FunctionCall, InstanceCall, Place, PouId, Statement, StatementKind,
-    Storage, Type, TypeId, TypeTable, Unary, Variable,
+    Argument, ElementaryType, Expr, ExprKind, FunctionCall, InstanceCall, Intrinsic, MemoryFunction, Place, PouId,
+    Statement, StatementKind, Storage, Type, TypeId, TypeTable, Unary, Variable,
 };
 use crate::syntax::Span;
 use crate::syntax::ast::{self, Call, Ident, PouKind, ReferenceKind, SectionKind};
@@ -50,6 +51,9 @@ impl Body<'_, '_> {
         }
         if let Some(id) = self.function_named(name) {
             return self.function_call(id, name, call, span).map(Operand::Typed);
+        }
+        if memory_function::exists(&name.key()) {
+            return self.memory_call(name, call, span);
         }
         if let Some(function) = PlaceFunction::find(&name.key()) {
             return self.place_call(function, name, call, span);
@@ -145,6 +149,7 @@ impl Body<'_, '_> {
         };
         let effects = match &result.kind {
             ExprKind::Call(call) => self.has_effects(call.pou),
+            ExprKind::Intrinsic(Intrinsic::Memory(function), _) => *function != MemoryFunction::Compare,
             ExprKind::After(..) => true,
             _ => false,
         };
@@ -168,6 +173,10 @@ impl Body<'_, '_> {
         for (index, argument) in call.arguments.iter().enumerate() {
             let (name, span, expr) = match argument {
                 ast::Argument::Positional(expr) => {
+                    // With a parameter whose declaration is wrong the others cannot be counted.
+                    if scope.has_broken() {
+                        return None;
+                    }
                     if let Some(variable) = scope.positional().nth(index) {
                         (variable.name.to_ascii_uppercase(), expr.span, expr)
                     } else {

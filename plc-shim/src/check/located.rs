@@ -10,7 +10,7 @@ use crate::diagnostic::{Code, Diagnostic};
 use crate::ir::{ElementaryType, Location, Place, Storage, Type, TypeId};
 use crate::syntax::Span;
 use crate::syntax::ast::{self, Ident, PouKind, SectionKind};
-use crate::syntax::direct_address::{AddressError, Area, DirectAddress, Width};
+use crate::syntax::direct_address::{AREA_LIMIT, AddressError, Area, DirectAddress, Width};
 
 /// Initial bytes of a located variable.
 #[derive(Debug)]
@@ -19,6 +19,15 @@ pub(super) struct Initial {
     image: Arc<[u8]>,
     /// True for a value of the variable's own, which goes before those of types.
     explicit: bool,
+}
+
+/// Where a declaration puts its variable.
+#[derive(Debug, Clone, Copy)]
+pub(super) enum Placement {
+    /// Where there is room.
+    Free,
+    /// At its direct address.
+    At(Storage),
 }
 
 /// True for what the machine writes before a scan.
@@ -59,22 +68,22 @@ impl Checker<'_> {
         }
     }
 
-    /// Where a declaration with `AT` puts its variable. The storage is nothing if no address is given,
-    /// or an open one; the whole is nothing after a report.
-    pub(super) fn located(&mut self, ast: &ast::Variable, declared: &TypedImage) -> Option<Option<Storage>> {
-        let Some(name) = &ast.address else { return Some(None) };
+    /// Where a declaration, with `AT` or without, puts its variable; an open address leaves it free.
+    pub(super) fn located(&mut self, ast: &ast::Variable, declared: &TypedImage) -> Option<Placement> {
+        let Some(name) = &ast.address else { return Some(Placement::Free) };
         let (address, location) = self.direct_address(&name.text, name.span)?;
         if !name.text.ends_with('*') || address.width != Width::Bit {
             self.require_width(address.width, declared.ty, name)?;
         }
-        let Some(location) = location else { return Some(None) };
-        self.areas.extend(location, self.types.size(declared.ty));
-        if location.offset + self.types.size(declared.ty) > crate::syntax::direct_address::AREA_LIMIT {
+        let Some(location) = location else { return Some(Placement::Free) };
+        let size = self.types.size(declared.ty);
+        if location.offset + size > AREA_LIMIT {
             return self.invalid_address(&name.text, AddressError::TooLarge, name.span);
         }
+        self.areas.extend(location, size);
         let (image, explicit) = (declared.image.clone(), ast.initial.is_some());
         self.located.push(Initial { location, image, explicit });
-        Some(Some(Storage::Located(location)))
+        Some(Placement::At(Storage::Located(location)))
     }
 
     /// What is located has a place of its own: no parameter of a block, nothing of a function.

@@ -14,7 +14,7 @@
 //! | [`expression`], [`operator`], [`calendar`], [`place`], [`part`] | expressions |
 //! | [`reference`], [`address`], [`referred`] | references and pointers |
 //! | [`open_array`] | arrays that come with their bounds |
-//! | [`call`], [`standard_function`], [`function_form`], [`conversion_function`] | calls |
+//! | [`call`], [`standard_function`], [`function_form`], [`conversion_function`], [`memory_function`] | calls |
 //! | [`enable`], [`enable_error`] | EN and ENO |
 //! | [`text`], [`text_function`], [`text_conversion`] | character strings |
 //! | [`statement`], [`assignment`], [`edge`] | statements |
@@ -42,6 +42,7 @@ mod function_form;
 mod initial;
 mod layout;
 mod located;
+mod memory_function;
 mod names;
 mod open_array;
 mod operator;

@@ -128,14 +128,14 @@ impl Body<'_, '_> {
                 Type::Elementary(ty) if holds_address(ty) => {
                     Some(Expr { ty: wanted, ..converted(expr, ElementaryType::Udint, Rounding::NearestEven) })
                 }
-                _ => self.no_reference(Operand::Typed(expr), wanted),
+                _ => self.no_reference(&Operand::Typed(expr), wanted),
             },
-            (operand, _) => self.no_reference(operand, wanted),
+            (operand, _) => self.no_reference(&operand, wanted),
         }
     }
 
-    fn no_reference<T>(&mut self, operand: Operand, wanted: TypeId) -> Option<T> {
-        let (found, wanted) = (self.describe(&operand), self.type_name(wanted));
+    fn no_reference<T>(&mut self, operand: &Operand, wanted: TypeId) -> Option<T> {
+        let (found, wanted) = (self.describe(operand), self.type_name(wanted));
         self.mismatch(&wanted, &found, operand.span())
     }
 

@@ -27,6 +27,11 @@ impl Scope {
         self.by_name.get(key).is_some_and(|index| *index >= self.variables.len())
     }
 
+    /// True if any declaration is wrong.
+    pub(super) fn has_broken(&self) -> bool {
+        self.by_name.values().any(|index| *index >= self.variables.len())
+    }
+
     /// What a caller can set: inputs and in-outs in their order.
     pub(super) fn inputs(&self) -> impl Iterator<Item = &Variable> {
         let accepts = |section| matches!(section, SectionKind::Input | SectionKind::InOut);

@@ -20,6 +20,16 @@ pub(super) enum Need {
     Reference,
 }
 
+/// Vendors' names of the types that are as wide as a pointer.
+fn of_pointer_width(key: &str) -> Option<ElementaryType> {
+    Some(match key {
+        "__XWORD" => ElementaryType::Dword,
+        "__UXINT" | "PVOID" => ElementaryType::Udint,
+        "__XINT" => ElementaryType::Dint,
+        _ => return None,
+    })
+}
+
 impl Checker<'_> {
     /// A type of a `TYPE` block; `used` is where it is needed.
     pub(super) fn named_type(&mut self, key: &str, used: Option<Span>) -> Option<TypedImage> {
@@ -144,7 +154,7 @@ impl<'a> Body<'_, 'a> {
 
     pub(super) fn type_by_name(&mut self, name: &Ident, need: Need) -> Option<TypedImage> {
         let key = name.key();
-        if let Some(found) = ElementaryType::find(&key) {
+        if let Some(found) = ElementaryType::find(&key).or_else(|| of_pointer_width(&key)) {
             return Some(self.whole(found.into()));
         }
         if self.checker.type_names.contains_key(&key) {

@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use super::Checker;
 use super::layout::{MEMORY_LIMIT, align_up};
+use super::located::Placement;
 use super::names::{Progress, TypedImage};
 use super::open_array::takes_open_arrays;
 use super::referred::referred;
@@ -51,8 +52,8 @@ impl<'a> Checker<'a> {
         let declared = Body::outside(self).declared(ast, Need::Size)?;
         Body::outside(self).reject_open_array(declared.ty, name.span)?;
         let storage = match self.located(ast, &declared)? {
-            Some(storage) => storage,
-            None => {
+            Placement::At(storage) => storage,
+            Placement::Free => {
                 let (size, align) = (self.types.size(declared.ty), self.types.align(declared.ty));
                 let offset = self.allocate(size, align, name.span)?;
                 self.placed.push((offset, declared.image.clone()));
@@ -273,7 +274,7 @@ impl<'c, 'a> Interface<'c, 'a> {
     ) -> Option<Storage> {
         if let Some(address) = &ast.address {
             self.body.checker.may_be_located(self.kind, section.kind, address)?;
-            if let Some(located) = self.body.checker.located(ast, declared)? {
+            if let Placement::At(located) = self.body.checker.located(ast, declared)? {
                 return Some(located);
             }
         }

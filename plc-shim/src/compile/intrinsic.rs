@@ -34,6 +34,7 @@ impl Emitter<'_, '_> {
                     self.narrow_from_bits(ty);
                 }
             }
+            Intrinsic::Memory(function) => self.memory_function(function, operands, whole.span),
             Intrinsic::SwapBytes => self.swapped_bytes(operands, ty),
             Intrinsic::Fraction => self.fraction(operands, ty),
             Intrinsic::FloorRemainder | Intrinsic::FloorMultiple => self.floored(kind, operands),

@@ -6,7 +6,7 @@
 //! | [`function`] | one unit to one function |
 //! | [`entry`] | what a task runs |
 //! | [`emitter`] | instructions, registers, labels, marks |
-//! | [`place`], [`part`], [`pointer`], [`open_array`] | addresses, loads and stores |
+//! | [`place`], [`part`], [`pointer`], [`open_array`], [`memory`] | addresses, loads and stores |
 //! | [`statement`], [`repetition`] | statements |
 //! | [`expression`], [`arithmetic`], [`conversion`], [`intrinsic`], [`bytes`] | expressions |
 //! | [`host`] | functions that WebAssembly lacks |
@@ -26,6 +26,7 @@ pub(crate) mod fault;
 mod function;
 pub(crate) mod host;
 mod intrinsic;
+mod memory;
 mod module;
 mod open_array;
 mod part;

@@ -16,12 +16,11 @@ fn mask(ty: ElementaryType) -> u64 {
 impl Emitter<'_, '_> {
     /// Pushes the bits as a value of `ty`.
     pub(super) fn load_part(&mut self, place: &Place, part: Part, ty: ElementaryType) {
-        match place.storage {
-            Storage::Register(register) => self.get(register),
-            _ => {
-                let offset = self.address(place);
-                self.emit(Instruction::I32Load8U(byte(offset)));
-            }
+        if let Storage::Register(register) = place.storage {
+            self.get(register);
+        } else {
+            let offset = self.address(place);
+            self.emit(Instruction::I32Load8U(byte(offset)));
         }
         let wide = value_type(part.whole) == ValType::I64;
         if part.shift > 0 {

@@ -129,10 +129,23 @@ pub(crate) enum Intrinsic {
     RotateRight,
     /// The same bits as another type of the same size.
     Reinterpret,
+    /// On addresses and a number of bytes, all UDINT.
+    Memory(MemoryFunction),
     /// The remainder of a 64 bit number by a positive one, never negative.
     FloorRemainder,
     /// The greatest multiple of the second that is not greater than the first.
     FloorMultiple,
+}
+
+/// What vendors' functions do with bytes at addresses; each gives a number.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum MemoryFunction {
+    /// Target, source, count to the count; they may overlap.
+    Copy,
+    /// Target, value of a byte, count to the count.
+    Fill,
+    /// Two places and a count to -1, 0 or 1 as DINT.
+    Compare,
 }
 
 /// A call of a user's function.

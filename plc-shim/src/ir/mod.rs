@@ -16,7 +16,8 @@ pub(crate) use area::{Areas, Location};
 pub(crate) use configuration::{Access, Configuration, Entry, Program, Resource, Target, Task};
 pub(crate) use elementary::ElementaryType;
 pub(crate) use expr::{
-    Argument, Binary, Expr, ExprKind, FunctionCall, Intrinsic, LocalId, Part, Place, Rounding, Step, Storage, Unary,
+    Argument, Binary, Expr, ExprKind, FunctionCall, Intrinsic, LocalId, MemoryFunction, Part, Place, Rounding, Step,
+    Storage, Unary,
 };
 pub(crate) use pou::{EdgeDetection, Pou, PouId, Retention, Variable};
 pub(crate) use statement::{CaseArm, CaseStatement, ForStatement, IfBranch, InstanceCall, Statement, StatementKind};

@@ -37,8 +37,13 @@ fn branch(list: &[Statement], visitor: &mut impl Visitor) {
 
 fn statement(kind: &StatementKind, visitor: &mut impl Visitor) {
     match kind {
-        StatementKind::Assign(place, value) => {
+        StatementKind::Assign(place, value) | StatementKind::Attempt(place, value) => {
             target(place, visitor);
+            expression(value, visitor);
+        }
+        StatementKind::Refer(place, value) => {
+            target(place, visitor);
+            visitor.referred(value);
             expression(value, visitor);
         }
         StatementKind::Chain(places, value) => {
@@ -50,15 +55,6 @@ fn statement(kind: &StatementKind, visitor: &mut impl Visitor) {
         StatementKind::Update(_, place, value) => {
             expression(place, visitor);
             target(place, visitor);
-            expression(value, visitor);
-        }
-        StatementKind::Attempt(place, value) => {
-            target(place, visitor);
-            expression(value, visitor);
-        }
-        StatementKind::Refer(place, value) => {
-            target(place, visitor);
-            visitor.referred(value);
             expression(value, visitor);
         }
         StatementKind::Call(inner) => call(inner, visitor),

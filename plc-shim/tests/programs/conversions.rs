@@ -84,8 +84,7 @@ impl Type {
             (Real, Bits) | (Bits, Real) => self.bits == to.bits,
             (Moment, Date | TimeOfDay | Moment)
             | (Date, Date | Moment)
-            | (TimeOfDay, TimeOfDay | Duration)
-            | (Duration, TimeOfDay | Duration) => true,
+            | (TimeOfDay | Duration, TimeOfDay | Duration) => true,
             (Date | TimeOfDay | Moment, _) => !to.counts() && to.kind != Bool,
             (_, Date | TimeOfDay | Moment) => !self.counts() && self.kind != Bool,
             _ => true,

@@ -112,6 +112,23 @@ fn pointers_of_vendors_are_numbers_of_bytes() {
 }
 
 #[test]
+fn functions_of_vendors_work_on_bytes_at_addresses() {
+    let rig = run("PROGRAM P VAR a : ARRAY [0..3] OF INT := [1, 2, 3, 4]; b : ARRAY [0..3] OF INT; c : ARRAY [0..3] OF INT; n, size : UDINT;
+          less, same, more : DINT; x : __XWORD; END_VAR
+        n := MEMCPY(ADR(b), ADR(a), SIZEOF(a)); MEMMOVE(destAddr := ADR(a[1]), srcAddr := ADR(a), n := 6); MEMSET(ADR(c), 16#11, 4);
+        less := MEMCMP(ADR(a), ADR(b), SIZEOF(a)); same := MEMCMP(ADR(a), ADR(b), 2); SysMemSet(ADR(c[3]), 255, 2);
+        more := MEMCMP(ADR(c), ADR(a), 8); x := ADR(a); size := SIZEOF(x); MEMCPY(ADR(a), ADR(b), 0); END_PROGRAM");
+    let list = |name: &str| [0, 1, 2, 3].map(|index| rig.int(&format!("P.{name}[{index}]")));
+    assert_eq!((list("a"), list("b"), list("c")), ([1, 1, 2, 3], [1, 2, 3, 4], [0x1111, 0x1111, 0, -1]));
+    assert_eq!((rig.int("P.n"), rig.int("P.size")), (8, 4));
+    assert_eq!((rig.int("P.less"), rig.int("P.same"), rig.int("P.more")), (-1, 0, 1));
+    insta::assert_snapshot!(fault("PROGRAM P\nVAR a : INT; END_VAR\n  MEMSET(ADR(a), 0, 16#FFFFFFFF);\nEND_PROGRAM"),
+        @"pointer out of memory at test.st:3:3 in P, t_v = 0.010 s");
+    insta::assert_snapshot!(fault("PROGRAM P\nVAR a : INT; p : POINTER TO INT; END_VAR\n  MEMCPY(ADR(a), p, 2);\nEND_PROGRAM"),
+        @"use of a NULL reference at test.st:3:3 in P, t_v = 0.010 s");
+}
+
+#[test]
 fn references_of_vendors_stand_for_what_they_refer_to() {
     let rig = run("FUNCTION_BLOCK B VAR_INPUT r : REFERENCE TO INT; END_VAR VAR_OUTPUT valid : BOOL; END_VAR
         valid := __ISVALIDREF(r); IF valid THEN r := r + 1; END_IF; END_FUNCTION_BLOCK
@@ -175,6 +192,9 @@ END_VAR VAR_TEMP tmp : INT; END_VAR VAR CONSTANT k : INT := 1;";
             "CASE r OF 1: ; END_CASE;",
             "test.st:3:6: error[T0201]: an integer or enumeration is wanted, this is REF_TO INT",
         ),
+        ("MEMSET(x, 0);", "test.st:3:1: error[C0302]: MEMSET takes 3 arguments, not 2"),
+        ("MEMSET(ADR(x), 0, 1, 2);", "test.st:3:22: error[C0301]: MEMSET has no such parameter here"),
+        ("MEMSET(ADR(x), 0, 1.5);", "test.st:3:19: error[T0201]: UDINT is wanted, this is a real number"),
         ("t := NULL;", "test.st:3:1: error[D0403]: instances are not assigned to one another"),
         ("NULL := r;", "test.st:3:1: error[N0106]: `NULL` is not a variable"),
     ] {

@@ -4,14 +4,18 @@ use onescan_plc_shim::{Application, SoftPlc, TaskPlan, VirtualTime};
 use proptest::prelude::*;
 
 const PROGRAM: &str =
-    "TYPE T : STRUCT a : INT; b : ARRAY [0..3] OF REAL := [1.0, 3(2.0)]; END_STRUCT; C : (X, Y); END_TYPE
+    "TYPE T : STRUCT a : INT; b : ARRAY [0..3] OF REAL := [1.0, 3(2.0)]; END_STRUCT; C : (X, Y); U : UNION w : WORD; n : REF_TO U; END_UNION; END_TYPE
+VAR_GLOBAL lamp AT %QX0.1 : BOOL; END_VAR
+FUNCTION G : DINT VAR_IN_OUT a : ARRAY [*] OF REAL; END_VAR a[UPPER_BOUND(a, 1)] := 1.0; G := LOWER_BOUND(a, 1); END_FUNCTION
 FUNCTION F : INT VAR_INPUT a : INT; b : INT := 2; END_VAR F := a * b + 1; END_FUNCTION
 FUNCTION_BLOCK B VAR_INPUT x : T; END_VAR VAR_OUTPUT y : REAL; END_VAR VAR_IN_OUT z : INT; END_VAR
 y := x.b[x.a]; z := z + 1; END_FUNCTION_BLOCK
-PROGRAM P VAR t : T; fb : B; i, j : INT; c : C; q : TON; w : WORD; END_VAR
+PROGRAM P VAR u : U; r : REF_TO U; p : POINTER TO INT; v : REFERENCE TO INT; t : T; fb : B; i, j : INT; c : C; q : TON; w : WORD; END_VAR
 FOR i := 0 TO 3 DO t.b[i] := INT_TO_REAL(F(a := i)) / 2.0; END_FOR;
 fb(x := t, z := j); q(IN := j > 3, PT := T#1s);
 CASE j OF 0: c := Y; 1..5: c := C#X; ELSE w := SHL(w, 1) OR 1; END_CASE;
+r := REF(u); u.n := r; r^.n^.w.%X3 := lamp OR %IX0.0; p := ADR(j); p^ := p[0]; v REF= j; v := v + SIZEOF(u);
+lamp := u.n <> NULL AND G(t.b) = 0; %MX1.2 := w.3;
 WHILE j > 100 DO j := j - 1; IF q.Q THEN EXIT; END_IF; END_WHILE;
 END_PROGRAM";
 

@@ -93,7 +93,7 @@ pub fn instrument(config: &InstrumentConfig, out: &mut dyn Write, err: &mut dyn 
     };
     if !project.warnings.is_empty() && config.warnings == Warnings::Denied {
         report::findings(&project.warnings, program.inputs.len(), config.format, out)?;
-        return Ok(ExitCode::Unequal);
+        return Ok(ExitCode::Unmet);
     }
     let writes = project::writes(config, &project)?;
     write_all_whole(&writes)?;

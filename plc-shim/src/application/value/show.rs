@@ -60,14 +60,12 @@ impl Application {
                 });
                 self.show_list(('(', ')'), held, text);
             }
-            // What is referred to has a path of its own.
-            Type::Reference { .. } | Type::Address { .. } | Type::OpenArray { .. } => {
-                match number(bytes.get(..4).unwrap_or_default()) {
-                    0 => text.push_str("NULL"),
-                    address => text.push_str(&format!("16#{address:08X}")),
-                }
+            Type::Reference { .. } | Type::Address { .. } | Type::Null if number(bytes) == 0 => text.push_str("NULL"),
+            // The address.
+            Type::Reference { .. } | Type::Address { .. } | Type::Null => {
+                show_elementary(ElementaryType::Dword, bytes, text);
             }
-            Type::Nothing | Type::Null => {}
+            Type::Nothing | Type::OpenArray { .. } => {}
         }
     }
 

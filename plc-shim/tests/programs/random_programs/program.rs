@@ -34,6 +34,9 @@ pub(super) enum Truth {
     Compare(&'static str, Number, Number),
 }
 
+/// Ranges; both ends of a single value are it.
+pub(super) type Labels = Vec<(i16, i16)>;
+
 #[derive(Debug, Clone)]
 pub(super) enum Statement {
     Assign(usize, Number),
@@ -41,8 +44,7 @@ pub(super) enum Statement {
     /// `a[n] := n`, where the index may be out of range.
     AssignElement(Number, Number),
     If(Vec<(Truth, Vec<Statement>)>, Vec<Statement>),
-    /// Labels are ranges; both ends of a single value are it.
-    Case(Number, Vec<(Vec<(i16, i16)>, Vec<Statement>)>, Vec<Statement>),
+    Case(Number, Vec<(Labels, Vec<Statement>)>, Vec<Statement>),
     For {
         from: Number,
         to: Number,
@@ -97,7 +99,7 @@ fn truth() -> impl Strategy<Value = Truth> {
     })
 }
 
-fn labels() -> impl Strategy<Value = Vec<(i16, i16)>> {
+fn labels() -> impl Strategy<Value = Labels> {
     let label = prop_oneof![
         (-6_i16..7).prop_map(|value| (value, value)),
         (-9_i16..9, 0_i16..6).prop_map(|(low, length)| (low, low + length)),
