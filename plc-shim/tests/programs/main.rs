@@ -11,6 +11,7 @@ mod dialects;
 mod direct_addresses;
 mod expressions;
 mod faults;
+mod field;
 mod forcing;
 mod inputs;
 mod language;
