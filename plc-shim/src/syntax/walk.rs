@@ -41,11 +41,6 @@ fn statement(kind: &StatementKind, visitor: &mut impl Visitor) {
             target(place, visitor);
             expression(value, visitor);
         }
-        StatementKind::Refer(place, value) => {
-            target(place, visitor);
-            visitor.referred(value);
-            expression(value, visitor);
-        }
         StatementKind::Chain(places, value) => {
             for place in places {
                 target(place, visitor);
@@ -55,6 +50,11 @@ fn statement(kind: &StatementKind, visitor: &mut impl Visitor) {
         StatementKind::Update(_, place, value) => {
             expression(place, visitor);
             target(place, visitor);
+            expression(value, visitor);
+        }
+        StatementKind::Refer(place, value) => {
+            target(place, visitor);
+            visitor.referred(value);
             expression(value, visitor);
         }
         StatementKind::Call(inner) => call(inner, visitor),

@@ -20,10 +20,6 @@ impl Cursor<'_> {
         if self.take_mark(Punctuation::Assign) {
             return self.assigned(target);
         }
-        if let Some(operator) = self.take_update() {
-            let value = self.expression();
-            return StatementKind::Update(operator, target, value);
-        }
         if self.take_mark(Punctuation::Attempt) {
             return StatementKind::Attempt(target, self.expression());
         }
@@ -31,6 +27,10 @@ impl Cursor<'_> {
             self.advance();
             self.advance();
             return StatementKind::Refer(target, self.expression());
+        }
+        if let Some(operator) = self.take_update() {
+            let value = self.expression();
+            return StatementKind::Update(operator, target, value);
         }
         if let ExprKind::Call(call) = target.kind {
             return StatementKind::Call(call);

@@ -87,7 +87,7 @@ impl Cursor<'_> {
         };
         let has_result = kind == PouKind::Function && self.result_follows();
         let result = has_result.then(|| self.type_spec()).filter(|result| !self.is_void(result));
-        self.take_mark(Punctuation::Semicolon);
+        self.take_semicolons();
         let mut sections = Vec::new();
         while let Some(kind) = self.next_section() {
             sections.push(self.section(kind));
@@ -164,7 +164,7 @@ impl Cursor<'_> {
             });
             self.take_keyword(Keyword::EndVar);
         }
-        self.take_mark(Punctuation::Semicolon);
+        self.take_semicolons();
         Section { kind, qualifiers, variables, span: self.span_from(start) }
     }
 

@@ -87,6 +87,32 @@ fn iec2_2_7_one_slip_in_a_configuration_makes_one_diagnostic() {
 }
 
 #[test]
+fn a_printed_unit_of_a_vendor_parses_to_itself() {
+    let texts = [
+        (
+            Dialect::Codesys,
+            "PROGRAM p VAR_STAT n : INT; END_VAR a := b := c; a S= b; a R= b OR_ELSE c AND_THEN d;
+             IF a THEN b := 1; END_IF END_PROGRAM",
+        ),
+        (
+            Dialect::SiemensScl,
+            "TYPE \"my type\" VERSION : 0.1 STRUCT \"a b\" : Int; END_STRUCT; END_TYPE
+             DATA_BLOCK \"my data\" STRUCT x : Array[0..1] of \"my type\"; y : Int; END_STRUCT; BEGIN y := 3; END_DATA_BLOCK
+             FUNCTION \"f\" : Void VAR_INPUT \"in put\" : Int; END_VAR BEGIN #\"in put\" += W#16#F; END_FUNCTION
+             ORGANIZATION_BLOCK \"Main\" BEGIN \"f\"(\"in put\" := \"my data\".x[0].\"a b\"); #t.TON(IN := \"y\"); END_ORGANIZATION_BLOCK",
+        ),
+    ];
+    for (dialect, text) in texts {
+        let once = parse_in(dialect, FILE, text);
+        assert_eq!(once.diagnostics, [], "{text}");
+        let printed = print_unit(&once.unit);
+        let twice = parse_in(dialect, FILE, &printed);
+        assert_eq!(twice.diagnostics, [], "{printed}");
+        assert_eq!(print_unit(&twice.unit), printed);
+    }
+}
+
+#[test]
 fn operators_bind_as_table_52_says() {
     let shape = |text: &str| {
         let parsed = parse(FILE, &format!("PROGRAM p x := {text}; END_PROGRAM"));

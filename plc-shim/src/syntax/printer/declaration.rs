@@ -24,7 +24,7 @@ impl Printer {
             PouKind::Function => ("FUNCTION ", "END_FUNCTION"),
         };
         self.word(begin);
-        self.word(&pou.name.text);
+        self.name(&pou.name);
         if let Some(result) = &pou.result {
             self.word(" : ");
             self.type_spec(result);
@@ -68,7 +68,7 @@ impl Printer {
 
     fn variable(&mut self, variable: &Variable) {
         self.begin_line();
-        self.separated(&variable.names, |printer, name| printer.word(&name.text));
+        self.separated(&variable.names, Self::name);
         if let Some(address) = &variable.address {
             self.word(" AT ");
             self.word(&address.text);
@@ -104,7 +104,7 @@ impl Printer {
         self.line("TYPE");
         self.indented(|printer| {
             printer.begin_line();
-            printer.word(&declaration.name.text);
+            printer.name(&declaration.name);
             printer.typed(&declaration.spec, declaration.initial.as_ref());
         });
         self.line("END_TYPE");
@@ -112,7 +112,7 @@ impl Printer {
 
     pub(super) fn type_spec(&mut self, spec: &TypeSpec) {
         match &spec.kind {
-            TypeSpecKind::Name(name) => self.word(&name.text),
+            TypeSpecKind::Name(name) => self.name(name),
             TypeSpecKind::String(name, length) => {
                 self.word(&name.text);
                 if let Some(length) = length {
@@ -173,7 +173,7 @@ impl Printer {
         self.indented(|printer| {
             for field in fields {
                 printer.begin_line();
-                printer.word(&field.name.text);
+                printer.name(&field.name);
                 printer.typed(&field.spec, field.initial.as_ref());
             }
         });
@@ -183,7 +183,7 @@ impl Printer {
     }
 
     fn enum_value(&mut self, value: &EnumValue) {
-        self.word(&value.name.text);
+        self.name(&value.name);
         if let Some(number) = &value.value {
             self.word(" := ");
             self.expression(number);
@@ -215,7 +215,7 @@ impl Printer {
     }
 
     fn structure_init(&mut self, member: &StructureInit) {
-        self.word(&member.name.text);
+        self.name(&member.name);
         self.word(" := ");
         self.initialiser(&member.value);
     }
