@@ -27,7 +27,9 @@ impl Emitter<'_, '_> {
         match function {
             MemoryFunction::Compare => self.compare_memory(left, right, length),
             MemoryFunction::Copy | MemoryFunction::Fill => {
-                registers.iter().for_each(|register| self.get(*register));
+                for register in registers {
+                    self.get(register);
+                }
                 self.emit(match function {
                     MemoryFunction::Fill => Instruction::MemoryFill(0),
                     _ => Instruction::MemoryCopy { src_mem: 0, dst_mem: 0 },
@@ -36,7 +38,9 @@ impl Emitter<'_, '_> {
                 self.get(length);
             }
         }
-        registers.iter().for_each(|register| self.release(*register));
+        for register in registers {
+            self.release(register);
+        }
     }
 
     /// A fault unless `length` bytes at `address`, which is not NULL, lie in memory.

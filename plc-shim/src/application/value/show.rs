@@ -60,12 +60,14 @@ impl Application {
                 });
                 self.show_list(('(', ')'), held, text);
             }
-            Type::Reference { .. } | Type::Address { .. } | Type::Null if number(bytes) == 0 => text.push_str("NULL"),
-            // The address.
-            Type::Reference { .. } | Type::Address { .. } | Type::Null => {
-                show_elementary(ElementaryType::Dword, bytes, text);
+            // What is referred to has a path of its own.
+            Type::Reference { .. } | Type::Address { .. } | Type::OpenArray { .. } => {
+                match number(bytes.get(..4).unwrap_or_default()) {
+                    0 => text.push_str("NULL"),
+                    _ => show_elementary(ElementaryType::Dword, bytes.get(..4).unwrap_or_default(), text),
+                }
             }
-            Type::Nothing | Type::OpenArray { .. } => {}
+            Type::Nothing | Type::Null => {}
         }
     }
 

@@ -32,14 +32,6 @@ impl Cursor<'_> {
             let value = self.expression();
             return StatementKind::Update(operator, target, value);
         }
-        if self.take_mark(Punctuation::Attempt) {
-            return StatementKind::Attempt(target, self.expression());
-        }
-        if self.at_reference_assignment() {
-            self.advance();
-            self.advance();
-            return StatementKind::Refer(target, self.expression());
-        }
         if let ExprKind::Call(call) = target.kind {
             return StatementKind::Call(call);
         }

@@ -58,6 +58,20 @@ impl Cursor<'_> {
         TypeSpecKind::Name(name)
     }
 
+    /// `FB[(a := 1), (a := 2)]`: arguments of each instance's `FB_init` (CODESYS, TwinCAT).
+    fn pass_init_arguments(&mut self) {
+        let start = self.span();
+        self.advance();
+        while self.at_mark(Punctuation::LeftParen) {
+            self.arguments();
+            self.take_mark(Punctuation::Comma);
+        }
+        self.expect_mark(Punctuation::RightBracket);
+        let message = "arguments of FB_init are not supported";
+        let found = Diagnostic::error(Code::VendorRuntime, self.span_from(start), message);
+        self.report(found.with_help("give the instance's inputs initial values"));
+    }
+
     /// `REF_TO`, `POINTER TO` or `REFERENCE TO`; none of them is a keyword of the 2nd edition.
     fn reference_kind(&mut self) -> Option<ReferenceKind> {
         let word = (self.peek() == Some(TokenKind::Identifier)).then(|| self.next_text().to_ascii_uppercase())?;
@@ -71,20 +85,6 @@ impl Cursor<'_> {
         self.advance();
         self.take_keyword(Keyword::To);
         Some(kind)
-    }
-
-    /// `FB[(a := 1), (a := 2)]`: arguments of each instance's `FB_init` (CODESYS, TwinCAT).
-    fn pass_init_arguments(&mut self) {
-        let start = self.span();
-        self.advance();
-        while self.at_mark(Punctuation::LeftParen) {
-            self.arguments();
-            self.take_mark(Punctuation::Comma);
-        }
-        self.expect_mark(Punctuation::RightBracket);
-        let message = "arguments of FB_init are not supported";
-        let found = Diagnostic::error(Code::VendorRuntime, self.span_from(start), message);
-        self.report(found.with_help("give the instance's inputs initial values"));
     }
 
     fn string_type(&mut self, name: Ident) -> TypeSpecKind {

@@ -21,14 +21,6 @@ impl Printer {
                 self.word(" := ");
                 self.expression(value);
             }
-            StatementKind::Refer(target, value) => {
-                self.expression(target);
-                self.head(" REF= ", value, "");
-            }
-            StatementKind::Attempt(target, value) => {
-                self.expression(target);
-                self.head(" ?= ", value, "");
-            }
             StatementKind::Chain(targets, value) => {
                 for target in targets {
                     self.expression(target);
@@ -42,6 +34,14 @@ impl Printer {
                 self.word(operator.text());
                 self.word(" ");
                 self.expression(value);
+            }
+            StatementKind::Refer(target, value) => {
+                self.expression(target);
+                self.head(" REF= ", value, "");
+            }
+            StatementKind::Attempt(target, value) => {
+                self.expression(target);
+                self.head(" ?= ", value, "");
             }
             StatementKind::Call(call) => self.call(call),
             StatementKind::If(inner) => self.if_statement(inner),
