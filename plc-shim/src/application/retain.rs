@@ -70,7 +70,12 @@ impl Collector<'_> {
                     self.inside(field.ty, offset + field.offset);
                 }
             }
-            Type::Elementary(_) | Type::Enumeration { .. } | Type::Subrange { .. } | Type::Text(_) | Type::Nothing => {}
+            Type::Elementary(_)
+            | Type::Interface { .. }
+            | Type::Enumeration { .. }
+            | Type::Subrange { .. }
+            | Type::Text(_)
+            | Type::Nothing => {}
         }
     }
 
@@ -94,9 +99,12 @@ impl Collector<'_> {
             }
             Type::Array { element, .. } => self.has_retained(*element),
             Type::Struct { fields, .. } => fields.iter().any(|field| self.has_retained(field.ty)),
-            Type::Elementary(_) | Type::Enumeration { .. } | Type::Subrange { .. } | Type::Text(_) | Type::Nothing => {
-                false
-            }
+            Type::Elementary(_)
+            | Type::Interface { .. }
+            | Type::Enumeration { .. }
+            | Type::Subrange { .. }
+            | Type::Text(_)
+            | Type::Nothing => false,
         }
     }
 }

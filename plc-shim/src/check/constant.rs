@@ -27,7 +27,9 @@ pub(super) fn fold(types: &TypeTable, expr: &Expr) -> Result<Value, NoValue> {
         }
         ExprKind::Convert(rounding, operand) => Ok(convert(*rounding, ty, fold(types, operand)?)),
         ExprKind::Limited(_, _, operand) => fold(types, operand),
-        ExprKind::Load(_) | ExprKind::Intrinsic(..) | ExprKind::Text(_) | ExprKind::Call(_) => Err(not_constant),
+        ExprKind::Load(_) | ExprKind::Intrinsic(..) | ExprKind::Text(_) | ExprKind::Call(_) | ExprKind::Cast(_) => {
+            Err(not_constant)
+        }
     }
 }
 

@@ -58,6 +58,9 @@ impl Body<'_, '_> {
         if let Some(shape) = self.shape(target) {
             return self.coerce_text(operand, shape);
         }
+        if let Type::Interface { pou, .. } = *self.checker.types.get(target) {
+            return self.coerce_interface(operand, pou, target);
+        }
         if let Type::Subrange { base, low, high } = *self.checker.types.get(target) {
             let expr = self.coerce(operand, base.into())?;
             return self.limited(expr, target, low, high);

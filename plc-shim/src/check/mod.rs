@@ -14,23 +14,34 @@
 //! | [`call`], [`standard_function`], [`conversion_function`] | calls |
 //! | [`text`], [`text_function`], [`text_conversion`] | character strings |
 //! | [`statement`], [`edge`] | statements |
-//! | [`recursion`] | who calls whom |
+//! | [`recursion`], [`dispatch`] | who calls whom, and what only a run decides |
+//! | [`namespace`] | what a name means where it stands |
+//! | [`class`], [`inheritance`] | bases, interfaces, members |
+//! | [`instance`], [`method_call`], [`property`], [`interface_value`] | `THIS`, methods, properties, interfaces |
 //!
 //! A unit, type or global variable is resolved when it is first needed; what is being resolved
 //! and needed again contains itself.
 
 mod calendar;
 mod call;
+mod class;
 mod constant;
 mod conversion_function;
 mod convert;
+mod dispatch;
 mod edge;
 mod expression;
+mod inheritance;
 mod initial;
+mod instance;
+mod interface_value;
 mod layout;
+mod method_call;
 mod names;
+mod namespace;
 mod operator;
 mod place;
+mod property;
 mod recursion;
 mod scope;
 mod standard_function;
@@ -43,15 +54,19 @@ mod types;
 mod variables;
 
 use std::collections::{BTreeMap, BTreeSet};
+use std::sync::Arc;
 
+use self::class::Class;
+use self::dispatch::Rows;
 use self::layout::Layout;
 use self::names::{Enumerator, GlobalEntry, PouEntry, TypeEntry};
+use self::namespace::Home;
 use crate::diagnostic::Diagnostic;
-use crate::ir::{Pou, PouId, Program, TypeId, TypeTable, Variable};
+use crate::ir::{Pou, PouId, Program, Row, TypeId, TypeTable, Variable};
 use crate::syntax::ast::{CompilationUnit, PouKind};
 use crate::syntax::{FileId, Span};
 
-pub(crate) use layout::VIRTUAL_TIME_OFFSET;
+pub(crate) use layout::{CALL_DEPTH_OFFSET, VIRTUAL_TIME_OFFSET};
 
 /// The checked program.
 #[derive(Debug)]
@@ -63,6 +78,8 @@ pub(crate) struct Checked {
     pub(crate) interfaces: BTreeMap<PouId, Vec<Variable>>,
     pub(crate) globals: Vec<Variable>,
     pub(crate) programs: Vec<Program>,
+    /// What the types run when a method is called that is not known before.
+    pub(crate) rows: Vec<Row>,
     /// The whole memory at a cold start.
     pub(crate) image: Vec<u8>,
 }
@@ -72,10 +89,13 @@ pub(crate) struct Checked {
 pub(crate) fn check(units: &[(FileId, &CompilationUnit)], library: &BTreeSet<FileId>) -> (Checked, Vec<Diagnostic>) {
     let mut checker = Checker::new(library);
     checker.collect(units);
+    checker.link_classes();
     checker.resolve_declarations();
+    checker.check_inheritance();
     checker.place_programs();
     checker.check_bodies();
     checker.report_recursion();
+    checker.guard_circles();
     let image = checker.memory_image();
     let interfaces = checker
         .pous
@@ -88,6 +108,7 @@ pub(crate) fn check(units: &[(FileId, &CompilationUnit)], library: &BTreeSet<Fil
         pous: checker.checked,
         globals: checker.globals.into_values().filter_map(|entry| entry.variable).collect(),
         programs: checker.programs,
+        rows: checker.rows.into_list(),
         image,
     };
     (result, checker.diagnostics)
@@ -103,6 +124,15 @@ struct Checker<'a> {
     type_names: BTreeMap<String, TypeEntry<'a>>,
     pous: Vec<PouEntry<'a>>,
     pou_names: BTreeMap<String, PouId>,
+    /// Where what is being resolved stands.
+    home: Arc<Home>,
+    namespaces: BTreeSet<String>,
+    /// Full keys of global variables that are known without their list's name.
+    open_globals: BTreeMap<String, String>,
+    classes: BTreeMap<PouId, Class>,
+    /// Names that a method or action has in some unit, and those of properties.
+    method_names: BTreeSet<String>,
+    property_names: BTreeSet<String>,
     globals: BTreeMap<String, GlobalEntry<'a>>,
     enumerators: BTreeMap<String, Vec<Enumerator>>,
     layout: Layout,
@@ -117,6 +147,9 @@ struct Checker<'a> {
     queued: BTreeSet<PouId>,
     /// Who calls whom, and where.
     calls: BTreeMap<PouId, Vec<(PouId, Span)>>,
+    /// Who may be called in ways that only a run decides.
+    dynamic_calls: BTreeMap<PouId, BTreeSet<PouId>>,
+    rows: Rows,
     depth: u32,
     diagnostics: Vec<Diagnostic>,
 }
@@ -139,7 +172,9 @@ impl<'a> Checker<'a> {
             let id = PouId(index as u32);
             if !self.is_library(id) {
                 self.declare(id, None);
-                self.enqueue(id);
+                if !self.is_prototype(id) {
+                    self.enqueue(id);
+                }
             }
         }
     }

@@ -163,6 +163,9 @@ impl Body<'_, '_> {
     }
 
     fn comparison(&mut self, operator: Binary, left: Operand, right: Operand, span: Span) -> Option<Operand> {
+        if self.is_interface(&left) || self.is_interface(&right) {
+            return self.interface_comparison(operator, left, right, span);
+        }
         if self.is_text(&left) || self.is_text(&right) {
             return self.text_comparison(operator, left, right, span);
         }

@@ -24,7 +24,7 @@ impl Checker<'_> {
     /// A type of a `TYPE` block; `used` is where it is needed.
     pub(super) fn named_type(&mut self, key: &str, used: Option<Span>) -> Option<TypedImage> {
         let entry = self.type_names.get_mut(key)?;
-        let ast = entry.ast;
+        let (ast, home) = (entry.ast, entry.home.clone());
         match entry.progress {
             Progress::Done => return entry.resolved.clone(),
             Progress::Running => {
@@ -33,7 +33,9 @@ impl Checker<'_> {
             }
             Progress::Untouched => entry.progress = Progress::Running,
         }
-        let resolved = self.deeper(ast.name.span, |checker| Body::outside(checker).declared_type(ast));
+        let resolve =
+            |checker: &mut Self| checker.deeper(ast.name.span, |checker| Body::outside(checker).declared_type(ast));
+        let resolved = self.at_home(home, resolve);
         if let Some(entry) = self.type_names.get_mut(key) {
             entry.progress = Progress::Done;
             entry.resolved.clone_from(&resolved);
@@ -65,7 +67,7 @@ impl<'a> Body<'_, 'a> {
     fn declared_type(&mut self, ast: &'a ast::TypeDeclaration) -> Option<TypedImage> {
         let name = &ast.name.text;
         let mut resolved = match &ast.spec.kind {
-            TypeSpecKind::Struct(fields) => self.structure(name, fields, ast.name.span),
+            TypeSpecKind::Struct(fields) => self.structure(name, ast.extends.as_ref(), fields, ast.name.span),
             TypeSpecKind::Enumeration(values, base) => self.enumeration(name, values, base.as_ref()),
             _ => self.resolve(&ast.spec, Need::Size),
         }?;
@@ -80,7 +82,7 @@ impl<'a> Body<'_, 'a> {
         match &spec.kind {
             TypeSpecKind::Name(name) => self.type_by_name(name, need),
             TypeSpecKind::Array(dimensions, element) => self.array(dimensions, element, need, spec.span),
-            TypeSpecKind::Struct(fields) => self.structure("STRUCT", fields, spec.span),
+            TypeSpecKind::Struct(fields) => self.structure("STRUCT", None, fields, spec.span),
             TypeSpecKind::Enumeration(values, base) => self.enumeration("enumeration", values, base.as_ref()),
             TypeSpecKind::String(name, length) => {
                 let ty = self.text_type(name.key() == "WSTRING", length.as_deref())?;
@@ -107,14 +109,20 @@ impl<'a> Body<'_, 'a> {
         if let Some(found) = ElementaryType::find(&key) {
             return Some(self.whole(found.into()));
         }
-        if self.checker.type_names.contains_key(&key) {
+        if let Some(key) = self.checker.type_key(&key) {
             return self.checker.named_type(&key, Some(name.span));
         }
-        if let Some(id) = self.checker.pou_names.get(&key).copied() {
+        if let Some(id) = self.checker.pou_named(&key) {
+            self.checker.check_internal(id, name.span);
             let ast = self.checker.pou(id).ast;
-            if ast.kind == PouKind::FunctionBlock {
+            if ast.kind == PouKind::Interface {
+                let ty = self.checker.types.interface(&ast.name.text, id);
+                return Some(self.whole(ty));
+            }
+            if ast.kind.has_instances() {
                 let ty = self.checker.types.block(&ast.name.text, id);
                 if need == Need::Size {
+                    self.checker.check_instance(id, name.span);
                     self.checker.declare(id, Some(name.span))?;
                 }
                 return Some(self.whole(ty));
@@ -135,7 +143,7 @@ impl<'a> Body<'_, 'a> {
         }
         let elementary = ElementaryType::ALL.iter().map(|ty| ty.name());
         let derived = self.checker.type_names.values().map(|entry| entry.ast.name.text.as_str());
-        let blocks = self.checker.pous.iter().filter(|pou| pou.ast.kind == PouKind::FunctionBlock);
+        let blocks = self.checker.pous.iter().filter(|pou| pou.ast.kind.has_instances());
         let blocks = blocks.map(|pou| pou.ast.name.text.as_str());
         let help = did_you_mean(&name.text, elementary.chain(derived).chain(blocks));
         let message = format!("type `{}` is not declared", name.text);
@@ -182,9 +190,26 @@ impl<'a> Body<'_, 'a> {
         }
     }
 
-    fn structure(&mut self, name: &str, ast: &'a [ast::Field], span: Span) -> Option<TypedImage> {
-        let mut fields: Vec<Field> = Vec::new();
-        let mut image: Vec<u8> = Vec::new();
+    /// The members of the structure that another adds to, as vendors have it.
+    fn extended_fields(&mut self, base: Option<&Ident>) -> Option<(Vec<Field>, Vec<u8>)> {
+        let Some(name) = base else { return Some((Vec::new(), Vec::new())) };
+        let resolved = self.type_by_name(name, Need::Size)?;
+        if let crate::ir::Type::Struct { fields, .. } = self.checker.types.get(resolved.ty) {
+            return Some((fields.clone(), resolved.image.to_vec()));
+        }
+        let message = format!("`{}` is not a structure", name.text);
+        self.report(Diagnostic::error(Code::WrongBase, name.span, message));
+        None
+    }
+
+    fn structure(
+        &mut self,
+        name: &str,
+        extends: Option<&Ident>,
+        ast: &'a [ast::Field],
+        span: Span,
+    ) -> Option<TypedImage> {
+        let (mut fields, mut image) = self.extended_fields(extends)?;
         for field in ast {
             if fields.iter().any(|other| other.name.eq_ignore_ascii_case(&field.name.text)) {
                 self.checker.report_duplicate(&field.name, None);

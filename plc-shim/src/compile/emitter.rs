@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use wasm_encoder::{BlockType, Function, Instruction, ValType};
 
+use super::dispatch::RowPlace;
 use super::fault::{FaultKind, Mark};
 use crate::ir::elementary::Kind;
 use crate::ir::{ElementaryType, LocalId, PouId, TypeId, TypeTable};
@@ -35,6 +36,7 @@ pub(super) struct LoopLabels {
 pub(super) struct Shared<'p> {
     pub(super) types: &'p TypeTable,
     pub(super) functions: BTreeMap<PouId, u32>,
+    pub(super) rows: Vec<RowPlace>,
     /// Initial bytes of temporary aggregates, by data segment.
     pub(super) data: Vec<Arc<[u8]>>,
 }

@@ -34,6 +34,7 @@ impl Emitter<'_, '_> {
             }
             ExprKind::Text(call) => self.text_call(call, expr),
             ExprKind::Call(call) => self.call_function(call),
+            ExprKind::Cast(cast) => self.cast(cast),
         }
     }
 
@@ -71,14 +72,23 @@ impl Emitter<'_, '_> {
     }
 
     fn call_function(&mut self, call: &FunctionCall) {
+        if let Some(receiver) = &call.receiver {
+            self.receiver(receiver);
+        }
         self.side_statements(&call.before);
+        if let Some(receiver) = &call.receiver {
+            self.get(receiver.pointer);
+        }
         for argument in &call.arguments {
             match argument {
                 Argument::Value(expr) => self.expression(expr),
                 Argument::Reference(place) => self.full_address(place),
             }
         }
-        self.call(call.pou);
+        match &call.receiver {
+            Some(receiver) => self.call_on(receiver.pointer, receiver.dispatch, call.pou),
+            None => self.call(call.pou),
+        }
         if let Some(place) = &call.result {
             self.keep_result(place);
         }

@@ -23,11 +23,15 @@ pub enum FaultKind {
     Internal,
     /// A value was assigned that its subrange type does not have.
     OutOfSubrange,
+    /// NULL was used as if it referred to something.
+    NullReference,
+    /// A unit with fixed memory was called while it ran, in a way that only the run decides.
+    Reentered,
 }
 
 impl FaultKind {
     /// Every kind; the position of a kind is its number in a saved state.
-    pub const ALL: [Self; 8] = [
+    pub const ALL: [Self; 10] = [
         Self::DivisionByZero,
         Self::IndexOutOfRange,
         Self::SelectorOutOfRange,
@@ -36,6 +40,8 @@ impl FaultKind {
         Self::CallTooDeep,
         Self::Internal,
         Self::OutOfSubrange,
+        Self::NullReference,
+        Self::Reentered,
     ];
 }
 
@@ -50,6 +56,8 @@ impl fmt::Display for FaultKind {
             Self::CallTooDeep => "calls nested too deep",
             Self::Internal => "internal error",
             Self::OutOfSubrange => "value out of subrange",
+            Self::NullReference => "use of a NULL reference",
+            Self::Reentered => "a unit was called while it ran",
         })
     }
 }

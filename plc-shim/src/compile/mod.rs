@@ -8,6 +8,7 @@
 //! | [`place`] | addresses, loads and stores |
 //! | [`statement`], [`repetition`] | statements |
 //! | [`expression`], [`arithmetic`], [`conversion`], [`intrinsic`] | expressions |
+//! | [`dispatch`] | methods: which one runs |
 //! | [`host`] | functions that WebAssembly lacks |
 //! | [`text`], [`text_host`] | character strings |
 //! | [`fault`] | what stops the PLC, and the place in the source that an instruction stands for |
@@ -17,6 +18,7 @@
 
 mod arithmetic;
 mod conversion;
+mod dispatch;
 mod emitter;
 mod expression;
 pub(crate) mod fault;

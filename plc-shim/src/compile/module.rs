@@ -9,10 +9,9 @@ use wasm_encoder::{
 
 use super::emitter::{Shared, value_type};
 use super::fault::{FaultTable, FunctionMarks};
-use super::{function, host, text_host};
+use super::{dispatch, function, host, text_host};
 use crate::check::Checked;
 use crate::ir::{Pou, Program, TypeTable};
-use crate::syntax::ast::PouKind;
 
 /// Name of the exported memory.
 pub(crate) const MEMORY_EXPORT: &str = "memory";
@@ -36,9 +35,10 @@ pub(crate) fn compile(checked: &Checked) -> Compiled {
     let first_function = (host::IMPORTS.len() + text_host::IMPORTS.len()) as u32;
     let order = checked.pous.keys().zip(first_function..);
     let functions: BTreeMap<_, _> = order.map(|(id, index)| (*id, index)).collect();
-    let mut shared = Shared { types: &checked.types, functions, data: Vec::new() };
     let mut sections = Sections::default();
     sections.add_imports();
+    let rows = dispatch::place_rows(&checked.rows, |parameters, results| sections.add_type(parameters, results));
+    let mut shared = Shared { types: &checked.types, functions, rows, data: Vec::new() };
     let mut faults = FaultTable { first_function, functions: Vec::new() };
     for pou in checked.pous.values() {
         let (parameters, results) = signature(pou, &checked.types);
@@ -51,7 +51,7 @@ pub(crate) fn compile(checked: &Checked) -> Compiled {
         let at = sections.add_function(Vec::new(), Vec::new(), &body);
         sections.exports.export(&program_export(index), ExportKind::Func, at);
     }
-    Compiled { wasm: sections.finish(checked.image.len() as u64, &shared), faults }
+    Compiled { wasm: sections.finish(checked, &shared), faults }
 }
 
 /// Runs a program's body on its one instance.
@@ -68,7 +68,7 @@ fn entry(program: &Program, functions: &BTreeMap<crate::ir::PouId, u32>) -> Func
 fn signature(pou: &Pou, types: &TypeTable) -> (Vec<ValType>, Vec<ValType>) {
     let parameters = pou.registers.iter().take(pou.parameters as usize);
     let parameters = parameters.map(|ty| value_type(*ty)).collect();
-    let result = pou.result.as_ref().filter(|_| pou.kind == PouKind::Function);
+    let result = pou.result.as_ref();
     // An aggregate result is given by its address.
     let result = result.map(|place| types.elementary(place.ty).map_or(ValType::I32, value_type));
     (parameters, result.into_iter().collect())
@@ -116,8 +116,8 @@ impl Sections {
         self.imports.len() + self.functions.len() - 1
     }
 
-    fn finish(mut self, memory_size: u64, shared: &Shared<'_>) -> Vec<u8> {
-        let pages = memory_size.div_ceil(PAGE);
+    fn finish(mut self, checked: &Checked, shared: &Shared<'_>) -> Vec<u8> {
+        let pages = (checked.image.len() as u64).div_ceil(PAGE);
         let mut memories = MemorySection::new();
         memories.memory(MemoryType {
             minimum: pages,
@@ -133,7 +133,12 @@ impl Sections {
         }
         let mut module = Module::new();
         module.section(&self.types).section(&self.imports).section(&self.functions);
-        module.section(&memories).section(&self.exports);
+        if checked.rows.is_empty() {
+            module.section(&memories).section(&self.exports);
+        } else {
+            let (table, elements) = dispatch::table(&checked.rows, shared);
+            module.section(&table).section(&memories).section(&self.exports).section(&elements);
+        }
         module.section(&DataCountSection { count: data.len() });
         module.section(&self.code).section(&data);
         module.finish()

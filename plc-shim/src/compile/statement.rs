@@ -92,7 +92,7 @@ impl Emitter<'_, '_> {
             self.statement(input);
         }
         self.get(call.pointer);
-        self.call(call.pou);
+        self.call_on(call.pointer, call.dispatch, call.pou);
         for output in &call.outputs {
             self.statement(output);
         }

@@ -12,9 +12,10 @@ pub(crate) mod value;
 
 pub(crate) use elementary::ElementaryType;
 pub(crate) use expr::{
-    Argument, Binary, Expr, ExprKind, FunctionCall, Intrinsic, LocalId, Place, Rounding, Step, Storage, Unary,
+    Argument, Binary, Cast, Dispatch, Expr, ExprKind, FunctionCall, Intrinsic, LocalId, Place, Receiver, Rounding, Row,
+    Step, Storage, Unary,
 };
-pub(crate) use pou::{EdgeDetection, Pou, PouId, Program, Variable};
+pub(crate) use pou::{EdgeDetection, Guard, Pou, PouId, Program, Variable, Visibility};
 pub(crate) use statement::{CaseArm, CaseStatement, ForStatement, IfBranch, InstanceCall, Statement, StatementKind};
 pub(crate) use types::{Dimension, Field, Type, TypeId, TypeTable};
 pub(crate) use value::Value;

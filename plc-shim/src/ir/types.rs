@@ -45,7 +45,13 @@ pub(crate) enum Type {
         name: String,
         fields: Vec<Field>,
     },
+    /// An instance of a function block or class.
     FunctionBlock {
+        name: String,
+        pou: PouId,
+    },
+    /// The address of an instance that implements the interface, or 0.
+    Interface {
         name: String,
         pou: PouId,
     },
@@ -146,6 +152,7 @@ impl TypeTable {
     pub(crate) fn elementary(&self, id: TypeId) -> Option<ElementaryType> {
         match self.get(id) {
             Type::Elementary(ty) | Type::Enumeration { base: ty, .. } | Type::Subrange { base: ty, .. } => Some(*ty),
+            Type::Interface { .. } => Some(ElementaryType::Udint),
             _ => None,
         }
     }
@@ -224,6 +231,18 @@ impl TypeTable {
         id
     }
 
+    /// The type of variables that refer to what implements an interface (3rd ed. 6.6.6).
+    pub(crate) fn interface(&mut self, name: &str, pou: PouId) -> TypeId {
+        if let Some(found) = self.blocks.get(&pou) {
+            return *found;
+        }
+        let size = ElementaryType::Udint.size();
+        let ty = Type::Interface { name: name.to_owned(), pou };
+        let id = self.add(ty, size, size, vec![0; size as usize].into());
+        self.blocks.insert(pou, id);
+        id
+    }
+
     pub(crate) fn complete_block(&mut self, id: TypeId, align: u32, image: Arc<[u8]>) {
         if let Some(entry) = self.entries.get_mut(id.0 as usize) {
             entry.size = image.len() as u32;
@@ -239,9 +258,8 @@ impl TypeTable {
             Type::Nothing => "nothing".to_owned(),
             Type::Subrange { base, low, high } => format!("{base} ({low}..{high})"),
             Type::Text(shape) => format!("{}[{}]", shape.keyword(), shape.capacity),
-            Type::Enumeration { name, .. } | Type::Struct { name, .. } | Type::FunctionBlock { name, .. } => {
-                name.clone()
-            }
+            Type::Enumeration { name, .. } | Type::Struct { name, .. } => name.clone(),
+            Type::FunctionBlock { name, .. } | Type::Interface { name, .. } => name.clone(),
             Type::Array { dimensions, element } => {
                 let bounds: Vec<_> = dimensions.iter().map(|each| format!("{}..{}", each.low, each.high)).collect();
                 format!("ARRAY [{}] OF {}", bounds.join(", "), self.name(*element))

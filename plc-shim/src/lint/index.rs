@@ -8,6 +8,7 @@ use crate::syntax::ast::{Declaration, Ident, Pou, PouKind, Section, SectionKind,
 /// Declarations by the key of their name.
 pub(super) struct Index<'a> {
     own: Vec<&'a Pou>,
+    members: Vec<&'a Pou>,
     units: BTreeMap<String, &'a Pou>,
     library: BTreeSet<String>,
     types: BTreeMap<String, &'a TypeSpec>,
@@ -20,6 +21,7 @@ impl<'a> Index<'a> {
     pub(super) fn new(front: &'a Front) -> Self {
         let mut index = Self {
             own: Vec::new(),
+            members: Vec::new(),
             units: BTreeMap::new(),
             library: BTreeSet::new(),
             types: BTreeMap::new(),
@@ -38,25 +40,59 @@ impl<'a> Index<'a> {
     fn add(&mut self, declaration: &'a Declaration, library: bool) {
         match declaration {
             Declaration::Pou(pou) => {
-                let in_outs = variables(pou, SectionKind::InOut).flat_map(|variable| &variable.names);
-                self.in_outs.extend(in_outs.map(Ident::key));
+                let members = pou.object.members.iter().map(|member| &member.pou);
+                for each in members.chain([pou]) {
+                    let in_outs = variables(each, SectionKind::InOut).flat_map(|variable| &variable.names);
+                    self.in_outs.extend(in_outs.map(Ident::key));
+                }
                 self.units.insert(pou.name.key(), pou);
                 if library {
                     self.library.insert(pou.name.key());
                 } else {
                     self.own.push(pou);
+                    self.members.extend(pou.object.members.iter().map(|member| &member.pou));
                 }
             }
             Declaration::Type(named) => {
                 self.types.insert(named.name.key(), &named.spec);
             }
             Declaration::Globals(section) => self.globals.push(section),
+            Declaration::Namespace(namespace) => {
+                namespace.declarations.iter().for_each(|each| self.add(each, library));
+            }
+            Declaration::Using(_) => {}
         }
     }
 
     /// The user's units in their order.
     pub(super) fn own(&self) -> impl Iterator<Item = &'a Pou> {
         self.own.iter().copied()
+    }
+
+    /// The methods, properties and actions of the user's units that have statements.
+    pub(super) fn own_members(&self) -> impl Iterator<Item = &'a Pou> {
+        self.members.iter().copied().filter(|member| !member.body.is_empty())
+    }
+
+    /// A unit's members, and what is derived from it with its members: all that may use its variables.
+    pub(super) fn users(&self, pou: &Pou) -> Vec<&'a Pou> {
+        let mut found: Vec<&'a Pou> = Vec::new();
+        let mut open: Vec<&Pou> = self.own.iter().copied().filter(|each| each.name.span == pou.name.span).collect();
+        while let Some(next) = open.pop() {
+            let next: &'a Pou = match self.own.iter().find(|each| each.name.span == next.name.span) {
+                Some(next) => next,
+                None => continue,
+            };
+            if found.iter().any(|each| each.name.span == next.name.span) {
+                continue;
+            }
+            found.push(next);
+            found.extend(next.object.members.iter().map(|member| &member.pou));
+            let last = |name: &Ident| name.key().rsplit('.').next().map(str::to_owned);
+            let derives = |each: &&&Pou| each.object.extends.iter().any(|base| last(base) == Some(next.name.key()));
+            open.extend(self.own.iter().filter(derives).copied());
+        }
+        found
     }
 
     pub(super) fn unit(&self, key: &str) -> Option<&'a Pou> {

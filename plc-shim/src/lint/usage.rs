@@ -35,10 +35,14 @@ impl Uses {
 impl Usage {
     pub(super) fn of(pou: &Pou, index: &Index<'_>) -> Self {
         let mut collector = Collector { index, usage: Self::default() };
-        for section in &pou.sections {
-            collector.section(section);
+        let users = index.users(pou);
+        let own = users.is_empty().then_some(pou);
+        for each in users.into_iter().chain(own) {
+            for section in &each.sections {
+                collector.section(section);
+            }
+            walk::statements(&each.body, &mut collector);
         }
-        walk::statements(&pou.body, &mut collector);
         collector.usage
     }
 

@@ -42,6 +42,8 @@ impl Machine {
         let module = application.module(|wasm| Module::new(&engine()?, wasm).map_err(|error| format!("{error:#}")));
         let module = module.map_err(RunError::Module)?;
         let mut store = Store::new(module.engine(), HostState::default());
+        // To fill the table of methods takes instructions too.
+        store.set_fuel(u64::MAX).map_err(|error| module_error(&error))?;
         let linker = linker(module.engine()).map_err(|error| module_error(&error))?;
         let instance = linker.instantiate(&mut store, &module);
         let instance = instance.map_err(|error| module_error(&error))?;

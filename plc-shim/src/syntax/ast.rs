@@ -2,6 +2,7 @@
 
 mod declaration;
 mod expression;
+mod object;
 mod statement;
 
 pub use declaration::{
@@ -9,6 +10,7 @@ pub use declaration::{
     SectionKind, StructureInit, Subrange, TypeDeclaration, TypeSpec, TypeSpecKind, Variable,
 };
 pub use expression::{Argument, BinaryOp, Call, Expr, ExprKind, Literal, MAX_HEIGHT, TypedValue, UnaryOp};
+pub use object::{Member, MemberKind, Modifier, Namespace, NamespaceKind, Object};
 pub use statement::{
     CaseBranch, CaseLabel, CaseStatement, ForStatement, IfBranch, IfStatement, RepeatStatement, Statement,
     StatementKind, WhileStatement,

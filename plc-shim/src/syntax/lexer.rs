@@ -178,7 +178,7 @@ impl<'a> Lexer<'a> {
             }
             return TokenKind::Typed;
         }
-        Keyword::find(text).map_or(TokenKind::Identifier, TokenKind::Keyword)
+        Keyword::find(text).filter(|word| !word.is_soft()).map_or(TokenKind::Identifier, TokenKind::Keyword)
     }
 
     /// What follows `INT#`: digits with a base, a fraction, an exponent, a duration or a name.

@@ -7,6 +7,7 @@ mod cursor;
 mod declaration;
 mod expression;
 mod initialiser;
+mod object;
 mod statement;
 mod type_spec;
 

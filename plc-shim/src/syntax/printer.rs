@@ -2,6 +2,7 @@
 
 mod declaration;
 mod expression;
+mod object;
 mod statement;
 
 use super::ast::{CompilationUnit, Expr};

@@ -7,6 +7,7 @@ mod faults;
 mod inputs;
 mod language;
 mod lints;
+mod objects;
 mod rig;
 mod robustness;
 mod scheduling;

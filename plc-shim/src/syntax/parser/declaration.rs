@@ -1,23 +1,21 @@
 //! Units, types and variable sections (2nd ed. 2.3 to 2.5).
 
 use super::cursor::Cursor;
+use super::object::ends_object;
 use crate::syntax::ast::{
-    CompilationUnit, Declaration, Edge, Ident, Pou, PouKind, Qualifier, Section, SectionKind, TypeDeclaration,
-    TypeSpec, TypeSpecKind, Variable,
+    CompilationUnit, Declaration, Edge, Ident, Member, Modifier, PouKind, Qualifier, Section, SectionKind, Statement,
+    TypeDeclaration, TypeSpec, TypeSpecKind, Variable,
 };
 use crate::syntax::token::{Keyword, Punctuation, TokenKind};
 
 /// Keywords at which a file can go on after an error outside of a unit's body.
-fn begins_declaration(kind: TokenKind) -> bool {
-    matches!(
-        kind,
-        TokenKind::Keyword(
-            Keyword::Program | Keyword::FunctionBlock | Keyword::Function | Keyword::Type | Keyword::VarGlobal
-        )
-    )
+pub(super) fn begins_declaration(kind: TokenKind) -> bool {
+    use Keyword as K;
+    let TokenKind::Keyword(keyword) = kind else { return false };
+    matches!(keyword, K::Program | K::FunctionBlock | K::Function | K::Type | K::VarGlobal) || keyword.is_soft()
 }
 
-fn section_kind(kind: Option<TokenKind>) -> Option<SectionKind> {
+pub(super) fn section_kind(kind: Option<TokenKind>) -> Option<SectionKind> {
     Some(match kind? {
         TokenKind::Keyword(Keyword::Var) => SectionKind::Local,
         TokenKind::Keyword(Keyword::VarInput) => SectionKind::Input,
@@ -33,58 +31,56 @@ fn section_kind(kind: Option<TokenKind>) -> Option<SectionKind> {
 impl Cursor<'_> {
     pub(super) fn compilation_unit(&mut self) -> CompilationUnit {
         let mut unit = CompilationUnit::default();
-        while let Some(kind) = self.peek() {
-            match kind {
-                TokenKind::Keyword(Keyword::Program) => {
-                    self.pou(PouKind::Program, Keyword::EndProgram, &mut unit);
-                }
-                TokenKind::Keyword(Keyword::FunctionBlock) => {
-                    self.pou(PouKind::FunctionBlock, Keyword::EndFunctionBlock, &mut unit);
-                }
-                TokenKind::Keyword(Keyword::Function) => {
-                    self.pou(PouKind::Function, Keyword::EndFunction, &mut unit);
-                }
-                TokenKind::Keyword(Keyword::Type) => self.type_block(&mut unit),
-                TokenKind::Keyword(Keyword::VarGlobal) => {
-                    let section = self.section(SectionKind::Global);
-                    unit.declarations.push(Declaration::Globals(section));
-                }
-                // Vendors' exports end a unit with a semicolon; it declares nothing.
-                TokenKind::Punctuation(Punctuation::Semicolon) => self.advance(),
-                _ => {
-                    self.unexpected("PROGRAM, FUNCTION_BLOCK, FUNCTION, TYPE or VAR_GLOBAL");
-                    self.advance();
-                    self.skip_until(begins_declaration);
-                }
-            }
+        while self.peek().is_some() {
+            self.declaration(&mut unit.declarations);
         }
         unit
     }
 
-    fn pou(&mut self, kind: PouKind, end: Keyword, unit: &mut CompilationUnit) {
-        let start = self.span();
-        self.advance();
-        let Some(name) = self.expect_identifier("the unit's name") else {
-            self.skip_until(begins_declaration);
-            return;
-        };
-        let has_result = kind == PouKind::Function && self.take_mark(Punctuation::Colon);
-        let result = has_result.then(|| self.type_spec());
-        self.take_mark(Punctuation::Semicolon);
-        let mut sections = Vec::new();
-        while let Some(kind) = section_kind(self.peek()) {
-            sections.push(self.section(kind));
+    /// What may stand in a file or namespace; goes on behind what may not.
+    pub(super) fn declaration(&mut self, into: &mut Vec<Declaration>) {
+        let Some(kind) = self.peek() else { return };
+        match kind {
+            TokenKind::Keyword(Keyword::Program) => {
+                self.pou(PouKind::Program, Keyword::EndProgram, into);
+            }
+            TokenKind::Keyword(Keyword::FunctionBlock) => {
+                self.pou(PouKind::FunctionBlock, Keyword::EndFunctionBlock, into);
+            }
+            TokenKind::Keyword(Keyword::Function) => {
+                self.pou(PouKind::Function, Keyword::EndFunction, into);
+            }
+            TokenKind::Keyword(keyword) if keyword.is_soft() => self.object_declaration(keyword, into),
+            TokenKind::Keyword(Keyword::Type) => self.type_block(into),
+            TokenKind::Keyword(Keyword::VarGlobal) => {
+                let section = self.section(SectionKind::Global);
+                into.push(Declaration::Globals(section));
+            }
+            // Vendors' exports end a unit with a semicolon; it declares nothing.
+            TokenKind::Punctuation(Punctuation::Semicolon) => self.advance(),
+            _ => {
+                self.unexpected("PROGRAM, FUNCTION_BLOCK, FUNCTION, CLASS, TYPE or VAR_GLOBAL");
+                self.advance();
+                self.skip_until(begins_declaration);
+            }
         }
-        let body = self.body(end);
-        let span = self.span_from(start);
-        let pou = Pou { kind, name, result, sections, body, span };
-        unit.declarations.push(Declaration::Pou(pou));
     }
 
-    fn body(&mut self, end: Keyword) -> Vec<crate::syntax::ast::Statement> {
+    fn pou(&mut self, kind: PouKind, end: Keyword, into: &mut Vec<Declaration>) {
+        match self.unit(kind, end) {
+            Some(pou) => into.push(Declaration::Pou(pou)),
+            None => self.skip_until(begins_declaration),
+        }
+    }
+
+    pub(super) fn body(&mut self, end: Keyword, members: &mut Vec<Member>) -> Vec<Statement> {
         let mut body = self.statements();
         // A stray closing keyword is reported and passed, so that the rest of the body is read.
         while !self.take_keyword(end) {
+            if self.members(members) {
+                body.extend(self.statements());
+                continue;
+            }
             self.unexpected(&format!("`{}`", end.text()));
             if self.peek().is_none_or(ends_unit) {
                 break;
@@ -122,10 +118,23 @@ impl Cursor<'_> {
                 Some(TokenKind::Keyword(Keyword::Constant)) => Qualifier::Constant,
                 Some(TokenKind::Keyword(Keyword::Retain)) => Qualifier::Retain,
                 Some(TokenKind::Keyword(Keyword::NonRetain)) => Qualifier::NonRetain,
-                _ => return found,
+                _ => match self.section_access() {
+                    Some(access) => Qualifier::Access(access),
+                    None => return found,
+                },
             });
             self.advance();
         }
+    }
+
+    /// `PUBLIC` and the like, which a variable's name may be as well.
+    fn section_access(&self) -> Option<Modifier> {
+        let access = Modifier::find(self.next_text()).filter(|_| self.peek() == Some(TokenKind::Identifier))?;
+        let is_access =
+            matches!(access, Modifier::Public | Modifier::Protected | Modifier::Private | Modifier::Internal);
+        let named =
+            matches!(self.peek_ahead(1), Some(TokenKind::Punctuation(_)) | Some(TokenKind::Keyword(Keyword::At)));
+        (is_access && !named).then_some(access)
     }
 
     fn variable(&mut self, variables: &mut Vec<Variable>) {
@@ -188,18 +197,19 @@ impl Cursor<'_> {
         self.take_mark(Punctuation::Semicolon);
     }
 
-    fn type_block(&mut self, unit: &mut CompilationUnit) {
+    fn type_block(&mut self, into: &mut Vec<Declaration>) {
         self.advance();
         while self.peek() == Some(TokenKind::Identifier) {
             let (known, start) = (self.reported(), self.span());
             let Some(name) = self.take_identifier() else {
                 break;
             };
+            let before = self.extended_structure();
             self.expect_mark(Punctuation::Colon);
-            let spec = self.type_spec();
-            let initial = self.optional_initialiser();
+            let (spec, behind) = self.type_spec_extending();
+            let (initial, extends) = (self.optional_initialiser(), before.or(behind));
             let span = self.span_from(start);
-            unit.declarations.push(Declaration::Type(TypeDeclaration { name, spec, initial, span }));
+            into.push(Declaration::Type(TypeDeclaration { name, extends, spec, initial, span }));
             self.end_of_declaration(known);
         }
         if !self.take_keyword(Keyword::EndType) {
@@ -211,7 +221,10 @@ impl Cursor<'_> {
 }
 
 /// Keywords that end a unit or begin the next: no recovery passes them.
-fn ends_unit(kind: TokenKind) -> bool {
+pub(super) fn ends_unit(kind: TokenKind) -> bool {
+    use Keyword as K;
+    let TokenKind::Keyword(keyword) = kind else { return false };
     begins_declaration(kind)
-        || matches!(kind, TokenKind::Keyword(Keyword::EndProgram | Keyword::EndFunctionBlock | Keyword::EndFunction))
+        || matches!(keyword, K::EndProgram | K::EndFunctionBlock | K::EndFunction)
+        || ends_object(keyword)
 }

@@ -79,6 +79,7 @@ impl Cursor<'_> {
     /// A primary with its members, indices and calls.
     fn postfix(&mut self) -> Expr {
         let mut expr = self.primary();
+        self.pass_object_caret(&expr);
         loop {
             let (start, height) = (expr.span, expr.height);
             let (kind, below) = if self.take_mark(Punctuation::Dot) {

@@ -30,6 +30,7 @@ impl Cursor<'_> {
         if matches!(name.key().as_str(), "STRING" | "WSTRING") {
             return self.string_type(name);
         }
+        let name = self.qualified(name);
         if self.take_mark(Punctuation::LeftParen) {
             // The 3rd edition writes it in front (6.4.4.2).
             let named = self.peek() == Some(TokenKind::Identifier);
@@ -79,7 +80,7 @@ impl Cursor<'_> {
         TypeSpecKind::Array(dimensions, Box::new(self.type_spec()))
     }
 
-    fn struct_type(&mut self) -> TypeSpecKind {
+    pub(super) fn struct_type(&mut self) -> TypeSpecKind {
         let mut fields = Vec::new();
         while self.peek() == Some(TokenKind::Identifier) {
             self.fields(&mut fields);

@@ -12,31 +12,34 @@ impl Printer {
             Declaration::Pou(pou) => self.pou(pou),
             Declaration::Type(declaration) => self.type_declaration(declaration),
             Declaration::Globals(section) => self.section(section),
+            Declaration::Namespace(namespace) => self.namespace(namespace),
+            Declaration::Using(names) => self.using(names),
         }
         self.end_line();
     }
 
-    fn pou(&mut self, pou: &Pou) {
+    pub(super) fn pou(&mut self, pou: &Pou) {
         let (begin, end) = match pou.kind {
+            PouKind::Class => ("CLASS ", "END_CLASS"),
+            PouKind::Interface => ("INTERFACE ", "END_INTERFACE"),
+            PouKind::Method | PouKind::Action => ("METHOD ", "END_METHOD"),
             PouKind::Program => ("PROGRAM ", "END_PROGRAM"),
             PouKind::FunctionBlock => ("FUNCTION_BLOCK ", "END_FUNCTION_BLOCK"),
             PouKind::Function => ("FUNCTION ", "END_FUNCTION"),
         };
         self.word(begin);
+        self.modifiers(&pou.object.modifiers);
         self.word(&pou.name.text);
         if let Some(result) = &pou.result {
             self.word(" : ");
             self.type_spec(result);
         }
+        self.heritage(&pou.object);
         self.end_line();
-        for section in &pou.sections {
-            self.section(section);
-        }
-        self.statements(&pou.body);
-        self.line(end);
+        self.unit_behind_head(pou, end);
     }
 
-    fn section(&mut self, section: &Section) {
+    pub(super) fn section(&mut self, section: &Section) {
         self.word(match section.kind {
             SectionKind::Local => "VAR",
             SectionKind::Input => "VAR_INPUT",
@@ -47,10 +50,12 @@ impl Printer {
             SectionKind::External => "VAR_EXTERNAL",
         });
         for qualifier in &section.qualifiers {
+            self.word(" ");
             self.word(match qualifier {
-                Qualifier::Constant => " CONSTANT",
-                Qualifier::Retain => " RETAIN",
-                Qualifier::NonRetain => " NON_RETAIN",
+                Qualifier::Constant => "CONSTANT",
+                Qualifier::Retain => "RETAIN",
+                Qualifier::NonRetain => "NON_RETAIN",
+                Qualifier::Access(access) => access.text(),
             });
         }
         self.end_line();
@@ -101,12 +106,16 @@ impl Printer {
         self.indented(|printer| {
             printer.begin_line();
             printer.word(&declaration.name.text);
+            if let Some(base) = &declaration.extends {
+                printer.word(" EXTENDS ");
+                printer.word(&base.text);
+            }
             printer.typed(&declaration.spec, declaration.initial.as_ref());
         });
         self.line("END_TYPE");
     }
 
-    fn type_spec(&mut self, spec: &TypeSpec) {
+    pub(super) fn type_spec(&mut self, spec: &TypeSpec) {
         match &spec.kind {
             TypeSpecKind::Name(name) => self.word(&name.text),
             TypeSpecKind::String(name, length) => {

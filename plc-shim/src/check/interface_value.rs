@@ -1,0 +1,95 @@
+//! Variables whose type is an interface: what they refer to, comparison, assignment attempts
+//! (3rd ed. 6.6.6.5 to 6.6.6.7).
+
+use super::convert::Operand;
+use super::scope::Body;
+use crate::diagnostic::{Code, Diagnostic};
+use crate::ir::{Binary, ElementaryType, Expr, ExprKind, PouId, Type, TypeId, Value};
+use crate::syntax::Span;
+use crate::syntax::ast::Ident;
+
+impl Body<'_, '_> {
+    /// True for the name `NULL`, unless something is called so.
+    pub(super) fn is_null(&self, name: &Ident) -> bool {
+        name.key() == "NULL" && !self.scope.declares("NULL") && self.checker.global_key("NULL").is_none()
+    }
+
+    pub(super) fn is_interface(&self, operand: &Operand) -> bool {
+        matches!(operand, Operand::Typed(expr) if matches!(self.checker.types.get(expr.ty), Type::Interface { .. }))
+    }
+
+    /// The operand as a reference to what implements `interface`.
+    pub(super) fn coerce_interface(&mut self, operand: Operand, interface: PouId, target: TypeId) -> Option<Expr> {
+        match operand {
+            Operand::Typed(expr) if expr.ty == target => Some(expr),
+            Operand::Integer { value: 0, span } => {
+                Some(Expr { kind: ExprKind::Constant(Value::Int(0)), ty: target, span })
+            }
+            Operand::Typed(expr) => match *self.checker.types.get(expr.ty) {
+                // The value of an instance is its address.
+                Type::FunctionBlock { pou, .. } | Type::Interface { pou, .. } if self.checker.is_a(pou, interface) => {
+                    Some(Expr { ty: target, ..expr })
+                }
+                Type::FunctionBlock { .. } => {
+                    let (found, wanted) = (self.type_name(expr.ty), self.type_name(target));
+                    let message = format!("{found} does not implement {wanted}");
+                    self.report(Diagnostic::error(Code::TypeMismatch, expr.span, message));
+                    None
+                }
+                Type::Interface { .. } => {
+                    let (found, wanted) = (self.type_name(expr.ty), self.type_name(target));
+                    let message = format!("{wanted} is wanted, this is {found}");
+                    let report = Diagnostic::error(Code::TypeMismatch, expr.span, message);
+                    self.report(report.with_help("assign it with `?=`, which gives NULL if it is something else"));
+                    None
+                }
+                _ => {
+                    let (found, wanted) = (self.type_name(expr.ty), self.type_name(target));
+                    self.mismatch(&wanted, &found, expr.span)
+                }
+            },
+            other => {
+                let (found, wanted) = (self.describe(&other), self.type_name(target));
+                self.mismatch(&wanted, &found, other.span())
+            }
+        }
+    }
+
+    /// `=` and `<>` tell whether two references refer to the same instance.
+    pub(super) fn interface_comparison(
+        &mut self,
+        operator: Binary,
+        left: Operand,
+        right: Operand,
+        span: Span,
+    ) -> Option<Operand> {
+        if !matches!(operator, Binary::Equal | Binary::NotEqual) {
+            let message = "references are compared with `=` and `<>` only";
+            self.report(Diagnostic::error(Code::InvalidOperand, span, message));
+            return None;
+        }
+        let (left, right) = (self.reference_value(left)?, self.reference_value(right)?);
+        let kind = ExprKind::Binary(operator, Box::new(left), Box::new(right));
+        Some(Operand::Typed(Expr { kind, ty: ElementaryType::Bool.into(), span }))
+    }
+
+    fn reference_value(&mut self, operand: Operand) -> Option<Expr> {
+        let address = ElementaryType::Udint.into();
+        match operand {
+            Operand::Integer { value: 0, span } => {
+                Some(Expr { kind: ExprKind::Constant(Value::Int(0)), ty: address, span })
+            }
+            Operand::Typed(expr) => match self.checker.types.get(expr.ty) {
+                Type::Interface { .. } | Type::FunctionBlock { .. } => Some(Expr { ty: address, ..expr }),
+                _ => {
+                    let found = self.type_name(expr.ty);
+                    self.mismatch("an instance, an interface or NULL", &found, expr.span)
+                }
+            },
+            other => {
+                let found = self.describe(&other);
+                self.mismatch("an instance, an interface or NULL", &found, other.span())
+            }
+        }
+    }
+}

@@ -1,0 +1,218 @@
+//! Classes, methods, interfaces (3rd ed. 6.6.5 to 6.6.7), and what vendors add to them.
+
+use crate::rig::Rig;
+
+/// After one scan.
+fn run(text: &str) -> Rig {
+    let mut rig = Rig::new(text);
+    rig.scan().expect("no fault");
+    rig
+}
+
+fn fault(text: &str) -> String {
+    let mut rig = Rig::new(text);
+    for _ in 0..100 {
+        if let Err(fault) = rig.scan() {
+            return fault.to_string();
+        }
+    }
+    panic!("no fault");
+}
+
+const COUNTER: &str = "CLASS Counter
+VAR value : INT; END_VAR
+VAR PUBLIC limit : INT := 100; END_VAR
+METHOD PUBLIC Up : INT
+VAR_INPUT step : INT := 1; END_VAR
+VAR before : INT; END_VAR
+  before := value;
+  value := before + step;
+  IF value > limit THEN value := limit; END_IF;
+  Up := value;
+END_METHOD
+METHOD PUBLIC Both
+VAR_OUTPUT now : INT; twice : DINT; END_VAR
+VAR_IN_OUT sum : INT; END_VAR
+  now := value;
+  twice := 2 * value;
+  sum := sum + value;
+END_METHOD
+END_CLASS
+";
+
+#[test]
+fn iec3_6_6_5_2_methods_of_a_class_work_on_their_instance() {
+    let rig = run(&format!(
+        "{COUNTER}PROGRAM P
+VAR a, b : Counter; list : ARRAY [1..3] OF Counter; i, x, y, z, sum : INT; d : DINT; END_VAR
+  a.Up(5);
+  x := a.Up(step := 2) + b.Up(step := 3);
+  b.limit := 4;
+  y := b.Up(9);
+  FOR i := 1 TO 3 DO list[i].Up(i); z := 10 * z + list[i].Up(1); END_FOR;
+  sum := 1;
+  a.Both(sum := sum, now => i, twice => d);
+END_PROGRAM"
+    ));
+    let values = ["x", "y", "z", "sum", "i", "d"].map(|name| rig.int(&format!("P.{name}")));
+    assert_eq!(values, [10, 4, 234, 8, 7, 14]);
+}
+
+const SHAPES: &str = "CLASS ABSTRACT Shape
+VAR PROTECTED size : INT; END_VAR
+VAR PRIVATE secret : INT := 77; END_VAR
+METHOD PUBLIC SetSize VAR_INPUT value : INT; END_VAR size := value; END_METHOD
+METHOD PUBLIC ABSTRACT Area : INT END_METHOD
+METHOD PUBLIC Twice : INT Twice := 2 * THIS.Area(); END_METHOD
+METHOD PUBLIC Hidden : INT Hidden := secret; END_METHOD
+END_CLASS
+CLASS Square EXTENDS Shape
+METHOD PUBLIC OVERRIDE Area : INT Area := size * size; END_METHOD
+END_CLASS
+CLASS FINAL Cube EXTENDS Square
+VAR secret : INT := 5; END_VAR
+METHOD PUBLIC OVERRIDE Area : INT Area := 6 * SUPER.Area() + secret - 5; END_METHOD
+END_CLASS
+CLASS Line EXTENDS Shape
+METHOD PUBLIC OVERRIDE Area : INT Area := 0; END_METHOD
+END_CLASS
+FUNCTION Measure : INT
+VAR_IN_OUT shape : Shape; END_VAR
+  Measure := shape.Twice() + shape.Area();
+END_FUNCTION
+";
+
+#[test]
+fn iec3_6_6_5_5_calls_find_the_method_of_the_instance() {
+    let rig = run(&format!(
+        "{SHAPES}PROGRAM P
+VAR s : Square; c : Cube; l : Line; a, b, d, e : INT; END_VAR
+  s.SetSize(2); c.SetSize(3); l.SetSize(4);
+  a := Measure(s); b := Measure(c); d := Measure(l); e := c.Hidden();
+END_PROGRAM"
+    ));
+    let values = ["a", "b", "d", "e"].map(|name| rig.int(&format!("P.{name}")));
+    assert_eq!(values, [12, 162, 0, 77]);
+}
+
+const DRIVES: &str = "INTERFACE IDrive
+METHOD Start : BOOL VAR_INPUT speed : INT; END_VAR VAR_OUTPUT actual : INT; END_VAR END_METHOD
+METHOD Name : STRING[10] END_METHOD
+PROPERTY Level : INT GET END_GET SET END_SET END_PROPERTY
+END_INTERFACE
+INTERFACE IBrake EXTENDS IDrive
+METHOD Brake END_METHOD
+END_INTERFACE
+FUNCTION_BLOCK Simple IMPLEMENTS IDrive
+VAR height : INT := 1; END_VAR
+METHOD Start : BOOL VAR_INPUT speed : INT; END_VAR VAR_OUTPUT actual : INT; END_VAR
+  actual := speed; height := speed; Start := speed > 0;
+END_METHOD
+METHOD Name : STRING[10] Name := 'simple'; END_METHOD
+PROPERTY Level : INT GET Level := level_of(); END_GET SET height := Level; END_SET END_PROPERTY
+METHOD PRIVATE level_of : INT level_of := height; END_METHOD
+END_FUNCTION_BLOCK
+FUNCTION_BLOCK Better EXTENDS Simple IMPLEMENTS IBrake
+VAR brakes : INT; END_VAR
+METHOD Start : BOOL VAR_INPUT speed : INT; END_VAR VAR_OUTPUT actual : INT; END_VAR
+  Start := SUPER^.Start(speed := 2 * speed, actual => actual); actual := actual + 1;
+END_METHOD
+METHOD Name : STRING[10] Name := 'better'; END_METHOD
+METHOD Brake brakes := brakes + 1; Level := 0; END_METHOD
+METHOD Self : IDrive Self := THIS^; END_METHOD
+END_FUNCTION_BLOCK
+";
+
+#[test]
+fn iec3_6_6_6_interfaces_refer_to_what_implements_them() {
+    let rig = run(&format!(
+        "{DRIVES}PROGRAM P
+VAR s : Simple; b : Better; d : IDrive; k : IBrake; list : ARRAY [0..1] OF IDrive;
+  i, x, y, z, before, after : INT; first, second : STRING[10]; none, same, other, ok : BOOL; END_VAR
+  none := d = NULL;
+  d := s;
+  same := d = s; other := d <> b;
+  ok := d.Start(7, actual => x);
+  first := d.Name();
+  k := b; list[0] := s; list[1] := k;
+  FOR i := 0 TO 1 DO list[i].Start(speed := 10 * i + 1, actual => y); z := 100 * z + y; END_FOR;
+  second := list[1].Name();
+  before := k.Level; k.Brake(); after := b.Self().Level;
+  b.Self().Level := 40 + s.Level;
+END_PROGRAM"
+    ));
+    let values = ["x", "y", "z", "before", "after", "b.height"].map(|name| rig.int(&format!("P.{name}")));
+    assert_eq!(values, [7, 23, 123, 22, 0, 41]);
+    assert_eq!((rig.text("P.first").as_str(), rig.text("P.second").as_str()), ("simple", "better"));
+    assert!(["none", "same", "other", "ok"].iter().all(|name| rig.bool(&format!("P.{name}"))));
+}
+
+#[test]
+fn iec3_6_6_6_use_of_an_interface_that_refers_to_nothing_is_a_fault() {
+    insta::assert_snapshot!(fault(&format!(
+        "{DRIVES}PROGRAM P\nVAR d : IDrive; s : Simple; x : INT; n : INT; END_VAR\n  n := n + 1;\n  IF n = 1 THEN d := s; ELSE d := NULL; END_IF;\n  x := d.Level;\nEND_PROGRAM"
+    )), @"use of a NULL reference at test.st:31:8 in P, t_v = 0.020 s");
+}
+
+#[test]
+fn vendors_derived_statements_replace_those_of_the_base() {
+    let rig = run("FUNCTION_BLOCK Base
+VAR_INPUT x : INT; END_VAR VAR_OUTPUT y : INT; END_VAR VAR n : INT; END_VAR
+  n := n + 1; y := x + 1;
+END_FUNCTION_BLOCK
+FUNCTION_BLOCK Derived EXTENDS Base
+VAR_INPUT z : INT; END_VAR
+  IF z > 0 THEN SUPER^(); END_IF;
+  y := y * 10 + THIS^.x;
+END_FUNCTION_BLOCK
+FUNCTION Call : INT VAR_IN_OUT block : Base; END_VAR block(x := 3); Call := block.y; END_FUNCTION
+PROGRAM P VAR b : Base; d, e : Derived; r, s, t : INT; END_VAR
+  d(x := 5, z := 1, y => r); e(x := 4);
+  s := Call(d); t := Call(b);
+END_PROGRAM");
+    let values = ["r", "s", "t", "d.n", "e.n", "e.y"].map(|name| rig.int(&format!("P.{name}")));
+    assert_eq!(values, [65, 43, 4, 2, 0, 4]);
+}
+
+#[test]
+fn iec2_2_6_4_1_actions_work_on_the_variables_of_their_unit() {
+    let rig = run("FUNCTION_BLOCK Valve
+VAR_INPUT open : BOOL; END_VAR VAR_OUTPUT n : INT; END_VAR
+  IF open THEN Count(); END_IF;
+END_FUNCTION_BLOCK
+ACTION Count: n := n + 1; END_ACTION
+ACTION Reset: n := 100; END_ACTION
+PROGRAM P VAR v : Valve; a, b : INT; END_VAR
+  v(open := TRUE, n => a); v.Reset(); v.Count(); Note(); P.Note();
+END_PROGRAM
+ACTION Note: b := b + v.n; END_ACTION");
+    assert_eq!(["a", "b"].map(|name| rig.int(&format!("P.{name}"))), [1, 202]);
+}
+
+#[test]
+fn a_circle_of_dynamic_calls_keeps_its_data_or_stops() {
+    let chain = |extra: &str, depth: &str| {
+        format!(
+            "INTERFACE INode METHOD Sum : INT VAR_INPUT n : INT; END_VAR END_METHOD END_INTERFACE
+CLASS Node IMPLEMENTS INode
+VAR PUBLIC next : INode; value : INT; END_VAR
+METHOD PUBLIC Sum : INT VAR_INPUT n : INT; END_VAR VAR rest : INT; {extra} END_VAR
+  rest := 10 * n + value;
+  IF next <> NULL THEN Sum := next.Sum(n + 1); END_IF;
+  Sum := Sum + rest;
+END_METHOD
+END_CLASS
+PROGRAM P VAR a, b, c : Node; r : INT; END_VAR
+  a.value := 1; b.value := 2; c.value := 3; a.next := b; b.next := c; {depth}
+  r := a.Sum(1);
+END_PROGRAM"
+        )
+    };
+    assert_eq!(run(&chain("", "")).int("P.r"), 66);
+    let endless = fault(&chain("", "c.next := a;"));
+    assert!(endless.starts_with("calls nested too deep at test.st:4:15 in Node.Sum (called by way of"), "{endless}");
+    insta::assert_snapshot!(
+        fault(&chain("list : ARRAY [0..3] OF INT;", "")),
+        @"a unit was called while it ran at test.st:4:15 in Node.Sum (called by way of P, Node.Sum, Node.Sum), t_v = 0.010 s"
+    );
+}
