@@ -11,7 +11,7 @@ use crate::syntax::{SourceMap, Span};
 macro_rules! codes {
     ($($variant:ident $text:literal $about:literal),* $(,)?) => {
         /// Stable codes: `S` syntax, `N` names, `T` types, `C` calls, `D` declarations, `L` limits,
-        /// `F` files, `W` warnings of what is legal and seldom meant.
+        /// `R` addresses and references, `F` files, `W` warnings of what is legal and seldom meant.
         #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
         pub enum Code {
             $(#[doc = concat!("`", $text, "`: ", $about)] $variant,)*
@@ -87,6 +87,9 @@ codes! {
     NoObject "O0808" "THIS or SUPER where there is no instance or base",
     WrongProperty "O0809" "a property is used in a way that it does not offer",
     UnknownNamespace "O0810" "a namespace is not declared",
+    InvalidAddress "R0901" "a direct address is malformed or out of range",
+    UnsuitableAddress "R0902" "a variable does not suit its direct address",
+    InvalidPart "R0903" "a value has no such part",
     NotText "F0601" "a file is not text in an encoding that is read",
     MalformedXml "F0602" "a file is not the XML that its name promises",
     OutputNeverWritten "W0701" "an output is never written",

@@ -9,6 +9,7 @@
 //! | [`run`] | runs of a scenario: in lockstep or not, recorded, reported |
 //! | [`check`] | PLC sources checked without being run |
 //! | [`freewheel`] | running without lockstep, to show what it is good for |
+//! | [`expect`] | what a run must show: signal temporal logic |
 //! | [`plot`] | trajectories as SVG |
 //!
 //! Invariants. This is the only crate that reads scenario files, starts processes and prints. What
@@ -16,6 +17,7 @@
 
 pub mod check;
 pub mod cli;
+pub mod expect;
 pub mod freewheel;
 pub mod plot;
 pub mod run;

@@ -1,6 +1,6 @@
 //! The picture of trajectories, from outside.
 
-use onescan::plot::{Panel, Plot, Shape, Trajectory};
+use onescan::plot::{Mark, Panel, Plot, Shape, Trajectory};
 use proptest::prelude::*;
 
 fn every_ms(values: impl IntoIterator<Item = f64>) -> Trajectory {
@@ -25,6 +25,7 @@ fn small() -> Plot {
             panel("belt.count", None, Shape::Step, vec![gap(), gap()]),
             panel("belt.force", Some("N"), Shape::Line, Vec::new()),
         ],
+        marks: vec![Mark { t_ns: 7_000_000, label: "`at end` violated".to_owned() }],
     }
 }
 
@@ -35,7 +36,9 @@ fn a_small_picture() {
 
 #[test]
 fn nothing_to_draw_is_a_picture_too() {
-    insta::assert_snapshot!(Plot { title: String::new(), runs: Vec::new(), panels: Vec::new() }.to_svg());
+    insta::assert_snapshot!(
+        Plot { title: String::new(), runs: Vec::new(), panels: Vec::new(), marks: Vec::new() }.to_svg()
+    );
 }
 
 #[test]
@@ -66,7 +69,7 @@ fn pictures_stay_small() {
     let plot = |runs: u64, panels: usize, count: u64| {
         let trajectories: Vec<Trajectory> = (0..runs).map(|run| noise(run, count)).collect();
         let panels = vec![panel("noise", Some("m"), Shape::Line, trajectories); panels];
-        Plot { title: "Noise".to_owned(), runs: Vec::new(), panels }.to_svg().len()
+        Plot { title: "Noise".to_owned(), runs: Vec::new(), panels, marks: Vec::new() }.to_svg().len()
     };
     assert!(plot(6, 3, 600) < 150_000);
     assert!(plot(1, 1, 100_000) < 40_000);
@@ -78,7 +81,7 @@ fn one_pulse_among_many_steps_is_drawn() {
         let drawn = |at: Option<usize>| {
             let values = (0..100_000).map(|step| f64::from(u8::from(Some(step) == at || step == 10)));
             let panels = vec![panel("pulse", None, shape, vec![every_ms(values)])];
-            Plot { title: String::new(), runs: Vec::new(), panels }.to_svg()
+            Plot { title: String::new(), runs: Vec::new(), panels, marks: Vec::new() }.to_svg()
         };
         let quiet = drawn(None);
         for at in [300, 50_000, 99_998] {
@@ -103,8 +106,10 @@ fn any_panel() -> impl Strategy<Value = Panel> {
 }
 
 fn any_plot() -> impl Strategy<Value = Plot> {
-    (any::<String>(), prop::collection::vec(any::<String>(), 0..14), prop::collection::vec(any_panel(), 0..5))
-        .prop_map(|(title, runs, panels)| Plot { title, runs, panels })
+    let mark = (any::<u64>(), any::<String>()).prop_map(|(t_ns, label)| Mark { t_ns, label });
+    let runs = prop::collection::vec(any::<String>(), 0..14);
+    (any::<String>(), runs, prop::collection::vec(any_panel(), 0..5), prop::collection::vec(mark, 0..9))
+        .prop_map(|(title, runs, panels, marks)| Plot { title, runs, panels, marks })
 }
 
 /// All numbers of an attribute value or a path.

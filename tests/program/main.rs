@@ -4,6 +4,7 @@ mod check;
 mod checkpoint;
 mod control;
 mod errors;
+mod expectations;
 mod faults;
 mod freewheel;
 mod help;

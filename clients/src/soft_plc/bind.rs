@@ -2,7 +2,7 @@
 //!
 //! A signal that the PLC writes is the `VAR_OUTPUT` of its name in one of the programs; any other
 //! signal is every `VAR_INPUT` of its name. Names are compared as the standard does, without case
-//! (IEC 61131-3 2.1.2). A path given for a signal goes before its name.
+//! (IEC 61131-3 2.1.2). A path given for a signal, or a direct address like `%QX0.1`, goes before its name.
 
 use std::collections::BTreeMap;
 
@@ -15,8 +15,17 @@ use thiserror::Error;
 pub struct Bound {
     /// The signal as the PLC takes part in it.
     pub port: Port,
-    /// Where it begins in memory; several for an input that several programs read.
-    pub offsets: Vec<usize>,
+    /// Where it lies in memory; several for an input that several programs read.
+    pub places: Vec<Place>,
+}
+
+/// Where a value lies in the PLC's memory.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Place {
+    /// Its first byte.
+    pub offset: usize,
+    /// The bit of that byte, for a BOOL at an address like `%QX0.1`.
+    pub bit: Option<u8>,
 }
 
 /// All signals of a PLC.
@@ -63,8 +72,8 @@ pub fn bind(
         if variables.is_empty() {
             continue;
         }
-        let offsets = variables.iter().map(|variable| checked_offset(signal, variable)).collect::<Result<_, _>>()?;
-        let bound = Bound { port: Port { name: signal.name.clone(), ty: signal.ty }, offsets };
+        let places = variables.iter().map(|variable| checked_place(signal, variable)).collect::<Result<_, _>>()?;
+        let bound = Bound { port: Port { name: signal.name.clone(), ty: signal.ty }, places };
         if written { bindings.outputs.push(bound) } else { bindings.inputs.push(bound) }
     }
     Ok(bindings)
@@ -108,9 +117,9 @@ fn inputs_named(application: &Application, signal: &SignalName) -> Vec<Variable>
     inputs.filter(|variable| own_name(variable).eq_ignore_ascii_case(signal.as_str())).collect()
 }
 
-fn checked_offset(signal: &SignalDecl, variable: &Variable) -> Result<usize, BindError> {
+fn checked_place(signal: &SignalDecl, variable: &Variable) -> Result<Place, BindError> {
     if session_type(variable) == Some(signal.ty) {
-        return Ok(variable.offset as usize);
+        return Ok(Place { offset: variable.offset as usize, bit: variable.bit });
     }
     Err(BindError {
         signal: signal.name.clone(),
@@ -133,7 +142,7 @@ mod tests {
     use super::*;
 
     const SOURCE: &str = "
-        PROGRAM A VAR_INPUT Start : BOOL; END_VAR VAR_OUTPUT Level : LREAL; END_VAR VAR n : INT; END_VAR
+        PROGRAM A VAR_INPUT Start : BOOL; END_VAR VAR_OUTPUT Level : LREAL; END_VAR VAR n : INT; valve AT %QX0.3 : BOOL; END_VAR
         Level := 1.0; END_PROGRAM
         PROGRAM B VAR_INPUT start : BOOL; END_VAR VAR_OUTPUT Lamp : BOOL; Text : STRING[12]; END_VAR
         Lamp := start; END_PROGRAM";
@@ -153,7 +162,7 @@ mod tests {
     #[test]
     fn an_input_goes_to_every_program_that_reads_it() {
         let bindings = bound(&[("Start", ElementaryType::Bool, "plant")], &[]).unwrap();
-        assert_eq!(bindings.inputs[0].offsets.len(), 2);
+        assert_eq!(bindings.inputs[0].places.len(), 2);
     }
 
     #[test]
@@ -161,6 +170,16 @@ mod tests {
         let bindings = bound(&[("Count", ElementaryType::Int, "plc")], &[("Count", "A.n")]).unwrap();
         assert_eq!(bindings.outputs.len(), 1);
         assert_eq!(bound(&[("Other", ElementaryType::Int, "plant")], &[]).unwrap(), Bindings::default());
+    }
+
+    #[test]
+    fn a_signal_can_be_bound_to_a_direct_address() {
+        let bindings = bound(&[("Valve", ElementaryType::Bool, "plc")], &[("Valve", "%QX0.3")]).unwrap();
+        assert_eq!(bindings.outputs[0].places[0].bit, Some(3));
+        let named = bound(&[("Valve", ElementaryType::Bool, "plc")], &[("Valve", "A.valve")]).unwrap();
+        assert_eq!(named, bindings);
+        let error = bound(&[("Valve", ElementaryType::Bool, "plc")], &[("Valve", "%QX7.3")]).unwrap_err();
+        assert_eq!(error.to_string(), "signal `Valve` is bound to `%QX7.3`, which the PLC has not");
     }
 
     #[test]

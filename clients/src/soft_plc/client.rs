@@ -5,14 +5,32 @@ use onescan_server::client::{Client, ClientFault, JoinRequest, SourcePlace, Stat
 use onescan_server::signal::ClientName;
 use onescan_server::time::{TimeSpan, VirtualTime};
 
-use super::bind::{Bindings, Bound};
+use super::bind::{Bindings, Bound, Place};
 
 /// A value's bytes in a port and in the PLC's memory.
 #[derive(Clone, Copy, Debug)]
 struct Run {
     port: usize,
-    memory: usize,
+    memory: Place,
     len: usize,
+}
+
+impl Run {
+    fn take(&self, memory: &[u8], port: &mut [u8]) {
+        let Place { offset, bit } = self.memory;
+        match bit {
+            Some(bit) => port[self.port] = memory[offset] >> bit & 1,
+            None => port[self.port..self.port + self.len].copy_from_slice(&memory[offset..offset + self.len]),
+        }
+    }
+
+    fn give(&self, port: &[u8], memory: &mut [u8]) {
+        let Place { offset, bit } = self.memory;
+        match bit {
+            Some(bit) => memory[offset] = memory[offset] & !(1 << bit) | (port[self.port] & 1) << bit,
+            None => memory[offset..offset + self.len].copy_from_slice(&port[self.port..self.port + self.len]),
+        }
+    }
 }
 
 /// A soft PLC that takes part in a session.
@@ -50,7 +68,7 @@ impl SoftPlcClient {
     fn take_outputs(&self, outputs: &mut [u8]) {
         let memory = self.plc.memory();
         for run in &self.outputs {
-            outputs[run.port..run.port + run.len].copy_from_slice(&memory[run.memory..run.memory + run.len]);
+            run.take(memory, outputs);
         }
     }
 }
@@ -61,7 +79,7 @@ fn runs(bound: &[Bound]) -> Vec<Run> {
     let mut runs = Vec::new();
     for bound in bound {
         let len = bound.port.ty.size();
-        runs.extend(bound.offsets.iter().map(|&memory| Run { port, memory, len }));
+        runs.extend(bound.places.iter().map(|&memory| Run { port, memory, len }));
         port += len;
     }
     runs
@@ -81,7 +99,7 @@ impl Client for SoftPlcClient {
     fn turn(&mut self, t_v: VirtualTime, inputs: &[u8], outputs: &mut [u8]) -> Result<Wake, ClientFault> {
         let memory = self.plc.memory_mut();
         for run in &self.inputs {
-            memory[run.memory..run.memory + run.len].copy_from_slice(&inputs[run.port..run.port + run.len]);
+            run.give(inputs, memory);
         }
         self.plc.scan(onescan_plc_shim::VirtualTime::from_ns(t_v.as_nanos())).map_err(|fault| client_fault(&fault))?;
         self.take_outputs(outputs);

@@ -40,6 +40,7 @@ impl Collector<'_> {
             let offset = match variable.storage {
                 Storage::Instance(offset) => base + offset,
                 Storage::Absolute(offset) if base == 0 => offset,
+                Storage::Located(location) => self.checked.areas.offset(location),
                 _ => continue,
             };
             if variable.retain {

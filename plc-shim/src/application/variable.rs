@@ -3,11 +3,14 @@
 use thiserror::Error;
 
 use super::Application;
+use crate::check::Checked;
 use crate::diagnostic::did_you_mean;
-use crate::ir::{self, ElementaryType, Storage, Type, TypeId};
+use crate::ir::{self, ElementaryType, Location, Storage, Type, TypeId};
 use crate::syntax::ast::SectionKind;
+use crate::syntax::direct_address::DirectAddress;
 
-/// A variable in the PLC's memory. A BOOL is one byte, 0 or 1; no other value may be written.
+/// A variable in the PLC's memory. A BOOL is one byte, 0 or 1; no other value may be written. One at a
+/// bit address is that bit alone.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Variable {
     /// Its full name, as in `Shear.axis[2].position`.
@@ -16,6 +19,8 @@ pub struct Variable {
     pub offset: u32,
     /// Its size in bytes.
     pub size: u32,
+    /// Of a BOOL that shares its byte with others, which bit it is.
+    pub bit: Option<u8>,
     /// Its elementary type; nothing for structures, arrays, instances and strings, whose
     /// length stands in `type_name` (`STRING[80]`). A value of an
     /// enumeration or subrange is one of its base type.
@@ -60,6 +65,7 @@ enum Piece {
 struct Spot {
     path: String,
     offset: u32,
+    bit: Option<u8>,
     ty: TypeId,
     address: Option<String>,
 }
@@ -72,7 +78,7 @@ impl Application {
             let pou = checked.pous.get(&program.pou)?;
             let of = |wanted: SectionKind| {
                 let in_section = pou.variables.iter().filter(move |variable| variable.section == wanted);
-                let spots = in_section.filter_map(|each| spot(&pou.name, each, program.offset));
+                let spots = in_section.filter_map(|each| spot(checked, &pou.name, each, program.offset));
                 spots.map(|spot| self.describe(spot)).collect()
             };
             Some(Program {
@@ -85,12 +91,16 @@ impl Application {
     }
 
     /// The variable at a path: a program or global variable, members and indices, as in
-    /// `Shear.axis[2].position`.
+    /// `Shear.axis[2].position`; or at a direct address that the program uses, as in `%QX0.1`.
     ///
     /// # Errors
     /// The path leads nowhere; the error has the nearest name.
     pub fn variable(&self, path: &str) -> Result<Variable, UnknownVariable> {
         let unknown = |help| UnknownVariable { path: path.to_owned(), help };
+        if path.starts_with('%') {
+            let spot = self.direct(path).ok_or_else(|| unknown(None))?;
+            return Ok(self.describe(spot));
+        }
         let pieces = pieces(path).ok_or_else(|| unknown(None))?;
         let mut pieces = pieces.into_iter();
         let Some(Piece::Name(first)) = pieces.next() else {
@@ -106,11 +116,23 @@ impl Application {
         Ok(self.describe(spot))
     }
 
+    /// What lies at a direct address; nothing if the program does not use that part of the area.
+    fn direct(&self, path: &str) -> Option<Spot> {
+        let checked = &self.inner.checked;
+        let address = DirectAddress::parse(path).ok()?;
+        let (offset, bit) = address.place(checked.address_unit).ok()??;
+        let location = Location { area: address.area, offset, bit };
+        let ty = address.width.bit_string();
+        let offset = checked.areas.has(location, ty.size()).then(|| checked.areas.offset(location))?;
+        let path = path.to_ascii_uppercase();
+        Some(Spot { address: Some(path.clone()), path, offset, bit, ty: ty.into() })
+    }
+
     /// A global variable, or a program and the first of its own variables.
     fn root(&self, first: &str, pieces: &mut impl Iterator<Item = Piece>) -> Result<Spot, Option<String>> {
         let checked = &self.inner.checked;
         let global = checked.globals.iter().find(|each| each.name.eq_ignore_ascii_case(first));
-        if let Some(found) = global.and_then(|global| spot("", global, 0)) {
+        if let Some(found) = global.and_then(|global| spot(checked, "", global, 0)) {
             return Ok(found);
         }
         let program = checked.programs.iter().find_map(|program| {
@@ -126,7 +148,7 @@ impl Application {
         let Some(Piece::Name(name)) = pieces.next() else {
             return Err(None);
         };
-        member(&pou.name, &pou.variables, program.offset, &name)
+        member(checked, &pou.name, &pou.variables, program.offset, &name)
     }
 
     fn step(&self, from: &Spot, piece: &Piece) -> Result<Spot, Option<String>> {
@@ -136,17 +158,17 @@ impl Application {
                 let field = fields.iter().find(|field| field.name.eq_ignore_ascii_case(name));
                 let field = field.ok_or_else(|| did_you_mean(name, fields.iter().map(|field| field.name.as_str())))?;
                 let path = format!("{}.{}", from.path, field.name);
-                Ok(Spot { path, offset: from.offset + field.offset, ty: field.ty, address: None })
+                Ok(Spot { path, offset: from.offset + field.offset, bit: None, ty: field.ty, address: None })
             }
             (Type::FunctionBlock { pou, .. }, Piece::Name(name)) => {
                 let variables = checked.interfaces.get(pou).map_or(&[][..], Vec::as_slice);
-                member(&from.path, variables, from.offset, name)
+                member(checked, &from.path, variables, from.offset, name)
             }
             (Type::Array { dimensions, element }, Piece::Index(indices)) => {
                 let offset = self.element(dimensions, *element, indices).ok_or(None)?;
                 let list: Vec<_> = indices.iter().map(i64::to_string).collect();
                 let path = format!("{}[{}]", from.path, list.join(","));
-                Ok(Spot { path, offset: from.offset + offset, ty: *element, address: None })
+                Ok(Spot { path, offset: from.offset + offset, bit: None, ty: *element, address: None })
             }
             _ => Err(None),
         }
@@ -173,6 +195,7 @@ impl Application {
             path: spot.path,
             offset: spot.offset,
             size: types.size(spot.ty),
+            bit: spot.bit,
             ty: types.elementary(spot.ty),
             type_name: types.name(spot.ty),
             address: spot.address,
@@ -181,21 +204,28 @@ impl Application {
 }
 
 /// Where a variable of an instance at `base` lies, if it lies in memory for good.
-fn spot(prefix: &str, variable: &ir::Variable, base: u32) -> Option<Spot> {
-    let offset = match variable.storage {
-        Storage::Absolute(offset) if variable.section != SectionKind::Temp => offset,
-        Storage::Instance(offset) => base + offset,
+fn spot(checked: &Checked, prefix: &str, variable: &ir::Variable, base: u32) -> Option<Spot> {
+    let (offset, bit) = match variable.storage {
+        Storage::Absolute(offset) if variable.section != SectionKind::Temp => (offset, None),
+        Storage::Located(location) => (checked.areas.offset(location), location.bit),
+        Storage::Instance(offset) => (base + offset, None),
         _ => return None,
     };
     let dot = if prefix.is_empty() { "" } else { "." };
     let path = format!("{prefix}{dot}{}", variable.name);
-    Some(Spot { path, offset, ty: variable.ty, address: variable.address.clone() })
+    Some(Spot { path, offset, bit, ty: variable.ty, address: variable.address.clone() })
 }
 
-fn member(prefix: &str, variables: &[ir::Variable], base: u32, name: &str) -> Result<Spot, Option<String>> {
+fn member(
+    checked: &Checked,
+    prefix: &str,
+    variables: &[ir::Variable],
+    base: u32,
+    name: &str,
+) -> Result<Spot, Option<String>> {
     let found = variables.iter().find(|variable| variable.name.eq_ignore_ascii_case(name));
     found
-        .and_then(|variable| spot(prefix, variable, base))
+        .and_then(|variable| spot(checked, prefix, variable, base))
         .ok_or_else(|| did_you_mean(name, variables.iter().map(|variable| variable.name.as_str())))
 }
 

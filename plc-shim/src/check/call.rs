@@ -275,7 +275,7 @@ impl Body<'_, '_> {
         self.expression_for(expr, parameter.ty).map(Argument::Value)
     }
 
-    /// The variable given for a `VAR_IN_OUT`. One that is kept in a register goes through memory.
+    /// The variable given for a `VAR_IN_OUT`. One in a register or in a bit goes through memory.
     fn reference(&mut self, parameter: &Variable, expr: &ast::Expr, passing: &mut Passing) -> Option<Place> {
         let place = self.target(expr)?;
         if place.ty != parameter.ty && !self.derives(place.ty, parameter.ty) {
@@ -284,7 +284,7 @@ impl Body<'_, '_> {
             self.report(Diagnostic::error(Code::InvalidArgument, expr.span, message));
             return None;
         }
-        if !matches!(place.storage, Storage::Register(_)) {
+        if place.has_address() {
             return Some(place);
         }
         let memory = self.temporary(place.ty, expr.span)?;

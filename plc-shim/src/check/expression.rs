@@ -25,8 +25,11 @@ impl Body<'_, '_> {
                 self.binary(*operator, left?, right?, expr.span)
             }
             ast::ExprKind::Call(call) => self.call_expression(call, expr.span),
-            ast::ExprKind::DirectAddress(_) => self.unsupported("a direct address", expr.span),
-            ast::ExprKind::Name(_) | ast::ExprKind::Member(..) | ast::ExprKind::Index(..) => self.load(expr),
+            ast::ExprKind::Name(_)
+            | ast::ExprKind::Member(..)
+            | ast::ExprKind::Index(..)
+            | ast::ExprKind::Part(..)
+            | ast::ExprKind::DirectAddress(_) => self.load(expr),
             ast::ExprKind::Error => None,
         }
     }

@@ -6,6 +6,7 @@
 //! | 8 | virtual time in nanoseconds, `ONESCAN_TV`, written before every task |
 //! | 16 | how deep calls are nested that come back to a unit that still runs |
 //! | 64 | global variables, programs, frames |
+//! | behind them | the areas of direct addresses, `%I`, `%Q`, `%M`, as far as they are used |
 
 use super::Checker;
 use crate::diagnostic::{Code, Diagnostic};
@@ -51,6 +52,11 @@ pub(super) fn align_up(offset: u32, align: u32) -> u32 {
 }
 
 impl Checker<'_> {
+    /// Puts the areas of direct addresses behind all else: their sizes are known last.
+    pub(super) fn place_areas(&mut self) {
+        self.layout.next = self.areas.place(self.layout.next);
+    }
+
     /// Offset of a new block of memory; reports at `span` if there is no more.
     pub(super) fn allocate(&mut self, size: u32, align: u32, span: Span) -> Option<u32> {
         let offset = align_up(self.layout.next, align);

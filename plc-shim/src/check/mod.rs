@@ -7,10 +7,11 @@
 //! | [`scope`] | what a name means inside a unit |
 //! | [`types`], [`subrange`] | types as written to types |
 //! | [`variables`] | sections to placed variables, units' interfaces |
+//! | [`located`] | direct addresses to places |
 //! | [`initial`] | initial values to bytes |
 //! | [`constant`] | constant expressions to values |
 //! | [`convert`] | implicit conversions, constants in context |
-//! | [`expression`], [`operator`], [`calendar`], [`place`] | expressions |
+//! | [`expression`], [`operator`], [`calendar`], [`place`], [`part`] | expressions |
 //! | [`call`], [`standard_function`], [`conversion_function`] | calls |
 //! | [`text`], [`text_function`], [`text_conversion`] | character strings |
 //! | [`statement`], [`edge`] | statements |
@@ -36,10 +37,12 @@ mod initial;
 mod instance;
 mod interface_value;
 mod layout;
+mod located;
 mod method_call;
 mod names;
 mod namespace;
 mod operator;
+mod part;
 mod place;
 mod property;
 mod recursion;
@@ -62,8 +65,9 @@ use self::layout::Layout;
 use self::names::{Enumerator, GlobalEntry, PouEntry, TypeEntry};
 use self::namespace::Home;
 use crate::diagnostic::Diagnostic;
-use crate::ir::{Pou, PouId, Program, Row, TypeId, TypeTable, Variable};
+use crate::ir::{Areas, Pou, PouId, Program, Row, TypeId, TypeTable, Variable};
 use crate::syntax::ast::{CompilationUnit, PouKind};
+use crate::syntax::direct_address::AddressUnit;
 use crate::syntax::{FileId, Span};
 
 pub(crate) use layout::{CALL_DEPTH_OFFSET, VIRTUAL_TIME_OFFSET};
@@ -80,6 +84,10 @@ pub(crate) struct Checked {
     pub(crate) programs: Vec<Program>,
     /// What the types run when a method is called that is not known before.
     pub(crate) rows: Vec<Row>,
+    /// Where direct addresses lie.
+    pub(crate) areas: Areas,
+    /// What the numbers of direct addresses count.
+    pub(crate) address_unit: AddressUnit,
     /// The whole memory at a cold start.
     pub(crate) image: Vec<u8>,
 }
@@ -96,6 +104,7 @@ pub(crate) fn check(units: &[(FileId, &CompilationUnit)], library: &BTreeSet<Fil
     checker.check_bodies();
     checker.report_recursion();
     checker.guard_circles();
+    checker.place_areas();
     let image = checker.memory_image();
     let interfaces = checker
         .pous
@@ -109,6 +118,8 @@ pub(crate) fn check(units: &[(FileId, &CompilationUnit)], library: &BTreeSet<Fil
         globals: checker.globals.into_values().filter_map(|entry| entry.variable).collect(),
         programs: checker.programs,
         rows: checker.rows.into_list(),
+        areas: checker.areas,
+        address_unit: checker.address_unit,
         image,
     };
     (result, checker.diagnostics)
@@ -136,6 +147,10 @@ struct Checker<'a> {
     globals: BTreeMap<String, GlobalEntry<'a>>,
     enumerators: BTreeMap<String, Vec<Enumerator>>,
     layout: Layout,
+    areas: Areas,
+    address_unit: AddressUnit,
+    /// Initial values of what is located.
+    located: Vec<located::Initial>,
     /// Offsets of string literals by type and bytes.
     literals: BTreeMap<(TypeId, std::sync::Arc<[u8]>), u32>,
     /// Initial bytes of what has been placed.
@@ -225,6 +240,7 @@ impl<'a> Checker<'a> {
                 target.copy_from_slice(bytes);
             }
         }
+        self.initialise_located(&mut image);
         image
     }
 }

@@ -9,8 +9,9 @@ use super::layout::{Layout, VIRTUAL_TIME_NAME, VIRTUAL_TIME_OFFSET};
 use super::namespace::Home;
 use super::scope::Scope;
 use crate::diagnostic::{Code, Diagnostic};
-use crate::ir::{ElementaryType, PouId, Storage, TypeId, TypeTable, Variable, Visibility};
+use crate::ir::{Areas, ElementaryType, PouId, Storage, TypeId, TypeTable, Variable, Visibility};
 use crate::syntax::ast::{self, Ident, PouKind, Qualifier, SectionKind, TypeDeclaration};
+use crate::syntax::direct_address::AddressUnit;
 use crate::syntax::{FileId, Span};
 
 /// How far something has been resolved.
@@ -90,6 +91,9 @@ impl<'a> Checker<'a> {
             globals: BTreeMap::from([(VIRTUAL_TIME_NAME.to_owned(), virtual_time())]),
             enumerators: BTreeMap::new(),
             layout: Layout::new(),
+            areas: Areas::default(),
+            address_unit: AddressUnit::default(),
+            located: Vec::new(),
             literals: BTreeMap::new(),
             placed: Vec::new(),
             programs: Vec::new(),

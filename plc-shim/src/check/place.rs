@@ -18,6 +18,8 @@ pub(super) enum Access {
     OwnInput,
     /// It is an output of an instance.
     InstanceOutput,
+    /// It is an input of the machine.
+    MachineInput,
 }
 
 /// A place and who may write to it.
@@ -98,7 +100,11 @@ impl Body<'_, '_> {
                 self.element(base, indices, expr.span)
             }
             ast::ExprKind::Paren(inner) => self.place(inner),
-            ast::ExprKind::DirectAddress(_) => self.unsupported("a direct address", expr.span),
+            ast::ExprKind::DirectAddress(text) => self.direct_place(text, expr.span),
+            ast::ExprKind::Part(base, part) => {
+                let base = self.place(base)?;
+                self.part(base, part, expr.span)
+            }
             ast::ExprKind::Error => None,
             _ => {
                 let message = "a variable is wanted here";
@@ -117,6 +123,7 @@ impl Body<'_, '_> {
                 let access = match variable.section {
                     _ if variable.is_constant => Access::Constant,
                     SectionKind::Input => Access::OwnInput,
+                    _ if super::located::is_machine_input(variable.storage) => Access::MachineInput,
                     _ => Access::ReadWrite,
                 };
                 // Inside of its unit an input with an edge is that edge.
@@ -201,6 +208,7 @@ impl Body<'_, '_> {
                 Some(Located { place, access: base.access })
             }
             Type::FunctionBlock { pou, .. } => self.instance_member(base, pou, name, span),
+            Type::Elementary(_) if self.is_constant(name) => self.named_bit(base, name, span),
             _ => {
                 let message = format!("{} has no members", self.type_name(base.place.ty));
                 self.report(Diagnostic::error(Code::NotAStructure, span, message));

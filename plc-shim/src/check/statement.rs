@@ -177,6 +177,10 @@ impl Body<'_, '_> {
                 let message = "an input is written by the caller; this value is overwritten";
                 self.report(Diagnostic::warning(Code::AssignToInput, expr.span, message));
             }
+            Access::MachineInput => {
+                let message = "an input is written by the machine; this value is overwritten";
+                self.report(Diagnostic::warning(Code::AssignToInput, expr.span, message));
+            }
         }
         let result = self.scope.result.as_ref().map(|result| result.storage);
         self.result_assigned |= result == Some(located.place.storage);

@@ -44,10 +44,15 @@ impl<'a> Checker<'a> {
 
     fn place_global(&mut self, name: &Ident, ast: &'a ast::Variable, qualifiers: &[Qualifier]) -> Option<Variable> {
         let declared = Body::outside(self).declared(ast, Need::Size)?;
-        let (size, align) = (self.types.size(declared.ty), self.types.align(declared.ty));
-        let offset = self.allocate(size, align, name.span)?;
-        self.placed.push((offset, declared.image.clone()));
-        let storage = Storage::Absolute(offset);
+        let storage = match self.located(ast, &declared)? {
+            Some(storage) => storage,
+            None => {
+                let (size, align) = (self.types.size(declared.ty), self.types.align(declared.ty));
+                let offset = self.allocate(size, align, name.span)?;
+                self.placed.push((offset, declared.image.clone()));
+                Storage::Absolute(offset)
+            }
+        };
         Some(self.variable(name, ast, SectionKind::Global, qualifiers, &declared, storage))
     }
 
@@ -237,7 +242,7 @@ impl<'c, 'a> Interface<'c, 'a> {
                 self.declare_external(name, declared.ty, section);
                 continue;
             }
-            let Some(storage) = self.storage(section, declared, name.span) else {
+            let Some(storage) = self.declared_storage(section, ast, declared, name.span) else {
                 self.declare_broken(name);
                 continue;
             };
@@ -260,6 +265,22 @@ impl<'c, 'a> Interface<'c, 'a> {
         let variable = Variable { owner: self.body.pou, ..variable };
         self.body.scope.by_name.insert(name.key(), self.body.scope.variables.len());
         self.body.scope.variables.push(variable);
+    }
+
+    fn declared_storage(
+        &mut self,
+        section: &Section,
+        ast: &ast::Variable,
+        declared: &TypedImage,
+        span: Span,
+    ) -> Option<Storage> {
+        if let Some(address) = &ast.address {
+            self.body.checker.may_be_located(self.kind, section.kind, address)?;
+            if let Some(located) = self.body.checker.located(ast, declared)? {
+                return Some(located);
+            }
+        }
+        self.storage(section, declared, span)
     }
 
     fn storage(&mut self, section: &Section, declared: &TypedImage, span: Span) -> Option<Storage> {

@@ -8,7 +8,7 @@ use wasm_encoder::{BlockType, Function, Instruction, ValType};
 use super::dispatch::RowPlace;
 use super::fault::{FaultKind, Mark};
 use crate::ir::elementary::Kind;
-use crate::ir::{ElementaryType, LocalId, PouId, TypeId, TypeTable};
+use crate::ir::{Areas, ElementaryType, LocalId, PouId, TypeId, TypeTable};
 use crate::syntax::Span;
 
 /// How a value of the type is held.
@@ -37,6 +37,7 @@ pub(super) struct Shared<'p> {
     pub(super) types: &'p TypeTable,
     pub(super) functions: BTreeMap<PouId, u32>,
     pub(super) rows: Vec<RowPlace>,
+    pub(super) areas: Areas,
     /// Initial bytes of temporary aggregates, by data segment.
     pub(super) data: Vec<Arc<[u8]>>,
 }

@@ -26,6 +26,7 @@ mod function;
 pub(crate) mod host;
 mod intrinsic;
 mod module;
+mod part;
 mod place;
 mod repetition;
 mod statement;

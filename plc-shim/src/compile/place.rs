@@ -20,6 +20,7 @@ impl Emitter<'_, '_> {
     pub(super) fn address(&mut self, place: &Place) -> u64 {
         let (mut offset, mut pushed) = match place.storage {
             Storage::Absolute(offset) => (u64::from(offset), false),
+            Storage::Located(location) => (u64::from(self.shared.areas.offset(location)), false),
             Storage::Instance(offset) => {
                 self.get(INSTANCE);
                 (u64::from(offset), true)
@@ -105,6 +106,10 @@ impl Emitter<'_, '_> {
             self.full_address(place);
             return;
         };
+        if let Some(part) = place.part {
+            self.load_part(place, part, ty);
+            return;
+        }
         if let Storage::Register(register) = place.storage {
             self.get(register);
             return;
@@ -125,6 +130,10 @@ impl Emitter<'_, '_> {
     /// Puts what `value` pushes at an elementary place.
     pub(super) fn store(&mut self, place: &Place, value: impl FnOnce(&mut Self)) {
         let ty = self.held_as(place.ty);
+        if let Some(part) = place.part {
+            self.store_part(place, part, ty, value);
+            return;
+        }
         if let Storage::Register(register) = place.storage {
             value(self);
             self.set(register);

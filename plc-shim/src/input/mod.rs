@@ -6,7 +6,7 @@
 //! | [`kind`] | a file's name | what kind of file it is |
 //! | `xml` | text | a tree whose nodes know their place |
 //! | `twincat` | TwinCAT's objects | program text |
-//! | `plcopen` | PLCopen XML | program text |
+//! | `plcopen`, `plcopen_object` | PLCopen XML, and what CODESYS adds to it | program text |
 //! | [`project`] | a TwinCAT project | the names of its files |
 //!
 //! Invariants: no file can make it fail, what is wrong with one is a diagnostic; what is not read is
@@ -15,6 +15,7 @@
 pub mod encoding;
 pub mod kind;
 mod plcopen;
+mod plcopen_object;
 pub mod project;
 mod twincat;
 mod xml;

@@ -1,5 +1,6 @@
 //! Typed expressions and the places that hold values.
 
+use super::area::Location;
 use super::elementary::ElementaryType;
 use super::pou::PouId;
 use super::statement::Statement;
@@ -184,6 +185,8 @@ pub(crate) enum Argument {
 pub(crate) enum Storage {
     /// At a fixed offset in memory.
     Absolute(u32),
+    /// At a direct address.
+    Located(Location),
     /// At an offset in the running instance.
     Instance(u32),
     /// The address stands at an offset in the running instance (`VAR_IN_OUT`).
@@ -199,13 +202,40 @@ pub(crate) enum Storage {
 pub(crate) struct Place {
     pub(crate) storage: Storage,
     pub(crate) steps: Vec<Step>,
+    /// Set if the value shares its bytes, or its register, with others.
+    pub(crate) part: Option<Part>,
     pub(crate) ty: TypeId,
     pub(crate) span: Span,
 }
 
+/// Which bits of a whole a value takes: as many as its type has, one for BOOL.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct Part {
+    /// What is loaded and stored: BYTE in memory, a register's type in a register.
+    pub(crate) whole: ElementaryType,
+    /// The lowest of the bits.
+    pub(crate) shift: u32,
+}
+
+impl Part {
+    /// One bit of a byte in memory.
+    pub(crate) fn bit(bit: u8) -> Self {
+        Self { whole: ElementaryType::Byte, shift: u32::from(bit) }
+    }
+}
+
 impl Place {
     pub(crate) fn whole(storage: Storage, ty: TypeId, span: Span) -> Self {
-        Self { storage, steps: Vec::new(), ty, span }
+        let part = match storage {
+            Storage::Located(Location { bit, .. }) => bit.map(Part::bit),
+            _ => None,
+        };
+        Self { storage, steps: Vec::new(), part, ty, span }
+    }
+
+    /// True if it has an address of its own: it is in no register and no bit of a byte.
+    pub(crate) fn has_address(&self) -> bool {
+        self.part.is_none() && !matches!(self.storage, Storage::Register(_))
     }
 
     /// The part of type `ty` that lies `offset` bytes inside.

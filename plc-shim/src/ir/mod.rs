@@ -2,6 +2,7 @@
 //!
 //! Code generation and the runtime read it and look nothing up by name.
 
+pub(crate) mod area;
 pub(crate) mod elementary;
 pub(crate) mod expr;
 pub(crate) mod pou;
@@ -10,10 +11,11 @@ pub(crate) mod text;
 pub(crate) mod types;
 pub(crate) mod value;
 
+pub(crate) use area::{Areas, Location};
 pub(crate) use elementary::ElementaryType;
 pub(crate) use expr::{
-    Argument, Binary, Cast, Dispatch, Expr, ExprKind, FunctionCall, Intrinsic, LocalId, Place, Receiver, Rounding, Row,
-    Step, Storage, Unary,
+    Argument, Binary, Cast, Dispatch, Expr, ExprKind, FunctionCall, Intrinsic, LocalId, Part, Place, Receiver,
+    Rounding, Row, Step, Storage, Unary,
 };
 pub(crate) use pou::{EdgeDetection, Guard, Pou, PouId, Program, Variable, Visibility};
 pub(crate) use statement::{CaseArm, CaseStatement, ForStatement, IfBranch, InstanceCall, Statement, StatementKind};

@@ -39,7 +39,7 @@ pub(crate) fn lint(front: &Front, plan: Option<&TaskPlan>) -> Vec<Diagnostic> {
     let units: Vec<Unit<'_>> = index.own().map(|pou| Unit { usage: Usage::of(pou, &index), pou }).collect();
     let mut findings = Vec::new();
     for unit in &units {
-        outputs::lint(unit, &mut findings);
+        outputs::lint(unit, &units, &mut findings);
         instances::lint(unit, &index, &mut findings);
         equality::lint(unit, &index, &mut findings);
         reachability::lint(unit, &mut findings);
@@ -47,7 +47,7 @@ pub(crate) fn lint(front: &Front, plan: Option<&TaskPlan>) -> Vec<Diagnostic> {
     }
     for pou in index.own_members() {
         let unit = Unit { usage: Usage::of(pou, &index), pou };
-        outputs::lint(&unit, &mut findings);
+        outputs::lint(&unit, &units, &mut findings);
         equality::lint(&unit, &index, &mut findings);
         reachability::lint(&unit, &mut findings);
         unused::lint(&unit, &index, &mut findings);

@@ -16,12 +16,17 @@ fn report(name: &Ident, findings: &mut Vec<Diagnostic>) {
     findings.push(Diagnostic::warning(Code::OutputNeverWritten, name.span, message));
 }
 
-pub(super) fn lint(unit: &Unit<'_>, findings: &mut Vec<Diagnostic>) {
+/// Two variables may lie at one address: where the address itself is written, names decide nothing.
+fn writes_outputs(units: &[Unit<'_>]) -> bool {
+    units.iter().any(|unit| unit.usage.writes_outputs)
+}
+
+pub(super) fn lint(unit: &Unit<'_>, units: &[Unit<'_>], findings: &mut Vec<Diagnostic>) {
     for section in &unit.pou.sections {
         let is_output = |variable: &Variable| match section.kind {
             SectionKind::Output => true,
             SectionKind::External | SectionKind::InOut => false,
-            _ => is_located_output(variable),
+            _ => is_located_output(variable) && !writes_outputs(units),
         };
         for name in section.variables.iter().filter(|variable| is_output(variable)).flat_map(|each| &each.names) {
             let uses = unit.usage.get(&name.key());
@@ -33,6 +38,9 @@ pub(super) fn lint(unit: &Unit<'_>, findings: &mut Vec<Diagnostic>) {
 }
 
 pub(super) fn lint_globals(units: &[Unit<'_>], index: &Index<'_>, findings: &mut Vec<Diagnostic>) {
+    if writes_outputs(units) {
+        return;
+    }
     let located = index.globals().flat_map(|section| &section.variables).filter(|each| is_located_output(each));
     for name in located.flat_map(|variable| &variable.names) {
         let key = name.key();

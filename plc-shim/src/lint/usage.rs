@@ -13,6 +13,8 @@ use crate::syntax::ast::{
 #[derive(Debug, Default)]
 pub(super) struct Usage {
     names: BTreeMap<String, Uses>,
+    /// A direct address of an output is written: any that is located there may be meant.
+    pub(super) writes_outputs: bool,
 }
 
 /// What is done with one name.
@@ -131,11 +133,21 @@ impl Collector<'_> {
     }
 }
 
+/// True for a part of `%Q`.
+fn writes_output(target: &Expr) -> bool {
+    match &target.kind {
+        ExprKind::DirectAddress(text) => text.to_ascii_uppercase().starts_with("%Q"),
+        ExprKind::Part(inner, _) | ExprKind::Paren(inner) => writes_output(inner),
+        _ => false,
+    }
+}
+
 impl Visitor for Collector<'_> {
     fn target(&mut self, target: &Expr) {
         if let Some(name) = root(target) {
             self.written(name);
         }
+        self.usage.writes_outputs |= writes_output(target);
     }
 
     fn control(&mut self, name: &Ident) {

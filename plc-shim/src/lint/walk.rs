@@ -96,7 +96,7 @@ fn target(place: &Expr, visitor: &mut impl Visitor) {
 /// The indices on the way to a place: they are read, whatever becomes of the place.
 fn indices(place: &Expr, visitor: &mut impl Visitor) {
     match &place.kind {
-        ExprKind::Member(inner, _) | ExprKind::Paren(inner) => indices(inner, visitor),
+        ExprKind::Member(inner, _) | ExprKind::Part(inner, _) | ExprKind::Paren(inner) => indices(inner, visitor),
         ExprKind::Index(inner, list) => {
             indices(inner, visitor);
             for index in list {
@@ -110,7 +110,9 @@ fn indices(place: &Expr, visitor: &mut impl Visitor) {
 pub(super) fn expression(expr: &Expr, visitor: &mut impl Visitor) {
     visitor.expression(expr);
     match &expr.kind {
-        ExprKind::Member(inner, _) | ExprKind::Unary(_, inner) | ExprKind::Paren(inner) => expression(inner, visitor),
+        ExprKind::Member(inner, _) | ExprKind::Part(inner, _) | ExprKind::Unary(_, inner) | ExprKind::Paren(inner) => {
+            expression(inner, visitor)
+        }
         ExprKind::Index(inner, list) => {
             expression(inner, visitor);
             for index in list {
@@ -130,7 +132,9 @@ pub(super) fn expression(expr: &Expr, visitor: &mut impl Visitor) {
 pub(super) fn root(place: &Expr) -> Option<&crate::syntax::ast::Ident> {
     match &place.kind {
         ExprKind::Name(name) => Some(name),
-        ExprKind::Member(inner, _) | ExprKind::Index(inner, _) | ExprKind::Paren(inner) => root(inner),
+        ExprKind::Member(inner, _) | ExprKind::Part(inner, _) | ExprKind::Index(inner, _) | ExprKind::Paren(inner) => {
+            root(inner)
+        }
         _ => None,
     }
 }

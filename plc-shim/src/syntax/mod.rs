@@ -7,6 +7,7 @@
 //! | [`token`] | | the kinds of token, keywords |
 //! | [`lexer`] | text | every token, blanks and comments too |
 //! | [`literal`], [`text_literal`], [`calendar`] | a literal's text | its value |
+//! | [`direct_address`] | a direct address' text | its area, width and place |
 //! | [`ast`] | | the tree's nodes |
 //! | [`parser`] | tokens | a tree and a list of diagnostics |
 //! | [`printer`] | a tree | text that parses to the same tree |
@@ -16,6 +17,7 @@
 
 pub mod ast;
 pub mod calendar;
+pub mod direct_address;
 pub mod lexer;
 pub mod literal;
 pub mod origin;

@@ -2,12 +2,14 @@
 
 mod dates;
 mod diagnostics;
+mod direct_addresses;
 mod expressions;
 mod faults;
 mod inputs;
 mod language;
 mod lints;
 mod objects;
+mod partial_access;
 mod rig;
 mod robustness;
 mod scheduling;

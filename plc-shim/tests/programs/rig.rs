@@ -63,6 +63,9 @@ impl Rig {
         let mut bytes = [0; 8];
         let (offset, size) = (variable.offset as usize, variable.size as usize);
         bytes[..size].copy_from_slice(&self.plc.memory()[offset..offset + size]);
+        if let Some(bit) = variable.bit {
+            bytes[0] = bytes[0] >> bit & 1;
+        }
         bytes
     }
 

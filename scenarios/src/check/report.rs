@@ -37,7 +37,7 @@ impl Report {
         if self.count(Severity::Error) > 0 {
             ExitCode::WrongInput
         } else if warnings == Warnings::Denied && self.count(Severity::Warning) > 0 {
-            ExitCode::Unequal
+            ExitCode::Unmet
         } else {
             ExitCode::Ok
         }

@@ -29,7 +29,8 @@ pub struct Args {
 
 const EXIT_CODES: &str = "Exit codes:
   0  all is well
-  1  runs that must be equal are not; a check found warnings that are denied
+  1  a run is not what its scenario expects; runs that must be equal are not; a check found warnings that
+     are denied
   2  wrong input: options, scenario, PLC source, scene, checkpoint
   3  a client or a link failed, or the PLC program stopped on a fault";
 

@@ -2,6 +2,7 @@
 
 use super::layout::{Contents, Height, LABEL_GAP_PX, LEGEND_LINE_PX, Layout, WIDTH_PX};
 use super::lettering::{FONT_FAMILY, NAME_PX, TITLE_PX, shortened};
+use super::mark::draw_marks;
 use super::palette::{GROUND, INK, stroke};
 use super::panel::Axis;
 use super::svg::{Document, draw_line, draw_note};
@@ -31,6 +32,7 @@ pub(super) fn draw(plot: &Plot) -> String {
     for (axis, &area) in panels.iter().zip(&layout.panels) {
         axis.draw(&mut document, area, &time, run_labels.len());
     }
+    draw_marks(&mut document, plot, &layout.panels, &time);
     match layout.panels.last() {
         Some(&area) => time.draw(&mut document, area),
         None => draw_note(&mut document, WIDTH_PX / 2, layout.height_px - 2 * NAME_PX, "no signals"),

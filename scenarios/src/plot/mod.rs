@@ -18,7 +18,7 @@
 //! | `palette` | the colours, and one stroke for each run |
 //! | `caption` | names, units and the description |
 //! | `svg` | elements, paths, escapes |
-//! | `panel`, `time_axis` | the parts of the picture |
+//! | `panel`, `mark`, `time_axis` | the parts of the picture |
 //! | `figure` | all of these as one picture |
 //!
 //! Invariants. No input makes it panic, nothing is read from the machine (no clock, no fonts, no
@@ -39,6 +39,7 @@
 //!         shape: Shape::Line,
 //!         runs: vec![Trajectory { t_ns: vec![0, 1_000_000, 2_000_000], values: vec![0.0, 0.1, 0.3] }],
 //!     }],
+//!     marks: Vec::new(),
 //! };
 //! assert!(plot.to_svg().contains("belt.position"));
 //! ```
@@ -48,6 +49,7 @@ mod caption;
 mod figure;
 mod layout;
 mod lettering;
+mod mark;
 mod palette;
 mod panel;
 mod range;
@@ -100,6 +102,17 @@ pub struct Plot {
     pub runs: Vec<String>,
     /// The panels from top to bottom.
     pub panels: Vec<Panel>,
+    /// Instants that stand out.
+    pub marks: Vec<Mark>,
+}
+
+/// An instant that stands out.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Mark {
+    /// When, in nanoseconds of virtual time.
+    pub t_ns: u64,
+    /// What is at that instant.
+    pub label: String,
 }
 
 impl Plot {

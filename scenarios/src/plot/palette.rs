@@ -16,6 +16,8 @@ pub(super) const INK: &str = "#1f2328";
 pub(super) const FAINT_INK: &str = "#59636e";
 /// Lines across a panel.
 pub(super) const GRID: &str = "#e4e7eb";
+/// What went wrong.
+pub(super) const ALARM: &str = "#b3261e";
 /// The edges of a panel from which values and times are read.
 pub(super) const AXIS: &str = "#a8b0b9";
 

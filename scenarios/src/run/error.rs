@@ -92,8 +92,8 @@ pub enum RunError {
 pub enum ExitCode {
     /// All is well.
     Ok = 0,
-    /// A run failed its expectations: runs that must be equal are not.
-    Unequal = 1,
+    /// A run failed its expectations: those of its scenario, or runs that must be equal are not.
+    Unmet = 1,
     /// The input is wrong: options, scenario, sources, checkpoint.
     WrongInput = 2,
     /// A client or a link failed.

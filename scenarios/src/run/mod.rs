@@ -10,11 +10,13 @@
 //! | [`interrupt`] | Ctrl-C, at a step boundary |
 //! | [`progress`] | a bar on a terminal |
 //! | [`sampler`] | what a plot shows |
+//! | [`expectation`] | what a run had to show |
 //! | [`report`] | what came of a run, for people and machines |
 //! | [`output`] | files that appear whole or not at all |
 
 pub mod config;
 pub mod error;
+pub mod expectation;
 mod freewheel;
 pub mod interrupt;
 mod lockstep;
@@ -37,7 +39,9 @@ pub use config::{Format, Mode, RunConfig, Transport};
 pub use error::RunError;
 pub use report::{RunReport, Verdict};
 
+use crate::expect::{Trace, TraceEnd};
 use crate::scenario::Scenario;
+use expectation::Witness;
 use interrupt::Interrupt;
 use sampler::{Sampler, Samples};
 
@@ -61,7 +65,7 @@ pub fn execute(config: &RunConfig, interrupt: &Interrupt, out: &mut dyn Write) -
         }
     }
     if let Some(path) = &config.plot {
-        let plot = sampler::plot(&scenario, config, &samples);
+        let plot = sampler::plot(&scenario, config, &samples, &reports);
         output::write_whole(path, plot.to_svg().as_bytes())?;
     }
     let verdict = Verdict::of(config, &reports);
@@ -78,6 +82,7 @@ fn one_run(
 ) -> Result<(RunReport, Samples), RunError> {
     let started = Instant::now();
     let samples = Rc::new(RefCell::new(Samples::new(&config.plotted(scenario))));
+    let trace = Rc::new(RefCell::new(Trace::default()));
     let folder = match &config.record {
         Some(folder) => Some(output::create_folder(&folder.join(format!("run-{number}")))?),
         None => None,
@@ -85,6 +90,10 @@ fn one_run(
     let watch = |lockstep: &mut Lockstep| {
         if config.plot.is_some() {
             lockstep.observe(Box::new(Sampler::new(Rc::clone(&samples))));
+        }
+        let expected = scenario.expectations();
+        if !expected.named.is_empty() {
+            lockstep.observe(Box::new(Witness::new(Rc::clone(&trace), &expected.signals)));
         }
         if let Some(folder) = &folder {
             lockstep.observe(Box::new(CsvRecorder::new(&folder.join("trajectory.csv"))));
@@ -94,7 +103,10 @@ fn one_run(
         Mode::Lockstep => lockstep::run(config, scenario, number, interrupt, watch)?,
         Mode::Freewheel => freewheel::run(config, scenario, number, interrupt, watch)?,
     };
-    let report = RunReport::new(config, scenario, number, &outcome, started.elapsed());
+    let mut report = RunReport::new(config, scenario, number, &outcome, started.elapsed());
+    let mut trace = trace.replace(Trace::default());
+    trace.set_end(if report.status == "completed" { TraceEnd::Complete } else { TraceEnd::Cut });
+    report.expectations = expectation::judge(scenario, &trace);
     if let Some(folder) = &folder {
         write_summary(&folder.join("run.json"), &report)?;
     }

@@ -11,6 +11,7 @@ use serde::Serialize;
 
 use super::config::{Format, Mode, RunConfig, Transport};
 use super::error::ExitCode;
+use super::expectation::ExpectationReport;
 use crate::scenario::Scenario;
 
 /// What came of one run. Its JSON form is a contract: fields are added, never changed.
@@ -41,6 +42,9 @@ pub struct RunReport {
     /// The failure in words.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub error: Option<String>,
+    /// What came of the scenario's expectations.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub expectations: Vec<ExpectationReport>,
     /// The program that ran it.
     pub version: &'static str,
 }
@@ -70,6 +74,7 @@ impl RunReport {
             wall_time_s: wall_time.as_secs_f64(),
             error: failure.as_ref().map(ToString::to_string),
             failure,
+            expectations: Vec::new(),
             version: env!("CARGO_PKG_VERSION"),
         }
     }
@@ -77,6 +82,11 @@ impl RunReport {
     /// True if a client ended it.
     pub fn is_failed(&self) -> bool {
         self.failure.is_some()
+    }
+
+    /// True if it did not show what was expected.
+    pub fn is_unmet(&self) -> bool {
+        self.expectations.iter().any(ExpectationReport::is_violated)
     }
 
     pub(super) fn write(&self, format: Format, runs: u32, out: &mut dyn Write) -> std::io::Result<()> {
@@ -94,6 +104,9 @@ impl RunReport {
                 if let Some(error) = &self.error {
                     writeln!(out, "  {error}")?;
                 }
+                for expectation in &self.expectations {
+                    expectation.write(out)?;
+                }
             }
         }
         out.flush()
@@ -107,6 +120,8 @@ pub enum Verdict {
     Good,
     /// Runs in lockstep differ: something on a session's path is not deterministic.
     Unequal,
+    /// A run did not show what the scenario expects.
+    Unmet,
     /// A client failed.
     Failed,
 }
@@ -117,6 +132,8 @@ impl Verdict {
             Self::Failed
         } else if config.mode == Mode::Lockstep && distinct_digests(&completed(reports)) > 1 {
             Self::Unequal
+        } else if reports.iter().any(RunReport::is_unmet) {
+            Self::Unmet
         } else {
             Self::Good
         }
@@ -126,7 +143,7 @@ impl Verdict {
     pub fn exit_code(self) -> ExitCode {
         match self {
             Self::Good => ExitCode::Ok,
-            Self::Unequal => ExitCode::Unequal,
+            Self::Unequal | Self::Unmet => ExitCode::Unmet,
             Self::Failed => ExitCode::Fault,
         }
     }

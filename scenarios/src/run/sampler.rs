@@ -8,7 +8,8 @@ use onescan_server::session::Session;
 use onescan_server::signal::{ElementaryType, SignalId, SignalName};
 
 use super::config::{Mode, RunConfig};
-use crate::plot::{Panel, Plot, Shape, Trajectory};
+use super::report::RunReport;
+use crate::plot::{Mark, Panel, Plot, Shape, Trajectory};
 use crate::scenario::Scenario;
 
 /// Chosen signals of one run.
@@ -65,7 +66,7 @@ impl Observer for Sampler {
 }
 
 /// The plot of several runs, laid over each other.
-pub(super) fn plot(scenario: &Scenario, config: &RunConfig, runs: &[Samples]) -> Plot {
+pub(super) fn plot(scenario: &Scenario, config: &RunConfig, runs: &[Samples], reports: &[RunReport]) -> Plot {
     let mode = match config.mode {
         Mode::Lockstep => "lockstep",
         Mode::Freewheel => "free-wheeling",
@@ -90,7 +91,21 @@ pub(super) fn plot(scenario: &Scenario, config: &RunConfig, runs: &[Samples]) ->
         title: format!("{}: {mode}{count}", scenario.name()),
         runs: (1..=runs.len()).map(|number| format!("run {number}")).collect(),
         panels: panels.collect(),
+        marks: marks(reports),
     }
+}
+
+/// Where runs first went against an expectation; once for those that did so at one time.
+fn marks(reports: &[RunReport]) -> Vec<Mark> {
+    let mut marks: Vec<Mark> = Vec::new();
+    for expectation in reports.iter().flat_map(|report| &report.expectations) {
+        let Some(at) = expectation.at else { continue };
+        let mark = Mark { t_ns: at.as_nanos(), label: format!("`{}` violated", expectation.name) };
+        if !marks.contains(&mark) {
+            marks.push(mark);
+        }
+    }
+    marks
 }
 
 /// Numbers with a fraction change between samples; everything else jumps.

@@ -34,6 +34,9 @@ pub struct ScenarioFile {
     pub signals: BTreeMap<SignalName, Spanned<SignalFile>>,
     /// The session's clients by name.
     pub clients: BTreeMap<ClientName, Spanned<ClientFile>>,
+    /// What every run must show.
+    #[serde(default)]
+    pub expect: Vec<ExpectFile>,
     /// How the signals travel when nothing is synchronised.
     #[serde(default)]
     pub freewheel: FreewheelFile,
@@ -113,6 +116,18 @@ pub struct TaskFile {
     pub priority: u32,
     /// The programs it runs, in this order.
     pub programs: Vec<String>,
+}
+
+/// Something that every run must show (see [`crate::expect`]).
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ExpectFile {
+    /// Its name, for reports.
+    pub name: Spanned<String>,
+    /// Signal temporal logic over the scenario's signals.
+    pub formula: Spanned<String>,
+    /// What it means, for people.
+    pub about: Option<String>,
 }
 
 /// The OPC-like link between free-wheeling clients (seed 004 sec. II-C and III).

@@ -9,6 +9,7 @@ use onescan_server::signal::{ClientName, SignalDecl, SignalName, did_you_mean};
 use onescan_server::time::TimeSpan;
 
 use super::error::ScenarioError;
+use super::expectations::Expectations;
 use super::file::{ClientFile, CouplingFile, ScenarioFile, VERSION};
 
 /// The file that makes a folder a scenario.
@@ -23,6 +24,7 @@ pub struct Scenario {
     text: String,
     file: ScenarioFile,
     plan: SessionPlan,
+    expectations: Expectations,
 }
 
 impl Scenario {
@@ -61,11 +63,13 @@ impl Scenario {
                 return Err(wrong(message, Some(signal.span()), help));
             }
         }
+        let expectations =
+            Expectations::bind(&file, &text).map_err(|found| wrong(found.message, Some(found.place), found.help))?;
         let name = std::path::absolute(&folder)
             .ok()
             .and_then(|folder| folder.file_name().map(|name| name.to_string_lossy().into_owned()))
             .unwrap_or_else(|| "scenario".to_owned());
-        Ok(Self { name, folder, path, text, file, plan })
+        Ok(Self { name, folder, path, text, file, plan, expectations })
     }
 
     /// The folder's name.
@@ -86,6 +90,11 @@ impl Scenario {
     /// The plan of its sessions.
     pub fn plan(&self) -> &SessionPlan {
         &self.plan
+    }
+
+    /// What every run must show.
+    pub fn expectations(&self) -> &Expectations {
+        &self.expectations
     }
 
     /// An error at the entry of client `name`.

@@ -4,11 +4,13 @@
 //! |---|---|
 //! | [`file`] | `scenario.toml` as it is written |
 //! | [`load`] | `scenario.toml` read and checked |
+//! | [`expectations`] | what it expects of every run |
 //! | [`compose`] | a scenario's plan and its clients |
 //! | [`error`] | what can be wrong with it, and where |
 
 pub mod compose;
 pub mod error;
+pub mod expectations;
 pub mod file;
 pub mod load;
 

@@ -83,6 +83,11 @@ impl Cursor<'_> {
         loop {
             let (start, height) = (expr.span, expr.height);
             let (kind, below) = if self.take_mark(Punctuation::Dot) {
+                if let Some(part) = self.part_name() {
+                    let span = self.span_from(start);
+                    expr = self.node(ExprKind::Part(Box::new(expr), part), span, height);
+                    continue;
+                }
                 let Some(member) = self.member_name() else {
                     return expr;
                 };
@@ -101,6 +106,16 @@ impl Cursor<'_> {
             let span = self.span_from(start);
             expr = self.node(kind, span, height.max(below));
         }
+    }
+
+    /// What stands behind the point for a part of a bit string: `%X3` or a bit's number.
+    fn part_name(&mut self) -> Option<Ident> {
+        if !matches!(self.peek(), Some(TokenKind::DirectAddress | TokenKind::Integer)) {
+            return None;
+        }
+        let part = Ident { text: self.next_text().to_owned(), span: self.span() };
+        self.advance();
+        Some(part)
     }
 
     fn member_name(&mut self) -> Option<Ident> {

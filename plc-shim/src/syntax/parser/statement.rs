@@ -74,7 +74,7 @@ impl Cursor<'_> {
         self.report_syntax(Diagnostic::error(Code::UnexpectedToken, span, message));
         // What follows is most often a good statement; only a stray remainder is skipped.
         let good = match self.peek() {
-            Some(TokenKind::Identifier) | None => true,
+            Some(TokenKind::Identifier | TokenKind::DirectAddress) | None => true,
             Some(TokenKind::Keyword(keyword)) => closes_list(keyword) || begins_statement(keyword),
             _ => false,
         };

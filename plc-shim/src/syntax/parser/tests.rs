@@ -25,6 +25,7 @@ fn a_printed_unit_parses_to_itself() {
           FOR i := 1 TO 10 BY 2 DO CONTINUE; END_FOR;
           WHILE i < 3 DO EXIT; END_WHILE; REPEAT i := i + 1; UNTIL i > 5 END_REPEAT;
           t(IN := TRUE, PT := T#1.5s, Q => b, NOT Q => c); a[1, 2].b := LREAL#1.0e-7 * 16#FF;
+          %QX0.1 := %IX0.0 AND %MD3.%X31; w.%B1 := w.3 OR a[1].w.%W0;
         END_PROGRAM";
     let (once, _) = reparse(text);
     let (twice, diagnostics) = reparse(&once);

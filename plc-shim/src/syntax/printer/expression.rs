@@ -9,7 +9,7 @@ impl Printer {
             ExprKind::Literal(literal) => self.literal(literal),
             ExprKind::Name(name) => self.word(&name.text),
             ExprKind::DirectAddress(text) => self.word(text),
-            ExprKind::Member(base, name) => {
+            ExprKind::Member(base, name) | ExprKind::Part(base, name) => {
                 self.expression(base);
                 self.word(".");
                 self.word(&name.text);

@@ -1,0 +1,100 @@
+//! Formulas and terms, with signals as `S`: their names as written, or their columns in a trace.
+
+use std::ops::Range;
+
+/// A formula of signal temporal logic with past.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) enum Formula<S> {
+    Constant(bool),
+    /// A BOOL signal.
+    Signal(S),
+    Compare(Comparison, Box<Term<S>>, Box<Term<S>>),
+    Not(Box<Self>),
+    And(Box<Self>, Box<Self>),
+    Or(Box<Self>, Box<Self>),
+    Implies(Box<Self>, Box<Self>),
+    Iff(Box<Self>, Box<Self>),
+    /// At every time in the window from now.
+    Always(Window, Box<Self>),
+    /// At some time in the window from now.
+    Eventually(Window, Box<Self>),
+    /// The right one at some time in the window from now, the left one at all times before that.
+    Until(Window, Box<Self>, Box<Self>),
+    /// At every time in the window back from now.
+    Historically(Window, Box<Self>),
+    /// At some time in the window back from now.
+    Once(Window, Box<Self>),
+    /// The right one at some time in the window back from now, the left one at all times since.
+    Since(Window, Box<Self>, Box<Self>),
+    /// Different from the sample before, in this way.
+    Edge(Edge, Box<Self>),
+}
+
+/// How a formula differs from the sample before.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Edge {
+    Rose,
+    Fell,
+    Changed,
+}
+
+/// Relations of numbers.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Comparison {
+    Less,
+    LessEqual,
+    Greater,
+    GreaterEqual,
+    Equal,
+    NotEqual,
+}
+
+/// A span of time relative to now, in nanoseconds; without an end it reaches as far as the run.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Window {
+    pub(super) from_ns: u64,
+    pub(super) to_ns: Option<u64>,
+}
+
+impl Window {
+    /// From now to the end of the run, or back to its start.
+    pub(super) const WHOLE: Self = Self { from_ns: 0, to_ns: None };
+
+    /// From now for so long.
+    pub(super) fn first(to_ns: u64) -> Self {
+        Self { from_ns: 0, to_ns: Some(to_ns) }
+    }
+}
+
+/// A number at every sample.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Term<S> {
+    pub(super) kind: TermKind<S>,
+    pub(super) place: Range<usize>,
+}
+
+/// The forms of a term.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) enum TermKind<S> {
+    /// A number and the unit it is written with.
+    Number(f64, Option<String>),
+    Signal(S),
+    Negate(Box<Term<S>>),
+    Abs(Box<Term<S>>),
+    /// Change per second since the sample before; 0 at the first.
+    Rate(Box<Term<S>>),
+    Binary(Arithmetic, Box<Term<S>>, Box<Term<S>>),
+    /// Carried to another unit: times the first, by the second.
+    Scaled(Box<Term<S>>, f64, f64),
+}
+
+/// Operators on numbers.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Arithmetic {
+    Add,
+    Subtract,
+    Multiply,
+    Divide,
+    Min,
+    Max,
+}
