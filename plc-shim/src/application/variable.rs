@@ -55,6 +55,7 @@ pub struct UnknownVariable {
 }
 
 /// One piece of a path.
+#[derive(Clone)]
 enum Piece {
     Name(String),
     Index(Vec<i64>),
@@ -129,10 +130,9 @@ impl Application {
     }
 
     /// A global variable, or a program and the first of its own variables.
-    fn root(&self, first: &str, pieces: &mut impl Iterator<Item = Piece>) -> Result<Spot, Option<String>> {
+    fn root(&self, first: &str, pieces: &mut std::vec::IntoIter<Piece>) -> Result<Spot, Option<String>> {
         let checked = &self.inner.checked;
-        let global = checked.globals.iter().find(|each| each.name.eq_ignore_ascii_case(first));
-        if let Some(found) = global.and_then(|global| spot(checked, "", global, 0)) {
+        if let Some(found) = self.global(first, pieces).and_then(|global| spot(checked, "", global, 0)) {
             return Ok(found);
         }
         let program = checked.programs.iter().find_map(|program| {
@@ -149,6 +149,29 @@ impl Application {
             return Err(None);
         };
         member(checked, &pou.name, &pou.variables, program.offset, &name)
+    }
+
+    /// The global variable of a name, which namespaces and lists make longer. What is in one is found
+    /// by its own name too, if no other has it.
+    fn global(&self, first: &str, pieces: &mut std::vec::IntoIter<Piece>) -> Option<&ir::Variable> {
+        let globals = &self.inner.checked.globals;
+        let named = |name: &str| globals.iter().find(|each| each.name.eq_ignore_ascii_case(name));
+        let mut name = first.to_owned();
+        for (used, next) in std::iter::once(None).chain(pieces.clone().map(Some)).enumerate() {
+            match next {
+                None => {}
+                Some(Piece::Name(next)) => name = format!("{name}.{next}"),
+                Some(Piece::Index(_)) => break,
+            }
+            if let Some(found) = named(&name) {
+                pieces.by_ref().take(used).for_each(drop);
+                return Some(found);
+            }
+        }
+        let last =
+            |each: &&ir::Variable| each.name.rsplit_once('.').is_some_and(|(_, last)| last.eq_ignore_ascii_case(first));
+        let mut found = globals.iter().filter(last);
+        found.next().filter(|_| found.next().is_none())
     }
 
     fn step(&self, from: &Spot, piece: &Piece) -> Result<Spot, Option<String>> {

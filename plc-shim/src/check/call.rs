@@ -96,6 +96,7 @@ impl Body<'_, '_> {
         let standard: Vec<&str> = standard_function::names().collect();
         let known = functions.chain(variables).chain(standard.iter().copied());
         let help = did_you_mean(&name.text, known);
+        let help = self.checker.elsewhere(name).or(help);
         let message = format!("there is no function or instance `{}`", name.text);
         let found = Diagnostic::error(Code::UnknownFunction, name.span, message);
         self.report(found.with_optional_help(help));

@@ -46,8 +46,6 @@ pub(super) struct Class {
     derived: Vec<PouId>,
     /// The number that an instance begins with, if it can be taken for one of another type.
     pub(super) type_id: Option<u32>,
-    /// The greatest number of what is derived from it.
-    pub(super) last_id: u32,
 }
 
 impl Checker<'_> {
@@ -173,8 +171,7 @@ impl Checker<'_> {
         derived == base || self.ancestors(derived).contains(&base)
     }
 
-    /// Numbers what can be taken for something else, so that all that is derived from a unit has
-    /// the numbers behind its own.
+    /// Numbers what can be taken for something else; what is derived from a unit comes behind it.
     fn number_types(&mut self) {
         let ids: Vec<PouId> = self.classes.keys().copied().collect();
         let mut next = 1;
@@ -186,10 +183,8 @@ impl Checker<'_> {
             let several = family.len() > 1;
             if several || family.iter().any(|id| self.class(*id).is_some_and(|class| !class.interfaces.is_empty())) {
                 for id in &family {
-                    let size = self.family(*id).len() as u32;
                     if let Some(class) = self.classes.get_mut(id) {
                         class.type_id = Some(next);
-                        class.last_id = next + size - 1;
                     }
                     next += 1;
                 }
@@ -217,6 +212,20 @@ impl Checker<'_> {
         }
         let ids = self.classes.keys().copied();
         ids.filter(|each| self.pou(*each).ast.kind.has_instances() && self.is_a(*each, id)).collect()
+    }
+
+    /// Numbers of the types that can stand where a `kind` is wanted, neighbours joined.
+    pub(super) fn type_ranges(&self, id: PouId) -> Vec<(u32, u32)> {
+        let variants = self.variants(id);
+        let numbers: BTreeSet<u32> = variants.iter().filter_map(|variant| self.class(*variant)?.type_id).collect();
+        let mut ranges: Vec<(u32, u32)> = Vec::new();
+        for number in numbers {
+            match ranges.last_mut() {
+                Some((_, last)) if *last + 1 == number => *last = number,
+                _ => ranges.push((number, number)),
+            }
+        }
+        ranges
     }
 
     /// The member of a unit, its own or that of the nearest base.

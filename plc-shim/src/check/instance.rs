@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use super::Checker;
 use super::class::{Membership, Role};
+use super::names::TypedImage;
 use super::place::{Access, Located};
 use super::scope::{Body, Scope};
 use super::types::Need;
@@ -225,10 +226,14 @@ impl<'a> Interface<'_, 'a> {
                 continue;
             }
             let mut variable = variable.clone();
-            variable.edge = variable.edge.map(|edge| {
+            // Each level has its own trigger, so that `SUPER()` sees the edge too.
+            if let Some(edge) = variable.edge {
+                let image = Arc::from([0]);
+                let memory = TypedImage { ty: ElementaryType::Bool.into(), image };
                 let seen = self.body.scope.register(ElementaryType::Bool);
-                EdgeDetection { seen, ..edge }
-            });
+                let memory = self.in_instance(&memory, span).map_or(edge.memory, Storage::Instance);
+                variable.edge = Some(EdgeDetection { edge: edge.edge, memory, seen });
+            }
             // What is PRIVATE to the base is there, and its name is free.
             if variable.visibility != Visibility::Private {
                 let key = variable.name.to_ascii_uppercase();

@@ -4,9 +4,9 @@
 use super::convert::Operand;
 use super::scope::Body;
 use crate::diagnostic::{Code, Diagnostic};
-use crate::ir::{Binary, ElementaryType, Expr, ExprKind, PouId, Type, TypeId, Value};
+use crate::ir::{Binary, Cast, ElementaryType, Expr, ExprKind, PouId, Statement, StatementKind, Type, TypeId, Value};
 use crate::syntax::Span;
-use crate::syntax::ast::Ident;
+use crate::syntax::ast::{self, Ident};
 
 impl Body<'_, '_> {
     /// True for the name `NULL`, unless something is called so.
@@ -73,6 +73,30 @@ impl Body<'_, '_> {
         Some(Operand::Typed(Expr { kind, ty: ElementaryType::Bool.into(), span }))
     }
 
+    /// `target ?= value`: NULL unless what the value refers to implements the target's interface.
+    pub(super) fn attempt(&mut self, target: &ast::Expr, value: &ast::Expr, span: Span) -> Option<Statement> {
+        let (target, value) = (self.target(target), self.expression(value));
+        let (target, value) = (target?, value?);
+        let Type::Interface { pou: wanted, .. } = *self.checker.types.get(target.ty) else {
+            let found = self.type_name(target.ty);
+            return self.mismatch("an interface", &found, target.span);
+        };
+        if let Operand::Typed(expr) = &value
+            && let Type::FunctionBlock { pou, .. } = self.checker.types.get(expr.ty)
+            && self.checker.class(*pou).is_none_or(|class| class.type_id.is_none())
+        {
+            // An instance without a number implements nothing.
+            let found = self.type_name(expr.ty);
+            return self.mismatch("what may implement an interface", &found, expr.span);
+        }
+        let reference = self.reference_value(value)?;
+        let pointer = self.scope.register(ElementaryType::Udint);
+        let cast = Cast { reference, pointer, types: self.checker.type_ranges(wanted) };
+        let value = Expr { kind: ExprKind::Cast(Box::new(cast)), ty: target.ty, span };
+        Some(Statement { kind: StatementKind::Assign(target, value), span })
+    }
+
+    /// The address that an operand stands for.
     fn reference_value(&mut self, operand: Operand) -> Option<Expr> {
         let address = ElementaryType::Udint.into();
         match operand {

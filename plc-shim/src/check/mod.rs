@@ -137,7 +137,8 @@ struct Checker<'a> {
     pou_names: BTreeMap<String, PouId>,
     /// Where what is being resolved stands.
     home: Arc<Home>,
-    namespaces: BTreeSet<String>,
+    /// Names of namespaces by their keys.
+    namespaces: BTreeMap<String, String>,
     /// Full keys of global variables that are known without their list's name.
     open_globals: BTreeMap<String, String>,
     classes: BTreeMap<PouId, Class>,

@@ -81,7 +81,7 @@ impl<'a> Checker<'a> {
             pous: Vec::new(),
             pou_names: BTreeMap::new(),
             home: Arc::default(),
-            namespaces: BTreeSet::new(),
+            namespaces: BTreeMap::new(),
             open_globals: BTreeMap::new(),
             classes: BTreeMap::new(),
             method_names: BTreeSet::new(),

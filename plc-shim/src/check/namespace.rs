@@ -21,6 +21,8 @@ const STANDARD_LIBRARIES: [&str; 4] = ["STANDARD", "TC2_STANDARD", "STANDARD64",
 pub(super) struct Home {
     /// The key of the namespace; empty outside of any.
     pub(super) namespace: String,
+    /// Its name as written.
+    shown: String,
     /// Keys of the namespaces whose names are seen as well.
     using: Vec<String>,
     /// True inside of `NAMESPACE INTERNAL`.
@@ -35,11 +37,17 @@ impl Home {
         joined(&self.namespace, &name.key())
     }
 
+    /// The full name of what is declared here.
+    pub(super) fn full_name(&self, name: &Ident) -> String {
+        joined(&self.shown, &name.text)
+    }
+
     fn inside(&self, namespace: &Namespace) -> Self {
         let mut using = self.using.clone();
         using.extend(namespace.using.iter().map(Ident::key));
         Self {
             namespace: joined(&self.namespace, &namespace.name.key()),
+            shown: joined(&self.shown, &namespace.name.text),
             using,
             internal: self.internal || namespace.kind == NamespaceKind::Internal,
             open: namespace.kind == NamespaceKind::Open,
@@ -53,7 +61,8 @@ impl Home {
         }
         let mut all = self.using.clone();
         all.extend(using.iter().map(Ident::key));
-        Arc::new(Self { namespace: self.namespace.clone(), using: all, ..**self })
+        let (namespace, shown) = (self.namespace.clone(), self.shown.clone());
+        Arc::new(Self { namespace, shown, using: all, ..**self })
     }
 }
 
@@ -93,7 +102,7 @@ impl<'a> Checker<'a> {
                 Declaration::Namespace(namespace) => {
                     used.extend(&namespace.using);
                     let inner = Arc::new(home.inside(namespace));
-                    self.namespaces.insert(inner.namespace.clone());
+                    self.namespaces.insert(inner.namespace.clone(), inner.shown.clone());
                     self.collect_all(&namespace.declarations, &inner, used);
                     self.home = home.clone();
                 }
@@ -104,10 +113,10 @@ impl<'a> Checker<'a> {
     fn check_using(&mut self, name: &Ident) {
         let key = name.key();
         // A vendor's library is named where it is used, and is known without that.
-        if self.namespaces.contains(&key) || STANDARD_LIBRARIES.contains(&key.as_str()) {
+        if self.namespaces.contains_key(&key) || STANDARD_LIBRARIES.contains(&key.as_str()) {
             return;
         }
-        let help = did_you_mean(&key, self.namespaces.iter().map(String::as_str));
+        let help = did_you_mean(&name.text, self.namespaces.values().map(String::as_str));
         let message = format!("there is no namespace `{}`", name.text);
         let found = Diagnostic::error(Code::UnknownNamespace, name.span, message);
         self.report(found.with_optional_help(help));
@@ -156,6 +165,21 @@ impl<'a> Checker<'a> {
         self.is_library(found).then_some(found)
     }
 
+    /// How to name what is declared in a namespace that is not seen from here.
+    pub(super) fn elsewhere(&self, name: &Ident) -> Option<String> {
+        let key = name.key();
+        let is_it = |home: &Home, other: &Ident| !home.namespace.is_empty() && other.key() == key;
+        let units = self.pous.iter().filter(|entry| entry.membership.is_none() && is_it(&entry.home, &entry.ast.name));
+        let types = self.type_names.values().filter(|entry| is_it(&entry.home, &entry.ast.name));
+        let globals =
+            self.globals.iter().filter(|(full, _)| full.rsplit_once('.').is_some_and(|(_, last)| last == key));
+        let units = units.map(|entry| entry.home.full_name(&entry.ast.name));
+        let types = types.map(|entry| entry.home.full_name(&entry.ast.name));
+        let globals = globals.map(|(_, entry)| format!("{}.{}", entry.home.shown, entry.name));
+        let found = units.chain(types).chain(globals).next()?;
+        Some(format!("write `{found}`"))
+    }
+
     /// True if `home` is the namespace of what runs now, or inside of it (3rd ed. 6.9.3).
     pub(super) fn is_inside(&self, home: &Home) -> bool {
         let (here, there) = (&self.home.namespace, &home.namespace);
@@ -192,11 +216,11 @@ impl Body<'_, '_> {
         let known = |key: &str| {
             let mut around = checker.home.namespace.as_str();
             loop {
-                if checker.namespaces.contains(&joined(around, key)) {
+                if checker.namespaces.contains_key(&joined(around, key)) {
                     return true;
                 }
                 if around.is_empty() {
-                    return checker.home.using.iter().any(|each| checker.namespaces.contains(&joined(each, key)));
+                    return checker.home.using.iter().any(|each| checker.namespaces.contains_key(&joined(each, key)));
                 }
                 around = around.rsplit_once('.').map_or("", |(outer, _)| outer);
             }

@@ -190,6 +190,7 @@ impl Body<'_, '_> {
         let own = self.scope.variables.iter().map(|variable| variable.name.as_str());
         let globals = self.checker.globals.values().map(|entry| entry.name.as_str());
         let help = did_you_mean(&name.text, own.chain(globals));
+        let help = self.checker.elsewhere(name).or(help);
         let message = format!("`{}` is not declared", name.text);
         let found = Diagnostic::error(Code::UnknownName, name.span, message);
         self.report(found.with_optional_help(help));
@@ -237,7 +238,8 @@ impl Body<'_, '_> {
             }
             let open = |variable: &&Variable| matches!(variable.section, SectionKind::Input | SectionKind::Output);
             let names = scope.variables.iter().filter(open).map(|variable| variable.name.as_str());
-            let names: Vec<_> = names.collect();
+            let members = self.checker.member_names(pou);
+            let names: Vec<_> = names.chain(members.iter().map(String::as_str)).collect();
             return self.report_unknown_member(base.place.ty, name, &names);
         };
         let access = match variable.section {

@@ -36,7 +36,6 @@ impl Checker<'_> {
         let scope = body.scope;
         let pou = Pou {
             name: self.display_name(id),
-            kind: ast.kind,
             span: ast.name.span,
             variables: scope.variables,
             registers: scope.registers,
@@ -99,6 +98,7 @@ impl Body<'_, '_> {
         let kind = match &statement.kind {
             ast::StatementKind::Empty | ast::StatementKind::Error => return None,
             ast::StatementKind::Assign(target, value) => return self.assign(target, value, span),
+            ast::StatementKind::Attempt(target, value) => return self.attempt(target, value, span),
             ast::StatementKind::Call(call) => self.call_statement(call, span)?,
             ast::StatementKind::If(inner) => self.if_statement(inner),
             ast::StatementKind::Case(inner) => self.case_statement(inner)?,

@@ -146,6 +146,7 @@ impl<'a> Body<'_, 'a> {
         let blocks = self.checker.pous.iter().filter(|pou| pou.ast.kind.has_instances());
         let blocks = blocks.map(|pou| pou.ast.name.text.as_str());
         let help = did_you_mean(&name.text, elementary.chain(derived).chain(blocks));
+        let help = self.checker.elsewhere(name).or(help);
         let message = format!("type `{}` is not declared", name.text);
         let found = Diagnostic::error(Code::UnknownType, name.span, message);
         self.report(found.with_optional_help(help));

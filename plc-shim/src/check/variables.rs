@@ -53,7 +53,8 @@ impl<'a> Checker<'a> {
                 Storage::Absolute(offset)
             }
         };
-        Some(self.variable(name, ast, SectionKind::Global, qualifiers, &declared, storage))
+        let variable = self.variable(name, ast, SectionKind::Global, qualifiers, &declared, storage);
+        Some(Variable { name: self.home.full_name(name), ..variable })
     }
 
     pub(super) fn variable(
@@ -173,9 +174,9 @@ impl<'c, 'a> Interface<'c, 'a> {
     }
 
     fn declare(&mut self, ast: &'a ast::Pou) {
-        self.inherit();
         if self.kind.keeps_nothing() {
             self.declare_this();
+            self.inherit();
             self.declare_sections(ast, |kind| matches!(kind, SectionKind::Input | SectionKind::InOut));
             self.declare_new_value(ast);
             if self.kind != PouKind::Function {
@@ -191,6 +192,7 @@ impl<'c, 'a> Interface<'c, 'a> {
             // The first parameter is the instance's address.
             self.body.scope.register(POINTER);
             self.body.scope.parameters = 1;
+            self.inherit();
             self.declare_sections(ast, |_| true);
         }
     }
@@ -364,7 +366,7 @@ impl<'c, 'a> Interface<'c, 'a> {
         Some(Storage::Absolute(offset))
     }
 
-    fn in_instance(&mut self, declared: &TypedImage, span: Span) -> Option<u32> {
+    pub(super) fn in_instance(&mut self, declared: &TypedImage, span: Span) -> Option<u32> {
         let align = self.body.checker.types.align(declared.ty);
         let offset = align_up(self.image.len() as u32, align);
         if offset as usize + declared.image.len() > MEMORY_LIMIT as usize {

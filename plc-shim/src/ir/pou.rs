@@ -8,7 +8,7 @@ use super::value::Value;
 use std::sync::Arc;
 
 use crate::syntax::Span;
-use crate::syntax::ast::{Edge, PouKind, SectionKind};
+use crate::syntax::ast::{Edge, SectionKind};
 
 /// Identifies a unit.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -75,7 +75,6 @@ pub(crate) struct EdgeDetection {
 #[derive(Debug, Clone)]
 pub(crate) struct Pou {
     pub(crate) name: String,
-    pub(crate) kind: PouKind,
     pub(crate) span: Span,
     pub(crate) variables: Vec<Variable>,
     /// Elementary types of the registers; parameters first.

@@ -9,6 +9,8 @@ use crate::syntax::ast::{Declaration, Ident, Pou, PouKind, Section, SectionKind,
 pub(super) struct Index<'a> {
     own: Vec<&'a Pou>,
     members: Vec<&'a Pou>,
+    /// What extends a unit, by the last part of that one's name.
+    derived: BTreeMap<String, Vec<&'a Pou>>,
     units: BTreeMap<String, &'a Pou>,
     library: BTreeSet<String>,
     types: BTreeMap<String, &'a TypeSpec>,
@@ -22,6 +24,7 @@ impl<'a> Index<'a> {
         let mut index = Self {
             own: Vec::new(),
             members: Vec::new(),
+            derived: BTreeMap::new(),
             units: BTreeMap::new(),
             library: BTreeSet::new(),
             types: BTreeMap::new(),
@@ -50,6 +53,11 @@ impl<'a> Index<'a> {
                     self.library.insert(pou.name.key());
                 } else {
                     self.own.push(pou);
+                    for base in &pou.object.extends {
+                        let key = base.key();
+                        let last = key.rsplit('.').next().unwrap_or(&key).to_owned();
+                        self.derived.entry(last).or_default().push(pou);
+                    }
                     self.members.extend(pou.object.members.iter().map(|member| &member.pou));
                 }
             }
@@ -74,23 +82,20 @@ impl<'a> Index<'a> {
         self.members.iter().copied().filter(|member| !member.body.is_empty())
     }
 
-    /// A unit's members, and what is derived from it with its members: all that may use its variables.
-    pub(super) fn users(&self, pou: &Pou) -> Vec<&'a Pou> {
+    /// A unit with its members, and all that is derived from it: what may use its variables.
+    pub(super) fn users(&self, pou: &'a Pou) -> Vec<&'a Pou> {
         let mut found: Vec<&'a Pou> = Vec::new();
-        let mut open: Vec<&Pou> = self.own.iter().copied().filter(|each| each.name.span == pou.name.span).collect();
+        let mut open = vec![pou];
         while let Some(next) = open.pop() {
-            let next: &'a Pou = match self.own.iter().find(|each| each.name.span == next.name.span) {
-                Some(next) => next,
-                None => continue,
-            };
-            if found.iter().any(|each| each.name.span == next.name.span) {
+            // A circle of bases is an error of its own.
+            if found.iter().any(|each| std::ptr::eq(*each, next)) {
                 continue;
             }
             found.push(next);
             found.extend(next.object.members.iter().map(|member| &member.pou));
-            let last = |name: &Ident| name.key().rsplit('.').next().map(str::to_owned);
-            let derives = |each: &&&Pou| each.object.extends.iter().any(|base| last(base) == Some(next.name.key()));
-            open.extend(self.own.iter().filter(derives).copied());
+            if next.kind.has_instances() {
+                open.extend(self.derived.get(&next.name.key()).into_iter().flatten());
+            }
         }
         found
     }

@@ -35,11 +35,9 @@ impl Uses {
 }
 
 impl Usage {
-    pub(super) fn of(pou: &Pou, index: &Index<'_>) -> Self {
+    pub(super) fn of<'a>(pou: &'a Pou, index: &Index<'a>) -> Self {
         let mut collector = Collector { index, usage: Self::default() };
-        let users = index.users(pou);
-        let own = users.is_empty().then_some(pou);
-        for each in users.into_iter().chain(own) {
+        for each in index.users(pou) {
             for section in &each.sections {
                 collector.section(section);
             }

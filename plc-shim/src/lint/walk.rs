@@ -35,7 +35,7 @@ fn branch(list: &[Statement], visitor: &mut impl Visitor) {
 
 fn statement(kind: &StatementKind, visitor: &mut impl Visitor) {
     match kind {
-        StatementKind::Assign(place, value) => {
+        StatementKind::Assign(place, value) | StatementKind::Attempt(place, value) => {
             target(place, visitor);
             expression(value, visitor);
         }

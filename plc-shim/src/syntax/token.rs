@@ -131,7 +131,7 @@ macro_rules! punctuation {
 }
 
 punctuation! {
-    Assign ":=", Output "=>", Power "**", LessEqual "<=", GreaterEqual ">=", NotEqual "<>",
+    Assign ":=", Attempt "?=", Output "=>", Power "**", LessEqual "<=", GreaterEqual ">=", NotEqual "<>",
     Range "..", Less "<", Greater ">", Equal "=", Plus "+", Minus "-", Star "*", Slash "/",
     Ampersand "&", LeftParen "(", RightParen ")", LeftBracket "[", RightBracket "]",
     Comma ",", Semicolon ";", Colon ":", Dot ".", Hash "#", Caret "^",

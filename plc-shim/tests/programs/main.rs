@@ -8,6 +8,7 @@ mod faults;
 mod inputs;
 mod language;
 mod lints;
+mod namespaces;
 mod objects;
 mod partial_access;
 mod rig;

@@ -216,3 +216,180 @@ END_PROGRAM"
         @"a unit was called while it ran at test.st:4:15 in Node.Sum (called by way of P, Node.Sum, Node.Sum), t_v = 0.010 s"
     );
 }
+
+#[test]
+fn iec3_6_6_6_7_an_assignment_attempt_gives_null_to_what_does_not_implement() {
+    let rig = run(&format!(
+        "{DRIVES}CLASS Other IMPLEMENTS IThing END_CLASS INTERFACE IThing END_INTERFACE
+PROGRAM P
+VAR s : Simple; b : Better; o : Other; d, e : IDrive; k, l, m : IBrake; t : IThing; r : ARRAY [1..5] OF BOOL; END_VAR
+  d := s; k ?= d; r[1] := k = NULL;
+  d := b; k ?= d; r[2] := k <> NULL AND k = d;
+  d := NULL; l := b; l ?= d; r[3] := l = NULL;
+  t := o; e ?= t; r[4] := NULL = e;
+  m ?= b; r[5] := m = b;
+END_PROGRAM"
+    ));
+    assert!((1..=5).all(|index| rig.bool(&format!("P.r[{index}]"))));
+}
+
+#[test]
+fn vendors_structures_extend_structures() {
+    let rig = run("TYPE
+  Point : STRUCT x, y : INT := 2; END_STRUCT;
+  Place EXTENDS Point : STRUCT z : DINT := 3; END_STRUCT;
+  Spot : STRUCT EXTENDS Place w : INT := 4; END_STRUCT;
+END_TYPE
+PROGRAM P VAR s : Spot := (x := 1, z := 30); r : DINT; END_VAR
+  r := s.x + 10 * s.y + 100 * s.z + s.w;
+END_PROGRAM");
+    assert_eq!(rig.int("P.r"), 1 + 20 + 3000 + 4);
+}
+
+#[test]
+fn iec3_6_6_7_a_function_block_extends_a_class_and_its_instances_lie_in_arrays_and_structures() {
+    let rig = run(&format!(
+        "{COUNTER}FUNCTION_BLOCK Beat EXTENDS Counter
+VAR_INPUT go : BOOL R_EDGE; END_VAR
+  IF go THEN Up(1); END_IF;
+END_FUNCTION_BLOCK
+FUNCTION_BLOCK Loud EXTENDS Beat
+  SUPER(); value := value + 10;
+END_FUNCTION_BLOCK
+TYPE Cell : STRUCT beat : Loud; END_STRUCT; END_TYPE
+PROGRAM P VAR cells : ARRAY [0..1] OF Cell; l : Loud; b : Beat; r : INT; END_VAR
+ l(go := TRUE); b(go := TRUE);
+  cells[1].beat(go := TRUE); cells[1].beat(go := TRUE);
+  r := cells[1].beat.Up(0) + cells[0].beat.Up(0);
+END_PROGRAM"
+    ));
+    let values = ["l.value", "b.value", "r", "cells[1].beat.value", "cells[1].beat.limit"]
+        .map(|name| rig.int(&format!("P.{name}")));
+    assert_eq!(values, [11, 1, 21, 21, 100]);
+}
+
+#[test]
+fn retained_instances_keep_what_is_inherited_over_a_warm_start() {
+    let mut rig = Rig::new(&format!(
+        "{SHAPES}PROGRAM P VAR RETAIN s : Square; END_VAR VAR t : Cube; a, b : INT; END_VAR
+  IF s.Area() = 0 THEN s.SetSize(3); t.SetSize(3); END_IF;
+  a := Measure(s); b := Measure(t);
+END_PROGRAM"
+    ));
+    rig.scan().expect("no fault");
+    assert_eq!((rig.int("P.a"), rig.int("P.b")), (27, 162));
+    rig.plc.warm_start();
+    rig.scan().expect("no fault");
+    assert_eq!((rig.int("P.a"), rig.int("P.b")), (27, 0));
+}
+
+#[test]
+fn lints_know_members_and_what_is_derived() {
+    let text = format!(
+        "{COUNTER}FUNCTION_BLOCK Base
+VAR_OUTPUT q : INT; END_VAR VAR used, left : INT; END_VAR
+METHOD PROTECTED Set VAR lost : INT; END_VAR used := 1; END_METHOD
+METHOD Call used := used + 1; RETURN; used := 0; END_METHOD
+END_FUNCTION_BLOCK
+FUNCTION_BLOCK Derived EXTENDS Base
+METHOD OVERRIDE Set q := 2; END_METHOD
+END_FUNCTION_BLOCK
+PROGRAM P VAR c : Counter; d : Derived; n : INT; END_VAR
+  d.Call(); n := c.Up(1);
+END_PROGRAM"
+    );
+    let input = onescan_plc_shim::Input::from_text("test.st", onescan_plc_shim::input::kind::SourceKind::Text, text);
+    insta::assert_snapshot!(onescan_plc_shim::inspect([input], None), @r#"
+    test.st:21:39: warning[W0706]: variable `left` is never used
+    test.st:22:26: warning[W0706]: variable `lost` is never used
+    test.st:23:39: warning[W0705]: this is never reached
+    "#);
+}
+
+#[test]
+fn each_rule_of_objects_has_its_finding() {
+    insta::assert_snapshot!(crate::rig::findings(&format!(
+        "{SHAPES}{DRIVES}CLASS Bad EXTENDS Cube IMPLEMENTS IBrake, Square END_CLASS
+CLASS Wrong EXTENDS Shape
+VAR PRIVATE mine : INT; END_VAR
+METHOD PUBLIC OVERRIDE Area : DINT Area := 1; END_METHOD
+METHOD OVERRIDE Nothing END_METHOD
+METHOD PUBLIC FINAL Done END_METHOD
+METHOD ABSTRACT Never END_METHOD
+METHOD PRIVATE Own END_METHOD
+END_CLASS
+CLASS After EXTENDS Wrong
+METHOD PUBLIC Done Own(); mine := 1; size := 1; SUPER.Oops(); END_METHOD
+END_CLASS
+CLASS Loop1 EXTENDS Loop2 END_CLASS
+CLASS Loop2 EXTENDS Loop1 END_CLASS
+FUNCTION F : INT F := THIS.x; END_FUNCTION
+PROGRAM P
+VAR s : Square; h : Shape; w : Wrong; d : IDrive; f : Simple; i : INT; k : IBrake; END_VAR
+  s.size := 3;
+  s.Aera();
+  s.Area;
+  i := s.Area;
+  w.Own();
+  f.level_of();
+  s();
+  d := s;
+  d := i;
+  k := d;
+  d := 5;
+  IF d < d THEN i := 1; END_IF;
+  SUPER.Area();
+  s.SetSize();
+  s.SetSize(1, 2);
+  s.SetSize(size := 1);
+  d.Start(speed := 1, actual => s);
+  Square.Area();
+  i := Measure(i);
+  i := d.Level + f.height;
+  f.Level := TRUE;
+END_PROGRAM
+FUNCTION_BLOCK Self METHOD Again : INT Again := Again(); END_METHOD END_FUNCTION_BLOCK
+METHOD Alone END_METHOD"
+    )), @r#"
+    test.st:49:7: error[O0803]: `Bad` lacks the method `Start` of `IDrive`
+    test.st:49:7: error[O0803]: `Bad` lacks the method `Name` of `IDrive`
+    test.st:49:7: error[O0803]: `Bad` lacks GET of the property `Level` of `IDrive`
+    test.st:49:7: error[O0803]: `Bad` lacks SET of the property `Level` of `IDrive`
+    test.st:49:7: error[O0803]: `Bad` lacks the method `Brake` of `IBrake`
+    test.st:49:19: error[O0805]: `Cube` is FINAL and cannot be extended
+    test.st:49:43: error[O0807]: `Square` is not an interface
+    test.st:52:24: error[O0804]: `Area` has other parameters or another result than what it overrides
+    test.st:53:17: error[O0806]: no base has a method `Nothing` to override
+    test.st:55:17: error[O0802]: `Wrong` has an ABSTRACT method and is not ABSTRACT itself
+    test.st:58:7: error[O0803]: `After` lacks the method `Never` of `Wrong`
+    test.st:59:15: error[O0805]: `Done` is FINAL in its base
+    test.st:59:20: error[O0801]: `Wrong.Own` is PRIVATE
+    test.st:59:27: error[N0101]: `mine` is not declared
+    test.st:59:55: error[N0104]: Wrong has no method `Oops`
+    test.st:61:7: error[D0404]: `Loop1` extends itself
+    test.st:63:23: error[O0808]: THIS is used where no instance runs
+    test.st:65:21: error[O0802]: `Shape` is ABSTRACT and has no instances (declare an instance of what extends it)
+    test.st:66:5: error[N0104]: `size` is internal to Square
+    test.st:67:5: error[N0104]: Square has no member `Aera` (did you mean `Area`?)
+    test.st:68:9: error[S0101]: `:=` or `(` expected, found `;`
+    test.st:69:10: error[N0106]: `Area` is a method: call it as `Area()`
+    test.st:70:5: error[O0801]: `Wrong.Own` is PRIVATE
+    test.st:71:5: error[O0801]: `Simple.level_of` is PRIVATE
+    test.st:72:3: error[C0306]: a class has no statements of its own; call one of its methods
+    test.st:73:8: error[T0201]: Square does not implement IDrive
+    test.st:74:8: error[T0201]: IDrive is wanted, this is INT
+    test.st:75:8: error[T0201]: IBrake is wanted, this is IDrive (assign it with `?=`, which gives NULL if it is something else)
+    test.st:76:8: error[T0201]: IDrive is wanted, this is an integer
+    test.st:77:6: error[T0203]: references are compared with `=` and `<>` only
+    test.st:78:3: error[O0808]: SUPER is used in what extends nothing
+    test.st:79:3: error[C0302]: parameter `value` is missing
+    test.st:80:16: error[C0303]: `SetSize` takes 1 arguments
+    test.st:81:13: error[C0301]: `SetSize` has no such parameter `size`
+    test.st:82:33: error[T0201]: Square is wanted, this is INT
+    test.st:83:3: error[N0101]: `Square` is not declared
+    test.st:84:16: error[C0305]: VAR_IN_OUT `shape` is Shape, this is INT
+    test.st:85:20: error[N0104]: `height` is internal to Simple
+    test.st:86:14: error[T0201]: INT is wanted, this is BOOL (convert it with BOOL_TO_INT)
+    test.st:88:49: error[D0404]: this call makes `Self.Again` call itself
+    "#);
+}

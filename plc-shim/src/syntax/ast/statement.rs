@@ -18,6 +18,8 @@ pub enum StatementKind {
     Empty,
     /// `a := b`
     Assign(Expr, Expr),
+    /// `a ?= b` (3rd ed. 6.6.6.7)
+    Attempt(Expr, Expr),
     /// `fb(IN := x)`
     Call(Call),
     /// `IF`

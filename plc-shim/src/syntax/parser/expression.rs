@@ -88,6 +88,10 @@ impl Cursor<'_> {
                     expr = self.node(ExprKind::Part(Box::new(expr), part), span, height);
                     continue;
                 }
+                if let Some(literal) = self.qualified_literal(&expr) {
+                    let span = self.span_from(start);
+                    return Expr { kind: literal, span, height: 1 };
+                }
                 let Some(member) = self.member_name() else {
                     return expr;
                 };

@@ -4,9 +4,10 @@ use super::cursor::Cursor;
 use super::declaration::{begins_declaration, ends_unit, section_kind};
 use crate::diagnostic::{Code, Diagnostic};
 use crate::syntax::ast::{
-    Declaration, Expr, ExprKind, Ident, Member, MemberKind, Modifier, Namespace, NamespaceKind, Object, Pou, PouKind,
-    Section, TypeSpec, TypeSpecKind,
+    Declaration, Expr, ExprKind, Ident, Literal, Member, MemberKind, Modifier, Namespace, NamespaceKind, Object, Pou,
+    PouKind, Section, TypeSpec, TypeSpecKind,
 };
+use crate::syntax::literal::parse_typed;
 use crate::syntax::source::Span;
 use crate::syntax::token::{Keyword, Punctuation, TokenKind};
 
@@ -299,6 +300,19 @@ impl Cursor<'_> {
         (TypeSpec { kind, span: self.span_from(start) }, base)
     }
 
+    /// The end of `a.b.Colour#Red`, a literal of a type in a namespace.
+    pub(super) fn qualified_literal(&mut self, namespace: &Expr) -> Option<ExprKind> {
+        if self.peek() != Some(TokenKind::Typed) {
+            return None;
+        }
+        let text = format!("{}.{}", dotted(namespace)?, self.next_text());
+        let (prefix, _) = text.split_once('#')?;
+        let (prefix, unqualified) = (prefix.to_owned(), self.next_text());
+        let Ok(Literal::Typed { value, .. }) = parse_typed(unqualified) else { return None };
+        self.advance();
+        Some(ExprKind::Literal(Literal::Typed { prefix, value }))
+    }
+
     /// Vendors write `THIS^` and `SUPER^` for what the standard calls `THIS` and `SUPER`.
     pub(super) fn pass_object_caret(&mut self, expr: &Expr) {
         if let ExprKind::Name(name) = &expr.kind
@@ -306,6 +320,15 @@ impl Cursor<'_> {
         {
             self.take_mark(Punctuation::Caret);
         }
+    }
+}
+
+/// A chain of names as one name.
+fn dotted(expr: &Expr) -> Option<String> {
+    match &expr.kind {
+        ExprKind::Name(name) => Some(name.text.clone()),
+        ExprKind::Member(base, name) => Some(format!("{}.{}", dotted(base)?, name.text)),
+        _ => None,
     }
 }
 

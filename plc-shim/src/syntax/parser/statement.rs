@@ -137,6 +137,10 @@ impl Cursor<'_> {
             let value = self.expression();
             return StatementKind::Assign(target, value);
         }
+        if self.take_mark(Punctuation::Attempt) {
+            let value = self.expression();
+            return StatementKind::Attempt(target, value);
+        }
         if let ExprKind::Call(call) = target.kind {
             StatementKind::Call(call)
         } else {

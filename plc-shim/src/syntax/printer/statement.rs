@@ -21,6 +21,11 @@ impl Printer {
                 self.word(" := ");
                 self.expression(value);
             }
+            StatementKind::Attempt(target, value) => {
+                self.expression(target);
+                self.word(" ?= ");
+                self.expression(value);
+            }
             StatementKind::Call(call) => self.call(call),
             StatementKind::If(inner) => self.if_statement(inner),
             StatementKind::Case(inner) => self.case_statement(inner),
