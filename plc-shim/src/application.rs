@@ -3,7 +3,9 @@
 mod front;
 mod inspect;
 mod library;
+mod namespace;
 mod retain;
+mod root;
 mod variable;
 
 use std::ops::Range;
@@ -15,6 +17,7 @@ use crate::compile::{Compiled, compile};
 use crate::diagnostic::Diagnostics;
 use crate::input::Input;
 use crate::input::kind::SourceKind;
+use crate::ir::{Configuration, Retention};
 use crate::syntax::SourceMap;
 
 pub(crate) use front::Front;
@@ -34,6 +37,7 @@ struct Inner {
     wasm: Vec<u8>,
     faults: FaultTable,
     retained: Vec<Range<u32>>,
+    persistent: Vec<Range<u32>>,
     warnings: Diagnostics,
     /// Machine code, made when the first PLC runs.
     module: OnceLock<Result<wasmtime::Module, String>>,
@@ -65,9 +69,10 @@ impl Application {
 
     fn compiled(sources: SourceMap, checked: Checked, warnings: Diagnostics) -> Self {
         let Compiled { wasm, faults } = compile(&checked);
-        let retained = retain::ranges(&checked);
+        let retained = retain::ranges(&checked, Retention::Retain);
+        let persistent = retain::ranges(&checked, Retention::Persistent);
         let module = OnceLock::new();
-        let inner = Inner { sources, checked, wasm, faults, retained, warnings, module };
+        let inner = Inner { sources, checked, wasm, faults, retained, persistent, warnings, module };
         Self { inner: Arc::new(inner) }
     }
 
@@ -96,13 +101,37 @@ impl Application {
         &self.inner.retained
     }
 
+    /// What survives a cold start too (`PERSISTENT`), as ranges of memory in ascending order.
+    pub fn persistent(&self) -> &[Range<u32>] {
+        &self.inner.persistent
+    }
+
     pub(crate) fn faults(&self) -> &FaultTable {
         &self.inner.faults
     }
 
-    /// Position of a program among all programs.
-    pub(crate) fn program_index(&self, name: &str) -> Option<usize> {
-        self.programs().position(|program| program.name.eq_ignore_ascii_case(name))
+    /// The application's own configuration.
+    pub(crate) fn configuration(&self) -> Option<&Configuration> {
+        self.inner.checked.configuration.as_ref()
+    }
+
+    /// How many things tasks can run.
+    pub(crate) fn entry_count(&self) -> usize {
+        self.inner.checked.entries.len()
+    }
+
+    /// The names of what tasks can run.
+    pub(crate) fn entry_names(&self) -> impl Iterator<Item = &str> {
+        self.inner.checked.entries.iter().map(|entry| entry.name.as_str())
+    }
+
+    pub(crate) fn entry_name(&self, index: usize) -> Option<&str> {
+        self.inner.checked.entries.get(index).map(|entry| entry.name.as_str())
+    }
+
+    /// Position of what a task can run by its name.
+    pub(crate) fn entry_index(&self, name: &str) -> Option<usize> {
+        self.entry_names().position(|entry| entry.eq_ignore_ascii_case(name))
     }
 
     /// The machine code, made once by `make`.

@@ -2,6 +2,7 @@
 //!
 //! | module | in | out |
 //! |---|---|---|
+//! | [`dialect`] | | what vendors do their own way, as a table |
 //! | [`input`] | files as they are found | program text, and the way back into the file |
 //! | [`syntax`] | text | tokens and a tree, without loss |
 //! | [`diagnostic`] | findings | messages with code, place and hint |
@@ -26,6 +27,7 @@ pub mod application;
 mod check;
 mod compile;
 pub mod diagnostic;
+pub mod dialect;
 pub mod explain;
 pub mod input;
 mod ir;
@@ -36,6 +38,7 @@ pub mod syntax;
 pub use application::{Application, Program, UnknownVariable, Variable, inspect};
 pub use compile::fault::FaultKind;
 pub use diagnostic::{Code, Diagnostic, Diagnostics, Finding, Severity};
+pub use dialect::Dialect;
 pub use input::Input;
 pub use ir::elementary::ElementaryType;
-pub use run::{PlcFault, RestoreError, RunError, SoftPlc, Task, TaskPlan, VirtualTime};
+pub use run::{FaultSite, PlcFault, RestoreError, RunError, SoftPlc, Task, TaskPlan, VirtualTime};

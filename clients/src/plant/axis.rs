@@ -150,7 +150,7 @@ impl Axis {
 }
 
 /// Makes a joint's motor hold it where it is.
-fn arm(world: &mut World, motor: ImpulseJointHandle, along: JointAxis, effort_max: Option<f64>) {
+pub(super) fn arm(world: &mut World, motor: ImpulseJointHandle, along: JointAxis, effort_max: Option<f64>) {
     if let Some(joint) = world.physics.impulse_joints.get_mut(motor, true) {
         joint.data.set_motor_model(along, MotorModel::AccelerationBased);
         joint.data.set_motor_velocity(along, 0.0, MOTOR_GAIN_PER_S);

@@ -14,6 +14,7 @@ use super::state;
 pub struct Plant {
     name: ClientName,
     period: TimeSpan,
+    seed: u64,
     scene: Scene,
     identity: blake3::Hash,
     machine: Option<Machine>,
@@ -42,8 +43,16 @@ impl Plant {
 
     /// The plant of a scene that was checked before.
     pub fn new(scene: Scene, name: ClientName, period: TimeSpan) -> Self {
-        let identity = identity(&scene, &name, period);
-        Self { name, period, scene, identity, machine: None }
+        let identity = identity(&scene, &name, period, 0);
+        Self { name, period, seed: 0, scene, identity, machine: None }
+    }
+
+    /// The plant with the scenario's seed, on which noise and jitter depend; 0 without.
+    #[must_use]
+    pub fn seeded(mut self, seed: u64) -> Self {
+        self.seed = seed;
+        self.identity = identity(&self.scene, &self.name, self.period, seed);
+        self
     }
 
     /// What the plant is made of.
@@ -79,9 +88,9 @@ pub struct BodyPose<'p> {
 }
 
 /// A digest of all that a plant's state depends on.
-fn identity(scene: &Scene, name: &ClientName, period: TimeSpan) -> blake3::Hash {
+fn identity(scene: &Scene, name: &ClientName, period: TimeSpan, seed: u64) -> blake3::Hash {
     // plain data of known length always has bytes
-    let bytes = postcard::to_stdvec(&(scene, name, period)).unwrap_or_default();
+    let bytes = postcard::to_stdvec(&(scene, name, period, seed)).unwrap_or_default();
     blake3::hash(&bytes)
 }
 
@@ -106,34 +115,32 @@ impl Client for Plant {
 
     fn setup(&mut self, outputs: &mut [u8]) -> Result<(), ClientFault> {
         check_size("outputs", &self.scene.writes, outputs)?;
-        let machine = self.machine.insert(Machine::build(&self.scene, self.period).map_err(|error| unbound(&error))?);
-        machine.observe(outputs);
-        Ok(())
+        let machine = Machine::build(&self.scene, self.period, self.seed).map_err(|error| unbound(&error))?;
+        self.machine.insert(machine).begin(&self.scene, outputs)
     }
 
-    fn turn(&mut self, _t_v: VirtualTime, inputs: &[u8], outputs: &mut [u8]) -> Result<Wake, ClientFault> {
+    fn turn(&mut self, t_v: VirtualTime, inputs: &[u8], outputs: &mut [u8]) -> Result<Wake, ClientFault> {
         check_size("inputs", &self.scene.reads, inputs)?;
         check_size("outputs", &self.scene.writes, outputs)?;
         let machine = self.machine.as_mut().ok_or_else(|| ClientFault::new("a turn before the set-up"))?;
-        machine.turn(&self.scene, inputs, outputs)?;
+        machine.turn(&self.scene, t_v, inputs, outputs)?;
         Ok(Wake::NextPeriod)
     }
 
     fn save(&self) -> Result<Vec<u8>, StateError> {
         let machine =
             self.machine.as_ref().ok_or_else(|| StateError::Corrupt("there is no state before the set-up".into()))?;
-        state::to_bytes(self.identity, &machine.world.physics, &machine.memory)
+        state::to_bytes(self.identity, &machine.world.physics, &machine.memory())
     }
 
     fn restore(&mut self, bytes: &[u8]) -> Result<(), StateError> {
         let restored = state::from_bytes(self.identity, bytes)?;
-        let mut machine =
-            Machine::build(&self.scene, self.period).map_err(|error| StateError::Corrupt(error.to_string()))?;
-        if !machine.memory.fits(&restored.memory) {
-            return Err(StateError::Corrupt("it has other joints, axes or sensors".to_owned()));
+        let mut machine = Machine::build(&self.scene, self.period, self.seed)
+            .map_err(|error| StateError::Corrupt(error.to_string()))?;
+        if !machine.restore(restored.memory) {
+            return Err(StateError::Corrupt("it has other joints, axes, sensors or components".to_owned()));
         }
         machine.world.physics = restored.physics;
-        machine.memory = restored.memory;
         self.machine = Some(machine);
         Ok(())
     }

@@ -21,7 +21,7 @@ impl NumberSlot {
         }
     }
 
-    fn get(self, port: &[u8]) -> f64 {
+    pub(super) fn get(self, port: &[u8]) -> f64 {
         match self {
             Self::Real(slot) => f64::from(slot.get(port)),
             Self::Lreal(slot) => slot.get(port),

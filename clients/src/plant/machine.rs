@@ -1,12 +1,15 @@
-//! A whole plant in motion: world, axes and sensors, one turn at a time.
+//! A whole plant in motion: world, axes, sensors and components, one turn at a time.
 
 use onescan_server::client::ClientFault;
 use onescan_server::signal::{PortLayout, SlotError};
-use onescan_server::time::TimeSpan;
+use onescan_server::time::{TimeSpan, VirtualTime};
 use serde::{Deserialize, Serialize};
 
 use super::axis::{Axis, Measured};
+use super::channel::{Channels, ChannelsMemory, inner_ports};
+use super::component::declare::Value;
 use super::coordinate::Gauge;
+use super::part::{Moment, Part, PartMemory};
 use super::scene::Scene;
 use super::sensor::Sensor;
 use super::setpoint::Setpoint;
@@ -21,24 +24,26 @@ pub(super) struct Memory {
     setpoints: Vec<Setpoint>,
     /// What every sensor sees.
     detected: Vec<bool>,
-}
-
-impl Memory {
-    /// True if both are memories of plants with the same numbers of things.
-    pub(super) fn fits(&self, other: &Self) -> bool {
-        self.positions.len() == other.positions.len()
-            && self.setpoints.len() == other.setpoints.len()
-            && self.detected.len() == other.detected.len()
-    }
+    /// What every component remembers.
+    parts: Vec<PartMemory>,
+    /// What is on its way to the plant, and from it.
+    channels: Option<[ChannelsMemory; 2]>,
 }
 
 /// A plant in motion.
 pub(super) struct Machine {
     pub(super) world: World,
-    pub(super) memory: Memory,
+    positions: Vec<f64>,
+    setpoints: Vec<Setpoint>,
+    detected: Vec<bool>,
     gauges: Vec<Gauge>,
     axes: Vec<Axis>,
     sensors: Vec<Sensor>,
+    parts: Vec<Part>,
+    /// The outputs of all parts, for those that are wired to them.
+    given: Vec<Vec<Value>>,
+    /// Signals in and out, where the scene says that something happens to them.
+    channels: Option<[Channels; 2]>,
     dt_s: f64,
 }
 
@@ -47,9 +52,9 @@ impl Machine {
     ///
     /// # Errors
     /// A signal of the scene that its ports do not have.
-    pub(super) fn build(scene: &Scene, period: TimeSpan) -> Result<Self, SlotError> {
-        let reads = PortLayout::new(scene.reads.clone());
-        let writes = PortLayout::new(scene.writes.clone());
+    pub(super) fn build(scene: &Scene, period: TimeSpan, seed: u64) -> Result<Self, SlotError> {
+        let reads = PortLayout::new(inner_ports(&scene.reads, &scene.conditions));
+        let writes = PortLayout::new(inner_ports(&scene.writes, &scene.conditions));
         let mut world = World::build(scene, period);
         let gauges: Vec<_> = scene.joints.iter().map(|joint| Gauge::new(&world, joint)).collect();
         let axes = scene
@@ -59,42 +64,138 @@ impl Machine {
             .collect::<Result<Vec<_>, _>>()?;
         let sensors =
             scene.sensors.iter().map(|sensor| Sensor::build(sensor, &world, &writes)).collect::<Result<Vec<_>, _>>()?;
-        let memory = Memory {
+        let mut parts = Vec::with_capacity(scene.components.len());
+        for described in &scene.components {
+            parts.extend(Part::build(described, scene, seed, &mut world, [&reads, &writes])?);
+        }
+        let channels = (!scene.conditions.is_empty()).then(|| Channels::pair(scene, seed));
+        Ok(Self {
             positions: scene.joints.iter().map(|joint| joint.initial).collect(),
             setpoints: axes.iter().map(|axis| axis.rest(scene)).collect(),
             detected: vec![false; sensors.len()],
-        };
-        Ok(Self { world, memory, gauges, axes, sensors, dt_s: period.as_secs_f64() })
+            given: parts.iter().map(|part| part.given().to_vec()).collect(),
+            world,
+            gauges,
+            axes,
+            sensors,
+            parts,
+            channels,
+            dt_s: period.as_secs_f64(),
+        })
     }
 
-    /// Moves the machine by one period.
+    /// What the machine remembers.
+    pub(super) fn memory(&self) -> Memory {
+        Memory {
+            positions: self.positions.clone(),
+            setpoints: self.setpoints.clone(),
+            detected: self.detected.clone(),
+            parts: self.parts.iter().map(Part::memory).collect(),
+            channels: self.channels.as_ref().map(|channels| channels.each_ref().map(Channels::memory)),
+        }
+    }
+
+    /// True if the memory is one of such a machine, which then has it.
+    pub(super) fn restore(&mut self, memory: Memory) -> bool {
+        let fits = self.positions.len() == memory.positions.len()
+            && self.setpoints.len() == memory.setpoints.len()
+            && self.detected.len() == memory.detected.len()
+            && self.parts.len() == memory.parts.len()
+            && self.channels.is_some() == memory.channels.is_some();
+        if !fits {
+            return false;
+        }
+        let parts = self.parts.iter_mut().zip(memory.parts);
+        let parts_fit = parts.map(|(part, memory)| part.restore(memory)).fold(true, |all, one| all && one);
+        let channels = self.channels.iter_mut().flatten().zip(memory.channels.into_iter().flatten());
+        let channels_fit = channels.map(|(one, memory)| one.restore(memory)).fold(true, |all, one| all && one);
+        self.positions = memory.positions;
+        self.setpoints = memory.setpoints;
+        self.detected = memory.detected;
+        for (given, part) in self.given.iter_mut().zip(&self.parts) {
+            given.clear();
+            given.extend_from_slice(part.given());
+        }
+        parts_fit && channels_fit
+    }
+
+    /// The signals as they are at the set-up.
+    ///
+    /// # Errors
+    /// None that a checked scene could cause.
+    pub(super) fn begin(&mut self, scene: &Scene, outputs: &mut [u8]) -> Result<(), ClientFault> {
+        let dt_s = std::mem::replace(&mut self.dt_s, 0.0);
+        let begun = match self.channels.take() {
+            None => self.observe(scene, 0, &vec![0; PortLayout::new(scene.reads.clone()).size()], outputs),
+            Some(mut channels) => {
+                let zeros = vec![0; channels[0].inner().len()];
+                let begun = self.observe(scene, 0, &zeros, channels[1].inner_mut());
+                channels[1].give_at_once(outputs);
+                self.channels = Some(channels);
+                begun
+            }
+        };
+        self.dt_s = dt_s;
+        begun
+    }
+
+    /// Moves the machine by one period, which ends at `t_v`.
     ///
     /// # Errors
     /// A command that is not finite, a world that has come apart.
-    pub(super) fn turn(&mut self, scene: &Scene, inputs: &[u8], outputs: &mut [u8]) -> Result<(), ClientFault> {
-        let Self { world, memory, gauges, axes, dt_s, .. } = self;
-        let measured = Measured { gauges, positions: &memory.positions };
-        for ((axis, setpoint), described) in axes.iter().zip(&mut memory.setpoints).zip(&scene.axes) {
-            axis.drive(&described.name, setpoint, measured, *dt_s, inputs, world)?;
-        }
-        self.world.step(scene)?;
-        self.observe(outputs);
-        Ok(())
+    pub(super) fn turn(
+        &mut self,
+        scene: &Scene,
+        t_v: VirtualTime,
+        inputs: &[u8],
+        outputs: &mut [u8],
+    ) -> Result<(), ClientFault> {
+        let now_ns = t_v.as_nanos();
+        let Some(mut channels) = self.channels.take() else {
+            return self.inner_turn(scene, now_ns, inputs, outputs);
+        };
+        let [taken, given] = &mut channels;
+        taken.take(now_ns, inputs);
+        let turned = self.inner_turn(scene, now_ns, taken.inner(), given.inner_mut());
+        given.give(now_ns, outputs);
+        self.channels = Some(channels);
+        turned
     }
 
-    /// Measures every joint, lets every sensor look and writes all signals.
-    pub(super) fn observe(&mut self, outputs: &mut [u8]) {
-        let Self { world, memory, gauges, axes, sensors, .. } = self;
-        for (gauge, position) in gauges.iter().zip(&mut memory.positions) {
+    fn inner_turn(&mut self, scene: &Scene, now_ns: u64, inputs: &[u8], outputs: &mut [u8]) -> Result<(), ClientFault> {
+        let Self { world, positions, setpoints, gauges, axes, parts, given, dt_s, .. } = self;
+        let measured = Measured { gauges, positions };
+        for ((axis, setpoint), described) in axes.iter().zip(setpoints).zip(&scene.axes) {
+            axis.drive(&described.name, setpoint, measured, *dt_s, inputs, world)?;
+        }
+        let moment = Moment { t_v_ns: now_ns, dt_s: *dt_s, inputs, measured };
+        for (part, described) in parts.iter_mut().zip(&scene.components) {
+            part.drive(described, &moment, given, world)?;
+        }
+        self.world.step(scene)?;
+        self.observe(scene, now_ns, inputs, outputs)
+    }
+
+    /// Measures every joint, lets every sensor and component look and writes all signals.
+    fn observe(&mut self, scene: &Scene, now_ns: u64, inputs: &[u8], outputs: &mut [u8]) -> Result<(), ClientFault> {
+        let Self { world, positions, setpoints, detected, gauges, axes, sensors, parts, given, dt_s, .. } = self;
+        for (gauge, position) in gauges.iter().zip(positions.iter_mut()) {
             *position = gauge.position(world, *position);
         }
-        let measured = Measured { gauges, positions: &memory.positions };
-        for (axis, setpoint) in axes.iter().zip(&memory.setpoints) {
+        let measured = Measured { gauges, positions };
+        for (axis, setpoint) in axes.iter().zip(setpoints) {
             axis.feed_back(*setpoint, measured, world, outputs);
         }
-        for (sensor, detected) in sensors.iter().zip(&mut memory.detected) {
-            *detected = sensor.detects(world, &memory.positions, *detected);
+        for (sensor, detected) in sensors.iter().zip(detected) {
+            *detected = sensor.detects(world, positions, *detected);
             sensor.write(*detected, outputs);
         }
+        let moment = Moment { t_v_ns: now_ns, dt_s: *dt_s, inputs, measured };
+        for (index, (part, described)) in parts.iter_mut().zip(&scene.components).enumerate() {
+            part.sense(described, &moment, given, world, outputs)?;
+            given[index].clear();
+            given[index].extend_from_slice(part.given());
+        }
+        Ok(())
     }
 }

@@ -13,14 +13,18 @@
 //! | `command` | what the PLC commands of a drive |
 //! | `axis` | a driven axis: command, setpoint, what it moves, feedback |
 //! | `sensor` | end-position and proximity sensors |
+//! | [`component`] | the library: cylinders, motors, sensors, … by their equations |
+//! | `part` | a component of the scene, bound to signals, other components and the world |
 //! | `machine` | all of these, one turn at a time |
+//! | `random` | random numbers from the scenario's seed |
+//! | `channel` | what happens to signals between the plant and the PLC |
 //! | `state` | the plant's state as bytes |
 //! | `client` | the plant as a client of a session |
 //!
 //! # A turn
-//! 1. Every axis reads its command and moves its setpoint by one period.
+//! 1. Every axis reads its command and moves its setpoint by one period; every component is driven.
 //! 2. The world takes its substeps.
-//! 3. Every joint is measured, every sensor looks, all signals are written.
+//! 3. Every joint is measured, every sensor and component looks, all signals are written.
 //!
 //! # Invariants
 //! - Order in the scene file is order of insertion, of evaluation and of signals.
@@ -28,11 +32,15 @@
 //! - A world that is no longer finite or leaves its extent is a fault that names the body.
 
 mod axis;
+mod channel;
 mod client;
 mod command;
+pub mod component;
 mod coordinate;
 mod machine;
+mod part;
 mod pose;
+mod random;
 pub mod scene;
 mod sensor;
 mod setpoint;

@@ -18,7 +18,7 @@ use serde::{Deserialize, Serialize};
 use super::machine::Memory;
 
 const MAGIC: [u8; 8] = *b"onescanP";
-const VERSION: u32 = 1;
+const VERSION: u32 = 2;
 const DIGEST_BYTES: usize = blake3::OUT_LEN;
 
 #[derive(Serialize)]

@@ -106,13 +106,60 @@ impl World {
         self.joints[index]
     }
 
+    /// The shapes of a body that is in the world, each where it is now.
+    fn shapes(&self, handle: RigidBodyHandle) -> impl Iterator<Item = (Pose, &dyn rapier3d::parry::shape::Shape)> {
+        let body = self.body(handle);
+        let colliders = body.colliders().iter().filter(|_| body.is_enabled());
+        colliders.filter_map(|handle| self.physics.colliders.get(*handle)).map(|collider| {
+            let local = collider.position_wrt_parent().copied().unwrap_or(Pose::IDENTITY);
+            (*body.position() * local, collider.shape())
+        })
+    }
+
     /// True if a ray meets the shape of a body within its range.
     pub(super) fn ray_meets(&self, ray: &Ray, range_m: f64, handle: RigidBodyHandle) -> bool {
-        let body = self.body(handle);
-        body.colliders().iter().filter_map(|handle| self.physics.colliders.get(*handle)).any(|collider| {
-            let local = collider.position_wrt_parent().copied().unwrap_or(Pose::IDENTITY);
-            collider.shape().intersects_ray(&(*body.position() * local), ray, range_m)
+        self.shapes(handle).any(|(pose, shape)| shape.intersects_ray(&pose, ray, range_m))
+    }
+
+    /// How far along a ray it meets the shape of a body.
+    pub(super) fn ray_distance(&self, ray: &Ray, handle: RigidBodyHandle) -> Option<f64> {
+        let hits = self.shapes(handle).filter_map(|(pose, shape)| shape.cast_ray(&pose, ray, self.extent_m, true));
+        hits.reduce(f64::min)
+    }
+
+    /// True if two bodies touch or are in each other, whether they collide or not.
+    pub(super) fn touch(&self, one: RigidBodyHandle, other: RigidBodyHandle) -> bool {
+        use rapier3d::parry::query::intersection_test;
+        self.shapes(one).any(|(pose, shape)| {
+            // the engine's shapes all know how to meet each other
+            self.shapes(other)
+                .any(|(place, met)| intersection_test(&pose, shape, &place, met).is_ok_and(|met| met.intersecting))
         })
+    }
+
+    /// Takes a body out of the world until it is put in again.
+    pub(super) fn take_out(&mut self, handle: RigidBodyHandle) {
+        if let Some(body) = self.physics.bodies.get_mut(handle) {
+            body.set_enabled(false);
+        }
+    }
+
+    /// Puts a body into the world, at rest where another one is.
+    pub(super) fn put_in(&mut self, handle: RigidBodyHandle, place: RigidBodyHandle) {
+        let pose = *self.body(place).position();
+        if let Some(body) = self.physics.bodies.get_mut(handle) {
+            body.set_enabled(true);
+            body.set_position(pose, true);
+            body.set_linvel(Vector::ZERO, true);
+            body.set_angvel(AngVector::ZERO, true);
+        }
+    }
+
+    /// Holds a body fast where it is in relation to another, until the joint is removed.
+    pub(super) fn hold(&mut self, holder: RigidBodyHandle, held: RigidBodyHandle) -> ImpulseJointHandle {
+        let between = self.body(holder).position().inv_mul(self.body(held).position());
+        let joint = FixedJointBuilder::new().local_frame1(between).contacts_enabled(false);
+        self.physics.insert_impulse_joint(holder, held, joint)
     }
 }
 

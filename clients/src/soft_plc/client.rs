@@ -42,7 +42,8 @@ pub struct SoftPlcClient {
 }
 
 impl SoftPlcClient {
-    /// A client `name` that runs `application` by `plan`.
+    /// A client `name` that runs `application` by `plan`. It takes part in every `step` if tasks wait
+    /// for an edge or programs have no task, else as often as its tasks' intervals want.
     ///
     /// # Errors
     /// The plan does not suit the application.
@@ -51,10 +52,11 @@ impl SoftPlcClient {
         application: &Application,
         plan: &TaskPlan,
         bindings: &Bindings,
+        step: TimeSpan,
     ) -> Result<Self, RunError> {
         let plc = SoftPlc::new(application, plan)?;
-        // Every task has an interval, so there is a period.
-        let period = TimeSpan::from_nanos(plc.period_ns()).ok_or(RunError::NoTasks)?;
+        let period = if plc.wants_every_step() { Some(step) } else { TimeSpan::from_nanos(plc.period_ns()) };
+        let period = period.ok_or(RunError::NoTasks)?;
         let ports = |bound: &[Bound]| bound.iter().map(|bound| bound.port.clone()).collect();
         let request = JoinRequest { name, period, reads: ports(&bindings.inputs), writes: ports(&bindings.outputs) };
         Ok(Self { request, plc, inputs: runs(&bindings.inputs), outputs: runs(&bindings.outputs) })
@@ -103,7 +105,11 @@ impl Client for SoftPlcClient {
         }
         self.plc.scan(onescan_plc_shim::VirtualTime::from_ns(t_v.as_nanos())).map_err(|fault| client_fault(&fault))?;
         self.take_outputs(outputs);
-        Ok(Wake::At(VirtualTime::from_nanos(self.plc.next_due().as_ns())))
+        Ok(if self.plc.wants_every_step() {
+            Wake::NextPeriod
+        } else {
+            Wake::At(VirtualTime::from_nanos(self.plc.next_due().as_ns()))
+        })
     }
 
     fn save(&self) -> Result<Vec<u8>, StateError> {
@@ -117,11 +123,8 @@ impl Client for SoftPlcClient {
 
 /// The fault in the session's words; the session adds client and virtual time.
 fn client_fault(fault: &PlcFault) -> ClientFault {
-    let way = match fault.call_path.len() {
-        0 | 1 => String::new(),
-        _ => format!(" (called by way of {})", fault.call_path.join(", ")),
-    };
-    let place = SourcePlace { file: fault.file.clone(), line: fault.line, column: fault.column };
-    let place = (!fault.file.is_empty()).then_some(place);
-    ClientFault { message: format!("PLC fault: {} in {}{way}", fault.kind, fault.pou), place }
+    let at = &fault.at;
+    let place = SourcePlace { file: at.file.clone(), line: at.line, column: at.column };
+    let place = (!at.file.is_empty()).then_some(place);
+    ClientFault { message: format!("PLC fault: {} in {at}{}", fault.kind, fault.way()), place }
 }

@@ -2,7 +2,9 @@
 
 mod belt;
 mod bench;
+mod components;
 mod faults;
+mod handling;
 mod motion;
 mod robustness;
 mod sensors;

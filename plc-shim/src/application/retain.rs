@@ -1,21 +1,31 @@
-//! Which bytes survive a warm start (2nd ed. 2.4.2, 2.4.3).
+//! Which bytes survive a start (2nd ed. 2.4.2, 2.4.3; 3rd ed. 6.5.6).
+//!
+//! What a section says of an instance goes for the instance's own variables, unless their sections
+//! say otherwise; instances among those follow their own type (3rd ed. 6.5.6.2).
 
 use std::collections::BTreeMap;
 use std::ops::Range;
 
 use crate::check::Checked;
-use crate::ir::{Storage, Type, TypeId, Variable};
+use crate::ir::{Retention, Storage, Type, TypeId, Variable};
 
-/// Ranges of memory in ascending order, neighbours joined.
-pub(super) fn ranges(checked: &Checked) -> Vec<Range<u32>> {
-    let mut collector = Collector { checked, found: Vec::new(), known: BTreeMap::new() };
-    collector.variables(&checked.globals, 0);
+/// Ranges of memory in ascending order, neighbours joined, of what lives as long as `least`.
+pub(super) fn ranges(checked: &Checked, least: Retention) -> Vec<Range<u32>> {
+    let mut collector = Collector { checked, least, found: Vec::new(), known: BTreeMap::new() };
+    let resources = checked.configuration.iter().flat_map(|configuration| &configuration.resources);
+    collector.variables(&checked.globals, 0, None);
+    for resource in resources {
+        collector.variables(&resource.globals, 0, None);
+    }
     for program in &checked.programs {
         if let Some(variables) = checked.interfaces.get(&program.pou) {
-            collector.variables(variables, program.offset);
+            collector.variables(variables, program.offset, program.retention);
         }
     }
-    let mut found = collector.found;
+    joined(collector.found)
+}
+
+fn joined(mut found: Vec<Range<u32>>) -> Vec<Range<u32>> {
     found.sort_by_key(|range| (range.start, range.end));
     let mut joined: Vec<Range<u32>> = Vec::new();
     for range in found {
@@ -29,13 +39,15 @@ pub(super) fn ranges(checked: &Checked) -> Vec<Range<u32>> {
 
 struct Collector<'c> {
     checked: &'c Checked,
+    least: Retention,
     found: Vec<Range<u32>>,
-    /// Which types hold something retained, as far as known.
+    /// Which types hold something that is kept of its own, as far as known.
     known: BTreeMap<TypeId, bool>,
 }
 
 impl Collector<'_> {
-    fn variables(&mut self, variables: &[Variable], base: u32) {
+    /// Variables of an instance at `base` whose own declaration says `outer`.
+    fn variables(&mut self, variables: &[Variable], base: u32, outer: Option<Retention>) {
         for variable in variables {
             let offset = match variable.storage {
                 Storage::Instance(offset) => base + offset,
@@ -43,69 +55,70 @@ impl Collector<'_> {
                 Storage::Located(location) => self.checked.areas.offset(location),
                 _ => continue,
             };
-            if variable.retain {
-                self.found.push(offset..offset + self.checked.types.size(variable.ty));
-            } else if self.has_retained(variable.ty) {
-                self.inside(variable.ty, offset);
-            }
+            self.variable(variable.ty, offset, variable.retention, variable.retention.or(outer));
         }
     }
 
-    /// Instances keep what their own type declares RETAIN.
-    fn inside(&mut self, ty: TypeId, offset: u32) {
+    /// `said` is what its own section says, `retention` what that comes to for plain data.
+    fn variable(&mut self, ty: TypeId, offset: u32, said: Option<Retention>, retention: Option<Retention>) {
+        let kept = retention.is_some_and(|retention| retention >= self.least);
         match self.checked.types.get(ty) {
             Type::FunctionBlock { pou, .. } => {
-                if let Some(variables) = self.checked.interfaces.get(pou) {
-                    self.variables(variables, offset);
+                let kept = said.is_some_and(|said| said >= self.least);
+                if let Some(variables) = self.checked.interfaces.get(pou)
+                    && (kept || self.holds_kept(ty))
+                {
+                    self.variables(variables, offset, said);
                 }
             }
-            Type::Array { element, .. } => {
+            Type::Array { element, .. } if self.holds_instances(*element) => {
                 let stride = self.checked.types.size(*element).max(1);
                 let count = self.checked.types.size(ty) / stride;
-                for index in 0..count {
-                    self.inside(*element, offset + index * stride);
+                if kept || self.holds_kept(*element) {
+                    (0..count).for_each(|index| self.variable(*element, offset + index * stride, said, retention));
                 }
             }
-            Type::Struct { fields, .. } => {
+            Type::Struct { fields, .. } if self.holds_instances(ty) => {
                 for field in fields {
-                    self.inside(field.ty, offset + field.offset);
+                    self.variable(field.ty, offset + field.offset, said, retention);
                 }
             }
-            Type::Elementary(_)
-            | Type::Interface { .. }
-            | Type::Enumeration { .. }
-            | Type::Subrange { .. }
-            | Type::Text(_)
-            | Type::Nothing => {}
+            _ if kept => self.found.push(offset..offset + self.checked.types.size(ty)),
+            _ => {}
         }
     }
 
-    fn has_retained(&mut self, ty: TypeId) -> bool {
+    fn holds_instances(&self, ty: TypeId) -> bool {
+        match self.checked.types.get(ty) {
+            Type::FunctionBlock { .. } => true,
+            Type::Array { element, .. } => self.holds_instances(*element),
+            Type::Struct { fields, .. } => fields.iter().any(|field| self.holds_instances(field.ty)),
+            _ => false,
+        }
+    }
+
+    fn holds_kept(&mut self, ty: TypeId) -> bool {
         if let Some(known) = self.known.get(&ty) {
             return *known;
         }
-        let found = self.find_retained(ty);
+        let found = self.find_kept(ty);
         self.known.insert(ty, found);
         found
     }
 
-    fn find_retained(&mut self, ty: TypeId) -> bool {
+    fn find_kept(&mut self, ty: TypeId) -> bool {
         match self.checked.types.get(ty) {
             Type::FunctionBlock { pou, .. } => {
                 let variables = self.checked.interfaces.get(pou).map_or(&[][..], Vec::as_slice);
                 variables.iter().any(|variable| {
                     let held = matches!(variable.storage, Storage::Instance(_));
-                    variable.retain || held && self.has_retained(variable.ty)
+                    let kept = variable.retention.is_some_and(|retention| retention >= self.least);
+                    held && (kept || self.holds_kept(variable.ty))
                 })
             }
-            Type::Array { element, .. } => self.has_retained(*element),
-            Type::Struct { fields, .. } => fields.iter().any(|field| self.has_retained(field.ty)),
-            Type::Elementary(_)
-            | Type::Interface { .. }
-            | Type::Enumeration { .. }
-            | Type::Subrange { .. }
-            | Type::Text(_)
-            | Type::Nothing => false,
+            Type::Array { element, .. } => self.holds_kept(*element),
+            Type::Struct { fields, .. } => fields.iter().any(|field| self.holds_kept(field.ty)),
+            _ => false,
         }
     }
 }

@@ -55,35 +55,35 @@ pub struct UnknownVariable {
 }
 
 /// One piece of a path.
-#[derive(Clone)]
-enum Piece {
+#[derive(Debug, Clone)]
+pub(super) enum Piece {
     Name(String),
     Index(Vec<i64>),
 }
 
 /// A place on the way along a path.
-#[derive(Clone)]
-struct Spot {
-    path: String,
-    offset: u32,
-    bit: Option<u8>,
-    ty: TypeId,
-    address: Option<String>,
+#[derive(Debug, Clone)]
+pub(super) struct Spot {
+    pub(super) path: String,
+    pub(super) offset: u32,
+    pub(super) bit: Option<u8>,
+    pub(super) ty: TypeId,
+    pub(super) address: Option<String>,
 }
 
 impl Application {
-    /// The programs in the order of their declaration.
+    /// The programs in the order of their declaration; with a configuration, their instances.
     pub fn programs(&self) -> impl Iterator<Item = Program> {
         let checked = &self.inner.checked;
-        checked.programs.iter().filter_map(|program| {
+        checked.programs.iter().zip(self.entry_names()).filter_map(|(program, name)| {
             let pou = checked.pous.get(&program.pou)?;
             let of = |wanted: SectionKind| {
                 let in_section = pou.variables.iter().filter(move |variable| variable.section == wanted);
-                let spots = in_section.filter_map(|each| spot(checked, &pou.name, each, program.offset));
+                let spots = in_section.filter_map(|each| spot(checked, name, each, program.offset));
                 spots.map(|spot| self.describe(spot)).collect()
             };
             Some(Program {
-                name: pou.name.clone(),
+                name: name.to_owned(),
                 inputs: of(SectionKind::Input),
                 outputs: of(SectionKind::Output),
                 locals: of(SectionKind::Local),
@@ -91,8 +91,10 @@ impl Application {
         })
     }
 
-    /// The variable at a path: a program or global variable, members and indices, as in
-    /// `Shear.axis[2].position`; or at a direct address that the program uses, as in `%QX0.1`.
+    /// The variable at a path: a global variable or a program's instance, members and indices, as in
+    /// `Shear.axis[2].position`; or at a direct address that the program uses, as in `%QX0.1`. The
+    /// names of configuration and resource may stand in front, as in
+    /// `Plant.Line.Shear.axis[2].position`; a name of `VAR_ACCESS` is a path too.
     ///
     /// # Errors
     /// The path leads nowhere; the error has the nearest name.
@@ -103,16 +105,12 @@ impl Application {
             return Ok(self.describe(spot));
         }
         let pieces = pieces(path).ok_or_else(|| unknown(None))?;
-        let mut pieces = pieces.into_iter();
-        let Some(Piece::Name(first)) = pieces.next() else {
+        let (mut spot, rest) = self.root(&pieces).map_err(unknown)?;
+        for piece in rest {
+            spot = self.step(&spot, piece).map_err(unknown)?;
+        }
+        if self.is_program(spot.ty) {
             return Err(unknown(None));
-        };
-        let mut spot = match self.root(&first, &mut pieces) {
-            Ok(spot) => spot,
-            Err(help) => return Err(unknown(help)),
-        };
-        for piece in pieces {
-            spot = self.step(&spot, &piece).map_err(unknown)?;
         }
         Ok(self.describe(spot))
     }
@@ -129,52 +127,12 @@ impl Application {
         Some(Spot { address: Some(path.clone()), path, offset, bit, ty: ty.into() })
     }
 
-    /// A global variable, or a program and the first of its own variables.
-    fn root(&self, first: &str, pieces: &mut std::vec::IntoIter<Piece>) -> Result<Spot, Option<String>> {
+    fn is_program(&self, ty: TypeId) -> bool {
         let checked = &self.inner.checked;
-        if let Some(found) = self.global(first, pieces).and_then(|global| spot(checked, "", global, 0)) {
-            return Ok(found);
-        }
-        let program = checked.programs.iter().find_map(|program| {
-            let pou = checked.pous.get(&program.pou)?;
-            pou.name.eq_ignore_ascii_case(first).then_some((program, pou))
-        });
-        let Some((program, pou)) = program else {
-            let globals = checked.globals.iter().map(|global| global.name.as_str());
-            let programs = checked.programs.iter().filter_map(|each| checked.pous.get(&each.pou));
-            let names = globals.chain(programs.map(|pou| pou.name.as_str()));
-            return Err(did_you_mean(first, names));
-        };
-        let Some(Piece::Name(name)) = pieces.next() else {
-            return Err(None);
-        };
-        member(checked, &pou.name, &pou.variables, program.offset, &name)
+        matches!(checked.types.get(ty), Type::FunctionBlock { pou, .. } if checked.programs.iter().any(|each| each.pou == *pou))
     }
 
-    /// The global variable of a name, which namespaces and lists make longer. What is in one is found
-    /// by its own name too, if no other has it.
-    fn global(&self, first: &str, pieces: &mut std::vec::IntoIter<Piece>) -> Option<&ir::Variable> {
-        let globals = &self.inner.checked.globals;
-        let named = |name: &str| globals.iter().find(|each| each.name.eq_ignore_ascii_case(name));
-        let mut name = first.to_owned();
-        for (used, next) in std::iter::once(None).chain(pieces.clone().map(Some)).enumerate() {
-            match next {
-                None => {}
-                Some(Piece::Name(next)) => name = format!("{name}.{next}"),
-                Some(Piece::Index(_)) => break,
-            }
-            if let Some(found) = named(&name) {
-                pieces.by_ref().take(used).for_each(drop);
-                return Some(found);
-            }
-        }
-        let last =
-            |each: &&ir::Variable| each.name.rsplit_once('.').is_some_and(|(_, last)| last.eq_ignore_ascii_case(first));
-        let mut found = globals.iter().filter(last);
-        found.next().filter(|_| found.next().is_none())
-    }
-
-    fn step(&self, from: &Spot, piece: &Piece) -> Result<Spot, Option<String>> {
+    pub(super) fn step(&self, from: &Spot, piece: &Piece) -> Result<Spot, Option<String>> {
         let checked = &self.inner.checked;
         match (checked.types.get(from.ty), piece) {
             (Type::Struct { fields, .. }, Piece::Name(name)) => {
@@ -212,7 +170,7 @@ impl Application {
         Some(number as u32 * self.inner.checked.types.size(element))
     }
 
-    fn describe(&self, spot: Spot) -> Variable {
+    pub(super) fn describe(&self, spot: Spot) -> Variable {
         let types = &self.inner.checked.types;
         Variable {
             path: spot.path,
@@ -227,7 +185,7 @@ impl Application {
 }
 
 /// Where a variable of an instance at `base` lies, if it lies in memory for good.
-fn spot(checked: &Checked, prefix: &str, variable: &ir::Variable, base: u32) -> Option<Spot> {
+pub(super) fn spot(checked: &Checked, prefix: &str, variable: &ir::Variable, base: u32) -> Option<Spot> {
     let (offset, bit) = match variable.storage {
         Storage::Absolute(offset) if variable.section != SectionKind::Temp => (offset, None),
         Storage::Located(location) => (checked.areas.offset(location), location.bit),

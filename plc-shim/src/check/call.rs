@@ -4,6 +4,8 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use super::convert::{Operand, constant};
+use super::enable;
+use super::function_form;
 use super::scope::{Body, Scope};
 use super::standard_function;
 use super::variables::decode;
@@ -34,12 +36,20 @@ impl Body<'_, '_> {
         if let Some(called) = self.method_call(call, span) {
             return called.map(Operand::Typed);
         }
+        if enable::is_controlled(call) && !self.is_instance(call) {
+            return self.controlled_call(call, span);
+        }
+        self.plain_call(call, span)
+    }
+
+    /// A call without EN and ENO, unless its function declares them.
+    pub(super) fn plain_call(&mut self, call: &Call, span: Span) -> Option<Operand> {
         let qualified = self.qualified_name(&call.callee);
         let name = match (&call.callee.kind, &qualified) {
             (ast::ExprKind::Name(name), _) | (_, Some(name)) => name,
             _ => return self.not_a_function(call, span),
         };
-        if self.scope.declares(&name.key()) && !self.is_own_result(name) {
+        if self.is_local(name) && !self.is_own_result(name) {
             return self.not_a_function(call, span);
         }
         if let Some(id) = self.function_named(name) {
@@ -48,7 +58,17 @@ impl Body<'_, '_> {
         if standard_function::exists(&name.key()) {
             return self.standard_call(name, &call.arguments, span);
         }
+        if Self::is_clock(name) {
+            return self.clock_function(name, call, span);
+        }
+        if self.report_vendor_function(name) {
+            return None;
+        }
         self.report_unknown_function(name)
+    }
+
+    fn is_local(&self, name: &Ident) -> bool {
+        !name.is_quoted() && self.scope.by_name.contains_key(&name.key())
     }
 
     /// Inside a function its own name is its result, and a call of it recursion.
@@ -59,9 +79,20 @@ impl Body<'_, '_> {
         })
     }
 
-    fn function_named(&self, name: &Ident) -> Option<PouId> {
+    pub(super) fn function_named(&self, name: &Ident) -> Option<PouId> {
         let id = self.checker.pou_named(&name.key())?;
         (self.checker.pou(id).ast.kind == PouKind::Function).then_some(id)
+    }
+
+    /// True for what is called as a statement.
+    fn is_instance(&self, call: &Call) -> bool {
+        match &call.callee.kind {
+            ast::ExprKind::Name(name) => {
+                let key = name.key();
+                self.scope.by_name.contains_key(&key) && !self.is_own_result(name)
+            }
+            _ => false,
+        }
     }
 
     fn not_a_function(&mut self, call: &Call, span: Span) -> Option<Operand> {
@@ -93,7 +124,7 @@ impl Body<'_, '_> {
         let functions = self.checker.pous.iter().filter(|pou| pou.ast.kind == PouKind::Function);
         let functions = functions.map(|pou| pou.ast.name.text.as_str());
         let variables = self.scope.variables.iter().map(|variable| variable.name.as_str());
-        let standard: Vec<&str> = standard_function::names().collect();
+        let standard: Vec<&str> = function_form::names().collect();
         let known = functions.chain(variables).chain(standard.iter().copied());
         let help = did_you_mean(&name.text, known);
         let help = self.checker.elsewhere(name).or(help);
@@ -118,8 +149,7 @@ impl Body<'_, '_> {
             }
             ast::ExprKind::Name(name) if self.is_this(name) => false,
             ast::ExprKind::Name(name) => {
-                !self.scope.declares(&name.key()) && self.checker.global_key(&name.key()).is_none()
-                    || self.is_own_result(name)
+                !self.is_local(name) && self.checker.global_key(&name.key()).is_none() || self.is_own_result(name)
             }
             _ => false,
         };
@@ -129,7 +159,11 @@ impl Body<'_, '_> {
         let Operand::Typed(result) = self.call_expression(call, span)? else {
             return None;
         };
-        let effects = matches!(&result.kind, ExprKind::Call(call) if self.has_effects(call.pou));
+        let effects = match &result.kind {
+            ExprKind::Call(call) => self.has_effects(call.pou),
+            ExprKind::After(..) => true,
+            _ => false,
+        };
         if !effects {
             let message = "the result of this call is lost";
             self.report(Diagnostic::warning(Code::ResultIgnored, span, message));
@@ -150,10 +184,10 @@ impl Body<'_, '_> {
         for (index, argument) in call.arguments.iter().enumerate() {
             let (name, span, expr) = match argument {
                 ast::Argument::Positional(expr) => {
-                    if let Some(variable) = scope.inputs().nth(index) {
+                    if let Some(variable) = scope.positional().nth(index) {
                         (variable.name.to_ascii_uppercase(), expr.span, expr)
                     } else {
-                        let count = scope.inputs().count();
+                        let count = scope.positional().count();
                         let message = format!("`{callee}` takes {count} arguments");
                         self.report(Diagnostic::error(Code::TooManyArguments, expr.span, message));
                         return None;
@@ -175,7 +209,8 @@ impl Body<'_, '_> {
                     continue;
                 }
             };
-            if matched.inputs.insert(name, expr).is_some() {
+            // One EN has been taken out already.
+            if name == enable::EN || matched.inputs.insert(name, expr).is_some() {
                 let message = "this parameter is given twice";
                 self.report(Diagnostic::error(Code::DuplicateArgument, span, message));
                 sound = false;
@@ -220,6 +255,8 @@ impl Body<'_, '_> {
         for parameter in scope.inputs() {
             let given = matched.inputs.get(&parameter.name.to_ascii_uppercase()).copied();
             let argument = match given {
+                // The call is carried out, or the function would not read it.
+                _ if enable::is_control(parameter) => Some(Argument::Value(enable::boolean(true, span))),
                 Some(expr) => self.argument(parameter, expr, &mut passing),
                 None => self.default_argument(parameter, named, span),
             };
@@ -336,7 +373,8 @@ impl Body<'_, '_> {
     }
 
     fn instance_call(&mut self, call: &Call, span: Span) -> Option<StatementKind> {
-        let instance = self.place(&call.callee)?.place;
+        let callee = self.instance_of(&call.callee);
+        let instance = self.place(callee)?.place;
         self.instance_call_at(instance, call, span)
     }
 
@@ -349,7 +387,9 @@ impl Body<'_, '_> {
         };
         let dispatch = self.body_dispatch(&instance, pou, call, span)?;
         let scope = self.checker.interface(pou, span)?;
-        let matched = self.matched(&scope, &name, call)?;
+        let split = enable::split(call, scope.find(enable::ENO).is_some());
+        let (enabling, rest) = split.map_or((None, None), |(enabling, rest)| (Some(enabling), Some(rest)));
+        let matched = self.matched(&scope, &name, rest.as_ref().unwrap_or(call))?;
         let pointer = self.scope.register(ElementaryType::Udint);
         let base = Place::whole(Storage::RegisterPointer(pointer), instance.ty, instance.span);
         let mut passing = Passing::default();
@@ -358,7 +398,7 @@ impl Body<'_, '_> {
         let Passing { before: inputs, after: mut back } = passing;
         back.extend(outputs);
         let call = InstanceCall { instance, pou, dispatch, pointer, inputs, outputs: back };
-        Some(StatementKind::CallInstance(Box::new(call)))
+        self.controlled_instance(&scope, call, enabling)
     }
 
     fn instance_inputs(

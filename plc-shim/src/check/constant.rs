@@ -26,10 +26,18 @@ pub(super) fn fold(types: &TypeTable, expr: &Expr) -> Result<Value, NoValue> {
             binary(*operator, operands, left, right).map_err(|()| NoValue::DivisionByZero(expr.span))
         }
         ExprKind::Convert(rounding, operand) => Ok(convert(*rounding, ty, fold(types, operand)?)),
-        ExprKind::Limited(_, _, operand) => fold(types, operand),
-        ExprKind::Load(_) | ExprKind::Intrinsic(..) | ExprKind::Text(_) | ExprKind::Call(_) | ExprKind::Cast(_) => {
-            Err(not_constant)
+        ExprKind::Conditional(parts) => {
+            let [condition, then, otherwise] = &**parts;
+            let holds = fold(types, condition)? == Value::Bool(true);
+            fold(types, if holds { then } else { otherwise })
         }
+        ExprKind::Limited(_, _, operand) => fold(types, operand),
+        ExprKind::Load(_)
+        | ExprKind::Intrinsic(..)
+        | ExprKind::Text(_)
+        | ExprKind::Call(_)
+        | ExprKind::Cast(_)
+        | ExprKind::After(..) => Err(not_constant),
     }
 }
 
@@ -75,7 +83,7 @@ pub(super) fn real(operator: Binary, left: f64, right: f64) -> Result<f64, ()> {
         Binary::Add => left + right,
         Binary::Subtract => left - right,
         Binary::Multiply => left * right,
-        _ if right == 0.0 => return Err(()),
+        Binary::Divide if right == 0.0 => return Err(()),
         _ => left / right,
     })
 }
@@ -87,9 +95,9 @@ pub(super) fn integer(operator: Binary, left: i128, right: i128) -> Result<i128,
         Binary::Subtract => left.wrapping_sub(right),
         Binary::Multiply => left.wrapping_mul(right),
         Binary::Divide if right == 0 => return Err(()),
-        Binary::Divide => left.wrapping_div(right),
         // 2nd ed. Table 24: the result of MOD 0 is 0.
-        Binary::Modulo if right == 0 => 0,
+        Binary::DivideAnyway | Binary::Modulo if right == 0 => 0,
+        Binary::Divide | Binary::DivideAnyway => left.wrapping_div(right),
         Binary::Modulo => left.wrapping_rem(right),
         Binary::And => left & right,
         Binary::Or => left | right,
@@ -123,7 +131,10 @@ fn convert(rounding: Rounding, target: ElementaryType, value: Value) -> Value {
             let real = value.as_f64();
             let whole = match rounding {
                 Rounding::NearestEven => real.round_ties_even(),
+                Rounding::NearestAway => real.round(),
                 Rounding::Truncate => real.trunc(),
+                Rounding::Up => real.ceil(),
+                Rounding::Down => real.floor(),
             };
             // A cast saturates and makes NaN zero, as the compiled code does.
             let (low, high) = target.range().unwrap_or((0, 0));

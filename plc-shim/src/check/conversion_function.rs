@@ -1,4 +1,5 @@
-//! `X_TO_Y`, `X_TRUNC_Y`, `TO_Y`, `TRUNC` (2nd ed. Table 22, 3rd ed. Tables 22 to 27).
+//! `X_TO_Y`, `X_TRUNC_Y`, `TO_Y`, `TRUNC` (2nd ed. Table 22, 3rd ed. Tables 22 to 27), and of vendors
+//! `ANY_TO_Y`, `ROUND`, `CEIL`, `FLOOR`, `ROUND_Y`, `CEIL_Y`, `FLOOR_Y`.
 //!
 //! | from, to | value |
 //! |---|---|
@@ -32,20 +33,38 @@ pub(super) struct Conversion {
 
 /// The conversion that `key`, in capitals, names.
 pub(super) fn find(key: &str) -> Option<Conversion> {
-    if key == "TRUNC" {
+    if let Some((_, rounding)) = WHOLE.into_iter().find(|(name, _)| *name == key) {
         // 2nd ed. Table 22 leaves the result's type to the context; vendors give DINT.
-        return Some(Conversion { from: None, to: ElementaryType::Dint, rounding: Rounding::Truncate });
+        return Some(Conversion { from: None, to: ElementaryType::Dint, rounding });
     }
-    let marks = [("TO_", Rounding::NearestEven), ("TRUNC_", Rounding::Truncate)];
-    marks.into_iter().find_map(|(mark, rounding)| {
-        let (before, after) = key.split_once(mark)?;
-        let to = ElementaryType::find(after)?;
-        if before.is_empty() {
-            return Some(Conversion { from: None, to, rounding });
-        }
-        let from = ElementaryType::find(before.strip_suffix('_')?)?;
-        is_allowed(from, to, rounding).then_some(Conversion { from: Some(from), to, rounding })
+    let overloaded = |name: &str, rounding| {
+        let to = ElementaryType::find(key.strip_prefix(name)?.strip_prefix('_')?)?;
+        let exists = matches!(name, "TO" | "ANY_TO") || to.is_integer();
+        exists.then_some(Conversion { from: None, to, rounding })
+    };
+    let values = [("TO", Rounding::NearestEven), ("ANY_TO", Rounding::NearestEven)];
+    let found = values.into_iter().chain(WHOLE).find_map(|(name, rounding)| overloaded(name, rounding));
+    found.or_else(|| {
+        let marks = [("_TO_", Rounding::NearestEven), ("_TRUNC_", Rounding::Truncate)];
+        marks.into_iter().find_map(|(mark, rounding)| {
+            let (from, to) = key.split_once(mark)?;
+            let (from, to) = (ElementaryType::find(from)?, ElementaryType::find(to)?);
+            is_allowed(from, to, rounding).then_some(Conversion { from: Some(from), to, rounding })
+        })
     })
+}
+
+/// What makes integers of real numbers.
+const WHOLE: [(&str, Rounding); 4] = [
+    ("TRUNC", Rounding::Truncate),
+    ("ROUND", Rounding::NearestEven),
+    ("CEIL", Rounding::Up),
+    ("FLOOR", Rounding::Down),
+];
+
+/// True for conversions that a user's own unit of the same name goes before.
+pub(super) fn is_of_vendors(key: &str) -> bool {
+    ["ROUND", "CEIL", "FLOOR", "ANY_TO_"].into_iter().any(|name| key.starts_with(name))
 }
 
 /// True if `from_TO_to` exists.
@@ -95,7 +114,9 @@ impl Body<'_, '_> {
             self.report(found.with_help("convert to an integer type on the way"));
             return None;
         }
-        Some(Operand::Typed(Expr { span, ..lower(expr, from, to, rounding) }))
+        let rounding = if rounding == Rounding::NearestEven { self.checker.dialect(span).rounding() } else { rounding };
+        let value = Expr { span, ..lower(expr, from, to, rounding) };
+        Some(Operand::Typed(self.time_value(value)))
     }
 }
 

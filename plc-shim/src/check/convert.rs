@@ -101,7 +101,7 @@ impl Body<'_, '_> {
             let found = self.type_name(expr.ty);
             return self.mismatch(wanted.name(), &found, expr.span);
         };
-        if found.widens_to(wanted) {
+        if self.widens(found, wanted, expr.span) {
             return Some(converted(expr, wanted, Rounding::NearestEven));
         }
         let message = format!("{wanted} is wanted, this is {found}");

@@ -5,7 +5,7 @@ use super::scope::Body;
 use crate::diagnostic::{Code, Diagnostic, did_you_mean};
 use crate::ir::{ElementaryType, Expr, ExprKind, TypeId, Value};
 use crate::syntax::Span;
-use crate::syntax::ast::{self, Literal, TypedValue};
+use crate::syntax::ast::{self, BinaryOp, Literal, TypedValue};
 use crate::syntax::calendar::CalendarKind;
 
 impl Body<'_, '_> {
@@ -17,6 +17,9 @@ impl Body<'_, '_> {
             ast::ExprKind::Unary(operator, operand) => {
                 let operand = self.expression(operand)?;
                 self.unary(*operator, operand, expr.span)
+            }
+            ast::ExprKind::Binary(operator @ (BinaryOp::AndThen | BinaryOp::OrElse), left, right) => {
+                self.short_circuit(*operator, left, right, expr.span)
             }
             ast::ExprKind::Binary(operator, left, right) => {
                 // What a comparison compares has nothing to do with where its result goes.
@@ -41,6 +44,7 @@ impl Body<'_, '_> {
             Literal::Real(value) => Operand::Real { value: *value, span },
             Literal::Duration { long, ns } => {
                 let ty = if *long { ElementaryType::Ltime } else { ElementaryType::Time };
+                self.check_duration(ty, *ns, span)?;
                 Operand::Typed(constant(Value::Int(i128::from(*ns)), ty, span))
             }
             Literal::Calendar { kind, long, ns, .. } => {

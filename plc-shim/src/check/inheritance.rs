@@ -11,8 +11,22 @@ impl Checker<'_> {
         let ids: Vec<PouId> = self.classes.keys().copied().collect();
         for id in ids {
             self.check_members(id);
+            self.reject_start_methods(id);
             if self.pou(id).ast.kind.has_instances() && !self.is_abstract(id) {
                 self.check_complete(id);
+            }
+        }
+    }
+
+    /// Vendors run these without a call when an instance begins or ends.
+    fn reject_start_methods(&mut self, id: PouId) {
+        for name in ["FB_INIT", "FB_REINIT", "FB_EXIT"] {
+            let key = (Role::Method, name.to_owned());
+            if let Some(method) = self.class(id).and_then(|class| class.members.get(&key)).copied() {
+                let name = &self.pou(method).ast.name;
+                let message = format!("`{}`, which vendors run by itself, is not supported yet", name.text);
+                let found = Diagnostic::error(Code::UnsupportedFeature, name.span, message);
+                self.report(found.with_help("call a method of another name in the first scan"));
             }
         }
     }

@@ -83,7 +83,7 @@ impl Checker<'_> {
         let suitable = match section {
             SectionKind::Local | SectionKind::Global => unit != PouKind::Function,
             SectionKind::Input | SectionKind::Output => unit == PouKind::Program || open && unit != PouKind::Function,
-            SectionKind::InOut | SectionKind::Temp | SectionKind::External => false,
+            SectionKind::InOut | SectionKind::Temp | SectionKind::Static | SectionKind::External => false,
         };
         if !suitable {
             let message = "a variable of this section has no direct address";

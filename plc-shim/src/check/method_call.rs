@@ -101,6 +101,9 @@ impl Body<'_, '_> {
                 let Some(class) = class else { return Some(self.no_object("THIS", name.span)) };
                 return Some(Some(self.this_object(class, name.span)));
             }
+            if self.is_namespace(name) {
+                return None;
+            }
             if let Some(program) = self.program_object(name) {
                 return Some(Some(program));
             }

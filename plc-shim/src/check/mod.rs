@@ -12,9 +12,12 @@
 //! | [`constant`] | constant expressions to values |
 //! | [`convert`] | implicit conversions, constants in context |
 //! | [`expression`], [`operator`], [`calendar`], [`place`], [`part`] | expressions |
-//! | [`call`], [`standard_function`], [`conversion_function`] | calls |
+//! | [`call`], [`standard_function`], [`function_form`], [`conversion_function`] | calls |
+//! | [`enable`], [`enable_error`] | EN and ENO |
 //! | [`text`], [`text_function`], [`text_conversion`] | character strings |
-//! | [`statement`], [`edge`] | statements |
+//! | [`statement`], [`assignment`], [`edge`] | statements |
+//! | [`configuration`] | resources, tasks, instances of programs |
+//! | [`dialect`] | what dialects do their own way |
 //! | [`recursion`], [`dispatch`] | who calls whom, and what only a run decides |
 //! | [`namespace`] | what a name means where it stands |
 //! | [`class`], [`inheritance`] | bases, interfaces, members |
@@ -23,15 +26,21 @@
 //! A unit, type or global variable is resolved when it is first needed; what is being resolved
 //! and needed again contains itself.
 
+mod assignment;
 mod calendar;
 mod call;
 mod class;
+mod configuration;
 mod constant;
 mod conversion_function;
 mod convert;
+mod dialect;
 mod dispatch;
 mod edge;
+mod enable;
+mod enable_error;
 mod expression;
+mod function_form;
 mod inheritance;
 mod initial;
 mod instance;
@@ -60,13 +69,15 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 use self::class::Class;
+use self::configuration::Configured;
 use self::dispatch::Rows;
 use self::layout::Layout;
 use self::names::{Enumerator, GlobalEntry, PouEntry, TypeEntry};
 use self::namespace::Home;
 use crate::diagnostic::Diagnostic;
-use crate::ir::{Areas, Pou, PouId, Program, Row, TypeId, TypeTable, Variable};
-use crate::syntax::ast::{CompilationUnit, PouKind};
+use crate::dialect::Dialect;
+use crate::ir::{Areas, Configuration, Entry, Pou, PouId, Program, Row, TypeId, TypeTable, Variable};
+use crate::syntax::ast::CompilationUnit;
 use crate::syntax::direct_address::AddressUnit;
 use crate::syntax::{FileId, Span};
 
@@ -80,6 +91,7 @@ pub(crate) struct Checked {
     pub(crate) pous: BTreeMap<PouId, Pou>,
     /// The variables of every unit that has been declared, whether it runs or not.
     pub(crate) interfaces: BTreeMap<PouId, Vec<Variable>>,
+    /// The global variables that belong to no resource.
     pub(crate) globals: Vec<Variable>,
     pub(crate) programs: Vec<Program>,
     /// What the types run when a method is called that is not known before.
@@ -88,6 +100,9 @@ pub(crate) struct Checked {
     pub(crate) areas: Areas,
     /// What the numbers of direct addresses count.
     pub(crate) address_unit: AddressUnit,
+    pub(crate) configuration: Option<Configuration>,
+    /// What tasks can run; those of the programs first.
+    pub(crate) entries: Vec<Entry>,
     /// The whole memory at a cold start.
     pub(crate) image: Vec<u8>,
 }
@@ -100,12 +115,15 @@ pub(crate) fn check(units: &[(FileId, &CompilationUnit)], library: &BTreeSet<Fil
     checker.link_classes();
     checker.resolve_declarations();
     checker.check_inheritance();
-    checker.place_programs();
+    checker.configure();
     checker.check_bodies();
     checker.report_recursion();
     checker.guard_circles();
     checker.place_areas();
+    checker.check_configuration();
     let image = checker.memory_image();
+    let globals = checker.shared_globals();
+    let (configuration, entries) = checker.take_configuration();
     let interfaces = checker
         .pous
         .iter()
@@ -115,11 +133,13 @@ pub(crate) fn check(units: &[(FileId, &CompilationUnit)], library: &BTreeSet<Fil
         interfaces: interfaces.collect(),
         types: checker.types,
         pous: checker.checked,
-        globals: checker.globals.into_values().filter_map(|entry| entry.variable).collect(),
+        globals,
         programs: checker.programs,
         rows: checker.rows.into_list(),
         areas: checker.areas,
         address_unit: checker.address_unit,
+        configuration,
+        entries,
         image,
     };
     (result, checker.diagnostics)
@@ -131,6 +151,7 @@ const MAX_DEPTH: u32 = 64;
 /// What is known so far.
 struct Checker<'a> {
     library: &'a BTreeSet<FileId>,
+    dialects: BTreeMap<FileId, Dialect>,
     types: TypeTable,
     type_names: BTreeMap<String, TypeEntry<'a>>,
     pous: Vec<PouEntry<'a>>,
@@ -157,6 +178,7 @@ struct Checker<'a> {
     /// Initial bytes of what has been placed.
     placed: Vec<(u32, std::sync::Arc<[u8]>)>,
     programs: Vec<Program>,
+    configured: Configured<'a>,
     checked: BTreeMap<PouId, Pou>,
     /// Units whose bodies are still to be checked, and all that ever were.
     queue: Vec<PouId>,
@@ -208,22 +230,6 @@ impl<'a> Checker<'a> {
     fn enqueue(&mut self, id: PouId) {
         if self.queued.insert(id) {
             self.queue.push(id);
-        }
-    }
-
-    /// Every program has one instance, under its own name.
-    fn place_programs(&mut self) {
-        for index in 0..self.pous.len() {
-            let id = PouId(index as u32);
-            if self.pou(id).ast.kind != PouKind::Program {
-                continue;
-            }
-            let (size, align, image) = self.pou(id).instance();
-            let span = self.pou(id).ast.name.span;
-            if let Some(offset) = self.allocate(size, align, span) {
-                self.placed.push((offset, image));
-                self.programs.push(Program { pou: id, offset });
-            }
         }
     }
 

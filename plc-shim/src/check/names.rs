@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use super::Checker;
 use super::class::{Class, Membership, Role};
+use super::configuration::Configured;
 use super::layout::{Layout, VIRTUAL_TIME_NAME, VIRTUAL_TIME_OFFSET};
 use super::namespace::Home;
 use super::scope::Scope;
@@ -59,10 +60,12 @@ pub(super) struct GlobalEntry<'a> {
     /// Nothing for what the runtime provides.
     pub(super) ast: Option<(&'a ast::Variable, &'a [Qualifier])>,
     pub(super) name: String,
-    pub(super) home: Arc<Home>,
+    pub(super) seen_from: Arc<Home>,
     pub(super) span: Span,
     pub(super) progress: Progress,
     pub(super) variable: Option<Variable>,
+    /// The resource that declares it.
+    pub(super) home: Option<usize>,
 }
 
 /// A value of an enumeration.
@@ -76,6 +79,7 @@ impl<'a> Checker<'a> {
     pub(super) fn new(library: &'a BTreeSet<FileId>) -> Self {
         Self {
             library,
+            dialects: BTreeMap::new(),
             types: TypeTable::new(),
             type_names: BTreeMap::new(),
             pous: Vec::new(),
@@ -97,6 +101,7 @@ impl<'a> Checker<'a> {
             literals: BTreeMap::new(),
             placed: Vec::new(),
             programs: Vec::new(),
+            configured: Configured::default(),
             checked: BTreeMap::new(),
             queue: Vec::new(),
             queued: BTreeSet::new(),
@@ -168,10 +173,11 @@ impl<'a> Checker<'a> {
                 let entry = GlobalEntry {
                     ast: Some((variable, &section.qualifiers)),
                     name: name.text.clone(),
-                    home: self.home.clone(),
+                    seen_from: self.home.clone(),
                     span: name.span,
                     progress: Progress::Untouched,
                     variable: None,
+                    home: None,
                 };
                 if self.home.open {
                     self.open_globals.entry(name.key()).or_insert_with(|| key.clone());
@@ -185,7 +191,7 @@ impl<'a> Checker<'a> {
     fn is_taken(&mut self, name: &Ident) -> bool {
         if ElementaryType::find(&name.text).is_some()
             || matches!(name.key().as_str(), "STRING" | "WSTRING")
-            || super::standard_function::exists(&name.key())
+            || super::standard_function::is_reserved(&name.key())
         {
             self.report_reserved(name, name.span);
             return true;
@@ -228,7 +234,7 @@ fn virtual_time() -> GlobalEntry<'static> {
         storage: Storage::Absolute(VIRTUAL_TIME_OFFSET),
         constant: None,
         is_constant: true,
-        retain: false,
+        retention: None,
         address: None,
         span,
         image: vec![0; 8].into(),
@@ -237,5 +243,7 @@ fn virtual_time() -> GlobalEntry<'static> {
         owner: None,
     };
     let name = VIRTUAL_TIME_NAME.to_owned();
-    GlobalEntry { ast: None, name, home: Arc::default(), span, progress: Progress::Done, variable: Some(variable) }
+    let (seen_from, home) = (Arc::default(), None);
+    let (progress, variable) = (Progress::Done, Some(variable));
+    GlobalEntry { ast: None, name, seen_from, span, progress, variable, home }
 }

@@ -72,6 +72,7 @@ fn joined(namespace: &str, key: &str) -> String {
 
 impl<'a> Checker<'a> {
     pub(super) fn collect(&mut self, units: &[(crate::syntax::FileId, &'a CompilationUnit)]) {
+        self.dialects = units.iter().map(|(file, unit)| (*file, unit.dialect)).collect();
         let mut used = Vec::new();
         for (_, unit) in units {
             let mut home = Home::default();
@@ -86,6 +87,8 @@ impl<'a> Checker<'a> {
         for name in used {
             self.check_using(name);
         }
+        self.home = Arc::default();
+        self.collect_resource_globals();
     }
 
     fn collect_all(&mut self, list: &'a [Declaration], home: &Arc<Home>, used: &mut Vec<&'a Ident>) {
@@ -99,6 +102,7 @@ impl<'a> Checker<'a> {
                 Declaration::Type(declaration) => self.collect_type(declaration),
                 Declaration::Globals(section) => self.collect_globals(section),
                 Declaration::Using(_) => {}
+                Declaration::Configuration(configuration) => self.collect_configuration(configuration),
                 Declaration::Namespace(namespace) => {
                     used.extend(&namespace.using);
                     let inner = Arc::new(home.inside(namespace));
@@ -175,7 +179,7 @@ impl<'a> Checker<'a> {
             self.globals.iter().filter(|(full, _)| full.rsplit_once('.').is_some_and(|(_, last)| last == key));
         let units = units.map(|entry| entry.home.full_name(&entry.ast.name));
         let types = types.map(|entry| entry.home.full_name(&entry.ast.name));
-        let globals = globals.map(|(_, entry)| format!("{}.{}", entry.home.shown, entry.name));
+        let globals = globals.map(|(_, entry)| format!("{}.{}", entry.seen_from.shown, entry.name));
         let found = units.chain(types).chain(globals).next()?;
         Some(format!("write `{found}`"))
     }
@@ -208,6 +212,12 @@ impl Body<'_, '_> {
         let text = format!("{}.{}", first.text, last.text);
         let found = Ident { text, span: first.span.to(last.span) };
         self.is_in_namespace(&found.key()).then_some(found)
+    }
+
+    /// True for the first name of a namespace that no variable hides.
+    pub(super) fn is_namespace(&self, name: &Ident) -> bool {
+        let key = name.key();
+        !self.scope.declares(&key) && self.checker.global_key(&key).is_none() && self.is_in_namespace(&key)
     }
 
     /// True if `key` names a namespace, or something in one.

@@ -17,7 +17,8 @@ pub(super) struct Pair {
 
 fn resolved(operator: BinaryOp) -> Option<Binary> {
     Some(match operator {
-        BinaryOp::Power => return None,
+        // Those that are evaluated in part only are no operations on two values.
+        BinaryOp::Power | BinaryOp::AndThen | BinaryOp::OrElse => return None,
         BinaryOp::Multiply => Binary::Multiply,
         BinaryOp::Divide => Binary::Divide,
         BinaryOp::Modulo => Binary::Modulo,
@@ -66,12 +67,12 @@ impl Body<'_, '_> {
         }
         let ty = expr.ty;
         let kind = ExprKind::Unary(Unary::Negate, Box::new(expr));
-        Some(Operand::Typed(Expr { kind, ty, span }))
+        Some(Operand::Typed(self.time_value(Expr { kind, ty, span })))
     }
 
     pub(super) fn not(&mut self, operand: Operand, span: Span) -> Option<Operand> {
         match operand {
-            Operand::Typed(expr) if self.plain_elementary(&expr).is_some_and(ElementaryType::is_bits) => {
+            Operand::Typed(expr) if self.plain_elementary(&expr).is_some_and(|ty| self.has_bits(ty, span)) => {
                 let ty = expr.ty;
                 let kind = ExprKind::Unary(Unary::Not, Box::new(expr));
                 Some(Operand::Typed(Expr { kind, ty, span }))
@@ -117,7 +118,8 @@ impl Body<'_, '_> {
         }
         let wanted = if operator == Binary::Modulo { "integers" } else { "numbers" };
         let pair = self.unify(operator, left, right, wanted, span)?;
-        let allowed = if operator == Binary::Modulo { pair.ty.is_integer() } else { pair.ty.is_number() };
+        let bits = pair.ty.is_bits() && self.bits_are_numbers(pair.ty, span);
+        let allowed = bits || if operator == Binary::Modulo { pair.ty.is_integer() } else { pair.ty.is_number() };
         if !allowed {
             let message = format!("this operator is for {wanted}, not {}", pair.ty);
             let help = pair.ty.is_bits().then_some("convert bit strings to an integer type first");
@@ -126,6 +128,7 @@ impl Body<'_, '_> {
             return None;
         }
         let ty = pair.ty.into();
+        let operator = self.division(operator, span);
         let kind = ExprKind::Binary(operator, Box::new(pair.left), Box::new(pair.right));
         Some(Operand::Typed(Expr { kind, ty, span }))
     }
@@ -186,7 +189,7 @@ impl Body<'_, '_> {
 
     fn bitwise(&mut self, operator: Binary, left: Operand, right: Operand, span: Span) -> Option<Operand> {
         let pair = self.unify(operator, left, right, "BOOL and bit strings", span)?;
-        if !pair.ty.is_bits() {
+        if !pair.ty.is_bits() && !self.bits_are_numbers(pair.ty, span) {
             let message = format!("AND, OR, XOR are for BOOL and bit strings, not {}", pair.ty);
             let found = Diagnostic::error(Code::InvalidOperand, span, message);
             self.report(found.with_help("convert integers to a bit string type first"));
@@ -206,7 +209,7 @@ impl Body<'_, '_> {
         _wanted: &str,
         span: Span,
     ) -> Option<Pair> {
-        let ty = self.common_type(&left, &right);
+        let ty = self.common_type(&left, &right, span);
         let Some(ty) = ty else {
             return self.invalid_operands(&left, &right, span);
         };
@@ -215,7 +218,7 @@ impl Body<'_, '_> {
         Some(Pair { left, right, ty })
     }
 
-    fn common_type(&mut self, left: &Operand, right: &Operand) -> Option<ElementaryType> {
+    fn common_type(&mut self, left: &Operand, right: &Operand, span: Span) -> Option<ElementaryType> {
         let (left_ty, right_ty) = (self.own_type(left), self.own_type(right));
         match (left_ty, right_ty) {
             (Some(ty), None) if Self::adapts(right, ty) => Some(ty),
@@ -223,7 +226,7 @@ impl Body<'_, '_> {
             _ => {
                 let left = self.settled_type(left)?;
                 let right = self.settled_type(right)?;
-                left.common(right)
+                self.common(left, right, span)
             }
         }
     }
@@ -254,7 +257,7 @@ impl Body<'_, '_> {
                 let pair = self.unify(operator, left, right, "durations", span)?;
                 let ty = pair.ty.into();
                 let kind = ExprKind::Binary(operator, Box::new(pair.left), Box::new(pair.right));
-                Some(Operand::Typed(Expr { kind, ty, span }))
+                Some(Operand::Typed(self.time_value(Expr { kind, ty, span })))
             }
             (Binary::Multiply | Binary::Divide, Operand::Typed(left), right)
                 if self.plain_elementary(&left).is_some_and(ElementaryType::is_duration)
@@ -283,13 +286,17 @@ impl Body<'_, '_> {
         };
         if ty.is_integer() {
             let factor = converted(factor, ElementaryType::Lint, Rounding::NearestEven);
-            return Some(Operand::Typed(exact(operator, duration, factor)));
+            let operator = self.division(operator, span);
+            let scaled = exact(operator, duration, factor);
+            return Some(Operand::Typed(self.time_value(scaled)));
         }
         let lreal = ElementaryType::Lreal;
         let duration = converted(duration, lreal, Rounding::NearestEven);
         let factor = converted(factor, lreal, Rounding::NearestEven);
+        let operator = self.division(operator, span);
         let product = exact(operator, duration, factor);
-        Some(Operand::Typed(converted(product, duration_ty, Rounding::NearestEven)))
+        let scaled = converted(product, duration_ty, Rounding::NearestEven);
+        Some(Operand::Typed(self.time_value(scaled)))
     }
 
     /// 2nd ed. Table 24: the base is a real number, and so is the result.

@@ -4,6 +4,7 @@ use super::convert::Operand;
 use super::expression::enumeration_value;
 use super::scope::Body;
 use crate::diagnostic::{Code, Diagnostic, did_you_mean};
+use crate::dialect::Feature;
 use crate::ir::{Dimension, ElementaryType, Expr, ExprKind, Place, Step, Storage, Type, TypeId, Variable};
 use crate::syntax::Span;
 use crate::syntax::ast::{self, Ident, SectionKind};
@@ -144,14 +145,16 @@ impl Body<'_, '_> {
     /// The variable of this name; an error is one that has been reported.
     pub(super) fn variable_named(&mut self, name: &Ident) -> Option<Result<Variable, ()>> {
         let key = name.key();
-        if self.scope.is_broken(&key) {
+        let local = !name.is_quoted() || self.is_own_result(name);
+        if local && self.scope.is_broken(&key) {
             return Some(Err(()));
         }
-        if let Some(found) = self.scope.find(&key) {
+        if let Some(found) = self.scope.find(&key).filter(|_| local) {
             return Some(Ok(found.clone()));
         }
         // Vendors make global variables visible everywhere; the standard wants VAR_EXTERNAL.
         if let Some(key) = self.checker.global_key(&key) {
+            self.checker.note_global_use(self.pou, &key, name.span);
             return Some(self.checker.global(&key, Some(name.span)).ok_or(()));
         }
         None
@@ -248,6 +251,7 @@ impl Body<'_, '_> {
             SectionKind::Input => Access::ReadWrite,
             SectionKind::Output => Access::InstanceOutput,
             SectionKind::Local if self.may_see(variable) => Access::ReadWrite,
+            SectionKind::Local if self.checker.dialect(span).has(Feature::InstanceInternals) => Access::ReadWrite,
             _ => {
                 let ty = self.type_name(base.place.ty);
                 let message = format!("`{}` is internal to {ty}", name.text);

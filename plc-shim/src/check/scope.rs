@@ -48,10 +48,15 @@ impl Scope {
         }
     }
 
-    /// What a caller can set by position: inputs and in-outs in their order.
+    /// What a caller can set: inputs and in-outs in their order.
     pub(super) fn inputs(&self) -> impl Iterator<Item = &Variable> {
         let accepts = |section| matches!(section, SectionKind::Input | SectionKind::InOut);
         self.variables.iter().filter(move |variable| accepts(variable.section))
+    }
+
+    /// What stands in a list without names, which EN never does.
+    pub(super) fn positional(&self) -> impl Iterator<Item = &Variable> {
+        self.inputs().filter(|variable| !super::enable::is_control(variable))
     }
 
     pub(super) fn register(&mut self, ty: ElementaryType) -> LocalId {

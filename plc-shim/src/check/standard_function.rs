@@ -1,143 +1,41 @@
 //! Standard functions (2nd ed. 2.5.1.5, 3rd ed. 6.6.2.5).
 
-use super::calendar::{self, TimedFunction};
 use super::conversion_function;
-use super::convert::{Operand, converted};
+use super::convert::{Operand, constant, converted};
+use super::function_form::{self, Form};
 use super::scope::Body;
 use super::text_conversion;
-use super::text_function::{self, TextForm};
 use crate::diagnostic::{Code, Diagnostic};
-use crate::ir::text::Edit;
-use crate::ir::{Binary, ElementaryType, Expr, ExprKind, Intrinsic, Rounding, TypeId};
+use crate::ir::{Binary, ElementaryType, Expr, ExprKind, Intrinsic, Rounding, Type, TypeId, Value};
 use crate::syntax::Span;
 use crate::syntax::ast::{Argument, BinaryOp, Ident};
 
-/// What a standard function does with its arguments.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Form {
-    Absolute,
-    Real(Intrinsic),
-    Power,
-    Move,
-    Not,
-    /// Joins two or more from the left.
-    Operator(BinaryOp),
-    /// Joins exactly two.
-    Pair(BinaryOp),
-    /// Holds between each two neighbours.
-    Comparison(Binary),
-    Extreme(Intrinsic),
-    Limit,
-    Select,
-    Multiplex,
-    Shift(Intrinsic),
-    Text(TextForm),
-    Timed(TimedFunction),
-}
-
-const FUNCTIONS: &[(&str, Form)] = &[
-    ("ABS", Form::Absolute),
-    ("SQRT", Form::Real(Intrinsic::Sqrt)),
-    ("LN", Form::Real(Intrinsic::Ln)),
-    ("LOG", Form::Real(Intrinsic::Log)),
-    ("EXP", Form::Real(Intrinsic::Exp)),
-    ("SIN", Form::Real(Intrinsic::Sin)),
-    ("COS", Form::Real(Intrinsic::Cos)),
-    ("TAN", Form::Real(Intrinsic::Tan)),
-    ("ASIN", Form::Real(Intrinsic::Asin)),
-    ("ACOS", Form::Real(Intrinsic::Acos)),
-    ("ATAN", Form::Real(Intrinsic::Atan)),
-    ("EXPT", Form::Power),
-    ("MOVE", Form::Move),
-    ("NOT", Form::Not),
-    ("ADD", Form::Operator(BinaryOp::Add)),
-    ("MUL", Form::Operator(BinaryOp::Multiply)),
-    ("SUB", Form::Pair(BinaryOp::Subtract)),
-    ("DIV", Form::Pair(BinaryOp::Divide)),
-    ("MOD", Form::Pair(BinaryOp::Modulo)),
-    ("AND", Form::Operator(BinaryOp::And)),
-    ("OR", Form::Operator(BinaryOp::Or)),
-    ("XOR", Form::Operator(BinaryOp::Xor)),
-    ("GT", Form::Comparison(Binary::Greater)),
-    ("GE", Form::Comparison(Binary::GreaterEqual)),
-    ("EQ", Form::Comparison(Binary::Equal)),
-    ("LE", Form::Comparison(Binary::LessEqual)),
-    ("LT", Form::Comparison(Binary::Less)),
-    ("NE", Form::Pair(BinaryOp::NotEqual)),
-    ("MAX", Form::Extreme(Intrinsic::Max)),
-    ("MIN", Form::Extreme(Intrinsic::Min)),
-    ("LIMIT", Form::Limit),
-    ("SEL", Form::Select),
-    ("MUX", Form::Multiplex),
-    ("SHL", Form::Shift(Intrinsic::ShiftLeft)),
-    ("SHR", Form::Shift(Intrinsic::ShiftRight)),
-    ("ROL", Form::Shift(Intrinsic::RotateLeft)),
-    ("ROR", Form::Shift(Intrinsic::RotateRight)),
-];
-
-fn find(key: &str) -> Option<Form> {
-    let text = || text_function::FUNCTIONS.iter().find(|(name, _)| *name == key);
-    let found = FUNCTIONS.iter().find(|(name, _)| *name == key).map(|(_, form)| *form);
-    let timed = || calendar::FUNCTIONS.iter().find(|function| function.name == key);
-    let found = found.or_else(|| text().map(|(_, form)| Form::Text(*form)));
-    found.or_else(|| timed().map(|function| Form::Timed(*function)))
-}
-
-/// True if the standard has a function of this name, in capitals.
+/// True if there is a function of this name, in capitals.
 pub(super) fn exists(key: &str) -> bool {
-    find(key).is_some() || conversion_function::find(key).is_some() || text_conversion::find(key).is_some()
+    function_form::find(key).is_some()
+        || conversion_function::find(key).is_some()
+        || text_conversion::find(key).is_some()
 }
 
-/// Names of all but the conversions.
-pub(super) fn names() -> impl Iterator<Item = &'static str> {
-    FUNCTIONS.iter().map(|(name, _)| *name).chain(text_function::FUNCTIONS.iter().map(|(name, _)| *name))
-}
-
-impl Form {
-    /// Fewest and most arguments.
-    fn arity(self) -> (usize, usize) {
-        match self {
-            Self::Absolute | Self::Real(_) | Self::Move | Self::Not => (1, 1),
-            Self::Timed(_) | Self::Power | Self::Pair(_) | Self::Shift(_) => (2, 2),
-            Self::Limit | Self::Select => (3, 3),
-            Self::Text(form) if form != TextForm::Edit(Edit::Concat) => {
-                (form.parameters().len(), form.parameters().len())
-            }
-            Self::Text(_) | Self::Operator(_) | Self::Comparison(_) | Self::Extreme(_) | Self::Multiplex => {
-                (2, usize::MAX)
-            }
-        }
-    }
-
-    /// Position of a formal parameter.
-    fn position(self, name: &str) -> Option<usize> {
-        let numbered = || name.strip_prefix("IN")?.parse::<usize>().ok();
-        match (self, name) {
-            (Self::Text(form), _) if form != TextForm::Edit(Edit::Concat) => {
-                form.parameters().iter().position(|known| *known == name)
-            }
-            (Self::Absolute | Self::Real(_) | Self::Move | Self::Not | Self::Shift(_), "IN")
-            | (Self::Limit, "MN")
-            | (Self::Select, "G")
-            | (Self::Multiplex, "K") => Some(0),
-            (Self::Shift(_), "N") | (Self::Limit, "IN") => Some(1),
-            (Self::Limit, "MX") => Some(2),
-            (Self::Select | Self::Multiplex, _) => numbered()?.checked_add(1),
-            (Self::Limit | Self::Shift(_) | Self::Absolute | Self::Real(_), _) => None,
-            _ => numbered()?.checked_sub(1),
-        }
-    }
+/// True if no unit or type may have the name.
+pub(super) fn is_reserved(key: &str) -> bool {
+    let conversion = || conversion_function::find(key).is_some() || text_conversion::find(key).is_some();
+    function_form::is_reserved(key) || !conversion_function::is_of_vendors(key) && conversion()
 }
 
 impl Body<'_, '_> {
     /// A call of the standard function `name`, which exists.
     pub(super) fn standard_call(&mut self, name: &Ident, arguments: &[Argument], span: Span) -> Option<Operand> {
         let key = name.key();
-        if let Some(form) = find(&key) {
+        if let Some((form, ty)) = function_form::find(&key) {
             let comparison = matches!(form, Form::Comparison(_) | Form::Pair(BinaryOp::NotEqual));
             let context = self.context.filter(|_| !comparison);
             let operands = self.within(context, |body| body.operands(name, form, arguments, span));
-            return self.apply(form, operands?, span);
+            let operands = match ty {
+                Some(ty) => self.typed_operands(form, ty, operands?)?,
+                None => operands?,
+            };
+            return self.apply(form, operands, span);
         }
         let conversion = conversion_function::find(&key);
         let operands = self.within(None, |body| body.operands(name, Form::Absolute, arguments, span));
@@ -146,6 +44,14 @@ impl Body<'_, '_> {
             (Some(conversion), _) => self.conversion(conversion, operand, span),
             (None, conversion) => self.text_conversion(conversion?, operand, span),
         }
+    }
+
+    /// The operands of a typed function, in its type.
+    fn typed_operands(&mut self, form: Form, ty: ElementaryType, operands: Vec<Operand>) -> Option<Vec<Operand>> {
+        let typed = operands.into_iter().enumerate().map(|(position, operand)| {
+            if form.is_typed_at(position) { self.coerce(operand, ty.into()).map(Operand::Typed) } else { Some(operand) }
+        });
+        typed.collect()
     }
 
     fn operands(&mut self, name: &Ident, form: Form, arguments: &[Argument], span: Span) -> Option<Vec<Operand>> {
@@ -194,6 +100,9 @@ impl Body<'_, '_> {
             Form::Power => self.power(first, operands.next()?, span),
             Form::Absolute => self.absolute(first, span),
             Form::Real(intrinsic) => self.real_function(intrinsic, first, span),
+            Form::RealPair(intrinsic) => self.real_pair(intrinsic, first, operands.next()?, span),
+            Form::IsValid => self.is_valid(first, span),
+            Form::SwapBytes => self.swapped_bytes(first, span),
             Form::Pair(operator) | Form::Operator(operator) => {
                 operands.try_fold(first, |left, right| self.binary(operator, left, right, span))
             }
@@ -239,19 +148,69 @@ impl Body<'_, '_> {
         Some(Self::intrinsic(kind, vec![expr], ty, span))
     }
 
+    fn real_pair(&mut self, kind: Intrinsic, left: Operand, right: Operand, span: Span) -> Option<Operand> {
+        let pair = self.unify(Binary::Divide, left, right, "real numbers", span)?;
+        let real = pair.ty == ElementaryType::Real;
+        let ty: TypeId = if real { pair.ty } else { ElementaryType::Lreal }.into();
+        let operands = vec![self.coerce(Operand::Typed(pair.left), ty)?, self.coerce(Operand::Typed(pair.right), ty)?];
+        Some(Self::intrinsic(kind, operands, ty, span))
+    }
+
+    /// 3rd ed. Table 39. Only a finite number lies within the limits of its type.
+    fn is_valid(&mut self, operand: Operand, span: Span) -> Option<Operand> {
+        let expr = self.settle(operand)?;
+        let (ty, greatest) = match self.plain_elementary(&expr) {
+            Some(ElementaryType::Real) => (ElementaryType::Real, Value::Real(f32::MAX)),
+            _ => (ElementaryType::Lreal, Value::Lreal(f64::MAX)),
+        };
+        let expr = self.coerce(Operand::Typed(expr), ty.into())?;
+        let size = self.absolute(Operand::Typed(expr), span)?;
+        self.operation(Binary::LessEqual, size, Operand::Typed(constant(greatest, ty, span)), span)
+    }
+
+    /// 3rd ed. Table 37.
+    fn swapped_bytes(&mut self, operand: Operand, span: Span) -> Option<Operand> {
+        let expr = self.settle(operand)?;
+        self.require_elementary(&expr)?;
+        let ty = expr.ty;
+        Some(Self::intrinsic(Intrinsic::SwapBytes, vec![expr], ty, span))
+    }
+
+    fn require_elementary(&mut self, expr: &Expr) -> Option<()> {
+        if self.plain_elementary(expr).is_some() {
+            return Some(());
+        }
+        let found = self.type_name(expr.ty);
+        self.mismatch("an elementary value", &found, expr.span)
+    }
+
     /// `GT(a, b, c)` is `a > b AND b > c` (2nd ed. Table 28).
     fn chain(&mut self, operator: Binary, first: Operand, others: Vec<Operand>, span: Span) -> Option<Operand> {
         let mut left = first;
         let mut whole: Option<Operand> = None;
         for right in others {
-            let link = self.operation(operator, left, right.clone(), span)?;
+            let (right, again) = self.twice(right);
+            let link = self.operation(operator, left, right, span)?;
             whole = Some(match whole {
                 None => link,
                 Some(before) => self.operation(Binary::And, before, link, span)?,
             });
-            left = right;
+            left = again;
         }
         whole
+    }
+
+    /// An operand that is used twice and evaluated once.
+    fn twice(&mut self, operand: Operand) -> (Operand, Operand) {
+        match operand {
+            Operand::Typed(expr) if !matches!(expr.kind, ExprKind::Constant(_) | ExprKind::Load(_)) => {
+                let (ty, span) = (expr.ty, expr.span);
+                let (before, again) = self.once(expr);
+                let kind = ExprKind::After(before, Some(Box::new(again.clone())));
+                (Operand::Typed(Expr { kind, ty, span }), Operand::Typed(again))
+            }
+            operand => (operand.clone(), operand),
+        }
     }
 
     /// All operands in the smallest type that holds each.
@@ -263,7 +222,7 @@ impl Body<'_, '_> {
             Operand::Typed(expr) => Some(expr.ty),
             _ => None,
         });
-        let enumeration = typed.filter(|ty| matches!(self.checker.types.get(*ty), crate::ir::Type::Enumeration { .. }));
+        let enumeration = typed.filter(|ty| matches!(self.checker.types.get(*ty), Type::Enumeration { .. }));
         let context = self.context.filter(|ty| operands.iter().all(|operand| Self::adapts(operand, *ty)));
         let ty = if let Some(ty) = enumeration.or(context.map(TypeId::from)) {
             ty
@@ -282,6 +241,21 @@ impl Body<'_, '_> {
                 });
             }
             self.settle(whole?)?.ty
+        };
+        let all = operands.into_iter().map(|operand| self.coerce(operand, ty));
+        Some((all.collect::<Option<_>>()?, ty))
+    }
+
+    /// Values of any type that can be assigned (2nd ed. Table 27: ANY): all of one structure or array type, or
+    /// what [`Self::unify_all`] takes.
+    fn selected_values(&mut self, operands: Vec<Operand>, span: Span) -> Option<(Vec<Expr>, TypeId)> {
+        let aggregate = operands.iter().find_map(|operand| match operand {
+            Operand::Typed(expr) => Some(expr.ty)
+                .filter(|ty| matches!(self.checker.types.get(*ty), Type::Struct { .. } | Type::Array { .. })),
+            _ => None,
+        });
+        let Some(ty) = aggregate else {
+            return self.unify_all(operands, span);
         };
         let all = operands.into_iter().map(|operand| self.coerce(operand, ty));
         Some((all.collect::<Option<_>>()?, ty))
@@ -307,26 +281,16 @@ impl Body<'_, '_> {
 
     fn select(&mut self, selector: Operand, values: Vec<Operand>, span: Span) -> Option<Operand> {
         let selector = self.coerce(selector, ElementaryType::Bool.into())?;
-        let (mut all, ty) = self.unify_all(values, span)?;
-        self.require_elementary(ty, span)?;
+        let (mut all, ty) = self.selected_values(values, span)?;
         all.insert(0, selector);
         Some(Self::intrinsic(Intrinsic::Select, all, ty, span))
     }
 
     fn multiplex(&mut self, selector: Operand, values: Vec<Operand>, span: Span) -> Option<Operand> {
         let selector = self.integer_as_lint(selector)?;
-        let (mut all, ty) = self.unify_all(values, span)?;
-        self.require_elementary(ty, span)?;
+        let (mut all, ty) = self.selected_values(values, span)?;
         all.insert(0, selector);
         Some(Self::intrinsic(Intrinsic::Multiplex, all, ty, span))
-    }
-
-    fn require_elementary(&mut self, ty: TypeId, span: Span) -> Option<()> {
-        if self.elementary(ty).is_some() || self.shape(ty).is_some() {
-            return Some(());
-        }
-        let found = self.type_name(ty);
-        self.mismatch("an elementary value", &found, span)
     }
 
     pub(super) fn integer_as_lint(&mut self, operand: Operand) -> Option<Expr> {

@@ -66,12 +66,13 @@ impl Body<'_, '_> {
             }
             let fleeting = match variable.section {
                 SectionKind::Temp => true,
-                SectionKind::External | SectionKind::Global => false,
+                SectionKind::External | SectionKind::Global | SectionKind::Static => false,
                 _ => kind.keeps_nothing(),
             };
             if fleeting {
                 statements.push(self.initialised(variable));
             }
+            statements.extend(Self::outcome_begins(variable));
         }
         statements
     }
@@ -90,13 +91,25 @@ impl Body<'_, '_> {
     }
 
     fn statements(&mut self, list: &[ast::Statement]) -> Vec<Statement> {
-        list.iter().filter_map(|statement| self.statement(statement)).collect()
+        let mut checked = Vec::new();
+        for statement in list {
+            if let ast::StatementKind::Chain(targets, value) = &statement.kind {
+                checked.extend(self.chained(targets, value, statement.span));
+            } else {
+                checked.extend(self.statement(statement));
+            }
+        }
+        checked
     }
 
     fn statement(&mut self, statement: &ast::Statement) -> Option<Statement> {
         let span = statement.span;
         let kind = match &statement.kind {
-            ast::StatementKind::Empty | ast::StatementKind::Error => return None,
+            // A chain is several statements.
+            ast::StatementKind::Empty | ast::StatementKind::Error | ast::StatementKind::Chain(..) => return None,
+            ast::StatementKind::Update(operator, target, value) => {
+                return self.update(*operator, target, value, span);
+            }
             ast::StatementKind::Assign(target, value) => return self.assign(target, value, span),
             ast::StatementKind::Attempt(target, value) => return self.attempt(target, value, span),
             ast::StatementKind::Call(call) => self.call_statement(call, span)?,
@@ -136,11 +149,11 @@ impl Body<'_, '_> {
         body
     }
 
-    fn condition(&mut self, expr: &ast::Expr) -> Option<Expr> {
+    pub(super) fn condition(&mut self, expr: &ast::Expr) -> Option<Expr> {
         self.expression_of(expr, ElementaryType::Bool)
     }
 
-    fn assign(&mut self, target: &ast::Expr, value: &ast::Expr, span: Span) -> Option<Statement> {
+    pub(super) fn assign(&mut self, target: &ast::Expr, value: &ast::Expr, span: Span) -> Option<Statement> {
         if let Some(set) = self.property_assignment(target, value, span) {
             return set;
         }

@@ -6,7 +6,7 @@ use super::Checker;
 use super::convert::{Operand, constant};
 use super::scope::Body;
 use crate::diagnostic::{Code, Diagnostic};
-use crate::ir::text::{DEFAULT_CAPACITY, Edit, MAX_CAPACITY, TextCall, TextFunction, TextShape};
+use crate::ir::text::{Edit, MAX_CAPACITY, TextCall, TextFunction, TextShape};
 use crate::ir::{Binary, ElementaryType, Expr, ExprKind, Place, Storage, TypeId, Value};
 use crate::syntax::Span;
 use crate::syntax::ast;
@@ -29,9 +29,9 @@ impl Checker<'_> {
 
 impl<'a> Body<'_, 'a> {
     /// The type that `STRING[n]` names.
-    pub(super) fn text_type(&mut self, wide: bool, length: Option<&'a ast::Expr>) -> Option<TypeId> {
+    pub(super) fn text_type(&mut self, wide: bool, length: Option<&'a ast::Expr>, span: Span) -> Option<TypeId> {
         let capacity = match length {
-            None => DEFAULT_CAPACITY,
+            None => self.checker.dialect(span).string_length(),
             Some(expr) => {
                 let length = self.constant_integer(expr)?;
                 let fits = u16::try_from(length).ok().filter(|length| (1..=MAX_CAPACITY).contains(length));

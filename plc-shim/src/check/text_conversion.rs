@@ -45,7 +45,7 @@ fn sort(name: &str) -> Option<Sort> {
 
 /// The conversion that `key`, in capitals, names.
 pub(super) fn find(key: &str) -> Option<TextConversion> {
-    if let Some(to) = key.strip_prefix("TO_") {
+    if let Some(to) = key.strip_prefix("TO_").or_else(|| key.strip_prefix("ANY_TO_")) {
         let to = sort(to).filter(|to| matches!(to, Sort::Text { .. }))?;
         return Some(TextConversion { from: None, to });
     }
@@ -109,7 +109,9 @@ mod tests {
 
     #[test]
     fn names_are_taken_apart() {
-        for known in ["INT_TO_STRING", "STRING_TO_LREAL", "WSTRING_TO_STRING", "TO_STRING", "BOOL_TO_WSTRING"] {
+        for known in
+            ["INT_TO_STRING", "ANY_TO_WSTRING", "STRING_TO_LREAL", "WSTRING_TO_STRING", "TO_STRING", "BOOL_TO_WSTRING"]
+        {
             assert!(find(known).is_some(), "{known}");
         }
         for unknown in ["STRING_TO_STRING", "INT_TO_REAL", "TO_INT", "STRING", "STRING_TO_X"] {

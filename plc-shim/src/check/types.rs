@@ -83,9 +83,12 @@ impl<'a> Body<'_, 'a> {
             TypeSpecKind::Name(name) => self.type_by_name(name, need),
             TypeSpecKind::Array(dimensions, element) => self.array(dimensions, element, need, spec.span),
             TypeSpecKind::Struct(fields) => self.structure("STRUCT", None, fields, spec.span),
+            TypeSpecKind::Enumeration(_, Some(base)) if self.is_block(base) => {
+                self.unsupported("an instance with arguments for FB_init", spec.span)
+            }
             TypeSpecKind::Enumeration(values, base) => self.enumeration("enumeration", values, base.as_ref()),
             TypeSpecKind::String(name, length) => {
-                let ty = self.text_type(name.key() == "WSTRING", length.as_deref())?;
+                let ty = self.text_type(name.key() == "WSTRING", length.as_deref(), spec.span)?;
                 self.checker.charge_image(u64::from(self.checker.types.size(ty)), spec.span)?;
                 Some(self.whole(ty))
             }
@@ -98,6 +101,11 @@ impl<'a> Body<'_, 'a> {
         let message = format!("{what} is not supported yet");
         self.report(Diagnostic::error(Code::UnsupportedFeature, span, message));
         None
+    }
+
+    fn is_block(&self, name: &Ident) -> bool {
+        let found = self.checker.pou_named(&name.key());
+        found.is_some_and(|id| self.checker.pou(id).ast.kind.has_instances())
     }
 
     pub(super) fn whole(&self, ty: TypeId) -> TypedImage {

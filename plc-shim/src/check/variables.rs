@@ -9,7 +9,7 @@ use super::names::{Progress, TypedImage};
 use super::scope::{Body, Scope};
 use super::types::Need;
 use crate::diagnostic::{Code, Diagnostic, did_you_mean};
-use crate::ir::{EdgeDetection, ElementaryType, Place, PouId, Storage, TypeId, Value, Variable};
+use crate::ir::{EdgeDetection, ElementaryType, Place, PouId, Retention, Storage, TypeId, Value, Variable};
 use crate::syntax::Span;
 use crate::syntax::ast::{self, Ident, PouKind, Qualifier, Section, SectionKind};
 
@@ -19,6 +19,11 @@ pub(super) const POINTER: ElementaryType = ElementaryType::Udint;
 impl<'a> Checker<'a> {
     /// A global variable, placed in memory; `used` is where it is needed.
     pub(super) fn global(&mut self, key: &str, used: Option<Span>) -> Option<Variable> {
+        if self.globals.get(key)?.progress == Progress::Untouched
+            && let Some(found) = self.alternative_global(key, used)
+        {
+            return Some(found);
+        }
         let entry = self.globals.get_mut(key)?;
         let (progress, span) = (entry.progress, entry.span);
         if progress == Progress::Done {
@@ -31,7 +36,7 @@ impl<'a> Checker<'a> {
             return None;
         }
         entry.progress = Progress::Running;
-        let home = entry.home.clone();
+        let home = entry.seen_from.clone();
         let name = ast.names.iter().find(|name| name.span == span);
         let place = |checker: &mut Self| checker.deeper(span, |checker| checker.place_global(name?, ast, qualifiers));
         let variable = self.at_home(home, place);
@@ -75,7 +80,7 @@ impl<'a> Checker<'a> {
             storage,
             constant: elementary.filter(|_| is_constant).map(|ty| decode(ty, &declared.image)),
             is_constant,
-            retain: qualifiers.contains(&Qualifier::Retain),
+            retention: Retention::of(qualifiers),
             address: ast.address.as_ref().map(|address| address.text.clone()),
             span: name.span,
             image: declared.image.clone(),
@@ -254,6 +259,7 @@ impl<'c, 'a> Interface<'c, 'a> {
             if let Some(edge) = ast.edge {
                 variable.edge = self.edge_detection(edge, &variable);
             }
+            self.body.check_control(&variable);
             self.add(name, variable);
         }
     }
@@ -292,7 +298,7 @@ impl<'c, 'a> Interface<'c, 'a> {
                 Some(Storage::RegisterPointer(self.body.scope.register(POINTER)))
             }
             // The caller reads outputs after the call, so they outlive it.
-            (PouKind::Function, SectionKind::Output) => self.frame(declared, span),
+            (PouKind::Function, SectionKind::Output) | (_, SectionKind::Static) => self.frame(declared, span),
             (kind, section) if kind.keeps_nothing() || section == SectionKind::Temp => {
                 self.reject_instance(declared.ty, span)?;
                 self.temporary(declared, span)
@@ -385,6 +391,9 @@ impl<'c, 'a> Interface<'c, 'a> {
     fn declare_external(&mut self, name: &Ident, ty: TypeId, section: &Section) {
         let key = self.body.checker.global_key(&name.key());
         let known = key.is_some();
+        if let Some(key) = &key {
+            self.body.checker.note_global_use(self.body.pou, key, name.span);
+        }
         let global = key.and_then(|key| self.body.checker.global(&key, Some(name.span)));
         let Some(mut variable) = global else {
             if !known {

@@ -97,7 +97,7 @@ impl Emitter<'_, '_> {
             Binary::Add => Instruction::F32Add,
             Binary::Subtract => Instruction::F32Sub,
             Binary::Multiply => Instruction::F32Mul,
-            Binary::Divide => Instruction::F32Div,
+            Binary::Divide | Binary::DivideAnyway => Instruction::F32Div,
             Binary::Equal => Instruction::F32Eq,
             Binary::NotEqual => Instruction::F32Ne,
             Binary::Less => Instruction::F32Lt,
@@ -118,7 +118,7 @@ impl Emitter<'_, '_> {
             Binary::Add => Instruction::F64Add,
             Binary::Subtract => Instruction::F64Sub,
             Binary::Multiply => Instruction::F64Mul,
-            Binary::Divide => Instruction::F64Div,
+            Binary::Divide | Binary::DivideAnyway => Instruction::F64Div,
             Binary::Equal => Instruction::F64Eq,
             Binary::NotEqual => Instruction::F64Ne,
             Binary::Less => Instruction::F64Lt,
@@ -133,6 +133,7 @@ impl Emitter<'_, '_> {
         let signed = ty.is_signed();
         let instruction = match operator {
             Binary::Divide => return self.divide(ty, span),
+            Binary::DivideAnyway => return self.divide_anyway(ty, span),
             Binary::Modulo => return self.remainder(ty),
             Binary::Add => Instruction::I32Add,
             Binary::Subtract => Instruction::I32Sub,
@@ -158,6 +159,7 @@ impl Emitter<'_, '_> {
         let signed = ty.is_signed();
         let instruction = match operator {
             Binary::Divide => return self.divide(ty, span),
+            Binary::DivideAnyway => return self.divide_anyway(ty, span),
             Binary::Modulo => return self.remainder(ty),
             Binary::Add => Instruction::I64Add,
             Binary::Subtract => Instruction::I64Sub,
@@ -204,6 +206,25 @@ impl Emitter<'_, '_> {
         self.get(right);
         self.mark_fault(FaultKind::DivisionByZero, span);
         self.emit(if wide { Instruction::I64DivS } else { Instruction::I32DivS });
+        self.emit(Instruction::End);
+        self.release(left);
+        self.release(right);
+    }
+
+    /// As [`Self::divide`], but 0 for a division by zero.
+    fn divide_anyway(&mut self, ty: ElementaryType, span: Span) {
+        let held = value_type(ty);
+        let (left, right) = (self.scratch(held), self.scratch(held));
+        self.set(right);
+        self.set(left);
+        self.get(right);
+        self.emit(if ty.size() == 8 { Instruction::I64Eqz } else { Instruction::I32Eqz });
+        self.emit(Instruction::If(BlockType::Result(held)));
+        self.constant(ty, Value::Int(0));
+        self.emit(Instruction::Else);
+        self.get(left);
+        self.get(right);
+        self.divide(ty, span);
         self.emit(Instruction::End);
         self.release(left);
         self.release(right);

@@ -75,10 +75,13 @@ impl Emitter<'_, '_> {
         if from.size() == 4 {
             self.emit(Instruction::F64PromoteF32);
         }
-        self.emit(match rounding {
-            Rounding::NearestEven => Instruction::F64Nearest,
-            Rounding::Truncate => Instruction::F64Trunc,
-        });
+        match rounding {
+            Rounding::NearestEven => self.emit(Instruction::F64Nearest),
+            Rounding::NearestAway => self.round_away(),
+            Rounding::Truncate => self.emit(Instruction::F64Trunc),
+            Rounding::Up => self.emit(Instruction::F64Ceil),
+            Rounding::Down => self.emit(Instruction::F64Floor),
+        }
         if to.size() == 8 {
             let signed = to.is_signed();
             self.emit(if signed { Instruction::I64TruncSatF64S } else { Instruction::I64TruncSatF64U });
@@ -90,6 +93,24 @@ impl Emitter<'_, '_> {
             self.limit(high as i64, Instruction::I64GtS);
         }
         self.emit(Instruction::I32WrapI64);
+    }
+
+    /// Rounds the number on the stack, ties away from zero. What lies beyond the number's whole part is
+    /// exact, so the half is found exactly too.
+    fn round_away(&mut self) {
+        let number = self.scratch(ValType::F64);
+        self.tee(number);
+        self.emit(Instruction::F64Trunc);
+        self.get(number);
+        self.get(number);
+        self.emit(Instruction::F64Trunc);
+        self.emit(Instruction::F64Sub);
+        // Twice the fraction, without its own: -1, 0 or 1.
+        self.emit(Instruction::F64Const(Ieee64::new(2.0_f64.to_bits())));
+        self.emit(Instruction::F64Mul);
+        self.emit(Instruction::F64Trunc);
+        self.emit(Instruction::F64Add);
+        self.release(number);
     }
 
     /// Replaces the number on the stack by `limit` if it lies `beyond`.

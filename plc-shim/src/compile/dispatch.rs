@@ -4,9 +4,10 @@
 use wasm_encoder::{ConstExpr, ElementSection, Elements, Instruction, MemArg, RefType, TableSection, TableType};
 
 use super::emitter::{Emitter, Shared, value_type};
-use super::fault::FaultKind;
+use super::fault::{Callee, FaultKind};
 use crate::check::CALL_DEPTH_OFFSET;
 use crate::ir::{Cast, Dispatch, Guard, LocalId, Pou, PouId, Receiver, Row};
+use crate::syntax::Span;
 
 /// Deepest nesting of calls that come back to a unit that still runs.
 const MAX_CALL_DEPTH: i32 = 128;
@@ -66,13 +67,17 @@ impl Emitter<'_, '_> {
     }
 
     /// Calls what is known, or what the table has for the type of the instance in `pointer`.
-    pub(super) fn call_on(&mut self, pointer: LocalId, dispatch: Dispatch, pou: PouId) {
-        let Dispatch::Row(row) = dispatch else { return self.call(pou) };
+    pub(super) fn call_on(&mut self, pointer: LocalId, dispatch: Dispatch, pou: PouId, (callee, span): (Callee, Span)) {
+        let Dispatch::Row(row) = dispatch else {
+            self.mark_call(callee, span);
+            return self.call(pou);
+        };
         let Some(RowPlace { start, first, signature }) = self.shared.rows.get(row).copied() else { return };
         self.get(pointer);
         self.emit(Instruction::I32Load(WORD));
         self.emit(Instruction::I32Const(start.wrapping_sub(first) as i32));
         self.emit(Instruction::I32Add);
+        self.mark_call(callee, span);
         self.emit(Instruction::CallIndirect { type_index: signature, table_index: 0 });
     }
 

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use wasm_encoder::{BlockType, Function, Instruction, ValType};
 
 use super::dispatch::RowPlace;
-use super::fault::{FaultKind, Mark};
+use super::fault::{Callee, FaultKind, Mark, MarkKind};
 use crate::ir::elementary::Kind;
 use crate::ir::{Areas, ElementaryType, LocalId, PouId, TypeId, TypeTable};
 use crate::syntax::Span;
@@ -75,12 +75,17 @@ impl<'s, 'p> Emitter<'s, 'p> {
 
     /// Says that a statement begins here.
     pub(super) fn mark_statement(&mut self, span: Span) {
-        self.marks.push((self.code.len(), Mark { span, fault: None }));
+        self.marks.push((self.code.len(), Mark { span, kind: MarkKind::Statement }));
     }
 
     /// Says what it means if the next instruction traps.
     pub(super) fn mark_fault(&mut self, fault: FaultKind, span: Span) {
-        self.marks.push((self.code.len(), Mark { span, fault: Some(fault) }));
+        self.marks.push((self.code.len(), Mark { span, kind: MarkKind::Fault(fault) }));
+    }
+
+    /// Says what the next instruction calls.
+    pub(super) fn mark_call(&mut self, callee: Callee, span: Span) {
+        self.marks.push((self.code.len(), Mark { span, kind: MarkKind::Call(callee) }));
     }
 
     /// Stops the PLC if the value on the stack is not 0.

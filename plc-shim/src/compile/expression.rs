@@ -1,10 +1,11 @@
 //! Expressions.
 
-use wasm_encoder::{Ieee32, Ieee64, Instruction, ValType};
+use wasm_encoder::{BlockType, Ieee32, Ieee64, Instruction, ValType};
 
 use super::emitter::{Emitter, value_type};
-use super::fault::FaultKind;
+use super::fault::{Callee, FaultKind};
 use crate::ir::{Argument, Binary, ElementaryType, Expr, ExprKind, FunctionCall, Place, Unary, Value};
+use crate::syntax::Span;
 
 impl Emitter<'_, '_> {
     /// Pushes the expression's value; an aggregate's address.
@@ -28,14 +29,32 @@ impl Emitter<'_, '_> {
                 self.expression(operand);
                 self.convert(from, to, *rounding);
             }
+            ExprKind::Conditional(parts) => self.conditional(parts),
             ExprKind::Limited(low, high, operand) => self.limited(*low, *high, operand),
             ExprKind::Intrinsic(intrinsic, operands) => {
                 self.intrinsic(*intrinsic, operands, expr);
             }
             ExprKind::Text(call) => self.text_call(call, expr),
-            ExprKind::Call(call) => self.call_function(call),
+            ExprKind::Call(call) => self.call_function(call, expr.span),
             ExprKind::Cast(cast) => self.cast(cast),
+            ExprKind::After(statements, value) => {
+                self.side_statements(statements);
+                if let Some(value) = value {
+                    self.expression(value);
+                }
+            }
         }
+    }
+
+    fn conditional(&mut self, parts: &[Expr; 3]) {
+        let [condition, then, otherwise] = parts;
+        let held = value_type(self.held_as(then.ty));
+        self.expression(condition);
+        self.emit(Instruction::If(BlockType::Result(held)));
+        self.expression(then);
+        self.emit(Instruction::Else);
+        self.expression(otherwise);
+        self.emit(Instruction::End);
     }
 
     pub(super) fn constant(&mut self, ty: ElementaryType, value: Value) {
@@ -71,7 +90,7 @@ impl Emitter<'_, '_> {
         self.release(value);
     }
 
-    fn call_function(&mut self, call: &FunctionCall) {
+    fn call_function(&mut self, call: &FunctionCall, span: Span) {
         if let Some(receiver) = &call.receiver {
             self.receiver(receiver);
         }
@@ -86,8 +105,11 @@ impl Emitter<'_, '_> {
             }
         }
         match &call.receiver {
-            Some(receiver) => self.call_on(receiver.pointer, receiver.dispatch, call.pou),
-            None => self.call(call.pou),
+            Some(receiver) => self.call_on(receiver.pointer, receiver.dispatch, call.pou, (Callee::Function, span)),
+            None => {
+                self.mark_call(Callee::Function, span);
+                self.call(call.pou);
+            }
         }
         if let Some(place) = &call.result {
             self.keep_result(place);

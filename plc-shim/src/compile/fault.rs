@@ -66,30 +66,68 @@ impl fmt::Display for FaultKind {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Mark {
     pub(crate) span: Span,
-    /// The fault if this very instruction traps; nothing where a statement begins.
-    pub(crate) fault: Option<FaultKind>,
+    pub(crate) kind: MarkKind,
+}
+
+/// What the instruction at a mark does.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum MarkKind {
+    /// A statement begins here.
+    Statement,
+    /// The fault if this very instruction traps.
+    Fault(FaultKind),
+    /// It calls.
+    Call(Callee),
+}
+
+/// What is called, for the path to where a fault is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Callee {
+    /// A function.
+    Function,
+    /// An instance inside of the running one; the mark's span is its name.
+    Inner,
+    /// An instance that is a global variable; the mark's span is its name.
+    Global,
 }
 
 /// The marks of one function by offset in its body, in order.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct FunctionMarks {
     pub(crate) name: String,
+    /// It is what a task runs; `name` is that of an instance.
+    pub(crate) is_entry: bool,
     pub(crate) marks: Vec<(u32, Mark)>,
 }
 
 impl FunctionMarks {
     /// The fault of the trapping instruction at `offset`.
-    pub(crate) fn fault_at(&self, offset: u32) -> Option<Mark> {
+    pub(crate) fn fault_at(&self, offset: u32) -> Option<(FaultKind, Span)> {
+        self.marks_at(offset).find_map(|mark| match mark.kind {
+            MarkKind::Fault(fault) => Some((fault, mark.span)),
+            _ => None,
+        })
+    }
+
+    /// What the instruction at `offset` calls.
+    pub(crate) fn call_at(&self, offset: u32) -> Option<(Callee, Span)> {
+        self.marks_at(offset).find_map(|mark| match mark.kind {
+            MarkKind::Call(callee) => Some((callee, mark.span)),
+            _ => None,
+        })
+    }
+
+    fn marks_at(&self, offset: u32) -> impl Iterator<Item = Mark> {
         let first = self.marks.partition_point(|(at, _)| *at < offset);
-        let here = self.marks.iter().skip(first).take_while(|(at, _)| *at == offset);
-        here.map(|(_, mark)| *mark).find(|mark| mark.fault.is_some())
+        let here = self.marks.iter().skip(first).take_while(move |(at, _)| *at == offset);
+        here.map(|(_, mark)| *mark)
     }
 
     /// The last statement that begins at or before `offset`.
     pub(crate) fn statement_before(&self, offset: u32) -> Option<Span> {
         let end = self.marks.partition_point(|(at, _)| *at <= offset);
         let before = self.marks.iter().take(end).rev();
-        before.map(|(_, mark)| mark).find(|mark| mark.fault.is_none()).map(|mark| mark.span)
+        before.map(|(_, mark)| mark).find(|mark| mark.kind == MarkKind::Statement).map(|mark| mark.span)
     }
 }
 

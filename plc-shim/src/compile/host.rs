@@ -28,7 +28,7 @@ const fn import(name: &'static str, intrinsic: Intrinsic, function: Function) ->
 }
 
 /// All imports; their position is their function index.
-pub(crate) const IMPORTS: [Import; 20] = [
+pub(crate) const IMPORTS: [Import; 22] = [
     import("logf", Intrinsic::Ln, Function::Single(libm::logf)),
     import("log", Intrinsic::Ln, Function::Double(libm::log)),
     import("log10f", Intrinsic::Log, Function::Single(libm::log10f)),
@@ -47,6 +47,8 @@ pub(crate) const IMPORTS: [Import; 20] = [
     import("acos", Intrinsic::Acos, Function::Double(libm::acos)),
     import("atanf", Intrinsic::Atan, Function::Single(libm::atanf)),
     import("atan", Intrinsic::Atan, Function::Double(libm::atan)),
+    import("atan2f", Intrinsic::Atan2, Function::SinglePair(libm::atan2f)),
+    import("atan2", Intrinsic::Atan2, Function::DoublePair(libm::atan2)),
     import("powf", Intrinsic::Power, Function::SinglePair(libm::powf)),
     import("pow", Intrinsic::Power, Function::DoublePair(libm::pow)),
 ];

@@ -34,6 +34,8 @@ impl Emitter<'_, '_> {
                     self.narrow_from_bits(ty);
                 }
             }
+            Intrinsic::SwapBytes => self.swapped_bytes(operands, ty),
+            Intrinsic::Fraction => self.fraction(operands, ty),
             Intrinsic::FloorRemainder | Intrinsic::FloorMultiple => self.floored(kind, operands),
             _ => {
                 self.all(operands);

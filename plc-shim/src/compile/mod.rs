@@ -4,10 +4,11 @@
 //! |---|---|
 //! | [`module`] | sections, functions, exports |
 //! | [`function`] | one unit to one function |
+//! | [`entry`] | what a task runs |
 //! | [`emitter`] | instructions, registers, labels, marks |
 //! | [`place`] | addresses, loads and stores |
 //! | [`statement`], [`repetition`] | statements |
-//! | [`expression`], [`arithmetic`], [`conversion`], [`intrinsic`] | expressions |
+//! | [`expression`], [`arithmetic`], [`conversion`], [`intrinsic`], [`bytes`] | expressions |
 //! | [`dispatch`] | methods: which one runs |
 //! | [`host`] | functions that WebAssembly lacks |
 //! | [`text`], [`text_host`] | character strings |
@@ -17,9 +18,11 @@
 //! whatever makes one keeps to that.
 
 mod arithmetic;
+mod bytes;
 mod conversion;
 mod dispatch;
 mod emitter;
+mod entry;
 mod expression;
 pub(crate) mod fault;
 mod function;
@@ -33,4 +36,4 @@ mod statement;
 mod text;
 pub(crate) mod text_host;
 
-pub(crate) use module::{Compiled, MEMORY_EXPORT, compile, program_export};
+pub(crate) use module::{Compiled, MEMORY_EXPORT, compile, entry_export};

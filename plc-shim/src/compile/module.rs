@@ -4,23 +4,23 @@ use std::collections::BTreeMap;
 
 use wasm_encoder::{
     CodeSection, DataCountSection, DataSection, EntityType, ExportKind, ExportSection, Function, FunctionSection,
-    ImportSection, Instruction, MemorySection, MemoryType, Module, TypeSection, ValType,
+    ImportSection, MemorySection, MemoryType, Module, TypeSection, ValType,
 };
 
 use super::emitter::{Shared, value_type};
 use super::fault::{FaultTable, FunctionMarks};
-use super::{dispatch, function, host, text_host};
+use super::{dispatch, entry, function, host, text_host};
 use crate::check::Checked;
-use crate::ir::{Pou, Program, TypeTable};
+use crate::ir::{Pou, TypeTable};
 
 /// Name of the exported memory.
 pub(crate) const MEMORY_EXPORT: &str = "memory";
 
 const PAGE: u64 = 65_536;
 
-/// Name of the export that runs the program at this position.
-pub(crate) fn program_export(index: usize) -> String {
-    format!("program_{index}")
+/// Name of the export that runs the entry at this position.
+pub(crate) fn entry_export(index: usize) -> String {
+    format!("entry_{index}")
 }
 
 /// The module and what its instructions stand for.
@@ -44,25 +44,15 @@ pub(crate) fn compile(checked: &Checked) -> Compiled {
         let (parameters, results) = signature(pou, &checked.types);
         let (body, marks) = function::unit(&mut shared, pou);
         sections.add_function(parameters, results, &body);
-        faults.functions.push(FunctionMarks { name: pou.name.clone(), marks });
+        faults.functions.push(FunctionMarks { name: pou.name.clone(), is_entry: false, marks });
     }
-    for (index, program) in checked.programs.iter().enumerate() {
-        let body = entry(program, &shared.functions);
+    for (index, entry) in checked.entries.iter().enumerate() {
+        let (body, marks) = entry::entry(&mut shared, entry);
         let at = sections.add_function(Vec::new(), Vec::new(), &body);
-        sections.exports.export(&program_export(index), ExportKind::Func, at);
+        sections.exports.export(&entry_export(index), ExportKind::Func, at);
+        faults.functions.push(marks);
     }
     Compiled { wasm: sections.finish(checked, &shared), faults }
-}
-
-/// Runs a program's body on its one instance.
-fn entry(program: &Program, functions: &BTreeMap<crate::ir::PouId, u32>) -> Function {
-    let mut body = Function::new([]);
-    body.instruction(&Instruction::I32Const(program.offset as i32));
-    if let Some(index) = functions.get(&program.pou) {
-        body.instruction(&Instruction::Call(*index));
-    }
-    body.instruction(&Instruction::End);
-    body
 }
 
 fn signature(pou: &Pou, types: &TypeTable) -> (Vec<ValType>, Vec<ValType>) {

@@ -30,6 +30,11 @@ impl Emitter<'_, '_> {
                 self.emit(Instruction::I32Load(argument(u64::from(offset), ElementaryType::Udint)));
                 (0, true)
             }
+            Storage::AbsolutePointer(offset) => {
+                self.emit(Instruction::I32Const(0));
+                self.emit(Instruction::I32Load(argument(u64::from(offset), ElementaryType::Udint)));
+                (0, true)
+            }
             Storage::RegisterPointer(register) => {
                 self.get(register);
                 (0, true)

@@ -5,10 +5,11 @@ use std::sync::Arc;
 use wasm_encoder::Instruction;
 
 use super::emitter::Emitter;
+use super::fault::Callee;
 use crate::ir::elementary::Kind;
 use crate::ir::{
-    CaseStatement, ElementaryType, Expr, IfBranch, InstanceCall, LocalId, Place, Statement, StatementKind, TypeTable,
-    Value,
+    CaseStatement, ElementaryType, Expr, IfBranch, InstanceCall, LocalId, Place, Statement, StatementKind, Storage,
+    TypeTable, Value,
 };
 
 impl Emitter<'_, '_> {
@@ -92,7 +93,9 @@ impl Emitter<'_, '_> {
             self.statement(input);
         }
         self.get(call.pointer);
-        self.call_on(call.pointer, call.dispatch, call.pou);
+        let global = matches!(call.instance.storage, Storage::Absolute(_) | Storage::AbsolutePointer(_));
+        let callee = if global { Callee::Global } else { Callee::Inner };
+        self.call_on(call.pointer, call.dispatch, call.pou, (callee, call.instance.span));
         for output in &call.outputs {
             self.statement(output);
         }

@@ -26,6 +26,7 @@ use self::encoding::{Encoding, decode};
 use self::kind::SourceKind;
 use self::xml::XmlError;
 use crate::diagnostic::{Code, Diagnostic};
+use crate::dialect::Dialect;
 use crate::syntax::origin::Extract;
 use crate::syntax::{FileId, SourceFile, SourceMap, Span};
 
@@ -57,14 +58,15 @@ impl Input {
         let text = text.into();
         let read = match kind {
             SourceKind::Text => {
-                return Self { file: SourceFile::new(name, text), encoding: None, diagnostics: Vec::new() };
+                let file = SourceFile::new(name, text).in_dialect(Dialect::of_file(name));
+                return Self { file, encoding: None, diagnostics: Vec::new() };
             }
             SourceKind::TwinCat => twincat::extract(&text),
             SourceKind::PlcOpen => plcopen::extract(&text),
         };
         let taken = read.unwrap_or_else(|error| Taken::malformed(&error));
         let (extracted, origin) = taken.extract.finish(text);
-        let file = SourceFile::extracted(name, extracted, origin);
+        let file = SourceFile::extracted(name, extracted, origin).in_dialect(taken.dialect);
         Self { file, encoding: None, diagnostics: taken.diagnostics }
     }
 
@@ -72,6 +74,12 @@ impl Input {
     pub fn unreadable(name: &str, code: Code, message: impl Into<String>) -> Self {
         let found = Diagnostic::error(code, Span::new(UNNUMBERED, 0, 0), message);
         Self { file: SourceFile::new(name, ""), encoding: None, diagnostics: vec![found] }
+    }
+
+    /// The same file, read as `dialect` whatever its name says.
+    #[must_use]
+    pub fn in_dialect(self, dialect: Dialect) -> Self {
+        Self { file: self.file.in_dialect(dialect), ..self }
     }
 
     /// Its program text.
@@ -102,6 +110,7 @@ const UNNUMBERED: FileId = FileId(0);
 #[derive(Debug, Default)]
 struct Taken {
     extract: Extract,
+    dialect: Dialect,
     diagnostics: Vec<Diagnostic>,
 }
 

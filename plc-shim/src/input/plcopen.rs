@@ -8,11 +8,12 @@ use std::ops::Range;
 use super::Taken;
 use super::xml::{Element, XmlError, parse};
 use crate::diagnostic::Code;
+use crate::dialect::Dialect;
 
 /// Program text of a project.
 pub(super) fn extract(file: &str) -> Result<Taken, XmlError> {
     let root = parse(file)?;
-    let mut writer = Writer { taken: Taken::default(), file };
+    let mut writer = Writer { taken: Taken { dialect: dialect(file, &root), ..Taken::default() }, file };
     if root.name != "project" {
         let message = "`<project>` is wanted here: only PLCopen XML is read";
         writer.taken.report(root.open.clone(), Code::MalformedXml, message);
@@ -35,6 +36,19 @@ pub(super) fn extract(file: &str) -> Result<Taken, XmlError> {
         }
     }
     Ok(writer.taken)
+}
+
+/// The dialect of the tool that wrote the file: its name, or CODESYS' own data in it.
+fn dialect(file: &str, root: &Element) -> Dialect {
+    let product = root.child("fileHeader").and_then(|header| header.attribute("productName"));
+    let product = product.map_or_else(String::new, |name| name.value.to_ascii_uppercase());
+    if product.contains("TWINCAT") {
+        Dialect::TwinCat
+    } else if product.contains("CODESYS") || file.contains("3s-software.com/plcopenxml/") {
+        Dialect::Codesys
+    } else {
+        Dialect::default()
+    }
 }
 
 pub(super) struct Writer<'a> {

@@ -6,13 +6,14 @@ use std::ops::Range;
 use super::Taken;
 use super::xml::{Element, Node, XmlError, parse};
 use crate::diagnostic::Code;
+use crate::dialect::Dialect;
 use crate::syntax::token::{Keyword, TokenKind};
 use crate::syntax::tokenize;
 
 /// Program text of a `.TcPOU`, `.TcDUT`, `.TcGVL` or `.TcIO`.
 pub(super) fn extract(file: &str) -> Result<Taken, XmlError> {
     let root = parse(file)?;
-    let mut taken = Taken::default();
+    let mut taken = Taken { dialect: Dialect::TwinCat, ..Taken::default() };
     if root.name != "TcPlcObject" {
         taken.report(root.open.clone(), Code::MalformedXml, "`<TcPlcObject>` is wanted here");
         return Ok(taken);

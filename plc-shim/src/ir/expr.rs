@@ -31,12 +31,16 @@ pub(crate) enum ExprKind {
     Binary(Binary, Box<Expr>, Box<Expr>),
     /// From the operand's type to the expression's, the number itself kept as far as it fits.
     Convert(Rounding, Box<Expr>),
+    /// The second or, if the first is FALSE, the third; the other is not evaluated.
+    Conditional(Box<[Expr; 3]>),
     Intrinsic(Intrinsic, Vec<Expr>),
     /// The operand, which must lie between the two numbers.
     Limited(i128, i128, Box<Expr>),
     /// On character strings.
     Text(Box<TextCall>),
     Call(Box<FunctionCall>),
+    /// Runs the statements, then yields the value; none for what has no result.
+    After(Vec<Statement>, Option<Box<Expr>>),
     /// The reference, if what it refers to is of one of the types, else 0.
     Cast(Box<Cast>),
 }
@@ -55,8 +59,14 @@ pub(crate) struct Cast {
 pub(crate) enum Rounding {
     /// To nearest, ties to even (2nd ed. 2.5.1.5.1 by way of IEC 60559).
     NearestEven,
+    /// To nearest, ties away from zero: a vendor's choice.
+    NearestAway,
     /// Towards zero (`TRUNC`).
     Truncate,
+    /// To the next greater one (`CEIL` of vendors).
+    Up,
+    /// To the next smaller one (`FLOOR` of vendors).
+    Down,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -70,7 +80,10 @@ pub(crate) enum Binary {
     Add,
     Subtract,
     Multiply,
+    /// A division by zero stops the PLC.
     Divide,
+    /// A division by zero gives 0 for integers, an infinity or NaN for reals.
+    DivideAnyway,
     Modulo,
     And,
     Or,
@@ -104,6 +117,12 @@ pub(crate) enum Intrinsic {
     Asin,
     Acos,
     Atan,
+    /// Of Y and X (3rd ed. Table 28).
+    Atan2,
+    /// What lies behind the point (`FRAC` of vendors).
+    Fraction,
+    /// The same bytes in reverse order.
+    SwapBytes,
     /// Base and exponent, both of the result's type.
     Power,
     Max,
@@ -187,6 +206,8 @@ pub(crate) enum Storage {
     Absolute(u32),
     /// At a direct address.
     Located(Location),
+    /// The address stands at a fixed offset (a global of the running resource).
+    AbsolutePointer(u32),
     /// At an offset in the running instance.
     Instance(u32),
     /// The address stands at an offset in the running instance (`VAR_IN_OUT`).

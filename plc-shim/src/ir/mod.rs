@@ -3,6 +3,7 @@
 //! Code generation and the runtime read it and look nothing up by name.
 
 pub(crate) mod area;
+pub(crate) mod configuration;
 pub(crate) mod elementary;
 pub(crate) mod expr;
 pub(crate) mod pou;
@@ -12,12 +13,13 @@ pub(crate) mod types;
 pub(crate) mod value;
 
 pub(crate) use area::{Areas, Location};
+pub(crate) use configuration::{Access, Configuration, Entry, Program, Resource, Task};
 pub(crate) use elementary::ElementaryType;
 pub(crate) use expr::{
     Argument, Binary, Cast, Dispatch, Expr, ExprKind, FunctionCall, Intrinsic, LocalId, Part, Place, Receiver,
     Rounding, Row, Step, Storage, Unary,
 };
-pub(crate) use pou::{EdgeDetection, Guard, Pou, PouId, Program, Variable, Visibility};
+pub(crate) use pou::{EdgeDetection, Guard, Pou, PouId, Retention, Variable, Visibility};
 pub(crate) use statement::{CaseArm, CaseStatement, ForStatement, IfBranch, InstanceCall, Statement, StatementKind};
 pub(crate) use types::{Dimension, Field, Type, TypeId, TypeTable};
 pub(crate) use value::Value;

@@ -8,11 +8,35 @@ use super::value::Value;
 use std::sync::Arc;
 
 use crate::syntax::Span;
-use crate::syntax::ast::{Edge, SectionKind};
+use crate::syntax::ast::{Edge, Qualifier, SectionKind};
 
 /// Identifies a unit.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub(crate) struct PouId(pub(crate) u32);
+
+/// What becomes of a variable when the PLC starts again (2nd ed. 2.4.2, 3rd ed. 6.5.6).
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) enum Retention {
+    /// `NON_RETAIN`: it begins anew.
+    NonRetain,
+    /// `RETAIN`: it survives a warm start.
+    Retain,
+    /// `PERSISTENT`, of vendors: it survives a cold start, too.
+    Persistent,
+}
+
+impl Retention {
+    /// What qualifiers say; the longest lived of them.
+    pub(crate) fn of(qualifiers: &[Qualifier]) -> Option<Self> {
+        let each = qualifiers.iter().filter_map(|qualifier| match qualifier {
+            Qualifier::NonRetain => Some(Self::NonRetain),
+            Qualifier::Retain => Some(Self::Retain),
+            Qualifier::Persistent => Some(Self::Persistent),
+            Qualifier::Constant | Qualifier::Access(_) => None,
+        });
+        each.max()
+    }
+}
 
 /// A declared variable.
 #[derive(Debug, Clone)]
@@ -24,7 +48,8 @@ pub(crate) struct Variable {
     /// The value of a `CONSTANT` of elementary type.
     pub(crate) constant: Option<Value>,
     pub(crate) is_constant: bool,
-    pub(crate) retain: bool,
+    /// What its own section says of restarts.
+    pub(crate) retention: Option<Retention>,
     /// The direct address it is located at, as written.
     pub(crate) address: Option<String>,
     pub(crate) span: Span,
@@ -85,11 +110,4 @@ pub(crate) struct Pou {
     pub(crate) result: Option<Place>,
     pub(crate) guard: Guard,
     pub(crate) body: Vec<Statement>,
-}
-
-/// The one instance of a program.
-#[derive(Debug, Clone)]
-pub(crate) struct Program {
-    pub(crate) pou: PouId,
-    pub(crate) offset: u32,
 }

@@ -10,9 +10,6 @@ use super::expr::{Expr, Place};
 /// Most characters of a string, so that every position is an INT.
 pub(crate) const MAX_CAPACITY: u16 = 32_767;
 
-/// Characters of a string declared without a length, which the standard leaves open.
-pub(crate) const DEFAULT_CAPACITY: u16 = 80;
-
 /// Width and capacity of a string type.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) struct TextShape {

@@ -243,6 +243,11 @@ impl TypeTable {
         id
     }
 
+    /// The type of a unit's instances, if there are any.
+    pub(crate) fn known_block(&self, pou: PouId) -> Option<TypeId> {
+        self.blocks.get(&pou).copied()
+    }
+
     pub(crate) fn complete_block(&mut self, id: TypeId, align: u32, image: Arc<[u8]>) {
         if let Some(entry) = self.entries.get_mut(id.0 as usize) {
             entry.size = image.len() as u32;

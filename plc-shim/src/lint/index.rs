@@ -3,7 +3,10 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use crate::application::Front;
-use crate::syntax::ast::{Declaration, Ident, Pou, PouKind, Section, SectionKind, TypeSpec, TypeSpecKind, Variable};
+use crate::syntax::ast::{
+    Configuration, Connection, Declaration, Expr, Ident, Pou, PouKind, Section, SectionKind, TypeSpec, TypeSpecKind,
+    Variable,
+};
 
 /// Declarations by the key of their name.
 pub(super) struct Index<'a> {
@@ -15,6 +18,7 @@ pub(super) struct Index<'a> {
     library: BTreeSet<String>,
     types: BTreeMap<String, &'a TypeSpec>,
     globals: Vec<&'a Section>,
+    configurations: Vec<&'a Configuration>,
     /// Names that some unit has for a `VAR_IN_OUT`.
     in_outs: BTreeSet<String>,
 }
@@ -29,6 +33,7 @@ impl<'a> Index<'a> {
             library: BTreeSet::new(),
             types: BTreeMap::new(),
             globals: Vec::new(),
+            configurations: Vec::new(),
             in_outs: BTreeSet::new(),
         };
         for (file, unit) in &front.units {
@@ -69,6 +74,11 @@ impl<'a> Index<'a> {
                 namespace.declarations.iter().for_each(|each| self.add(each, library));
             }
             Declaration::Using(_) => {}
+            Declaration::Configuration(configuration) => {
+                let resources = configuration.resources.iter().flat_map(|resource| &resource.sections);
+                self.globals.extend(configuration.sections.iter().chain(resources));
+                self.configurations.push(configuration);
+            }
         }
     }
 
@@ -106,6 +116,41 @@ impl<'a> Index<'a> {
 
     pub(super) fn globals(&self) -> impl Iterator<Item = &'a Section> {
         self.globals.iter().copied()
+    }
+
+    /// What the configuration does with variables: what it reads, and what it may write.
+    pub(super) fn configured(&self) -> (Vec<&'a Expr>, Vec<&'a Expr>) {
+        let (mut read, mut written) = (Vec::new(), Vec::new());
+        for configuration in &self.configurations {
+            let resources = &configuration.resources;
+            let tasks = resources.iter().flat_map(|resource| &resource.tasks).flat_map(|task| &task.inputs);
+            read.extend(tasks.map(|(_, value)| value));
+            let programs = resources.iter().flat_map(|resource| &resource.programs);
+            for connection in programs.flat_map(|program| &program.connections) {
+                match connection {
+                    Connection::Input(_, source) => read.push(source),
+                    Connection::Output(_, target) => written.push(target),
+                    Connection::Task(..) => {}
+                }
+            }
+            written.extend(configuration.access.iter().map(|access| &access.path));
+            written.extend(configuration.instances.iter().map(|instance| &instance.path));
+        }
+        (read, written)
+    }
+
+    /// The tasks that the configuration has for a program; nothing without a configuration. What has
+    /// no task stands for itself.
+    pub(super) fn configured_tasks(&self, program: &Ident) -> Option<Vec<String>> {
+        let configuration = self.configurations.first()?;
+        let tasks = configuration.resources.iter().flat_map(|resource| {
+            let runs = |each: &&crate::syntax::ast::ProgramDeclaration| each.program.key() == program.key();
+            resource.programs.iter().filter(runs).map(|each| {
+                let task = each.task.as_ref().unwrap_or(&each.name).text.clone();
+                resource.name.as_ref().map_or_else(|| task.clone(), |(home, _)| format!("{}.{task}", home.text))
+            })
+        });
+        Some(tasks.collect::<BTreeSet<_>>().into_iter().collect())
     }
 
     /// What the user's types are.

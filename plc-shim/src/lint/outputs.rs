@@ -2,6 +2,7 @@
 
 use super::Unit;
 use super::index::Index;
+use super::usage::Usage;
 use crate::diagnostic::{Code, Diagnostic};
 use crate::syntax::ast::{Ident, SectionKind, Variable};
 
@@ -30,7 +31,8 @@ pub(super) fn lint(unit: &Unit<'_>, units: &[Unit<'_>], findings: &mut Vec<Diagn
         };
         for name in section.variables.iter().filter(|variable| is_output(variable)).flat_map(|each| &each.names) {
             let uses = unit.usage.get(&name.key());
-            if uses.written.is_none() && !uses.is_passed && !uses.is_called {
+            // ENO is written by the call itself (2nd ed. 2.5.1.2).
+            if name.key() != "ENO" && uses.written.is_none() && !uses.is_passed && !uses.is_called {
                 report(name, findings);
             }
         }
@@ -41,10 +43,11 @@ pub(super) fn lint_globals(units: &[Unit<'_>], index: &Index<'_>, findings: &mut
     if writes_outputs(units) {
         return;
     }
+    let declarations = Usage::of_globals(index);
     let located = index.globals().flat_map(|section| &section.variables).filter(|each| is_located_output(each));
     for name in located.flat_map(|variable| &variable.names) {
         let key = name.key();
-        let touched = units.iter().map(|unit| unit.usage.get(&key));
+        let touched = units.iter().map(|unit| unit.usage.get(&key)).chain([declarations.get(&key)]);
         if touched.into_iter().all(|uses| uses.written.is_none() && !uses.is_passed && !uses.is_called) {
             report(name, findings);
         }

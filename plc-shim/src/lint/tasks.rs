@@ -9,13 +9,14 @@ use crate::run::TaskPlan;
 use crate::syntax::Span;
 use crate::syntax::ast::{Ident, PouKind, SectionKind};
 
-/// Without a plan every program is taken to have a task of its own.
+/// Without a plan the configuration says which task runs what; without one of those every program
+/// is taken to have a task of its own.
 pub(super) fn lint(units: &[Unit<'_>], index: &Index<'_>, plan: Option<&TaskPlan>, findings: &mut Vec<Diagnostic>) {
     let units: BTreeMap<String, &Unit<'_>> = units.iter().map(|unit| (unit.pou.name.key(), unit)).collect();
     // The first write of each task to each global.
     let mut writers: BTreeMap<String, BTreeMap<String, Span>> = BTreeMap::new();
     for (key, unit) in units.iter().filter(|(_, unit)| unit.pou.kind == PouKind::Program) {
-        for task in tasks_of(&unit.pou.name, plan) {
+        for task in tasks_of(&unit.pou.name, plan, index) {
             for reached in reached(key, &units, index) {
                 for (name, span) in global_writes(reached, index) {
                     writers.entry(name.to_owned()).or_default().entry(task.clone()).or_insert(span);
@@ -26,7 +27,7 @@ pub(super) fn lint(units: &[Unit<'_>], index: &Index<'_>, plan: Option<&TaskPlan
     let declared = index.globals().flat_map(|section| &section.variables).flat_map(|variable| &variable.names);
     for name in declared {
         let Some(tasks) = writers.get(&name.key()).filter(|tasks| tasks.len() > 1) else { continue };
-        let kind = if plan.is_some() { "tasks" } else { "programs" };
+        let kind = if plan.is_some() || index.configured_tasks(name).is_some() { "tasks" } else { "programs" };
         let names: Vec<_> = tasks.keys().map(|task| format!("`{task}`")).collect();
         let message = format!("`{}` is written by {} {kind}: {}", name.text, names.len(), names.join(", "));
         let mut found = Diagnostic::warning(Code::WrittenByTwoTasks, name.span, message)
@@ -39,8 +40,10 @@ pub(super) fn lint(units: &[Unit<'_>], index: &Index<'_>, plan: Option<&TaskPlan
 }
 
 /// The tasks that run a program.
-fn tasks_of(program: &Ident, plan: Option<&TaskPlan>) -> Vec<String> {
-    let Some(plan) = plan else { return vec![program.text.clone()] };
+fn tasks_of(program: &Ident, plan: Option<&TaskPlan>, index: &Index<'_>) -> Vec<String> {
+    let Some(plan) = plan else {
+        return index.configured_tasks(program).unwrap_or_else(|| vec![program.text.clone()]);
+    };
     let runs = |name: &String| name.eq_ignore_ascii_case(&program.text);
     plan.tasks.iter().filter(|task| task.programs.iter().any(runs)).map(|task| task.name.clone()).collect()
 }

@@ -55,6 +55,13 @@ impl Usage {
         for spec in index.type_specs() {
             collector.spec(spec);
         }
+        let (read, written) = index.configured();
+        for expr in read {
+            walk::expression(expr, &mut collector);
+        }
+        for expr in written {
+            collector.target(expr);
+        }
         collector.usage
     }
 

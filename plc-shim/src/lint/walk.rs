@@ -39,6 +39,17 @@ fn statement(kind: &StatementKind, visitor: &mut impl Visitor) {
             target(place, visitor);
             expression(value, visitor);
         }
+        StatementKind::Chain(places, value) => {
+            for place in places {
+                target(place, visitor);
+            }
+            expression(value, visitor);
+        }
+        StatementKind::Update(_, place, value) => {
+            expression(place, visitor);
+            target(place, visitor);
+            expression(value, visitor);
+        }
         StatementKind::Call(inner) => call(inner, visitor),
         StatementKind::If(inner) => {
             for each in &inner.branches {

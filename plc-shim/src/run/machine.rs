@@ -5,7 +5,7 @@ use wasmtime::{Config, Engine, Instance, Linker, Memory, Module, Store, Trap, Ty
 use super::plan::RunError;
 use super::text::link::{HostState, link};
 use crate::application::Application;
-use crate::compile::{MEMORY_EXPORT, host, program_export};
+use crate::compile::{MEMORY_EXPORT, entry_export, host};
 
 /// One instance of the module.
 pub(super) struct Machine {
@@ -13,7 +13,7 @@ pub(super) struct Machine {
     memory: Memory,
     /// Bytes in use; the rest of the last page is never touched.
     size: usize,
-    programs: Vec<TypedFunc<(), ()>>,
+    entries: Vec<TypedFunc<(), ()>>,
 }
 
 /// A trap: its cause and the functions that were active, innermost first, each with the offset
@@ -51,10 +51,9 @@ impl Machine {
         let memory = memory.ok_or_else(|| RunError::Module("memory is missing".to_owned()))?;
         store.data_mut().memory = Some(memory);
         let size = application.initial_memory().len();
-        let count = application.programs().count();
-        let programs = (0..count).map(|index| program(&instance, &mut store, index));
-        let programs = programs.collect::<Result<_, _>>()?;
-        Ok(Self { store, memory, size, programs })
+        let entries = (0..application.entry_count()).map(|index| entry(&instance, &mut store, index));
+        let entries = entries.collect::<Result<_, _>>()?;
+        Ok(Self { store, memory, size, entries })
     }
 
     pub(super) fn memory(&self) -> &[u8] {
@@ -75,16 +74,16 @@ impl Machine {
         debug_assert!(counted.is_ok(), "the engine counts fuel");
     }
 
-    pub(super) fn run(&mut self, program: usize) -> Result<(), Trapped> {
-        let Some(function) = self.programs.get(program) else {
+    pub(super) fn run(&mut self, entry: usize) -> Result<(), Trapped> {
+        let Some(function) = self.entries.get(entry) else {
             return Ok(());
         };
         function.call(&mut self.store, ()).map_err(|error| trapped(&error))
     }
 }
 
-fn program(instance: &Instance, store: &mut Store<HostState>, index: usize) -> Result<TypedFunc<(), ()>, RunError> {
-    let function = instance.get_typed_func(store, &program_export(index));
+fn entry(instance: &Instance, store: &mut Store<HostState>, index: usize) -> Result<TypedFunc<(), ()>, RunError> {
+    let function = instance.get_typed_func(store, &entry_export(index));
     function.map_err(|error| module_error(&error))
 }
 

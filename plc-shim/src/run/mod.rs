@@ -2,6 +2,7 @@
 //!
 //! | module | subject |
 //! |---|---|
+//! | `configured` | the tasks of the application's own configuration |
 //! | `plan` | tasks with interval and priority, validated |
 //! | `scheduler` | which task is due when |
 //! | `machine` | the compiled module with its memory |
@@ -10,6 +11,7 @@
 //! | `text` | functions on character strings |
 //! | `state` | its state as bytes |
 
+mod configured;
 mod fault;
 mod machine;
 mod plan;
@@ -18,7 +20,7 @@ mod soft_plc;
 mod state;
 mod text;
 
-pub use fault::PlcFault;
+pub use fault::{FaultSite, PlcFault};
 pub use plan::{RunError, Task, TaskPlan};
 pub use soft_plc::SoftPlc;
 pub use state::RestoreError;

@@ -6,17 +6,21 @@ use thiserror::Error;
 
 use crate::application::Application;
 use crate::diagnostic::did_you_mean;
+use crate::ir::ElementaryType;
 
-/// A periodic task. It is due at one interval after the start, then after each interval.
-#[derive(Debug, Clone, PartialEq, Eq)]
+/// A task. A periodic one is due at one interval after the start, then after each interval.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct Task {
     /// Its name.
     pub name: String,
-    /// Time between two executions, in nanoseconds.
+    /// Time between two executions, in nanoseconds; 0 if it is not periodic.
     pub interval_ns: u64,
+    /// Path of a BOOL whose rising edges start it. While that is TRUE, the interval is suspended.
+    pub single: Option<String>,
     /// Its rank among tasks that are due together; 0 comes first.
     pub priority: u32,
-    /// The programs it runs, in their order.
+    /// The programs it runs, in their order: names of programs, or of their instances in the
+    /// application's configuration.
     pub programs: Vec<String>,
 }
 
@@ -25,6 +29,8 @@ pub struct Task {
 pub struct TaskPlan {
     /// The tasks.
     pub tasks: Vec<Task>,
+    /// Programs without a task: each scan runs them at its end, in their order (2nd ed. 2.7.2).
+    pub background: Vec<String>,
     /// How many units of WebAssembly fuel, about one for each instruction, a task may use in one
     /// execution before it counts as an endless loop.
     pub fuel_per_task: u64,
@@ -36,13 +42,13 @@ impl TaskPlan {
 
     /// A plan with the default budget of instructions.
     pub fn new(tasks: Vec<Task>) -> Self {
-        Self { tasks, fuel_per_task: Self::DEFAULT_FUEL }
+        Self { tasks, background: Vec::new(), fuel_per_task: Self::DEFAULT_FUEL }
     }
 
     /// One task that runs all programs of the application in their order.
     pub fn single(application: &Application, interval_ns: u64) -> Self {
         let programs = application.programs().map(|program| program.name).collect();
-        Self::new(vec![Task { name: "main".to_owned(), interval_ns, priority: 0, programs }])
+        Self::new(vec![Task { name: "main".to_owned(), interval_ns, programs, ..Task::default() }])
     }
 }
 
@@ -56,7 +62,7 @@ pub enum RunError {
     #[error("there are two tasks `{0}`")]
     DuplicateTask(String),
     /// A task would be due all the time.
-    #[error("task `{0}` has an interval of 0")]
+    #[error("task `{0}` has an interval of 0 and no trigger")]
     ZeroInterval(String),
     /// A program that the application lacks.
     #[error("task `{task}` runs program `{program}`, which is not declared{}", suffix(.help.as_ref()))]
@@ -76,6 +82,16 @@ pub enum RunError {
         /// The second task.
         task: String,
     },
+    /// A task's trigger is no variable.
+    #[error("task `{task}` is triggered by `{path}`: {reason}")]
+    Trigger {
+        /// The task.
+        task: String,
+        /// The path as given.
+        path: String,
+        /// What is wrong with it.
+        reason: String,
+    },
     /// The module was refused, most often because a unit is too large.
     #[error("the program cannot be made to run: {0}")]
     Module(String),
@@ -85,42 +101,71 @@ fn suffix(help: Option<&String>) -> String {
     help.map(|help| format!(" ({help})")).unwrap_or_default()
 }
 
-/// The programs of each task by position.
-pub(super) fn resolve(plan: &TaskPlan, application: &Application) -> Result<Vec<Vec<usize>>, RunError> {
-    if plan.tasks.is_empty() {
+/// Name under which [`TaskPlan::background`] appears in errors.
+const BACKGROUND: &str = "background";
+
+/// A plan whose names have been looked up.
+pub(super) struct Resolved {
+    /// What each task runs.
+    pub(super) tasks: Vec<Vec<usize>>,
+    /// Offset of each task's trigger.
+    pub(super) singles: Vec<Option<usize>>,
+    /// What runs at each scan's end.
+    pub(super) background: Vec<usize>,
+}
+
+pub(super) fn resolve(plan: &TaskPlan, application: &Application) -> Result<Resolved, RunError> {
+    if plan.tasks.is_empty() && plan.background.is_empty() {
         return Err(RunError::NoTasks);
     }
     let mut names = BTreeSet::new();
     let mut running = BTreeSet::new();
-    let mut resolved = Vec::new();
+    let mut resolved = Resolved { tasks: Vec::new(), singles: Vec::new(), background: Vec::new() };
     for task in &plan.tasks {
         if !names.insert(task.name.to_ascii_uppercase()) {
             return Err(RunError::DuplicateTask(task.name.clone()));
         }
-        if task.interval_ns == 0 {
+        if task.interval_ns == 0 && task.single.is_none() {
             return Err(RunError::ZeroInterval(task.name.clone()));
         }
-        let mut programs = Vec::new();
-        for name in &task.programs {
-            let index = program(application, task, name)?;
-            if !running.insert(index) {
-                let (program, task) = (name.clone(), task.name.clone());
-                return Err(RunError::ProgramTwice { program, task });
-            }
-            programs.push(index);
-        }
-        resolved.push(programs);
+        resolved.tasks.push(entries(application, &task.name, &task.programs, &mut running)?);
+        resolved.singles.push(trigger(application, task)?);
     }
+    resolved.background = entries(application, BACKGROUND, &plan.background, &mut running)?;
     Ok(resolved)
 }
 
-fn program(application: &Application, task: &Task, name: &str) -> Result<usize, RunError> {
-    application.program_index(name).ok_or_else(|| {
-        let known: Vec<String> = application.programs().map(|program| program.name).collect();
-        RunError::UnknownProgram {
-            task: task.name.clone(),
-            program: name.to_owned(),
-            help: did_you_mean(name, known.iter().map(String::as_str)),
+fn entries(
+    application: &Application,
+    task: &str,
+    names: &[String],
+    running: &mut BTreeSet<usize>,
+) -> Result<Vec<usize>, RunError> {
+    let mut found = Vec::new();
+    for name in names {
+        let index = entry(application, task, name)?;
+        if !running.insert(index) {
+            return Err(RunError::ProgramTwice { program: name.clone(), task: task.to_owned() });
         }
+        found.push(index);
+    }
+    Ok(found)
+}
+
+fn entry(application: &Application, task: &str, name: &str) -> Result<usize, RunError> {
+    application.entry_index(name).ok_or_else(|| RunError::UnknownProgram {
+        task: task.to_owned(),
+        program: name.to_owned(),
+        help: did_you_mean(name, application.entry_names()),
     })
+}
+
+fn trigger(application: &Application, task: &Task) -> Result<Option<usize>, RunError> {
+    let Some(path) = &task.single else { return Ok(None) };
+    let wrong = |reason| RunError::Trigger { task: task.name.clone(), path: path.clone(), reason };
+    let variable = application.variable(path).map_err(|error| wrong(error.to_string()))?;
+    if variable.ty != Some(ElementaryType::Bool) {
+        return Err(wrong(format!("it is {}, not BOOL", variable.type_name)));
+    }
+    Ok(Some(variable.offset as usize))
 }

@@ -1,13 +1,58 @@
 //! Which task is due when (2nd ed. 2.7.2, non-preemptive).
+//!
+//! A task waits for its interval, for a rising edge of its SINGLE input, or for either. Inputs are
+//! looked at when a scan begins and after each task; an edge starts a task at most once a scan, a
+//! later one waits for the next scan.
 
 use super::VirtualTime;
 use super::plan::TaskPlan;
+
+/// What is never due.
+const NEVER: u64 = u64::MAX;
+
+/// A task while it waits, as it is saved.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct Waiting {
+    /// When it is due by its interval.
+    pub(super) due_ns: u64,
+    /// Since when an edge of its SINGLE input waits.
+    pub(super) edge_ns: u64,
+    /// What its SINGLE input was when it was last looked at.
+    pub(super) level: bool,
+}
 
 #[derive(Debug, Clone)]
 struct Entry {
     interval_ns: u64,
     priority: u32,
-    due_ns: u64,
+    /// Offset of the BOOL that triggers it.
+    single: Option<usize>,
+    waiting: Waiting,
+    /// An edge has started it in this scan.
+    has_run: bool,
+}
+
+impl Entry {
+    fn restart(&mut self, now: u64) {
+        let due_ns = if self.interval_ns == 0 { NEVER } else { now.saturating_add(self.interval_ns) };
+        self.waiting = Waiting { due_ns, edge_ns: NEVER, level: false };
+        self.has_run = false;
+    }
+
+    /// Since when it waits; nothing if it does not.
+    fn waits_since(&self, now: u64) -> Option<u64> {
+        let edge = if self.has_run { NEVER } else { self.waiting.edge_ns };
+        Some(self.waiting.due_ns.min(edge)).filter(|since| *since <= now && *since != NEVER)
+    }
+
+    /// The first time after `now` at which it is due by its interval.
+    fn advance(&mut self, now: u64) {
+        if self.waiting.due_ns <= now && self.interval_ns > 0 {
+            let missed = (now - self.waiting.due_ns) / self.interval_ns;
+            let ahead = self.interval_ns.saturating_mul(missed + 1);
+            self.waiting.due_ns = self.waiting.due_ns.saturating_add(ahead);
+        }
+    }
 }
 
 /// The tasks by their position in the plan.
@@ -17,49 +62,69 @@ pub(super) struct Scheduler {
 }
 
 impl Scheduler {
-    pub(super) fn new(plan: &TaskPlan) -> Self {
-        let entry = |task: &super::Task| Entry {
+    /// `singles` gives the offset of each task's SINGLE input.
+    pub(super) fn new(plan: &TaskPlan, singles: &[Option<usize>]) -> Self {
+        let entry = |(task, single): (&super::Task, &Option<usize>)| Entry {
             interval_ns: task.interval_ns,
             priority: task.priority,
-            due_ns: task.interval_ns,
+            single: *single,
+            waiting: Waiting { due_ns: NEVER, edge_ns: NEVER, level: false },
+            has_run: false,
         };
-        Self { tasks: plan.tasks.iter().map(entry).collect() }
-    }
-
-    /// Every task is due one interval after the start.
-    pub(super) fn reset(&mut self) {
-        for task in &mut self.tasks {
-            task.due_ns = task.interval_ns;
-        }
+        let mut scheduler = Self { tasks: plan.tasks.iter().zip(singles).map(entry).collect() };
+        scheduler.restart_at(VirtualTime::default());
+        scheduler
     }
 
     /// After a start at `now`, every task is due one interval later.
     pub(super) fn restart_at(&mut self, now: VirtualTime) {
+        self.tasks.iter_mut().for_each(|task| task.restart(now.as_ns()));
+    }
+
+    /// Begins a scan: edges may start tasks again.
+    pub(super) fn begin_scan(&mut self) {
+        self.tasks.iter_mut().for_each(|task| task.has_run = false);
+    }
+
+    /// Looks at the SINGLE inputs. While one is TRUE, its task's interval is suspended
+    /// (2nd ed. 2.7.2).
+    pub(super) fn look(&mut self, now: VirtualTime, memory: &[u8]) {
+        let now = now.as_ns();
         for task in &mut self.tasks {
-            task.due_ns = now.as_ns().saturating_add(task.interval_ns);
+            let Some(offset) = task.single else { continue };
+            let level = memory.get(offset).is_some_and(|byte| *byte != 0);
+            if level && !task.waiting.level {
+                task.waiting.edge_ns = task.waiting.edge_ns.min(now);
+            }
+            task.waiting.level = level;
+            if level {
+                task.advance(now);
+            }
         }
     }
 
-    /// Takes the next task that is due at `now`: by priority, then the one that waits longest,
+    /// Takes the next task that waits at `now`: by priority, then the one that waits longest,
     /// then the one declared first. A task that missed intervals runs once for all of them.
     pub(super) fn take_due(&mut self, now: VirtualTime) -> Option<usize> {
         let now = now.as_ns();
-        let due = self.tasks.iter().enumerate().filter(|(_, task)| task.due_ns <= now);
-        let next = due.min_by_key(|(index, task)| (task.priority, task.due_ns, *index));
-        let (index, _) = next?;
+        let waiting = self.tasks.iter().enumerate();
+        let waiting = waiting.filter_map(|(index, task)| Some((task.priority, task.waits_since(now)?, index)));
+        let (_, _, index) = waiting.min()?;
         let task = self.tasks.get_mut(index)?;
-        let missed = (now - task.due_ns) / task.interval_ns;
-        let ahead = task.interval_ns.saturating_mul(missed + 1);
-        task.due_ns = task.due_ns.saturating_add(ahead);
+        task.advance(now);
+        if task.waiting.edge_ns != NEVER && !task.has_run {
+            task.waiting.edge_ns = NEVER;
+            task.has_run = true;
+        }
         Some(index)
     }
 
-    /// When the first task is due.
+    /// When the first task is due by its interval; the end of time if none has one.
     pub(super) fn next_due(&self) -> VirtualTime {
-        VirtualTime::from_ns(self.tasks.iter().map(|task| task.due_ns).min().unwrap_or(u64::MAX))
+        VirtualTime::from_ns(self.tasks.iter().map(|task| task.waiting.due_ns).min().unwrap_or(NEVER))
     }
 
-    /// Greatest common divisor of the intervals.
+    /// Greatest common divisor of the intervals; 0 if there are none.
     pub(super) fn period_ns(&self) -> u64 {
         let divisor = |mut a: u64, mut b: u64| {
             while b != 0 {
@@ -70,14 +135,15 @@ impl Scheduler {
         self.tasks.iter().fold(0, |period, task| divisor(period, task.interval_ns))
     }
 
-    /// When each task is due.
-    pub(super) fn due_times(&self) -> impl ExactSizeIterator<Item = u64> {
-        self.tasks.iter().map(|task| task.due_ns)
+    /// How each task waits.
+    pub(super) fn waiting(&self) -> impl ExactSizeIterator<Item = Waiting> {
+        self.tasks.iter().map(|task| task.waiting)
     }
 
-    pub(super) fn set_due_times(&mut self, times: &[u64]) {
-        for (task, due_ns) in self.tasks.iter_mut().zip(times) {
-            task.due_ns = *due_ns;
+    pub(super) fn set_waiting(&mut self, waiting: &[Waiting]) {
+        for (task, waiting) in self.tasks.iter_mut().zip(waiting) {
+            task.waiting = *waiting;
+            task.has_run = false;
         }
     }
 }
@@ -87,34 +153,76 @@ mod tests {
     use super::*;
     use crate::run::Task;
 
-    fn scheduler(tasks: &[(u64, u32)]) -> Scheduler {
+    fn scheduler(tasks: &[(u64, u32)], singles: &[Option<usize>]) -> Scheduler {
         let task = |(index, (interval_ns, priority)): (usize, &(u64, u32))| Task {
             name: index.to_string(),
             interval_ns: *interval_ns,
+            single: None,
             priority: *priority,
             programs: Vec::new(),
         };
-        Scheduler::new(&TaskPlan::new(tasks.iter().enumerate().map(task).collect()))
+        Scheduler::new(&TaskPlan::new(tasks.iter().enumerate().map(task).collect()), singles)
     }
 
-    fn due(scheduler: &mut Scheduler, now: u64) -> Vec<usize> {
-        std::iter::from_fn(|| scheduler.take_due(VirtualTime::from_ns(now))).collect()
+    fn due(scheduler: &mut Scheduler, now: u64, memory: &[u8]) -> Vec<usize> {
+        let now = VirtualTime::from_ns(now);
+        scheduler.begin_scan();
+        std::iter::from_fn(|| {
+            scheduler.look(now, memory);
+            scheduler.take_due(now)
+        })
+        .collect()
     }
 
     #[test]
-    fn priority_then_waiting_then_declaration() {
-        let mut tasks = scheduler(&[(10, 2), (20, 1), (10, 2), (15, 2)]);
+    fn iec2_2_7_2_priority_then_waiting_then_declaration() {
+        let mut tasks = scheduler(&[(10, 2), (20, 1), (10, 2), (15, 2)], &[None; 4]);
         assert_eq!(tasks.period_ns(), 5);
-        assert!(due(&mut tasks, 9).is_empty());
-        assert_eq!(due(&mut tasks, 10), [0, 2]);
+        assert!(due(&mut tasks, 9, &[]).is_empty());
+        assert_eq!(due(&mut tasks, 10, &[]), [0, 2]);
         assert_eq!(tasks.next_due(), VirtualTime::from_ns(15));
-        assert_eq!(due(&mut tasks, 20), [1, 3, 0, 2]);
+        assert_eq!(due(&mut tasks, 20, &[]), [1, 3, 0, 2]);
     }
 
     #[test]
     fn missed_intervals_run_once() {
-        let mut tasks = scheduler(&[(10, 0)]);
-        assert_eq!(due(&mut tasks, 35), [0]);
+        let mut tasks = scheduler(&[(10, 0)], &[None]);
+        assert_eq!(due(&mut tasks, 35, &[]), [0]);
         assert_eq!(tasks.next_due(), VirtualTime::from_ns(40));
+    }
+
+    #[test]
+    fn iec2_2_7_2_rising_edges_start_a_task_once() {
+        let mut tasks = scheduler(&[(0, 1), (10, 0)], &[Some(0), None]);
+        assert!(due(&mut tasks, 5, &[0]).is_empty());
+        assert_eq!(due(&mut tasks, 6, &[1]), [0]);
+        assert!(due(&mut tasks, 7, &[1]).is_empty());
+        assert_eq!(due(&mut tasks, 10, &[0]), [1]);
+        assert_eq!(due(&mut tasks, 20, &[1]), [1, 0]);
+        assert_eq!(tasks.period_ns(), 10);
+    }
+
+    #[test]
+    fn iec2_2_7_2_an_interval_is_suspended_while_single_is_true() {
+        let mut tasks = scheduler(&[(10, 0)], &[Some(0)]);
+        assert_eq!(due(&mut tasks, 10, &[0]), [0]);
+        assert_eq!(due(&mut tasks, 20, &[1]), [0], "the edge, not the interval");
+        assert!(due(&mut tasks, 30, &[1]).is_empty());
+        assert!(due(&mut tasks, 35, &[0]).is_empty());
+        assert_eq!(due(&mut tasks, 40, &[0]), [0]);
+    }
+
+    #[test]
+    fn an_edge_in_the_scan_of_its_task_waits_for_the_next() {
+        let mut tasks = scheduler(&[(0, 0)], &[Some(0)]);
+        let now = VirtualTime::from_ns(1);
+        tasks.begin_scan();
+        tasks.look(now, &[1]);
+        assert_eq!(tasks.take_due(now), Some(0));
+        tasks.look(now, &[0]);
+        tasks.look(now, &[1]);
+        assert_eq!(tasks.take_due(now), None);
+        assert_eq!(due(&mut tasks, 2, &[1]), [0]);
+        assert!(due(&mut tasks, 3, &[1]).is_empty());
     }
 }

@@ -3,7 +3,7 @@
 use super::VirtualTime;
 use super::fault::{PlcFault, explain};
 use super::machine::Machine;
-use super::plan::{RunError, TaskPlan, resolve};
+use super::plan::{Resolved, RunError, TaskPlan, resolve};
 use super::scheduler::Scheduler;
 use super::state::{self, RestoreError, State};
 use crate::application::{Application, UnknownVariable, Variable};
@@ -14,8 +14,11 @@ pub struct SoftPlc {
     application: Application,
     machine: Machine,
     scheduler: Scheduler,
-    /// The programs of each task.
-    programs: Vec<Vec<usize>>,
+    /// What each task runs.
+    tasks: Vec<Vec<usize>>,
+    /// What each scan runs at its end.
+    background: Vec<usize>,
+    is_triggered: bool,
     fuel_per_task: u64,
     fingerprint: u64,
     /// Virtual time of the last scan.
@@ -36,13 +39,15 @@ impl SoftPlc {
     /// # Errors
     /// The plan does not suit the application.
     pub fn new(application: &Application, plan: &TaskPlan) -> Result<Self, RunError> {
-        let programs = resolve(plan, application)?;
+        let Resolved { tasks, singles, background } = resolve(plan, application)?;
         let machine = Machine::new(application)?;
         let mut plc = Self {
             application: application.clone(),
             machine,
-            scheduler: Scheduler::new(plan),
-            programs,
+            scheduler: Scheduler::new(plan, &singles),
+            tasks,
+            background,
+            is_triggered: singles.iter().any(Option::is_some),
             fuel_per_task: plan.fuel_per_task,
             fingerprint: state::fingerprint(application, plan),
             now: VirtualTime::default(),
@@ -57,7 +62,7 @@ impl SoftPlc {
     pub fn cold_start(&mut self) {
         let image = self.application.initial_memory();
         copy_to(self.machine.memory_mut(), 0, image);
-        self.scheduler.reset();
+        self.scheduler.restart_at(VirtualTime::default());
         self.now = VirtualTime::default();
         self.fault = None;
     }
@@ -78,7 +83,8 @@ impl SoftPlc {
     }
 
     /// Runs the tasks that are due at virtual time `now`: by priority, then the one that waits
-    /// longest, then the one declared first. Every task sees the same time throughout.
+    /// longest, then the one declared first; after them the programs without a task. All see the
+    /// same time.
     ///
     /// # Errors
     /// The program failed. The PLC has stopped: each further scan gives the same fault until a
@@ -88,37 +94,52 @@ impl SoftPlc {
             return Err(fault.clone());
         }
         self.now = now;
+        self.scheduler.begin_scan();
+        self.scheduler.look(now, self.machine.memory());
         while let Some(task) = self.scheduler.take_due(now) {
-            self.run_task(task)?;
+            self.begin_task();
+            for at in 0..self.tasks.get(task).map_or(0, Vec::len) {
+                self.run_entry(self.tasks[task][at])?;
+            }
+            self.scheduler.look(now, self.machine.memory());
+        }
+        for at in 0..self.background.len() {
+            self.begin_task();
+            self.run_entry(self.background[at])?;
         }
         Ok(())
     }
 
-    fn run_task(&mut self, task: usize) -> Result<(), PlcFault> {
-        let now = self.now;
-        let time = now.as_ns().to_le_bytes();
+    /// Gives a task its virtual time and its budget.
+    fn begin_task(&mut self) {
+        let time = self.now.as_ns().to_le_bytes();
         copy_to(self.machine.memory_mut(), VIRTUAL_TIME_OFFSET as usize, &time);
         self.machine.refuel(self.fuel_per_task);
-        let Self { machine, programs, application, fault, .. } = self;
-        for program in programs.get(task).map_or(&[][..], Vec::as_slice) {
-            if let Err(trapped) = machine.run(*program) {
-                let found = explain(application, &trapped, now);
-                *fault = Some(found.clone());
-                return Err(found);
-            }
-        }
-        Ok(())
     }
 
-    /// When a task is due next.
+    fn run_entry(&mut self, entry: usize) -> Result<(), PlcFault> {
+        self.machine.run(entry).map_err(|trapped| {
+            let found = explain(&self.application, &trapped, self.now);
+            self.fault = Some(found.clone());
+            found
+        })
+    }
+
+    /// When a task is due next by its interval; the end of time if none has one.
     pub fn next_due(&self) -> VirtualTime {
         self.scheduler.next_due()
     }
 
-    /// Greatest common divisor of the tasks' intervals in nanoseconds: every task is due at a
-    /// multiple of it.
+    /// Greatest common divisor of the tasks' intervals in nanoseconds: every periodic task is due at
+    /// a multiple of it. 0 if there are none.
     pub fn period_ns(&self) -> u64 {
         self.scheduler.period_ns()
+    }
+
+    /// True if a scan may have something to do at any time: tasks wait for an edge, or programs have
+    /// no task.
+    pub fn wants_every_step(&self) -> bool {
+        self.is_triggered || !self.background.is_empty()
     }
 
     /// The fault that stopped the PLC.
@@ -154,7 +175,7 @@ impl SoftPlc {
     pub fn save(&self) -> Vec<u8> {
         let state = State {
             now: self.now,
-            due_ns: self.scheduler.due_times().collect(),
+            waiting: self.scheduler.waiting().collect(),
             fault: self.fault.clone(),
             memory: self.machine.memory(),
         };
@@ -167,10 +188,10 @@ impl SoftPlc {
     /// # Errors
     /// The bytes are not a state of this application under this plan.
     pub fn restore(&mut self, bytes: &[u8]) -> Result<(), RestoreError> {
-        let (tasks, size) = (self.programs.len(), self.machine.memory().len());
+        let (tasks, size) = (self.tasks.len(), self.machine.memory().len());
         let state = State::decode(bytes, self.fingerprint, tasks, size)?;
         copy_to(self.machine.memory_mut(), 0, state.memory);
-        self.scheduler.set_due_times(&state.due_ns);
+        self.scheduler.set_waiting(&state.waiting);
         self.now = state.now;
         self.fault = state.fault;
         Ok(())

@@ -5,7 +5,7 @@
 //! | 8 | magic and version |
 //! | 8 | fingerprint of application and plan |
 //! | 8 | virtual time of the last scan |
-//! | 4 + 8 each | when each task is due |
+//! | 4 + 17 each | how each task waits |
 //! | 1 ... | 0, or 1 and the fault |
 //! | 8 + size | memory |
 //!
@@ -14,12 +14,13 @@
 use thiserror::Error;
 
 use super::VirtualTime;
-use super::fault::PlcFault;
+use super::fault::{FaultSite, PlcFault};
 use super::plan::TaskPlan;
+use super::scheduler::Waiting;
 use crate::application::Application;
 use crate::compile::fault::FaultKind;
 
-const MAGIC: [u8; 8] = *b"OSPLC\0\0\x01";
+const MAGIC: [u8; 8] = *b"OSPLC\0\0\x02";
 
 /// Why bytes were not taken as a state.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
@@ -37,7 +38,7 @@ pub enum RestoreError {
 
 pub(super) struct State<'m> {
     pub(super) now: VirtualTime,
-    pub(super) due_ns: Vec<u64>,
+    pub(super) waiting: Vec<Waiting>,
     pub(super) fault: Option<PlcFault>,
     pub(super) memory: &'m [u8],
 }
@@ -57,11 +58,15 @@ pub(super) fn fingerprint(application: &Application, plan: &TaskPlan) -> u64 {
         add(task.name.as_bytes());
         add(&task.interval_ns.to_le_bytes());
         add(&task.priority.to_le_bytes());
-        for program in &task.programs {
-            add(program.to_ascii_uppercase().as_bytes());
+        for name in task.programs.iter().chain(&task.single) {
+            add(name.to_ascii_uppercase().as_bytes());
             add(&[0]);
         }
-        add(&[1]);
+        add(&[1, u8::from(task.single.is_some())]);
+    }
+    for program in &plan.background {
+        add(program.to_ascii_uppercase().as_bytes());
+        add(&[0]);
     }
     hash
 }
@@ -72,9 +77,11 @@ impl<'m> State<'m> {
         bytes.extend_from_slice(&MAGIC);
         bytes.extend_from_slice(&fingerprint.to_le_bytes());
         bytes.extend_from_slice(&self.now.as_ns().to_le_bytes());
-        bytes.extend_from_slice(&(self.due_ns.len() as u32).to_le_bytes());
-        for due in &self.due_ns {
-            bytes.extend_from_slice(&due.to_le_bytes());
+        bytes.extend_from_slice(&(self.waiting.len() as u32).to_le_bytes());
+        for Waiting { due_ns, edge_ns, level } in &self.waiting {
+            bytes.extend_from_slice(&due_ns.to_le_bytes());
+            bytes.extend_from_slice(&edge_ns.to_le_bytes());
+            bytes.push(u8::from(*level));
         }
         bytes.push(u8::from(self.fault.is_some()));
         if let Some(fault) = &self.fault {
@@ -106,12 +113,14 @@ fn encode_fault(fault: &PlcFault, bytes: &mut Vec<u8>) {
     let kind = FaultKind::ALL.iter().position(|kind| *kind == fault.kind);
     bytes.push(kind.unwrap_or(FaultKind::ALL.len() - 1) as u8);
     bytes.extend_from_slice(&fault.virtual_time.as_ns().to_le_bytes());
-    bytes.extend_from_slice(&fault.line.to_le_bytes());
-    bytes.extend_from_slice(&fault.column.to_le_bytes());
-    bytes.extend_from_slice(&(fault.call_path.len() as u32).to_le_bytes());
-    for text in [&fault.file, &fault.pou].into_iter().chain(&fault.call_path) {
-        bytes.extend_from_slice(&(text.len() as u32).to_le_bytes());
-        bytes.extend_from_slice(text.as_bytes());
+    bytes.extend_from_slice(&(fault.callers.len() as u32).to_le_bytes());
+    for site in std::iter::once(&fault.at).chain(&fault.callers) {
+        bytes.extend_from_slice(&site.line.to_le_bytes());
+        bytes.extend_from_slice(&site.column.to_le_bytes());
+        for text in [&site.file, &site.pou, &site.instance] {
+            bytes.extend_from_slice(&(text.len() as u32).to_le_bytes());
+            bytes.extend_from_slice(text.as_bytes());
+        }
     }
 }
 
@@ -149,26 +158,41 @@ impl<'m> Reader<'m> {
         if self.small_number()? as usize != tasks {
             return None;
         }
-        let due_ns = (0..tasks).map(|_| self.number()).collect::<Option<_>>()?;
-        let fault = match self.byte()? {
-            0 => None,
-            1 => Some(self.fault()?),
-            _ => return None,
-        };
+        let waiting = (0..tasks).map(|_| self.waiting()).collect::<Option<_>>()?;
+        let fault = if self.flag()? { Some(self.fault()?) } else { None };
         if self.number()? != memory_size as u64 {
             return None;
         }
         let memory = self.take(memory_size)?;
-        self.rest.is_empty().then_some(State { now, due_ns, fault, memory })
+        self.rest.is_empty().then_some(State { now, waiting, fault, memory })
     }
 
     fn fault(&mut self) -> Option<PlcFault> {
         let kind = *FaultKind::ALL.get(self.byte()? as usize)?;
         let virtual_time = VirtualTime::from_ns(self.number()?);
-        let (line, column) = (self.small_number()?, self.small_number()?);
         let count = self.small_number()?;
-        let (file, pou) = (self.text()?, self.text()?);
-        let call_path = (0..count).map(|_| self.text()).collect::<Option<_>>()?;
-        Some(PlcFault { kind, file, line, column, pou, call_path, virtual_time })
+        let at = self.site()?;
+        let callers = (0..count).map(|_| self.site()).collect::<Option<_>>()?;
+        Some(PlcFault { kind, at, callers, virtual_time })
+    }
+
+    fn site(&mut self) -> Option<FaultSite> {
+        let (line, column) = (self.small_number()?, self.small_number()?);
+        let (file, pou, instance) = (self.text()?, self.text()?, self.text()?);
+        Some(FaultSite { pou, instance, file, line, column })
+    }
+
+    fn waiting(&mut self) -> Option<Waiting> {
+        let (due_ns, edge_ns) = (self.number()?, self.number()?);
+        let level = self.flag()?;
+        Some(Waiting { due_ns, edge_ns, level })
+    }
+
+    fn flag(&mut self) -> Option<bool> {
+        match self.byte()? {
+            0 => Some(false),
+            1 => Some(true),
+            _ => None,
+        }
     }
 }

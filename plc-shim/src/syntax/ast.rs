@@ -1,10 +1,15 @@
 //! The syntax tree: what is written, with its place; no meanings.
 
+mod configuration;
 mod declaration;
 mod expression;
 mod object;
 mod statement;
 
+pub use configuration::{
+    AccessDirection, AccessPath, Configuration, Connection, InstanceValue, ProgramDeclaration, Resource,
+    TaskDeclaration,
+};
 pub use declaration::{
     Declaration, Dimension, Edge, EnumValue, Field, Initialiser, InitialiserKind, Pou, PouKind, Qualifier, Section,
     SectionKind, StructureInit, Subrange, TypeDeclaration, TypeSpec, TypeSpecKind, Variable,
@@ -13,10 +18,11 @@ pub use expression::{Argument, BinaryOp, Call, Expr, ExprKind, Literal, MAX_HEIG
 pub use object::{Member, MemberKind, Modifier, Namespace, NamespaceKind, Object};
 pub use statement::{
     CaseBranch, CaseLabel, CaseStatement, ForStatement, IfBranch, IfStatement, RepeatStatement, Statement,
-    StatementKind, WhileStatement,
+    StatementKind, UpdateOp, WhileStatement,
 };
 
 use super::source::Span;
+use crate::dialect::Dialect;
 
 /// A name as written.
 #[derive(Debug, Clone)]
@@ -30,13 +36,20 @@ pub struct Ident {
 impl Ident {
     /// The form in which names are compared.
     pub fn key(&self) -> String {
-        self.text.to_ascii_uppercase()
+        self.text.trim_matches('"').to_ascii_uppercase()
+    }
+
+    /// True for `"name"`, which in SCL is never a local one.
+    pub fn is_quoted(&self) -> bool {
+        self.text.starts_with('"')
     }
 }
 
 /// What a file declares, in its order.
 #[derive(Debug, Clone, Default)]
 pub struct CompilationUnit {
+    /// The dialect it is written in.
+    pub dialect: Dialect,
     /// The declarations.
     pub declarations: Vec<Declaration>,
 }

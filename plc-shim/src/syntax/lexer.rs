@@ -1,11 +1,19 @@
 //! Text to tokens. Every byte of the text belongs to exactly one token.
 
+mod scl;
+
 use super::calendar::calendar_prefix;
 use super::token::{Keyword, Punctuation, Token, TokenKind};
+use crate::dialect::{Dialect, Feature};
 
-/// Splits `text` into tokens; their texts concatenated are `text`.
+/// Splits `text`, in the default dialect, into tokens; their texts concatenated are `text`.
 pub fn tokenize(text: &str) -> Vec<Token> {
-    let mut lexer = Lexer { text, at: 0 };
+    tokenize_in(Dialect::default(), text)
+}
+
+/// Splits `text` into tokens of `dialect`; their texts concatenated are `text`.
+pub fn tokenize_in(dialect: Dialect, text: &str) -> Vec<Token> {
+    let mut lexer = Lexer { text, at: 0, dialect, in_heading: false };
     let mut tokens = Vec::with_capacity(text.len() / 4);
     while lexer.at < text.len() {
         let start = lexer.at;
@@ -19,6 +27,9 @@ pub fn tokenize(text: &str) -> Vec<Token> {
 struct Lexer<'a> {
     text: &'a str,
     at: usize,
+    dialect: Dialect,
+    /// Between an SCL block's name and its first section.
+    in_heading: bool,
 }
 
 impl<'a> Lexer<'a> {
@@ -40,6 +51,11 @@ impl<'a> Lexer<'a> {
         let Some(first) = rest.chars().next() else {
             return TokenKind::Unknown;
         };
+        if self.dialect == Dialect::SiemensScl
+            && let Some(found) = self.scl_token(rest, first)
+        {
+            return found;
+        }
         match first {
             _ if first.is_whitespace() || first == '\u{feff}' => {
                 self.take_while(|character| character.is_whitespace() || character == '\u{feff}');
@@ -61,12 +77,13 @@ impl<'a> Lexer<'a> {
         }
     }
 
-    /// Comments nest in the 3rd edition (6.1.5); the 2nd forbids what nesting would change.
+    /// Comments nest in the 3rd edition (6.1.5), in the 2nd they do not (2.1.5).
     fn block_comment(&mut self, open: &str, close: &str) -> TokenKind {
+        let nests = self.dialect.has(Feature::NestedComments);
         let mut depth = 0_usize;
         while self.at < self.text.len() {
             let rest = self.rest();
-            if rest.starts_with(open) {
+            if rest.starts_with(open) && (nests || depth == 0) {
                 depth += 1;
                 self.at += open.len();
             } else if rest.starts_with(close) {
@@ -178,7 +195,8 @@ impl<'a> Lexer<'a> {
             }
             return TokenKind::Typed;
         }
-        Keyword::find(text).filter(|word| !word.is_soft()).map_or(TokenKind::Identifier, TokenKind::Keyword)
+        let keyword = Keyword::find(text).filter(|keyword| keyword.is_in(self.dialect) && !keyword.is_soft());
+        keyword.map_or(TokenKind::Identifier, TokenKind::Keyword)
     }
 
     /// What follows `INT#`: digits with a base, a fraction, an exponent, a duration or a name.

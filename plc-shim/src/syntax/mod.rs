@@ -27,6 +27,6 @@ pub mod source;
 pub mod text_literal;
 pub mod token;
 
-pub use lexer::tokenize;
-pub use parser::{Parsed, parse};
+pub use lexer::{tokenize, tokenize_in};
+pub use parser::{Parsed, parse, parse_in};
 pub use source::{FileId, SourceFile, SourceMap, Span};

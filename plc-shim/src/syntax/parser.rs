@@ -3,20 +3,25 @@
 //! An error is reported once and skipped up to a token at which the grammar can go on, so that
 //! one slip makes one diagnostic.
 
+mod assignment;
+mod conditional;
+mod configuration;
 mod cursor;
 mod declaration;
 mod expression;
 mod initialiser;
 mod object;
+mod scl;
 mod statement;
 mod type_spec;
 
 use self::cursor::Cursor;
 use super::ast::CompilationUnit;
-use super::lexer::tokenize;
+use super::lexer::tokenize_in;
 use super::source::FileId;
 use super::token::{Token, TokenKind};
 use crate::diagnostic::{Code, Diagnostic};
+use crate::dialect::{Dialect, Feature};
 use crate::syntax::Span;
 
 /// Greatest depth to which statements, types and parentheses may be nested.
@@ -33,12 +38,19 @@ pub struct Parsed {
     pub diagnostics: Vec<Diagnostic>,
 }
 
-/// Parses `text`, the text of `file`. Never fails: the tree holds what could be understood.
+/// Parses `text`, the text of `file`, in the default dialect. Never fails: the tree holds what could be
+/// understood.
 pub fn parse(file: FileId, text: &str) -> Parsed {
-    let tokens = tokenize(text);
-    let mut cursor = Cursor::new(file, text, &tokens);
+    parse_in(Dialect::default(), file, text)
+}
+
+/// Parses `text`, the text of `file`, as `dialect`. Never fails either.
+pub fn parse_in(dialect: Dialect, file: FileId, text: &str) -> Parsed {
+    let tokens = tokenize_in(dialect, text);
+    let mut cursor = Cursor::new(dialect, file, text, &tokens);
     report_lexical_errors(&mut cursor, &tokens);
-    let unit = cursor.compilation_unit();
+    conditional::apply(&mut cursor, &tokens);
+    let unit = CompilationUnit { dialect, ..cursor.compilation_unit() };
     let diagnostics = cursor.into_diagnostics();
     Parsed { tokens, unit, diagnostics }
 }
@@ -51,6 +63,10 @@ fn report_lexical_errors(cursor: &mut Cursor<'_>, tokens: &[Token]) {
                 // The place where it begins is the place to look at, not all that it swallowed.
                 let span = Span { end: (token.start + 1).min(token.end), ..span };
                 cursor.report(Diagnostic::error(Code::Unterminated, span, "comment, pragma or string without an end"));
+            }
+            TokenKind::LineComment => cursor.require(Feature::LineComments, span),
+            TokenKind::BlockComment if cursor.text(span.start, span.end).starts_with('/') => {
+                cursor.require(Feature::StarComments, span);
             }
             TokenKind::Unknown => {
                 let text = cursor.text(token.start, token.end).escape_debug().to_string();

@@ -4,6 +4,7 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use super::origin::Origin;
+use crate::dialect::Dialect;
 
 /// Identifies a file within its [`SourceMap`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -49,6 +50,7 @@ pub struct SourceFile {
     name: String,
     text: Arc<str>,
     origin: Option<Origin>,
+    dialect: Dialect,
     /// Of the text that is shown.
     line_starts: Vec<u32>,
 }
@@ -58,13 +60,25 @@ impl SourceFile {
     pub fn new(name: impl Into<String>, text: impl Into<Arc<str>>) -> Self {
         let text = text.into();
         let line_starts = line_starts(&text);
-        Self { name: name.into(), text, origin: None, line_starts }
+        Self { name: name.into(), text, origin: None, dialect: Dialect::default(), line_starts }
     }
 
     /// Takes program text that was taken out of a file.
     pub fn extracted(name: impl Into<String>, text: impl Into<Arc<str>>, origin: Origin) -> Self {
         let line_starts = line_starts(origin.text());
-        Self { name: name.into(), text: text.into(), origin: Some(origin), line_starts }
+        let dialect = Dialect::default();
+        Self { name: name.into(), text: text.into(), origin: Some(origin), dialect, line_starts }
+    }
+
+    /// The same file, read as `dialect`.
+    #[must_use]
+    pub fn in_dialect(self, dialect: Dialect) -> Self {
+        Self { dialect, ..self }
+    }
+
+    /// The dialect of its program text.
+    pub fn dialect(&self) -> Dialect {
+        self.dialect
     }
 
     /// The name that diagnostics show.

@@ -1,5 +1,7 @@
 //! The kinds of token of the textual languages (IEC 61131-3, 3rd ed. 6.1).
 
+use crate::dialect::{Dialect, Feature};
+
 /// A token: what it is and where; its text is the source under the span.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Token {
@@ -104,6 +106,23 @@ keywords! {
     Method "METHOD", EndMethod "END_METHOD", Property "PROPERTY", EndProperty "END_PROPERTY",
     EndGet "END_GET", EndSet "END_SET", Action "ACTION", EndAction "END_ACTION",
     Namespace "NAMESPACE", EndNamespace "END_NAMESPACE", Using "USING",
+    OrganizationBlock "ORGANIZATION_BLOCK", EndOrganizationBlock "END_ORGANIZATION_BLOCK",
+    VarStat "VAR_STAT", DataBlock "DATA_BLOCK", EndDataBlock "END_DATA_BLOCK", Begin "BEGIN",
+}
+
+impl Keyword {
+    /// True if the dialect has the keyword; to others it is a name like any.
+    pub fn is_in(self, dialect: Dialect) -> bool {
+        use Keyword as K;
+        match self {
+            K::OrganizationBlock | K::EndOrganizationBlock | K::DataBlock | K::EndDataBlock | K::Begin => {
+                dialect.has(Feature::Blocks)
+            }
+            K::VarStat => dialect.has(Feature::StaticSection),
+            K::Continue => dialect.has(Feature::Continue),
+            _ => true,
+        }
+    }
 }
 
 macro_rules! punctuation {
@@ -131,7 +150,7 @@ macro_rules! punctuation {
 }
 
 punctuation! {
-    Assign ":=", Attempt "?=", Output "=>", Power "**", LessEqual "<=", GreaterEqual ">=", NotEqual "<>",
+    Assign ":=", Attempt "?=", PlusAssign "+=", MinusAssign "-=", StarAssign "*=", SlashAssign "/=", Output "=>", Power "**", LessEqual "<=", GreaterEqual ">=", NotEqual "<>",
     Range "..", Less "<", Greater ">", Equal "=", Plus "+", Minus "-", Star "*", Slash "/",
     Ampersand "&", LeftParen "(", RightParen ")", LeftBracket "[", RightBracket "]",
     Comma ",", Semicolon ";", Colon ":", Dot ".", Hash "#", Caret "^",

@@ -49,5 +49,5 @@ fn a_fault_tells_who_called() {
         "FUNCTION Ratio : INT VAR_INPUT a, b : INT; END_VAR\n  Ratio := a / b;\nEND_FUNCTION
 FUNCTION_BLOCK Axis VAR r : INT; END_VAR\n  r := Ratio(1, r);\nEND_FUNCTION_BLOCK
 PROGRAM P VAR axis : Axis; END_VAR\n  axis();\nEND_PROGRAM"
-    ), @"division by zero at test.st:2:12 in Ratio (called by way of P, Axis, Ratio), t_v = 0.010 s");
+    ), @"division by zero at test.st:2:12 in Ratio, called by P.axis (Axis) at test.st:5, called by P at test.st:8, t_v = 0.010 s");
 }

@@ -210,10 +210,13 @@ END_PROGRAM"
     };
     assert_eq!(run(&chain("", "")).int("P.r"), 66);
     let endless = fault(&chain("", "c.next := a;"));
-    assert!(endless.starts_with("calls nested too deep at test.st:4:15 in Node.Sum (called by way of"), "{endless}");
+    assert!(
+        endless.starts_with("calls nested too deep at test.st:4:15 in Node.Sum, called by Node.Sum at test.st:6,"),
+        "{endless}"
+    );
     insta::assert_snapshot!(
         fault(&chain("list : ARRAY [0..3] OF INT;", "")),
-        @"a unit was called while it ran at test.st:4:15 in Node.Sum (called by way of P, Node.Sum, Node.Sum), t_v = 0.010 s"
+        @"a unit was called while it ran at test.st:4:15 in Node.Sum, called by Node.Sum at test.st:6, called by P at test.st:12, t_v = 0.010 s"
     );
 }
 
@@ -391,5 +394,16 @@ METHOD Alone END_METHOD"
     test.st:85:20: error[N0104]: `height` is internal to Simple
     test.st:86:14: error[T0201]: INT is wanted, this is BOOL (convert it with BOOL_TO_INT)
     test.st:88:49: error[D0404]: this call makes `Self.Again` call itself
+    "#);
+}
+
+#[test]
+fn what_vendors_run_by_itself_is_told() {
+    insta::assert_snapshot!(crate::rig::findings(
+        "FUNCTION_BLOCK F METHOD FB_init : BOOL VAR_INPUT a : INT; END_VAR FB_init := TRUE; END_METHOD END_FUNCTION_BLOCK
+PROGRAM P VAR f : F(a := 5); END_VAR END_PROGRAM"
+    ), @r#"
+    test.st:1:25: error[L0501]: `FB_init`, which vendors run by itself, is not supported yet (call a method of another name in the first scan)
+    test.st:2:19: error[L0501]: an instance with arguments for FB_init is not supported yet
     "#);
 }

@@ -1,6 +1,10 @@
 //! A PLC under test, with its variables by name.
 
-use onescan_plc_shim::{Application, ElementaryType, PlcFault, SoftPlc, Task, TaskPlan, Variable, VirtualTime};
+use onescan_plc_shim::input::kind::SourceKind;
+use onescan_plc_shim::{
+    Application, Diagnostics, Dialect, ElementaryType, Input, PlcFault, SoftPlc, Task, TaskPlan, Variable, VirtualTime,
+    inspect,
+};
 
 pub(crate) const MS: u64 = 1_000_000;
 
@@ -31,11 +35,36 @@ pub(crate) fn task(name: &str, interval_ms: u64, priority: u32, programs: &[&str
         name: name.to_owned(),
         interval_ns: interval_ms * MS,
         priority,
+        single: None,
         programs: programs.iter().map(|name| (*name).to_owned()).collect(),
     }
 }
 
+/// The application of one file read as `dialect`, or its diagnostics as a panic.
+pub(crate) fn application_in(dialect: Dialect, text: &str) -> Application {
+    match Application::from_inputs([input_in(dialect, text)]) {
+        Ok(application) => application,
+        Err(diagnostics) => panic!("{diagnostics}"),
+    }
+}
+
+/// All that is said about one file read as `dialect`.
+pub(crate) fn findings_in(dialect: Dialect, text: &str) -> Diagnostics {
+    inspect([input_in(dialect, text)], None)
+}
+
+fn input_in(dialect: Dialect, text: &str) -> Input {
+    Input::from_text("test.st", SourceKind::Text, text).in_dialect(dialect)
+}
+
 impl Rig {
+    /// All programs in one task of 10 ms, of a file read as `dialect`.
+    pub(crate) fn in_dialect(dialect: Dialect, text: &str) -> Self {
+        let application = application_in(dialect, text);
+        let plan = TaskPlan::single(&application, 10 * MS);
+        Self::with_plan(&application, &plan)
+    }
+
     /// All programs in one task of 10 ms.
     pub(crate) fn new(text: &str) -> Self {
         let application = application(text);

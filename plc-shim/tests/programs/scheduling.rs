@@ -65,7 +65,7 @@ fn wrong_plans_are_refused() {
         refused(vec![task("a", 1, 0, &["Fsat"])]),
         @"task `a` runs program `Fsat`, which is not declared (did you mean `Fast`?)"
     );
-    insta::assert_snapshot!(refused(vec![task("a", 0, 0, &[])]), @"task `a` has an interval of 0");
+    insta::assert_snapshot!(refused(vec![task("a", 0, 0, &[])]), @"task `a` has an interval of 0 and no trigger");
     insta::assert_snapshot!(
         refused(vec![task("a", 1, 0, &[]), task("A", 1, 0, &[])]),
         @"there are two tasks `A`"

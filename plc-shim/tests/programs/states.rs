@@ -52,7 +52,7 @@ fn damaged_states_are_refused_and_change_nothing() {
     let state = rig.plc.save();
     let mut long = state.clone();
     long.push(0);
-    for bytes in [&state[..0], &state[..7], b"OSPLC\0\0\x02........"] {
+    for bytes in [&state[..0], &state[..7], b"OSPLC\0\0\x01........"] {
         assert_eq!(rig.plc.restore(bytes), Err(RestoreError::NotAState));
     }
     for bytes in [&long[..], &state[..state.len() - 1], &state[..20], &state[..30]] {

@@ -39,7 +39,7 @@ PROGRAM P\nVAR {declarations} END_VAR\n{statements}\nEND_PROGRAM"
     insta::assert_snapshot!(fault("a : INT (0..100); n : INT := 101;", "a := n;"), @"value out of subrange at test.st:4:6 in P, t_v = 0.010 s");
     insta::assert_snapshot!(fault("a : LINT (-3..3); n : LINT := -4;", "a := 1 + n - 1;"), @"value out of subrange at test.st:4:6 in P, t_v = 0.010 s");
     insta::assert_snapshot!(fault("n : INT := 6;", "n := F(n);"), @"value out of subrange at test.st:4:8 in P, t_v = 0.010 s");
-    insta::assert_snapshot!(fault("n : INT := 5;", "n := F(n);"), @"value out of subrange at test.st:1:64 in F (called by way of P, F), t_v = 0.010 s");
+    insta::assert_snapshot!(fault("n : INT := 5;", "n := F(n);"), @"value out of subrange at test.st:1:64 in F, called by P at test.st:4, t_v = 0.010 s");
 }
 
 #[test]

@@ -54,7 +54,7 @@ fn scenario(path: &Path) -> Result<Vec<Program>, RunError> {
         for source in sources {
             files.named(&scenario.folder().join(source))?;
         }
-        programs.push(Program { inputs: files.inputs, plan: Some(plan) });
+        programs.push(Program { inputs: files.inputs, plan });
     }
     Ok(programs)
 }

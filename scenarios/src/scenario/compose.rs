@@ -50,12 +50,10 @@ impl Scenario {
         }
     }
 
-    /// The sources and tasks of each soft PLC.
-    pub(crate) fn plcs(&self) -> impl Iterator<Item = (&[String], TaskPlan)> {
+    /// The sources of each soft PLC, and the tasks that the scenario gives it.
+    pub(crate) fn plcs(&self) -> impl Iterator<Item = (&[String], Option<TaskPlan>)> {
         self.file().clients.values().filter_map(|client| match client.get_ref() {
-            ClientFile::SoftPlc { sources, tasks, .. } => {
-                Some((sources.as_slice(), TaskPlan::new(tasks.iter().map(task).collect())))
-            }
+            ClientFile::SoftPlc { sources, tasks, .. } => Some((sources.as_slice(), plan_of(tasks))),
             _ => None,
         })
     }
@@ -101,16 +99,40 @@ impl Scenario {
         }
         let bindings = bind(&application, name, self.plan().signals(), paths)
             .map_err(|error| self.wrong_signal(&error.signal, error.message, error.help))?;
-        let plan = TaskPlan::new(tasks.iter().map(task).collect());
-        SoftPlcClient::new(name.clone(), &application, &plan, &bindings)
+        let plan = plan_of(tasks).or_else(|| TaskPlan::configured(&application));
+        let plan = plan.ok_or_else(|| {
+            let help = "give it `tasks`, or declare a CONFIGURATION in its sources".to_owned();
+            self.wrong_client(name, format!("nothing says when the programs of `{name}` run"), Some(help))
+        })?;
+        self.fits_step(name, &plan)?;
+        SoftPlcClient::new(name.clone(), &application, &plan, &bindings, self.file().step)
             .map_err(|error| self.wrong_client(name, error.to_string(), None))
     }
+
+    /// A task can be due at the steps of the session only.
+    fn fits_step(&self, name: &ClientName, plan: &TaskPlan) -> Result<(), ScenarioError> {
+        let step = self.file().step;
+        let Some(wrong) = plan.tasks.iter().find(|task| !task.interval_ns.is_multiple_of(step.as_nanos())) else {
+            return Ok(());
+        };
+        let (task, span) = (&wrong.name, onescan_server::time::TimeSpan::from_nanos(wrong.interval_ns));
+        let span = span.map(|span| span.to_string()).unwrap_or_default();
+        let message =
+            format!("task `{task}` has an interval of {span}, which is no multiple of the session's step {step}");
+        Err(self.wrong_client(name, message, Some("change the interval, or make the step a divisor of it".to_owned())))
+    }
+}
+
+/// The tasks of a scenario; nothing if it has none, so that the PLC's own configuration counts.
+fn plan_of(tasks: &[TaskFile]) -> Option<TaskPlan> {
+    (!tasks.is_empty()).then(|| TaskPlan::new(tasks.iter().map(task).collect()))
 }
 
 fn task(file: &TaskFile) -> Task {
     Task {
         name: file.name.clone(),
-        interval_ns: file.interval.as_nanos(),
+        interval_ns: file.interval.map_or(0, onescan_server::time::TimeSpan::as_nanos),
+        single: file.single.clone(),
         priority: file.priority,
         programs: file.programs.clone(),
     }

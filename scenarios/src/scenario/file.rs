@@ -87,7 +87,8 @@ pub enum ClientFile {
     SoftPlc {
         /// Source files, relative to the scenario's folder.
         sources: Vec<String>,
-        /// Its tasks.
+        /// Its tasks, in place of those of its own CONFIGURATION.
+        #[serde(default)]
         tasks: Vec<TaskFile>,
         /// Signals whose PLC variable is not found by the signal's name, with the variable's path.
         #[serde(default)]
@@ -109,12 +110,15 @@ pub struct TaskFile {
     /// Its name.
     pub name: String,
     /// Its cycle time.
-    #[serde(deserialize_with = "from_text")]
-    pub interval: TimeSpan,
+    #[serde(default, deserialize_with = "from_optional_text")]
+    pub interval: Option<TimeSpan>,
+    /// Path of a BOOL of the PLC whose rising edges start it.
+    #[serde(default)]
+    pub single: Option<String>,
     /// Its priority; 0 is the highest.
     #[serde(default)]
     pub priority: u32,
-    /// The programs it runs, in this order.
+    /// The programs it runs, in this order; with a CONFIGURATION, their instances.
     pub programs: Vec<String>,
 }
 

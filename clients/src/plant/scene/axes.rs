@@ -34,7 +34,7 @@ pub(super) fn check(
         };
         match driven.iter().find(|(known, driven, _)| *known == thing && *driven == text(name)) {
             Some((_, _, first)) => {
-                let (name_text, first) = (name.get_ref().clone(), (*first).to_owned());
+                let (name_text, first) = (name.get_ref().clone(), format!("axis `{first}`"));
                 faults.add(name.span(), SceneFaultKind::DrivenTwice { thing, name: name_text, first });
             }
             None => driven.push((thing, text(name), text(&written.name))),

@@ -72,6 +72,8 @@ pub enum Thing {
     Axis,
     /// `[[sensor]]`
     Sensor,
+    /// `[[component]]`
+    Component,
     /// A signal that the plant writes.
     Signal,
 }
@@ -83,6 +85,7 @@ impl fmt::Display for Thing {
             Self::Joint => "joint",
             Self::Axis => "axis",
             Self::Sensor => "sensor",
+            Self::Component => "component",
             Self::Signal => "signal",
         })
     }
@@ -187,14 +190,85 @@ pub enum SceneFaultKind {
         kind: &'static str,
     },
     /// A joint or a belt that two axes drive.
-    #[error("{thing} `{name}` is driven twice; first by axis `{first}`")]
+    #[error("{thing} `{name}` is driven twice; first by {first}")]
     DrivenTwice {
         /// What is driven.
         thing: Thing,
         /// The joint, or the belt's body.
         name: String,
-        /// The axis that drives it already.
+        /// The axis or component that drives it already.
         first: String,
+    },
+    /// A component of a kind that is not in the library.
+    #[error("`{0}` is no kind of component")]
+    ComponentKind(String),
+    /// A key that this kind of component has not.
+    #[error("{whose} has no `{key}`")]
+    ComponentKey {
+        /// The component.
+        whose: String,
+        /// The key.
+        key: String,
+    },
+    /// A key that must name something.
+    #[error("`{key}` must be {wanted}")]
+    Text {
+        /// The key.
+        key: String,
+        /// What it must be.
+        wanted: &'static str,
+    },
+    /// Something that a component has not: an output, a failure mode.
+    #[error("component `{component}` has no {what} `{name}`")]
+    ComponentPart {
+        /// The component.
+        component: String,
+        /// What was looked for.
+        what: &'static str,
+        /// Its name.
+        name: String,
+    },
+    /// An input that is wired to an output of other values.
+    #[error("`{output}` is {is}, but `{key}` takes {wanted}")]
+    WireType {
+        /// The output.
+        output: String,
+        /// Its values.
+        is: String,
+        /// The key of the input.
+        key: String,
+        /// The values of the input.
+        wanted: String,
+    },
+    /// An input with two sources.
+    #[error("{whose} has two sources for `{input}`")]
+    WiredTwice {
+        /// The component.
+        whose: String,
+        /// The input.
+        input: &'static str,
+    },
+    /// A body without a shape, where one is needed.
+    #[error("body `{0}` has no shape, and nothing can touch it")]
+    Shapeless(String),
+    /// A body that is not dynamic, where one is needed.
+    #[error("body `{0}` is not dynamic")]
+    NotDynamic(String),
+    /// A failure with both a signal and times.
+    #[error("a failure follows either a `signal` or times, not both")]
+    FailureTwice,
+    /// A signal that the plant neither reads nor writes.
+    #[error("the plant neither reads nor writes a signal `{0}`")]
+    ForeignSignal(String),
+    /// A key of a `[[signal]]` that a signal of this type cannot have.
+    #[error("signal `{name}` is {ty} and has no `{key}`")]
+    SignalKey {
+        /// The signal.
+        name: String,
+        /// Its type.
+        ty: String,
+        /// The key.
+        key: &'static str,
     },
     /// An axis that drives nothing, or two things at once.
     #[error("axis `{0}` needs either a `joint` or a `belt`")]

@@ -2,6 +2,8 @@
 //!
 //! Every value that a later check may refuse is [`Spanned`], so that the refusal can name its line.
 
+use std::collections::BTreeMap;
+
 use serde::{Deserialize, Serialize};
 use toml::Spanned;
 
@@ -25,6 +27,43 @@ pub(super) struct SceneFile {
     pub(super) axis: Vec<Spanned<AxisTable>>,
     #[serde(default)]
     pub(super) sensor: Vec<Spanned<SensorTable>>,
+    #[serde(default)]
+    pub(super) component: Vec<Spanned<ComponentTable>>,
+    #[serde(default)]
+    pub(super) failure: Vec<Spanned<FailureTable>>,
+    #[serde(default)]
+    pub(super) signal: Vec<Spanned<SignalTable>>,
+}
+
+/// `[[component]]`: its keys depend on its kind and are checked in the second pass.
+pub(super) type ComponentTable = BTreeMap<Spanned<String>, Spanned<toml::Value>>;
+
+/// `[[failure]]`
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct FailureTable {
+    pub(super) component: Spanned<String>,
+    pub(super) mode: Spanned<String>,
+    pub(super) signal: Option<Spanned<String>>,
+    pub(super) from_s: Option<Spanned<f64>>,
+    pub(super) until_s: Option<Spanned<f64>>,
+}
+
+/// `[[signal]]`
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct SignalTable {
+    pub(super) name: Spanned<String>,
+    #[serde(rename = "type")]
+    pub(super) ty: Option<Spanned<String>>,
+    pub(super) range: Option<Spanned<[f64; 2]>>,
+    pub(super) raw: Option<Spanned<[f64; 2]>>,
+    pub(super) delay_s: Option<Spanned<f64>>,
+    pub(super) jitter_s: Option<Spanned<f64>>,
+    pub(super) sample_s: Option<Spanned<f64>>,
+    pub(super) quantum: Option<Spanned<f64>>,
+    pub(super) noise_mean: Option<Spanned<f64>>,
+    pub(super) noise_sigma: Option<Spanned<f64>>,
 }
 
 /// How a body moves.

@@ -53,6 +53,30 @@
 //! | `body`, `point_m`, `direction`, `range_m` | of a proximity sensor: a ray that the body carries, the ground if absent |
 //! | `targets` | bodies that the ray detects, all but the carrier if absent |
 //!
+//! | `[[component]]` | meaning |
+//! |---|---|
+//! | `name`, `kind` | a kind of the library, see [`crate::plant::component`] |
+//! | its parameters | by their keys, each with a preset |
+//! | `joint`, `belt`, `body`, … | what it is bound to, as its kind has it |
+//! | `INPUT_signal`, `OUTPUT_signal` | the session's signal for an input or an output of its kind |
+//! | `INPUT_from` | `"component.output"`: another component's output for an input |
+//! | `signal_type` | `LREAL` or `REAL`, of all its number signals; `LREAL` if absent |
+//!
+//! | `[[failure]]` | meaning |
+//! |---|---|
+//! | `component`, `mode` | what fails, and how |
+//! | `signal` | a BOOL that switches it, or |
+//! | `from_s`, `until_s` | virtual time; from the start and for ever if absent |
+//!
+//! | `[[signal]]` | meaning: what happens to a signal between plant and PLC, in this order |
+//! |---|---|
+//! | `name` | a signal of the plant |
+//! | `sample_s` | looked at only so often |
+//! | `noise_mean`, `noise_sigma` | N(µ, σ) is added, in the signal's unit |
+//! | `quantum` | rounded to a multiple of this |
+//! | `delay_s`, `jitter_s` | arrives so much later, and up to the jitter later than that, in order |
+//! | `range`, `raw`, `type` | the range in the signal's unit, as it is in the PLC's type: scaled and limited |
+//!
 //! # Reading
 //! A scene is read in two passes. The first gives the tables as they are written and stops at the
 //! first fault of form, as TOML readers do. The second checks every value and finds every name; it
@@ -64,18 +88,26 @@
 //! | `faults` | gathering faults, finding their lines |
 //! | `number`, `names` | what a number and a name must be |
 //! | `bodies`, `joints`, `axes`, `sensors`, `signals` | the second pass, one sort of table each |
+//! | `components`, `bindings`, `failures`, `conditions` | the same, for components and what surrounds them |
 //! | [`model`] | the checked scene |
 //! | [`error`] | what can be wrong |
+//! | [`schema`] | the format as a JSON schema |
 
 mod axes;
+mod bindings;
 mod bodies;
+mod component_model;
+mod components;
+mod conditions;
 pub mod error;
+mod failures;
 mod faults;
 mod format;
 mod joints;
 pub mod model;
 mod names;
 mod number;
+pub mod schema;
 mod sensors;
 mod signals;
 
@@ -84,6 +116,7 @@ use toml::Spanned;
 pub use error::{SceneError, SceneFault, SceneFaultKind, Thing};
 pub use model::Scene;
 
+use bindings::Placed;
 use faults::Faults;
 use format::SceneFile;
 use names::Names;
@@ -131,6 +164,10 @@ fn check(written: &SceneFile, faults: &mut Faults<'_>) -> Scene {
     let scene_joints = joints::check(&written.joint, &written.body, &bodies, faults);
     let axes = axes::check(written, &bodies, &joints, &mut signals, faults);
     let sensors = sensors::check(written, &bodies, &joints, &mut signals, faults);
+    let placed = Placed { file: written, bodies: &bodies, joints: &joints, axes: &axes };
+    let (mut components, lost) = components::check(&placed, &mut signals, faults);
+    failures::check(&written.failure, (&mut components, &lost), &mut signals, faults);
+    let conditions = conditions::check(&written.signal, &mut signals, faults);
     let (reads, writes) = signals.into_ports(faults);
     Scene {
         gravity_m_s2: faults.triple("gravity_m_s2", written.gravity_m_s2.as_ref()).unwrap_or(GRAVITY_M_S2),
@@ -143,6 +180,8 @@ fn check(written: &SceneFile, faults: &mut Faults<'_>) -> Scene {
         joints: scene_joints,
         axes,
         sensors,
+        components,
+        conditions,
         reads,
         writes,
     }

@@ -5,6 +5,7 @@
 use onescan_server::signal::{Port, SignalName};
 use serde::Serialize;
 
+pub use super::component_model::{Between, Bound, Component, Condition, FailureSwitch, Range, When, Wire};
 pub use super::format::{BodyKind, JointKind, NumberType};
 
 /// Most collision groups of a scene; one bit of 32 stands for the bodies without a group.
@@ -30,9 +31,13 @@ pub struct Scene {
     pub axes: Vec<Axis>,
     /// Sensors in the file's order.
     pub sensors: Vec<Sensor>,
-    /// Signals that the plant reads, in the order of the axes.
+    /// Components in the file's order.
+    pub components: Vec<Component>,
+    /// What happens to signals between the plant and the session.
+    pub conditions: Vec<Condition>,
+    /// Signals that the plant reads, in the order of axes, then components.
     pub reads: Vec<Port>,
-    /// Signals that the plant writes: those of the axes, then those of the sensors.
+    /// Signals that the plant writes: those of axes, sensors, then components.
     pub writes: Vec<Port>,
 }
 

@@ -19,6 +19,24 @@ impl Signals {
         Self { reads: Vec::new(), writes: Vec::new(), written: Names::none(Thing::Signal) }
     }
 
+    /// Type and name of a signal that the plant reads or writes so far.
+    pub(super) fn find(&self, name: &str) -> Option<&Port> {
+        self.reads.iter().map(|(port, _)| port).chain(&self.writes).find(|port| port.name.as_str() == name)
+    }
+
+    /// Gives a signal another type in the session than the plant has for it.
+    pub(super) fn retype(&mut self, name: &SignalName, ty: ElementaryType) {
+        let ports = self.reads.iter_mut().map(|(port, _)| port).chain(&mut self.writes);
+        for port in ports.filter(|port| port.name == *name) {
+            port.ty = ty;
+        }
+    }
+
+    /// The names of all signals so far.
+    pub(super) fn names(&self) -> impl Iterator<Item = &str> {
+        self.reads.iter().map(|(port, _)| port).chain(&self.writes).map(|port| port.name.as_str())
+    }
+
     /// A signal that the plant reads; several axes may read the same one.
     pub(super) fn read(
         &mut self,

@@ -1,6 +1,6 @@
 //! Declarations of units, types and variables (2nd ed. 2.3 to 2.5).
 
-use super::{Expr, Ident, Modifier, Namespace, Object, Span, Statement};
+use super::{Configuration, Expr, Ident, Modifier, Namespace, Object, Span, Statement};
 
 /// Something a file declares.
 #[derive(Debug, Clone)]
@@ -15,6 +15,8 @@ pub enum Declaration {
     Namespace(Namespace),
     /// `USING a.b;`, for the rest of the file.
     Using(Vec<Ident>),
+    /// A configuration.
+    Configuration(Configuration),
 }
 
 /// The kinds of program organisation unit (2nd ed. 2.5).
@@ -80,6 +82,8 @@ pub enum SectionKind {
     InOut,
     /// `VAR_TEMP`
     Temp,
+    /// `VAR_STAT`: one variable for all instances and calls (vendors).
+    Static,
     /// `VAR_GLOBAL`
     Global,
     /// `VAR_EXTERNAL`
@@ -97,6 +101,8 @@ pub enum Qualifier {
     NonRetain,
     /// `PUBLIC`, `PROTECTED`, `PRIVATE` or `INTERNAL` (3rd ed. 6.6.5.10).
     Access(Modifier),
+    /// `PERSISTENT`, of vendors.
+    Persistent,
 }
 
 /// `VAR .. END_VAR` of any kind.

@@ -167,15 +167,19 @@ pub enum BinaryOp {
     Xor,
     /// `OR`
     Or,
+    /// `AND_THEN`: the right operand is evaluated only if the left one is TRUE (vendors).
+    AndThen,
+    /// `OR_ELSE`: the right operand is evaluated only if the left one is FALSE (vendors).
+    OrElse,
 }
 
 impl BinaryOp {
     /// How tightly it binds; a greater number binds tighter (2nd ed. Table 52).
     pub fn precedence(self) -> u8 {
         match self {
-            Self::Or => 1,
+            Self::Or | Self::OrElse => 1,
             Self::Xor => 2,
-            Self::And => 3,
+            Self::And | Self::AndThen => 3,
             Self::Equal | Self::NotEqual => 4,
             Self::Less | Self::Greater | Self::LessEqual | Self::GreaterEqual => 5,
             Self::Add | Self::Subtract => 6,
@@ -207,6 +211,8 @@ impl BinaryOp {
             Self::And => "AND",
             Self::Xor => "XOR",
             Self::Or => "OR",
+            Self::AndThen => "AND_THEN",
+            Self::OrElse => "OR_ELSE",
         }
     }
 }

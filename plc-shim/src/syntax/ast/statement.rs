@@ -20,6 +20,10 @@ pub enum StatementKind {
     Assign(Expr, Expr),
     /// `a ?= b` (3rd ed. 6.6.6.7)
     Attempt(Expr, Expr),
+    /// `a := b := c`: the targets in their order, at least two, and the value (vendors).
+    Chain(Vec<Expr>, Expr),
+    /// `a += b`, `a S= b` (vendors).
+    Update(UpdateOp, Expr, Expr),
     /// `fb(IN := x)`
     Call(Call),
     /// `IF`
@@ -40,6 +44,37 @@ pub enum StatementKind {
     Return,
     /// Text that is no statement; a diagnostic has been given.
     Error,
+}
+
+/// Assignments that depend on what is there already.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum UpdateOp {
+    /// `+=`
+    Add,
+    /// `-=`
+    Subtract,
+    /// `*=`
+    Multiply,
+    /// `/=`
+    Divide,
+    /// `S=`: TRUE if the value is, else as it was.
+    Set,
+    /// `R=`: FALSE if the value is TRUE, else as it was.
+    Reset,
+}
+
+impl UpdateOp {
+    /// Its spelling.
+    pub fn text(self) -> &'static str {
+        match self {
+            Self::Add => "+=",
+            Self::Subtract => "-=",
+            Self::Multiply => "*=",
+            Self::Divide => "/=",
+            Self::Set => "S=",
+            Self::Reset => "R=",
+        }
+    }
 }
 
 /// `IF a THEN .. ELSIF b THEN .. ELSE .. END_IF`

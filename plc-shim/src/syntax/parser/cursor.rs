@@ -1,7 +1,10 @@
 //! The parser's place in the tokens, what it has reported and how deep it is.
 
+use std::collections::BTreeMap;
+
 use super::MAX_NESTING;
 use crate::diagnostic::{Code, Diagnostic};
+use crate::dialect::{Dialect, Feature};
 use crate::syntax::ast::Ident;
 use crate::syntax::source::{FileId, Span};
 use crate::syntax::token::{Keyword, Punctuation, Token, TokenKind};
@@ -19,10 +22,13 @@ pub(super) struct Cursor<'a> {
     /// Findings not shown because another one explains them.
     suppressed: usize,
     abandoned: bool,
+    dialect: Dialect,
+    /// What the dialect lacks, at its first use in the file.
+    foreign: BTreeMap<Feature, Diagnostic>,
 }
 
 impl<'a> Cursor<'a> {
-    pub(super) fn new(file: FileId, text: &'a str, tokens: &[Token]) -> Self {
+    pub(super) fn new(dialect: Dialect, file: FileId, text: &'a str, tokens: &[Token]) -> Self {
         let is_broken = |kind: TokenKind| matches!(kind, TokenKind::Unknown | TokenKind::Unterminated);
         let broken = tokens.iter().filter(|token| is_broken(token.kind)).map(|token| token.start);
         let starts_string =
@@ -45,6 +51,8 @@ impl<'a> Cursor<'a> {
             broken: broken.collect(),
             suppressed: 0,
             abandoned: false,
+            dialect,
+            foreign: BTreeMap::new(),
         }
     }
 
@@ -52,8 +60,28 @@ impl<'a> Cursor<'a> {
         self.file
     }
 
-    pub(super) fn into_diagnostics(self) -> Vec<Diagnostic> {
+    pub(super) fn dialect(&self) -> Dialect {
+        self.dialect
+    }
+
+    pub(super) fn into_diagnostics(mut self) -> Vec<Diagnostic> {
+        self.diagnostics.extend(self.foreign.into_values());
         self.diagnostics
+    }
+
+    /// Reports `feature` if the dialect lacks it, once for a file. The grammar goes on as if it had it.
+    pub(super) fn require(&mut self, feature: Feature, span: Span) {
+        if !self.dialect.has(feature) {
+            let message = format!("{} is not part of {}", feature.about(), self.dialect);
+            let help = format!("it is part of {}: --dialect chooses", feature.homes());
+            let found = Diagnostic::error(Code::WrongDialect, span, message).with_help(help);
+            self.foreign.entry(feature).or_insert(found);
+        }
+    }
+
+    /// Leaves out the tokens that `counts` says do not count.
+    pub(super) fn keep(&mut self, counts: impl Fn(&Token) -> bool) {
+        self.tokens.retain(counts);
     }
 
     pub(super) fn report(&mut self, diagnostic: Diagnostic) {
@@ -92,11 +120,6 @@ impl<'a> Cursor<'a> {
 
     pub(super) fn peek_ahead(&self, ahead: usize) -> Option<TokenKind> {
         self.tokens.get(self.at + ahead).map(|token| token.kind)
-    }
-
-    /// True if the next token is this word, which is a name elsewhere.
-    pub(super) fn at_word(&self, word: &str) -> bool {
-        self.peek() == Some(TokenKind::Identifier) && self.next_text().eq_ignore_ascii_case(word)
     }
 
     pub(super) fn take_word(&mut self, word: &str) -> bool {
@@ -185,9 +208,15 @@ impl<'a> Cursor<'a> {
         if self.peek() != Some(TokenKind::Identifier) {
             return None;
         }
-        let ident = Ident { text: self.next_text().to_owned(), span: self.span() };
+        let text = self.next_text().trim_start_matches('#').trim_matches('"').to_owned();
+        let ident = Ident { text, span: self.span() };
         self.advance();
         Some(ident)
+    }
+
+    /// True if the next token is this word, in any case.
+    pub(super) fn at_word(&self, word: &str) -> bool {
+        self.peek() == Some(TokenKind::Identifier) && self.next_text().eq_ignore_ascii_case(word)
     }
 
     pub(super) fn expect_identifier(&mut self, what: &str) -> Option<Ident> {

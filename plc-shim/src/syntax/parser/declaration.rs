@@ -2,6 +2,7 @@
 
 use super::cursor::Cursor;
 use super::object::ends_object;
+use crate::dialect::Feature;
 use crate::syntax::ast::{
     CompilationUnit, Declaration, Edge, Ident, Member, Modifier, PouKind, Qualifier, Section, SectionKind, Statement,
     TypeDeclaration, TypeSpec, TypeSpecKind, Variable,
@@ -12,7 +13,8 @@ use crate::syntax::token::{Keyword, Punctuation, TokenKind};
 pub(super) fn begins_declaration(kind: TokenKind) -> bool {
     use Keyword as K;
     let TokenKind::Keyword(keyword) = kind else { return false };
-    matches!(keyword, K::Program | K::FunctionBlock | K::Function | K::Type | K::VarGlobal) || keyword.is_soft()
+    let unit = matches!(keyword, K::Program | K::FunctionBlock | K::Function | K::OrganizationBlock | K::DataBlock);
+    unit || matches!(keyword, K::Type | K::VarGlobal) || keyword.is_soft()
 }
 
 pub(super) fn section_kind(kind: Option<TokenKind>) -> Option<SectionKind> {
@@ -22,6 +24,7 @@ pub(super) fn section_kind(kind: Option<TokenKind>) -> Option<SectionKind> {
         TokenKind::Keyword(Keyword::VarOutput) => SectionKind::Output,
         TokenKind::Keyword(Keyword::VarInOut) => SectionKind::InOut,
         TokenKind::Keyword(Keyword::VarTemp) => SectionKind::Temp,
+        TokenKind::Keyword(Keyword::VarStat) => SectionKind::Static,
         TokenKind::Keyword(Keyword::VarGlobal) => SectionKind::Global,
         TokenKind::Keyword(Keyword::VarExternal) => SectionKind::External,
         _ => return None,
@@ -56,9 +59,16 @@ impl Cursor<'_> {
                 let section = self.section(SectionKind::Global);
                 into.push(Declaration::Globals(section));
             }
+            TokenKind::Identifier if self.at_word("CONFIGURATION") => match self.configuration() {
+                Some(found) => into.push(found),
+                None => self.skip_until(begins_declaration),
+            },
+            TokenKind::Keyword(Keyword::OrganizationBlock) => self.organization_block(into),
+            TokenKind::Keyword(Keyword::DataBlock) => self.data_block(into),
             // Vendors' exports end a unit with a semicolon; it declares nothing.
             TokenKind::Punctuation(Punctuation::Semicolon) => self.advance(),
             _ => {
+                self.report_block_of_other_dialect();
                 self.unexpected("PROGRAM, FUNCTION_BLOCK, FUNCTION, CLASS, TYPE or VAR_GLOBAL");
                 self.advance();
                 self.skip_until(begins_declaration);
@@ -66,11 +76,20 @@ impl Cursor<'_> {
         }
     }
 
-    fn pou(&mut self, kind: PouKind, end: Keyword, into: &mut Vec<Declaration>) {
+    pub(super) fn pou(&mut self, kind: PouKind, end: Keyword, into: &mut Vec<Declaration>) {
         match self.unit(kind, end) {
             Some(pou) => into.push(Declaration::Pou(pou)),
             None => self.skip_until(begins_declaration),
         }
+    }
+
+    /// The kind of the section that begins here.
+    pub(super) fn next_section(&mut self) -> Option<SectionKind> {
+        if self.at_word("VAR_STAT") {
+            self.require(Feature::StaticSection, self.span());
+            return Some(SectionKind::Static);
+        }
+        section_kind(self.peek())
     }
 
     pub(super) fn body(&mut self, end: Keyword, members: &mut Vec<Member>) -> Vec<Statement> {
@@ -118,6 +137,7 @@ impl Cursor<'_> {
                 Some(TokenKind::Keyword(Keyword::Constant)) => Qualifier::Constant,
                 Some(TokenKind::Keyword(Keyword::Retain)) => Qualifier::Retain,
                 Some(TokenKind::Keyword(Keyword::NonRetain)) => Qualifier::NonRetain,
+                Some(TokenKind::Identifier) if self.at_persistent() => Qualifier::Persistent,
                 _ => match self.section_access() {
                     Some(access) => Qualifier::Access(access),
                     None => return found,
@@ -135,6 +155,13 @@ impl Cursor<'_> {
         let named =
             matches!(self.peek_ahead(1), Some(TokenKind::Punctuation(_)) | Some(TokenKind::Keyword(Keyword::At)));
         (is_access && !named).then_some(access)
+    }
+
+    /// `PERSISTENT` behind a section's keyword; a variable may have the name, too.
+    fn at_persistent(&self) -> bool {
+        use Punctuation::{Colon, Comma};
+        let declared = matches!(self.peek_ahead(1), Some(TokenKind::Punctuation(Colon | Comma)));
+        self.at_word("PERSISTENT") && !declared && self.peek_ahead(1) != Some(TokenKind::Keyword(Keyword::At))
     }
 
     fn variable(&mut self, variables: &mut Vec<Variable>) {
@@ -166,7 +193,7 @@ impl Cursor<'_> {
         Some(edge)
     }
 
-    fn address(&mut self) -> Option<Ident> {
+    pub(super) fn address(&mut self) -> Option<Ident> {
         if self.peek() != Some(TokenKind::DirectAddress) {
             self.unexpected("a direct address");
             return None;
@@ -205,7 +232,9 @@ impl Cursor<'_> {
                 break;
             };
             let before = self.extended_structure();
-            self.expect_mark(Punctuation::Colon);
+            if !self.at_bare_structure() {
+                self.expect_mark(Punctuation::Colon);
+            }
             let (spec, behind) = self.type_spec_extending();
             let (initial, extends) = (self.optional_initialiser(), before.or(behind));
             let span = self.span_from(start);
@@ -226,5 +255,6 @@ pub(super) fn ends_unit(kind: TokenKind) -> bool {
     let TokenKind::Keyword(keyword) = kind else { return false };
     begins_declaration(kind)
         || matches!(keyword, K::EndProgram | K::EndFunctionBlock | K::EndFunction)
+        || matches!(keyword, K::EndOrganizationBlock | K::EndDataBlock)
         || ends_object(keyword)
 }

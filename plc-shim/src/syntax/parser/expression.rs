@@ -2,8 +2,9 @@
 
 use super::cursor::Cursor;
 use crate::diagnostic::{Code, Diagnostic};
+use crate::dialect::Feature;
 use crate::syntax::ast::{Argument, BinaryOp, Call, Expr, ExprKind, Ident, Literal, MAX_HEIGHT, UnaryOp};
-use crate::syntax::literal::{parse_integer, parse_real, parse_typed};
+use crate::syntax::literal::{parse_integer, parse_real};
 use crate::syntax::source::Span;
 use crate::syntax::token::{Keyword, Punctuation, TokenKind};
 
@@ -26,6 +27,7 @@ impl Cursor<'_> {
             if operator.precedence() <= minimum {
                 break;
             }
+            self.require_operator(operator);
             self.advance();
             // All operators of a level are left associative (2nd ed. 3.3.1), `**` included.
             let right = self.binary(operator.precedence());
@@ -43,6 +45,7 @@ impl Cursor<'_> {
             TokenKind::Keyword(Keyword::Xor) => BinaryOp::Xor,
             TokenKind::Keyword(Keyword::And) => BinaryOp::And,
             TokenKind::Keyword(Keyword::Mod) => BinaryOp::Modulo,
+            TokenKind::Identifier => return self.peek_word_operator(),
             TokenKind::Punctuation(mark) => match mark {
                 Punctuation::Ampersand => BinaryOp::And,
                 Punctuation::Equal => BinaryOp::Equal,
@@ -62,6 +65,32 @@ impl Cursor<'_> {
         })
     }
 
+    /// Operators that the standard does not reserve: a name stands nowhere behind an operand.
+    fn peek_word_operator(&self) -> Option<BinaryOp> {
+        let word = self.next_text().to_ascii_uppercase();
+        let next = self.peek_ahead(1);
+        Some(match word.as_str() {
+            "AND_THEN" => BinaryOp::AndThen,
+            "OR_ELSE" => BinaryOp::OrElse,
+            // As a name it would be followed by `:=` or the like.
+            "DIV" if !matches!(next, Some(TokenKind::Punctuation(Punctuation::Assign))) => BinaryOp::Divide,
+            _ => return None,
+        })
+    }
+
+    /// Reports an operator that the dialect lacks.
+    fn require_operator(&mut self, operator: BinaryOp) {
+        let span = self.span();
+        match operator {
+            BinaryOp::AndThen | BinaryOp::OrElse => self.require(Feature::ShortCircuit, span),
+            BinaryOp::Power => self.require(Feature::Power, span),
+            BinaryOp::Divide if self.peek() == Some(TokenKind::Identifier) => {
+                self.require(Feature::DivOperator, span);
+            }
+            _ => {}
+        }
+    }
+
     fn unary(&mut self) -> Expr {
         let operator = match self.peek() {
             Some(TokenKind::Punctuation(Punctuation::Minus)) => UnaryOp::Negate,
@@ -77,7 +106,7 @@ impl Cursor<'_> {
     }
 
     /// A primary with its members, indices and calls.
-    fn postfix(&mut self) -> Expr {
+    pub(super) fn postfix(&mut self) -> Expr {
         let mut expr = self.primary();
         self.pass_object_caret(&expr);
         loop {
@@ -180,13 +209,14 @@ impl Cursor<'_> {
     }
 
     pub(super) fn primary(&mut self) -> Expr {
+        self.pass_hash();
         let span = self.span();
         let text = self.next_text();
         let kind = match self.peek() {
-            Some(TokenKind::Identifier) => ExprKind::Name(Ident { text: text.to_owned(), span }),
+            Some(TokenKind::Identifier) => ExprKind::Name(Self::written_name(text, span)),
             Some(TokenKind::Integer) => self.literal(span, parse_integer(text).map(Literal::Integer)),
             Some(TokenKind::Real) => self.literal(span, parse_real(text).map(Literal::Real)),
-            Some(TokenKind::Typed) => self.literal(span, parse_typed(text)),
+            Some(TokenKind::Typed) => self.typed_literal(text, span),
             Some(TokenKind::String | TokenKind::WideString) => ExprKind::Literal(Literal::String(text.to_owned())),
             Some(TokenKind::DirectAddress) => ExprKind::DirectAddress(text.to_owned()),
             Some(TokenKind::Keyword(Keyword::True)) => ExprKind::Literal(Literal::Bool(true)),
@@ -210,7 +240,7 @@ impl Cursor<'_> {
             && self.peek_ahead(1) == Some(TokenKind::Punctuation(Punctuation::LeftParen))
     }
 
-    fn literal(&mut self, span: Span, value: Result<Literal, String>) -> ExprKind {
+    pub(super) fn literal(&mut self, span: Span, value: Result<Literal, String>) -> ExprKind {
         match value {
             Ok(literal) => ExprKind::Literal(literal),
             Err(message) => {
@@ -220,7 +250,7 @@ impl Cursor<'_> {
         }
     }
 
-    fn parenthesised(&mut self) -> Expr {
+    pub(super) fn parenthesised(&mut self) -> Expr {
         let start = self.span();
         self.advance();
         let inner = self.expression();

@@ -1,16 +1,32 @@
 //! Initial values (2nd ed. 2.4.3.2, 3rd ed. 6.5.1.3).
 
 use super::cursor::Cursor;
+use crate::dialect::Feature;
 use crate::syntax::ast::{Initialiser, InitialiserKind, StructureInit};
 use crate::syntax::token::{Punctuation, TokenKind};
 
 impl Cursor<'_> {
     /// `:= value`, if there is one.
     pub(super) fn optional_initialiser(&mut self) -> Option<Initialiser> {
-        self.take_mark(Punctuation::Assign).then(|| self.initialiser())
+        if !self.take_mark(Punctuation::Assign) {
+            return None;
+        }
+        let start = self.span();
+        let first = self.array_element();
+        let repeats = matches!(first.kind, InitialiserKind::Repeat(..));
+        if !repeats && !self.at_mark(Punctuation::Comma) {
+            return Some(first);
+        }
+        // CODESYS V2.3 lists an array's values without brackets.
+        self.require(Feature::BareArrayValues, start);
+        let mut elements = vec![first];
+        while self.take_mark(Punctuation::Comma) {
+            elements.push(self.array_element());
+        }
+        Some(Initialiser { kind: InitialiserKind::Array(elements), span: self.span_from(start) })
     }
 
-    fn initialiser(&mut self) -> Initialiser {
+    pub(super) fn initialiser(&mut self) -> Initialiser {
         let start = self.span();
         let kind = self.nested(Self::initialiser_kind);
         let kind = kind.unwrap_or(InitialiserKind::Array(Vec::new()));

@@ -1,7 +1,7 @@
 //! Classes, interfaces, methods, properties, actions (3rd ed. 6.6.5 to 6.6.8), namespaces (3rd ed. 6.9).
 
 use super::cursor::Cursor;
-use super::declaration::{begins_declaration, ends_unit, section_kind};
+use super::declaration::{begins_declaration, ends_unit};
 use crate::diagnostic::{Code, Diagnostic};
 use crate::syntax::ast::{
     Declaration, Expr, ExprKind, Ident, Literal, Member, MemberKind, Modifier, Namespace, NamespaceKind, Object, Pou,
@@ -35,7 +35,7 @@ impl Cursor<'_> {
         let mut object = Object { modifiers: self.modifiers(), ..Object::default() };
         let name = self.expect_identifier("the unit's name")?;
         let has_result = matches!(kind, PouKind::Function | PouKind::Method) && self.take_mark(Punctuation::Colon);
-        let result = has_result.then(|| self.type_spec());
+        let result = has_result.then(|| self.type_spec()).filter(|result| !self.is_void(result));
         self.heritage(&mut object);
         self.take_mark(Punctuation::Semicolon);
         Some(self.unit_behind_head(kind, end, (name, result, object), start))
@@ -50,6 +50,7 @@ impl Cursor<'_> {
         start: Span,
     ) -> Pou {
         let sections = self.sections_and_members(&mut object);
+        self.take_keyword(Keyword::Begin);
         let from = self.span();
         let body = self.body(end, &mut object.members);
         if matches!(kind, PouKind::Class | PouKind::Interface) && !body.is_empty() {
@@ -64,7 +65,7 @@ impl Cursor<'_> {
     fn sections_and_members(&mut self, object: &mut Object) -> Vec<Section> {
         let mut sections = Vec::new();
         loop {
-            if let Some(kind) = section_kind(self.peek()) {
+            if let Some(kind) = self.next_section() {
                 sections.push(self.section(kind));
             } else if self.at_keyword(Keyword::Using) {
                 self.using(&mut object.using);

@@ -3,8 +3,9 @@
 use super::cursor::Cursor;
 use super::object::ends_object;
 use crate::diagnostic::{Code, Diagnostic};
+use crate::dialect::Feature;
 use crate::syntax::ast::{
-    CaseBranch, CaseLabel, CaseStatement, ExprKind, ForStatement, IfBranch, IfStatement, RepeatStatement, Statement,
+    CaseBranch, CaseLabel, CaseStatement, ForStatement, IfBranch, IfStatement, RepeatStatement, Statement,
     StatementKind, WhileStatement,
 };
 use crate::syntax::source::Span;
@@ -22,6 +23,7 @@ fn closes_list(keyword: Keyword) -> bool {
             | K::EndWhile | K::EndRepeat | K::Elsif | K::Else | K::Until
             // A new unit begins: the end of the one before is missing.
             | K::Program | K::FunctionBlock | K::Function | K::Type | K::EndType | K::VarGlobal
+            | K::OrganizationBlock | K::EndOrganizationBlock | K::DataBlock | K::EndDataBlock
     )
 }
 
@@ -43,6 +45,7 @@ impl Cursor<'_> {
                 None => return list,
                 Some(TokenKind::Keyword(keyword)) if closes_list(keyword) => return list,
                 _ if stop(self) => return list,
+                Some(TokenKind::Identifier) if self.pass_exception_word() => {}
                 _ => list.push(self.statement()),
             }
         }
@@ -57,8 +60,8 @@ impl Cursor<'_> {
         let ended = self.position() > position && self.previous_closes();
         if self.reported() > known && !ended {
             self.recover(position);
-        } else if !self.take_mark(Punctuation::Semicolon) {
-            self.missing_semicolon();
+        } else if !(self.take_mark(Punctuation::Semicolon) || ended && self.dialect().has(Feature::LooseEnds)) {
+            self.missing_semicolon(ended);
         }
         Statement { kind, span }
     }
@@ -67,11 +70,12 @@ impl Cursor<'_> {
         matches!(self.previous(), Some(TokenKind::Keyword(keyword)) if ends_statement(keyword))
     }
 
-    fn missing_semicolon(&mut self) {
+    fn missing_semicolon(&mut self, behind_end: bool) {
         let before = self.previous_span();
         let span = Span { start: before.end.saturating_sub(1).max(before.start), ..before };
         let message = "`;` expected after this";
-        self.report_syntax(Diagnostic::error(Code::UnexpectedToken, span, message));
+        let help = behind_end.then(|| format!("{} may leave it out: --dialect chooses", Feature::LooseEnds.homes()));
+        self.report_syntax(Diagnostic::error(Code::UnexpectedToken, span, message).with_optional_help(help));
         // What follows is most often a good statement; only a stray remainder is skipped.
         let good = match self.peek() {
             Some(TokenKind::Identifier | TokenKind::DirectAddress) | None => true,
@@ -107,7 +111,7 @@ impl Cursor<'_> {
         self.take_mark(Punctuation::Semicolon);
     }
 
-    fn statement_kind(&mut self) -> StatementKind {
+    pub(super) fn statement_kind(&mut self) -> StatementKind {
         match self.peek() {
             Some(TokenKind::Punctuation(Punctuation::Semicolon)) => StatementKind::Empty,
             Some(TokenKind::Keyword(keyword)) => match keyword {
@@ -128,33 +132,6 @@ impl Cursor<'_> {
     fn single(&mut self, kind: StatementKind) -> StatementKind {
         self.advance();
         kind
-    }
-
-    fn assignment_or_call(&mut self) -> StatementKind {
-        let known = self.reported();
-        let target = self.expression();
-        if self.take_mark(Punctuation::Assign) {
-            let value = self.expression();
-            return StatementKind::Assign(target, value);
-        }
-        if self.take_mark(Punctuation::Attempt) {
-            let value = self.expression();
-            return StatementKind::Attempt(target, value);
-        }
-        if let ExprKind::Call(call) = target.kind {
-            StatementKind::Call(call)
-        } else {
-            if self.reported() == known {
-                if self.at_mark(Punctuation::Equal) || is_comparison(&target.kind) {
-                    let message = "this is a comparison, not an assignment";
-                    let found = Diagnostic::error(Code::UnexpectedToken, target.span, message);
-                    self.report(found.with_help("assign with `:=`"));
-                } else {
-                    self.unexpected("`:=` or `(`");
-                }
-            }
-            StatementKind::Error
-        }
     }
 
     fn if_statement(&mut self) -> StatementKind {
@@ -338,8 +315,4 @@ impl Cursor<'_> {
 fn ends_statement(keyword: Keyword) -> bool {
     use Keyword as K;
     matches!(keyword, K::EndIf | K::EndCase | K::EndFor | K::EndWhile | K::EndRepeat)
-}
-
-fn is_comparison(kind: &ExprKind) -> bool {
-    matches!(kind, ExprKind::Binary(crate::syntax::ast::BinaryOp::Equal, ..))
 }

@@ -51,6 +51,56 @@ fn a_printed_unit_parses_to_itself() {
 }
 
 #[test]
+fn iec2_2_7_a_printed_configuration_parses_to_itself() {
+    let text = "
+        configuration Cell var_global a, b : INT; c : BOOL; end_var
+          Resource Line ON Soft VAR_GLOBAL RETAIN PERSISTENT w AT %MW1 : INT := 3; END_VAR VAR_GLOBAL END_VAR
+            TASK fast (INTERVAL := T#10ms, PRIORITY := 1); TASK edge(SINGLE := c, PRIORITY := 2);
+            PROGRAM RETAIN p1 WITH fast : Pump (level := a, on => c, deep.x[1] := 2 + 3, fb WITH edge);
+            PROGRAM NON_RETAIN p2 : Pump; PROGRAM p3 : Pump();
+          END_RESOURCE
+          RESOURCE Empty ON Soft END_RESOURCE;
+          VAR_ACCESS one : Line.p1.level : INT READ_WRITE; two : Line.w : INT; three : %IX1.0 : BOOL READ_ONLY; END_VAR
+          VAR_CONFIG Line.p1.fb.k AT %QW3 : INT := 5; Line.p1.t[2] : TON := (PT := T#1s); END_VAR
+        END_CONFIGURATION
+        CONFIGURATION Small TASK t (INTERVAL := T#1s); PROGRAM p WITH t : Pump; END_CONFIGURATION
+        PROGRAM Task VAR on, with, configuration, resource : BOOL; persistent : INT; END_VAR
+        VAR PERSISTENT task : INT; END_VAR on := task = 1; END_PROGRAM";
+    let (once, first) = reparse(text);
+    assert_eq!(first, []);
+    let (twice, diagnostics) = reparse(&once);
+    assert_eq!(diagnostics, []);
+    assert_eq!(once, twice);
+    insta::assert_snapshot!(once);
+}
+
+#[test]
+fn iec2_2_7_one_slip_in_a_configuration_makes_one_diagnostic() {
+    for slip in [
+        "TASK (INTERVAL := T#1s);",
+        "TASK t INTERVAL := T#1s;",
+        "TASK t (INTERVAL = T#1s);",
+        "TASK t (INTERVAL := T#1s)",
+        "PROGRAM : P;",
+        "PROGRAM p WITH : P;",
+        "PROGRAM p P;",
+        "PROGRAM p : P (a b);",
+        "RESOURCE r END_RESOURCE",
+        "RESOURCE r ON x nonsense; END_RESOURCE",
+        "VAR_ACCESS a INT; END_VAR",
+        "VAR_CONFIG a.b := 5; END_VAR",
+        "nonsense here;",
+    ] {
+        let text = format!(
+            "CONFIGURATION c {slip}\nTASK u (INTERVAL := T#1s);\nPROGRAM q WITH u : P;\nEND_CONFIGURATION
+            PROGRAM P VAR x : INT; END_VAR x := 1; END_PROGRAM"
+        );
+        let found = parse(FILE, &text).diagnostics;
+        assert_eq!(found.len(), 1, "{slip}: {found:#?}");
+    }
+}
+
+#[test]
 fn operators_bind_as_table_52_says() {
     let shape = |text: &str| {
         let parsed = parse(FILE, &format!("PROGRAM p x := {text}; END_PROGRAM"));

@@ -14,6 +14,7 @@ impl Printer {
             Declaration::Globals(section) => self.section(section),
             Declaration::Namespace(namespace) => self.namespace(namespace),
             Declaration::Using(names) => self.using(names),
+            Declaration::Configuration(configuration) => self.configuration(configuration),
         }
         self.end_line();
     }
@@ -40,12 +41,14 @@ impl Printer {
     }
 
     pub(super) fn section(&mut self, section: &Section) {
+        self.begin_line();
         self.word(match section.kind {
             SectionKind::Local => "VAR",
             SectionKind::Input => "VAR_INPUT",
             SectionKind::Output => "VAR_OUTPUT",
             SectionKind::InOut => "VAR_IN_OUT",
             SectionKind::Temp => "VAR_TEMP",
+            SectionKind::Static => "VAR_STAT",
             SectionKind::Global => "VAR_GLOBAL",
             SectionKind::External => "VAR_EXTERNAL",
         });
@@ -55,6 +58,7 @@ impl Printer {
                 Qualifier::Constant => "CONSTANT",
                 Qualifier::Retain => "RETAIN",
                 Qualifier::NonRetain => "NON_RETAIN",
+                Qualifier::Persistent => "PERSISTENT",
                 Qualifier::Access(access) => access.text(),
             });
         }
@@ -85,7 +89,7 @@ impl Printer {
     }
 
     /// ` : INT := 5;` and the line's end.
-    fn typed(&mut self, spec: &TypeSpec, initial: Option<&Initialiser>) {
+    pub(super) fn typed(&mut self, spec: &TypeSpec, initial: Option<&Initialiser>) {
         self.word(" : ");
         self.type_spec(spec);
         self.initial(initial);

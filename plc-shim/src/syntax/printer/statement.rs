@@ -26,6 +26,20 @@ impl Printer {
                 self.word(" ?= ");
                 self.expression(value);
             }
+            StatementKind::Chain(targets, value) => {
+                for target in targets {
+                    self.expression(target);
+                    self.word(" := ");
+                }
+                self.expression(value);
+            }
+            StatementKind::Update(operator, target, value) => {
+                self.expression(target);
+                self.word(" ");
+                self.word(operator.text());
+                self.word(" ");
+                self.expression(value);
+            }
             StatementKind::Call(call) => self.call(call),
             StatementKind::If(inner) => self.if_statement(inner),
             StatementKind::Case(inner) => self.case_statement(inner),

@@ -1,0 +1,288 @@
+//! How a component states its parameters, signals and failures: once, as structs and enums whose
+//! fields and docstrings are also the data of [`super::kind`].
+
+use super::kind::{Failure, Form, Parameter, Setting, Signal, Values};
+
+/// The parameters of a kind of component.
+pub(crate) trait ParameterSet: Default {
+    /// Every parameter, in the order of the fields.
+    fn table() -> Vec<Parameter>;
+    /// Takes the settings, one for each entry of the table.
+    fn read(settings: &[Setting]) -> Self;
+}
+
+/// The type of a parameter.
+pub(crate) trait ParameterType: Copy {
+    /// What may be written, `bounds` included where they mean anything.
+    fn form(bounds: (f64, f64)) -> Form;
+    fn write(self) -> Setting;
+    fn read(setting: Setting) -> Option<Self>;
+}
+
+impl ParameterType for f64 {
+    fn form((least, most): (f64, f64)) -> Form {
+        Form::Number { least, most }
+    }
+
+    fn write(self) -> Setting {
+        Setting::Number(self)
+    }
+
+    fn read(setting: Setting) -> Option<Self> {
+        if let Setting::Number(number) = setting { Some(number) } else { None }
+    }
+}
+
+impl ParameterType for u32 {
+    fn form((least, most): (f64, f64)) -> Form {
+        Form::Count { least: least as i64, most: most as i64 }
+    }
+
+    fn write(self) -> Setting {
+        Setting::Count(i64::from(self))
+    }
+
+    fn read(setting: Setting) -> Option<Self> {
+        if let Setting::Count(whole) = setting { u32::try_from(whole).ok() } else { None }
+    }
+}
+
+impl ParameterType for bool {
+    fn form(_: (f64, f64)) -> Form {
+        Form::Flag
+    }
+
+    fn write(self) -> Setting {
+        Setting::Flag(self)
+    }
+
+    fn read(setting: Setting) -> Option<Self> {
+        if let Setting::Flag(flag) = setting { Some(flag) } else { None }
+    }
+}
+
+/// `key: type = preset => least, most;`, the bounds only for numbers.
+macro_rules! parameters {
+    ($(#[$meta:meta])* $name:ident { $(
+        $(#[doc = $about:literal])+ $key:ident : $ty:ty = $preset:expr $(=> $least:expr, $most:expr)?;
+    )* }) => {
+        $(#[$meta])*
+        #[derive(Clone, Debug, PartialEq)]
+        pub(crate) struct $name { $( $(#[doc = $about])+ pub(crate) $key: $ty, )* }
+
+        impl Default for $name {
+            fn default() -> Self {
+                Self { $( $key: $preset, )* }
+            }
+        }
+
+        impl $crate::plant::component::declare::ParameterSet for $name {
+            fn table() -> Vec<$crate::plant::component::kind::Parameter> {
+                use $crate::plant::component::declare::ParameterType;
+                vec![ $( $crate::plant::component::kind::Parameter {
+                    key: stringify!($key),
+                    about: concat!($($about),+).trim().to_owned(),
+                    form: {
+                        #[allow(unused_mut, unused_assignments)]
+                        let mut bounds = (0.0, 0.0);
+                        $( bounds = (f64::from($least), f64::from($most)); )?
+                        <$ty as ParameterType>::form(bounds)
+                    },
+                    preset: <$ty as ParameterType>::write($preset),
+                }, )* ]
+            }
+
+            fn read(settings: &[$crate::plant::component::kind::Setting]) -> Self {
+                use $crate::plant::component::declare::ParameterType;
+                let mut settings = settings.iter().copied();
+                Self { $(
+                    $key: settings.next().and_then(<$ty as ParameterType>::read).unwrap_or($preset),
+                )* }
+            }
+        }
+    };
+}
+pub(crate) use parameters;
+
+/// `Variant = "word"`: a parameter that is one word of several.
+macro_rules! choice {
+    ($(#[$meta:meta])* $name:ident { $( $(#[doc = $about:literal])+ $variant:ident = $word:literal, )+ }) => {
+        $(#[$meta])*
+        #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+        pub(crate) enum $name { $( $(#[doc = $about])+ $variant, )+ }
+
+        impl $crate::plant::component::declare::ParameterType for $name {
+            fn form(_: (f64, f64)) -> $crate::plant::component::kind::Form {
+                $crate::plant::component::kind::Form::Choice(&[ $($word),+ ])
+            }
+
+            fn write(self) -> $crate::plant::component::kind::Setting {
+                $crate::plant::component::kind::Setting::Choice(match self { $( Self::$variant => $word, )+ })
+            }
+
+            fn read(setting: $crate::plant::component::kind::Setting) -> Option<Self> {
+                match setting {
+                    $( $crate::plant::component::kind::Setting::Choice($word) => Some(Self::$variant), )+
+                    _ => None,
+                }
+            }
+        }
+    };
+}
+pub(crate) use choice;
+
+/// A value of a signal.
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+pub(crate) enum Value {
+    Bool(bool),
+    Number(f64),
+    Whole(i32),
+}
+
+impl Value {
+    /// What a signal holds before anybody writes it.
+    pub(crate) const fn zero(values: Values) -> Self {
+        match values {
+            Values::Bool => Self::Bool(false),
+            Values::Number => Self::Number(0.0),
+            Values::Whole => Self::Whole(0),
+        }
+    }
+}
+
+/// The type of a signal.
+pub(crate) trait SignalType: Copy {
+    const VALUES: Values;
+    fn write(self) -> Value;
+    fn read(value: Value) -> Option<Self>;
+}
+
+macro_rules! signal_type {
+    ($ty:ty, $variant:ident) => {
+        impl SignalType for $ty {
+            const VALUES: Values = Values::$variant;
+
+            fn write(self) -> Value {
+                Value::$variant(self)
+            }
+
+            fn read(value: Value) -> Option<Self> {
+                if let Value::$variant(inner) = value { Some(inner) } else { None }
+            }
+        }
+    };
+}
+signal_type!(bool, Bool);
+signal_type!(f64, Number);
+signal_type!(i32, Whole);
+
+/// The inputs or the outputs of a kind of component.
+pub(crate) trait SignalSet: Default {
+    /// Every signal, in the order of the fields.
+    fn table() -> Vec<Signal>;
+    /// What each signal holds where nothing is connected.
+    fn unconnected() -> Vec<Value> {
+        let mut values = Vec::new();
+        Self::default().write(&mut values);
+        values
+    }
+    /// Takes the values, one for each entry of the table.
+    fn read(values: &[Value]) -> Self;
+    /// Puts the values, one for each entry of the table.
+    fn write(self, values: &mut Vec<Value>);
+}
+
+/// `key: type`, or `key: type = value` for an input that is not 0 where nothing is connected.
+macro_rules! signals {
+    (@preset) => { Default::default() };
+    (@preset $preset:expr) => { $preset };
+    ($(#[$meta:meta])* $name:ident { $(
+        $(#[doc = $about:literal])+ $key:ident : $ty:ty $(= $preset:expr)?,
+    )* }) => {
+        $(#[$meta])*
+        #[derive(Clone, Copy, Debug, PartialEq)]
+        pub(crate) struct $name { $( $(#[doc = $about])+ pub(crate) $key: $ty, )* }
+
+        impl Default for $name {
+            fn default() -> Self {
+                Self { $( $key: $crate::plant::component::declare::signals!(@preset $($preset)?), )* }
+            }
+        }
+
+        impl $crate::plant::component::declare::SignalSet for $name {
+            fn table() -> Vec<$crate::plant::component::kind::Signal> {
+                vec![ $( $crate::plant::component::kind::Signal {
+                    key: stringify!($key),
+                    about: concat!($($about),+).trim().to_owned(),
+                    values: <$ty as $crate::plant::component::declare::SignalType>::VALUES,
+                }, )* ]
+            }
+
+            #[allow(unused_mut, unused_variables)]
+            fn read(values: &[$crate::plant::component::declare::Value]) -> Self {
+                let mut values = values.iter().copied();
+                Self { $(
+                    $key: values
+                        .next()
+                        .and_then(<$ty as $crate::plant::component::declare::SignalType>::read)
+                        .unwrap_or_else(|| Self::default().$key),
+                )* }
+            }
+
+            #[allow(unused_variables)]
+            fn write(self, values: &mut Vec<$crate::plant::component::declare::Value>) {
+                values.clear();
+                $( values.push($crate::plant::component::declare::SignalType::write(self.$key)); )*
+            }
+        }
+    };
+}
+pub(crate) use signals;
+
+/// The ways in which a component of a kind may fail.
+pub(crate) trait FailureSet: Copy {
+    /// Every mode, in the order of the variants.
+    fn table() -> Vec<Failure>;
+    /// Its place in the table.
+    fn index(self) -> u32;
+}
+
+/// `Variant = "mode"`
+macro_rules! failures {
+    ($(#[$meta:meta])* $name:ident { $( $(#[doc = $about:literal])+ $variant:ident = $mode:literal, )+ }) => {
+        $(#[$meta])*
+        #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+        pub(crate) enum $name { $( $(#[doc = $about])+ $variant, )+ }
+
+        impl $crate::plant::component::declare::FailureSet for $name {
+            fn table() -> Vec<$crate::plant::component::kind::Failure> {
+                vec![ $( $crate::plant::component::kind::Failure {
+                    mode: $mode,
+                    about: concat!($($about),+).trim().to_owned(),
+                }, )+ ]
+            }
+
+            fn index(self) -> u32 {
+                self as u32
+            }
+        }
+    };
+}
+pub(crate) use failures;
+
+/// The failure modes that are on.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) struct Failed(pub(crate) u32);
+
+impl Failed {
+    /// True if this mode is on.
+    pub(crate) fn has(self, mode: impl FailureSet) -> bool {
+        self.0 & (1 << mode.index()) != 0
+    }
+
+    /// These modes and one more, by its place in the table.
+    #[must_use]
+    pub(crate) const fn with(self, index: usize) -> Self {
+        Self(self.0 | (1 << index))
+    }
+}

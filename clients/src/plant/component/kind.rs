@@ -1,0 +1,242 @@
+//! What a kind of component is, as plain data: for the reader of scenes, for people, for the schema.
+
+use serde::Serialize;
+
+use super::coupling::Coupling;
+
+/// A kind of component.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Kind {
+    /// What a scene calls it.
+    pub name: &'static str,
+    /// What it is, in one line.
+    pub summary: &'static str,
+    /// How it behaves: its equations, a line each.
+    pub formula: &'static [&'static str],
+    /// Where the equations come from.
+    pub source: &'static str,
+    /// What of the scene it is bound to.
+    pub coupling: Coupling,
+    /// What describes one of its kind.
+    pub parameters: Vec<Parameter>,
+    /// What it takes from the PLC, or from another component.
+    pub inputs: Vec<Signal>,
+    /// What it gives to the PLC, and to other components.
+    pub outputs: Vec<Signal>,
+    /// How it may fail.
+    pub failures: Vec<Failure>,
+}
+
+/// One parameter of a kind.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Parameter {
+    /// Its key in a scene, with its unit.
+    pub key: &'static str,
+    /// What it means.
+    pub about: String,
+    /// What it may be.
+    pub form: Form,
+    /// What it is if the scene does not say.
+    pub preset: Setting,
+}
+
+/// What a parameter may be.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Form {
+    /// A number, bounds included.
+    Number {
+        /// Its least value.
+        least: f64,
+        /// Its greatest value.
+        most: f64,
+    },
+    /// A whole number, bounds included.
+    Count {
+        /// Its least value.
+        least: i64,
+        /// Its greatest value.
+        most: i64,
+    },
+    /// `true` or `false`.
+    Flag,
+    /// One word of these.
+    Choice(&'static [&'static str]),
+}
+
+impl Form {
+    /// What may be written, in words.
+    pub fn in_words(&self) -> String {
+        match self {
+            Self::Number { least, most } => format!("a number from {least} to {most}"),
+            Self::Count { least, most } => format!("a whole number from {least} to {most}"),
+            Self::Flag => "`true` or `false`".to_owned(),
+            Self::Choice(words) => {
+                let quoted: Vec<_> = words.iter().map(|word| format!("\"{word}\"")).collect();
+                format!("one of {}", quoted.join(", "))
+            }
+        }
+    }
+
+    /// The setting that a value of a scene gives, if it is allowed.
+    pub(crate) fn read(&self, value: &toml::Value) -> Option<Setting> {
+        match (self, value) {
+            (Self::Number { least, most }, toml::Value::Float(number)) => {
+                (*least..=*most).contains(number).then_some(Setting::Number(*number))
+            }
+            (Self::Number { .. }, toml::Value::Integer(whole)) => self.read(&toml::Value::Float(*whole as f64)),
+            (Self::Count { least, most }, toml::Value::Integer(whole)) => {
+                (*least..=*most).contains(whole).then_some(Setting::Count(*whole))
+            }
+            (Self::Flag, toml::Value::Boolean(flag)) => Some(Setting::Flag(*flag)),
+            (Self::Choice(words), toml::Value::String(text)) => {
+                words.iter().find(|word| *word == text).map(|word| Setting::Choice(word))
+            }
+            _ => None,
+        }
+    }
+}
+
+/// The value of a parameter.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Setting {
+    /// A number, in the unit of its key.
+    Number(f64),
+    /// A whole number.
+    Count(i64),
+    /// Yes or no.
+    Flag(bool),
+    /// A word.
+    Choice(&'static str),
+}
+
+impl std::fmt::Display for Setting {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::Number(number) => write!(f, "{number}"),
+            Self::Count(whole) => write!(f, "{whole}"),
+            Self::Flag(flag) => write!(f, "{flag}"),
+            Self::Choice(word) => write!(f, "\"{word}\""),
+        }
+    }
+}
+
+/// One signal of a kind.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Signal {
+    /// Its name among the signals of its component, with its unit if it has one.
+    pub key: &'static str,
+    /// What it means.
+    pub about: String,
+    /// What values it takes.
+    pub values: Values,
+}
+
+/// What values a signal takes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Values {
+    /// BOOL.
+    Bool,
+    /// LREAL, or REAL if the component's `signal_type` says so.
+    Number,
+    /// DINT.
+    Whole,
+}
+
+impl std::fmt::Display for Values {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(match self {
+            Self::Bool => "BOOL",
+            Self::Number => "LREAL",
+            Self::Whole => "DINT",
+        })
+    }
+}
+
+/// One way in which a component of a kind may fail.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Failure {
+    /// What a scene calls it.
+    pub mode: &'static str,
+    /// What happens then.
+    pub about: String,
+}
+
+/// Endings of keys and the units they stand for.
+const UNITS: &[(&str, &str)] = &[
+    ("_m3_kg", "m³/kg"),
+    ("_m3_s", "m³/s"),
+    ("_kg_m3", "kg/m³"),
+    ("_kg_m2", "kg·m²"),
+    ("_kg_s", "kg/s"),
+    ("_rad_s2", "rad/s²"),
+    ("_rad_s", "rad/s"),
+    ("_deg_s", "°/s"),
+    ("_m_s3", "m/s³"),
+    ("_m_s2", "m/s²"),
+    ("_m_s", "m/s"),
+    ("_n_s_m", "N·s/m"),
+    ("_nm_s", "N·m·s"),
+    ("_l_min", "l/min"),
+    ("_l_s_bar", "l/(s·bar)"),
+    ("_j_k", "J/K"),
+    ("_w_k", "W/K"),
+    ("_1_min", "1/min"),
+    ("_1_s", "1/s"),
+    ("_degc", "°C"),
+    ("_deg", "°"),
+    ("_rad", "rad"),
+    ("_bar", "bar"),
+    ("_ohm", "Ω"),
+    ("_kg", "kg"),
+    ("_cm3", "cm³"),
+    ("_m3", "m³"),
+    ("_m2", "m²"),
+    ("_hz", "Hz"),
+    ("_nm", "N·m"),
+    ("_ma", "mA"),
+    ("_pct", "%"),
+    ("_w", "W"),
+    ("_v", "V"),
+    ("_n", "N"),
+    ("_m", "m"),
+    ("_s", "s"),
+];
+
+/// What a key means without its unit, and the unit.
+pub fn unit(key: &str) -> (&str, Option<&'static str>) {
+    UNITS
+        .iter()
+        .find_map(|(ending, unit)| key.strip_suffix(ending).map(|stem| (stem, Some(*unit))))
+        .unwrap_or((key, None))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_key_tells_its_unit() {
+        assert_eq!(unit("stroke_m"), ("stroke", Some("m")));
+        assert_eq!(unit("speed_m_s"), ("speed", Some("m/s")));
+        assert_eq!(unit("teeth"), ("teeth", None));
+    }
+
+    #[test]
+    fn longer_endings_come_first() {
+        for (index, (ending, _)) in UNITS.iter().enumerate() {
+            let shadowed = UNITS[..index].iter().find(|(earlier, _)| ending.ends_with(earlier));
+            assert_eq!(shadowed, None, "{ending}");
+        }
+    }
+
+    #[test]
+    fn a_whole_number_is_a_number_but_not_the_reverse() {
+        let number = Form::Number { least: 0.0, most: 5.0 };
+        assert_eq!(number.read(&toml::Value::Integer(3)), Some(Setting::Number(3.0)));
+        assert_eq!(number.read(&toml::Value::Float(f64::NAN)), None);
+        assert_eq!(Form::Count { least: 0, most: 5 }.read(&toml::Value::Float(3.0)), None);
+    }
+}

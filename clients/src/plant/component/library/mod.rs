@@ -1,0 +1,81 @@
+//! The kinds of component, a file each. This table is all that knows them.
+
+use super::behaviour::{self, Component, Conflict, Runner, Running, Start};
+use super::declare::{ParameterSet, SignalSet, Value};
+use super::kind::{Kind, Setting};
+
+/// A kind in the table.
+pub(crate) struct Entry {
+    pub(crate) name: &'static str,
+    pub(crate) kind: fn() -> Kind,
+    /// A conflict between settings, one for each parameter.
+    pub(crate) conflict: fn(&[Setting]) -> Option<Conflict>,
+    /// A component with these settings, one for each parameter.
+    pub(crate) start: fn(&[Setting], &Start) -> Box<dyn Running>,
+    /// What its inputs hold where nothing is connected.
+    pub(crate) unconnected: fn() -> Vec<Value>,
+}
+
+fn conflict<C: Component>(settings: &[Setting]) -> Option<Conflict> {
+    C::conflict(&C::Parameters::read(settings))
+}
+
+fn start<C: Component>(settings: &[Setting], start: &Start) -> Box<dyn Running> {
+    Box::new(Runner::new(C::new(C::Parameters::read(settings)), start))
+}
+
+macro_rules! library {
+    ($($module:ident :: $component:ident),+ $(,)?) => {
+        $( mod $module; )+
+
+        /// Every kind, in the order of the documentation.
+        pub(crate) const ENTRIES: &[Entry] = &[ $( Entry {
+            name: <$module::$component as Component>::NAME,
+            kind: behaviour::kind::<$module::$component>,
+            conflict: conflict::<$module::$component>,
+            start: start::<$module::$component>,
+            unconnected: <$module::$component as Component>::Inputs::unconnected,
+        } ),+ ];
+    };
+}
+
+library! {
+    pneumatic_cylinder::PneumaticCylinder,
+    hydraulic_cylinder::HydraulicCylinder,
+    servo_axis::ServoAxis,
+    asynchronous_motor::AsynchronousMotor,
+    conveyor::Conveyor,
+    light_barrier::LightBarrier,
+    inductive_sensor::InductiveSensor,
+    capacitive_sensor::CapacitiveSensor,
+    limit_switch::LimitSwitch,
+    incremental_encoder::IncrementalEncoder,
+    absolute_encoder::AbsoluteEncoder,
+    pressure_sensor::PressureSensor,
+    temperature_sensor::TemperatureSensor,
+    tank::Tank,
+    heater::Heater,
+    contact_sensor::ContactSensor,
+    input_controller::InputController,
+    arm::Arm,
+    gripper::Gripper,
+    vacuum_cup::VacuumCup,
+    workpiece_source::WorkpieceSource,
+    workpiece_sink::WorkpieceSink,
+    push_button::PushButton,
+    emergency_stop::EmergencyStop,
+    lamp::Lamp,
+    turntable::Turntable,
+    spindle::Spindle,
+    line_scanner::LineScanner,
+}
+
+/// Every kind of component.
+pub fn kinds() -> Vec<Kind> {
+    ENTRIES.iter().map(|entry| (entry.kind)()).collect()
+}
+
+/// The kind of this name.
+pub(crate) fn entry(name: &str) -> Option<&'static Entry> {
+    ENTRIES.iter().find(|entry| entry.name == name)
+}

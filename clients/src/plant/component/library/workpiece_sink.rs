@@ -1,0 +1,121 @@
+//! A sink of workpieces: what touches it leaves the world.
+//!
+//! # Equations
+//! - the first target that touches the body is taken out, one in each period;
+//! - it can appear again at a source that has it among its targets.
+//!
+//! # Source
+//! closed form.
+
+use serde::{Deserialize, Serialize};
+
+use crate::plant::component::behaviour::{Component, Start, Turn};
+use crate::plant::component::coupling::{Coupling, Effect};
+use crate::plant::component::declare::{failures, parameters, signals};
+
+parameters! {
+    /// Its parameters.
+    Parameters {}
+}
+
+signals! {
+    /// What it takes.
+    Inputs {
+        /// takes workpieces out
+        enable: bool = true,
+    }
+}
+
+signals! {
+    /// What it gives.
+    Outputs {
+        /// how many have gone
+        count: i32,
+        /// one went in this scan
+        taken: bool,
+    }
+}
+
+failures! {
+    /// How it fails.
+    Failure {
+        /// it takes nothing: workpieces pile up
+        Blocked = "blocked",
+    }
+}
+
+/// What it remembers.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub(crate) struct State {
+    taking: Option<u32>,
+    count: i32,
+}
+
+/// A sink of workpieces, by its parameters.
+pub(crate) struct WorkpieceSink {
+    p: Parameters,
+}
+
+impl Component for WorkpieceSink {
+    const NAME: &'static str = "workpiece_sink";
+    const SUMMARY: &'static str = "sink of workpieces: what touches it leaves the world";
+    const FORMULA: &'static [&'static str] = &["one target that touches it, each period"];
+    const SOURCE: &'static str = "closed form";
+    const COUPLING: Coupling = Coupling::Touch;
+    type Parameters = Parameters;
+    type Inputs = Inputs;
+    type Outputs = Outputs;
+    type Failure = Failure;
+    type State = State;
+
+    fn new(p: Parameters) -> Self {
+        Self { p }
+    }
+
+    fn initial(&self, _: &Start) -> State {
+        State::default()
+    }
+
+    fn drive(&self, state: &mut State, inputs: &Inputs, turn: &Turn) {
+        let open = inputs.enable && !turn.failed.has(Failure::Blocked);
+        state.taking = if open { turn.seen.target } else { None };
+        state.count = state.count.saturating_add(i32::from(state.taking.is_some()));
+    }
+
+    fn effect(&self, state: &State) -> Effect {
+        state.taking.map_or(Effect::None, Effect::Remove)
+    }
+
+    fn sense(&self, state: &mut State, _: &Inputs, _: &Turn) -> Outputs {
+        Outputs { count: state.count, taken: state.taking.is_some() }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::plant::component::tests::Rig;
+
+    use crate::plant::component::coupling::Seen;
+
+    fn touched(count: u32) -> Seen {
+        Seen { target: (count > 0).then_some(0), count, ..Seen::default() }
+    }
+
+    #[test]
+    fn it_takes_one_at_a_time() {
+        let mut rig = Rig::new(WorkpieceSink::new(Parameters {}));
+        assert_eq!(rig.run(Inputs { enable: true }, 0.01, 3).count, 0);
+        rig.seen = touched(2);
+        assert_eq!(rig.run(Inputs { enable: true }, 0.01, 1).count, 1);
+        assert_eq!(rig.component.effect(&rig.state), Effect::Remove(0));
+        assert!(!rig.run(Inputs { enable: false }, 0.01, 1).taken);
+    }
+
+    #[test]
+    fn each_failure_has_its_effect() {
+        let mut rig = Rig::new(WorkpieceSink::new(Parameters {})).failing(Failure::Blocked);
+        rig.seen = touched(1);
+        assert_eq!(rig.run(Inputs { enable: true }, 0.01, 5).count, 0);
+    }
+}

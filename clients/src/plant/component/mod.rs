@@ -1,0 +1,32 @@
+//! Components: parts of machines by name, which a scene only has to parametrise and to wire.
+//!
+//! | module | subject |
+//! |---|---|
+//! | [`kind`] | what a kind of component is, as plain data |
+//! | `declare` | parameters, signals and failures, stated once as structs and enums |
+//! | [`coupling`] | what ties a component to the world of rigid bodies |
+//! | `behaviour` | what every component is: a state and two halves of a turn |
+//! | `dynamics` | lags, friction, sub-steps |
+//! | `fluid` | flow of air and oil through orifices |
+//! | `profile` | motion from rest to rest within limits |
+//! | `library` | the kinds, a file each |
+//! | [`page`] | a kind as a page for people |
+//!
+//! # Invariants
+//! - A component is a function of its parameters, its state, its inputs and what it sees.
+//! - All that it remembers is in its state, and the state is plain data that saves to bytes.
+//! - What it states of itself is read by the scene, the schema, the documentation and the program.
+
+pub(crate) mod behaviour;
+pub mod coupling;
+pub(crate) mod declare;
+pub(crate) mod dynamics;
+pub(crate) mod fluid;
+pub mod kind;
+pub(crate) mod library;
+pub mod page;
+pub(crate) mod profile;
+#[cfg(test)]
+mod tests;
+
+pub use library::kinds;

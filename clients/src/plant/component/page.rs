@@ -1,0 +1,96 @@
+//! A kind of component as a page for people, in Markdown.
+
+use std::fmt::Write as _;
+
+use super::kind::{Form, Kind, Parameter, Signal, unit};
+use super::library::kinds;
+
+/// The page of a kind.
+pub fn page(kind: &Kind) -> String {
+    let mut page = format!("## {}\n\n{}.\n\n", kind.name, kind.summary);
+    for line in kind.formula {
+        // a String grows without fail
+        let _ = writeln!(page, "    {line}");
+    }
+    let _ = writeln!(page, "\nSource: {}.", kind.source);
+    let bindings = kind.coupling.keys();
+    if !bindings.is_empty() {
+        page.push_str("\n| bound to | |\n|---|---|\n");
+        for key in bindings {
+            let needed = if key.needed { "" } else { " (optional)" };
+            let _ = writeln!(page, "| `{}` | {}{needed} |", key.key, key.about);
+        }
+    }
+    if !kind.parameters.is_empty() {
+        page.push_str("\n| parameter | preset | unit | may be | |\n|---|---|---|---|---|\n");
+        for parameter in &kind.parameters {
+            let Parameter { key, about, form, preset } = parameter;
+            let unit = unit(key).1.unwrap_or_default();
+            let _ = writeln!(page, "| `{key}` | {preset} | {unit} | {} | {about} |", range(form));
+        }
+    }
+    signals(&mut page, "input", &kind.inputs);
+    signals(&mut page, "output", &kind.outputs);
+    page.push_str("\n| failure mode | |\n|---|---|\n");
+    for failure in &kind.failures {
+        let _ = writeln!(page, "| `{}` | {} |", failure.mode, failure.about);
+    }
+    page
+}
+
+/// What may be written, in few words.
+fn range(form: &Form) -> String {
+    match form {
+        Form::Number { least, most } => format!("{least} … {most}"),
+        Form::Count { least, most } => format!("{least} … {most}, whole"),
+        Form::Flag => "true, false".to_owned(),
+        Form::Choice(words) => words.iter().map(|word| format!("\"{word}\"")).collect::<Vec<_>>().join(", "),
+    }
+}
+
+fn signals(page: &mut String, direction: &str, signals: &[Signal]) {
+    if signals.is_empty() {
+        return;
+    }
+    let _ = writeln!(page, "\n| {direction} | type | unit | |\n|---|---|---|---|");
+    for Signal { key, about, values } in signals {
+        let unit = unit(key).1.unwrap_or_default();
+        let _ = writeln!(page, "| `{key}` | {values} | {unit} | {about} |");
+    }
+}
+
+/// The pages of all kinds, with a list of them in front.
+pub fn catalogue() -> String {
+    let mut all = String::from(
+        "# The library of components\n\n\
+         Made from the kinds themselves by `UPDATE_DOCS=1 cargo test -p onescan-clients catalogue`; a test holds it to \
+         them.\n\n\
+         A scene names a component in a table `[[component]]` with `name`, `kind`, its parameters and what it is bound \
+         to. `INPUT_signal` and `OUTPUT_signal` name the session's signals; `INPUT_from = \"component.output\"` wires \
+         an input to another component. A table `[[failure]]` switches a failure mode, by a signal or by virtual \
+         time.\n\n| kind | |\n|---|---|\n",
+    );
+    for kind in kinds() {
+        let _ = writeln!(all, "| [`{0}`](#{0}) | {1} |", kind.name, kind.summary);
+    }
+    for kind in kinds() {
+        let _ = write!(all, "\n{}", page(&kind));
+    }
+    all
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_published_catalogue_is_that_of_the_kinds() {
+        let path = concat!(env!("CARGO_MANIFEST_DIR"), "/src/plant/component/README.md");
+        let made = catalogue();
+        if std::env::var_os("UPDATE_DOCS").is_some() {
+            std::fs::write(path, &made).expect("written");
+        }
+        let published = std::fs::read_to_string(path).expect("published");
+        assert!(published == made, "run with UPDATE_DOCS=1 and read the difference");
+    }
+}

@@ -1,0 +1,187 @@
+//! What a component is bound to: the keys of its coupling, found in the scene.
+
+use toml::Spanned;
+
+use super::bodies::GROUND;
+use super::components::Keys;
+use super::error::{SceneFaultKind, Thing};
+use super::faults::Faults;
+use super::format::{BodyKind, JointKind, SceneFile};
+use super::joints::{kind_name, unit};
+use super::model::{Axis, Bound, Moved};
+use super::names::Names;
+use super::text;
+use crate::plant::component::coupling::Coupling;
+
+/// What of the scene has its place already.
+pub(super) struct Placed<'s> {
+    pub(super) file: &'s SceneFile,
+    pub(super) bodies: &'s Names,
+    pub(super) joints: &'s Names,
+    pub(super) axes: &'s [Axis],
+}
+
+impl Placed<'_> {
+    /// Who drives a joint or a belt already.
+    fn driver(&self, bound: &Bound, components: &[(String, Bound)]) -> Option<String> {
+        let axis = self.axes.iter().find(|axis| match (axis.moved, bound) {
+            (Moved::Joint(one), Bound::Drives(other)) => one == *other,
+            (Moved::Belt { body: one, .. }, Bound::Belt { body: other, .. }) => one == *other,
+            _ => false,
+        });
+        let component = components.iter().find(|(_, known)| match (known, bound) {
+            (Bound::Drives(one), Bound::Drives(other)) => one == other,
+            (Bound::Belt { body: one, .. }, Bound::Belt { body: other, .. }) => one == other,
+            _ => false,
+        });
+        axis.map(|axis| format!("axis `{}`", axis.name))
+            .or_else(|| component.map(|(name, _)| format!("component `{name}`")))
+    }
+
+    /// What a component with these keys is bound to; `others` were bound before.
+    pub(super) fn bind(
+        &self,
+        coupling: Coupling,
+        keys: &Keys<'_>,
+        others: &[(String, Bound)],
+        faults: &mut Faults<'_>,
+    ) -> Option<Bound> {
+        for key in coupling.keys() {
+            if key.needed && keys.get(key.key).is_none() {
+                faults.add(keys.kind.span(), SceneFaultKind::Missing { whose: keys.whose(), key: key.key });
+            }
+        }
+        match coupling {
+            Coupling::None => Some(Bound::Nothing),
+            Coupling::Drives if keys.get("joint").is_none() => Some(Bound::Nothing),
+            Coupling::Drives => {
+                let name = keys.text("joint", "the name of a joint", faults)?;
+                let bound = Bound::Drives(self.joint(&name, JointKind::drivable, faults)?);
+                self.alone(bound, Thing::Joint, &name, others, faults)
+            }
+            Coupling::Measures => {
+                let name = keys.text("joint", "the name of a joint", faults)?;
+                self.joint(&name, |kind| unit(kind).is_some(), faults).map(Bound::Measures)
+            }
+            Coupling::Belt => self.belt(keys, others, faults),
+            Coupling::Ray => self.ray(keys, faults),
+            Coupling::Touch => {
+                let body = self.shaped(keys, faults);
+                let targets = match keys.texts("targets", faults) {
+                    Some(names) => self.targets(&names, faults),
+                    None => self.dynamic().filter(|index| Some(*index) != body).collect(),
+                };
+                Some(Bound::Touch { body: body?, targets })
+            }
+            Coupling::Place => {
+                let body = self.body(keys, faults);
+                let targets = self.targets(&keys.texts("targets", faults)?, faults);
+                Some(Bound::Place { body: body?, targets })
+            }
+        }
+    }
+
+    /// The bound, unless something else drives the same.
+    fn alone(
+        &self,
+        bound: Bound,
+        thing: Thing,
+        name: &Spanned<String>,
+        others: &[(String, Bound)],
+        faults: &mut Faults<'_>,
+    ) -> Option<Bound> {
+        match self.driver(&bound, others) {
+            None => Some(bound),
+            Some(first) => {
+                let name_text = text(name).to_owned();
+                faults.add(name.span(), SceneFaultKind::DrivenTwice { thing, name: name_text, first });
+                None
+            }
+        }
+    }
+
+    fn joint(&self, name: &Spanned<String>, fits: fn(JointKind) -> bool, faults: &mut Faults<'_>) -> Option<usize> {
+        let joint = self.joints.find(name, faults)?;
+        let kind = *self.file.joint[joint].get_ref().kind.get_ref();
+        if fits(kind) {
+            return Some(joint);
+        }
+        let (joint_name, kind) = (text(name).to_owned(), kind_name(kind));
+        faults.add(name.span(), SceneFaultKind::Unmeasurable { joint: joint_name, kind });
+        None
+    }
+
+    fn body(&self, keys: &Keys<'_>, faults: &mut Faults<'_>) -> Option<usize> {
+        self.bodies.find(&keys.text("body", "the name of a body", faults)?, faults)
+    }
+
+    /// The body that targets touch: one with a shape.
+    fn shaped(&self, keys: &Keys<'_>, faults: &mut Faults<'_>) -> Option<usize> {
+        let body = self.body(keys, faults)?;
+        if self.file.body[body].get_ref().shape.is_none() {
+            let span = keys.get("body").map_or_else(|| keys.kind.span(), Spanned::span);
+            let name = text(&self.file.body[body].get_ref().name).to_owned();
+            faults.add(span, SceneFaultKind::Shapeless(name));
+            return None;
+        }
+        Some(body)
+    }
+
+    /// Indices of the dynamic bodies.
+    fn dynamic(&self) -> impl Iterator<Item = usize> {
+        let bodies = self.file.body.iter().enumerate();
+        bodies.filter(|(_, body)| body.get_ref().kind == BodyKind::Dynamic).map(|(index, _)| index)
+    }
+
+    /// Bodies that are touched, held or placed, which must be dynamic.
+    fn targets(&self, names: &[Spanned<String>], faults: &mut Faults<'_>) -> Vec<usize> {
+        let mut found = Vec::new();
+        for name in names {
+            let Some(index) = self.bodies.find(name, faults) else { continue };
+            if self.file.body[index].get_ref().kind == BodyKind::Dynamic {
+                found.push(index);
+            } else {
+                faults.add(name.span(), SceneFaultKind::NotDynamic(text(name).to_owned()));
+            }
+        }
+        found
+    }
+
+    fn belt(&self, keys: &Keys<'_>, others: &[(String, Bound)], faults: &mut Faults<'_>) -> Option<Bound> {
+        let direction = keys.triple("direction", faults);
+        let name = keys.text("belt", "the name of a body", faults)?;
+        let body = self.bodies.find(&name, faults)?;
+        if self.file.body[body].get_ref().kind != BodyKind::Kinematic {
+            let hint = Some("write `kind = \"kinematic\"` in its table".to_owned());
+            faults.add_hinted(name.span(), SceneFaultKind::NotKinematic(text(&name).to_owned()), hint);
+            return None;
+        }
+        let direction = faults.direction("direction", &direction?)?;
+        self.alone(Bound::Belt { body, direction }, Thing::Body, &name, others, faults)
+    }
+
+    fn ray(&self, keys: &Keys<'_>, faults: &mut Faults<'_>) -> Option<Bound> {
+        let body = match keys.get("body") {
+            None => None,
+            Some(_) => {
+                let name = keys.text("body", "the name of a body", faults)?;
+                if text(&name) == GROUND { None } else { Some(self.bodies.find_beside(&name, Some(GROUND), faults)?) }
+            }
+        };
+        let (point, direction) = (keys.triple("point_m", faults), keys.triple("direction", faults));
+        let targets = match keys.texts("targets", faults) {
+            Some(names) => names.iter().filter_map(|name| self.bodies.find(name, faults)).collect(),
+            None => (0..self.file.body.len()).filter(|index| Some(*index) != body).collect(),
+        };
+        let point_m = faults.triple("point_m", point.as_ref());
+        let direction = direction.and_then(|direction| faults.direction("direction", &direction));
+        Some(Bound::Ray { body, point_m: point_m?, direction: direction?, targets })
+    }
+}
+
+impl JointKind {
+    /// True for a joint that a motor moves.
+    fn drivable(self) -> bool {
+        matches!(self, Self::Prismatic | Self::Revolute)
+    }
+}

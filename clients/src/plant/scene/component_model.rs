@@ -1,0 +1,146 @@
+//! Checked components, failures and conditions of signals: plain data, part of [`super::model`].
+
+use onescan_server::signal::{ElementaryType, SignalName};
+use serde::Serialize;
+
+use super::format::NumberType;
+use crate::plant::component::kind::Setting;
+
+/// One component.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Component {
+    /// Its name.
+    pub name: String,
+    /// Its kind, one of the library.
+    pub kind: &'static str,
+    /// Its settings, one for each parameter of its kind.
+    pub settings: Vec<Setting>,
+    /// What of the world it is bound to.
+    pub bound: Bound,
+    /// Where its inputs come from, one for each of its kind.
+    pub inputs: Vec<Wire>,
+    /// Where its outputs go to, one for each of its kind.
+    pub outputs: Vec<Option<SignalName>>,
+    /// Type of its number signals.
+    pub number: NumberType,
+    /// How and when it fails.
+    pub failures: Vec<FailureSwitch>,
+}
+
+/// What of the world a component is bound to.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub enum Bound {
+    /// Nothing.
+    Nothing,
+    /// The joint of this index, which it moves.
+    Drives(usize),
+    /// The joint of this index, which it measures.
+    Measures(usize),
+    /// The surface of a kinematic body.
+    Belt {
+        /// Index of the body.
+        body: usize,
+        /// Unit vector that the surface runs along.
+        direction: [f64; 3],
+    },
+    /// A ray that meets bodies.
+    Ray {
+        /// Index of the body that carries it, none for the ground.
+        body: Option<usize>,
+        /// Where it begins.
+        point_m: [f64; 3],
+        /// Unit vector of the ray.
+        direction: [f64; 3],
+        /// Indices of the bodies that it meets.
+        targets: Vec<usize>,
+    },
+    /// A body that others touch.
+    Touch {
+        /// Index of the body.
+        body: usize,
+        /// Indices of the others.
+        targets: Vec<usize>,
+    },
+    /// A body at whose place others appear.
+    Place {
+        /// Index of the body.
+        body: usize,
+        /// Indices of the others.
+        targets: Vec<usize>,
+    },
+}
+
+/// Where an input comes from.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub enum Wire {
+    /// Nowhere: it keeps the value that its kind gives it.
+    Open,
+    /// A signal of the session.
+    Signal(SignalName),
+    /// An output of a component, both by index.
+    Output {
+        /// The component.
+        component: usize,
+        /// Its output.
+        output: usize,
+    },
+}
+
+/// When a component fails in one way.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct FailureSwitch {
+    /// Index of the mode among those of its kind.
+    pub mode: usize,
+    /// When.
+    pub when: When,
+}
+
+/// When something fails.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub enum When {
+    /// While a BOOL signal is true.
+    Signal(SignalName),
+    /// Between two virtual times.
+    Between(Between),
+}
+
+/// From one virtual time on, until another.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+pub struct Between {
+    /// From here on, ns.
+    pub from_ns: u64,
+    /// Up to here, not included, ns.
+    pub until_ns: u64,
+}
+
+/// What happens to a signal between the plant and the session.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Condition {
+    /// The signal.
+    pub signal: SignalName,
+    /// Its type inside of the plant; the session's is that of its port.
+    pub inner: ElementaryType,
+    /// What part of it is which raw value; as it is if none.
+    pub scale: Option<Range>,
+    /// Later by so much, ns.
+    pub delay_ns: u64,
+    /// And by up to so much more, ns.
+    pub jitter_ns: u64,
+    /// Looked at so often, ns; in every period if 0.
+    pub sample_ns: u64,
+    /// Rounded to a multiple of this; not if 0.
+    pub quantum: f64,
+    /// Mean of the noise.
+    pub noise_mean: f64,
+    /// Standard deviation of the noise.
+    pub noise_sigma: f64,
+}
+
+/// A range in a signal's unit, and the raw values of its ends.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Range {
+    /// In the signal's unit.
+    pub range: [f64; 2],
+    /// Raw.
+    pub raw: [f64; 2],
+}

@@ -1,0 +1,292 @@
+//! Second pass over `[[component]]`: kind, parameters, bindings and wires, all by the kind's table.
+
+use onescan_server::signal::{ElementaryType, SignalName, nearest};
+use toml::{Spanned, Value};
+
+use super::bindings::Placed;
+use super::error::{SceneFaultKind, Thing};
+use super::faults::Faults;
+use super::format::{ComponentTable, NumberType};
+use super::model::{Bound, Component, Wire};
+use super::names::Names;
+use super::signals::Signals;
+use super::text;
+use crate::plant::component::kind::{Kind, Parameter, Setting, Values, unit};
+use crate::plant::component::library::{ENTRIES, Entry, entry};
+
+/// One `[[component]]` with its name and kind.
+pub(super) struct Keys<'f> {
+    table: &'f ComponentTable,
+    pub(super) name: Spanned<String>,
+    pub(super) kind: Spanned<String>,
+}
+
+impl<'f> Keys<'f> {
+    fn of(table: &'f Spanned<ComponentTable>, faults: &mut Faults<'_>) -> Option<Self> {
+        let mut named = |key: &'static str| {
+            let found = table.get_ref().get(key);
+            match found.map(|value| (value.span(), value.get_ref())) {
+                Some((span, Value::String(name))) => return Some(Spanned::new(span, name.clone())),
+                Some((span, _)) => {
+                    faults.add(span, SceneFaultKind::Text { key: key.to_owned(), wanted: "a text" });
+                }
+                None => faults.add(table.span(), SceneFaultKind::Missing { whose: "component".to_owned(), key }),
+            }
+            None
+        };
+        let (name, kind) = (named("name"), named("kind"));
+        Some(Self { table: table.get_ref(), name: name?, kind: kind? })
+    }
+
+    /// What stands behind a key.
+    pub(super) fn get(&self, key: &str) -> Option<&'f Spanned<Value>> {
+        self.table.get(key)
+    }
+
+    /// The component, in faults.
+    pub(super) fn whose(&self) -> String {
+        format!("{} `{}`", text(&self.kind), text(&self.name))
+    }
+
+    /// A name behind a key.
+    pub(super) fn text(&self, key: &str, wanted: &'static str, faults: &mut Faults<'_>) -> Option<Spanned<String>> {
+        let value = self.get(key)?;
+        if let Value::String(name) = value.get_ref() {
+            return Some(Spanned::new(value.span(), name.clone()));
+        }
+        faults.add(value.span(), SceneFaultKind::Text { key: key.to_owned(), wanted });
+        None
+    }
+
+    /// Names behind a key; all at the place of the list.
+    pub(super) fn texts(&self, key: &str, faults: &mut Faults<'_>) -> Option<Vec<Spanned<String>>> {
+        let value = self.get(key)?;
+        let named = |value: &Value| value.as_str().map(str::to_owned);
+        let names = value.get_ref().as_array().and_then(|list| list.iter().map(named).collect::<Option<Vec<_>>>());
+        if names.is_none() {
+            faults.add(value.span(), SceneFaultKind::Text { key: key.to_owned(), wanted: "a list of names" });
+        }
+        Some(names?.into_iter().map(|name| Spanned::new(value.span(), name)).collect())
+    }
+
+    /// Three numbers behind a key.
+    pub(super) fn triple(&self, key: &str, faults: &mut Faults<'_>) -> Option<Spanned<[f64; 3]>> {
+        let value = self.get(key)?;
+        let number = |value: &Value| value.as_float().or_else(|| value.as_integer().map(|whole| whole as f64));
+        let numbers = value.get_ref().as_array().and_then(|list| list.iter().map(number).collect::<Option<Vec<_>>>());
+        let triple = numbers.and_then(|numbers| <[f64; 3]>::try_from(numbers).ok());
+        if triple.is_none() {
+            faults.add(value.span(), SceneFaultKind::Text { key: key.to_owned(), wanted: "three numbers" });
+        }
+        triple.map(|triple| Spanned::new(value.span(), triple))
+    }
+}
+
+/// A component whose kind is known.
+struct Known<'f> {
+    keys: Keys<'f>,
+    kind: Kind,
+    entry: &'static Entry,
+}
+
+/// The components, and the names of those whose kind is not known, which nobody else shall miss.
+pub(super) fn check(
+    placed: &Placed<'_>,
+    signals: &mut Signals,
+    faults: &mut Faults<'_>,
+) -> (Vec<Component>, Vec<String>) {
+    let tables = placed.file.component.iter();
+    let keys: Vec<_> = tables.filter_map(|table| Keys::of(table, faults)).collect();
+    Names::gather(Thing::Component, keys.iter().map(|keys| &keys.name), faults);
+    let named: Vec<String> = keys.iter().map(|keys| text(&keys.name).to_owned()).collect();
+    let known: Vec<_> = keys.into_iter().filter_map(|keys| known(keys, faults)).collect();
+    let known_name = |name: &String| known.iter().any(|one| text(&one.keys.name) == name);
+    let lost: Vec<String> = named.into_iter().filter(|name| !known_name(name)).collect();
+    let mut bound: Vec<(String, Bound)> = Vec::new();
+    let mut components = Vec::new();
+    for one in &known {
+        refuse_unknown_keys(one, faults);
+        let to = placed.bind(one.kind.coupling, &one.keys, &bound, faults);
+        bound.push((text(&one.keys.name).to_owned(), to.clone().unwrap_or(Bound::Nothing)));
+        let number = number_type(&one.keys, faults);
+        components.push(Component {
+            name: text(&one.keys.name).to_owned(),
+            kind: one.entry.name,
+            settings: settings(one, faults),
+            bound: to.unwrap_or(Bound::Nothing),
+            inputs: inputs(one, (&known, &lost), number, signals, faults),
+            outputs: outputs(one, number, signals, faults),
+            number,
+            failures: Vec::new(),
+        });
+    }
+    (components, lost)
+}
+
+fn known<'f>(keys: Keys<'f>, faults: &mut Faults<'_>) -> Option<Known<'f>> {
+    let Some(entry) = entry(text(&keys.kind)) else {
+        let near = nearest(text(&keys.kind), ENTRIES.iter().map(|entry| entry.name));
+        let hint = near
+            .map_or_else(|| "`onescan components` names them all".to_owned(), |near| format!("did you mean `{near}`?"));
+        faults.add_hinted(keys.kind.span(), SceneFaultKind::ComponentKind(text(&keys.kind).to_owned()), Some(hint));
+        return None;
+    };
+    Some(Known { keys, kind: (entry.kind)(), entry })
+}
+
+/// Keys that the kind has not.
+fn refuse_unknown_keys(one: &Known<'_>, faults: &mut Faults<'_>) {
+    let Known { keys, kind, .. } = one;
+    let mut right: Vec<String> = ["name", "kind", "signal_type"].map(str::to_owned).to_vec();
+    right.extend(kind.coupling.keys().iter().map(|binding| binding.key.to_owned()));
+    right.extend(kind.parameters.iter().map(|parameter| parameter.key.to_owned()));
+    right.extend(kind.inputs.iter().flat_map(|input| [format!("{}_signal", input.key), format!("{}_from", input.key)]));
+    right.extend(kind.outputs.iter().map(|output| format!("{}_signal", output.key)));
+    for key in keys.table.keys().filter(|key| !right.contains(key.get_ref())) {
+        let wrong = SceneFaultKind::ComponentKey { whose: keys.whose(), key: key.get_ref().clone() };
+        faults.add_hinted(key.span(), wrong, hint(key.get_ref(), kind, &right));
+    }
+}
+
+/// The key that was meant: the same but for its unit, or the nearest.
+fn hint(wrong: &str, kind: &Kind, right: &[String]) -> Option<String> {
+    let stem = |key: &str| match unit(key) {
+        (stem, Some(_)) => stem.to_owned(),
+        // a unit that nobody has, as in `stroke_mm`
+        (whole, None) => whole.rsplit_once('_').map_or(whole, |(stem, _)| stem).to_owned(),
+    };
+    let meant = |parameter: &&Parameter| {
+        unit(parameter.key).1.is_some() && (unit(parameter.key).0 == wrong || unit(parameter.key).0 == stem(wrong))
+    };
+    if let Some(parameter) = kind.parameters.iter().find(meant) {
+        let unit = unit(parameter.key).1.unwrap_or_default();
+        return Some(format!("did you mean `{}`, in {unit}?", parameter.key));
+    }
+    nearest(wrong, right.iter().map(String::as_str)).map(|near| format!("did you mean `{near}`?"))
+}
+
+/// Settings for all parameters: what is written, or the preset.
+fn settings(one: &Known<'_>, faults: &mut Faults<'_>) -> Vec<Setting> {
+    let Known { keys, kind, entry } = one;
+    let mut whole = true;
+    let mut settings = Vec::new();
+    for parameter in &kind.parameters {
+        let setting = keys.get(parameter.key).map(|written| (written, parameter.form.read(written.get_ref())));
+        if let Some((written, None)) = &setting {
+            let wanted = parameter.form.in_words();
+            let value = written.get_ref().to_string();
+            faults.add(written.span(), SceneFaultKind::Number { key: parameter.key, wanted, value });
+            whole = false;
+        }
+        settings.push(setting.and_then(|(_, setting)| setting).unwrap_or(parameter.preset));
+    }
+    if whole && let Some(conflict) = (entry.conflict)(&settings) {
+        let span = keys.get(conflict.key).map_or_else(|| keys.kind.span(), Spanned::span);
+        let at = kind.parameters.iter().position(|parameter| parameter.key == conflict.key);
+        let value = at.and_then(|at| settings.get(at)).map(ToString::to_string).unwrap_or_default();
+        faults.add(span, SceneFaultKind::Number { key: conflict.key, wanted: conflict.wanted.to_owned(), value });
+    }
+    settings
+}
+
+fn number_type(keys: &Keys<'_>, faults: &mut Faults<'_>) -> NumberType {
+    let Some(written) = keys.get("signal_type") else { return NumberType::default() };
+    match written.get_ref().as_str() {
+        Some("REAL") => NumberType::Real,
+        Some("LREAL") => NumberType::Lreal,
+        _ => {
+            let kind = SceneFaultKind::Text { key: "signal_type".to_owned(), wanted: "\"LREAL\" or \"REAL\"" };
+            faults.add(written.span(), kind);
+            NumberType::default()
+        }
+    }
+}
+
+/// The type of a signal of these values.
+fn elementary(values: Values, number: NumberType) -> ElementaryType {
+    match (values, number) {
+        (Values::Bool, _) => ElementaryType::Bool,
+        (Values::Whole, _) => ElementaryType::Dint,
+        (Values::Number, NumberType::Real) => ElementaryType::Real,
+        (Values::Number, NumberType::Lreal) => ElementaryType::Lreal,
+    }
+}
+
+const SIGNAL: &str = "the name of a signal";
+
+fn inputs(
+    one: &Known<'_>,
+    known: (&[Known<'_>], &[String]),
+    number: NumberType,
+    signals: &mut Signals,
+    faults: &mut Faults<'_>,
+) -> Vec<Wire> {
+    let mut wires = Vec::new();
+    for input in &one.kind.inputs {
+        let (by_signal, by_wire) = (format!("{}_signal", input.key), format!("{}_from", input.key));
+        let signal = one.keys.text(&by_signal, SIGNAL, faults);
+        let from = one.keys.text(&by_wire, "\"component.output\"", faults);
+        let wire = match (signal, from) {
+            (Some(name), None) => signals.read(&name, elementary(input.values, number), faults).map(Wire::Signal),
+            (None, Some(from)) => output_of(&from, &by_wire, input.values, known, faults),
+            (None, None) => None,
+            (Some(_), Some(from)) => {
+                faults.add(from.span(), SceneFaultKind::WiredTwice { whose: one.keys.whose(), input: input.key });
+                None
+            }
+        };
+        wires.push(wire.unwrap_or(Wire::Open));
+    }
+    wires
+}
+
+/// The output that `"component.output"` names.
+fn output_of(
+    from: &Spanned<String>,
+    key: &str,
+    wanted: Values,
+    (known, lost): (&[Known<'_>], &[String]),
+    faults: &mut Faults<'_>,
+) -> Option<Wire> {
+    let Some((name, output)) = text(from).rsplit_once('.') else {
+        faults.add(from.span(), SceneFaultKind::Text { key: key.to_owned(), wanted: "\"component.output\"" });
+        return None;
+    };
+    if lost.iter().any(|lost| lost == name) {
+        return None;
+    }
+    let Some(component) = known.iter().position(|other| text(&other.keys.name) == name) else {
+        let named = Spanned::new(from.span(), name.to_owned());
+        faults.unknown(Thing::Component, &named, known.iter().map(|other| text(&other.keys.name)));
+        return None;
+    };
+    let outputs = &known[component].kind.outputs;
+    let Some(index) = outputs.iter().position(|known| known.key == output) else {
+        let near = nearest(output, outputs.iter().map(|output| output.key));
+        let kind =
+            SceneFaultKind::ComponentPart { component: name.to_owned(), what: "output", name: output.to_owned() };
+        faults.add_hinted(from.span(), kind, near.map(|near| format!("did you mean `{near}`?")));
+        return None;
+    };
+    if outputs[index].values != wanted {
+        let (is, wanted) = (outputs[index].values.to_string(), wanted.to_string());
+        let output = text(from).to_owned();
+        faults.add(from.span(), SceneFaultKind::WireType { output, is, key: key.to_owned(), wanted });
+        return None;
+    }
+    Some(Wire::Output { component, output: index })
+}
+
+fn outputs(
+    one: &Known<'_>,
+    number: NumberType,
+    signals: &mut Signals,
+    faults: &mut Faults<'_>,
+) -> Vec<Option<SignalName>> {
+    let mut names = Vec::new();
+    for output in &one.kind.outputs {
+        let name = one.keys.text(&format!("{}_signal", output.key), SIGNAL, faults);
+        names.push(name.and_then(|name| signals.write(&name, elementary(output.values, number), faults)));
+    }
+    names
+}

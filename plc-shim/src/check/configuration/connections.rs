@@ -1,0 +1,251 @@
+//! What runs with a program: its inputs before, its outputs after it (2nd ed. 2.7.1).
+
+use super::super::Checker;
+use super::super::convert::Operand;
+use super::super::scope::{Body, Scope};
+use super::path::Target;
+use crate::diagnostic::{Code, Diagnostic};
+use crate::ir::{
+    Dispatch, ElementaryType, Entry, Expr, ExprKind, Guard, InstanceCall, Place, Pou, PouId, Statement, StatementKind,
+    Storage, Type,
+};
+use crate::syntax::Span;
+use crate::syntax::ast::{self, Connection, Ident, ProgramDeclaration, SectionKind};
+
+/// The statements around an instance's call.
+#[derive(Default)]
+struct Around {
+    before: Vec<Statement>,
+    after: Vec<Statement>,
+    scope: Scope,
+}
+
+impl<'a> Checker<'a> {
+    /// An entry for each program, then one for each function block with a task of its own.
+    pub(super) fn make_entries(&mut self) {
+        let declared: Vec<Option<(&'a ast::Resource, &'a ProgramDeclaration)>> =
+            (0..self.programs.len()).map(|at| self.declaration_of(at)).collect();
+        let mut blocks = Vec::new();
+        for (at, declared) in declared.into_iter().enumerate() {
+            let program = self.programs[at].clone();
+            let span = declared.map_or(self.pou(program.pou).ast.name.span, |(_, declared)| declared.name.span);
+            let mut around = Around { before: self.select_globals(program.resource, span), ..Around::default() };
+            for connection in declared.into_iter().flat_map(|(_, declared)| &declared.connections) {
+                match connection {
+                    Connection::Input(input, source) => self.connect_input(at, input, source, &mut around),
+                    Connection::Output(output, target) => self.connect_output(at, output, target, &mut around),
+                    Connection::Task(block, task) => {
+                        blocks.extend(declared.and_then(|(resource, _)| self.task_block(at, block, task, resource)));
+                        Some(())
+                    }
+                };
+            }
+            let name = self.entry_name(at);
+            let entry = self.entry(name, program.pou, program.offset, around, span);
+            self.configured.entries.push(entry);
+            if let Some((resource, declared)) = declared {
+                let task = declared.task.as_ref().map(|task| self.task_named(resource, task));
+                // What names a task that is not there has been reported.
+                self.schedule(program.resource, at, task.map(|task| task.unwrap_or(usize::MAX)));
+            }
+        }
+        for (resource, task, entry) in blocks {
+            self.schedule(resource, self.configured.entries.len(), Some(task));
+            self.configured.entries.push(entry);
+        }
+    }
+
+    fn schedule(&mut self, resource: Option<usize>, entry: usize, task: Option<usize>) {
+        let Some(resource) = resource.and_then(|index| self.configured.resources.get_mut(index)) else { return };
+        match task {
+            None => resource.background.push(entry),
+            Some(task) => {
+                if let Some(task) = resource.tasks.get_mut(task) {
+                    task.entries.push(entry);
+                }
+            }
+        }
+    }
+
+    fn declaration_of(&self, program: usize) -> Option<(&'a ast::Resource, &'a ProgramDeclaration)> {
+        let program = self.programs.get(program)?;
+        let resource = self.configured.ast?.resources.get(program.resource?)?;
+        let named = |each: &&ProgramDeclaration| each.name.text == program.name;
+        Some((resource, resource.programs.iter().find(named)?))
+    }
+
+    /// The instance's name, with its resource's in front where others have the same.
+    fn entry_name(&mut self, at: usize) -> String {
+        let name = self.programs[at].name.clone();
+        let twins = self.programs.iter().filter(|other| other.name.eq_ignore_ascii_case(&name)).count();
+        if twins > 1 { self.program_target(at).path } else { name }
+    }
+
+    fn entry(&mut self, name: String, pou: PouId, offset: u32, around: Around, span: Span) -> Entry {
+        let Around { before, after, mut scope } = around;
+        let ty = self.types.block(&name, pou);
+        let pointer = scope.register(ElementaryType::Udint);
+        let instance = Place::whole(Storage::Absolute(offset), ty, span);
+        let dispatch = Dispatch::Direct;
+        let call = InstanceCall { instance, pou, dispatch, pointer, inputs: before, outputs: after };
+        let body = vec![Statement { kind: StatementKind::CallInstance(Box::new(call)), span }];
+        let unit = Pou {
+            name: name.clone(),
+            span,
+            variables: Vec::new(),
+            registers: scope.registers,
+            parameters: 0,
+            result: None,
+            guard: Guard::None,
+            body,
+        };
+        self.enqueue(pou);
+        Entry { name, unit }
+    }
+
+    fn connect_input(&mut self, at: usize, input: &ast::Expr, source: &ast::Expr, around: &mut Around) -> Option<()> {
+        let target = self.target_in_program(at, input)?;
+        self.wants_section(&target, SectionKind::Input, input.span)?;
+        let resource = self.programs[at].resource;
+        let global = self.is_configured_path(source, resource).then(|| self.target(source, resource));
+        let mut body = Body::new(self, std::mem::take(&mut around.scope), None);
+        let value = match global {
+            Some(None) => None,
+            Some(Some(found)) => {
+                let value = loaded(&found, source.span);
+                let ty = body.checker.types.of_value(value.ty);
+                body.coerce(Operand::Typed(Expr { ty, ..value }), target.ty)
+            }
+            None => body.expression_for(source, target.ty),
+        };
+        let statement = value.map(|value| body.assignment(place(&target, input.span), value, source.span));
+        around.scope = body.scope;
+        around.before.push(statement?);
+        Some(())
+    }
+
+    fn connect_output(&mut self, at: usize, output: &ast::Expr, sink: &ast::Expr, around: &mut Around) -> Option<()> {
+        let source = self.target_in_program(at, output)?;
+        self.wants_section(&source, SectionKind::Output, output.span)?;
+        let resource = self.programs[at].resource;
+        let sink_place = if matches!(sink.kind, ast::ExprKind::DirectAddress(_)) {
+            Body::outside(self).target(sink)?
+        } else {
+            let found = self.target(sink, resource)?;
+            if found.variable.as_ref().is_some_and(|variable| variable.is_constant) {
+                let message = "a constant is not assigned to";
+                self.report(Diagnostic::error(Code::AssignToConstant, sink.span, message));
+                return None;
+            }
+            place(&found, sink.span)
+        };
+        let mut body = Body::new(self, std::mem::take(&mut around.scope), None);
+        let value = loaded(&source, output.span);
+        let ty = body.checker.types.of_value(value.ty);
+        let value = body.coerce(Operand::Typed(Expr { ty, ..value }), sink_place.ty);
+        let statement = value.map(|value| body.assignment(sink_place, value, output.span));
+        around.scope = body.scope;
+        around.after.push(statement?);
+        Some(())
+    }
+
+    /// Inputs are connected by `:=`, outputs by `=>`.
+    fn wants_section(&mut self, target: &Target, wanted: SectionKind, span: Span) -> Option<()> {
+        let variable = target.variable.as_ref()?;
+        if variable.section == wanted {
+            return Some(());
+        }
+        let (kind, mark) = if wanted == SectionKind::Input { ("an input", ":=") } else { ("an output", "=>") };
+        let message = format!("`{}` is not {kind}, which `{mark}` wants", target.path);
+        let found = Diagnostic::error(Code::UnsuitableConnection, span, message);
+        self.report(found.with_label(variable.span, "declared here"));
+        None
+    }
+
+    /// `fb WITH task`: the resource, its task, what runs.
+    fn task_block(
+        &mut self,
+        at: usize,
+        block: &ast::Expr,
+        task: &Ident,
+        resource: &'a ast::Resource,
+    ) -> Option<(Option<usize>, usize, Entry)> {
+        let task = self.task_named(resource, task);
+        let target = self.target_in_program(at, block)?;
+        let Type::FunctionBlock { pou, name } = self.types.get(target.ty).clone() else {
+            let message =
+                format!("only instances of function blocks have tasks, this is {}", self.types.name(target.ty));
+            self.report(Diagnostic::error(Code::UnsuitableConnection, block.span, message));
+            return None;
+        };
+        let scope = self.interface(pou, block.span)?;
+        if let Some(reference) = scope.inputs().find(|input| input.section == SectionKind::InOut) {
+            let message = format!("{name} has a VAR_IN_OUT `{}`, which nobody gives it here", reference.name);
+            self.report(Diagnostic::error(Code::UnsuitableConnection, block.span, message));
+            return None;
+        }
+        let program = self.programs[at].clone();
+        self.configured.task_blocks.push((at, target.offset - program.offset, block.span));
+        let around = Around { before: self.select_globals(program.resource, block.span), ..Around::default() };
+        let inside = target.path.strip_prefix(&self.program_target(at).path).unwrap_or(&target.path).to_owned();
+        let name = format!("{}{inside}", self.entry_name(at));
+        let entry = self.entry(name, pou, target.offset, around, block.span);
+        Some((program.resource, task?, entry))
+    }
+
+    /// The task alone runs such an instance (2nd ed. 2.7.2), so its program must not.
+    pub(super) fn report_double_calls(&mut self) {
+        for (program, offset, span) in self.configured.task_blocks.clone() {
+            let Some(unit) = self.programs.get(program).and_then(|program| self.checked.get(&program.pou)) else {
+                continue;
+            };
+            if let Some(call) = call_of(&unit.body, offset) {
+                let message = "this instance has a task of its own, and its program calls it too";
+                let found = Diagnostic::error(Code::BlockCalledTwice, span, message).with_label(call, "called here");
+                let help = "assign to its inputs and read its outputs, without a call";
+                self.report(found.with_help(help));
+            }
+        }
+    }
+}
+
+fn place(target: &Target, span: Span) -> Place {
+    Place::whole(Storage::Absolute(target.offset), target.ty, span)
+}
+
+fn loaded(target: &Target, span: Span) -> Expr {
+    Expr { kind: ExprKind::Load(place(target, span)), ty: target.ty, span }
+}
+
+/// Where statements call the instance at this offset of their own one.
+fn call_of(statements: &[Statement], offset: u32) -> Option<Span> {
+    let mut open: Vec<&Statement> = statements.iter().collect();
+    while let Some(statement) = open.pop() {
+        match &statement.kind {
+            StatementKind::CallInstance(call) => {
+                let place = &call.instance;
+                if constant_offset(place) == Some(offset) {
+                    return Some(statement.span);
+                }
+            }
+            StatementKind::If(branches, otherwise) => {
+                open.extend(branches.iter().flat_map(|branch| &branch.body).chain(otherwise));
+            }
+            StatementKind::Case(inner) => {
+                open.extend(inner.arms.iter().flat_map(|arm| &arm.body).chain(&inner.otherwise));
+            }
+            StatementKind::For(inner) => open.extend(&inner.body),
+            StatementKind::While(_, body) | StatementKind::Repeat(body, _) => open.extend(body),
+            _ => {}
+        }
+    }
+    None
+}
+
+fn constant_offset(place: &Place) -> Option<u32> {
+    let Storage::Instance(start) = place.storage else { return None };
+    place.steps.iter().try_fold(start, |offset, step| match step {
+        crate::ir::Step::Offset(further) => Some(offset + further),
+        crate::ir::Step::Index { .. } => None,
+    })
+}

@@ -1,0 +1,101 @@
+//! `VAR_CONFIG` and `VAR_ACCESS` (2nd ed. 2.7.1, 2.4.3; Table 49 features 10 and 11).
+
+use super::super::Checker;
+use super::super::names::TypedImage;
+use super::super::scope::Body;
+use super::super::types::Need;
+use super::path::Target;
+use crate::diagnostic::{Code, Diagnostic};
+use crate::ir::{Access, TypeId};
+use crate::syntax::Span;
+use crate::syntax::ast::{AccessDirection, AccessPath, Ident, InstanceValue, TypeSpec};
+
+impl<'a> Checker<'a> {
+    /// Gives variables of single instances initial values of their own.
+    pub(super) fn instance_values(&mut self, values: &'a [InstanceValue]) {
+        for value in values {
+            self.instance_value(value);
+        }
+    }
+
+    fn instance_value(&mut self, value: &'a InstanceValue) -> Option<()> {
+        let target = self.target(&value.path, None)?;
+        let variable = target.variable.as_ref();
+        if variable.is_none_or(|variable| variable.is_constant) {
+            let what = if variable.is_some() { "a constant" } else { "a program" };
+            let message = format!("`{}` is {what}, which has no value of its own in an instance", target.path);
+            self.report(Diagnostic::error(Code::NoInstanceValue, value.path.span, message));
+            return None;
+        }
+        self.same_type(&target, &value.spec, value.path.span)?;
+        if let Some(address) = &value.address {
+            self.locate_instance(address);
+        }
+        if let Some(initial) = &value.initial {
+            // What is not mentioned keeps the value that its own declaration gives.
+            let image = self.image_at(target.offset, self.types.size(target.ty));
+            let declared = TypedImage { ty: target.ty, image: image.into() };
+            let image = Body::outside(self).initial_image(&declared, initial)?;
+            self.placed.push((target.offset, image));
+        }
+        Some(())
+    }
+
+    fn locate_instance(&mut self, address: &Ident) {
+        let message = format!("the location {} of a variable in an instance is not supported yet", address.text);
+        self.report(Diagnostic::error(Code::UnsupportedFeature, address.span, message));
+    }
+
+    /// Initial bytes as far as they have been placed.
+    fn image_at(&self, offset: u32, size: u32) -> Vec<u8> {
+        let mut image = vec![0; size as usize];
+        for (start, bytes) in &self.placed {
+            let low = offset.max(*start);
+            let high = (offset + size).min(start + bytes.len() as u32);
+            if low < high {
+                let source = (low - start) as usize..(high - start) as usize;
+                let target = (low - offset) as usize..(high - offset) as usize;
+                image[target].copy_from_slice(&bytes[source]);
+            }
+        }
+        image
+    }
+
+    fn same_type(&mut self, target: &Target, spec: &'a TypeSpec, span: Span) -> Option<TypeId> {
+        let declared = Body::outside(self).resolve(spec, Need::Size)?;
+        if declared.ty != target.ty {
+            let (wanted, found) = (self.types.name(target.ty), self.types.name(declared.ty));
+            let message = format!("`{}` is {wanted} where it is declared, {found} here", target.path);
+            let mut report = Diagnostic::error(Code::TypeMismatch, span, message);
+            if let Some(variable) = &target.variable {
+                report = report.with_label(variable.span, "declared here");
+            }
+            self.report(report);
+            return None;
+        }
+        Some(declared.ty)
+    }
+
+    /// Names for those outside.
+    pub(super) fn access_paths(&mut self, paths: &'a [AccessPath]) {
+        self.report_twins(&paths.iter().map(|access| &access.name).collect::<Vec<_>>());
+        for access in paths {
+            if let Some(found) = self.access_path(access) {
+                self.configured.access.push(found);
+            }
+        }
+    }
+
+    fn access_path(&mut self, access: &'a AccessPath) -> Option<Access> {
+        let target = self.target(&access.path, None)?;
+        let ty = self.same_type(&target, &access.spec, access.path.span)?;
+        let constant = target.variable.as_ref().is_none_or(|variable| variable.is_constant);
+        let writable = access.direction == AccessDirection::ReadWrite;
+        if writable && constant {
+            let message = format!("`{}` is a constant, which is READ_ONLY", target.path);
+            self.report(Diagnostic::error(Code::AssignToConstant, access.path.span, message));
+            return None;
+        }
+        Some(Access { name: access.name.text.clone(), path: target.path, offset: target.offset, ty, writable })
+    }
+}

@@ -1,0 +1,238 @@
+//! Paths as in `Line.P1.fb.x` to variables: names and constant indices, no code.
+
+use super::super::Checker;
+use super::super::scope::Body;
+use crate::diagnostic::{Code, Diagnostic, did_you_mean};
+use crate::ir::{Storage, Type, TypeId, Variable};
+use crate::syntax::Span;
+use crate::syntax::ast::{Expr, ExprKind, Ident};
+
+/// A variable, or a part of one, at a fixed place.
+#[derive(Debug, Clone)]
+pub(super) struct Target {
+    /// Its path from the outside.
+    pub(super) path: String,
+    pub(super) offset: u32,
+    pub(super) ty: TypeId,
+    /// The declaration that the last name on the way leads to; nothing for a program.
+    pub(super) variable: Option<Variable>,
+}
+
+/// One piece of a path.
+#[derive(Clone, Copy)]
+enum Piece<'e> {
+    Name(&'e Ident),
+    Index(&'e [Expr], Span),
+}
+
+/// `a.b[1]` in pieces; nothing for what is no path.
+fn pieces(expr: &Expr) -> Option<Vec<Piece<'_>>> {
+    let mut found = Vec::new();
+    let mut next = expr;
+    loop {
+        match &next.kind {
+            ExprKind::Name(name) => {
+                found.push(Piece::Name(name));
+                found.reverse();
+                return Some(found);
+            }
+            ExprKind::Member(base, name) => {
+                found.push(Piece::Name(name));
+                next = base;
+            }
+            ExprKind::Index(base, indices) => {
+                found.push(Piece::Index(indices, next.span));
+                next = base;
+            }
+            _ => return None,
+        }
+    }
+}
+
+impl Checker<'_> {
+    /// The variable at a path written in `resource`, or outside of resources.
+    pub(super) fn target(&mut self, expr: &Expr, resource: Option<usize>) -> Option<Target> {
+        let Some(pieces) = pieces(expr) else {
+            let message = "the path of a variable is wanted here";
+            self.report(Diagnostic::error(Code::UnknownPath, expr.span, message));
+            return None;
+        };
+        let (root, rest) = self.root(&pieces, resource)?;
+        self.along(root, rest)
+    }
+
+    /// True for a path that begins with a name of the configuration's.
+    pub(super) fn is_configured_path(&self, expr: &Expr, resource: Option<usize>) -> bool {
+        let Some(Piece::Name(first)) = pieces(expr).and_then(|pieces| pieces.first().copied()) else {
+            return false;
+        };
+        self.key_in(&first.key(), resource).is_some()
+            || self.resource_named(first).is_some()
+            || self.program_named(first, resource).is_some()
+    }
+
+    fn resource_named(&self, name: &Ident) -> Option<usize> {
+        let resources = &self.configured.ast?.resources;
+        let is_it = |each: &Ident| each.text.eq_ignore_ascii_case(&name.text);
+        resources.iter().position(|resource| resource.name.as_ref().is_some_and(|(each, _)| is_it(each)))
+    }
+
+    /// The program's instance of this name, in `resource` or else the only one.
+    fn program_named(&self, name: &Ident, resource: Option<usize>) -> Option<usize> {
+        let named = |at: &usize| self.programs.get(*at).is_some_and(|each| each.name.eq_ignore_ascii_case(&name.text));
+        let all: Vec<usize> = (0..self.programs.len()).filter(named).collect();
+        let own = |at: &&usize| resource.is_some() && self.programs.get(**at).is_some_and(|it| it.resource == resource);
+        all.iter().find(own).copied().or(if all.len() == 1 { all.first().copied() } else { None })
+    }
+
+    /// Where a path begins, and what is left of it.
+    fn root<'p, 'e>(&mut self, pieces: &'p [Piece<'e>], resource: Option<usize>) -> Option<(Target, &'p [Piece<'e>])> {
+        let (Piece::Name(first), rest) = pieces.split_first()? else { return None };
+        if let Some(found) = self.global_target(first, resource) {
+            return Some((found?, rest));
+        }
+        if let Some(index) = self.program_named(first, resource) {
+            return Some((self.program_target(index), rest));
+        }
+        if let Some(index) = self.resource_named(first) {
+            let Some((Piece::Name(second), rest)) = rest.split_first() else {
+                return self.no_path(first, "a resource is no variable", None);
+            };
+            if let Some(found) = self.global_target(second, Some(index)) {
+                return Some((found?, rest));
+            }
+            let inside = |at: usize| self.programs.get(at).is_some_and(|each| each.resource == Some(index));
+            if let Some(found) = self.program_named(second, Some(index)).filter(|at| inside(*at)) {
+                return Some((self.program_target(found), rest));
+            }
+            let message = format!("resource `{}` has no `{}`", first.text, second.text);
+            let help = self.similar(second, Some(index));
+            return self.no_path(second, &message, help);
+        }
+        let help = self.similar(first, resource);
+        self.no_path(first, &format!("`{}` is not declared", first.text), help)
+    }
+
+    fn similar(&self, name: &Ident, resource: Option<usize>) -> Option<String> {
+        let globals = self.globals.values().filter(|each| each.home.is_none() || each.home == resource);
+        let globals = globals.map(|each| each.name.as_str());
+        let programs = self.programs.iter().map(|each| each.name.as_str());
+        let resources = self.configured.ast.into_iter().flat_map(|ast| &ast.resources);
+        let resources = resources.filter_map(|each| Some(each.name.as_ref()?.0.text.as_str()));
+        did_you_mean(&name.text, globals.chain(programs).chain(resources))
+    }
+
+    fn no_path<T>(&mut self, name: &Ident, message: &str, help: Option<String>) -> Option<T> {
+        let found = Diagnostic::error(Code::UnknownPath, name.span, message).with_optional_help(help);
+        self.report(found);
+        None
+    }
+
+    /// A global variable as `resource` sees it; the inner nothing is a variable whose declaration
+    /// is wrong.
+    fn global_target(&mut self, name: &Ident, resource: Option<usize>) -> Option<Option<Target>> {
+        let key = self.key_in(&name.key(), resource)?;
+        let home = self.globals.get(&key).and_then(|entry| entry.home);
+        let Some(variable) = self.global(&key, Some(name.span)) else {
+            return Some(None);
+        };
+        let Storage::Absolute(offset) = variable.storage else {
+            return Some(None);
+        };
+        let home = home.and_then(|home| self.resource_name(home)).map(|home| format!("{}.", home.text));
+        let path = format!("{}{}", home.unwrap_or_default(), variable.name);
+        Some(Some(Target { path, offset, ty: variable.ty, variable: Some(variable) }))
+    }
+
+    pub(super) fn program_target(&mut self, index: usize) -> Target {
+        // Indices come from `program_named` and from walks over all programs.
+        let program = self.programs[index].clone();
+        let home = program.resource.and_then(|home| self.resource_name(home));
+        let path = home.map_or_else(|| program.name.clone(), |home| format!("{}.{}", home.text, program.name));
+        let ty = self.types.block(&program.name, program.pou);
+        Target { path, offset: program.offset, ty, variable: None }
+    }
+
+    /// The variable at a path inside of program `index`.
+    pub(super) fn target_in_program(&mut self, index: usize, expr: &Expr) -> Option<Target> {
+        let root = self.program_target(index);
+        let Some(pieces) = pieces(expr) else {
+            let message = "the path of a variable is wanted here";
+            self.report(Diagnostic::error(Code::UnknownPath, expr.span, message));
+            return None;
+        };
+        self.along(root, &pieces)
+    }
+
+    fn along(&mut self, from: Target, pieces: &[Piece<'_>]) -> Option<Target> {
+        pieces.iter().try_fold(from, |at, piece| match piece {
+            Piece::Name(name) => self.step_to_member(at, name),
+            Piece::Index(indices, span) => self.step_to_element(at, indices, *span),
+        })
+    }
+
+    fn step_to_member(&mut self, at: Target, name: &Ident) -> Option<Target> {
+        match self.types.get(at.ty).clone() {
+            Type::Struct { fields, .. } => {
+                let names: Vec<&str> = fields.iter().map(|field| field.name.as_str()).collect();
+                let Some(field) = fields.iter().find(|field| field.name.eq_ignore_ascii_case(&name.text)) else {
+                    return self.no_member(&at, name, &names);
+                };
+                let path = format!("{}.{}", at.path, field.name);
+                Some(Target { path, offset: at.offset + field.offset, ty: field.ty, variable: at.variable })
+            }
+            Type::FunctionBlock { pou, .. } => {
+                let scope = self.interface(pou, name.span)?;
+                if scope.is_broken(&name.key()) {
+                    return None;
+                }
+                let Some(variable) = scope.find(&name.key()) else {
+                    let names: Vec<&str> = scope.variables.iter().map(|each| each.name.as_str()).collect();
+                    return self.no_member(&at, name, &names);
+                };
+                let Storage::Instance(offset) = variable.storage else {
+                    let message = format!("`{}` does not lie in its instance", variable.name);
+                    return self.no_path(name, &message, None);
+                };
+                let path = format!("{}.{}", at.path, variable.name);
+                let (offset, ty) = (at.offset + offset, variable.ty);
+                Some(Target { path, offset, ty, variable: Some(variable.clone()) })
+            }
+            _ => self.no_member(&at, name, &[]),
+        }
+    }
+
+    fn no_member<T>(&mut self, at: &Target, name: &Ident, known: &[&str]) -> Option<T> {
+        let help = did_you_mean(&name.text, known.iter().copied());
+        self.no_path(name, &format!("`{}` has no `{}`", at.path, name.text), help)
+    }
+
+    fn step_to_element(&mut self, at: Target, indices: &[Expr], span: Span) -> Option<Target> {
+        let Type::Array { dimensions, element } = self.types.get(at.ty).clone() else {
+            let message = format!("`{}` is not an array", at.path);
+            self.report(Diagnostic::error(Code::NotIndexable, span, message));
+            return None;
+        };
+        if dimensions.len() != indices.len() {
+            let (wanted, found) = (dimensions.len(), indices.len());
+            let message = format!("the array has {wanted} dimensions, there are {found} indices");
+            self.report(Diagnostic::error(Code::WrongDimensions, span, message));
+            return None;
+        }
+        let mut number: u64 = 0;
+        let mut list = Vec::new();
+        for (bounds, index) in dimensions.iter().zip(indices) {
+            let value = Body::outside(self).constant_integer(index)?;
+            if !(i128::from(bounds.low)..=i128::from(bounds.high)).contains(&value) {
+                let message = format!("index {value} is outside of {}..{}", bounds.low, bounds.high);
+                self.report(Diagnostic::error(Code::IndexOutOfRange, index.span, message));
+                return None;
+            }
+            number = number * bounds.count() + (value - i128::from(bounds.low)) as u64;
+            list.push(value.to_string());
+        }
+        let offset = at.offset + number as u32 * self.types.size(element);
+        let path = format!("{}[{}]", at.path, list.join(","));
+        Some(Target { path, offset, ty: element, variable: at.variable })
+    }
+}

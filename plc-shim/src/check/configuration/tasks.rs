@@ -1,0 +1,112 @@
+//! Tasks and their inputs (2nd ed. 2.7.2, Table 50; 3rd ed. Table 63).
+
+use super::super::Checker;
+use super::super::scope::Body;
+use crate::diagnostic::{Code, Diagnostic, did_you_mean};
+use crate::ir::{ElementaryType, Task, Value};
+use crate::syntax::ast::{self, Expr, Ident, TaskDeclaration};
+
+/// The inputs of a task.
+const INPUTS: [&str; 3] = ["SINGLE", "INTERVAL", "PRIORITY"];
+
+impl<'a> Checker<'a> {
+    /// The tasks of a resource, each in its place, wrong or not.
+    pub(super) fn tasks(&mut self, resource: &'a ast::Resource, index: usize) -> Vec<Task> {
+        let names: Vec<&Ident> = resource.tasks.iter().map(|task| &task.name).collect();
+        self.report_twins(&names);
+        resource.tasks.iter().map(|task| self.task(task, index)).collect()
+    }
+
+    fn task(&mut self, ast: &'a TaskDeclaration, resource: usize) -> Task {
+        let home = self.resource_name(resource).map(|home| format!("{}.", home.text));
+        let mut task = Task {
+            name: format!("{}{}", home.unwrap_or_default(), ast.name.text),
+            single: None,
+            interval_ns: 0,
+            priority: 0,
+            entries: Vec::new(),
+        };
+        let known = self.diagnostics.len();
+        for (at, (name, value)) in ast.inputs.iter().enumerate() {
+            if ast.inputs.iter().take(at).any(|(other, _)| other.key() == name.key()) {
+                let message = format!("`{}` is given twice", name.text);
+                self.report(Diagnostic::error(Code::TaskInput, name.span, message));
+                continue;
+            }
+            match name.key().as_str() {
+                "INTERVAL" => task.interval_ns = self.interval(value).unwrap_or(0),
+                "PRIORITY" => task.priority = self.priority(value).unwrap_or(0),
+                // Its variable may be one of a program that is not there yet.
+                "SINGLE" => {}
+                _ => {
+                    let message = format!("a task has no input `{}`", name.text);
+                    let help = did_you_mean(&name.text, INPUTS);
+                    let found = Diagnostic::error(Code::TaskInput, name.span, message);
+                    self.report(found.with_optional_help(help));
+                }
+            }
+        }
+        let is_triggered = ast.inputs.iter().any(|(name, _)| name.key() == "SINGLE");
+        if task.interval_ns == 0 && !is_triggered && self.diagnostics.len() == known {
+            let message = format!("task `{}` has neither SINGLE nor an INTERVAL, so it never runs", ast.name.text);
+            self.report(Diagnostic::error(Code::TaskNeverRuns, ast.name.span, message));
+        }
+        task
+    }
+
+    fn interval(&mut self, value: &Expr) -> Option<u64> {
+        let time = Body::outside(self).constant_of_type(value, ElementaryType::Time.into());
+        let ns = time.and_then(Value::as_int)?;
+        if let Ok(ns) = u64::try_from(ns) {
+            return Some(ns);
+        }
+        self.unsuitable(value, "an interval is not negative")
+    }
+
+    fn priority(&mut self, value: &Expr) -> Option<u32> {
+        let priority = Body::outside(self).constant_integer(value)?;
+        match u32::try_from(priority) {
+            Ok(priority) if priority <= u32::from(u16::MAX) => Some(priority),
+            _ => self.unsuitable(value, "a priority is a UINT; 0 comes first"),
+        }
+    }
+
+    fn unsuitable<T>(&mut self, value: &Expr, message: &str) -> Option<T> {
+        self.report(Diagnostic::error(Code::TaskInput, value.span, message));
+        None
+    }
+
+    /// The variables that trigger tasks, when all programs have been placed.
+    pub(super) fn resolve_single_inputs(&mut self, ast: &'a ast::Configuration) {
+        for (index, resource) in ast.resources.iter().enumerate() {
+            for (at, task) in resource.tasks.iter().enumerate() {
+                let single = task.inputs.iter().find(|(name, _)| name.key() == "SINGLE");
+                let path = single.and_then(|(_, value)| self.single(value, index));
+                let made = self.configured.resources.get_mut(index).and_then(|made| made.tasks.get_mut(at));
+                if let Some(made) = made {
+                    made.single = path;
+                }
+            }
+        }
+    }
+
+    fn single(&mut self, value: &Expr, resource: usize) -> Option<String> {
+        let target = self.target(value, Some(resource))?;
+        if target.ty != ElementaryType::Bool.into() {
+            let message = format!("SINGLE is a BOOL, this is {}", self.types.name(target.ty));
+            return self.unsuitable(value, &message);
+        }
+        Some(target.path)
+    }
+
+    /// Position of the task of this name in its resource.
+    pub(super) fn task_named(&mut self, resource: &'a ast::Resource, name: &Ident) -> Option<usize> {
+        let found = resource.tasks.iter().position(|task| task.name.text.eq_ignore_ascii_case(&name.text));
+        if found.is_none() {
+            let help = did_you_mean(&name.text, resource.tasks.iter().map(|task| task.name.text.as_str()));
+            let message = format!("there is no task `{}` in this resource", name.text);
+            self.report(Diagnostic::error(Code::UnknownTask, name.span, message).with_optional_help(help));
+        }
+        found
+    }
+}

@@ -1,0 +1,213 @@
+//! What dialects do their own way. A place in the text tells its file, and the file its dialect.
+
+use super::Checker;
+use super::convert::{Operand, constant, converted};
+use super::layout::VIRTUAL_TIME_OFFSET;
+use super::scope::Body;
+use crate::diagnostic::{Code, Diagnostic};
+use crate::dialect::{Dialect, DivisionByZero, Feature, TimeRange};
+use crate::ir::elementary::Kind;
+use crate::ir::{Binary, ElementaryType, Expr, ExprKind, Place, Rounding, Storage, Type, Value};
+use crate::syntax::Span;
+use crate::syntax::ast::{self, BinaryOp, Call, Ident};
+
+use ElementaryType as E;
+
+/// Functions of vendors' controllers that have no equal here, by how their names begin, and what to use.
+const VENDOR_FUNCTIONS: [(&str, Code, &str); 16] = [
+    ("S_PULSE", Code::ClassicTimer, "use TP"),
+    ("S_PEXT", Code::ClassicTimer, "use TP"),
+    ("S_ODTS", Code::ClassicTimer, "use TON"),
+    ("S_ODT", Code::ClassicTimer, "use TON"),
+    ("S_OFFDT", Code::ClassicTimer, "use TOF"),
+    ("S_CUD", Code::ClassicTimer, "use CTUD"),
+    ("S_CU", Code::ClassicTimer, "use CTU"),
+    ("S_CD", Code::ClassicTimer, "use CTD"),
+    ("PEEK", Code::VendorRuntime, "declare a variable and use that"),
+    ("POKE", Code::VendorRuntime, "declare a variable and use that"),
+    ("SYSTIME", Code::VendorRuntime, "TIME() gives virtual time"),
+    ("TIME_TCK", Code::VendorRuntime, "use a timer: it counts virtual time"),
+    ("__NEW", Code::VendorRuntime, "declare the instance"),
+    ("__DELETE", Code::VendorRuntime, "declare the instance"),
+    ("__QUERYINTERFACE", Code::VendorRuntime, "assign the interface"),
+    ("__QUERYPOINTER", Code::VendorRuntime, "use a reference"),
+];
+
+/// Nanoseconds of the unit in which 32 bit dialects count TIME.
+const MS: i128 = 1_000_000;
+
+impl Checker<'_> {
+    /// The dialect of the text at `span`.
+    pub(super) fn dialect(&self, span: Span) -> Dialect {
+        self.dialects.get(&span.file).copied().unwrap_or_default()
+    }
+}
+
+/// The type that counts TIME in milliseconds; nothing where TIME counts nanoseconds.
+fn counter(range: TimeRange) -> Option<E> {
+    match range {
+        TimeRange::Nanoseconds64 => None,
+        TimeRange::Unsigned32 => Some(E::Udint),
+        TimeRange::Signed32 => Some(E::Dint),
+    }
+}
+
+/// The integer type that calculates as a bit string does; others as they are.
+fn as_number(ty: E) -> E {
+    match ty {
+        E::Byte => E::Usint,
+        E::Word => E::Uint,
+        E::Dword => E::Udint,
+        E::Lword => E::Ulint,
+        other => other,
+    }
+}
+
+fn joined(operator: Binary, left: Expr, right: Expr) -> Expr {
+    let (ty, span) = (left.ty, left.span);
+    Expr { kind: ExprKind::Binary(operator, Box::new(left), Box::new(right)), ty, span }
+}
+
+impl Body<'_, '_> {
+    /// A TIME as the dialect counts it: whole milliseconds that wrap. Everything else as it is.
+    pub(super) fn time_value(&self, expr: Expr) -> Expr {
+        let counter = counter(self.checker.dialect(expr.span).time());
+        let Some(counter) = counter.filter(|_| expr.ty == E::Time.into()) else { return expr };
+        let unit = |span| constant(Value::Int(MS), E::Lint, span);
+        let span = expr.span;
+        let ns = converted(expr, E::Lint, Rounding::NearestEven);
+        let ms = joined(Binary::Divide, ns, unit(span));
+        let wrapped = converted(converted(ms, counter, Rounding::NearestEven), E::Lint, Rounding::NearestEven);
+        converted(joined(Binary::Multiply, wrapped, unit(span)), E::Time, Rounding::NearestEven)
+    }
+
+    /// Reports a TIME that the dialect cannot count.
+    pub(super) fn check_duration(&mut self, ty: E, ns: i64, span: Span) -> Option<()> {
+        let dialect = self.checker.dialect(span);
+        let Some(counter) = counter(dialect.time()).filter(|_| ty == E::Time) else { return Some(()) };
+        let ns = i128::from(ns);
+        if ns % MS == 0 && counter.wrap(ns / MS) == ns / MS {
+            return Some(());
+        }
+        let signs = if counter == E::Dint { "signed" } else { "unsigned" };
+        let message = format!("TIME of {dialect} counts milliseconds in {signs} 32 bits");
+        self.report(Diagnostic::error(Code::OutOfRange, span, message).with_help("LTIME counts nanoseconds"));
+        None
+    }
+
+    /// A division, by what the dialect does if the divisor is 0.
+    pub(super) fn division(&self, operator: Binary, span: Span) -> Binary {
+        match (operator, self.checker.dialect(span).division_by_zero()) {
+            (Binary::Divide, DivisionByZero::Continue) => Binary::DivideAnyway,
+            _ => operator,
+        }
+    }
+
+    /// True if operators for numbers take `ty`, and those for bit strings too.
+    pub(super) fn bits_are_numbers(&self, ty: E, span: Span) -> bool {
+        let has = self.checker.dialect(span).has(Feature::BitArithmetic);
+        has && (ty.kind() == Kind::Bits || ty.is_integer())
+    }
+
+    /// True if `ty` has bits to invert.
+    pub(super) fn has_bits(&self, ty: E, span: Span) -> bool {
+        ty.is_bits() || self.bits_are_numbers(ty, span)
+    }
+
+    /// True if a value becomes one of `wanted` without a conversion function.
+    pub(super) fn widens(&self, found: E, wanted: E, span: Span) -> bool {
+        if found.widens_to(wanted) {
+            return true;
+        }
+        let dialect = self.checker.dialect(span);
+        let (from, to) =
+            if dialect.has(Feature::BitArithmetic) { (as_number(found), as_number(wanted)) } else { (found, wanted) };
+        let sign = dialect.has(Feature::SignChange) && from.is_integer() && to.is_integer();
+        from.widens_to(to) || sign && from.size() <= to.size()
+    }
+
+    /// The smallest type that both widen to.
+    pub(super) fn common(&self, left: E, right: E, span: Span) -> Option<E> {
+        let numbers = || {
+            let has = self.checker.dialect(span).has(Feature::BitArithmetic);
+            has.then(|| as_number(left).common(as_number(right))).flatten()
+        };
+        left.common(right).or_else(numbers)
+    }
+
+    /// `AND_THEN`, `OR_ELSE`: the right operand is evaluated only if the left one does not tell.
+    pub(super) fn short_circuit(
+        &mut self,
+        operator: BinaryOp,
+        left: &ast::Expr,
+        right: &ast::Expr,
+        span: Span,
+    ) -> Option<Operand> {
+        let (left, right) = (self.condition(left), self.condition(right));
+        let (left, right) = (left?, right?);
+        let known = constant(Value::Bool(operator == BinaryOp::OrElse), E::Bool, span);
+        let parts = if operator == BinaryOp::AndThen { [left, right, known] } else { [left, known, right] };
+        Some(Operand::Typed(Expr { kind: ExprKind::Conditional(Box::new(parts)), ty: E::Bool.into(), span }))
+    }
+
+    /// True for `TIME` and `LTIME`, called as functions.
+    pub(super) fn is_clock(name: &Ident) -> bool {
+        matches!(name.key().as_str(), "TIME" | "LTIME")
+    }
+
+    /// `TIME()` and `LTIME()`: virtual time since the start.
+    pub(super) fn clock_function(&mut self, name: &Ident, call: &Call, span: Span) -> Option<Operand> {
+        let dialect = self.checker.dialect(span);
+        if !dialect.has(Feature::ClockFunctions) {
+            let (about, homes) = (Feature::ClockFunctions.about(), Feature::ClockFunctions.homes());
+            let found = Diagnostic::error(Code::WrongDialect, span, format!("{about} is not part of {dialect}"));
+            self.report(found.with_help(format!("it is part of {homes}: --dialect chooses")));
+            return None;
+        }
+        if let Some(argument) = call.arguments.first() {
+            let message = format!("{}() takes no arguments", name.key());
+            let span = match argument {
+                ast::Argument::Positional(expr) | ast::Argument::Input(_, expr) => expr.span,
+                ast::Argument::Output { name, .. } => name.span,
+            };
+            self.report(Diagnostic::error(Code::TooManyArguments, span, message));
+            return None;
+        }
+        let place = Place::whole(Storage::Absolute(VIRTUAL_TIME_OFFSET), E::Time.into(), span);
+        let now = Expr { kind: ExprKind::Load(place), ty: E::Time.into(), span };
+        let long = name.key() == "LTIME";
+        let now = if long { converted(now, E::Ltime, Rounding::NearestEven) } else { self.time_value(now) };
+        Some(Operand::Typed(now))
+    }
+
+    /// Reports a function of a vendor's controllers; true if it is one.
+    pub(super) fn report_vendor_function(&mut self, name: &Ident) -> bool {
+        let key = name.key();
+        let known = VENDOR_FUNCTIONS.iter().find(|(begin, ..)| key.starts_with(begin));
+        let Some((_, code, help)) = known else { return false };
+        let message = format!("`{}` is a function of a vendor's controllers", name.text);
+        self.report(Diagnostic::error(*code, name.span, message).with_help(*help));
+        true
+    }
+
+    /// What `x.TON(..)` calls in SCL: the instance `x` of TON, `TON_TIME` and the like.
+    pub(super) fn instance_of<'e>(&mut self, callee: &'e ast::Expr) -> &'e ast::Expr {
+        let ast::ExprKind::Member(base, name) = &callee.kind else { return callee };
+        if self.checker.dialect(callee.span) != Dialect::SiemensScl {
+            return callee;
+        }
+        let before = self.checker.diagnostics.len();
+        let place = self.place(base);
+        // Were the base wrong, the callee as a whole would be reported.
+        self.checker.diagnostics.truncate(before);
+        let ty = place.map(|located| self.checker.types.get(located.place.ty).clone());
+        match ty {
+            Some(Type::FunctionBlock { name: block, .. }) => {
+                let block = block.to_ascii_uppercase();
+                let plain = block.split('_').next().unwrap_or(&block);
+                if plain == name.key() { base } else { callee }
+            }
+            _ => callee,
+        }
+    }
+}

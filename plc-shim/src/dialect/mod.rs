@@ -1,0 +1,203 @@
+//! What vendors add to the language, leave out of it and do their own way.
+//!
+//! | module | subject |
+//! |---|---|
+//! | [`table`] | every difference, as data, each with its source |
+//!
+//! A dialect belongs to a file, so that a library of one may be used by a program of another. The
+//! lexer, the parser and the checker ask the table; `docs/dialects.md` shows it.
+
+pub mod table;
+
+use std::path::Path;
+
+use self::table::{BEHAVIOURS, FEATURES};
+use crate::ir::Rounding;
+
+/// A dialect of the language.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Dialect {
+    /// IEC 61131-3, 2nd edition (2003).
+    Iec2,
+    /// IEC 61131-3, 3rd edition (2013), read leniently.
+    #[default]
+    Iec3,
+    /// CODESYS V2.3 and V3, and what is built on it.
+    Codesys,
+    /// TwinCAT 2 and 3.
+    TwinCat,
+    /// SCL of Siemens' TIA Portal, as external source.
+    SiemensScl,
+}
+
+impl Dialect {
+    /// Every dialect, in the order of the table's columns.
+    pub const ALL: [Self; 5] = [Self::Iec2, Self::Iec3, Self::Codesys, Self::TwinCat, Self::SiemensScl];
+
+    /// Its name in options and scenarios.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Iec2 => "iec2",
+            Self::Iec3 => "iec3",
+            Self::Codesys => "codesys",
+            Self::TwinCat => "twincat",
+            Self::SiemensScl => "siemens-scl",
+        }
+    }
+
+    /// The dialect of this name.
+    pub fn find(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|dialect| dialect.name() == name)
+    }
+
+    /// The dialect of program text in a file of this name; PLCopen XML tells its own.
+    pub fn of_file(name: &str) -> Self {
+        let extension = Path::new(name).extension().and_then(|text| text.to_str()).unwrap_or("");
+        match extension.to_ascii_lowercase().as_str() {
+            "scl" => Self::SiemensScl,
+            "exp" => Self::Codesys,
+            "tcpou" | "tcdut" | "tcgvl" | "tcio" => Self::TwinCat,
+            _ => Self::default(),
+        }
+    }
+
+    /// True if the dialect has `feature`.
+    pub fn has(self, feature: Feature) -> bool {
+        FEATURES.iter().any(|row| row.feature == feature && row.dialects.contains(&self))
+    }
+
+    fn behaviour(self) -> Behaviour {
+        let row = BEHAVIOURS.iter().find(|row| row.dialect == self);
+        row.map_or(table::STANDARD, |row| row.behaviour)
+    }
+
+    /// Characters of a string declared without a length.
+    pub fn string_length(self) -> u16 {
+        self.behaviour().string_length
+    }
+
+    /// The values of TIME.
+    pub fn time(self) -> TimeRange {
+        self.behaviour().time
+    }
+
+    /// Where a real halfway between two integers goes.
+    pub(crate) fn rounding(self) -> Rounding {
+        match self.behaviour().ties {
+            Ties::Even => Rounding::NearestEven,
+            Ties::Away => Rounding::NearestAway,
+        }
+    }
+
+    /// What a division by zero does.
+    pub fn division_by_zero(self) -> DivisionByZero {
+        self.behaviour().division_by_zero
+    }
+}
+
+impl std::fmt::Display for Dialect {
+    fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        formatter.write_str(self.name())
+    }
+}
+
+/// The values of TIME.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum TimeRange {
+    /// Signed 64 bit nanoseconds.
+    Nanoseconds64,
+    /// Unsigned 32 bit milliseconds.
+    Unsigned32,
+    /// Signed 32 bit milliseconds.
+    Signed32,
+}
+
+/// Where a real halfway between two integers goes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Ties {
+    /// To the even one.
+    Even,
+    /// Away from zero.
+    Away,
+}
+
+/// What a division by zero does.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum DivisionByZero {
+    /// It stops the PLC.
+    Fault,
+    /// Integers give 0, reals an infinity or NaN.
+    Continue,
+}
+
+/// What a dialect does its own way.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Behaviour {
+    /// Characters of a string declared without a length.
+    pub string_length: u16,
+    /// The values of TIME.
+    pub time: TimeRange,
+    /// Where a real halfway between two integers goes.
+    pub ties: Ties,
+    /// What a division by zero does.
+    pub division_by_zero: DivisionByZero,
+}
+
+macro_rules! features {
+    ($($variant:ident $about:literal),* $(,)?) => {
+        /// A construct that some dialects have and others do not.
+        #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+        pub enum Feature {
+            $(#[doc = $about] $variant,)*
+        }
+
+        impl Feature {
+            /// Every feature.
+            pub const ALL: &'static [Self] = &[$(Self::$variant),*];
+
+            /// What it is, as it reads in a sentence.
+            pub fn about(self) -> &'static str {
+                match self { $(Self::$variant => $about,)* }
+            }
+        }
+    };
+}
+
+features! {
+    NestedComments "a comment in a comment",
+    LineComments "a comment with `//`",
+    StarComments "a comment with `/*`",
+    Continue "`CONTINUE`",
+    Power "the operator `**`",
+    LooseEnds "a missing `;` behind `END_IF` and the like",
+    ShortCircuit "`AND_THEN`, `OR_ELSE`",
+    SetReset "`S=`, `R=`",
+    ChainedAssignment "`a := b := c`",
+    CompoundAssignment "`+=`, `-=`, `*=`, `/=`",
+    BareArrayValues "initial values of an array without brackets",
+    ConditionalPragmas "`{IF defined (x)}`",
+    StaticSection "`VAR_STAT`",
+    BitArithmetic "a bit string as a number, or a number as a bit string",
+    SignChange "an integer as one of the other sign, without conversion",
+    ClockFunctions "`TIME()`, `LTIME()`",
+    QuotedNames "names as `#local` and `\"global\"`",
+    Blocks "`ORGANIZATION_BLOCK`, `DATA_BLOCK`",
+    InstanceInternals "an instance's `VAR` from outside",
+    ShortPrefixes "literals as `W#16#FF`, `L#5`, `S5T#2s`",
+    DivOperator "the operator `DIV`",
+}
+
+impl Feature {
+    /// The dialects that have it, as a list in a sentence.
+    pub fn homes(self) -> String {
+        let names: Vec<_> = Dialect::ALL.iter().filter(|dialect| dialect.has(self)).map(|one| one.name()).collect();
+        match names.as_slice() {
+            [] => String::new(),
+            [only] => (*only).to_owned(),
+            [first @ .., last] => format!("{} and {last}", first.join(", ")),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,107 @@
+//! The dialects as data.
+
+use super::Dialect::{self, Codesys, Iec2, Iec3, SiemensScl, TwinCat};
+use super::{Behaviour, DivisionByZero, Feature, Ties, TimeRange};
+
+/// Who has a construct, and where that is written.
+#[derive(Debug, Clone, Copy)]
+pub struct FeatureRow {
+    /// The construct.
+    pub feature: Feature,
+    /// The dialects that have it.
+    pub dialects: &'static [Dialect],
+    /// Where it is written.
+    pub source: &'static str,
+}
+
+const fn row(feature: Feature, dialects: &'static [Dialect], source: &'static str) -> FeatureRow {
+    FeatureRow { feature, dialects, source }
+}
+
+/// Every construct that some dialects have and others do not, in the order of [`Feature::ALL`].
+pub const FEATURES: &[FeatureRow] = &[
+    row(Feature::NestedComments, &[Iec3, Codesys, TwinCat, SiemensScl], "2nd ed. 2.1.5; 3rd ed. 6.1.5"),
+    row(Feature::LineComments, &[Iec3, Codesys, TwinCat, SiemensScl], "3rd ed. Table 3"),
+    row(Feature::StarComments, &[Iec3, SiemensScl], "3rd ed. Table 3; CODESYS and TwinCAT: Comments"),
+    row(Feature::Continue, &[Iec3, Codesys, TwinCat, SiemensScl], "3rd ed. Table 72.9"),
+    row(Feature::Power, &[Iec2, Iec3, SiemensScl], "2nd ed. Table 52; CODESYS and TwinCAT: EXPT instead"),
+    row(Feature::LooseEnds, &[Codesys, TwinCat], "CODESYS: ST statements; TwinCAT: ST instructions"),
+    row(Feature::ShortCircuit, &[Codesys, TwinCat], "CODESYS and TwinCAT: operators AND_THEN, OR_ELSE"),
+    row(Feature::SetReset, &[Codesys, TwinCat], "CODESYS and TwinCAT: ExST assignments S= and R="),
+    row(Feature::ChainedAssignment, &[Codesys, TwinCat, SiemensScl], "CODESYS: ExST; TIA Portal: value assignments"),
+    row(Feature::CompoundAssignment, &[SiemensScl], "TIA Portal: combined value assignments"),
+    row(Feature::BareArrayValues, &[Codesys, TwinCat], "CODESYS V2.3 and TwinCAT 2: ARRAY"),
+    row(Feature::ConditionalPragmas, &[Codesys, TwinCat], "CODESYS and TwinCAT: conditional pragmas"),
+    row(Feature::StaticSection, &[Codesys, TwinCat], "CODESYS and TwinCAT: VAR_STAT"),
+    row(Feature::BitArithmetic, &[Codesys, TwinCat], "CODESYS and TwinCAT: integer data types list BYTE to LWORD"),
+    row(Feature::SignChange, &[Codesys, TwinCat], "CODESYS and TwinCAT: implicit conversion, a warning only"),
+    row(Feature::ClockFunctions, &[Codesys, TwinCat], "CODESYS and TwinCAT: operators TIME, LTIME"),
+    row(Feature::QuotedNames, &[SiemensScl], "S7-1200 System Manual: SCL, addressing of tags"),
+    row(Feature::Blocks, &[SiemensScl], "TIA Portal: external source files, SCL"),
+    row(Feature::InstanceInternals, &[SiemensScl], "TIA Portal: addressing instance data blocks"),
+    row(Feature::ShortPrefixes, &[SiemensScl], "TIA Portal: constants; S7-SCL V5.3: 7.4"),
+    row(Feature::DivOperator, &[SiemensScl], "S7-SCL V5.3: 10.3"),
+];
+
+/// How a dialect behaves, and where that is written.
+#[derive(Debug, Clone, Copy)]
+pub struct BehaviourRow {
+    /// The dialect.
+    pub dialect: Dialect,
+    /// What it does.
+    pub behaviour: Behaviour,
+    /// Where each of it is written, in the order of the fields.
+    pub sources: [&'static str; 4],
+}
+
+/// What the standard says, or README.md where it leaves a choice.
+pub const STANDARD: Behaviour = Behaviour {
+    string_length: 80,
+    time: TimeRange::Nanoseconds64,
+    ties: Ties::Even,
+    division_by_zero: DivisionByZero::Fault,
+};
+
+const STANDARD_SOURCES: [&str; 4] =
+    ["left open by 2nd ed. 2.3.1", "left open by 2nd ed. 2.2.3", "2nd ed. 2.5.1.5.1, IEC 60559", "2nd ed. Annex E"];
+
+/// How the dialects behave.
+pub const BEHAVIOURS: &[BehaviourRow] = &[
+    BehaviourRow { dialect: Iec2, behaviour: STANDARD, sources: STANDARD_SOURCES },
+    BehaviourRow { dialect: Iec3, behaviour: STANDARD, sources: STANDARD_SOURCES },
+    BehaviourRow {
+        dialect: Codesys,
+        behaviour: Behaviour { time: TimeRange::Unsigned32, ..STANDARD },
+        sources: [
+            "CODESYS: data type STRING",
+            "CODESYS: data type TIME",
+            "CODESYS: conversion REAL, LREAL",
+            "CODESYS: operator DIV",
+        ],
+    },
+    BehaviourRow {
+        dialect: TwinCat,
+        behaviour: Behaviour { time: TimeRange::Unsigned32, ties: Ties::Away, ..STANDARD },
+        sources: [
+            "TwinCAT: STRING",
+            "TwinCAT: TIME/LTIME",
+            "TwinCAT: floating point number conversion",
+            "TwinCAT: operator DIV",
+        ],
+    },
+    BehaviourRow {
+        dialect: SiemensScl,
+        behaviour: Behaviour {
+            string_length: 254,
+            time: TimeRange::Signed32,
+            division_by_zero: DivisionByZero::Continue,
+            ..STANDARD
+        },
+        sources: [
+            "S7-1200 System Manual: data types, String",
+            "S7-1200 System Manual: data types, Time",
+            "S7-1200 System Manual: CONV, round to even",
+            "S7-1200 System Manual: ENO of add, subtract, multiply, divide",
+        ],
+    },
+];

@@ -1,0 +1,73 @@
+use std::fmt::Write;
+
+use super::table::{BEHAVIOURS, FEATURES};
+use super::*;
+
+#[test]
+fn every_feature_and_dialect_has_one_row() {
+    let features: Vec<_> = FEATURES.iter().map(|row| row.feature).collect();
+    assert_eq!(features, Feature::ALL);
+    let dialects: Vec<_> = BEHAVIOURS.iter().map(|row| row.dialect).collect();
+    assert_eq!(dialects, Dialect::ALL);
+    for row in FEATURES {
+        let count = row.dialects.len();
+        assert!(count > 0 && count < Dialect::ALL.len(), "{:?} tells no dialects apart", row.feature);
+        assert!(!row.source.is_empty());
+    }
+}
+
+#[test]
+fn dialects_have_names_and_files() {
+    for dialect in Dialect::ALL {
+        assert_eq!(Dialect::find(dialect.name()), Some(dialect));
+    }
+    assert_eq!(Dialect::of_file("a/Motor.SCL"), Dialect::SiemensScl);
+    assert_eq!(Dialect::of_file("old.exp"), Dialect::Codesys);
+    assert_eq!(Dialect::of_file("MAIN.TcPOU"), Dialect::TwinCat);
+    assert_eq!(Dialect::of_file("shear.st"), Dialect::Iec3);
+    assert_eq!(Feature::ChainedAssignment.homes(), "codesys, twincat and siemens-scl");
+}
+
+fn behaviour_cells(behaviour: Behaviour) -> [String; 4] {
+    let time = match behaviour.time {
+        TimeRange::Nanoseconds64 => "signed 64 bit nanoseconds",
+        TimeRange::Unsigned32 => "unsigned 32 bit milliseconds, wrapping",
+        TimeRange::Signed32 => "signed 32 bit milliseconds, wrapping",
+    };
+    let ties = match behaviour.ties {
+        Ties::Even => "to the even one",
+        Ties::Away => "away from zero",
+    };
+    let division = match behaviour.division_by_zero {
+        DivisionByZero::Fault => "stops the PLC",
+        DivisionByZero::Continue => "0; reals: infinity or NaN",
+    };
+    [behaviour.string_length.to_string(), time.to_owned(), ties.to_owned(), division.to_owned()]
+}
+
+/// The tables of `docs/dialects.md`.
+fn tables() -> String {
+    let names: Vec<_> = Dialect::ALL.iter().map(|one| one.name()).collect();
+    let rule = "|---".repeat(names.len() + 2);
+    let mut text = format!("| construct | {} | source |\n{rule}|\n", names.join(" | "));
+    for row in FEATURES {
+        let marks = Dialect::ALL.map(|dialect| if dialect.has(row.feature) { "yes" } else { "" });
+        writeln!(text, "| {} | {} | {} |", row.feature.about(), marks.join(" | "), row.source).expect("a string");
+    }
+    let subjects = ["STRING without a length", "TIME", "real halfway between two integers", "division by zero"];
+    text += "\n| behaviour | dialect | what it does | source |\n|---|---|---|---|\n";
+    for (index, subject) in subjects.iter().enumerate() {
+        for row in BEHAVIOURS {
+            let cell = &behaviour_cells(row.behaviour)[index];
+            writeln!(text, "| {subject} | {} | {cell} | {} |", row.dialect, row.sources[index]).expect("a string");
+        }
+    }
+    text
+}
+
+#[test]
+fn the_page_shows_the_table() {
+    let page = include_str!("../../docs/dialects.md");
+    let tables = tables();
+    assert!(page.contains(&tables), "docs/dialects.md wants these tables:\n{tables}");
+}

@@ -1,0 +1,69 @@
+//! Configurations: resources, tasks and what they run (2nd ed. 2.7).
+
+use super::pou::{Pou, PouId, Retention, Variable};
+use super::types::TypeId;
+
+/// An instance of a program.
+#[derive(Debug, Clone)]
+pub(crate) struct Program {
+    /// The instance's name; the program's own without a configuration.
+    pub(crate) name: String,
+    pub(crate) pou: PouId,
+    pub(crate) offset: u32,
+    /// The resource it belongs to.
+    pub(crate) resource: Option<usize>,
+    pub(crate) retention: Option<Retention>,
+}
+
+/// What a task can run: an instance of a program with its connections, or an instance of a function
+/// block that has a task of its own. Those of the programs come first, in the programs' order.
+#[derive(Debug, Clone)]
+pub(crate) struct Entry {
+    /// The name by which a task runs it: the shortest that no other entry has.
+    pub(crate) name: String,
+    /// Called without parameters.
+    pub(crate) unit: Pou,
+}
+
+/// The one configuration of an application.
+#[derive(Debug, Clone)]
+pub(crate) struct Configuration {
+    pub(crate) name: String,
+    pub(crate) resources: Vec<Resource>,
+    pub(crate) access: Vec<Access>,
+}
+
+/// A resource with its tasks.
+#[derive(Debug, Clone)]
+pub(crate) struct Resource {
+    /// Nothing if it is the configuration's only one.
+    pub(crate) name: Option<String>,
+    pub(crate) tasks: Vec<Task>,
+    /// Entries without a task.
+    pub(crate) background: Vec<usize>,
+    /// The global variables that it does not share with others.
+    pub(crate) globals: Vec<Variable>,
+}
+
+/// A task (2nd ed. 2.7.2, Table 50).
+#[derive(Debug, Clone)]
+pub(crate) struct Task {
+    pub(crate) name: String,
+    /// Path of the BOOL whose rising edges trigger it.
+    pub(crate) single: Option<String>,
+    /// 0 if it is not periodic.
+    pub(crate) interval_ns: u64,
+    pub(crate) priority: u32,
+    pub(crate) entries: Vec<usize>,
+}
+
+/// A name that `VAR_ACCESS` gives to a variable.
+#[derive(Debug, Clone)]
+pub(crate) struct Access {
+    pub(crate) name: String,
+    /// The variable's full path.
+    pub(crate) path: String,
+    pub(crate) offset: u32,
+    pub(crate) ty: TypeId,
+    pub(crate) writable: bool,
+}

@@ -1,0 +1,125 @@
+//! Assignments, calls, and what vendors write like them.
+
+use super::cursor::Cursor;
+use crate::diagnostic::{Code, Diagnostic};
+use crate::dialect::Feature;
+use crate::syntax::ast::{BinaryOp, Expr, ExprKind, StatementKind, UpdateOp};
+use crate::syntax::token::{Punctuation, TokenKind};
+
+impl Cursor<'_> {
+    pub(super) fn assignment_or_call(&mut self) -> StatementKind {
+        if let Some(kind) = self.jump() {
+            return kind;
+        }
+        let known = self.reported();
+        let target = self.expression();
+        if self.take_mark(Punctuation::Assign) {
+            return self.assigned(target);
+        }
+        if self.take_mark(Punctuation::Attempt) {
+            return StatementKind::Attempt(target, self.expression());
+        }
+        if let Some(operator) = self.take_update() {
+            let value = self.expression();
+            return StatementKind::Update(operator, target, value);
+        }
+        if let ExprKind::Call(call) = target.kind {
+            return StatementKind::Call(call);
+        }
+        if self.reported() == known {
+            if self.at_mark(Punctuation::Equal) || matches!(target.kind, ExprKind::Binary(BinaryOp::Equal, ..)) {
+                let message = "this is a comparison, not an assignment";
+                let found = Diagnostic::error(Code::UnexpectedToken, target.span, message);
+                self.report(found.with_help("assign with `:=`"));
+            } else {
+                self.unexpected("`:=` or `(`");
+            }
+        }
+        StatementKind::Error
+    }
+
+    /// What stands behind `target :=`.
+    fn assigned(&mut self, target: Expr) -> StatementKind {
+        let mut value = self.expression();
+        if !self.at_mark(Punctuation::Assign) {
+            return StatementKind::Assign(target, value);
+        }
+        let mut targets = vec![target];
+        while self.at_mark(Punctuation::Assign) {
+            self.require(Feature::ChainedAssignment, self.span());
+            self.advance();
+            targets.push(std::mem::replace(&mut value, self.expression()));
+        }
+        StatementKind::Chain(targets, value)
+    }
+
+    fn take_update(&mut self) -> Option<UpdateOp> {
+        let span = self.span();
+        let operator = match self.peek()? {
+            TokenKind::Punctuation(Punctuation::PlusAssign) => UpdateOp::Add,
+            TokenKind::Punctuation(Punctuation::MinusAssign) => UpdateOp::Subtract,
+            TokenKind::Punctuation(Punctuation::StarAssign) => UpdateOp::Multiply,
+            TokenKind::Punctuation(Punctuation::SlashAssign) => UpdateOp::Divide,
+            // Behind an operand a name can only be `S` or `R` of `S=` and `R=`.
+            TokenKind::Identifier if self.peek_ahead(1) == Some(TokenKind::Punctuation(Punctuation::Equal)) => {
+                let operator = match self.next_text() {
+                    "S" | "s" => UpdateOp::Set,
+                    "R" | "r" => UpdateOp::Reset,
+                    _ => return None,
+                };
+                self.advance();
+                operator
+            }
+            _ => return None,
+        };
+        self.advance();
+        let set_or_reset = matches!(operator, UpdateOp::Set | UpdateOp::Reset);
+        self.require(if set_or_reset { Feature::SetReset } else { Feature::CompoundAssignment }, span);
+        Some(operator)
+    }
+
+    /// `label:`, `GOTO label`, `JMP label`: known well enough to say that they are not supported.
+    fn jump(&mut self) -> Option<StatementKind> {
+        if self.peek() != Some(TokenKind::Identifier) {
+            return None;
+        }
+        let start = self.span();
+        let word = self.next_text().to_ascii_uppercase();
+        if self.peek_ahead(1) == Some(TokenKind::Punctuation(Punctuation::Colon)) {
+            self.advance();
+            self.advance();
+            self.report_jump(start);
+            return Some(self.nested(Self::statement_kind).unwrap_or(StatementKind::Error));
+        }
+        if matches!(word.as_str(), "GOTO" | "JMP") && self.peek_ahead(1) == Some(TokenKind::Identifier) {
+            self.advance();
+            self.advance();
+            self.report_jump(self.span_from(start));
+            return Some(StatementKind::Error);
+        }
+        None
+    }
+
+    fn report_jump(&mut self, span: crate::syntax::Span) {
+        let found = Diagnostic::error(Code::Jump, span, "jumps and labels are not supported");
+        self.report(found.with_help("use IF, a loop, EXIT or RETURN"));
+    }
+
+    /// Passes `__TRY`, `__CATCH (x)`, `__FINALLY` and `__ENDTRY`, so that the statements between are read.
+    pub(super) fn pass_exception_word(&mut self) -> bool {
+        const WORDS: [&str; 4] = ["__TRY", "__CATCH", "__FINALLY", "__ENDTRY"];
+        let Some(word) = WORDS.iter().position(|word| self.at_word(word)) else { return false };
+        if word == 0 {
+            let found = Diagnostic::error(Code::VendorRuntime, self.span(), "exceptions are not supported");
+            self.report(found.with_help("a fault stops the PLC"));
+        }
+        self.advance();
+        if word == 1 && self.at_mark(Punctuation::LeftParen) {
+            self.parenthesised();
+        }
+        if word == 3 {
+            self.take_mark(Punctuation::Semicolon);
+        }
+        true
+    }
+}

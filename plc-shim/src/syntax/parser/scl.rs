@@ -1,0 +1,203 @@
+//! What only SCL sources of Siemens have: blocks, names, literals.
+
+use super::cursor::Cursor;
+use super::declaration::{begins_declaration, section_kind};
+use crate::diagnostic::{Code, Diagnostic};
+use crate::dialect::{Dialect, Feature};
+use crate::syntax::ast::{
+    Declaration, Expr, ExprKind, Field, Ident, Initialiser, InitialiserKind, Literal, PouKind, Qualifier, Section,
+    SectionKind, StructureInit, TypeSpec, TypeSpecKind, Variable,
+};
+use crate::syntax::literal::{parse_duration, parse_typed};
+use crate::syntax::source::Span;
+use crate::syntax::token::{Keyword, Punctuation, TokenKind};
+
+impl Cursor<'_> {
+    /// `ORGANIZATION_BLOCK`, which the system calls: in each cycle or interval, so it is a program.
+    pub(super) fn organization_block(&mut self, into: &mut Vec<Declaration>) {
+        let known = into.len();
+        self.pou(PouKind::Program, Keyword::EndOrganizationBlock, into);
+        let Some(Declaration::Pou(block)) = into.get(known) else { return };
+        let number = block.name.key().strip_prefix("OB").and_then(|text| text.parse::<u32>().ok());
+        if number.is_some_and(|number| number != 1 && !(30..=38).contains(&number) && number < 123) {
+            let message = "an organization block that is called on an event is not supported";
+            let found = Diagnostic::error(Code::VendorRuntime, block.name.span, message);
+            self.report(found.with_help("OB1 and OB30 to OB38 become programs"));
+        }
+    }
+
+    /// `DATA_BLOCK "x" STRUCT .. END_STRUCT BEGIN .. END_DATA_BLOCK` is a global variable, be it a
+    /// structure, of a user's type or an instance.
+    pub(super) fn data_block(&mut self, into: &mut Vec<Declaration>) {
+        let start = self.span();
+        self.advance();
+        let Some(name) = self.expect_identifier("the data block's name") else {
+            self.skip_until(begins_declaration);
+            return;
+        };
+        let mut qualifiers = Vec::new();
+        if self.at_keyword(Keyword::NonRetain) || self.at_keyword(Keyword::Retain) {
+            let retains = self.at_keyword(Keyword::Retain);
+            qualifiers.push(if retains { Qualifier::Retain } else { Qualifier::NonRetain });
+            self.advance();
+        }
+        let spec = if section_kind(self.peek()).is_some() {
+            self.sections_as_structure(&mut qualifiers)
+        } else {
+            let spec = self.type_spec();
+            self.take_mark(Punctuation::Semicolon);
+            spec
+        };
+        let initial = self.take_keyword(Keyword::Begin).then(|| self.start_values()).flatten();
+        if !self.take_keyword(Keyword::EndDataBlock) {
+            self.unexpected("`END_DATA_BLOCK`");
+            self.skip_until(|kind| kind == TokenKind::Keyword(Keyword::EndDataBlock) || begins_declaration(kind));
+            self.take_keyword(Keyword::EndDataBlock);
+        }
+        let variable = Variable { names: vec![name], address: None, spec, edge: None, initial };
+        let span = self.span_from(start);
+        let section = Section { kind: SectionKind::Global, qualifiers, variables: vec![variable], span };
+        into.push(Declaration::Globals(section));
+    }
+
+    /// `VAR .. END_VAR` of a data block.
+    fn sections_as_structure(&mut self, qualifiers: &mut Vec<Qualifier>) -> TypeSpec {
+        let start = self.span();
+        let mut fields = Vec::new();
+        while let Some(kind) = section_kind(self.peek()) {
+            let section = self.section(kind);
+            for qualifier in section.qualifiers {
+                if !qualifiers.contains(&qualifier) {
+                    qualifiers.push(qualifier);
+                }
+            }
+            for Variable { names, spec, initial, .. } in section.variables {
+                let field = |name| Field { name, spec: spec.clone(), initial: initial.clone() };
+                fields.extend(names.into_iter().map(field));
+            }
+        }
+        TypeSpec { kind: TypeSpecKind::Struct(fields), span: self.span_from(start) }
+    }
+
+    /// `a := 1; b.c := 2;` behind `BEGIN`.
+    fn start_values(&mut self) -> Option<Initialiser> {
+        let start = self.span();
+        let mut members: Vec<StructureInit> = Vec::new();
+        while self.peek() == Some(TokenKind::Identifier) {
+            let known = self.reported();
+            let target = self.expression();
+            self.expect_mark(Punctuation::Assign);
+            let value = self.initialiser();
+            if self.reported() == known {
+                self.start_value(&mut members, &target, value);
+            }
+            self.end_of_declaration(known);
+        }
+        let span = self.span_from(start);
+        (!members.is_empty()).then_some(Initialiser { kind: InitialiserKind::Struct(members), span })
+    }
+
+    fn start_value(&mut self, members: &mut Vec<StructureInit>, target: &Expr, value: Initialiser) {
+        if let Some(path) = path(target) {
+            insert(members, &path, value);
+            return;
+        }
+        let message = "a start value is given to members by name only";
+        let found = Diagnostic::error(Code::UnsupportedFeature, target.span, message);
+        self.report(found.with_help("give an array all its values where it is declared"));
+    }
+
+    /// `Void`, which SCL writes as the result of a function without one.
+    pub(super) fn is_void(&self, result: &TypeSpec) -> bool {
+        self.dialect() == Dialect::SiemensScl
+            && matches!(&result.kind, TypeSpecKind::Name(name) if name.key() == "VOID")
+    }
+
+    /// True where SCL writes `TYPE "x" STRUCT` without a colon.
+    pub(super) fn at_bare_structure(&self) -> bool {
+        self.dialect() == Dialect::SiemensScl && self.at_keyword(Keyword::Struct)
+    }
+
+    /// Says whose word it is that begins no declaration here.
+    pub(super) fn report_block_of_other_dialect(&mut self) {
+        if self.at_word("ORGANIZATION_BLOCK") || self.at_word("DATA_BLOCK") {
+            self.require(Feature::Blocks, self.span());
+        }
+    }
+
+    /// Passes the `#` of `#name` where it is no part of a name, and says whose it is.
+    pub(super) fn pass_hash(&mut self) {
+        if self.at_mark(Punctuation::Hash) && self.peek_ahead(1) == Some(TokenKind::Identifier) {
+            self.require(Feature::QuotedNames, self.span());
+            self.advance();
+        }
+    }
+
+    /// A name in an expression: `"x"` keeps its quotes, by which it is told from a local `x`.
+    pub(super) fn written_name(text: &str, span: Span) -> Ident {
+        let local = text.strip_prefix('#').map(|text| text.trim_matches('"'));
+        Ident { text: local.unwrap_or(text).to_owned(), span }
+    }
+
+    pub(super) fn typed_literal(&mut self, text: &str, span: Span) -> ExprKind {
+        let (prefix, body) = text.split_once('#').unwrap_or((text, ""));
+        let long = match prefix.to_ascii_uppercase().as_str() {
+            "S5T" | "S5TIME" => {
+                self.require(Feature::ShortPrefixes, span);
+                let ns = parse_duration(body);
+                return self.literal(span, ns.map(|ns| Literal::Duration { long: false, ns }));
+            }
+            _ if self.dialect() != Dialect::SiemensScl => None,
+            "B" => Some("BYTE"),
+            "W" => Some("WORD"),
+            "DW" => Some("DWORD"),
+            "L" => Some("DINT"),
+            "C" => return self.foreign_literal(Code::ClassicTimer, "a counter's value of S5", span),
+            "P" => return self.foreign_literal(Code::VendorRuntime, "a pointer of S7", span),
+            _ => None,
+        };
+        let literal = match long {
+            Some(long) => parse_typed(&format!("{long}#{body}")),
+            None => parse_typed(text),
+        };
+        self.literal(span, literal)
+    }
+
+    fn foreign_literal(&mut self, code: Code, what: &str, span: Span) -> ExprKind {
+        self.report(Diagnostic::error(code, span, format!("{what} is not supported")));
+        ExprKind::Error
+    }
+}
+
+/// The names of `a.b.c`; nothing if there is more to it.
+fn path(target: &Expr) -> Option<Vec<Ident>> {
+    match &target.kind {
+        ExprKind::Name(name) => {
+            let text = name.text.trim_matches('"').to_owned();
+            Some(vec![Ident { text, span: name.span }])
+        }
+        ExprKind::Member(base, name) => {
+            let mut names = path(base)?;
+            names.push(name.clone());
+            Some(names)
+        }
+        _ => None,
+    }
+}
+
+/// Puts `value` where `path` leads to among the members of a structure.
+fn insert(members: &mut Vec<StructureInit>, path: &[Ident], value: Initialiser) {
+    let Some((first, rest)) = path.split_first() else { return };
+    if rest.is_empty() {
+        members.push(StructureInit { name: first.clone(), value });
+        return;
+    }
+    let last = members.last_mut().filter(|last| last.name.key() == first.key());
+    if let Some(StructureInit { value: Initialiser { kind: InitialiserKind::Struct(inner), .. }, .. }) = last {
+        return insert(inner, rest, value);
+    }
+    let (mut inner, span) = (Vec::new(), value.span);
+    insert(&mut inner, rest, value);
+    let value = Initialiser { kind: InitialiserKind::Struct(inner), span };
+    members.push(StructureInit { name: first.clone(), value });
+}

@@ -1,0 +1,107 @@
+//! A case run from its text to its last scan.
+
+use onescan_plc_shim::{Application, PlcFault, SoftPlc, TaskPlan, Variable, VirtualTime};
+
+use super::case::{Case, Row};
+use super::cell;
+
+/// Compiles and runs a case; the error shows the first scan that differs.
+pub(crate) fn run(case: &Case, text: &str) -> Result<(), String> {
+    let application = match Application::from_sources([("case.st", text)]) {
+        Ok(application) => application,
+        Err(found) if case.findings.is_some() => return same_findings(case, &found),
+        Err(found) => return Err(format!("it does not compile\n{found}")),
+    };
+    if case.findings.is_some() {
+        same_findings(case, application.warnings())?;
+    }
+    let interval_ns = case.interval.as_nanos() as u64;
+    let plan = TaskPlan::single(&application, interval_ns);
+    let plc = SoftPlc::new(&application, &plan).map_err(|error| error.to_string())?;
+    let first = application.programs().next().map(|program| program.name);
+    let mut run = Run { plc, prefix: first.unwrap_or_default(), now_ns: 0, interval_ns };
+    for scan in 0..case.scans {
+        run.scan(case, scan).map_err(|why| format!("scan {}: {why}", scan + 1))?;
+    }
+    Ok(())
+}
+
+fn same_findings(case: &Case, found: &onescan_plc_shim::Diagnostics) -> Result<(), String> {
+    let codes: Vec<_> = found.iter().map(|each| each.code.text()).collect();
+    let wanted = case.findings.as_deref().unwrap_or(&[]);
+    if codes == wanted { Ok(()) } else { Err(format!("wanted {}, found\n{found}", wanted.join(" "))) }
+}
+
+struct Run {
+    plc: SoftPlc,
+    /// The first program, whose variables need no prefix.
+    prefix: String,
+    now_ns: u64,
+    interval_ns: u64,
+}
+
+impl Run {
+    fn variable(&self, path: &str) -> Result<Variable, String> {
+        let own = self.plc.variable(&format!("{}.{path}", self.prefix));
+        own.or_else(|_| self.plc.variable(path)).map_err(|error| error.to_string())
+    }
+
+    /// The bytes of a variable; a BOOL that is a bit of one as a byte.
+    fn held(&self, variable: &Variable) -> Vec<u8> {
+        let bytes = &self.plc.memory()[variable.offset as usize..][..variable.size as usize];
+        variable.bit.map_or(bytes.to_vec(), |bit| vec![bytes[0] >> bit & 1])
+    }
+
+    fn scan(&mut self, case: &Case, scan: usize) -> Result<(), String> {
+        match case.restarts.get(scan).map(String::as_str) {
+            Some("warm") => self.plc.warm_start(),
+            Some("cold") => self.plc.cold_start(),
+            Some("-") | None => {}
+            Some(other) => return Err(format!("`{other}` is no start")),
+        }
+        for row in &case.given {
+            self.give(row, scan)?;
+        }
+        self.now_ns += self.interval_ns;
+        let outcome = self.plc.scan(VirtualTime::from_ns(self.now_ns));
+        let last = scan + 1 == case.scans;
+        same_outcome(case.fault.as_deref().filter(|_| last), outcome)?;
+        let wrong: Vec<_> = case.wanted.iter().filter_map(|row| self.difference(row, scan).transpose()).collect();
+        let wrong = wrong.into_iter().collect::<Result<Vec<_>, _>>()?;
+        if wrong.is_empty() { Ok(()) } else { Err(wrong.join("; ")) }
+    }
+
+    fn give(&mut self, row: &Row, scan: usize) -> Result<(), String> {
+        let Some(value) = row.given(scan) else { return Ok(()) };
+        let variable = self.variable(&row.path)?;
+        let mut bytes = encoded(value, &variable)?;
+        if let Some(bit) = variable.bit {
+            let others = self.plc.memory()[variable.offset as usize] & !(1 << bit);
+            bytes[0] = others | bytes[0] << bit;
+        }
+        self.plc.memory_mut()[variable.offset as usize..][..bytes.len()].copy_from_slice(&bytes);
+        Ok(())
+    }
+
+    /// What is wrong with a variable after a scan.
+    fn difference(&self, row: &Row, scan: usize) -> Result<Option<String>, String> {
+        let Some(value) = row.wanted(scan) else { return Ok(None) };
+        let variable = self.variable(&row.path)?;
+        let (wanted, found) = (encoded(value, &variable)?, self.held(&variable));
+        let same = cell::same(&wanted, &found, &variable);
+        Ok((!same).then(|| format!("{} is {}, not {value}", row.path, cell::text(&found, &variable))))
+    }
+}
+
+fn encoded(value: &str, variable: &Variable) -> Result<Vec<u8>, String> {
+    cell::bytes(value, variable).ok_or_else(|| format!("`{value}` is no value of {}", variable.type_name))
+}
+
+fn same_outcome(wanted: Option<&str>, outcome: Result<(), PlcFault>) -> Result<(), String> {
+    match (wanted, outcome) {
+        (None, Ok(())) => Ok(()),
+        (Some(wanted), Err(fault)) if format!("{:?}", fault.kind) == wanted => Ok(()),
+        (_, Err(fault)) => Err(format!("the PLC stopped: {fault} ({:?})", fault.kind)),
+        (Some(wanted), Ok(())) => Err(format!("no fault {wanted}")),
+    }
+}

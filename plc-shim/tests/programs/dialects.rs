@@ -1,0 +1,270 @@
+//! Every row of the table of dialects acts: what a dialect lacks is reported with the dialects that have
+//! it, what it has compiles, and what it does its own way is done.
+
+use onescan_plc_shim::dialect::{DivisionByZero, Feature, Ties, TimeRange};
+use onescan_plc_shim::{Code, Dialect, FaultKind, Severity};
+
+use crate::rig::{Rig, findings_in};
+
+/// A program that uses the construct and nothing else that dialects differ in.
+fn use_of(feature: Feature) -> &'static str {
+    match feature {
+        Feature::NestedComments => "PROGRAM P (* a (* b *) c *) END_PROGRAM",
+        Feature::LineComments => "PROGRAM P // a\nEND_PROGRAM",
+        Feature::StarComments => "PROGRAM P /* a */ END_PROGRAM",
+        Feature::Continue => "PROGRAM P VAR i : INT; END_VAR FOR i := 1 TO 2 DO CONTINUE; END_FOR; END_PROGRAM",
+        Feature::Power => "PROGRAM P VAR x : LREAL; END_VAR x := x ** 2; END_PROGRAM",
+        Feature::LooseEnds => "PROGRAM P VAR b : BOOL; END_VAR IF b THEN b := FALSE; END_IF END_PROGRAM",
+        Feature::ShortCircuit => "PROGRAM P VAR b : BOOL; END_VAR b := b AND_THEN b; END_PROGRAM",
+        Feature::SetReset => "PROGRAM P VAR b : BOOL; END_VAR b S= b; END_PROGRAM",
+        Feature::ChainedAssignment => "PROGRAM P VAR a, b : INT; END_VAR a := b := 1; END_PROGRAM",
+        Feature::CompoundAssignment => "PROGRAM P VAR a : INT; END_VAR a += 1; END_PROGRAM",
+        Feature::BareArrayValues => {
+            "PROGRAM P VAR a : ARRAY [0..2] OF INT := 1, 2(3); END_VAR a[0] := a[1]; END_PROGRAM"
+        }
+        Feature::ConditionalPragmas => "PROGRAM P {IF defined (x)} {END_IF} END_PROGRAM",
+        Feature::StaticSection => "PROGRAM P VAR_STAT a : INT; END_VAR a := a + 1; END_PROGRAM",
+        Feature::BitArithmetic => "PROGRAM P VAR b : BYTE; i : INT; END_VAR b := b + 1; i := b; END_PROGRAM",
+        Feature::SignChange => "PROGRAM P VAR u : UINT; i : INT; END_VAR i := u; END_PROGRAM",
+        Feature::ClockFunctions => "PROGRAM P VAR t : TIME; END_VAR t := TIME(); END_PROGRAM",
+        Feature::QuotedNames => "PROGRAM P VAR a : INT; END_VAR a := #a + 1; END_PROGRAM",
+        Feature::Blocks => "ORGANIZATION_BLOCK P VAR_TEMP a : INT; END_VAR BEGIN a := 1; END_ORGANIZATION_BLOCK",
+        Feature::InstanceInternals => {
+            "FUNCTION_BLOCK F VAR a : INT; END_VAR a := a + 1; END_FUNCTION_BLOCK
+             PROGRAM P VAR f1 : F; b : INT; END_VAR f1(); b := f1.a; END_PROGRAM"
+        }
+        Feature::ShortPrefixes => "PROGRAM P VAR w : WORD; END_VAR w := W#16#FF; END_PROGRAM",
+        Feature::DivOperator => "PROGRAM P VAR a : INT; END_VAR a := a DIV 2; END_PROGRAM",
+    }
+}
+
+#[test]
+fn every_construct_is_for_its_dialects_alone() {
+    for feature in Feature::ALL {
+        for dialect in Dialect::ALL {
+            let findings = findings_in(dialect, use_of(*feature));
+            let errors: Vec<_> = findings.iter().filter(|found| found.severity == Severity::Error).collect();
+            if dialect.has(*feature) {
+                assert!(errors.is_empty(), "{feature:?} in {dialect}: {findings}");
+            } else {
+                assert!(!errors.is_empty(), "{feature:?} passes in {dialect}");
+            }
+        }
+    }
+}
+
+/// Constructs whose absence is no syntax of its own: another error says it.
+const TOLD_OTHERWISE: [Feature; 7] = [
+    Feature::NestedComments,
+    Feature::Continue,
+    Feature::LooseEnds,
+    Feature::BitArithmetic,
+    Feature::SignChange,
+    Feature::InstanceInternals,
+    Feature::ShortPrefixes,
+];
+
+#[test]
+fn a_construct_of_others_is_told_once_with_its_dialects() {
+    for feature in Feature::ALL.iter().filter(|feature| !TOLD_OTHERWISE.contains(feature)) {
+        for dialect in Dialect::ALL.into_iter().filter(|dialect| !dialect.has(*feature)) {
+            let findings = findings_in(dialect, use_of(*feature));
+            let told: Vec<_> = findings.iter().filter(|found| found.code == Code::WrongDialect).collect();
+            assert_eq!(told.len(), 1, "{feature:?} in {dialect}: {findings}");
+            let help = told[0].help.as_deref().unwrap_or("");
+            assert!(help.contains(&feature.homes()), "{help}");
+        }
+    }
+    let twice = "PROGRAM P // a\n// b\nVAR b : BOOL; END_VAR b S= b; b R= b; END_PROGRAM";
+    insta::assert_snapshot!(findings_in(Dialect::Iec2, twice), @r"
+    test.st:1:11: error[S0110]: a comment with `//` is not part of iec2 (it is part of iec3, codesys, twincat and siemens-scl: --dialect chooses)
+    test.st:3:25: error[S0110]: `S=`, `R=` is not part of iec2 (it is part of codesys and twincat: --dialect chooses)
+    ");
+}
+
+#[test]
+fn strings_have_the_dialect_s_length() {
+    for dialect in Dialect::ALL {
+        let rig = Rig::in_dialect(dialect, "PROGRAM P VAR s : STRING; END_VAR s := 'a'; END_PROGRAM");
+        assert_eq!(rig.variable("P.s").type_name, format!("STRING[{}]", dialect.string_length()));
+    }
+}
+
+#[test]
+fn time_wraps_where_the_dialect_counts_milliseconds() {
+    for dialect in Dialect::ALL {
+        let text = "PROGRAM P
+            VAR a, b, c, d : TIME; n : DINT := -1; day : TIME := T#20d; END_VAR
+            a := T#0s - T#1ms; b := (T#10ms / 4) * 2; c := DINT_TO_TIME(n); d := day + day + day;
+            END_PROGRAM";
+        let mut rig = Rig::in_dialect(dialect, text);
+        rig.scan().expect("no fault");
+        let (ms, days) = (1_000_000, 86_400_000_000_000);
+        let wrapped = (1_i64 << 32) * ms;
+        let expected = match dialect.time() {
+            TimeRange::Nanoseconds64 => [-ms, 5 * ms, -ms, 60 * days],
+            TimeRange::Unsigned32 => [wrapped - ms, 4 * ms, wrapped - ms, 60 * days - wrapped],
+            TimeRange::Signed32 => [-ms, 4 * ms, -ms, 60 * days - wrapped],
+        };
+        assert_eq!(["P.a", "P.b", "P.c", "P.d"].map(|path| rig.int(path)), expected, "{dialect}");
+    }
+    let beyond = "PROGRAM P VAR t : TIME; END_VAR t := T#25d; t := T#50d; t := T#1.5ms; t := T#1us; END_PROGRAM";
+    insta::assert_snapshot!(findings_in(Dialect::SiemensScl, beyond), @r"
+    test.st:1:38: error[T0202]: TIME of siemens-scl counts milliseconds in signed 32 bits (LTIME counts nanoseconds)
+    test.st:1:50: error[T0202]: TIME of siemens-scl counts milliseconds in signed 32 bits (LTIME counts nanoseconds)
+    test.st:1:62: error[T0202]: TIME of siemens-scl counts milliseconds in signed 32 bits (LTIME counts nanoseconds)
+    test.st:1:76: error[T0202]: TIME of siemens-scl counts milliseconds in signed 32 bits (LTIME counts nanoseconds)
+    ");
+    insta::assert_snapshot!(findings_in(Dialect::TwinCat, beyond), @r"
+    test.st:1:50: error[T0202]: TIME of twincat counts milliseconds in unsigned 32 bits (LTIME counts nanoseconds)
+    test.st:1:62: error[T0202]: TIME of twincat counts milliseconds in unsigned 32 bits (LTIME counts nanoseconds)
+    test.st:1:76: error[T0202]: TIME of twincat counts milliseconds in unsigned 32 bits (LTIME counts nanoseconds)
+    ");
+    assert!(findings_in(Dialect::Iec3, beyond).is_empty());
+}
+
+#[test]
+fn reals_halfway_go_where_the_dialect_says() {
+    for dialect in Dialect::ALL {
+        let text = "PROGRAM P VAR
+            x : ARRAY [0..7] OF REAL := [0.5, 1.5, 2.5, -0.5, -2.5, 0.49999997, 8388609.0, -7.4]; i : INT;
+            y : ARRAY [0..7] OF DINT;
+            END_VAR
+            VAR CONSTANT k : DINT := REAL_TO_DINT(2.5); END_VAR
+            FOR i := 0 TO 7 DO y[i] := REAL_TO_DINT(x[i]); END_FOR; i := DINT_TO_INT(k);
+            END_PROGRAM";
+        let mut rig = Rig::in_dialect(dialect, text);
+        rig.scan().expect("no fault");
+        let even = dialect != Dialect::TwinCat;
+        let expected = if even { [0, 2, 2, 0, -2, 0, 8_388_609, -7] } else { [1, 2, 3, -1, -3, 0, 8_388_609, -7] };
+        let found: Vec<_> = (0..8).map(|index| rig.int(&format!("P.y[{index}]"))).collect();
+        assert_eq!(found, expected, "{dialect}");
+        assert_eq!(rig.int("P.i"), if even { 2 } else { 3 });
+    }
+    assert_ne!(Ties::Even, Ties::Away);
+}
+
+#[test]
+fn division_by_zero_goes_on_where_the_dialect_does() {
+    let programs = [
+        "PROGRAM P VAR a : INT := 7; z : INT; r : INT; END_VAR r := a / z; END_PROGRAM",
+        "PROGRAM P VAR a : ULINT := 7; z : ULINT; r : ULINT; END_VAR r := a / z; END_PROGRAM",
+        "PROGRAM P VAR a : REAL := 7.0; z : REAL; r : REAL; END_VAR r := a / z; END_PROGRAM",
+        "PROGRAM P VAR a : TIME := T#7s; z : INT; r : TIME; END_VAR r := a / z; END_PROGRAM",
+    ];
+    for dialect in Dialect::ALL {
+        for program in programs {
+            let mut rig = Rig::in_dialect(dialect, program);
+            let scanned = rig.scan();
+            if dialect.division_by_zero() == DivisionByZero::Fault {
+                assert_eq!(scanned.expect_err("a fault").kind, FaultKind::DivisionByZero, "{dialect}: {program}");
+            } else {
+                scanned.expect("no fault");
+                let real = program.contains("REAL");
+                assert!(if real { rig.real("P.r") == f64::INFINITY } else { rig.int("P.r") == 0 }, "{program}");
+            }
+        }
+    }
+    let mut rig = Rig::in_dialect(
+        Dialect::SiemensScl,
+        "PROGRAM P VAR a : INT := -32768; z : INT := -1; r, s : INT; END_VAR r := a / z; s := a / 2; END_PROGRAM",
+    );
+    rig.scan().expect("no fault");
+    assert_eq!((rig.int("P.r"), rig.int("P.s")), (-32768, -16384));
+}
+
+#[test]
+fn a_library_keeps_its_dialect_in_a_program_of_another() {
+    use onescan_plc_shim::input::kind::SourceKind;
+    use onescan_plc_shim::{Application, Input, TaskPlan};
+    let library = "FUNCTION half : DINT VAR_INPUT x : REAL; END_VAR half := REAL_TO_DINT(x); END_FUNCTION";
+    let program = "PROGRAM P VAR a, b : DINT; x : REAL := 2.5; END_VAR a := half(x); b := REAL_TO_DINT(x); END_PROGRAM";
+    let library = Input::from_text("lib.st", SourceKind::Text, library).in_dialect(Dialect::TwinCat);
+    let program = Input::from_text("main.st", SourceKind::Text, program);
+    let application = Application::from_inputs([library, program]).expect("it compiles");
+    let mut rig = Rig::with_plan(&application, &TaskPlan::single(&application, 10_000_000));
+    rig.scan().expect("no fault");
+    assert_eq!((rig.int("P.a"), rig.int("P.b")), (3, 2));
+}
+
+#[test]
+fn short_circuits_evaluate_what_they_need() {
+    let text = "FUNCTION asked : BOOL VAR_INPUT v : BOOL; END_VAR VAR_IN_OUT n : INT; END_VAR
+          n := n + 1; asked := v; END_FUNCTION
+        PROGRAM P VAR n : INT; a, b, c, d : BOOL; i : INT := 9; list : ARRAY [0..3] OF INT; END_VAR
+          a := FALSE AND_THEN asked(TRUE, n);
+          b := TRUE OR_ELSE asked(FALSE, n);
+          c := asked(TRUE, n) AND_THEN asked(FALSE, n) OR_ELSE asked(TRUE, n);
+          d := i <= 3 AND_THEN list[i] = 0;
+        END_PROGRAM";
+    let mut rig = Rig::in_dialect(Dialect::Codesys, text);
+    rig.scan().expect("the index out of range is never evaluated");
+    assert_eq!(["P.a", "P.b", "P.c", "P.d"].map(|path| rig.bool(path)), [false, true, true, false]);
+    assert_eq!(rig.int("P.n"), 3);
+}
+
+#[test]
+fn assignments_of_vendors() {
+    let text = "PROGRAM P VAR a, b : INT; c : DINT; s, r : BOOL; on : BOOL := TRUE; n : INT; END_VAR
+          c := a := b := 5;
+          s S= on; s S= FALSE; r := TRUE; r R= on; r S= NOT on;
+        END_PROGRAM";
+    let mut rig = Rig::in_dialect(Dialect::TwinCat, text);
+    rig.scan().expect("no fault");
+    assert_eq!(["P.a", "P.b", "P.c"].map(|path| rig.int(path)), [5, 5, 5]);
+    assert_eq!(["P.s", "P.r"].map(|path| rig.bool(path)), [true, false]);
+    let text = "PROGRAM P VAR a : Int := 5; x : Array[0..2] of Real := [1.0, 2.0, 3.0]; i : Int := 1; END_VAR
+          #a += 3; #a -= 1; #a *= 4; #a /= 3; #x[#i] *= 2.5;
+        END_PROGRAM";
+    let mut rig = Rig::in_dialect(Dialect::SiemensScl, text);
+    rig.scan().expect("no fault");
+    assert_eq!((rig.int("P.a"), rig.real("P.x[1]")), (9, 5.0));
+}
+
+#[test]
+fn conditional_pragmas_choose_text() {
+    let text = "{define one}
+        PROGRAM P VAR a, b, c, d : INT; END_VAR
+        {IF defined (one)} a := 1; {ELSE} a := 2; {END_IF}
+        {IF NOT defined (one)} b := 1; {ELSIF defined (two) OR (defined (one) AND NOT defined (two))} b := 2; {ELSE} b := 3; {END_IF}
+        {IF defined (two)} c := ; {IF defined (one)} c := 1; {END_IF} {ELSE} c := 4; {END_IF}
+        {undefine one} {IF defined (one)} d := 1; {END_IF}
+        END_PROGRAM";
+    let mut rig = Rig::in_dialect(Dialect::Codesys, text);
+    rig.scan().expect("no fault");
+    assert_eq!(["P.a", "P.b", "P.c", "P.d"].map(|path| rig.int(path)), [1, 2, 4, 0]);
+}
+
+#[test]
+fn static_variables_are_one_for_all_instances() {
+    let text = "FUNCTION_BLOCK F VAR_STAT n : INT := 10; END_VAR VAR_OUTPUT q : INT; END_VAR n := n + 1; q := n; END_FUNCTION_BLOCK
+        FUNCTION g : INT VAR_STAT n : INT; END_VAR n := n + 1; g := n; END_FUNCTION
+        PROGRAM P VAR a, b : F; x : INT; END_VAR a(); b(); x := g() + g(); END_PROGRAM";
+    let mut rig = Rig::in_dialect(Dialect::Codesys, text);
+    rig.scan().expect("no fault");
+    assert_eq!(["P.a.q", "P.b.q", "P.x"].map(|path| rig.int(path)), [11, 12, 3]);
+    rig.scan().expect("no fault");
+    assert_eq!(["P.a.q", "P.b.q", "P.x"].map(|path| rig.int(path)), [13, 14, 7]);
+}
+
+#[test]
+fn bit_strings_calculate_as_unsigned_numbers() {
+    let text = "PROGRAM P VAR b : BYTE := 250; w : WORD := 16#FFFF; i : INT; d : DWORD; n : INT := 6; m : BOOL; END_VAR
+          b := b + 10; i := b; w := w / 2; d := w * DWORD#2; n := n AND 3; m := b > 3 AND w < 16#8000;
+        END_PROGRAM";
+    let mut rig = Rig::in_dialect(Dialect::Codesys, text);
+    rig.scan().expect("no fault");
+    assert_eq!(["P.b", "P.i", "P.w", "P.d", "P.n", "P.m"].map(|path| rig.int(path)), [4, 4, 32767, 65534, 2, 1]);
+}
+
+#[test]
+fn the_clock_is_virtual_time() {
+    let text = "PROGRAM P VAR t : TIME; l : LTIME; END_VAR t := TIME(); l := LTIME(); END_PROGRAM";
+    let mut rig = Rig::in_dialect(Dialect::Codesys, text);
+    rig.scan().expect("no fault");
+    assert_eq!((rig.int("P.t"), rig.int("P.l")), (10_000_000, 10_000_000));
+    // 32 bits of milliseconds begin anew after 49.7 days.
+    rig.now_ns = (1_u64 << 32) * 1_000_000;
+    rig.scan().expect("no fault");
+    assert_eq!(rig.int("P.t"), 10_000_000);
+}

@@ -1,0 +1,184 @@
+//! SCL sources of Siemens' TIA Portal.
+
+use onescan_plc_shim::Dialect::SiemensScl;
+
+use crate::rig::{Rig, findings_in};
+
+const PLANT: &str = r#"TYPE "Limits"
+VERSION : 0.1
+   STRUCT
+      low { ExternalWritable := 'False'} : Int := 1;   // lower
+      "high limit" : Int := 10;
+      names : Array[0..2] of String[8];
+   END_STRUCT;
+
+END_TYPE
+
+DATA_BLOCK "Settings"
+{ S7_Optimized_Access := 'TRUE' }
+VERSION : 0.1
+AUTHOR : me
+NON_RETAIN
+   STRUCT
+      speed : Int := 3;
+      limits : "Limits";
+      list : Array[1..3] of DInt := [1, 2, 3];
+   END_STRUCT;
+
+BEGIN
+   speed := 4;
+   limits.low := 2;
+   limits."high limit" := 20;
+END_DATA_BLOCK
+
+FUNCTION "clamp" : Int
+TITLE = It's the limiter's "title"
+{ S7_Optimized_Access := 'TRUE' }
+VERSION : 0.1
+   VAR_INPUT
+      x : Int;
+      limits : "Limits";
+   END_VAR
+BEGIN
+	#clamp := #x;
+	IF #x > #limits."high limit" THEN
+	    "clamp" := #limits."high limit";
+	ELSIF #x < #limits.low THEN
+	    #clamp := #limits.low;
+	END_IF;
+END_FUNCTION
+
+FUNCTION "tally" : Void
+   VAR_IN_OUT
+      count : DInt;
+   END_VAR
+BEGIN
+	#count += 1;
+END_FUNCTION
+
+FUNCTION_BLOCK "Counter 1"
+{ S7_Optimized_Access := 'TRUE' }
+AUTHOR : someone
+FAMILY : Examples
+NAME : counter
+VERSION : 0.1
+   VAR_INPUT
+      up : Bool;
+   END_VAR
+   VAR_OUTPUT
+      count : Int;
+   END_VAR
+   VAR
+      edge {InstructionName := 'R_TRIG'; LibVersion := '1.0'} : R_TRIG;
+      Settings : Int := 100;
+   END_VAR
+   VAR_TEMP
+      next : Int;
+   END_VAR
+   VAR CONSTANT
+      STEP : Int := 2;
+   END_VAR
+BEGIN
+	REGION Init isn't needed
+	    (* block *) // line
+	    (/* multi
+	        language */)
+	END_REGION
+	#edge(CLK := #up);
+	IF #edge.Q THEN
+	    #next := #count + "Settings".speed * #STEP;
+	    #count := "clamp"(x := #next, limits := "Settings".limits);
+	END_IF;
+	#Settings := #Settings + 1;
+END_FUNCTION_BLOCK
+
+DATA_BLOCK "counter_DB"
+{ S7_Optimized_Access := 'TRUE' }
+VERSION : 0.1
+"Counter 1"
+BEGIN
+   count := 7;
+END_DATA_BLOCK
+
+DATA_BLOCK "delay" TON_TIME
+BEGIN
+END_DATA_BLOCK
+
+ORGANIZATION_BLOCK "Main"
+TITLE = "Main Program Sweep (Cycle)"
+{ S7_Optimized_Access := 'TRUE' }
+VERSION : 0.1
+   VAR_TEMP
+      mask : Word;
+      calls : DInt;
+   END_VAR
+BEGIN
+	"counter_DB"(up := TRUE);
+	"delay".TON(IN := TRUE, PT := S5T#20ms);
+	#mask := W#16#FF AND WORD#16#0F;
+	#calls := L#1;
+	"tally"(#calls);
+	"Settings".list[1] := "Settings".list[2] := #calls;
+	"Settings".list[3] := 7 DIV 2;
+END_ORGANIZATION_BLOCK
+"#;
+
+#[test]
+fn blocks_of_an_external_source_run() {
+    let mut rig = Rig::in_dialect(SiemensScl, PLANT);
+    rig.scan().expect("no fault");
+    // 7 + 4 * 2
+    assert_eq!(rig.int("counter_DB.count"), 15);
+    assert_eq!(rig.int("counter_DB.Settings"), 101);
+    assert_eq!(["Settings.speed", "Settings.limits.low"].map(|path| rig.int(path)), [4, 2]);
+    assert_eq!([1, 2, 3].map(|index| rig.int(&format!("Settings.list[{index}]"))), [2, 2, 3]);
+    assert!(!rig.bool("delay.Q"));
+    rig.scan().expect("no fault");
+    rig.scan().expect("no fault");
+    assert!(rig.bool("delay.Q"), "20 ms have passed");
+}
+
+#[test]
+fn a_good_source_has_no_findings() {
+    assert_eq!(findings_in(SiemensScl, PLANT).to_string(), "");
+}
+
+#[test]
+fn what_is_of_s7_alone_is_told() {
+    let text = r#"ORGANIZATION_BLOCK OB100
+BEGIN
+END_ORGANIZATION_BLOCK
+ORGANIZATION_BLOCK OB1
+   VAR_TEMP
+      done : Bool;
+      w : Word;
+   END_VAR
+BEGIN
+	#w := S_ODT(T_NO := T1, S := #done, TV := S5T#2s);
+	#w := PEEK_WORD(area := 16#84, dbNumber := 1, byteOffset := 2);
+	#w := C#100;
+	#done := P#DB1.DBX0.0;
+	GOTO ende;
+	#done := "Missing";
+ende:
+	#done := #missing;
+END_ORGANIZATION_BLOCK
+DATA_BLOCK "d"
+   STRUCT a : Array[0..1] of Int; END_STRUCT;
+BEGIN
+   a[1] := 5;
+END_DATA_BLOCK
+"#;
+    insta::assert_snapshot!(findings_in(SiemensScl, text), @r#"
+    test.st:1:20: error[L0513]: an organization block that is called on an event is not supported (OB1 and OB30 to OB38 become programs)
+    test.st:10:8: error[L0512]: `S_ODT` is a function of a vendor's controllers (use TON)
+    test.st:11:8: error[L0513]: `PEEK_WORD` is a function of a vendor's controllers (declare a variable and use that)
+    test.st:12:8: error[L0512]: a counter's value of S5 is not supported
+    test.st:13:11: error[L0513]: a pointer of S7 is not supported
+    test.st:14:2: error[L0510]: jumps and labels are not supported (use IF, a loop, EXIT or RETURN)
+    test.st:15:11: error[N0101]: `"Missing"` is not declared
+    test.st:16:1: error[L0510]: jumps and labels are not supported (use IF, a loop, EXIT or RETURN)
+    test.st:17:11: error[N0101]: `missing` is not declared
+    test.st:22:4: error[L0501]: a start value is given to members by name only (give an array all its values where it is declared)
+    "#);
+}
