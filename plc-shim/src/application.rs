@@ -2,10 +2,12 @@
 
 mod front;
 mod inspect;
-mod library;
+mod leaves;
+pub(crate) mod library;
 mod namespace;
 mod retain;
 mod root;
+mod value;
 mod variable;
 
 use std::ops::Range;
@@ -22,7 +24,8 @@ use crate::syntax::SourceMap;
 
 pub(crate) use front::Front;
 pub use inspect::inspect;
-pub use variable::{Program, UnknownVariable, Variable};
+pub use value::WriteError;
+pub use variable::{Program, UnknownVariable, Variable, VariableAccess};
 
 /// A compiled program: what it declares, its code, its memory at a cold start. Cheap to clone.
 #[derive(Debug, Clone)]
@@ -115,9 +118,9 @@ impl Application {
         self.inner.checked.configuration.as_ref()
     }
 
-    /// How many things tasks can run.
-    pub(crate) fn entry_count(&self) -> usize {
-        self.inner.checked.entries.len()
+    /// How many functions there are in a row for each thing that tasks can run.
+    pub(crate) fn entry_parts(&self) -> impl Iterator<Item = usize> {
+        self.inner.checked.entries.iter().map(|entry| entry.units.len())
     }
 
     /// The names of what tasks can run.

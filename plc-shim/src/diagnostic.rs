@@ -11,7 +11,8 @@ use crate::syntax::{SourceMap, Span};
 macro_rules! codes {
     ($($variant:ident $text:literal $about:literal),* $(,)?) => {
         /// Stable codes: `S` syntax, `N` names, `T` types, `C` calls, `D` declarations, `L` limits,
-        /// `R` addresses and references, `F` files, `W` warnings of what is legal and seldom meant.
+        /// `R` addresses and references, `F` files, `W` warnings of what is legal and seldom meant,
+        /// `I` instrumentation for lockstep.
         #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
         pub enum Code {
             $(#[doc = concat!("`", $text, "`: ", $about)] $variant,)*
@@ -116,6 +117,10 @@ codes! {
     CallInBranch "W0704" "a timer, counter or edge detection is called in a branch or loop",
     UnreachableCode "W0705" "statements can never be reached",
     UnusedVariable "W0706" "a variable is never used",
+    ClockNotReplaced "I1001" "a source of time cannot be replaced for lockstep",
+    MotionNotReplaced "I1002" "a motion block cannot be replaced for lockstep yet",
+    ShimNameTaken "I1003" "a name is one of the shim's",
+    DamagedMarks "I1004" "marks of the shim do not fit together",
     WrittenByTwoTasks "W0707" "a variable is written by two tasks",
 }
 

@@ -46,6 +46,10 @@ const PAGES: &[(&str, &str)] = pages![
     "D0440",
     "F0601",
     "F0602",
+    "I1001",
+    "I1002",
+    "I1003",
+    "I1004",
     "L0501",
     "L0502",
     "L0510",
@@ -118,6 +122,7 @@ mod tests {
 
     /// The codes that an example yields.
     fn codes_of((language, text): (&str, &str)) -> Vec<&'static str> {
+        let (language, instrumented) = language.strip_suffix(" instrument").map_or((language, false), |st| (st, true));
         let input = match language {
             "st" | "exp" | "scl" => Input::from_text(&format!("example.{language}"), SourceKind::Text, text),
             "xml" => Input::from_text("example.TcPOU", SourceKind::TwinCat, text),
@@ -127,7 +132,15 @@ mod tests {
             }
             other => panic!("{other:?} is no language of examples"),
         };
-        let findings = crate::inspect([input], None);
+        let findings = if instrumented {
+            match crate::instrument::instrument(&[input], &crate::instrument::Options::default()) {
+                Ok(project) => project.warnings,
+                Err(crate::instrument::InstrumentError::Text(findings)) => findings,
+                Err(error) => panic!("{error}"),
+            }
+        } else {
+            crate::inspect([input], None)
+        };
         let mut codes: Vec<_> = findings.iter().map(|found| found.code.text()).collect();
         codes.dedup();
         codes

@@ -12,6 +12,7 @@
 //! | `lint` | trees | warnings of what is legal and seldom meant |
 //! | `compile` | the checked program | one WebAssembly module, and the source behind each trap |
 //! | [`application`] | files | all of the above in one value |
+//! | [`instrument`] | a project | the same, made to run in lockstep |
 //! | [`run`] | an application and a task plan | a soft PLC that scans |
 //!
 //! Invariants:
@@ -30,12 +31,13 @@ pub mod diagnostic;
 pub mod dialect;
 pub mod explain;
 pub mod input;
+pub mod instrument;
 mod ir;
 mod lint;
 pub mod run;
 pub mod syntax;
 
-pub use application::{Application, Program, UnknownVariable, Variable, inspect};
+pub use application::{Application, Program, UnknownVariable, Variable, VariableAccess, WriteError, inspect};
 pub use compile::fault::FaultKind;
 pub use diagnostic::{Code, Diagnostic, Diagnostics, Finding, Severity};
 pub use dialect::Dialect;

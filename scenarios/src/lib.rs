@@ -8,6 +8,8 @@
 //! | [`scenario`] | a scenario's files, read and checked |
 //! | [`run`] | runs of a scenario: in lockstep or not, recorded, reported |
 //! | [`check`] | PLC sources checked without being run |
+//! | [`instrument`] | PLC projects made to run in lockstep, and back |
+//! | [`plant`] | scenes and components, told without a session |
 //! | [`freewheel`] | running without lockstep, to show what it is good for |
 //! | [`expect`] | what a run must show: signal temporal logic |
 //! | [`plot`] | trajectories as SVG |
@@ -19,6 +21,8 @@ pub mod check;
 pub mod cli;
 pub mod expect;
 pub mod freewheel;
+pub mod instrument;
+pub mod plant;
 pub mod plot;
 pub mod run;
 pub mod scenario;

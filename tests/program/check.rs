@@ -57,6 +57,25 @@ fn all_is_well() {
 }
 
 #[test]
+fn a_dialect_is_told_by_name_flag_and_scenario() {
+    let latch: &[u8] = b"PROGRAM Main VAR_OUTPUT o : BOOL; END_VAR VAR_INPUT i : BOOL; END_VAR o S= i; END_PROGRAM\n";
+    let folder = folder(&[("latch.st", latch), ("latch.exp", latch)]);
+    assert_eq!(checked(folder.path(), &["latch.exp"]).code, Some(0));
+    assert_eq!(checked(folder.path(), &["latch.st", "--dialect", "twincat"]).code, Some(0));
+    let said = checked(folder.path(), &["latch.st", "--format", "json"]);
+    assert!(said.code == Some(2) && said.out.contains("S0110") && said.out.contains("codesys and twincat"), "{said:?}");
+    let said = checked(folder.path(), &["latch.st", "--dialect", "s7"]);
+    assert!(said.code == Some(2) && said.err.contains("siemens-scl"), "{said:?}");
+
+    let shear = copied_shear();
+    edit(shear.path(), "scenario.toml", "sources = ", "dialect = \"codesys\"\nsources = ");
+    assert_eq!(checked(shear.path(), &["."]).code, Some(0));
+    edit(shear.path(), "scenario.toml", "\"codesys\"", "\"s7\"");
+    let said = checked(shear.path(), &["."]);
+    assert!(said.code == Some(2) && said.err.contains("`s7` is no dialect"), "{said:?}");
+}
+
+#[test]
 fn findings_read_well() {
     let said = checked(folder(WRONG).path(), &["."]);
     assert_eq!((said.code, said.err.as_str()), (Some(2), ""), "{said:?}");

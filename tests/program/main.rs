@@ -2,12 +2,15 @@
 
 mod check;
 mod checkpoint;
+mod configuration;
 mod control;
 mod errors;
 mod expectations;
 mod faults;
 mod freewheel;
 mod help;
+mod instrument;
+mod plant;
 mod plc_faults;
 mod run;
 mod third_party;

@@ -5,6 +5,9 @@
 //! after a turn, ready in any order, failing in any state. `network` puts endpoints and FIFO
 //! connections around it: messages in flight, faults, lost connections.
 //!
+//! A third, `shim`, holds what runs on a PLC that is no client itself: the scheduler POU and the execution
+//! controllers that `onescan instrument` emits, against a gateway whose messages come as they like.
+//!
 //! Time grows for ever, behaviour does not: two states that differ only in `t_v` behave alike, and so
 //! do two that differ only in the values clients wrote. The barrier model therefore compares and
 //! hashes states with all times relative to `t_v` and with each value only as right or wrong, which
@@ -13,4 +16,5 @@
 mod barrier;
 mod graph;
 mod network;
+mod shim;
 mod stamped;

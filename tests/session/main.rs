@@ -6,4 +6,5 @@ mod digest;
 mod failure;
 mod joining;
 mod peer;
+mod shim;
 mod wire;

@@ -47,7 +47,7 @@ struct ChannelMemory {
 pub(super) struct Channels {
     /// What is only copied: outer offset, inner offset, bytes.
     copies: Vec<(usize, usize, usize)>,
-    channels: Vec<Channel>,
+    conditioned: Vec<Channel>,
     inner: Vec<u8>,
 }
 
@@ -86,7 +86,7 @@ impl Channels {
             inner +=
                 inner_ports(std::slice::from_ref(port), conditions).iter().map(|port| port.ty.size()).sum::<usize>();
         }
-        Self { copies, channels, inner: vec![0; inner] }
+        Self { copies, conditioned: channels, inner: vec![0; inner] }
     }
 
     /// The bytes inside.
@@ -100,16 +100,16 @@ impl Channels {
     }
 
     pub(super) fn memory(&self) -> ChannelsMemory {
-        let channels = self.channels.iter().map(|channel| channel.memory.clone()).collect();
+        let channels = self.conditioned.iter().map(|channel| channel.memory.clone()).collect();
         ChannelsMemory { channels, inner: self.inner.clone() }
     }
 
     /// True if the memory is one of such channels, which then have it.
     pub(super) fn restore(&mut self, memory: ChannelsMemory) -> bool {
-        let fits = memory.channels.len() == self.channels.len() && memory.inner.len() == self.inner.len();
+        let fits = memory.channels.len() == self.conditioned.len() && memory.inner.len() == self.inner.len();
         if fits {
             self.inner = memory.inner;
-            for (channel, memory) in self.channels.iter_mut().zip(memory.channels) {
+            for (channel, memory) in self.conditioned.iter_mut().zip(memory.channels) {
                 channel.memory = memory;
             }
         }
@@ -121,9 +121,9 @@ impl Channels {
         for (from, to, size) in &self.copies {
             self.inner[*to..to + size].copy_from_slice(&outer[*from..from + size]);
         }
-        for channel in &mut self.channels {
+        for channel in &mut self.conditioned {
             let raw = channel.outer.1.as_f64(&outer[channel.outer.0..]).unwrap_or_default();
-            let value = channel.pass(now_ns, channel.condition.from_raw(raw));
+            let value = channel.pass(now_ns, channel.condition.scaled_back(raw));
             write(channel.inner.1, &mut self.inner[channel.inner.0..], value);
         }
     }
@@ -133,10 +133,10 @@ impl Channels {
         for (to, from, size) in &self.copies {
             outer[*to..to + size].copy_from_slice(&self.inner[*from..from + size]);
         }
-        for channel in &mut self.channels {
+        for channel in &mut self.conditioned {
             let value = channel.inner.1.as_f64(&self.inner[channel.inner.0..]).unwrap_or_default();
             let passed = channel.pass(now_ns, value);
-            write(channel.outer.1, &mut outer[channel.outer.0..], channel.condition.to_raw(passed));
+            write(channel.outer.1, &mut outer[channel.outer.0..], channel.condition.scaled(passed));
         }
     }
 
@@ -146,10 +146,10 @@ impl Channels {
         for (to, from, size) in &self.copies {
             outer[*to..to + size].copy_from_slice(&self.inner[*from..from + size]);
         }
-        for channel in &mut self.channels {
+        for channel in &mut self.conditioned {
             let value = channel.inner.1.as_f64(&self.inner[channel.inner.0..]).unwrap_or_default();
             channel.memory.arrived = channel.disturbed(value);
-            let raw = channel.condition.to_raw(channel.memory.arrived);
+            let raw = channel.condition.scaled(channel.memory.arrived);
             write(channel.outer.1, &mut outer[channel.outer.0..], raw);
         }
     }
@@ -167,9 +167,8 @@ impl Channel {
     /// What arrives now, where `value` is sent now.
     fn pass(&mut self, now_ns: u64, value: f64) -> f64 {
         if now_ns >= self.memory.next_sample_ns {
-            let sample_ns = self.condition.sample_ns;
-            if sample_ns > 0 {
-                self.memory.next_sample_ns = (now_ns / sample_ns + 1) * sample_ns;
+            if let Some(passed) = now_ns.checked_div(self.condition.sample_ns) {
+                self.memory.next_sample_ns = (passed + 1) * self.condition.sample_ns;
             }
             let sent = self.disturbed(value);
             let late_ns = match self.condition.jitter_ns {
@@ -191,14 +190,14 @@ impl Channel {
 
 impl Condition {
     /// The raw value of a value in the signal's unit; limited to the raw range.
-    fn to_raw(&self, value: f64) -> f64 {
+    fn scaled(&self, value: f64) -> f64 {
         let Some(scale) = self.scale else { return value };
         let ([low, high], [raw_low, raw_high]) = (scale.range, scale.raw);
         (raw_low + (value - low) / (high - low) * (raw_high - raw_low)).clamp(raw_low, raw_high)
     }
 
     /// The value in the signal's unit of a raw one.
-    fn from_raw(&self, raw: f64) -> f64 {
+    fn scaled_back(&self, raw: f64) -> f64 {
         let Some(scale) = self.scale else { return raw };
         let ([low, high], [raw_low, raw_high]) = (scale.range, scale.raw);
         low + (raw - raw_low) / (raw_high - raw_low) * (high - low)
@@ -220,5 +219,118 @@ fn write(ty: ElementaryType, bytes: &mut [u8], value: f64) {
         T::Real => bytes[..4].copy_from_slice(&(value as f32).to_le_bytes()),
         // the scene's check lets no other type through
         _ => bytes[..8].copy_from_slice(&value.to_le_bytes()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use onescan_server::signal::SignalName;
+
+    use super::super::scene::model::Range;
+    use super::*;
+
+    /// A signal to which nothing happens.
+    fn plain(inner: ElementaryType) -> Condition {
+        Condition {
+            signal: SignalName::new("x").expect("a name"),
+            inner,
+            scale: None,
+            delay_ns: 0,
+            jitter_ns: 0,
+            sample_ns: 0,
+            quantum: 0.0,
+            noise_mean: 0.0,
+            noise_sigma: 0.0,
+        }
+    }
+
+    /// What arrives of a ramp of 1 in each of so many milliseconds.
+    fn ramp(condition: &Condition, count: u64) -> Vec<f64> {
+        let ports = [Port { name: condition.signal.clone(), ty: ElementaryType::Lreal }];
+        let mut channels = Channels::new(&ports, std::slice::from_ref(condition), 1);
+        let mut outer = [0; 8];
+        (1..=count)
+            .map(|k| {
+                write(ElementaryType::Lreal, channels.inner_mut(), k as f64);
+                channels.give(k * 1_000_000, &mut outer);
+                f64::from_le_bytes(outer)
+            })
+            .collect()
+    }
+
+    #[test]
+    fn a_delay_is_whole_and_keeps_every_value() {
+        let late = Condition { delay_ns: 3_000_000, ..plain(ElementaryType::Lreal) };
+        assert_eq!(ramp(&late, 6), [0.0, 0.0, 0.0, 1.0, 2.0, 3.0]);
+        assert_eq!(ramp(&plain(ElementaryType::Lreal), 2), [1.0, 2.0]);
+    }
+
+    #[test]
+    fn samples_and_quanta_make_steps() {
+        let sampled = Condition { sample_ns: 4_000_000, ..plain(ElementaryType::Lreal) };
+        assert_eq!(ramp(&sampled, 9), [1.0, 1.0, 1.0, 4.0, 4.0, 4.0, 4.0, 8.0, 8.0]);
+        let coarse = Condition { quantum: 2.5, ..plain(ElementaryType::Lreal) };
+        assert_eq!(ramp(&coarse, 4), [0.0, 2.5, 2.5, 5.0]);
+    }
+
+    #[test]
+    fn jitter_is_within_its_bound_and_never_turns_the_order() {
+        let shaky = Condition { delay_ns: 2_000_000, jitter_ns: 5_000_000, ..plain(ElementaryType::Lreal) };
+        let arrived = ramp(&shaky, 500);
+        assert!(arrived.windows(2).all(|pair| pair[0] <= pair[1]));
+        let ages: Vec<_> = arrived.iter().enumerate().skip(10).map(|(k, value)| (k + 1) as f64 - value).collect();
+        assert!(ages.iter().all(|age| (2.0..=8.0).contains(age)), "{ages:?}");
+        assert!(ages.iter().any(|age| *age > 3.0) && ages.iter().any(|age| *age < 7.0));
+    }
+
+    #[test]
+    fn noise_has_its_mean_and_its_deviation() {
+        let noisy = Condition { noise_mean: 3.0, noise_sigma: 0.5, ..plain(ElementaryType::Lreal) };
+        let count = 10_000;
+        let noise: Vec<_> = ramp(&noisy, count).iter().zip(1..).map(|(seen, k)| seen - f64::from(k)).collect();
+        let mean = noise.iter().sum::<f64>() / count as f64;
+        let variance = noise.iter().map(|x| (x - mean) * (x - mean)).sum::<f64>() / count as f64;
+        // five standard errors: σ/√n of the mean, √(2/n) of the variance
+        assert!((mean - 3.0).abs() < 0.025 && (variance / 0.25 - 1.0).abs() < 0.071, "{mean} {variance}");
+    }
+
+    #[test]
+    fn raw_values_are_scaled_limited_and_scaled_back() {
+        let scaled = Condition {
+            scale: Some(Range { range: [0.0, 10.0], raw: [0.0, 27_648.0] }),
+            ..plain(ElementaryType::Lreal)
+        };
+        assert_eq!([-1.0, 0.0, 5.0, 12.0].map(|value| scaled.scaled(value)), [0.0, 0.0, 13_824.0, 27_648.0]);
+        assert_eq!(scaled.scaled_back(13_824.0), 5.0);
+        let ports = [Port { name: scaled.signal.clone(), ty: ElementaryType::Int }];
+        let mut channels = Channels::new(&ports, &[scaled], 1);
+        channels.take(1_000_000, &6_912_i16.to_le_bytes());
+        assert_eq!(channels.inner(), 2.5_f64.to_le_bytes());
+    }
+
+    #[test]
+    fn a_saved_channel_goes_on_to_the_bit() {
+        let all = Condition {
+            delay_ns: 2_000_000,
+            jitter_ns: 3_000_000,
+            noise_sigma: 1.0,
+            sample_ns: 2_000_000,
+            ..plain(ElementaryType::Lreal)
+        };
+        let ports = [Port { name: all.signal.clone(), ty: ElementaryType::Lreal }];
+        let new = |seed: u64| Channels::new(&ports, std::slice::from_ref(&all), seed);
+        let (mut first, mut second, mut outer) = (new(1), new(2), [[0; 8]; 2]);
+        for k in 1..200 {
+            write(ElementaryType::Lreal, first.inner_mut(), k as f64);
+            first.give(k * 1_000_000, &mut outer[0]);
+            if k > 100 {
+                write(ElementaryType::Lreal, second.inner_mut(), k as f64);
+                second.give(k * 1_000_000, &mut outer[1]);
+                assert_eq!(outer[0], outer[1], "{k}");
+            } else if k == 100 {
+                assert!(second.restore(first.memory()));
+            }
+        }
+        assert_eq!(first.memory(), second.memory());
     }
 }

@@ -95,7 +95,7 @@ impl Machine {
         }
     }
 
-    /// True if the memory is one of such a machine, which then has it.
+    /// True if the memory is one of such a machine, which then has it; else it is of no use any more.
     pub(super) fn restore(&mut self, memory: Memory) -> bool {
         let fits = self.positions.len() == memory.positions.len()
             && self.setpoints.len() == memory.setpoints.len()
@@ -105,10 +105,10 @@ impl Machine {
         if !fits {
             return false;
         }
-        let parts = self.parts.iter_mut().zip(memory.parts);
-        let parts_fit = parts.map(|(part, memory)| part.restore(memory)).fold(true, |all, one| all && one);
-        let channels = self.channels.iter_mut().flatten().zip(memory.channels.into_iter().flatten());
-        let channels_fit = channels.map(|(one, memory)| one.restore(memory)).fold(true, |all, one| all && one);
+        let mut parts = self.parts.iter_mut().zip(memory.parts);
+        let parts_fit = parts.all(|(part, memory)| part.restore(memory));
+        let mut channels = self.channels.iter_mut().flatten().zip(memory.channels.into_iter().flatten());
+        let channels_fit = channels.all(|(one, memory)| one.restore(memory));
         self.positions = memory.positions;
         self.setpoints = memory.setpoints;
         self.detected = memory.detected;

@@ -82,6 +82,7 @@ enum Tie {
     Belt { body: RigidBodyHandle, direction: Vector },
     Ray { body: RigidBodyHandle, point: Vector, direction: Vector, targets: Vec<RigidBodyHandle> },
     Touch { body: RigidBodyHandle, targets: Vec<RigidBodyHandle> },
+    Collect { body: RigidBodyHandle, targets: Vec<RigidBodyHandle> },
     Place { body: RigidBodyHandle, targets: Vec<RigidBodyHandle> },
 }
 
@@ -296,18 +297,16 @@ impl Part {
                     body.set_linvel(*direction * velocity_m_s, true);
                 }
             }
-            (Effect::Hold(target), Tie::Touch { body, targets }) => {
-                if self.held.map(|held| held.target) != target {
-                    if let Some(held) = self.held.take() {
-                        world.physics.remove_impulse_joint(held.joint);
-                    }
-                    self.held = target.and_then(|target| {
-                        let joint = world.hold(*body, *targets.get(target as usize)?);
-                        Some(Held { target, joint })
-                    });
+            (Effect::Hold(target), Tie::Touch { body, targets }) if self.held.map(|held| held.target) != target => {
+                if let Some(held) = self.held.take() {
+                    world.physics.remove_impulse_joint(held.joint);
                 }
+                self.held = target.and_then(|target| {
+                    let joint = world.hold(*body, *targets.get(target as usize)?);
+                    Some(Held { target, joint })
+                });
             }
-            (Effect::Remove(target), Tie::Touch { targets, .. }) => {
+            (Effect::Remove(target), Tie::Collect { targets, .. }) => {
                 if let Some(target) = targets.get(target as usize) {
                     world.take_out(*target);
                 }
@@ -353,6 +352,9 @@ impl Tie {
             Bound::Touch { body, targets } => {
                 Self::Touch { body: world.handle(Some(*body)), targets: handles(world, targets) }
             }
+            Bound::Collect { body, targets } => {
+                Self::Collect { body: world.handle(Some(*body)), targets: handles(world, targets) }
+            }
             Bound::Place { body, targets } => {
                 let targets = handles(world, targets);
                 for target in &targets {
@@ -378,6 +380,9 @@ impl Tie {
                 Seen { hit_m: hits.reduce(f64::min), ..Seen::default() }
             }
             Self::Touch { body, targets } => first(targets, |target| world.touch(*body, target)),
+            Self::Collect { body, targets } => {
+                first(targets, |target| !world.hangs(target) && world.touch(*body, target))
+            }
             Self::Place { targets, .. } => first(targets, |target| !world.body(target).is_enabled()),
         }
     }

@@ -155,6 +155,11 @@ impl World {
         }
     }
 
+    /// True if a body hangs on a joint.
+    pub(super) fn hangs(&self, handle: RigidBodyHandle) -> bool {
+        self.physics.impulse_joints.attached_joints(handle).next().is_some()
+    }
+
     /// Holds a body fast where it is in relation to another, until the joint is removed.
     pub(super) fn hold(&mut self, holder: RigidBodyHandle, held: RigidBodyHandle) -> ImpulseJointHandle {
         let between = self.body(holder).position().inv_mul(self.body(held).position());

@@ -93,7 +93,7 @@ impl Client for SoftPlcClient {
     }
 
     fn setup(&mut self, outputs: &mut [u8]) -> Result<(), ClientFault> {
-        self.plc.cold_start();
+        self.plc.reset();
         self.take_outputs(outputs);
         Ok(())
     }

@@ -1,5 +1,7 @@
 //! Components in a scene: wired, bound to bodies, disturbed, saved.
 
+use std::fmt::Write as _;
+
 use onescan_clients::plant::{Plant, Scene};
 use onescan_server::client::Client;
 use onescan_server::signal::{ClientName, PortLayout};
@@ -185,6 +187,7 @@ fn mistakes_have_their_place_and_a_hint() {
         ("pneumatic_cylinder", "elevator"),
         ("joint = \"slide\"\nstroke", "joint = \"slid\"\nstroke"),
         ("joint = \"slide\"\nfrom", "from"),
+        ("kind = \"prismatic\"", "kind = \"revolute\""),
         ("extend_signal", "extent_signal"),
         ("extend_signal = \"Clamp\"", "extend_signal = 3"),
         ("\"clamp.cap_bar\"", "\"clmp.cap_bar\""),
@@ -209,11 +212,8 @@ fn mistakes_have_their_place_and_a_hint() {
     for (from, to) in cases {
         assert!(CLAMP.contains(from), "{from}");
         let refused = refusal(&CLAMP.replacen(from, to, 1));
-        told.push_str(&format!(
-            "{}\n  {}\n",
-            to.lines().next_back().unwrap_or_default(),
-            refused.replace('\n', "\n  ")
-        ));
+        let written = to.lines().next_back().unwrap_or_default();
+        writeln!(told, "{written}\n  {}", refused.replace('\n', "\n  ")).expect("a string grows");
     }
     insta::assert_snapshot!(told);
 }

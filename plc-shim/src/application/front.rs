@@ -6,7 +6,7 @@ use super::library;
 use crate::check::{Checked, check};
 use crate::diagnostic::{Diagnostic, Severity};
 use crate::input::Input;
-use crate::syntax::ast::CompilationUnit;
+use crate::syntax::ast::{CompilationUnit, Configuration, Declaration};
 use crate::syntax::{FileId, SourceFile, SourceMap, parse_in};
 
 /// What is known of files once they have been checked.
@@ -37,6 +37,7 @@ impl Front {
             findings.extend(parsed.diagnostics);
             units.push((id, parsed.unit));
         }
+        join_configurations(&mut units);
         let trees: Vec<_> = units.iter().map(|(id, unit)| (*id, unit)).collect();
         let (checked, found) = check(&trees, &library);
         findings.extend(found);
@@ -45,5 +46,29 @@ impl Front {
 
     pub(crate) fn has_errors(&self) -> bool {
         self.findings.iter().any(|found| found.severity == Severity::Error)
+    }
+}
+
+/// Makes one of the parts of a configuration that stand in several files: TwinCAT has a file a task.
+fn join_configurations(units: &mut [(FileId, CompilationUnit)]) {
+    let mut parts: Vec<Configuration> = Vec::new();
+    for (file, unit) in &mut *units {
+        let first = parts.first().map(|first| (first.name.key(), first.name.span.file));
+        let is_part = |declared: &Configuration| match &first {
+            Some((name, home)) => declared.name.key() == *name && *home != *file,
+            None => true,
+        };
+        let at =
+            unit.declarations.iter().position(|each| matches!(each, Declaration::Configuration(it) if is_part(it)));
+        if let Some(Declaration::Configuration(part)) = at.map(|at| unit.declarations.remove(at)) {
+            parts.push(part);
+        }
+    }
+    let mut parts = parts.into_iter();
+    let Some(mut whole) = parts.next() else { return };
+    parts.for_each(|part| whole.absorb(part));
+    let home = units.iter_mut().find(|(file, _)| *file == whole.name.span.file);
+    if let Some((_, unit)) = home {
+        unit.declarations.insert(0, Declaration::Configuration(whole));
     }
 }

@@ -1,7 +1,7 @@
 //! The standard function blocks (2nd ed. 2.5.2.3) and some functions, as program text like any other.
 
 /// File names and texts.
-pub(super) const FILES: [(&str, &str); 10] = [
+pub(crate) const FILES: [(&str, &str); 10] = [
     ("iec/bcd.st", include_str!("../../iec/bcd.st")),
     ("iec/bistable.st", include_str!("../../iec/bistable.st")),
     ("iec/clock_and_semaphore.st", include_str!("../../iec/clock_and_semaphore.st")),

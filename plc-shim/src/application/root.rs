@@ -2,9 +2,9 @@
 //! or without the names of its configuration and resource in front.
 
 use super::Application;
-use super::variable::{Piece, Spot, spot};
+use super::variable::{Piece, Spot, VariableAccess, spot};
 use crate::diagnostic::did_you_mean;
-use crate::ir::{Program, Resource};
+use crate::ir::{Program, Resource, Storage};
 
 /// Why a path begins nowhere: the nearest name, if one is near.
 type NoRoot = Option<String>;
@@ -39,8 +39,14 @@ impl Application {
         let checked = &self.inner.checked;
         let mut access = checked.configuration.iter().flat_map(|configuration| &configuration.access);
         if let Some(access) = access.find(|access| access.name.eq_ignore_ascii_case(name)) {
-            let path = access.name.clone();
-            return Some(Spot { path, offset: access.offset, bit: None, ty: access.ty, address: None });
+            let target = &access.target;
+            let offset = match target.storage {
+                Storage::Located(location) => checked.areas.offset(location) + target.inside,
+                _ => target.inside,
+            };
+            let rights = if access.writable { VariableAccess::ReadWrite } else { VariableAccess::ReadOnly };
+            let (path, ty, bit) = (access.name.clone(), target.ty, target.bit());
+            return Some(Spot { path, offset, bit, ty, address: None, access: rights });
         }
         let global = checked.globals.iter().find(|each| each.name.eq_ignore_ascii_case(name));
         if let Some(found) = global.and_then(|global| spot(checked, "", global, 0)) {
@@ -69,12 +75,19 @@ impl Application {
         let checked = &self.inner.checked;
         let resource = checked.configuration.as_ref()?.resources.get(resource)?;
         let global = resource.globals.iter().find(|each| each.name.eq_ignore_ascii_case(name))?;
-        spot(checked, resource.name.as_deref().unwrap_or_default(), global, 0)
+        spot(&self.inner.checked, resource.name.as_deref().unwrap_or_default(), global, 0)
     }
 
     fn program_spot(&self, path: &str, program: &Program) -> Option<Spot> {
         let ty = self.inner.checked.types.known_block(program.pou)?;
-        Some(Spot { path: path.to_owned(), offset: program.offset, bit: None, ty, address: None })
+        Some(Spot {
+            path: path.to_owned(),
+            offset: program.offset,
+            bit: None,
+            ty,
+            address: None,
+            access: VariableAccess::ReadWrite,
+        })
     }
 
     fn similar_root(&self, name: &str) -> NoRoot {

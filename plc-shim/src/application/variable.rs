@@ -29,6 +29,21 @@ pub struct Variable {
     pub type_name: String,
     /// The direct address it is located at (`AT`), as written.
     pub address: Option<String>,
+    /// Whether it may be written from outside.
+    pub access: VariableAccess,
+    /// Its type in the application it belongs to.
+    pub(crate) type_id: TypeId,
+}
+
+/// What those outside may do with a variable.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum VariableAccess {
+    /// Read and write it.
+    ReadWrite,
+    /// Read it: `VAR_ACCESS` says so.
+    ReadOnly,
+    /// Read it: it is `CONSTANT`, and programs hold its value.
+    Constant,
 }
 
 /// A program and its variables.
@@ -69,6 +84,7 @@ pub(super) struct Spot {
     pub(super) bit: Option<u8>,
     pub(super) ty: TypeId,
     pub(super) address: Option<String>,
+    pub(super) access: VariableAccess,
 }
 
 impl Application {
@@ -92,9 +108,9 @@ impl Application {
     }
 
     /// The variable at a path: a global variable or a program's instance, members and indices, as in
-    /// `Shear.axis[2].position`; or at a direct address that the program uses, as in `%QX0.1`. The
-    /// names of configuration and resource may stand in front, as in
-    /// `Plant.Line.Shear.axis[2].position`; a name of `VAR_ACCESS` is a path too.
+    /// `Shear.axis[2].position`; or at a direct address that the program uses, as in `%QX0.1`. The names
+    /// of configuration and resource may stand in front, as in `Plant.Line.Shear.axis[2].position`; a
+    /// name of `VAR_ACCESS` is a path too.
     ///
     /// # Errors
     /// The path leads nowhere; the error has the nearest name.
@@ -115,6 +131,11 @@ impl Application {
         Ok(self.describe(spot))
     }
 
+    fn is_program(&self, ty: TypeId) -> bool {
+        let checked = &self.inner.checked;
+        matches!(checked.types.get(ty), Type::FunctionBlock { pou, .. } if checked.programs.iter().any(|each| each.pou == *pou))
+    }
+
     /// What lies at a direct address; nothing if the program does not use that part of the area.
     fn direct(&self, path: &str) -> Option<Spot> {
         let checked = &self.inner.checked;
@@ -123,13 +144,8 @@ impl Application {
         let location = Location { area: address.area, offset, bit };
         let ty = address.width.bit_string();
         let offset = checked.areas.has(location, ty.size()).then(|| checked.areas.offset(location))?;
-        let path = path.to_ascii_uppercase();
-        Some(Spot { address: Some(path.clone()), path, offset, bit, ty: ty.into() })
-    }
-
-    fn is_program(&self, ty: TypeId) -> bool {
-        let checked = &self.inner.checked;
-        matches!(checked.types.get(ty), Type::FunctionBlock { pou, .. } if checked.programs.iter().any(|each| each.pou == *pou))
+        let (path, access) = (path.to_ascii_uppercase(), VariableAccess::ReadWrite);
+        Some(Spot { address: Some(path.clone()), path, offset, bit, ty: ty.into(), access })
     }
 
     pub(super) fn step(&self, from: &Spot, piece: &Piece) -> Result<Spot, Option<String>> {
@@ -139,17 +155,21 @@ impl Application {
                 let field = fields.iter().find(|field| field.name.eq_ignore_ascii_case(name));
                 let field = field.ok_or_else(|| did_you_mean(name, fields.iter().map(|field| field.name.as_str())))?;
                 let path = format!("{}.{}", from.path, field.name);
-                Ok(Spot { path, offset: from.offset + field.offset, bit: None, ty: field.ty, address: None })
+                let (offset, access) = (from.offset + field.offset, from.access);
+                Ok(Spot { path, offset, bit: None, ty: field.ty, address: None, access })
             }
             (Type::FunctionBlock { pou, .. }, Piece::Name(name)) => {
                 let variables = checked.interfaces.get(pou).map_or(&[][..], Vec::as_slice);
-                member(checked, &from.path, variables, from.offset, name)
+                let found = member(checked, &from.path, variables, from.offset, name)?;
+                let access = if from.access == VariableAccess::ReadWrite { found.access } else { from.access };
+                Ok(Spot { access, ..found })
             }
             (Type::Array { dimensions, element }, Piece::Index(indices)) => {
                 let offset = self.element(dimensions, *element, indices).ok_or(None)?;
                 let list: Vec<_> = indices.iter().map(i64::to_string).collect();
                 let path = format!("{}[{}]", from.path, list.join(","));
-                Ok(Spot { path, offset: from.offset + offset, bit: None, ty: *element, address: None })
+                let (offset, access) = (from.offset + offset, from.access);
+                Ok(Spot { path, offset, bit: None, ty: *element, address: None, access })
             }
             _ => Err(None),
         }
@@ -180,6 +200,8 @@ impl Application {
             ty: types.elementary(spot.ty),
             type_name: types.name(spot.ty),
             address: spot.address,
+            access: spot.access,
+            type_id: spot.ty,
         }
     }
 }
@@ -194,7 +216,8 @@ pub(super) fn spot(checked: &Checked, prefix: &str, variable: &ir::Variable, bas
     };
     let dot = if prefix.is_empty() { "" } else { "." };
     let path = format!("{prefix}{dot}{}", variable.name);
-    Some(Spot { path, offset, bit, ty: variable.ty, address: variable.address.clone() })
+    let access = if variable.is_constant { VariableAccess::Constant } else { VariableAccess::ReadWrite };
+    Some(Spot { path, offset, bit, ty: variable.ty, address: variable.address.clone(), access })
 }
 
 fn member(

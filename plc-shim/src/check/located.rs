@@ -49,7 +49,7 @@ impl Checker<'_> {
     /// A direct address and its place; the place is nothing for `%I*`.
     fn direct_address(&mut self, text: &str, span: Span) -> Option<(DirectAddress, Option<Location>)> {
         let address = DirectAddress::parse(text);
-        let placed = address.and_then(|address| Ok((address, address.place(self.address_unit)?)));
+        let placed = address.and_then(|address| Ok((address, address.place(self.dialect(span).address_unit())?)));
         match placed {
             Ok((address, place)) => {
                 let location = place.map(|(offset, bit)| Location { area: address.area, offset, bit });
@@ -95,7 +95,7 @@ impl Checker<'_> {
     }
 
     /// An elementary variable is as wide as its address says; others begin at a byte.
-    fn require_width(&mut self, width: Width, ty: TypeId, address: &Ident) -> Option<()> {
+    pub(super) fn require_width(&mut self, width: Width, ty: TypeId, address: &Ident) -> Option<()> {
         let found = self.types.name(ty);
         let elementary = self.types.elementary(ty);
         let (suitable, help) = match (elementary, self.types.get(ty)) {

@@ -81,7 +81,8 @@ use crate::syntax::ast::CompilationUnit;
 use crate::syntax::direct_address::AddressUnit;
 use crate::syntax::{FileId, Span};
 
-pub(crate) use layout::{CALL_DEPTH_OFFSET, VIRTUAL_TIME_OFFSET};
+pub(crate) use layout::{CALL_DEPTH_OFFSET, VIRTUAL_TIME_NAME, VIRTUAL_TIME_OFFSET};
+pub(crate) use standard_function::exists as is_standard_function;
 
 /// The checked program.
 #[derive(Debug)]

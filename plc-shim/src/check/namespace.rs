@@ -12,6 +12,7 @@ use crate::diagnostic::{Code, Diagnostic, did_you_mean};
 use crate::ir::PouId;
 use crate::syntax::Span;
 use crate::syntax::ast::{self, CompilationUnit, Declaration, Ident, Modifier, Namespace, NamespaceKind};
+use crate::syntax::direct_address::AddressUnit;
 
 /// Libraries of vendors that hold what the standard defines; their names may stand before it.
 const STANDARD_LIBRARIES: [&str; 4] = ["STANDARD", "TC2_STANDARD", "STANDARD64", "IEC61131_STANDARD"];
@@ -72,6 +73,8 @@ fn joined(namespace: &str, key: &str) -> String {
 
 impl<'a> Checker<'a> {
     pub(super) fn collect(&mut self, units: &[(crate::syntax::FileId, &'a CompilationUnit)]) {
+        // Who looks from outside sees the addresses as the first file has them.
+        self.address_unit = units.first().map_or_else(AddressUnit::default, |(_, unit)| unit.dialect.address_unit());
         self.dialects = units.iter().map(|(file, unit)| (*file, unit.dialect)).collect();
         let mut used = Vec::new();
         for (_, unit) in units {

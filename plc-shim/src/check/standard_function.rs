@@ -11,7 +11,7 @@ use crate::syntax::Span;
 use crate::syntax::ast::{Argument, BinaryOp, Ident};
 
 /// True if there is a function of this name, in capitals.
-pub(super) fn exists(key: &str) -> bool {
+pub(crate) fn exists(key: &str) -> bool {
     function_form::find(key).is_some()
         || conversion_function::find(key).is_some()
         || text_conversion::find(key).is_some()

@@ -28,6 +28,12 @@ impl<'a> Body<'_, 'a> {
         let found = ElementaryType::find(&name.text);
         let suitable = found.filter(|ty| ty.is_integer() || ty.is_bits() && *ty != ElementaryType::Bool);
         if suitable.is_none() {
+            if self.checker.pou_names.contains_key(&name.key()) {
+                let message = "arguments of FB_init are not supported";
+                let found = Diagnostic::error(Code::VendorRuntime, name.span, message);
+                self.report(found.with_help("give the instance's inputs initial values"));
+                return None;
+            }
             let message = format!("an integer type is wanted, this is `{}`", name.text);
             self.report(Diagnostic::error(Code::TypeMismatch, name.span, message));
         }

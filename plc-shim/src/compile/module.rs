@@ -18,9 +18,9 @@ pub(crate) const MEMORY_EXPORT: &str = "memory";
 
 const PAGE: u64 = 65_536;
 
-/// Name of the export that runs the entry at this position.
-pub(crate) fn entry_export(index: usize) -> String {
-    format!("entry_{index}")
+/// Name of the export that runs a part of the entry at this position.
+pub(crate) fn entry_export(index: usize, part: usize) -> String {
+    format!("entry_{index}_{part}")
 }
 
 /// The module and what its instructions stand for.
@@ -47,10 +47,12 @@ pub(crate) fn compile(checked: &Checked) -> Compiled {
         faults.functions.push(FunctionMarks { name: pou.name.clone(), is_entry: false, marks });
     }
     for (index, entry) in checked.entries.iter().enumerate() {
-        let (body, marks) = entry::entry(&mut shared, entry);
-        let at = sections.add_function(Vec::new(), Vec::new(), &body);
-        sections.exports.export(&entry_export(index), ExportKind::Func, at);
-        faults.functions.push(marks);
+        for (part, unit) in entry.units.iter().enumerate() {
+            let (body, marks) = entry::function(&mut shared, unit);
+            let at = sections.add_function(Vec::new(), Vec::new(), &body);
+            sections.exports.export(&entry_export(index, part), ExportKind::Func, at);
+            faults.functions.push(marks);
+        }
     }
     Compiled { wasm: sections.finish(checked, &shared), faults }
 }

@@ -13,6 +13,7 @@ use std::path::Path;
 
 use self::table::{BEHAVIOURS, FEATURES};
 use crate::ir::Rounding;
+use crate::syntax::direct_address::AddressUnit;
 
 /// A dialect of the language.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -89,9 +90,29 @@ impl Dialect {
         }
     }
 
+    /// What the number of a direct address wider than a bit counts.
+    pub fn address_unit(self) -> AddressUnit {
+        self.behaviour().address_unit
+    }
+
     /// What a division by zero does.
     pub fn division_by_zero(self) -> DivisionByZero {
         self.behaviour().division_by_zero
+    }
+}
+
+/// A name that is no dialect's.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error("`{name}` is no dialect: {}", Dialect::ALL.map(Dialect::name).join(", "))]
+pub struct UnknownDialect {
+    name: String,
+}
+
+impl std::str::FromStr for Dialect {
+    type Err = UnknownDialect;
+
+    fn from_str(name: &str) -> Result<Self, UnknownDialect> {
+        Self::find(name).ok_or_else(|| UnknownDialect { name: name.to_owned() })
     }
 }
 
@@ -141,6 +162,8 @@ pub struct Behaviour {
     pub ties: Ties,
     /// What a division by zero does.
     pub division_by_zero: DivisionByZero,
+    /// What the number of a direct address wider than a bit counts.
+    pub address_unit: AddressUnit,
 }
 
 macro_rules! features {

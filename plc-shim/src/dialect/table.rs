@@ -2,6 +2,7 @@
 
 use super::Dialect::{self, Codesys, Iec2, Iec3, SiemensScl, TwinCat};
 use super::{Behaviour, DivisionByZero, Feature, Ties, TimeRange};
+use crate::syntax::direct_address::AddressUnit;
 
 /// Who has a construct, and where that is written.
 #[derive(Debug, Clone, Copy)]
@@ -51,7 +52,7 @@ pub struct BehaviourRow {
     /// What it does.
     pub behaviour: Behaviour,
     /// Where each of it is written, in the order of the fields.
-    pub sources: [&'static str; 4],
+    pub sources: [&'static str; 5],
 }
 
 /// What the standard says, or README.md where it leaves a choice.
@@ -60,10 +61,16 @@ pub const STANDARD: Behaviour = Behaviour {
     time: TimeRange::Nanoseconds64,
     ties: Ties::Even,
     division_by_zero: DivisionByZero::Fault,
+    address_unit: AddressUnit::Element,
 };
 
-const STANDARD_SOURCES: [&str; 4] =
-    ["left open by 2nd ed. 2.3.1", "left open by 2nd ed. 2.2.3", "2nd ed. 2.5.1.5.1, IEC 60559", "2nd ed. Annex E"];
+const STANDARD_SOURCES: [&str; 5] = [
+    "left open by 2nd ed. 2.3.1",
+    "left open by 2nd ed. 2.2.3",
+    "2nd ed. 2.5.1.5.1, IEC 60559",
+    "2nd ed. Annex E",
+    "left open by 2nd ed. 2.4.1.1",
+];
 
 /// How the dialects behave.
 pub const BEHAVIOURS: &[BehaviourRow] = &[
@@ -77,16 +84,23 @@ pub const BEHAVIOURS: &[BehaviourRow] = &[
             "CODESYS: data type TIME",
             "CODESYS: conversion REAL, LREAL",
             "CODESYS: operator DIV",
+            "CODESYS: addresses",
         ],
     },
     BehaviourRow {
         dialect: TwinCat,
-        behaviour: Behaviour { time: TimeRange::Unsigned32, ties: Ties::Away, ..STANDARD },
+        behaviour: Behaviour {
+            time: TimeRange::Unsigned32,
+            ties: Ties::Away,
+            address_unit: AddressUnit::Byte,
+            ..STANDARD
+        },
         sources: [
             "TwinCAT: STRING",
             "TwinCAT: TIME/LTIME",
             "TwinCAT: floating point number conversion",
             "TwinCAT: operator DIV",
+            "TwinCAT: addresses",
         ],
     },
     BehaviourRow {
@@ -95,6 +109,7 @@ pub const BEHAVIOURS: &[BehaviourRow] = &[
             string_length: 254,
             time: TimeRange::Signed32,
             division_by_zero: DivisionByZero::Continue,
+            address_unit: AddressUnit::Byte,
             ..STANDARD
         },
         sources: [
@@ -102,6 +117,7 @@ pub const BEHAVIOURS: &[BehaviourRow] = &[
             "S7-1200 System Manual: data types, Time",
             "S7-1200 System Manual: CONV, round to even",
             "S7-1200 System Manual: ENO of add, subtract, multiply, divide",
+            "S7-1200 System Manual: accessing data",
         ],
     },
 ];

@@ -2,6 +2,7 @@ use std::fmt::Write;
 
 use super::table::{BEHAVIOURS, FEATURES};
 use super::*;
+use crate::syntax::direct_address::AddressUnit;
 
 #[test]
 fn every_feature_and_dialect_has_one_row() {
@@ -28,7 +29,7 @@ fn dialects_have_names_and_files() {
     assert_eq!(Feature::ChainedAssignment.homes(), "codesys, twincat and siemens-scl");
 }
 
-fn behaviour_cells(behaviour: Behaviour) -> [String; 4] {
+fn behaviour_cells(behaviour: Behaviour) -> [String; 5] {
     let time = match behaviour.time {
         TimeRange::Nanoseconds64 => "signed 64 bit nanoseconds",
         TimeRange::Unsigned32 => "unsigned 32 bit milliseconds, wrapping",
@@ -42,7 +43,11 @@ fn behaviour_cells(behaviour: Behaviour) -> [String; 4] {
         DivisionByZero::Fault => "stops the PLC",
         DivisionByZero::Continue => "0; reals: infinity or NaN",
     };
-    [behaviour.string_length.to_string(), time.to_owned(), ties.to_owned(), division.to_owned()]
+    let unit = match behaviour.address_unit {
+        AddressUnit::Element => "units of its own width",
+        AddressUnit::Byte => "bytes",
+    };
+    [behaviour.string_length.to_string(), time.to_owned(), ties.to_owned(), division.to_owned(), unit.to_owned()]
 }
 
 /// The tables of `docs/dialects.md`.
@@ -54,7 +59,13 @@ fn tables() -> String {
         let marks = Dialect::ALL.map(|dialect| if dialect.has(row.feature) { "yes" } else { "" });
         writeln!(text, "| {} | {} | {} |", row.feature.about(), marks.join(" | "), row.source).expect("a string");
     }
-    let subjects = ["STRING without a length", "TIME", "real halfway between two integers", "division by zero"];
+    let subjects = [
+        "STRING without a length",
+        "TIME",
+        "real halfway between two integers",
+        "division by zero",
+        "what the number of `%MW3` counts",
+    ];
     text += "\n| behaviour | dialect | what it does | source |\n|---|---|---|---|\n";
     for (index, subject) in subjects.iter().enumerate() {
         for row in BEHAVIOURS {

@@ -5,8 +5,8 @@
 //! | [`encoding`] | bytes | text, and the way back |
 //! | [`kind`] | a file's name | what kind of file it is |
 //! | `xml` | text | a tree whose nodes know their place |
-//! | `twincat` | TwinCAT's objects | program text |
-//! | `plcopen`, `plcopen_object` | PLCopen XML, and what CODESYS adds to it | program text |
+//! | `twincat`, `twincat_task` | TwinCAT's objects | program text |
+//! | `plcopen`, `plcopen_instances`, `plcopen_object` | PLCopen XML, and what CODESYS adds to it | program text |
 //! | [`project`] | a TwinCAT project | the names of its files |
 //!
 //! Invariants: no file can make it fail, what is wrong with one is a diagnostic; what is not read is
@@ -15,9 +15,11 @@
 pub mod encoding;
 pub mod kind;
 mod plcopen;
+mod plcopen_instances;
 mod plcopen_object;
 pub mod project;
 mod twincat;
+mod twincat_task;
 mod xml;
 
 use std::sync::Arc;

@@ -30,10 +30,7 @@ pub(super) fn extract(file: &str) -> Result<Taken, XmlError> {
     writer.vendor_objects(&root);
     let configurations = root.child("instances").and_then(|instances| instances.child("configurations"));
     for configuration in configurations.into_iter().flat_map(Element::elements) {
-        writer.globals(configuration);
-        for resource in configuration.elements().filter(|inner| inner.name == "resource") {
-            writer.globals(resource);
-        }
+        writer.configuration(configuration);
     }
     Ok(writer.taken)
 }
@@ -179,7 +176,12 @@ impl Writer<'_> {
 
     fn variable(&mut self, element: &Element) {
         self.attribute(element, "name");
-        if let Some(address) = element.attribute("address") {
+        self.address_and_type(element);
+    }
+
+    /// ` AT %IX0.0 : BOOL := TRUE;`
+    pub(super) fn address_and_type(&mut self, element: &Element) {
+        if let Some(address) = element.attribute("address").filter(|address| !address.value.is_empty()) {
             self.write(" AT ", &address.span);
             self.write(&address.value, &address.span);
         }
@@ -190,7 +192,7 @@ impl Writer<'_> {
     }
 
     /// The type in the child `name`.
-    fn inner_type(&mut self, element: &Element, name: &str) {
+    pub(super) fn inner_type(&mut self, element: &Element, name: &str) {
         if let Some(inner) = element.child(name) {
             self.type_in(inner);
         } else {

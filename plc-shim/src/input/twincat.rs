@@ -10,7 +10,7 @@ use crate::dialect::Dialect;
 use crate::syntax::token::{Keyword, TokenKind};
 use crate::syntax::tokenize;
 
-/// Program text of a `.TcPOU`, `.TcDUT`, `.TcGVL` or `.TcIO`.
+/// Program text of a `.TcPOU`, `.TcDUT`, `.TcGVL`, `.TcIO` or `.TcTTO`.
 pub(super) fn extract(file: &str) -> Result<Taken, XmlError> {
     let root = parse(file)?;
     let mut taken = Taken { dialect: Dialect::TwinCat, ..Taken::default() };
@@ -23,6 +23,7 @@ pub(super) fn extract(file: &str) -> Result<Taken, XmlError> {
             "POU" => pou(&mut taken, file, object),
             "DUT" => declaration(&mut taken, file, object),
             "GVL" => global_list(&mut taken, file, object),
+            "Task" => super::twincat_task::task(&mut taken, file, object),
             "Itf" => interface(&mut taken, file, object),
             _ => taken.unsupported(place(object), &described(&object.name, object)),
         }

@@ -1,5 +1,6 @@
 //! Configurations: resources, tasks and what they run (2nd ed. 2.7).
 
+use super::expr::Storage;
 use super::pou::{Pou, PouId, Retention, Variable};
 use super::types::TypeId;
 
@@ -21,8 +22,8 @@ pub(crate) struct Program {
 pub(crate) struct Entry {
     /// The name by which a task runs it: the shortest that no other entry has.
     pub(crate) name: String,
-    /// Called without parameters.
-    pub(crate) unit: Pou,
+    /// Called one after the other, without parameters; forced values are set in between.
+    pub(crate) units: Vec<Pou>,
 }
 
 /// The one configuration of an application.
@@ -61,9 +62,30 @@ pub(crate) struct Task {
 #[derive(Debug, Clone)]
 pub(crate) struct Access {
     pub(crate) name: String,
-    /// The variable's full path.
-    pub(crate) path: String,
-    pub(crate) offset: u32,
-    pub(crate) ty: TypeId,
+    pub(crate) target: Target,
     pub(crate) writable: bool,
+}
+
+/// A variable, or a part of one, at a fixed place.
+#[derive(Debug, Clone)]
+pub(crate) struct Target {
+    /// Its path from the outside.
+    pub(crate) path: String,
+    /// `Absolute(0)` or a direct address.
+    pub(crate) storage: Storage,
+    /// Bytes from there.
+    pub(crate) inside: u32,
+    pub(crate) ty: TypeId,
+    /// The declaration that the last name on the way leads to; nothing for a program.
+    pub(crate) variable: Option<Variable>,
+}
+
+impl Target {
+    /// The bit of its byte, if it is one.
+    pub(crate) fn bit(&self) -> Option<u8> {
+        match self.storage {
+            Storage::Located(location) => location.bit,
+            _ => None,
+        }
+    }
 }

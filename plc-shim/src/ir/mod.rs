@@ -13,7 +13,7 @@ pub(crate) mod types;
 pub(crate) mod value;
 
 pub(crate) use area::{Areas, Location};
-pub(crate) use configuration::{Access, Configuration, Entry, Program, Resource, Task};
+pub(crate) use configuration::{Access, Configuration, Entry, Program, Resource, Target, Task};
 pub(crate) use elementary::ElementaryType;
 pub(crate) use expr::{
     Argument, Binary, Cast, Dispatch, Expr, ExprKind, FunctionCall, Intrinsic, LocalId, Part, Place, Receiver,

@@ -2,10 +2,11 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use super::walk::root;
 use crate::application::Front;
 use crate::syntax::ast::{
-    Configuration, Connection, Declaration, Expr, Ident, Pou, PouKind, Section, SectionKind, TypeSpec, TypeSpecKind,
-    Variable,
+    Configuration, Connection, Declaration, Expr, ExprKind, Ident, Pou, PouKind, Section, SectionKind, TypeSpec,
+    TypeSpecKind, Variable,
 };
 
 /// Declarations by the key of their name.
@@ -21,6 +22,8 @@ pub(super) struct Index<'a> {
     configurations: Vec<&'a Configuration>,
     /// Names that some unit has for a `VAR_IN_OUT`.
     in_outs: BTreeSet<String>,
+    /// First names of namespaces and of lists of global variables.
+    namespaces: BTreeSet<String>,
 }
 
 impl<'a> Index<'a> {
@@ -35,6 +38,7 @@ impl<'a> Index<'a> {
             globals: Vec::new(),
             configurations: Vec::new(),
             in_outs: BTreeSet::new(),
+            namespaces: BTreeSet::new(),
         };
         for (file, unit) in &front.units {
             let library = front.library.contains(file);
@@ -71,6 +75,7 @@ impl<'a> Index<'a> {
             }
             Declaration::Globals(section) => self.globals.push(section),
             Declaration::Namespace(namespace) => {
+                self.namespaces.extend(namespace.name.key().split('.').map(str::to_owned));
                 namespace.declarations.iter().for_each(|each| self.add(each, library));
             }
             Declaration::Using(_) => {}
@@ -161,6 +166,26 @@ impl<'a> Index<'a> {
     pub(super) fn global(&self, key: &str) -> Option<&'a Variable> {
         let all = self.globals.iter().flat_map(|section| &section.variables);
         all.into_iter().find(|variable| variable.names.iter().any(|name| name.key() == key))
+    }
+
+    /// True for a place that begins with the name of a namespace.
+    pub(super) fn is_in_namespace(&self, place: &Expr) -> bool {
+        !self.namespaces.is_empty() && root(place).is_some_and(|name| self.namespaces.contains(&name.key()))
+    }
+
+    /// The variable that a place is a part of; in a namespace all names on the way, one of which it is.
+    pub(super) fn variables_of<'e>(&self, place: &'e Expr) -> Vec<&'e Ident> {
+        if !self.is_in_namespace(place) {
+            return root(place).into_iter().collect();
+        }
+        let (mut names, mut next) = (Vec::new(), place);
+        while let ExprKind::Member(inner, _) | ExprKind::Index(inner, _) | ExprKind::Paren(inner) = &next.kind {
+            if let ExprKind::Member(_, name) = &next.kind {
+                names.push(name);
+            }
+            next = inner;
+        }
+        names
     }
 
     /// True for a name that a `VAR_IN_OUT` has in some unit: an argument of that name may be written.

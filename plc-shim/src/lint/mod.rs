@@ -25,7 +25,7 @@ mod tasks;
 mod types;
 mod unused;
 mod usage;
-mod walk;
+pub(crate) mod walk;
 
 use self::index::Index;
 use self::usage::Usage;

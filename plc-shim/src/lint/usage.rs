@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use super::index::Index;
-use super::walk::{self, Visitor, root};
+use super::walk::{self, Visitor};
 use crate::syntax::Span;
 use crate::syntax::ast::{
     Argument, Call, Expr, ExprKind, Ident, Initialiser, InitialiserKind, Pou, Section, TypeSpec, TypeSpecKind,
@@ -149,7 +149,7 @@ fn writes_output(target: &Expr) -> bool {
 
 impl Visitor for Collector<'_> {
     fn target(&mut self, target: &Expr) {
-        if let Some(name) = root(target) {
+        for name in self.index.variables_of(target) {
             self.written(name);
         }
         self.usage.writes_outputs |= writes_output(target);
@@ -160,7 +160,7 @@ impl Visitor for Collector<'_> {
     }
 
     fn call(&mut self, call: &Call) {
-        if let Some(name) = root(&call.callee) {
+        for name in self.index.variables_of(&call.callee) {
             self.uses(name).is_called = true;
         }
         for argument in &call.arguments {
@@ -169,14 +169,16 @@ impl Visitor for Collector<'_> {
                 Argument::Input(name, value) => (value, self.index.is_in_out(&name.key())),
                 Argument::Output { .. } => continue,
             };
-            if let Some(name) = root(value).filter(|_| may_write) {
+            for name in self.index.variables_of(value).into_iter().filter(|_| may_write) {
                 self.uses(name).is_passed = true;
             }
         }
     }
 
     fn expression(&mut self, expr: &Expr) {
-        if let ExprKind::Name(name) = &expr.kind {
+        if let ExprKind::Name(name) | ExprKind::Member(_, name) = &expr.kind
+            && (matches!(expr.kind, ExprKind::Name(_)) || self.index.is_in_namespace(expr))
+        {
             self.uses(name).is_read = true;
         }
     }

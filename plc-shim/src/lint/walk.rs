@@ -3,7 +3,7 @@
 use crate::syntax::ast::{Argument, Call, Expr, ExprKind, Statement, StatementKind};
 
 /// Looks at the parts of a body; what it does not care for it leaves out.
-pub(super) trait Visitor {
+pub(crate) trait Visitor {
     /// A statement, before its parts.
     fn statement(&mut self, _statement: &Statement) {}
     /// The statements of a branch or loop begin.
@@ -20,7 +20,7 @@ pub(super) trait Visitor {
     fn expression(&mut self, _expr: &Expr) {}
 }
 
-pub(super) fn statements(list: &[Statement], visitor: &mut impl Visitor) {
+pub(crate) fn statements(list: &[Statement], visitor: &mut impl Visitor) {
     for each in list {
         visitor.statement(each);
         statement(&each.kind, visitor);
@@ -114,11 +114,12 @@ fn indices(place: &Expr, visitor: &mut impl Visitor) {
                 expression(index, visitor);
             }
         }
+        ExprKind::Call(inner) => call(inner, visitor),
         _ => {}
     }
 }
 
-pub(super) fn expression(expr: &Expr, visitor: &mut impl Visitor) {
+pub(crate) fn expression(expr: &Expr, visitor: &mut impl Visitor) {
     visitor.expression(expr);
     match &expr.kind {
         ExprKind::Member(inner, _) | ExprKind::Part(inner, _) | ExprKind::Unary(_, inner) | ExprKind::Paren(inner) => {
@@ -140,7 +141,7 @@ pub(super) fn expression(expr: &Expr, visitor: &mut impl Visitor) {
 }
 
 /// The variable that a place is or is a part of.
-pub(super) fn root(place: &Expr) -> Option<&crate::syntax::ast::Ident> {
+pub(crate) fn root(place: &Expr) -> Option<&crate::syntax::ast::Ident> {
     match &place.kind {
         ExprKind::Name(name) => Some(name),
         ExprKind::Member(inner, _) | ExprKind::Part(inner, _) | ExprKind::Index(inner, _) | ExprKind::Paren(inner) => {

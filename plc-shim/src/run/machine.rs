@@ -13,7 +13,8 @@ pub(super) struct Machine {
     memory: Memory,
     /// Bytes in use; the rest of the last page is never touched.
     size: usize,
-    entries: Vec<TypedFunc<(), ()>>,
+    /// The functions in a row of each thing that tasks can run.
+    entries: Vec<Vec<TypedFunc<(), ()>>>,
 }
 
 /// A trap: its cause and the functions that were active, innermost first, each with the offset
@@ -51,7 +52,8 @@ impl Machine {
         let memory = memory.ok_or_else(|| RunError::Module("memory is missing".to_owned()))?;
         store.data_mut().memory = Some(memory);
         let size = application.initial_memory().len();
-        let entries = (0..application.entry_count()).map(|index| entry(&instance, &mut store, index));
+        let parts = application.entry_parts().enumerate();
+        let entries = parts.map(|(index, count)| entry(&instance, &mut store, index, count));
         let entries = entries.collect::<Result<_, _>>()?;
         Ok(Self { store, memory, size, entries })
     }
@@ -74,17 +76,26 @@ impl Machine {
         debug_assert!(counted.is_ok(), "the engine counts fuel");
     }
 
-    pub(super) fn run(&mut self, entry: usize) -> Result<(), Trapped> {
-        let Some(function) = self.entries.get(entry) else {
+    pub(super) fn parts(&self, entry: usize) -> usize {
+        self.entries.get(entry).map_or(0, Vec::len)
+    }
+
+    pub(super) fn run(&mut self, entry: usize, part: usize) -> Result<(), Trapped> {
+        let Some(function) = self.entries.get(entry).and_then(|parts| parts.get(part)) else {
             return Ok(());
         };
         function.call(&mut self.store, ()).map_err(|error| trapped(&error))
     }
 }
 
-fn entry(instance: &Instance, store: &mut Store<HostState>, index: usize) -> Result<TypedFunc<(), ()>, RunError> {
-    let function = instance.get_typed_func(store, &entry_export(index));
-    function.map_err(|error| module_error(&error))
+fn entry(
+    instance: &Instance,
+    store: &mut Store<HostState>,
+    index: usize,
+    count: usize,
+) -> Result<Vec<TypedFunc<(), ()>>, RunError> {
+    let mut part = |part| instance.get_typed_func(&mut *store, &entry_export(index, part));
+    (0..count).map(|at| part(at).map_err(|error| module_error(&error))).collect()
 }
 
 fn linker(engine: &Engine) -> Result<Linker<HostState>, wasmtime::Error> {

@@ -8,17 +8,19 @@
 //! | `machine` | the compiled module with its memory |
 //! | `fault` | a trap as an error in the source |
 //! | `soft_plc` | the PLC itself |
+//! | `force` | variables that keep a value, reading and writing by path |
 //! | `text` | functions on character strings |
 //! | `state` | its state as bytes |
 
 mod configured;
 mod fault;
+mod force;
 mod machine;
 mod plan;
 mod scheduler;
 mod soft_plc;
 mod state;
-mod text;
+pub(crate) mod text;
 
 pub use fault::{FaultSite, PlcFault};
 pub use plan::{RunError, Task, TaskPlan};

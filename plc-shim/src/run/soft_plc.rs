@@ -1,7 +1,10 @@
 //! The PLC itself.
 
+use std::ops::Range;
+
 use super::VirtualTime;
 use super::fault::{PlcFault, explain};
+use super::force::Forces;
 use super::machine::Machine;
 use super::plan::{Resolved, RunError, TaskPlan, resolve};
 use super::scheduler::Scheduler;
@@ -24,6 +27,7 @@ pub struct SoftPlc {
     /// Virtual time of the last scan.
     now: VirtualTime,
     fault: Option<PlcFault>,
+    pub(super) forces: Forces,
 }
 
 impl std::fmt::Debug for SoftPlc {
@@ -52,34 +56,54 @@ impl SoftPlc {
             fingerprint: state::fingerprint(application, plan),
             now: VirtualTime::default(),
             fault: None,
+            forces: Forces::default(),
         };
-        plc.cold_start();
+        plc.reset();
         Ok(plc)
     }
 
-    /// Gives all variables their initial values and begins again at virtual time 0
-    /// (2nd ed. 2.4.2).
+    /// Gives all variables but the persistent ones their initial values and begins again at virtual
+    /// time 0 (2nd ed. 2.4.2). Forces stay.
     pub fn cold_start(&mut self) {
-        let image = self.application.initial_memory();
-        copy_to(self.machine.memory_mut(), 0, image);
-        self.scheduler.restart_at(VirtualTime::default());
-        self.now = VirtualTime::default();
-        self.fault = None;
+        self.initialise(&self.application.clone(), Application::persistent);
+        self.begin(VirtualTime::default());
     }
 
-    /// Gives all variables but the retained ones their initial values (2nd ed. 2.4.2). Virtual
-    /// time goes on; every task is due one interval from now.
+    /// Gives all variables but the retained and the persistent ones their initial values
+    /// (2nd ed. 2.4.2). Virtual time goes on; every task is due one interval from now. Forces stay.
     pub fn warm_start(&mut self) {
-        let image = self.application.initial_memory();
+        self.initialise(&self.application.clone(), Application::retained);
+        self.begin(self.now);
+    }
+
+    /// Makes it a new PLC: all variables have their initial values, nothing is forced.
+    pub fn reset(&mut self) {
+        self.forces.clear();
+        self.initialise(&self.application.clone(), |_| &[]);
+        self.begin(VirtualTime::default());
+    }
+
+    /// Gives all memory but the kept ranges its initial bytes.
+    fn initialise(&mut self, application: &Application, kept: fn(&Application) -> &[Range<u32>]) {
+        let image = application.initial_memory();
         let memory = self.machine.memory_mut();
         let mut from = 0;
-        for range in self.application.retained() {
+        for range in kept(application) {
             copy_range(memory, image, from, range.start as usize);
             from = range.end as usize;
         }
         copy_range(memory, image, from, image.len());
-        self.scheduler.restart_at(self.now);
+    }
+
+    fn begin(&mut self, now: VirtualTime) {
+        self.scheduler.restart_at(now);
+        self.now = now;
         self.fault = None;
+        self.apply_forces();
+    }
+
+    pub(super) fn apply_forces(&mut self) {
+        self.forces.apply(self.machine.memory_mut());
     }
 
     /// Runs the tasks that are due at virtual time `now`: by priority, then the one that waits
@@ -94,6 +118,7 @@ impl SoftPlc {
             return Err(fault.clone());
         }
         self.now = now;
+        self.apply_forces();
         self.scheduler.begin_scan();
         self.scheduler.look(now, self.machine.memory());
         while let Some(task) = self.scheduler.take_due(now) {
@@ -118,11 +143,15 @@ impl SoftPlc {
     }
 
     fn run_entry(&mut self, entry: usize) -> Result<(), PlcFault> {
-        self.machine.run(entry).map_err(|trapped| {
-            let found = explain(&self.application, &trapped, self.now);
-            self.fault = Some(found.clone());
-            found
-        })
+        for part in 0..self.machine.parts(entry) {
+            if let Err(trapped) = self.machine.run(entry, part) {
+                let found = explain(&self.application, &trapped, self.now);
+                self.fault = Some(found.clone());
+                return Err(found);
+            }
+            self.apply_forces();
+        }
+        Ok(())
     }
 
     /// When a task is due next by its interval; the end of time if none has one.
@@ -177,6 +206,7 @@ impl SoftPlc {
             now: self.now,
             waiting: self.scheduler.waiting().collect(),
             fault: self.fault.clone(),
+            forces: self.forces.clone(),
             memory: self.machine.memory(),
         };
         state.encode(self.fingerprint)
@@ -189,11 +219,12 @@ impl SoftPlc {
     /// The bytes are not a state of this application under this plan.
     pub fn restore(&mut self, bytes: &[u8]) -> Result<(), RestoreError> {
         let (tasks, size) = (self.tasks.len(), self.machine.memory().len());
-        let state = State::decode(bytes, self.fingerprint, tasks, size)?;
+        let state = State::decode(bytes, self.fingerprint, &self.application, tasks, size)?;
         copy_to(self.machine.memory_mut(), 0, state.memory);
         self.scheduler.set_waiting(&state.waiting);
         self.now = state.now;
         self.fault = state.fault;
+        self.forces = state.forces;
         Ok(())
     }
 }

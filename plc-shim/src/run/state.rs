@@ -7,6 +7,7 @@
 //! | 8 | virtual time of the last scan |
 //! | 4 + 17 each | how each task waits |
 //! | 1 ... | 0, or 1 and the fault |
+//! | 4 ... | forces |
 //! | 8 + size | memory |
 //!
 //! All numbers are little-endian.
@@ -15,6 +16,7 @@ use thiserror::Error;
 
 use super::VirtualTime;
 use super::fault::{FaultSite, PlcFault};
+use super::force::Forces;
 use super::plan::TaskPlan;
 use super::scheduler::Waiting;
 use crate::application::Application;
@@ -40,6 +42,7 @@ pub(super) struct State<'m> {
     pub(super) now: VirtualTime,
     pub(super) waiting: Vec<Waiting>,
     pub(super) fault: Option<PlcFault>,
+    pub(super) forces: Forces,
     pub(super) memory: &'m [u8],
 }
 
@@ -87,6 +90,13 @@ impl<'m> State<'m> {
         if let Some(fault) = &self.fault {
             encode_fault(fault, &mut bytes);
         }
+        bytes.extend_from_slice(&(self.forces.iter().len() as u32).to_le_bytes());
+        for force in self.forces.iter() {
+            for part in [force.variable.path.as_bytes(), &force.bytes] {
+                bytes.extend_from_slice(&(part.len() as u32).to_le_bytes());
+                bytes.extend_from_slice(part);
+            }
+        }
         bytes.extend_from_slice(&(self.memory.len() as u64).to_le_bytes());
         bytes.extend_from_slice(self.memory);
         bytes
@@ -95,6 +105,7 @@ impl<'m> State<'m> {
     pub(super) fn decode(
         bytes: &'m [u8],
         fingerprint: u64,
+        application: &Application,
         tasks: usize,
         memory_size: usize,
     ) -> Result<Self, RestoreError> {
@@ -105,7 +116,7 @@ impl<'m> State<'m> {
         if reader.number().ok_or(RestoreError::Damaged)? != fingerprint {
             return Err(RestoreError::OtherApplication);
         }
-        reader.state(tasks, memory_size).ok_or(RestoreError::Damaged)
+        reader.state(application, tasks, memory_size).ok_or(RestoreError::Damaged)
     }
 }
 
@@ -153,18 +164,19 @@ impl<'m> Reader<'m> {
         String::from_utf8(self.take(length)?.to_vec()).ok()
     }
 
-    fn state(&mut self, tasks: usize, memory_size: usize) -> Option<State<'m>> {
+    fn state(&mut self, application: &Application, tasks: usize, memory_size: usize) -> Option<State<'m>> {
         let now = VirtualTime::from_ns(self.number()?);
         if self.small_number()? as usize != tasks {
             return None;
         }
         let waiting = (0..tasks).map(|_| self.waiting()).collect::<Option<_>>()?;
         let fault = if self.flag()? { Some(self.fault()?) } else { None };
+        let forces = self.forces(application)?;
         if self.number()? != memory_size as u64 {
             return None;
         }
         let memory = self.take(memory_size)?;
-        self.rest.is_empty().then_some(State { now, waiting, fault, memory })
+        self.rest.is_empty().then_some(State { now, waiting, fault, forces, memory })
     }
 
     fn fault(&mut self) -> Option<PlcFault> {
@@ -180,6 +192,16 @@ impl<'m> Reader<'m> {
         let (line, column) = (self.small_number()?, self.small_number()?);
         let (file, pou, instance) = (self.text()?, self.text()?, self.text()?);
         Some(FaultSite { pou, instance, file, line, column })
+    }
+
+    fn forces(&mut self, application: &Application) -> Option<Forces> {
+        let mut forces = Forces::default();
+        for _ in 0..self.small_number()? {
+            let path = self.text()?;
+            let size = self.small_number()? as usize;
+            forces.restore(application, &path, self.take(size)?)?;
+        }
+        Some(forces)
     }
 
     fn waiting(&mut self) -> Option<Waiting> {

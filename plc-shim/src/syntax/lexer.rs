@@ -228,7 +228,7 @@ impl<'a> Lexer<'a> {
             self.at += found.text().len();
             return TokenKind::Punctuation(found);
         }
-        self.at += first.len_utf8();
+        self.take_while(|character| character == first);
         TokenKind::Unknown
     }
 }

@@ -80,6 +80,13 @@ impl Origin {
         self.pieces.get(after).or(self.pieces.last())
     }
 
+    /// Where in the file the last part taken over unchanged ends, of those that begin before `offset`.
+    pub fn verbatim_end(&self, offset: u32) -> Option<u32> {
+        let before = self.pieces.partition_point(|piece| piece.start < offset);
+        let before = self.pieces.get(..before)?;
+        before.iter().rev().find(|piece| piece.verbatim).map(|piece| piece.from.end)
+    }
+
     fn start(&self, offset: u32) -> u32 {
         self.piece(offset).map_or(0, |piece| {
             let inside = offset.saturating_sub(piece.start);

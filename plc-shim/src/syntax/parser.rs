@@ -16,8 +16,8 @@ mod statement;
 mod type_spec;
 
 use self::cursor::Cursor;
-use super::ast::CompilationUnit;
-use super::lexer::tokenize_in;
+use super::ast::{CompilationUnit, Expr};
+use super::lexer::{tokenize, tokenize_in};
 use super::source::FileId;
 use super::token::{Token, TokenKind};
 use crate::diagnostic::{Code, Diagnostic};
@@ -55,6 +55,15 @@ pub fn parse_in(dialect: Dialect, file: FileId, text: &str) -> Parsed {
     Parsed { tokens, unit, diagnostics }
 }
 
+/// The expression that `text` is, if it is one without errors.
+pub(crate) fn parse_expression(text: &str) -> Option<Expr> {
+    let tokens = tokenize(text);
+    let mut cursor = Cursor::new(Dialect::default(), FileId(0), text, &tokens);
+    report_lexical_errors(&mut cursor, &tokens);
+    let expression = cursor.expression();
+    (cursor.peek().is_none() && cursor.reported() == 0).then_some(expression)
+}
+
 fn report_lexical_errors(cursor: &mut Cursor<'_>, tokens: &[Token]) {
     for token in tokens {
         let span = Span::new(cursor.file(), token.start, token.end);
@@ -71,7 +80,13 @@ fn report_lexical_errors(cursor: &mut Cursor<'_>, tokens: &[Token]) {
             TokenKind::Unknown => {
                 let text = cursor.text(token.start, token.end).escape_debug().to_string();
                 let message = format!("`{text}` begins no token");
-                cursor.report(Diagnostic::error(Code::UnknownCharacter, span, message));
+                let help = match text.as_str() {
+                    "|" | "||" => Some("write `OR`".to_owned()),
+                    "!" => Some("write `NOT`, or `<>` for `!=`".to_owned()),
+                    _ => None,
+                };
+                let found = Diagnostic::error(Code::UnknownCharacter, span, message);
+                cursor.report(found.with_optional_help(help));
             }
             _ => {}
         }

@@ -101,6 +101,11 @@ impl SourceFile {
         self.origin.as_ref().map_or(start..end, |origin| origin.place(start..end))
     }
 
+    /// The way back into the file that the program text was taken out of.
+    pub fn origin(&self) -> Option<&Origin> {
+        self.origin.as_ref()
+    }
+
     /// Line and column of a byte offset of the program text, both counted from 1 in the text that
     /// is shown; columns count characters.
     pub fn line_column(&self, offset: u32) -> LineColumn {

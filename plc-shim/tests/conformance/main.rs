@@ -44,6 +44,9 @@ mod trace;
 use std::path::{Path, PathBuf};
 
 use case::Case;
+use onescan_plc_shim::Application;
+use onescan_plc_shim::syntax::printer::print_unit;
+use onescan_plc_shim::syntax::{FileId, parse};
 
 /// The files in `cases/`, by name.
 fn files() -> Vec<PathBuf> {
@@ -82,6 +85,24 @@ fn every_case_has_its_trace() {
         parts.into_iter().flat_map(|part| part.join().expect("a worker does not panic")).collect()
     });
     assert!(failures.is_empty(), "{} of {} cases fail\n\n{}", failures.len(), files.len(), failures.join("\n\n"));
+}
+
+/// A printed tree is the tree: it prints alike, and compiles to the same code and memory.
+#[test]
+fn every_case_is_printed_as_what_it_is() {
+    for path in files() {
+        let (name, text) = (stem(&path), std::fs::read_to_string(&path).expect("a case"));
+        let Ok(application) = Application::from_sources([("case.st", text.as_str())]) else {
+            continue;
+        };
+        let print = |text: &str| print_unit(&parse(FileId(0), text).unit);
+        let printed = print(&text);
+        assert_eq!(print(&printed), printed, "{name}");
+        let again = Application::from_sources([("case.st", printed.as_str())]);
+        let again = again.unwrap_or_else(|found| panic!("{name}: {found}\n{printed}"));
+        assert_eq!(application.wasm(), again.wasm(), "{name}");
+        assert_eq!(application.initial_memory(), again.initial_memory(), "{name}");
+    }
 }
 
 #[test]

@@ -2,7 +2,8 @@
 
 use std::fmt::Write;
 
-use onescan_plc_shim::{Application, SoftPlc, TaskPlan, VirtualTime};
+use onescan_plc_shim::input::kind::SourceKind;
+use onescan_plc_shim::{Application, Input, SoftPlc, TaskPlan, VirtualTime};
 
 use crate::rig::{MS, Rig, application, findings};
 
@@ -238,6 +239,45 @@ fn iec2_2_7_1_table_49_var_config_gives_instances_their_own_values() {
 }
 
 #[test]
+fn iec2_2_4_3_1_var_config_completes_open_addresses() {
+    let mut rig = configured(
+        "FUNCTION_BLOCK Io VAR lamp AT %Q* : BOOL; END_VAR VAR_INPUT on : BOOL; END_VAR lamp := on; END_FUNCTION_BLOCK
+        PROGRAM P VAR key AT %I* : BOOL; n AT %M* : INT; level AT %I* : WORD; io : Io; got : WORD; END_VAR
+            io(on := key); n := n + 1; got := level;
+        END_PROGRAM
+        PROGRAM Area VAR a AT %IX0.0 : BOOL; b AT %IX0.1 : BOOL; c AT %QX0.3 : BOOL; d AT %QX0.4 : BOOL;
+            w AT %IW1 : WORD; m AT %MW0 : INT := 7; END_VAR ; END_PROGRAM
+        CONFIGURATION c
+            TASK t (INTERVAL := T#10ms);
+            PROGRAM area WITH t : Area; PROGRAM P1 WITH t : P; PROGRAM P2 WITH t : P;
+            VAR_CONFIG
+                P1.key AT %IX0.0 : BOOL; P2.key AT %IX0.1 : BOOL; P1.io.lamp AT %QX0.3 : BOOL; P2.io.lamp AT %QX0.4 : BOOL;
+                P1.n AT %MW0 : INT; P2.level AT %IW1 : WORD;
+            END_VAR
+        END_CONFIGURATION",
+    );
+    rig.plc.write("area.b", "TRUE").expect("a BOOL");
+    rig.plc.write("area.w", "16#1234").expect("a WORD");
+    rig.scan().expect("no fault");
+    rig.scan().expect("no fault");
+    let read = |path| rig.plc.read(path).expect(path);
+    assert_eq!(
+        ["area.c", "area.d", "P2.key", "P1.got", "P2.got"].map(read),
+        ["FALSE", "TRUE", "TRUE", "16#0000", "16#1234"]
+    );
+    assert_eq!(["area.m", "P1.n", "P2.n"].map(read), ["9", "9", "2"]);
+    insta::assert_snapshot!(findings(
+        "PROGRAM P VAR key AT %I* : BOOL; n : BOOL; w AT %I* : WORD; END_VAR n := key AND w.0; END_PROGRAM
+CONFIGURATION c
+    PROGRAM P1 : P;
+    VAR_CONFIG
+        P1.key AT %QX0.0 : BOOL; P1.n AT %IX0.0 : BOOL; P1.w AT %IB3 : WORD; P1.key AT %IX0.9 : BOOL;
+    END_VAR
+END_CONFIGURATION"
+    ));
+}
+
+#[test]
 fn iec2_2_7_1_table_49_var_access_names_variables() {
     let rig = configured(&format!(
         "{PUMPS} CONFIGURATION c
@@ -327,6 +367,54 @@ fn a_configured_plc_is_restored_to_the_last_bit() {
         }
         assert_eq!(rig.plc.save(), other.plc.save(), "scan {scan}");
     }
+}
+
+#[test]
+fn iec2_2_7_tasks_of_plcopen_xml_run() {
+    let project = Input::from_text("line.xml", SourceKind::PlcOpen, include_str!("../inputs/line.xml"));
+    let application = Application::from_inputs([project]).unwrap_or_else(|found| panic!("{found}"));
+    let plan = TaskPlan::configured(&application).expect("a configuration");
+    let mut rig = Rig::with_plan(&application, &plan);
+    rig.set("Go", 1);
+    for _ in 0..3 {
+        rig.scan().expect("no fault");
+    }
+    assert_eq!(rig.now_ns, 60 * MS);
+    assert_eq!(
+        ["P1.Runs", "P2.Runs", "P3.Runs", "Count", "Line_1.Station.P2.Step"].map(|path| rig.int(path)),
+        [3, 5, 3, 3, 5]
+    );
+}
+
+#[test]
+fn tasks_of_a_twincat_project_are_one_configuration() {
+    let object = |name: &str, text: String| Input::from_text(name, SourceKind::TwinCat, text);
+    let program = |name: &str| {
+        let declared = format!("PROGRAM {name} VAR n : INT; END_VAR");
+        let text = format!(
+            "<TcPlcObject><POU Name=\"{name}\"><Declaration>{declared}</Declaration>
+            <Implementation><ST>n := n + 1;</ST></Implementation></POU></TcPlcObject>"
+        );
+        object(&format!("{name}.TcPOU"), text)
+    };
+    let task = |name: &str, cycle: u32, called: &str| {
+        let text = format!(
+            "<TcPlcObject><Task Name=\"{name}\"><CycleTime>{cycle}</CycleTime><Priority>20</Priority>
+            <PouCall><Name>{called}</Name></PouCall></Task></TcPlcObject>"
+        );
+        object(&format!("{name}.TcTTO"), text)
+    };
+    let files = [program("MAIN"), program("Slow"), task("Fast", 10_000, "MAIN"), task("Other", 20_000, "Slow")];
+    let application = Application::from_inputs(files).unwrap_or_else(|found| panic!("{found}"));
+    let plan = TaskPlan::configured(&application).expect("a configuration");
+    let mut rig = Rig::with_plan(&application, &plan);
+    for _ in 0..4 {
+        rig.scan().expect("no fault");
+    }
+    assert_eq!(["MAIN.n", "Slow.n"].map(|path| rig.int(path)), [4, 2]);
+    let unknown = [program("MAIN"), task("Fast", 10_000, "MIAN")];
+    let found = Application::from_inputs(unknown).expect_err("there is no MIAN");
+    insta::assert_snapshot!(found.to_string());
 }
 
 #[test]

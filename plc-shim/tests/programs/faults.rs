@@ -51,3 +51,74 @@ FUNCTION_BLOCK Axis VAR r : INT; END_VAR\n  r := Ratio(1, r);\nEND_FUNCTION_BLOC
 PROGRAM P VAR axis : Axis; END_VAR\n  axis();\nEND_PROGRAM"
     ), @"division by zero at test.st:2:12 in Ratio, called by P.axis (Axis) at test.st:5, called by P at test.st:8, t_v = 0.010 s");
 }
+
+#[test]
+fn a_fault_tells_the_instances_on_the_way() {
+    let text = "VAR_GLOBAL shared : Inner; END_VAR
+FUNCTION Ratio : INT VAR_INPUT a, b : INT; END_VAR
+  Ratio := a / b;
+END_FUNCTION
+FUNCTION_BLOCK Inner VAR_INPUT go : BOOL; END_VAR VAR r : INT; END_VAR
+  IF go THEN
+    r := Ratio(a := 1,
+               b := r);
+  END_IF;
+END_FUNCTION_BLOCK
+FUNCTION_BLOCK Outer VAR inner : ARRAY [1..3] OF Inner; i : INT := 2; END_VAR VAR_INPUT n : INT; END_VAR VAR_IN_OUT ref : Inner; END_VAR
+  inner[ i + 1 ](go := n = 1);
+  shared(go := n = 2);
+  ref(go := n = 3);
+END_FUNCTION_BLOCK
+PROGRAM Prg VAR_INPUT n : INT; END_VAR VAR fb : Outer; other : Inner; END_VAR
+
+  fb(n := n, ref := other);
+END_PROGRAM
+CONFIGURATION c
+  RESOURCE R ON Soft TASK t (INTERVAL := T#10ms); PROGRAM P1 WITH t : Prg (n := NUMBER); END_RESOURCE
+END_CONFIGURATION";
+    let of = |number: &str| {
+        let application = crate::rig::application(&text.replace("NUMBER", number));
+        let plan = onescan_plc_shim::TaskPlan::configured(&application).expect("a configuration");
+        let fault = Rig::with_plan(&application, &plan).scan().expect_err("a division by zero");
+        fault.to_string()
+    };
+    insta::assert_snapshot!(of("1"), @"division by zero at test.st:3:12 in Ratio, called by P1.fb.inner[i+1] (Inner) at test.st:7, called by P1.fb (Outer) at test.st:12, called by P1 (Prg) at test.st:18, t_v = 0.010 s");
+    insta::assert_snapshot!(of("2"), @"division by zero at test.st:3:12 in Ratio, called by shared (Inner) at test.st:7, called by P1.fb (Outer) at test.st:13, called by P1 (Prg) at test.st:18, t_v = 0.010 s");
+    insta::assert_snapshot!(of("3"), @"division by zero at test.st:3:12 in Ratio, called by P1.fb.ref (Inner) at test.st:7, called by P1.fb (Outer) at test.st:14, called by P1 (Prg) at test.st:18, t_v = 0.010 s");
+}
+
+#[test]
+fn a_fault_in_a_connection_names_the_instance() {
+    let application = crate::rig::application(
+        "VAR_GLOBAL x : INT := 11; END_VAR
+PROGRAM Prg VAR_INPUT n : INT (0..10); END_VAR ; END_PROGRAM
+CONFIGURATION c TASK t (INTERVAL := T#10ms);
+  PROGRAM P1 WITH t : Prg (n := x);
+END_CONFIGURATION",
+    );
+    let plan = onescan_plc_shim::TaskPlan::configured(&application).expect("a configuration");
+    let fault = Rig::with_plan(&application, &plan).scan().expect_err("out of the subrange");
+    insta::assert_snapshot!(fault.to_string(), @"value out of subrange at test.st:4:33 in P1, t_v = 0.010 s");
+}
+
+#[test]
+fn iec2_annex_e_each_kind_of_fault_is_tested() {
+    use onescan_plc_shim::FaultKind;
+    let of = |declarations: &str, statements: &str| {
+        let mut rig = Rig::new(&format!("PROGRAM P VAR {declarations} END_VAR {statements} END_PROGRAM"));
+        rig.scan().expect_err(statements).kind
+    };
+    let mut found = vec![
+        of("n : INT;", "n := 1 / n;"),
+        of("n : INT; a : ARRAY [1..2] OF INT;", "n := a[n];"),
+        of("n : INT := 3;", "n := MUX(n, 1, 2);"),
+        of("n, i : INT;", "FOR i := 1 TO 2 BY n DO ; END_FOR;"),
+        of("n : INT;", "WHILE n = 0 DO ; END_WHILE;"),
+        of("n : INT := 9; r : INT (0..5);", "r := n;"),
+    ];
+    // Only methods can be nested too deep or come back, which has tests of its own; an internal error has
+    // no program; references have tests of their own.
+    found.extend([FaultKind::CallTooDeep, FaultKind::Reentered, FaultKind::Internal]);
+    let missing = |kind: &&FaultKind| !found.contains(*kind) && !format!("{kind:?}").contains("Null");
+    assert_eq!(FaultKind::ALL.iter().filter(missing).collect::<Vec<_>>(), Vec::<&FaultKind>::new());
+}

@@ -297,16 +297,15 @@ END_FUNCTION_BLOCK
 FUNCTION_BLOCK Derived EXTENDS Base
 METHOD OVERRIDE Set q := 2; END_METHOD
 END_FUNCTION_BLOCK
-PROGRAM P VAR c : Counter; d : Derived; n : INT; END_VAR
-  d.Call(); n := c.Up(1);
-END_PROGRAM"
+PROGRAM P VAR c : Counter; d : Derived; n : INT; i : Chain; END_VAR
+  d.Call(); n := c.Up(1); i.Next().Next(); GVL.used := GVL.used + n;
+END_PROGRAM
+INTERFACE INext METHOD Next : INext END_METHOD END_INTERFACE
+FUNCTION_BLOCK Chain IMPLEMENTS INext METHOD Next : INext Next := THIS; END_METHOD END_FUNCTION_BLOCK
+NAMESPACE GVL VAR_GLOBAL used, unused : INT; END_VAR END_NAMESPACE"
     );
     let input = onescan_plc_shim::Input::from_text("test.st", onescan_plc_shim::input::kind::SourceKind::Text, text);
-    insta::assert_snapshot!(onescan_plc_shim::inspect([input], None), @r#"
-    test.st:21:39: warning[W0706]: variable `left` is never used
-    test.st:22:26: warning[W0706]: variable `lost` is never used
-    test.st:23:39: warning[W0705]: this is never reached
-    "#);
+    insta::assert_snapshot!(onescan_plc_shim::inspect([input], None), @"");
 }
 
 #[test]

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use onescan_plc_shim::input::kind::{EXTENSIONS, FileKind};
 use onescan_plc_shim::input::project;
-use onescan_plc_shim::{Code, Input, TaskPlan};
+use onescan_plc_shim::{Code, Dialect, Input, TaskPlan};
 
 use crate::run::RunError;
 use crate::scenario::Scenario;
@@ -19,18 +19,19 @@ pub struct Program {
     pub plan: Option<TaskPlan>,
 }
 
-/// The programs behind `paths`: each soft PLC of a scenario, and all other files as one.
+/// The programs behind `paths`: each soft PLC of a scenario, and all other files as one. A dialect that is
+/// chosen goes before those of scenarios and files.
 ///
 /// # Errors
 /// A file is not there, cannot be read, or is of no kind that is read.
-pub fn programs(paths: &[PathBuf]) -> Result<Vec<Program>, RunError> {
+pub fn programs(paths: &[PathBuf], dialect: Option<Dialect>) -> Result<Vec<Program>, RunError> {
     let mut programs = Vec::new();
-    let mut files = Files::default();
+    let mut files = Files { dialect, ..Files::default() };
     for path in paths {
         if path.is_dir() && !path.join(FILE_NAME).is_file() {
             files.folder(path)?;
         } else if path.is_dir() || path.file_name().is_some_and(|name| name == FILE_NAME) {
-            programs.extend(scenario(path)?);
+            programs.extend(scenario(path, dialect)?);
         } else {
             files.named(path)?;
         }
@@ -46,11 +47,11 @@ pub fn programs(paths: &[PathBuf]) -> Result<Vec<Program>, RunError> {
     Ok(programs)
 }
 
-fn scenario(path: &Path) -> Result<Vec<Program>, RunError> {
+fn scenario(path: &Path, chosen: Option<Dialect>) -> Result<Vec<Program>, RunError> {
     let scenario = Scenario::load(path)?;
     let mut programs = Vec::new();
-    for (sources, plan) in scenario.plcs() {
-        let mut files = Files::default();
+    for (sources, dialect, plan) in scenario.plcs() {
+        let mut files = Files { dialect: chosen.or(dialect), ..Files::default() };
         for source in sources {
             files.named(&scenario.folder().join(source))?;
         }
@@ -62,6 +63,8 @@ fn scenario(path: &Path) -> Result<Vec<Program>, RunError> {
 /// Files, each once.
 #[derive(Default)]
 struct Files {
+    /// The dialect of all of them, if not that which each file's name tells.
+    dialect: Option<Dialect>,
     inputs: Vec<Input>,
     seen: BTreeSet<PathBuf>,
 }
@@ -90,7 +93,11 @@ impl Files {
             FileKind::Source(kind) => {
                 // A file of the folder `.` is named as if the folder had not been.
                 let name = path.strip_prefix(".").unwrap_or(path).display().to_string();
-                self.inputs.push(Input::read(&name, kind, &bytes));
+                let input = Input::read(&name, kind, &bytes);
+                self.inputs.push(match self.dialect {
+                    Some(dialect) => input.in_dialect(dialect),
+                    None => input,
+                });
                 Ok(())
             }
             FileKind::Project => self.project(path, &bytes),

@@ -19,7 +19,7 @@ pub mod sarif;
 use std::io::Write;
 use std::path::PathBuf;
 
-use onescan_plc_shim::inspect;
+use onescan_plc_shim::{Dialect, inspect};
 
 use crate::run::RunError;
 use crate::run::error::ExitCode;
@@ -42,6 +42,8 @@ pub enum CheckFormat {
 pub struct CheckConfig {
     /// Files, folders and scenarios.
     pub paths: Vec<PathBuf>,
+    /// The dialect of all files, if not that which each file's name tells.
+    pub dialect: Option<Dialect>,
     /// For whom the findings are.
     pub format: CheckFormat,
     /// Whether warnings alone make the check fail.
@@ -64,7 +66,7 @@ pub enum Warnings {
 /// A file cannot be read, or the report not be written. What is wrong with the sources is no error
 /// here but an exit code.
 pub fn check(config: &CheckConfig, out: &mut dyn Write) -> Result<ExitCode, RunError> {
-    let programs = collect::programs(&config.paths)?;
+    let programs = collect::programs(&config.paths, config.dialect)?;
     let files = programs.iter().map(|program| program.inputs.len()).sum();
     let findings = programs.into_iter().map(|program| inspect(program.inputs, program.plan.as_ref()));
     let report = Report { files, findings: findings.collect() };

@@ -4,6 +4,8 @@ use std::net::SocketAddr;
 use std::path::PathBuf;
 
 use clap::{ArgAction, Args as ClapArgs, Parser, Subcommand, ValueEnum};
+use onescan_plc_shim::instrument::Target;
+use onescan_plc_shim::{Dialect, Task};
 use onescan_server::pacing::Pace;
 use onescan_server::session::Control;
 use onescan_server::signal::{ClientName, SignalName};
@@ -45,6 +47,13 @@ pub enum Command {
     Control(ControlArgs),
     /// Check PLC sources without running them
     Check(CheckArgs),
+    /// Make a PLC project run in lockstep on any PLC: scheduler, execution controllers and timers on virtual
+    /// time are attached; or take them off again
+    Instrument(Box<InstrumentArgs>),
+    /// List the library of components, or tell all about one kind
+    Components(ComponentsArgs),
+    /// Tell what a scene is made of: bodies, joints, components, signals
+    Describe(DescribeArgs),
     /// Explain a code of `check`, with an example that is wrong and one that is right
     Explain(ExplainArgs),
 }
@@ -135,6 +144,10 @@ pub struct CheckArgs {
     /// files, or scenarios; files and folders are checked together, as one program
     #[arg(required = true, value_name = "FILE|FOLDER|SCENARIO")]
     pub paths: Vec<PathBuf>,
+    /// Read all files in this dialect: iec2, iec3, codesys, twincat or siemens-scl [default: what a file's
+    /// name or PLCopen XML tells, as in `.scl`, else iec3]
+    #[arg(long, value_name = "NAME")]
+    pub dialect: Option<Dialect>,
     /// `human`; `json`: an object a finding with `code`, `severity`, `file`, `line`, `column`,
     /// `end_line`, `end_column`, `message`, `help`; `sarif`: a SARIF 2.1.0 log
     #[arg(long, value_enum, default_value_t)]
@@ -142,6 +155,60 @@ pub struct CheckArgs {
     /// Fail with exit code 1 if there are warnings
     #[arg(long)]
     pub deny_warnings: bool,
+}
+
+/// Options of `instrument`.
+#[derive(Debug, ClapArgs)]
+#[command(group = clap::ArgGroup::new("result").required(true).multiple(true).args(["output", "in_place", "diff"]))]
+pub struct InstrumentArgs {
+    /// A folder, a source file, a TwinCAT project or a scenario
+    pub project: PathBuf,
+    /// For whom the shim's own sources are written: `iec`: program text of the standard, `twincat`:
+    /// TwinCAT 3 objects
+    #[arg(long, value_enum, default_value_t)]
+    pub target: TargetArg,
+    /// A task and its programs, as in `fast:10ms:0=Main,Alarms`; may be given several times [default: the
+    /// scenario's tasks, or one of 10 ms with all programs]
+    #[arg(long = "task", value_name = "NAME:INTERVAL:PRIORITY=PROGRAM,...", value_parser = plc_task)]
+    pub tasks: Vec<Task>,
+    /// Write the result into this folder
+    #[arg(short, long, value_name = "DIR", conflicts_with = "in_place")]
+    pub output: Option<PathBuf>,
+    /// Change the project's own files
+    #[arg(long)]
+    pub in_place: bool,
+    /// Show the changes as a unified diff
+    #[arg(long)]
+    pub diff: bool,
+    /// Take the shim off: every file as it was, byte for byte
+    #[arg(long)]
+    pub remove: bool,
+    /// Write nothing and fail with exit code 1 if a source of time cannot be replaced
+    #[arg(long)]
+    pub deny_warnings: bool,
+    /// For people, or one JSON object for machines: `files` with `file`, `change`, `lines`, and `findings`
+    #[arg(long, value_enum, default_value_t)]
+    pub format: FormatArg,
+}
+
+/// Options of `components`.
+#[derive(Debug, ClapArgs)]
+pub struct ComponentsArgs {
+    /// A kind, for its equations, parameters, signals and failure modes
+    pub kind: Option<String>,
+    /// For people, or JSON for machines
+    #[arg(long, value_enum, default_value_t)]
+    pub format: FormatArg,
+}
+
+/// Options of `describe`.
+#[derive(Debug, ClapArgs)]
+pub struct DescribeArgs {
+    /// The scene, a `plant.toml`
+    pub scene: PathBuf,
+    /// For people, or JSON for machines
+    #[arg(long, value_enum, default_value_t)]
+    pub format: FormatArg,
 }
 
 /// Options of `explain`.
@@ -173,6 +240,25 @@ impl From<CheckFormatArg> for CheckFormat {
             CheckFormatArg::Human => Self::Human,
             CheckFormatArg::Json => Self::Json,
             CheckFormatArg::Sarif => Self::Sarif,
+        }
+    }
+}
+
+/// See [`Target`].
+#[derive(Clone, Copy, Debug, Default, ValueEnum)]
+pub enum TargetArg {
+    /// Program text of the standard
+    #[default]
+    Iec,
+    /// TwinCAT 3 objects
+    Twincat,
+}
+
+impl From<TargetArg> for Target {
+    fn from(arg: TargetArg) -> Self {
+        match arg {
+            TargetArg::Iec => Self::Iec,
+            TargetArg::Twincat => Self::TwinCat,
         }
     }
 }
@@ -274,6 +360,22 @@ fn pace(text: &str) -> Result<Pace, String> {
         Ok(factor) if factor.is_finite() && factor > 0.0 => Ok(Pace::Factor(factor)),
         _ => Err("write `max` or a factor over 0, as in `1` for real time or `0.1` for slow motion".to_owned()),
     }
+}
+
+fn plc_task(text: &str) -> Result<Task, String> {
+    let wanted = || "write `NAME:INTERVAL:PRIORITY=PROGRAM,PROGRAM`, as in `fast:10ms:0=Main,Alarms`".to_owned();
+    let (head, programs) = text.split_once('=').ok_or_else(wanted)?;
+    let [name, interval, priority] = head.split(':').collect::<Vec<_>>()[..] else {
+        return Err(wanted());
+    };
+    let interval: TimeSpan = interval.parse().map_err(|error| format!("{interval}: {error}"))?;
+    Ok(Task {
+        name: name.to_owned(),
+        interval_ns: interval.as_nanos(),
+        priority: priority.parse().map_err(|_| format!("`{priority}` is no priority: 0 comes first"))?,
+        programs: programs.split(',').map(|program| program.trim().to_owned()).collect(),
+        ..Task::default()
+    })
 }
 
 fn signal_name(text: &str) -> Result<SignalName, String> {

@@ -6,8 +6,10 @@ use std::time::Duration;
 use onescan_server::transport::tcp::operator::operate;
 use onescan_server::transport::tcp::participant::take_part;
 
-use super::args::{CheckArgs, Command, ControlArgs, ExplainArgs, JoinArgs, RunArgs};
+use super::args::{CheckArgs, Command, ControlArgs, ExplainArgs, InstrumentArgs, JoinArgs, RunArgs};
 use crate::check::{self, CheckConfig, Warnings};
+use crate::instrument::{Destination, Diff, Direction, InstrumentConfig};
+use crate::plant;
 use crate::run::config::SaveRequest;
 use crate::run::error::{ExitCode, RunError};
 use crate::run::interrupt::Interrupt;
@@ -28,7 +30,16 @@ pub fn dispatch(command: Command) -> Result<ExitCode, RunError> {
         Command::Join(args) => join(&args),
         Command::Control(args) => control(&args),
         Command::Check(args) => check(args),
+        Command::Instrument(args) => instrument(*args),
         Command::Explain(args) => explain(&args),
+        Command::Components(args) => {
+            plant::components::write(args.kind.as_deref(), args.format.into(), &mut std::io::stdout().lock())?;
+            Ok(ExitCode::Ok)
+        }
+        Command::Describe(args) => {
+            plant::describe::write(&args.scene, args.format.into(), &mut std::io::stdout().lock())?;
+            Ok(ExitCode::Ok)
+        }
     }
 }
 
@@ -93,8 +104,27 @@ fn control(args: &ControlArgs) -> Result<ExitCode, RunError> {
 
 fn check(args: CheckArgs) -> Result<ExitCode, RunError> {
     let warnings = if args.deny_warnings { Warnings::Denied } else { Warnings::Allowed };
-    let config = CheckConfig { paths: args.paths, format: args.format.into(), warnings };
+    let config = CheckConfig { paths: args.paths, dialect: args.dialect, format: args.format.into(), warnings };
     check::check(&config, &mut std::io::stdout().lock())
+}
+
+fn instrument(args: InstrumentArgs) -> Result<ExitCode, RunError> {
+    let destination = match args.output {
+        Some(folder) => Destination::Folder(folder),
+        None if args.in_place => Destination::InPlace,
+        None => Destination::Nowhere,
+    };
+    let config = InstrumentConfig {
+        project: args.project,
+        direction: if args.remove { Direction::Remove } else { Direction::Attach },
+        target: args.target.into(),
+        tasks: args.tasks,
+        destination,
+        diff: if args.diff { Diff::Shown } else { Diff::Hidden },
+        format: args.format.into(),
+        warnings: if args.deny_warnings { Warnings::Denied } else { Warnings::Allowed },
+    };
+    crate::instrument::instrument(&config, &mut std::io::stdout().lock(), &mut std::io::stderr().lock())
 }
 
 fn explain(args: &ExplainArgs) -> Result<ExitCode, RunError> {

@@ -1,6 +1,6 @@
 //! Files that appear whole or not at all.
 
-use std::io::Write;
+use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
 use super::error::RunError;
@@ -10,6 +10,42 @@ use super::error::RunError;
 /// # Errors
 /// The file cannot be written; what was there before still is.
 pub fn write_whole(path: &Path, bytes: &[u8]) -> Result<(), RunError> {
+    persist(stage(path, bytes)?, path)
+}
+
+/// A file that is to be written, or deleted.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Write {
+    /// The file; its folder is made if it is not there.
+    pub path: PathBuf,
+    /// What it is to hold; nothing for a file that is to be deleted.
+    pub bytes: Option<Vec<u8>>,
+}
+
+/// Writes files together: all are beside their places before the first takes its own.
+///
+/// # Errors
+/// A file cannot be written. Before any has changed, in all cases but a failing rename.
+pub fn write_all_whole(files: &[Write]) -> Result<(), RunError> {
+    let mut staged = Vec::new();
+    for Write { path, bytes } in files {
+        if let Some(bytes) = bytes {
+            if let Some(folder) = path.parent() {
+                create_folder(folder)?;
+            }
+            staged.push((stage(path, bytes)?, path));
+        }
+    }
+    for (file, path) in staged {
+        persist(file, path)?;
+    }
+    for Write { path, .. } in files.iter().filter(|file| file.bytes.is_none()) {
+        std::fs::remove_file(path).map_err(|source| RunError::File { path: path.clone(), source })?;
+    }
+    Ok(())
+}
+
+fn stage(path: &Path, bytes: &[u8]) -> Result<tempfile::NamedTempFile, RunError> {
     let failed = |source| RunError::File { path: path.to_owned(), source };
     let folder = match path.parent() {
         Some(parent) if parent != Path::new("") => parent,
@@ -18,7 +54,11 @@ pub fn write_whole(path: &Path, bytes: &[u8]) -> Result<(), RunError> {
     let mut file = tempfile::NamedTempFile::new_in(folder).map_err(failed)?;
     file.write_all(bytes).map_err(failed)?;
     make_readable(file.as_file()).map_err(failed)?;
-    file.persist(path).map(|_| ()).map_err(|e| failed(e.error))
+    Ok(file)
+}
+
+fn persist(file: tempfile::NamedTempFile, path: &Path) -> Result<(), RunError> {
+    file.persist(path).map(|_| ()).map_err(|error| RunError::File { path: path.to_owned(), source: error.error })
 }
 
 /// A temporary file is its owner's alone; a result is for everybody.

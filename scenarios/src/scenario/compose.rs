@@ -6,7 +6,7 @@ use miette::{NamedSource, SourceSpan};
 use onescan_clients::plant::{Plant, SceneError, SceneFault};
 use onescan_clients::soft_plc::{SoftPlcClient, bind};
 use onescan_plc_shim::input::kind::{FileKind, SourceKind};
-use onescan_plc_shim::{Application, Input, Task, TaskPlan};
+use onescan_plc_shim::{Application, Dialect, Input, Task, TaskPlan};
 use onescan_server::client::Client;
 use onescan_server::signal::{ClientName, SignalName, did_you_mean};
 
@@ -41,25 +41,27 @@ impl Scenario {
                 let period = period.unwrap_or(self.file().step);
                 let plant = Plant::parse(&text, &path.display().to_string(), name.clone(), period);
                 let plant = plant.map_err(|error| Box::new(report(&error, &path.display().to_string(), &text)))?;
-                Ok(Member::Plant(Box::new(plant)))
+                Ok(Member::Plant(Box::new(plant.seeded(self.file().seed))))
             }
-            ClientFile::SoftPlc { sources, tasks, bind } => {
-                self.soft_plc(name, sources, tasks, bind).map(|plc| Member::Plc(Box::new(plc)))
+            ClientFile::SoftPlc { sources, dialect, tasks, bind } => {
+                let inputs = sources.iter().map(|source| self.source(name, source, *dialect));
+                let inputs = inputs.collect::<Result<Vec<_>, _>>()?;
+                self.soft_plc(name, inputs, tasks, bind).map(|plc| Member::Plc(Box::new(plc)))
             }
             ClientFile::External { command } => Ok(Member::External(command.clone())),
         }
     }
 
-    /// The sources of each soft PLC, and the tasks that the scenario gives it.
-    pub(crate) fn plcs(&self) -> impl Iterator<Item = (&[String], Option<TaskPlan>)> {
+    /// The sources of each soft PLC, their dialect, and the tasks that the scenario gives it.
+    pub(crate) fn plcs(&self) -> impl Iterator<Item = (&[String], Option<Dialect>, Option<TaskPlan>)> {
         self.file().clients.values().filter_map(|client| match client.get_ref() {
-            ClientFile::SoftPlc { sources, tasks, .. } => Some((sources.as_slice(), plan_of(tasks))),
+            ClientFile::SoftPlc { sources, dialect, tasks, .. } => Some((sources.as_slice(), *dialect, plan_of(tasks))),
             _ => None,
         })
     }
 
     /// A source of PLC `name`, in whatever form and encoding it is; one of an unknown kind is text.
-    fn source(&self, name: &ClientName, source: &str) -> Result<Input, ScenarioError> {
+    fn source(&self, name: &ClientName, source: &str, dialect: Option<Dialect>) -> Result<Input, ScenarioError> {
         let path = self.folder().join(source);
         let kind = match FileKind::of(&path) {
             Some(FileKind::Source(kind)) => kind,
@@ -70,20 +72,20 @@ impl Scenario {
             None => SourceKind::Text,
         };
         let bytes = std::fs::read(&path).map_err(|source| ScenarioError::Unreadable { path, source, help: None })?;
-        Ok(Input::read(source, kind, &bytes))
+        let input = Input::read(source, kind, &bytes);
+        Ok(match dialect {
+            Some(dialect) => input.in_dialect(dialect),
+            None => input,
+        })
     }
 
     fn soft_plc(
         &self,
         name: &ClientName,
-        sources: &[String],
+        inputs: Vec<Input>,
         tasks: &[TaskFile],
         paths: &std::collections::BTreeMap<SignalName, String>,
     ) -> Result<SoftPlcClient, ScenarioError> {
-        let mut inputs = Vec::with_capacity(sources.len());
-        for source in sources {
-            inputs.push(self.source(name, source)?);
-        }
         let application = Application::from_inputs(inputs)
             .map_err(|findings| Box::new(PlcReport { client: name.clone(), findings }))?;
         for warning in application.warnings().iter() {
@@ -143,7 +145,7 @@ fn read(path: &PathBuf) -> Result<String, ScenarioError> {
 }
 
 /// A scene's faults, the first in front.
-fn report(error: &SceneError, file: &str, text: &str) -> SceneReport {
+pub(crate) fn report(error: &SceneError, file: &str, text: &str) -> SceneReport {
     let one = |fault: &SceneFault| SceneReport {
         message: fault.kind.to_string(),
         file: NamedSource::new(file, text.to_owned()),

@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 use std::str::FromStr;
 
+use onescan_plc_shim::Dialect;
 use onescan_server::signal::{ClientName, ElementaryType, SignalName};
 use onescan_server::time::{TimeSpan, VirtualTime};
 use serde::{Deserialize, Deserializer};
@@ -26,6 +27,9 @@ pub struct ScenarioFile {
     /// Virtual time at which a run is complete, unless the command line says otherwise.
     #[serde(deserialize_with = "from_text")]
     pub until: VirtualTime,
+    /// What noise, jitter and other chance begin with.
+    #[serde(default)]
+    pub seed: u64,
     /// How clients see each other within a step.
     #[serde(default)]
     pub coupling: CouplingFile,
@@ -87,6 +91,9 @@ pub enum ClientFile {
     SoftPlc {
         /// Source files, relative to the scenario's folder.
         sources: Vec<String>,
+        /// The dialect of all of them, if not that which each file's name tells.
+        #[serde(default, deserialize_with = "from_optional_text")]
+        dialect: Option<Dialect>,
         /// Its tasks, in place of those of its own CONFIGURATION.
         #[serde(default)]
         tasks: Vec<TaskFile>,
@@ -172,6 +179,11 @@ where
     String::deserialize(deserializer)?.parse().map_err(serde::de::Error::custom)
 }
 
-fn from_optional_text<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<TimeSpan>, D::Error> {
+fn from_optional_text<'de, D, T>(deserializer: D) -> Result<Option<T>, D::Error>
+where
+    D: Deserializer<'de>,
+    T: FromStr,
+    T::Err: std::fmt::Display,
+{
     from_text(deserializer).map(Some)
 }

@@ -8,8 +8,10 @@ use serde::Serialize;
 pub enum Coupling {
     /// Nothing.
     None,
-    /// A joint that it moves, or nothing: then it moves by itself.
-    Drives,
+    /// A prismatic joint that it moves, or nothing: then it moves by itself.
+    Slides,
+    /// A revolute joint that it turns, or nothing: then it turns by itself.
+    Turns,
     /// A joint that it measures.
     Measures,
     /// A kinematic body whose surface it runs.
@@ -18,6 +20,8 @@ pub enum Coupling {
     Ray,
     /// A body that other bodies touch.
     Touch,
+    /// A body that takes out of the world what touches it and is not held.
+    Collect,
     /// A body at whose place other bodies appear.
     Place,
 }
@@ -46,9 +50,8 @@ impl Coupling {
     pub const fn keys(self) -> &'static [BindingKey] {
         match self {
             Self::None => &[],
-            Self::Drives => {
-                const { &[optional("joint", "prismatic or revolute joint that it moves; by itself if absent")] }
-            }
+            Self::Slides => const { &[optional("joint", "prismatic joint that it moves; by itself if absent")] },
+            Self::Turns => const { &[optional("joint", "revolute joint that it turns; by itself if absent")] },
             Self::Measures => const { &[needed("joint", "prismatic, revolute or slot joint that it measures")] },
             Self::Belt => {
                 const {
@@ -68,7 +71,7 @@ impl Coupling {
                     ]
                 }
             }
-            Self::Touch => {
+            Self::Touch | Self::Collect => {
                 const {
                     &[
                         needed("body", "body with a shape, which the targets touch"),

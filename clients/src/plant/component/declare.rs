@@ -78,7 +78,6 @@ macro_rules! parameters {
 
         impl $crate::plant::component::declare::ParameterSet for $name {
             fn table() -> Vec<$crate::plant::component::kind::Parameter> {
-                use $crate::plant::component::declare::ParameterType;
                 vec![ $( $crate::plant::component::kind::Parameter {
                     key: stringify!($key),
                     about: concat!($($about),+).trim().to_owned(),
@@ -86,17 +85,17 @@ macro_rules! parameters {
                         #[allow(unused_mut, unused_assignments)]
                         let mut bounds = (0.0, 0.0);
                         $( bounds = (f64::from($least), f64::from($most)); )?
-                        <$ty as ParameterType>::form(bounds)
+                        <$ty as $crate::plant::component::declare::ParameterType>::form(bounds)
                     },
-                    preset: <$ty as ParameterType>::write($preset),
+                    preset: <$ty as $crate::plant::component::declare::ParameterType>::write($preset),
                 }, )* ]
             }
 
+            #[allow(unused_mut, unused_variables)]
             fn read(settings: &[$crate::plant::component::kind::Setting]) -> Self {
-                use $crate::plant::component::declare::ParameterType;
                 let mut settings = settings.iter().copied();
                 Self { $(
-                    $key: settings.next().and_then(<$ty as ParameterType>::read).unwrap_or($preset),
+                    $key: settings.next().and_then(<$ty as $crate::plant::component::declare::ParameterType>::read).unwrap_or($preset),
                 )* }
             }
         }

@@ -28,6 +28,7 @@ impl<C: Component> Rig<C> {
     }
 
     /// Runs so many turns under the same inputs; the outputs of the last.
+    #[expect(clippy::needless_pass_by_value, reason = "inputs are small and written in place")]
     pub(crate) fn run(&mut self, inputs: C::Inputs, dt_s: f64, turns: u32) -> C::Outputs {
         let mut outputs = C::Outputs::default();
         for _ in 0..turns {

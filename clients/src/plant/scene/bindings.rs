@@ -24,16 +24,18 @@ pub(super) struct Placed<'s> {
 impl Placed<'_> {
     /// Who drives a joint or a belt already.
     fn driver(&self, bound: &Bound, components: &[(String, Bound)]) -> Option<String> {
-        let axis = self.axes.iter().find(|axis| match (axis.moved, bound) {
-            (Moved::Joint(one), Bound::Drives(other)) => one == *other,
-            (Moved::Belt { body: one, .. }, Bound::Belt { body: other, .. }) => one == *other,
-            _ => false,
-        });
-        let component = components.iter().find(|(_, known)| match (known, bound) {
-            (Bound::Drives(one), Bound::Drives(other)) => one == other,
-            (Bound::Belt { body: one, .. }, Bound::Belt { body: other, .. }) => one == other,
-            _ => false,
-        });
+        let driven = |bound: &Bound| match bound {
+            Bound::Drives(joint) => Some((Thing::Joint, *joint)),
+            Bound::Belt { body, .. } => Some((Thing::Body, *body)),
+            _ => None,
+        };
+        let by_axis = |moved: Moved| match moved {
+            Moved::Joint(joint) => (Thing::Joint, joint),
+            Moved::Belt { body, .. } => (Thing::Body, body),
+        };
+        let wanted = driven(bound)?;
+        let axis = self.axes.iter().find(|axis| by_axis(axis.moved) == wanted);
+        let component = components.iter().find(|(_, known)| driven(known) == Some(wanted));
         axis.map(|axis| format!("axis `{}`", axis.name))
             .or_else(|| component.map(|(name, _)| format!("component `{name}`")))
     }
@@ -53,25 +55,41 @@ impl Placed<'_> {
         }
         match coupling {
             Coupling::None => Some(Bound::Nothing),
-            Coupling::Drives if keys.get("joint").is_none() => Some(Bound::Nothing),
-            Coupling::Drives => {
+            Coupling::Slides | Coupling::Turns if keys.get("joint").is_none() => Some(Bound::Nothing),
+            Coupling::Slides | Coupling::Turns => {
+                let wanted = if coupling == Coupling::Slides { JointKind::Prismatic } else { JointKind::Revolute };
                 let name = keys.text("joint", "the name of a joint", faults)?;
-                let bound = Bound::Drives(self.joint(&name, JointKind::drivable, faults)?);
-                self.alone(bound, Thing::Joint, &name, others, faults)
+                let (joint, kind) = self.joint(&name, faults)?;
+                if kind != wanted {
+                    let undrivable =
+                        SceneFaultKind::Undrivable { joint: text(&name).to_owned(), kind: kind_name(kind) };
+                    let hint = format!("a {} drives a {} joint", text(&keys.kind), kind_name(wanted));
+                    faults.add_hinted(name.span(), undrivable, Some(hint));
+                    return None;
+                }
+                self.alone(Bound::Drives(joint), Thing::Joint, &name, others, faults)
             }
             Coupling::Measures => {
                 let name = keys.text("joint", "the name of a joint", faults)?;
-                self.joint(&name, |kind| unit(kind).is_some(), faults).map(Bound::Measures)
+                let (joint, kind) = self.joint(&name, faults)?;
+                if unit(kind).is_none() {
+                    let joint = text(&name).to_owned();
+                    faults.add(name.span(), SceneFaultKind::Unmeasurable { joint, kind: kind_name(kind) });
+                    return None;
+                }
+                Some(Bound::Measures(joint))
             }
             Coupling::Belt => self.belt(keys, others, faults),
             Coupling::Ray => self.ray(keys, faults),
-            Coupling::Touch => {
+            Coupling::Touch | Coupling::Collect => {
                 let body = self.shaped(keys, faults);
                 let targets = match keys.texts("targets", faults) {
                     Some(names) => self.targets(&names, faults),
                     None => self.dynamic().filter(|index| Some(*index) != body).collect(),
                 };
-                Some(Bound::Touch { body: body?, targets })
+                let body = body?;
+                let touch = coupling == Coupling::Touch;
+                Some(if touch { Bound::Touch { body, targets } } else { Bound::Collect { body, targets } })
             }
             Coupling::Place => {
                 let body = self.body(keys, faults);
@@ -100,15 +118,9 @@ impl Placed<'_> {
         }
     }
 
-    fn joint(&self, name: &Spanned<String>, fits: fn(JointKind) -> bool, faults: &mut Faults<'_>) -> Option<usize> {
+    fn joint(&self, name: &Spanned<String>, faults: &mut Faults<'_>) -> Option<(usize, JointKind)> {
         let joint = self.joints.find(name, faults)?;
-        let kind = *self.file.joint[joint].get_ref().kind.get_ref();
-        if fits(kind) {
-            return Some(joint);
-        }
-        let (joint_name, kind) = (text(name).to_owned(), kind_name(kind));
-        faults.add(name.span(), SceneFaultKind::Unmeasurable { joint: joint_name, kind });
-        None
+        Some((joint, *self.file.joint[joint].get_ref().kind.get_ref()))
     }
 
     fn body(&self, keys: &Keys<'_>, faults: &mut Faults<'_>) -> Option<usize> {
@@ -161,12 +173,10 @@ impl Placed<'_> {
     }
 
     fn ray(&self, keys: &Keys<'_>, faults: &mut Faults<'_>) -> Option<Bound> {
-        let body = match keys.get("body") {
-            None => None,
-            Some(_) => {
-                let name = keys.text("body", "the name of a body", faults)?;
-                if text(&name) == GROUND { None } else { Some(self.bodies.find_beside(&name, Some(GROUND), faults)?) }
-            }
+        let carrier = keys.text("body", "the name of a body", faults);
+        let body = match &carrier {
+            Some(name) if text(name) != GROUND => Some(self.bodies.find_beside(name, Some(GROUND), faults)?),
+            Some(_) | None => None,
         };
         let (point, direction) = (keys.triple("point_m", faults), keys.triple("direction", faults));
         let targets = match keys.texts("targets", faults) {
@@ -176,12 +186,5 @@ impl Placed<'_> {
         let point_m = faults.triple("point_m", point.as_ref());
         let direction = direction.and_then(|direction| faults.direction("direction", &direction));
         Some(Bound::Ray { body, point_m: point_m?, direction: direction?, targets })
-    }
-}
-
-impl JointKind {
-    /// True for a joint that a motor moves.
-    fn drivable(self) -> bool {
-        matches!(self, Self::Prismatic | Self::Revolute)
     }
 }

@@ -61,6 +61,13 @@ pub enum Bound {
         /// Indices of the others.
         targets: Vec<usize>,
     },
+    /// A body that takes out of the world what touches it.
+    Collect {
+        /// Index of the body.
+        body: usize,
+        /// Indices of the others.
+        targets: Vec<usize>,
+    },
     /// A body at whose place others appear.
     Place {
         /// Index of the body.

@@ -3,21 +3,39 @@
 use super::super::Checker;
 use super::super::convert::Operand;
 use super::super::scope::{Body, Scope};
-use super::path::Target;
 use crate::diagnostic::{Code, Diagnostic};
 use crate::ir::{
     Dispatch, ElementaryType, Entry, Expr, ExprKind, Guard, InstanceCall, Place, Pou, PouId, Statement, StatementKind,
-    Storage, Type,
+    Storage, Target, Type,
 };
 use crate::syntax::Span;
 use crate::syntax::ast::{self, Connection, Ident, ProgramDeclaration, SectionKind};
 
 /// The statements around an instance's call.
 #[derive(Default)]
-struct Around {
-    before: Vec<Statement>,
-    after: Vec<Statement>,
+pub(super) struct Around {
+    pub(super) before: Side,
+    pub(super) after: Side,
+}
+
+/// Statements with the registers that they need.
+#[derive(Default)]
+pub(super) struct Side {
+    pub(super) statements: Vec<Statement>,
     scope: Scope,
+}
+
+fn unit(name: &str, side: Side, span: Span) -> Pou {
+    Pou {
+        name: name.to_owned(),
+        span,
+        variables: Vec::new(),
+        registers: side.scope.registers,
+        parameters: 0,
+        result: None,
+        guard: Guard::None,
+        body: side.statements,
+    }
 }
 
 impl<'a> Checker<'a> {
@@ -29,11 +47,13 @@ impl<'a> Checker<'a> {
         for (at, declared) in declared.into_iter().enumerate() {
             let program = self.programs[at].clone();
             let span = declared.map_or(self.pou(program.pou).ast.name.span, |(_, declared)| declared.name.span);
-            let mut around = Around { before: self.select_globals(program.resource, span), ..Around::default() };
+            let mut around = Around::default();
+            around.before.statements = self.select_globals(program.resource, span);
+            self.copy_locations(at, &mut around);
             for connection in declared.into_iter().flat_map(|(_, declared)| &declared.connections) {
                 match connection {
-                    Connection::Input(input, source) => self.connect_input(at, input, source, &mut around),
-                    Connection::Output(output, target) => self.connect_output(at, output, target, &mut around),
+                    Connection::Input(input, source) => self.connect_input(at, input, source, &mut around.before),
+                    Connection::Output(output, target) => self.connect_output(at, output, target, &mut around.after),
                     Connection::Task(block, task) => {
                         blocks.extend(declared.and_then(|(resource, _)| self.task_block(at, block, task, resource)));
                         Some(())
@@ -81,34 +101,29 @@ impl<'a> Checker<'a> {
         if twins > 1 { self.program_target(at).path } else { name }
     }
 
+    /// What copies the inputs, if there are any; the call; what copies the outputs.
     fn entry(&mut self, name: String, pou: PouId, offset: u32, around: Around, span: Span) -> Entry {
-        let Around { before, after, mut scope } = around;
+        let Around { before, after } = around;
         let ty = self.types.block(&name, pou);
+        let mut scope = Scope::default();
         let pointer = scope.register(ElementaryType::Udint);
         let instance = Place::whole(Storage::Absolute(offset), ty, span);
         let dispatch = Dispatch::Direct;
-        let call = InstanceCall { instance, pou, dispatch, pointer, inputs: before, outputs: after };
+        let call = InstanceCall { instance, pou, dispatch, pointer, inputs: Vec::new(), outputs: Vec::new() };
         let body = vec![Statement { kind: StatementKind::CallInstance(Box::new(call)), span }];
-        let unit = Pou {
-            name: name.clone(),
-            span,
-            variables: Vec::new(),
-            registers: scope.registers,
-            parameters: 0,
-            result: None,
-            guard: Guard::None,
-            body,
-        };
+        let call = Side { statements: body, scope };
+        let sides = [before, call, after].into_iter().filter(|side| !side.statements.is_empty());
+        let units = sides.map(|side| unit(&name, side, span)).collect();
         self.enqueue(pou);
-        Entry { name, unit }
+        Entry { name, units }
     }
 
-    fn connect_input(&mut self, at: usize, input: &ast::Expr, source: &ast::Expr, around: &mut Around) -> Option<()> {
+    fn connect_input(&mut self, at: usize, input: &ast::Expr, source: &ast::Expr, side: &mut Side) -> Option<()> {
         let target = self.target_in_program(at, input)?;
         self.wants_section(&target, SectionKind::Input, input.span)?;
         let resource = self.programs[at].resource;
         let global = self.is_configured_path(source, resource).then(|| self.target(source, resource));
-        let mut body = Body::new(self, std::mem::take(&mut around.scope), None);
+        let mut body = Body::new(self, std::mem::take(&mut side.scope), None);
         let value = match global {
             Some(None) => None,
             Some(Some(found)) => {
@@ -119,12 +134,12 @@ impl<'a> Checker<'a> {
             None => body.expression_for(source, target.ty),
         };
         let statement = value.map(|value| body.assignment(place(&target, input.span), value, source.span));
-        around.scope = body.scope;
-        around.before.push(statement?);
+        side.scope = body.scope;
+        side.statements.push(statement?);
         Some(())
     }
 
-    fn connect_output(&mut self, at: usize, output: &ast::Expr, sink: &ast::Expr, around: &mut Around) -> Option<()> {
+    fn connect_output(&mut self, at: usize, output: &ast::Expr, sink: &ast::Expr, side: &mut Side) -> Option<()> {
         let source = self.target_in_program(at, output)?;
         self.wants_section(&source, SectionKind::Output, output.span)?;
         let resource = self.programs[at].resource;
@@ -139,13 +154,13 @@ impl<'a> Checker<'a> {
             }
             place(&found, sink.span)
         };
-        let mut body = Body::new(self, std::mem::take(&mut around.scope), None);
+        let mut body = Body::new(self, std::mem::take(&mut side.scope), None);
         let value = loaded(&source, output.span);
         let ty = body.checker.types.of_value(value.ty);
         let value = body.coerce(Operand::Typed(Expr { ty, ..value }), sink_place.ty);
         let statement = value.map(|value| body.assignment(sink_place, value, output.span));
-        around.scope = body.scope;
-        around.after.push(statement?);
+        side.scope = body.scope;
+        side.statements.push(statement?);
         Some(())
     }
 
@@ -185,11 +200,12 @@ impl<'a> Checker<'a> {
             return None;
         }
         let program = self.programs[at].clone();
-        self.configured.task_blocks.push((at, target.offset - program.offset, block.span));
-        let around = Around { before: self.select_globals(program.resource, block.span), ..Around::default() };
+        self.configured.task_blocks.push((at, target.inside - program.offset, block.span));
+        let mut around = Around::default();
+        around.before.statements = self.select_globals(program.resource, block.span);
         let inside = target.path.strip_prefix(&self.program_target(at).path).unwrap_or(&target.path).to_owned();
         let name = format!("{}{inside}", self.entry_name(at));
-        let entry = self.entry(name, pou, target.offset, around, block.span);
+        let entry = self.entry(name, pou, target.inside, around, block.span);
         Some((program.resource, task?, entry))
     }
 
@@ -209,11 +225,12 @@ impl<'a> Checker<'a> {
     }
 }
 
-fn place(target: &Target, span: Span) -> Place {
-    Place::whole(Storage::Absolute(target.offset), target.ty, span)
+pub(super) fn place(target: &Target, span: Span) -> Place {
+    let place = Place::whole(target.storage, target.ty, span);
+    if target.inside == 0 { place } else { place.member(target.inside, target.ty) }
 }
 
-fn loaded(target: &Target, span: Span) -> Expr {
+pub(super) fn loaded(target: &Target, span: Span) -> Expr {
     Expr { kind: ExprKind::Load(place(target, span)), ty: target.ty, span }
 }
 

@@ -4,11 +4,10 @@ use super::super::Checker;
 use super::super::names::TypedImage;
 use super::super::scope::Body;
 use super::super::types::Need;
-use super::path::Target;
 use crate::diagnostic::{Code, Diagnostic};
-use crate::ir::{Access, TypeId};
+use crate::ir::{Access, Storage, Target};
 use crate::syntax::Span;
-use crate::syntax::ast::{AccessDirection, AccessPath, Ident, InstanceValue, TypeSpec};
+use crate::syntax::ast::{AccessDirection, AccessPath, InstanceValue, TypeSpec};
 
 impl<'a> Checker<'a> {
     /// Gives variables of single instances initial values of their own.
@@ -23,27 +22,34 @@ impl<'a> Checker<'a> {
         let variable = target.variable.as_ref();
         if variable.is_none_or(|variable| variable.is_constant) {
             let what = if variable.is_some() { "a constant" } else { "a program" };
-            let message = format!("`{}` is {what}, which has no value of its own in an instance", target.path);
-            self.report(Diagnostic::error(Code::NoInstanceValue, value.path.span, message));
-            return None;
+            let why = format!("is {what}, which has no value of its own in an instance");
+            return self.unsuitable_value(&target, &why, value);
         }
         self.same_type(&target, &value.spec, value.path.span)?;
         if let Some(address) = &value.address {
-            self.locate_instance(address);
+            self.locate(&target, address)?;
         }
         if let Some(initial) = &value.initial {
             // What is not mentioned keeps the value that its own declaration gives.
-            let image = self.image_at(target.offset, self.types.size(target.ty));
+            let image = self.image_at(target.inside, self.types.size(target.ty));
             let declared = TypedImage { ty: target.ty, image: image.into() };
             let image = Body::outside(self).initial_image(&declared, initial)?;
-            self.placed.push((target.offset, image));
+            if !matches!(target.storage, Storage::Absolute(_)) {
+                return self.unsuitable_value(
+                    &target,
+                    "has a direct address, where its declaration gives the value",
+                    value,
+                );
+            }
+            self.placed.push((target.inside, image));
         }
         Some(())
     }
 
-    fn locate_instance(&mut self, address: &Ident) {
-        let message = format!("the location {} of a variable in an instance is not supported yet", address.text);
-        self.report(Diagnostic::error(Code::UnsupportedFeature, address.span, message));
+    fn unsuitable_value<T>(&mut self, target: &Target, why: &str, value: &InstanceValue) -> Option<T> {
+        let message = format!("`{}` {why}", target.path);
+        self.report(Diagnostic::error(Code::NoInstanceValue, value.path.span, message));
+        None
     }
 
     /// Initial bytes as far as they have been placed.
@@ -61,7 +67,7 @@ impl<'a> Checker<'a> {
         image
     }
 
-    fn same_type(&mut self, target: &Target, spec: &'a TypeSpec, span: Span) -> Option<TypeId> {
+    fn same_type(&mut self, target: &Target, spec: &'a TypeSpec, span: Span) -> Option<()> {
         let declared = Body::outside(self).resolve(spec, Need::Size)?;
         if declared.ty != target.ty {
             let (wanted, found) = (self.types.name(target.ty), self.types.name(declared.ty));
@@ -73,7 +79,7 @@ impl<'a> Checker<'a> {
             self.report(report);
             return None;
         }
-        Some(declared.ty)
+        Some(())
     }
 
     /// Names for those outside.
@@ -88,7 +94,7 @@ impl<'a> Checker<'a> {
 
     fn access_path(&mut self, access: &'a AccessPath) -> Option<Access> {
         let target = self.target(&access.path, None)?;
-        let ty = self.same_type(&target, &access.spec, access.path.span)?;
+        self.same_type(&target, &access.spec, access.path.span)?;
         let constant = target.variable.as_ref().is_none_or(|variable| variable.is_constant);
         let writable = access.direction == AccessDirection::ReadWrite;
         if writable && constant {
@@ -96,6 +102,6 @@ impl<'a> Checker<'a> {
             self.report(Diagnostic::error(Code::AssignToConstant, access.path.span, message));
             return None;
         }
-        Some(Access { name: access.name.text.clone(), path: target.path, offset: target.offset, ty, writable })
+        Some(Access { name: access.name.text.clone(), target, writable })
     }
 }

@@ -8,11 +8,13 @@
 //! | [`programs`] | instances of programs |
 //! | [`connections`] | what runs before and after a program |
 //! | [`tasks`] | tasks and their inputs |
+//! | [`locations`] | direct addresses of single instances |
 //! | [`instances`] | `VAR_CONFIG` and `VAR_ACCESS` |
 
 mod connections;
 mod globals;
 mod instances;
+mod locations;
 mod path;
 mod programs;
 mod tasks;
@@ -20,6 +22,7 @@ mod tasks;
 use std::collections::BTreeMap;
 
 use self::globals::Alternatives;
+use self::locations::InstanceLocation;
 use super::Checker;
 use crate::diagnostic::{Code, Diagnostic};
 use crate::ir::{self, Entry, PouId};
@@ -37,6 +40,7 @@ pub(super) struct Configured<'a> {
     resources: Vec<ir::Resource>,
     pub(super) entries: Vec<Entry>,
     access: Vec<ir::Access>,
+    locations: Vec<InstanceLocation>,
     /// Instances of function blocks with a task of their own: the program, the instance's offset in
     /// it, where that is said.
     task_blocks: Vec<(usize, u32, Span)>,
@@ -81,6 +85,7 @@ impl<'a> Checker<'a> {
 
     /// What can be said only when every unit's body is known.
     pub(super) fn check_configuration(&mut self) {
+        self.report_idle_programs();
         self.report_foreign_globals();
         self.report_double_calls();
     }

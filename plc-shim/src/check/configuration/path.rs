@@ -3,20 +3,9 @@
 use super::super::Checker;
 use super::super::scope::Body;
 use crate::diagnostic::{Code, Diagnostic, did_you_mean};
-use crate::ir::{Storage, Type, TypeId, Variable};
+use crate::ir::{Storage, Target, Type};
 use crate::syntax::Span;
 use crate::syntax::ast::{Expr, ExprKind, Ident};
-
-/// A variable, or a part of one, at a fixed place.
-#[derive(Debug, Clone)]
-pub(super) struct Target {
-    /// Its path from the outside.
-    pub(super) path: String,
-    pub(super) offset: u32,
-    pub(super) ty: TypeId,
-    /// The declaration that the last name on the way leads to; nothing for a program.
-    pub(super) variable: Option<Variable>,
-}
 
 /// One piece of a path.
 #[derive(Clone, Copy)]
@@ -136,12 +125,13 @@ impl Checker<'_> {
         let Some(variable) = self.global(&key, Some(name.span)) else {
             return Some(None);
         };
-        let Storage::Absolute(offset) = variable.storage else {
-            return Some(None);
+        let (storage, inside) = match variable.storage {
+            Storage::Absolute(offset) => (Storage::Absolute(0), offset),
+            located => (located, 0),
         };
         let home = home.and_then(|home| self.resource_name(home)).map(|home| format!("{}.", home.text));
         let path = format!("{}{}", home.unwrap_or_default(), variable.name);
-        Some(Some(Target { path, offset, ty: variable.ty, variable: Some(variable) }))
+        Some(Some(Target { path, storage, inside, ty: variable.ty, variable: Some(variable) }))
     }
 
     pub(super) fn program_target(&mut self, index: usize) -> Target {
@@ -150,7 +140,7 @@ impl Checker<'_> {
         let home = program.resource.and_then(|home| self.resource_name(home));
         let path = home.map_or_else(|| program.name.clone(), |home| format!("{}.{}", home.text, program.name));
         let ty = self.types.block(&program.name, program.pou);
-        Target { path, offset: program.offset, ty, variable: None }
+        Target { path, storage: Storage::Absolute(0), inside: program.offset, ty, variable: None }
     }
 
     /// The variable at a path inside of program `index`.
@@ -179,7 +169,7 @@ impl Checker<'_> {
                     return self.no_member(&at, name, &names);
                 };
                 let path = format!("{}.{}", at.path, field.name);
-                Some(Target { path, offset: at.offset + field.offset, ty: field.ty, variable: at.variable })
+                Some(Target { path, inside: at.inside + field.offset, ty: field.ty, ..at })
             }
             Type::FunctionBlock { pou, .. } => {
                 let scope = self.interface(pou, name.span)?;
@@ -190,13 +180,16 @@ impl Checker<'_> {
                     let names: Vec<&str> = scope.variables.iter().map(|each| each.name.as_str()).collect();
                     return self.no_member(&at, name, &names);
                 };
-                let Storage::Instance(offset) = variable.storage else {
-                    let message = format!("`{}` does not lie in its instance", variable.name);
-                    return self.no_path(name, &message, None);
+                let (storage, inside) = match variable.storage {
+                    Storage::Instance(offset) => (at.storage, at.inside + offset),
+                    Storage::Located(_) => (variable.storage, 0),
+                    _ => {
+                        let message = format!("`{}` does not lie in its instance", variable.name);
+                        return self.no_path(name, &message, None);
+                    }
                 };
                 let path = format!("{}.{}", at.path, variable.name);
-                let (offset, ty) = (at.offset + offset, variable.ty);
-                Some(Target { path, offset, ty, variable: Some(variable.clone()) })
+                Some(Target { path, storage, inside, ty: variable.ty, variable: Some(variable.clone()) })
             }
             _ => self.no_member(&at, name, &[]),
         }
@@ -231,8 +224,8 @@ impl Checker<'_> {
             number = number * bounds.count() + (value - i128::from(bounds.low)) as u64;
             list.push(value.to_string());
         }
-        let offset = at.offset + number as u32 * self.types.size(element);
+        let inside = at.inside + number as u32 * self.types.size(element);
         let path = format!("{}[{}]", at.path, list.join(","));
-        Some(Target { path, offset, ty: element, variable: at.variable })
+        Some(Target { path, inside, ty: element, ..at })
     }
 }

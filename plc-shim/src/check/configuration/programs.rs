@@ -1,5 +1,7 @@
 //! Instances of programs (2nd ed. 2.7.1).
 
+use std::collections::BTreeSet;
+
 use super::super::Checker;
 use crate::diagnostic::{Code, Diagnostic, did_you_mean};
 use crate::ir::{PouId, Program, Retention};
@@ -26,14 +28,25 @@ impl<'a> Checker<'a> {
             if ast.kind != PouKind::Program || self.programs.iter().any(|program| program.pou == id) {
                 continue;
             }
-            if self.configured.ast.is_some() {
-                let message =
-                    format!("program `{}` has no instance in the configuration, so it never runs", ast.name.text);
-                let found = Diagnostic::warning(Code::ProgramNeverRuns, ast.name.span, message);
-                let help = format!("write `PROGRAM {} WITH .. : {0};` in one of its resources", ast.name.text);
-                self.report(found.with_help(help));
-            }
             self.place_program(id, &ast.name, None, None);
+        }
+    }
+
+    /// What no resource declares never runs, unless another unit calls it, as vendors allow.
+    pub(super) fn report_idle_programs(&mut self) {
+        if self.configured.ast.is_none() {
+            return;
+        }
+        let called: BTreeSet<PouId> = self.calls.values().flatten().map(|(callee, _)| *callee).collect();
+        for program in self.programs.clone() {
+            if program.resource.is_some() || called.contains(&program.pou) {
+                continue;
+            }
+            let span = self.pou(program.pou).ast.name.span;
+            let name = program.name;
+            let message = format!("program `{name}` has no instance in the configuration, so it never runs");
+            let help = format!("write `PROGRAM {name} WITH .. : {name};` in one of its resources");
+            self.report(Diagnostic::warning(Code::ProgramNeverRuns, span, message).with_help(help));
         }
     }
 

@@ -16,3 +16,8 @@ mod format;
 pub(super) mod link;
 mod parse;
 mod view;
+
+/// The text of a value of type `ty`, given by its bits.
+pub(crate) fn value_text(ty: crate::ir::ElementaryType, bits: i64) -> String {
+    format::format(ty, bits).text().to_owned()
+}

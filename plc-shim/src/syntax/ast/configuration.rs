@@ -19,6 +19,24 @@ pub struct Configuration {
     pub span: Span,
 }
 
+impl Configuration {
+    /// Takes over what another part of the same configuration declares.
+    pub(crate) fn absorb(&mut self, part: Self) {
+        self.sections.extend(part.sections);
+        self.access.extend(part.access);
+        self.instances.extend(part.instances);
+        for resource in part.resources {
+            match self.resources.iter_mut().find(|own| own.name.is_none() && resource.name.is_none()) {
+                Some(own) => {
+                    own.tasks.extend(resource.tasks);
+                    own.programs.extend(resource.programs);
+                }
+                None => self.resources.push(resource),
+            }
+        }
+    }
+}
+
 /// `RESOURCE r ON p .. END_RESOURCE`
 #[derive(Debug, Clone)]
 pub struct Resource {

@@ -3,11 +3,15 @@
 use super::cursor::Cursor;
 use crate::diagnostic::{Code, Diagnostic};
 use crate::dialect::Feature;
+use crate::ir::ElementaryType;
 use crate::syntax::ast::{BinaryOp, Expr, ExprKind, StatementKind, UpdateOp};
-use crate::syntax::token::{Punctuation, TokenKind};
+use crate::syntax::token::{Keyword, Punctuation, TokenKind};
 
 impl Cursor<'_> {
     pub(super) fn assignment_or_call(&mut self) -> StatementKind {
+        if let Some(kind) = self.slip() {
+            return kind;
+        }
         if let Some(kind) = self.jump() {
             return kind;
         }
@@ -36,6 +40,28 @@ impl Cursor<'_> {
             }
         }
         StatementKind::Error
+    }
+
+    /// What begins no statement here, and does in other languages.
+    fn slip(&mut self) -> Option<StatementKind> {
+        let span = self.span();
+        let next = self.peek_ahead(1);
+        let (message, help) = if self.at_word("ELSEIF") || self.at_word("ELIF") {
+            ("this begins no branch", "write `ELSIF`")
+        } else if self.at_mark(Punctuation::Star) && next == Some(TokenKind::Punctuation(Punctuation::RightParen)) {
+            self.advance();
+            ("there is no `(*` before this", "a comment in a comment has an end of its own")
+        } else if self.peek() == Some(TokenKind::Identifier)
+            && next == Some(TokenKind::Punctuation(Punctuation::Colon))
+            && self.peek_ahead(2) == Some(TokenKind::Punctuation(Punctuation::Equal))
+        {
+            ("there is a blank in `:=`", "write `:=`")
+        } else {
+            return None;
+        };
+        self.report(Diagnostic::error(Code::UnexpectedToken, span, message).with_help(help));
+        self.advance();
+        Some(StatementKind::Error)
     }
 
     /// What stands behind `target :=`.
@@ -88,6 +114,11 @@ impl Cursor<'_> {
         if self.peek_ahead(1) == Some(TokenKind::Punctuation(Punctuation::Colon)) {
             self.advance();
             self.advance();
+            if self.at_type() {
+                let message = "a variable is declared between `VAR` and `END_VAR`";
+                self.report(Diagnostic::error(Code::UnexpectedToken, start, message));
+                return Some(StatementKind::Error);
+            }
             self.report_jump(start);
             return Some(self.nested(Self::statement_kind).unwrap_or(StatementKind::Error));
         }
@@ -98,6 +129,13 @@ impl Cursor<'_> {
             return Some(StatementKind::Error);
         }
         None
+    }
+
+    /// True for the name of an elementary type or `ARRAY`: what is before it is no label.
+    fn at_type(&self) -> bool {
+        let text = self.next_text();
+        let string = || ["STRING", "WSTRING"].iter().any(|name| name.eq_ignore_ascii_case(text));
+        self.at_keyword(Keyword::Array) || ElementaryType::find(text).is_some() || string()
     }
 
     fn report_jump(&mut self, span: crate::syntax::Span) {

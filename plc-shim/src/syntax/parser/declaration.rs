@@ -2,10 +2,12 @@
 
 use super::cursor::Cursor;
 use super::object::ends_object;
+use crate::diagnostic::{Code, Diagnostic};
 use crate::dialect::Feature;
+use crate::ir::ElementaryType;
 use crate::syntax::ast::{
     CompilationUnit, Declaration, Edge, Ident, Member, Modifier, PouKind, Qualifier, Section, SectionKind, Statement,
-    TypeDeclaration, TypeSpec, TypeSpecKind, Variable,
+    StatementKind, TypeDeclaration, TypeSpec, TypeSpecKind, Variable,
 };
 use crate::syntax::token::{Keyword, Punctuation, TokenKind};
 
@@ -83,6 +85,15 @@ impl Cursor<'_> {
         }
     }
 
+    /// The `:` before a function's result, or a report that it is missing.
+    pub(super) fn result_follows(&mut self) -> bool {
+        let name = self.peek() == Some(TokenKind::Identifier) && ElementaryType::find(self.next_text()).is_some();
+        if name {
+            self.unexpected("`:`");
+        }
+        self.take_mark(Punctuation::Colon) || name
+    }
+
     /// The kind of the section that begins here.
     pub(super) fn next_section(&mut self) -> Option<SectionKind> {
         if self.at_word("VAR_STAT") {
@@ -92,11 +103,22 @@ impl Cursor<'_> {
         section_kind(self.peek())
     }
 
-    pub(super) fn body(&mut self, end: Keyword, members: &mut Vec<Member>) -> Vec<Statement> {
+    pub(super) fn body(
+        &mut self,
+        end: Keyword,
+        sections: &mut Vec<Section>,
+        members: &mut Vec<Member>,
+    ) -> Vec<Statement> {
         let mut body = self.statements();
         // A stray closing keyword is reported and passed, so that the rest of the body is read.
         while !self.take_keyword(end) {
             if self.members(members) {
+                body.extend(self.statements());
+                continue;
+            }
+            if let Some(kind) = section_kind(self.peek()) {
+                self.report_late_section(&body);
+                sections.push(self.section(kind));
                 body.extend(self.statements());
                 continue;
             }
@@ -111,23 +133,50 @@ impl Cursor<'_> {
         body
     }
 
+    /// Reports a section behind statements, unless these are what an error before it has left.
+    fn report_late_section(&mut self, body: &[Statement]) {
+        if body.iter().any(|statement| !matches!(statement.kind, StatementKind::Error | StatementKind::Empty)) {
+            let message = "variables are declared before the statements";
+            let found = Diagnostic::error(Code::UnexpectedToken, self.span(), message);
+            self.report_syntax(found);
+        }
+    }
+
     pub(super) fn section(&mut self, kind: SectionKind) -> Section {
         let start = self.span();
         self.advance();
         let qualifiers = self.qualifiers();
         let mut variables = Vec::new();
-        while self.peek() == Some(TokenKind::Identifier) {
+        while self.at_variable() {
             self.variable(&mut variables);
         }
-        if !self.take_keyword(Keyword::EndVar) {
+        if self.at_statement() {
+            self.unexpected("`END_VAR`");
+        } else if !self.take_keyword(Keyword::EndVar) {
             self.unexpected("a variable's name or `END_VAR`");
             self.skip_until(|kind| {
                 kind == TokenKind::Keyword(Keyword::EndVar) || section_kind(Some(kind)).is_some() || ends_unit(kind)
             });
             self.take_keyword(Keyword::EndVar);
         }
-        self.take_mark(Punctuation::Semicolon);
         Section { kind, qualifiers, variables, span: self.span_from(start) }
+    }
+
+    /// True where a variable is declared, be it under a name that is none.
+    fn at_variable(&mut self) -> bool {
+        match self.peek() {
+            Some(TokenKind::Identifier) => !self.at_statement(),
+            Some(TokenKind::Keyword(_)) => self.peek_ahead(1) == Some(TokenKind::Punctuation(Punctuation::Colon)),
+            _ => false,
+        }
+    }
+
+    /// True where a statement begins with a name: the section's end is missing.
+    fn at_statement(&self) -> bool {
+        use Punctuation as P;
+        let marks = [P::Assign, P::LeftParen, P::Dot, P::LeftBracket, P::Caret];
+        self.peek() == Some(TokenKind::Identifier)
+            && marks.iter().any(|mark| self.peek_ahead(1) == Some(TokenKind::Punctuation(*mark)))
     }
 
     fn qualifiers(&mut self) -> Vec<Qualifier> {
@@ -166,6 +215,9 @@ impl Cursor<'_> {
 
     fn variable(&mut self, variables: &mut Vec<Variable>) {
         let known = self.reported();
+        if matches!(self.peek(), Some(TokenKind::Keyword(_))) {
+            self.report_keyword_as_name();
+        }
         let names = self.identifier_list("a variable's name");
         let address = self.take_keyword(Keyword::At).then(|| self.address()).flatten();
         self.expect_mark(Punctuation::Colon);
@@ -180,6 +232,14 @@ impl Cursor<'_> {
             variables.push(Variable { names, address, spec, edge, initial });
         }
         self.end_of_declaration(known);
+    }
+
+    /// Reports `if : INT;` and passes its name.
+    fn report_keyword_as_name(&mut self) {
+        let message = format!("`{}` is a keyword, not a name", self.next_text());
+        let span = self.span();
+        self.report(Diagnostic::error(Code::UnexpectedToken, span, message));
+        self.advance();
     }
 
     fn edge(&mut self) -> Option<Edge> {

@@ -226,12 +226,46 @@ impl Cursor<'_> {
             }
             Some(TokenKind::Punctuation(Punctuation::LeftParen)) => return self.parenthesised(),
             _ => {
-                self.unexpected("an expression");
+                self.unexpected_operand();
                 return error_at(Span { end: span.start, ..span });
             }
         };
         self.advance();
+        if matches!(kind, ExprKind::Literal(Literal::Integer(_) | Literal::Real(_))) && self.pass_unit(span) {
+            return error_at(span);
+        }
         Expr { kind, span, height: 1 }
+    }
+
+    /// Reports the letters of `10ms`, a number with a unit.
+    fn pass_unit(&mut self, number: Span) -> bool {
+        let unit = self.span();
+        if unit.start != number.end || self.peek() != Some(TokenKind::Identifier) {
+            return false;
+        }
+        let message = format!("`{}` is no number", self.text(number.start, unit.end));
+        let help = format!("a duration is written `T#{}`", self.text(number.start, unit.end));
+        let times = ["d", "h", "m", "s", "ms", "us", "ns"];
+        let help = times.iter().any(|name| self.at_word(name)).then_some(help);
+        let found = Diagnostic::error(Code::InvalidLiteral, number.to(unit), message);
+        self.report(found.with_optional_help(help));
+        self.advance();
+        true
+    }
+
+    /// Reports what is no operand, with a hint for what other languages write.
+    fn unexpected_operand(&mut self) {
+        use Punctuation as P;
+        let previous = self.previous();
+        let help = match (previous, self.peek()) {
+            (Some(TokenKind::Punctuation(P::Equal)), Some(TokenKind::Punctuation(P::Equal))) => "compare with `=`",
+            (Some(TokenKind::Punctuation(P::Ampersand)), Some(TokenKind::Punctuation(P::Ampersand))) => "write `AND`",
+            (Some(TokenKind::Punctuation(P::Equal)), Some(TokenKind::Punctuation(P::Colon))) => "assign with `:=`",
+            _ => return self.unexpected("an expression"),
+        };
+        let found = format!("an expression expected, found `{}`", self.next_text());
+        let span = self.span();
+        self.report_syntax(Diagnostic::error(Code::UnexpectedToken, span, found).with_help(help));
     }
 
     /// `AND(a, b)`: operators are functions too (2nd ed. Table 26).

@@ -34,7 +34,7 @@ impl Cursor<'_> {
         self.advance();
         let mut object = Object { modifiers: self.modifiers(), ..Object::default() };
         let name = self.expect_identifier("the unit's name")?;
-        let has_result = matches!(kind, PouKind::Function | PouKind::Method) && self.take_mark(Punctuation::Colon);
+        let has_result = matches!(kind, PouKind::Function | PouKind::Method) && self.result_follows();
         let result = has_result.then(|| self.type_spec()).filter(|result| !self.is_void(result));
         self.heritage(&mut object);
         self.take_mark(Punctuation::Semicolon);
@@ -49,10 +49,10 @@ impl Cursor<'_> {
         (name, result, mut object): (Ident, Option<TypeSpec>, Object),
         start: Span,
     ) -> Pou {
-        let sections = self.sections_and_members(&mut object);
+        let mut sections = self.sections_and_members(&mut object);
         self.take_keyword(Keyword::Begin);
         let from = self.span();
-        let body = self.body(end, &mut object.members);
+        let body = self.body(end, &mut sections, &mut object.members);
         if matches!(kind, PouKind::Class | PouKind::Interface) && !body.is_empty() {
             let message = "a class or interface has no statements of its own";
             let found = Diagnostic::error(Code::UnexpectedToken, from, message);
@@ -146,10 +146,11 @@ impl Cursor<'_> {
         self.advance();
         let Some(name) = self.expect_identifier("the action's name") else { return };
         self.take_mark(Punctuation::Colon);
-        let body = self.body(Keyword::EndAction, &mut Vec::new());
+        let mut sections = Vec::new();
+        let body = self.body(Keyword::EndAction, &mut sections, &mut Vec::new());
         let (kind, span) = (PouKind::Action, self.span_from(start));
         let object = Object::default();
-        let pou = Pou { kind, name, result: None, sections: Vec::new(), body, object, span };
+        let pou = Pou { kind, name, result: None, sections, body, object, span };
         members.push(Member { kind: MemberKind::Action, pou });
     }
 

@@ -21,6 +21,7 @@ fn closes_list(keyword: Keyword) -> bool {
         keyword,
         K::EndProgram | K::EndFunctionBlock | K::EndFunction | K::EndIf | K::EndCase | K::EndFor
             | K::EndWhile | K::EndRepeat | K::Elsif | K::Else | K::Until
+            | K::Var | K::VarInput | K::VarOutput | K::VarInOut | K::VarTemp | K::VarExternal | K::VarStat
             // A new unit begins: the end of the one before is missing.
             | K::Program | K::FunctionBlock | K::Function | K::Type | K::EndType | K::VarGlobal
             | K::OrganizationBlock | K::EndOrganizationBlock | K::DataBlock | K::EndDataBlock
@@ -78,7 +79,9 @@ impl Cursor<'_> {
         self.report_syntax(Diagnostic::error(Code::UnexpectedToken, span, message).with_optional_help(help));
         // What follows is most often a good statement; only a stray remainder is skipped.
         let good = match self.peek() {
-            Some(TokenKind::Identifier | TokenKind::DirectAddress) | None => true,
+            // A name with nothing behind it is what remains of the statement before.
+            Some(TokenKind::Identifier) => self.peek_ahead(1) != Some(TokenKind::Punctuation(Punctuation::Semicolon)),
+            Some(TokenKind::DirectAddress) | None => true,
             Some(TokenKind::Keyword(keyword)) => closes_list(keyword) || begins_statement(keyword),
             _ => false,
         };
@@ -160,6 +163,9 @@ impl Cursor<'_> {
         if !self.at_keyword(end) {
             if self.reported() == known {
                 self.unexpected(&format!("`{}`", end.text()));
+            }
+            if end == Keyword::Of && self.at_case_label() {
+                return condition;
             }
             self.skip_until(|kind| match kind {
                 TokenKind::Punctuation(Punctuation::Semicolon) => true,
@@ -261,9 +267,16 @@ impl Cursor<'_> {
             return StatementKind::Error;
         };
         self.expect_mark(Punctuation::Assign);
+        self.take_mark(Punctuation::Equal);
         let from = self.expression();
-        self.expect_keyword(Keyword::To);
-        let (to, by) = if self.for_has_by() {
+        let (to, by) = if !self.expect_keyword(Keyword::To) {
+            self.skip_until(|kind| match kind {
+                TokenKind::Keyword(word) => word != Keyword::Until && (word == Keyword::Do || closes_list(word)),
+                kind => kind == TokenKind::Punctuation(Punctuation::Semicolon),
+            });
+            self.take_keyword(Keyword::Do);
+            (from.clone(), None)
+        } else if self.for_has_by() {
             let to = self.condition(Keyword::By);
             (to, Some(self.condition(Keyword::Do)))
         } else {
@@ -306,7 +319,13 @@ impl Cursor<'_> {
             self.unexpected("`UNTIL`");
             return StatementKind::Error;
         }
+        let known = self.reported();
         let until = self.condition(Keyword::EndRepeat);
+        if self.reported() > known && self.at_mark(Punctuation::Semicolon) {
+            // `UNTIL a; END_REPEAT` ends all the same.
+            self.advance();
+            self.take_keyword(Keyword::EndRepeat);
+        }
         StatementKind::Repeat(RepeatStatement { body, until })
     }
 }

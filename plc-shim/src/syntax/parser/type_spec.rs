@@ -1,6 +1,7 @@
 //! Types as written (2nd ed. 2.3.3).
 
 use super::cursor::Cursor;
+use crate::diagnostic::{Code, Diagnostic};
 use crate::syntax::ast::{Dimension, EnumValue, Expr, Field, Ident, Subrange, TypeSpec, TypeSpecKind};
 use crate::syntax::token::{Keyword, Punctuation, TokenKind};
 
@@ -21,7 +22,8 @@ impl Cursor<'_> {
         if self.take_mark(Punctuation::LeftParen) {
             let values = self.enumeration_values();
             // Vendors write the base type behind the values.
-            let base = if self.peek() == Some(TokenKind::Identifier) { self.take_identifier() } else { None };
+            let closed = self.previous() == Some(TokenKind::Punctuation(Punctuation::RightParen));
+            let base = if closed { self.take_identifier() } else { None };
             return TypeSpecKind::Enumeration(values, base);
         }
         let Some(name) = self.expect_identifier("a type") else {
@@ -45,7 +47,24 @@ impl Cursor<'_> {
             self.expect_mark(Punctuation::RightParen);
             return TypeSpecKind::Subrange(name, Box::new(Subrange { low, high }));
         }
+        if self.at_mark(Punctuation::LeftBracket) {
+            self.pass_init_arguments();
+        }
         TypeSpecKind::Name(name)
+    }
+
+    /// `FB[(a := 1), (a := 2)]`: arguments of each instance's `FB_init` (CODESYS, TwinCAT).
+    fn pass_init_arguments(&mut self) {
+        let start = self.span();
+        self.advance();
+        while self.at_mark(Punctuation::LeftParen) {
+            self.arguments();
+            self.take_mark(Punctuation::Comma);
+        }
+        self.expect_mark(Punctuation::RightBracket);
+        let message = "arguments of FB_init are not supported";
+        let found = Diagnostic::error(Code::VendorRuntime, self.span_from(start), message);
+        self.report(found.with_help("give the instance's inputs initial values"));
     }
 
     fn string_type(&mut self, name: Ident) -> TypeSpecKind {
@@ -65,7 +84,7 @@ impl Cursor<'_> {
 
     fn array_type(&mut self) -> TypeSpecKind {
         let mut dimensions = Vec::new();
-        self.expect_mark(Punctuation::LeftBracket);
+        let bracketed = self.expect_mark(Punctuation::LeftBracket);
         loop {
             let low = self.expression();
             self.expect_mark(Punctuation::Range);
@@ -75,7 +94,11 @@ impl Cursor<'_> {
                 break;
             }
         }
-        self.expect_mark(Punctuation::RightBracket);
+        if bracketed {
+            self.expect_mark(Punctuation::RightBracket);
+        } else {
+            self.take_mark(Punctuation::RightBracket);
+        }
         self.expect_keyword(Keyword::Of);
         TypeSpecKind::Array(dimensions, Box::new(self.type_spec()))
     }
@@ -103,6 +126,10 @@ impl Cursor<'_> {
     }
 
     pub(super) fn identifier_list(&mut self, what: &str) -> Vec<Ident> {
+        if matches!(self.previous(), Some(TokenKind::Keyword(_))) && self.at_mark(Punctuation::Colon) {
+            // The name was a keyword, which has been reported.
+            return Vec::new();
+        }
         let mut names: Vec<Ident> = self.expect_identifier(what).into_iter().collect();
         while self.take_mark(Punctuation::Comma) {
             names.extend(self.expect_identifier(what));

@@ -50,10 +50,8 @@ pub(crate) struct State {
     held: Option<u32>,
 }
 
-/// An arm that grips and drops packages, with reversed logic, by its parameters.
-pub(crate) struct Arm {
-    p: Parameters,
-}
+/// An arm that grips and drops packages, with reversed logic.
+pub(crate) struct Arm;
 
 impl Component for Arm {
     const NAME: &'static str = "arm";
@@ -67,8 +65,8 @@ impl Component for Arm {
     type Failure = Failure;
     type State = State;
 
-    fn new(p: Parameters) -> Self {
-        Self { p }
+    fn new(_: Parameters) -> Self {
+        Self
     }
 
     fn initial(&self, _: &Start) -> State {

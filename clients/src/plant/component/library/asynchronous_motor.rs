@@ -147,7 +147,7 @@ impl Component for AsynchronousMotor {
     const FORMULA: &'static [&'static str] =
         &["ω_s = 2π f / p", "s = (ω_s - ω) / ω_s,N", "M = 2 M_k / (s/s_k + s_k/s)", "J dω/dt = M - M_load - d ω"];
     const SOURCE: &'static str = "M. Kloss, Archiv für Elektrotechnik 5 (1916)";
-    const COUPLING: Coupling = Coupling::Drives;
+    const COUPLING: Coupling = Coupling::Turns;
     type Parameters = Parameters;
     type Inputs = Inputs;
     type Outputs = Outputs;

@@ -2,7 +2,7 @@
 //!
 //! # Equations
 //! - switching distance `s = s_n (ε_r - 1)/(ε_r + 1)`: the factor by which a half space of permittivity
-//!   ε_r mirrors a charge before it, 1 for a conductor;
+//!   `ε_r` mirrors a charge before it, 1 for a conductor;
 //! - on at `s`, off again at `s (1 + h)`: hysteresis.
 //!
 //! # Source

@@ -51,10 +51,8 @@ pub(crate) struct State {
     power: bool,
 }
 
-/// A contact sensor, by its parameters.
-pub(crate) struct ContactSensor {
-    p: Parameters,
-}
+/// A contact sensor.
+pub(crate) struct ContactSensor;
 
 impl Component for ContactSensor {
     const NAME: &'static str = "contact_sensor";
@@ -68,8 +66,8 @@ impl Component for ContactSensor {
     type Failure = Failure;
     type State = State;
 
-    fn new(p: Parameters) -> Self {
-        Self { p }
+    fn new(_: Parameters) -> Self {
+        Self
     }
 
     fn initial(&self, _: &Start) -> State {

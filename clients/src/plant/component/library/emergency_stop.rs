@@ -112,7 +112,7 @@ mod tests {
         Rig::new(EmergencyStop::new(Parameters { discrepancy_s }))
     }
 
-    fn channels(out: &Outputs) -> (bool, bool) {
+    fn channels(out: Outputs) -> (bool, bool) {
         (out.channel_a, out.channel_b)
     }
 
@@ -120,23 +120,23 @@ mod tests {
     fn it_latches_until_it_is_turned_back() {
         let mut rig = rig(0.0);
         let seen: Vec<_> =
-            [LEFT, HIT, LEFT, BACK, LEFT].iter().map(|inputs| channels(&rig.run(*inputs, 0.01, 1)).0).collect();
+            [LEFT, HIT, LEFT, BACK, LEFT].iter().map(|inputs| channels(rig.run(*inputs, 0.01, 1)).0).collect();
         assert_eq!(seen, [true, false, false, true, true]);
-        assert_eq!(channels(&rig.run(Inputs { hit: true, release: true }, 0.01, 1)), (false, false), "the hit wins");
+        assert_eq!(channels(rig.run(Inputs { hit: true, release: true }, 0.01, 1)), (false, false), "the hit wins");
     }
 
     #[test]
     fn the_second_channel_is_late() {
         let mut rig = rig(0.03);
-        let seen: Vec<_> = (0..4).map(|_| channels(&rig.run(HIT, 0.01, 1))).collect();
+        let seen: Vec<_> = (0..4).map(|_| channels(rig.run(HIT, 0.01, 1))).collect();
         assert_eq!(seen, [(false, true), (false, true), (false, false), (false, false)]);
     }
 
     #[test]
     fn each_failure_has_its_effect() {
-        let hit = |mode: Failure| channels(&rig(0.0).failing(mode).run(HIT, 0.01, 1));
+        let hit = |mode: Failure| channels(rig(0.0).failing(mode).run(HIT, 0.01, 1));
         assert_eq!(hit(Failure::AWelded), (true, false));
         assert_eq!(hit(Failure::BWelded), (false, true));
-        assert_eq!(channels(&rig(0.0).failing(Failure::AOpen).run(LEFT, 0.01, 1)), (false, true));
+        assert_eq!(channels(rig(0.0).failing(Failure::AOpen).run(LEFT, 0.01, 1)), (false, true));
     }
 }

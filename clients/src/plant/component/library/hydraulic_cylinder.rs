@@ -218,7 +218,7 @@ impl Component for HydraulicCylinder {
         "fed forward: u = A v / (Q_N √(Δp/Δp_N))",
     ];
     const SOURCE: &'static str = "M. Jelali, A. Kroll, Hydraulic Servo-systems, 2003, ch. 4; Nyyssönen 2018, 3.1.4";
-    const COUPLING: Coupling = Coupling::Drives;
+    const COUPLING: Coupling = Coupling::Slides;
     type Parameters = Parameters;
     type Inputs = Inputs;
     type Outputs = Outputs;
@@ -307,7 +307,7 @@ mod tests {
         Inputs { enable: true, command }
     }
 
-    /// Rod's velocity with no load: with φ = A_A/A_B, the flows `A_A v = K u √(p_s - p_A)` and
+    /// Rod's velocity with no load: with `φ = A_A/A_B`, the flows `A_A v = K u √(p_s - p_A)` and
     /// `A_B v = K u √p_B` and the balance `p_A φ = p_B` give `p_A = p_s / (1 + φ³)`.
     fn exact_m_s(cylinder: &HydraulicCylinder, u: f64) -> f64 {
         let phi = cylinder.cap_m2 / cylinder.ring_m2;

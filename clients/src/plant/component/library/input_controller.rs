@@ -5,7 +5,7 @@
 //! - `start` sets level 1, `hold` level 0, each while it is true; `hold` wins.
 //!
 //! # Source
-//! class InputController of the filling machine (Sivtoft 2002, 4.2.3).
+//! class `InputController` of the filling machine (Sivtoft 2002, 4.2.3).
 
 use serde::{Deserialize, Serialize};
 

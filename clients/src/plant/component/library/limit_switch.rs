@@ -125,8 +125,9 @@ mod tests {
     use crate::plant::component::coupling::{Coordinate, Seen};
     use crate::plant::component::tests::Rig;
 
-    fn rig(p: Parameters) -> Rig<LimitSwitch> {
-        Rig::new(LimitSwitch::new(Parameters { from: 0.1, to: 0.2, ..p }))
+    fn rig(mut p: Parameters) -> Rig<LimitSwitch> {
+        (p.from, p.to) = (0.1, 0.2);
+        Rig::new(LimitSwitch::new(p))
     }
 
     fn at(rig: &mut Rig<LimitSwitch>, position: f64) -> bool {

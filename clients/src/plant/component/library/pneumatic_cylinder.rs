@@ -70,9 +70,9 @@ parameters! {
         /// conductance of the cushion's screw
         cushion_l_s_bar: f64 = 0.05 => 0.0, 1000.0;
         /// volume of each chamber and its tube at its end
-        dead_cm3: f64 = 20.0 => 0.1, 100000.0;
+        dead_cm3: f64 = 20.0 => 0.1, 1e5;
         /// all that moves with the rod
-        moving_kg: f64 = 5.0 => 0.01, 100000.0;
+        moving_kg: f64 = 5.0 => 0.01, 1e5;
         /// constant load against the way out
         load_n: f64 = 0.0 => -1e6, 1e6;
         /// dry friction
@@ -165,7 +165,7 @@ pub(crate) struct PneumaticCylinder {
 
 impl PneumaticCylinder {
     /// Where the coils want the spool.
-    fn wanted(&self, inputs: &Inputs, now: Spool) -> Spool {
+    fn wanted(&self, inputs: Inputs, now: Spool) -> Spool {
         match (self.p.valve, inputs.extend, inputs.retract) {
             (Valve::Spring, true, _) | (_, true, false) => Spool::Out,
             (Valve::Spring, false, _) | (_, false, true) => Spool::In,
@@ -234,7 +234,7 @@ impl Component for PneumaticCylinder {
         "m dv/dt = p_A A_A - p_B A_B - p_0 A_rod - F_load - d v - F_c sgn(v)",
     ];
     const SOURCE: &'static str = "ISO 6358-1:2013; P. Beater, Pneumatic Drives, 2007, ch. 3 and 5";
-    const COUPLING: Coupling = Coupling::Drives;
+    const COUPLING: Coupling = Coupling::Slides;
     type Parameters = Parameters;
     type Inputs = Inputs;
     type Outputs = Outputs;
@@ -265,7 +265,7 @@ impl Component for PneumaticCylinder {
     }
 
     fn drive(&self, state: &mut State, inputs: &Inputs, turn: &Turn) {
-        let wanted = self.wanted(inputs, state.spool);
+        let wanted = self.wanted(*inputs, state.spool);
         let stuck = turn.failed.has(Failure::ValveStuck);
         if state.switching.holds(wanted != state.spool && !stuck, self.p.valve_delay_s, turn.dt_s) {
             state.spool = wanted;

@@ -3,7 +3,7 @@
 //! # Equations
 //! - set motion: seven segments from rest to rest (`jerk_m_s3`), or a trapezoid if it is 0;
 //! - `v_c = k_ff v_set + K_v (x_set - x)`: position loop, within ±1.2 of the greatest speed;
-//! - `F = m (v_c - v) / T_v`, within ±F_max: velocity loop;
+//! - `F = m (v_c - v) / T_v`, within `±F_max`: velocity loop;
 //! - `m dv/dt = F - F_load - F_c sgn(v)`;
 //! - following error `x_set - x`; without feed-forward `v / K_v` at constant velocity.
 //!
@@ -196,12 +196,11 @@ impl ServoAxis {
             Doing::Standing if execute => self.start(state, inputs),
             Doing::Standing if home => Doing::Velocity { wanted_m_s: -self.p.homing_m_s, homing: true },
             Doing::Standing if inputs.jog_forward != inputs.jog_reverse => self.jog(inputs),
-            Doing::Moving { .. } if inputs.halt => Doing::Velocity { wanted_m_s: 0.0, homing: false },
             Doing::Velocity { homing: true, .. } if self.reference(state, turn) => {
                 (state.homed, state.zero_m) = (true, self.p.reference_m);
                 Doing::Velocity { wanted_m_s: 0.0, homing: false }
             }
-            Doing::Velocity { homing: true, .. } if inputs.halt => Doing::Velocity { wanted_m_s: 0.0, homing: false },
+            Doing::Moving { .. } | Doing::Velocity { homing: true, .. } if inputs.halt => Doing::Velocity { wanted_m_s: 0.0, homing: false },
             Doing::Velocity { homing: false, .. } if inputs.jog_forward != inputs.jog_reverse && !inputs.halt => {
                 self.jog(inputs)
             }
@@ -290,7 +289,7 @@ impl Component for ServoAxis {
     ];
     const SOURCE: &'static str =
         "L. Biagiotti, C. Melchiorri, Trajectory Planning, 2008, 3.4; PLCopen Motion Control 2.0 (states)";
-    const COUPLING: Coupling = Coupling::Drives;
+    const COUPLING: Coupling = Coupling::Slides;
     type Parameters = Parameters;
     type Inputs = Inputs;
     type Outputs = Outputs;

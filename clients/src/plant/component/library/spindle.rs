@@ -97,7 +97,7 @@ impl Component for Spindle {
     const SUMMARY: &'static str = "spindle with a ramp, a load and a tool clamp";
     const FORMULA: &'static [&'static str] = &["J dω/dt = M - M_cut - d ω, |M| ≤ M_max"];
     const SOURCE: &'static str = "closed form";
-    const COUPLING: Coupling = Coupling::Drives;
+    const COUPLING: Coupling = Coupling::Turns;
     type Parameters = Parameters;
     type Inputs = Inputs;
     type Outputs = Outputs;

@@ -97,7 +97,7 @@ impl Component for Turntable {
     const SUMMARY: &'static str = "turntable or wheel: runs on, or steps from station to station";
     const FORMULA: &'static [&'static str] = &["dω/dt = ±α until ω = k ω_N", "stations 2π/n apart"];
     const SOURCE: &'static str = "closed form; wheels of the filling machine (Sivtoft 2002, ch. 5)";
-    const COUPLING: Coupling = Coupling::Drives;
+    const COUPLING: Coupling = Coupling::Turns;
     type Parameters = Parameters;
     type Inputs = Inputs;
     type Outputs = Outputs;
@@ -132,12 +132,11 @@ impl Component for Turntable {
             state.target_rad = Some(next * self.pitch_rad());
         }
         state.target_rad = state.target_rad.filter(|_| !inputs.run);
-        state.wheel = match state.target_rad {
-            Some(target) => state.wheel.towards_position(target, &bounds, turn.dt_s),
-            None => {
-                let part = if inputs.run { inputs.fraction.clamp(-1.0, 1.0) } else { 0.0 };
-                state.wheel.towards_velocity(part * bounds.speed, &bounds, turn.dt_s)
-            }
+        state.wheel = if let Some(target) = state.target_rad {
+            state.wheel.towards_position(target, &bounds, turn.dt_s)
+        } else {
+            let part = if inputs.run { inputs.fraction.clamp(-1.0, 1.0) } else { 0.0 };
+            state.wheel.towards_velocity(part * bounds.speed, &bounds, turn.dt_s)
         };
         state.target_rad =
             state.target_rad.filter(|target| state.wheel.position != *target || state.wheel.velocity != 0.0);

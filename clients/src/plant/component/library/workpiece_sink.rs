@@ -2,6 +2,7 @@
 //!
 //! # Equations
 //! - the first target that touches the body is taken out, one in each period;
+//! - a target that something holds is taken only when it is let go;
 //! - it can appear again at a source that has it among its targets.
 //!
 //! # Source
@@ -51,25 +52,23 @@ pub(crate) struct State {
     count: i32,
 }
 
-/// A sink of workpieces, by its parameters.
-pub(crate) struct WorkpieceSink {
-    p: Parameters,
-}
+/// A sink of workpieces.
+pub(crate) struct WorkpieceSink;
 
 impl Component for WorkpieceSink {
     const NAME: &'static str = "workpiece_sink";
     const SUMMARY: &'static str = "sink of workpieces: what touches it leaves the world";
     const FORMULA: &'static [&'static str] = &["one target that touches it, each period"];
     const SOURCE: &'static str = "closed form";
-    const COUPLING: Coupling = Coupling::Touch;
+    const COUPLING: Coupling = Coupling::Collect;
     type Parameters = Parameters;
     type Inputs = Inputs;
     type Outputs = Outputs;
     type Failure = Failure;
     type State = State;
 
-    fn new(p: Parameters) -> Self {
-        Self { p }
+    fn new(_: Parameters) -> Self {
+        Self
     }
 
     fn initial(&self, _: &Start) -> State {

@@ -1,0 +1,159 @@
+//! What reads the clock (seed: Carlsson et al. 2012, sec. V-C), as a table: what replaces it, or what
+//! is told of it.
+
+use super::template;
+
+/// What a source of time is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Kind {
+    /// A function block.
+    Block,
+    /// A function.
+    Function,
+}
+
+/// What becomes of it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Fate {
+    /// A source of the shim takes its place; see [`Form`].
+    Replaced(&'static Form),
+    /// It cannot be replaced.
+    Told,
+    /// A motion block of PLCopen (Motion Control Part 1): not replaced yet.
+    Motion,
+}
+
+/// A source of the shim and how it is written for one name.
+#[derive(Debug, PartialEq, Eq)]
+pub(super) struct Form {
+    /// The name that is replaced; `SDSP_` and it is the new one.
+    pub(super) name: &'static str,
+    kind: Kind,
+    template: &'static str,
+    /// The name in the template.
+    stem: &'static str,
+    pub(super) long: bool,
+}
+
+const fn timer(name: &'static str, template: &'static str, stem: &'static str, long: bool) -> Form {
+    Form { name, kind: Kind::Block, template, stem, long }
+}
+
+/// All that is replaced: 2nd ed. Table 37, 3rd ed. Table 46, the L-forms and functions of CODESYS and
+/// TwinCAT.
+static FORMS: [Form; 15] = [
+    timer("TON", template::ON_DELAY, "TON", false),
+    timer("TON_TIME", template::ON_DELAY, "TON", false),
+    timer("TON_LTIME", template::ON_DELAY, "TON", true),
+    timer("LTON", template::ON_DELAY, "TON", true),
+    timer("TOF", template::OFF_DELAY, "TOF", false),
+    timer("TOF_TIME", template::OFF_DELAY, "TOF", false),
+    timer("TOF_LTIME", template::OFF_DELAY, "TOF", true),
+    timer("LTOF", template::OFF_DELAY, "TOF", true),
+    timer("TP", template::PULSE, "TP", false),
+    timer("TP_TIME", template::PULSE, "TP", false),
+    timer("TP_LTIME", template::PULSE, "TP", true),
+    timer("LTP", template::PULSE, "TP", true),
+    timer("RTC", template::REAL_TIME_CLOCK, "RTC", false),
+    Form { name: "TIME", kind: Kind::Function, template: template::TIME_FUNCTION, stem: "TIME", long: false },
+    Form { name: "LTIME", kind: Kind::Function, template: template::TIME_FUNCTION, stem: "TIME", long: true },
+];
+
+/// Vendors' sources of time that the shim does not replace, with who has them.
+const TOLD: [(&str, Kind); 35] = [
+    // TwinCAT: Tc2_System, Tc2_Utilities, Tc2_Standard.
+    ("GETSYSTEMTIME", Kind::Block),
+    ("GETCPUCOUNTER", Kind::Block),
+    ("GETCPUACCOUNT", Kind::Block),
+    ("PROFILER", Kind::Block),
+    ("NT_GETTIME", Kind::Block),
+    ("FB_LOCALSYSTEMTIME", Kind::Block),
+    ("FB_GETSYSTEMTIME", Kind::Block),
+    ("F_GETSYSTEMTIME", Kind::Function),
+    ("F_GETTASKTIME", Kind::Function),
+    ("F_GETCURDCTASKTIME64", Kind::Function),
+    ("F_GETACTUALDCTIME64", Kind::Function),
+    // CODESYS: SysTime, Util.
+    ("SYSTIMEGETMS", Kind::Function),
+    ("SYSTIMEGETUS", Kind::Function),
+    ("SYSTIMEGETNS", Kind::Function),
+    ("SYSTIMERTCGET", Kind::Function),
+    ("SYSTIMERTCHIGHRESGET", Kind::Function),
+    ("BLINK", Kind::Block),
+    ("GEN", Kind::Block),
+    ("FREQ_MEASURE", Kind::Block),
+    ("DERIVATIVE", Kind::Block),
+    ("INTEGRAL", Kind::Block),
+    ("PID", Kind::Block),
+    ("PD", Kind::Block),
+    ("RAMP_INT", Kind::Block),
+    ("RAMP_REAL", Kind::Block),
+    // Siemens: STEP 7.
+    ("TONR", Kind::Block),
+    ("TONR_TIME", Kind::Block),
+    ("IEC_TIMER", Kind::Block),
+    ("IEC_LTIMER", Kind::Block),
+    ("TIME_TCK", Kind::Function),
+    ("RUNTIME", Kind::Function),
+    ("RD_SYS_T", Kind::Function),
+    ("RD_LOC_T", Kind::Function),
+    // OSCAT.
+    ("T_PLC_MS", Kind::Function),
+    ("T_PLC_US", Kind::Function),
+];
+
+/// What becomes of the source of time of this name; nothing if it is none.
+pub(super) fn fate(key: &str, kind: Kind) -> Option<Fate> {
+    if let Some(form) = FORMS.iter().find(|form| form.kind == kind && form.name == key) {
+        return Some(Fate::Replaced(form));
+    }
+    if TOLD.contains(&(key, kind)) {
+        return Some(Fate::Told);
+    }
+    (kind == Kind::Block && key.starts_with("MC_")).then_some(Fate::Motion)
+}
+
+impl Form {
+    /// The name that takes its place.
+    pub(super) fn new_name(&self) -> String {
+        format!("SDSP_{}", self.name)
+    }
+
+    /// The source, written for this name.
+    pub(super) fn text(&self) -> String {
+        let mut names = vec![(self.stem, self.name.to_owned())];
+        let stem = format!("SDSP_{}", self.stem);
+        names.push((&stem, self.new_name()));
+        if self.long {
+            let long = [("TIME", "LTIME"), ("T#0s", "LT#0s"), ("SDSP_Now", "SDSP_NowL")];
+            names.extend(long.map(|(short, long)| (short, long.to_owned())));
+        }
+        template::fill(self.template, &names)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_name_has_one_fate() {
+        let forms = FORMS.iter().map(|form| (form.name, form.kind));
+        let mut all: Vec<_> = forms.chain(TOLD).map(|(name, kind)| (name, kind == Kind::Block)).collect();
+        assert!(all.iter().all(|(name, _)| *name == name.to_ascii_uppercase()));
+        let count = all.len();
+        all.sort_unstable();
+        all.dedup();
+        assert_eq!(all.len(), count);
+        assert_eq!(fate("MC_HOME", Kind::Block), Some(Fate::Motion));
+        assert_eq!(fate("CTU", Kind::Block), None);
+    }
+
+    #[test]
+    fn forms_are_written_in_their_own_type() {
+        let Some(Fate::Replaced(form)) = fate("TON_LTIME", Kind::Block) else { panic!("a form") };
+        let text = form.text();
+        assert!(text.contains("FUNCTION_BLOCK SDSP_TON_LTIME\nVAR_INPUT IN : BOOL; PT : LTIME; END_VAR"), "{text}");
+        assert!(text.contains("Own : TON_LTIME;") && text.contains("SDSP_NowL - since") && !text.contains(" TIME;"));
+    }
+}

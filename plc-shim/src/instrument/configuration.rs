@@ -1,0 +1,159 @@
+//! A project's CONFIGURATION (2nd ed. 2.7): its tasks are read, the scheduler is put into it.
+
+use super::edits::Edits;
+use super::marks;
+use super::tasks::TaskTable;
+use crate::diagnostic::{Code, Diagnostic};
+use crate::run::Task;
+use crate::syntax::SourceFile;
+use crate::syntax::ast::{Configuration, Connection, ExprKind, Ident, Literal, Resource, TaskDeclaration};
+use crate::syntax::lexer::tokenize_in;
+
+/// What is due at every grant has this interval.
+const ALWAYS_NS: u64 = 1;
+/// Interval of the scheduler where no task has one.
+const DEFAULT_NS: u64 = 10_000_000;
+
+/// The name of an instance of a program, as tasks have it.
+pub(super) fn entry_name(resource: &Resource, instance: &Ident) -> String {
+    match &resource.name {
+        Some((name, _)) => format!("{}.{}", name.text, instance.text),
+        None => instance.text.clone(),
+    }
+}
+
+/// The tasks of all resources; programs without one are due at every grant, behind all others.
+///
+/// # Errors
+/// A task that the scheduler cannot stand for.
+pub(super) fn tasks(configuration: &Configuration) -> Result<Vec<Task>, Diagnostic> {
+    let mut tasks = Vec::new();
+    let mut background = Vec::new();
+    for resource in &configuration.resources {
+        let first = tasks.len();
+        for declared in &resource.tasks {
+            let mut task = task(declared)?;
+            if let Some((name, _)) = &resource.name {
+                task.name = format!("{}.{}", name.text, task.name);
+            }
+            tasks.push(task);
+        }
+        for program in &resource.programs {
+            if let Some(Connection::Task(_, name)) =
+                program.connections.iter().find(|each| matches!(each, Connection::Task(..)))
+            {
+                return Err(unsupported(name, "a function block with a task of its own"));
+            }
+            let own = program
+                .task
+                .as_ref()
+                .and_then(|wanted| resource.tasks.iter().position(|task| task.name.key() == wanted.key()));
+            let name = entry_name(resource, &program.name);
+            match own.and_then(|at| tasks.get_mut(first + at)) {
+                Some(task) => task.programs.push(name),
+                None => background.push(name),
+            }
+        }
+    }
+    if !background.is_empty() {
+        let priority = tasks.iter().map(|task| task.priority).max().unwrap_or(0).saturating_add(1);
+        let name = "background".to_owned();
+        tasks.push(Task { name, interval_ns: ALWAYS_NS, priority, programs: background, ..Task::default() });
+    }
+    Ok(tasks)
+}
+
+fn task(declared: &TaskDeclaration) -> Result<Task, Diagnostic> {
+    let mut task = Task { name: declared.name.text.clone(), ..Task::default() };
+    for (input, value) in &declared.inputs {
+        match (input.key().as_str(), &value.kind) {
+            ("INTERVAL", ExprKind::Literal(Literal::Duration { ns, .. })) if *ns > 0 => task.interval_ns = *ns as u64,
+            ("PRIORITY", ExprKind::Literal(Literal::Integer(rank))) => {
+                task.priority =
+                    u32::try_from(*rank).map_err(|_| unsupported(input, "PRIORITY other than a literal"))?;
+            }
+            ("SINGLE", _) => return Err(unsupported(input, "a task with SINGLE")),
+            (input_name, _) => return Err(unsupported(input, &format!("{input_name} other than a literal"))),
+        }
+    }
+    if task.interval_ns == 0 {
+        return Err(unsupported(&declared.name, "a task without INTERVAL"));
+    }
+    Ok(task)
+}
+
+fn unsupported(place: &Ident, what: &str) -> Diagnostic {
+    let message = format!("{what} is not instrumented yet");
+    Diagnostic::error(Code::UnsupportedFeature, place.span, message)
+}
+
+/// Puts the scheduler, and the shim's variables, into the configuration.
+pub(super) fn attach(
+    configuration: &Configuration,
+    tasks: &TaskTable<'_>,
+    globals: &str,
+    file: &SourceFile,
+    edits: &mut Edits,
+) {
+    let text = file.text();
+    let line_break = marks::line_break(text);
+    let name = configuration.name.span.end;
+    let semicolon = u32::from(rest(text, name).starts_with(';'));
+    edits.insert(marks::line_end(text, name + semicolon), marks::lines(globals, line_break));
+    let Some(resource) = configuration.resources.iter().find(|resource| !resource.programs.is_empty()) else {
+        return;
+    };
+    let Some(program) = resource.programs.first() else { return };
+    let periodic = tasks.rows.iter().map(|row| row.interval_ns).filter(|interval| *interval > ALWAYS_NS);
+    let interval = periodic.min().unwrap_or(DEFAULT_NS);
+    let (whole, part) = (interval / 1_000_000, interval % 1_000_000);
+    let duration = if part == 0 { format!("T#{whole}ms") } else { format!("T#{whole}.{part:06}ms") };
+    let cycle = format!("    TASK SDSP_Cycle (INTERVAL := {duration}, PRIORITY := 0);");
+    let run = "    PROGRAM SDSP WITH SDSP_Cycle : SDSP_Scheduler;";
+    let before_program = marks::line_start(text, program.span.start);
+    match resource.tasks.first() {
+        Some(task) => {
+            let keyword = token_before(file, task.name.span.start).unwrap_or(task.name.span.start);
+            edits.insert(marks::line_start(text, keyword), marks::lines(&cycle, line_break));
+            edits.insert(before_program, marks::lines(run, line_break));
+        }
+        None => edits.insert(before_program, marks::lines(&format!("{cycle}\n{run}"), line_break)),
+    }
+    number(configuration, tasks, file, edits);
+}
+
+/// Tells each of several instances of a program its number.
+fn number(configuration: &Configuration, tasks: &TaskTable<'_>, file: &SourceFile, edits: &mut Edits) {
+    for resource in &configuration.resources {
+        for program in &resource.programs {
+            let name = entry_name(resource, &program.name);
+            let Some(number) = tasks.number_of_instance(&name) else { continue };
+            let behind = program.program.span.end;
+            let open = token_behind(file, behind).filter(|next| file.text().get(next.clone()) == Some("("));
+            let (at, told) = match (open, program.connections.is_empty()) {
+                (None, _) => (behind, format!("(SDSP_Number := {number})")),
+                (Some(open), true) => (open.end as u32, format!("SDSP_Number := {number}")),
+                (Some(open), false) => (open.end as u32, format!("SDSP_Number := {number},")),
+            };
+            edits.insert(at, marks::inline(&told));
+        }
+    }
+}
+
+fn rest(text: &str, from: u32) -> &str {
+    text.get(from as usize..).unwrap_or("")
+}
+
+/// The first token behind `at` that is no blank or comment.
+fn token_behind(file: &SourceFile, at: u32) -> Option<std::ops::Range<usize>> {
+    let tokens = tokenize_in(file.dialect(), file.text());
+    let behind = tokens.iter().find(|token| token.start >= at && !token.kind.is_trivia());
+    behind.map(|token| token.start as usize..token.end as usize)
+}
+
+/// Where the last token before `at` begins that is no blank or comment.
+fn token_before(file: &SourceFile, at: u32) -> Option<u32> {
+    let tokens = tokenize_in(file.dialect(), file.text());
+    let before = tokens.iter().rev().find(|token| token.end <= at && !token.kind.is_trivia());
+    before.map(|token| token.start)
+}

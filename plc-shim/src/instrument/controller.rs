@@ -1,0 +1,82 @@
+//! Execution controllers (seed: Carlsson et al. 2012, sec. V-B, Fig. 11): header and footer of every
+//! scheduled program, the footer also before each RETURN.
+
+use super::edits::Edits;
+use super::marks;
+use super::template::{self, Controller, Number};
+use crate::lint::walk::{self, Visitor};
+use crate::syntax::SourceFile;
+use crate::syntax::ast::{Pou, Statement, StatementKind};
+use crate::syntax::token::Keyword;
+
+/// Adds the execution controller of `pou`, one of so many programs.
+pub(super) fn control(pou: &Pou, number: Number, programs: usize, file: &SourceFile, edits: &mut Edits) {
+    let Controller { declarations, header, close, footer } = template::controller(number, programs);
+    let line_break = marks::line_break(file.shown_text());
+    let places = Places::of(pou, file);
+    if places.declarations == places.header {
+        edits.insert(places.header, marks::lines(&format!("{declarations}\n{header}"), line_break));
+    } else {
+        edits.insert(places.declarations, marks::lines(&declarations, line_break));
+        edits.insert(places.header, marks::lines(&header, line_break));
+    }
+    let mut returns = Returns { starts: Vec::new() };
+    walk::statements(&pou.body, &mut returns);
+    for start in returns.starts {
+        edits.insert(file.shown_range(start, start + 1).start, marks::inline(&footer));
+    }
+    // A branch wants a statement (2nd ed. 3.3.2).
+    let nothing = if pou.body.is_empty() { ";\n" } else { "" };
+    edits.insert(places.footer, marks::lines(&format!("{nothing}{close}\n{footer}"), line_break));
+}
+
+/// Where the parts of a controller go, in the file as its author sees it.
+struct Places {
+    declarations: u32,
+    header: u32,
+    footer: u32,
+}
+
+impl Places {
+    fn of(pou: &Pou, file: &SourceFile) -> Self {
+        let end = pou.span.end.saturating_sub(Keyword::EndProgram.text().len() as u32);
+        let first = pou.body.first().map_or(end, |statement| statement.span.start);
+        let shown = file.shown_text();
+        let Some(origin) = file.origin() else {
+            let header = marks::line_start(shown, first);
+            return Self { declarations: header, header, footer: marks::line_start(shown, end) };
+        };
+        // Declarations and statements are parts of their own; what ends a unit is not in the file.
+        let declared = pou.sections.last().map_or(pou.name.span.end, |section| section.span.end);
+        let declarations = marks::line_end(shown, file.shown_range(declared.saturating_sub(1), declared).end);
+        let body = empty_body(shown, declarations);
+        let (header, footer) = match pou.body.as_slice() {
+            [] => (body, body),
+            [.., last] => {
+                let first = marks::line_start(shown, file.shown_range(first, first + 1).start);
+                (first, origin.verbatim_end(last.span.end).unwrap_or(first))
+            }
+        };
+        Self { declarations, header, footer }
+    }
+}
+
+/// The place in a TwinCAT object for the first statement of a body without any.
+fn empty_body(text: &str, from: u32) -> u32 {
+    const OPENING: &str = "<ST><![CDATA[";
+    let rest = text.get(from as usize..).unwrap_or("");
+    rest.find(OPENING).map_or(from, |at| from + (at + OPENING.len()) as u32)
+}
+
+/// Where every RETURN begins.
+struct Returns {
+    starts: Vec<u32>,
+}
+
+impl Visitor for Returns {
+    fn statement(&mut self, statement: &Statement) {
+        if matches!(statement.kind, StatementKind::Return) {
+            self.starts.push(statement.span.start);
+        }
+    }
+}

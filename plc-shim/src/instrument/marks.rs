@@ -1,0 +1,194 @@
+//! Marks in comments: what was changed, so that it is recognised and can be taken back.
+//!
+//! | mark | says |
+//! |---|---|
+//! | `(*@sdsp file*)` | the whole file was added |
+//! | `(*@sdsp begin*)` .. `(*@sdsp end*)` | this, the marks and a line break behind them was put in |
+//! | `SDSP_TON(*@sdsp was TON*)` | the name in front of the mark stands for another |
+//!
+//! In XML outside of program text the first three are XML comments.
+
+use std::ops::Range;
+
+use thiserror::Error;
+
+use super::edits::Edits;
+
+const OPENING: &str = "(*@sdsp ";
+const CLOSING: &str = "*)";
+const XML_OPENING: &str = "<!--@sdsp ";
+const XML_CLOSING: &str = "-->";
+
+/// The first line of a file that was added.
+pub(super) const FILE: &str = "(*@sdsp file*)";
+
+/// How lines end in a file.
+pub(super) fn line_break(text: &str) -> &'static str {
+    let first = text.find('\n').map_or("", |at| text.get(..at).unwrap_or(""));
+    if first.ends_with('\r') { "\r\n" } else { "\n" }
+}
+
+/// The start of the line if only blanks are before `at`, so that lines keep their indentation.
+pub(super) fn line_start(text: &str, at: u32) -> u32 {
+    let before = text.get(..at as usize).unwrap_or("");
+    let line = before.trim_end_matches([' ', '\t']);
+    if line.is_empty() || line.ends_with('\n') { line.len() as u32 } else { at }
+}
+
+/// The start of the next line if only blanks are behind `at`.
+pub(super) fn line_end(text: &str, at: u32) -> u32 {
+    let rest = text.get(at as usize..).unwrap_or("");
+    let line = rest.trim_start_matches([' ', '\t', '\r']);
+    if line.starts_with('\n') { at + (rest.len() - line.len()) as u32 + 1 } else { at }
+}
+
+/// Lines to put in, ending as those of the file do.
+pub(super) fn lines(text: &str, line_break: &str) -> String {
+    let mut marked = format!("{OPENING}begin{CLOSING}{line_break}");
+    for line in text.lines() {
+        marked.push_str(line);
+        marked.push_str(line_break);
+    }
+    marked.push_str(&format!("{OPENING}end{CLOSING}{line_break}"));
+    marked
+}
+
+/// Text to put in within a line, before something other than a line's end.
+pub(super) fn inline(text: &str) -> String {
+    format!("{OPENING}begin{CLOSING}{}{OPENING}end{CLOSING}", text.trim())
+}
+
+/// Lines of XML to put in.
+pub(super) fn xml_lines(text: &str, line_break: &str) -> String {
+    let mut marked = format!("{XML_OPENING}begin{XML_CLOSING}{line_break}");
+    for line in text.lines() {
+        marked.push_str(line);
+        marked.push_str(line_break);
+    }
+    marked.push_str(&format!("{XML_OPENING}end{XML_CLOSING}{line_break}"));
+    marked
+}
+
+/// A name to put in the place of `old`.
+pub(super) fn renamed(new: &str, old: &str) -> String {
+    format!("{new}{OPENING}was {old}{CLOSING}")
+}
+
+/// Marks that do not fit together.
+#[derive(Debug, Clone, PartialEq, Eq, Error)]
+#[error("{message}")]
+pub(super) struct DamagedMarks {
+    pub(super) at: Range<u32>,
+    pub(super) message: &'static str,
+}
+
+/// What a file was before it was instrumented.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(super) enum Original {
+    /// As it is.
+    Same,
+    /// This text.
+    Text(String),
+    /// There was none.
+    Nothing,
+}
+
+/// Takes back all that is marked.
+pub(super) fn original(text: &str) -> Result<Original, DamagedMarks> {
+    let mut edits = Edits::default();
+    let mut open: Option<Mark<'_>> = None;
+    let mut from = 0;
+    while let Some(mark) = Mark::next(text, from) {
+        from = mark.at.end;
+        let damaged = |message| DamagedMarks { at: mark.at.start as u32..mark.at.end as u32, message };
+        match (mark.says, &open) {
+            ("file", None) => return Ok(Original::Nothing),
+            ("begin", None) => open = Some(mark),
+            ("end", Some(begin)) => {
+                let end = mark.at.end + line_break_length(text.get(mark.at.end..).unwrap_or(""));
+                edits.replace(begin.at.start as u32..end as u32, "");
+                from = end;
+                open = None;
+            }
+            ("end", None) => return Err(damaged("this mark ends what has not begun")),
+            // Within what was put in anything may stand.
+            (says, None) => {
+                let old = says.strip_prefix("was ").ok_or_else(|| damaged("this mark is not known"))?;
+                let before = text.get(..mark.at.start).unwrap_or("");
+                let name = before.trim_end_matches(|one: char| one.is_ascii_alphanumeric() || one == '_').len();
+                edits.replace(name as u32..mark.at.end as u32, old);
+            }
+            ("begin" | "file", Some(_)) => return Err(damaged("this mark stands inside of another")),
+            (_, Some(_)) => {}
+        }
+    }
+    if let Some(begin) = open {
+        let at = begin.at.start as u32..begin.at.end as u32;
+        return Err(DamagedMarks { at, message: "what begins here has no end" });
+    }
+    if edits.is_empty() {
+        return Ok(Original::Same);
+    }
+    let edited = edits
+        .apply(text)
+        .map_err(|conflict| DamagedMarks { at: conflict.at..conflict.at, message: "marks overlap here" })?;
+    Ok(Original::Text(edited.text))
+}
+
+struct Mark<'t> {
+    at: Range<usize>,
+    says: &'t str,
+}
+
+impl<'t> Mark<'t> {
+    fn next(text: &'t str, from: usize) -> Option<Self> {
+        let rest = text.get(from..)?;
+        let found = |opening: &'static str, closing: &'static str| {
+            let start = rest.find(opening)?;
+            let says = rest.get(start + opening.len()..)?;
+            let says = says.get(..says.find(closing)?)?;
+            let end = start + opening.len() + says.len() + closing.len();
+            Some(Self { at: from + start..from + end, says })
+        };
+        let marks = [found(OPENING, CLOSING), found(XML_OPENING, XML_CLOSING)];
+        marks.into_iter().flatten().min_by_key(|mark| mark.at.start)
+    }
+}
+
+fn line_break_length(rest: &str) -> usize {
+    if rest.starts_with("\r\n") { 2 } else { usize::from(rest.starts_with('\n')) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_marked_is_taken_back() {
+        let put_in = lines("VAR x : INT; END_VAR\n    y;", "\r\n");
+        let text = format!("a\r\n{put_in}t : {};{}RETURN\r\n", renamed("SDSP_TON", "ton"), inline(" z; "));
+        assert_eq!(original(&text), Ok(Original::Text("a\r\nt : ton;RETURN\r\n".to_owned())));
+        assert_eq!(original("(*@sdsp *) no"), Err(DamagedMarks { at: 0..10, message: "this mark is not known" }));
+        assert_eq!(original("(* sdsp *)"), Ok(Original::Same));
+        assert_eq!(original("(*@sdsp file*)\nx"), Ok(Original::Nothing));
+        let xml = format!("<a>\n{}</a>", xml_lines("<b/>", "\n"));
+        assert_eq!(original(&xml), Ok(Original::Text("<a>\n</a>".to_owned())));
+    }
+
+    #[test]
+    fn marks_that_do_not_fit_together_are_told() {
+        for (text, message) in [
+            ("(*@sdsp begin*) x", "what begins here has no end"),
+            ("x (*@sdsp end*)", "this mark ends what has not begun"),
+            ("(*@sdsp begin*)(*@sdsp begin*)", "this mark stands inside of another"),
+            ("(*@sdsp began*)", "this mark is not known"),
+        ] {
+            assert_eq!(original(text).map_err(|damaged| damaged.message), Err(message), "{text}");
+        }
+    }
+
+    #[test]
+    fn lines_end_as_in_the_file() {
+        assert_eq!((line_break("a\r\nb\n"), line_break("a\nb\r\n"), line_break("a")), ("\r\n", "\n", "\n"));
+    }
+}

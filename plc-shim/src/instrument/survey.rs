@@ -1,0 +1,251 @@
+//! What of a project has to do with time: programs, sources of time, names.
+
+use std::collections::BTreeSet;
+
+use super::clock::{self, Fate, Form, Kind};
+use crate::application::library;
+use crate::check::{VIRTUAL_TIME_NAME, is_standard_function};
+use crate::diagnostic::{Code, Diagnostic};
+use crate::ir::ElementaryType;
+use crate::lint::walk::{self, Visitor};
+use crate::syntax::ast::{
+    Call, CompilationUnit, Configuration, Declaration, Expr, ExprKind, Ident, Initialiser, InitialiserKind, Pou,
+    PouKind, Section, TypeSpec, TypeSpecKind,
+};
+use crate::syntax::{FileId, Span, parse};
+
+/// What was found.
+#[derive(Debug, Default)]
+pub(super) struct Survey<'a> {
+    /// The programs in their order.
+    pub(super) programs: Vec<&'a Pou>,
+    /// The first configuration.
+    pub(super) configuration: Option<&'a Configuration>,
+    /// Programs that others call.
+    pub(super) called: BTreeSet<String>,
+    /// Names to be replaced.
+    pub(super) renames: Vec<(Ident, &'static Form)>,
+    /// What cannot be replaced, and names that the shim needs for itself.
+    pub(super) findings: Vec<Diagnostic>,
+}
+
+/// Looks through all files of a project.
+pub(super) fn survey<'a>(units: &[(FileId, &'a CompilationUnit)]) -> Survey<'a> {
+    let declarations = || units.iter().flat_map(|(_, unit)| &unit.declarations);
+    let mut names = Names::default();
+    declarations().for_each(|declaration| names.add(declaration));
+    let mut surveyor = Surveyor { names: &names, local: BTreeSet::new(), survey: Survey::default() };
+    declarations().for_each(|declaration| surveyor.declaration(declaration));
+    surveyor.survey
+}
+
+/// What the project declares, and what everybody has.
+#[derive(Default)]
+struct Names {
+    programs: BTreeSet<String>,
+    units_and_types: BTreeSet<String>,
+    globals: BTreeSet<String>,
+}
+
+impl Names {
+    fn add(&mut self, declaration: &Declaration) {
+        match declaration {
+            Declaration::Pou(pou) => {
+                if pou.kind == PouKind::Program {
+                    self.programs.insert(pou.name.key());
+                }
+                self.units_and_types.insert(pou.name.key());
+            }
+            Declaration::Type(named) => {
+                self.units_and_types.insert(named.name.key());
+            }
+            Declaration::Globals(section) => self.globals.extend(variable_names(section)),
+            Declaration::Namespace(namespace) => namespace.declarations.iter().for_each(|each| self.add(each)),
+            Declaration::Using(_) => {}
+            Declaration::Configuration(configuration) => {
+                let resources = configuration.resources.iter().flat_map(|resource| &resource.sections);
+                let sections = configuration.sections.iter().chain(resources);
+                self.globals.extend(sections.flat_map(variable_names));
+            }
+        }
+    }
+}
+
+fn variable_names(section: &Section) -> impl Iterator<Item = String> {
+    section.variables.iter().flat_map(|variable| &variable.names).map(Ident::key)
+}
+
+/// Units of the standard's own, by name.
+fn is_standard_unit(key: &str) -> bool {
+    static NAMES: std::sync::OnceLock<BTreeSet<String>> = std::sync::OnceLock::new();
+    let names = NAMES.get_or_init(|| {
+        let units = library::FILES.iter().map(|(_, text)| parse(FileId(0), text).unit);
+        let mut names = Names::default();
+        units.for_each(|unit| unit.declarations.iter().for_each(|each| names.add(each)));
+        names.units_and_types
+    });
+    names.contains(key)
+}
+
+struct Surveyor<'n, 'a> {
+    names: &'n Names,
+    /// Variables of the unit that is looked through.
+    local: BTreeSet<String>,
+    survey: Survey<'a>,
+}
+
+impl<'a> Surveyor<'_, 'a> {
+    fn declaration(&mut self, declaration: &'a Declaration) {
+        match declaration {
+            Declaration::Pou(pou) => self.pou(pou),
+            Declaration::Type(named) => {
+                self.own_name(&named.name);
+                self.spec(&named.spec);
+                named.initial.iter().for_each(|initial| self.initialiser(initial));
+            }
+            Declaration::Globals(section) => self.globals(section),
+            Declaration::Configuration(configuration) => self.configuration(configuration),
+            Declaration::Namespace(namespace) => namespace.declarations.iter().for_each(|each| self.declaration(each)),
+            Declaration::Using(_) => {}
+        }
+    }
+
+    fn pou(&mut self, pou: &'a Pou) {
+        self.own_name(&pou.name);
+        if pou.kind == PouKind::Program {
+            self.survey.programs.push(pou);
+        }
+        self.local = pou.sections.iter().flat_map(variable_names).collect();
+        pou.result.iter().for_each(|result| self.spec(result));
+        pou.sections.iter().for_each(|section| self.section(section));
+        walk::statements(&pou.body, self);
+        for member in pou.object.members.iter().map(|member| &member.pou) {
+            self.local.extend(member.sections.iter().flat_map(variable_names));
+            member.result.iter().for_each(|result| self.spec(result));
+            member.sections.iter().for_each(|section| self.section(section));
+            walk::statements(&member.body, self);
+        }
+        self.local.clear();
+    }
+
+    fn globals(&mut self, section: &Section) {
+        section.variables.iter().flat_map(|each| &each.names).for_each(|name| self.own_name(name));
+        self.section(section);
+    }
+
+    fn configuration(&mut self, configuration: &'a Configuration) {
+        self.survey.configuration = self.survey.configuration.or(Some(configuration));
+        let resources = configuration.resources.iter().flat_map(|resource| &resource.sections);
+        configuration.sections.iter().chain(resources).for_each(|section| self.globals(section));
+        configuration.access.iter().for_each(|access| self.spec(&access.spec));
+        configuration.instances.iter().for_each(|instance| self.spec(&instance.spec));
+    }
+
+    /// A name that a project gives must not be one of the shim's.
+    fn own_name(&mut self, name: &Ident) {
+        if name.key().starts_with("SDSP_") {
+            let message = format!("`{}`: names that begin with `SDSP_` are the shim's", name.text);
+            self.survey.findings.push(Diagnostic::error(Code::ShimNameTaken, name.span, message));
+        }
+    }
+
+    fn section(&mut self, section: &Section) {
+        for variable in &section.variables {
+            self.spec(&variable.spec);
+            variable.initial.iter().for_each(|initial| self.initialiser(initial));
+        }
+    }
+
+    fn spec(&mut self, spec: &TypeSpec) {
+        match &spec.kind {
+            TypeSpecKind::Name(name) => self.type_name(name),
+            TypeSpecKind::Array(_, element) => self.spec(element),
+            TypeSpecKind::Struct(fields) => {
+                for field in fields {
+                    self.spec(&field.spec);
+                    field.initial.iter().for_each(|initial| self.initialiser(initial));
+                }
+            }
+            TypeSpecKind::String(..)
+            | TypeSpecKind::Subrange(..)
+            | TypeSpecKind::Enumeration(..)
+            | TypeSpecKind::Error => {}
+        }
+    }
+
+    fn initialiser(&mut self, initialiser: &Initialiser) {
+        match &initialiser.kind {
+            InitialiserKind::Value(value) => walk::expression(value, self),
+            InitialiserKind::Array(values) => values.iter().for_each(|value| self.initialiser(value)),
+            InitialiserKind::Repeat(_, value) => value.iter().for_each(|value| self.initialiser(value)),
+            InitialiserKind::Struct(members) => members.iter().for_each(|member| self.initialiser(&member.value)),
+        }
+    }
+
+    fn type_name(&mut self, name: &Ident) {
+        let key = name.key();
+        // What a project declares itself goes before what others have by the name.
+        if self.names.units_and_types.contains(&key) || ElementaryType::find(&key).is_some() {
+            return;
+        }
+        match clock::fate(&key, Kind::Block) {
+            Some(fate) => self.met(name, fate),
+            None if is_standard_unit(&key) => {}
+            None => self.unknown("type", name),
+        }
+    }
+
+    fn function_name(&mut self, name: &Ident) {
+        let key = name.key();
+        if self.local.contains(&key) || self.names.globals.contains(&key) {
+            return;
+        }
+        if self.names.programs.contains(&key) {
+            self.survey.called.insert(key);
+        } else if self.names.units_and_types.contains(&key) {
+        } else if let Some(fate) = clock::fate(&key, Kind::Function) {
+            self.met(name, fate);
+        } else if !is_standard_unit(&key) && !is_standard_function(&key) {
+            self.unknown("function", name);
+        }
+    }
+
+    fn met(&mut self, name: &Ident, fate: Fate) {
+        match fate {
+            Fate::Replaced(form) => self.survey.renames.push((name.clone(), form)),
+            Fate::Told => self.told(&name.text, name.span),
+            Fate::Motion => {
+                let message = format!("`{}` moves its axis by the PLC's own clock and is not replaced yet", name.text);
+                self.survey.findings.push(Diagnostic::warning(Code::MotionNotReplaced, name.span, message));
+            }
+        }
+    }
+
+    fn told(&mut self, name: &str, span: Span) {
+        let message = format!("`{name}` reads the PLC's own clock and cannot be replaced");
+        let help = "read the time from SDSP_Now while SDSP_Simulated is TRUE";
+        self.survey.findings.push(Diagnostic::warning(Code::ClockNotReplaced, span, message).with_help(help));
+    }
+
+    fn unknown(&mut self, what: &str, name: &Ident) {
+        let message = format!("the {what} `{}` is not in the project: it may read the PLC's own clock", name.text);
+        let help = "add its source to the project, or make sure that it does not";
+        self.survey.findings.push(Diagnostic::warning(Code::ClockNotReplaced, name.span, message).with_help(help));
+    }
+}
+
+impl Visitor for Surveyor<'_, '_> {
+    fn call(&mut self, call: &Call) {
+        if let ExprKind::Name(name) = &call.callee.kind {
+            self.function_name(name);
+        }
+    }
+
+    fn expression(&mut self, expr: &Expr) {
+        if let ExprKind::Name(name) = &expr.kind
+            && name.key() == VIRTUAL_TIME_NAME
+        {
+            self.told(&name.text, name.span);
+        }
+    }
+}

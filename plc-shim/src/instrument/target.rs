@@ -1,0 +1,86 @@
+//! The forms in which a project takes the shim's own sources.
+
+use super::clock::Form;
+use super::marks;
+use super::tasks::TaskTable;
+use super::template::{self, Only};
+use super::twincat;
+
+/// For whom the shim's sources are written.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Target {
+    /// Program text of the standard, in one file.
+    #[default]
+    Iec,
+    /// TwinCAT 3: an object a file.
+    TwinCat,
+}
+
+/// A file of the shim's own.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(super) struct Source {
+    pub(super) name: String,
+    pub(super) text: String,
+}
+
+/// The shim's sources for these tasks, and for the sources of time that are replaced.
+pub(super) struct Sources {
+    /// Variables, for a configuration or a file of their own.
+    pub(super) globals: String,
+    scheduler: String,
+    forms: Vec<Unit>,
+}
+
+/// A function block or function.
+struct Unit {
+    name: String,
+    text: String,
+}
+
+/// Where the shim's variables are.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Globals {
+    /// In the project's configuration, where the standard has them (2nd ed. 2.7.1).
+    InConfiguration,
+    /// In the shim's own file.
+    InFile,
+}
+
+impl Sources {
+    pub(super) fn new(target: Target, tasks: &TaskTable<'_>, forms: &[&Form]) -> Self {
+        let wanted: &[Only] = if forms.iter().any(|form| form.long) { &[Only::LongTime] } else { &[] };
+        let mut names = tasks.names();
+        // A TIME has nanoseconds in the one and milliseconds in the other.
+        let (now, now_long) = match target {
+            Target::Iec => ("TV * T#0.000001ms", "TV * LT#1ns"),
+            Target::TwinCat => ("LINT_TO_TIME(TV / 1000000)", "LINT_TO_LTIME(TV)"),
+        };
+        names.extend([("SDSP_NOW_OF_TV", now.to_owned()), ("SDSP_NOWL_OF_TV", now_long.to_owned())]);
+        let filled = |template: &str| template::fill(&template::lines_for(template, wanted), &names);
+        let unit = |form: &&Form| Unit { name: form.new_name(), text: form.text() };
+        Self {
+            globals: filled(template::GLOBALS),
+            scheduler: filled(template::SCHEDULER),
+            forms: forms.iter().map(unit).collect(),
+        }
+    }
+
+    /// The files in which they are.
+    pub(super) fn files(self, target: Target, globals: Globals) -> Vec<Source> {
+        let own = (globals == Globals::InFile).then_some(self.globals);
+        match target {
+            Target::Iec => {
+                let forms = self.forms.into_iter().map(|unit| unit.text);
+                let parts: Vec<String> = own.into_iter().chain([self.scheduler]).chain(forms).collect();
+                let text = format!("{}\n{}", marks::FILE, parts.join("\n"));
+                vec![Source { name: "sdsp.st".to_owned(), text }]
+            }
+            Target::TwinCat => {
+                let own = own.map(|text| twincat::globals("SDSP", &text));
+                let scheduler = twincat::unit("SDSP_Scheduler", &self.scheduler);
+                let forms = self.forms.iter().map(|unit| twincat::unit(&unit.name, &unit.text));
+                own.into_iter().chain([scheduler]).chain(forms).collect()
+            }
+        }
+    }
+}

@@ -1,0 +1,121 @@
+//! The task table: which programs run in which task, and the number of each.
+
+use std::collections::BTreeSet;
+
+use super::template::Number;
+use crate::diagnostic::did_you_mean;
+use crate::run::{RunError, Task};
+use crate::syntax::ast::Pou;
+
+/// Tasks in the order in which they come when all are due, and their programs, numbered from 1 in the
+/// same order.
+#[derive(Debug, Default)]
+pub(super) struct TaskTable<'a> {
+    pub(super) rows: Vec<Row>,
+    pub(super) programs: Vec<Entry<'a>>,
+}
+
+/// A program that a task runs.
+#[derive(Debug, Clone)]
+pub(super) struct Entry<'a> {
+    /// Its name, or that of its instance in the configuration.
+    pub(super) name: String,
+    pub(super) pou: &'a Pou,
+}
+
+/// One task.
+#[derive(Debug, PartialEq, Eq)]
+pub(super) struct Row {
+    pub(super) interval_ns: u64,
+    pub(super) priority: u32,
+    /// Number of its first program.
+    pub(super) first: usize,
+    /// How many programs it has.
+    pub(super) count: usize,
+}
+
+impl<'a> TaskTable<'a> {
+    /// Puts the tasks in order.
+    ///
+    /// # Errors
+    /// What would be wrong with the tasks in a soft PLC is wrong here.
+    pub(super) fn new(tasks: &[Task], entries: &[Entry<'a>]) -> Result<Self, RunError> {
+        check(tasks)?;
+        let mut order: Vec<&Task> = tasks.iter().collect();
+        order.sort_by_key(|task| task.priority);
+        let mut table = Self::default();
+        for task in order {
+            let first = table.programs.len() + 1;
+            for name in &task.programs {
+                let entry = find(name, task, entries)?;
+                if table.programs.iter().any(|other| other.name == entry.name) {
+                    return Err(RunError::ProgramTwice { program: name.clone(), task: task.name.clone() });
+                }
+                table.programs.push(entry);
+            }
+            let count = table.programs.len() + 1 - first;
+            let (interval_ns, priority) = (task.interval_ns, task.priority);
+            table.rows.push(Row { interval_ns, priority, first, count });
+        }
+        Ok(table)
+    }
+
+    /// The programs that run, each once, and how each knows its number.
+    pub(super) fn numbered(&self) -> impl Iterator<Item = (&'a Pou, Number)> {
+        self.programs.iter().enumerate().filter_map(|(index, entry)| {
+            let mut same = self.programs.iter().enumerate().filter(|(_, other)| std::ptr::eq(other.pou, entry.pou));
+            let (first, _) = same.next()?;
+            let number = if same.next().is_some() { Number::OfInstance } else { Number::Fixed(index + 1) };
+            (first == index).then_some((entry.pou, number))
+        })
+    }
+
+    /// The number of an instance that must be told it.
+    pub(super) fn number_of_instance(&self, name: &str) -> Option<usize> {
+        let at = self.programs.iter().position(|entry| entry.name == name)?;
+        let pou = self.programs.get(at)?.pou;
+        let same = self.programs.iter().filter(|other| std::ptr::eq(other.pou, pou)).count();
+        (same > 1).then_some(at + 1)
+    }
+
+    /// What the scheduler's names stand for.
+    pub(super) fn names(&self) -> Vec<(&'static str, String)> {
+        let list = |value: &dyn Fn(&Row) -> u64| {
+            let values: Vec<String> = self.rows.iter().map(|row| value(row).to_string()).collect();
+            values.join(", ")
+        };
+        vec![
+            ("SDSP_PROGRAMS", self.programs.len().to_string()),
+            ("SDSP_TASKS", self.rows.len().to_string()),
+            ("SDSP_INTERVALS", list(&|row| row.interval_ns)),
+            ("SDSP_PRIORITIES", list(&|row| u64::from(row.priority))),
+            ("SDSP_FIRSTS", list(&|row| row.first as u64)),
+            ("SDSP_COUNTS", list(&|row| row.count as u64)),
+        ]
+    }
+}
+
+fn check(tasks: &[Task]) -> Result<(), RunError> {
+    if tasks.is_empty() {
+        return Err(RunError::NoTasks);
+    }
+    let mut names = BTreeSet::new();
+    for task in tasks {
+        if !names.insert(task.name.to_ascii_uppercase()) {
+            return Err(RunError::DuplicateTask(task.name.clone()));
+        }
+        if task.interval_ns == 0 || task.single.is_some() {
+            return Err(RunError::ZeroInterval(task.name.clone()));
+        }
+    }
+    Ok(())
+}
+
+fn find<'a>(name: &str, task: &Task, entries: &[Entry<'a>]) -> Result<Entry<'a>, RunError> {
+    let found = entries.iter().find(|entry| entry.name.eq_ignore_ascii_case(name));
+    found.cloned().ok_or_else(|| RunError::UnknownProgram {
+        task: task.name.clone(),
+        program: name.to_owned(),
+        help: did_you_mean(name, entries.iter().map(|entry| entry.name.as_str())),
+    })
+}

@@ -1,0 +1,161 @@
+//! The shim's sources, and what becomes of them: names in them stand for a project's data.
+//!
+//! Each is program text that can be read and parsed as it is. A line with `(*$ltime` in it is for
+//! projects that use LTIME only, since older systems do not know that type; one with `(*$instances`
+//! for programs of which a configuration has several.
+
+use crate::syntax::tokenize;
+
+pub(super) const GLOBALS: &str = include_str!("../../iec/shim/globals.st");
+pub(super) const SCHEDULER: &str = include_str!("../../iec/shim/scheduler.st");
+pub(super) const EXECUTION_CONTROLLER: &str = include_str!("../../iec/shim/execution_controller.st");
+pub(super) const ON_DELAY: &str = include_str!("../../iec/shim/on_delay.st");
+pub(super) const OFF_DELAY: &str = include_str!("../../iec/shim/off_delay.st");
+pub(super) const PULSE: &str = include_str!("../../iec/shim/pulse.st");
+pub(super) const REAL_TIME_CLOCK: &str = include_str!("../../iec/shim/real_time_clock.st");
+pub(super) const TIME_FUNCTION: &str = include_str!("../../iec/shim/time_function.st");
+
+/// Whom a line marked `(*$..` is for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Only {
+    /// Projects that use LTIME.
+    LongTime,
+    /// Programs of which there are several instances.
+    Instances,
+}
+
+impl Only {
+    fn named(text: &str) -> Option<Self> {
+        match text.split(|one: char| !one.is_ascii_alphabetic()).next() {
+            Some("ltime") => Some(Self::LongTime),
+            Some("instances") => Some(Self::Instances),
+            _ => None,
+        }
+    }
+}
+
+/// The template without the lines that are for others than `wanted`.
+pub(super) fn lines_for(template: &str, wanted: &[Only]) -> String {
+    let mut text = String::with_capacity(template.len());
+    for line in template.lines() {
+        match line.split_once("(*$").and_then(|(before, about)| Some((before, Only::named(about)?, about))) {
+            None => text.push_str(line),
+            Some((before, only, about)) if wanted.contains(&only) => {
+                let about = about.trim_start_matches(|one: char| one.is_ascii_alphabetic());
+                let comment = if about == "*)" { String::new() } else { format!("(*{about}") };
+                text.push_str(format!("{before}{comment}").trim_end());
+            }
+            Some(_) => continue,
+        }
+        text.push('\n');
+    }
+    text
+}
+
+/// The template with every token that is one of `names` written as its text says; comments stay.
+pub(super) fn fill(template: &str, names: &[(&str, String)]) -> String {
+    let mut text = String::with_capacity(template.len());
+    for token in tokenize(template) {
+        let written = template.get(token.start as usize..token.end as usize).unwrap_or("");
+        let new = names.iter().find(|(name, _)| *name == written && !token.kind.is_trivia());
+        text.push_str(new.map_or(written, |(_, new)| new));
+    }
+    text
+}
+
+/// How a program knows its number.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Number {
+    /// There is one instance of it.
+    Fixed(usize),
+    /// Each instance is told by the configuration.
+    OfInstance,
+}
+
+/// The execution controller of one of so many programs.
+pub(super) fn controller(number: Number, programs: usize) -> Controller {
+    let (number, wanted): (_, &[Only]) = match number {
+        Number::Fixed(number) => (number.to_string(), &[]),
+        Number::OfInstance => ("SDSP_Number".to_owned(), &[Only::Instances]),
+    };
+    let names = [("SDSP_NUMBER", number), ("SDSP_PROGRAMS", programs.to_string())];
+    let text = fill(&lines_for(EXECUTION_CONTROLLER, wanted), &names);
+    let between = |from: &str, to: &str| {
+        let rest = text.split_once(from).map_or("", |(_, rest)| rest);
+        rest.split_once(to).map_or("", |(part, _)| part).trim_matches('\n').to_owned()
+    };
+    Controller {
+        declarations: between("PROGRAM SDSP_PROGRAM", "(* Body *)"),
+        header: between("(* Body *)", "(* Regular program begins here *)"),
+        close: between("(* Regular program ends here *)", "(* Footer *)"),
+        footer: between("(* Footer *)", "END_PROGRAM"),
+    }
+}
+
+/// The parts of an execution controller.
+pub(super) struct Controller {
+    /// Its variables.
+    pub(super) declarations: String,
+    /// Before the body.
+    pub(super) header: String,
+    /// Directly behind the body.
+    pub(super) close: String,
+    /// What ends a program's turn: behind `close` and before each RETURN.
+    pub(super) footer: String,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::syntax::{FileId, parse};
+
+    const ALL: [(&str, &str); 8] = [
+        ("globals", GLOBALS),
+        ("scheduler", SCHEDULER),
+        ("execution_controller", EXECUTION_CONTROLLER),
+        ("on_delay", ON_DELAY),
+        ("off_delay", OFF_DELAY),
+        ("pulse", PULSE),
+        ("real_time_clock", REAL_TIME_CLOCK),
+        ("time_function", TIME_FUNCTION),
+    ];
+
+    #[test]
+    fn every_source_says_what_it_is_and_parses_as_it_is() {
+        for (name, text) in ALL {
+            assert!(text.starts_with("(* ") && text.contains("Carlsson et al. 2012, sec. V-"), "{name}");
+            assert_eq!(parse(FileId(0), text).diagnostics, [], "{name}");
+            // XML need not escape anything of a controller.
+            assert!(name != "execution_controller" || !text.contains(['<', '&', '>']));
+        }
+    }
+
+    #[test]
+    fn names_are_filled_in_and_comments_are_not() {
+        let filled = fill("(* N *) x := N + NN; (* N *)", &[("N", "3".to_owned())]);
+        assert_eq!(filled, "(* N *) x := 3 + NN; (* N *)");
+    }
+
+    #[test]
+    fn lines_for_ltime_come_and_go() {
+        let template = "a\nb (*$ltime*)\nc (*$ltime about it *)\n";
+        assert_eq!(lines_for(template, &[]), "a\n");
+        assert_eq!(lines_for(template, &[Only::LongTime]), "a\nb\nc (* about it *)\n");
+    }
+
+    #[test]
+    fn a_controller_has_all_its_parts() {
+        let controller = controller(Number::Fixed(2), 3);
+        assert!(controller.declarations.contains("ARRAY [0..3] OF INT"));
+        assert!(controller.header.ends_with("OR SDSP_Granted THEN"), "{}", controller.header);
+        assert_eq!(controller.close.trim(), "END_IF;");
+        assert_eq!(controller.footer.trim(), "IF SDSP_Granted THEN SDSP_Turn := SDSP_Next[2]; END_IF;");
+        let controller = super::controller(Number::OfInstance, 3);
+        assert!(
+            controller.declarations.contains("VAR_INPUT SDSP_Number : INT; END_VAR"),
+            "{}",
+            controller.declarations
+        );
+        assert!(controller.header.contains("SDSP_Turn = SDSP_Number;"));
+    }
+}

@@ -1,0 +1,120 @@
+//! Forcing: a variable keeps a value whatever the program does.
+//!
+//! A forced value stands in memory when a scan begins, after what was written from outside; when a
+//! program begins, after its inputs were copied from where they are connected; when it ends, before
+//! its outputs are copied; and when the scan ends. Between those points the program sees what it
+//! writes itself. Starts leave forces as they are; they are part of the saved state.
+
+use super::SoftPlc;
+use crate::application::{Application, UnknownVariable, Variable, WriteError};
+
+/// A variable that keeps a value.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(super) struct Force {
+    pub(super) variable: Variable,
+    /// As many as the variable has.
+    pub(super) bytes: Vec<u8>,
+}
+
+/// All forces, the oldest first.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub(super) struct Forces {
+    list: Vec<Force>,
+}
+
+impl Forces {
+    pub(super) fn apply(&self, memory: &mut [u8]) {
+        for Force { variable, bytes } in &self.list {
+            variable.store(bytes, memory);
+        }
+    }
+
+    pub(super) fn iter(&self) -> impl ExactSizeIterator<Item = &Force> {
+        self.list.iter()
+    }
+
+    pub(super) fn hold(&mut self, variable: Variable, bytes: Vec<u8>) {
+        self.release(&variable);
+        self.list.push(Force { variable, bytes });
+    }
+
+    /// False if it was not forced.
+    pub(super) fn release(&mut self, variable: &Variable) -> bool {
+        let before = self.list.len();
+        let same = |force: &Force| force.variable.place() == variable.place();
+        self.list.retain(|force| !same(force));
+        self.list.len() < before
+    }
+
+    pub(super) fn clear(&mut self) {
+        self.list.clear();
+    }
+
+    /// Takes a force out of a saved state; nothing if the application has no such variable.
+    pub(super) fn restore(&mut self, application: &Application, path: &str, bytes: &[u8]) -> Option<()> {
+        let variable = application.variable(path).ok()?;
+        (variable.size as usize == bytes.len()).then(|| self.hold(variable, bytes.to_vec()))
+    }
+}
+
+impl SoftPlc {
+    /// Lets the variable at `path` keep a value, given as a literal, until [`SoftPlc::unforce`].
+    ///
+    /// # Errors
+    /// There is no such variable, it is a constant or `READ_ONLY`, or the text is no value of its
+    /// type.
+    pub fn force(&mut self, path: &str, value: &str) -> Result<(), WriteError> {
+        let (variable, bytes) = self.parsed(path, value)?;
+        self.forces.hold(variable, bytes);
+        self.apply_forces();
+        Ok(())
+    }
+
+    /// Gives the variable at `path` back to the program; false if it was not forced.
+    ///
+    /// # Errors
+    /// There is no such variable.
+    pub fn unforce(&mut self, path: &str) -> Result<bool, UnknownVariable> {
+        let variable = self.variable(path)?;
+        Ok(self.forces.release(&variable))
+    }
+
+    /// Gives all variables back to the program.
+    pub fn unforce_all(&mut self) {
+        self.forces.clear();
+    }
+
+    /// The forced variables, the oldest first.
+    pub fn forced(&self) -> impl ExactSizeIterator<Item = &Variable> {
+        self.forces.iter().map(|force| &force.variable)
+    }
+
+    /// The value at `path` as a literal; see [`Application::value_text`].
+    ///
+    /// # Errors
+    /// There is no such variable.
+    pub fn read(&self, path: &str) -> Result<String, UnknownVariable> {
+        let variable = self.variable(path)?;
+        Ok(self.application().value_text(&variable, self.memory()))
+    }
+
+    /// Writes a value once, given as a literal; see [`Application::value_bytes`]. A forced variable
+    /// keeps its forced value.
+    ///
+    /// # Errors
+    /// There is no such variable, it is a constant or `READ_ONLY`, or the text is no value of its
+    /// type.
+    pub fn write(&mut self, path: &str, value: &str) -> Result<(), WriteError> {
+        let (variable, bytes) = self.parsed(path, value)?;
+        variable.store(&bytes, self.memory_mut());
+        self.apply_forces();
+        Ok(())
+    }
+
+    fn parsed(&self, path: &str, value: &str) -> Result<(Variable, Vec<u8>), WriteError> {
+        let variable = self.variable(path)?;
+        variable.writable()?;
+        let bytes = self.application().value_bytes(&variable, value)?;
+        Ok((variable, bytes))
+    }
+}

@@ -1,0 +1,109 @@
+//! Programs for lockstep, with their tasks.
+
+use onescan_plc_shim::Task;
+
+use crate::rig::task;
+
+pub(crate) struct Case {
+    pub(crate) name: &'static str,
+    pub(crate) text: &'static str,
+    pub(crate) tasks: Vec<Task>,
+    /// Inputs: the BOOLs of these paths change in a pattern.
+    pub(crate) inputs: &'static [&'static str],
+}
+
+const TIMERS: &str = "
+FUNCTION_BLOCK Blinker
+VAR_INPUT run : BOOL; END_VAR
+VAR_OUTPUT lamp : BOOL; END_VAR
+VAR on : TON := (PT := T#30ms); off : ARRAY [1..2] OF TON_TIME; END_VAR
+    on(IN := run AND NOT off[2].Q);
+    off[2](IN := on.Q, PT := T#20ms);
+    lamp := on.Q;
+END_FUNCTION_BLOCK
+TYPE Pair : STRUCT a : TOF; b : TP; n : INT; END_STRUCT END_TYPE
+PROGRAM Main
+VAR_INPUT i, j : BOOL; END_VAR
+VAR_OUTPUT q, r, s, lamp : BOOL; et, eu, ev : TIME; el : LTIME; n : DINT; cdt : DT; END_VAR
+VAR pair : Pair; t : TON; long : TP_LTIME; b : Blinker; clock : RTC; END_VAR
+    t(IN := i, PT := T#20ms, Q => q, ET => et);
+    pair.a(IN := i, PT := T#25ms); r := pair.a.Q; eu := pair.a.ET;
+    pair.b(IN := j, PT := T#30ms); s := pair.b.Q; ev := pair.b.ET;
+    long(IN := i XOR j, PT := LT#12ms, ET => el);
+    b(run := TRUE); lamp := b.lamp;
+    clock(IN := TRUE, PDT := DT#2012-01-15-10:00:00); cdt := clock.CDT;
+    IF t.Q THEN n := n + 1; END_IF;
+END_PROGRAM";
+
+const TASKS: &str = "
+VAR_GLOBAL trace : LINT; END_VAR
+PROGRAM Slow VAR_OUTPUT n : INT; t : LINT; END_VAR VAR e : TON; END_VAR
+    n := n + 1; trace := trace * 7 + 1; t := trace; e(IN := NOT e.Q, PT := T#35ms); IF e.Q THEN n := n + 100; END_IF;
+END_PROGRAM
+PROGRAM Fast VAR_OUTPUT n : INT; t : LINT; END_VAR n := n + 1; trace := trace * 7 + 2; t := trace; END_PROGRAM
+PROGRAM Also VAR_OUTPUT n : INT; t : LINT; END_VAR n := n + 1; trace := trace * 7 + 3; t := trace; END_PROGRAM
+PROGRAM Urgent VAR_OUTPUT n : INT; t : LINT; END_VAR n := n + 1; trace := trace * 7 + 4; t := trace; END_PROGRAM";
+
+const RETURNS: &str = "
+PROGRAM Main VAR_INPUT i : BOOL; END_VAR VAR_OUTPUT n, m, k : INT; END_VAR VAR x : INT; END_VAR
+    n := n + 1;
+    IF i THEN RETURN; END_IF;
+    FOR x := 1 TO 10 DO
+        CASE x OF
+            3: m := m + 1;
+            5: IF n > 4 THEN RETURN; END_IF;
+        ELSE k := k + 1;
+        END_CASE;
+    END_FOR;
+    m := m + 100; // the end
+END_PROGRAM
+PROGRAM Empty END_PROGRAM
+PROGRAM Blank VAR x : INT; END_VAR ; (* nothing *) END_PROGRAM
+PROGRAM Behind VAR_OUTPUT n : INT; END_VAR n := n + 1; RETURN; END_PROGRAM";
+
+const COUNTERS: &str = "
+PROGRAM Main VAR_INPUT i, j : BOOL; END_VAR VAR_OUTPUT cv : INT; qu, qd, e : BOOL; END_VAR
+VAR c : CTUD; up : CTU; r : R_TRIG; f : F_TRIG; END_VAR
+    c(CU := i, CD := j, R := FALSE, LD := FALSE, PV := 3, QU => qu, QD => qd, CV => cv);
+    up(CU := i, R := up.Q, PV := 2);
+    r(CLK := i); f(CLK := j); e := r.Q OR f.Q OR up.Q;
+END_PROGRAM";
+
+pub(crate) fn cases() -> Vec<Case> {
+    vec![
+        Case {
+            name: "timers",
+            text: TIMERS,
+            tasks: vec![task("main", 5, 0, &["Main"])],
+            inputs: &["Main.i", "Main.j"],
+        },
+        Case {
+            name: "tasks",
+            text: TASKS,
+            tasks: vec![
+                task("slow", 20, 2, &["Slow"]),
+                task("fast", 10, 2, &["Fast", "Also"]),
+                task("urgent", 15, 1, &["Urgent"]),
+            ],
+            inputs: &[],
+        },
+        Case {
+            name: "returns",
+            text: RETURNS,
+            tasks: vec![task("main", 10, 0, &["Main", "Empty", "Blank"]), task("behind", 10, 1, &["Behind"])],
+            inputs: &["Main.i"],
+        },
+        Case {
+            name: "counters",
+            text: COUNTERS,
+            tasks: vec![task("main", 10, 3, &["Main"])],
+            inputs: &["Main.i", "Main.j"],
+        },
+    ]
+}
+
+/// The value of an input at a step: a pattern without a short period.
+pub(crate) fn input(index: usize, step: u64) -> i64 {
+    let mixed = (step / 3 + 1).wrapping_mul(0x9e37_79b9_7f4a_7c15 ^ (index as u64) << 17);
+    (mixed >> 61 & 1) as i64
+}

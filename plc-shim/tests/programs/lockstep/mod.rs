@@ -1,0 +1,11 @@
+//! Instrumented programs (seed: Carlsson et al. 2012, sec. V): the same outputs at the same virtual times,
+//! whatever becomes of the grants.
+
+mod configurations;
+mod corpus;
+mod driver;
+mod equivalence;
+mod grants;
+mod overhead;
+mod random;
+mod rewriting;

@@ -1,0 +1,99 @@
+//! What was changed, for people and machines.
+
+use std::io::{self, Write};
+
+use onescan_plc_shim::Diagnostics;
+use onescan_plc_shim::instrument::{File, Project, diff};
+use serde::Serialize;
+
+use super::{Destination, Diff, Direction, InstrumentConfig};
+use crate::check::json::Line;
+use crate::check::report::Report;
+use crate::check::{human, json};
+use crate::run::{Format, RunError};
+
+/// The report for machines.
+#[derive(Serialize)]
+struct Json<'a> {
+    files: Vec<JsonFile<'a>>,
+    findings: Vec<Line<'a>>,
+}
+
+#[derive(Serialize)]
+struct JsonFile<'a> {
+    file: &'a str,
+    change: &'static str,
+    /// For each line the line it comes from, `null` for what the shim put in.
+    lines: &'a [Option<u32>],
+    #[serde(skip_serializing_if = "Option::is_none")]
+    diff: Option<String>,
+}
+
+/// Writes what was found.
+///
+/// # Errors
+/// Those of `out`.
+pub fn findings(findings: &Diagnostics, files: usize, format: Format, out: &mut dyn Write) -> Result<(), RunError> {
+    let report = Report { files, findings: vec![findings.clone()] };
+    let written = match format {
+        Format::Human => human::write(&report, out),
+        Format::Json => json::write(&report, out),
+    };
+    written.map_err(RunError::Output)
+}
+
+/// Writes what was changed.
+///
+/// # Errors
+/// Those of `out`.
+pub fn write(config: &InstrumentConfig, project: &Project, out: &mut dyn Write) -> Result<(), RunError> {
+    let written = match config.format {
+        Format::Json => write_json(config, project, out),
+        Format::Human => write_human(config, project, out),
+    };
+    written.map_err(RunError::Output)
+}
+
+fn write_json(config: &InstrumentConfig, project: &Project, out: &mut dyn Write) -> io::Result<()> {
+    let file = |file| JsonFile {
+        file: file_name(file),
+        change: change(file),
+        lines: file.lines.lines(),
+        diff: (config.diff == Diff::Shown).then(|| diff::unified(file)),
+    };
+    let findings = project.warnings.findings().iter().map(Line::from).collect();
+    let report = Json { files: project.files.iter().map(file).collect(), findings };
+    serde_json::to_writer(&mut *out, &report)?;
+    writeln!(out)
+}
+
+fn write_human(config: &InstrumentConfig, project: &Project, out: &mut dyn Write) -> io::Result<()> {
+    if config.diff == Diff::Shown {
+        for file in &project.files {
+            write!(out, "{}", diff::unified(file))?;
+        }
+    }
+    if config.destination == Destination::Nowhere {
+        return Ok(());
+    }
+    for file in &project.files {
+        writeln!(out, "{:<8} {}", change(file), file_name(file))?;
+    }
+    if config.direction == Direction::Attach {
+        writeln!(out, "\nRun SDSP_Scheduler first in every cycle, in a task of the highest priority.")?;
+    }
+    Ok(())
+}
+
+fn file_name(file: &File) -> &str {
+    &file.name
+}
+
+fn change(file: &File) -> &'static str {
+    match (&file.before, &file.text) {
+        (None, _) => "new",
+        (_, None) => "deleted",
+        (before, text) if before == text => "same",
+        _ => "changed",
+    }
+}

@@ -1,0 +1,135 @@
+//! `instrument` as it is typed: projects made to run in lockstep, and back.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+
+use crate::typed::{Said, copied_shear, digests, scenario, typed};
+
+fn instrumented(folder: &Path, words: &[&str]) -> Said {
+    let mut all = vec!["instrument"];
+    all.extend_from_slice(words);
+    let said = typed(folder, &all);
+    assert!(!said.err.contains("panicked"), "{said:?}");
+    said
+}
+
+/// Every file below a folder with its bytes.
+fn files(folder: &Path) -> BTreeMap<String, Vec<u8>> {
+    let mut found = BTreeMap::new();
+    for entry in std::fs::read_dir(folder).unwrap() {
+        let path = entry.unwrap().path();
+        let name = path.file_name().unwrap().to_str().unwrap().to_owned();
+        if path.is_dir() {
+            found.extend(files(&path).into_iter().map(|(inner, bytes)| (format!("{name}/{inner}"), bytes)));
+        } else {
+            found.insert(name, std::fs::read(&path).unwrap());
+        }
+    }
+    found
+}
+
+#[test]
+fn a_scenario_is_instrumented_and_comes_back() {
+    let folder = copied_shear();
+    let before = files(folder.path());
+    let said = instrumented(folder.path(), &[".", "--in-place"]);
+    assert_eq!((said.code, said.err.as_str()), (Some(0), ""), "{said:?}");
+    insta::assert_snapshot!(said.out);
+    let after = files(folder.path());
+    assert_ne!(after, before);
+    // Once more changes nothing.
+    let said = instrumented(folder.path(), &[".", "--in-place"]);
+    assert!(said.code == Some(0) && !said.out.contains("changed"), "{said:?}");
+    assert_eq!(files(folder.path()), after);
+    // The result is a program without errors.
+    assert_eq!(typed(folder.path(), &["check", "plc"]).code, Some(0));
+    let said = instrumented(folder.path(), &[".", "--in-place", "--remove"]);
+    assert_eq!(said.code, Some(0), "{said:?}");
+    assert_eq!(files(folder.path()), before);
+}
+
+#[test]
+fn changes_are_shown_and_nothing_is_written() {
+    let folder = copied_shear();
+    let before = files(folder.path());
+    let said = instrumented(folder.path(), &["plc/shear.st", "--diff", "--task", "main:10ms:0=Shear"]);
+    assert_eq!(said.code, Some(0), "{said:?}");
+    let (diff, _) = said.out.split_once("--- /dev/null").unwrap();
+    insta::assert_snapshot!(diff);
+    assert_eq!(files(folder.path()), before);
+}
+
+#[test]
+fn bytes_stay_as_they_are() {
+    let folder = tempfile::tempdir().unwrap();
+    let text =
+        b"(* F\xf6rderband *)\r\nPROGRAM P\r\nVAR t : TON; END_VAR\r\n\tt(IN := TRUE, PT := T#1s);\r\nEND_PROGRAM";
+    std::fs::write(folder.path().join("p.st"), text).unwrap();
+    let said = instrumented(folder.path(), &["p.st", "-o", "out"]);
+    assert_eq!(said.code, Some(0), "{said:?}");
+    assert_eq!(std::fs::read(folder.path().join("p.st")).unwrap(), text);
+    let out = std::fs::read(folder.path().join("out/p.st")).unwrap();
+    assert!(
+        out.starts_with(b"(* F\xf6rderband *)\r\nPROGRAM P\r\n") && out.windows(9).any(|part| part == b"SDSP_TON(")
+    );
+    assert_eq!(out.iter().filter(|byte| **byte == b'\n').count(), out.windows(2).filter(|two| two == b"\r\n").count());
+    let said = instrumented(folder.path(), &["out", "--remove", "-o", "back"]);
+    assert_eq!(said.code, Some(0), "{said:?}");
+    assert_eq!(files(&folder.path().join("back")), BTreeMap::from([("p.st".to_owned(), text.to_vec())]));
+}
+
+#[test]
+fn machines_read_json() {
+    let said = instrumented(&scenario("shear"), &[".", "--target", "twincat", "--diff", "--format", "json"]);
+    assert_eq!(said.code, Some(0), "{said:?}");
+    let report: serde_json::Value = serde_json::from_str(&said.out).unwrap();
+    let names: Vec<_> =
+        report["files"].as_array().unwrap().iter().map(|file| (&file["file"], &file["change"])).collect();
+    insta::assert_snapshot!(serde_json::to_string_pretty(&names).unwrap());
+    assert!(report["files"][0]["lines"].as_array().unwrap().len() > 60);
+}
+
+#[test]
+fn what_is_wrong_is_told() {
+    let folder = tempfile::tempdir().unwrap();
+    let write = |name: &str, text: &str| std::fs::write(folder.path().join(name), text).unwrap();
+    write("clock.st", "PROGRAM P VAR m : MC_Home; END_VAR m(); END_PROGRAM\n");
+    write("none.st", "FUNCTION_BLOCK F END_FUNCTION_BLOCK\n");
+    write("wrong.st", "PROGRAM P x := ; END_PROGRAM\n");
+    let say = |words: &[&str]| {
+        let said = instrumented(folder.path(), words);
+        format!("{:?}\n{}{}", said.code, said.out, said.err)
+    };
+    let all = [
+        say(&["clock.st", "-o", "out"]),
+        say(&["clock.st", "-o", "no", "--deny-warnings"]),
+        say(&["none.st", "--diff"]),
+        say(&["wrong.st", "--diff"]),
+        say(&["clock.st", "--diff", "--task", "a:1ms:0=Q"]),
+        say(&["clock.st", "--diff", "--task", "a:1ms=P"]),
+        say(&["clock.st"]),
+    ];
+    assert!(!folder.path().join("no").exists());
+    insta::assert_snapshot!(all.join("----\n"));
+}
+
+/// The shear makes its strokes to the last bit as it does without the shim; see the test of the same name
+/// below for the instrumented program under grants.
+#[test]
+fn an_instrumented_scenario_that_is_not_simulated_has_the_same_digest() {
+    let folder = copied_shear();
+    let run = || {
+        let said = typed(folder.path(), &["run", ".", "--format", "json", "--until", "2s"]);
+        digests(&[serde_json::from_str(said.out.trim()).expect("a report")])
+    };
+    let plain = run();
+    assert_eq!(instrumented(folder.path(), &[".", "--in-place"]).code, Some(0));
+    crate::typed::edit(folder.path(), "plc/sdsp.st", "SDSP_Simulated : BOOL := TRUE", "SDSP_Simulated : BOOL := FALSE");
+    crate::typed::edit(
+        folder.path(),
+        "scenario.toml",
+        "\"plc/alignment.st\"]",
+        "\"plc/alignment.st\", \"plc/sdsp.st\"]",
+    );
+    assert_eq!(run(), plain);
+}

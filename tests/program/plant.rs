@@ -1,0 +1,83 @@
+//! `components` and `describe` as they are typed.
+
+use crate::typed::{scenario, typed};
+
+const CELL: &str = r#"version = 1
+[[body]]
+name = "jaw"
+kind = "dynamic"
+shape = "box"
+size_m = [0.1, 0.1, 0.1]
+mass_kg = 5.0
+[[joint]]
+name = "slide"
+kind = "prismatic"
+parent = "ground"
+child = "jaw"
+axis = [1.0, 0.0, 0.0]
+[[component]]
+name = "clamp"
+kind = "pneumatic_cylinder"
+joint = "slide"
+valve = "5/3-closed"
+extend_signal = "Clamp"
+extended_signal = "Clamped"
+[[component]]
+name = "gauge"
+kind = "pressure_sensor"
+pressure_bar_from = "clamp.cap_bar"
+measured_bar_signal = "Pressure"
+[[failure]]
+component = "clamp"
+mode = "leaking"
+"#;
+
+#[test]
+fn the_library_is_listed() {
+    let said = typed(&scenario("shear"), &["components"]);
+    assert_eq!((said.code, said.err.as_str()), (Some(0), ""));
+    insta::assert_snapshot!(said.out);
+}
+
+#[test]
+fn one_kind_is_told_in_full() {
+    let said = typed(&scenario("shear"), &["components", "lamp"]);
+    assert_eq!((said.code, said.err.as_str()), (Some(0), ""));
+    insta::assert_snapshot!(said.out);
+    let said = typed(&scenario("shear"), &["components", "lamp", "--format", "json"]);
+    let kind: serde_json::Value = serde_json::from_str(&said.out).expect("JSON");
+    assert_eq!((&kind["name"], &kind["failures"][0]["mode"]), (&"lamp".into(), &"burnt".into()));
+}
+
+#[test]
+fn a_kind_that_is_not_there_has_a_nearest_name() {
+    let said = typed(&scenario("shear"), &["components", "lampe"]);
+    assert_eq!((said.code, said.out.as_str()), (Some(2), ""));
+    assert!(
+        said.err.contains("there is no component `lampe`") && said.err.contains("did you mean `lamp`?"),
+        "{said:?}"
+    );
+}
+
+#[test]
+fn a_scene_is_told_as_a_tree() {
+    let said = typed(&scenario("shear"), &["describe", "plant.toml"]);
+    assert_eq!((said.code, said.err.as_str()), (Some(0), ""));
+    insta::assert_snapshot!("shear_described", said.out);
+    let folder = tempfile::tempdir().expect("a folder");
+    std::fs::write(folder.path().join("cell.toml"), CELL).expect("written");
+    insta::assert_snapshot!("cell_described", typed(folder.path(), &["describe", "cell.toml"]).out);
+    let said = typed(folder.path(), &["describe", "cell.toml", "--format", "json"]);
+    let scene: serde_json::Value = serde_json::from_str(&said.out).expect("JSON");
+    assert_eq!(scene["components"][0]["kind"], "pneumatic_cylinder");
+}
+
+#[test]
+fn a_wrong_scene_is_shown_where_it_is_wrong() {
+    let folder = tempfile::tempdir().expect("a folder");
+    std::fs::write(folder.path().join("cell.toml"), CELL.replace("valve =", "valves =")).expect("written");
+    let said = typed(folder.path(), &["describe", "cell.toml"]);
+    assert_eq!((said.code, said.out.as_str()), (Some(2), ""));
+    insta::assert_snapshot!(said.err);
+    assert_eq!(typed(folder.path(), &["describe", "nothing.toml"]).code, Some(2));
+}
