@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
+use super::address::PlaceFunction;
 use super::convert::{Operand, constant};
 use super::enable;
 use super::function_form;
@@ -15,7 +16,7 @@ use crate::ir::{
     Storage, Type, TypeId, TypeTable, Unary, Variable,
 };
 use crate::syntax::Span;
-use crate::syntax::ast::{self, Call, Ident, PouKind, SectionKind};
+use crate::syntax::ast::{self, Call, Ident, PouKind, ReferenceKind, SectionKind};
 
 /// The arguments of a call by the parameter they belong to.
 #[derive(Default)]
@@ -54,6 +55,9 @@ impl Body<'_, '_> {
         }
         if let Some(id) = self.function_named(name) {
             return self.function_call(id, name, call, span).map(Operand::Typed);
+        }
+        if let Some(function) = PlaceFunction::find(&name.key()) {
+            return self.place_call(function, name, call, span);
         }
         if standard_function::exists(&name.key()) {
             return self.standard_call(name, &call.arguments, span);
@@ -307,8 +311,14 @@ impl Body<'_, '_> {
         expr: &ast::Expr,
         passing: &mut Passing,
     ) -> Option<Argument> {
+        if matches!(self.checker.types.get(parameter.ty), Type::OpenArray { .. }) {
+            return self.described(parameter, expr, &mut passing.before).map(Argument::Reference);
+        }
         if parameter.section == SectionKind::InOut {
             return self.reference(parameter, expr, passing).map(Argument::Reference);
+        }
+        if matches!(self.checker.types.get(parameter.ty), Type::Reference { kind: ReferenceKind::Reference, .. }) {
+            return self.referring_argument(parameter.ty, expr, passing).map(Argument::Value);
         }
         self.expression_for(expr, parameter.ty).map(Argument::Value)
     }
@@ -322,14 +332,31 @@ impl Body<'_, '_> {
             self.report(Diagnostic::error(Code::InvalidArgument, expr.span, message));
             return None;
         }
+        self.through_memory(place, passing)
+    }
+
+    /// The place, or memory that holds its value during the call if it has no address.
+    fn through_memory(&mut self, place: Place, passing: &mut Passing) -> Option<Place> {
         if place.has_address() {
             return Some(place);
         }
-        let memory = self.temporary(place.ty, expr.span)?;
+        let memory = self.temporary(place.ty, place.span)?;
         let (there, back) = (copy(&memory, &place), copy(&place, &memory));
         passing.before.push(there);
         passing.after.push(back);
         Some(memory)
+    }
+
+    /// The variable given for a `REFERENCE TO`.
+    fn referring_argument(&mut self, ty: TypeId, expr: &ast::Expr, passing: &mut Passing) -> Option<Expr> {
+        let value = self.referring(ty, expr)?;
+        match value.kind {
+            ExprKind::Address(place) => {
+                let kind = ExprKind::Address(self.through_memory(place, passing)?);
+                Some(Expr { kind, ..value })
+            }
+            _ => Some(value),
+        }
     }
 
     /// Memory of the calling unit for one value.

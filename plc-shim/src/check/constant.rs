@@ -32,6 +32,7 @@ pub(super) fn fold(types: &TypeTable, expr: &Expr) -> Result<Value, NoValue> {
             fold(types, if holds { then } else { otherwise })
         }
         ExprKind::Limited(_, _, operand) => fold(types, operand),
+        ExprKind::Address(place) => place.fixed_address().map(|at| Value::Int(i128::from(at))).ok_or(not_constant),
         ExprKind::Load(_)
         | ExprKind::Intrinsic(..)
         | ExprKind::Text(_)

@@ -61,6 +61,12 @@ impl Body<'_, '_> {
         if let Type::Interface { pou, .. } = *self.checker.types.get(target) {
             return self.coerce_interface(operand, pou, target);
         }
+        if matches!(self.checker.types.get(target), Type::OpenArray { .. }) {
+            return self.reject_whole_array(operand.span());
+        }
+        if super::reference::target_of(&self.checker.types, target).is_some() {
+            return self.coerce_reference(operand, target);
+        }
         if let Type::Subrange { base, low, high } = *self.checker.types.get(target) {
             let expr = self.coerce(operand, base.into())?;
             return self.limited(expr, target, low, high);
@@ -95,6 +101,9 @@ impl Body<'_, '_> {
     }
 
     fn widen(&mut self, expr: Expr, wanted: ElementaryType) -> Option<Expr> {
+        if let Some(number) = self.address_as_number(&expr, wanted) {
+            return Some(number);
+        }
         let found = if let Type::Elementary(found) = self.checker.types.get(expr.ty) {
             *found
         } else {

@@ -27,11 +27,15 @@ impl Body<'_, '_> {
                 let (left, right) = self.within(context, |body| (body.expression(left), body.expression(right)));
                 self.binary(*operator, left?, right?, expr.span)
             }
-            ast::ExprKind::Call(call) => self.call_expression(call, expr.span),
+            ast::ExprKind::Call(call) => {
+                let result = self.call_expression(call, expr.span)?;
+                Some(self.referred_result(result))
+            }
             ast::ExprKind::Name(_)
             | ast::ExprKind::Member(..)
             | ast::ExprKind::Index(..)
             | ast::ExprKind::Part(..)
+            | ast::ExprKind::Dereference(_)
             | ast::ExprKind::DirectAddress(_) => self.load(expr),
             ast::ExprKind::Error => None,
         }

@@ -21,9 +21,7 @@ impl Body<'_, '_> {
     fn fill(&mut self, ty: TypeId, initial: &Initialiser, image: &mut [u8]) -> Option<()> {
         let shape = self.checker.types.get(ty).clone();
         match (&initial.kind, shape) {
-            (InitialiserKind::Value(expr), Type::Elementary(_) | Type::Enumeration { .. } | Type::Subrange { .. }) => {
-                self.fill_elementary(ty, expr, image)
-            }
+            (InitialiserKind::Value(expr), _) if self.elementary(ty).is_some() => self.fill_elementary(ty, expr, image),
             (InitialiserKind::Value(expr), Type::Text(shape)) => {
                 let bytes = self.text_image(shape, expr)?;
                 image.iter_mut().zip(bytes).for_each(|(target, source)| *target = source);

@@ -262,7 +262,7 @@ impl<'a> Interface<'_, 'a> {
     pub(super) fn declare_new_value(&mut self, ast: &'a ast::Pou) {
         let Some(spec) = ast.result.as_ref().filter(|_| self.is_setter()) else { return };
         let Some(declared) = self.body.resolve(spec, Need::Size) else { return };
-        let Some(storage) = self.parameter(&declared, ast.name.span) else { return };
+        let Some(storage) = self.parameter(&declared, &ast.name) else { return };
         let shape = ast::Variable { names: Vec::new(), address: None, spec: spec.clone(), edge: None, initial: None };
         let kind = SectionKind::Input;
         let variable = self.body.checker.variable(&ast.name, &shape, kind, &[], &declared, storage);

@@ -4,16 +4,13 @@
 use super::convert::Operand;
 use super::scope::Body;
 use crate::diagnostic::{Code, Diagnostic};
-use crate::ir::{Binary, Cast, ElementaryType, Expr, ExprKind, PouId, Statement, StatementKind, Type, TypeId, Value};
+use crate::ir::{
+    Binary, Cast, ElementaryType, Expr, ExprKind, Place, PouId, Statement, StatementKind, Type, TypeId, TypeTable,
+    Value,
+};
 use crate::syntax::Span;
-use crate::syntax::ast::{self, Ident};
 
 impl Body<'_, '_> {
-    /// True for the name `NULL`, unless something is called so.
-    pub(super) fn is_null(&self, name: &Ident) -> bool {
-        name.key() == "NULL" && !self.scope.declares("NULL") && self.checker.global_key("NULL").is_none()
-    }
-
     pub(super) fn is_interface(&self, operand: &Operand) -> bool {
         matches!(operand, Operand::Typed(expr) if matches!(self.checker.types.get(expr.ty), Type::Interface { .. }))
     }
@@ -22,6 +19,7 @@ impl Body<'_, '_> {
     pub(super) fn coerce_interface(&mut self, operand: Operand, interface: PouId, target: TypeId) -> Option<Expr> {
         match operand {
             Operand::Typed(expr) if expr.ty == target => Some(expr),
+            Operand::Typed(expr) if expr.ty == TypeTable::null() => Some(Expr { ty: target, ..expr }),
             Operand::Integer { value: 0, span } => {
                 Some(Expr { kind: ExprKind::Constant(Value::Int(0)), ty: target, span })
             }
@@ -74,9 +72,7 @@ impl Body<'_, '_> {
     }
 
     /// `target ?= value`: NULL unless what the value refers to implements the target's interface.
-    pub(super) fn attempt(&mut self, target: &ast::Expr, value: &ast::Expr, span: Span) -> Option<Statement> {
-        let (target, value) = (self.target(target), self.expression(value));
-        let (target, value) = (target?, value?);
+    pub(super) fn attempt_interface(&mut self, target: Place, value: Operand, span: Span) -> Option<Statement> {
         let Type::Interface { pou: wanted, .. } = *self.checker.types.get(target.ty) else {
             let found = self.type_name(target.ty);
             return self.mismatch("an interface", &found, target.span);
@@ -104,7 +100,7 @@ impl Body<'_, '_> {
                 Some(Expr { kind: ExprKind::Constant(Value::Int(0)), ty: address, span })
             }
             Operand::Typed(expr) => match self.checker.types.get(expr.ty) {
-                Type::Interface { .. } | Type::FunctionBlock { .. } => Some(Expr { ty: address, ..expr }),
+                Type::Interface { .. } | Type::FunctionBlock { .. } | Type::Null => Some(Expr { ty: address, ..expr }),
                 _ => {
                     let found = self.type_name(expr.ty);
                     self.mismatch("an instance, an interface or NULL", &found, expr.span)

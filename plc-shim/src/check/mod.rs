@@ -5,13 +5,15 @@
 //! | [`names`] | what the files declare, by name |
 //! | [`layout`] | offsets in memory |
 //! | [`scope`] | what a name means inside a unit |
-//! | [`types`], [`subrange`] | types as written to types |
+//! | [`types`], [`subrange`], [`union`] | types as written to types |
 //! | [`variables`] | sections to placed variables, units' interfaces |
 //! | [`located`] | direct addresses to places |
 //! | [`initial`] | initial values to bytes |
 //! | [`constant`] | constant expressions to values |
 //! | [`convert`] | implicit conversions, constants in context |
 //! | [`expression`], [`operator`], [`calendar`], [`place`], [`part`] | expressions |
+//! | [`reference`], [`address`], [`referred`] | references and pointers |
+//! | [`open_array`] | arrays that come with their bounds |
 //! | [`call`], [`standard_function`], [`function_form`], [`conversion_function`] | calls |
 //! | [`enable`], [`enable_error`] | EN and ENO |
 //! | [`text`], [`text_function`], [`text_conversion`] | character strings |
@@ -26,6 +28,7 @@
 //! A unit, type or global variable is resolved when it is first needed; what is being resolved
 //! and needed again contains itself.
 
+mod address;
 mod assignment;
 mod calendar;
 mod call;
@@ -50,11 +53,14 @@ mod located;
 mod method_call;
 mod names;
 mod namespace;
+mod open_array;
 mod operator;
 mod part;
 mod place;
 mod property;
 mod recursion;
+mod reference;
+mod referred;
 mod scope;
 mod standard_function;
 mod statement;
@@ -63,6 +69,7 @@ mod text;
 mod text_conversion;
 mod text_function;
 mod types;
+mod union;
 mod variables;
 
 use std::collections::{BTreeMap, BTreeSet};

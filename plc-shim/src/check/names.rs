@@ -34,6 +34,8 @@ pub(super) struct TypeEntry<'a> {
     pub(super) ast: &'a TypeDeclaration,
     pub(super) home: Arc<Home>,
     pub(super) progress: Progress,
+    /// The type of a structure as soon as something refers to it.
+    pub(super) reserved: Option<TypeId>,
     pub(super) resolved: Option<TypedImage>,
 }
 
@@ -156,7 +158,8 @@ impl<'a> Checker<'a> {
 
     pub(super) fn collect_type(&mut self, ast: &'a TypeDeclaration) {
         if !self.is_taken(&ast.name) {
-            let entry = TypeEntry { ast, home: self.home.clone(), progress: Progress::Untouched, resolved: None };
+            let (home, progress) = (self.home.clone(), Progress::Untouched);
+            let entry = TypeEntry { ast, home, progress, reserved: None, resolved: None };
             self.type_names.insert(self.home.key(&ast.name), entry);
         }
     }

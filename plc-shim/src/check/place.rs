@@ -7,7 +7,7 @@ use crate::diagnostic::{Code, Diagnostic, did_you_mean};
 use crate::dialect::Feature;
 use crate::ir::{Dimension, ElementaryType, Expr, ExprKind, Place, Step, Storage, Type, TypeId, Variable};
 use crate::syntax::Span;
-use crate::syntax::ast::{self, Ident, SectionKind};
+use crate::syntax::ast::{self, Ident, ReferenceKind, SectionKind};
 
 /// Who may write to a place.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -42,9 +42,6 @@ impl Body<'_, '_> {
             ast::ExprKind::Name(name) => {
                 if let Some(found) = self.own_property(name) {
                     return found;
-                }
-                if self.is_null(name) {
-                    return Some(Operand::Integer { value: 0, span: expr.span });
                 }
                 if !self.is_this(name)
                     && let Meaning::Value(value) = self.meaning(name)?
@@ -86,7 +83,14 @@ impl Body<'_, '_> {
         matches!(self.checker.types.get(ty), Type::Enumeration { .. }).then_some(ty)
     }
 
+    /// The place that an expression stands for; of a `REFERENCE TO` what it refers to.
     pub(super) fn place(&mut self, expr: &ast::Expr) -> Option<Located> {
+        let located = self.declared_place(expr)?;
+        Some(self.through_reference(located))
+    }
+
+    /// The same, the reference itself if it is one.
+    pub(super) fn declared_place(&mut self, expr: &ast::Expr) -> Option<Located> {
         match &expr.kind {
             ast::ExprKind::Name(name) => self.named_place(name),
             ast::ExprKind::Member(base, name) => {
@@ -100,7 +104,8 @@ impl Body<'_, '_> {
                 let base = self.place(base)?;
                 self.element(base, indices, expr.span)
             }
-            ast::ExprKind::Paren(inner) => self.place(inner),
+            ast::ExprKind::Dereference(inner) => self.dereferenced(inner, expr.span),
+            ast::ExprKind::Paren(inner) => self.declared_place(inner),
             ast::ExprKind::DirectAddress(text) => self.direct_place(text, expr.span),
             ast::ExprKind::Part(base, part) => {
                 let base = self.place(base)?;
@@ -121,7 +126,9 @@ impl Body<'_, '_> {
         }
         match self.variable_named(name) {
             Some(Ok(variable)) => {
+                let open = super::open_array::access(&self.checker.types, &variable);
                 let access = match variable.section {
+                    _ if open.is_some() => Access::Constant,
                     _ if variable.is_constant => Access::Constant,
                     SectionKind::Input => Access::OwnInput,
                     _ if super::located::is_machine_input(variable.storage) => Access::MachineInput,
@@ -177,6 +184,7 @@ impl Body<'_, '_> {
         let found = self.checker.enumerators.get(&name.key()).map_or(&[][..], Vec::as_slice);
         match found {
             [only] => Some(Meaning::Value(enumeration_value(only.ty, only.value, name.span))),
+            [] if name.key() == "NULL" => Some(Meaning::Value(Self::null(name.span))),
             [] => self.report_unknown(name),
             several => {
                 let types: Vec<_> = several.iter().map(|each| self.type_name(each.ty)).collect();
@@ -268,6 +276,15 @@ impl Body<'_, '_> {
     }
 
     fn element(&mut self, base: Located, indices: &[ast::Expr], span: Span) -> Option<Located> {
+        if let (Type::Reference { kind: ReferenceKind::Pointer, target }, [index]) =
+            (self.checker.types.get(base.place.ty), indices)
+        {
+            let target = *target;
+            return self.pointed_element(base, target, index, span);
+        }
+        if matches!(self.checker.types.get(base.place.ty), Type::OpenArray { .. }) {
+            return self.open_element(base, indices, span);
+        }
         let Type::Array { dimensions, element } = self.checker.types.get(base.place.ty).clone() else {
             let message = format!("{} is not an array", self.type_name(base.place.ty));
             self.report(Diagnostic::error(Code::NotIndexable, span, message));

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use super::Checker;
-use super::convert::constant;
+use super::convert::{Operand, constant};
 use super::place::Access;
 use super::scope::Body;
 use super::variables::decode;
@@ -57,7 +57,8 @@ impl Body<'_, '_> {
         for variable in &variables {
             let parameter = matches!(variable.section, SectionKind::Input | SectionKind::InOut);
             if kind.keeps_nothing() && parameter {
-                statements.extend(copied_parameter(variable, LocalId(register)));
+                let elementary = self.elementary(variable.ty).is_some();
+                statements.extend(copied_parameter(variable, elementary, LocalId(register)));
                 register += 1;
                 continue;
             }
@@ -111,6 +112,7 @@ impl Body<'_, '_> {
                 return self.update(*operator, target, value, span);
             }
             ast::StatementKind::Assign(target, value) => return self.assign(target, value, span),
+            ast::StatementKind::Refer(target, value) => return self.refer(target, value, span),
             ast::StatementKind::Attempt(target, value) => return self.attempt(target, value, span),
             ast::StatementKind::Call(call) => self.call_statement(call, span)?,
             ast::StatementKind::If(inner) => self.if_statement(inner),
@@ -231,7 +233,9 @@ impl Body<'_, '_> {
     /// 2nd ed. 3.3.2.3: an integer or an enumeration selects; 3rd ed. adds bit strings.
     fn selectable(&mut self, selector: Expr) -> Option<(Expr, ElementaryType)> {
         match self.elementary(selector.ty) {
-            Some(ty) if ty.is_integer() || ty.is_bits() => Some((selector, ty)),
+            Some(ty) if (ty.is_integer() || ty.is_bits()) && !self.is_reference(&Operand::Typed(selector.clone())) => {
+                Some((selector, ty))
+            }
             _ => {
                 let found = self.type_name(selector.ty);
                 self.mismatch("an integer or enumeration", &found, selector.span)
@@ -309,14 +313,16 @@ impl Body<'_, '_> {
     }
 }
 
-/// An aggregate comes by address; the callee works on its own copy.
-fn copied_parameter(variable: &Variable, register: LocalId) -> Option<Statement> {
+/// An aggregate comes by address; the callee works on its own copy. So it does on that of a value whose
+/// address it takes.
+fn copied_parameter(variable: &Variable, elementary: bool, register: LocalId) -> Option<Statement> {
     if !matches!(variable.storage, Storage::Absolute(_)) {
         return None;
     }
     let (ty, span) = (variable.ty, variable.span);
-    let source = Place::whole(Storage::RegisterPointer(register), ty, span);
+    let storage = if elementary { Storage::Register(register) } else { Storage::RegisterPointer(register) };
     let target = Place::whole(variable.storage, ty, span);
-    let value = Expr { kind: ExprKind::Load(source), ty, span };
-    Some(Statement { kind: StatementKind::Copy(target, value), span })
+    let value = Expr { kind: ExprKind::Load(Place::whole(storage, ty, span)), ty, span };
+    let kind = if elementary { StatementKind::Assign(target, value) } else { StatementKind::Copy(target, value) };
+    Some(Statement { kind, span })
 }

@@ -43,6 +43,22 @@ impl Checker<'_> {
         resolved
     }
 
+    /// The type of a structure that may not be resolved yet; nothing for other types.
+    pub(super) fn reserved(&mut self, key: &str) -> Option<TypeId> {
+        let entry = self.type_names.get_mut(key)?;
+        if !matches!(entry.ast.spec.kind, TypeSpecKind::Struct(_) | TypeSpecKind::Union(_)) {
+            return None;
+        }
+        let name = &entry.ast.name.text;
+        Some(*entry.reserved.get_or_insert_with(|| self.types.structure(name.clone())))
+    }
+
+    /// The type that is kept for a name declared here.
+    fn own_reserved(&mut self, name: &Ident) -> Option<TypeId> {
+        let key = self.home.key(name);
+        self.reserved(&key)
+    }
+
     fn report_recursive_type(&mut self, name: &Ident, used: Option<Span>) {
         let message = format!("type `{}` contains itself", name.text);
         let span = used.unwrap_or(name.span);
@@ -67,7 +83,14 @@ impl<'a> Body<'_, 'a> {
     fn declared_type(&mut self, ast: &'a ast::TypeDeclaration) -> Option<TypedImage> {
         let name = &ast.name.text;
         let mut resolved = match &ast.spec.kind {
-            TypeSpecKind::Struct(fields) => self.structure(name, ast.extends.as_ref(), fields, ast.name.span),
+            TypeSpecKind::Struct(fields) => {
+                let ty = self.checker.own_reserved(&ast.name);
+                self.structure(name, (ty, ast.extends.as_ref()), fields, ast.name.span)
+            }
+            TypeSpecKind::Union(fields) => {
+                let ty = self.checker.own_reserved(&ast.name);
+                self.union(name, ty, fields, ast.name.span)
+            }
             TypeSpecKind::Enumeration(values, base) => self.enumeration(name, values, base.as_ref()),
             _ => self.resolve(&ast.spec, Need::Size),
         }?;
@@ -82,10 +105,18 @@ impl<'a> Body<'_, 'a> {
         match &spec.kind {
             TypeSpecKind::Name(name) => self.type_by_name(name, need),
             TypeSpecKind::Array(dimensions, element) => self.array(dimensions, element, need, spec.span),
-            TypeSpecKind::Struct(fields) => self.structure("STRUCT", None, fields, spec.span),
+            TypeSpecKind::Struct(fields) => self.structure("STRUCT", (None, None), fields, spec.span),
             TypeSpecKind::Enumeration(_, Some(base)) if self.is_block(base) => {
                 self.unsupported("an instance with arguments for FB_init", spec.span)
             }
+            TypeSpecKind::Reference(kind, target) => self.reference_type(*kind, target),
+            TypeSpecKind::OpenArray(dimensions, element) => {
+                let element = self.resolve(element, Need::Size)?.ty;
+                self.reject_open_array(element, spec.span)?;
+                let ty = self.checker.types.open_array(*dimensions, element);
+                Some(self.whole(ty))
+            }
+            TypeSpecKind::Union(fields) => self.union("UNION", None, fields, spec.span),
             TypeSpecKind::Enumeration(values, base) => self.enumeration("enumeration", values, base.as_ref()),
             TypeSpecKind::String(name, length) => {
                 let ty = self.text_type(name.key() == "WSTRING", length.as_deref(), spec.span)?;
@@ -112,7 +143,22 @@ impl<'a> Body<'_, 'a> {
         TypedImage { ty, image: self.checker.types.image(ty).clone() }
     }
 
-    fn type_by_name(&mut self, name: &Ident, need: Need) -> Option<TypedImage> {
+    /// A reference's target need not be known yet: structures refer to one another, and to themselves.
+    fn reference_type(&mut self, kind: ast::ReferenceKind, target: &'a TypeSpec) -> Option<TypedImage> {
+        let reserved = match &target.kind {
+            TypeSpecKind::Name(name) => self.checker.reserved(&name.key()),
+            _ => None,
+        };
+        let target_ty = match reserved {
+            Some(ty) => ty,
+            None => self.resolve(target, Need::Reference)?.ty,
+        };
+        self.reject_open_array(target_ty, target.span)?;
+        let ty = self.checker.types.reference(Some(kind), target_ty);
+        Some(self.whole(ty))
+    }
+
+    pub(super) fn type_by_name(&mut self, name: &Ident, need: Need) -> Option<TypedImage> {
         let key = name.key();
         if let Some(found) = ElementaryType::find(&key) {
             return Some(self.whole(found.into()));
@@ -144,11 +190,6 @@ impl<'a> Body<'_, 'a> {
     }
 
     fn report_unknown_type(&mut self, name: &Ident) {
-        const LATER: [&str; 4] = ["POINTER", "REF_TO", "REFERENCE", "XINT"];
-        if LATER.contains(&name.key().as_str()) {
-            self.unsupported::<()>(&format!("type {}", name.key()), name.span);
-            return;
-        }
         let elementary = ElementaryType::ALL.iter().map(|ty| ty.name());
         let derived = self.checker.type_names.values().map(|entry| entry.ast.name.text.as_str());
         let blocks = self.checker.pous.iter().filter(|pou| pou.ast.kind.has_instances());
@@ -169,6 +210,7 @@ impl<'a> Body<'_, 'a> {
     ) -> Option<TypedImage> {
         let bounds: Vec<_> = dimensions.iter().map(|each| self.dimension(each)).collect();
         let element = self.resolve(element, if need == Need::Size { need } else { Need::Size })?;
+        self.reject_open_array(element.ty, span)?;
         let bounds: Vec<Dimension> = bounds.into_iter().collect::<Option<_>>()?;
         let size = self.checker.types.size(element.ty);
         let total = bounds.iter().try_fold(u64::from(size), |total, each| {
@@ -214,7 +256,7 @@ impl<'a> Body<'_, 'a> {
     fn structure(
         &mut self,
         name: &str,
-        extends: Option<&Ident>,
+        (reserved, extends): (Option<TypeId>, Option<&Ident>),
         ast: &'a [ast::Field],
         span: Span,
     ) -> Option<TypedImage> {
@@ -225,6 +267,7 @@ impl<'a> Body<'_, 'a> {
                 continue;
             }
             let mut resolved = self.resolve(&field.spec, Need::Size)?;
+            self.reject_open_array(resolved.ty, field.spec.span)?;
             if let Some(initial) = &field.initial {
                 resolved.image = self.initial_image(&resolved, initial)?;
             }
@@ -242,9 +285,10 @@ impl<'a> Body<'_, 'a> {
         image.resize(image.len().max(1), 0);
         let align = fields.iter().map(|field| self.checker.types.align(field.ty)).max();
         image.resize(align_up(image.len() as u32, align.unwrap_or(1)) as usize, 0);
-        let image_of_type: Arc<[u8]> = image.clone().into();
-        let ty = self.checker.types.structure(name.to_owned(), fields, image);
-        Some(TypedImage { ty, image: image_of_type })
+        let image: Arc<[u8]> = image.into();
+        let ty = reserved.unwrap_or_else(|| self.checker.types.structure(name.to_owned()));
+        self.checker.types.complete_structure(ty, fields, image.clone());
+        Some(TypedImage { ty, image })
     }
 
     /// Values count on from the one before, from 0 (3rd ed. 6.4.4.2, Table 11).

@@ -1,11 +1,14 @@
 //! Sections to placed variables; the interfaces of units (2nd ed. 2.4.3 and 2.5).
 
+use std::collections::BTreeSet;
 use std::sync::Arc;
 
 use super::Checker;
 use super::instance::visibility;
 use super::layout::{MEMORY_LIMIT, align_up};
 use super::names::{Progress, TypedImage};
+use super::open_array::takes_open_arrays;
+use super::referred::referred;
 use super::scope::{Body, Scope};
 use super::types::Need;
 use crate::diagnostic::{Code, Diagnostic, did_you_mean};
@@ -49,6 +52,7 @@ impl<'a> Checker<'a> {
 
     fn place_global(&mut self, name: &Ident, ast: &'a ast::Variable, qualifiers: &[Qualifier]) -> Option<Variable> {
         let declared = Body::outside(self).declared(ast, Need::Size)?;
+        Body::outside(self).reject_open_array(declared.ty, name.span)?;
         let storage = match self.located(ast, &declared)? {
             Some(storage) => storage,
             None => {
@@ -169,13 +173,16 @@ pub(super) struct Interface<'c, 'a> {
     pub(super) align: u32,
     /// Initial bytes of an instance so far.
     pub(super) image: Vec<u8>,
+    /// Variables whose address the body takes.
+    referred: BTreeSet<String>,
 }
 
 impl<'c, 'a> Interface<'c, 'a> {
     fn new(checker: &'c mut Checker<'a>, id: PouId) -> Self {
-        let kind = checker.pou(id).ast.kind;
+        let ast = checker.pou(id).ast;
+        let (kind, referred) = (ast.kind, referred(&ast.body));
         let body = Body::new(checker, Scope::default(), Some(id));
-        Self { body, kind, align: 1, image: Vec::new() }
+        Self { body, kind, align: 1, image: Vec::new(), referred }
     }
 
     fn declare(&mut self, ast: &'a ast::Pou) {
@@ -215,10 +222,11 @@ impl<'c, 'a> Interface<'c, 'a> {
         let Some(declared) = self.body.resolve(spec, Need::Size) else {
             return;
         };
-        let Some(storage) = self.temporary(&declared, ast.name.span) else {
+        let Some(storage) = self.temporary(&declared, &ast.name) else {
             return;
         };
         let span = ast.name.span;
+        self.body.reject_open_array(declared.ty, spec.span);
         self.body.scope.result = Some(Place::whole(storage, declared.ty, span));
         let shape = ast::Variable { names: Vec::new(), address: None, spec: spec.clone(), edge: None, initial: None };
         let kind = SectionKind::Temp;
@@ -249,7 +257,7 @@ impl<'c, 'a> Interface<'c, 'a> {
                 self.declare_external(name, declared.ty, section);
                 continue;
             }
-            let Some(storage) = self.declared_storage(section, ast, declared, name.span) else {
+            let Some(storage) = self.declared_storage(section, ast, declared, name) else {
                 self.declare_broken(name);
                 continue;
             };
@@ -280,7 +288,7 @@ impl<'c, 'a> Interface<'c, 'a> {
         section: &Section,
         ast: &ast::Variable,
         declared: &TypedImage,
-        span: Span,
+        name: &Ident,
     ) -> Option<Storage> {
         if let Some(address) = &ast.address {
             self.body.checker.may_be_located(self.kind, section.kind, address)?;
@@ -288,12 +296,18 @@ impl<'c, 'a> Interface<'c, 'a> {
                 return Some(located);
             }
         }
-        self.storage(section, declared, span)
+        self.storage(section, declared, name)
     }
 
-    fn storage(&mut self, section: &Section, declared: &TypedImage, span: Span) -> Option<Storage> {
+    fn storage(&mut self, section: &Section, declared: &TypedImage, name: &Ident) -> Option<Storage> {
+        let span = name.span;
+        if !takes_open_arrays(self.kind, section.kind) {
+            self.body.reject_open_array(declared.ty, span)?;
+        } else if section.kind == SectionKind::Input && self.is_open(declared.ty) {
+            return Some(Storage::RegisterPointer(self.body.scope.register(POINTER)));
+        }
         match (self.kind, section.kind) {
-            (kind, SectionKind::Input) if kind.keeps_nothing() => Some(self.parameter(declared, span)?),
+            (kind, SectionKind::Input) if kind.keeps_nothing() => Some(self.parameter(declared, name)?),
             (PouKind::Method, SectionKind::InOut | SectionKind::Output) | (PouKind::Function, SectionKind::InOut) => {
                 Some(Storage::RegisterPointer(self.body.scope.register(POINTER)))
             }
@@ -301,7 +315,7 @@ impl<'c, 'a> Interface<'c, 'a> {
             (PouKind::Function, SectionKind::Output) | (_, SectionKind::Static) => self.frame(declared, span),
             (kind, section) if kind.keeps_nothing() || section == SectionKind::Temp => {
                 self.reject_instance(declared.ty, span)?;
-                self.temporary(declared, span)
+                self.temporary(declared, name)
             }
             // Nobody calls a program, so nobody could give the variable.
             (PouKind::Program, SectionKind::InOut) => {
@@ -317,6 +331,10 @@ impl<'c, 'a> Interface<'c, 'a> {
             }
             _ => Some(Storage::Instance(self.in_instance(declared, span)?)),
         }
+    }
+
+    fn is_open(&self, ty: TypeId) -> bool {
+        matches!(self.body.checker.types.get(ty), crate::ir::Type::OpenArray { .. })
     }
 
     /// The trigger of an input with `R_EDGE` or `F_EDGE`.
@@ -346,20 +364,22 @@ impl<'c, 'a> Interface<'c, 'a> {
     }
 
     /// A value comes in a register, an aggregate's address too; the callee copies that.
-    pub(super) fn parameter(&mut self, declared: &TypedImage, span: Span) -> Option<Storage> {
+    pub(super) fn parameter(&mut self, declared: &TypedImage, name: &Ident) -> Option<Storage> {
         if let Some(ty) = self.body.elementary(declared.ty) {
-            return Some(Storage::Register(self.body.scope.register(ty)));
+            let register = self.body.scope.register(ty);
+            let referred = self.referred.contains(&name.key());
+            return if referred { self.frame(declared, name.span) } else { Some(Storage::Register(register)) };
         }
-        self.reject_instance(declared.ty, span)?;
+        self.reject_instance(declared.ty, name.span)?;
         self.body.scope.register(POINTER);
-        self.frame(declared, span)
+        self.frame(declared, name.span)
     }
 
-    fn temporary(&mut self, declared: &TypedImage, span: Span) -> Option<Storage> {
-        if let Some(ty) = self.body.elementary(declared.ty) {
-            return Some(Storage::Register(self.body.scope.register(ty)));
+    fn temporary(&mut self, declared: &TypedImage, name: &Ident) -> Option<Storage> {
+        match self.body.elementary(declared.ty) {
+            Some(ty) if !self.referred.contains(&name.key()) => Some(Storage::Register(self.body.scope.register(ty))),
+            _ => self.frame(declared, name.span),
         }
-        self.frame(declared, span)
     }
 
     /// Fixed memory: no unit is active twice (2nd ed. 2.5, no recursion).

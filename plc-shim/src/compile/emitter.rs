@@ -38,6 +38,8 @@ pub(super) struct Shared<'p> {
     pub(super) functions: BTreeMap<PouId, u32>,
     pub(super) rows: Vec<RowPlace>,
     pub(super) areas: Areas,
+    /// Bytes of memory in use.
+    pub(super) memory_size: u32,
     /// Initial bytes of temporary aggregates, by data segment.
     pub(super) data: Vec<Arc<[u8]>>,
 }

@@ -16,6 +16,7 @@ impl Emitter<'_, '_> {
                 self.constant(ty, *value);
             }
             ExprKind::Load(place) => self.load(place),
+            ExprKind::Address(place) => self.full_address(place),
             ExprKind::Unary(Unary::Negate, operand) => self.negate(operand),
             ExprKind::Unary(Unary::Not, operand) => self.complement(operand),
             ExprKind::Binary(operator, left, right) => {

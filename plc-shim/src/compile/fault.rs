@@ -23,15 +23,17 @@ pub enum FaultKind {
     Internal,
     /// A value was assigned that its subrange type does not have.
     OutOfSubrange,
-    /// NULL was used as if it referred to something.
+    /// What a reference refers to was used, and it refers to nothing (3rd ed. 6.4.4.10.4).
     NullReference,
+    /// A pointer led out of memory.
+    InvalidPointer,
     /// A unit with fixed memory was called while it ran, in a way that only the run decides.
     Reentered,
 }
 
 impl FaultKind {
     /// Every kind; the position of a kind is its number in a saved state.
-    pub const ALL: [Self; 10] = [
+    pub const ALL: [Self; 11] = [
         Self::DivisionByZero,
         Self::IndexOutOfRange,
         Self::SelectorOutOfRange,
@@ -41,6 +43,7 @@ impl FaultKind {
         Self::Internal,
         Self::OutOfSubrange,
         Self::NullReference,
+        Self::InvalidPointer,
         Self::Reentered,
     ];
 }
@@ -57,6 +60,7 @@ impl fmt::Display for FaultKind {
             Self::Internal => "internal error",
             Self::OutOfSubrange => "value out of subrange",
             Self::NullReference => "use of a NULL reference",
+            Self::InvalidPointer => "pointer out of memory",
             Self::Reentered => "a unit was called while it ran",
         })
     }

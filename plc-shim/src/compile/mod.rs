@@ -6,7 +6,7 @@
 //! | [`function`] | one unit to one function |
 //! | [`entry`] | what a task runs |
 //! | [`emitter`] | instructions, registers, labels, marks |
-//! | [`place`] | addresses, loads and stores |
+//! | [`place`], [`part`], [`pointer`], [`open_array`] | addresses, loads and stores |
 //! | [`statement`], [`repetition`] | statements |
 //! | [`expression`], [`arithmetic`], [`conversion`], [`intrinsic`], [`bytes`] | expressions |
 //! | [`dispatch`] | methods: which one runs |
@@ -29,8 +29,10 @@ mod function;
 pub(crate) mod host;
 mod intrinsic;
 mod module;
+mod open_array;
 mod part;
 mod place;
+mod pointer;
 mod repetition;
 mod statement;
 mod text;

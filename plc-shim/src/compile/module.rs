@@ -38,7 +38,8 @@ pub(crate) fn compile(checked: &Checked) -> Compiled {
     let mut sections = Sections::default();
     sections.add_imports();
     let rows = dispatch::place_rows(&checked.rows, |parameters, results| sections.add_type(parameters, results));
-    let mut shared = Shared { types: &checked.types, functions, rows, areas: checked.areas, data: Vec::new() };
+    let (types, areas, memory_size) = (&checked.types, checked.areas, checked.image.len() as u32);
+    let mut shared = Shared { types, functions, rows, areas, memory_size, data: Vec::new() };
     let mut faults = FaultTable { first_function, functions: Vec::new() };
     for pou in checked.pous.values() {
         let (parameters, results) = signature(pou, &checked.types);

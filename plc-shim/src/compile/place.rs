@@ -40,11 +40,19 @@ impl Emitter<'_, '_> {
                 (0, true)
             }
             // A register has no address; the checker gives it memory where one is needed.
-            Storage::Register(_) => (0, false),
+            Storage::Register(_) | Storage::Referred => (0, false),
         };
         for step in &place.steps {
             match step {
                 Step::Offset(further) => offset += u64::from(*further),
+                Step::Pointer { address, target } => {
+                    self.pointer(address, *target, place.span);
+                    pushed = true;
+                }
+                Step::Open { description, indices, stride } => {
+                    self.open_element(description, indices, *stride, place.span);
+                    self.emit(Instruction::I32Add);
+                }
                 Step::Index { index, low, count, stride } => {
                     self.index(index, *low, *count, *stride, place.span);
                     if pushed {

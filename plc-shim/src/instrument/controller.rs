@@ -4,10 +4,10 @@
 use super::edits::Edits;
 use super::marks;
 use super::template::{self, Controller, Number};
-use crate::lint::walk::{self, Visitor};
 use crate::syntax::SourceFile;
 use crate::syntax::ast::{Pou, Statement, StatementKind};
 use crate::syntax::token::Keyword;
+use crate::syntax::walk::{self, Visitor};
 
 /// Adds the execution controller of `pou`, one of so many programs.
 pub(super) fn control(pou: &Pou, number: Number, programs: usize, file: &SourceFile, edits: &mut Edits) {

@@ -3,13 +3,14 @@
 use std::fmt::Write;
 
 use super::File;
+use super::edits::LineMap;
 
 /// Lines shown before and behind a change.
 const CONTEXT: usize = 3;
 
 /// The changes of a file, as `diff -u` writes them; nothing if it has none.
 pub fn unified(file: &File) -> String {
-    let (before, after) = (file.before.as_deref().unwrap_or(""), file.text.as_deref().unwrap_or(""));
+    let (before, after): (&str, &str) = (file.before.as_deref().unwrap_or(""), file.text.as_deref().unwrap_or(""));
     if !file.is_changed() {
         return String::new();
     }
@@ -17,7 +18,7 @@ pub fn unified(file: &File) -> String {
     let mut text = format!("--- {}\n+++ {}\n", name(file.before.is_some(), "a"), name(file.text.is_some(), "b"));
     let (old, new): (Vec<&str>, Vec<&str>) =
         (before.split_inclusive('\n').collect(), after.split_inclusive('\n').collect());
-    let script = script(&old, &new);
+    let script = script(&old, &new, &file.from);
     for hunk in hunks(&script) {
         write_hunk(&script[hunk], &old, &new, &mut text);
     }
@@ -32,37 +33,25 @@ enum Step {
     Insert(usize, usize),
 }
 
-/// Keeps equal lines as they come: what is put in never looks like what is there. A line that is not
-/// found ahead was changed.
-fn script(old: &[&str], new: &[&str]) -> Vec<Step> {
+/// Follows where the new lines come from; they keep their order.
+fn script(old: &[&str], new: &[&str], from: &LineMap) -> Vec<Step> {
     let mut script = Vec::with_capacity(new.len());
-    let (mut i, mut j) = (0, 0);
-    while let (Some(was), Some(is)) = (old.get(i), new.get(j)) {
-        if was == is {
-            script.push(Step::Keep(i, j));
-            (i, j) = (i + 1, j + 1);
+    let mut i = 0;
+    for (j, is) in new.iter().enumerate() {
+        let origin = from.original(j as u32 + 1).map(|line| line as usize - 1);
+        let Some(origin) = origin.filter(|origin| *origin >= i && *origin < old.len()) else {
+            script.push(Step::Insert(i, j));
             continue;
-        }
-        let ahead = |lines: &[&str], from: usize, line: &str| {
-            lines.iter().skip(from).take(200).position(|other| *other == line)
         };
-        match (ahead(new, j, was), ahead(old, i, is)) {
-            (Some(_), None) => {
-                script.push(Step::Insert(i, j));
-                j += 1;
-            }
-            (Some(skip), Some(drop)) if skip <= drop => {
-                script.push(Step::Insert(i, j));
-                j += 1;
-            }
-            _ => {
-                script.push(Step::Delete(i, j));
-                i += 1;
-            }
+        script.extend((i..origin).map(|i| Step::Delete(i, j)));
+        if old.get(origin) == Some(is) {
+            script.push(Step::Keep(origin, j));
+        } else {
+            script.extend([Step::Delete(origin, j), Step::Insert(origin + 1, j)]);
         }
+        i = origin + 1;
     }
-    script.extend((i..old.len()).map(|i| Step::Delete(i, j)));
-    script.extend((j..new.len()).map(|j| Step::Insert(old.len(), j)));
+    script.extend((i..old.len()).map(|i| Step::Delete(i, new.len())));
     script
 }
 
@@ -108,14 +97,14 @@ fn write_hunk(steps: &[Step], old: &[&str], new: &[&str], text: &mut String) {
 mod tests {
     use super::*;
 
-    fn file(before: Option<&str>, text: Option<&str>) -> File {
-        let lines = crate::instrument::edits::LineMap::default();
+    fn file(before: Option<&str>, text: Option<&str>, from: &[Option<u32>]) -> File {
         File {
             name: "p.st".to_owned(),
             before: before.map(Into::into),
             text: text.map(Into::into),
             encoding: None,
-            lines,
+            lines: LineMap::default(),
+            from: LineMap::of(from.to_vec()),
         }
     }
 
@@ -123,7 +112,8 @@ mod tests {
     fn changes_read_as_diff_writes_them() {
         let before = "1\n2\n3\n4\n5\n6\n7\n8\n9\n10\n11\n12\n13";
         let after = "1\n2\nx\n3\n4\n5\n6\n7\n8\n9\n10\n11\ny\n13";
-        insta::assert_snapshot!(unified(&file(Some(before), Some(after))), @r"
+        let from = [1, 2, 0, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13].map(|line| (line > 0).then_some(line));
+        insta::assert_snapshot!(unified(&file(Some(before), Some(after), &from)), @r"
         --- a/p.st
         +++ b/p.st
         @@ -1,5 +1,6 @@
@@ -142,8 +132,8 @@ mod tests {
          13
         \ No newline at end of file
         ");
-        assert_eq!(unified(&file(Some("a"), Some("a"))), "");
-        assert_eq!(unified(&file(None, Some("a\n"))), "--- /dev/null\n+++ b/p.st\n@@ -0,0 +1,1 @@\n+a\n");
-        assert_eq!(unified(&file(Some("a\n"), None)), "--- a/p.st\n+++ /dev/null\n@@ -1,1 +0,0 @@\n-a\n");
+        assert_eq!(unified(&file(Some("a"), Some("a"), &[])), "");
+        assert_eq!(unified(&file(None, Some("a\n"), &[])), "--- /dev/null\n+++ b/p.st\n@@ -0,0 +1,1 @@\n+a\n");
+        assert_eq!(unified(&file(Some("a\n"), None, &[])), "--- a/p.st\n+++ /dev/null\n@@ -1,1 +0,0 @@\n-a\n");
     }
 }

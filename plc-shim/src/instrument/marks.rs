@@ -12,7 +12,7 @@ use std::ops::Range;
 
 use thiserror::Error;
 
-use super::edits::Edits;
+use super::edits::{Edited, Edits};
 
 const OPENING: &str = "(*@sdsp ";
 const CLOSING: &str = "*)";
@@ -87,8 +87,8 @@ pub(super) struct DamagedMarks {
 pub(super) enum Original {
     /// As it is.
     Same,
-    /// This text.
-    Text(String),
+    /// This text, and where its lines are now.
+    Text(Edited),
     /// There was none.
     Nothing,
 }
@@ -132,7 +132,7 @@ pub(super) fn original(text: &str) -> Result<Original, DamagedMarks> {
     let edited = edits
         .apply(text)
         .map_err(|conflict| DamagedMarks { at: conflict.at..conflict.at, message: "marks overlap here" })?;
-    Ok(Original::Text(edited.text))
+    Ok(Original::Text(edited))
 }
 
 struct Mark<'t> {
@@ -163,16 +163,23 @@ fn line_break_length(rest: &str) -> usize {
 mod tests {
     use super::*;
 
+    fn text_of(marked: &str) -> Option<String> {
+        match original(marked) {
+            Ok(Original::Text(edited)) => Some(edited.text),
+            _ => None,
+        }
+    }
+
     #[test]
     fn what_is_marked_is_taken_back() {
         let put_in = lines("VAR x : INT; END_VAR\n    y;", "\r\n");
         let text = format!("a\r\n{put_in}t : {};{}RETURN\r\n", renamed("SDSP_TON", "ton"), inline(" z; "));
-        assert_eq!(original(&text), Ok(Original::Text("a\r\nt : ton;RETURN\r\n".to_owned())));
+        assert_eq!(text_of(&text).as_deref(), Some("a\r\nt : ton;RETURN\r\n"));
         assert_eq!(original("(*@sdsp *) no"), Err(DamagedMarks { at: 0..10, message: "this mark is not known" }));
         assert_eq!(original("(* sdsp *)"), Ok(Original::Same));
         assert_eq!(original("(*@sdsp file*)\nx"), Ok(Original::Nothing));
         let xml = format!("<a>\n{}</a>", xml_lines("<b/>", "\n"));
-        assert_eq!(original(&xml), Ok(Original::Text("<a>\n</a>".to_owned())));
+        assert_eq!(text_of(&xml).as_deref(), Some("<a>\n</a>"));
     }
 
     #[test]

@@ -104,6 +104,8 @@ pub struct File {
     pub encoding: Option<Encoding>,
     /// Where its lines come from, without the shim.
     pub lines: LineMap,
+    /// Where its lines come from in `before`.
+    from: LineMap,
 }
 
 impl File {
@@ -189,6 +191,8 @@ struct Given {
     name: String,
     text: Arc<str>,
     encoding: Option<Encoding>,
+    /// Where the lines are of what it was before it was instrumented.
+    plain_lines: LineMap,
 }
 
 impl Plain {
@@ -211,11 +215,15 @@ impl Plain {
 
     fn add(&mut self, input: &Input) {
         let (name, text) = (input.file().name(), input.file().shown_text());
-        let given = Given { name: name.to_owned(), text: text.clone(), encoding: input.encoding() };
         let original = marks::original(text);
+        let plain_lines = match &original {
+            Ok(Original::Text(plain)) => plain.lines.clone(),
+            _ => LineMap::same(text),
+        };
+        let given = Given { name: name.to_owned(), text: text.clone(), encoding: input.encoding(), plain_lines };
         let kind = match (FileKind::of(Path::new(name)), &original) {
             (Some(FileKind::Project), Ok(Original::Text(plain))) => {
-                return self.manifests.push((given, plain.as_str().into()));
+                return self.manifests.push((given, plain.text.as_str().into()));
             }
             (Some(FileKind::Project), Ok(_)) => return self.manifests.push((given, text.clone())),
             (Some(FileKind::Source(kind)), _) => kind,
@@ -224,7 +232,7 @@ impl Plain {
         let plain = match original {
             Ok(Original::Nothing) => return self.own.push(given),
             Ok(Original::Same) => input.clone(),
-            Ok(Original::Text(text)) => Input::from_text(name, kind, text).in_dialect(input.file().dialect()),
+            Ok(Original::Text(plain)) => Input::from_text(name, kind, plain.text).in_dialect(input.file().dialect()),
             Err(damaged) => return self.damaged(name, text, &damaged),
         };
         self.given.push(given);
@@ -304,7 +312,7 @@ impl Plain {
             None => {
                 let folder = self.given.first().and_then(|first| Path::new(&first.name).parent());
                 let name = folder.unwrap_or(Path::new("")).join(&source.name).display().to_string();
-                File { name, before: None, text, encoding: None, lines: LineMap::default() }
+                File { name, before: None, text, encoding: None, lines: LineMap::default(), from: LineMap::default() }
             }
         });
     }
@@ -329,6 +337,7 @@ impl Plain {
 
 impl Given {
     fn file(&self, text: Option<Arc<str>>, lines: LineMap) -> File {
-        File { name: self.name.clone(), before: Some(self.text.clone()), text, encoding: self.encoding, lines }
+        let from = lines.through(&self.plain_lines);
+        File { name: self.name.clone(), before: Some(self.text.clone()), text, encoding: self.encoding, lines, from }
     }
 }

@@ -7,11 +7,11 @@ use crate::application::library;
 use crate::check::{VIRTUAL_TIME_NAME, is_standard_function};
 use crate::diagnostic::{Code, Diagnostic};
 use crate::ir::ElementaryType;
-use crate::lint::walk::{self, Visitor};
 use crate::syntax::ast::{
     Call, CompilationUnit, Configuration, Declaration, Expr, ExprKind, Ident, Initialiser, InitialiserKind, Pou,
     PouKind, Section, TypeSpec, TypeSpecKind,
 };
+use crate::syntax::walk::{self, Visitor};
 use crate::syntax::{FileId, Span, parse};
 
 /// What was found.
@@ -159,8 +159,10 @@ impl<'a> Surveyor<'_, 'a> {
     fn spec(&mut self, spec: &TypeSpec) {
         match &spec.kind {
             TypeSpecKind::Name(name) => self.type_name(name),
-            TypeSpecKind::Array(_, element) => self.spec(element),
-            TypeSpecKind::Struct(fields) => {
+            TypeSpecKind::Array(_, element)
+            | TypeSpecKind::OpenArray(_, element)
+            | TypeSpecKind::Reference(_, element) => self.spec(element),
+            TypeSpecKind::Struct(fields) | TypeSpecKind::Union(fields) => {
                 for field in fields {
                     self.spec(&field.spec);
                     field.initial.iter().for_each(|initial| self.initialiser(initial));

@@ -26,6 +26,8 @@ pub(crate) struct Expr {
 pub(crate) enum ExprKind {
     Constant(Value),
     Load(Place),
+    /// The address of what has one.
+    Address(Place),
     Unary(Unary, Box<Expr>),
     /// Both operands are held alike; the left one's type says how.
     Binary(Binary, Box<Expr>, Box<Expr>),
@@ -216,6 +218,8 @@ pub(crate) enum Storage {
     Register(LocalId),
     /// The address stands in a register.
     RegisterPointer(LocalId),
+    /// Where the first step, a [`Step::Pointer`], leads.
+    Referred,
 }
 
 /// A variable or a part of one.
@@ -254,6 +258,15 @@ impl Place {
         Self { storage, steps: Vec::new(), part, ty, span }
     }
 
+    /// Its address, if that is known before the program runs.
+    pub(crate) fn fixed_address(&self) -> Option<u32> {
+        match (self.storage, &self.steps[..], self.part) {
+            (Storage::Absolute(base), [], None) => Some(base),
+            (Storage::Absolute(base), [Step::Offset(offset)], None) => base.checked_add(*offset),
+            _ => None,
+        }
+    }
+
     /// True if it has an address of its own: it is in no register and no bit of a byte.
     pub(crate) fn has_address(&self) -> bool {
         self.part.is_none() && !matches!(self.storage, Storage::Register(_))
@@ -273,8 +286,13 @@ impl Place {
 /// The way from a variable to its part.
 #[derive(Debug, Clone)]
 pub(crate) enum Step {
+    /// To the address that a reference to `target` has; a fault if it is NULL or `target` would not
+    /// end in memory. The first step only.
+    Pointer { address: Box<Expr>, target: TypeId },
     /// So many bytes further.
     Offset(u32),
+    /// To an element of an array that `description` describes; a fault if an index is out of bounds.
+    Open { description: Box<Place>, indices: Vec<Expr>, stride: u32 },
     /// `(index - low) * stride` bytes further; a fault unless `index - low < count`.
     Index { index: Box<Expr>, low: i64, count: u32, stride: u32 },
 }

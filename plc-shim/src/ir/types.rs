@@ -6,6 +6,7 @@ use std::sync::Arc;
 use super::elementary::ElementaryType;
 use super::pou::PouId;
 use super::text::TextShape;
+use crate::syntax::ast::ReferenceKind;
 
 /// Identifies a type within its [`TypeTable`]; equal ids are equal types.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -24,6 +25,17 @@ pub(crate) enum Type {
     Elementary(ElementaryType),
     /// What a function without a result gives.
     Nothing,
+    /// What NULL is: a value of every reference.
+    Null,
+    /// The address of something, 0 for NULL.
+    Reference {
+        kind: ReferenceKind,
+        target: TypeId,
+    },
+    /// What ADR gives: an address that any pointer takes.
+    Address {
+        target: TypeId,
+    },
     /// Some values of an integer type. Values of it are of that type; places check them.
     Subrange {
         base: ElementaryType,
@@ -39,6 +51,12 @@ pub(crate) enum Type {
     },
     Array {
         dimensions: Vec<Dimension>,
+        element: TypeId,
+    },
+    /// An array whose bounds come with it (3rd ed. 6.5.3): what lies in memory is its address, then
+    /// the lower and upper bound of each dimension as DINT.
+    OpenArray {
+        dimensions: u32,
         element: TypeId,
     },
     Struct {
@@ -91,10 +109,19 @@ struct Entry {
 pub(crate) struct TypeTable {
     entries: Vec<Entry>,
     arrays: BTreeMap<(TypeId, Vec<Dimension>), TypeId>,
+    open_arrays: BTreeMap<(TypeId, u32), TypeId>,
     blocks: BTreeMap<PouId, TypeId>,
     texts: BTreeMap<TextShape, TypeId>,
     subranges: BTreeMap<(ElementaryType, i128, i128), TypeId>,
+    /// By kind, none for addresses.
+    references: BTreeMap<(Option<ReferenceKind>, TypeId), TypeId>,
 }
+
+/// Bytes of one dimension's bounds in the description of an array.
+pub(crate) const OPEN_BOUNDS: u32 = 8;
+
+/// References are offsets in memory.
+const REFERENCE: ElementaryType = ElementaryType::Udint;
 
 impl TypeTable {
     /// The elementary types.
@@ -107,18 +134,37 @@ impl TypeTable {
         };
         let mut entries: Vec<_> = ElementaryType::ALL.iter().map(|ty| entry(*ty)).collect();
         entries.push(Entry { ty: Type::Nothing, size: 0, align: 1, image: Arc::from([]) });
+        entries.push(Entry { ty: Type::Null, ..entry(REFERENCE) });
         Self {
             entries,
             arrays: BTreeMap::new(),
+            open_arrays: BTreeMap::new(),
             blocks: BTreeMap::new(),
             texts: BTreeMap::new(),
             subranges: BTreeMap::new(),
+            references: BTreeMap::new(),
         }
     }
 
     /// The type of a function call without a result.
     pub(crate) fn nothing() -> TypeId {
         TypeId(ElementaryType::ALL.len() as u32)
+    }
+
+    /// The type of NULL.
+    pub(crate) fn null() -> TypeId {
+        TypeId(ElementaryType::ALL.len() as u32 + 1)
+    }
+
+    /// The type of references of a kind, or of addresses.
+    pub(crate) fn reference(&mut self, kind: Option<ReferenceKind>, target: TypeId) -> TypeId {
+        if let Some(found) = self.references.get(&(kind, target)) {
+            return *found;
+        }
+        let ty = kind.map_or(Type::Address { target }, |kind| Type::Reference { kind, target });
+        let id = self.add(ty, REFERENCE.size(), REFERENCE.size(), Arc::from([0; 4]));
+        self.references.insert((kind, target), id);
+        id
     }
 
     fn add(&mut self, ty: Type, size: u32, align: u32, image: Arc<[u8]>) -> TypeId {
@@ -153,6 +199,7 @@ impl TypeTable {
         match self.get(id) {
             Type::Elementary(ty) | Type::Enumeration { base: ty, .. } | Type::Subrange { base: ty, .. } => Some(*ty),
             Type::Interface { .. } => Some(ElementaryType::Udint),
+            Type::Reference { .. } | Type::Address { .. } | Type::Null => Some(REFERENCE),
             _ => None,
         }
     }
@@ -215,9 +262,33 @@ impl TypeTable {
         id
     }
 
-    pub(crate) fn structure(&mut self, name: String, fields: Vec<Field>, image: Vec<u8>) -> TypeId {
-        let align = fields.iter().map(|field| self.align(field.ty)).max().unwrap_or(1);
-        self.add(Type::Struct { name, fields }, image.len() as u32, align, image.into())
+    /// The type of an array without bounds of its own; `size` is that of the description.
+    pub(crate) fn open_array(&mut self, dimensions: u32, element: TypeId) -> TypeId {
+        if let Some(found) = self.open_arrays.get(&(element, dimensions)) {
+            return *found;
+        }
+        let size = REFERENCE.size() + dimensions * OPEN_BOUNDS;
+        let ty = Type::OpenArray { dimensions, element };
+        let id = self.add(ty, size, REFERENCE.size(), vec![0; size as usize].into());
+        self.open_arrays.insert((element, dimensions), id);
+        id
+    }
+
+    /// A structure that [`Self::complete_structure`] gives its members: they may refer to it.
+    pub(crate) fn structure(&mut self, name: String) -> TypeId {
+        self.add(Type::Struct { name, fields: Vec::new() }, 0, 1, Arc::from([]))
+    }
+
+    pub(crate) fn complete_structure(&mut self, id: TypeId, members: Vec<Field>, image: Arc<[u8]>) {
+        let align = members.iter().map(|field| self.align(field.ty)).max().unwrap_or(1);
+        if let Some(entry) = self.entries.get_mut(id.0 as usize) {
+            if let Type::Struct { fields, .. } = &mut entry.ty {
+                *fields = members;
+            }
+            entry.size = image.len() as u32;
+            entry.align = align;
+            entry.image = image;
+        }
     }
 
     /// The type of a function block's instances; [`Self::complete_block`] gives it its size.
@@ -261,10 +332,17 @@ impl TypeTable {
         match self.get(id) {
             Type::Elementary(ty) => ty.name().to_owned(),
             Type::Nothing => "nothing".to_owned(),
+            Type::Null => "NULL".to_owned(),
+            Type::Reference { kind, target } => format!("{} {}", kind.text(), self.name(*target)),
+            Type::Address { target } => format!("the address of {}", self.name(*target)),
             Type::Subrange { base, low, high } => format!("{base} ({low}..{high})"),
             Type::Text(shape) => format!("{}[{}]", shape.keyword(), shape.capacity),
             Type::Enumeration { name, .. } | Type::Struct { name, .. } => name.clone(),
             Type::FunctionBlock { name, .. } | Type::Interface { name, .. } => name.clone(),
+            Type::OpenArray { dimensions, element } => {
+                let stars = vec!["*"; *dimensions as usize].join(", ");
+                format!("ARRAY [{stars}] OF {}", self.name(*element))
+            }
             Type::Array { dimensions, element } => {
                 let bounds: Vec<_> = dimensions.iter().map(|each| format!("{}..{}", each.low, each.high)).collect();
                 format!("ARRAY [{}] OF {}", bounds.join(", "), self.name(*element))

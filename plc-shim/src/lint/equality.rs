@@ -3,9 +3,9 @@
 use super::Unit;
 use super::index::Index;
 use super::types::is_real;
-use super::walk::{self, Visitor};
 use crate::diagnostic::{Code, Diagnostic};
 use crate::syntax::ast::{BinaryOp, Expr, ExprKind, Literal, Pou};
+use crate::syntax::walk::{self, Visitor};
 
 pub(super) fn lint(unit: &Unit<'_>, index: &Index<'_>, findings: &mut Vec<Diagnostic>) {
     walk::statements(&unit.pou.body, &mut Comparisons { pou: unit.pou, index, findings });

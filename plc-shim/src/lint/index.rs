@@ -2,12 +2,12 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::walk::root;
 use crate::application::Front;
 use crate::syntax::ast::{
     Configuration, Connection, Declaration, Expr, ExprKind, Ident, Pou, PouKind, Section, SectionKind, TypeSpec,
     TypeSpecKind, Variable,
 };
+use crate::syntax::walk::root;
 
 /// Declarations by the key of their name.
 pub(super) struct Index<'a> {

@@ -3,9 +3,9 @@
 
 use super::Unit;
 use super::index::{Index, declared};
-use super::walk::{self, Visitor, root};
 use crate::diagnostic::{Code, Diagnostic};
 use crate::syntax::ast::{Call, Expr, ExprKind, Pou, SectionKind};
+use crate::syntax::walk::{self, Visitor, root};
 
 pub(super) fn lint(unit: &Unit<'_>, index: &Index<'_>, findings: &mut Vec<Diagnostic>) {
     never_called(unit, index, findings);

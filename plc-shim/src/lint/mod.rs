@@ -5,7 +5,6 @@
 //! | [`index`] | what the files declare, by name |
 //! | [`usage`] | what a unit does with each name |
 //! | [`types`] | the type of an expression, as far as a warning needs it |
-//! | [`walk`] | every statement and expression of a body |
 //! | [`outputs`] | W0701 |
 //! | [`instances`] | W0702, W0704 |
 //! | [`equality`] | W0703 |
@@ -25,7 +24,6 @@ mod tasks;
 mod types;
 mod unused;
 mod usage;
-pub(crate) mod walk;
 
 use self::index::Index;
 use self::usage::Usage;

@@ -71,13 +71,17 @@ fn spec_of<'a>(expr: &Expr, pou: &'a Pou, index: &Index<'a>) -> Option<&'a TypeS
             }
         }
         ExprKind::Paren(inner) => spec_of(inner, pou, index),
+        ExprKind::Dereference(inner) => match &index.resolved(spec_of(inner, pou, index)?).kind {
+            TypeSpecKind::Reference(_, target) => Some(target),
+            _ => None,
+        },
         ExprKind::Index(inner, _) => match &index.resolved(spec_of(inner, pou, index)?).kind {
-            TypeSpecKind::Array(_, element) => Some(element),
+            TypeSpecKind::Array(_, element) | TypeSpecKind::OpenArray(_, element) => Some(element),
             _ => None,
         },
         ExprKind::Member(inner, member) => {
             let spec = index.resolved(spec_of(inner, pou, index)?);
-            if let TypeSpecKind::Struct(fields) = &spec.kind {
+            if let TypeSpecKind::Struct(fields) | TypeSpecKind::Union(fields) = &spec.kind {
                 return fields.iter().find(|field| field.name.key() == member.key()).map(|field| &field.spec);
             }
             let (section, variable) = declared(index.block(spec)?, &member.key())?;

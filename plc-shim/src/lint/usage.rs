@@ -3,11 +3,12 @@
 use std::collections::BTreeMap;
 
 use super::index::Index;
-use super::walk::{self, Visitor};
+
 use crate::syntax::Span;
 use crate::syntax::ast::{
     Argument, Call, Expr, ExprKind, Ident, Initialiser, InitialiserKind, Pou, Section, TypeSpec, TypeSpecKind,
 };
+use crate::syntax::walk::{self, Visitor, root};
 
 /// What is done with the variables of each name, whatever they are.
 #[derive(Debug, Default)]
@@ -100,12 +101,13 @@ impl Collector<'_> {
                 }
                 self.spec(element);
             }
+            TypeSpecKind::Reference(_, target) | TypeSpecKind::OpenArray(_, target) => self.spec(target),
             TypeSpecKind::String(_, Some(length)) => walk::expression(length, self),
             TypeSpecKind::Subrange(_, bounds) => {
                 walk::expression(&bounds.low, self);
                 walk::expression(&bounds.high, self);
             }
-            TypeSpecKind::Struct(fields) => {
+            TypeSpecKind::Struct(fields) | TypeSpecKind::Union(fields) => {
                 for field in fields {
                     self.spec(&field.spec);
                     field.initial.iter().for_each(|initial| self.initialiser(initial));
@@ -172,6 +174,12 @@ impl Visitor for Collector<'_> {
             for name in self.index.variables_of(value).into_iter().filter(|_| may_write) {
                 self.uses(name).is_passed = true;
             }
+        }
+    }
+
+    fn referred(&mut self, place: &Expr) {
+        if let Some(name) = root(place) {
+            self.uses(name).is_passed = true;
         }
     }
 

@@ -125,6 +125,7 @@ fn cause(trap: Option<Trap>, innermost: Option<Frame<'_>>) -> (FaultKind, Option
     match trap {
         Some(Trap::OutOfFuel) => (FaultKind::EndlessLoop, statement),
         Some(Trap::StackOverflow) => (FaultKind::CallTooDeep, statement),
+        Some(Trap::MemoryOutOfBounds) => (FaultKind::InvalidPointer, statement),
         _ => match innermost.and_then(|(function, offset)| function.fault_at(offset?)) {
             Some((kind, span)) => (kind, Some(span)),
             None => (FaultKind::Internal, statement),

@@ -286,6 +286,37 @@ mod tests {
     }
 
     #[test]
+    fn pragmas_and_comments_are_tokens_of_every_dialect() {
+        use TokenKind::{BlockComment, LineComment, Pragma};
+        let text = "{attribute 'x'} (* a *) // b\n{IF defined (y)} /* c */ {END_IF}";
+        for dialect in Dialect::ALL {
+            let trivia = tokenize_in(dialect, text).into_iter().map(|token| token.kind);
+            let trivia: Vec<_> = trivia.filter(|kind| *kind != TokenKind::Whitespace).collect();
+            assert_eq!(trivia, [Pragma, BlockComment, LineComment, Pragma, BlockComment, Pragma], "{dialect}");
+        }
+        let scl =
+            "FUNCTION_BLOCK \"a b\"\nTITLE = it's\nVERSION : 0.1\nVAR\n#x \"y z\" (/* c */)\n  REGION it's\nEND_REGION";
+        let tokens = tokenize_in(Dialect::SiemensScl, scl).into_iter();
+        let seen: Vec<_> = tokens
+            .filter(|token| token.kind != TokenKind::Whitespace)
+            .map(|token| &scl[token.start as usize..token.end as usize])
+            .collect();
+        let expected = [
+            "FUNCTION_BLOCK",
+            "\"a b\"",
+            "TITLE = it's",
+            "VERSION : 0.1",
+            "VAR",
+            "#x",
+            "\"y z\"",
+            "(/* c */)",
+            "REGION it's",
+            "END_REGION",
+        ];
+        assert_eq!(seen, expected);
+    }
+
+    #[test]
     fn keywords_are_found_in_any_case() {
         assert_eq!(kinds("End_If")[0].0, TokenKind::Keyword(Keyword::EndIf));
         assert_eq!(kinds("END_IFX")[0].0, TokenKind::Identifier);
@@ -294,11 +325,13 @@ mod tests {
     proptest! {
         #[test]
         fn no_byte_is_lost(text in "\\PC{0,200}|[ -~\\n]{0,200}|[(*)/{}'\"$#%.:=0-9a-fT_ \\n]{0,200}") {
-            let joined: String = tokenize(&text)
-                .iter()
-                .map(|token| &text[token.start as usize..token.end as usize])
-                .collect();
-            prop_assert_eq!(joined, text);
+            for dialect in Dialect::ALL {
+                let joined: String = tokenize_in(dialect, &text)
+                    .iter()
+                    .map(|token| &text[token.start as usize..token.end as usize])
+                    .collect();
+                prop_assert_eq!(&joined, &text);
+            }
         }
     }
 }

@@ -11,6 +11,7 @@
 //! | [`ast`] | | the tree's nodes |
 //! | [`parser`] | tokens | a tree and a list of diagnostics |
 //! | [`printer`] | a tree | text that parses to the same tree |
+//! | `walk` | a body | each of its statements and expressions |
 //!
 //! Invariants: the texts of a file's tokens concatenated are the file; parsing never fails, it
 //! returns a tree and a list of diagnostics; a tree knows names and spans only, never meanings.
@@ -26,6 +27,7 @@ pub mod printer;
 pub mod source;
 pub mod text_literal;
 pub mod token;
+pub(crate) mod walk;
 
 pub use lexer::{tokenize, tokenize_in};
 pub use parser::{Parsed, parse, parse_in};

@@ -6,7 +6,7 @@ mod expression;
 mod object;
 mod statement;
 
-use super::ast::{CompilationUnit, Expr};
+use super::ast::{CompilationUnit, Expr, Ident};
 
 /// Text of a whole file.
 pub fn print_unit(unit: &CompilationUnit) -> String {
@@ -33,6 +33,24 @@ struct Printer {
 impl Printer {
     fn word(&mut self, text: &str) {
         self.text.push_str(text);
+    }
+
+    /// A name where it is declared or needs no telling apart; SCL allows any text between quotes.
+    fn name(&mut self, name: &Ident) {
+        if name.text.split('.').all(is_plain) {
+            self.word(&name.text);
+        } else {
+            self.word(&format!("\"{}\"", name.text));
+        }
+    }
+
+    /// A name in an expression: `"x"` is global and as it was written, any other is local first.
+    fn variable_name(&mut self, name: &Ident) {
+        if name.is_quoted() || is_plain(&name.text) {
+            self.word(&name.text);
+        } else {
+            self.word(&format!("#\"{}\"", name.text));
+        }
     }
 
     fn line(&mut self, text: &str) {
@@ -65,4 +83,9 @@ impl Printer {
         body(self);
         self.indent -= 1;
     }
+}
+
+/// True for what is a name without quotes. The part of a bit string is one, too.
+fn is_plain(text: &str) -> bool {
+    text.chars().all(|one| one.is_alphanumeric() || matches!(one, '_' | '%'))
 }

@@ -89,7 +89,7 @@ keywords! {
     Program "PROGRAM", EndProgram "END_PROGRAM",
     FunctionBlock "FUNCTION_BLOCK", EndFunctionBlock "END_FUNCTION_BLOCK",
     Function "FUNCTION", EndFunction "END_FUNCTION",
-    Type "TYPE", EndType "END_TYPE", Struct "STRUCT", EndStruct "END_STRUCT",
+    Type "TYPE", EndType "END_TYPE", Struct "STRUCT", EndStruct "END_STRUCT", Union "UNION", EndUnion "END_UNION",
     Array "ARRAY", Of "OF", At "AT",
     Var "VAR", VarInput "VAR_INPUT", VarOutput "VAR_OUTPUT", VarInOut "VAR_IN_OUT",
     VarTemp "VAR_TEMP", VarGlobal "VAR_GLOBAL", VarExternal "VAR_EXTERNAL", EndVar "END_VAR",

@@ -2,6 +2,8 @@
 
 use std::time::Duration;
 
+use onescan_plc_shim::dialect::Dialect;
+
 use super::cell;
 
 /// What is to happen to a program, scan by scan.
@@ -9,6 +11,7 @@ use super::cell;
 pub(crate) struct Case {
     pub(crate) scans: usize,
     pub(crate) interval: Duration,
+    pub(crate) dialect: Option<Dialect>,
     pub(crate) restarts: Vec<String>,
     pub(crate) given: Vec<Row>,
     pub(crate) wanted: Vec<Row>,
@@ -84,6 +87,7 @@ impl Case {
                 let ns = cell::duration_ns(value).ok_or("this is no duration")?;
                 self.interval = Duration::from_nanos(u64::try_from(ns).map_err(|_| "this is no interval")?);
             }
+            "dialect" => self.dialect = Some(Dialect::find(value).ok_or("this is no dialect")?),
             "restart" => self.restarts = value.split_whitespace().map(str::to_owned).collect(),
             "fault" => self.fault = Some(value.to_owned()),
             "findings" => self.findings = Some(value.split_whitespace().map(str::to_owned).collect()),

@@ -18,7 +18,8 @@
 //! | `a := 1 2 -` | values given before the scans; `-` leaves it as it is; one alone is given before the first |
 //! | `a = 1 2 -` | values wanted after the scans; `-` is not looked at; one alone is wanted after each |
 //! | `scans: 5` | how many scans; else as many as the longest line has values |
-//! | `interval: 20ms` | interval of the task that runs the programs; else 10 ms |
+//! | `interval: 20ms` | interval of the task that runs the programs, if no configuration says it; else 10 ms |
+//! | `dialect: codesys` | how the text is read; else as in the 3rd edition |
 //! | `restart: - warm - cold` | starts before the scans |
 //! | `fault: DivisionByZero` | the last scan, and only it, stops the PLC with this fault |
 //! | `findings: T0201 W0703` | all that the compiler says, in the text's order; with an error nothing runs |

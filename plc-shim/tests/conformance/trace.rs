@@ -1,13 +1,18 @@
 //! A case run from its text to its last scan.
 
-use onescan_plc_shim::{Application, PlcFault, SoftPlc, TaskPlan, Variable, VirtualTime};
+use onescan_plc_shim::input::kind::SourceKind;
+use onescan_plc_shim::{Application, Input, PlcFault, SoftPlc, TaskPlan, Variable, VirtualTime};
 
 use super::case::{Case, Row};
 use super::cell;
 
 /// Compiles and runs a case; the error shows the first scan that differs.
 pub(crate) fn run(case: &Case, text: &str) -> Result<(), String> {
-    let application = match Application::from_sources([("case.st", text)]) {
+    let mut input = Input::from_text("case.st", SourceKind::Text, text);
+    if let Some(dialect) = case.dialect {
+        input = input.in_dialect(dialect);
+    }
+    let application = match Application::from_inputs([input]) {
         Ok(application) => application,
         Err(found) if case.findings.is_some() => return same_findings(case, &found),
         Err(found) => return Err(format!("it does not compile\n{found}")),
@@ -15,9 +20,10 @@ pub(crate) fn run(case: &Case, text: &str) -> Result<(), String> {
     if case.findings.is_some() {
         same_findings(case, application.warnings())?;
     }
-    let interval_ns = case.interval.as_nanos() as u64;
-    let plan = TaskPlan::single(&application, interval_ns);
+    let single = || TaskPlan::single(&application, case.interval.as_nanos() as u64);
+    let plan = TaskPlan::configured(&application).unwrap_or_else(single);
     let plc = SoftPlc::new(&application, &plan).map_err(|error| error.to_string())?;
+    let interval_ns = plc.period_ns();
     let first = application.programs().next().map(|program| program.name);
     let mut run = Run { plc, prefix: first.unwrap_or_default(), now_ns: 0, interval_ns };
     for scan in 0..case.scans {

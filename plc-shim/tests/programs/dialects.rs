@@ -174,6 +174,18 @@ fn division_by_zero_goes_on_where_the_dialect_does() {
 }
 
 #[test]
+fn direct_addresses_count_what_the_dialect_counts() {
+    let text = "PROGRAM P VAR a AT %MB2 : BYTE; b AT %MW1 : WORD; END_VAR b := 16#1234; END_PROGRAM";
+    for dialect in Dialect::ALL {
+        let mut rig = Rig::in_dialect(dialect, text);
+        rig.scan().expect("no fault");
+        // Word 1 begins at byte 2, or at byte 1.
+        let bytes = matches!(dialect, Dialect::TwinCat | Dialect::SiemensScl);
+        assert_eq!(rig.int("P.a"), if bytes { 0x12 } else { 0x34 }, "{dialect}");
+    }
+}
+
+#[test]
 fn a_library_keeps_its_dialect_in_a_program_of_another() {
     use onescan_plc_shim::input::kind::SourceKind;
     use onescan_plc_shim::{Application, Input, TaskPlan};

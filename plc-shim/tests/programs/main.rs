@@ -1,5 +1,6 @@
 //! Programs in, traces out: the whole way from text to a scanning PLC.
 
+mod bit_strings;
 mod configurations;
 mod conversions;
 mod dates;
@@ -16,9 +17,11 @@ mod lockstep;
 mod namespaces;
 mod object_inputs;
 mod objects;
+mod open_arrays;
 mod partial_access;
 mod random_programs;
 mod recovery;
+mod references;
 mod restarts;
 mod rig;
 mod robustness;
@@ -31,3 +34,4 @@ mod states;
 mod string_expressions;
 mod strings;
 mod subranges;
+mod unions;

@@ -305,7 +305,12 @@ FUNCTION_BLOCK Chain IMPLEMENTS INext METHOD Next : INext Next := THIS; END_METH
 NAMESPACE GVL VAR_GLOBAL used, unused : INT; END_VAR END_NAMESPACE"
     );
     let input = onescan_plc_shim::Input::from_text("test.st", onescan_plc_shim::input::kind::SourceKind::Text, text);
-    insta::assert_snapshot!(onescan_plc_shim::inspect([input], None), @"");
+    insta::assert_snapshot!(onescan_plc_shim::inspect([input], None), @r#"
+    test.st:21:39: warning[W0706]: variable `left` is never used
+    test.st:22:26: warning[W0706]: variable `lost` is never used
+    test.st:23:39: warning[W0705]: this is never reached
+    test.st:33:32: warning[W0706]: variable `unused` is never used
+    "#);
 }
 
 #[test]

@@ -61,7 +61,14 @@ impl Application {
                 });
                 self.show_list(('(', ')'), held, text);
             }
-            Type::Nothing => {}
+            // What is referred to has a path of its own.
+            Type::Reference { .. } | Type::Address { .. } | Type::OpenArray { .. } => {
+                match number(bytes.get(..4).unwrap_or_default()) {
+                    0 => text.push_str("NULL"),
+                    address => text.push_str(&format!("16#{address:08X}")),
+                }
+            }
+            Type::Nothing | Type::Null => {}
         }
     }
 

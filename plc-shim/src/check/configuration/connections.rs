@@ -263,6 +263,6 @@ fn constant_offset(place: &Place) -> Option<u32> {
     let Storage::Instance(start) = place.storage else { return None };
     place.steps.iter().try_fold(start, |offset, step| match step {
         crate::ir::Step::Offset(further) => Some(offset + further),
-        crate::ir::Step::Index { .. } => None,
+        _ => None,
     })
 }

@@ -78,7 +78,7 @@ impl Checker<'_> {
     fn root<'p, 'e>(&mut self, pieces: &'p [Piece<'e>], resource: Option<usize>) -> Option<(Target, &'p [Piece<'e>])> {
         let (Piece::Name(first), rest) = pieces.split_first()? else { return None };
         if let Some(found) = self.global_target(first, resource) {
-            return Some((found?, rest));
+            return Some((found.ok()?, rest));
         }
         if let Some(index) = self.program_named(first, resource) {
             return Some((self.program_target(index), rest));
@@ -88,7 +88,7 @@ impl Checker<'_> {
                 return self.no_path(first, "a resource is no variable", None);
             };
             if let Some(found) = self.global_target(second, Some(index)) {
-                return Some((found?, rest));
+                return Some((found.ok()?, rest));
             }
             let inside = |at: usize| self.programs.get(at).is_some_and(|each| each.resource == Some(index));
             if let Some(found) = self.program_named(second, Some(index)).filter(|at| inside(*at)) {
@@ -117,13 +117,13 @@ impl Checker<'_> {
         None
     }
 
-    /// A global variable as `resource` sees it; the inner nothing is a variable whose declaration
-    /// is wrong.
-    fn global_target(&mut self, name: &Ident, resource: Option<usize>) -> Option<Option<Target>> {
+    /// A global variable as `resource` sees it; an error is one whose declaration is wrong, which has
+    /// been reported.
+    fn global_target(&mut self, name: &Ident, resource: Option<usize>) -> Option<Result<Target, ()>> {
         let key = self.key_in(&name.key(), resource)?;
         let home = self.globals.get(&key).and_then(|entry| entry.home);
         let Some(variable) = self.global(&key, Some(name.span)) else {
-            return Some(None);
+            return Some(Err(()));
         };
         let (storage, inside) = match variable.storage {
             Storage::Absolute(offset) => (Storage::Absolute(0), offset),
@@ -131,7 +131,7 @@ impl Checker<'_> {
         };
         let home = home.and_then(|home| self.resource_name(home)).map(|home| format!("{}.", home.text));
         let path = format!("{}{}", home.unwrap_or_default(), variable.name);
-        Some(Some(Target { path, storage, inside, ty: variable.ty, variable: Some(variable) }))
+        Some(Ok(Target { path, storage, inside, ty: variable.ty, variable: Some(variable) }))
     }
 
     pub(super) fn program_target(&mut self, index: usize) -> Target {

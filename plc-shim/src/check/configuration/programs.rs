@@ -34,7 +34,10 @@ impl<'a> Checker<'a> {
 
     /// What no resource declares never runs, unless another unit calls it, as vendors allow.
     pub(super) fn report_idle_programs(&mut self) {
-        if self.configured.ast.is_none() {
+        let Some(ast) = self.configured.ast else { return };
+        let declared: usize = ast.resources.iter().map(|resource| resource.programs.len()).sum();
+        // A program may be the one that is meant by a wrong name.
+        if self.programs.iter().filter(|program| program.resource.is_some()).count() < declared {
             return;
         }
         let called: BTreeSet<PouId> = self.calls.values().flatten().map(|(callee, _)| *callee).collect();

@@ -65,9 +65,9 @@ impl<'a> Checker<'a> {
 
     fn priority(&mut self, value: &Expr) -> Option<u32> {
         let priority = Body::outside(self).constant_integer(value)?;
-        match u32::try_from(priority) {
-            Ok(priority) if priority <= u32::from(u16::MAX) => Some(priority),
-            _ => self.unsuitable(value, "a priority is a UINT; 0 comes first"),
+        match u16::try_from(priority) {
+            Ok(priority) => Some(u32::from(priority)),
+            Err(_) => self.unsuitable(value, "a priority is a UINT; 0 comes first"),
         }
     }
 

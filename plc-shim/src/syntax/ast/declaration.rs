@@ -162,12 +162,40 @@ pub enum TypeSpecKind {
     Subrange(Ident, Box<Subrange>),
     /// `ARRAY [0..9, 1..2] OF INT`
     Array(Vec<Dimension>, Box<TypeSpec>),
+    /// `REF_TO INT`, `POINTER TO INT`, `REFERENCE TO INT`
+    Reference(ReferenceKind, Box<TypeSpec>),
+    /// `ARRAY [*, *] OF INT`: so many dimensions whose bounds come with the argument
+    OpenArray(u32, Box<TypeSpec>),
+    /// `UNION .. END_UNION` of vendors
+    Union(Vec<Field>),
     /// `STRUCT .. END_STRUCT`, in a `TYPE` block only.
     Struct(Vec<Field>),
     /// `(Red, Green := 5)`, `(Red, Green) USINT` or `USINT (Red, Green)`
     Enumeration(Vec<EnumValue>, Option<Ident>),
     /// Text that is no type; a diagnostic has been given.
     Error,
+}
+
+/// How a type refers to another.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum ReferenceKind {
+    /// `REF_TO` (3rd ed. 6.4.4.10)
+    RefTo,
+    /// `POINTER TO`, of vendors
+    Pointer,
+    /// `REFERENCE TO`, of vendors: its uses stand for what it refers to
+    Reference,
+}
+
+impl ReferenceKind {
+    /// Its spelling.
+    pub fn text(self) -> &'static str {
+        match self {
+            Self::RefTo => "REF_TO",
+            Self::Pointer => "POINTER TO",
+            Self::Reference => "REFERENCE TO",
+        }
+    }
 }
 
 /// Bounds of a subrange type.

@@ -31,6 +31,8 @@ pub enum ExprKind {
     Member(Box<Expr>, Ident),
     /// `a.%X3`, `a.%B1`, `a.3`: the part as written (3rd ed. Table 17)
     Part(Box<Expr>, Ident),
+    /// `a^`
+    Dereference(Box<Expr>),
     /// `a[i, j]`
     Index(Box<Expr>, Vec<Expr>),
     /// `f(x, y)`, `f(IN := x, Q => y)`

@@ -18,12 +18,14 @@ pub enum StatementKind {
     Empty,
     /// `a := b`
     Assign(Expr, Expr),
-    /// `a ?= b` (3rd ed. 6.6.6.7)
-    Attempt(Expr, Expr),
     /// `a := b := c`: the targets in their order, at least two, and the value (vendors).
     Chain(Vec<Expr>, Expr),
     /// `a += b`, `a S= b` (vendors).
     Update(UpdateOp, Expr, Expr),
+    /// `a REF= b` of vendors: `a` refers to `b` from now on
+    Refer(Expr, Expr),
+    /// `a ?= b` (3rd ed. 6.6.6.7)
+    Attempt(Expr, Expr),
     /// `fb(IN := x)`
     Call(Call),
     /// `IF`

@@ -23,6 +23,11 @@ impl Cursor<'_> {
         if self.take_mark(Punctuation::Attempt) {
             return StatementKind::Attempt(target, self.expression());
         }
+        if self.at_reference_assignment() {
+            self.advance();
+            self.advance();
+            return StatementKind::Refer(target, self.expression());
+        }
         if let Some(operator) = self.take_update() {
             let value = self.expression();
             return StatementKind::Update(operator, target, value);
@@ -77,6 +82,11 @@ impl Cursor<'_> {
             targets.push(std::mem::replace(&mut value, self.expression()));
         }
         StatementKind::Chain(targets, value)
+    }
+
+    /// `REF=`, which the lexer takes for a name and a mark.
+    fn at_reference_assignment(&self) -> bool {
+        self.at_word("REF") && self.peek_ahead(1) == Some(TokenKind::Punctuation(Punctuation::Equal))
     }
 
     fn take_update(&mut self) -> Option<UpdateOp> {

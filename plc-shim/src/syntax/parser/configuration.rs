@@ -40,9 +40,9 @@ impl Cursor<'_> {
             } else if self.at_word("RESOURCE") {
                 configuration.resources.extend(self.resource());
             } else if self.at_word("VAR_ACCESS") {
-                self.lines_of_section(|cursor, known| cursor.access_path(known), &mut configuration.access);
+                self.lines_of_section(Self::access_path, &mut configuration.access);
             } else if self.at_word("VAR_CONFIG") {
-                self.lines_of_section(|cursor, known| cursor.instance_value(known), &mut configuration.instances);
+                self.lines_of_section(Self::instance_value, &mut configuration.instances);
             } else if !self.task_or_program(&mut own) {
                 self.unexpected("`RESOURCE`, `TASK`, `PROGRAM`, a section or `END_CONFIGURATION`");
                 self.advance();

@@ -188,6 +188,11 @@ impl<'a> Cursor<'a> {
         found
     }
 
+    /// All that follow a heading or section, so that a body never begins with one of them.
+    pub(super) fn take_semicolons(&mut self) {
+        while self.take_mark(Punctuation::Semicolon) {}
+    }
+
     pub(super) fn expect_keyword(&mut self, keyword: Keyword) -> bool {
         let found = self.take_keyword(keyword);
         if !found {

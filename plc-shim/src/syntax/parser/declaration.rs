@@ -159,6 +159,7 @@ impl Cursor<'_> {
             });
             self.take_keyword(Keyword::EndVar);
         }
+        self.take_semicolons();
         Section { kind, qualifiers, variables, span: self.span_from(start) }
     }
 
@@ -269,13 +270,15 @@ impl Cursor<'_> {
             return;
         }
         let closes = |kind| {
-            matches!(kind, TokenKind::Keyword(Keyword::EndVar | Keyword::EndStruct | Keyword::EndType))
-                || section_kind(Some(kind)).is_some()
+            matches!(
+                kind,
+                TokenKind::Keyword(Keyword::EndVar | Keyword::EndStruct | Keyword::EndUnion | Keyword::EndType)
+            ) || section_kind(Some(kind)).is_some()
                 || ends_unit(kind)
         };
         if self.reported() == known {
             // `END_STRUCT` and the last declaration of a block are often written without.
-            if self.previous() == Some(TokenKind::Keyword(Keyword::EndStruct)) {
+            if matches!(self.previous(), Some(TokenKind::Keyword(Keyword::EndStruct | Keyword::EndUnion))) {
                 return;
             }
             self.unexpected("`;`");

@@ -125,6 +125,8 @@ impl Cursor<'_> {
                     return expr;
                 };
                 (ExprKind::Member(Box::new(expr), member), 0)
+            } else if self.take_mark(Punctuation::Caret) {
+                (ExprKind::Dereference(Box::new(expr)), 0)
             } else if self.take_mark(Punctuation::LeftBracket) {
                 let indices = self.indices();
                 let below = indices.iter().map(|index| index.height).max().unwrap_or(0);
@@ -311,7 +313,7 @@ fn error_at(span: Span) -> Expr {
 }
 
 fn is_callable(expr: &Expr) -> bool {
-    matches!(expr.kind, ExprKind::Name(_) | ExprKind::Member(..) | ExprKind::Index(..))
+    matches!(expr.kind, ExprKind::Name(_) | ExprKind::Member(..) | ExprKind::Index(..) | ExprKind::Dereference(_))
 }
 
 fn argument_height(argument: &Argument) -> u16 {

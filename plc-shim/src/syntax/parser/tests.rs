@@ -14,6 +14,9 @@ fn reparse(text: &str) -> (String, Vec<Diagnostic>) {
 #[test]
 fn a_printed_unit_parses_to_itself() {
     let text = "
+        TYPE U : UNION a : INT; b : BYTE := 3; END_UNION; END_TYPE
+        FUNCTION o VAR_IN_OUT a : ARRAY [*, *] OF INT; END_VAR END_FUNCTION
+        TYPE N : STRUCT next : REF_TO N; p : POINTER TO ARRAY [0..1] OF REFERENCE TO INT := NULL; END_STRUCT; END_TYPE
         TYPE T : STRUCT a, b : INT := 5; c : ARRAY [0..1, 2..3] OF REAL; END_STRUCT END_TYPE
         TYPE C : (Red, Green := 5); R : INT (0..10) := 3; E : (One := 1, Two) USINT := Two; F : DINT (Three); END_TYPE
         VAR_GLOBAL RETAIN g AT %MW1 : T := (a := 1, c := [1.0, 3(2.5)]); END_VAR
@@ -26,7 +29,7 @@ fn a_printed_unit_parses_to_itself() {
           WHILE i < 3 DO EXIT; END_WHILE; REPEAT i := i + 1; UNTIL i > 5 END_REPEAT;
           d ?= e.f(1).g(x => y); c := a.b.C#Red; THIS^.m(); SUPER^(); SUPER.m(a := THIS);
           t(IN := TRUE, PT := T#1.5s, Q => b, NOT Q => c); a[1, 2].b := LREAL#1.0e-7 * 16#FF;
-          %QX0.1 := %IX0.0 AND %MD3.%X31; w.%B1 := w.3 OR a[1].w.%W0;
+          %QX0.1 := %IX0.0 AND %MD3.%X31; r REF= a^.b[1]^.c; r ?= REF(x^); p^(IN := q^[1].%X1); w.%B1 := w.3 OR a[1].w.%W0;
         END_PROGRAM
         ACTION a1: i := 1; END_ACTION
         INTERFACE I1 EXTENDS I2, n.I3 METHOD m : INT VAR_INPUT x : INT; END_VAR END_METHOD
@@ -97,6 +100,32 @@ fn iec2_2_7_one_slip_in_a_configuration_makes_one_diagnostic() {
         );
         let found = parse(FILE, &text).diagnostics;
         assert_eq!(found.len(), 1, "{slip}: {found:#?}");
+    }
+}
+
+#[test]
+fn a_printed_unit_of_a_vendor_parses_to_itself() {
+    let texts = [
+        (
+            Dialect::Codesys,
+            "PROGRAM p VAR_STAT n : INT; END_VAR a := b := c; a S= b; a R= b OR_ELSE c AND_THEN d;
+             IF a THEN b := 1; END_IF END_PROGRAM",
+        ),
+        (
+            Dialect::SiemensScl,
+            "TYPE \"my type\" VERSION : 0.1 STRUCT \"a b\" : Int; END_STRUCT; END_TYPE
+             DATA_BLOCK \"my data\" STRUCT x : Array[0..1] of \"my type\"; y : Int; END_STRUCT; BEGIN y := 3; END_DATA_BLOCK
+             FUNCTION \"f\" : Void VAR_INPUT \"in put\" : Int; END_VAR BEGIN #\"in put\" += W#16#F; END_FUNCTION
+             ORGANIZATION_BLOCK \"Main\" BEGIN \"f\"(\"in put\" := \"my data\".x[0].\"a b\"); #t.TON(IN := \"y\"); END_ORGANIZATION_BLOCK",
+        ),
+    ];
+    for (dialect, text) in texts {
+        let once = parse_in(dialect, FILE, text);
+        assert_eq!(once.diagnostics, [], "{text}");
+        let printed = print_unit(&once.unit);
+        let twice = parse_in(dialect, FILE, &printed);
+        assert_eq!(twice.diagnostics, [], "{printed}");
+        assert_eq!(print_unit(&twice.unit), printed);
     }
 }
 

@@ -2,7 +2,7 @@
 
 use super::cursor::Cursor;
 use crate::diagnostic::{Code, Diagnostic};
-use crate::syntax::ast::{Dimension, EnumValue, Expr, Field, Ident, Subrange, TypeSpec, TypeSpecKind};
+use crate::syntax::ast::{Dimension, EnumValue, Expr, Field, Ident, ReferenceKind, Subrange, TypeSpec, TypeSpecKind};
 use crate::syntax::token::{Keyword, Punctuation, TokenKind};
 
 impl Cursor<'_> {
@@ -17,7 +17,10 @@ impl Cursor<'_> {
             return self.array_type();
         }
         if self.take_keyword(Keyword::Struct) {
-            return self.struct_type();
+            return TypeSpecKind::Struct(self.members_of(Keyword::EndStruct));
+        }
+        if self.take_keyword(Keyword::Union) {
+            return TypeSpecKind::Union(self.members_of(Keyword::EndUnion));
         }
         if self.take_mark(Punctuation::LeftParen) {
             let values = self.enumeration_values();
@@ -25,6 +28,9 @@ impl Cursor<'_> {
             let closed = self.previous() == Some(TokenKind::Punctuation(Punctuation::RightParen));
             let base = if closed { self.take_identifier() } else { None };
             return TypeSpecKind::Enumeration(values, base);
+        }
+        if let Some(kind) = self.reference_kind() {
+            return TypeSpecKind::Reference(kind, Box::new(self.type_spec()));
         }
         let Some(name) = self.expect_identifier("a type") else {
             return TypeSpecKind::Error;
@@ -67,6 +73,21 @@ impl Cursor<'_> {
         self.report(found.with_help("give the instance's inputs initial values"));
     }
 
+    /// `REF_TO`, `POINTER TO` or `REFERENCE TO`; none of them is a keyword of the 2nd edition.
+    fn reference_kind(&mut self) -> Option<ReferenceKind> {
+        let word = (self.peek() == Some(TokenKind::Identifier)).then(|| self.next_text().to_ascii_uppercase())?;
+        let to = self.peek_ahead(1) == Some(TokenKind::Keyword(Keyword::To));
+        let kind = match word.as_str() {
+            "REF_TO" => ReferenceKind::RefTo,
+            "POINTER" if to => ReferenceKind::Pointer,
+            "REFERENCE" if to => ReferenceKind::Reference,
+            _ => return None,
+        };
+        self.advance();
+        self.take_keyword(Keyword::To);
+        Some(kind)
+    }
+
     fn string_type(&mut self, name: Ident) -> TypeSpecKind {
         // Vendors write the length in parentheses too.
         let close = if self.take_mark(Punctuation::LeftBracket) {
@@ -85,6 +106,9 @@ impl Cursor<'_> {
     fn array_type(&mut self) -> TypeSpecKind {
         let mut dimensions = Vec::new();
         let bracketed = self.expect_mark(Punctuation::LeftBracket);
+        if self.at_mark(Punctuation::Star) {
+            return self.open_array_type();
+        }
         loop {
             let low = self.expression();
             self.expect_mark(Punctuation::Range);
@@ -103,13 +127,31 @@ impl Cursor<'_> {
         TypeSpecKind::Array(dimensions, Box::new(self.type_spec()))
     }
 
+    /// `*, *] OF INT`
+    fn open_array_type(&mut self) -> TypeSpecKind {
+        let mut dimensions = 0;
+        while self.expect_mark(Punctuation::Star) {
+            dimensions += 1;
+            if !self.take_mark(Punctuation::Comma) {
+                break;
+            }
+        }
+        self.expect_mark(Punctuation::RightBracket);
+        self.expect_keyword(Keyword::Of);
+        TypeSpecKind::OpenArray(dimensions, Box::new(self.type_spec()))
+    }
+
     pub(super) fn struct_type(&mut self) -> TypeSpecKind {
+        TypeSpecKind::Struct(self.members_of(Keyword::EndStruct))
+    }
+
+    fn members_of(&mut self, end: Keyword) -> Vec<Field> {
         let mut fields = Vec::new();
         while self.peek() == Some(TokenKind::Identifier) {
             self.fields(&mut fields);
         }
-        self.expect_keyword(Keyword::EndStruct);
-        TypeSpecKind::Struct(fields)
+        self.expect_keyword(end);
+        fields
     }
 
     /// `a, b : INT := 5;`

@@ -30,7 +30,7 @@ impl Printer {
         };
         self.word(begin);
         self.modifiers(&pou.object.modifiers);
-        self.word(&pou.name.text);
+        self.name(&pou.name);
         if let Some(result) = &pou.result {
             self.word(" : ");
             self.type_spec(result);
@@ -73,7 +73,7 @@ impl Printer {
 
     fn variable(&mut self, variable: &Variable) {
         self.begin_line();
-        self.separated(&variable.names, |printer, name| printer.word(&name.text));
+        self.separated(&variable.names, Self::name);
         if let Some(address) = &variable.address {
             self.word(" AT ");
             self.word(&address.text);
@@ -109,7 +109,7 @@ impl Printer {
         self.line("TYPE");
         self.indented(|printer| {
             printer.begin_line();
-            printer.word(&declaration.name.text);
+            printer.name(&declaration.name);
             if let Some(base) = &declaration.extends {
                 printer.word(" EXTENDS ");
                 printer.word(&base.text);
@@ -121,7 +121,7 @@ impl Printer {
 
     pub(super) fn type_spec(&mut self, spec: &TypeSpec) {
         match &spec.kind {
-            TypeSpecKind::Name(name) => self.word(&name.text),
+            TypeSpecKind::Name(name) => self.name(name),
             TypeSpecKind::String(name, length) => {
                 self.word(&name.text);
                 if let Some(length) = length {
@@ -144,7 +144,19 @@ impl Printer {
                 self.word("] OF ");
                 self.type_spec(element);
             }
-            TypeSpecKind::Struct(fields) => self.structure(fields),
+            TypeSpecKind::Reference(kind, target) => {
+                self.word(kind.text());
+                self.word(" ");
+                self.type_spec(target);
+            }
+            TypeSpecKind::OpenArray(dimensions, element) => {
+                self.word("ARRAY [");
+                self.separated(&vec!["*"; *dimensions as usize], |printer, star| printer.word(star));
+                self.word("] OF ");
+                self.type_spec(element);
+            }
+            TypeSpecKind::Struct(fields) => self.members("STRUCT", fields),
+            TypeSpecKind::Union(fields) => self.members("UNION", fields),
             TypeSpecKind::Enumeration(values, base) => {
                 self.word("(");
                 self.separated(values, Self::enum_value);
@@ -164,22 +176,23 @@ impl Printer {
         self.expression(high);
     }
 
-    fn structure(&mut self, fields: &[Field]) {
-        self.word("STRUCT");
+    fn members(&mut self, word: &str, fields: &[Field]) {
+        self.word(word);
         self.end_line();
         self.indented(|printer| {
             for field in fields {
                 printer.begin_line();
-                printer.word(&field.name.text);
+                printer.name(&field.name);
                 printer.typed(&field.spec, field.initial.as_ref());
             }
         });
         self.begin_line();
-        self.word("END_STRUCT");
+        self.word("END_");
+        self.word(word);
     }
 
     fn enum_value(&mut self, value: &EnumValue) {
-        self.word(&value.name.text);
+        self.name(&value.name);
         if let Some(number) = &value.value {
             self.word(" := ");
             self.expression(number);
@@ -211,7 +224,7 @@ impl Printer {
     }
 
     fn structure_init(&mut self, member: &StructureInit) {
-        self.word(&member.name.text);
+        self.name(&member.name);
         self.word(" := ");
         self.initialiser(&member.value);
     }

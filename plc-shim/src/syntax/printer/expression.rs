@@ -7,12 +7,16 @@ impl Printer {
     pub(super) fn expression(&mut self, expr: &Expr) {
         match &expr.kind {
             ExprKind::Literal(literal) => self.literal(literal),
-            ExprKind::Name(name) => self.word(&name.text),
+            ExprKind::Name(name) => self.variable_name(name),
             ExprKind::DirectAddress(text) => self.word(text),
             ExprKind::Member(base, name) | ExprKind::Part(base, name) => {
                 self.expression(base);
                 self.word(".");
-                self.word(&name.text);
+                self.name(name);
+            }
+            ExprKind::Dereference(base) => {
+                self.expression(base);
+                self.word("^");
             }
             ExprKind::Index(base, indices) => {
                 self.expression(base);
@@ -56,7 +60,7 @@ impl Printer {
         match argument {
             Argument::Positional(expr) => self.expression(expr),
             Argument::Input(name, expr) => {
-                self.word(&name.text);
+                self.name(name);
                 self.word(" := ");
                 self.expression(expr);
             }
@@ -64,7 +68,7 @@ impl Printer {
                 if *negated {
                     self.word("NOT ");
                 }
-                self.word(&name.text);
+                self.name(name);
                 self.word(" => ");
                 if let Some(target) = target {
                     self.expression(target);

@@ -21,11 +21,6 @@ impl Printer {
                 self.word(" := ");
                 self.expression(value);
             }
-            StatementKind::Attempt(target, value) => {
-                self.expression(target);
-                self.word(" ?= ");
-                self.expression(value);
-            }
             StatementKind::Chain(targets, value) => {
                 for target in targets {
                     self.expression(target);
@@ -39,6 +34,14 @@ impl Printer {
                 self.word(operator.text());
                 self.word(" ");
                 self.expression(value);
+            }
+            StatementKind::Refer(target, value) => {
+                self.expression(target);
+                self.head(" REF= ", value, "");
+            }
+            StatementKind::Attempt(target, value) => {
+                self.expression(target);
+                self.head(" ?= ", value, "");
             }
             StatementKind::Call(call) => self.call(call),
             StatementKind::If(inner) => self.if_statement(inner),
@@ -116,7 +119,7 @@ impl Printer {
 
     fn for_statement(&mut self, inner: &ForStatement) {
         self.word("FOR ");
-        self.word(&inner.variable.text);
+        self.variable_name(&inner.variable);
         self.head(" := ", &inner.from, " TO ");
         self.expression(&inner.to);
         if let Some(by) = &inner.by {

@@ -16,6 +16,8 @@ pub(crate) trait Visitor {
     fn control(&mut self, _name: &crate::syntax::ast::Ident) {}
     /// A call, before its arguments.
     fn call(&mut self, _call: &Call) {}
+    /// What a reference is made to refer to.
+    fn referred(&mut self, _place: &Expr) {}
     /// An expression, before its parts; of targets and callees only their indices.
     fn expression(&mut self, _expr: &Expr) {}
 }
@@ -35,7 +37,7 @@ fn branch(list: &[Statement], visitor: &mut impl Visitor) {
 
 fn statement(kind: &StatementKind, visitor: &mut impl Visitor) {
     match kind {
-        StatementKind::Assign(place, value) | StatementKind::Attempt(place, value) => {
+        StatementKind::Assign(place, value) => {
             target(place, visitor);
             expression(value, visitor);
         }
@@ -48,6 +50,15 @@ fn statement(kind: &StatementKind, visitor: &mut impl Visitor) {
         StatementKind::Update(_, place, value) => {
             expression(place, visitor);
             target(place, visitor);
+            expression(value, visitor);
+        }
+        StatementKind::Attempt(place, value) => {
+            target(place, visitor);
+            expression(value, visitor);
+        }
+        StatementKind::Refer(place, value) => {
+            target(place, visitor);
+            visitor.referred(value);
             expression(value, visitor);
         }
         StatementKind::Call(inner) => call(inner, visitor),
@@ -108,6 +119,8 @@ fn target(place: &Expr, visitor: &mut impl Visitor) {
 fn indices(place: &Expr, visitor: &mut impl Visitor) {
     match &place.kind {
         ExprKind::Member(inner, _) | ExprKind::Part(inner, _) | ExprKind::Paren(inner) => indices(inner, visitor),
+        // The reference itself is read.
+        ExprKind::Dereference(inner) => expression(inner, visitor),
         ExprKind::Index(inner, list) => {
             indices(inner, visitor);
             for index in list {
@@ -122,9 +135,11 @@ fn indices(place: &Expr, visitor: &mut impl Visitor) {
 pub(crate) fn expression(expr: &Expr, visitor: &mut impl Visitor) {
     visitor.expression(expr);
     match &expr.kind {
-        ExprKind::Member(inner, _) | ExprKind::Part(inner, _) | ExprKind::Unary(_, inner) | ExprKind::Paren(inner) => {
-            expression(inner, visitor)
-        }
+        ExprKind::Member(inner, _)
+        | ExprKind::Part(inner, _)
+        | ExprKind::Dereference(inner)
+        | ExprKind::Unary(_, inner)
+        | ExprKind::Paren(inner) => expression(inner, visitor),
         ExprKind::Index(inner, list) => {
             expression(inner, visitor);
             for index in list {

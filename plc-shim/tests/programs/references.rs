@@ -1,0 +1,185 @@
+//! References (3rd ed. 6.4.4.10, Table 12), and the pointers of vendors.
+
+use crate::rig::{Rig, findings};
+
+fn run(text: &str) -> Rig {
+    let mut rig = Rig::new(text);
+    rig.scan().unwrap_or_else(|fault| panic!("{fault}"));
+    rig
+}
+
+fn fault(text: &str) -> String {
+    let mut rig = Rig::new(text);
+    let fault = rig.scan().expect_err("the program fails");
+    assert_eq!(rig.scan(), Err(fault.clone()));
+    fault.to_string()
+}
+
+#[test]
+fn iec3_6_4_4_10_table_12_references_are_declared_assigned_and_followed() {
+    let rig = run("TYPE R : REF_TO INT; S : STRUCT a, b : INT; END_STRUCT END_TYPE
+        VAR_GLOBAL g : INT := 40; r0 : R := REF(g); END_VAR
+        PROGRAM P VAR a : ARRAY [1..3] OF INT := [1, 2, 3]; s : S := (a := 5, b := 6); r : REF_TO INT; q : R := NULL;
+          rs : REF_TO S; ra : REF_TO ARRAY [1..3] OF INT; list : ARRAY [0..1] OF REF_TO INT; i, x, y : INT;
+          same, none, other : BOOL; END_VAR
+        none := q = NULL; i := 2; r := REF(a[i]); x := r^; r^ := r^ + 10; q := r; same := q = r; q := REF(s.b);
+        other := q <> r AND NULL <> q; rs := REF(s); rs^.a := 50; ra := REF(a); ra^[i + 1] := rs^.b; list[0] := REF(rs^.b); list[i - 1] := r0;
+        y := list[1]^ + list[0]^; r0^ := 41; END_PROGRAM");
+    assert_eq!((rig.int("P.x"), rig.int("P.a[2]"), rig.int("P.a[3]"), rig.int("P.s.a")), (2, 12, 6, 50));
+    assert_eq!((rig.bool("P.none"), rig.bool("P.same"), rig.bool("P.other")), (true, true, true));
+    assert_eq!((rig.int("P.y"), rig.int("g")), (46, 41));
+    assert_eq!((rig.variable("P.r").type_name.as_str(), rig.variable("P.r").size), ("REF_TO INT", 4));
+}
+
+#[test]
+fn iec3_6_4_4_10_structures_refer_to_themselves() {
+    let rig = run("TYPE Node : STRUCT value : INT; next : REF_TO Node; owner : REF_TO Tree; END_STRUCT;
+          Tree : STRUCT first : REF_TO Node; count : INT; END_STRUCT; END_TYPE
+        PROGRAM P VAR nodes : ARRAY [1..4] OF Node; tree : Tree; now : REF_TO Node; i, sum : INT; END_VAR
+        tree.first := NULL;
+        FOR i := 1 TO 4 DO nodes[i].value := i * i; nodes[i].next := tree.first; nodes[i].owner := REF(tree);
+          tree.first := REF(nodes[i]); END_FOR;
+        now := tree.first; WHILE now <> NULL DO sum := sum + now^.value; now^.owner^.count := now^.owner^.count + 1; now := now^.next; END_WHILE;
+        END_PROGRAM");
+    assert_eq!((rig.int("P.sum"), rig.int("P.tree.count")), (30, 4));
+}
+
+#[test]
+fn iec3_6_4_4_10_references_go_in_and_out_of_units_and_call_instances() {
+    let rig = run("FUNCTION_BLOCK Counter VAR_INPUT step : INT; END_VAR VAR_OUTPUT n : INT; END_VAR n := n + step; END_FUNCTION_BLOCK
+        FUNCTION Greater : REF_TO INT VAR_INPUT a, b : REF_TO INT; END_VAR
+        IF a^ > b^ THEN Greater := a; ELSE Greater := b; END_IF; END_FUNCTION
+        FUNCTION_BLOCK Adder VAR_INPUT sum : REF_TO INT; END_VAR VAR c : INT := 1; END_VAR sum^ := sum^ + c; END_FUNCTION_BLOCK
+        FUNCTION_BLOCK Hand VAR_INPUT c : REF_TO Counter; END_VAR c^(step := 3); END_FUNCTION_BLOCK
+        PROGRAM P VAR x : INT := 3; y : INT := 7; n : INT; add : Adder; c : Counter; h : Hand; r : REF_TO Counter; END_VAR
+        n := Greater(REF(x), REF(y))^; add(sum := REF(x)); r := REF(c); r^(step := 2); h(c := r); n := n * 10 + r^.n;
+        END_PROGRAM");
+    assert_eq!((rig.int("P.n"), rig.int("P.x"), rig.int("P.c.n")), (75, 4, 5));
+}
+
+#[test]
+fn iec3_6_6_6_7_assignment_attempts_give_null_for_another_type() {
+    let rig = run("PROGRAM P VAR a : INT; r, s : REF_TO INT; d : REF_TO DINT; l : DINT; x, y, z : BOOL; END_VAR
+        r := REF(a); d := REF(l); s ?= r; x := s = r; s ?= d; y := s = NULL; d ?= NULL; z := d = NULL; END_PROGRAM");
+    assert_eq!((rig.bool("P.x"), rig.bool("P.y"), rig.bool("P.z")), (true, true, true));
+}
+
+#[test]
+fn iec3_6_4_4_10_4_the_use_of_null_stops_the_plc() {
+    insta::assert_snapshot!(fault("PROGRAM P\nVAR r : REF_TO INT; x : INT; END_VAR\n  x := 1 +\n    r^;\nEND_PROGRAM"),
+        @"use of a NULL reference at test.st:4:5 in P, t_v = 0.010 s");
+    insta::assert_snapshot!(fault("PROGRAM P\nVAR r : REF_TO INT; x : INT; END_VAR\n  r^ := 1;\nEND_PROGRAM"),
+        @"use of a NULL reference at test.st:3:3 in P, t_v = 0.010 s");
+    insta::assert_snapshot!(fault("TYPE S : STRUCT a : LREAL; n : REF_TO S; END_STRUCT END_TYPE\nPROGRAM P\nVAR r : REF_TO S; s, t : S; END_VAR\n  r := REF(s);\n  r^.n^.a := 1.0;\nEND_PROGRAM"),
+        @"use of a NULL reference at test.st:5:3 in P, t_v = 0.010 s");
+    insta::assert_snapshot!(fault("TYPE S : STRUCT a : LREAL; n : REF_TO S; END_STRUCT END_TYPE\nPROGRAM P\nVAR r : REF_TO S; s, t : S; END_VAR\n  t := r^;\nEND_PROGRAM"),
+        @"use of a NULL reference at test.st:4:8 in P, t_v = 0.010 s");
+    insta::assert_snapshot!(fault("PROGRAM P\nVAR r : REF_TO TON; END_VAR\n  r^(IN := TRUE);\nEND_PROGRAM"),
+        @"use of a NULL reference at test.st:3:3 in P, t_v = 0.010 s");
+    insta::assert_snapshot!(fault("PROGRAM P\nVAR r : REFERENCE TO INT; END_VAR\n  r := 1;\nEND_PROGRAM"),
+        @"use of a NULL reference at test.st:3:3 in P, t_v = 0.010 s");
+}
+
+#[test]
+fn a_pointer_out_of_memory_stops_the_plc() {
+    insta::assert_snapshot!(fault("PROGRAM P\nVAR p : POINTER TO DINT; END_VAR\n  p := 16#FFFFFFFF;\n  p^ := 1;\nEND_PROGRAM"),
+        @"pointer out of memory at test.st:4:3 in P, t_v = 0.010 s");
+    insta::assert_snapshot!(fault("PROGRAM P\nVAR p : POINTER TO BYTE; x : BYTE; END_VAR\n  p := ADR(x);\n  WHILE TRUE DO\n    p^ := 0; p := p + 1;\n  END_WHILE;\nEND_PROGRAM"),
+        @"pointer out of memory at test.st:5:5 in P, t_v = 0.010 s");
+    insta::assert_snapshot!(fault("PROGRAM P\nVAR p : POINTER TO INT; i : DINT; END_VAR\n  p := 1000; i := -501;\n  p[i] := 1;\nEND_PROGRAM"),
+        @"pointer out of memory at test.st:4:3 in P, t_v = 0.010 s");
+}
+
+#[test]
+fn pointers_of_vendors_are_numbers_of_bytes() {
+    let rig = run("TYPE S : STRUCT a : INT; b : DINT; END_STRUCT END_TYPE
+        FUNCTION Sum : DINT VAR_INPUT p : POINTER TO INT; n : INT; END_VAR VAR i : INT; END_VAR
+        FOR i := 0 TO n - 1 DO Sum := Sum + p[i]; END_FOR; END_FUNCTION
+        FUNCTION Low : BYTE VAR_INPUT w : WORD; END_VAR VAR p : POINTER TO BYTE; END_VAR p := ADR(w); Low := p^; END_FUNCTION
+        PROGRAM P VAR a : ARRAY [1..4] OF INT := [1, 2, 3, 4]; p, q : POINTER TO INT; b : POINTER TO BYTE; s : S; ps : POINTER TO S;
+          n : DINT; d : DWORD; u, size : UDINT; x, y, z : BOOL; w : WORD; k, m : INT; END_VAR
+        n := Sum(ADR(a), 4); p := ADR(a[2]); k := p^; p := p + SIZEOF(INT); p^ := 30; q := ADR(a); u := p - q; d := ADR(a);
+        x := p > q; y := d = q; z := p <> 0; q := d; q := q + 6; m := q^; b := ADR(w); b[1] := 16#12; b^ := 16#34;
+        ps := ADR(s); ps^.b := SIZEOF(S); size := SIZEOF(a) + SIZEOF(s.b); q := 0; y := y AND q = NULL; s.a := BYTE_TO_INT(Low(16#FF07));
+        END_PROGRAM");
+    assert_eq!((rig.int("P.n"), rig.int("P.k"), rig.int("P.a[3]"), rig.int("P.u")), (10, 2, 30, 4));
+    assert_eq!((rig.bool("P.x"), rig.bool("P.y"), rig.bool("P.z")), (true, true, true));
+    assert_eq!(
+        (rig.int("P.m"), rig.int("P.w"), rig.int("P.s.b"), rig.int("P.size"), rig.int("P.s.a")),
+        (4, 0x1234, 8, 12, 7)
+    );
+    assert_eq!(rig.int("P.d"), i64::from(rig.variable("P.a").offset));
+}
+
+#[test]
+fn references_of_vendors_stand_for_what_they_refer_to() {
+    let rig = run("FUNCTION_BLOCK B VAR_INPUT r : REFERENCE TO INT; END_VAR VAR_OUTPUT valid : BOOL; END_VAR
+        valid := __ISVALIDREF(r); IF valid THEN r := r + 1; END_IF; END_FUNCTION_BLOCK
+        FUNCTION Twice VAR_INPUT x : REFERENCE TO INT; END_VAR x := 2 * x; END_FUNCTION
+        FUNCTION Local : INT VAR n : INT; r : REFERENCE TO INT; END_VAR n := 4; r REF= n; r := r + 1; Twice(n); Local := n; END_FUNCTION
+        PROGRAM P VAR a : ARRAY [0..2] OF INT := [1, 2, 3]; i : INT := 1; r, q : REFERENCE TO INT; b, c : B; t : REFERENCE TO ARRAY [0..2] OF INT;
+          none, taken, back : BOOL; x, y : INT; f : REFERENCE TO B; END_VAR
+        none := __ISVALIDREF(r); r REF= a[i]; taken := __ISVALIDREF(r); r := r * 10; q REF= r; x := q; t REF= a; t[0] := 7;
+        f REF= b; f(r := a[2]); y := Local(); Twice(r); c(); q REF= NULL; back := NOT __ISVALIDREF(q); END_PROGRAM");
+    assert_eq!((rig.int("P.a[0]"), rig.int("P.a[1]"), rig.int("P.a[2]")), (7, 40, 4));
+    assert_eq!((rig.bool("P.none"), rig.bool("P.taken"), rig.bool("P.back"), rig.int("P.x")), (false, true, true, 20));
+    assert_eq!((rig.int("P.y"), rig.bool("P.b.valid"), rig.bool("P.c.valid")), (10, true, false));
+}
+
+#[test]
+fn a_variable_whose_address_is_taken_is_used_and_written() {
+    let text = "PROGRAM P VAR a, b, c : INT; p : POINTER TO INT; r : REFERENCE TO INT; s : REF_TO INT; END_VAR
+        VAR_OUTPUT o : INT; END_VAR p := ADR(a); p^ := 1; r REF= b; r := 2; s := REF(o); s^ := 3; p := ADR(c); END_PROGRAM";
+    let found = onescan_plc_shim::inspect(
+        [onescan_plc_shim::Input::from_text("t.st", onescan_plc_shim::input::kind::SourceKind::Text, text)],
+        None,
+    );
+    assert_eq!(found.to_string(), "");
+}
+
+#[test]
+fn wrong_references_are_told() {
+    let told = |statement: &str| {
+        let declarations = "r : REF_TO INT; d : REF_TO DINT; p : POINTER TO INT; q : POINTER TO REAL; v : REFERENCE TO INT; x : INT; w : WORD; b : BOOL; t : TON;
+END_VAR VAR_TEMP tmp : INT; END_VAR VAR CONSTANT k : INT := 1;";
+        let text = format!("PROGRAM P VAR {declarations} END_VAR\n{statement}\nEND_PROGRAM");
+        findings(&text).lines().next().unwrap_or_default().to_owned()
+    };
+    for (statement, expected) in [
+        ("d := r;", "test.st:3:6: error[T0201]: REF_TO DINT is wanted, this is REF_TO INT"),
+        ("r := REF(w);", "test.st:3:6: error[T0201]: REF_TO INT is wanted, this is REF_TO WORD"),
+        ("r := x;", "test.st:3:6: error[T0201]: REF_TO INT is wanted, this is INT"),
+        ("r := ADR(x);", "test.st:3:6: error[T0201]: REF_TO INT is wanted, this is the address of INT"),
+        ("x := r;", "test.st:3:6: error[T0201]: INT is wanted, this is REF_TO INT"),
+        ("r := REF(k);", "test.st:3:10: error[R0904]: a constant is not referred to"),
+        ("r := REF(tmp);", "test.st:3:10: error[R0904]: a variable that does not outlive the call is not referred to"),
+        ("v REF= k;", "test.st:3:8: error[R0904]: a constant is not referred to"),
+        ("v REF= w.%X1;", "test.st:3:8: error[T0201]: INT is wanted, this is BOOL"),
+        ("p := ADR(w.3);", "test.st:3:10: error[R0904]: a bit has no address of its own"),
+        ("r := REF(1 + 2);", "test.st:3:10: error[N0106]: a variable is wanted here"),
+        ("x := x^;", "test.st:3:6: error[R0905]: INT refers to nothing, so `^` leads nowhere"),
+        ("x := NULL^;", "test.st:3:6: error[R0905]: NULL refers to nothing, so `^` leads nowhere"),
+        ("x REF= x;", "test.st:3:1: error[R0905]: `REF=` is for REFERENCE TO, this is INT"),
+        ("v REF= w;", "test.st:3:8: error[T0201]: INT is wanted, this is WORD"),
+        ("x ?= r;", "test.st:3:1: error[R0905]: `?=` assigns references"),
+        ("r ?= x;", "test.st:3:6: error[R0905]: `?=` assigns references"),
+        ("b := __ISVALIDREF(x);", "test.st:3:19: error[R0905]: a reference is wanted, this is INT"),
+        ("p := q;", "test.st:3:6: warning[R0906]: a pointer to INT is made of one to REAL"),
+        ("b := r = d;", "test.st:3:6: error[T0203]: this operator does not join REF_TO INT and REF_TO DINT"),
+        ("b := r < r;", "test.st:3:6: error[T0203]: this operator does not join REF_TO INT and REF_TO INT"),
+        ("r := r + 1;", "test.st:3:6: error[T0203]: this operator does not join REF_TO INT and an integer"),
+        ("p := p * 2;", "test.st:3:6: error[T0203]: this operator does not join POINTER TO INT and an integer"),
+        ("r[0] := 1;", "test.st:3:1: error[T0206]: REF_TO INT is not an array"),
+        ("x := SIZEOF();", "test.st:3:6: error[C0302]: SIZEOF takes one variable"),
+        (
+            "CASE r OF 1: ; END_CASE;",
+            "test.st:3:6: error[T0201]: an integer or enumeration is wanted, this is REF_TO INT",
+        ),
+        ("t := NULL;", "test.st:3:1: error[D0403]: instances are not assigned to one another"),
+        ("NULL := r;", "test.st:3:1: error[N0106]: `NULL` is not a variable"),
+    ] {
+        assert_eq!(told(statement), expected, "{statement}");
+    }
+    let unknown = findings("PROGRAM P VAR r : REF_TO Nothing; END_VAR r^ := 1; END_PROGRAM");
+    assert_eq!(unknown, "test.st:1:26: error[N0103]: type `Nothing` is not declared");
+}
