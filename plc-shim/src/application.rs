@@ -4,6 +4,7 @@ mod front;
 mod inspect;
 mod leaves;
 pub(crate) mod library;
+mod namespace;
 mod retain;
 mod root;
 mod value;

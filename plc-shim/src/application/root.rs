@@ -16,6 +16,9 @@ impl Application {
         if let Some(found) = self.shared_root(first) {
             return Ok((found, rest));
         }
+        if let Some(found) = self.qualified_root(pieces) {
+            return Ok(found);
+        }
         let Some(configuration) = &self.inner.checked.configuration else {
             return Err(self.similar_root(first));
         };

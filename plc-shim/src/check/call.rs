@@ -21,20 +21,23 @@ use crate::syntax::ast::{self, Call, Ident, PouKind, ReferenceKind, SectionKind}
 
 /// The arguments of a call by the parameter they belong to.
 #[derive(Default)]
-struct Matched<'e> {
-    inputs: BTreeMap<String, &'e ast::Expr>,
-    outputs: Vec<Wanted<'e>>,
+pub(super) struct Matched<'e> {
+    pub(super) inputs: BTreeMap<String, &'e ast::Expr>,
+    pub(super) outputs: Vec<Wanted<'e>>,
 }
 
 /// An output that the caller wants.
-struct Wanted<'e> {
-    variable: Variable,
+pub(super) struct Wanted<'e> {
+    pub(super) variable: Variable,
     negated: bool,
     target: &'e ast::Expr,
 }
 
 impl Body<'_, '_> {
     pub(super) fn call_expression(&mut self, call: &Call, span: Span) -> Option<Operand> {
+        if let Some(called) = self.method_call(call, span) {
+            return called.map(Operand::Typed);
+        }
         if enable::is_controlled(call) && !self.is_instance(call) {
             return self.controlled_call(call, span);
         }
@@ -43,8 +46,10 @@ impl Body<'_, '_> {
 
     /// A call without EN and ENO, unless its function declares them.
     pub(super) fn plain_call(&mut self, call: &Call, span: Span) -> Option<Operand> {
-        let ast::ExprKind::Name(name) = &call.callee.kind else {
-            return self.not_a_function(call, span);
+        let qualified = self.qualified_name(&call.callee);
+        let name = match (&call.callee.kind, &qualified) {
+            (ast::ExprKind::Name(name), _) | (_, Some(name)) => name,
+            _ => return self.not_a_function(call, span),
         };
         if self.is_local(name) && !self.is_own_result(name) {
             return self.not_a_function(call, span);
@@ -78,12 +83,12 @@ impl Body<'_, '_> {
     pub(super) fn is_own_result(&self, name: &Ident) -> bool {
         self.pou.is_some_and(|id| {
             let own = self.checker.pou(id).ast;
-            own.kind == PouKind::Function && own.name.key() == name.key()
+            own.kind.keeps_nothing() && own.name.key() == name.key()
         })
     }
 
     pub(super) fn function_named(&self, name: &Ident) -> Option<PouId> {
-        let id = self.checker.pou_names.get(&name.key()).copied()?;
+        let id = self.checker.pou_named(&name.key())?;
         (self.checker.pou(id).ast.kind == PouKind::Function).then_some(id)
     }
 
@@ -111,10 +116,12 @@ impl Body<'_, '_> {
     }
 
     fn report_unknown_function<T>(&mut self, name: &Ident) -> Option<T> {
-        if let Some(id) = self.checker.pou_names.get(&name.key()) {
-            let what = match self.checker.pou(*id).ast.kind {
+        if let Some(id) = self.checker.pou_named(&name.key()) {
+            let what = match self.checker.pou(id).ast.kind {
                 PouKind::Program => "a program",
-                PouKind::FunctionBlock | PouKind::Function => "a function block type",
+                PouKind::Class => "a class",
+                PouKind::Interface => "an interface",
+                _ => "a function block type",
             };
             let message = format!("`{}` is {what} and cannot be called", name.text);
             let help = "declare an instance of it and call that";
@@ -128,6 +135,7 @@ impl Body<'_, '_> {
         let standard: Vec<&str> = function_form::names().collect();
         let known = functions.chain(variables).chain(standard.iter().copied());
         let help = did_you_mean(&name.text, known);
+        let help = self.checker.elsewhere(name).or(help);
         let message = format!("there is no function or instance `{}`", name.text);
         let found = Diagnostic::error(Code::UnknownFunction, name.span, message);
         self.report(found.with_optional_help(help));
@@ -135,9 +143,21 @@ impl Body<'_, '_> {
     }
 
     pub(super) fn call_statement(&mut self, call: &Call, span: Span) -> Option<StatementKind> {
+        if let Some(called) = self.super_call(call, span) {
+            return called;
+        }
+        if let Some(called) = self.method_call(call, span) {
+            return Some(StatementKind::Evaluate(called?));
+        }
         let function = match &call.callee.kind {
+            ast::ExprKind::Member(..)
+                if self.qualified_name(&call.callee).is_some_and(|name| self.function_named(&name).is_some()) =>
+            {
+                true
+            }
+            ast::ExprKind::Name(name) if self.is_this(name) => false,
             ast::ExprKind::Name(name) => {
-                !self.is_local(name) && !self.checker.globals.contains_key(&name.key()) || self.is_own_result(name)
+                !self.is_local(name) && self.checker.global_key(&name.key()).is_none() || self.is_own_result(name)
             }
             _ => false,
         };
@@ -167,7 +187,7 @@ impl Body<'_, '_> {
         })
     }
 
-    fn matched<'e>(&mut self, scope: &Scope, callee: &str, call: &'e Call) -> Option<Matched<'e>> {
+    pub(super) fn matched<'e>(&mut self, scope: &Scope, callee: &str, call: &'e Call) -> Option<Matched<'e>> {
         let mut matched = Matched::default();
         let mut sound = true;
         for (index, argument) in call.arguments.iter().enumerate() {
@@ -219,7 +239,7 @@ impl Body<'_, '_> {
         name: &Ident,
         accepts: impl Fn(&Variable) -> bool,
     ) -> Option<Variable> {
-        let found = scope.find(&name.key()).filter(|variable| accepts(variable));
+        let found = scope.own(&name.key()).filter(|variable| accepts(variable));
         if found.is_none() && !scope.is_broken(&name.key()) {
             let names = scope.variables.iter().filter(|variable| accepts(variable));
             let help = did_you_mean(&name.text, names.map(|variable| variable.name.as_str()));
@@ -230,7 +250,7 @@ impl Body<'_, '_> {
         found.cloned()
     }
 
-    fn note_call(&mut self, callee: PouId, span: Span) {
+    pub(super) fn note_call(&mut self, callee: PouId, span: Span) {
         if let Some(caller) = self.pou {
             self.checker.calls.entry(caller).or_default().push((callee, span));
         }
@@ -268,12 +288,12 @@ impl Body<'_, '_> {
         let aggregate = scope.result.is_some() && self.elementary(ty).is_none();
         let kept = if aggregate { Some(self.temporary(ty, span)?) } else { None };
         let (before, outputs) = (passing.before, after);
-        let call = FunctionCall { pou: id, before, arguments, outputs, result: kept };
+        let call = FunctionCall { pou: id, before, arguments, receiver: None, outputs, result: kept };
         let ty = self.checker.types.of_value(ty);
         Some(Expr { kind: ExprKind::Call(Box::new(call)), ty, span })
     }
 
-    fn default_argument(&mut self, parameter: &Variable, named: bool, span: Span) -> Option<Argument> {
+    pub(super) fn default_argument(&mut self, parameter: &Variable, named: bool, span: Span) -> Option<Argument> {
         match self.elementary(parameter.ty) {
             Some(ty) if named && parameter.section == SectionKind::Input => {
                 let value = constant(decode(ty, &parameter.image), ty, span);
@@ -294,7 +314,12 @@ impl Body<'_, '_> {
         None
     }
 
-    fn argument(&mut self, parameter: &Variable, expr: &ast::Expr, passing: &mut Passing) -> Option<Argument> {
+    pub(super) fn argument(
+        &mut self,
+        parameter: &Variable,
+        expr: &ast::Expr,
+        passing: &mut Passing,
+    ) -> Option<Argument> {
         if matches!(self.checker.types.get(parameter.ty), Type::OpenArray { .. }) {
             return self.described(parameter, expr, &mut passing.before).map(Argument::Reference);
         }
@@ -310,7 +335,7 @@ impl Body<'_, '_> {
     /// The variable given for a `VAR_IN_OUT`. One in a register or in a bit goes through memory.
     fn reference(&mut self, parameter: &Variable, expr: &ast::Expr, passing: &mut Passing) -> Option<Place> {
         let place = self.target(expr)?;
-        if place.ty != parameter.ty {
+        if place.ty != parameter.ty && !self.derives(place.ty, parameter.ty) {
             let (wanted, found) = (self.type_name(parameter.ty), self.type_name(place.ty));
             let message = format!("VAR_IN_OUT `{}` is {wanted}, this is {found}", parameter.name);
             self.report(Diagnostic::error(Code::InvalidArgument, expr.span, message));
@@ -348,10 +373,11 @@ impl Body<'_, '_> {
         let types = &self.checker.types;
         let (size, align) = (types.size(ty), types.align(ty));
         let offset = self.checker.allocate(size, align, span)?;
+        self.scope.has_memory = true;
         Some(Place::whole(Storage::Absolute(offset), ty, span))
     }
 
-    fn outputs(
+    pub(super) fn outputs(
         &mut self,
         wanted: &[Wanted<'_>],
         place_of: impl Fn(&Variable, Span) -> Place,
@@ -385,12 +411,17 @@ impl Body<'_, '_> {
     fn instance_call(&mut self, call: &Call, span: Span) -> Option<StatementKind> {
         let callee = self.instance_of(&call.callee);
         let instance = self.place(callee)?.place;
+        self.instance_call_at(instance, call, span)
+    }
+
+    /// Calls the statements of a function block on the instance at a place.
+    pub(super) fn instance_call_at(&mut self, instance: Place, call: &Call, span: Span) -> Option<StatementKind> {
         let Type::FunctionBlock { name, pou } = self.checker.types.get(instance.ty).clone() else {
             let message = format!("this is {}, which cannot be called", self.type_name(instance.ty));
             self.report(Diagnostic::error(Code::NotCallable, call.callee.span, message));
             return None;
         };
-        self.note_call(pou, span);
+        let dispatch = self.body_dispatch(&instance, pou, call, span)?;
         let scope = self.checker.interface(pou, span)?;
         let split = enable::split(call, scope.find(enable::ENO).is_some());
         let (enabling, rest) = split.map_or((None, None), |(enabling, rest)| (Some(enabling), Some(rest)));
@@ -402,7 +433,7 @@ impl Body<'_, '_> {
         let outputs = self.outputs(&matched.outputs, |variable, span| member_place(&base, variable, span))?;
         let Passing { before: inputs, after: mut back } = passing;
         back.extend(outputs);
-        let call = InstanceCall { instance, pou, pointer, inputs, outputs: back };
+        let call = InstanceCall { instance, pou, dispatch, pointer, inputs, outputs: back };
         self.controlled_instance(&scope, call, enabling)
     }
 
@@ -453,9 +484,9 @@ impl Body<'_, '_> {
 
 /// What surrounds a call: copies into memory, and back.
 #[derive(Default)]
-struct Passing {
-    before: Vec<Statement>,
-    after: Vec<Statement>,
+pub(super) struct Passing {
+    pub(super) before: Vec<Statement>,
+    pub(super) after: Vec<Statement>,
 }
 
 fn copy(target: &Place, source: &Place) -> Statement {

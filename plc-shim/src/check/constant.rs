@@ -33,9 +33,12 @@ pub(super) fn fold(types: &TypeTable, expr: &Expr) -> Result<Value, NoValue> {
         }
         ExprKind::Limited(_, _, operand) => fold(types, operand),
         ExprKind::Address(place) => place.fixed_address().map(|at| Value::Int(i128::from(at))).ok_or(not_constant),
-        ExprKind::Load(_) | ExprKind::Intrinsic(..) | ExprKind::Text(_) | ExprKind::Call(_) | ExprKind::After(..) => {
-            Err(not_constant)
-        }
+        ExprKind::Load(_)
+        | ExprKind::Intrinsic(..)
+        | ExprKind::Text(_)
+        | ExprKind::Call(_)
+        | ExprKind::Cast(_)
+        | ExprKind::After(..) => Err(not_constant),
     }
 }
 

@@ -58,6 +58,9 @@ impl Body<'_, '_> {
         if let Some(shape) = self.shape(target) {
             return self.coerce_text(operand, shape);
         }
+        if let Type::Interface { pou, .. } = *self.checker.types.get(target) {
+            return self.coerce_interface(operand, pou, target);
+        }
         if matches!(self.checker.types.get(target), Type::OpenArray { .. }) {
             return self.reject_whole_array(operand.span());
         }

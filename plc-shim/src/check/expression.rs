@@ -79,15 +79,14 @@ impl Body<'_, '_> {
             };
             return Some(Operand::Typed(self.coerce(operand, ty.into())?));
         }
-        let key = prefix.to_ascii_uppercase();
-        if !self.checker.type_names.contains_key(&key) {
+        let Some(key) = self.checker.type_key(&prefix.to_ascii_uppercase()) else {
             let names = self.checker.type_names.values().map(|entry| entry.ast.name.text.as_str());
             let help = did_you_mean(prefix, names);
             let message = format!("type `{prefix}` is not declared");
             let found = Diagnostic::error(Code::UnknownType, span, message);
             self.report(found.with_optional_help(help));
             return None;
-        }
+        };
         let ty = self.checker.named_type(&key, Some(span))?.ty;
         let operand = match value {
             TypedValue::Name(name) | TypedValue::Text(name) => return self.enumerator_of(ty, name, span),

@@ -20,7 +20,10 @@
 //! | [`statement`], [`assignment`], [`edge`] | statements |
 //! | [`configuration`] | resources, tasks, instances of programs |
 //! | [`dialect`] | what dialects do their own way |
-//! | [`recursion`] | who calls whom |
+//! | [`recursion`], [`dispatch`] | who calls whom, and what only a run decides |
+//! | [`namespace`] | what a name means where it stands |
+//! | [`class`], [`inheritance`] | bases, interfaces, members |
+//! | [`instance`], [`method_call`], [`property`], [`interface_value`] | `THIS`, methods, properties, interfaces |
 //!
 //! A unit, type or global variable is resolved when it is first needed; what is being resolved
 //! and needed again contains itself.
@@ -29,25 +32,33 @@ mod address;
 mod assignment;
 mod calendar;
 mod call;
+mod class;
 mod configuration;
 mod constant;
 mod conversion_function;
 mod convert;
 mod dialect;
+mod dispatch;
 mod edge;
 mod enable;
 mod enable_error;
 mod expression;
 mod function_form;
+mod inheritance;
 mod initial;
+mod instance;
+mod interface_value;
 mod layout;
 mod located;
 mod memory_function;
+mod method_call;
 mod names;
+mod namespace;
 mod open_array;
 mod operator;
 mod part;
 mod place;
+mod property;
 mod recursion;
 mod reference;
 mod referred;
@@ -63,18 +74,22 @@ mod union;
 mod variables;
 
 use std::collections::{BTreeMap, BTreeSet};
+use std::sync::Arc;
 
+use self::class::Class;
 use self::configuration::Configured;
+use self::dispatch::Rows;
 use self::layout::Layout;
 use self::names::{Enumerator, GlobalEntry, PouEntry, TypeEntry};
+use self::namespace::Home;
 use crate::diagnostic::Diagnostic;
 use crate::dialect::Dialect;
-use crate::ir::{Areas, Configuration, Entry, Pou, PouId, Program, TypeId, TypeTable, Variable};
+use crate::ir::{Areas, Configuration, Entry, Pou, PouId, Program, Row, TypeId, TypeTable, Variable};
 use crate::syntax::ast::CompilationUnit;
 use crate::syntax::direct_address::AddressUnit;
 use crate::syntax::{FileId, Span};
 
-pub(crate) use layout::{VIRTUAL_TIME_NAME, VIRTUAL_TIME_OFFSET};
+pub(crate) use layout::{CALL_DEPTH_OFFSET, VIRTUAL_TIME_NAME, VIRTUAL_TIME_OFFSET};
 pub(crate) use standard_function::exists as is_standard_function;
 
 /// The checked program.
@@ -88,6 +103,8 @@ pub(crate) struct Checked {
     /// The global variables that belong to no resource.
     pub(crate) globals: Vec<Variable>,
     pub(crate) programs: Vec<Program>,
+    /// What the types run when a method is called that is not known before.
+    pub(crate) rows: Vec<Row>,
     /// Where direct addresses lie.
     pub(crate) areas: Areas,
     /// What the numbers of direct addresses count.
@@ -104,10 +121,13 @@ pub(crate) struct Checked {
 pub(crate) fn check(units: &[(FileId, &CompilationUnit)], library: &BTreeSet<FileId>) -> (Checked, Vec<Diagnostic>) {
     let mut checker = Checker::new(library);
     checker.collect(units);
+    checker.link_classes();
     checker.resolve_declarations();
+    checker.check_inheritance();
     checker.configure();
     checker.check_bodies();
     checker.report_recursion();
+    checker.guard_circles();
     checker.place_areas();
     checker.check_configuration();
     let image = checker.memory_image();
@@ -124,6 +144,7 @@ pub(crate) fn check(units: &[(FileId, &CompilationUnit)], library: &BTreeSet<Fil
         pous: checker.checked,
         globals,
         programs: checker.programs,
+        rows: checker.rows.into_list(),
         areas: checker.areas,
         address_unit: checker.address_unit,
         configuration,
@@ -144,6 +165,16 @@ struct Checker<'a> {
     type_names: BTreeMap<String, TypeEntry<'a>>,
     pous: Vec<PouEntry<'a>>,
     pou_names: BTreeMap<String, PouId>,
+    /// Where what is being resolved stands.
+    home: Arc<Home>,
+    /// Names of namespaces by their keys.
+    namespaces: BTreeMap<String, String>,
+    /// Full keys of global variables that are known without their list's name.
+    open_globals: BTreeMap<String, String>,
+    classes: BTreeMap<PouId, Class>,
+    /// Names that a method or action has in some unit, and those of properties.
+    method_names: BTreeSet<String>,
+    property_names: BTreeSet<String>,
     globals: BTreeMap<String, GlobalEntry<'a>>,
     enumerators: BTreeMap<String, Vec<Enumerator>>,
     layout: Layout,
@@ -163,6 +194,9 @@ struct Checker<'a> {
     queued: BTreeSet<PouId>,
     /// Who calls whom, and where.
     calls: BTreeMap<PouId, Vec<(PouId, Span)>>,
+    /// Who may be called in ways that only a run decides.
+    dynamic_calls: BTreeMap<PouId, BTreeSet<PouId>>,
+    rows: Rows,
     depth: u32,
     diagnostics: Vec<Diagnostic>,
 }
@@ -185,7 +219,9 @@ impl<'a> Checker<'a> {
             let id = PouId(index as u32);
             if !self.is_library(id) {
                 self.declare(id, None);
-                self.enqueue(id);
+                if !self.is_prototype(id) {
+                    self.enqueue(id);
+                }
             }
         }
     }

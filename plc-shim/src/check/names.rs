@@ -4,12 +4,14 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 use super::Checker;
+use super::class::{Class, Membership, Role};
 use super::configuration::Configured;
 use super::layout::{Layout, VIRTUAL_TIME_NAME, VIRTUAL_TIME_OFFSET};
+use super::namespace::Home;
 use super::scope::Scope;
 use crate::diagnostic::{Code, Diagnostic};
-use crate::ir::{Areas, ElementaryType, PouId, Storage, TypeId, TypeTable, Variable};
-use crate::syntax::ast::{self, CompilationUnit, Declaration, Ident, Qualifier, SectionKind, TypeDeclaration};
+use crate::ir::{Areas, ElementaryType, PouId, Storage, TypeId, TypeTable, Variable, Visibility};
+use crate::syntax::ast::{self, Ident, PouKind, Qualifier, SectionKind, TypeDeclaration};
 use crate::syntax::direct_address::AddressUnit;
 use crate::syntax::{FileId, Span};
 
@@ -30,6 +32,7 @@ pub(super) struct TypedImage {
 
 pub(super) struct TypeEntry<'a> {
     pub(super) ast: &'a TypeDeclaration,
+    pub(super) home: Arc<Home>,
     pub(super) progress: Progress,
     /// The type of a structure as soon as something refers to it.
     pub(super) reserved: Option<TypeId>,
@@ -38,6 +41,9 @@ pub(super) struct TypeEntry<'a> {
 
 pub(super) struct PouEntry<'a> {
     pub(super) ast: &'a ast::Pou,
+    pub(super) home: Arc<Home>,
+    /// Set for methods, properties and actions.
+    pub(super) membership: Option<Membership>,
     pub(super) progress: Progress,
     /// Set by `declare`.
     pub(super) scope: Option<Arc<Scope>>,
@@ -56,6 +62,7 @@ pub(super) struct GlobalEntry<'a> {
     /// Nothing for what the runtime provides.
     pub(super) ast: Option<(&'a ast::Variable, &'a [Qualifier])>,
     pub(super) name: String,
+    pub(super) seen_from: Arc<Home>,
     pub(super) span: Span,
     pub(super) progress: Progress,
     pub(super) variable: Option<Variable>,
@@ -79,6 +86,14 @@ impl<'a> Checker<'a> {
             type_names: BTreeMap::new(),
             pous: Vec::new(),
             pou_names: BTreeMap::new(),
+            home: Arc::default(),
+            namespaces: BTreeMap::new(),
+            open_globals: BTreeMap::new(),
+            classes: BTreeMap::new(),
+            method_names: BTreeSet::new(),
+            property_names: BTreeSet::new(),
+            dynamic_calls: BTreeMap::new(),
+            rows: super::dispatch::Rows::default(),
             globals: BTreeMap::from([(VIRTUAL_TIME_NAME.to_owned(), virtual_time())]),
             enumerators: BTreeMap::new(),
             layout: Layout::new(),
@@ -98,24 +113,7 @@ impl<'a> Checker<'a> {
         }
     }
 
-    pub(super) fn collect(&mut self, units: &[(FileId, &'a CompilationUnit)]) {
-        // Who looks from outside sees the addresses as the first file has them.
-        self.address_unit = units.first().map_or_else(AddressUnit::default, |(_, unit)| unit.dialect.address_unit());
-        self.dialects = units.iter().map(|(file, unit)| (*file, unit.dialect)).collect();
-        for (_, unit) in units {
-            for declaration in &unit.declarations {
-                match declaration {
-                    Declaration::Pou(pou) => self.collect_pou(pou),
-                    Declaration::Type(declaration) => self.collect_type(declaration),
-                    Declaration::Globals(section) => self.collect_globals(section),
-                    Declaration::Configuration(configuration) => self.collect_configuration(configuration),
-                }
-            }
-        }
-        self.collect_resource_globals();
-    }
-
-    fn collect_pou(&mut self, ast: &'a ast::Pou) {
+    pub(super) fn collect_pou(&mut self, ast: &'a ast::Pou) {
         // The library comes last: what it finds taken, the user has named like the standard.
         if self.library.contains(&ast.name.span.file)
             && let Some(user) = self.declared_at(&ast.name)
@@ -129,22 +127,48 @@ impl<'a> Checker<'a> {
         if self.is_taken(&ast.name) {
             return;
         }
-        let id = PouId(self.pous.len() as u32);
-        self.pou_names.insert(ast.name.key(), id);
-        self.pous.push(PouEntry { ast, progress: Progress::Untouched, scope: None, align: 1, image: Arc::from([]) });
+        let id = self.add_pou(ast, None);
+        self.pou_names.insert(self.home.key(&ast.name), id);
+        let mut class = Class::default();
+        for member in &ast.object.members {
+            let role = member.kind.into();
+            let found = self.add_pou(&member.pou, Some(Membership { owner: id, role }));
+            let name = &member.pou.name;
+            if let Some(first) = class.members.insert((role, name.key()), found) {
+                let first = self.pou(first).ast.name.span;
+                self.report_duplicate(name, Some(first));
+            }
+            match role {
+                Role::Getter | Role::Setter => self.property_names.insert(name.key()),
+                Role::Method | Role::Body => self.method_names.insert(name.key()),
+            };
+        }
+        if ast.kind != PouKind::Function {
+            self.classes.insert(id, class);
+        }
     }
 
-    fn collect_type(&mut self, ast: &'a TypeDeclaration) {
+    fn add_pou(&mut self, ast: &'a ast::Pou, membership: Option<Membership>) -> PouId {
+        let id = PouId(self.pous.len() as u32);
+        let (home, progress) = (self.home.with(&ast.object.using), Progress::Untouched);
+        let image = Arc::from([]);
+        self.pous.push(PouEntry { ast, home, membership, progress, scope: None, align: 1, image });
+        id
+    }
+
+    pub(super) fn collect_type(&mut self, ast: &'a TypeDeclaration) {
         if !self.is_taken(&ast.name) {
-            let entry = TypeEntry { ast, progress: Progress::Untouched, reserved: None, resolved: None };
-            self.type_names.insert(ast.name.key(), entry);
+            let (home, progress) = (self.home.clone(), Progress::Untouched);
+            let entry = TypeEntry { ast, home, progress, reserved: None, resolved: None };
+            self.type_names.insert(self.home.key(&ast.name), entry);
         }
     }
 
     pub(super) fn collect_globals(&mut self, section: &'a ast::Section) {
         for variable in &section.variables {
             for name in &variable.names {
-                if let Some(first) = self.globals.get(&name.key()) {
+                let key = self.home.key(name);
+                if let Some(first) = self.globals.get(&key) {
                     let first = first.ast.map(|_| first.span);
                     self.report_duplicate(name, first);
                     continue;
@@ -152,12 +176,16 @@ impl<'a> Checker<'a> {
                 let entry = GlobalEntry {
                     ast: Some((variable, &section.qualifiers)),
                     name: name.text.clone(),
+                    seen_from: self.home.clone(),
                     span: name.span,
                     progress: Progress::Untouched,
                     variable: None,
                     home: None,
                 };
-                self.globals.insert(name.key(), entry);
+                if self.home.open {
+                    self.open_globals.entry(name.key()).or_insert_with(|| key.clone());
+                }
+                self.globals.insert(key, entry);
             }
         }
     }
@@ -180,8 +208,9 @@ impl<'a> Checker<'a> {
 
     /// Where a unit or type of the name is declared.
     fn declared_at(&self, name: &Ident) -> Option<Span> {
-        let pou = self.pou_names.get(&name.key()).map(|id| self.pou(*id).ast.name.span);
-        pou.or_else(|| self.type_names.get(&name.key()).map(|ty| ty.ast.name.span))
+        let key = self.home.key(name);
+        let pou = self.pou_names.get(&key).map(|id| self.pou(*id).ast.name.span);
+        pou.or_else(|| self.type_names.get(&key).map(|ty| ty.ast.name.span))
     }
 
     fn report_reserved(&mut self, name: &Ident, span: Span) {
@@ -213,7 +242,11 @@ fn virtual_time() -> GlobalEntry<'static> {
         span,
         image: vec![0; 8].into(),
         edge: None,
+        visibility: Visibility::Public,
+        owner: None,
     };
     let name = VIRTUAL_TIME_NAME.to_owned();
-    GlobalEntry { ast: None, name, span, progress: Progress::Done, variable: Some(variable), home: None }
+    let (seen_from, home) = (Arc::default(), None);
+    let (progress, variable) = (Progress::Done, Some(variable));
+    GlobalEntry { ast: None, name, seen_from, span, progress, variable, home }
 }

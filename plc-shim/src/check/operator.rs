@@ -104,6 +104,9 @@ impl Body<'_, '_> {
         if !operator.is_comparison() && !matches!((&left, &right), (Operand::Typed(_), _) | (_, Operand::Typed(_))) {
             return self.fold_literals(operator, &left, &right, span);
         }
+        if self.is_interface(&left) || self.is_interface(&right) {
+            return self.interface_comparison(operator, left, right, span);
+        }
         if self.is_reference(&left) || self.is_reference(&right) {
             return self.reference_operation(operator, left, right, span);
         }

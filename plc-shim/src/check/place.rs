@@ -40,13 +40,26 @@ impl Body<'_, '_> {
     pub(super) fn load(&mut self, expr: &ast::Expr) -> Option<Operand> {
         match &expr.kind {
             ast::ExprKind::Name(name) => {
-                if let Meaning::Value(value) = self.meaning(name)? {
+                if let Some(found) = self.own_property(name) {
+                    return found;
+                }
+                if !self.is_this(name)
+                    && let Meaning::Value(value) = self.meaning(name)?
+                {
                     return Some(Operand::Typed(value));
                 }
             }
             ast::ExprKind::Member(base, name) => {
                 if let Some(ty) = self.enumeration_named(base) {
                     return self.enumerator_of(ty, &name.text, expr.span);
+                }
+                if let Some(found) = self.property_of(base, name) {
+                    return found;
+                }
+                if let Some(qualified) = self.qualified_name(expr)
+                    && let Meaning::Value(value) = self.meaning(&qualified)?
+                {
+                    return Some(Operand::Typed(value));
                 }
             }
             _ => {}
@@ -58,14 +71,14 @@ impl Body<'_, '_> {
 
     /// The enumeration that `Colour` in `Colour.Red` names, unless a variable hides it.
     fn enumeration_named(&mut self, base: &ast::Expr) -> Option<TypeId> {
-        let ast::ExprKind::Name(name) = &base.kind else {
-            return None;
+        let qualified = self.qualified_name(base);
+        let name = match (&base.kind, &qualified) {
+            (ast::ExprKind::Name(name), _) | (_, Some(name)) => name,
+            _ => return None,
         };
         let key = name.key();
-        let hidden = self.scope.by_name.contains_key(&key) || self.checker.globals.contains_key(&key);
-        if hidden || !self.checker.type_names.contains_key(&key) {
-            return None;
-        }
+        let hidden = self.scope.declares(&key) || self.checker.global_key(&key).is_some();
+        let key = self.checker.type_key(&key).filter(|_| !hidden)?;
         let ty = self.checker.named_type(&key, Some(name.span))?.ty;
         matches!(self.checker.types.get(ty), Type::Enumeration { .. }).then_some(ty)
     }
@@ -81,6 +94,9 @@ impl Body<'_, '_> {
         match &expr.kind {
             ast::ExprKind::Name(name) => self.named_place(name),
             ast::ExprKind::Member(base, name) => {
+                if let Some(qualified) = self.qualified_name(expr) {
+                    return self.named_place(&qualified);
+                }
                 let base = self.place(base)?;
                 self.member(base, name, expr.span)
             }
@@ -105,6 +121,9 @@ impl Body<'_, '_> {
     }
 
     fn named_place(&mut self, name: &Ident) -> Option<Located> {
+        if let Some(found) = self.this_place(name) {
+            return found;
+        }
         match self.variable_named(name) {
             Some(Ok(variable)) => {
                 let open = super::open_array::access(&self.checker.types, &variable);
@@ -141,7 +160,7 @@ impl Body<'_, '_> {
             return Some(Ok(found.clone()));
         }
         // Vendors make global variables visible everywhere; the standard wants VAR_EXTERNAL.
-        if self.checker.globals.contains_key(&key) {
+        if let Some(key) = self.checker.global_key(&key) {
             self.checker.note_global_use(self.pou, &key, name.span);
             return Some(self.checker.global(&key, Some(name.span)).ok_or(()));
         }
@@ -182,6 +201,7 @@ impl Body<'_, '_> {
         let own = self.scope.variables.iter().map(|variable| variable.name.as_str());
         let globals = self.checker.globals.values().map(|entry| entry.name.as_str());
         let help = did_you_mean(&name.text, own.chain(globals));
+        let help = self.checker.elsewhere(name).or(help);
         let message = format!("`{}` is not declared", name.text);
         let found = Diagnostic::error(Code::UnknownName, name.span, message);
         self.report(found.with_optional_help(help));
@@ -224,14 +244,21 @@ impl Body<'_, '_> {
             return None;
         }
         let Some(variable) = scope.find(&name.key()) else {
+            if let Some(found) = self.not_a_variable(pou, name) {
+                return found;
+            }
             let open = |variable: &&Variable| matches!(variable.section, SectionKind::Input | SectionKind::Output);
             let names = scope.variables.iter().filter(open).map(|variable| variable.name.as_str());
-            let names: Vec<_> = names.collect();
+            let members = self.checker.member_names(pou);
+            let names: Vec<_> = names.chain(members.iter().map(String::as_str)).collect();
             return self.report_unknown_member(base.place.ty, name, &names);
         };
         let access = match variable.section {
+            _ if variable.is_constant && self.may_see(variable) => Access::Constant,
+            _ if self.is_own_instance(pou) => Access::ReadWrite,
             SectionKind::Input => Access::ReadWrite,
             SectionKind::Output => Access::InstanceOutput,
+            SectionKind::Local if self.may_see(variable) => Access::ReadWrite,
             SectionKind::Local if self.checker.dialect(span).has(Feature::InstanceInternals) => Access::ReadWrite,
             _ => {
                 let ty = self.type_name(base.place.ty);
@@ -242,7 +269,7 @@ impl Body<'_, '_> {
             }
         };
         let Storage::Instance(offset) = variable.storage else {
-            return None;
+            return self.reference_in_this(base, variable, span);
         };
         let place = Place { span, ..base.place.member(offset, variable.ty) };
         Some(Located { place, access })

@@ -29,7 +29,7 @@ impl Checker<'_> {
                     done.insert(caller);
                 }
                 Some((next_unit, span)) if on_path.contains(&next_unit) => {
-                    let name = &self.pou(next_unit).ast.name.text;
+                    let name = self.display_name(next_unit);
                     let message = format!("this call makes `{name}` call itself");
                     self.report(Diagnostic::error(Code::Recursion, span, message));
                 }

@@ -288,6 +288,9 @@ impl Body<'_, '_> {
     pub(super) fn attempt(&mut self, target: &ast::Expr, value: &ast::Expr, span: Span) -> Option<Statement> {
         let place = self.target(target)?;
         let operand = self.within(None, |body| body.expression(value))?;
+        if matches!(self.checker.types.get(place.ty), Type::Interface { .. }) {
+            return self.attempt_interface(place, operand, span);
+        }
         let kind = target_of(&self.checker.types, place.ty).map(|(kind, _)| kind);
         if kind.is_none() || !self.is_reference(&operand) {
             let wrong = if kind.is_none() { target.span } else { value.span };

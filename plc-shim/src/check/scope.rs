@@ -1,6 +1,7 @@
 //! What a name means inside a unit, and the unit's registers.
 
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
 use super::Checker;
 use crate::diagnostic::Diagnostic;
@@ -15,16 +16,36 @@ pub(super) struct Scope {
     pub(super) registers: Vec<ElementaryType>,
     pub(super) parameters: u32,
     pub(super) result: Option<Place>,
+    /// The variables of the instance that a method works on.
+    pub(super) outer: Option<Arc<Scope>>,
+    /// True if the unit has fixed memory, which two activations would share.
+    pub(super) has_memory: bool,
 }
 
 impl Scope {
     pub(super) fn find(&self, key: &str) -> Option<&Variable> {
+        match self.by_name.get(key) {
+            Some(index) => self.variables.get(*index),
+            None => self.outer.as_ref()?.find(key),
+        }
+    }
+
+    /// The unit's own variable, as a caller sees it.
+    pub(super) fn own(&self, key: &str) -> Option<&Variable> {
         self.by_name.get(key).and_then(|index| self.variables.get(*index))
+    }
+
+    /// True for a name that a variable has, be its declaration right or wrong.
+    pub(super) fn declares(&self, key: &str) -> bool {
+        self.by_name.contains_key(key) || self.outer.as_ref().is_some_and(|outer| outer.declares(key))
     }
 
     /// True for a name whose declaration is wrong, which has been reported.
     pub(super) fn is_broken(&self, key: &str) -> bool {
-        self.by_name.get(key).is_some_and(|index| *index >= self.variables.len())
+        match self.by_name.get(key) {
+            Some(index) => *index >= self.variables.len(),
+            None => self.outer.as_ref().is_some_and(|outer| outer.is_broken(key)),
+        }
     }
 
     /// True if any declaration is wrong.

@@ -9,7 +9,7 @@ use super::scope::Body;
 use super::variables::decode;
 use crate::diagnostic::{Code, Diagnostic};
 use crate::ir::{
-    CaseArm, CaseStatement, ElementaryType, Expr, ExprKind, ForStatement, IfBranch, LocalId, Place, Pou, PouId,
+    CaseArm, CaseStatement, ElementaryType, Expr, ExprKind, ForStatement, Guard, IfBranch, LocalId, Place, Pou, PouId,
     Statement, StatementKind, Storage, Type, TypeId, Value, Variable,
 };
 use crate::syntax::Span;
@@ -17,6 +17,11 @@ use crate::syntax::ast::{self, PouKind, SectionKind};
 
 impl Checker<'_> {
     pub(super) fn check_body(&mut self, id: PouId) {
+        let home = self.pou(id).home.clone();
+        self.at_home(home, |checker| checker.check_body_at_home(id));
+    }
+
+    fn check_body_at_home(&mut self, id: PouId) {
         let ast = self.pou(id).ast;
         let Some(scope) = self.interface(id, ast.name.span) else {
             return;
@@ -30,13 +35,13 @@ impl Checker<'_> {
         }
         let scope = body.scope;
         let pou = Pou {
-            name: ast.name.text.clone(),
-            kind: ast.kind,
+            name: self.display_name(id),
             span: ast.name.span,
             variables: scope.variables,
             registers: scope.registers,
             parameters: scope.parameters,
             result: scope.result,
+            guard: if scope.has_memory { Guard::Once(0) } else { Guard::Depth },
             body: statements,
         };
         self.checked.insert(id, pou);
@@ -48,10 +53,10 @@ impl Body<'_, '_> {
     fn prologue(&mut self, kind: PouKind) -> Vec<Statement> {
         let mut statements = Vec::new();
         let variables = self.scope.variables.clone();
-        let mut register = 0;
+        let mut register = u32::from(kind != PouKind::Function);
         for variable in &variables {
             let parameter = matches!(variable.section, SectionKind::Input | SectionKind::InOut);
-            if kind == PouKind::Function && parameter {
+            if kind.keeps_nothing() && parameter {
                 let elementary = self.elementary(variable.ty).is_some();
                 statements.extend(copied_parameter(variable, elementary, LocalId(register)));
                 register += 1;
@@ -63,7 +68,7 @@ impl Body<'_, '_> {
             let fleeting = match variable.section {
                 SectionKind::Temp => true,
                 SectionKind::External | SectionKind::Global | SectionKind::Static => false,
-                _ => kind == PouKind::Function,
+                _ => kind.keeps_nothing(),
             };
             if fleeting {
                 statements.push(self.initialised(variable));
@@ -151,6 +156,9 @@ impl Body<'_, '_> {
     }
 
     pub(super) fn assign(&mut self, target: &ast::Expr, value: &ast::Expr, span: Span) -> Option<Statement> {
+        if let Some(set) = self.property_assignment(target, value, span) {
+            return set;
+        }
         let target = self.target(target);
         let context = target.as_ref().and_then(|target| self.elementary(target.ty));
         let value = self.within(context, |body| body.expression(value));

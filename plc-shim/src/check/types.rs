@@ -34,7 +34,7 @@ impl Checker<'_> {
     /// A type of a `TYPE` block; `used` is where it is needed.
     pub(super) fn named_type(&mut self, key: &str, used: Option<Span>) -> Option<TypedImage> {
         let entry = self.type_names.get_mut(key)?;
-        let ast = entry.ast;
+        let (ast, home) = (entry.ast, entry.home.clone());
         match entry.progress {
             Progress::Done => return entry.resolved.clone(),
             Progress::Running => {
@@ -43,7 +43,9 @@ impl Checker<'_> {
             }
             Progress::Untouched => entry.progress = Progress::Running,
         }
-        let resolved = self.deeper(ast.name.span, |checker| Body::outside(checker).declared_type(ast));
+        let resolve =
+            |checker: &mut Self| checker.deeper(ast.name.span, |checker| Body::outside(checker).declared_type(ast));
+        let resolved = self.at_home(home, resolve);
         if let Some(entry) = self.type_names.get_mut(key) {
             entry.progress = Progress::Done;
             entry.resolved.clone_from(&resolved);
@@ -59,6 +61,12 @@ impl Checker<'_> {
         }
         let name = &entry.ast.name.text;
         Some(*entry.reserved.get_or_insert_with(|| self.types.structure(name.clone())))
+    }
+
+    /// The type that is kept for a name declared here.
+    fn own_reserved(&mut self, name: &Ident) -> Option<TypeId> {
+        let key = self.home.key(name);
+        self.reserved(&key)
     }
 
     fn report_recursive_type(&mut self, name: &Ident, used: Option<Span>) {
@@ -86,11 +94,11 @@ impl<'a> Body<'_, 'a> {
         let name = &ast.name.text;
         let mut resolved = match &ast.spec.kind {
             TypeSpecKind::Struct(fields) => {
-                let ty = self.checker.reserved(&ast.name.key());
-                self.structure(name, ty, fields, ast.name.span)
+                let ty = self.checker.own_reserved(&ast.name);
+                self.structure(name, (ty, ast.extends.as_ref()), fields, ast.name.span)
             }
             TypeSpecKind::Union(fields) => {
-                let ty = self.checker.reserved(&ast.name.key());
+                let ty = self.checker.own_reserved(&ast.name);
                 self.union(name, ty, fields, ast.name.span)
             }
             TypeSpecKind::Enumeration(values, base) => self.enumeration(name, values, base.as_ref()),
@@ -107,7 +115,10 @@ impl<'a> Body<'_, 'a> {
         match &spec.kind {
             TypeSpecKind::Name(name) => self.type_by_name(name, need),
             TypeSpecKind::Array(dimensions, element) => self.array(dimensions, element, need, spec.span),
-            TypeSpecKind::Struct(fields) => self.structure("STRUCT", None, fields, spec.span),
+            TypeSpecKind::Struct(fields) => self.structure("STRUCT", (None, None), fields, spec.span),
+            TypeSpecKind::Enumeration(_, Some(base)) if self.is_block(base) => {
+                self.unsupported("an instance with arguments for FB_init", spec.span)
+            }
             TypeSpecKind::Reference(kind, target) => self.reference_type(*kind, target),
             TypeSpecKind::OpenArray(dimensions, element) => {
                 let element = self.resolve(element, Need::Size)?.ty;
@@ -131,6 +142,11 @@ impl<'a> Body<'_, 'a> {
         let message = format!("{what} is not supported yet");
         self.report(Diagnostic::error(Code::UnsupportedFeature, span, message));
         None
+    }
+
+    fn is_block(&self, name: &Ident) -> bool {
+        let found = self.checker.pou_named(&name.key());
+        found.is_some_and(|id| self.checker.pou(id).ast.kind.has_instances())
     }
 
     pub(super) fn whole(&self, ty: TypeId) -> TypedImage {
@@ -157,14 +173,20 @@ impl<'a> Body<'_, 'a> {
         if let Some(found) = ElementaryType::find(&key).or_else(|| of_pointer_width(&key)) {
             return Some(self.whole(found.into()));
         }
-        if self.checker.type_names.contains_key(&key) {
+        if let Some(key) = self.checker.type_key(&key) {
             return self.checker.named_type(&key, Some(name.span));
         }
-        if let Some(id) = self.checker.pou_names.get(&key).copied() {
+        if let Some(id) = self.checker.pou_named(&key) {
+            self.checker.check_internal(id, name.span);
             let ast = self.checker.pou(id).ast;
-            if ast.kind == PouKind::FunctionBlock {
+            if ast.kind == PouKind::Interface {
+                let ty = self.checker.types.interface(&ast.name.text, id);
+                return Some(self.whole(ty));
+            }
+            if ast.kind.has_instances() {
                 let ty = self.checker.types.block(&ast.name.text, id);
                 if need == Need::Size {
+                    self.checker.check_instance(id, name.span);
                     self.checker.declare(id, Some(name.span))?;
                 }
                 return Some(self.whole(ty));
@@ -180,9 +202,10 @@ impl<'a> Body<'_, 'a> {
     fn report_unknown_type(&mut self, name: &Ident) {
         let elementary = ElementaryType::ALL.iter().map(|ty| ty.name());
         let derived = self.checker.type_names.values().map(|entry| entry.ast.name.text.as_str());
-        let blocks = self.checker.pous.iter().filter(|pou| pou.ast.kind == PouKind::FunctionBlock);
+        let blocks = self.checker.pous.iter().filter(|pou| pou.ast.kind.has_instances());
         let blocks = blocks.map(|pou| pou.ast.name.text.as_str());
         let help = did_you_mean(&name.text, elementary.chain(derived).chain(blocks));
+        let help = self.checker.elsewhere(name).or(help);
         let message = format!("type `{}` is not declared", name.text);
         let found = Diagnostic::error(Code::UnknownType, name.span, message);
         self.report(found.with_optional_help(help));
@@ -228,15 +251,26 @@ impl<'a> Body<'_, 'a> {
         }
     }
 
+    /// The members of the structure that another adds to, as vendors have it.
+    fn extended_fields(&mut self, base: Option<&Ident>) -> Option<(Vec<Field>, Vec<u8>)> {
+        let Some(name) = base else { return Some((Vec::new(), Vec::new())) };
+        let resolved = self.type_by_name(name, Need::Size)?;
+        if let crate::ir::Type::Struct { fields, .. } = self.checker.types.get(resolved.ty) {
+            return Some((fields.clone(), resolved.image.to_vec()));
+        }
+        let message = format!("`{}` is not a structure", name.text);
+        self.report(Diagnostic::error(Code::WrongBase, name.span, message));
+        None
+    }
+
     fn structure(
         &mut self,
         name: &str,
-        reserved: Option<TypeId>,
+        (reserved, extends): (Option<TypeId>, Option<&Ident>),
         ast: &'a [ast::Field],
         span: Span,
     ) -> Option<TypedImage> {
-        let mut fields: Vec<Field> = Vec::new();
-        let mut image: Vec<u8> = Vec::new();
+        let (mut fields, mut image) = self.extended_fields(extends)?;
         for field in ast {
             if fields.iter().any(|other| other.name.eq_ignore_ascii_case(&field.name.text)) {
                 self.checker.report_duplicate(&field.name, None);

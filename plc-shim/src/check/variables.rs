@@ -4,6 +4,7 @@ use std::collections::BTreeSet;
 use std::sync::Arc;
 
 use super::Checker;
+use super::instance::visibility;
 use super::layout::{MEMORY_LIMIT, align_up};
 use super::located::Placement;
 use super::names::{Progress, TypedImage};
@@ -17,7 +18,7 @@ use crate::syntax::Span;
 use crate::syntax::ast::{self, Ident, PouKind, Qualifier, Section, SectionKind};
 
 /// Pointers are offsets in memory.
-const POINTER: ElementaryType = ElementaryType::Udint;
+pub(super) const POINTER: ElementaryType = ElementaryType::Udint;
 
 impl<'a> Checker<'a> {
     /// A global variable, placed in memory; `used` is where it is needed.
@@ -39,8 +40,10 @@ impl<'a> Checker<'a> {
             return None;
         }
         entry.progress = Progress::Running;
+        let home = entry.seen_from.clone();
         let name = ast.names.iter().find(|name| name.span == span);
-        let variable = self.deeper(span, |checker| checker.place_global(name?, ast, qualifiers));
+        let place = |checker: &mut Self| checker.deeper(span, |checker| checker.place_global(name?, ast, qualifiers));
+        let variable = self.at_home(home, place);
         if let Some(entry) = self.globals.get_mut(key) {
             entry.progress = Progress::Done;
             entry.variable.clone_from(&variable);
@@ -60,10 +63,11 @@ impl<'a> Checker<'a> {
                 Storage::Absolute(offset)
             }
         };
-        Some(self.variable(name, ast, SectionKind::Global, qualifiers, &declared, storage))
+        let variable = self.variable(name, ast, SectionKind::Global, qualifiers, &declared, storage);
+        Some(Variable { name: self.home.full_name(name), ..variable })
     }
 
-    fn variable(
+    pub(super) fn variable(
         &self,
         name: &Ident,
         ast: &ast::Variable,
@@ -86,6 +90,8 @@ impl<'a> Checker<'a> {
             span: name.span,
             image: declared.image.clone(),
             edge: None,
+            visibility: visibility(section, qualifiers),
+            owner: None,
         }
     }
 
@@ -104,16 +110,19 @@ impl<'a> Checker<'a> {
             }
             Progress::Untouched => self.pous[index].progress = Progress::Running,
         }
-        let declared = self.deeper(ast.name.span, |checker| {
-            let mut interface = Interface::new(checker, id);
-            interface.declare(ast);
-            Some((interface.body.scope, interface.align, interface.image))
+        let home = self.pou(id).home.clone();
+        let declared = self.at_home(home, |checker| {
+            checker.deeper(ast.name.span, |checker| {
+                let mut interface = Interface::new(checker, id);
+                interface.declare(ast);
+                Some((interface.body.scope, interface.align, interface.image))
+            })
         });
         let (scope, align, mut image) = declared.unwrap_or_default();
         // At least a byte, as for structures.
         image.resize(align_up(image.len().max(1) as u32, align) as usize, 0);
         let (align, image): (u32, Arc<[u8]>) = (align.max(1), image.into());
-        if ast.kind == PouKind::FunctionBlock {
+        if ast.kind.has_instances() {
             let ty = self.types.block(&ast.name.text, id);
             self.types.complete_block(ty, align, image.clone());
         }
@@ -159,12 +168,12 @@ impl<'a> Body<'_, 'a> {
 }
 
 /// A unit's variables while they are declared.
-struct Interface<'c, 'a> {
-    body: Body<'c, 'a>,
-    kind: PouKind,
-    align: u32,
+pub(super) struct Interface<'c, 'a> {
+    pub(super) body: Body<'c, 'a>,
+    pub(super) kind: PouKind,
+    pub(super) align: u32,
     /// Initial bytes of an instance so far.
-    image: Vec<u8>,
+    pub(super) image: Vec<u8>,
     /// Variables whose address the body takes.
     referred: BTreeSet<String>,
 }
@@ -178,15 +187,25 @@ impl<'c, 'a> Interface<'c, 'a> {
     }
 
     fn declare(&mut self, ast: &'a ast::Pou) {
-        if self.kind == PouKind::Function {
+        if self.kind.keeps_nothing() {
+            self.declare_this();
+            self.inherit();
             self.declare_sections(ast, |kind| matches!(kind, SectionKind::Input | SectionKind::InOut));
+            self.declare_new_value(ast);
+            if self.kind != PouKind::Function {
+                self.declare_sections(ast, |kind| kind == SectionKind::Output);
+            }
             self.body.scope.parameters = self.body.scope.registers.len() as u32;
             self.declare_result(ast);
-            self.declare_sections(ast, |kind| !matches!(kind, SectionKind::Input | SectionKind::InOut));
+            let is_method = self.kind != PouKind::Function;
+            self.declare_sections(ast, |kind| {
+                !matches!(kind, SectionKind::Input | SectionKind::InOut) && !(is_method && kind == SectionKind::Output)
+            });
         } else {
             // The first parameter is the instance's address.
             self.body.scope.register(POINTER);
             self.body.scope.parameters = 1;
+            self.inherit();
             self.declare_sections(ast, |_| true);
         }
     }
@@ -200,7 +219,7 @@ impl<'c, 'a> Interface<'c, 'a> {
     }
 
     fn declare_result(&mut self, ast: &'a ast::Pou) {
-        let Some(spec) = &ast.result else { return };
+        let Some(spec) = ast.result.as_ref().filter(|_| !self.is_setter()) else { return };
         let Some(declared) = self.body.resolve(spec, Need::Size) else {
             return;
         };
@@ -227,8 +246,7 @@ impl<'c, 'a> Interface<'c, 'a> {
         // Every name has the same type; an error in it is told once.
         let declared = self.body.declared(ast, need);
         for name in &ast.names {
-            if let Some(first) = self.body.scope.find(&name.key()) {
-                let first = first.span;
+            if let Some(first) = self.declared_before(name) {
                 self.body.checker.report_duplicate(name, Some(first));
                 continue;
             }
@@ -260,7 +278,8 @@ impl<'c, 'a> Interface<'c, 'a> {
         self.body.scope.by_name.insert(name.key(), usize::MAX);
     }
 
-    fn add(&mut self, name: &Ident, variable: Variable) {
+    pub(super) fn add(&mut self, name: &Ident, variable: Variable) {
+        let variable = Variable { owner: self.body.pou, ..variable };
         self.body.scope.by_name.insert(name.key(), self.body.scope.variables.len());
         self.body.scope.variables.push(variable);
     }
@@ -289,13 +308,13 @@ impl<'c, 'a> Interface<'c, 'a> {
             return Some(Storage::RegisterPointer(self.body.scope.register(POINTER)));
         }
         match (self.kind, section.kind) {
-            (PouKind::Function, SectionKind::Input) => Some(self.parameter(declared, name)?),
-            (PouKind::Function, SectionKind::InOut) => {
+            (kind, SectionKind::Input) if kind.keeps_nothing() => Some(self.parameter(declared, name)?),
+            (PouKind::Method, SectionKind::InOut | SectionKind::Output) | (PouKind::Function, SectionKind::InOut) => {
                 Some(Storage::RegisterPointer(self.body.scope.register(POINTER)))
             }
             // The caller reads outputs after the call, so they outlive it.
             (PouKind::Function, SectionKind::Output) | (_, SectionKind::Static) => self.frame(declared, span),
-            (PouKind::Function, _) | (_, SectionKind::Temp) => {
+            (kind, section) if kind.keeps_nothing() || section == SectionKind::Temp => {
                 self.reject_instance(declared.ty, span)?;
                 self.temporary(declared, name)
             }
@@ -322,7 +341,7 @@ impl<'c, 'a> Interface<'c, 'a> {
     /// The trigger of an input with `R_EDGE` or `F_EDGE`.
     fn edge_detection(&mut self, edge: ast::Edge, variable: &Variable) -> Option<EdgeDetection> {
         let bool_type: TypeId = ElementaryType::Bool.into();
-        let suitable = variable.section == SectionKind::Input && self.kind != PouKind::Function;
+        let suitable = variable.section == SectionKind::Input && !self.kind.keeps_nothing();
         if !suitable || variable.ty != bool_type {
             let message = "R_EDGE and F_EDGE are for BOOL inputs of function blocks and programs";
             self.body.report(Diagnostic::error(Code::WrongSection, variable.span, message));
@@ -346,7 +365,7 @@ impl<'c, 'a> Interface<'c, 'a> {
     }
 
     /// A value comes in a register, an aggregate's address too; the callee copies that.
-    fn parameter(&mut self, declared: &TypedImage, name: &Ident) -> Option<Storage> {
+    pub(super) fn parameter(&mut self, declared: &TypedImage, name: &Ident) -> Option<Storage> {
         if let Some(ty) = self.body.elementary(declared.ty) {
             let register = self.body.scope.register(ty);
             let referred = self.referred.contains(&name.key());
@@ -365,7 +384,8 @@ impl<'c, 'a> Interface<'c, 'a> {
     }
 
     /// Fixed memory: no unit is active twice (2nd ed. 2.5, no recursion).
-    fn frame(&mut self, declared: &TypedImage, span: Span) -> Option<Storage> {
+    pub(super) fn frame(&mut self, declared: &TypedImage, span: Span) -> Option<Storage> {
+        self.body.scope.has_memory = true;
         let types = &self.body.checker.types;
         let (size, align) = (types.size(declared.ty), types.align(declared.ty));
         let offset = self.body.checker.allocate(size, align, span)?;
@@ -373,7 +393,7 @@ impl<'c, 'a> Interface<'c, 'a> {
         Some(Storage::Absolute(offset))
     }
 
-    fn in_instance(&mut self, declared: &TypedImage, span: Span) -> Option<u32> {
+    pub(super) fn in_instance(&mut self, declared: &TypedImage, span: Span) -> Option<u32> {
         let align = self.body.checker.types.align(declared.ty);
         let offset = align_up(self.image.len() as u32, align);
         if offset as usize + declared.image.len() > MEMORY_LIMIT as usize {
@@ -390,10 +410,12 @@ impl<'c, 'a> Interface<'c, 'a> {
 
     /// `VAR_EXTERNAL` names a global variable of the same type (2nd ed. 2.4.3).
     fn declare_external(&mut self, name: &Ident, ty: TypeId, section: &Section) {
-        let key = name.key();
-        let known = self.body.checker.globals.contains_key(&key);
-        self.body.checker.note_global_use(self.body.pou, &key, name.span);
-        let global = self.body.checker.global(&key, Some(name.span));
+        let key = self.body.checker.global_key(&name.key());
+        let known = key.is_some();
+        if let Some(key) = &key {
+            self.body.checker.note_global_use(self.body.pou, key, name.span);
+        }
+        let global = key.and_then(|key| self.body.checker.global(&key, Some(name.span)));
         let Some(mut variable) = global else {
             if !known {
                 self.report_missing_global(name);

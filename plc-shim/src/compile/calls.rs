@@ -1,7 +1,9 @@
 //! The size of a unit's statements, and whom they call.
 
 use crate::ir::text::TextCall;
-use crate::ir::{Argument, Expr, ExprKind, FunctionCall, InstanceCall, Place, PouId, Statement, StatementKind, Step};
+use crate::ir::{
+    Argument, Dispatch, Expr, ExprKind, FunctionCall, InstanceCall, Place, PouId, Statement, StatementKind, Step,
+};
 
 /// Nodes of the tree and every call in it.
 #[derive(Debug, Default)]
@@ -71,7 +73,7 @@ impl Size {
     fn instance(&mut self, call: &InstanceCall) {
         self.place(&call.instance);
         self.statements(&call.inputs);
-        self.calls.push(call.pou);
+        self.call(call.pou, call.dispatch);
         self.statements(&call.outputs);
     }
 
@@ -124,6 +126,7 @@ impl Size {
             }
             ExprKind::Text(call) => self.text(call),
             ExprKind::Call(call) => self.function(call),
+            ExprKind::Cast(cast) => self.expression(&cast.reference),
         }
     }
 
@@ -135,7 +138,18 @@ impl Size {
         }
     }
 
+    /// What only the run decides is nobody's callee here.
+    fn call(&mut self, pou: PouId, dispatch: Dispatch) {
+        self.nodes = self.nodes.saturating_add(4);
+        if dispatch == Dispatch::Direct {
+            self.calls.push(pou);
+        }
+    }
+
     fn function(&mut self, call: &FunctionCall) {
+        if let Some(receiver) = &call.receiver {
+            self.expression(&receiver.instance);
+        }
         self.statements(&call.before);
         for argument in &call.arguments {
             match argument {
@@ -143,7 +157,7 @@ impl Size {
                 Argument::Reference(place) => self.place(place),
             }
         }
-        self.calls.push(call.pou);
+        self.call(call.pou, call.receiver.as_ref().map_or(Dispatch::Direct, |receiver| receiver.dispatch));
         self.statements(&call.outputs);
     }
 }

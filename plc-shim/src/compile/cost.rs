@@ -4,7 +4,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::calls::{Size, measure};
-use crate::ir::{Pou, PouId};
+use crate::ir::{Guard, Pou, PouId};
 
 /// A unit of at most this size goes wherever it is called.
 const TINY: u32 = 60;
@@ -47,9 +47,11 @@ impl Costs {
             let Some(own) = sizes.get(id) else { continue };
             let inside = own.calls.iter().filter_map(|callee| costs.units.get(callee));
             let inside: u32 = inside.filter(|cost| cost.inlined).map(|cost| cost.size).fold(0, u32::saturating_add);
+            // What may come back to itself is guarded at its beginning, which only a function has.
+            let guarded = pous.get(id).is_none_or(|pou| pou.guard != Guard::None);
             let cost = costs.units.entry(*id).or_default();
             cost.size = own.nodes.saturating_add(inside);
-            cost.inlined = cost.size <= TINY || (cost.sites == 1 && cost.size <= LONE);
+            cost.inlined = !guarded && (cost.size <= TINY || (cost.sites == 1 && cost.size <= LONE));
         }
         (costs, order)
     }

@@ -7,6 +7,7 @@ use wasm_encoder::{BlockType, Function, Instruction, ValType};
 
 use super::address::{Extent, Roots};
 use super::cost::Costs;
+use super::dispatch::RowPlace;
 use super::effect::Effects;
 use super::fault::{Callee, FaultKind, Mark, MarkKind, Unit};
 use super::frame::Frame;
@@ -39,6 +40,7 @@ pub(super) struct Shared<'p> {
     pub(super) pous: &'p BTreeMap<PouId, Pou>,
     pub(super) costs: Costs,
     pub(super) functions: BTreeMap<PouId, u32>,
+    pub(super) rows: Vec<RowPlace>,
     pub(super) areas: Areas,
     /// Bytes of memory in use.
     pub(super) memory_size: u32,

@@ -7,7 +7,6 @@ use super::fault::FunctionMarks;
 use super::function::{self, Made};
 use crate::check::Checked;
 use crate::ir::{Pou, PouId, StatementKind, Storage};
-use crate::syntax::ast::PouKind;
 
 /// No unit has it.
 const NONE: PouId = PouId(u32::MAX);
@@ -21,7 +20,7 @@ pub(super) fn function(shared: &mut Shared<'_>, unit: &Pou) -> (wasm_encoder::Fu
 /// The programs that have one instance in all entries, with its offset in memory. A function block
 /// with a task of its own may have others, which programs call.
 pub(super) fn only_instances(checked: &Checked) -> BTreeMap<PouId, u32> {
-    let is_program = |id: PouId| checked.pous.get(&id).is_some_and(|pou| pou.kind == PouKind::Program);
+    let is_program = |id: PouId| checked.programs.iter().any(|program| program.pou == id);
     let mut known: BTreeMap<PouId, BTreeSet<Option<u32>>> = BTreeMap::new();
     for statement in checked.entries.iter().flat_map(|entry| &entry.units).flat_map(|unit| &unit.body) {
         if let StatementKind::CallInstance(call) = &statement.kind

@@ -33,6 +33,7 @@ impl Emitter<'_, '_> {
             }
             ExprKind::Text(call) => self.text_call(call, expr),
             ExprKind::Call(call) => self.call_function(call, expr.span),
+            ExprKind::Cast(cast) => self.cast(cast),
             ExprKind::After(statements, value) => {
                 self.side_statements(statements);
                 if let Some(value) = value {

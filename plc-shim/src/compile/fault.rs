@@ -27,11 +27,13 @@ pub enum FaultKind {
     NullReference,
     /// A pointer led out of memory.
     InvalidPointer,
+    /// A unit with fixed memory was called while it ran, in a way that only the run decides.
+    Reentered,
 }
 
 impl FaultKind {
     /// Every kind; the position of a kind is its number in a saved state.
-    pub const ALL: [Self; 10] = [
+    pub const ALL: [Self; 11] = [
         Self::DivisionByZero,
         Self::IndexOutOfRange,
         Self::SelectorOutOfRange,
@@ -42,6 +44,7 @@ impl FaultKind {
         Self::OutOfSubrange,
         Self::NullReference,
         Self::InvalidPointer,
+        Self::Reentered,
     ];
 }
 
@@ -58,6 +61,7 @@ impl fmt::Display for FaultKind {
             Self::OutOfSubrange => "value out of subrange",
             Self::NullReference => "use of a NULL reference",
             Self::InvalidPointer => "pointer out of memory",
+            Self::Reentered => "a unit was called while it ran",
         })
     }
 }

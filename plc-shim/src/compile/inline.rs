@@ -10,7 +10,6 @@ use super::place::INSTANCE;
 use super::points::PointKind;
 use crate::ir::{Argument, Expr, ExprKind, FunctionCall, InstanceCall, LocalId, Place, Pou, PouId};
 use crate::syntax::Span;
-use crate::syntax::ast::PouKind;
 
 impl<'p> Emitter<'_, 'p> {
     /// Calls a function of the module. What it changes is not known.
@@ -19,6 +18,7 @@ impl<'p> Emitter<'_, 'p> {
         if metered {
             self.put_budget_back();
         }
+        self.metered |= metered;
         self.mark_call(callee, span);
         match self.shared.functions.get(&pou).copied() {
             Some(index) => self.emit(Instruction::Call(index)),
@@ -61,6 +61,7 @@ impl<'p> Emitter<'_, 'p> {
     pub(super) fn body(&mut self, pou: &Pou) {
         self.mark_statement(pou.span);
         self.cover(PointKind::Unit, pou.span);
+        self.enter_guarded(pou);
         let end = self.open_block();
         if let Some(frame) = self.frames.last_mut() {
             frame.end = Some(end);
@@ -69,7 +70,8 @@ impl<'p> Emitter<'_, 'p> {
         self.close();
         let returned = self.frames.last_mut().and_then(|frame| frame.returned.take());
         self.meet(returned);
-        if let Some(result) = pou.result.as_ref().filter(|_| pou.kind == PouKind::Function) {
+        self.leave_guarded(pou);
+        if let Some(result) = &pou.result {
             let kind = ExprKind::Load(result.clone());
             self.expression(&Expr { kind, ty: result.ty, span: result.span });
         }
@@ -99,19 +101,31 @@ impl<'p> Emitter<'_, 'p> {
     }
 
     pub(super) fn call_function(&mut self, call: &FunctionCall, span: Span) {
+        match &call.receiver {
+            Some(receiver) => {
+                let instance = self.receiver(receiver);
+                self.side_statements(&call.before);
+                self.push_address(instance);
+                self.push_arguments(&call.arguments);
+                self.call_on(instance, receiver.dispatch, call.pou, (Callee::Function, span));
+            }
+            None => self.call_plain_function(call, span),
+        }
+        if let Some(place) = &call.result {
+            self.keep_result(place);
+        }
+        self.side_statements(&call.outputs);
+    }
+
+    fn call_plain_function(&mut self, call: &FunctionCall, span: Span) {
         self.side_statements(&call.before);
-        let inlined = self.inlinable(call.pou);
-        match inlined {
+        match self.inlinable(call.pou) {
             Some(pou) => self.inline_function(call, pou, span),
             None => {
                 self.push_arguments(&call.arguments);
                 self.call(call.pou, Callee::Function, span);
             }
         }
-        if let Some(place) = &call.result {
-            self.keep_result(place);
-        }
-        self.side_statements(&call.outputs);
     }
 
     fn push_arguments(&mut self, arguments: &[Argument]) {

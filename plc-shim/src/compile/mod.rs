@@ -13,6 +13,7 @@
 //! | [`interval`] | ranges of integers, for checks that cannot fail |
 //! | [`statement`], [`selection`], [`choice`], [`repetition`], [`counting`] | statements |
 //! | [`expression`], [`arithmetic`], [`conversion`], [`intrinsic`], [`bytes`] | expressions |
+//! | [`dispatch`] | methods: which one runs |
 //! | [`host`] | functions that WebAssembly lacks |
 //! | [`text`], [`text_host`] | character strings |
 //! | [`points`] | what is noted for coverage |
@@ -30,6 +31,7 @@ mod choice;
 mod conversion;
 mod cost;
 mod counting;
+mod dispatch;
 mod effect;
 mod emitter;
 mod entry;

@@ -13,11 +13,10 @@ use super::emitter::{Shared, value_type};
 use super::fault::{FaultTable, FunctionMarks};
 use super::function::Made;
 use super::points::{Point, Points};
-use super::{entry, function, host, text_host};
+use super::{dispatch, entry, function, host, text_host};
 use crate::check::Checked;
 use crate::ir::{Pou, PouId, TypeTable};
 use crate::syntax::FileId;
-use crate::syntax::ast::PouKind;
 
 /// Name of the exported memory.
 pub(crate) const MEMORY_EXPORT: &str = "memory";
@@ -51,6 +50,9 @@ pub(crate) fn compile(checked: &Checked, noted: Noted<'_>) -> Compiled {
     let first_function = (host::IMPORTS.len() + text_host::IMPORTS.len()) as u32;
     let order = checked.pous.keys().zip(first_function..);
     let functions: BTreeMap<_, _> = order.map(|(id, index)| (*id, index)).collect();
+    let mut sections = Sections::default();
+    sections.add_imports();
+    let rows = dispatch::place_rows(&checked.rows, |parameters, results| sections.add_type(parameters, results));
     let (costs, order) = Costs::new(&checked.pous);
     let points = match noted {
         Noted::Nothing => None,
@@ -62,6 +64,7 @@ pub(crate) fn compile(checked: &Checked, noted: Noted<'_>) -> Compiled {
         pous: &checked.pous,
         costs,
         functions,
+        rows,
         areas: checked.areas,
         memory_size: checked.image.len() as u32,
         data: Vec::new(),
@@ -74,8 +77,6 @@ pub(crate) fn compile(checked: &Checked, noted: Noted<'_>) -> Compiled {
             made.insert(id, function::unit(&mut shared, id, pou, instances.get(&id).copied()));
         }
     }
-    let mut sections = Sections::default();
-    sections.add_imports();
     let mut faults = FaultTable { first_function, functions: Vec::new() };
     for (pou, Made { body, marks, units }) in checked.pous.values().zip(made.into_values()) {
         let (parameters, results) = signature(pou, &checked.types);
@@ -91,14 +92,14 @@ pub(crate) fn compile(checked: &Checked, noted: Noted<'_>) -> Compiled {
         }
     }
     let points = shared.points.as_ref().map_or(0, Points::len);
-    let wasm = sections.finish((checked.image.len() + points) as u64, &shared);
+    let wasm = sections.finish(checked, points, &shared);
     Compiled { wasm, faults, points: shared.points.map(Points::into_list).unwrap_or_default() }
 }
 
 fn signature(pou: &Pou, types: &TypeTable) -> (Vec<ValType>, Vec<ValType>) {
     let parameters = pou.registers.iter().take(pou.parameters as usize);
     let parameters = parameters.map(|ty| value_type(*ty)).collect();
-    let result = pou.result.as_ref().filter(|_| pou.kind == PouKind::Function);
+    let result = pou.result.as_ref();
     // An aggregate result is given by its address.
     let result = result.map(|place| types.elementary(place.ty).map_or(ValType::I32, value_type));
     (parameters, result.into_iter().collect())
@@ -146,8 +147,9 @@ impl Sections {
         self.imports.len() + self.functions.len() - 1
     }
 
-    fn finish(mut self, memory_size: u64, shared: &Shared<'_>) -> Vec<u8> {
-        let pages = memory_size.div_ceil(PAGE);
+    /// `noted` bytes for what is noted while the program runs lie behind those of the program.
+    fn finish(mut self, checked: &Checked, noted: usize, shared: &Shared<'_>) -> Vec<u8> {
+        let pages = ((checked.image.len() + noted) as u64).div_ceil(PAGE);
         let mut memories = MemorySection::new();
         memories.memory(MemoryType {
             minimum: pages,
@@ -164,7 +166,13 @@ impl Sections {
         }
         let mut module = Module::new();
         module.section(&self.types).section(&self.imports).section(&self.functions);
-        module.section(&memories).section(&budget::globals()).section(&self.exports);
+        if checked.rows.is_empty() {
+            module.section(&memories).section(&budget::globals()).section(&self.exports);
+        } else {
+            let (table, elements) = dispatch::table(&checked.rows, shared);
+            module.section(&table).section(&memories).section(&budget::globals());
+            module.section(&self.exports).section(&elements);
+        }
         module.section(&DataCountSection { count: data.len() });
         module.section(&self.code).section(&data);
         module.finish()

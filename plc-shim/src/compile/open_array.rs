@@ -4,8 +4,8 @@ use wasm_encoder::{Instruction, MemArg, ValType};
 
 use super::emitter::{Emitter, value_type};
 use super::fault::FaultKind;
-use crate::ir::types::OPEN_BOUNDS;
 use super::registers::Register;
+use crate::ir::types::OPEN_BOUNDS;
 use crate::ir::{Expr, Place};
 use crate::syntax::Span;
 

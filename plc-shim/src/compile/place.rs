@@ -44,7 +44,9 @@ impl Emitter<'_, '_> {
             Storage::Located(location) => Some(Address::absolute(self.shared.areas.offset(location))),
             Storage::Instance(offset) => Some(self.pointer(INSTANCE).further(offset)),
             Storage::RegisterPointer(register) => Some(self.pointer(register)),
-            Storage::InstancePointer(_) | Storage::AbsolutePointer(_) | Storage::Register(_) | Storage::Referred => None,
+            Storage::InstancePointer(_) | Storage::AbsolutePointer(_) | Storage::Register(_) | Storage::Referred => {
+                None
+            }
         }
     }
 

@@ -9,7 +9,7 @@ use super::emitter::Emitter;
 use super::fault::Callee;
 use super::points::PointKind;
 use crate::ir::{
-    Expr, ExprKind, IfBranch, InstanceCall, Intrinsic, Place, Statement, StatementKind, Storage, TypeTable,
+    Dispatch, Expr, ExprKind, IfBranch, InstanceCall, Intrinsic, Place, Statement, StatementKind, Storage, TypeTable,
 };
 use crate::syntax::Span;
 
@@ -113,11 +113,11 @@ impl Emitter<'_, '_> {
         self.side_statements(&call.inputs);
         let global = matches!(call.instance.storage, Storage::Absolute(_) | Storage::AbsolutePointer(_));
         let callee = if global { Callee::Global } else { Callee::Inner };
-        match self.inlinable(call.pou) {
+        match self.inlinable(call.pou).filter(|_| call.dispatch == Dispatch::Direct) {
             Some(pou) => self.inline_instance(call, pou, callee, address),
             None => {
                 self.push_address(address);
-                self.call(call.pou, callee, call.instance.span);
+                self.call_on(address, call.dispatch, call.pou, (callee, call.instance.span));
             }
         }
         self.side_statements(&call.outputs);

@@ -27,6 +27,7 @@ pub(super) fn extract(file: &str) -> Result<Taken, XmlError> {
             writer.pou(pou);
         }
     }
+    writer.vendor_objects(&root);
     let configurations = root.child("instances").and_then(|instances| instances.child("configurations"));
     for configuration in configurations.into_iter().flat_map(Element::elements) {
         writer.configuration(configuration);
@@ -49,7 +50,7 @@ fn dialect(file: &str, root: &Element) -> Dialect {
 
 pub(super) struct Writer<'a> {
     pub(super) taken: Taken,
-    file: &'a str,
+    pub(super) file: &'a str,
 }
 
 /// Sections of an interface and their keywords (TC6 2.01, `interface`).
@@ -78,7 +79,7 @@ impl Writer<'_> {
         }
     }
 
-    fn data_type(&mut self, element: &Element) {
+    pub(super) fn data_type(&mut self, element: &Element) {
         self.write("TYPE ", &element.open);
         self.attribute(element, "name");
         self.write(" : ", &element.open);
@@ -87,7 +88,7 @@ impl Writer<'_> {
         self.write(";\nEND_TYPE\n", &element.close);
     }
 
-    fn pou(&mut self, element: &Element) {
+    pub(super) fn pou(&mut self, element: &Element) {
         let (keyword, end) = match element.attribute("pouType").map(|kind| kind.value.as_str()) {
             Some("function") => ("FUNCTION ", "END_FUNCTION\n"),
             Some("functionBlock") => ("FUNCTION_BLOCK ", "END_FUNCTION_BLOCK\n"),
@@ -101,6 +102,7 @@ impl Writer<'_> {
         self.write(keyword, &element.open);
         self.attribute(element, "name");
         let interface = element.child("interface");
+        self.heritage(interface);
         if let Some(result) = interface.and_then(|interface| interface.child("returnType")) {
             self.write(" : ", &result.open);
             self.type_in(result);
@@ -112,17 +114,12 @@ impl Writer<'_> {
         for body in element.elements().filter(|inner| inner.name == "body") {
             self.body(body);
         }
-        for part in element.elements().filter(|inner| matches!(inner.name.as_str(), "actions" | "transitions")) {
-            for inner in part.elements() {
-                let name = inner.attribute("name").map_or("", |name| name.value.as_str());
-                let what = format!("{} `{name}`", inner.name.to_uppercase());
-                self.taken.unsupported(inner.open.clone(), &what);
-            }
-        }
         self.write(end, &element.close);
+        self.actions(element);
+        self.members(element);
     }
 
-    fn body(&mut self, body: &Element) {
+    pub(super) fn body(&mut self, body: &Element) {
         for language in body.elements() {
             match language.name.as_str() {
                 "ST" => {
@@ -136,7 +133,7 @@ impl Writer<'_> {
     }
 
     /// The text of an element and of the XHTML in it, each paragraph a line.
-    fn text_below(&mut self, element: &Element) {
+    pub(super) fn text_below(&mut self, element: &Element) {
         self.taken.text_of(self.file, element);
         for inner in element.elements() {
             if inner.name == "br" {
@@ -204,7 +201,7 @@ impl Writer<'_> {
         }
     }
 
-    fn type_in(&mut self, holder: &Element) {
+    pub(super) fn type_in(&mut self, holder: &Element) {
         let Some(element) = holder.elements().next() else {
             let message = format!("`<{}>` is empty", holder.name);
             self.taken.report(holder.open.clone(), Code::MalformedXml, &message);

@@ -21,9 +21,10 @@ pub(super) fn extract(file: &str) -> Result<Taken, XmlError> {
     for object in root.elements() {
         match object.name.as_str() {
             "POU" => pou(&mut taken, file, object),
-            "DUT" | "GVL" => declaration(&mut taken, file, object),
+            "DUT" => declaration(&mut taken, file, object),
+            "GVL" => global_list(&mut taken, file, object),
             "Task" => super::twincat_task::task(&mut taken, file, object),
-            "Itf" => taken.unsupported(place(object), &described("INTERFACE", object)),
+            "Itf" => interface(&mut taken, file, object),
             _ => taken.unsupported(place(object), &described(&object.name, object)),
         }
     }
@@ -42,14 +43,82 @@ fn pou(taken: &mut Taken, file: &str, object: &Element) {
         taken.extract.instead(end.text(), close.clone());
         taken.extract.instead("\n", close);
     }
+    members(taken, file, object);
+}
+
+/// What belongs to a unit, as text behind it.
+fn members(taken: &mut Taken, file: &str, object: &Element) {
     for part in object.elements() {
         match part.name.as_str() {
-            "Method" | "Property" | "Action" | "Transition" => {
-                taken.unsupported(place(part), &described(&part.name.to_uppercase(), part));
+            "Method" => {
+                declaration(taken, file, part);
+                accessor_body(taken, file, part, "END_METHOD\n");
             }
+            "Property" => property(taken, file, part),
+            "Action" => {
+                if let Some(name) = part.attribute("Name") {
+                    taken.extract.instead("ACTION ", part.open.clone());
+                    taken.extract.verbatim(file, name.span.clone());
+                    taken.extract.instead(":\n", part.open.clone());
+                    accessor_body(taken, file, part, "END_ACTION\n");
+                } else {
+                    taken.report(part.open.clone(), Code::MalformedXml, "`<Action>` has no attribute `Name`");
+                }
+            }
+            "Transition" => taken.unsupported(place(part), &described("TRANSITION", part)),
             _ => {}
         }
     }
+}
+
+fn property(taken: &mut Taken, file: &str, part: &Element) {
+    declaration(taken, file, part);
+    for (element, begin, end) in [("Get", "GET\n", "END_GET\n"), ("Set", "SET\n", "END_SET\n")] {
+        if let Some(accessor) = part.child(element) {
+            taken.extract.instead(begin, accessor.open.clone());
+            if accessor.child("Declaration").is_some() {
+                declaration(taken, file, accessor);
+            }
+            accessor_body(taken, file, accessor, end);
+        }
+    }
+    taken.extract.instead("END_PROPERTY\n", part.close.clone());
+}
+
+/// The statements of a member, and its end.
+fn accessor_body(taken: &mut Taken, file: &str, part: &Element, end: &str) {
+    if let Some(implementation) = part.child("Implementation") {
+        body(taken, file, implementation);
+    }
+    taken.extract.instead(end, part.close.clone());
+}
+
+/// The members of an interface stand in it.
+fn interface(taken: &mut Taken, file: &str, object: &Element) {
+    declaration(taken, file, object);
+    members(taken, file, object);
+    taken.extract.instead("END_INTERFACE\n", object.close.clone());
+}
+
+/// The variables of a list are known by its name, and without it unless an attribute forbids that.
+fn global_list(taken: &mut Taken, file: &str, object: &Element) {
+    let Some(name) = object.attribute("Name") else { return declaration(taken, file, object) };
+    let qualified = object.child("Declaration").is_some_and(|declaration| is_qualified_only(file, declaration));
+    let begin = if qualified { "NAMESPACE " } else { "NAMESPACE OPEN " };
+    taken.extract.instead(begin, object.open.clone());
+    taken.extract.verbatim(file, name.span.clone());
+    taken.extract.instead("\n", object.open.clone());
+    declaration(taken, file, object);
+    taken.extract.instead("END_NAMESPACE\n", object.close.clone());
+}
+
+fn is_qualified_only(file: &str, declaration: &Element) -> bool {
+    let text = |node: &Node| match node {
+        Node::Verbatim(span) => file.get(span.start as usize..span.end as usize),
+        _ => None,
+    };
+    let pragmas = declaration.children.iter().filter_map(text).flat_map(|text| text.split('{').skip(1));
+    pragmas.filter_map(|rest| rest.split('}').next()).any(|pragma| pragma.to_lowercase().contains("'qualified_only'"))
 }
 
 fn declaration(taken: &mut Taken, file: &str, object: &Element) {
@@ -115,12 +184,18 @@ VAR_OUTPUT level : INT; END_VAR]]></Declaration>
     <Implementation>
       <ST><![CDATA[IF up THEN level := level + 1; END_IF]]></ST>
     </Implementation>
-    <Method Name="Reset"><Declaration><![CDATA[METHOD Reset]]></Declaration></Method>
+    <Method Name="Reset"><Declaration><![CDATA[METHOD Reset : BOOL]]></Declaration>
+      <Implementation><ST><![CDATA[level := 0;]]></ST></Implementation></Method>
+    <Property Name="Level"><Declaration><![CDATA[PROPERTY Level : INT]]></Declaration>
+      <Get Name="Get"><Declaration><![CDATA[VAR
+END_VAR]]></Declaration><Implementation><ST><![CDATA[Level := level;]]></ST></Implementation></Get></Property>
+    <Action Name="Up"><Implementation><ST><![CDATA[level := 1;]]></ST></Implementation></Action>
+    <Transition Name="T1"><Implementation><ST/></Implementation></Transition>
   </POU>
 </TcPlcObject>"#;
 
     #[test]
-    fn a_unit_is_its_declaration_its_statements_and_its_end() {
+    fn a_unit_is_its_declaration_its_statements_its_end_and_its_members() {
         let input = Input::from_text("FB_Ramp.TcPOU", SourceKind::TwinCat, POU);
         insta::assert_snapshot!(input.file().text(), @r"
         {attribute 'x'}
@@ -129,6 +204,40 @@ VAR_OUTPUT level : INT; END_VAR]]></Declaration>
         VAR_OUTPUT level : INT; END_VAR
         IF up THEN level := level + 1; END_IF
         END_FUNCTION_BLOCK
+        METHOD Reset : BOOL
+        level := 0;
+        END_METHOD
+        PROPERTY Level : INT
+        GET
+        VAR
+        END_VAR
+        Level := level;
+        END_GET
+        END_PROPERTY
+        ACTION Up:
+        level := 1;
+        END_ACTION
+        ");
+    }
+
+    #[test]
+    fn lists_of_globals_and_interfaces_are_named() {
+        let text = "<TcPlcObject><GVL Name=\"GVL\"><Declaration><![CDATA[{attribute 'qualified_only'}
+VAR_GLOBAL x : INT; END_VAR]]></Declaration></GVL><GVL Name=\"Open\"><Declaration>VAR_GLOBAL y : INT; END_VAR</Declaration></GVL>
+<Itf Name=\"I\"><Declaration>INTERFACE I</Declaration><Method Name=\"M\"><Declaration>METHOD M</Declaration></Method></Itf></TcPlcObject>";
+        let input = Input::from_text("a.TcGVL", SourceKind::TwinCat, text);
+        insta::assert_snapshot!(input.file().text(), @r"
+        NAMESPACE GVL
+        {attribute 'qualified_only'}
+        VAR_GLOBAL x : INT; END_VAR
+        END_NAMESPACE
+        NAMESPACE OPEN Open
+        VAR_GLOBAL y : INT; END_VAR
+        END_NAMESPACE
+        INTERFACE I
+        METHOD M
+        END_METHOD
+        END_INTERFACE
         ");
     }
 
@@ -136,8 +245,8 @@ VAR_OUTPUT level : INT; END_VAR]]></Declaration>
     fn what_is_left_out_is_told() {
         let input = Input::from_text("FB_Ramp.TcPOU", SourceKind::TwinCat, POU);
         let [found] = input.diagnostics.as_slice() else { panic!("{:?}", input.diagnostics) };
-        assert_eq!(found.message, "METHOD `Reset` is not supported yet");
+        assert_eq!(found.message, "TRANSITION `T1` is not supported yet");
         let range = input.file().shown_range(found.span.start, found.span.end);
-        assert_eq!(&POU[range.start as usize..range.end as usize], "Reset");
+        assert_eq!(&POU[range.start as usize..range.end as usize], "T1");
     }
 }

@@ -35,18 +35,7 @@ pub(super) fn survey<'a>(units: &[(FileId, &'a CompilationUnit)]) -> Survey<'a> 
     let mut names = Names::default();
     declarations().for_each(|declaration| names.add(declaration));
     let mut surveyor = Surveyor { names: &names, local: BTreeSet::new(), survey: Survey::default() };
-    for declaration in declarations() {
-        match declaration {
-            Declaration::Pou(pou) => surveyor.pou(pou),
-            Declaration::Type(named) => {
-                surveyor.own_name(&named.name);
-                surveyor.spec(&named.spec);
-                named.initial.iter().for_each(|initial| surveyor.initialiser(initial));
-            }
-            Declaration::Globals(section) => surveyor.globals(section),
-            Declaration::Configuration(configuration) => surveyor.configuration(configuration),
-        }
-    }
+    declarations().for_each(|declaration| surveyor.declaration(declaration));
     surveyor.survey
 }
 
@@ -71,6 +60,8 @@ impl Names {
                 self.units_and_types.insert(named.name.key());
             }
             Declaration::Globals(section) => self.globals.extend(variable_names(section)),
+            Declaration::Namespace(namespace) => namespace.declarations.iter().for_each(|each| self.add(each)),
+            Declaration::Using(_) => {}
             Declaration::Configuration(configuration) => {
                 let resources = configuration.resources.iter().flat_map(|resource| &resource.sections);
                 let sections = configuration.sections.iter().chain(resources);
@@ -104,6 +95,21 @@ struct Surveyor<'n, 'a> {
 }
 
 impl<'a> Surveyor<'_, 'a> {
+    fn declaration(&mut self, declaration: &'a Declaration) {
+        match declaration {
+            Declaration::Pou(pou) => self.pou(pou),
+            Declaration::Type(named) => {
+                self.own_name(&named.name);
+                self.spec(&named.spec);
+                named.initial.iter().for_each(|initial| self.initialiser(initial));
+            }
+            Declaration::Globals(section) => self.globals(section),
+            Declaration::Configuration(configuration) => self.configuration(configuration),
+            Declaration::Namespace(namespace) => namespace.declarations.iter().for_each(|each| self.declaration(each)),
+            Declaration::Using(_) => {}
+        }
+    }
+
     fn pou(&mut self, pou: &'a Pou) {
         self.own_name(&pou.name);
         if pou.kind == PouKind::Program {
@@ -113,6 +119,12 @@ impl<'a> Surveyor<'_, 'a> {
         pou.result.iter().for_each(|result| self.spec(result));
         pou.sections.iter().for_each(|section| self.section(section));
         walk::statements(&pou.body, self);
+        for member in pou.object.members.iter().map(|member| &member.pou) {
+            self.local.extend(member.sections.iter().flat_map(variable_names));
+            member.result.iter().for_each(|result| self.spec(result));
+            member.sections.iter().for_each(|section| self.section(section));
+            walk::statements(&member.body, self);
+        }
         self.local.clear();
     }
 

@@ -94,7 +94,7 @@ mod tests {
         let input = Input::from_text(&source.name, SourceKind::TwinCat, source.text);
         assert_eq!(input.file().text().replace("\n\n", "\n"), text);
         let read = Input::from_text("g.TcGVL", SourceKind::TwinCat, globals("g", "VAR_GLOBAL END_VAR\n").text);
-        assert_eq!(&**read.file().text(), "VAR_GLOBAL END_VAR\n");
+        assert_eq!(&**read.file().text(), "NAMESPACE OPEN g\nVAR_GLOBAL END_VAR\nEND_NAMESPACE\n");
     }
 
     #[test]

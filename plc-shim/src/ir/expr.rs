@@ -43,6 +43,17 @@ pub(crate) enum ExprKind {
     Call(Box<FunctionCall>),
     /// Runs the statements, then yields the value; none for what has no result.
     After(Vec<Statement>, Option<Box<Expr>>),
+    /// The reference, if what it refers to is of one of the types, else 0.
+    Cast(Box<Cast>),
+}
+
+/// An assignment attempt (3rd ed. 6.6.6.7).
+#[derive(Debug, Clone)]
+pub(crate) struct Cast {
+    pub(crate) reference: Expr,
+    pub(crate) pointer: LocalId,
+    /// First and last number of each range of types.
+    pub(crate) types: Vec<(u32, u32)>,
 }
 
 /// What becomes of a fraction when a real becomes an integer.
@@ -155,10 +166,43 @@ pub(crate) struct FunctionCall {
     /// Puts registers that are passed by reference into memory.
     pub(crate) before: Vec<Statement>,
     pub(crate) arguments: Vec<Argument>,
+    /// The instance that a method works on.
+    pub(crate) receiver: Option<Receiver>,
     /// Copies the function's outputs to where the caller wants them.
     pub(crate) outputs: Vec<Statement>,
     /// Where the caller keeps an aggregate result, so that the next call does not change it.
     pub(crate) result: Option<Place>,
+}
+
+/// The instance that a method is called on.
+#[derive(Debug, Clone)]
+pub(crate) struct Receiver {
+    /// Yields its address.
+    pub(crate) instance: Expr,
+    /// Holds the address while arguments are evaluated.
+    pub(crate) pointer: LocalId,
+    /// True for what an interface refers to.
+    pub(crate) may_be_null: bool,
+    pub(crate) dispatch: Dispatch,
+}
+
+/// How the code of a call is found.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Dispatch {
+    /// It is known.
+    Direct,
+    /// By the number that the instance begins with, in this row of the table.
+    Row(usize),
+}
+
+/// What an instance of each type runs, by the type's number from `first` on.
+#[derive(Debug, Clone)]
+pub(crate) struct Row {
+    pub(crate) parameters: Vec<ElementaryType>,
+    /// What the result is held as.
+    pub(crate) result: Option<ElementaryType>,
+    pub(crate) first: u32,
+    pub(crate) targets: Vec<Option<PouId>>,
 }
 
 /// One argument of a function's WebAssembly signature.

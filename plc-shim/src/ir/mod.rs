@@ -16,10 +16,10 @@ pub(crate) use area::{Areas, Location};
 pub(crate) use configuration::{Access, Configuration, Entry, Program, Resource, Target, Task};
 pub(crate) use elementary::ElementaryType;
 pub(crate) use expr::{
-    Argument, Binary, Expr, ExprKind, FunctionCall, Intrinsic, LocalId, MemoryFunction, Part, Place, Rounding, Step,
-    Storage, Unary,
+    Argument, Binary, Cast, Dispatch, Expr, ExprKind, FunctionCall, Intrinsic, LocalId, MemoryFunction, Part, Place,
+    Receiver, Rounding, Row, Step, Storage, Unary,
 };
-pub(crate) use pou::{EdgeDetection, Pou, PouId, Retention, Variable};
+pub(crate) use pou::{EdgeDetection, Guard, Pou, PouId, Retention, Variable, Visibility};
 pub(crate) use statement::{CaseArm, CaseStatement, ForStatement, IfBranch, InstanceCall, Statement, StatementKind};
 pub(crate) use types::{Dimension, Field, Type, TypeId, TypeTable};
 pub(crate) use value::Value;

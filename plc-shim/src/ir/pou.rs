@@ -8,7 +8,7 @@ use super::value::Value;
 use std::sync::Arc;
 
 use crate::syntax::Span;
-use crate::syntax::ast::{Edge, PouKind, Qualifier, SectionKind};
+use crate::syntax::ast::{Edge, Qualifier, SectionKind};
 
 /// Identifies a unit.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -32,7 +32,7 @@ impl Retention {
             Qualifier::NonRetain => Some(Self::NonRetain),
             Qualifier::Retain => Some(Self::Retain),
             Qualifier::Persistent => Some(Self::Persistent),
-            Qualifier::Constant => None,
+            Qualifier::Constant | Qualifier::Access(_) => None,
         });
         each.max()
     }
@@ -55,8 +55,35 @@ pub(crate) struct Variable {
     pub(crate) span: Span,
     /// Initial bytes.
     pub(crate) image: Arc<[u8]>,
+    /// Who sees it from outside of its unit.
+    pub(crate) visibility: Visibility,
+    /// The unit that declares it, which a derived one is not.
+    pub(crate) owner: Option<PouId>,
     /// What the unit itself sees of an input with `R_EDGE` or `F_EDGE`.
     pub(crate) edge: Option<EdgeDetection>,
+}
+
+/// Who sees a variable or method (3rd ed. 6.6.5.10).
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Visibility {
+    Public,
+    /// The unit and what is derived from it.
+    Protected,
+    /// The unit alone.
+    Private,
+    /// The namespace.
+    Internal,
+}
+
+/// What keeps a unit's fixed memory whole if it is called while it runs.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Guard {
+    /// It cannot be.
+    None,
+    /// It has no fixed memory: only the depth of calls is limited.
+    Depth,
+    /// It is a fault; the flag of running lies at this offset.
+    Once(u32),
 }
 
 /// Where an input's edge is kept (2nd ed. Table 33): the unit has its own trigger.
@@ -73,7 +100,6 @@ pub(crate) struct EdgeDetection {
 #[derive(Debug, Clone)]
 pub(crate) struct Pou {
     pub(crate) name: String,
-    pub(crate) kind: PouKind,
     pub(crate) span: Span,
     pub(crate) variables: Vec<Variable>,
     /// Elementary types of the registers; parameters first.
@@ -82,5 +108,6 @@ pub(crate) struct Pou {
     pub(crate) parameters: u32,
     /// A function's result.
     pub(crate) result: Option<Place>,
+    pub(crate) guard: Guard,
     pub(crate) body: Vec<Statement>,
 }

@@ -45,6 +45,7 @@ pub(crate) struct IfBranch {
 pub(crate) struct InstanceCall {
     pub(crate) instance: Place,
     pub(crate) pou: PouId,
+    pub(crate) dispatch: super::expr::Dispatch,
     /// Holds the instance's address from before the inputs until after the outputs.
     pub(crate) pointer: LocalId,
     pub(crate) inputs: Vec<Statement>,

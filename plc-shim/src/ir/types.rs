@@ -63,7 +63,13 @@ pub(crate) enum Type {
         name: String,
         fields: Vec<Field>,
     },
+    /// An instance of a function block or class.
     FunctionBlock {
+        name: String,
+        pou: PouId,
+    },
+    /// The address of an instance that implements the interface, or 0.
+    Interface {
         name: String,
         pou: PouId,
     },
@@ -192,6 +198,7 @@ impl TypeTable {
     pub(crate) fn elementary(&self, id: TypeId) -> Option<ElementaryType> {
         match self.get(id) {
             Type::Elementary(ty) | Type::Enumeration { base: ty, .. } | Type::Subrange { base: ty, .. } => Some(*ty),
+            Type::Interface { .. } => Some(ElementaryType::Udint),
             Type::Reference { .. } | Type::Address { .. } | Type::Null => Some(REFERENCE),
             _ => None,
         }
@@ -295,6 +302,18 @@ impl TypeTable {
         id
     }
 
+    /// The type of variables that refer to what implements an interface (3rd ed. 6.6.6).
+    pub(crate) fn interface(&mut self, name: &str, pou: PouId) -> TypeId {
+        if let Some(found) = self.blocks.get(&pou) {
+            return *found;
+        }
+        let size = ElementaryType::Udint.size();
+        let ty = Type::Interface { name: name.to_owned(), pou };
+        let id = self.add(ty, size, size, vec![0; size as usize].into());
+        self.blocks.insert(pou, id);
+        id
+    }
+
     /// The type of a unit's instances, if there are any.
     pub(crate) fn known_block(&self, pou: PouId) -> Option<TypeId> {
         self.blocks.get(&pou).copied()
@@ -318,9 +337,8 @@ impl TypeTable {
             Type::Address { target } => format!("the address of {}", self.name(*target)),
             Type::Subrange { base, low, high } => format!("{base} ({low}..{high})"),
             Type::Text(shape) => format!("{}[{}]", shape.keyword(), shape.capacity),
-            Type::Enumeration { name, .. } | Type::Struct { name, .. } | Type::FunctionBlock { name, .. } => {
-                name.clone()
-            }
+            Type::Enumeration { name, .. } | Type::Struct { name, .. } => name.clone(),
+            Type::FunctionBlock { name, .. } | Type::Interface { name, .. } => name.clone(),
             Type::OpenArray { dimensions, element } => {
                 let stars = vec!["*"; *dimensions as usize].join(", ");
                 format!("ARRAY [{stars}] OF {}", self.name(*element))

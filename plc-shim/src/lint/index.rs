@@ -4,13 +4,17 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use crate::application::Front;
 use crate::syntax::ast::{
-    Configuration, Connection, Declaration, Expr, Ident, Pou, PouKind, Section, SectionKind, TypeSpec, TypeSpecKind,
-    Variable,
+    Configuration, Connection, Declaration, Expr, ExprKind, Ident, Pou, PouKind, Section, SectionKind, TypeSpec,
+    TypeSpecKind, Variable,
 };
+use crate::syntax::walk::root;
 
 /// Declarations by the key of their name.
 pub(super) struct Index<'a> {
     own: Vec<&'a Pou>,
+    members: Vec<&'a Pou>,
+    /// What extends a unit, by the last part of that one's name.
+    derived: BTreeMap<String, Vec<&'a Pou>>,
     units: BTreeMap<String, &'a Pou>,
     library: BTreeSet<String>,
     types: BTreeMap<String, &'a TypeSpec>,
@@ -18,18 +22,23 @@ pub(super) struct Index<'a> {
     configurations: Vec<&'a Configuration>,
     /// Names that some unit has for a `VAR_IN_OUT`.
     in_outs: BTreeSet<String>,
+    /// First names of namespaces and of lists of global variables.
+    namespaces: BTreeSet<String>,
 }
 
 impl<'a> Index<'a> {
     pub(super) fn new(front: &'a Front) -> Self {
         let mut index = Self {
             own: Vec::new(),
+            members: Vec::new(),
+            derived: BTreeMap::new(),
             units: BTreeMap::new(),
             library: BTreeSet::new(),
             types: BTreeMap::new(),
             globals: Vec::new(),
             configurations: Vec::new(),
             in_outs: BTreeSet::new(),
+            namespaces: BTreeSet::new(),
         };
         for (file, unit) in &front.units {
             let library = front.library.contains(file);
@@ -43,19 +52,33 @@ impl<'a> Index<'a> {
     fn add(&mut self, declaration: &'a Declaration, library: bool) {
         match declaration {
             Declaration::Pou(pou) => {
-                let in_outs = variables(pou, SectionKind::InOut).flat_map(|variable| &variable.names);
-                self.in_outs.extend(in_outs.map(Ident::key));
+                let members = pou.object.members.iter().map(|member| &member.pou);
+                for each in members.chain([pou]) {
+                    let in_outs = variables(each, SectionKind::InOut).flat_map(|variable| &variable.names);
+                    self.in_outs.extend(in_outs.map(Ident::key));
+                }
                 self.units.insert(pou.name.key(), pou);
                 if library {
                     self.library.insert(pou.name.key());
                 } else {
                     self.own.push(pou);
+                    for base in &pou.object.extends {
+                        let key = base.key();
+                        let last = key.rsplit('.').next().unwrap_or(&key).to_owned();
+                        self.derived.entry(last).or_default().push(pou);
+                    }
+                    self.members.extend(pou.object.members.iter().map(|member| &member.pou));
                 }
             }
             Declaration::Type(named) => {
                 self.types.insert(named.name.key(), &named.spec);
             }
             Declaration::Globals(section) => self.globals.push(section),
+            Declaration::Namespace(namespace) => {
+                self.namespaces.extend(namespace.name.key().split('.').map(str::to_owned));
+                namespace.declarations.iter().for_each(|each| self.add(each, library));
+            }
+            Declaration::Using(_) => {}
             Declaration::Configuration(configuration) => {
                 let resources = configuration.resources.iter().flat_map(|resource| &resource.sections);
                 self.globals.extend(configuration.sections.iter().chain(resources));
@@ -67,6 +90,29 @@ impl<'a> Index<'a> {
     /// The user's units in their order.
     pub(super) fn own(&self) -> impl Iterator<Item = &'a Pou> {
         self.own.iter().copied()
+    }
+
+    /// The methods, properties and actions of the user's units that have statements.
+    pub(super) fn own_members(&self) -> impl Iterator<Item = &'a Pou> {
+        self.members.iter().copied().filter(|member| !member.body.is_empty())
+    }
+
+    /// A unit with its members, and all that is derived from it: what may use its variables.
+    pub(super) fn users(&self, pou: &'a Pou) -> Vec<&'a Pou> {
+        let mut found: Vec<&'a Pou> = Vec::new();
+        let mut open = vec![pou];
+        while let Some(next) = open.pop() {
+            // A circle of bases is an error of its own.
+            if found.iter().any(|each| std::ptr::eq(*each, next)) {
+                continue;
+            }
+            found.push(next);
+            found.extend(next.object.members.iter().map(|member| &member.pou));
+            if next.kind.has_instances() {
+                open.extend(self.derived.get(&next.name.key()).into_iter().flatten());
+            }
+        }
+        found
     }
 
     pub(super) fn unit(&self, key: &str) -> Option<&'a Pou> {
@@ -120,6 +166,26 @@ impl<'a> Index<'a> {
     pub(super) fn global(&self, key: &str) -> Option<&'a Variable> {
         let all = self.globals.iter().flat_map(|section| &section.variables);
         all.into_iter().find(|variable| variable.names.iter().any(|name| name.key() == key))
+    }
+
+    /// True for a place that begins with the name of a namespace.
+    pub(super) fn is_in_namespace(&self, place: &Expr) -> bool {
+        !self.namespaces.is_empty() && root(place).is_some_and(|name| self.namespaces.contains(&name.key()))
+    }
+
+    /// The variable that a place is a part of; in a namespace all names on the way, one of which it is.
+    pub(super) fn variables_of<'e>(&self, place: &'e Expr) -> Vec<&'e Ident> {
+        if !self.is_in_namespace(place) {
+            return root(place).into_iter().collect();
+        }
+        let (mut names, mut next) = (Vec::new(), place);
+        while let ExprKind::Member(inner, _) | ExprKind::Index(inner, _) | ExprKind::Paren(inner) = &next.kind {
+            if let ExprKind::Member(_, name) = &next.kind {
+                names.push(name);
+            }
+            next = inner;
+        }
+        names
     }
 
     /// True for a name that a `VAR_IN_OUT` has in some unit: an argument of that name may be written.

@@ -18,7 +18,9 @@ fn never_called(unit: &Unit<'_>, index: &Index<'_>, findings: &mut Vec<Diagnosti
         let Some(block) = index.block(&variable.spec) else { continue };
         for name in &variable.names {
             let uses = unit.usage.get(&name.key());
-            if !uses.is_called && !uses.is_passed {
+            // What has methods may live by them alone.
+            let lives_by_methods = !block.object.members.is_empty() && (block.body.is_empty() || uses.is_read);
+            if !lives_by_methods && !uses.is_called && !uses.is_passed {
                 let message = format!("`{}` of type {} is never called", name.text, block.name.text);
                 let found = Diagnostic::warning(Code::InstanceNeverCalled, name.span, message);
                 findings.push(found.with_help(format!("call it once in each scan, as in `{}(...);`", name.text)));

@@ -43,6 +43,13 @@ pub(crate) fn lint(front: &Front, plan: Option<&TaskPlan>) -> Vec<Diagnostic> {
         reachability::lint(unit, &mut findings);
         unused::lint(unit, &index, &mut findings);
     }
+    for pou in index.own_members() {
+        let unit = Unit { usage: Usage::of(pou, &index), pou };
+        outputs::lint(&unit, &units, &mut findings);
+        equality::lint(&unit, &index, &mut findings);
+        reachability::lint(&unit, &mut findings);
+        unused::lint(&unit, &index, &mut findings);
+    }
     outputs::lint_globals(&units, &index, &mut findings);
     unused::lint_globals(&units, &index, &mut findings);
     tasks::lint(&units, &index, plan, &mut findings);

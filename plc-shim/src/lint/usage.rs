@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 
 use super::index::Index;
+
 use crate::syntax::Span;
 use crate::syntax::ast::{
     Argument, Call, Expr, ExprKind, Ident, Initialiser, InitialiserKind, Pou, Section, TypeSpec, TypeSpecKind,
@@ -35,12 +36,14 @@ impl Uses {
 }
 
 impl Usage {
-    pub(super) fn of(pou: &Pou, index: &Index<'_>) -> Self {
+    pub(super) fn of<'a>(pou: &'a Pou, index: &Index<'a>) -> Self {
         let mut collector = Collector { index, usage: Self::default() };
-        for section in &pou.sections {
-            collector.section(section);
+        for each in index.users(pou) {
+            for section in &each.sections {
+                collector.section(section);
+            }
+            walk::statements(&each.body, &mut collector);
         }
-        walk::statements(&pou.body, &mut collector);
         collector.usage
     }
 
@@ -148,7 +151,7 @@ fn writes_output(target: &Expr) -> bool {
 
 impl Visitor for Collector<'_> {
     fn target(&mut self, target: &Expr) {
-        if let Some(name) = root(target) {
+        for name in self.index.variables_of(target) {
             self.written(name);
         }
         self.usage.writes_outputs |= writes_output(target);
@@ -159,7 +162,7 @@ impl Visitor for Collector<'_> {
     }
 
     fn call(&mut self, call: &Call) {
-        if let Some(name) = root(&call.callee) {
+        for name in self.index.variables_of(&call.callee) {
             self.uses(name).is_called = true;
         }
         for argument in &call.arguments {
@@ -168,7 +171,7 @@ impl Visitor for Collector<'_> {
                 Argument::Input(name, value) => (value, self.index.is_in_out(&name.key())),
                 Argument::Output { .. } => continue,
             };
-            if let Some(name) = root(value).filter(|_| may_write) {
+            for name in self.index.variables_of(value).into_iter().filter(|_| may_write) {
                 self.uses(name).is_passed = true;
             }
         }
@@ -181,7 +184,9 @@ impl Visitor for Collector<'_> {
     }
 
     fn expression(&mut self, expr: &Expr) {
-        if let ExprKind::Name(name) = &expr.kind {
+        if let ExprKind::Name(name) | ExprKind::Member(_, name) = &expr.kind
+            && (matches!(expr.kind, ExprKind::Name(_)) || self.index.is_in_namespace(expr))
+        {
             self.uses(name).is_read = true;
         }
     }

@@ -3,6 +3,7 @@
 mod configuration;
 mod declaration;
 mod expression;
+mod object;
 mod statement;
 
 pub use configuration::{
@@ -14,6 +15,7 @@ pub use declaration::{
     ReferenceKind, Section, SectionKind, StructureInit, Subrange, TypeDeclaration, TypeSpec, TypeSpecKind, Variable,
 };
 pub use expression::{Argument, BinaryOp, Call, Expr, ExprKind, Literal, MAX_HEIGHT, TypedValue, UnaryOp};
+pub use object::{Member, MemberKind, Modifier, Namespace, NamespaceKind, Object};
 pub use statement::{
     CaseBranch, CaseLabel, CaseStatement, ForStatement, IfBranch, IfStatement, RepeatStatement, Statement,
     StatementKind, UpdateOp, WhileStatement,

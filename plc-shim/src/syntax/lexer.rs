@@ -195,7 +195,7 @@ impl<'a> Lexer<'a> {
             }
             return TokenKind::Typed;
         }
-        let keyword = Keyword::find(text).filter(|keyword| keyword.is_in(self.dialect));
+        let keyword = Keyword::find(text).filter(|keyword| keyword.is_in(self.dialect) && !keyword.is_soft());
         keyword.map_or(TokenKind::Identifier, TokenKind::Keyword)
     }
 

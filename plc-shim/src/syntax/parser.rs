@@ -10,6 +10,7 @@ mod cursor;
 mod declaration;
 mod expression;
 mod initialiser;
+mod object;
 mod scl;
 mod statement;
 mod type_spec;

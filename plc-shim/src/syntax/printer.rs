@@ -3,6 +3,7 @@
 mod configuration;
 mod declaration;
 mod expression;
+mod object;
 mod statement;
 
 use super::ast::{CompilationUnit, Expr, Ident};
@@ -36,7 +37,7 @@ impl Printer {
 
     /// A name where it is declared or needs no telling apart; SCL allows any text between quotes.
     fn name(&mut self, name: &Ident) {
-        if is_plain(&name.text) {
+        if name.text.split('.').all(is_plain) {
             self.word(&name.text);
         } else {
             self.word(&format!("\"{}\"", name.text));

@@ -26,7 +26,7 @@ pub enum TokenKind {
     Pragma,
     /// A comment, pragma or string whose end is missing.
     Unterminated,
-    /// An identifier; names of elementary types too.
+    /// An identifier; names of elementary types and words like `METHOD`, too, which are names elsewhere.
     Identifier,
     /// A keyword, in any case.
     Keyword(Keyword),
@@ -70,6 +70,13 @@ macro_rules! keywords {
                 ALL.iter().find(|(name, _)| name.eq_ignore_ascii_case(text)).map(|(_, found)| *found)
             }
 
+            /// True for the words of the 3rd edition that older programs have for names: they are
+            /// keywords only where another name follows.
+            pub fn is_soft(self) -> bool {
+                use Keyword as K;
+                matches!(self, K::Class | K::Interface | K::Method | K::Property | K::Action | K::Namespace | K::Using)
+            }
+
             /// Its spelling in capitals.
             pub fn text(self) -> &'static str {
                 match self { $(Self::$variant => $text,)* }
@@ -95,6 +102,10 @@ keywords! {
     Exit "EXIT", Continue "CONTINUE", Return "RETURN",
     And "AND", Or "OR", Xor "XOR", Not "NOT", Mod "MOD",
     True "TRUE", False "FALSE",
+    Class "CLASS", EndClass "END_CLASS", Interface "INTERFACE", EndInterface "END_INTERFACE",
+    Method "METHOD", EndMethod "END_METHOD", Property "PROPERTY", EndProperty "END_PROPERTY",
+    EndGet "END_GET", EndSet "END_SET", Action "ACTION", EndAction "END_ACTION",
+    Namespace "NAMESPACE", EndNamespace "END_NAMESPACE", Using "USING",
     OrganizationBlock "ORGANIZATION_BLOCK", EndOrganizationBlock "END_ORGANIZATION_BLOCK",
     VarStat "VAR_STAT", DataBlock "DATA_BLOCK", EndDataBlock "END_DATA_BLOCK", Begin "BEGIN",
 }

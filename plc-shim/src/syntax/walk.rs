@@ -123,6 +123,7 @@ fn indices(place: &Expr, visitor: &mut impl Visitor) {
                 expression(index, visitor);
             }
         }
+        ExprKind::Call(inner) => call(inner, visitor),
         _ => {}
     }
 }

@@ -38,6 +38,7 @@ impl Application {
                     None => show_elementary(*base, bytes, text),
                 }
             }
+            Type::Interface { .. } => show_elementary(ElementaryType::Udint, bytes, text),
             Type::Text(shape) => show_text(*shape, bytes, text),
             Type::Array { element, .. } => {
                 let (element, stride) = (*element, types.size(*element).max(1) as usize);

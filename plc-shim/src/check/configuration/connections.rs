@@ -5,11 +5,11 @@ use super::super::convert::Operand;
 use super::super::scope::{Body, Scope};
 use crate::diagnostic::{Code, Diagnostic};
 use crate::ir::{
-    ElementaryType, Entry, Expr, ExprKind, InstanceCall, Place, Pou, PouId, Statement, StatementKind, Storage, Target,
-    Type,
+    Dispatch, ElementaryType, Entry, Expr, ExprKind, Guard, InstanceCall, Place, Pou, PouId, Statement, StatementKind,
+    Storage, Target, Type,
 };
 use crate::syntax::Span;
-use crate::syntax::ast::{self, Connection, Ident, PouKind, ProgramDeclaration, SectionKind};
+use crate::syntax::ast::{self, Connection, Ident, ProgramDeclaration, SectionKind};
 
 /// The statements around an instance's call.
 #[derive(Default)]
@@ -28,12 +28,12 @@ pub(super) struct Side {
 fn unit(name: &str, side: Side, span: Span) -> Pou {
     Pou {
         name: name.to_owned(),
-        kind: PouKind::Program,
         span,
         variables: Vec::new(),
         registers: side.scope.registers,
         parameters: 0,
         result: None,
+        guard: Guard::None,
         body: side.statements,
     }
 }
@@ -108,7 +108,8 @@ impl<'a> Checker<'a> {
         let mut scope = Scope::default();
         let pointer = scope.register(ElementaryType::Udint);
         let instance = Place::whole(Storage::Absolute(offset), ty, span);
-        let call = InstanceCall { instance, pou, pointer, inputs: Vec::new(), outputs: Vec::new() };
+        let dispatch = Dispatch::Direct;
+        let call = InstanceCall { instance, pou, dispatch, pointer, inputs: Vec::new(), outputs: Vec::new() };
         let body = vec![Statement { kind: StatementKind::CallInstance(Box::new(call)), span }];
         let call = Side { statements: body, scope };
         let sides = [before, call, after].into_iter().filter(|side| !side.statements.is_empty());

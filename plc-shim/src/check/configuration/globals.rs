@@ -60,6 +60,7 @@ impl<'a> Checker<'a> {
                     progress: Progress::Untouched,
                     variable: None,
                     home: Some(index),
+                    seen_from: std::sync::Arc::default(),
                 };
                 self.globals.insert(key, entry);
             }
@@ -85,6 +86,7 @@ impl<'a> Checker<'a> {
                 progress: Progress::Untouched,
                 variable: None,
                 home: None,
+                seen_from: std::sync::Arc::default(),
             };
             self.globals.insert(key.to_owned(), entry);
         }
@@ -123,6 +125,7 @@ impl<'a> Checker<'a> {
             let own = resource.and_then(|index| alternatives.by_resource.get(&index));
             return own.or(alternatives.shared.as_ref()).cloned();
         }
+        let key = self.open_globals.get(key).map_or(key, String::as_str);
         let entry = self.globals.get(key)?;
         (entry.home.is_none() || entry.home == resource).then(|| key.to_owned())
     }

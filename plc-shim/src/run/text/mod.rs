@@ -9,7 +9,7 @@
 //! | [`link`] | what the module imports |
 //!
 //! They allocate nothing and give the same bytes on every machine. Whatever stands in memory, the
-//! only failure is an address outside of it. Their work is paid for in fuel.
+//! only failure is an address outside of it. Their work is paid for from the budget.
 
 mod edit;
 mod format;

@@ -1,6 +1,6 @@
 //! Declarations of units, types and variables (2nd ed. 2.3 to 2.5).
 
-use super::{Configuration, Expr, Ident, Span, Statement};
+use super::{Configuration, Expr, Ident, Modifier, Namespace, Object, Span, Statement};
 
 /// Something a file declares.
 #[derive(Debug, Clone)]
@@ -11,6 +11,10 @@ pub enum Declaration {
     Type(TypeDeclaration),
     /// A `VAR_GLOBAL` block.
     Globals(Section),
+    /// A namespace and what it declares.
+    Namespace(Namespace),
+    /// `USING a.b;`, for the rest of the file.
+    Using(Vec<Ident>),
     /// A configuration.
     Configuration(Configuration),
 }
@@ -24,6 +28,26 @@ pub enum PouKind {
     FunctionBlock,
     /// `FUNCTION`
     Function,
+    /// `CLASS` (3rd ed. 6.6.5)
+    Class,
+    /// `INTERFACE` (3rd ed. 6.6.6)
+    Interface,
+    /// `METHOD` and the two halves of a `PROPERTY`.
+    Method,
+    /// `ACTION`: statements that work on the variables of their unit.
+    Action,
+}
+
+impl PouKind {
+    /// True for what begins anew in every call: functions and methods.
+    pub fn keeps_nothing(self) -> bool {
+        matches!(self, Self::Function | Self::Method | Self::Action)
+    }
+
+    /// True for what variables can be instances of.
+    pub fn has_instances(self) -> bool {
+        matches!(self, Self::FunctionBlock | Self::Class)
+    }
 }
 
 /// A program organisation unit.
@@ -39,6 +63,8 @@ pub struct Pou {
     pub sections: Vec<Section>,
     /// Its statements.
     pub body: Vec<Statement>,
+    /// Its bases and methods.
+    pub object: Object,
     /// Where it stands.
     pub span: Span,
 }
@@ -73,6 +99,8 @@ pub enum Qualifier {
     Retain,
     /// `NON_RETAIN`
     NonRetain,
+    /// `PUBLIC`, `PROTECTED`, `PRIVATE` or `INTERNAL` (3rd ed. 6.6.5.10).
+    Access(Modifier),
     /// `PERSISTENT`, of vendors.
     Persistent,
 }
@@ -213,6 +241,8 @@ pub struct EnumValue {
 pub struct TypeDeclaration {
     /// Its name.
     pub name: Ident,
+    /// The structure that it adds members to, as vendors have it.
+    pub extends: Option<Ident>,
     /// What it is.
     pub spec: TypeSpec,
     /// The initial value of its variables.

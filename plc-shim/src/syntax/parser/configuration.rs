@@ -13,14 +13,6 @@ use crate::syntax::token::{Keyword, Punctuation, TokenKind};
 const ANCHORS: [&str; 6] = ["RESOURCE", "TASK", "VAR_ACCESS", "VAR_CONFIG", "END_RESOURCE", "END_CONFIGURATION"];
 
 impl Cursor<'_> {
-    fn take_word(&mut self, word: &str) -> bool {
-        let found = self.at_word(word);
-        if found {
-            self.advance();
-        }
-        found
-    }
-
     fn expect_word(&mut self, word: &str) {
         if !self.take_word(word) {
             self.unexpected(&format!("`{word}`"));

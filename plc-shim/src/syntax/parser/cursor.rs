@@ -39,10 +39,12 @@ impl<'a> Cursor<'a> {
             kind if kind.is_trivia() || is_broken(kind) => None,
             _ => Some(*token),
         };
+        let mut tokens: Vec<Token> = tokens.iter().filter_map(good).collect();
+        promote_soft_keywords(&mut tokens, text);
         Self {
             file,
             text,
-            tokens: tokens.iter().filter_map(good).collect(),
+            tokens,
             at: 0,
             nesting: 0,
             diagnostics: Vec::new(),
@@ -118,6 +120,14 @@ impl<'a> Cursor<'a> {
 
     pub(super) fn peek_ahead(&self, ahead: usize) -> Option<TokenKind> {
         self.tokens.get(self.at + ahead).map(|token| token.kind)
+    }
+
+    pub(super) fn take_word(&mut self, word: &str) -> bool {
+        let found = self.at_word(word);
+        if found {
+            self.advance();
+        }
+        found
     }
 
     /// Number of tokens taken so far; shows whether a rule has made progress.
@@ -263,5 +273,20 @@ impl<'a> Cursor<'a> {
             }
             self.advance();
         }
+    }
+}
+
+/// A name never follows another, so `METHOD Start` begins a method, and `method := 1` assigns.
+fn promote_soft_keywords(tokens: &mut [Token], text: &str) {
+    let mut next_is_name = false;
+    for token in tokens.iter_mut().rev() {
+        let is_name = token.kind == TokenKind::Identifier;
+        if is_name && next_is_name {
+            let word = text.get(token.start as usize..token.end as usize).and_then(Keyword::find);
+            if let Some(soft) = word.filter(|word| word.is_soft()) {
+                token.kind = TokenKind::Keyword(soft);
+            }
+        }
+        next_is_name = is_name;
     }
 }

@@ -1,29 +1,22 @@
 //! Units, types and variable sections (2nd ed. 2.3 to 2.5).
 
 use super::cursor::Cursor;
+use super::object::ends_object;
 use crate::diagnostic::{Code, Diagnostic};
 use crate::dialect::Feature;
 use crate::ir::ElementaryType;
 use crate::syntax::ast::{
-    CompilationUnit, Declaration, Edge, Ident, Pou, PouKind, Qualifier, Section, SectionKind, Statement, StatementKind,
-    TypeDeclaration, TypeSpec, TypeSpecKind, Variable,
+    CompilationUnit, Declaration, Edge, Ident, Member, Modifier, PouKind, Qualifier, Section, SectionKind, Statement,
+    StatementKind, TypeDeclaration, TypeSpec, TypeSpecKind, Variable,
 };
 use crate::syntax::token::{Keyword, Punctuation, TokenKind};
 
 /// Keywords at which a file can go on after an error outside of a unit's body.
 pub(super) fn begins_declaration(kind: TokenKind) -> bool {
-    matches!(
-        kind,
-        TokenKind::Keyword(
-            Keyword::Program
-                | Keyword::FunctionBlock
-                | Keyword::Function
-                | Keyword::Type
-                | Keyword::VarGlobal
-                | Keyword::OrganizationBlock
-                | Keyword::DataBlock
-        )
-    )
+    use Keyword as K;
+    let TokenKind::Keyword(keyword) = kind else { return false };
+    let unit = matches!(keyword, K::Program | K::FunctionBlock | K::Function | K::OrganizationBlock | K::DataBlock);
+    unit || matches!(keyword, K::Type | K::VarGlobal) || keyword.is_soft()
 }
 
 pub(super) fn section_kind(kind: Option<TokenKind>) -> Option<SectionKind> {
@@ -43,64 +36,57 @@ pub(super) fn section_kind(kind: Option<TokenKind>) -> Option<SectionKind> {
 impl Cursor<'_> {
     pub(super) fn compilation_unit(&mut self) -> CompilationUnit {
         let mut unit = CompilationUnit::default();
-        while let Some(kind) = self.peek() {
-            match kind {
-                TokenKind::Keyword(Keyword::Program) => {
-                    self.pou(PouKind::Program, Keyword::EndProgram, &mut unit);
-                }
-                TokenKind::Keyword(Keyword::FunctionBlock) => {
-                    self.pou(PouKind::FunctionBlock, Keyword::EndFunctionBlock, &mut unit);
-                }
-                TokenKind::Keyword(Keyword::Function) => {
-                    self.pou(PouKind::Function, Keyword::EndFunction, &mut unit);
-                }
-                TokenKind::Keyword(Keyword::Type) => self.type_block(&mut unit),
-                TokenKind::Keyword(Keyword::VarGlobal) => {
-                    let section = self.section(SectionKind::Global);
-                    unit.declarations.push(Declaration::Globals(section));
-                }
-                TokenKind::Identifier if self.at_word("CONFIGURATION") => match self.configuration() {
-                    Some(found) => unit.declarations.push(found),
-                    None => self.skip_until(begins_declaration),
-                },
-                TokenKind::Keyword(Keyword::OrganizationBlock) => self.organization_block(&mut unit),
-                TokenKind::Keyword(Keyword::DataBlock) => self.data_block(&mut unit),
-                // Vendors' exports end a unit with a semicolon; it declares nothing.
-                TokenKind::Punctuation(Punctuation::Semicolon) => self.advance(),
-                _ => {
-                    self.report_block_of_other_dialect();
-                    self.unexpected("PROGRAM, FUNCTION_BLOCK, FUNCTION, TYPE or VAR_GLOBAL");
-                    self.advance();
-                    self.skip_until(begins_declaration);
-                }
-            }
+        while self.peek().is_some() {
+            self.declaration(&mut unit.declarations);
         }
         unit
     }
 
-    pub(super) fn pou(&mut self, kind: PouKind, end: Keyword, unit: &mut CompilationUnit) {
-        let start = self.span();
-        self.advance();
-        let Some(name) = self.expect_identifier("the unit's name") else {
-            self.skip_until(begins_declaration);
-            return;
-        };
-        let has_result = kind == PouKind::Function && self.result_follows();
-        let result = has_result.then(|| self.type_spec()).filter(|result| !self.is_void(result));
-        self.take_semicolons();
-        let mut sections = Vec::new();
-        while let Some(kind) = self.next_section() {
-            sections.push(self.section(kind));
+    /// What may stand in a file or namespace; goes on behind what may not.
+    pub(super) fn declaration(&mut self, into: &mut Vec<Declaration>) {
+        let Some(kind) = self.peek() else { return };
+        match kind {
+            TokenKind::Keyword(Keyword::Program) => {
+                self.pou(PouKind::Program, Keyword::EndProgram, into);
+            }
+            TokenKind::Keyword(Keyword::FunctionBlock) => {
+                self.pou(PouKind::FunctionBlock, Keyword::EndFunctionBlock, into);
+            }
+            TokenKind::Keyword(Keyword::Function) => {
+                self.pou(PouKind::Function, Keyword::EndFunction, into);
+            }
+            TokenKind::Keyword(keyword) if keyword.is_soft() => self.object_declaration(keyword, into),
+            TokenKind::Keyword(Keyword::Type) => self.type_block(into),
+            TokenKind::Keyword(Keyword::VarGlobal) => {
+                let section = self.section(SectionKind::Global);
+                into.push(Declaration::Globals(section));
+            }
+            TokenKind::Identifier if self.at_word("CONFIGURATION") => match self.configuration() {
+                Some(found) => into.push(found),
+                None => self.skip_until(begins_declaration),
+            },
+            TokenKind::Keyword(Keyword::OrganizationBlock) => self.organization_block(into),
+            TokenKind::Keyword(Keyword::DataBlock) => self.data_block(into),
+            // Vendors' exports end a unit with a semicolon; it declares nothing.
+            TokenKind::Punctuation(Punctuation::Semicolon) => self.advance(),
+            _ => {
+                self.report_block_of_other_dialect();
+                self.unexpected("PROGRAM, FUNCTION_BLOCK, FUNCTION, CLASS, TYPE or VAR_GLOBAL");
+                self.advance();
+                self.skip_until(begins_declaration);
+            }
         }
-        self.take_keyword(Keyword::Begin);
-        let body = self.body(end, &mut sections);
-        let span = self.span_from(start);
-        let pou = Pou { kind, name, result, sections, body, span };
-        unit.declarations.push(Declaration::Pou(pou));
+    }
+
+    pub(super) fn pou(&mut self, kind: PouKind, end: Keyword, into: &mut Vec<Declaration>) {
+        match self.unit(kind, end) {
+            Some(pou) => into.push(Declaration::Pou(pou)),
+            None => self.skip_until(begins_declaration),
+        }
     }
 
     /// The `:` before a function's result, or a report that it is missing.
-    fn result_follows(&mut self) -> bool {
+    pub(super) fn result_follows(&mut self) -> bool {
         let name = self.peek() == Some(TokenKind::Identifier) && ElementaryType::find(self.next_text()).is_some();
         if name {
             self.unexpected("`:`");
@@ -109,7 +95,7 @@ impl Cursor<'_> {
     }
 
     /// The kind of the section that begins here.
-    fn next_section(&mut self) -> Option<SectionKind> {
+    pub(super) fn next_section(&mut self) -> Option<SectionKind> {
         if self.at_word("VAR_STAT") {
             self.require(Feature::StaticSection, self.span());
             return Some(SectionKind::Static);
@@ -117,10 +103,19 @@ impl Cursor<'_> {
         section_kind(self.peek())
     }
 
-    fn body(&mut self, end: Keyword, sections: &mut Vec<Section>) -> Vec<Statement> {
+    pub(super) fn body(
+        &mut self,
+        end: Keyword,
+        sections: &mut Vec<Section>,
+        members: &mut Vec<Member>,
+    ) -> Vec<Statement> {
         let mut body = self.statements();
         // A stray closing keyword is reported and passed, so that the rest of the body is read.
         while !self.take_keyword(end) {
+            if self.members(members) {
+                body.extend(self.statements());
+                continue;
+            }
             if let Some(kind) = section_kind(self.peek()) {
                 self.report_late_section(&body);
                 sections.push(self.section(kind));
@@ -193,10 +188,23 @@ impl Cursor<'_> {
                 Some(TokenKind::Keyword(Keyword::Retain)) => Qualifier::Retain,
                 Some(TokenKind::Keyword(Keyword::NonRetain)) => Qualifier::NonRetain,
                 Some(TokenKind::Identifier) if self.at_persistent() => Qualifier::Persistent,
-                _ => return found,
+                _ => match self.section_access() {
+                    Some(access) => Qualifier::Access(access),
+                    None => return found,
+                },
             });
             self.advance();
         }
+    }
+
+    /// `PUBLIC` and the like, which a variable's name may be as well.
+    fn section_access(&self) -> Option<Modifier> {
+        let access = Modifier::find(self.next_text()).filter(|_| self.peek() == Some(TokenKind::Identifier))?;
+        let is_access =
+            matches!(access, Modifier::Public | Modifier::Protected | Modifier::Private | Modifier::Internal);
+        let named =
+            matches!(self.peek_ahead(1), Some(TokenKind::Punctuation(_)) | Some(TokenKind::Keyword(Keyword::At)));
+        (is_access && !named).then_some(access)
     }
 
     /// `PERSISTENT` behind a section's keyword; a variable may have the name, too.
@@ -279,20 +287,21 @@ impl Cursor<'_> {
         self.take_mark(Punctuation::Semicolon);
     }
 
-    fn type_block(&mut self, unit: &mut CompilationUnit) {
+    fn type_block(&mut self, into: &mut Vec<Declaration>) {
         self.advance();
         while self.peek() == Some(TokenKind::Identifier) {
             let (known, start) = (self.reported(), self.span());
             let Some(name) = self.take_identifier() else {
                 break;
             };
+            let before = self.extended_structure();
             if !self.at_bare_structure() {
                 self.expect_mark(Punctuation::Colon);
             }
-            let spec = self.type_spec();
-            let initial = self.optional_initialiser();
+            let (spec, behind) = self.type_spec_extending();
+            let (initial, extends) = (self.optional_initialiser(), before.or(behind));
             let span = self.span_from(start);
-            unit.declarations.push(Declaration::Type(TypeDeclaration { name, spec, initial, span }));
+            into.push(Declaration::Type(TypeDeclaration { name, extends, spec, initial, span }));
             self.end_of_declaration(known);
         }
         if !self.take_keyword(Keyword::EndType) {
@@ -304,16 +313,11 @@ impl Cursor<'_> {
 }
 
 /// Keywords that end a unit or begin the next: no recovery passes them.
-fn ends_unit(kind: TokenKind) -> bool {
+pub(super) fn ends_unit(kind: TokenKind) -> bool {
+    use Keyword as K;
+    let TokenKind::Keyword(keyword) = kind else { return false };
     begins_declaration(kind)
-        || matches!(
-            kind,
-            TokenKind::Keyword(
-                Keyword::EndProgram
-                    | Keyword::EndFunctionBlock
-                    | Keyword::EndFunction
-                    | Keyword::EndOrganizationBlock
-                    | Keyword::EndDataBlock
-            )
-        )
+        || matches!(keyword, K::EndProgram | K::EndFunctionBlock | K::EndFunction)
+        || matches!(keyword, K::EndOrganizationBlock | K::EndDataBlock)
+        || ends_object(keyword)
 }

@@ -108,6 +108,7 @@ impl Cursor<'_> {
     /// A primary with its members, indices and calls.
     pub(super) fn postfix(&mut self) -> Expr {
         let mut expr = self.primary();
+        self.pass_object_caret(&expr);
         loop {
             let (start, height) = (expr.span, expr.height);
             let (kind, below) = if self.take_mark(Punctuation::Dot) {
@@ -115,6 +116,10 @@ impl Cursor<'_> {
                     let span = self.span_from(start);
                     expr = self.node(ExprKind::Part(Box::new(expr), part), span, height);
                     continue;
+                }
+                if let Some(literal) = self.qualified_literal(&expr) {
+                    let span = self.span_from(start);
+                    return Expr { kind: literal, span, height: 1 };
                 }
                 let Some(member) = self.member_name() else {
                     return expr;

@@ -5,8 +5,8 @@ use super::declaration::{begins_declaration, section_kind};
 use crate::diagnostic::{Code, Diagnostic};
 use crate::dialect::{Dialect, Feature};
 use crate::syntax::ast::{
-    CompilationUnit, Declaration, Expr, ExprKind, Field, Ident, Initialiser, InitialiserKind, Literal, PouKind,
-    Qualifier, Section, SectionKind, StructureInit, TypeSpec, TypeSpecKind, Variable,
+    Declaration, Expr, ExprKind, Field, Ident, Initialiser, InitialiserKind, Literal, PouKind, Qualifier, Section,
+    SectionKind, StructureInit, TypeSpec, TypeSpecKind, Variable,
 };
 use crate::syntax::literal::{parse_duration, parse_typed};
 use crate::syntax::source::Span;
@@ -14,10 +14,10 @@ use crate::syntax::token::{Keyword, Punctuation, TokenKind};
 
 impl Cursor<'_> {
     /// `ORGANIZATION_BLOCK`, which the system calls: in each cycle or interval, so it is a program.
-    pub(super) fn organization_block(&mut self, unit: &mut CompilationUnit) {
-        let known = unit.declarations.len();
-        self.pou(PouKind::Program, Keyword::EndOrganizationBlock, unit);
-        let Some(Declaration::Pou(block)) = unit.declarations.get(known) else { return };
+    pub(super) fn organization_block(&mut self, into: &mut Vec<Declaration>) {
+        let known = into.len();
+        self.pou(PouKind::Program, Keyword::EndOrganizationBlock, into);
+        let Some(Declaration::Pou(block)) = into.get(known) else { return };
         let number = block.name.key().strip_prefix("OB").and_then(|text| text.parse::<u32>().ok());
         if number.is_some_and(|number| number != 1 && !(30..=38).contains(&number) && number < 123) {
             let message = "an organization block that is called on an event is not supported";
@@ -28,7 +28,7 @@ impl Cursor<'_> {
 
     /// `DATA_BLOCK "x" STRUCT .. END_STRUCT BEGIN .. END_DATA_BLOCK` is a global variable, be it a
     /// structure, of a user's type or an instance.
-    pub(super) fn data_block(&mut self, unit: &mut CompilationUnit) {
+    pub(super) fn data_block(&mut self, into: &mut Vec<Declaration>) {
         let start = self.span();
         self.advance();
         let Some(name) = self.expect_identifier("the data block's name") else {
@@ -57,7 +57,7 @@ impl Cursor<'_> {
         let variable = Variable { names: vec![name], address: None, spec, edge: None, initial };
         let span = self.span_from(start);
         let section = Section { kind: SectionKind::Global, qualifiers, variables: vec![variable], span };
-        unit.declarations.push(Declaration::Globals(section));
+        into.push(Declaration::Globals(section));
     }
 
     /// `VAR .. END_VAR` of a data block.

@@ -1,6 +1,7 @@
 //! Statements (2nd ed. 3.3.2), with recovery inside a statement.
 
 use super::cursor::Cursor;
+use super::object::ends_object;
 use crate::diagnostic::{Code, Diagnostic};
 use crate::dialect::Feature;
 use crate::syntax::ast::{
@@ -13,6 +14,9 @@ use crate::syntax::token::{Keyword, Punctuation, TokenKind};
 /// Keywords that close a list of statements, whoever opened it.
 fn closes_list(keyword: Keyword) -> bool {
     use Keyword as K;
+    if keyword.is_soft() || ends_object(keyword) {
+        return true;
+    }
     matches!(
         keyword,
         K::EndProgram | K::EndFunctionBlock | K::EndFunction | K::EndIf | K::EndCase | K::EndFor

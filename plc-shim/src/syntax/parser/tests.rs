@@ -23,14 +23,31 @@ fn a_printed_unit_parses_to_itself() {
         FUNCTION f : INT VAR_INPUT x : INT; END_VAR f := -x ** 2 + 1; END_FUNCTION
         FUNCTION_BLOCK e VAR_INPUT c : BOOL R_EDGE; d : BOOL F_EDGE := TRUE; END_VAR END_FUNCTION_BLOCK
         PROGRAM p VAR i : INT; t : TON; END_VAR
-          IF i = 1 AND NOT (i > 2) THEN i := f(1); ELSIF TRUE THEN ; ELSE RETURN; END_IF
+          IF i = 1 AND NOT (i > 2) THEN i := f(1); ELSIF TRUE THEN ; ELSE RETURN; END_IF;
           CASE i OF 1, 2..3: i := 4; i := 5; C#Red: ; ELSE i := 6; END_CASE;
           FOR i := 1 TO 10 BY 2 DO CONTINUE; END_FOR;
           WHILE i < 3 DO EXIT; END_WHILE; REPEAT i := i + 1; UNTIL i > 5 END_REPEAT;
+          d ?= e.f(1).g(x => y); c := a.b.C#Red; THIS^.m(); SUPER^(); SUPER.m(a := THIS);
           t(IN := TRUE, PT := T#1.5s, Q => b, NOT Q => c); a[1, 2].b := LREAL#1.0e-7 * 16#FF;
           %QX0.1 := %IX0.0 AND %MD3.%X31; r REF= a^.b[1]^.c; r ?= REF(x^); p^(IN := q^[1].%X1); w.%B1 := w.3 OR a[1].w.%W0;
-        END_PROGRAM";
-    let (once, _) = reparse(text);
+        END_PROGRAM
+        ACTION a1: i := 1; END_ACTION
+        INTERFACE I1 EXTENDS I2, n.I3 METHOD m : INT VAR_INPUT x : INT; END_VAR END_METHOD
+          PROPERTY p : REAL GET END_GET SET END_SET END_PROPERTY END_INTERFACE
+        CLASS ABSTRACT C1 EXTENDS n.m.C0 IMPLEMENTS I1, I2
+          VAR PRIVATE CONSTANT a : INT := 1; END_VAR VAR PUBLIC public, method : INT; END_VAR
+          METHOD PROTECTED ABSTRACT m END_METHOD
+          METHOD PUBLIC OVERRIDE FINAL n : INT VAR x : INT; END_VAR n := method; method := 1; END_METHOD
+        END_CLASS
+        FUNCTION_BLOCK FINAL F1 EXTENDS F0 METHOD PRIVATE m END_METHOD x := 1; END_FUNCTION_BLOCK
+        METHOD m2 : BOOL m2 := TRUE; END_METHOD
+        PROPERTY INTERNAL p : INT GET VAR y : INT; END_VAR p := y; END_GET SET y := p; END_SET END_PROPERTY
+        TYPE S2 EXTENDS S1 : STRUCT a : INT; END_STRUCT; S3 : STRUCT EXTENDS n.S2 b : INT; END_STRUCT; END_TYPE
+        NAMESPACE INTERNAL a.b USING c, d.e; VAR_GLOBAL g : d.T; END_VAR NAMESPACE OPEN c END_NAMESPACE END_NAMESPACE
+        USING a.b;
+        FUNCTION g : INT USING a; VAR x : a.T; END_VAR g := a.f(x); END_FUNCTION";
+    let (once, diagnostics) = reparse(text);
+    assert_eq!(diagnostics, []);
     let (twice, diagnostics) = reparse(&once);
     assert_eq!(diagnostics, []);
     assert_eq!(once, twice);

@@ -17,10 +17,10 @@ impl Cursor<'_> {
             return self.array_type();
         }
         if self.take_keyword(Keyword::Struct) {
-            return TypeSpecKind::Struct(self.members(Keyword::EndStruct));
+            return TypeSpecKind::Struct(self.members_of(Keyword::EndStruct));
         }
         if self.take_keyword(Keyword::Union) {
-            return TypeSpecKind::Union(self.members(Keyword::EndUnion));
+            return TypeSpecKind::Union(self.members_of(Keyword::EndUnion));
         }
         if self.take_mark(Punctuation::LeftParen) {
             let values = self.enumeration_values();
@@ -38,6 +38,7 @@ impl Cursor<'_> {
         if matches!(name.key().as_str(), "STRING" | "WSTRING") {
             return self.string_type(name);
         }
+        let name = self.qualified(name);
         if self.take_mark(Punctuation::LeftParen) {
             // The 3rd edition writes it in front (6.4.4.2).
             let named = self.peek() == Some(TokenKind::Identifier);
@@ -140,7 +141,11 @@ impl Cursor<'_> {
         TypeSpecKind::OpenArray(dimensions, Box::new(self.type_spec()))
     }
 
-    fn members(&mut self, end: Keyword) -> Vec<Field> {
+    pub(super) fn struct_type(&mut self) -> TypeSpecKind {
+        TypeSpecKind::Struct(self.members_of(Keyword::EndStruct))
+    }
+
+    fn members_of(&mut self, end: Keyword) -> Vec<Field> {
         let mut fields = Vec::new();
         while self.peek() == Some(TokenKind::Identifier) {
             self.fields(&mut fields);

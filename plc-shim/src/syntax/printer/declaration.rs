@@ -12,29 +12,32 @@ impl Printer {
             Declaration::Pou(pou) => self.pou(pou),
             Declaration::Type(declaration) => self.type_declaration(declaration),
             Declaration::Globals(section) => self.section(section),
+            Declaration::Namespace(namespace) => self.namespace(namespace),
+            Declaration::Using(names) => self.using(names),
             Declaration::Configuration(configuration) => self.configuration(configuration),
         }
         self.end_line();
     }
 
-    fn pou(&mut self, pou: &Pou) {
+    pub(super) fn pou(&mut self, pou: &Pou) {
         let (begin, end) = match pou.kind {
+            PouKind::Class => ("CLASS ", "END_CLASS"),
+            PouKind::Interface => ("INTERFACE ", "END_INTERFACE"),
+            PouKind::Method | PouKind::Action => ("METHOD ", "END_METHOD"),
             PouKind::Program => ("PROGRAM ", "END_PROGRAM"),
             PouKind::FunctionBlock => ("FUNCTION_BLOCK ", "END_FUNCTION_BLOCK"),
             PouKind::Function => ("FUNCTION ", "END_FUNCTION"),
         };
         self.word(begin);
+        self.modifiers(&pou.object.modifiers);
         self.name(&pou.name);
         if let Some(result) = &pou.result {
             self.word(" : ");
             self.type_spec(result);
         }
+        self.heritage(&pou.object);
         self.end_line();
-        for section in &pou.sections {
-            self.section(section);
-        }
-        self.statements(&pou.body);
-        self.line(end);
+        self.unit_behind_head(pou, end);
     }
 
     pub(super) fn section(&mut self, section: &Section) {
@@ -50,11 +53,13 @@ impl Printer {
             SectionKind::External => "VAR_EXTERNAL",
         });
         for qualifier in &section.qualifiers {
+            self.word(" ");
             self.word(match qualifier {
-                Qualifier::Constant => " CONSTANT",
-                Qualifier::Retain => " RETAIN",
-                Qualifier::NonRetain => " NON_RETAIN",
-                Qualifier::Persistent => " PERSISTENT",
+                Qualifier::Constant => "CONSTANT",
+                Qualifier::Retain => "RETAIN",
+                Qualifier::NonRetain => "NON_RETAIN",
+                Qualifier::Persistent => "PERSISTENT",
+                Qualifier::Access(access) => access.text(),
             });
         }
         self.end_line();
@@ -105,6 +110,10 @@ impl Printer {
         self.indented(|printer| {
             printer.begin_line();
             printer.name(&declaration.name);
+            if let Some(base) = &declaration.extends {
+                printer.word(" EXTENDS ");
+                printer.word(&base.text);
+            }
             printer.typed(&declaration.spec, declaration.initial.as_ref());
         });
         self.line("END_TYPE");

@@ -1,0 +1,95 @@
+//! Properties, which vendors have: a value that a method gives, a target that a method takes.
+
+use super::call::Passing;
+use super::class::Role;
+use super::convert::Operand;
+use super::method_call::Object;
+use super::scope::Body;
+use crate::diagnostic::{Code, Diagnostic};
+use crate::ir::{Argument, Statement, StatementKind};
+use crate::syntax::Span;
+use crate::syntax::ast::{self, Ident};
+
+impl Body<'_, '_> {
+    /// The value of a property of the running instance; nothing if the name is none.
+    pub(super) fn own_property(&mut self, name: &Ident) -> Option<Option<Operand>> {
+        let object = self.own_property_object(name)?;
+        self.value(object, name)
+    }
+
+    /// The value of a property of another instance.
+    pub(super) fn property_of(&mut self, base: &ast::Expr, name: &Ident) -> Option<Option<Operand>> {
+        match self.property_object(base, name)? {
+            Some(object) => self.value(object, name),
+            None => Some(None),
+        }
+    }
+
+    fn own_property_object(&mut self, name: &Ident) -> Option<Object> {
+        let key = name.key();
+        if !self.checker.property_names.contains(&key) || self.scope.declares(&key) {
+            return None;
+        }
+        let class = self.own_class()?;
+        self.property_of_class(class, name)?;
+        Some(self.this_object(class, name.span))
+    }
+
+    fn property_object(&mut self, base: &ast::Expr, name: &Ident) -> Option<Option<Object>> {
+        if !self.checker.property_names.contains(&name.key()) {
+            return None;
+        }
+        let Some(object) = self.object(base)? else { return Some(None) };
+        self.property_of_class(object.class, name)?;
+        Some(Some(object))
+    }
+
+    /// Something if the unit has a property of the name.
+    fn property_of_class(&self, class: crate::ir::PouId, name: &Ident) -> Option<()> {
+        let has = |role| self.checker.find_member(class, role, &name.text).is_some();
+        (has(Role::Getter) || has(Role::Setter)).then_some(())
+    }
+
+    fn value(&mut self, object: Object, name: &Ident) -> Option<Option<Operand>> {
+        let Some(getter) = self.checker.find_member(object.class, Role::Getter, &name.text) else {
+            return Some(self.lacks(name, "GET"));
+        };
+        let read = self
+            .check_method_access(getter, name.span)
+            .and_then(|()| self.on_object(object, Role::Getter, getter, Vec::new(), Passing::default(), name.span));
+        Some(read.map(Operand::Typed))
+    }
+
+    fn lacks<T>(&mut self, name: &Ident, accessor: &str) -> Option<T> {
+        let message = format!("the property `{}` has no {accessor}", name.text);
+        self.report(Diagnostic::error(Code::WrongProperty, name.span, message));
+        None
+    }
+
+    /// An assignment whose target is a property.
+    pub(super) fn property_assignment(
+        &mut self,
+        target: &ast::Expr,
+        value: &ast::Expr,
+        span: Span,
+    ) -> Option<Option<Statement>> {
+        let (object, name) = match &target.kind {
+            ast::ExprKind::Name(name) => (Some(self.own_property_object(name)?), name),
+            ast::ExprKind::Member(base, name) => (self.property_object(base, name)?, name),
+            _ => return None,
+        };
+        Some(object.and_then(|object| self.set(object, name, value, span)))
+    }
+
+    fn set(&mut self, object: Object, name: &Ident, value: &ast::Expr, span: Span) -> Option<Statement> {
+        let Some(setter) = self.checker.find_member(object.class, Role::Setter, &name.text) else {
+            return self.lacks(name, "SET");
+        };
+        self.check_method_access(setter, name.span)?;
+        let scope = self.checker.interface(setter, span)?;
+        let ty = scope.inputs().next()?.ty;
+        let arguments = vec![Argument::Value(self.expression_for(value, ty)?)];
+        let call = self.on_object(object, Role::Setter, setter, arguments, Passing::default(), span)?;
+        Some(Statement { kind: StatementKind::Evaluate(call), span })
+    }
+}

@@ -1,0 +1,413 @@
+//! Classes, methods, interfaces (3rd ed. 6.6.5 to 6.6.7), and what vendors add to them.
+
+use crate::rig::Rig;
+
+/// After one scan.
+fn run(text: &str) -> Rig {
+    let mut rig = Rig::new(text);
+    rig.scan().expect("no fault");
+    rig
+}
+
+fn fault(text: &str) -> String {
+    let mut rig = Rig::new(text);
+    for _ in 0..100 {
+        if let Err(fault) = rig.scan() {
+            return fault.to_string();
+        }
+    }
+    panic!("no fault");
+}
+
+const COUNTER: &str = "CLASS Counter
+VAR value : INT; END_VAR
+VAR PUBLIC limit : INT := 100; END_VAR
+METHOD PUBLIC Up : INT
+VAR_INPUT step : INT := 1; END_VAR
+VAR before : INT; END_VAR
+  before := value;
+  value := before + step;
+  IF value > limit THEN value := limit; END_IF;
+  Up := value;
+END_METHOD
+METHOD PUBLIC Both
+VAR_OUTPUT now : INT; twice : DINT; END_VAR
+VAR_IN_OUT sum : INT; END_VAR
+  now := value;
+  twice := 2 * value;
+  sum := sum + value;
+END_METHOD
+END_CLASS
+";
+
+#[test]
+fn iec3_6_6_5_2_methods_of_a_class_work_on_their_instance() {
+    let rig = run(&format!(
+        "{COUNTER}PROGRAM P
+VAR a, b : Counter; list : ARRAY [1..3] OF Counter; i, x, y, z, sum : INT; d : DINT; END_VAR
+  a.Up(5);
+  x := a.Up(step := 2) + b.Up(step := 3);
+  b.limit := 4;
+  y := b.Up(9);
+  FOR i := 1 TO 3 DO list[i].Up(i); z := 10 * z + list[i].Up(1); END_FOR;
+  sum := 1;
+  a.Both(sum := sum, now => i, twice => d);
+END_PROGRAM"
+    ));
+    let values = ["x", "y", "z", "sum", "i", "d"].map(|name| rig.int(&format!("P.{name}")));
+    assert_eq!(values, [10, 4, 234, 8, 7, 14]);
+}
+
+const SHAPES: &str = "CLASS ABSTRACT Shape
+VAR PROTECTED size : INT; END_VAR
+VAR PRIVATE secret : INT := 77; END_VAR
+METHOD PUBLIC SetSize VAR_INPUT value : INT; END_VAR size := value; END_METHOD
+METHOD PUBLIC ABSTRACT Area : INT END_METHOD
+METHOD PUBLIC Twice : INT Twice := 2 * THIS.Area(); END_METHOD
+METHOD PUBLIC Hidden : INT Hidden := secret; END_METHOD
+END_CLASS
+CLASS Square EXTENDS Shape
+METHOD PUBLIC OVERRIDE Area : INT Area := size * size; END_METHOD
+END_CLASS
+CLASS FINAL Cube EXTENDS Square
+VAR secret : INT := 5; END_VAR
+METHOD PUBLIC OVERRIDE Area : INT Area := 6 * SUPER.Area() + secret - 5; END_METHOD
+END_CLASS
+CLASS Line EXTENDS Shape
+METHOD PUBLIC OVERRIDE Area : INT Area := 0; END_METHOD
+END_CLASS
+FUNCTION Measure : INT
+VAR_IN_OUT shape : Shape; END_VAR
+  Measure := shape.Twice() + shape.Area();
+END_FUNCTION
+";
+
+#[test]
+fn iec3_6_6_5_5_calls_find_the_method_of_the_instance() {
+    let rig = run(&format!(
+        "{SHAPES}PROGRAM P
+VAR s : Square; c : Cube; l : Line; a, b, d, e : INT; END_VAR
+  s.SetSize(2); c.SetSize(3); l.SetSize(4);
+  a := Measure(s); b := Measure(c); d := Measure(l); e := c.Hidden();
+END_PROGRAM"
+    ));
+    let values = ["a", "b", "d", "e"].map(|name| rig.int(&format!("P.{name}")));
+    assert_eq!(values, [12, 162, 0, 77]);
+}
+
+const DRIVES: &str = "INTERFACE IDrive
+METHOD Start : BOOL VAR_INPUT speed : INT; END_VAR VAR_OUTPUT actual : INT; END_VAR END_METHOD
+METHOD Name : STRING[10] END_METHOD
+PROPERTY Level : INT GET END_GET SET END_SET END_PROPERTY
+END_INTERFACE
+INTERFACE IBrake EXTENDS IDrive
+METHOD Brake END_METHOD
+END_INTERFACE
+FUNCTION_BLOCK Simple IMPLEMENTS IDrive
+VAR height : INT := 1; END_VAR
+METHOD Start : BOOL VAR_INPUT speed : INT; END_VAR VAR_OUTPUT actual : INT; END_VAR
+  actual := speed; height := speed; Start := speed > 0;
+END_METHOD
+METHOD Name : STRING[10] Name := 'simple'; END_METHOD
+PROPERTY Level : INT GET Level := level_of(); END_GET SET height := Level; END_SET END_PROPERTY
+METHOD PRIVATE level_of : INT level_of := height; END_METHOD
+END_FUNCTION_BLOCK
+FUNCTION_BLOCK Better EXTENDS Simple IMPLEMENTS IBrake
+VAR brakes : INT; END_VAR
+METHOD Start : BOOL VAR_INPUT speed : INT; END_VAR VAR_OUTPUT actual : INT; END_VAR
+  Start := SUPER^.Start(speed := 2 * speed, actual => actual); actual := actual + 1;
+END_METHOD
+METHOD Name : STRING[10] Name := 'better'; END_METHOD
+METHOD Brake brakes := brakes + 1; Level := 0; END_METHOD
+METHOD Self : IDrive Self := THIS^; END_METHOD
+END_FUNCTION_BLOCK
+";
+
+#[test]
+fn iec3_6_6_6_interfaces_refer_to_what_implements_them() {
+    let rig = run(&format!(
+        "{DRIVES}PROGRAM P
+VAR s : Simple; b : Better; d : IDrive; k : IBrake; list : ARRAY [0..1] OF IDrive;
+  i, x, y, z, before, after : INT; first, second : STRING[10]; none, same, other, ok : BOOL; END_VAR
+  none := d = NULL;
+  d := s;
+  same := d = s; other := d <> b;
+  ok := d.Start(7, actual => x);
+  first := d.Name();
+  k := b; list[0] := s; list[1] := k;
+  FOR i := 0 TO 1 DO list[i].Start(speed := 10 * i + 1, actual => y); z := 100 * z + y; END_FOR;
+  second := list[1].Name();
+  before := k.Level; k.Brake(); after := b.Self().Level;
+  b.Self().Level := 40 + s.Level;
+END_PROGRAM"
+    ));
+    let values = ["x", "y", "z", "before", "after", "b.height"].map(|name| rig.int(&format!("P.{name}")));
+    assert_eq!(values, [7, 23, 123, 22, 0, 41]);
+    assert_eq!((rig.text("P.first").as_str(), rig.text("P.second").as_str()), ("simple", "better"));
+    assert!(["none", "same", "other", "ok"].iter().all(|name| rig.bool(&format!("P.{name}"))));
+}
+
+#[test]
+fn iec3_6_6_6_use_of_an_interface_that_refers_to_nothing_is_a_fault() {
+    insta::assert_snapshot!(fault(&format!(
+        "{DRIVES}PROGRAM P\nVAR d : IDrive; s : Simple; x : INT; n : INT; END_VAR\n  n := n + 1;\n  IF n = 1 THEN d := s; ELSE d := NULL; END_IF;\n  x := d.Level;\nEND_PROGRAM"
+    )), @"use of a NULL reference at test.st:31:8 in P, t_v = 0.020 s");
+}
+
+#[test]
+fn vendors_derived_statements_replace_those_of_the_base() {
+    let rig = run("FUNCTION_BLOCK Base
+VAR_INPUT x : INT; END_VAR VAR_OUTPUT y : INT; END_VAR VAR n : INT; END_VAR
+  n := n + 1; y := x + 1;
+END_FUNCTION_BLOCK
+FUNCTION_BLOCK Derived EXTENDS Base
+VAR_INPUT z : INT; END_VAR
+  IF z > 0 THEN SUPER^(); END_IF;
+  y := y * 10 + THIS^.x;
+END_FUNCTION_BLOCK
+FUNCTION Call : INT VAR_IN_OUT block : Base; END_VAR block(x := 3); Call := block.y; END_FUNCTION
+PROGRAM P VAR b : Base; d, e : Derived; r, s, t : INT; END_VAR
+  d(x := 5, z := 1, y => r); e(x := 4);
+  s := Call(d); t := Call(b);
+END_PROGRAM");
+    let values = ["r", "s", "t", "d.n", "e.n", "e.y"].map(|name| rig.int(&format!("P.{name}")));
+    assert_eq!(values, [65, 43, 4, 2, 0, 4]);
+}
+
+#[test]
+fn iec2_2_6_4_1_actions_work_on_the_variables_of_their_unit() {
+    let rig = run("FUNCTION_BLOCK Valve
+VAR_INPUT open : BOOL; END_VAR VAR_OUTPUT n : INT; END_VAR
+  IF open THEN Count(); END_IF;
+END_FUNCTION_BLOCK
+ACTION Count: n := n + 1; END_ACTION
+ACTION Reset: n := 100; END_ACTION
+PROGRAM P VAR v : Valve; a, b : INT; END_VAR
+  v(open := TRUE, n => a); v.Reset(); v.Count(); Note(); P.Note();
+END_PROGRAM
+ACTION Note: b := b + v.n; END_ACTION");
+    assert_eq!(["a", "b"].map(|name| rig.int(&format!("P.{name}"))), [1, 202]);
+}
+
+#[test]
+fn a_circle_of_dynamic_calls_keeps_its_data_or_stops() {
+    let chain = |extra: &str, depth: &str| {
+        format!(
+            "INTERFACE INode METHOD Sum : INT VAR_INPUT n : INT; END_VAR END_METHOD END_INTERFACE
+CLASS Node IMPLEMENTS INode
+VAR PUBLIC next : INode; value : INT; END_VAR
+METHOD PUBLIC Sum : INT VAR_INPUT n : INT; END_VAR VAR rest : INT; {extra} END_VAR
+  rest := 10 * n + value;
+  IF next <> NULL THEN Sum := next.Sum(n + 1); END_IF;
+  Sum := Sum + rest;
+END_METHOD
+END_CLASS
+PROGRAM P VAR a, b, c : Node; r : INT; END_VAR
+  a.value := 1; b.value := 2; c.value := 3; a.next := b; b.next := c; {depth}
+  r := a.Sum(1);
+END_PROGRAM"
+        )
+    };
+    assert_eq!(run(&chain("", "")).int("P.r"), 66);
+    let endless = fault(&chain("", "c.next := a;"));
+    assert!(
+        endless.starts_with("calls nested too deep at test.st:4:15 in Node.Sum, called by Node.Sum at test.st:6,"),
+        "{endless}"
+    );
+    insta::assert_snapshot!(
+        fault(&chain("list : ARRAY [0..3] OF INT;", "")),
+        @"a unit was called while it ran at test.st:4:15 in Node.Sum, called by Node.Sum at test.st:6, called by P at test.st:12, t_v = 0.010 s"
+    );
+}
+
+#[test]
+fn iec3_6_6_6_7_an_assignment_attempt_gives_null_to_what_does_not_implement() {
+    let rig = run(&format!(
+        "{DRIVES}CLASS Other IMPLEMENTS IThing END_CLASS INTERFACE IThing END_INTERFACE
+PROGRAM P
+VAR s : Simple; b : Better; o : Other; d, e : IDrive; k, l, m : IBrake; t : IThing; r : ARRAY [1..5] OF BOOL; END_VAR
+  d := s; k ?= d; r[1] := k = NULL;
+  d := b; k ?= d; r[2] := k <> NULL AND k = d;
+  d := NULL; l := b; l ?= d; r[3] := l = NULL;
+  t := o; e ?= t; r[4] := NULL = e;
+  m ?= b; r[5] := m = b;
+END_PROGRAM"
+    ));
+    assert!((1..=5).all(|index| rig.bool(&format!("P.r[{index}]"))));
+}
+
+#[test]
+fn vendors_structures_extend_structures() {
+    let rig = run("TYPE
+  Point : STRUCT x, y : INT := 2; END_STRUCT;
+  Place EXTENDS Point : STRUCT z : DINT := 3; END_STRUCT;
+  Spot : STRUCT EXTENDS Place w : INT := 4; END_STRUCT;
+END_TYPE
+PROGRAM P VAR s : Spot := (x := 1, z := 30); r : DINT; END_VAR
+  r := s.x + 10 * s.y + 100 * s.z + s.w;
+END_PROGRAM");
+    assert_eq!(rig.int("P.r"), 1 + 20 + 3000 + 4);
+}
+
+#[test]
+fn iec3_6_6_7_a_function_block_extends_a_class_and_its_instances_lie_in_arrays_and_structures() {
+    let rig = run(&format!(
+        "{COUNTER}FUNCTION_BLOCK Beat EXTENDS Counter
+VAR_INPUT go : BOOL R_EDGE; END_VAR
+  IF go THEN Up(1); END_IF;
+END_FUNCTION_BLOCK
+FUNCTION_BLOCK Loud EXTENDS Beat
+  SUPER(); value := value + 10;
+END_FUNCTION_BLOCK
+TYPE Cell : STRUCT beat : Loud; END_STRUCT; END_TYPE
+PROGRAM P VAR cells : ARRAY [0..1] OF Cell; l : Loud; b : Beat; r : INT; END_VAR
+ l(go := TRUE); b(go := TRUE);
+  cells[1].beat(go := TRUE); cells[1].beat(go := TRUE);
+  r := cells[1].beat.Up(0) + cells[0].beat.Up(0);
+END_PROGRAM"
+    ));
+    let values = ["l.value", "b.value", "r", "cells[1].beat.value", "cells[1].beat.limit"]
+        .map(|name| rig.int(&format!("P.{name}")));
+    assert_eq!(values, [11, 1, 21, 21, 100]);
+}
+
+#[test]
+fn retained_instances_keep_what_is_inherited_over_a_warm_start() {
+    let mut rig = Rig::new(&format!(
+        "{SHAPES}PROGRAM P VAR RETAIN s : Square; END_VAR VAR t : Cube; a, b : INT; END_VAR
+  IF s.Area() = 0 THEN s.SetSize(3); t.SetSize(3); END_IF;
+  a := Measure(s); b := Measure(t);
+END_PROGRAM"
+    ));
+    rig.scan().expect("no fault");
+    assert_eq!((rig.int("P.a"), rig.int("P.b")), (27, 162));
+    rig.plc.warm_start();
+    rig.scan().expect("no fault");
+    assert_eq!((rig.int("P.a"), rig.int("P.b")), (27, 0));
+}
+
+#[test]
+fn lints_know_members_and_what_is_derived() {
+    let text = format!(
+        "{COUNTER}FUNCTION_BLOCK Base
+VAR_OUTPUT q : INT; END_VAR VAR used, left : INT; END_VAR
+METHOD PROTECTED Set VAR lost : INT; END_VAR used := 1; END_METHOD
+METHOD Call used := used + 1; RETURN; used := 0; END_METHOD
+END_FUNCTION_BLOCK
+FUNCTION_BLOCK Derived EXTENDS Base
+METHOD OVERRIDE Set q := 2; END_METHOD
+END_FUNCTION_BLOCK
+PROGRAM P VAR c : Counter; d : Derived; n : INT; i : Chain; END_VAR
+  d.Call(); n := c.Up(1); i.Next().Next(); GVL.used := GVL.used + n;
+END_PROGRAM
+INTERFACE INext METHOD Next : INext END_METHOD END_INTERFACE
+FUNCTION_BLOCK Chain IMPLEMENTS INext METHOD Next : INext Next := THIS; END_METHOD END_FUNCTION_BLOCK
+NAMESPACE GVL VAR_GLOBAL used, unused : INT; END_VAR END_NAMESPACE"
+    );
+    let input = onescan_plc_shim::Input::from_text("test.st", onescan_plc_shim::input::kind::SourceKind::Text, text);
+    insta::assert_snapshot!(onescan_plc_shim::inspect([input], None), @r#"
+    test.st:21:39: warning[W0706]: variable `left` is never used
+    test.st:22:26: warning[W0706]: variable `lost` is never used
+    test.st:23:39: warning[W0705]: this is never reached
+    test.st:33:32: warning[W0706]: variable `unused` is never used
+    "#);
+}
+
+#[test]
+fn each_rule_of_objects_has_its_finding() {
+    insta::assert_snapshot!(crate::rig::findings(&format!(
+        "{SHAPES}{DRIVES}CLASS Bad EXTENDS Cube IMPLEMENTS IBrake, Square END_CLASS
+CLASS Wrong EXTENDS Shape
+VAR PRIVATE mine : INT; END_VAR
+METHOD PUBLIC OVERRIDE Area : DINT Area := 1; END_METHOD
+METHOD OVERRIDE Nothing END_METHOD
+METHOD PUBLIC FINAL Done END_METHOD
+METHOD ABSTRACT Never END_METHOD
+METHOD PRIVATE Own END_METHOD
+END_CLASS
+CLASS After EXTENDS Wrong
+METHOD PUBLIC Done Own(); mine := 1; size := 1; SUPER.Oops(); END_METHOD
+END_CLASS
+CLASS Loop1 EXTENDS Loop2 END_CLASS
+CLASS Loop2 EXTENDS Loop1 END_CLASS
+FUNCTION F : INT F := THIS.x; END_FUNCTION
+PROGRAM P
+VAR s : Square; h : Shape; w : Wrong; d : IDrive; f : Simple; i : INT; k : IBrake; END_VAR
+  s.size := 3;
+  s.Aera();
+  s.Area;
+  i := s.Area;
+  w.Own();
+  f.level_of();
+  s();
+  d := s;
+  d := i;
+  k := d;
+  d := 5;
+  IF d < d THEN i := 1; END_IF;
+  SUPER.Area();
+  s.SetSize();
+  s.SetSize(1, 2);
+  s.SetSize(size := 1);
+  d.Start(speed := 1, actual => s);
+  Square.Area();
+  i := Measure(i);
+  i := d.Level + f.height;
+  f.Level := TRUE;
+END_PROGRAM
+FUNCTION_BLOCK Self METHOD Again : INT Again := Again(); END_METHOD END_FUNCTION_BLOCK
+METHOD Alone END_METHOD"
+    )), @r#"
+    test.st:49:7: error[O0803]: `Bad` lacks the method `Start` of `IDrive`
+    test.st:49:7: error[O0803]: `Bad` lacks the method `Name` of `IDrive`
+    test.st:49:7: error[O0803]: `Bad` lacks GET of the property `Level` of `IDrive`
+    test.st:49:7: error[O0803]: `Bad` lacks SET of the property `Level` of `IDrive`
+    test.st:49:7: error[O0803]: `Bad` lacks the method `Brake` of `IBrake`
+    test.st:49:19: error[O0805]: `Cube` is FINAL and cannot be extended
+    test.st:49:43: error[O0807]: `Square` is not an interface
+    test.st:52:24: error[O0804]: `Area` has other parameters or another result than what it overrides
+    test.st:53:17: error[O0806]: no base has a method `Nothing` to override
+    test.st:55:17: error[O0802]: `Wrong` has an ABSTRACT method and is not ABSTRACT itself
+    test.st:58:7: error[O0803]: `After` lacks the method `Never` of `Wrong`
+    test.st:59:15: error[O0805]: `Done` is FINAL in its base
+    test.st:59:20: error[O0801]: `Wrong.Own` is PRIVATE
+    test.st:59:27: error[N0101]: `mine` is not declared
+    test.st:59:55: error[N0104]: Wrong has no method `Oops`
+    test.st:61:7: error[D0404]: `Loop1` extends itself
+    test.st:63:23: error[O0808]: THIS is used where no instance runs
+    test.st:65:21: error[O0802]: `Shape` is ABSTRACT and has no instances (declare an instance of what extends it)
+    test.st:66:5: error[N0104]: `size` is internal to Square
+    test.st:67:5: error[N0104]: Square has no member `Aera` (did you mean `Area`?)
+    test.st:68:9: error[S0101]: `:=` or `(` expected, found `;`
+    test.st:69:10: error[N0106]: `Area` is a method: call it as `Area()`
+    test.st:70:5: error[O0801]: `Wrong.Own` is PRIVATE
+    test.st:71:5: error[O0801]: `Simple.level_of` is PRIVATE
+    test.st:72:3: error[C0306]: a class has no statements of its own; call one of its methods
+    test.st:73:8: error[T0201]: Square does not implement IDrive
+    test.st:74:8: error[T0201]: IDrive is wanted, this is INT
+    test.st:75:8: error[T0201]: IBrake is wanted, this is IDrive (assign it with `?=`, which gives NULL if it is something else)
+    test.st:76:8: error[T0201]: IDrive is wanted, this is an integer
+    test.st:77:6: error[T0203]: references are compared with `=` and `<>` only
+    test.st:78:3: error[O0808]: SUPER is used in what extends nothing
+    test.st:79:3: error[C0302]: parameter `value` is missing
+    test.st:80:16: error[C0303]: `SetSize` takes 1 arguments
+    test.st:81:13: error[C0301]: `SetSize` has no such parameter `size`
+    test.st:82:33: error[T0201]: Square is wanted, this is INT
+    test.st:83:3: error[N0101]: `Square` is not declared
+    test.st:84:16: error[C0305]: VAR_IN_OUT `shape` is Shape, this is INT
+    test.st:85:20: error[N0104]: `height` is internal to Simple
+    test.st:86:14: error[T0201]: INT is wanted, this is BOOL (convert it with BOOL_TO_INT)
+    test.st:88:49: error[D0404]: this call makes `Self.Again` call itself
+    "#);
+}
+
+#[test]
+fn what_vendors_run_by_itself_is_told() {
+    insta::assert_snapshot!(crate::rig::findings(
+        "FUNCTION_BLOCK F METHOD FB_init : BOOL VAR_INPUT a : INT; END_VAR FB_init := TRUE; END_METHOD END_FUNCTION_BLOCK
+PROGRAM P VAR f : F(a := 5); END_VAR END_PROGRAM"
+    ), @r#"
+    test.st:1:25: error[L0501]: `FB_init`, which vendors run by itself, is not supported yet (call a method of another name in the first scan)
+    test.st:2:19: error[L0501]: an instance with arguments for FB_init is not supported yet
+    "#);
+}
