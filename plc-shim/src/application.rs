@@ -6,10 +6,12 @@ mod leaves;
 pub(crate) mod library;
 mod namespace;
 mod retain;
+mod room;
 mod root;
 mod value;
 mod variable;
 
+use std::collections::BTreeSet;
 use std::ops::Range;
 use std::sync::{Arc, OnceLock};
 
@@ -21,10 +23,11 @@ use crate::diagnostic::Diagnostics;
 use crate::input::Input;
 use crate::input::kind::SourceKind;
 use crate::ir::{Configuration, Retention};
-use crate::syntax::SourceMap;
+use crate::syntax::{FileId, SourceMap};
 
 pub(crate) use front::Front;
 pub use inspect::inspect;
+use room::with_room;
 pub use value::WriteError;
 pub use variable::{Program, UnknownVariable, Variable, VariableAccess};
 
@@ -67,13 +70,7 @@ impl Application {
     /// # Errors
     /// All that is wrong with them, and the warnings too.
     pub fn from_inputs(inputs: impl IntoIterator<Item = Input>) -> Result<Self, Diagnostics> {
-        let Front { sources, checked, findings, .. } = Front::new(inputs);
-        let findings = Diagnostics::new(findings, &sources);
-        if findings.has_errors() {
-            Err(findings)
-        } else {
-            Ok(Self::compiled(sources, checked, findings, Noted::Nothing))
-        }
+        Self::made(inputs.into_iter().collect(), |_| Noted::Nothing)
     }
 
     /// Like [`Self::from_inputs`], to be run with [`SoftPlc::coverage`](crate::SoftPlc::coverage).
@@ -82,10 +79,19 @@ impl Application {
     /// # Errors
     /// All that is wrong with the files, and the warnings too.
     pub fn from_inputs_with_coverage(inputs: impl IntoIterator<Item = Input>) -> Result<Self, Diagnostics> {
-        let Front { sources, checked, findings, library, .. } = Front::new(inputs);
-        let findings = Diagnostics::new(findings, &sources);
-        let noted = Noted::AllBut(&library);
-        if findings.has_errors() { Err(findings) } else { Ok(Self::compiled(sources, checked, findings, noted)) }
+        Self::made(inputs.into_iter().collect(), |library| Noted::AllBut(library))
+    }
+
+    fn made(inputs: Vec<Input>, noted: fn(&BTreeSet<FileId>) -> Noted<'_>) -> Result<Self, Diagnostics> {
+        with_room(|| {
+            let Front { sources, checked, findings, library, .. } = Front::new(inputs);
+            let findings = Diagnostics::new(findings, &sources);
+            if findings.has_errors() {
+                Err(findings)
+            } else {
+                Ok(Self::compiled(sources, checked, findings, noted(&library)))
+            }
+        })
     }
 
     fn compiled(sources: SourceMap, checked: Checked, warnings: Diagnostics, noted: Noted<'_>) -> Self {

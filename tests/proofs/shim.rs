@@ -63,7 +63,8 @@ impl Plc {
         plc.cold_start();
         plc.memory_mut()[..memory.len()].copy_from_slice(memory);
         plc.scan(VirtualTime::from_ns(1_000_000)).expect("no fault");
-        memory.copy_from_slice(&plc.memory()[..memory.len()]);
+        let size = memory.len();
+        memory.copy_from_slice(&plc.memory()[..size]);
     }
 
     fn read(&self, memory: &[u8], path: &str) -> i64 {
