@@ -61,7 +61,7 @@ impl Gateway {
     fn take_outputs(&self, outputs: &mut [u8]) {
         let mut port = 0;
         for bound in &self.bindings.outputs {
-            let (size, offset) = (bound.port.ty.size(), bound.offsets[0]);
+            let (size, offset) = (bound.port.ty.size(), bound.places[0].offset);
             outputs[port..port + size].copy_from_slice(&self.plc.memory()[offset..offset + size]);
             port += size;
         }
@@ -87,7 +87,7 @@ impl Client for Gateway {
         let mut port = 0;
         for bound in self.bindings.inputs.clone() {
             let size = bound.port.ty.size();
-            for offset in bound.offsets {
+            for offset in bound.places.iter().map(|place| place.offset) {
                 self.plc.memory_mut()[offset..offset + size].copy_from_slice(&inputs[port..port + size]);
             }
             port += size;
