@@ -47,9 +47,8 @@ impl Body<'_, '_> {
     /// A call without EN and ENO, unless its function declares them.
     pub(super) fn plain_call(&mut self, call: &Call, span: Span) -> Option<Operand> {
         let qualified = self.qualified_name(&call.callee);
-        let name = match (&call.callee.kind, &qualified) {
-            (ast::ExprKind::Name(name), _) | (_, Some(name)) => name,
-            _ => return self.not_a_function(call, span),
+        let ((ast::ExprKind::Name(name), _) | (_, Some(name))) = (&call.callee.kind, &qualified) else {
+            return self.not_a_function(call, span);
         };
         if self.is_local(name) && !self.is_own_result(name) {
             return self.not_a_function(call, span);

@@ -1,6 +1,7 @@
 //! The instance that a unit works on: `THIS`, `SUPER`, inherited variables, who sees what
 //! (3rd ed. 6.6.5.5 to 6.6.5.10).
 
+use super::Meant;
 use std::sync::Arc;
 
 use super::Checker;
@@ -81,7 +82,7 @@ impl Body<'_, '_> {
     }
 
     /// `THIS`, if the name is that.
-    pub(super) fn this_place(&mut self, name: &Ident) -> Option<Option<Located>> {
+    pub(super) fn this_place(&mut self, name: &Ident) -> Meant<Located> {
         if !self.is_this(name) {
             return None;
         }
@@ -110,7 +111,7 @@ impl Body<'_, '_> {
     }
 
     /// `SUPER()`, the statements of the base on the running instance.
-    pub(super) fn super_call(&mut self, call: &ast::Call, span: Span) -> Option<Option<StatementKind>> {
+    pub(super) fn super_call(&mut self, call: &ast::Call, span: Span) -> Meant<StatementKind> {
         if !self.is_super(&call.callee) {
             return None;
         }
@@ -152,7 +153,7 @@ impl Body<'_, '_> {
     }
 
     /// A `VAR_IN_OUT` of the running instance, as in `THIS.x`.
-    pub(super) fn reference_in_this(&mut self, base: Located, variable: &Variable, span: Span) -> Option<Located> {
+    pub(super) fn reference_in_this(&mut self, base: &Located, variable: &Variable, span: Span) -> Option<Located> {
         let is_this = base.place.storage == Storage::Instance(0) && base.place.steps.is_empty();
         if is_this && matches!(variable.storage, Storage::InstancePointer(_)) {
             let place = Place::whole(variable.storage, variable.ty, span);
@@ -164,7 +165,7 @@ impl Body<'_, '_> {
     }
 
     /// What is wrong with naming a method or property like a variable.
-    pub(super) fn not_a_variable<T>(&mut self, class: PouId, name: &Ident) -> Option<Option<T>> {
+    pub(super) fn not_a_variable<T>(&mut self, class: PouId, name: &Ident) -> Meant<T> {
         let roles = [Role::Method, Role::Getter, Role::Setter];
         let role = roles.into_iter().find(|role| self.checker.find_member(class, *role, &name.text).is_some())?;
         let (code, message) = match role {

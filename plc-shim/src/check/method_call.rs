@@ -1,5 +1,6 @@
 //! Calls of methods and actions (3rd ed. 6.6.5.4 and 6.6.5.5).
 
+use super::Meant;
 use super::call::Passing;
 use super::class::Role;
 use super::convert::Operand;
@@ -37,7 +38,7 @@ pub(super) struct Object {
 
 impl Body<'_, '_> {
     /// The call, if it is one of a method; nothing inside if it is wrong.
-    pub(super) fn method_call(&mut self, call: &Call, span: Span) -> Option<Option<Expr>> {
+    pub(super) fn method_call(&mut self, call: &Call, span: Span) -> Meant<Expr> {
         let (object, name) = match &call.callee.kind {
             ast::ExprKind::Name(name) => {
                 if self.scope.declares(&name.key()) && !self.is_own_result(name) {
@@ -88,7 +89,7 @@ impl Body<'_, '_> {
     }
 
     /// The instance that an expression stands for; nothing at all if it stands for something else.
-    pub(super) fn object(&mut self, expr: &ast::Expr) -> Option<Option<Object>> {
+    pub(super) fn object(&mut self, expr: &ast::Expr) -> Meant<Object> {
         if self.is_super(expr) {
             let base = self.own_class().and_then(|class| self.checker.base_of(class));
             let Some(class) = base else { return Some(self.no_object("SUPER", expr.span)) };

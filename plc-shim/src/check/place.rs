@@ -72,9 +72,8 @@ impl Body<'_, '_> {
     /// The enumeration that `Colour` in `Colour.Red` names, unless a variable hides it.
     fn enumeration_named(&mut self, base: &ast::Expr) -> Option<TypeId> {
         let qualified = self.qualified_name(base);
-        let name = match (&base.kind, &qualified) {
-            (ast::ExprKind::Name(name), _) | (_, Some(name)) => name,
-            _ => return None,
+        let ((ast::ExprKind::Name(name), _) | (_, Some(name))) = (&base.kind, &qualified) else {
+            return None;
         };
         let key = name.key();
         let hidden = self.scope.declares(&key) || self.checker.global_key(&key).is_some();
@@ -269,7 +268,7 @@ impl Body<'_, '_> {
             }
         };
         let Storage::Instance(offset) = variable.storage else {
-            return self.reference_in_this(base, variable, span);
+            return self.reference_in_this(&base, variable, span);
         };
         let place = Place { span, ..base.place.member(offset, variable.ty) };
         Some(Located { place, access })

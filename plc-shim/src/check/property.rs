@@ -1,5 +1,6 @@
 //! Properties, which vendors have: a value that a method gives, a target that a method takes.
 
+use super::Meant;
 use super::call::Passing;
 use super::class::Role;
 use super::convert::Operand;
@@ -12,15 +13,15 @@ use crate::syntax::ast::{self, Ident};
 
 impl Body<'_, '_> {
     /// The value of a property of the running instance; nothing if the name is none.
-    pub(super) fn own_property(&mut self, name: &Ident) -> Option<Option<Operand>> {
+    pub(super) fn own_property(&mut self, name: &Ident) -> Meant<Operand> {
         let object = self.own_property_object(name)?;
-        self.value(object, name)
+        Some(self.value(object, name))
     }
 
     /// The value of a property of another instance.
-    pub(super) fn property_of(&mut self, base: &ast::Expr, name: &Ident) -> Option<Option<Operand>> {
+    pub(super) fn property_of(&mut self, base: &ast::Expr, name: &Ident) -> Meant<Operand> {
         match self.property_object(base, name)? {
-            Some(object) => self.value(object, name),
+            Some(object) => Some(self.value(object, name)),
             None => Some(None),
         }
     }
@@ -35,7 +36,7 @@ impl Body<'_, '_> {
         Some(self.this_object(class, name.span))
     }
 
-    fn property_object(&mut self, base: &ast::Expr, name: &Ident) -> Option<Option<Object>> {
+    fn property_object(&mut self, base: &ast::Expr, name: &Ident) -> Meant<Object> {
         if !self.checker.property_names.contains(&name.key()) {
             return None;
         }
@@ -50,14 +51,14 @@ impl Body<'_, '_> {
         (has(Role::Getter) || has(Role::Setter)).then_some(())
     }
 
-    fn value(&mut self, object: Object, name: &Ident) -> Option<Option<Operand>> {
+    fn value(&mut self, object: Object, name: &Ident) -> Option<Operand> {
         let Some(getter) = self.checker.find_member(object.class, Role::Getter, &name.text) else {
-            return Some(self.lacks(name, "GET"));
+            return self.lacks(name, "GET");
         };
         let read = self
             .check_method_access(getter, name.span)
             .and_then(|()| self.on_object(object, Role::Getter, getter, Vec::new(), Passing::default(), name.span));
-        Some(read.map(Operand::Typed))
+        read.map(Operand::Typed)
     }
 
     fn lacks<T>(&mut self, name: &Ident, accessor: &str) -> Option<T> {
@@ -72,7 +73,7 @@ impl Body<'_, '_> {
         target: &ast::Expr,
         value: &ast::Expr,
         span: Span,
-    ) -> Option<Option<Statement>> {
+    ) -> Meant<Statement> {
         let (object, name) = match &target.kind {
             ast::ExprKind::Name(name) => (Some(self.own_property_object(name)?), name),
             ast::ExprKind::Member(base, name) => (self.property_object(base, name)?, name),

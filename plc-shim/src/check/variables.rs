@@ -199,7 +199,7 @@ impl<'c, 'a> Interface<'c, 'a> {
             self.declare_result(ast);
             let is_method = self.kind != PouKind::Function;
             self.declare_sections(ast, |kind| {
-                !matches!(kind, SectionKind::Input | SectionKind::InOut) && !(is_method && kind == SectionKind::Output)
+                !(matches!(kind, SectionKind::Input | SectionKind::InOut) || is_method && kind == SectionKind::Output)
             });
         } else {
             // The first parameter is the instance's address.

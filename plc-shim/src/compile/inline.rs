@@ -119,12 +119,11 @@ impl<'p> Emitter<'_, 'p> {
 
     fn call_plain_function(&mut self, call: &FunctionCall, span: Span) {
         self.side_statements(&call.before);
-        match self.inlinable(call.pou) {
-            Some(pou) => self.inline_function(call, pou, span),
-            None => {
-                self.push_arguments(&call.arguments);
-                self.call(call.pou, Callee::Function, span);
-            }
+        if let Some(pou) = self.inlinable(call.pou) {
+            self.inline_function(call, pou, span)
+        } else {
+            self.push_arguments(&call.arguments);
+            self.call(call.pou, Callee::Function, span);
         }
     }
 

@@ -49,6 +49,12 @@ impl Emitter<'_, '_> {
         }
     }
 
+    fn all_settled(&mut self, operands: &[Expr]) {
+        for operand in operands {
+            self.settled(operand);
+        }
+    }
+
     fn all(&mut self, operands: &[Expr]) {
         for operand in operands {
             self.expression(operand);
@@ -77,11 +83,11 @@ impl Emitter<'_, '_> {
     fn absolute(&mut self, operands: &[Expr], ty: ElementaryType) {
         match value_type(ty) {
             ValType::F32 => {
-                operands.iter().for_each(|operand| self.settled(operand));
+                self.all_settled(operands);
                 self.emit(Instruction::F32Abs);
             }
             ValType::F64 => {
-                operands.iter().for_each(|operand| self.settled(operand));
+                self.all_settled(operands);
                 self.emit(Instruction::F64Abs);
             }
             _ if !ty.is_signed() => self.all(operands),

@@ -110,16 +110,17 @@ impl Emitter<'_, '_> {
                     self.open_element(description, indices, *stride, place.span);
                     self.emit(Instruction::I32Add);
                 }
-                Step::Index { index, low, count, stride } => match constant_index(index, *low, *count) {
-                    Some(position) => offset += u64::from(position * stride),
-                    None => {
+                Step::Index { index, low, count, stride } => {
+                    if let Some(position) = constant_index(index, *low, *count) {
+                        offset += u64::from(position * stride)
+                    } else {
                         offset = self.index(index, (*low, *count, *stride), (offset, pushed), place.span);
                         if pushed {
                             self.emit(Instruction::I32Add);
                         }
                         pushed = true;
                     }
-                },
+                }
             }
         }
         if !pushed {

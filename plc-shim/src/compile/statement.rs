@@ -63,8 +63,11 @@ impl Emitter<'_, '_> {
         let real = |expr: &Expr| self.held_as(expr.ty).is_real();
         real(expr)
             && match &expr.kind {
-                ExprKind::Constant(_) | ExprKind::Load(_) | ExprKind::Call(_) | ExprKind::Unary(..) => false,
-                ExprKind::Intrinsic(Intrinsic::Reinterpret | Intrinsic::Abs, _) => false,
+                ExprKind::Constant(_)
+                | ExprKind::Load(_)
+                | ExprKind::Call(_)
+                | ExprKind::Unary(..)
+                | ExprKind::Intrinsic(Intrinsic::Reinterpret | Intrinsic::Abs, _) => false,
                 ExprKind::Intrinsic(Intrinsic::Select | Intrinsic::Multiplex, operands) => {
                     operands.iter().any(|operand| self.may_be_any_nan(operand))
                 }
@@ -113,12 +116,11 @@ impl Emitter<'_, '_> {
         self.side_statements(&call.inputs);
         let global = matches!(call.instance.storage, Storage::Absolute(_) | Storage::AbsolutePointer(_));
         let callee = if global { Callee::Global } else { Callee::Inner };
-        match self.inlinable(call.pou).filter(|_| call.dispatch == Dispatch::Direct) {
-            Some(pou) => self.inline_instance(call, pou, callee, address),
-            None => {
-                self.push_address(address);
-                self.call_on(address, call.dispatch, call.pou, (callee, call.instance.span));
-            }
+        if let Some(pou) = self.inlinable(call.pou).filter(|_| call.dispatch == Dispatch::Direct) {
+            self.inline_instance(call, pou, callee, address)
+        } else {
+            self.push_address(address);
+            self.call_on(address, call.dispatch, call.pou, (callee, call.instance.span));
         }
         self.side_statements(&call.outputs);
     }

@@ -49,8 +49,7 @@ pub(super) fn lines(text: &str, line_break: &str) -> String {
         marked.push_str(line);
         marked.push_str(line_break);
     }
-    marked.push_str(&format!("{OPENING}end{CLOSING}{line_break}"));
-    marked
+    marked + OPENING + "end" + CLOSING + line_break
 }
 
 /// Text to put in within a line, before something other than a line's end.
@@ -65,8 +64,7 @@ pub(super) fn xml_lines(text: &str, line_break: &str) -> String {
         marked.push_str(line);
         marked.push_str(line_break);
     }
-    marked.push_str(&format!("{XML_OPENING}end{XML_CLOSING}{line_break}"));
-    marked
+    marked + XML_OPENING + "end" + XML_CLOSING + line_break
 }
 
 /// A name to put in the place of `old`.

@@ -307,13 +307,12 @@ impl Plain {
     fn add_own(&self, source: target::Source, files: &mut Vec<File>) {
         let is_it = |given: &&Given| Path::new(&given.name).file_name().is_some_and(|name| *name == *source.name);
         let text = Some(Arc::from(source.text));
-        files.push(match self.own.iter().find(is_it) {
-            Some(given) => given.file(text, LineMap::default()),
-            None => {
-                let folder = self.given.first().and_then(|first| Path::new(&first.name).parent());
-                let name = folder.unwrap_or(Path::new("")).join(&source.name).display().to_string();
-                File { name, before: None, text, encoding: None, lines: LineMap::default(), from: LineMap::default() }
-            }
+        files.push(if let Some(given) = self.own.iter().find(is_it) {
+            given.file(text, LineMap::default())
+        } else {
+            let folder = self.given.first().and_then(|first| Path::new(&first.name).parent());
+            let name = folder.unwrap_or(Path::new("")).join(&source.name).display().to_string();
+            File { name, before: None, text, encoding: None, lines: LineMap::default(), from: LineMap::default() }
         });
     }
 

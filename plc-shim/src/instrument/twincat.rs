@@ -54,7 +54,7 @@ pub(super) fn listing(name: &str, project: &str, files: &[String]) -> Edits {
         let path = Path::new(file).strip_prefix(folder).unwrap_or(Path::new(file));
         let parts: Vec<_> = path.components().filter(|part| *part != Component::CurDir).collect();
         let parts: Vec<_> = parts.iter().map(|part| part.as_os_str().to_string_lossy()).collect();
-        items += &format!("    <Compile Include=\"{}\">\n", parts.join("\\"));
+        items = items + "    <Compile Include=\"" + &parts.join("\\") + "\">\n";
         items += "      <SubType>Code</SubType>\n    </Compile>\n";
     }
     items += "  </ItemGroup>";

@@ -337,8 +337,10 @@ impl TypeTable {
             Type::Address { target } => format!("the address of {}", self.name(*target)),
             Type::Subrange { base, low, high } => format!("{base} ({low}..{high})"),
             Type::Text(shape) => format!("{}[{}]", shape.keyword(), shape.capacity),
-            Type::Enumeration { name, .. } | Type::Struct { name, .. } => name.clone(),
-            Type::FunctionBlock { name, .. } | Type::Interface { name, .. } => name.clone(),
+            Type::Enumeration { name, .. }
+            | Type::Struct { name, .. }
+            | Type::FunctionBlock { name, .. }
+            | Type::Interface { name, .. } => name.clone(),
             Type::OpenArray { dimensions, element } => {
                 let stars = vec!["*"; *dimensions as usize].join(", ");
                 format!("ARRAY [{stars}] OF {}", self.name(*element))

@@ -202,8 +202,7 @@ impl Cursor<'_> {
         let access = Modifier::find(self.next_text()).filter(|_| self.peek() == Some(TokenKind::Identifier))?;
         let is_access =
             matches!(access, Modifier::Public | Modifier::Protected | Modifier::Private | Modifier::Internal);
-        let named =
-            matches!(self.peek_ahead(1), Some(TokenKind::Punctuation(_)) | Some(TokenKind::Keyword(Keyword::At)));
+        let named = matches!(self.peek_ahead(1), Some(TokenKind::Punctuation(_) | TokenKind::Keyword(Keyword::At)));
         (is_access && !named).then_some(access)
     }
 
