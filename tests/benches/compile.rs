@@ -33,9 +33,9 @@ fn program(lines: usize) -> String {
         blocks += 1;
     }
     text += "PROGRAM Main\nVAR\n";
-    (0..blocks).for_each(|n| drop(writeln!(text, "  b{n} : Block{n};")));
+    (0..blocks).for_each(|n| writeln!(text, "  b{n} : Block{n};").expect("a String takes all"));
     text += "END_VAR\n";
-    (0..blocks).for_each(|n| drop(writeln!(text, "  b{n}(in := TRUE, x := {n});")));
+    (0..blocks).for_each(|n| writeln!(text, "  b{n}(in := TRUE, x := {n});").expect("a String takes all"));
     text + "END_PROGRAM\n"
 }
 

@@ -122,9 +122,13 @@ fn a_project_says_which_files_are_meant() {
     </ItemGroup></Project>"#;
     let main = br"<TcPlcObject><POU Name='Main'><Declaration><![CDATA[PROGRAM Main]]></Declaration>
         <Implementation><ST><![CDATA[]]></ST></Implementation></POU></TcPlcObject>";
-    let folder = folder(&[("plc.plcproj", project), ("POUs/Main.TcPOU", main), ("POUs/Old.TcPOU", b"left over")]);
+    let task = br#"<TcPlcObject><Task Name="PlcTask"><CycleTime>10000</CycleTime><Priority>20</Priority>
+        <PouCall><Name>Main</Name></PouCall></Task></TcPlcObject>"#;
+    let files: [(&str, &[u8]); 4] =
+        [("plc.plcproj", project), ("POUs/Main.TcPOU", main), ("Task.TcTTO", task), ("POUs/Old.TcPOU", b"left over")];
+    let folder = folder(&files);
     for words in ["plc.plcproj", "."] {
-        assert_eq!(checked(folder.path(), &[words]).out, "1 file, no findings\n");
+        assert_eq!(checked(folder.path(), &[words]).out, "2 files, no findings\n");
     }
 }
 

@@ -155,7 +155,6 @@ pub(crate) fn check(units: &[(FileId, &CompilationUnit)], library: &BTreeSet<Fil
 }
 
 /// What something written means: nothing if it is not of the kind asked for, else what it is, if it is right.
-#[expect(clippy::option_option, reason = "whether it is meant and whether it is right are two questions")]
 type Meant<T> = Option<Option<T>>;
 
 /// Greatest number of types, constants or instances that need each other in a row.

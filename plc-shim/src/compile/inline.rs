@@ -120,7 +120,7 @@ impl<'p> Emitter<'_, 'p> {
     fn call_plain_function(&mut self, call: &FunctionCall, span: Span) {
         self.side_statements(&call.before);
         if let Some(pou) = self.inlinable(call.pou) {
-            self.inline_function(call, pou, span)
+            self.inline_function(call, pou, span);
         } else {
             self.push_arguments(&call.arguments);
             self.call(call.pou, Callee::Function, span);

@@ -112,7 +112,7 @@ impl Emitter<'_, '_> {
                 }
                 Step::Index { index, low, count, stride } => {
                     if let Some(position) = constant_index(index, *low, *count) {
-                        offset += u64::from(position * stride)
+                        offset += u64::from(position * stride);
                     } else {
                         offset = self.index(index, (*low, *count, *stride), (offset, pushed), place.span);
                         if pushed {

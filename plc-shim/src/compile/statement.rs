@@ -117,7 +117,7 @@ impl Emitter<'_, '_> {
         let global = matches!(call.instance.storage, Storage::Absolute(_) | Storage::AbsolutePointer(_));
         let callee = if global { Callee::Global } else { Callee::Inner };
         if let Some(pou) = self.inlinable(call.pou).filter(|_| call.dispatch == Dispatch::Direct) {
-            self.inline_instance(call, pou, callee, address)
+            self.inline_instance(call, pou, callee, address);
         } else {
             self.push_address(address);
             self.call_on(address, call.dispatch, call.pou, (callee, call.instance.span));

@@ -56,14 +56,15 @@ fn examine(text: &str, tally: &mut Tally) {
 }
 
 #[test]
+#[expect(clippy::print_stdout, reason = "the measurement's figures, which a test that passes keeps to itself")]
 fn no_mutation_makes_the_front_end_panic() {
-    let (count, first) = (number("ONESCAN_MUTATIONS", 300), number("ONESCAN_MUTATION_SEED", 0));
+    let (count, first) = (number("ONESCAN_MUTATIONS", 5_000), number("ONESCAN_MUTATION_SEED", 0));
     let corpus = corpus();
     let mut tally = Tally::default();
     let started = Instant::now();
     for seed in first..first + count {
         let text = Mutator::new(seed).mutant(&corpus);
-        assert!(!catch_unwind(AssertUnwindSafe(|| examine(&text, &mut tally))).is_err(), "seed {seed}:\n{text}")
+        assert!(catch_unwind(AssertUnwindSafe(|| examine(&text, &mut tally))).is_ok(), "seed {seed}:\n{text}");
     }
     println!("{tally:?} in {:.0?}", started.elapsed());
     assert!(count < 100 || tally.parsed > 0, "some mutants still parse");

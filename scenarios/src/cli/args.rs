@@ -166,6 +166,7 @@ pub struct CheckArgs {
 
 /// Options of `instrument`.
 #[derive(Debug, ClapArgs)]
+#[expect(clippy::struct_excessive_bools, reason = "each is a flag that is typed or not")]
 #[command(group = clap::ArgGroup::new("result").required(true).multiple(true).args(["output", "in_place", "diff"]))]
 pub struct InstrumentArgs {
     /// A folder, a source file, a TwinCAT project or a scenario
