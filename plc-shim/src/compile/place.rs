@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use wasm_encoder::{Ieee32, Ieee64, Instruction, MemArg, ValType};
+use wasm_encoder::{BlockType, Ieee32, Ieee64, Instruction, MemArg, ValType};
 
 use super::address::{Address, Base, Extent};
 use super::emitter::{Emitter, value_type};
@@ -358,17 +358,21 @@ impl Emitter<'_, '_> {
     pub(super) fn canonical(&mut self, ty: ElementaryType) {
         let held = value_type(ty);
         let value = self.scratch(held);
-        self.tee(value);
+        self.set(value);
+        self.get(value);
+        self.get(value);
         let single = held == ValType::F32;
+        self.emit(if single { Instruction::F32Ne } else { Instruction::F64Ne });
+        // A branch that is hardly ever taken: a choice would stand in the way of what uses the value.
+        self.emit(Instruction::If(BlockType::Empty));
         self.emit(if single {
             Instruction::F32Const(Ieee32::new(0x7fc0_0000))
         } else {
             Instruction::F64Const(Ieee64::new(0x7ff8_0000_0000_0000))
         });
+        self.set(value);
+        self.emit(Instruction::End);
         self.get(value);
-        self.get(value);
-        self.emit(if single { Instruction::F32Eq } else { Instruction::F64Eq });
-        self.emit(Instruction::Select);
         self.release(value);
     }
 }

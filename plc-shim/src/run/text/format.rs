@@ -25,6 +25,15 @@ impl Line {
         }
     }
 
+    /// As many of the bytes as there is room for.
+    pub(super) fn append(&mut self, bytes: &[u8]) {
+        let count = bytes.len().min(self.bytes.len() - self.used);
+        if let (Some(room), Some(bytes)) = (self.bytes.get_mut(self.used..self.used + count), bytes.get(..count)) {
+            room.copy_from_slice(bytes);
+            self.used += count;
+        }
+    }
+
     pub(super) fn text(&self) -> &str {
         self.bytes.get(..self.used).and_then(|bytes| std::str::from_utf8(bytes).ok()).unwrap_or("")
     }
@@ -32,7 +41,7 @@ impl Line {
 
 impl Write for Line {
     fn write_str(&mut self, text: &str) -> fmt::Result {
-        text.bytes().for_each(|byte| self.push(byte));
+        self.append(text.as_bytes());
         Ok(())
     }
 }
@@ -52,10 +61,31 @@ pub(super) fn format(ty: ElementaryType, bits: i64) -> Line {
         (Kind::Date | Kind::TimeOfDay | Kind::DateTime, _) => calendar(&mut line, ty, bits),
         // A character is its own text.
         (Kind::Character, _) => Ok(()),
-        (Kind::Signed, _) => write!(line, "{bits}"),
-        (Kind::Unsigned | Kind::Bits, _) => write!(line, "{}", bits.cast_unsigned()),
+        (Kind::Signed, _) => {
+            if bits < 0 {
+                line.push(b'-');
+            }
+            whole(&mut line, bits.unsigned_abs())
+        }
+        (Kind::Unsigned | Kind::Bits, _) => whole(&mut line, bits.cast_unsigned()),
     };
     line
+}
+
+/// The decimal digits of a number, the last ones first into their places.
+fn whole(line: &mut Line, number: u64) -> fmt::Result {
+    let mut digits = [b'0'; 20];
+    let (mut rest, mut first) = (number, digits.len());
+    for digit in digits.iter_mut().rev() {
+        *digit = b'0' + (rest % 10) as u8;
+        rest /= 10;
+        first -= 1;
+        if rest == 0 {
+            break;
+        }
+    }
+    line.append(digits.get(first..).unwrap_or_default());
+    Ok(())
 }
 
 /// The shortest digits that read back as the same number. `value` is `number` in its own width.

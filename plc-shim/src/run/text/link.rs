@@ -115,9 +115,7 @@ fn format_value(
             made.push(memory, bits as u16);
         }
         let line = format(ty, bits);
-        for byte in line.text().bytes() {
-            made.push(memory, u16::from(byte));
-        }
+        made.append(memory, line.text().as_bytes());
         made.finish(memory);
         Ok((target, line.text().len() as u64))
     })

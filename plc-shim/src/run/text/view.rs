@@ -81,6 +81,19 @@ impl Target {
         }
     }
 
+    /// Adds ASCII characters.
+    pub(super) fn append(&mut self, memory: &mut [u8], text: &[u8]) {
+        if self.shape.wide {
+            return text.iter().for_each(|byte| self.push(memory, u16::from(*byte)));
+        }
+        let count = text.len().min(usize::from(self.shape.capacity) - self.used);
+        let at = self.offset(self.used);
+        if let (Some(room), Some(text)) = (memory.get_mut(at..at + count), text.get(..count)) {
+            room.copy_from_slice(text);
+            self.used += count;
+        }
+    }
+
     /// Adds characters of another string.
     pub(super) fn extend(&mut self, memory: &mut [u8], source: &View, range: std::ops::Range<usize>) {
         let count = range.len().min(usize::from(self.shape.capacity) - self.used);

@@ -36,7 +36,7 @@ impl Printer {
             self.type_spec(result);
         }
         self.heritage(&pou.object);
-        self.end_line();
+        self.end_head(pou);
         self.unit_behind_head(pou, end);
     }
 

@@ -24,6 +24,14 @@ impl Printer {
         self.separated(names, |printer, name| printer.word(&name.text));
     }
 
+    /// A name that is a modifier's word, too, is one for sure if nothing follows it.
+    pub(super) fn end_head(&mut self, pou: &Pou) {
+        if pou.result.is_none() && Modifier::find(&pou.name.text).is_some() {
+            self.word(";");
+        }
+        self.end_line();
+    }
+
     /// What stands between the head of a unit and its end, and the end.
     pub(super) fn unit_behind_head(&mut self, pou: &Pou, end: &str) {
         if !pou.object.using.is_empty() {
@@ -61,7 +69,7 @@ impl Printer {
             self.word(" : ");
             self.type_spec(spec);
         }
-        self.end_line();
+        self.end_head(pou);
         self.line(word);
         self.unit_behind_head(pou, end);
         self.line("END_PROPERTY");
