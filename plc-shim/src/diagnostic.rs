@@ -102,6 +102,7 @@ codes! {
     NoObject "O0808" "THIS or SUPER where there is no instance or base",
     WrongProperty "O0809" "a property is used in a way that it does not offer",
     UnknownNamespace "O0810" "a namespace is not declared",
+    MemberAlone "O0811" "a method, property or action belongs to no unit",
     InvalidAddress "R0901" "a direct address is malformed or out of range",
     UnsuitableAddress "R0902" "a variable does not suit its direct address",
     InvalidPart "R0903" "a value has no such part",

@@ -65,15 +65,19 @@ pub(super) fn format(ty: ElementaryType, bits: i64) -> Line {
             if bits < 0 {
                 line.push(b'-');
             }
-            whole(&mut line, bits.unsigned_abs())
+            whole(&mut line, bits.unsigned_abs());
+            Ok(())
         }
-        (Kind::Unsigned | Kind::Bits, _) => whole(&mut line, bits.cast_unsigned()),
+        (Kind::Unsigned | Kind::Bits, _) => {
+            whole(&mut line, bits.cast_unsigned());
+            Ok(())
+        }
     };
     line
 }
 
 /// The decimal digits of a number, the last ones first into their places.
-fn whole(line: &mut Line, number: u64) -> fmt::Result {
+fn whole(line: &mut Line, number: u64) {
     let mut digits = [b'0'; 20];
     let (mut rest, mut first) = (number, digits.len());
     for digit in digits.iter_mut().rev() {
@@ -85,7 +89,6 @@ fn whole(line: &mut Line, number: u64) -> fmt::Result {
         }
     }
     line.append(digits.get(first..).unwrap_or_default());
-    Ok(())
 }
 
 /// The shortest digits that read back as the same number. `value` is `number` in its own width.

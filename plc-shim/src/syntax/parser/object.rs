@@ -229,8 +229,9 @@ impl Cursor<'_> {
         match into.last_mut() {
             Some(Declaration::Pou(pou)) if pou.kind != PouKind::Function => pou.object.members.extend(members),
             _ => {
-                let message = "a method, property or action stands in or behind its class, function block or program";
-                self.report_syntax(Diagnostic::error(Code::UnexpectedToken, span, message));
+                let message = "a method, property or action belongs to a class, function block or program";
+                let found = Diagnostic::error(Code::MemberAlone, span, message);
+                self.report_syntax(found.with_help("write it in the unit, or right behind it"));
             }
         }
     }
