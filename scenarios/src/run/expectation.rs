@@ -6,10 +6,11 @@ use std::rc::Rc;
 
 use onescan_server::record::{Observer, RecordError};
 use onescan_server::session::Session;
-use onescan_server::signal::{SignalId, SignalName};
+use onescan_server::signal::SignalName;
 use onescan_server::time::VirtualTime;
 use serde::Serialize;
 
+use super::sampler::Chosen;
 use crate::expect::{Trace, Verdict};
 use crate::scenario::Scenario;
 
@@ -83,29 +84,23 @@ pub(super) fn judge(scenario: &Scenario, trace: &Trace) -> Vec<ExpectationReport
 /// Takes the samples that expectations are judged by.
 pub(super) struct Witness {
     trace: Rc<RefCell<Trace>>,
-    names: Vec<SignalName>,
-    signals: Vec<SignalId>,
+    chosen: Chosen,
 }
 
 impl Witness {
     pub(super) fn new(trace: Rc<RefCell<Trace>>, names: &[SignalName]) -> Self {
-        Self { trace, names: names.to_vec(), signals: Vec::new() }
+        Self { trace, chosen: Chosen::new(names) }
     }
 }
 
 impl Observer for Witness {
     fn begin(&mut self, session: &Session) -> Result<(), RecordError> {
-        self.signals = self.names.iter().filter_map(|name| session.signal_id(name.as_str())).collect();
-        self.trace.replace(Trace::new(self.signals.len()));
+        self.trace.replace(Trace::new(self.chosen.find(session)));
         self.step(session)
     }
 
     fn step(&mut self, session: &Session) -> Result<(), RecordError> {
-        let value = |signal: &SignalId| {
-            let bytes = session.layout().bytes(*signal, session.image());
-            session.layout().ty(*signal).as_f64(bytes).unwrap_or(f64::NAN)
-        };
-        self.trace.borrow_mut().push(session.t_v().as_nanos(), self.signals.iter().map(value));
+        self.trace.borrow_mut().push(session.t_v().as_nanos(), self.chosen.numbers(session));
         Ok(())
     }
 

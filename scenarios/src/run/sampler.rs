@@ -1,4 +1,4 @@
-//! What a plot shows: chosen signals of every step, and the plot of several runs.
+//! Chosen signals of every step as numbers, and the plot of several runs.
 
 use std::cell::RefCell;
 use std::rc::Rc;
@@ -11,6 +11,32 @@ use super::config::{Mode, RunConfig};
 use super::report::RunReport;
 use crate::plot::{Mark, Panel, Plot, Shape, Trajectory};
 use crate::scenario::Scenario;
+
+/// Signals chosen by name, found anew in each session.
+pub(super) struct Chosen {
+    names: Vec<SignalName>,
+    signals: Vec<SignalId>,
+}
+
+impl Chosen {
+    pub(super) fn new(names: &[SignalName]) -> Self {
+        Self { names: names.to_vec(), signals: Vec::new() }
+    }
+
+    /// Finds the signals in a session that begins; tells how many there are.
+    pub(super) fn find(&mut self, session: &Session) -> usize {
+        self.signals = self.names.iter().filter_map(|name| session.signal_id(name.as_str())).collect();
+        self.signals.len()
+    }
+
+    /// What they are now, in their order; texts are no numbers.
+    pub(super) fn numbers(&self, session: &Session) -> impl Iterator<Item = f64> {
+        self.signals.iter().map(|signal| {
+            let bytes = session.layout().bytes(*signal, session.image());
+            session.layout().ty(*signal).as_f64(bytes).unwrap_or(f64::NAN)
+        })
+    }
+}
 
 /// Chosen signals of one run.
 #[derive(Clone, Debug, Default)]
@@ -30,32 +56,28 @@ impl Samples {
 /// Takes a sample of a session at every step.
 pub(super) struct Sampler {
     samples: Rc<RefCell<Samples>>,
-    signals: Vec<SignalId>,
+    chosen: Chosen,
 }
 
 impl Sampler {
     pub(super) fn new(samples: Rc<RefCell<Samples>>) -> Self {
-        Self { samples, signals: Vec::new() }
+        let chosen = Chosen::new(&samples.borrow().names);
+        Self { samples, chosen }
     }
 }
 
 impl Observer for Sampler {
     fn begin(&mut self, session: &Session) -> Result<(), RecordError> {
-        {
-            let mut samples = self.samples.borrow_mut();
-            let names = samples.names.clone();
-            self.signals = names.iter().filter_map(|name| session.signal_id(name.as_str())).collect();
-            *samples = Samples::new(&names);
-        }
+        self.chosen.find(session);
+        self.samples.replace(Samples::new(&self.chosen.names));
         self.step(session)
     }
 
     fn step(&mut self, session: &Session) -> Result<(), RecordError> {
         let mut samples = self.samples.borrow_mut();
         samples.t_ns.push(session.t_v().as_nanos());
-        for (row, signal) in samples.values.iter_mut().zip(&self.signals) {
-            let bytes = session.layout().bytes(*signal, session.image());
-            row.push(session.layout().ty(*signal).as_f64(bytes).unwrap_or(f64::NAN));
+        for (row, number) in samples.values.iter_mut().zip(self.chosen.numbers(session)) {
+            row.push(number);
         }
         Ok(())
     }
