@@ -2,7 +2,7 @@
 
 use std::sync::{Arc, Mutex};
 
-use onescan_plc_shim::{Application, Coverage, PlcFault, RunError, SoftPlc, TaskPlan};
+use onescan_plc_shim::{Application, Coverage, PlcFault, RunError, SoftPlc, TaskPlan, WriteError};
 use onescan_server::client::{Client, ClientFault, JoinRequest, SourcePlace, StateError, Wake};
 use onescan_server::signal::ClientName;
 use onescan_server::time::{TimeSpan, VirtualTime};
@@ -41,6 +41,8 @@ pub struct SoftPlcClient {
     plc: SoftPlc,
     inputs: Vec<Run>,
     outputs: Vec<Run>,
+    /// Variables that begin with other values than the program says: path and literal.
+    presets: Vec<(String, String)>,
     /// Where what was executed goes when the client's part is over.
     coverage: Option<CoverageSink>,
 }
@@ -66,7 +68,18 @@ impl SoftPlcClient {
         let period = period.ok_or(RunError::NoTasks)?;
         let ports = |bound: &[Bound]| bound.iter().map(|bound| bound.port.clone()).collect();
         let request = JoinRequest { name, period, reads: ports(&bindings.inputs), writes: ports(&bindings.outputs) };
-        Ok(Self { request, plc, inputs: runs(&bindings.inputs), outputs: runs(&bindings.outputs), coverage: None })
+        let (inputs, outputs) = (runs(&bindings.inputs), runs(&bindings.outputs));
+        Ok(Self { request, plc, inputs, outputs, presets: Vec::new(), coverage: None })
+    }
+
+    /// Lets the variable at `path` begin with a value, given as a literal, in place of that of its declaration.
+    ///
+    /// # Errors
+    /// There is no such variable, it may not be written, or the text is no value of its type.
+    pub fn preset(&mut self, path: &str, value: &str) -> Result<(), WriteError> {
+        self.plc.write(path, value)?;
+        self.presets.push((path.to_owned(), value.to_owned()));
+        Ok(())
     }
 
     /// Gives what has been executed to `sink` when the client is dropped. The application must have
@@ -116,6 +129,9 @@ impl Client for SoftPlcClient {
 
     fn setup(&mut self, outputs: &mut [u8]) -> Result<(), ClientFault> {
         self.plc.reset();
+        for (path, value) in &self.presets {
+            self.plc.write(path, value).map_err(|error| ClientFault::new(error.to_string()))?;
+        }
         self.take_outputs(outputs);
         Ok(())
     }

@@ -64,6 +64,9 @@ pub enum Command {
 pub struct RunArgs {
     /// The scenario: a folder with a `scenario.toml`
     pub scenario: PathBuf,
+    /// A case of the scenario's `cases.toml` [default: the scenario as it is]
+    #[arg(long, value_name = "NAME")]
+    pub case: Option<String>,
     /// Virtual time at which a run is complete, as in `2.5s` [default: the scenario's `until`]
     #[arg(long, value_name = "TIME")]
     pub until: Option<VirtualTime>,
@@ -129,6 +132,9 @@ pub struct JoinArgs {
     /// The server's address
     #[arg(long, value_name = "ADDRESS:PORT")]
     pub server: SocketAddr,
+    /// The case that the server runs [default: the scenario as it is]
+    #[arg(long, value_name = "NAME")]
+    pub case: Option<String>,
 }
 
 /// Options of `control`.

@@ -55,6 +55,7 @@ fn config(args: RunArgs) -> RunConfig {
     let format = args.format.into();
     RunConfig {
         scenario: args.scenario,
+        case: args.case,
         until: args.until,
         pace: args.pace,
         mode: args.mode.into(),
@@ -75,7 +76,7 @@ fn config(args: RunArgs) -> RunConfig {
 }
 
 fn join(args: &JoinArgs) -> Result<ExitCode, RunError> {
-    let scenario = Scenario::load(&args.scenario)?;
+    let scenario = Scenario::load_case(&args.scenario, args.case.as_deref())?;
     let mut client = match scenario.member(&args.client)? {
         Member::Plant(client) | Member::Plc(client) => client,
         Member::External(_) => {

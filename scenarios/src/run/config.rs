@@ -59,6 +59,8 @@ pub struct SaveRequest {
 pub struct RunConfig {
     /// The scenario's folder or file.
     pub scenario: PathBuf,
+    /// The case to run; the scenario as it is if absent.
+    pub case: Option<String>,
     /// When a run is complete; the scenario says so if absent.
     pub until: Option<VirtualTime>,
     /// How fast virtual time may run.
@@ -96,7 +98,7 @@ pub struct RunConfig {
 impl RunConfig {
     /// When a run is complete.
     pub fn end(&self, scenario: &Scenario) -> VirtualTime {
-        self.until.unwrap_or(scenario.file().until)
+        self.until.unwrap_or(scenario.until())
     }
 
     /// The signals of the plot with their panels' order.

@@ -53,7 +53,7 @@ use sampler::{Sampler, Samples};
 /// See [`RunError`]. A failed client is no error here but a verdict: what there is of the run is
 /// recorded, plotted and reported.
 pub fn execute(config: &RunConfig, interrupt: &Interrupt, out: &mut dyn Write) -> Result<Verdict, RunError> {
-    let mut scenario = Scenario::load(&config.scenario)?;
+    let mut scenario = Scenario::load_case(&config.scenario, config.case.as_deref())?;
     if config.coverage.is_some() {
         scenario.cover();
     }

@@ -3,20 +3,22 @@
 use std::path::PathBuf;
 
 use miette::{NamedSource, SourceSpan};
+use onescan_clients::operator::Operator;
 use onescan_clients::plant::{Plant, SceneError, SceneFault};
 use onescan_clients::soft_plc::{SoftPlcClient, bind};
 use onescan_plc_shim::input::kind::{FileKind, SourceKind};
 use onescan_plc_shim::{Application, Dialect, Input, Task, TaskPlan};
 use onescan_server::client::Client;
-use onescan_server::signal::{ClientName, SignalName, did_you_mean};
+use onescan_server::signal::{ClientName, Port, SignalName, did_you_mean};
 
+use super::case::value::bytes_of;
 use super::error::{PlcReport, ScenarioError, SceneReport};
 use super::file::{ClientFile, TaskFile};
 use super::load::Scenario;
 
 /// A client of a scenario.
 pub enum Member {
-    /// A plant in this process.
+    /// A plant in this process, or an operator.
     Plant(Box<dyn Client>),
     /// A soft PLC in this process.
     Plc(Box<dyn Client>),
@@ -39,15 +41,20 @@ impl Scenario {
                 let path = self.folder().join(scene);
                 let text = read(&path)?;
                 let period = period.unwrap_or(self.file().step);
-                let plant = Plant::parse(&text, &path.display().to_string(), name.clone(), period);
-                let plant = plant.map_err(|error| Box::new(report(&error, &path.display().to_string(), &text)))?;
-                Ok(Member::Plant(Box::new(plant.seeded(self.file().seed))))
+                let parse = |text: &str| Plant::parse(text, &path.display().to_string(), name.clone(), period);
+                let plain =
+                    parse(&text).map_err(|error| Box::new(report(&error, &path.display().to_string(), &text)))?;
+                let wanted = self.scene_text(name, text.clone())?;
+                let plant = if wanted == text { plain } else { parse(&wanted).unwrap_or(plain) };
+                Ok(Member::Plant(self.forced(Box::new(plant.seeded(self.seed())))))
             }
             ClientFile::SoftPlc { sources, dialect, tasks, bind } => {
                 let inputs = sources.iter().map(|source| self.source(name, source, *dialect));
                 let inputs = inputs.collect::<Result<Vec<_>, _>>()?;
-                self.soft_plc(name, inputs, tasks, bind).map(|plc| Member::Plc(Box::new(plc)))
+                let plc = self.soft_plc(name, inputs, tasks, bind)?;
+                Ok(Member::Plc(self.forced(Box::new(plc))))
             }
+            ClientFile::Operator { initial } => Ok(Member::Plant(self.forced(Box::new(self.operator(name, initial)?)))),
             ClientFile::External { command } => Ok(Member::External(command.clone())),
         }
     }
@@ -112,10 +119,37 @@ impl Scenario {
         self.fits_step(name, &plan)?;
         let mut client = SoftPlcClient::new(name.clone(), &application, &plan, &bindings, self.file().step)
             .map_err(|error| self.wrong_client(name, error.to_string(), None))?;
+        self.preset(&mut client, name)?;
         if let Some(sink) = self.coverage() {
             client.cover(sink.clone());
         }
         Ok(client)
+    }
+
+    /// The operator of the signals whose writer it is.
+    fn operator(
+        &self,
+        name: &ClientName,
+        initial: &std::collections::BTreeMap<SignalName, toml::Spanned<toml::Value>>,
+    ) -> Result<Operator, ScenarioError> {
+        let own: Vec<_> = self.plan().signals().iter().filter(|signal| signal.writer.as_ref() == Some(name)).collect();
+        if let Some(unknown) = initial.keys().find(|wanted| own.iter().all(|signal| signal.name != **wanted)) {
+            let help = did_you_mean(unknown.as_str(), own.iter().map(|signal| signal.name.as_str()));
+            return Err(self.wrong_client(name, format!("`{name}` writes no signal `{unknown}`"), help));
+        }
+        let mut signals = Vec::new();
+        for signal in own {
+            let port = Port { name: signal.name.clone(), ty: signal.ty };
+            let bytes = match initial.get(&signal.name).map(toml::Spanned::get_ref) {
+                None => vec![0; signal.ty.size()],
+                Some(value) => bytes_of(signal.ty, value).map_err(|wanted| {
+                    let message = format!("`{}` begins with {value}, which is not {wanted}", signal.name);
+                    self.wrong_client(name, message, None)
+                })?,
+            };
+            signals.push((port, bytes));
+        }
+        Ok(Operator::new(name.clone(), self.file().step, signals))
     }
 
     /// A task can be due at the steps of the session only.

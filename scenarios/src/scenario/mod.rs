@@ -5,9 +5,11 @@
 //! | [`file`] | `scenario.toml` as it is written |
 //! | [`load`] | `scenario.toml` read and checked |
 //! | [`expectations`] | what it expects of every run |
+//! | [`case`] | one scenario, tried in many ways |
 //! | [`compose`] | a scenario's plan and its clients |
 //! | [`error`] | what can be wrong with it, and where |
 
+pub mod case;
 pub mod compose;
 pub mod error;
 pub mod expectations;
