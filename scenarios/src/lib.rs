@@ -7,6 +7,8 @@
 //! | [`cli`] | the command line |
 //! | [`scenario`] | a scenario's files, read and checked |
 //! | [`run`] | runs of a scenario: in lockstep or not, recorded, reported |
+//! | [`regress`] | all cases run, compared with reviewed snapshots, reported |
+//! | [`review`] | snapshots looked at, accepted or rejected |
 //! | [`check`] | PLC sources checked without being run |
 //! | [`instrument`] | PLC projects made to run in lockstep, and back |
 //! | [`plant`] | scenes and components, told without a session |
@@ -24,5 +26,7 @@ pub mod freewheel;
 pub mod instrument;
 pub mod plant;
 pub mod plot;
+pub mod regress;
+pub mod review;
 pub mod run;
 pub mod scenario;

@@ -1,5 +1,6 @@
 //! The program as a user types it: commands, files, messages, exit codes.
 
+mod cases;
 mod check;
 mod checkpoint;
 mod configuration;
@@ -13,6 +14,10 @@ mod help;
 mod instrument;
 mod plant;
 mod plc_faults;
+mod regression;
+mod reports;
+mod review;
 mod run;
 mod third_party;
 mod typed;
+mod unit_tests;

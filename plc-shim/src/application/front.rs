@@ -28,7 +28,8 @@ impl Front {
         for input in inputs {
             findings.extend(input.add_to(&mut sources));
         }
-        for (name, text) in library::FILES {
+        let asserts = sources.iter().any(|(_, file)| library::mentions_assert(file.text()));
+        for (name, text) in library::FILES.into_iter().chain(asserts.then_some(library::ASSERTS)) {
             library.insert(sources.add(SourceFile::new(name, text)));
         }
         let mut units = Vec::new();

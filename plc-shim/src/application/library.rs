@@ -13,3 +13,11 @@ pub(crate) const FILES: [(&str, &str); 10] = [
     ("iec/timers.st", include_str!("../../iec/timers.st")),
     ("iec/timers_by_type.st", include_str!("../../iec/timers_by_type.st")),
 ];
+
+/// Asserts of test programs. They have memory of their own and so are there only for those that use them.
+pub(crate) const ASSERTS: (&str, &str) = ("iec/test/assert.st", include_str!("../../iec/test/assert.st"));
+
+/// Whether a source may mean an assert; one that does not has no use for [`ASSERTS`].
+pub(crate) fn mentions_assert(text: &str) -> bool {
+    text.as_bytes().windows(6).any(|word| word.eq_ignore_ascii_case(b"ASSERT"))
+}

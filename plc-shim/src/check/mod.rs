@@ -29,6 +29,7 @@
 //! and needed again contains itself.
 
 mod address;
+pub(crate) mod asserts;
 mod assignment;
 mod calendar;
 mod call;

@@ -11,6 +11,7 @@ use onescan_server::session::Control;
 use onescan_server::signal::{ClientName, SignalName};
 use onescan_server::time::{TimeSpan, VirtualTime};
 
+use super::test_args::{ReviewArgs, TestArgs, WorkerArgs};
 use crate::check::CheckFormat;
 use crate::run::coverage::CoverageFormat;
 use crate::run::{Format, Mode, Transport};
@@ -32,8 +33,8 @@ pub struct Args {
 
 const EXIT_CODES: &str = "Exit codes:
   0  all is well
-  1  a run is not what its scenario expects; runs that must be equal are not; a check found warnings that
-     are denied
+  1  a run is not what its scenario expects; runs that must be equal are not; a test failed;
+     a check found warnings that are denied
   2  wrong input: options, scenario, PLC source, scene, checkpoint
   3  a client or a link failed, or the PLC program stopped on a fault";
 
@@ -42,6 +43,13 @@ const EXIT_CODES: &str = "Exit codes:
 pub enum Command {
     /// Run a scenario and print the digest of its trajectories
     Run(Box<RunArgs>),
+    /// Run all scenarios and cases, and hold them against their reviewed snapshots; run test programs in ST
+    Test(Box<TestArgs>),
+    /// Look at snapshots that are new or have changed, and accept or reject them
+    Review(ReviewArgs),
+    /// One test, for `test`
+    #[command(hide = true)]
+    TestWorker(WorkerArgs),
     /// Take part in a session that another process serves, as one client of a scenario
     Join(JoinArgs),
     /// Ask a running session (see `run --listen`) how it is, or to pause, step, go on, reset or stop
@@ -101,6 +109,9 @@ pub struct RunArgs {
     /// `lcov` or `cobertura` [default: by the file's name: `.xml` is Cobertura]
     #[arg(long, value_enum, requires = "coverage", value_name = "FORMAT")]
     pub coverage_format: Option<CoverageArg>,
+    /// Write a page with trajectories, expectations, events and coverage of all runs, all in one file
+    #[arg(long, value_name = "FILE")]
+    pub html: Option<PathBuf>,
     /// Where clients and operators may connect [default: a free port of this machine, if one is needed]
     #[arg(long, value_name = "ADDRESS:PORT")]
     pub listen: Option<SocketAddr>,

@@ -28,6 +28,12 @@ const OPERATOR_PATIENCE: Duration = Duration::from_secs(30);
 pub fn dispatch(command: Command) -> Result<ExitCode, RunError> {
     match command {
         Command::Run(args) => run(*args),
+        Command::Test(args) => crate::regress::test(&args.config(), &mut std::io::stdout().lock()),
+        Command::Review(args) => crate::review::review(&args.config(), &mut std::io::stdout().lock()),
+        Command::TestWorker(args) => {
+            crate::regress::worker::work(&args.config(), &mut std::io::stdout().lock())?;
+            Ok(ExitCode::Ok)
+        }
         Command::Join(args) => join(&args),
         Command::Control(args) => control(&args),
         Command::Check(args) => check(args),
@@ -66,6 +72,7 @@ fn config(args: RunArgs) -> RunConfig {
         plot: args.plot,
         signals: args.signals,
         coverage: args.coverage.map(|path| CoverageRequest::new(path, args.coverage_format.map(Into::into))),
+        html: args.html,
         listen: args.listen,
         join_timeout: Duration::from_nanos(args.join_timeout.as_nanos()),
         reply_timeout: Duration::from_nanos(args.reply_timeout.as_nanos()),

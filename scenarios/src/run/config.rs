@@ -81,6 +81,8 @@ pub struct RunConfig {
     pub signals: Vec<SignalName>,
     /// A coverage report to write.
     pub coverage: Option<CoverageRequest>,
+    /// File for a page about all runs.
+    pub html: Option<PathBuf>,
     /// Where clients and operators may connect.
     pub listen: Option<SocketAddr>,
     /// How long to wait for clients to join.
@@ -96,6 +98,31 @@ pub struct RunConfig {
 }
 
 impl RunConfig {
+    /// One run in this process, as fast as it goes, that nobody looks at.
+    pub fn headless(scenario: PathBuf, case: Option<String>) -> Self {
+        Self {
+            scenario,
+            case,
+            until: None,
+            pace: Pace::Max,
+            mode: Mode::Lockstep,
+            runs: 1,
+            transport: Transport::Inproc,
+            record: None,
+            format: Format::Json,
+            plot: None,
+            signals: Vec::new(),
+            coverage: None,
+            html: None,
+            listen: None,
+            join_timeout: Duration::from_mins(1),
+            reply_timeout: Duration::from_secs(10),
+            save: None,
+            resume: None,
+            progress: false,
+        }
+    }
+
     /// When a run is complete.
     pub fn end(&self, scenario: &Scenario) -> VirtualTime {
         self.until.unwrap_or(scenario.until())

@@ -130,7 +130,7 @@ impl Scenario {
     fn operator(
         &self,
         name: &ClientName,
-        initial: &std::collections::BTreeMap<SignalName, toml::Spanned<toml::Value>>,
+        initial: &std::collections::BTreeMap<SignalName, toml::Value>,
     ) -> Result<Operator, ScenarioError> {
         let own: Vec<_> = self.plan().signals().iter().filter(|signal| signal.writer.as_ref() == Some(name)).collect();
         if let Some(unknown) = initial.keys().find(|wanted| own.iter().all(|signal| signal.name != **wanted)) {
@@ -140,7 +140,7 @@ impl Scenario {
         let mut signals = Vec::new();
         for signal in own {
             let port = Port { name: signal.name.clone(), ty: signal.ty };
-            let bytes = match initial.get(&signal.name).map(toml::Spanned::get_ref) {
+            let bytes = match initial.get(&signal.name) {
                 None => vec![0; signal.ty.size()],
                 Some(value) => bytes_of(signal.ty, value).map_err(|wanted| {
                     let message = format!("`{}` begins with {value}, which is not {wanted}", signal.name);

@@ -105,7 +105,7 @@ pub enum ClientFile {
     Operator {
         /// Values of its signals at the start; 0, FALSE or empty if absent.
         #[serde(default)]
-        initial: BTreeMap<SignalName, Spanned<toml::Value>>,
+        initial: BTreeMap<SignalName, toml::Value>,
     },
     /// A program of its own that joins over TCP.
     External {

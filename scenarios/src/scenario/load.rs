@@ -86,16 +86,13 @@ impl Scenario {
         let scenario = Self::load(path)?;
         let Some(name) = name else { return Ok(scenario) };
         let catalogue = Catalogue::load(scenario.folder())?;
-        match catalogue.find(name) {
-            Some(case) => scenario.with_case(&catalogue, case),
-            None => {
-                let names = || catalogue.cases().iter().map(|case| case.name.as_str());
-                let help = did_you_mean(name, names())
-                    .unwrap_or_else(|| format!("its cases are {}", names().collect::<Vec<_>>().join(", ")));
-                let (scenario, case) = (scenario.name, name.to_owned());
-                Err(ScenarioError::UnknownCase { scenario, case, help })
-            }
+        if let Some(case) = catalogue.find(name) {
+            return scenario.with_case(&catalogue, case);
         }
+        let names = || catalogue.cases().iter().map(|case| case.name.as_str());
+        let all = || format!("its cases are {}", names().collect::<Vec<_>>().join(", "));
+        let help = did_you_mean(name, names()).unwrap_or_else(all);
+        Err(ScenarioError::UnknownCase { scenario: scenario.name, case: name.to_owned(), help })
     }
 
     /// The case that is tried.

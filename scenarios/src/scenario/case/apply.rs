@@ -193,6 +193,24 @@ impl Scenario {
         Ok(())
     }
 
+    /// What the case does to a run from outside, by virtual time in nanoseconds.
+    pub fn case_events(&self) -> Vec<(u64, String)> {
+        let Some(applied) = self.applied() else { return Vec::new() };
+        let mut events = Vec::new();
+        for force in &applied.forces {
+            let ty = self.file().signals.get(&force.signal).map(|signal| signal.get_ref().ty);
+            let value = ty.map(|ty| ty.to_text(&force.bytes)).unwrap_or_default();
+            events.push((force.from.as_nanos(), format!("{} held at {value}", force.signal)));
+            events.extend(force.until.map(|until| (until.as_nanos(), format!("{} let go", force.signal))));
+        }
+        for FailureAt { component, mode, from, until, .. } in &applied.failures {
+            events.push((from.as_nanos(), format!("{component} fails: {mode}")));
+            events.extend(until.map(|until| (until.as_nanos(), format!("{component} works again: {mode}"))));
+        }
+        events.sort();
+        events
+    }
+
     /// The client with the case's forces on it.
     pub(in crate::scenario) fn forced(&self, client: Box<dyn Client>) -> Box<dyn Client> {
         match self.applied() {

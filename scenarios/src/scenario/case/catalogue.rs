@@ -1,6 +1,6 @@
 //! `cases.toml` read: all cases of a scenario, those of matrices one by one.
 
-use std::collections::BTreeMap;
+use std::collections::BTreeSet;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
@@ -46,12 +46,12 @@ impl Catalogue {
             return Err(this.wrong(message, None, Some(format!("write `version = {VERSION}`"))));
         }
         let places = Places::of(&this.text);
-        let mut seen: BTreeMap<String, ()> = BTreeMap::new();
+        let mut seen = BTreeSet::new();
         let mut cases = Vec::new();
         for (index, entry) in file.cases.iter().enumerate() {
             for case in this.expanded(index, entry, &places)? {
                 // Snapshots are files, whose names some systems compare without case.
-                if seen.insert(case.name.to_lowercase(), ()).is_some() {
+                if !seen.insert(case.name.to_lowercase()) {
                     let message = format!("two cases are called `{}`", case.name);
                     return Err(this.wrong(message, Some(entry.get_ref().name.span()), None));
                 }
