@@ -13,9 +13,10 @@ use crate::record::block::Block;
 use crate::record::column::Column;
 use crate::record::event::{self, Event};
 use crate::record::header::{FORMAT, Header};
-use crate::record::parquet::parts;
 use crate::record::parquet::read::Part;
+use crate::record::parquet::{ParquetFile, parts};
 use crate::record::recorder::{EVENTS, HEADER, TRAJECTORY};
+use crate::record::sink::Sink;
 use crate::record::{Digest, csv, mcap};
 use crate::signal::pattern::{SignalPattern, Unmatched, choose};
 use crate::time::{StepCount, VirtualTime};
@@ -300,39 +301,31 @@ impl Recording {
     ) -> Result<(), RecordingError> {
         let columns = self.columns(patterns)?;
         let shape: Arc<[Column]> = columns.iter().map(|(_, column)| column.clone()).collect();
-        let out = io::BufWriter::new(out);
-        let mut sink: Box<dyn FnMut(Option<&Block>) -> io::Result<()>> = match format {
-            ExportFormat::Csv => {
-                let mut csv = csv::CsvSink::new(out, shape).map_err(RecordingError::Output)?;
-                Box::new(move |block| block.map_or(Ok(()), |block| csv.rows(block)))
-            }
-            ExportFormat::Mcap => {
-                let mut mcap = mcap::McapSink::new(out, shape).map_err(RecordingError::Output)?;
-                Box::new(move |block| match block {
-                    Some(block) => mcap.rows(block),
-                    None => mcap.finish(),
-                })
-            }
-            ExportFormat::Parquet => {
-                let file = crate::record::parquet::ParquetFile::new(out, shape, *steps.start());
-                let mut file = Some(file.map_err(RecordingError::Output)?);
-                Box::new(move |block| match block {
-                    Some(block) => file.as_mut().map_or(Ok(()), |file| file.rows(block)),
-                    None => file.take().map_or(Ok(()), |file| file.finish().map(|_| ())),
-                })
-            }
-        };
+        let mut sink = sink(format, io::BufWriter::new(out), shape, *steps.start()).map_err(RecordingError::Output)?;
         let mut failed = None;
         self.blocks(&columns, &steps, &mut |block| {
             if let Some(part) = block.within(&steps)
                 && failed.is_none()
             {
-                failed = sink(Some(&part)).err();
+                failed = sink.block(&part).err();
             }
             Ok(())
         })?;
-        failed.map_or_else(|| sink(None), Err).map_err(RecordingError::Output)
+        failed.map_or_else(|| sink.end(), Err).map_err(RecordingError::Output)
     }
+}
+
+fn sink(
+    format: ExportFormat,
+    out: io::BufWriter<std::fs::File>,
+    columns: Arc<[Column]>,
+    first_step: u64,
+) -> io::Result<Box<dyn Sink>> {
+    Ok(match format {
+        ExportFormat::Csv => Box::new(csv::CsvSink::new(out, columns)?),
+        ExportFormat::Mcap => Box::new(mcap::McapSink::new(out, columns)?),
+        ExportFormat::Parquet => Box::new(ParquetFile::new(out, columns, first_step)?),
+    })
 }
 
 #[derive(serde::Deserialize)]

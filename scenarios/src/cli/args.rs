@@ -341,7 +341,7 @@ impl From<FormatArg> for Format {
 pub enum RecordAlso {
     /// For spreadsheets
     Csv,
-    /// For Foxglove and PlotJuggler
+    /// For viewers of robots and their logs: Foxglove, `PlotJuggler`
     Mcap,
 }
 

@@ -29,8 +29,10 @@ impl<W: Write> CsvSink<W> {
         writer.write_record(std::iter::once("t_v_ns").chain(columns.iter().map(|column| column.name.as_str())))?;
         Ok(Self { writer, columns })
     }
+}
 
-    pub(crate) fn rows(&mut self, block: &Block) -> io::Result<()> {
+impl<W: Write + Send> Sink for CsvSink<W> {
+    fn block(&mut self, block: &Block) -> io::Result<()> {
         for (row, t_v_ns) in block.t_v_ns.iter().enumerate() {
             let image = block.image(row);
             self.writer.write_field(t_v_ns.to_string())?;
@@ -40,12 +42,6 @@ impl<W: Write> CsvSink<W> {
             self.writer.write_record(None::<&[u8]>)?;
         }
         self.writer.flush()
-    }
-}
-
-impl<W: Write + Send> Sink for CsvSink<W> {
-    fn block(&mut self, block: &Block) -> io::Result<()> {
-        self.rows(block)
     }
 
     fn end(&mut self) -> io::Result<()> {

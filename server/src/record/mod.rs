@@ -21,7 +21,7 @@ pub mod header;
 pub mod mcap;
 pub mod parquet;
 pub mod recorder;
-mod sink;
+pub(crate) mod sink;
 
 use thiserror::Error;
 

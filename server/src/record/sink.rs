@@ -17,7 +17,7 @@ use super::column::Column;
 const BLOCKS: usize = 3;
 
 /// A form of trajectory that is written block by block.
-pub(super) trait Sink: Send {
+pub(crate) trait Sink: Send {
     /// Takes the steps of a block; whole blocks are what a kill leaves.
     fn block(&mut self, block: &Block) -> io::Result<()>;
     /// Everything has come.

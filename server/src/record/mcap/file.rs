@@ -123,10 +123,8 @@ impl<W: Write> McapFile<W> {
     /// Adds a message to the chunk that is open.
     pub(super) fn message(&mut self, channel: u16, sequence: u32, t_ns: u64, data: &[u8]) {
         let chunk = &mut self.chunk;
-        (chunk.start_ns, chunk.end_ns) = match chunk.records.is_empty() {
-            true => (t_ns, t_ns),
-            false => (chunk.start_ns.min(t_ns), chunk.end_ns.max(t_ns)),
-        };
+        (chunk.start_ns, chunk.end_ns) =
+            if chunk.records.is_empty() { (t_ns, t_ns) } else { (chunk.start_ns.min(t_ns), chunk.end_ns.max(t_ns)) };
         let index = chunk.index.entry(channel).or_default();
         index.extend_from_slice(&t_ns.to_le_bytes());
         index.extend_from_slice(&(chunk.records.len() as u64).to_le_bytes());

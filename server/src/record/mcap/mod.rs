@@ -1,4 +1,4 @@
-//! Trajectories as MCAP, for Foxglove and PlotJuggler: a topic a client, a message a step, log time
+//! Trajectories as MCAP, for Foxglove and `PlotJuggler`: a topic a client, a message a step, log time
 //! is virtual time, values are protobuf.
 //!
 //! | module | subject |
@@ -67,8 +67,10 @@ impl<W: Write> McapSink<W> {
         }
         Ok(Self { file, topics, columns, message: Vec::new() })
     }
+}
 
-    pub(crate) fn rows(&mut self, block: &Block) -> io::Result<()> {
+impl<W: Write + Send> Sink for McapSink<W> {
+    fn block(&mut self, block: &Block) -> io::Result<()> {
         for (row, t_v_ns) in block.t_v_ns.iter().enumerate() {
             // Viewers look for gaps in it.
             let sequence = (block.first_step + row as u64) as u32;
@@ -85,17 +87,7 @@ impl<W: Write> McapSink<W> {
         self.file.end_chunk()
     }
 
-    pub(crate) fn finish(&mut self) -> io::Result<()> {
-        self.file.finish()
-    }
-}
-
-impl<W: Write + Send> Sink for McapSink<W> {
-    fn block(&mut self, block: &Block) -> io::Result<()> {
-        self.rows(block)
-    }
-
     fn end(&mut self) -> io::Result<()> {
-        self.finish()
+        self.file.finish()
     }
 }

@@ -54,7 +54,6 @@ pub(super) fn chunk(
     };
     let spec = pages.write_page(CompressedPage::new(page, length))?;
     uncompressed_size += spec.uncompressed_size;
-    drop(pages);
     let bytes = sink.into_inner()?;
     let metadata = ColumnChunkMetaData::builder(descriptor)
         .set_compression(codec)

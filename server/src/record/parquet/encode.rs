@@ -78,7 +78,9 @@ fn dictionary<'v>(runs: &[(&'v [u8], usize)]) -> Option<Vec<&'v [u8]>> {
 
 fn dictionary_runs(runs: &[(&[u8], usize)], distinct: &[&[u8]], held: Held, text: &dyn Fn(&[u8]) -> String) -> Encoded {
     let mut entries = Vec::new();
-    distinct.iter().for_each(|value| plain_value(value, held, text, &mut entries));
+    for value in distinct {
+        plain_value(value, held, text, &mut entries);
+    }
     // Indices take a byte at most, whatever their width in bits.
     let width = (usize::BITS - (distinct.len() - 1).leading_zeros()).max(1);
     let mut data = vec![width as u8];

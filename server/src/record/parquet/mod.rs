@@ -69,7 +69,7 @@ impl<W: Write + Send> ParquetFile<W> {
     }
 
     /// Writes a row group.
-    pub(crate) fn rows(&mut self, block: &Block) -> io::Result<()> {
+    fn rows(&mut self, block: &Block) -> io::Result<()> {
         let schema = self.writer.schema_descr();
         let descriptors: Vec<_> = (0..schema.num_columns()).map(|index| schema.column(index)).collect();
         let encoded = self.encoded(block);
@@ -103,10 +103,19 @@ impl<W: Write + Send> ParquetFile<W> {
     }
 
     /// Writes the footer.
-    pub(crate) fn finish(self) -> io::Result<W> {
-        let mut out = self.writer.into_inner()?;
-        out.flush()?;
-        Ok(out)
+    fn finish(&mut self) -> io::Result<()> {
+        self.writer.finish()?;
+        self.writer.inner_mut().flush()
+    }
+}
+
+impl<W: Write + Send> Sink for ParquetFile<W> {
+    fn block(&mut self, block: &Block) -> io::Result<()> {
+        self.rows(block)
+    }
+
+    fn end(&mut self) -> io::Result<()> {
+        self.finish()
     }
 }
 
@@ -137,7 +146,7 @@ impl ParquetSink {
     }
 
     fn end_part(&mut self) -> io::Result<()> {
-        let Some(part) = self.part.take() else { return Ok(()) };
+        let Some(mut part) = self.part.take() else { return Ok(()) };
         part.finish()?;
         std::fs::rename(self.partial(), self.folder.join(part_name(self.number)))
     }

@@ -69,7 +69,7 @@ fn fill(block: &mut Block, group: &dyn RowGroupReader, rows: usize, columns: &[(
     block.t_v_ns.clear();
     match group.get_column_reader(1)? {
         ColumnReader::Int64ColumnReader(reader) => {
-            block.t_v_ns.extend(all(reader, rows)?.into_iter().map(|t| t as u64))
+            block.t_v_ns.extend(all(reader, rows)?.into_iter().map(|t| t as u64));
         }
         _ => return Err(wrong("column `t_v_ns` is not INT64")),
     }
