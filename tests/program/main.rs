@@ -8,6 +8,7 @@ mod coverage;
 mod errors;
 mod expectations;
 mod faults;
+mod filling_machine;
 mod freewheel;
 mod help;
 mod instrument;

@@ -59,13 +59,16 @@ pub fn bind(
     application: &Application,
     plc: &ClientName,
     signals: &[SignalDecl],
-    paths: &BTreeMap<SignalName, String>,
+    paths: &BTreeMap<SignalName, Vec<String>>,
 ) -> Result<Bindings, BindError> {
     let mut bindings = Bindings::default();
     for signal in signals {
         let written = signal.writer.as_ref() == Some(plc);
         let variables = match paths.get(&signal.name) {
-            Some(path) => vec![at_path(application, &signal.name, path)?],
+            Some(paths) if written && paths.len() > 1 => return Err(several(&signal.name, paths)),
+            Some(paths) => {
+                paths.iter().map(|path| at_path(application, &signal.name, path)).collect::<Result<_, _>>()?
+            }
             None if written => vec![output_named(application, &signal.name)?],
             None => inputs_named(application, &signal.name),
         };
@@ -77,6 +80,15 @@ pub fn bind(
         if written { bindings.outputs.push(bound) } else { bindings.inputs.push(bound) }
     }
     Ok(bindings)
+}
+
+/// A signal has one value, so one variable that gives it.
+fn several(signal: &SignalName, paths: &[String]) -> BindError {
+    BindError {
+        signal: signal.clone(),
+        message: format!("signal `{signal}` is written by the PLC and bound to {} of its variables", paths.len()),
+        help: Some("only a signal that the PLC reads goes to several".to_owned()),
+    }
 }
 
 fn at_path(application: &Application, signal: &SignalName, path: &str) -> Result<Variable, BindError> {
@@ -155,7 +167,7 @@ mod tests {
             .iter()
             .map(|(n, ty, writer)| SignalDecl { name: name(n), ty: *ty, writer: Some(client(writer)), unit: None })
             .collect();
-        let paths = paths.iter().map(|(n, path)| (name(n), (*path).to_owned())).collect();
+        let paths = paths.iter().map(|(n, path)| (name(n), path.split(' ').map(str::to_owned).collect())).collect();
         bind(&application, &client("plc"), &signals, &paths)
     }
 
@@ -170,6 +182,14 @@ mod tests {
         let bindings = bound(&[("Count", ElementaryType::Int, "plc")], &[("Count", "A.n")]).unwrap();
         assert_eq!(bindings.outputs.len(), 1);
         assert_eq!(bound(&[("Other", ElementaryType::Int, "plant")], &[]).unwrap(), Bindings::default());
+    }
+
+    #[test]
+    fn a_signal_that_is_read_goes_to_several_variables() {
+        let several = [("Go", "A.Start B.start")];
+        assert_eq!(bound(&[("Go", ElementaryType::Bool, "plant")], &several).unwrap().inputs[0].places.len(), 2);
+        let error = bound(&[("Go", ElementaryType::Bool, "plc")], &several).unwrap_err();
+        assert_eq!(error.to_string(), "signal `Go` is written by the PLC and bound to 2 of its variables");
     }
 
     #[test]

@@ -1,5 +1,6 @@
 //! A scenario's clients: its files read, checked and made to run.
 
+use std::collections::BTreeMap;
 use std::path::PathBuf;
 
 use miette::{NamedSource, SourceSpan};
@@ -8,8 +9,9 @@ use onescan_clients::soft_plc::{SoftPlcClient, bind};
 use onescan_plc_shim::input::kind::{FileKind, SourceKind};
 use onescan_plc_shim::{Application, Dialect, Input, Task, TaskPlan};
 use onescan_server::client::Client;
-use onescan_server::signal::{ClientName, SignalName, did_you_mean};
+use onescan_server::signal::{ClientName, did_you_mean};
 
+use super::arrays;
 use super::error::{PlcReport, ScenarioError, SceneReport};
 use super::file::{ClientFile, TaskFile};
 use super::load::Scenario;
@@ -84,7 +86,7 @@ impl Scenario {
         name: &ClientName,
         inputs: Vec<Input>,
         tasks: &[TaskFile],
-        paths: &std::collections::BTreeMap<SignalName, String>,
+        paths: &BTreeMap<String, String>,
     ) -> Result<SoftPlcClient, ScenarioError> {
         let compiled = match self.coverage() {
             Some(_) => Application::from_inputs_with_coverage(inputs),
@@ -94,15 +96,10 @@ impl Scenario {
         for warning in application.warnings().iter() {
             tracing::warn!(code = %warning.code, "{}", warning.message);
         }
-        if let Some(unknown) = paths.keys().find(|signal| !self.file().signals.contains_key(*signal)) {
-            let help = did_you_mean(unknown.as_str(), self.file().signals.keys().map(SignalName::as_str));
-            return Err(self.wrong_client(
-                name,
-                format!("`bind` names a signal `{unknown}` that is not declared"),
-                help,
-            ));
-        }
-        let bindings = bind(&application, name, self.plan().signals(), paths)
+        let declared: Vec<_> = self.file().signals.keys().collect();
+        let paths =
+            arrays::bound(paths, &declared).map_err(|found| self.wrong_client(name, found.message, found.help))?;
+        let bindings = bind(&application, name, self.plan().signals(), &paths)
             .map_err(|error| self.wrong_signal(&error.signal, error.message, error.help))?;
         let plan = plan_of(tasks).or_else(|| TaskPlan::configured(&application));
         let plan = plan.ok_or_else(|| {
