@@ -17,6 +17,8 @@ pub struct Bound {
     pub port: Port,
     /// Where it lies in memory; several for an input that several programs read.
     pub places: Vec<Place>,
+    /// Their paths.
+    pub variables: Vec<String>,
 }
 
 /// Where a value lies in the PLC's memory.
@@ -76,7 +78,8 @@ pub fn bind(
             continue;
         }
         let places = variables.iter().map(|variable| checked_place(signal, variable)).collect::<Result<_, _>>()?;
-        let bound = Bound { port: Port { name: signal.name.clone(), ty: signal.ty }, places };
+        let paths = variables.into_iter().map(|variable| variable.path).collect();
+        let bound = Bound { port: Port { name: signal.name.clone(), ty: signal.ty }, places, variables: paths };
         if written { bindings.outputs.push(bound) } else { bindings.inputs.push(bound) }
     }
     Ok(bindings)
