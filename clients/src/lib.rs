@@ -4,6 +4,7 @@
 //! |---|---|
 //! | [`plant`] | the simulated machine: a scene of rigid bodies, driven axes and sensors |
 //! | [`soft_plc`] | the embedded soft PLC, which runs IEC 61131-3 source text |
+//! | [`array`] | names with a range, as in `arm[0..9].hold` |
 //! | [`replay`] | a client that repeats what another once did |
 //! | [`operator`] | switches and set points that nobody else writes |
 //! | [`forced`] | a client some of whose outputs are held for a time |
@@ -15,6 +16,7 @@
 //! - Files are read before a session; nothing here opens a socket or starts a thread.
 //! - Bad input is an error with a place, never a panic.
 
+pub mod array;
 pub mod forced;
 pub mod operator;
 pub mod plant;

@@ -71,7 +71,7 @@ fn a_case_goes_on_from_a_checkpoint() {
 #[test]
 fn an_initial_value_is_where_the_plc_begins() {
     let folder = shear_with(CASES);
-    let said = run_case(&folder, "late", &["--record", "out"]);
+    let said = run_case(&folder, "late", &["--record", "out", "--record-also", "csv"]);
     assert_eq!(said.code, Some(0), "{said:?}");
     let csv = std::fs::read_to_string(folder.path().join("out/run-1/trajectory.csv")).expect("a recording");
     let mut lines = csv.lines();

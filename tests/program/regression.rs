@@ -154,18 +154,43 @@ fn a_garbled_snapshot_is_told_with_its_line() {
 #[test]
 fn ten_seconds_of_many_axes_are_small_text() {
     let folder = tempfile::tempdir().expect("a folder");
-    let (mut scene, mut signals) = (String::from("version = 1\n"), String::new());
-    for axis in 0..8 {
-        // A mass on a rail that never rests: dynamic bodies under gravity, each on its own slope.
-        scene += &format!(
-            "[[body]]\nname = \"b{axis}\"\nkind = \"dynamic\"\nshape = \"box\"\nsize_m = [0.1, 0.1, 0.1]\nmass_kg = 1.0\ncollides = false\n\
-             [[joint]]\nname = \"j{axis}\"\nkind = \"prismatic\"\nparent = \"ground\"\nchild = \"b{axis}\"\naxis = [1.0, 0.0, 0.{axis}1]\n\
-             [[axis]]\nname = \"a{axis}\"\njoint = \"j{axis}\"\ndrive = \"velocity\"\ncommand_signal = \"c{axis}\"\nspeed_m_s = 1.0\nacceleration_m_s2 = 0.0{axis}7\nposition_signal = \"p{axis}\"\n"
-        );
-        signals += &format!(
-            "p{axis} = {{ type = \"LREAL\", writer = \"plant\", unit = \"m\" }}\nc{axis} = {{ type = \"LREAL\", writer = \"operator\" }}\n"
-        );
-    }
+    let moved = |axis: u32| {
+        format!(
+            r#"
+[[body]]
+name = "b{axis}"
+kind = "dynamic"
+shape = "box"
+size_m = [0.1, 0.1, 0.1]
+mass_kg = 1.0
+collides = false
+
+[[joint]]
+name = "j{axis}"
+kind = "prismatic"
+parent = "ground"
+child = "b{axis}"
+axis = [1.0, 0.0, 0.{axis}1]
+
+[[axis]]
+name = "a{axis}"
+joint = "j{axis}"
+drive = "velocity"
+command_signal = "c{axis}"
+speed_m_s = 1.0
+acceleration_m_s2 = 0.0{axis}7
+position_signal = "p{axis}"
+"#
+        )
+    };
+    let declared = |axis: u32| {
+        format!(
+            "p{axis} = {{ type = \"LREAL\", writer = \"plant\", unit = \"m\" }}\n\
+             c{axis} = {{ type = \"LREAL\", writer = \"operator\" }}\n"
+        )
+    };
+    let scene = format!("version = 1\n{}", (0..8).map(moved).collect::<String>());
+    let signals: String = (0..8).map(declared).collect();
     let initial: Vec<String> = (0..8).map(|axis| format!("c{axis} = 0.{axis}3")).collect();
     let scenario = format!(
         "version = 1\nstep = \"1ms\"\nuntil = \"10s\"\n[signals]\n{signals}[clients.plant]\nkind = \"plant\"\nscene = \"plant.toml\"\n\

@@ -28,8 +28,8 @@ impl Front {
         for input in inputs {
             findings.extend(input.add_to(&mut sources));
         }
-        let asserts = sources.iter().any(|(_, file)| library::mentions_assert(file.text()));
-        for (name, text) in library::FILES.into_iter().chain(asserts.then_some(library::ASSERTS)) {
+        let needed = library::for_program(sources.iter().map(|(_, file)| file));
+        for (name, text) in needed {
             library.insert(sources.add(SourceFile::new(name, text)));
         }
         let mut units = Vec::new();

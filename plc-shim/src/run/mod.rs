@@ -23,9 +23,10 @@ mod scheduler;
 mod soft_plc;
 mod state;
 pub(crate) mod text;
+mod trace;
 
 pub use asserts::{Asserts, FailedAssert};
-pub use fault::{FaultSite, PlcFault};
+pub use fault::{FaultSite, PlcFault, WriteSite};
 pub use plan::{RunError, Task, TaskPlan};
 pub use soft_plc::SoftPlc;
 pub use state::RestoreError;

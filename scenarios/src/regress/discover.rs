@@ -56,6 +56,9 @@ impl Found {
     }
 }
 
+/// Folders that are passed over: what a build leaves behind, and what scenarios are made from.
+const PASSED_OVER: [&str; 3] = ["target", "node_modules", "templates"];
+
 /// All scenarios in a folder and below it, without hidden folders.
 fn gather(folder: &Path, found: &mut Vec<PathBuf>) -> Result<(), RunError> {
     if folder.join(FILE_NAME).is_file() {
@@ -67,8 +70,8 @@ fn gather(folder: &Path, found: &mut Vec<PathBuf>) -> Result<(), RunError> {
     for entry in std::fs::read_dir(folder).map_err(failed)? {
         let path = entry.map_err(failed)?.path();
         let name = path.file_name().unwrap_or_default().to_string_lossy();
-        // A link may lead in a circle; what a build leaves behind is no scenario.
-        if path.is_dir() && !path.is_symlink() && !name.starts_with('.') && name != "target" && name != "node_modules" {
+        // A link may lead in a circle.
+        if path.is_dir() && !path.is_symlink() && !name.starts_with('.') && !PASSED_OVER.contains(&name.as_ref()) {
             inner.push(path);
         }
     }

@@ -10,6 +10,7 @@ use toml::{Spanned, Value};
 use super::file::{CaseFile, CasesFile, SnapshotFile, VERSION};
 use super::matrix::{Axis, COMBINATIONS_MAX, combinations};
 use super::{Case, DEFAULT, FILE_NAME, Setting};
+use crate::scenario::arrays;
 use crate::scenario::error::{ScenarioError, wrong};
 
 /// All cases of a scenario.
@@ -40,7 +41,8 @@ impl Catalogue {
     fn parse(path: PathBuf, text: String) -> Result<Self, ScenarioError> {
         let mut this = Self { path, text, ..Self::default() };
         let form = |e: toml::de::Error| this.wrong(e.message().trim().to_owned(), e.span(), None);
-        let file: CasesFile = toml::from_str(&this.text).map_err(form)?;
+        let mut file: CasesFile = toml::from_str(&this.text).map_err(form)?;
+        this.expand(&mut file)?;
         if file.version != VERSION {
             let message = format!("version {} of the format of cases is not known", file.version);
             return Err(this.wrong(message, None, Some(format!("write `version = {VERSION}`"))));
@@ -63,6 +65,18 @@ impl Catalogue {
         }
         (this.file, this.cases) = (file, cases);
         Ok(this)
+    }
+
+    /// Expands the arrays among the signals of snapshots.
+    fn expand(&self, file: &mut CasesFile) -> Result<(), ScenarioError> {
+        let mut all = Vec::new();
+        for signal in &file.snapshot.signals {
+            let names = arrays::names(signal.get_ref().as_str(), signal.span());
+            let names = names.map_err(|found| self.wrong(found.message, found.place, found.help))?;
+            all.extend(names.into_iter().map(|name| Spanned::new(signal.span(), name)));
+        }
+        file.snapshot.signals = all;
+        Ok(())
     }
 
     /// The cases of one entry.
