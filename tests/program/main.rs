@@ -16,3 +16,4 @@ mod plc_faults;
 mod run;
 mod third_party;
 mod typed;
+mod watch;

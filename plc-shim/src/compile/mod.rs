@@ -60,4 +60,4 @@ mod text;
 pub(crate) mod text_host;
 
 pub(crate) use budget::BUDGET_EXPORT;
-pub(crate) use module::{Compiled, MEMORY_EXPORT, Noted, compile, entry_export};
+pub(crate) use module::{Compiled, END_EXPORT, MEMORY_EXPORT, Noted, START_EXPORT, compile, entry_export};

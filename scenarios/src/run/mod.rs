@@ -12,6 +12,7 @@
 //! | [`progress`] | a bar on a terminal |
 //! | [`sampler`] | what a plot shows |
 //! | [`expectation`] | what a run had to show |
+//! | [`watch`] | what watched variables were |
 //! | [`report`] | what came of a run, for people and machines |
 //! | [`output`] | files that appear whole or not at all |
 
@@ -27,6 +28,7 @@ mod processes;
 mod progress;
 pub mod report;
 mod sampler;
+pub mod watch;
 
 use std::cell::RefCell;
 use std::io::Write;
@@ -46,6 +48,7 @@ use crate::scenario::Scenario;
 use expectation::Witness;
 use interrupt::Interrupt;
 use sampler::{Sampler, Samples};
+use watch::WatchReport;
 
 /// Runs a scenario as `config` asks, and writes a report of each run to `out`.
 ///
@@ -58,6 +61,9 @@ pub fn execute(config: &RunConfig, interrupt: &Interrupt, out: &mut dyn Write) -
         scenario.cover();
     }
     config.check(&scenario)?;
+    if !config.watch.is_empty() {
+        scenario.watch(&config.watch, config.watch_changes)?;
+    }
     let mut reports: Vec<RunReport> = Vec::new();
     let mut samples = Vec::new();
     for number in 1..=config.runs {
@@ -115,6 +121,7 @@ fn one_run(
     let mut trace = trace.replace(Trace::default());
     trace.set_end(if report.status == "completed" { TraceEnd::Complete } else { TraceEnd::Cut });
     report.expectations = expectation::judge(scenario, &trace);
+    report.watched = WatchReport::take(config, scenario);
     if let Some(folder) = &folder {
         write_summary(&folder.join("run.json"), &report)?;
     }
