@@ -10,5 +10,5 @@ pub mod bind;
 mod client;
 pub mod watch;
 
-pub use bind::{BindError, Bindings, bind};
+pub use bind::{BindError, Bindings, Bound, bind};
 pub use client::{CoverageSink, SoftPlcClient};
