@@ -24,4 +24,5 @@ mod run;
 mod third_party;
 mod typed;
 mod unit_tests;
+mod watch;
 mod wiring;

@@ -106,9 +106,10 @@ impl Scenario {
     fn scene_in_case(&self, name: &ClientName, file: &str) -> Result<Scene, ScenarioError> {
         // What is wrong with the scene itself is told first.
         let plain = self.scene_of(file)?;
-        let text = read(&self.folder().join(file))?;
-        let wanted = self.scene_text(name, text.clone())?;
-        Ok(if wanted == text { plain } else { Scene::parse(&wanted, file).unwrap_or(plain) })
+        let path = self.folder().join(file);
+        let (text, named) = (read(&path)?, path.display().to_string());
+        let wanted = self.scene_text(name, &named, text.clone())?;
+        Ok(if wanted == text { plain } else { Scene::parse(&wanted, &named).unwrap_or(plain) })
     }
 
     /// The sources of soft PLC `name`, compiled, and what its `bind` says.
@@ -157,6 +158,11 @@ impl Scenario {
         self.preset(&mut client, name)?;
         if let Some(sink) = self.coverage() {
             client.cover(sink.clone());
+        }
+        if let Some(watched) = &self.watched {
+            let (watches, changes, sink) = watched.of(name);
+            let watched = client.watch(&watches, changes, sink);
+            watched.map_err(|unknown| self.wrong_option(format!("--watch: {unknown}"), None))?;
         }
         Ok(client)
     }

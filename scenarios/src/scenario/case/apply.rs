@@ -151,7 +151,12 @@ impl Scenario {
     }
 
     /// The text of a plant's scene as the case wants it.
-    pub(in crate::scenario) fn scene_text(&self, name: &ClientName, text: String) -> Result<String, ScenarioError> {
+    pub(in crate::scenario) fn scene_text(
+        &self,
+        name: &ClientName,
+        file: &str,
+        text: String,
+    ) -> Result<String, ScenarioError> {
         let Some(applied) = self.applied() else { return Ok(text) };
         let settings: Vec<&Setting> = settings_of(applied, name).collect();
         let failures: Vec<&FailureAt> =
@@ -159,7 +164,7 @@ impl Scenario {
         if settings.is_empty() && failures.is_empty() {
             return Ok(text);
         }
-        let edited = scene::edited(&text, &settings, &failures);
+        let edited = scene::edited(&text, file, &settings, &failures);
         edited.map_err(|refused| wrong_case(applied, refused.message, refused.place, refused.help))
     }
 

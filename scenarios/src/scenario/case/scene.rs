@@ -28,29 +28,29 @@ pub struct Refused {
     pub help: Option<String>,
 }
 
-/// The scene of `text` with the settings, whose paths begin with the plant's name, and the failures.
+/// The scene of `text`, which is in `file`, with the settings, whose paths begin with the plant's name, and the failures.
 ///
 /// # Errors
 /// A path that names nothing of the scene, a value that is not allowed.
-pub fn edited(text: &str, settings: &[&Setting], failures: &[&FailureAt]) -> Result<String, Refused> {
+pub fn edited(text: &str, file: &str, settings: &[&Setting], failures: &[&FailureAt]) -> Result<String, Refused> {
     let whole = written(text, settings, failures)?;
-    if Scene::parse(&whole, "").is_ok() {
+    if Scene::parse(&whole, file).is_ok() {
         return Ok(whole);
     }
     // One of them is to blame; alone it is wrong as well, unless they are wrong together.
     for setting in settings {
-        judge(&written(text, &[setting], &[])?, &setting.place)?;
+        judge(&written(text, &[setting], &[])?, file, &setting.place)?;
     }
     for failure in failures {
-        judge(&written(text, &[], &[failure])?, &failure.place)?;
+        judge(&written(text, &[], &[failure])?, file, &failure.place)?;
     }
     let last = failures.last().map(|failure| &failure.place).or(settings.last().map(|setting| &setting.place));
-    judge(&whole, &last.cloned().unwrap_or_default())?;
+    judge(&whole, file, &last.cloned().unwrap_or_default())?;
     Ok(whole)
 }
 
-fn judge(text: &str, place: &Range<usize>) -> Result<(), Refused> {
-    let Err(error) = Scene::parse(text, "") else { return Ok(()) };
+fn judge(text: &str, file: &str, place: &Range<usize>) -> Result<(), Refused> {
+    let Err(error) = Scene::parse(text, file) else { return Ok(()) };
     let (message, help) = match error.faults().first() {
         Some(fault) => (fault.kind.to_string(), fault.hint.clone()),
         None => (error.to_string(), None),
@@ -151,19 +151,19 @@ mod tests {
     #[test]
     fn a_value_is_replaced_or_added() {
         let settings = [setting("plant.extent_m", 50.0), setting("plant.body.base.friction", 0.25)];
-        let text = edited(SCENE, &settings.each_ref(), &[]).unwrap();
+        let text = edited(SCENE, "", &settings.each_ref(), &[]).unwrap();
         assert!(text.starts_with("extent_m = 50.0\nversion = 1\n"), "{text}");
         assert!(text.contains("name = \"base\"\nfriction = 0.25\n"), "{text}");
-        let again = edited(&text, &[&setting("plant.base.friction", 0.75)], &[]).unwrap();
+        let again = edited(&text, "", &[&setting("plant.base.friction", 0.75)], &[]).unwrap();
         assert!(again.contains("friction = 0.75\n") && !again.contains("0.25"), "{again}");
     }
 
     #[test]
     fn what_does_not_suit_is_told_with_its_place() {
-        let refused = edited(SCENE, &[&setting("plant.bsae.friction", 1.0)], &[]).unwrap_err();
+        let refused = edited(SCENE, "", &[&setting("plant.bsae.friction", 1.0)], &[]).unwrap_err();
         assert_eq!(refused.message, "the scene has nothing called `bsae`");
         assert_eq!((refused.help.as_deref(), refused.place), (Some("did you mean `base`?"), 5..9));
-        let refused = edited(SCENE, &[&setting("plant.base.friction", -1.0)], &[]).unwrap_err();
+        let refused = edited(SCENE, "", &[&setting("plant.base.friction", -1.0)], &[]).unwrap_err();
         assert!(refused.message.contains("friction"), "{refused:?}");
         let failure = FailureAt {
             client: "plant".to_owned(),
@@ -173,7 +173,7 @@ mod tests {
             until: None,
             place: 1..2,
         };
-        let refused = edited(SCENE, &[], &[&failure]).unwrap_err();
+        let refused = edited(SCENE, "", &[], &[&failure]).unwrap_err();
         assert!(refused.message.contains("stcuk") && refused.help.is_some(), "{refused:?}");
     }
 }
