@@ -18,6 +18,7 @@
 //! | [`enable`], [`enable_error`] | EN and ENO |
 //! | [`text`], [`text_function`], [`text_conversion`] | character strings |
 //! | [`statement`], [`assignment`], [`edge`] | statements |
+//! | [`jump`], [`wire`], [`instruction`] | what networks and lists of instructions have beside statements |
 //! | [`configuration`] | resources, tasks, instances of programs |
 //! | [`dialect`] | what dialects do their own way |
 //! | [`recursion`], [`dispatch`] | who calls whom, and what only a run decides |
@@ -47,7 +48,9 @@ mod function_form;
 mod inheritance;
 mod initial;
 mod instance;
+mod instruction;
 mod interface_value;
+mod jump;
 mod layout;
 mod located;
 mod memory_function;
@@ -72,6 +75,7 @@ mod text_function;
 mod types;
 mod union;
 mod variables;
+mod wire;
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;

@@ -11,7 +11,7 @@
 //! | [`address`], [`place`], [`part`], [`pointer`], [`open_array`], [`memory`] | addresses, loads and stores |
 //! | [`known`], [`effect`], [`survey`] | values that registers hold already, also through loops |
 //! | [`interval`] | ranges of integers, for checks that cannot fail |
-//! | [`statement`], [`selection`], [`choice`], [`repetition`], [`counting`] | statements |
+//! | [`statement`], [`selection`], [`choice`], [`repetition`], [`counting`], [`jump`] | statements |
 //! | [`expression`], [`arithmetic`], [`conversion`], [`intrinsic`], [`bytes`] | expressions |
 //! | [`dispatch`] | methods: which one runs |
 //! | [`host`] | functions that WebAssembly lacks |
@@ -43,6 +43,7 @@ pub(crate) mod host;
 mod inline;
 mod interval;
 mod intrinsic;
+mod jump;
 mod known;
 mod memory;
 mod module;

@@ -60,7 +60,7 @@ impl Emitter<'_, '_> {
     }
 
     /// A loop that pays for its turns.
-    fn repeated(&mut self, turns: impl Fn(&mut Self)) {
+    pub(super) fn repeated(&mut self, turns: impl Fn(&mut Self)) {
         let survey = self.survey(&turns);
         let pins = self.enter_loop(&survey);
         let opened = self.open_budget();

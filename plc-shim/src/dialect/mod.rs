@@ -199,6 +199,7 @@ features! {
     CompoundAssignment "`+=`, `-=`, `*=`, `/=`",
     BareArrayValues "initial values of an array without brackets",
     ConditionalPragmas "`{IF defined (x)}`",
+    Jumps "a jump or a label in Structured Text",
     StaticSection "`VAR_STAT`",
     BitArithmetic "a bit string as a number, or a number as a bit string",
     SignChange "an integer as one of the other sign, without conversion",

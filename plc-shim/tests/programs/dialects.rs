@@ -23,6 +23,7 @@ fn use_of(feature: Feature) -> &'static str {
             "PROGRAM P VAR a : ARRAY [0..2] OF INT := 1, 2(3); END_VAR a[0] := a[1]; END_PROGRAM"
         }
         Feature::ConditionalPragmas => "PROGRAM P {IF defined (x)} {END_IF} END_PROGRAM",
+        Feature::Jumps => "PROGRAM P VAR a : INT; END_VAR JMP done; a := 1; done: END_PROGRAM",
         Feature::StaticSection => "PROGRAM P VAR_STAT a : INT; END_VAR a := a + 1; END_PROGRAM",
         Feature::BitArithmetic => "PROGRAM P VAR b : BYTE; i : INT; END_VAR b := b + 1; i := b; END_PROGRAM",
         Feature::SignChange => "PROGRAM P VAR u : UINT; i : INT; END_VAR i := u; END_PROGRAM",
