@@ -77,6 +77,11 @@ struct Lowering {
 }
 
 impl Lowering {
+    /// True if execution never comes to the end of what there is so far.
+    fn has_left(&self) -> bool {
+        self.out.last().is_some_and(|last| matches!(last.kind, StatementKind::Jump(_) | StatementKind::Return))
+    }
+
     /// Keeps the current result for the code behind a label.
     fn hand_over(&mut self, name: &Ident, span: Span) {
         if let Some(value) = self.current.clone() {
@@ -145,6 +150,10 @@ impl Body<'_, '_> {
     /// Behind a label the current result is the one of wherever execution came from.
     fn label(&mut self, name: &Ident, state: &mut Lowering, handed: &BTreeSet<String>, statement: &Statement) {
         if handed.contains(&name.key()) {
+            if !state.has_left() {
+                self.current(state, statement.span);
+            }
+            state.told = false;
             state.hand_over(name, statement.span);
             state.current = Some(handed_wire(name));
         } else {
@@ -256,7 +265,7 @@ impl Body<'_, '_> {
         self.settle_current(state);
         let mut jump = Vec::new();
         if handed.contains(&label.key())
-            && let Some(value) = state.current.clone()
+            && let Some(value) = self.current(state, span)
         {
             jump.push(Statement { kind: StatementKind::Assign(handed_wire(label), value), span });
         }

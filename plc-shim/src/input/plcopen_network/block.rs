@@ -26,8 +26,8 @@ impl<'n> Builder<'_, '_, 'n> {
         let place = link.element.open.clone();
         let in_out = node.inputs.iter().find(|input| input.in_out && input.name.eq_ignore_ascii_case(link.pin));
         if let Some(input) = in_out.filter(|_| !link.pin.is_empty()) {
-            let arriving = self.arriving(input)?;
-            return Some(Self::text_of(arriving, &place));
+            let variable = self.variable(input)?;
+            return Some(Self::text_of(variable, &place));
         }
         let named = node.outputs.iter().find(|output| output.name.eq_ignore_ascii_case(link.pin));
         let first = || result(node).filter(|_| link.pin.is_empty());
@@ -106,7 +106,8 @@ impl<'n> Builder<'_, '_, 'n> {
     fn argument(&mut self, node: &Node<'n>, input: &Input<'n>, named: bool) -> Option<Text> {
         let place = input.element.open.clone();
         let is_enable = input.name.eq_ignore_ascii_case(EN);
-        let Some(arriving) = self.arriving(input) else {
+        let arriving = if input.in_out { self.variable(input) } else { self.arriving(input) };
+        let Some(arriving) = arriving else {
             if !named && !is_enable {
                 let name = if input.name.is_empty() { "an input" } else { input.name };
                 let message =

@@ -153,6 +153,20 @@ impl<'w, 'f, 'n> Builder<'w, 'f, 'n> {
         }
     }
 
+    /// The variable that is connected to a `VAR_IN_OUT`, itself and not its value.
+    pub(super) fn variable(&mut self, input: &Input<'n>) -> Option<Signal> {
+        let nodes = self.nodes;
+        let variable = match input.links.as_slice() {
+            [link] => link.source.and_then(|source| nodes.get(source)),
+            _ => None,
+        };
+        let variable = variable.filter(|node| matches!(node.kind, Kind::InVariable | Kind::InOutVariable));
+        match variable {
+            Some(node) => self.expression(node.element, "expression").map(|(text, _)| Signal::Value(text)),
+            None => self.arriving(input),
+        }
+    }
+
     /// What comes to an input before its own modifiers; nothing if it is not connected.
     pub(super) fn arriving(&mut self, input: &Input<'n>) -> Option<Signal> {
         if let (false, [_, second, ..]) = (self.ladder, input.links.as_slice()) {

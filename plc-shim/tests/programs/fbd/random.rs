@@ -1,5 +1,7 @@
 //! Random networks without loops: what they give, compiled, is what their elements give, one by one.
 
+use std::fmt::Write;
+
 use proptest::prelude::*;
 
 use crate::plcopen::{block, input, output, program, rig};
@@ -32,9 +34,12 @@ fn apply(function: Function, a: i16, b: i16) -> i16 {
     }
 }
 
+/// Function, sources and height of an element.
+type Element = (usize, usize, usize, u32);
+
 /// Four inputs, then elements of which each takes two values from what is before it; where each stands is as
 /// random as everything else.
-fn network() -> impl Strategy<Value = (Vec<i16>, Vec<(usize, usize, usize, u32)>)> {
+fn network() -> impl Strategy<Value = (Vec<i16>, Vec<Element>)> {
     let element = (0..FUNCTIONS.len(), any::<usize>(), any::<usize>(), 0..400_u32);
     (prop::collection::vec(any::<i16>(), 4), prop::collection::vec(element, 1..30))
 }
@@ -58,11 +63,11 @@ proptest! {
         }
         let mut sections = String::from("local r0 : INT");
         for (at, value) in inputs.iter().enumerate() {
-            sections += &format!(", i{at} : INT = {value}");
+            write!(sections, ", i{at} : INT = {value}").expect("a string");
         }
         for at in inputs.len()..values.len() {
             body += &output(1000 + at as u32, (500, at as u32), &format!("{at}.OUT"), &format!("o{at}"), "");
-            sections += &format!(", o{at} : INT");
+            write!(sections, ", o{at} : INT").expect("a string");
         }
         let mut rig = rig(&program(&sections, "FBD", &body));
         rig.scan().expect("no fault");
