@@ -34,7 +34,16 @@ struct Back {
 impl Emitter<'_, '_> {
     pub(super) fn labelled(&mut self, inner: &Labelled, span: Span) {
         if inner.register.is_some() {
-            self.repeated(|emitter| emitter.parts(inner, span));
+            self.repeated(None, |emitter| {
+                // What a part does may be done any number of times in a turn of a loop around.
+                if let Some(trial) = &mut emitter.trial {
+                    trial.steps.open_turn();
+                }
+                emitter.parts(inner, span);
+                if let Some(trial) = &mut emitter.trial {
+                    trial.steps.close_turn();
+                }
+            });
         } else {
             self.parts(inner, span);
         }

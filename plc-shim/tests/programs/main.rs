@@ -15,6 +15,7 @@ mod fbd;
 mod field;
 mod forcing;
 mod il;
+mod index_ranges;
 mod inputs;
 mod language;
 mod ld;

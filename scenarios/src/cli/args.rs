@@ -8,10 +8,12 @@ use onescan_plc_shim::instrument::Target;
 use onescan_plc_shim::{Dialect, Task};
 use onescan_server::pacing::Pace;
 use onescan_server::session::Control;
+use onescan_server::signal::pattern::SignalPattern;
 use onescan_server::signal::{ClientName, SignalName};
 use onescan_server::time::{TimeSpan, VirtualTime};
 
 use crate::check::CheckFormat;
+use crate::new::Template;
 use crate::run::coverage::CoverageFormat;
 use crate::run::{Format, Mode, Transport};
 
@@ -55,6 +57,11 @@ pub enum Command {
     Components(ComponentsArgs),
     /// Tell what a scene is made of: bodies, joints, components, signals
     Describe(DescribeArgs),
+    /// Tell and draw how the signals of a scenario connect its clients, and what is unconnected, doubly written
+    /// or of unequal type
+    Wiring(WiringArgs),
+    /// Write a small scenario that runs at once, to begin with
+    New(NewArgs),
     /// Explain a code of `check`, with an example that is wrong and one that is right
     Explain(ExplainArgs),
 }
@@ -80,9 +87,16 @@ pub struct RunArgs {
     /// `inproc`: all clients in this process; `tcp`: each in a process of its own
     #[arg(long, value_enum, default_value_t)]
     pub transport: TransportArg,
-    /// Record every signal of every step as CSV, in a folder `run-N` of this folder
+    /// Record each run in a folder `run-N` of this folder: the scenario's files, every signal and digest of
+    /// every step as Parquet, events
     #[arg(long, value_name = "DIR")]
     pub record: Option<PathBuf>,
+    /// Record the trajectory as `csv` or `mcap` too; both may be given, as in `csv,mcap`
+    #[arg(long, value_enum, value_name = "FORMAT", requires = "record", value_delimiter = ',')]
+    pub record_also: Vec<RecordAlso>,
+    /// Record these signals only: a name, or a pattern with `*` and `?`; may be given several times
+    #[arg(long = "record-signals", value_name = "PATTERN", requires = "record")]
+    pub record_signals: Vec<SignalPattern>,
     /// For people, or one JSON object a run for machines
     #[arg(long, value_enum, default_value_t)]
     pub format: FormatArg,
@@ -309,6 +323,51 @@ impl From<TransportArg> for Transport {
     }
 }
 
+/// Options of `wiring`.
+#[derive(Debug, ClapArgs)]
+pub struct WiringArgs {
+    /// The scenario: a folder with a `scenario.toml`
+    pub scenario: PathBuf,
+    /// For people, or JSON for machines
+    #[arg(long, value_enum, default_value_t)]
+    pub format: FormatArg,
+    /// Draw it into this SVG file, too
+    #[arg(long, value_name = "FILE")]
+    pub svg: Option<PathBuf>,
+}
+
+/// Options of `new`.
+#[derive(Debug, ClapArgs)]
+pub struct NewArgs {
+    /// The folder to make; its name is the scenario's
+    pub folder: PathBuf,
+    /// What to begin with
+    #[arg(long, value_enum, default_value_t)]
+    pub template: TemplateArg,
+}
+
+/// See [`Template`].
+#[derive(Clone, Copy, Debug, Default, ValueEnum)]
+pub enum TemplateArg {
+    /// A cylinder pushes boxes off a belt: bodies, a conveyor, a sensor, pneumatics
+    #[default]
+    Cell,
+    /// A tank with a pump, a valve and a level: process engineering, no bodies
+    Tank,
+    /// A plant of your own in Python, over TCP
+    Python,
+}
+
+impl From<TemplateArg> for Template {
+    fn from(arg: TemplateArg) -> Self {
+        match arg {
+            TemplateArg::Cell => Self::Cell,
+            TemplateArg::Tank => Self::Tank,
+            TemplateArg::Python => Self::Python,
+        }
+    }
+}
+
 /// See [`Format`].
 #[derive(Clone, Copy, Debug, Default, ValueEnum)]
 pub enum FormatArg {
@@ -326,6 +385,15 @@ impl From<FormatArg> for Format {
             FormatArg::Json => Self::Json,
         }
     }
+}
+
+/// A form of trajectory that is recorded beside Parquet.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum RecordAlso {
+    /// For spreadsheets
+    Csv,
+    /// For viewers of robots and their logs: Foxglove, `PlotJuggler`
+    Mcap,
 }
 
 /// See [`CoverageFormat`].

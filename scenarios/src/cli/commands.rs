@@ -3,20 +3,24 @@
 use std::io::{IsTerminal, Write};
 use std::time::Duration;
 
+use onescan_server::record::Choice;
 use onescan_server::transport::tcp::operator::operate;
 use onescan_server::transport::tcp::participant::take_part;
 
-use super::args::{CheckArgs, Command, ControlArgs, ExplainArgs, InstrumentArgs, JoinArgs, RunArgs};
+use super::args::{CheckArgs, Command, ControlArgs, ExplainArgs, InstrumentArgs, JoinArgs, RecordAlso, RunArgs};
 use crate::check::{self, CheckConfig, Warnings};
 use crate::instrument::{Destination, Diff, Direction, InstrumentConfig};
+use crate::new;
 use crate::plant;
 use crate::run::config::SaveRequest;
 use crate::run::coverage::CoverageRequest;
 use crate::run::error::{ExitCode, RunError};
 use crate::run::interrupt::Interrupt;
+use crate::run::recorded::RecordRequest;
 use crate::run::{Format, RunConfig, execute};
 use crate::scenario::Scenario;
 use crate::scenario::compose::Member;
+use crate::wiring::{self, WiringConfig};
 
 /// How long an operator waits for the next step boundary.
 const OPERATOR_PATIENCE: Duration = Duration::from_secs(30);
@@ -35,6 +39,15 @@ pub fn dispatch(command: Command) -> Result<ExitCode, RunError> {
         Command::Explain(args) => explain(&args),
         Command::Components(args) => {
             plant::components::write(args.kind.as_deref(), args.format.into(), &mut std::io::stdout().lock())?;
+            Ok(ExitCode::Ok)
+        }
+        Command::Wiring(args) => {
+            let config = WiringConfig { scenario: args.scenario, format: args.format.into(), svg: args.svg };
+            let sound = wiring::write(&config, &mut std::io::stdout().lock())?;
+            Ok(if sound { ExitCode::Ok } else { ExitCode::WrongInput })
+        }
+        Command::New(args) => {
+            new::write(&args.folder, args.template.into(), &mut std::io::stdout().lock())?;
             Ok(ExitCode::Ok)
         }
         Command::Describe(args) => {
@@ -60,7 +73,14 @@ fn config(args: RunArgs) -> RunConfig {
         mode: args.mode.into(),
         runs: args.runs,
         transport: args.transport.into(),
-        record: args.record,
+        record: args.record.map(|folder| RecordRequest {
+            folder,
+            choice: Choice {
+                signals: args.record_signals,
+                csv: args.record_also.contains(&RecordAlso::Csv),
+                mcap: args.record_also.contains(&RecordAlso::Mcap),
+            },
+        }),
         format,
         plot: args.plot,
         signals: args.signals,

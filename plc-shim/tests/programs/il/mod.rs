@@ -167,3 +167,21 @@ fn statements_that_look_like_instructions_are_statements() {
         assert!(printed.contains(';') && printed.contains(":= ") || printed.contains("ld(1)"), "{printed}");
     }
 }
+
+#[test]
+fn a_jump_back_inside_of_a_loop_is_no_step_of_it() {
+    let text = "PROGRAM P VAR i, turns : INT; a : ARRAY [0..9] OF INT; END_VAR
+        WHILE i < 10 DO
+            again:
+            i := i + 1;
+            turns := turns + 1;
+            IF i < 15 THEN JMP again; END_IF;
+            a[i - 6] := i;
+            IF turns > 100 THEN JMP out; END_IF;
+        END_WHILE;
+        out:
+        END_PROGRAM";
+    let mut rig = Rig::in_dialect(onescan_plc_shim::Dialect::Codesys, text);
+    rig.scan().expect("no fault");
+    assert_eq!((rig.int("P.i"), rig.int("P.a[9]"), rig.int("P.turns")), (15, 15, 15));
+}
