@@ -31,6 +31,7 @@
 //! and needed again contains itself.
 
 mod address;
+pub(crate) mod asserts;
 mod assignment;
 mod calendar;
 mod call;
