@@ -386,7 +386,10 @@ impl Body<'_, '_> {
         let mut statements = Vec::new();
         let mut sound = true;
         for Wanted { variable, negated, target } in wanted {
-            let target_place = self.target(target);
+            let target_place = match self.new_wire(target) {
+                Some(name) => self.wire(name, variable.ty, target.span),
+                None => self.target(target),
+            };
             let Some(target_place) = target_place else {
                 sound = false;
                 continue;
