@@ -17,7 +17,8 @@
 //! | [`call`], [`standard_function`], [`function_form`], [`conversion_function`], [`memory_function`] | calls |
 //! | [`enable`], [`enable_error`] | EN and ENO |
 //! | [`text`], [`text_function`], [`text_conversion`] | character strings |
-//! | [`statement`], [`assignment`], [`edge`] | statements |
+//! | [`statement`], [`assignment`], [`edge`], [`build`] | statements |
+//! | [`chart`] | Sequential Function Charts |
 //! | [`configuration`] | resources, tasks, instances of programs |
 //! | [`dialect`] | what dialects do their own way |
 //! | [`recursion`], [`dispatch`] | who calls whom, and what only a run decides |
@@ -30,8 +31,10 @@
 
 mod address;
 mod assignment;
+mod build;
 mod calendar;
 mod call;
+mod chart;
 mod class;
 mod configuration;
 mod constant;
@@ -114,6 +117,8 @@ pub(crate) struct Checked {
     pub(crate) entries: Vec<Entry>,
     /// The whole memory at a cold start.
     pub(crate) image: Vec<u8>,
+    /// The steps, transitions and actions of charts: where they stand, and what they are called.
+    pub(crate) chart_parts: Vec<(Span, String)>,
 }
 
 /// Checks all units together. `library` tells the files of the standard function blocks, whose
@@ -150,6 +155,7 @@ pub(crate) fn check(units: &[(FileId, &CompilationUnit)], library: &BTreeSet<Fil
         configuration,
         entries,
         image,
+        chart_parts: checker.chart_parts,
     };
     (result, checker.diagnostics)
 }
@@ -201,6 +207,7 @@ struct Checker<'a> {
     dynamic_calls: BTreeMap<PouId, BTreeSet<PouId>>,
     rows: Rows,
     depth: u32,
+    chart_parts: Vec<(Span, String)>,
     diagnostics: Vec<Diagnostic>,
 }
 

@@ -109,6 +109,7 @@ impl<'a> Checker<'a> {
             queued: BTreeSet::new(),
             calls: BTreeMap::new(),
             depth: 0,
+            chart_parts: Vec::new(),
             diagnostics: Vec::new(),
         }
     }
@@ -242,6 +243,7 @@ fn virtual_time() -> GlobalEntry<'static> {
         span,
         image: vec![0; 8].into(),
         edge: None,
+        of_chart: false,
         visibility: Visibility::Public,
         owner: None,
     };

@@ -35,6 +35,11 @@ impl Scope {
         self.by_name.get(key).and_then(|index| self.variables.get(*index))
     }
 
+    /// The names by which variables are found, by their positions; those of a base may have none.
+    pub(super) fn keys(&self) -> BTreeMap<usize, &str> {
+        self.by_name.iter().map(|(key, index)| (*index, key.as_str())).collect()
+    }
+
     /// True for a name that a variable has, be its declaration right or wrong.
     pub(super) fn declares(&self, key: &str) -> bool {
         self.by_name.contains_key(key) || self.outer.as_ref().is_some_and(|outer| outer.declares(key))
@@ -81,6 +86,8 @@ pub(super) struct Body<'c, 'a> {
     /// Loops around the statement.
     pub(super) loops: u32,
     pub(super) result_assigned: bool,
+    /// Key of the transition whose network is being checked.
+    pub(super) network: Option<String>,
 }
 
 impl<'c, 'a> Body<'c, 'a> {
@@ -90,7 +97,7 @@ impl<'c, 'a> Body<'c, 'a> {
     }
 
     pub(super) fn new(checker: &'c mut Checker<'a>, scope: Scope, pou: Option<PouId>) -> Self {
-        Self { checker, scope, pou, context: None, loops: 0, result_assigned: false }
+        Self { checker, scope, pou, context: None, loops: 0, result_assigned: false, network: None }
     }
 
     pub(super) fn report(&mut self, diagnostic: Diagnostic) {

@@ -28,6 +28,7 @@ impl Checker<'_> {
         };
         let mut body = Body::new(self, (*scope).clone(), Some(id));
         let mut statements = body.prologue(ast.kind);
+        statements.extend(body.chart(ast));
         statements.extend(body.statements(&ast.body));
         if body.scope.result.is_some() && !body.result_assigned {
             let message = format!("function `{}` never assigns its result", ast.name.text);
@@ -91,7 +92,7 @@ impl Body<'_, '_> {
         Statement { kind, span }
     }
 
-    fn statements(&mut self, list: &[ast::Statement]) -> Vec<Statement> {
+    pub(super) fn statements(&mut self, list: &[ast::Statement]) -> Vec<Statement> {
         let mut checked = Vec::new();
         for statement in list {
             if let ast::StatementKind::Chain(targets, value) = &statement.kind {
@@ -180,6 +181,11 @@ impl Body<'_, '_> {
             Access::Constant => {
                 let message = "a constant is not assigned to";
                 self.report(Diagnostic::error(Code::AssignToConstant, expr.span, message));
+                return None;
+            }
+            Access::Chart => {
+                let message = "steps, transitions and action flags are written by their chart only";
+                self.report(Diagnostic::error(Code::NotAssignable, expr.span, message));
                 return None;
             }
             Access::InstanceOutput => {

@@ -1,11 +1,13 @@
 //! The syntax tree: what is written, with its place; no meanings.
 
+mod chart;
 mod configuration;
 mod declaration;
 mod expression;
 mod object;
 mod statement;
 
+pub use chart::{ActionQualifier, Association, Chart, ChartStep, Priority, Transition, TransitionCondition};
 pub use configuration::{
     AccessDirection, AccessPath, Configuration, Connection, InstanceValue, ProgramDeclaration, Resource,
     TaskDeclaration,
