@@ -117,7 +117,7 @@ pub(crate) struct Checked {
     pub(crate) entries: Vec<Entry>,
     /// The whole memory at a cold start.
     pub(crate) image: Vec<u8>,
-    /// The steps, transitions and actions of charts: where they stand, and what they are called.
+    /// The steps and transitions of charts: where they stand, and what they are called.
     pub(crate) chart_parts: Vec<(Span, String)>,
 }
 

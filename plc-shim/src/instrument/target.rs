@@ -37,6 +37,16 @@ struct Unit {
     text: String,
 }
 
+/// What charts need.
+fn chart_units() -> impl Iterator<Item = Unit> {
+    let units = [
+        ("SDSP_ACTION_CONTROL", template::ACTION_CONTROL),
+        ("SDSP_STEP", template::STEP),
+        ("SDSP_ELAPSED", template::ELAPSED),
+    ];
+    units.into_iter().map(|(name, text)| Unit { name: name.to_owned(), text: text.to_owned() })
+}
+
 /// Where the shim's variables are.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Globals {
@@ -47,7 +57,7 @@ pub(super) enum Globals {
 }
 
 impl Sources {
-    pub(super) fn new(target: Target, tasks: &TaskTable<'_>, forms: &[&Form]) -> Self {
+    pub(super) fn new(target: Target, tasks: &TaskTable<'_>, forms: &[&Form], has_charts: bool) -> Self {
         let wanted: &[Only] = if forms.iter().any(|form| form.long) { &[Only::LongTime] } else { &[] };
         let mut names = tasks.names();
         // A TIME has nanoseconds in the one and milliseconds in the other.
@@ -58,11 +68,11 @@ impl Sources {
         names.extend([("SDSP_NOW_OF_TV", now.to_owned()), ("SDSP_NOWL_OF_TV", now_long.to_owned())]);
         let filled = |template: &str| template::fill(&template::lines_for(template, wanted), &names);
         let unit = |form: &&Form| Unit { name: form.new_name(), text: form.text() };
-        Self {
-            globals: filled(template::GLOBALS),
-            scheduler: filled(template::SCHEDULER),
-            forms: forms.iter().map(unit).collect(),
+        let mut units: Vec<Unit> = forms.iter().map(unit).collect();
+        if has_charts {
+            units.extend(chart_units());
         }
+        Self { globals: filled(template::GLOBALS), scheduler: filled(template::SCHEDULER), forms: units }
     }
 
     /// The files in which they are.

@@ -31,7 +31,7 @@ pub struct FaultSite {
     /// The instance that ran, as in `P1.axis[i].ramp` with indices as they are written; the unit's
     /// name for a function.
     pub instance: String,
-    /// The step, transition or action of a chart, as in "transition `t`"; else empty.
+    /// The step or transition of a chart, as in "transition `t`"; else empty.
     pub part: String,
     /// The file; empty if it is not known.
     pub file: String,

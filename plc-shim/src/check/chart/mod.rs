@@ -35,7 +35,7 @@ use super::scope::Body;
 use crate::diagnostic::{Code, Diagnostic};
 use crate::ir::{Place, Statement, Type};
 use crate::syntax::Span;
-use crate::syntax::ast::{self, MemberKind, PouKind, StatementKind};
+use crate::syntax::ast::{self, PouKind, StatementKind};
 
 pub(super) use self::state::control_key;
 
@@ -70,7 +70,7 @@ impl Body<'_, '_> {
         statements
     }
 
-    /// What a fault says of where it is.
+    /// What a fault says of where it is; an action is a unit with a name of its own.
     fn name_parts(&mut self, ast: &ast::Pou) {
         let parts = &mut self.checker.chart_parts;
         parts.extend(ast.chart.steps.iter().map(|step| (step.span, format!("step `{}`", step.name.text))));
@@ -83,8 +83,6 @@ impl Body<'_, '_> {
             };
             parts.push((transition.span, named));
         }
-        let actions = ast.object.members.iter().filter(|member| member.kind == MemberKind::Action);
-        parts.extend(actions.map(|action| (action.pou.span, format!("action `{}`", action.pou.name.text))));
     }
 
     /// A place in the library, where nothing is covered or reported.

@@ -1,6 +1,6 @@
 //! Sequential Function Charts (2nd ed. 2.6, 3rd ed. 6.7).
 
-mod chart;
+pub(crate) mod chart;
 mod evolution;
 mod findings;
 mod interpret;
