@@ -4,6 +4,7 @@
 //! |---|---|
 //! | [`plant`] | the simulated machine: a scene of rigid bodies, driven axes and sensors |
 //! | [`soft_plc`] | the embedded soft PLC, which runs IEC 61131-3 source text |
+//! | [`array`] | names with a range, as in `arm[0..9].hold` |
 //! | [`replay`] | a client that repeats what another once did |
 //!
 //! # Invariants
@@ -13,6 +14,7 @@
 //! - Files are read before a session; nothing here opens a socket or starts a thread.
 //! - Bad input is an error with a place, never a panic.
 
+pub mod array;
 pub mod plant;
 pub mod replay;
 pub mod soft_plc;

@@ -7,8 +7,10 @@
 //! | [`cli`] | the command line |
 //! | [`scenario`] | a scenario's files, read and checked |
 //! | [`run`] | runs of a scenario: in lockstep or not, recorded, reported |
+//! | [`new`] | scenarios to begin with |
 //! | [`check`] | PLC sources checked without being run |
 //! | [`instrument`] | PLC projects made to run in lockstep, and back |
+//! | [`wiring`] | signals between clients, told and drawn |
 //! | [`plant`] | scenes and components, told without a session |
 //! | [`freewheel`] | running without lockstep, to show what it is good for |
 //! | [`expect`] | what a run must show: signal temporal logic |
@@ -22,7 +24,9 @@ pub mod cli;
 pub mod expect;
 pub mod freewheel;
 pub mod instrument;
+pub mod new;
 pub mod plant;
 pub mod plot;
 pub mod run;
 pub mod scenario;
+pub mod wiring;

@@ -1,4 +1,4 @@
-//! A client written in Python from PROTOCOL.md alone takes part, and misbehaves.
+//! A client written in Python from PROTOCOL.md alone (clients/python) takes part, and misbehaves.
 
 use std::net::SocketAddr;
 use std::path::Path;
@@ -22,6 +22,8 @@ use onescan_tests::{at_ms, client};
 fn mixer(address: SocketAddr, more: &[&str]) -> Child {
     let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("peers/mixer.py");
     Command::new("python3")
+        .env("PYTHONPATH", Path::new(env!("CARGO_MANIFEST_DIR")).join("../clients/python/src"))
+        .arg("-B")
         .arg(script)
         .args(["--server", &address.to_string(), "--name", "beta", "--reads", "alpha,gamma", "--period-ns", "20000000"])
         .args(more)

@@ -8,5 +8,5 @@
 pub mod bind;
 mod client;
 
-pub use bind::{BindError, Bindings, bind};
+pub use bind::{BindError, Bindings, Bound, bind};
 pub use client::{CoverageSink, SoftPlcClient};

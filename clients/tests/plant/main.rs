@@ -1,5 +1,6 @@
 //! The plant as a client, driven turn by turn without a session around it.
 
+mod arrays;
 mod belt;
 mod bench;
 mod components;

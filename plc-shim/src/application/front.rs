@@ -28,7 +28,8 @@ impl Front {
         for input in inputs {
             findings.extend(input.add_to(&mut sources));
         }
-        for (name, text) in library::FILES {
+        let needed = library::for_program(sources.iter().map(|(_, file)| file));
+        for (name, text) in needed {
             library.insert(sources.add(SourceFile::new(name, text)));
         }
         let mut units = Vec::new();

@@ -10,7 +10,7 @@
 //! | [`cost`], [`calls`], [`budget`] | what units cost, and how endless loops end |
 //! | [`address`], [`place`], [`part`], [`pointer`], [`open_array`], [`memory`] | addresses, loads and stores |
 //! | [`known`], [`effect`], [`survey`] | values that registers hold already, also through loops |
-//! | [`interval`] | ranges of integers, for checks that cannot fail |
+//! | [`interval`], [`range`], [`refine`], [`drift`] | between what integers lie: expressions, variables, behind conditions, in loops |
 //! | [`statement`], [`selection`], [`choice`], [`repetition`], [`counting`] | statements |
 //! | [`expression`], [`arithmetic`], [`conversion`], [`intrinsic`], [`bytes`] | expressions |
 //! | [`dispatch`] | methods: which one runs |
@@ -32,6 +32,7 @@ mod conversion;
 mod cost;
 mod counting;
 mod dispatch;
+mod drift;
 mod effect;
 mod emitter;
 mod entry;
@@ -51,6 +52,8 @@ mod part;
 mod place;
 mod pointer;
 pub(crate) mod points;
+mod range;
+mod refine;
 mod registers;
 mod repetition;
 mod selection;

@@ -54,7 +54,10 @@ impl Emitter<'_, '_> {
     }
 
     fn assign(&mut self, target: &Place, value: &Expr) {
+        let range = self.interval(value);
+        self.note_drift(target, value);
         self.store(target, |emitter| emitter.settled(value));
+        self.remember_range(target, range);
     }
 
     /// True if a real value is computed: if it is NaN, the machine has chosen which. What is
@@ -172,7 +175,11 @@ impl Emitter<'_, '_> {
             self.expression(&branch.condition);
             self.emit(Instruction::I32Eqz);
             self.branch_if(next);
-            let before = self.known.clone();
+            let mut before = self.known.clone();
+            self.assume(&branch.condition, true);
+            std::mem::swap(&mut self.known, &mut before);
+            self.assume(&branch.condition, false);
+            std::mem::swap(&mut self.known, &mut before);
             self.cover(PointKind::Outcome(outcome), span);
             self.statements(&branch.body);
             self.branch(end);

@@ -13,6 +13,7 @@ mod expressions;
 mod faults;
 mod field;
 mod forcing;
+mod index_ranges;
 mod inputs;
 mod language;
 mod lints;

@@ -12,6 +12,7 @@ use onescan_server::signal::{ClientName, SignalName};
 use onescan_server::time::{TimeSpan, VirtualTime};
 
 use crate::check::CheckFormat;
+use crate::new::Template;
 use crate::run::coverage::CoverageFormat;
 use crate::run::{Format, Mode, Transport};
 
@@ -55,6 +56,11 @@ pub enum Command {
     Components(ComponentsArgs),
     /// Tell what a scene is made of: bodies, joints, components, signals
     Describe(DescribeArgs),
+    /// Tell and draw how the signals of a scenario connect its clients, and what is unconnected, doubly written
+    /// or of unequal type
+    Wiring(WiringArgs),
+    /// Write a small scenario that runs at once, to begin with
+    New(NewArgs),
     /// Explain a code of `check`, with an example that is wrong and one that is right
     Explain(ExplainArgs),
 }
@@ -305,6 +311,51 @@ impl From<TransportArg> for Transport {
         match arg {
             TransportArg::Inproc => Self::Inproc,
             TransportArg::Tcp => Self::Tcp,
+        }
+    }
+}
+
+/// Options of `wiring`.
+#[derive(Debug, ClapArgs)]
+pub struct WiringArgs {
+    /// The scenario: a folder with a `scenario.toml`
+    pub scenario: PathBuf,
+    /// For people, or JSON for machines
+    #[arg(long, value_enum, default_value_t)]
+    pub format: FormatArg,
+    /// Draw it into this SVG file, too
+    #[arg(long, value_name = "FILE")]
+    pub svg: Option<PathBuf>,
+}
+
+/// Options of `new`.
+#[derive(Debug, ClapArgs)]
+pub struct NewArgs {
+    /// The folder to make; its name is the scenario's
+    pub folder: PathBuf,
+    /// What to begin with
+    #[arg(long, value_enum, default_value_t)]
+    pub template: TemplateArg,
+}
+
+/// See [`Template`].
+#[derive(Clone, Copy, Debug, Default, ValueEnum)]
+pub enum TemplateArg {
+    /// A cylinder pushes boxes off a belt: bodies, a conveyor, a sensor, pneumatics
+    #[default]
+    Cell,
+    /// A tank with a pump, a valve and a level: process engineering, no bodies
+    Tank,
+    /// A plant of your own in Python, over TCP
+    Python,
+}
+
+impl From<TemplateArg> for Template {
+    fn from(arg: TemplateArg) -> Self {
+        match arg {
+            TemplateArg::Cell => Self::Cell,
+            TemplateArg::Tank => Self::Tank,
+            TemplateArg::Python => Self::Python,
         }
     }
 }

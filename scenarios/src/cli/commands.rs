@@ -9,6 +9,7 @@ use onescan_server::transport::tcp::participant::take_part;
 use super::args::{CheckArgs, Command, ControlArgs, ExplainArgs, InstrumentArgs, JoinArgs, RunArgs};
 use crate::check::{self, CheckConfig, Warnings};
 use crate::instrument::{Destination, Diff, Direction, InstrumentConfig};
+use crate::new;
 use crate::plant;
 use crate::run::config::SaveRequest;
 use crate::run::coverage::CoverageRequest;
@@ -17,6 +18,7 @@ use crate::run::interrupt::Interrupt;
 use crate::run::{Format, RunConfig, execute};
 use crate::scenario::Scenario;
 use crate::scenario::compose::Member;
+use crate::wiring::{self, WiringConfig};
 
 /// How long an operator waits for the next step boundary.
 const OPERATOR_PATIENCE: Duration = Duration::from_secs(30);
@@ -35,6 +37,15 @@ pub fn dispatch(command: Command) -> Result<ExitCode, RunError> {
         Command::Explain(args) => explain(&args),
         Command::Components(args) => {
             plant::components::write(args.kind.as_deref(), args.format.into(), &mut std::io::stdout().lock())?;
+            Ok(ExitCode::Ok)
+        }
+        Command::Wiring(args) => {
+            let config = WiringConfig { scenario: args.scenario, format: args.format.into(), svg: args.svg };
+            let sound = wiring::write(&config, &mut std::io::stdout().lock())?;
+            Ok(if sound { ExitCode::Ok } else { ExitCode::WrongInput })
+        }
+        Command::New(args) => {
+            new::write(&args.folder, args.template.into(), &mut std::io::stdout().lock())?;
             Ok(ExitCode::Ok)
         }
         Command::Describe(args) => {

@@ -123,7 +123,11 @@ fn one(component: &Component, scene: &Scene) -> String {
         Bound::Measures(joint) => format!(", measures joint {}", scene.joints[*joint].name),
         Bound::Belt { body, .. } => format!(", belt {}", scene.bodies[*body].name),
         Bound::Ray { targets, .. } => format!(", a ray at {} bodies", targets.len()),
-        Bound::Touch { body, targets } => format!(", body {} and {} others", scene.bodies[*body].name, targets.len()),
+        Bound::Touch { body, shape, targets } => {
+            let name = shape.map_or(&scene.bodies[*body].name, |shape| &scene.shapes[shape].name);
+            format!(", {name} and {} others", targets.len())
+        }
+        Bound::Meet { targets } => format!(", {} bodies among each other", targets.len()),
         Bound::Collect { body, targets } => {
             format!(", body {} takes {} others", scene.bodies[*body].name, targets.len())
         }

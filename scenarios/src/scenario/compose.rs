@@ -1,15 +1,17 @@
 //! A scenario's clients: its files read, checked and made to run.
 
+use std::collections::BTreeMap;
 use std::path::PathBuf;
 
 use miette::{NamedSource, SourceSpan};
-use onescan_clients::plant::{Plant, SceneError, SceneFault};
+use onescan_clients::plant::{Plant, Scene, SceneError, SceneFault};
 use onescan_clients::soft_plc::{SoftPlcClient, bind};
 use onescan_plc_shim::input::kind::{FileKind, SourceKind};
 use onescan_plc_shim::{Application, Dialect, Input, Task, TaskPlan};
 use onescan_server::client::Client;
 use onescan_server::signal::{ClientName, SignalName, did_you_mean};
 
+use super::arrays;
 use super::error::{PlcReport, ScenarioError, SceneReport};
 use super::file::{ClientFile, TaskFile};
 use super::load::Scenario;
@@ -24,6 +26,15 @@ pub enum Member {
     External(Vec<String>),
 }
 
+/// The variables of signals, as `bind` names them.
+pub(crate) type Paths = BTreeMap<SignalName, Vec<String>>;
+
+/// A soft PLC's sources, compiled, and what its `bind` says.
+pub(crate) struct Compiled {
+    pub(crate) application: Application,
+    pub(crate) paths: Paths,
+}
+
 impl Scenario {
     /// The client `name`, ready to join.
     ///
@@ -36,17 +47,12 @@ impl Scenario {
         };
         match entry.get_ref() {
             ClientFile::Plant { scene, period } => {
-                let path = self.folder().join(scene);
-                let text = read(&path)?;
-                let period = period.unwrap_or(self.file().step);
-                let plant = Plant::parse(&text, &path.display().to_string(), name.clone(), period);
-                let plant = plant.map_err(|error| Box::new(report(&error, &path.display().to_string(), &text)))?;
+                let plant = Plant::new(self.scene_of(scene)?, name.clone(), period.unwrap_or(self.file().step));
                 Ok(Member::Plant(Box::new(plant.seeded(self.file().seed))))
             }
             ClientFile::SoftPlc { sources, dialect, tasks, bind } => {
-                let inputs = sources.iter().map(|source| self.source(name, source, *dialect));
-                let inputs = inputs.collect::<Result<Vec<_>, _>>()?;
-                self.soft_plc(name, inputs, tasks, bind).map(|plc| Member::Plc(Box::new(plc)))
+                let compiled = self.compiled(name, sources, *dialect, bind)?;
+                self.soft_plc(name, &compiled, tasks).map(|plc| Member::Plc(Box::new(plc)))
             }
             ClientFile::External { command } => Ok(Member::External(command.clone())),
         }
@@ -79,13 +85,31 @@ impl Scenario {
         })
     }
 
-    fn soft_plc(
+    /// The scene of a plant.
+    ///
+    /// # Errors
+    /// A file that cannot be read or is no scene.
+    pub(crate) fn scene_of(&self, file: &str) -> Result<Scene, ScenarioError> {
+        let path = self.folder().join(file);
+        let text = read(&path)?;
+        let named = path.display().to_string();
+        let scene = Scene::parse(&text, &named).map_err(|error| Box::new(report(&error, &named, &text)))?;
+        Ok(scene)
+    }
+
+    /// The sources of soft PLC `name`, compiled, and what its `bind` says.
+    ///
+    /// # Errors
+    /// Sources that cannot be read or do not compile; a `bind` that is wrong in itself.
+    pub(crate) fn compiled(
         &self,
         name: &ClientName,
-        inputs: Vec<Input>,
-        tasks: &[TaskFile],
-        paths: &std::collections::BTreeMap<SignalName, String>,
-    ) -> Result<SoftPlcClient, ScenarioError> {
+        sources: &[String],
+        dialect: Option<Dialect>,
+        bind: &BTreeMap<String, String>,
+    ) -> Result<Compiled, ScenarioError> {
+        let inputs = sources.iter().map(|source| self.source(name, source, dialect));
+        let inputs = inputs.collect::<Result<Vec<_>, _>>()?;
         let compiled = match self.coverage() {
             Some(_) => Application::from_inputs_with_coverage(inputs),
             None => Application::from_inputs(inputs),
@@ -94,23 +118,27 @@ impl Scenario {
         for warning in application.warnings().iter() {
             tracing::warn!(code = %warning.code, "{}", warning.message);
         }
-        if let Some(unknown) = paths.keys().find(|signal| !self.file().signals.contains_key(*signal)) {
-            let help = did_you_mean(unknown.as_str(), self.file().signals.keys().map(SignalName::as_str));
-            return Err(self.wrong_client(
-                name,
-                format!("`bind` names a signal `{unknown}` that is not declared"),
-                help,
-            ));
-        }
-        let bindings = bind(&application, name, self.plan().signals(), paths)
+        let declared: Vec<_> = self.file().signals.keys().collect();
+        let paths =
+            arrays::bound(bind, &declared).map_err(|found| self.wrong_client(name, found.message, found.help))?;
+        Ok(Compiled { application, paths })
+    }
+
+    fn soft_plc(
+        &self,
+        name: &ClientName,
+        Compiled { application, paths }: &Compiled,
+        tasks: &[TaskFile],
+    ) -> Result<SoftPlcClient, ScenarioError> {
+        let bindings = bind(application, name, self.plan().signals(), paths)
             .map_err(|error| self.wrong_signal(&error.signal, error.message, error.help))?;
-        let plan = plan_of(tasks).or_else(|| TaskPlan::configured(&application));
+        let plan = plan_of(tasks).or_else(|| TaskPlan::configured(application));
         let plan = plan.ok_or_else(|| {
             let help = "give it `tasks`, or declare a CONFIGURATION in its sources".to_owned();
             self.wrong_client(name, format!("nothing says when the programs of `{name}` run"), Some(help))
         })?;
         self.fits_step(name, &plan)?;
-        let mut client = SoftPlcClient::new(name.clone(), &application, &plan, &bindings, self.file().step)
+        let mut client = SoftPlcClient::new(name.clone(), application, &plan, &bindings, self.file().step)
             .map_err(|error| self.wrong_client(name, error.to_string(), None))?;
         if let Some(sink) = self.coverage() {
             client.cover(sink.clone());

@@ -97,9 +97,10 @@ pub enum ClientFile {
         /// Its tasks, in place of those of its own CONFIGURATION.
         #[serde(default)]
         tasks: Vec<TaskFile>,
-        /// Signals whose PLC variable is not found by the signal's name, with the variable's path.
+        /// Signals whose PLC variable is not found by the signal's name, with the variable's path: by
+        /// name, as arrays (`"arm[0..2].x" = "P.arm[0..2].x"`) or as patterns (`"SW_*" = "P.*"`).
         #[serde(default)]
-        bind: BTreeMap<SignalName, String>,
+        bind: BTreeMap<String, String>,
     },
     /// A program of its own that joins over TCP.
     External {

@@ -9,6 +9,7 @@ use onescan_server::plan::{Coupling, PlanError, SessionPlan};
 use onescan_server::signal::{ClientName, SignalDecl, SignalName, did_you_mean};
 use onescan_server::time::TimeSpan;
 
+use super::arrays;
 use super::error::ScenarioError;
 use super::expectations::Expectations;
 use super::file::{ClientFile, CouplingFile, ScenarioFile, VERSION};
@@ -49,12 +50,13 @@ impl Scenario {
 
     fn parse(text: String, path: PathBuf, folder: PathBuf) -> Result<Self, ScenarioError> {
         let wrong = |message: String, place: Option<Range<usize>>, help| wrong(&path, &text, message, place, help);
-        let file: ScenarioFile =
+        let mut file: ScenarioFile =
             toml::from_str(&text).map_err(|e| wrong(e.message().trim().to_owned(), e.span(), None))?;
         if file.version != VERSION {
             let message = format!("version {} of the scenario format is not known", file.version);
             return Err(wrong(message, place_of(&text, "version"), Some(format!("write `version = {VERSION}`"))));
         }
+        arrays::expand(&mut file).map_err(|found| wrong(found.message, found.place, found.help))?;
         let plan = plan_of(&file).map_err(|error| {
             let place = place_of_plan_error(&error, &file, &text);
             wrong(error.to_string(), place, None)
@@ -68,10 +70,7 @@ impl Scenario {
         }
         let expectations =
             Expectations::bind(&file, &text).map_err(|found| wrong(found.message, Some(found.place), found.help))?;
-        let name = std::path::absolute(&folder)
-            .ok()
-            .and_then(|folder| folder.file_name().map(|name| name.to_string_lossy().into_owned()))
-            .unwrap_or_else(|| "scenario".to_owned());
+        let name = name_of(&path);
         Ok(Self { name, folder, path, text, file, plan, expectations, coverage: None })
     }
 
@@ -85,7 +84,7 @@ impl Scenario {
         self.coverage.as_ref()
     }
 
-    /// The folder's name.
+    /// The folder's name, or the file's if that is not the folder's only one.
     pub fn name(&self) -> &str {
         &self.name
     }
@@ -121,6 +120,16 @@ impl Scenario {
         let place = self.file.signals.get(name).map(toml::Spanned::span);
         wrong(&self.path, &self.text, message, place, help)
     }
+}
+
+/// The name of the folder of a `scenario.toml`; any other file has its own.
+fn name_of(path: &Path) -> String {
+    let named = if path.file_name().is_some_and(|name| name == FILE_NAME) {
+        std::path::absolute(path).ok().and_then(|path| Some(path.parent()?.file_name()?.to_owned()))
+    } else {
+        path.file_stem().map(ToOwned::to_owned)
+    };
+    named.map_or_else(|| "scenario".to_owned(), |name| name.to_string_lossy().into_owned())
 }
 
 fn wrong(path: &Path, text: &str, message: String, place: Option<Range<usize>>, help: Option<String>) -> ScenarioError {

@@ -4,10 +4,12 @@
 //! |---|---|
 //! | [`file`] | `scenario.toml` as it is written |
 //! | [`load`] | `scenario.toml` read and checked |
+//! | `arrays` | signals written as arrays and patterns |
 //! | [`expectations`] | what it expects of every run |
 //! | [`compose`] | a scenario's plan and its clients |
 //! | [`error`] | what can be wrong with it, and where |
 
+mod arrays;
 pub mod compose;
 pub mod error;
 pub mod expectations;

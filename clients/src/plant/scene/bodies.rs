@@ -4,9 +4,10 @@ use toml::Spanned;
 
 use super::error::SceneFaultKind;
 use super::faults::Faults;
-use super::format::{BodyKind, BodyTable, ShapeKind, Triple};
+use super::format::{BodyKind, BodyTable};
 use super::model::{Body, Collisions, GROUPS_MAX, Mass, Shape};
 use super::number::{Allowed, Entry};
+use super::shapes::Measures;
 use super::text;
 
 /// What joints and sensors call the world itself.
@@ -14,11 +15,11 @@ pub(super) const GROUND: &str = "ground";
 
 // What the engine computes with for certain: beyond, products of several such numbers leave the
 // range in which a double is precise, long before it overflows.
-const LENGTH_M: Allowed = Allowed::Within(1e-4, 1e4);
-const MASS_KG: Allowed = Allowed::Within(1e-6, 1e9);
+pub(super) const LENGTH_M: Allowed = Allowed::Within(1e-4, 1e4);
+pub(super) const MASS_KG: Allowed = Allowed::Within(1e-6, 1e9);
 const DENSITY_KG_M3: Allowed = Allowed::Within(1e-2, 1e5);
-const FRICTION: f64 = 0.5;
-const RESTITUTION: f64 = 0.0;
+pub(super) const FRICTION: f64 = 0.5;
+pub(super) const RESTITUTION: f64 = 0.0;
 
 pub(super) fn check(tables: &[Spanned<BodyTable>], faults: &mut Faults<'_>) -> Vec<Body> {
     let mut groups = Vec::new();
@@ -65,87 +66,14 @@ fn shape(table: &Spanned<BodyTable>, faults: &mut Faults<'_>) -> Option<Shape> {
         }
         return None;
     };
-    let mut measures = Measures { written, kind, faults };
-    measures.refuse_foreign();
-    let shape = match kind.get_ref() {
-        ShapeKind::Box => Shape::Box { size_m: measures.size()? },
-        ShapeKind::Sphere => Shape::Sphere { radius_m: measures.length("radius_m", written.radius_m.as_ref())? },
-        ShapeKind::Cylinder => {
-            let (radius_m, length_m) = measures.radius_and_length()?;
-            Shape::Cylinder { radius_m, length_m }
-        }
-        ShapeKind::Capsule => {
-            let (radius_m, length_m) = measures.radius_and_length()?;
-            Shape::Capsule { radius_m, length_m }
-        }
+    let measures = Measures {
+        name,
+        kind,
+        size_m: written.size_m.as_ref(),
+        radius_m: written.radius_m.as_ref(),
+        length_m: written.length_m.as_ref(),
     };
-    Some(shape)
-}
-
-/// The measures of one shape.
-struct Measures<'m, 'f, 't> {
-    written: &'f BodyTable,
-    kind: &'f Spanned<ShapeKind>,
-    faults: &'m mut Faults<'t>,
-}
-
-impl Measures<'_, '_, '_> {
-    fn whose(&self) -> String {
-        let kind = match self.kind.get_ref() {
-            ShapeKind::Box => "box",
-            ShapeKind::Sphere => "sphere",
-            ShapeKind::Cylinder => "cylinder",
-            ShapeKind::Capsule => "capsule",
-        };
-        format!("{kind} `{}`", text(&self.written.name))
-    }
-
-    fn missing(&mut self, key: &'static str) {
-        let whose = self.whose();
-        self.faults.add(self.kind.span(), SceneFaultKind::Missing { whose, key });
-    }
-
-    fn length(&mut self, key: &'static str, value: Option<&Spanned<f64>>) -> Option<f64> {
-        if value.is_none() {
-            self.missing(key);
-        }
-        self.faults.number(Entry::new(key, value), LENGTH_M)
-    }
-
-    fn radius_and_length(&mut self) -> Option<(f64, f64)> {
-        let radius_m = self.length("radius_m", self.written.radius_m.as_ref());
-        let length_m = self.length("length_m", self.written.length_m.as_ref());
-        radius_m.zip(length_m)
-    }
-
-    fn size(&mut self) -> Option<[f64; 3]> {
-        let Some(size) = &self.written.size_m else {
-            self.missing("size_m");
-            return None;
-        };
-        self.faults.components("size_m", size, LENGTH_M)
-    }
-
-    /// Measures that belong to another shape are faults.
-    fn refuse_foreign(&mut self) {
-        let written = self.written;
-        let (size, radius, length) = match self.kind.get_ref() {
-            ShapeKind::Box => (None, written.radius_m.as_ref(), written.length_m.as_ref()),
-            ShapeKind::Sphere => (written.size_m.as_ref(), None, written.length_m.as_ref()),
-            ShapeKind::Cylinder | ShapeKind::Capsule => (written.size_m.as_ref(), None, None),
-        };
-        let foreign = [
-            (size.map(Triple::span), "size_m"),
-            (radius.map(Spanned::span), "radius_m"),
-            (length.map(Spanned::span), "length_m"),
-        ];
-        for (span, key) in foreign {
-            if let Some(span) = span {
-                let whose = self.whose();
-                self.faults.add(span, SceneFaultKind::Misplaced { whose, key });
-            }
-        }
-    }
+    measures.shape(faults)
 }
 
 fn mass(written: &BodyTable, faults: &mut Faults<'_>) -> Option<Mass> {

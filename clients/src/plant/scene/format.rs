@@ -22,6 +22,8 @@ pub(super) struct SceneFile {
     #[serde(default)]
     pub(super) body: Vec<Spanned<BodyTable>>,
     #[serde(default)]
+    pub(super) shape: Vec<Spanned<ShapeTable>>,
+    #[serde(default)]
     pub(super) joint: Vec<Spanned<JointTable>>,
     #[serde(default)]
     pub(super) axis: Vec<Spanned<AxisTable>>,
@@ -39,7 +41,7 @@ pub(super) struct SceneFile {
 pub(super) type ComponentTable = BTreeMap<Spanned<String>, Spanned<toml::Value>>;
 
 /// `[[failure]]`
-#[derive(Debug, Deserialize)]
+#[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct FailureTable {
     pub(super) component: Spanned<String>,
@@ -50,7 +52,7 @@ pub(super) struct FailureTable {
 }
 
 /// `[[signal]]`
-#[derive(Debug, Deserialize)]
+#[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct SignalTable {
     pub(super) name: Spanned<String>,
@@ -89,7 +91,7 @@ pub(super) enum ShapeKind {
 }
 
 /// `[[body]]`
-#[derive(Debug, Deserialize)]
+#[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct BodyTable {
     pub(super) name: Spanned<String>,
@@ -107,6 +109,28 @@ pub(super) struct BodyTable {
     pub(super) restitution: Option<Spanned<f64>>,
     pub(super) collides: Option<bool>,
     pub(super) group: Option<Spanned<String>>,
+    pub(super) turn_about_m: Option<Triple>,
+    pub(super) step_m: Option<Triple>,
+}
+
+/// `[[shape]]`: one more shape of a body.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct ShapeTable {
+    pub(super) name: Spanned<String>,
+    pub(super) body: Spanned<String>,
+    pub(super) shape: Spanned<ShapeKind>,
+    pub(super) size_m: Option<Triple>,
+    pub(super) radius_m: Option<Spanned<f64>>,
+    pub(super) length_m: Option<Spanned<f64>>,
+    pub(super) position_m: Option<Triple>,
+    pub(super) rpy_deg: Option<Triple>,
+    pub(super) mass_kg: Option<Spanned<f64>>,
+    pub(super) friction: Option<Spanned<f64>>,
+    pub(super) restitution: Option<Spanned<f64>>,
+    pub(super) collides: Option<bool>,
+    pub(super) turn_about_m: Option<Triple>,
+    pub(super) step_m: Option<Triple>,
 }
 
 /// What a joint leaves free.
@@ -126,7 +150,7 @@ pub enum JointKind {
 }
 
 /// `[[joint]]`
-#[derive(Debug, Deserialize)]
+#[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct JointTable {
     pub(super) name: Spanned<String>,
@@ -170,7 +194,7 @@ pub enum NumberType {
 }
 
 /// `[[axis]]`
-#[derive(Debug, Deserialize)]
+#[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct AxisTable {
     pub(super) name: Spanned<String>,
@@ -202,7 +226,7 @@ pub(super) enum SensorKind {
 }
 
 /// `[[sensor]]`
-#[derive(Debug, Deserialize)]
+#[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct SensorTable {
     pub(super) name: Spanned<String>,

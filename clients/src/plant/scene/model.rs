@@ -25,6 +25,8 @@ pub struct Scene {
     pub solver_iterations: u32,
     /// Bodies in the file's order, which is the order of their insertion.
     pub bodies: Vec<Body>,
+    /// More shapes of bodies in the file's order, which is the order of their insertion.
+    pub shapes: Vec<Attached>,
     /// Joints in the file's order, which is the order of their insertion.
     pub joints: Vec<Joint>,
     /// Driven axes in the file's order.
@@ -64,6 +66,29 @@ pub struct Body {
     pub restitution: f64,
     /// What it collides with.
     pub collisions: Collisions,
+}
+
+/// One more shape of a body, which moves with it.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Attached {
+    /// Its name.
+    pub name: String,
+    /// Index of its body.
+    pub body: usize,
+    /// Its form.
+    pub shape: Shape,
+    /// Its centre in the scene's pose, in world coordinates.
+    pub position_m: [f64; 3],
+    /// Its orientation in the scene's pose, as that of a body.
+    pub rpy_deg: [f64; 3],
+    /// What it adds to the mass of its body.
+    pub mass_kg: f64,
+    /// Coefficient of friction.
+    pub friction: f64,
+    /// Coefficient of restitution.
+    pub restitution: f64,
+    /// Whether it collides as its body does, or only sensors see it.
+    pub collides: bool,
 }
 
 /// The form of a body, centred on its origin.

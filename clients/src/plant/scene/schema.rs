@@ -42,6 +42,25 @@ const BODY: Table = &[
     ("restitution", NUMBER),
     ("collides", FLAG),
     ("group", TEXT),
+    ("turn_about_m", NUMBERS),
+    ("step_m", NUMBERS),
+];
+
+const SHAPE: Table = &[
+    ("name!", TEXT),
+    ("body!", TEXT),
+    ("shape!", "box|sphere|cylinder|capsule"),
+    ("size_m", NUMBERS),
+    ("radius_m", NUMBER),
+    ("length_m", NUMBER),
+    ("position_m", NUMBERS),
+    ("rpy_deg", NUMBERS),
+    ("mass_kg", NUMBER),
+    ("friction", NUMBER),
+    ("restitution", NUMBER),
+    ("collides", FLAG),
+    ("turn_about_m", NUMBERS),
+    ("step_m", NUMBERS),
 ];
 
 const JOINT: Table = &[
@@ -116,8 +135,15 @@ const SIGNAL: Table = &[
 ];
 
 /// The fixed tables by their names in a scene.
-const TABLES: &[(&str, Table)] =
-    &[("body", BODY), ("joint", JOINT), ("axis", AXIS), ("sensor", SENSOR), ("failure", FAILURE), ("signal", SIGNAL)];
+const TABLES: &[(&str, Table)] = &[
+    ("body", BODY),
+    ("shape", SHAPE),
+    ("joint", JOINT),
+    ("axis", AXIS),
+    ("sensor", SENSOR),
+    ("failure", FAILURE),
+    ("signal", SIGNAL),
+];
 
 /// The schema of a scene (JSON Schema 2020-12).
 pub fn schema() -> Value {
