@@ -75,7 +75,7 @@ impl Body<'_, '_> {
     }
 
     fn is_local(&self, name: &Ident) -> bool {
-        !name.is_quoted() && self.scope.by_name.contains_key(&name.key())
+        !name.is_quoted() && self.scope.declares(&name.key())
     }
 
     /// Inside a function its own name is its result, and a call of it recursion.
@@ -96,7 +96,7 @@ impl Body<'_, '_> {
         match &call.callee.kind {
             ast::ExprKind::Name(name) => {
                 let key = name.key();
-                self.scope.by_name.contains_key(&key) && !self.is_own_result(name)
+                self.scope.declares(&key) && !self.is_own_result(name)
             }
             _ => false,
         }

@@ -70,6 +70,10 @@ impl Interface<'_, '_> {
         let Some(declared) = self.library_type(CONTROL_TYPE, action.span) else { return };
         let unit = self.body.pou;
         let has_body = unit.is_some_and(|id| self.body.checker.find_member(id, Role::Method, &action.text).is_some());
+        if let Some(variable) = self.body.scope.own(&action.key()).filter(|_| has_body) {
+            let first = variable.span;
+            self.body.checker.report_duplicate(action, Some(first));
+        }
         let name = if has_body { action.text.clone() } else { format!("SFC_{}", action.text) };
         self.keep(&key, &name, action.span, &declared);
     }

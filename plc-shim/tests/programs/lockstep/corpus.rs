@@ -83,8 +83,8 @@ PROGRAM Main
 VAR_INPUT i, j : BOOL; END_VAR
 VAR_OUTPUT n, l, d, p, s, sd, ds, sl, lamp, late : BOOL; runs, ends, pulses, leaves, blinks : INT; t : TIME; END_VAR
 VAR blink : Blink; delay : TIME := T#25ms; timer : TON; END_VAR
-    INITIAL_STEP Idle: Blinks(N); s(R); sd(R); ds(R); sl(R); END_STEP // nothing
-    STEP A: n(N); l(L, T#20ms); d(D, delay); p(P); Runs(N); Blinks(N);
+    INITIAL_STEP Idle: Lamps(N); s(R); sd(R); ds(R); sl(R); END_STEP
+    STEP A: n(N); l(L, T#20ms); d(D, delay); p(P); Work(N); Lamps(N);
         s(S); Pulse(P1); Leave(P0);
     END_STEP
     STEP B: sd(SD, T#20ms); ds(DS, A.T + T#10ms); sl(SL, T#30ms); (* times *) END_STEP
@@ -92,22 +92,21 @@ VAR blink : Blink; delay : TIME := T#25ms; timer : TON; END_VAR
     TRANSITION FROM Idle TO (A, B) := i AND NOT j; END_TRANSITION
     TRANSITION (PRIORITY := 1) FROM A TO C := A.T >= T#40ms OR j; END_TRANSITION
     TRANSITION both FROM (C, B) TO Idle : both := B.T > T#50ms AND NOT i; END_TRANSITION
-    ACTION Runs:
+    ACTION Work:
         runs := runs + 1;
-        IF NOT Runs.Q THEN ends := ends + 1; RETURN; END_IF;
+        IF NOT Work.Q THEN ends := ends + 1; RETURN; END_IF;
         t := A.T;
     END_ACTION
     ACTION Pulse: pulses := pulses + 1; END_ACTION
     ACTION Leave: leaves := leaves + 1; END_ACTION
-    ACTION Blinks:
-        blink(run := Blinks.Q, lamp => lamp, late => late); blinks := blink.n;
+    ACTION Lamps:
+        blink(run := Lamps.Q, lamp => lamp, late => late); blinks := blink.n;
         timer(IN := i, PT := T#10ms);
     END_ACTION
 END_PROGRAM";
 
 pub(crate) fn cases() -> Vec<Case> {
     vec![
-        Case { name: "chart", text: CHART, tasks: vec![task("main", 5, 0, &["Main"])], inputs: &["Main.i", "Main.j"] },
         Case {
             name: "timers",
             text: TIMERS,
@@ -136,6 +135,7 @@ pub(crate) fn cases() -> Vec<Case> {
             tasks: vec![task("main", 10, 3, &["Main"])],
             inputs: &["Main.i", "Main.j"],
         },
+        Case { name: "chart", text: CHART, tasks: vec![task("main", 5, 0, &["Main"])], inputs: &["Main.i", "Main.j"] },
     ]
 }
 

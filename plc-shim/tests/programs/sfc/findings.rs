@@ -14,6 +14,7 @@ fn iec2_2_6_each_rule_of_charts_has_its_finding() {
     let all = [
         ("step named twice", format!("{two}{there}{back}STEP a: END_STEP")),
         ("step named like a variable", format!("{two}{there}{back}STEP valve: END_STEP")),
+        ("action named like a variable", "INITIAL_STEP A: Valve(N); END_STEP ACTION Valve: ; END_ACTION".to_owned()),
         ("unknown step", format!("{two}{there}TRANSITION FROM B TO Bb := go; END_TRANSITION")),
         ("step twice in a list", format!("{two}{back}TRANSITION FROM A TO (B, b) := go; END_TRANSITION")),
         ("no initial step", format!("STEP A: END_STEP STEP B: END_STEP {there}{back}")),

@@ -129,3 +129,16 @@ fn a_saved_state_goes_on_where_it_was() {
     rig.now_ns = now_ns;
     assert_eq!(trace(&mut rig), first);
 }
+
+#[test]
+fn instances_of_the_unit_are_called_in_its_actions() {
+    let text = "PROGRAM P VAR timer : TON; n : CTU; END_VAR
+        INITIAL_STEP A: Act(N); END_STEP
+        ACTION Act: timer(IN := TRUE, PT := T#20ms); n(CU := timer.Q, PV := 3); END_ACTION
+        END_PROGRAM";
+    let mut rig = Rig::new(text);
+    for _ in 0..3 {
+        rig.scan().expect("no fault");
+    }
+    assert_eq!((rig.bool("P.timer.Q"), rig.int("P.n.CV")), (true, 1));
+}
