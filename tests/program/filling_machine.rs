@@ -31,7 +31,8 @@ fn a_shift_without_faults_loses_nothing_and_is_the_same_to_the_bit() {
     let folder = tempfile::tempdir().unwrap();
     let (record, saved) = (folder.path().join("record"), folder.path().join("half.checkpoint"));
     let (record_word, saved) = (record.to_str().unwrap(), saved.to_str().unwrap());
-    let words = ["--until", "40s", "--record", record_word, "--save-at", "21370ms", "--save", saved];
+    let words =
+        ["--until", "40s", "--record-also", "csv", "--record", record_word, "--save-at", "21370ms", "--save", saved];
     let (whole, said) = run(&machine, ".", &words);
     assert_eq!(said.code, Some(0), "{said:?}");
     // one each 1.5 s, after setting up both motors; 15 are in the machine
@@ -48,7 +49,7 @@ fn a_shift_without_faults_loses_nothing_and_is_the_same_to_the_bit() {
 fn with_the_distortion_on_every_package_leaves_by_the_emergency_drop() {
     let folder = tempfile::tempdir().unwrap();
     let record = folder.path().join("record");
-    let words = ["--until", "65s", "--record", record.to_str().unwrap()];
+    let words = ["--until", "65s", "--record-also", "csv", "--record", record.to_str().unwrap()];
     let (reports, said) = run(&scenario("filling-machine"), "distortion.toml", &words);
     assert_eq!((reports.len(), said.code), (1, Some(0)), "{said:?}");
     // one each 1.5 s for 30 s; the last is offered just before the signal comes back, and taken
@@ -75,7 +76,8 @@ fn without_motor_setup_every_package_is_dropped() {
     let machine = copied("filling-machine");
     edit(machine.path(), "panel/production.st", "Press(IN", "Skip_Setup := TRUE; Press(IN");
     let record = machine.path().join("record");
-    let (_, said) = run(machine.path(), ".", &["--until", "30s", "--record", record.to_str().unwrap()]);
+    let (_, said) =
+        run(machine.path(), ".", &["--until", "30s", "--record-also", "csv", "--record", record.to_str().unwrap()]);
     assert_eq!(said.code, Some(1), "{said:?}");
     let [_, out, dropped, lost, collisions] = last(&record, &COUNTS)[..] else { panic!("five counts") };
     assert!(out == 0 && dropped > 10 && lost == 0 && collisions == 0, "{dropped} {lost} {collisions}");
@@ -86,8 +88,11 @@ fn without_motor_setup_every_package_is_dropped() {
 fn an_hour_without_a_package_lost() {
     let folder = tempfile::tempdir().unwrap();
     let record = folder.path().join("record");
-    let (reports, said) =
-        run(&scenario("filling-machine"), ".", &["--until", "1h", "--record", record.to_str().unwrap()]);
+    let (reports, said) = run(
+        &scenario("filling-machine"),
+        ".",
+        &["--until", "1h", "--record-also", "csv", "--record", record.to_str().unwrap()],
+    );
     assert_eq!(said.code, Some(0), "{said:?}");
     let [came, gone, dropped, lost, collisions] = last(&record, &COUNTS)[..] else { panic!("five counts") };
     assert_eq!((dropped, lost, collisions), (0, 0, 0));

@@ -10,11 +10,12 @@ use onescan_server::formation::Formation;
 use onescan_server::lockstep::{Lockstep, Outcome};
 use onescan_server::mailbox::Mailbox;
 use onescan_server::plan::Coupling;
-use onescan_server::record::csv::CsvRecorder;
+use onescan_server::record::{Choice, Recorder};
+use onescan_server::recording::Recording;
 use onescan_server::state::ClientState;
 use onescan_server::time::StepCount;
 use onescan_server::transport::tcp::Lobby;
-use onescan_tests::run::{PATIENCE, boxed, in_process, loopback, run};
+use onescan_tests::run::{PATIENCE, boxed, in_process, loopback, provenance, run};
 use onescan_tests::toy::{ring, ring_plan};
 use onescan_tests::{at_ms, client};
 
@@ -110,9 +111,8 @@ fn whatever_a_client_does_wrong_ends_the_session_by_name() {
 fn killed_at_any_step_the_session_ends_and_the_recording_is_whole() {
     for step in [0, 2, 8, 14, 40] {
         let folder = tempfile::tempdir().unwrap();
-        let path = folder.path().join("trajectory.csv");
         let (mut lockstep, mut python) = mixed(&[], PATIENCE);
-        lockstep.observe(Box::new(CsvRecorder::new(&path)));
+        lockstep.observe(Box::new(Recorder::new(folder.path(), provenance(), Choice::default())));
         lockstep.run_to(at_ms(10 * step)).unwrap();
         python.kill().unwrap();
         python.wait().unwrap();
@@ -122,7 +122,7 @@ fn killed_at_any_step_the_session_ends_and_the_recording_is_whole() {
         let SessionEnd::Failed(failure) = &outcome.end else { panic!("it should have failed") };
         assert_eq!((&failure.client, failure.state, failure.t_v), (&client("beta"), ClientState::Run, at_ms(asked)));
         assert_eq!(failure.cause, FailureCause::Disconnected);
-        let rows = std::fs::read_to_string(&path).unwrap().lines().count() as u64;
-        assert_eq!(rows, 1 + asked / 10, "a header, and every step before the one that failed");
+        let steps = Recording::open(folder.path()).unwrap().steps();
+        assert_eq!(steps, Some(0..=asked / 10 - 1), "every step before the one that failed");
     }
 }

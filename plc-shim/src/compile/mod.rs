@@ -16,7 +16,7 @@
 //! | [`dispatch`] | methods: which one runs |
 //! | [`host`] | functions that WebAssembly lacks |
 //! | [`text`], [`text_host`] | character strings |
-//! | [`points`] | what is noted for coverage |
+//! | [`points`], [`trace`] | what is noted for coverage; statements as they run |
 //! | [`fault`] | what stops the PLC, and the place in the source that an instruction stands for |
 //!
 //! Integers of up to 32 bits are held in an `i32`, sign- or zero-extended from their width;
@@ -61,6 +61,7 @@ mod statement;
 mod survey;
 mod text;
 pub(crate) mod text_host;
+pub(crate) mod trace;
 
 pub(crate) use budget::BUDGET_EXPORT;
 pub(crate) use module::{Compiled, MEMORY_EXPORT, Noted, compile, entry_export};

@@ -20,6 +20,7 @@ impl Emitter<'_, '_> {
             self.mark_statement(statement.span);
             self.cover(PointKind::Statement, statement.span);
             self.statement(statement);
+            self.trace_end(statement);
         }
     }
 

@@ -1,10 +1,14 @@
 //! The forms in which a project takes the shim's own sources.
 
+use std::collections::BTreeMap;
+
 use super::clock::Form;
 use super::marks;
+use super::motion::{self, Part, Use};
 use super::tasks::TaskTable;
 use super::template::{self, Only};
 use super::twincat;
+use crate::syntax::ast::Pou;
 
 /// For whom the shim's sources are written.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -29,6 +33,7 @@ pub(super) struct Sources {
     pub(super) globals: String,
     scheduler: String,
     forms: Vec<Unit>,
+    motion: Vec<Part>,
 }
 
 /// A function block or function.
@@ -57,7 +62,13 @@ pub(super) enum Globals {
 }
 
 impl Sources {
-    pub(super) fn new(target: Target, tasks: &TaskTable<'_>, forms: &[&Form], has_charts: bool) -> Self {
+    pub(super) fn new(
+        target: Target,
+        tasks: &TaskTable<'_>,
+        forms: &[&Form],
+        blocks: &BTreeMap<String, Use>,
+        charts: &[&Pou],
+    ) -> Self {
         let wanted: &[Only] = if forms.iter().any(|form| form.long) { &[Only::LongTime] } else { &[] };
         let mut names = tasks.names();
         // A TIME has nanoseconds in the one and milliseconds in the other.
@@ -69,10 +80,15 @@ impl Sources {
         let filled = |template: &str| template::fill(&template::lines_for(template, wanted), &names);
         let unit = |form: &&Form| Unit { name: form.new_name(), text: form.text() };
         let mut units: Vec<Unit> = forms.iter().map(unit).collect();
-        if has_charts {
+        if !charts.is_empty() {
             units.extend(chart_units());
         }
-        Self { globals: filled(template::GLOBALS), scheduler: filled(template::SCHEDULER), forms: units }
+        Self {
+            globals: filled(template::GLOBALS),
+            scheduler: filled(template::SCHEDULER),
+            forms: units,
+            motion: motion::parts(target, blocks),
+        }
     }
 
     /// The files in which they are.
@@ -81,7 +97,8 @@ impl Sources {
         match target {
             Target::Iec => {
                 let forms = self.forms.into_iter().map(|unit| unit.text);
-                let parts: Vec<String> = own.into_iter().chain([self.scheduler]).chain(forms).collect();
+                let motion = self.motion.into_iter().map(|part| part.text);
+                let parts: Vec<String> = own.into_iter().chain([self.scheduler]).chain(forms).chain(motion).collect();
                 let text = format!("{}\n{}", marks::FILE, parts.join("\n"));
                 vec![Source { name: "sdsp.st".to_owned(), text }]
             }
@@ -89,7 +106,14 @@ impl Sources {
                 let own = own.map(|text| twincat::globals("SDSP", &text));
                 let scheduler = twincat::unit("SDSP_Scheduler", &self.scheduler);
                 let forms = self.forms.iter().map(|unit| twincat::unit(&unit.name, &unit.text));
-                own.into_iter().chain([scheduler]).chain(forms).collect()
+                let motion = self.motion.iter().map(|part| {
+                    if part.is_type {
+                        twincat::data_type(&part.name, &part.text)
+                    } else {
+                        twincat::unit(&part.name, &part.text)
+                    }
+                });
+                own.into_iter().chain([scheduler]).chain(forms).chain(motion).collect()
             }
         }
     }

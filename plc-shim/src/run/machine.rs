@@ -4,6 +4,7 @@ use wasmtime::{Config, Engine, Global, Instance, Linker, Memory, Module, Store, 
 
 use super::plan::RunError;
 use super::text::link::{HostState, link};
+use super::trace::{self, Trace};
 use crate::application::Application;
 use crate::compile::{BUDGET_EXPORT, MEMORY_EXPORT, entry_export, host};
 
@@ -51,7 +52,7 @@ impl Machine {
         let memory = memory.ok_or_else(|| RunError::Module("memory is missing".to_owned()))?;
         let budget = instance.get_global(&mut store, BUDGET_EXPORT);
         let budget = budget.ok_or_else(|| RunError::Module("the budget is missing".to_owned()))?;
-        *store.data_mut() = HostState { memory: Some(memory), budget: Some(budget) };
+        *store.data_mut() = HostState { memory: Some(memory), budget: Some(budget), trace: None };
         let size = application.initial_memory().len();
         let parts = application.entry_parts().enumerate();
         let entries = parts.map(|(index, count)| entry(&instance, &mut store, index, count));
@@ -81,6 +82,23 @@ impl Machine {
         // Fails only if the global were of another type or could not be set.
         let set = self.budget.set(&mut self.store, budget);
         debug_assert!(set.is_ok(), "the module has a budget");
+    }
+
+    /// What statements are held against; nothing unless that was asked for.
+    pub(super) fn trace(&self) -> Option<&Trace> {
+        self.store.data().trace.as_deref()
+    }
+
+    pub(super) fn set_trace(&mut self, trace: Trace) {
+        self.store.data_mut().trace = Some(Box::new(trace));
+    }
+
+    /// A scan begins.
+    pub(super) fn begin_trace(&mut self) {
+        if let Some(mut trace) = self.store.data_mut().trace.take() {
+            trace.begin_scan(self.memory());
+            self.store.data_mut().trace = Some(trace);
+        }
     }
 
     pub(super) fn parts(&self, entry: usize) -> usize {
@@ -125,6 +143,7 @@ fn linker(engine: &Engine) -> Result<Linker<HostState>, wasmtime::Error> {
         };
     }
     link(&mut linker)?;
+    trace::link(&mut linker)?;
     Ok(linker)
 }
 

@@ -21,8 +21,9 @@ mod scheduler;
 mod soft_plc;
 mod state;
 pub(crate) mod text;
+mod trace;
 
-pub use fault::{FaultSite, PlcFault};
+pub use fault::{FaultSite, PlcFault, WriteSite};
 pub use plan::{RunError, Task, TaskPlan};
 pub use soft_plc::SoftPlc;
 pub use state::RestoreError;

@@ -3,12 +3,13 @@
 use std::ops::Range;
 
 use super::VirtualTime;
-use super::fault::{PlcFault, explain};
+use super::fault::{self, PlcFault, WriteSite, explain};
 use super::force::Forces;
 use super::machine::Machine;
 use super::plan::{Resolved, RunError, TaskPlan, resolve};
 use super::scheduler::Scheduler;
 use super::state::{self, RestoreError, State};
+use super::trace::{Trace, Watched};
 use crate::application::{Application, UnknownVariable, Variable};
 use crate::check::VIRTUAL_TIME_OFFSET;
 use crate::coverage::Coverage;
@@ -120,6 +121,7 @@ impl SoftPlc {
         }
         self.now = now;
         self.apply_forces();
+        self.machine.begin_trace();
         self.scheduler.begin_scan();
         self.scheduler.look(now, self.machine.memory());
         while let Some(task) = self.scheduler.take_due(now) {
@@ -206,7 +208,22 @@ impl SoftPlc {
     pub fn coverage(&self) -> Option<Coverage> {
         let points = self.application.points();
         let sources = self.application.sources();
-        (!points.is_empty()).then(|| Coverage::new(sources, points, self.machine.notes()))
+        (!points.is_empty() && !self.application.is_traced())
+            .then(|| Coverage::new(sources, points, self.machine.notes()))
+    }
+
+    /// Watches places in memory from here on, in place of those watched before. The application must
+    /// have been compiled for it ([`Application::from_inputs_traced`]).
+    pub fn watch(&mut self, places: impl IntoIterator<Item = (Range<usize>, Option<u8>)>) {
+        let watched = places.into_iter().map(|(range, bit)| Watched::new(range, bit)).collect();
+        self.machine.set_trace(Trace::new(watched));
+    }
+
+    /// The statement that last wrote the watched place at `index`; nothing if none has.
+    pub fn last_writer(&self, index: usize) -> Option<WriteSite> {
+        let writer = self.machine.trace()?.watched.get(index)?.writer.as_ref()?;
+        let point = self.application.points().get(writer.point as usize)?;
+        Some(fault::write_site(&self.application, point.span, &writer.frames))
     }
 
     /// The complete state as bytes.

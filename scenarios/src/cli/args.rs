@@ -8,6 +8,7 @@ use onescan_plc_shim::instrument::Target;
 use onescan_plc_shim::{Dialect, Task};
 use onescan_server::pacing::Pace;
 use onescan_server::session::Control;
+use onescan_server::signal::pattern::SignalPattern;
 use onescan_server::signal::{ClientName, SignalName};
 use onescan_server::time::{TimeSpan, VirtualTime};
 
@@ -86,9 +87,16 @@ pub struct RunArgs {
     /// `inproc`: all clients in this process; `tcp`: each in a process of its own
     #[arg(long, value_enum, default_value_t)]
     pub transport: TransportArg,
-    /// Record every signal of every step as CSV, in a folder `run-N` of this folder
+    /// Record each run in a folder `run-N` of this folder: the scenario's files, every signal and digest of
+    /// every step as Parquet, events
     #[arg(long, value_name = "DIR")]
     pub record: Option<PathBuf>,
+    /// Record the trajectory as `csv` or `mcap` too; both may be given, as in `csv,mcap`
+    #[arg(long, value_enum, value_name = "FORMAT", requires = "record", value_delimiter = ',')]
+    pub record_also: Vec<RecordAlso>,
+    /// Record these signals only: a name, or a pattern with `*` and `?`; may be given several times
+    #[arg(long = "record-signals", value_name = "PATTERN", requires = "record")]
+    pub record_signals: Vec<SignalPattern>,
     /// For people, or one JSON object a run for machines
     #[arg(long, value_enum, default_value_t)]
     pub format: FormatArg,
@@ -377,6 +385,15 @@ impl From<FormatArg> for Format {
             FormatArg::Json => Self::Json,
         }
     }
+}
+
+/// A form of trajectory that is recorded beside Parquet.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum RecordAlso {
+    /// For spreadsheets
+    Csv,
+    /// For viewers of robots and their logs: Foxglove, `PlotJuggler`
+    Mcap,
 }
 
 /// See [`CoverageFormat`].

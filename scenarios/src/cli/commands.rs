@@ -3,10 +3,11 @@
 use std::io::{IsTerminal, Write};
 use std::time::Duration;
 
+use onescan_server::record::Choice;
 use onescan_server::transport::tcp::operator::operate;
 use onescan_server::transport::tcp::participant::take_part;
 
-use super::args::{CheckArgs, Command, ControlArgs, ExplainArgs, InstrumentArgs, JoinArgs, RunArgs};
+use super::args::{CheckArgs, Command, ControlArgs, ExplainArgs, InstrumentArgs, JoinArgs, RecordAlso, RunArgs};
 use crate::check::{self, CheckConfig, Warnings};
 use crate::instrument::{Destination, Diff, Direction, InstrumentConfig};
 use crate::new;
@@ -15,6 +16,7 @@ use crate::run::config::SaveRequest;
 use crate::run::coverage::CoverageRequest;
 use crate::run::error::{ExitCode, RunError};
 use crate::run::interrupt::Interrupt;
+use crate::run::recorded::RecordRequest;
 use crate::run::{Format, RunConfig, execute};
 use crate::scenario::Scenario;
 use crate::scenario::compose::Member;
@@ -71,7 +73,14 @@ fn config(args: RunArgs) -> RunConfig {
         mode: args.mode.into(),
         runs: args.runs,
         transport: args.transport.into(),
-        record: args.record,
+        record: args.record.map(|folder| RecordRequest {
+            folder,
+            choice: Choice {
+                signals: args.record_signals,
+                csv: args.record_also.contains(&RecordAlso::Csv),
+                mcap: args.record_also.contains(&RecordAlso::Mcap),
+            },
+        }),
         format,
         plot: args.plot,
         signals: args.signals,

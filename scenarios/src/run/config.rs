@@ -5,11 +5,13 @@ use std::path::PathBuf;
 use std::time::Duration;
 
 use onescan_server::pacing::Pace;
+use onescan_server::signal::pattern::choose;
 use onescan_server::signal::{SignalName, did_you_mean};
 use onescan_server::time::VirtualTime;
 
 use super::coverage::CoverageRequest;
 use super::error::RunError;
+use super::recorded::RecordRequest;
 use crate::scenario::Scenario;
 use crate::scenario::file::ClientFile;
 
@@ -69,8 +71,8 @@ pub struct RunConfig {
     pub runs: u32,
     /// How the scenario's own clients are reached.
     pub transport: Transport,
-    /// Folder for recordings.
-    pub record: Option<PathBuf>,
+    /// What is recorded.
+    pub record: Option<RecordRequest>,
     /// For whom reports are.
     pub format: Format,
     /// File for a plot.
@@ -117,6 +119,10 @@ impl RunConfig {
                 let help = did_you_mean(signal.as_str(), known);
                 return Err(RunError::usage(format!("the scenario has no signal `{signal}`"), help));
             }
+        }
+        if let Some(record) = &self.record {
+            choose(&record.choice.signals, scenario.file().signals.keys())
+                .map_err(|unmatched| RunError::usage(format!("--record-signals: {unmatched}"), None))?;
         }
         let step = scenario.file().step;
         if let Some(save) = self.save.as_ref().filter(|save| save.at >= self.end(scenario)) {

@@ -11,6 +11,7 @@
 //! | [`interrupt`] | Ctrl-C, at a step boundary |
 //! | [`progress`] | a bar on a terminal |
 //! | [`sampler`] | what a plot shows |
+//! | [`recorded`] | a run's recording |
 //! | [`expectation`] | what a run had to show |
 //! | [`report`] | what came of a run, for people and machines |
 //! | [`output`] | files that appear whole or not at all |
@@ -25,17 +26,16 @@ mod lockstep;
 pub mod output;
 mod processes;
 mod progress;
+pub mod recorded;
 pub mod report;
 mod sampler;
 
 use std::cell::RefCell;
 use std::io::Write;
-use std::path::Path;
 use std::rc::Rc;
 use std::time::Instant;
 
 use onescan_server::lockstep::Lockstep;
-use onescan_server::record::csv::CsvRecorder;
 
 pub use config::{Format, Mode, RunConfig, Transport};
 pub use error::RunError;
@@ -45,6 +45,7 @@ use crate::expect::{Trace, TraceEnd};
 use crate::scenario::Scenario;
 use expectation::Witness;
 use interrupt::Interrupt;
+use recorded::Recorded;
 use sampler::{Sampler, Samples};
 
 /// Runs a scenario as `config` asks, and writes a report of each run to `out`.
@@ -91,10 +92,8 @@ fn one_run(
     let started = Instant::now();
     let samples = Rc::new(RefCell::new(Samples::new(&config.plotted(scenario))));
     let trace = Rc::new(RefCell::new(Trace::default()));
-    let folder = match &config.record {
-        Some(folder) => Some(output::create_folder(&folder.join(format!("run-{number}")))?),
-        None => None,
-    };
+    let recorded = config.record.as_ref().map(|request| Recorded::begin(request, config, scenario, number));
+    let (recorded, recorder) = recorded.transpose()?.unzip();
     let watch = |lockstep: &mut Lockstep| {
         if config.plot.is_some() {
             lockstep.observe(Box::new(Sampler::new(Rc::clone(&samples))));
@@ -103,8 +102,8 @@ fn one_run(
         if !expected.named.is_empty() {
             lockstep.observe(Box::new(Witness::new(Rc::clone(&trace), &expected.signals)));
         }
-        if let Some(folder) = &folder {
-            lockstep.observe(Box::new(CsvRecorder::new(&folder.join("trajectory.csv"))));
+        if let Some(recorder) = recorder {
+            lockstep.observe(Box::new(recorder));
         }
     };
     let outcome = match config.mode {
@@ -115,15 +114,9 @@ fn one_run(
     let mut trace = trace.replace(Trace::default());
     trace.set_end(if report.status == "completed" { TraceEnd::Complete } else { TraceEnd::Cut });
     report.expectations = expectation::judge(scenario, &trace);
-    if let Some(folder) = &folder {
-        write_summary(&folder.join("run.json"), &report)?;
+    if let Some(recorded) = &recorded {
+        recorded.end(&report)?;
     }
     let sampled = samples.replace(Samples::default());
     Ok((report, sampled))
-}
-
-fn write_summary(path: &Path, report: &RunReport) -> Result<(), RunError> {
-    let mut text = serde_json::to_vec_pretty(report).map_err(|e| RunError::Output(e.into()))?;
-    text.push(b'\n');
-    output::write_whole(path, &text)
 }

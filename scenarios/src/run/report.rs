@@ -6,7 +6,7 @@ use std::time::Duration;
 use onescan_server::end::{Failure, SessionEnd};
 use onescan_server::lockstep::Outcome;
 use onescan_server::record::Digest;
-use onescan_server::time::{StepCount, VirtualTime};
+use onescan_server::time::{StepCount, TimeSpan, VirtualTime};
 use serde::Serialize;
 
 use super::config::{Format, Mode, RunConfig, Transport};
@@ -45,6 +45,9 @@ pub struct RunReport {
     /// What came of the scenario's expectations.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub expectations: Vec<ExpectationReport>,
+    /// The step of virtual time.
+    #[serde(skip)]
+    pub step: TimeSpan,
     /// The program that ran it.
     pub version: &'static str,
 }
@@ -75,8 +78,14 @@ impl RunReport {
             error: failure.as_ref().map(ToString::to_string),
             failure,
             expectations: Vec::new(),
+            step: scenario.file().step,
             version: env!("CARGO_PKG_VERSION"),
         }
+    }
+
+    /// The step that ends at `t_v`, which is not after the last.
+    pub(super) fn step_at(&self, t_v: VirtualTime) -> StepCount {
+        StepCount(self.steps.0.saturating_sub((self.virtual_time - t_v) / self.step.as_nanos()))
     }
 
     /// True if a client ended it.

@@ -94,6 +94,20 @@ impl Scenario {
         &self.folder
     }
 
+    /// The files that the scenario is made of, itself first, as it names them: relative to its folder.
+    pub fn files(&self) -> Vec<PathBuf> {
+        let mut files = vec![self.path.file_name().map_or_else(|| FILE_NAME.into(), PathBuf::from)];
+        for client in self.file.clients.values() {
+            match client.get_ref() {
+                ClientFile::Plant { scene, .. } => files.push(scene.into()),
+                ClientFile::SoftPlc { sources, .. } => files.extend(sources.iter().map(PathBuf::from)),
+                ClientFile::External { .. } => {}
+            }
+        }
+        files.dedup();
+        files
+    }
+
     /// The file as it is written.
     pub fn file(&self) -> &ScenarioFile {
         &self.file
