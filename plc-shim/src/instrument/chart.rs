@@ -146,7 +146,7 @@ impl<'w> Writer<'w> {
         let mut text = self.controller.as_ref().map_or(String::new(), |found| format!("{}\n", found.declarations));
         text.push_str("VAR\n");
         for step in self.timed_steps().values() {
-            text.push_str(&format!("    SDSP_Step_{} : SDSP_STEP;\n", step.name.text));
+            text.push_str(&format!("    SDSP_Step_{} : SDSP_SFC_STEP;\n", step.name.text));
         }
         for (action, _) in self.uses() {
             text.push_str(&format!("    SDSP_Ctl_{} : SDSP_ACTION_CONTROL;\n", action.text));

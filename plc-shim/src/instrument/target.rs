@@ -46,7 +46,7 @@ struct Unit {
 fn chart_units() -> impl Iterator<Item = Unit> {
     let units = [
         ("SDSP_ACTION_CONTROL", template::ACTION_CONTROL),
-        ("SDSP_STEP", template::STEP),
+        ("SDSP_SFC_STEP", template::STEP),
         ("SDSP_ELAPSED", template::ELAPSED),
     ];
     units.into_iter().map(|(name, text)| Unit { name: name.to_owned(), text: text.to_owned() })

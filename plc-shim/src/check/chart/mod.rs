@@ -40,9 +40,9 @@ use crate::syntax::ast::{self, PouKind, StatementKind};
 pub(super) use self::state::control_key;
 
 /// The library's type of a step's state; its text stands for what no text of the user's does.
-const STEP_TYPE: &str = "ONESCAN_STEP";
+const STEP_TYPE: &str = "ONESCAN_SFC_STEP";
 /// The library's function block of action control.
-const CONTROL_TYPE: &str = "ONESCAN_ACTION_CONTROL";
+const CONTROL_TYPE: &str = "ONESCAN_SFC_CONTROL";
 
 impl Body<'_, '_> {
     /// What a unit's chart does in each scan; nothing where it is no chart.
