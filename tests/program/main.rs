@@ -19,4 +19,5 @@ mod python;
 mod run;
 mod third_party;
 mod typed;
+mod watch;
 mod wiring;

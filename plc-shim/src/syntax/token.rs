@@ -114,7 +114,7 @@ keywords! {
     OrganizationBlock "ORGANIZATION_BLOCK", EndOrganizationBlock "END_ORGANIZATION_BLOCK",
     InitialStep "INITIAL_STEP", Step "STEP", EndStep "END_STEP",
     Transition "TRANSITION", EndTransition "END_TRANSITION",
-    VarStat "VAR_STAT", DataBlock "DATA_BLOCK", EndDataBlock "END_DATA_BLOCK", Begin "BEGIN",
+    VarStat "VAR_STAT", VarInst "VAR_INST", DataBlock "DATA_BLOCK", EndDataBlock "END_DATA_BLOCK", Begin "BEGIN",
 }
 
 impl Keyword {
@@ -125,6 +125,7 @@ impl Keyword {
             K::OrganizationBlock | K::EndOrganizationBlock | K::DataBlock | K::EndDataBlock | K::Begin => {
                 dialect.has(Feature::Blocks)
             }
+            K::VarInst => dialect.has(Feature::InstanceSection),
             K::VarStat => dialect.has(Feature::StaticSection),
             K::Continue => dialect.has(Feature::Continue),
             _ => true,

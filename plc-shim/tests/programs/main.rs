@@ -35,6 +35,7 @@ mod sfc;
 mod shear;
 mod standard_blocks;
 mod standard_functions;
+mod starts;
 mod states;
 mod string_expressions;
 mod strings;

@@ -15,7 +15,7 @@ impl Body<'_, '_> {
         let Some(quiet) = self.quiet() else { return Vec::new() };
         let mut statements = Vec::new();
         for action in actions {
-            statements.extend(self.controlled(chart, action, quiet).into_iter().flatten());
+            statements.extend(self.control_of(chart, action, quiet).into_iter().flatten());
         }
         for is_flagged in [false, true] {
             for action in actions {
@@ -26,7 +26,7 @@ impl Body<'_, '_> {
     }
 
     /// The inputs of an action's control, its call, and what becomes of a Boolean action.
-    fn controlled(&mut self, chart: &Chart, action: &Action, quiet: Span) -> Option<Vec<Statement>> {
+    fn control_of(&mut self, chart: &Chart, action: &Action, quiet: Span) -> Option<Vec<Statement>> {
         let mut flags = Vec::new();
         for used in &action.uses {
             let step = self.chart_place(&chart.steps.get(used.step)?.name.key(), quiet)?;

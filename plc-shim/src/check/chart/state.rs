@@ -29,7 +29,7 @@ pub(in super::super) fn control_key(action: &str) -> String {
     format!("ACTION {action}")
 }
 
-impl Interface<'_, '_> {
+impl<'a> Interface<'_, 'a> {
     /// Declares what the chart needs.
     pub(in super::super) fn declare_chart(&mut self, ast: &ast::Pou) {
         if ast.chart.is_empty() || !matches!(ast.kind, PouKind::Program | PouKind::FunctionBlock) {
@@ -38,14 +38,14 @@ impl Interface<'_, '_> {
         for step in &ast.chart.steps {
             self.declare_step(step);
         }
-        let flag = || TypedImage { ty: ElementaryType::Bool.into(), image: Arc::from([0]) };
+        let flag = || TypedImage { ty: ElementaryType::Bool.into(), image: Arc::from([0]), starts: Arc::default() };
         for name in ast.chart.transitions.iter().filter_map(|transition| transition.name.as_ref()) {
             self.declare_of_chart(&name.key(), &name.text, name.span, flag());
         }
         for association in ast.chart.steps.iter().flat_map(|step| &step.associations) {
             self.declare_control(&association.action);
         }
-        self.keep(BEGUN, "SFC_Begun", ast.name.span, &flag());
+        self.keep_state(BEGUN, "SFC_Begun", ast.name.span, &flag());
     }
 
     /// An initial step is active before the first scan (2nd ed. 2.6.5).
@@ -75,24 +75,24 @@ impl Interface<'_, '_> {
             self.body.checker.report_duplicate(action, Some(first));
         }
         let name = if has_body { action.text.clone() } else { format!("SFC_{}", action.text) };
-        self.keep(&key, &name, action.span, &declared);
+        self.keep_state(&key, &name, action.span, &declared);
     }
 
-    fn library_type(&mut self, name: &str, span: Span) -> Option<TypedImage> {
+    fn library_type(&mut self, name: &str, span: Span) -> Option<TypedImage<'a>> {
         self.body.type_by_name(&Ident { text: name.to_owned(), span }, Need::Size)
     }
 
     /// Steps and transitions have names among those of variables.
-    fn declare_of_chart(&mut self, key: &str, name: &str, span: Span, declared: TypedImage) {
+    fn declare_of_chart(&mut self, key: &str, name: &str, span: Span, declared: TypedImage<'a>) {
         match self.body.scope.own(key).map(|first| first.span) {
             Some(first) => {
                 self.body.checker.report_duplicate(&Ident { text: name.to_owned(), span }, Some(first));
             }
-            None => self.keep(key, name, span, &declared),
+            None => self.keep_state(key, name, span, &declared),
         }
     }
 
-    fn keep(&mut self, key: &str, name: &str, span: Span, declared: &TypedImage) {
+    fn keep_state(&mut self, key: &str, name: &str, span: Span, declared: &TypedImage<'a>) {
         let Some(offset) = self.in_instance(declared, span) else { return };
         let ty: TypeId = declared.ty;
         let variable = Variable {
