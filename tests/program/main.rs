@@ -1,5 +1,6 @@
 //! The program as a user types it: commands, files, messages, exit codes.
 
+mod cases;
 mod check;
 mod checkpoint;
 mod configuration;
@@ -16,8 +17,12 @@ mod new;
 mod plant;
 mod plc_faults;
 mod python;
+mod regression;
+mod reports;
+mod review;
 mod run;
 mod third_party;
 mod typed;
+mod unit_tests;
 mod watch;
 mod wiring;

@@ -20,6 +20,7 @@
 //! | [`text`], [`text_function`], [`text_conversion`] | character strings |
 //! | [`statement`], [`assignment`], [`edge`], [`build`] | statements |
 //! | [`chart`] | Sequential Function Charts |
+//! | [`jump`], [`wire`], [`instruction`] | what networks and lists of instructions have beside statements |
 //! | [`configuration`] | resources, tasks, instances of programs |
 //! | [`dialect`] | what dialects do their own way |
 //! | [`recursion`], [`dispatch`] | who calls whom, and what only a run decides |
@@ -31,6 +32,7 @@
 //! and needed again contains itself.
 
 mod address;
+pub(crate) mod asserts;
 mod assignment;
 mod build;
 mod calendar;
@@ -55,7 +57,9 @@ mod initial;
 mod instance;
 mod instance_arguments;
 mod instance_section;
+mod instruction;
 mod interface_value;
+mod jump;
 mod layout;
 mod located;
 mod memory_function;
@@ -81,6 +85,7 @@ mod text_function;
 mod types;
 mod union;
 mod variables;
+mod wire;
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;

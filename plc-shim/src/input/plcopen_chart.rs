@@ -133,7 +133,7 @@ impl Writer<'_> {
         self.ends(chart, &from, element);
         self.write(" TO ", &element.open);
         self.ends(chart, &to, element);
-        self.write_condition(&condition, element);
+        self.write_condition(&condition, name.as_deref().unwrap_or_default(), element);
         self.write("\nEND_TRANSITION\n", &element.close);
     }
 
@@ -187,7 +187,7 @@ impl Writer<'_> {
         }
     }
 
-    fn write_condition(&mut self, condition: &Condition<'_>, transition: &Element) {
+    fn write_condition(&mut self, condition: &Condition<'_>, name: &str, transition: &Element) {
         let open = &transition.open;
         match condition {
             // It has been told; the rest of the chart is read all the same.
@@ -198,8 +198,15 @@ impl Writer<'_> {
             }
             Condition::Body { body, negated, .. } => {
                 let Some(text) = body.child("ST") else {
-                    self.write(" :=\n", open);
+                    // A network assigns to the transition's name; a list of instructions leaves its result.
+                    self.write(" :\n", open);
                     self.body(body);
+                    match (body.child("IL").is_some(), negated) {
+                        (true, false) => self.write(&format!("ST {name}\n"), open),
+                        (true, true) => self.write(&format!("STN {name}\n"), open),
+                        (false, true) => self.write(&format!("{name} := NOT {name};\n"), open),
+                        (false, false) => {}
+                    }
                     return;
                 };
                 match (Form::of(&inner_text(self.file, text)), negated) {

@@ -4,6 +4,7 @@ mod chart;
 mod configuration;
 mod declaration;
 mod expression;
+pub mod instruction;
 mod object;
 mod statement;
 
@@ -18,6 +19,7 @@ pub use declaration::{
     Variable,
 };
 pub use expression::{Argument, BinaryOp, Call, Expr, ExprKind, Literal, MAX_HEIGHT, TypedValue, UnaryOp};
+pub use instruction::{Instruction, ListCall, When};
 pub use object::{Member, MemberKind, Modifier, Namespace, NamespaceKind, Object};
 pub use statement::{
     CaseBranch, CaseLabel, CaseStatement, ForStatement, IfBranch, IfStatement, RepeatStatement, Statement,

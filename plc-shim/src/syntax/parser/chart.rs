@@ -167,7 +167,7 @@ impl Cursor<'_> {
 
     fn transition_condition(&mut self) -> TransitionCondition {
         if self.take_mark(Punctuation::Colon) {
-            return TransitionCondition::Network(self.statements());
+            return TransitionCondition::Network(self.body_statements());
         }
         self.expect_mark(Punctuation::Assign);
         let known = self.reported();

@@ -59,3 +59,36 @@ fn what_is_wrong_with_a_chart_of_xml_is_told_in_its_place() {
     });
     insta::assert_snapshot!(report.collect::<Vec<_>>().join("\n\n"));
 }
+
+/// Conditions in other languages: a network assigns to the transition's name, instructions leave their result.
+#[test]
+fn conditions_of_xml_are_networks_too() {
+    let st = "<ST><xhtml:p>level &gt;= 80</xhtml:p></ST>";
+    let fbd = "<FBD><inVariable localId=\"1\"><connectionPointOut/><expression>level</expression></inVariable>
+        <inVariable localId=\"2\"><connectionPointOut/><expression>80</expression></inVariable>
+        <block localId=\"3\" typeName=\"GE\"><inputVariables>
+        <variable formalParameter=\"IN1\"><connectionPointIn><connection refLocalId=\"1\"/></connectionPointIn></variable>
+        <variable formalParameter=\"IN2\"><connectionPointIn><connection refLocalId=\"2\"/></connectionPointIn></variable>
+        </inputVariables><inOutVariables/><outputVariables><variable formalParameter=\"OUT\"><connectionPointOut/></variable>
+        </outputVariables></block>
+        <outVariable localId=\"4\"><connectionPointIn><connection refLocalId=\"3\" formalParameter=\"OUT\"/>
+        </connectionPointIn><expression>full</expression></outVariable></FBD>";
+    let il = "<IL><xhtml:p>LD level</xhtml:p><xhtml:p>GE 80</xhtml:p></IL>";
+    let steps_after = |body: &str| {
+        let input = mixer(&MIXER.replace(st, body));
+        let application = Application::from_inputs([input]).unwrap_or_else(|found| panic!("{found}"));
+        let mut rig = Rig::with_plan(&application, &TaskPlan::single(&application, 10 * MS));
+        let mut seen = Vec::new();
+        for scan in 1..=5 {
+            rig.set("Mixer.start", 1);
+            rig.set("Mixer.level", if scan >= 4 { 90 } else { 0 });
+            rig.scan().expect("no fault");
+            seen.push((rig.bool("Mixer.Fill.X"), rig.bool("Mixer.Stir.X")));
+        }
+        seen
+    };
+    let wanted = [(false, false), (true, false), (true, false), (false, true), (false, true)];
+    for body in [st, fbd, il] {
+        assert_eq!(steps_after(body), wanted, "{body}");
+    }
+}
