@@ -142,7 +142,7 @@ impl Cursor<'_> {
     }
 
     /// Statements, or instructions if the first is one.
-    fn body_statements(&mut self) -> Vec<Statement> {
+    pub(super) fn body_statements(&mut self) -> Vec<Statement> {
         if self.at_instruction_list() { self.instructions() } else { self.statements() }
     }
 
