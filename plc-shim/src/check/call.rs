@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use super::address::PlaceFunction;
+use super::asserts;
 use super::convert::{Operand, constant};
 use super::enable;
 use super::function_form;
@@ -75,7 +76,15 @@ impl Body<'_, '_> {
     }
 
     fn is_local(&self, name: &Ident) -> bool {
-        !name.is_quoted() && self.scope.by_name.contains_key(&name.key())
+        !name.is_quoted() && self.is_callable_variable(&name.key())
+    }
+
+    /// True for a variable of the unit, and for an instance among those that its methods see. Of these
+    /// the others leave their names to functions.
+    fn is_callable_variable(&self, key: &str) -> bool {
+        let outer = || self.scope.outer.as_ref()?.find(key).map(|variable| variable.ty);
+        let is_block = |ty| matches!(self.checker.types.get(ty), Type::FunctionBlock { .. });
+        self.scope.by_name.contains_key(key) || outer().is_some_and(is_block)
     }
 
     /// Inside a function its own name is its result, and a call of it recursion.
@@ -96,7 +105,7 @@ impl Body<'_, '_> {
         match &call.callee.kind {
             ast::ExprKind::Name(name) => {
                 let key = name.key();
-                self.scope.by_name.contains_key(&key) && !self.is_own_result(name)
+                self.is_callable_variable(&key) && !self.is_own_result(name)
             }
             _ => false,
         }
@@ -270,6 +279,7 @@ impl Body<'_, '_> {
                 // The call is carried out, or the function would not read it.
                 _ if enable::is_control(parameter) => Some(Argument::Value(enable::boolean(true, span))),
                 Some(expr) => self.argument(parameter, expr, &mut passing),
+                None if self.checker.is_library(id) && asserts::is_site(parameter) => Some(asserts::site(span)),
                 None => self.default_argument(parameter, named, span),
             };
             sound &= argument.is_some();
@@ -384,7 +394,10 @@ impl Body<'_, '_> {
         let mut statements = Vec::new();
         let mut sound = true;
         for Wanted { variable, negated, target } in wanted {
-            let target_place = self.target(target);
+            let target_place = match self.new_wire(target) {
+                Some(name) => self.wire(name, variable.ty, target.span),
+                None => self.target(target),
+            };
             let Some(target_place) = target_place else {
                 sound = false;
                 continue;

@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use super::Checker;
 use super::class::{Membership, Role};
-use super::names::TypedImage;
+use super::initial::plain;
 use super::place::{Access, Located};
 use super::scope::{Body, Scope};
 use super::types::Need;
@@ -169,7 +169,7 @@ impl Body<'_, '_> {
         let roles = [Role::Method, Role::Getter, Role::Setter];
         let role = roles.into_iter().find(|role| self.checker.find_member(class, *role, &name.text).is_some())?;
         let (code, message) = match role {
-            Role::Method | Role::Body => {
+            Role::Method | Role::Body | Role::Start | Role::End => {
                 (Code::NotAVariable, format!("`{0}` is a method: call it as `{0}()`", name.text))
             }
             Role::Getter => (Code::WrongProperty, format!("`{}` is a property, which is no variable", name.text)),
@@ -222,7 +222,8 @@ impl<'a> Interface<'_, 'a> {
             return;
         }
         (self.align, self.image) = (align, image.to_vec());
-        for variable in &scope.variables {
+        let keys = scope.keys();
+        for (index, variable) in scope.variables.iter().enumerate() {
             if !matches!(variable.storage, Storage::Instance(_) | Storage::InstancePointer(_)) {
                 continue;
             }
@@ -230,14 +231,14 @@ impl<'a> Interface<'_, 'a> {
             // Each level has its own trigger, so that `SUPER()` sees the edge too.
             if let Some(edge) = variable.edge {
                 let image = Arc::from([0]);
-                let memory = TypedImage { ty: ElementaryType::Bool.into(), image };
+                let memory = plain(ElementaryType::Bool.into(), image);
                 let seen = self.body.scope.register(ElementaryType::Bool);
                 let memory = self.in_instance(&memory, span).map_or(edge.memory, Storage::Instance);
                 variable.edge = Some(EdgeDetection { edge: edge.edge, memory, seen });
             }
             // What is PRIVATE to the base is there, and its name is free.
             if variable.visibility != Visibility::Private {
-                let key = variable.name.to_ascii_uppercase();
+                let key = keys.get(&index).map_or_else(|| variable.name.to_ascii_uppercase(), |key| (*key).to_owned());
                 self.body.scope.by_name.insert(key, self.body.scope.variables.len());
             }
             self.body.scope.variables.push(variable);
@@ -279,7 +280,8 @@ impl<'a> Interface<'_, 'a> {
 /// The variables of an instance; what lasts for one call of its statements is left out.
 fn seen_by_methods(scope: &Scope, owner: PouId) -> Scope {
     let mut seen = Scope::default();
-    for variable in &scope.variables {
+    let keys = scope.keys();
+    for (index, variable) in scope.variables.iter().enumerate() {
         let lasting = match variable.storage {
             Storage::Instance(_) | Storage::InstancePointer(_) => true,
             Storage::Register(_) | Storage::RegisterPointer(_) => false,
@@ -287,7 +289,8 @@ fn seen_by_methods(scope: &Scope, owner: PouId) -> Scope {
         };
         let hidden = variable.visibility == Visibility::Private && variable.owner != Some(owner);
         if lasting && !hidden {
-            seen.by_name.insert(variable.name.to_ascii_uppercase(), seen.variables.len());
+            let key = keys.get(&index).map_or_else(|| variable.name.to_ascii_uppercase(), |key| (*key).to_owned());
+            seen.by_name.insert(key, seen.variables.len());
             seen.variables.push(Variable { edge: None, ..variable.clone() });
         }
     }

@@ -35,6 +35,11 @@ impl Scope {
         self.by_name.get(key).and_then(|index| self.variables.get(*index))
     }
 
+    /// The names by which variables are found, by their positions; those of a base may have none.
+    pub(super) fn keys(&self) -> BTreeMap<usize, &str> {
+        self.by_name.iter().map(|(key, index)| (*index, key.as_str())).collect()
+    }
+
     /// True for a name that a variable has, be its declaration right or wrong.
     pub(super) fn declares(&self, key: &str) -> bool {
         self.by_name.contains_key(key) || self.outer.as_ref().is_some_and(|outer| outer.declares(key))
@@ -81,6 +86,16 @@ pub(super) struct Body<'c, 'a> {
     /// Loops around the statement.
     pub(super) loops: u32,
     pub(super) result_assigned: bool,
+    /// Key of the transition whose network is being checked.
+    pub(super) network: Option<String>,
+    /// What jumps may lead to from here, the innermost last.
+    pub(super) labels: Vec<super::jump::Labels>,
+    /// How many labels the unit has so far.
+    pub(super) label_count: u32,
+    /// Values that elements of a network hand on.
+    pub(super) wires: BTreeMap<String, Place>,
+    /// How many wires lists of instructions have so far.
+    pub(super) instruction_wires: u32,
 }
 
 impl<'c, 'a> Body<'c, 'a> {
@@ -90,7 +105,19 @@ impl<'c, 'a> Body<'c, 'a> {
     }
 
     pub(super) fn new(checker: &'c mut Checker<'a>, scope: Scope, pou: Option<PouId>) -> Self {
-        Self { checker, scope, pou, context: None, loops: 0, result_assigned: false }
+        Self {
+            checker,
+            scope,
+            pou,
+            context: None,
+            loops: 0,
+            result_assigned: false,
+            labels: Vec::new(),
+            label_count: 0,
+            wires: BTreeMap::new(),
+            instruction_wires: 0,
+            network: None,
+        }
     }
 
     pub(super) fn report(&mut self, diagnostic: Diagnostic) {

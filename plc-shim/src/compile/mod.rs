@@ -11,7 +11,7 @@
 //! | [`address`], [`place`], [`part`], [`pointer`], [`open_array`], [`memory`] | addresses, loads and stores |
 //! | [`known`], [`effect`], [`survey`] | values that registers hold already, also through loops |
 //! | [`interval`], [`range`], [`refine`], [`drift`] | between what integers lie: expressions, variables, behind conditions, in loops |
-//! | [`statement`], [`selection`], [`choice`], [`repetition`], [`counting`] | statements |
+//! | [`statement`], [`selection`], [`choice`], [`repetition`], [`counting`], [`jump`] | statements |
 //! | [`expression`], [`arithmetic`], [`conversion`], [`intrinsic`], [`bytes`] | expressions |
 //! | [`dispatch`] | methods: which one runs |
 //! | [`host`] | functions that WebAssembly lacks |
@@ -44,6 +44,7 @@ pub(crate) mod host;
 mod inline;
 mod interval;
 mod intrinsic;
+mod jump;
 mod known;
 mod memory;
 mod module;
@@ -64,4 +65,4 @@ pub(crate) mod text_host;
 pub(crate) mod trace;
 
 pub(crate) use budget::BUDGET_EXPORT;
-pub(crate) use module::{Compiled, MEMORY_EXPORT, Noted, compile, entry_export};
+pub(crate) use module::{Compiled, END_EXPORT, MEMORY_EXPORT, Noted, START_EXPORT, compile, entry_export};

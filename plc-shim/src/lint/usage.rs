@@ -42,7 +42,7 @@ impl Usage {
             for section in &each.sections {
                 collector.section(section);
             }
-            walk::statements(&each.body, &mut collector);
+            walk::unit(each, &mut collector);
         }
         collector.usage
     }
@@ -103,6 +103,9 @@ impl Collector<'_> {
             }
             TypeSpecKind::Reference(_, target) | TypeSpecKind::OpenArray(_, target) => self.spec(target),
             TypeSpecKind::String(_, Some(length)) => walk::expression(length, self),
+            TypeSpecKind::Instance(_, arguments) => {
+                arguments.values().for_each(|value| walk::expression(value, self));
+            }
             TypeSpecKind::Subrange(_, bounds) => {
                 walk::expression(&bounds.low, self);
                 walk::expression(&bounds.high, self);

@@ -1,20 +1,25 @@
 //! The syntax tree: what is written, with its place; no meanings.
 
+mod chart;
 mod configuration;
 mod declaration;
 mod expression;
+pub mod instruction;
 mod object;
 mod statement;
 
+pub use chart::{ActionQualifier, Association, Chart, ChartStep, Priority, Transition, TransitionCondition};
 pub use configuration::{
     AccessDirection, AccessPath, Configuration, Connection, InstanceValue, ProgramDeclaration, Resource,
     TaskDeclaration,
 };
 pub use declaration::{
-    Declaration, Dimension, Edge, EnumValue, Field, Initialiser, InitialiserKind, Pou, PouKind, Qualifier,
-    ReferenceKind, Section, SectionKind, StructureInit, Subrange, TypeDeclaration, TypeSpec, TypeSpecKind, Variable,
+    Declaration, Dimension, Edge, EnumValue, Field, InitArguments, Initialiser, InitialiserKind, Pou, PouKind,
+    Qualifier, ReferenceKind, Section, SectionKind, StructureInit, Subrange, TypeDeclaration, TypeSpec, TypeSpecKind,
+    Variable,
 };
 pub use expression::{Argument, BinaryOp, Call, Expr, ExprKind, Literal, MAX_HEIGHT, TypedValue, UnaryOp};
+pub use instruction::{Instruction, ListCall, When};
 pub use object::{Member, MemberKind, Modifier, Namespace, NamespaceKind, Object};
 pub use statement::{
     CaseBranch, CaseLabel, CaseStatement, ForStatement, IfBranch, IfStatement, RepeatStatement, Statement,

@@ -42,6 +42,8 @@ pub enum TokenKind {
     WideString,
     /// `%IX1.0` (2nd ed. 2.4.1.1).
     DirectAddress,
+    /// `` `name` ``: what an element of a network hands on, in text that was made of one.
+    Wire,
     /// An operator, bracket or separator.
     Punctuation(Punctuation),
     /// Text that begins no token.
@@ -77,6 +79,11 @@ macro_rules! keywords {
                 matches!(self, K::Class | K::Interface | K::Method | K::Property | K::Action | K::Namespace | K::Using)
             }
 
+            /// True for the words that begin a chart's parts; programs without charts have them for names.
+            pub fn is_of_chart(self) -> bool {
+                matches!(self, Keyword::InitialStep | Keyword::Step | Keyword::Transition)
+            }
+
             /// Its spelling in capitals.
             pub fn text(self) -> &'static str {
                 match self { $(Self::$variant => $text,)* }
@@ -107,7 +114,9 @@ keywords! {
     EndGet "END_GET", EndSet "END_SET", Action "ACTION", EndAction "END_ACTION",
     Namespace "NAMESPACE", EndNamespace "END_NAMESPACE", Using "USING",
     OrganizationBlock "ORGANIZATION_BLOCK", EndOrganizationBlock "END_ORGANIZATION_BLOCK",
-    VarStat "VAR_STAT", DataBlock "DATA_BLOCK", EndDataBlock "END_DATA_BLOCK", Begin "BEGIN",
+    InitialStep "INITIAL_STEP", Step "STEP", EndStep "END_STEP",
+    Transition "TRANSITION", EndTransition "END_TRANSITION",
+    VarStat "VAR_STAT", VarInst "VAR_INST", DataBlock "DATA_BLOCK", EndDataBlock "END_DATA_BLOCK", Begin "BEGIN",
 }
 
 impl Keyword {
@@ -118,6 +127,7 @@ impl Keyword {
             K::OrganizationBlock | K::EndOrganizationBlock | K::DataBlock | K::EndDataBlock | K::Begin => {
                 dialect.has(Feature::Blocks)
             }
+            K::VarInst => dialect.has(Feature::InstanceSection),
             K::VarStat => dialect.has(Feature::StaticSection),
             K::Continue => dialect.has(Feature::Continue),
             _ => true,

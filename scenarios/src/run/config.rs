@@ -14,6 +14,7 @@ use super::error::RunError;
 use super::recorded::RecordRequest;
 use crate::scenario::Scenario;
 use crate::scenario::file::ClientFile;
+use crate::scenario::watch::WatchRequest;
 
 /// How plant and PLC come together.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize)]
@@ -61,6 +62,8 @@ pub struct SaveRequest {
 pub struct RunConfig {
     /// The scenario's folder or file.
     pub scenario: PathBuf,
+    /// The case to run; the scenario as it is if absent.
+    pub case: Option<String>,
     /// When a run is complete; the scenario says so if absent.
     pub until: Option<VirtualTime>,
     /// How fast virtual time may run.
@@ -81,6 +84,12 @@ pub struct RunConfig {
     pub signals: Vec<SignalName>,
     /// A coverage report to write.
     pub coverage: Option<CoverageRequest>,
+    /// File for a page about all runs.
+    pub html: Option<PathBuf>,
+    /// Variables of soft PLCs to look at.
+    pub watch: Vec<WatchRequest>,
+    /// True if all their changes are wanted, not only what they are last.
+    pub watch_changes: bool,
     /// Where clients and operators may connect.
     pub listen: Option<SocketAddr>,
     /// How long to wait for clients to join.
@@ -96,9 +105,36 @@ pub struct RunConfig {
 }
 
 impl RunConfig {
+    /// One run in this process, as fast as it goes, that nobody looks at.
+    pub fn headless(scenario: PathBuf, case: Option<String>) -> Self {
+        Self {
+            scenario,
+            case,
+            until: None,
+            pace: Pace::Max,
+            mode: Mode::Lockstep,
+            runs: 1,
+            transport: Transport::Inproc,
+            record: None,
+            format: Format::Json,
+            plot: None,
+            signals: Vec::new(),
+            coverage: None,
+            html: None,
+            watch: Vec::new(),
+            watch_changes: false,
+            listen: None,
+            join_timeout: Duration::from_mins(1),
+            reply_timeout: Duration::from_secs(10),
+            save: None,
+            resume: None,
+            progress: false,
+        }
+    }
+
     /// When a run is complete.
     pub fn end(&self, scenario: &Scenario) -> VirtualTime {
-        self.until.unwrap_or(scenario.file().until)
+        self.until.unwrap_or(scenario.until())
     }
 
     /// The signals of the plot with their panels' order.
@@ -129,9 +165,10 @@ impl RunConfig {
             let message = format!("--save-at {} is not before the end of the run at {}", save.at, self.end(scenario));
             return Err(RunError::usage(message, Some(format!("the step is {step}"))));
         }
-        if self.coverage.is_some() && self.transport == Transport::Tcp {
-            let help = "what a client in another process executes is not seen here".to_owned();
-            return Err(RunError::usage("--coverage means nothing with --transport tcp".to_owned(), Some(help)));
+        let inside = [("--coverage", self.coverage.is_some()), ("--watch", !self.watch.is_empty())];
+        if let Some((option, _)) = inside.iter().find(|(_, given)| *given && self.transport == Transport::Tcp) {
+            let help = "what a client in another process does is not seen here".to_owned();
+            return Err(RunError::usage(format!("{option} means nothing with --transport tcp"), Some(help)));
         }
         match self.mode {
             Mode::Lockstep => Ok(()),

@@ -12,6 +12,7 @@ use serde::Serialize;
 use super::config::{Format, Mode, RunConfig, Transport};
 use super::error::ExitCode;
 use super::expectation::ExpectationReport;
+use super::watch::WatchReport;
 use crate::scenario::Scenario;
 
 /// What came of one run. Its JSON form is a contract: fields are added, never changed.
@@ -19,6 +20,9 @@ use crate::scenario::Scenario;
 pub struct RunReport {
     /// The scenario's name.
     pub scenario: String,
+    /// The case of it, if one was asked for.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub case: Option<String>,
     /// Number of the run, from 1.
     pub run: u32,
     /// In lockstep or not.
@@ -45,6 +49,9 @@ pub struct RunReport {
     /// What came of the scenario's expectations.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub expectations: Vec<ExpectationReport>,
+    /// What watched variables were.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub watched: Option<WatchReport>,
     /// The step of virtual time.
     #[serde(skip)]
     pub step: TimeSpan,
@@ -67,6 +74,7 @@ impl RunReport {
         };
         Self {
             scenario: scenario.name().to_owned(),
+            case: scenario.case().map(|case| case.name.clone()),
             run,
             mode: config.mode,
             transport: config.transport,
@@ -78,6 +86,7 @@ impl RunReport {
             error: failure.as_ref().map(ToString::to_string),
             failure,
             expectations: Vec::new(),
+            watched: None,
             step: scenario.file().step,
             version: env!("CARGO_PKG_VERSION"),
         }
@@ -105,7 +114,9 @@ impl RunReport {
                 writeln!(out)?;
             }
             Format::Human => {
-                let name = if runs == 1 { self.scenario.clone() } else { format!("run {}/{runs}", self.run) };
+                let case = self.case.as_ref().map(|case| format!(" {case}")).unwrap_or_default();
+                let name =
+                    if runs == 1 { format!("{}{case}", self.scenario) } else { format!("run {}/{runs}", self.run) };
                 let digest = self.digest.map_or_else(|| "none".to_owned(), |digest| digest.to_string());
                 let (steps, t_v, wall) = (self.steps, self.virtual_time, self.wall_time_s);
                 writeln!(out, "{name}: {}, {steps} steps, {t_v} virtual in {wall:.3} s", self.status)?;
@@ -115,6 +126,9 @@ impl RunReport {
                 }
                 for expectation in &self.expectations {
                     expectation.write(out)?;
+                }
+                if let Some(watched) = &self.watched {
+                    watched.write(out)?;
                 }
             }
         }

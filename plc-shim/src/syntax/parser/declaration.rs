@@ -6,8 +6,8 @@ use crate::diagnostic::{Code, Diagnostic};
 use crate::dialect::Feature;
 use crate::ir::ElementaryType;
 use crate::syntax::ast::{
-    CompilationUnit, Declaration, Edge, Ident, Member, Modifier, PouKind, Qualifier, Section, SectionKind, Statement,
-    StatementKind, TypeDeclaration, TypeSpec, TypeSpecKind, Variable,
+    Chart, CompilationUnit, Declaration, Edge, Ident, Member, Modifier, PouKind, Qualifier, Section, SectionKind,
+    Statement, StatementKind, TypeDeclaration, TypeSpec, TypeSpecKind, Variable,
 };
 use crate::syntax::token::{Keyword, Punctuation, TokenKind};
 
@@ -27,10 +27,19 @@ pub(super) fn section_kind(kind: Option<TokenKind>) -> Option<SectionKind> {
         TokenKind::Keyword(Keyword::VarInOut) => SectionKind::InOut,
         TokenKind::Keyword(Keyword::VarTemp) => SectionKind::Temp,
         TokenKind::Keyword(Keyword::VarStat) => SectionKind::Static,
+        TokenKind::Keyword(Keyword::VarInst) => SectionKind::Instance,
         TokenKind::Keyword(Keyword::VarGlobal) => SectionKind::Global,
         TokenKind::Keyword(Keyword::VarExternal) => SectionKind::External,
         _ => return None,
     })
+}
+
+/// What stands between a unit's head and its end, its statements left out.
+#[derive(Default)]
+pub(super) struct UnitParts {
+    pub(super) sections: Vec<Section>,
+    pub(super) members: Vec<Member>,
+    pub(super) chart: Chart,
 }
 
 impl Cursor<'_> {
@@ -100,26 +109,25 @@ impl Cursor<'_> {
             self.require(Feature::StaticSection, self.span());
             return Some(SectionKind::Static);
         }
+        if self.at_word("VAR_INST") {
+            self.require(Feature::InstanceSection, self.span());
+            return Some(SectionKind::Instance);
+        }
         section_kind(self.peek())
     }
 
-    pub(super) fn body(
-        &mut self,
-        end: Keyword,
-        sections: &mut Vec<Section>,
-        members: &mut Vec<Member>,
-    ) -> Vec<Statement> {
-        let mut body = self.statements();
+    pub(super) fn body(&mut self, end: Keyword, parts: &mut UnitParts) -> Vec<Statement> {
+        let mut body = self.body_statements();
         // A stray closing keyword is reported and passed, so that the rest of the body is read.
         while !self.take_keyword(end) {
-            if self.members(members) {
-                body.extend(self.statements());
+            if self.members(&mut parts.members) || self.chart_part(&mut parts.chart) {
+                body.extend(self.body_statements());
                 continue;
             }
             if let Some(kind) = section_kind(self.peek()) {
                 self.report_late_section(&body);
-                sections.push(self.section(kind));
-                body.extend(self.statements());
+                parts.sections.push(self.section(kind));
+                body.extend(self.body_statements());
                 continue;
             }
             self.unexpected(&format!("`{}`", end.text()));
@@ -128,9 +136,14 @@ impl Cursor<'_> {
             }
             self.advance();
             self.take_mark(Punctuation::Semicolon);
-            body.extend(self.statements());
+            body.extend(self.body_statements());
         }
         body
+    }
+
+    /// Statements, or instructions if the first is one.
+    pub(super) fn body_statements(&mut self) -> Vec<Statement> {
+        if self.at_instruction_list() { self.instructions() } else { self.statements() }
     }
 
     /// Reports a section behind statements, unless these are what an error before it has left.
