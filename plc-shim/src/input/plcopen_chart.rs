@@ -150,12 +150,11 @@ impl Writer<'_> {
                 End::Jump(id) => chart.graph.node(*id).and_then(|node| node.element.attribute("targetName")),
                 End::Wrong(_) => None,
             };
-            match name {
-                Some(name) => self.write(&name.value, &name.span),
-                None => {
-                    let message = "what this transition leads to has no name";
-                    self.taken.report(transition.open.clone(), Code::MalformedXml, message);
-                }
+            if let Some(name) = name {
+                self.write(&name.value, &name.span)
+            } else {
+                let message = "what this transition leads to has no name";
+                self.taken.report(transition.open.clone(), Code::MalformedXml, message);
             }
         }
         self.write(if several { ")" } else { "" }, &transition.open);
@@ -178,12 +177,11 @@ impl Writer<'_> {
                 None => Condition::Variable { name, negated },
             };
         }
-        match holder.child("inline") {
-            Some(inline) => Condition::Body { name: None, body: inline, negated },
-            None => {
-                self.taken.unsupported(holder.open.clone(), "a condition that a network is connected to");
-                Condition::Missing
-            }
+        if let Some(inline) = holder.child("inline") {
+            Condition::Body { name: None, body: inline, negated }
+        } else {
+            self.taken.unsupported(holder.open.clone(), "a condition that a network is connected to");
+            Condition::Missing
         }
     }
 

@@ -12,6 +12,7 @@
 //! on when it is called, which only a program that runs does: it needs no execution signal.
 
 use std::collections::{BTreeMap, BTreeSet};
+use std::fmt::Write as _;
 
 use super::clock::Form;
 use super::edits::Edits;
@@ -146,14 +147,15 @@ impl<'w> Writer<'w> {
         let mut text = self.controller.as_ref().map_or(String::new(), |found| format!("{}\n", found.declarations));
         text.push_str("VAR\n");
         for step in self.timed_steps().values() {
-            text.push_str(&format!("    SDSP_Step_{} : SDSP_SFC_STEP;\n", step.name.text));
+            let _ = writeln!(text, "    SDSP_Step_{} : SDSP_SFC_STEP;", step.name.text);
         }
         for (action, _) in self.uses() {
-            text.push_str(&format!("    SDSP_Ctl_{} : SDSP_ACTION_CONTROL;\n", action.text));
-            text.push_str(&format!(
-                "    SDSP_Own_{} : BOOL; (* what the PLC's own action control makes of it *)\n",
+            let _ = writeln!(text, "    SDSP_Ctl_{} : SDSP_ACTION_CONTROL;", action.text);
+            let _ = writeln!(
+                text,
+                "    SDSP_Own_{} : BOOL; (* what the PLC's own action control makes of it *)",
                 action.text
-            ));
+            );
         }
         text.push_str("END_VAR\n");
         let at = marks::line_start(self.file.shown_text(), first);

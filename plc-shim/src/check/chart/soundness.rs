@@ -128,12 +128,11 @@ impl Body<'_, '_> {
         let Some(first) = names.first() else { return };
         let last = |step: &usize| !net.transitions.iter().any(|arcs| arcs.from.contains(step));
         let end = dead.iter().find(|step| last(step)).and_then(|step| chart.steps.get(*step));
-        let (span, message) = match end {
-            Some(step) => (step.name.span, format!("no transition leads on from `{}`", step.name.text)),
-            None => {
-                let names: Vec<_> = names.iter().map(|name| format!("`{}`", name.text)).collect();
-                (first.span, format!("the network comes to a halt while {} are active", names.join(", ")))
-            }
+        let (span, message) = if let Some(step) = end {
+            (step.name.span, format!("no transition leads on from `{}`", step.name.text))
+        } else {
+            let names: Vec<_> = names.iter().map(|name| format!("`{}`", name.text)).collect();
+            (first.span, format!("the network comes to a halt while {} are active", names.join(", ")))
         };
         self.report(Diagnostic::warning(Code::DeadEnd, span, message));
     }

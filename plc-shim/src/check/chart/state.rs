@@ -40,7 +40,7 @@ impl<'a> Interface<'_, 'a> {
         }
         let flag = || TypedImage { ty: ElementaryType::Bool.into(), image: Arc::from([0]), starts: Arc::default() };
         for name in ast.chart.transitions.iter().filter_map(|transition| transition.name.as_ref()) {
-            self.declare_of_chart(&name.key(), &name.text, name.span, flag());
+            self.declare_of_chart(&name.key(), &name.text, name.span, &flag());
         }
         for association in ast.chart.steps.iter().flat_map(|step| &step.associations) {
             self.declare_control(&association.action);
@@ -59,7 +59,7 @@ impl<'a> Interface<'_, 'a> {
             image.iter_mut().skip(flag.offset as usize).take(1).for_each(|byte| *byte = 1);
             declared.image = image.into();
         }
-        self.declare_of_chart(&step.name.key(), &step.name.text, step.name.span, declared);
+        self.declare_of_chart(&step.name.key(), &step.name.text, step.name.span, &declared);
     }
 
     fn declare_control(&mut self, action: &Ident) {
@@ -83,12 +83,12 @@ impl<'a> Interface<'_, 'a> {
     }
 
     /// Steps and transitions have names among those of variables.
-    fn declare_of_chart(&mut self, key: &str, name: &str, span: Span, declared: TypedImage<'a>) {
+    fn declare_of_chart(&mut self, key: &str, name: &str, span: Span, declared: &TypedImage<'a>) {
         match self.body.scope.own(key).map(|first| first.span) {
             Some(first) => {
                 self.body.checker.report_duplicate(&Ident { text: name.to_owned(), span }, Some(first));
             }
-            None => self.keep_state(key, name, span, &declared),
+            None => self.keep_state(key, name, span, declared),
         }
     }
 

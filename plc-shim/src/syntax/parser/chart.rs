@@ -142,14 +142,11 @@ impl Cursor<'_> {
         self.expect_mark(Punctuation::Assign);
         let span = self.span();
         let rank = self.next_text().replace('_', "").parse().ok().filter(|_| self.peek() == Some(TokenKind::Integer));
-        match rank {
-            Some(_) => self.advance(),
-            None => {
-                self.unexpected("a number that is not negative");
-                self.skip_until(|kind| {
-                    kind == TokenKind::Punctuation(Punctuation::RightParen) || ends_chart_part(kind)
-                });
-            }
+        if rank.is_some() {
+            self.advance()
+        } else {
+            self.unexpected("a number that is not negative");
+            self.skip_until(|kind| kind == TokenKind::Punctuation(Punctuation::RightParen) || ends_chart_part(kind));
         }
         self.expect_mark(Punctuation::RightParen);
         rank.map(|rank| Priority { rank, span })

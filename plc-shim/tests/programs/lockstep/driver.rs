@@ -143,7 +143,10 @@ pub(crate) fn state(plc: &SoftPlc) -> Vec<(String, Vec<u8>)> {
     let programs = plc.application().programs().filter(|program| !program.name.starts_with("SDSP_"));
     let variables = programs.flat_map(|program| [program.inputs, program.outputs, program.locals].concat());
     // What the PLC notes of its own scans, idle ones too: the first of a chart, a transition that was cleared.
-    let idle = |path: &str| path.contains("SDSP_") || path.ends_with(".SFC_Begun") || path.ends_with(".both");
+    let idle = |path: &str| {
+        let last = path.rsplit('.').next();
+        path.contains("SDSP_") || matches!(last, Some("SFC_Begun" | "both"))
+    };
     let own = variables.filter(|variable| variable.ty.is_some() && !idle(&variable.path));
     own.map(|variable| {
         let range = variable.offset as usize..(variable.offset + variable.size) as usize;

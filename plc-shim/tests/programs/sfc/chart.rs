@@ -139,7 +139,7 @@ impl Chart {
         for from in &before.1 {
             for to in &behind.0 {
                 let condition = match choices.below(6) {
-                    0 | 1 | 2 => Condition::Input(choices.below(INPUTS)),
+                    0..=2 => Condition::Input(choices.below(INPUTS)),
                     3 => Condition::Elapsed(from[choices.below(from.len())], choices.below(4) as u64 * 10),
                     4 => Condition::Active(choices.below(self.steps)),
                     _ => Condition::Always,

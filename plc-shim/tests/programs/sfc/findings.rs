@@ -22,7 +22,10 @@ fn iec2_2_6_each_rule_of_charts_has_its_finding() {
         ("two networks", format!("{two}{there}{back}INITIAL_STEP C: END_STEP")),
         ("a step alone", format!("{two}{there}{back}STEP C: END_STEP")),
         ("no condition", format!("{two}{there}TRANSITION FROM B TO A := n; END_TRANSITION")),
-        ("assigned step", format!("INITIAL_STEP A: Act(N); END_STEP ACTION Act: A.X := TRUE; Act.Q := go; END_ACTION")),
+        (
+            "assigned step",
+            "INITIAL_STEP A: Act(N); END_STEP ACTION Act: A.X := TRUE; Act.Q := go; END_ACTION".to_string(),
+        ),
         (
             "assigned transition",
             format!("{two}{back}TRANSITION t FROM A TO B : t := go; END_TRANSITION ACTION x: t := go; END_ACTION"),

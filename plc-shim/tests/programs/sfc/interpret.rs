@@ -4,6 +4,7 @@ use super::chart::{ACTIONS, BOOLEAN, Chart, Condition, INPUTS, Use};
 
 /// What is known of an action.
 #[derive(Debug, Clone, Copy, Default)]
+#[expect(clippy::struct_excessive_bools, reason = "the action control's figure is made of flags")]
 struct Control {
     /// Set by S and not reset since.
     stored: bool,

@@ -1,5 +1,7 @@
 //! Charts in a PLC: faults, coverage, restarts, instances, calls of actions.
 
+use std::fmt::Write as _;
+
 use onescan_plc_shim::input::kind::SourceKind;
 use onescan_plc_shim::{Application, Input, SoftPlc, TaskPlan, VirtualTime};
 
@@ -50,7 +52,7 @@ END_PROGRAM";
         plc.scan(VirtualTime::from_ns(scan * 10 * MS)).expect("no fault");
         if scan != 1 {
             let coverage = plc.coverage().expect("points are noted");
-            report += &format!("after scan {scan}\n{coverage:#?}\n");
+            writeln!(report, "after scan {scan}\n{coverage:#?}").expect("a text takes all");
         }
     }
     insta::assert_snapshot!(report);
