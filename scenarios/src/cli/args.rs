@@ -211,8 +211,8 @@ pub struct CheckArgs {
 pub struct InstrumentArgs {
     /// A folder, a source file, a TwinCAT project or a scenario
     pub project: PathBuf,
-    /// For whom the shim's own sources are written: `iec`: program text of the standard, `twincat`:
-    /// TwinCAT 3 objects
+    /// For whom the shim's own sources are written: `iec`: program text of the standard, or
+    /// PLCopen XML if the project is, `twincat`: TwinCAT 3 objects, `codesys`: PLCopen XML for CODESYS
     #[arg(long, value_enum, default_value_t)]
     pub target: TargetArg,
     /// A task and its programs, as in `fast:10ms:0=Main,Alarms`; may be given several times [default: the
@@ -300,6 +300,8 @@ pub enum TargetArg {
     Iec,
     /// TwinCAT 3 objects
     Twincat,
+    /// PLCopen XML as CODESYS imports it
+    Codesys,
 }
 
 impl From<TargetArg> for Target {
@@ -307,6 +309,7 @@ impl From<TargetArg> for Target {
         match arg {
             TargetArg::Iec => Self::Iec,
             TargetArg::Twincat => Self::TwinCat,
+            TargetArg::Codesys => Self::Codesys,
         }
     }
 }
