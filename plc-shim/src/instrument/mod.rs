@@ -11,6 +11,7 @@
 //! | [`motion`], [`motion_use`] | motion control, and what of it a project uses |
 //! | [`survey`] | programs and sources of time in a project |
 //! | [`tasks`] | the task table |
+//! | [`constant`] | constant expressions of tasks |
 //! | [`configuration`] | a project's CONFIGURATION |
 //! | [`controller`] | execution controllers |
 //! | [`plcopen`], [`plcopen_unit`] | projects in PLCopen XML |
@@ -21,6 +22,7 @@
 
 mod clock;
 mod configuration;
+mod constant;
 mod controller;
 pub mod diff;
 pub mod edits;
@@ -333,7 +335,7 @@ impl Plain {
         }
         if let Some(configuration) = survey.configuration {
             let wrong = |found| InstrumentError::Text(Diagnostics::new(vec![found], &self.sources));
-            return configuration::tasks(configuration).map_err(wrong);
+            return configuration::tasks(configuration, &survey.constants).map_err(wrong);
         }
         let scheduled = survey.programs.iter().filter(|program| !survey.called.contains(&program.name.key()));
         let programs: Vec<String> = scheduled.map(|program| program.name.text.clone()).collect();
