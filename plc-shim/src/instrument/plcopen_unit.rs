@@ -1,5 +1,7 @@
 //! The shim's sources as elements of PLCopen XML (TC6 2.01): interfaces are elements, statements stay text.
 
+use std::fmt::Write;
+
 use crate::ir::ElementaryType;
 use crate::syntax::ast::{
     Declaration, Initialiser, InitialiserKind, Pou, PouKind, Qualifier, Section, SectionKind, TypeSpec, TypeSpecKind,
@@ -37,7 +39,7 @@ pub(super) fn unit(text: &str) -> Option<String> {
     };
     let mut xml = format!("<pou name=\"{}\" pouType=\"{kind}\">\n<interface>\n", pou.name.text);
     if let Some(result) = &pou.result {
-        xml += &format!("<returnType>{}</returnType>\n", type_of(result)?);
+        writeln!(xml, "<returnType>{}</returnType>", type_of(result)?).ok()?;
     }
     xml += &sections(&pou.sections)?;
     xml += "</interface>\n";
@@ -94,7 +96,7 @@ fn sections<'s>(sections: impl IntoIterator<Item = &'s Section>) -> Option<Strin
             SectionKind::Static | SectionKind::Instance => return None,
         };
         let constant = section.qualifiers.iter().any(|each| matches!(each, Qualifier::Constant));
-        xml += &format!("<{element}{}>\n", if constant { " constant=\"true\"" } else { "" });
+        writeln!(xml, "<{element}{}>", if constant { " constant=\"true\"" } else { "" }).ok()?;
         for variable in &section.variables {
             let ty = type_of(&variable.spec)?;
             let initial = match &variable.initial {
@@ -102,10 +104,10 @@ fn sections<'s>(sections: impl IntoIterator<Item = &'s Section>) -> Option<Strin
                 None => String::new(),
             };
             for name in &variable.names {
-                xml += &format!("<variable name=\"{}\"><type>{ty}</type>{initial}</variable>\n", name.text);
+                writeln!(xml, "<variable name=\"{}\"><type>{ty}</type>{initial}</variable>", name.text).ok()?;
             }
         }
-        xml += &format!("</{element}>\n");
+        writeln!(xml, "</{element}>").ok()?;
     }
     Some(xml)
 }
@@ -118,7 +120,7 @@ fn type_of(spec: &TypeSpec) -> Option<String> {
             let mut xml = String::from("<array>");
             for dimension in dimensions {
                 let (low, high) = (print_expression(&dimension.low), print_expression(&dimension.high));
-                xml += &format!("<dimension lower=\"{}\" upper=\"{}\"/>", escaped(&low), escaped(&high));
+                write!(xml, "<dimension lower=\"{}\" upper=\"{}\"/>", escaped(&low), escaped(&high)).ok()?;
             }
             format!("{xml}<baseType>{}</baseType></array>", type_of(element)?)
         }
@@ -132,7 +134,7 @@ fn value(initial: &Initialiser) -> Option<String> {
         InitialiserKind::Array(values) => {
             let mut xml = String::from("<arrayValue>");
             for each in values {
-                xml += &format!("<value>{}</value>", value(each)?);
+                write!(xml, "<value>{}</value>", value(each)?).ok()?;
             }
             xml + "</arrayValue>"
         }
