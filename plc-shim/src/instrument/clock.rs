@@ -123,6 +123,12 @@ pub(super) fn replacement(name: &str) -> Option<String> {
     })
 }
 
+/// What the shim's action control is made of.
+pub(super) fn on_delay() -> &'static Form {
+    let [form, ..] = &FORMS;
+    form
+}
+
 impl Form {
     /// The name that takes its place.
     pub(super) fn new_name(&self) -> String {

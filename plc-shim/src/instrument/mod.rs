@@ -15,11 +15,13 @@
 //! | [`configuration`] | a project's CONFIGURATION |
 //! | [`controller`] | execution controllers |
 //! | [`plcopen`], [`plcopen_unit`] | projects in PLCopen XML |
+//! | [`chart`] | Sequential Function Charts: execution signal, action control, times of steps |
 //! | [`target`], [`twincat`] | the shim's sources as a vendor's tool takes them |
 //!
 //! Invariants: text goes in and comes out, no file is touched; what is not marked stays byte for byte;
 //! instrumenting twice is instrumenting once; what cannot be replaced is told.
 
+mod chart;
 mod clock;
 mod configuration;
 mod constant;
@@ -148,9 +150,10 @@ pub fn instrument(inputs: &[Input], options: &Options) -> Result<Project, Instru
     }
     let tasks = TaskTable::new(&plain.tasks(&survey, options)?, &entries(&survey))?;
     let mut forms: Vec<_> = survey.renames.iter().map(|(_, form)| *form).collect();
+    forms.extend((!survey.charts.is_empty()).then(clock::on_delay));
     forms.sort_by_key(|form| form.name);
     forms.dedup();
-    let sources = Sources::new(options.target, &tasks, &forms, &motion.blocks);
+    let sources = Sources::new(options.target, &tasks, &forms, &motion.blocks, &survey.charts);
     if plain.is_xml() {
         let files = vec![plain.edited_xml(&survey, &motion, &tasks, &sources)?];
         return Ok(Project { files, warnings: Diagnostics::new(findings, &plain.sources) });
@@ -299,6 +302,9 @@ impl Plain {
         let (Some(given), Some(file)) = (self.given.first(), self.sources.get(FileId(0))) else {
             return Err(InstrumentError::NoPrograms);
         };
+        if !survey.charts.is_empty() {
+            return Err(wrong(whole, "a chart in PLCopen XML is not instrumented yet"));
+        }
         if let Some((name, _)) = motion.renames.first() {
             return Err(wrong(name.span, "motion control in PLCopen XML is not instrumented yet"));
         }
@@ -366,7 +372,14 @@ impl Plain {
                 edits.replace(at, marks::renamed(&new, &name.text));
             });
         }
-        for (pou, number) in tasks.numbered() {
+        for pou in &survey.charts {
+            let number = tasks.numbered().find(|(numbered, _)| std::ptr::eq(*numbered, *pou));
+            let number = number.map(|(_, number)| (number, tasks.programs.len()));
+            changes(pou.name.span.file, &mut |file, edits| {
+                chart::control(pou, number, &survey.renames, file, edits);
+            });
+        }
+        for (pou, number) in tasks.numbered().filter(|(pou, _)| pou.chart.is_empty()) {
             changes(pou.name.span.file, &mut |file, edits| {
                 controller::control(pou, number, tasks.programs.len(), file, edits);
             });
