@@ -35,6 +35,7 @@ pub const FEATURES: &[FeatureRow] = &[
     row(Feature::ConditionalPragmas, &[Codesys, TwinCat], "CODESYS and TwinCAT: conditional pragmas"),
     row(Feature::StaticSection, &[Codesys, TwinCat], "CODESYS and TwinCAT: VAR_STAT"),
     row(Feature::InstanceSection, &[Codesys, TwinCat], "CODESYS and TwinCAT: VAR_INST"),
+    row(Feature::FleetingInstances, &[Codesys, TwinCat], "CODESYS and TwinCAT: VAR of methods and functions"),
     row(Feature::InitArguments, &[Codesys, TwinCat], "CODESYS and TwinCAT: methods FB_init, FB_reinit, FB_exit"),
     row(Feature::ComputedInitialValues, &[Codesys, TwinCat], "CODESYS and TwinCAT: initialization of variables"),
     row(Feature::BitArithmetic, &[Codesys, TwinCat], "CODESYS and TwinCAT: integer data types list BYTE to LWORD"),
