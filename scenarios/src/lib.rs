@@ -7,6 +7,8 @@
 //! | [`cli`] | the command line |
 //! | [`scenario`] | a scenario's files, read and checked |
 //! | [`run`] | runs of a scenario: in lockstep or not, recorded, reported |
+//! | [`regress`] | all cases run, compared with reviewed snapshots, reported |
+//! | [`review`] | snapshots looked at, accepted or rejected |
 //! | [`new`] | scenarios to begin with |
 //! | [`check`] | PLC sources checked without being run |
 //! | [`instrument`] | PLC projects made to run in lockstep, and back |
@@ -27,6 +29,8 @@ pub mod instrument;
 pub mod new;
 pub mod plant;
 pub mod plot;
+pub mod regress;
+pub mod review;
 pub mod run;
 pub mod scenario;
 pub mod wiring;

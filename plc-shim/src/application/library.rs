@@ -1,7 +1,7 @@
 //! The standard function blocks (2nd ed. 2.5.2.3), some functions, and PLCopen's motion blocks, as program text
 //! like any other.
 
-use crate::syntax::token::{Keyword, TokenKind};
+use crate::syntax::token::{Keyword, Punctuation, TokenKind};
 use crate::syntax::{SourceFile, tokenize};
 
 /// What every program has: file names and texts.
@@ -17,6 +17,14 @@ pub(crate) const FILES: [(&str, &str); 10] = [
     ("iec/timers.st", include_str!("../../iec/timers.st")),
     ("iec/timers_by_type.st", include_str!("../../iec/timers_by_type.st")),
 ];
+
+/// Asserts of test programs. They have memory of their own and so are there only for those that use them.
+const ASSERTS: (&str, &str) = ("iec/test/assert.st", include_str!("../../iec/test/assert.st"));
+
+/// Whether a source may mean an assert; one that does not has no use for [`ASSERTS`].
+fn mentions_assert(text: &str) -> bool {
+    text.as_bytes().windows(6).any(|word| word.eq_ignore_ascii_case(b"ASSERT"))
+}
 
 /// Motion control (PLCopen, Function blocks for motion control, 2.0), for programs that name an axis.
 pub(crate) const MOTION: [(&str, &str); 15] = [
@@ -37,11 +45,13 @@ pub(crate) const MOTION: [(&str, &str); 15] = [
     ("iec/motion/velocity.st", include_str!("../../iec/motion/velocity.st")),
 ];
 
-/// The library for a program of these files: nobody pays for motion control but who uses it.
+/// The library for a program of these files: nobody pays for motion control or asserts but who uses them.
 pub(crate) fn for_program<'s>(files: impl Iterator<Item = &'s SourceFile>) -> Vec<(&'static str, &'static str)> {
-    let axis = files.filter_map(|file| axis_in(file.text())).max();
+    let texts: Vec<_> = files.map(SourceFile::text).collect();
+    let axis = texts.iter().filter_map(|text| axis_in(text)).max();
     let motion: &[_] = if axis == Some(Axis::Used) { &MOTION } else { &[] };
-    FILES.iter().chain(motion).copied().collect()
+    let asserts = texts.iter().any(|text| mentions_assert(text)).then_some(&ASSERTS);
+    FILES.iter().chain(motion).chain(asserts).copied().collect()
 }
 
 /// What a file has to do with the type of an axis.
@@ -64,9 +74,9 @@ fn axis_in(text: &str) -> Option<Axis> {
         token.kind == TokenKind::Identifier && is_it(text.get(token.start as usize..token.end as usize))
     });
     let declares = |at: usize| {
-        let before = at.checked_sub(1).and_then(|before| tokens.get(before));
-        tokens.get(at + 1).is_some_and(|next| text.get(next.start as usize..).is_some_and(|rest| rest.starts_with(':')))
-            || before.is_some_and(|before| before.kind == TokenKind::Keyword(Keyword::FunctionBlock))
+        let kind = |at: usize| tokens.get(at).map(|token| token.kind);
+        kind(at + 1) == Some(TokenKind::Punctuation(Punctuation::Colon))
+            || at.checked_sub(1).and_then(kind) == Some(TokenKind::Keyword(Keyword::FunctionBlock))
     };
     names.map(|(at, _)| if declares(at) { Axis::Declared } else { Axis::Used }).max()
 }
@@ -81,6 +91,7 @@ mod tests {
             ("PROGRAM P VAR a : TON; END_VAR END_PROGRAM", None),
             ("PROGRAM P (* AXIS_REF *) VAR my_AXIS_REFs, _ : INT; END_VAR END_PROGRAM", None),
             ("PROGRAM P VAR a : Axis_Ref; END_VAR END_PROGRAM", Some(Axis::Used)),
+            ("PROGRAM P VAR a : AXIS_REF := (Linked := TRUE); END_VAR END_PROGRAM", Some(Axis::Used)),
             ("TYPE AXIS_REF : STRUCT a : INT; END_STRUCT END_TYPE", Some(Axis::Declared)),
             ("VAR_GLOBAL x : AXIS_REF; END_VAR FUNCTION_BLOCK AXIS_REF END_FUNCTION_BLOCK", Some(Axis::Declared)),
         ] {

@@ -51,7 +51,7 @@ impl Recorded {
                 Mode::Freewheel => "freewheel".to_owned(),
             },
             until: config.end(scenario),
-            seed: scenario.file().seed,
+            seed: scenario.seed(),
             files,
         };
         let recorder = Recorder::new(&folder, provenance, request.choice.clone());
