@@ -18,7 +18,8 @@
 //! | [`call`], [`argument`], [`instance_call`], [`standard_function`], [`function_form`], [`conversion_function`], [`memory_function`] | calls |
 //! | [`enable`], [`enable_error`] | EN and ENO |
 //! | [`text`], [`text_function`], [`text_conversion`] | character strings |
-//! | [`statement`], [`assignment`], [`edge`] | statements |
+//! | [`statement`], [`assignment`], [`edge`], [`build`] | statements |
+//! | [`chart`] | Sequential Function Charts |
 //! | [`jump`], [`wire`], [`instruction`] | what networks and lists of instructions have beside statements |
 //! | [`configuration`] | resources, tasks, instances of programs |
 //! | [`dialect`] | what dialects do their own way |
@@ -34,8 +35,10 @@ mod address;
 mod argument;
 pub(crate) mod asserts;
 mod assignment;
+mod build;
 mod calendar;
 mod call;
+mod chart;
 mod class;
 mod configuration;
 mod constant;
@@ -133,6 +136,8 @@ pub(crate) struct Checked {
     pub(crate) end: Option<Pou>,
     /// The whole memory at a cold start, before `start` runs.
     pub(crate) image: Vec<u8>,
+    /// The steps and transitions of charts: where they stand, and what they are called.
+    pub(crate) chart_parts: Vec<(Span, String)>,
 }
 
 /// Checks all units together. `library` tells the files of the standard function blocks, whose
@@ -174,6 +179,7 @@ pub(crate) fn check(units: &[(FileId, &CompilationUnit)], library: &BTreeSet<Fil
         start,
         end,
         image,
+        chart_parts: checker.chart_parts,
     };
     (result, checker.diagnostics)
 }
@@ -232,6 +238,7 @@ struct Checker<'a> {
     dynamic_calls: BTreeMap<PouId, BTreeSet<PouId>>,
     rows: Rows,
     depth: u32,
+    chart_parts: Vec<(Span, String)>,
     diagnostics: Vec<Diagnostic>,
 }
 
