@@ -9,4 +9,4 @@ pub mod bind;
 mod client;
 
 pub use bind::{BindError, Bindings, Bound, bind};
-pub use client::{CoverageSink, SoftPlcClient};
+pub use client::{CoverageSink, SoftPlcClient, WriterSink, Written};

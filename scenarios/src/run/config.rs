@@ -73,6 +73,8 @@ pub struct RunConfig {
     pub transport: Transport,
     /// What is recorded.
     pub record: Option<RecordRequest>,
+    /// A recording, or a file of events, whose operator's inputs are repeated.
+    pub replay_operator: Option<PathBuf>,
     /// For whom reports are.
     pub format: Format,
     /// File for a plot.
@@ -93,6 +95,32 @@ pub struct RunConfig {
     pub resume: Option<PathBuf>,
     /// True where a progress bar would be seen.
     pub progress: bool,
+}
+
+impl Default for RunConfig {
+    /// One run in lockstep, as fast as it goes, in this process.
+    fn default() -> Self {
+        Self {
+            scenario: PathBuf::new(),
+            until: None,
+            pace: Pace::Max,
+            mode: Mode::default(),
+            runs: 1,
+            transport: Transport::default(),
+            record: None,
+            replay_operator: None,
+            format: Format::default(),
+            plot: None,
+            signals: Vec::new(),
+            coverage: None,
+            listen: None,
+            join_timeout: Duration::from_mins(1),
+            reply_timeout: Duration::from_secs(10),
+            save: None,
+            resume: None,
+            progress: false,
+        }
+    }
 }
 
 impl RunConfig {
@@ -147,6 +175,7 @@ impl RunConfig {
             ("--listen", self.listen.is_some()),
             ("--save-at", self.save.is_some()),
             ("--resume", self.resume.is_some()),
+            ("--replay-operator", self.replay_operator.is_some()),
         ];
         if let Some((option, _)) = options.iter().find(|(_, given)| *given) {
             let help = "free-wheeling clients run in real time in this process, each on its own clock".to_owned();

@@ -12,6 +12,7 @@
 //! | [`progress`] | a bar on a terminal |
 //! | [`sampler`] | what a plot shows |
 //! | [`recorded`] | a run's recording |
+//! | [`rerun`] | a recorded run once more |
 //! | [`expectation`] | what a run had to show |
 //! | [`report`] | what came of a run, for people and machines |
 //! | [`output`] | files that appear whole or not at all |
@@ -28,6 +29,7 @@ mod processes;
 mod progress;
 pub mod recorded;
 pub mod report;
+pub mod rerun;
 mod sampler;
 
 use std::cell::RefCell;

@@ -110,9 +110,10 @@ impl Scenario {
     ) -> Result<Compiled, ScenarioError> {
         let inputs = sources.iter().map(|source| self.source(name, source, dialect));
         let inputs = inputs.collect::<Result<Vec<_>, _>>()?;
-        let compiled = match self.coverage() {
-            Some(_) => Application::from_inputs_with_coverage(inputs),
-            None => Application::from_inputs(inputs),
+        let compiled = match (self.writers(), self.coverage()) {
+            (Some(_), _) => Application::from_inputs_traced(inputs),
+            (None, Some(_)) => Application::from_inputs_with_coverage(inputs),
+            (None, None) => Application::from_inputs(inputs),
         };
         let application = compiled.map_err(|findings| Box::new(PlcReport { client: name.clone(), findings }))?;
         for warning in application.warnings().iter() {
@@ -142,6 +143,9 @@ impl Scenario {
             .map_err(|error| self.wrong_client(name, error.to_string(), None))?;
         if let Some(sink) = self.coverage() {
             client.cover(sink.clone());
+        }
+        if let Some((signals, sink)) = self.writers() {
+            client.trace(signals, sink.clone());
         }
         Ok(client)
     }

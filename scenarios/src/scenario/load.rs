@@ -1,10 +1,11 @@
 //! `scenario.toml` read and checked.
 
+use std::collections::BTreeSet;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 use miette::{NamedSource, SourceSpan};
-use onescan_clients::soft_plc::CoverageSink;
+use onescan_clients::soft_plc::{CoverageSink, WriterSink};
 use onescan_server::plan::{Coupling, PlanError, SessionPlan};
 use onescan_server::signal::{ClientName, SignalDecl, SignalName, did_you_mean};
 use onescan_server::time::TimeSpan;
@@ -29,6 +30,8 @@ pub struct Scenario {
     expectations: Expectations,
     /// Where soft PLCs give what they executed, if that is asked for.
     coverage: Option<CoverageSink>,
+    /// Where soft PLCs tell which statements wrote these signals, if that is asked for.
+    writers: Option<(BTreeSet<SignalName>, WriterSink)>,
 }
 
 impl Scenario {
@@ -71,12 +74,24 @@ impl Scenario {
         let expectations =
             Expectations::bind(&file, &text).map_err(|found| wrong(found.message, Some(found.place), found.help))?;
         let name = name_of(&path);
-        Ok(Self { name, folder, path, text, file, plan, expectations, coverage: None })
+        Ok(Self { name, folder, path, text, file, plan, expectations, coverage: None, writers: None })
     }
 
     /// Lets soft PLCs note what they execute.
     pub fn cover(&mut self) {
         self.coverage.get_or_insert_default();
+    }
+
+    /// Lets soft PLCs tell which statements write `signals`; gives where they do.
+    pub fn trace(&mut self, signals: BTreeSet<SignalName>) -> WriterSink {
+        let sink = WriterSink::default();
+        self.writers = Some((signals, sink.clone()));
+        sink
+    }
+
+    /// The signals whose writers are asked for, and where they are told.
+    pub fn writers(&self) -> Option<&(BTreeSet<SignalName>, WriterSink)> {
+        self.writers.as_ref()
     }
 
     /// What soft PLCs have executed, if they note it; complete once they are gone.
