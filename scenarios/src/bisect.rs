@@ -246,24 +246,24 @@ impl Repository {
             .stdout(Stdio::piped())
             .stderr(Stdio::null())
             .spawn();
-        let mut archive = archive.map_err(|source| spawn("git", source))?;
+        let mut archive = archive.map_err(|source| spawn("git", &source))?;
         let Some(tar) = archive.stdout.take() else { return Ok(Err("git gives no archive".to_owned())) };
         let unpacked = Command::new("tar").arg("-xf").arg("-").arg("-C").arg(folder).stdin(tar).output();
-        let unpacked = unpacked.map_err(|source| spawn("tar", source))?;
-        let archived = archive.wait().map_err(|source| spawn("git", source))?;
+        let unpacked = unpacked.map_err(|source| spawn("tar", &source))?;
+        let archived = archive.wait().map_err(|source| spawn("git", &source))?;
         let whole = archived.success() && unpacked.status.success();
         Ok(if whole { Ok(()) } else { Err(String::from_utf8_lossy(&unpacked.stderr).trim().to_owned()) })
     }
 }
 
-fn spawn(program: &str, source: io::Error) -> RunError {
+fn spawn(program: &str, source: &io::Error) -> RunError {
     RunError::usage(format!("cannot start `{program}`: {source}"), Some("bisect needs git and tar".to_owned()))
 }
 
 /// What git says.
 fn git(folder: &Path, words: &[&str]) -> Result<String, RunError> {
     let output = Command::new("git").current_dir(folder).args(words).output();
-    let output = output.map_err(|source| spawn("git", source))?;
+    let output = output.map_err(|source| spawn("git", &source))?;
     if output.status.success() {
         return Ok(String::from_utf8_lossy(&output.stdout).into_owned());
     }

@@ -61,8 +61,8 @@ impl Report {
         let Some(found) = &self.divergence else {
             return writeln!(out, "no difference");
         };
-        self.write_place(found, out)?;
-        self.write_differences(found, out)?;
+        write_place(found, out)?;
+        write_differences(found, out)?;
         for cause in self.causes.signals.iter().take(EXPLAINED) {
             self.write_cause(cause, out)?;
         }
@@ -73,40 +73,6 @@ impl Report {
         }
         self.write_files(out)?;
         self.write_around(found, out)
-    }
-
-    fn write_place(&self, found: &Divergence, out: &mut dyn Write) -> io::Result<()> {
-        let [a, b] = found.steps;
-        if let Some(ended) = found.ended {
-            let (short, long) = (NAMES[ended], NAMES[1 - ended]);
-            return writeln!(out, "equal up to t_v = {}, where {short} ends; {long} goes on", found.at);
-        }
-        let steps = if a == b { format!("step {a}") } else { format!("step {a} of A, step {b} of B") };
-        writeln!(out, "first difference at t_v = {}, {steps}", found.at)
-    }
-
-    fn write_differences(&self, found: &Divergence, out: &mut dyn Write) -> io::Result<()> {
-        if found.differences.is_empty() && found.ended.is_none() {
-            return writeln!(out, "  in signals that are not recorded: the digests differ, what is recorded does not");
-        }
-        let rows: Vec<[String; 5]> = found
-            .differences
-            .iter()
-            .take(LISTED)
-            .map(|difference| {
-                let writer = difference.writer.as_ref().map(ToString::to_string).unwrap_or_default();
-                let [a, b] = difference.values.clone();
-                [difference.signal.to_string(), difference.ty.to_string(), writer, a, b]
-            })
-            .collect();
-        if !rows.is_empty() {
-            let head = ["signal", "type", "writer", "A", "B"].map(str::to_owned);
-            table(&[vec![head.to_vec()], rows.into_iter().map(|row| row.to_vec()).collect()].concat(), out)?;
-        }
-        match found.differences.len().saturating_sub(LISTED) {
-            0 => Ok(()),
-            more => writeln!(out, "  and {more} more"),
-        }
     }
 
     fn write_cause(&self, cause: &Cause, out: &mut dyn Write) -> io::Result<()> {
@@ -214,6 +180,40 @@ impl Report {
             })
         };
         found.differences.iter().map(signal).collect()
+    }
+}
+
+fn write_place(found: &Divergence, out: &mut dyn Write) -> io::Result<()> {
+    let [a, b] = found.steps;
+    if let Some(ended) = found.ended {
+        let (short, long) = (NAMES[ended], NAMES[1 - ended]);
+        return writeln!(out, "equal up to t_v = {}, where {short} ends; {long} goes on", found.at);
+    }
+    let steps = if a == b { format!("step {a}") } else { format!("step {a} of A, step {b} of B") };
+    writeln!(out, "first difference at t_v = {}, {steps}", found.at)
+}
+
+fn write_differences(found: &Divergence, out: &mut dyn Write) -> io::Result<()> {
+    if found.differences.is_empty() && found.ended.is_none() {
+        return writeln!(out, "  in signals that are not recorded: the digests differ, what is recorded does not");
+    }
+    let rows: Vec<[String; 5]> = found
+        .differences
+        .iter()
+        .take(LISTED)
+        .map(|difference| {
+            let writer = difference.writer.as_ref().map(ToString::to_string).unwrap_or_default();
+            let [a, b] = difference.values.clone();
+            [difference.signal.to_string(), difference.ty.to_string(), writer, a, b]
+        })
+        .collect();
+    if !rows.is_empty() {
+        let head = ["signal", "type", "writer", "A", "B"].map(str::to_owned);
+        table(&[vec![head.to_vec()], rows.into_iter().map(|row| row.to_vec()).collect()].concat(), out)?;
+    }
+    match found.differences.len().saturating_sub(LISTED) {
+        0 => Ok(()),
+        more => writeln!(out, "  and {more} more"),
     }
 }
 
