@@ -123,7 +123,7 @@ codes! {
     UnreachableCode "W0705" "statements can never be reached",
     UnusedVariable "W0706" "a variable is never used",
     ClockNotReplaced "I1001" "a source of time cannot be replaced for lockstep",
-    MotionNotReplaced "I1002" "a motion block cannot be replaced for lockstep yet",
+    MotionNotReplaced "I1002" "motion control that cannot be replaced for lockstep",
     ShimNameTaken "I1003" "a name is one of the shim's",
     DamagedMarks "I1004" "marks of the shim do not fit together",
     WrittenByTwoTasks "W0707" "a variable is written by two tasks",
