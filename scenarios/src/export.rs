@@ -33,7 +33,8 @@ pub fn export(config: &ExportConfig) -> Result<(), RunError> {
     let recording = Recording::open(&config.recording)?;
     let [from, to] = config.times;
     let Some(steps) = recording.steps_between(from, to)? else {
-        let message = format!("{} has no step between {from} and {to}", recording.folder().display());
+        let span = if to == VirtualTime::MAX { format!("from {from} on") } else { format!("from {from} to {to}") };
+        let message = format!("{} has no step {span}", recording.folder().display());
         return Err(RunError::usage(message, None));
     };
     let file = output::begin_whole(&config.output)?;

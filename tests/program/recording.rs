@@ -168,7 +168,7 @@ fn what_cannot_be_is_told() {
     let mut text = String::new();
     let mut say = |words: &[&str]| {
         let said = typed(folder.path(), words);
-        text.push_str(&format!("$ onescan {}\n{}{}\n", words.join(" "), said.out, said.err));
+        text += &["$ onescan ", &words.join(" "), "\n", &said.out, &said.err, "\n"].concat();
         assert_eq!(said.code, Some(2), "{said:?}");
     };
     say(&["run", ".", "--record", "r", "--record-signals", "Positoin_1"]);
