@@ -5,6 +5,7 @@ mod inspect;
 mod leaves;
 pub(crate) mod library;
 mod namespace;
+mod part;
 mod retain;
 mod room;
 mod root;
@@ -28,7 +29,7 @@ use crate::syntax::{FileId, SourceMap};
 pub(crate) use front::Front;
 pub use inspect::inspect;
 use room::with_room;
-pub use value::WriteError;
+pub use value::{Radix, WriteError};
 pub use variable::{Program, UnknownVariable, Variable, VariableAccess};
 
 /// A compiled program: what it declares, its code, its memory at a cold start. Cheap to clone.

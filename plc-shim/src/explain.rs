@@ -74,6 +74,7 @@ const PAGES: &[(&str, &str)] = pages![
     "O0809",
     "O0810",
     "O0811",
+    "O0812",
     "R0901",
     "R0902",
     "R0903",
@@ -105,6 +106,7 @@ const PAGES: &[(&str, &str)] = pages![
     "W0705",
     "W0706",
     "W0707",
+    "W0708",
 ];
 
 /// The page that explains `code`, as Markdown.

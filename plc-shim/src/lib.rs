@@ -39,7 +39,7 @@ mod lint;
 pub mod run;
 pub mod syntax;
 
-pub use application::{Application, Program, UnknownVariable, Variable, VariableAccess, WriteError, inspect};
+pub use application::{Application, Program, Radix, UnknownVariable, Variable, VariableAccess, WriteError, inspect};
 pub use compile::fault::FaultKind;
 pub use coverage::Coverage;
 pub use diagnostic::{Code, Diagnostic, Diagnostics, Finding, Severity};

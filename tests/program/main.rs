@@ -23,4 +23,5 @@ mod run;
 mod third_party;
 mod typed;
 mod venv;
+mod watch;
 mod wiring;

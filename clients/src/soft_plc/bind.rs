@@ -200,7 +200,7 @@ mod tests {
         let bindings = bound(&[("Valve", ElementaryType::Bool, "plc")], &[("Valve", "%QX0.3")]).unwrap();
         assert_eq!(bindings.outputs[0].places[0].bit, Some(3));
         let named = bound(&[("Valve", ElementaryType::Bool, "plc")], &[("Valve", "A.valve")]).unwrap();
-        assert_eq!(named, bindings);
+        assert_eq!(named.outputs[0].places, bindings.outputs[0].places);
         let error = bound(&[("Valve", ElementaryType::Bool, "plc")], &[("Valve", "%QX7.3")]).unwrap_err();
         assert_eq!(error.to_string(), "signal `Valve` is bound to `%QX7.3`, which the PLC has not");
     }

@@ -3,12 +3,13 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::{Arc, Mutex, PoisonError};
 
-use onescan_plc_shim::{Application, Coverage, PlcFault, RunError, SoftPlc, TaskPlan, WriteSite};
+use onescan_plc_shim::{Application, Coverage, PlcFault, RunError, SoftPlc, TaskPlan, UnknownVariable, WriteSite};
 use onescan_server::client::{Client, ClientFault, JoinRequest, SourcePlace, StateError, Wake};
 use onescan_server::signal::{ClientName, SignalName};
 use onescan_server::time::{TimeSpan, VirtualTime};
 
 use super::bind::{Bindings, Bound, Place};
+use super::watch::{SightingSink, Watch, Watcher};
 
 /// A value's bytes in a port and in the PLC's memory.
 #[derive(Clone, Copy, Debug)]
@@ -45,6 +46,7 @@ pub struct SoftPlcClient {
     /// Where what was executed goes when the client's part is over.
     coverage: Option<CoverageSink>,
     tracing: Option<Tracing>,
+    watcher: Option<Watcher>,
 }
 
 /// The outputs that are watched, in the order in which the PLC watches them.
@@ -93,6 +95,7 @@ impl SoftPlcClient {
             outputs: runs(&bindings.outputs),
             coverage: None,
             tracing: None,
+            watcher: None,
         })
     }
 
@@ -127,6 +130,27 @@ impl SoftPlcClient {
             if let Some(site) = self.plc.last_writer(index) {
                 sink.insert(signal.clone(), Written { t_v, site });
             }
+        }
+    }
+
+    /// Looks at variables after the set-up and after every turn, all changes if `changes`, else for what
+    /// they are last. A watch comes with its number among those of all PLCs.
+    ///
+    /// # Errors
+    /// A path leads to no variable.
+    pub fn watch(
+        &mut self,
+        watches: &[(usize, Watch)],
+        changes: bool,
+        sink: SightingSink,
+    ) -> Result<(), UnknownVariable> {
+        self.watcher = Some(Watcher::new(self.plc.application(), watches, changes, sink)?);
+        Ok(())
+    }
+
+    fn look(&mut self, t_v: VirtualTime) {
+        if let Some(watcher) = &mut self.watcher {
+            watcher.look(&self.plc, t_v);
         }
     }
 
@@ -172,6 +196,7 @@ impl Client for SoftPlcClient {
     fn setup(&mut self, outputs: &mut [u8]) -> Result<(), ClientFault> {
         self.plc.reset();
         self.take_outputs(outputs);
+        self.look(VirtualTime::default());
         Ok(())
     }
 
@@ -180,8 +205,10 @@ impl Client for SoftPlcClient {
         for run in &self.inputs {
             run.give(inputs, memory);
         }
-        self.plc.scan(onescan_plc_shim::VirtualTime::from_ns(t_v.as_nanos())).map_err(|fault| client_fault(&fault))?;
+        let scanned = self.plc.scan(onescan_plc_shim::VirtualTime::from_ns(t_v.as_nanos()));
         self.note_writers(t_v);
+        self.look(t_v);
+        scanned.map_err(|fault| client_fault(&fault))?;
         self.take_outputs(outputs);
         Ok(if self.plc.wants_every_step() {
             Wake::NextPeriod

@@ -88,6 +88,10 @@ impl Body<'_, '_> {
             let expr = self.coerce(operand, base.into())?;
             return self.limited(expr, target, low, high);
         }
+        let operand = match self.enumerated(operand, target) {
+            Ok(value) => return value,
+            Err(operand) => operand,
+        };
         let wanted = match self.checker.types.get(target) {
             Type::Elementary(ty) => Some(*ty),
             _ => None,
@@ -118,6 +122,7 @@ impl Body<'_, '_> {
     }
 
     fn widen(&mut self, expr: Expr, wanted: ElementaryType) -> Option<Expr> {
+        let expr = self.as_number(expr);
         if let Some(number) = self.address_as_number(&expr, wanted) {
             return Some(number);
         }
@@ -128,6 +133,7 @@ impl Body<'_, '_> {
             return self.mismatch(wanted.name(), &found, expr.span);
         };
         if self.widens(found, wanted, expr.span) {
+            self.warn_of_loss(&expr, found, wanted);
             return Some(converted(expr, wanted, Rounding::NearestEven));
         }
         let message = format!("{wanted} is wanted, this is {found}");

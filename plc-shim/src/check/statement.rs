@@ -6,6 +6,7 @@ use super::Checker;
 use super::convert::{Operand, constant};
 use super::place::Access;
 use super::scope::Body;
+use super::start::Occasion;
 use super::variables::decode;
 use crate::diagnostic::{Code, Diagnostic};
 use crate::ir::{
@@ -28,8 +29,11 @@ impl Checker<'_> {
         };
         let mut body = Body::new(self, (*scope).clone(), Some(id));
         let mut statements = body.prologue(ast.kind);
-        statements.extend(body.statements(&ast.body));
-        if body.scope.result.is_some() && !body.result_assigned {
+        match body.checker.stage_of(id) {
+            Some((owner, occasion)) => statements.extend(body.staged(owner, occasion)),
+            None => statements.extend(body.statements(&ast.body)),
+        }
+        if body.scope.result.is_some() && !body.result_assigned && !Self::is_hook(&ast.name.text) {
             let message = format!("function `{}` never assigns its result", ast.name.text);
             body.report(Diagnostic::warning(Code::MissingResult, ast.name.span, message));
         }
@@ -67,15 +71,25 @@ impl Body<'_, '_> {
             }
             let fleeting = match variable.section {
                 SectionKind::Temp => true,
-                SectionKind::External | SectionKind::Global | SectionKind::Static => false,
+                SectionKind::External | SectionKind::Global | SectionKind::Static | SectionKind::Instance => false,
                 _ => kind.keeps_nothing(),
             };
             if fleeting {
                 statements.push(self.initialised(variable));
+                statements.extend(self.computed(variable));
             }
             statements.extend(Self::outcome_begins(variable));
         }
         statements
+    }
+
+    /// What makes an initial value that is no constant.
+    fn computed(&mut self, variable: &Variable) -> Vec<Statement> {
+        let fleeting = self.pou.map(|id| self.checker.pou(id).fleeting.clone()).unwrap_or_default();
+        let key = variable.name.to_ascii_uppercase();
+        let Some((_, starts)) = fleeting.iter().find(|(name, _)| *name == key) else { return Vec::new() };
+        let place = Place::whole(variable.storage, variable.ty, variable.span);
+        self.performed(&place, starts, Occasion::Start)
     }
 
     fn initialised(&self, variable: &Variable) -> Statement {
@@ -185,6 +199,12 @@ impl Body<'_, '_> {
             Access::InstanceOutput => {
                 let message = "an output is written by its own instance only";
                 self.report(Diagnostic::error(Code::NotAssignable, expr.span, message));
+                return None;
+            }
+            Access::Value => {
+                let message = "this is a copy of what the property or call gives, which nobody would read";
+                let found = Diagnostic::error(Code::NotAssignable, expr.span, message);
+                self.report(found.with_help("change a copy in a variable and assign that to the property"));
                 return None;
             }
             // 2nd ed. Table 16 forbids it; every vendor allows it, and programs rely on that.

@@ -28,6 +28,11 @@ pub(crate) fn entry_export(index: usize, part: usize) -> String {
     format!("entry_{index}_{part}")
 }
 
+/// Name of the export that runs before the first scan.
+pub(crate) const START_EXPORT: &str = "start";
+/// Name of the export that runs before another start.
+pub(crate) const END_EXPORT: &str = "end";
+
 /// The module and what its instructions stand for.
 #[derive(Debug)]
 pub(crate) struct Compiled {
@@ -93,9 +98,17 @@ pub(crate) fn compile(checked: &Checked, noted: Noted<'_>) -> Compiled {
     }
     for (index, entry) in checked.entries.iter().enumerate() {
         for (part, unit) in entry.units.iter().enumerate() {
-            let (body, marks) = entry::function(&mut shared, unit);
+            let (body, marks) = entry::function(&mut shared, unit, true);
             let at = sections.add_function(Vec::new(), Vec::new(), &body);
             sections.exports.export(&entry_export(index, part), ExportKind::Func, at);
+            faults.functions.push(marks);
+        }
+    }
+    for (unit, export) in [(&checked.start, START_EXPORT), (&checked.end, END_EXPORT)] {
+        if let Some(unit) = unit {
+            let (body, marks) = entry::function(&mut shared, unit, false);
+            let at = sections.add_function(Vec::new(), Vec::new(), &body);
+            sections.exports.export(export, ExportKind::Func, at);
             faults.functions.push(marks);
         }
     }

@@ -162,6 +162,10 @@ impl<'a> Surveyor<'_, 'a> {
     fn spec(&mut self, spec: &TypeSpec) {
         match &spec.kind {
             TypeSpecKind::Name(name) => self.type_name(name),
+            TypeSpecKind::Instance(name, arguments) => {
+                self.type_name(name);
+                arguments.values().for_each(|value| walk::expression(value, self));
+            }
             TypeSpecKind::Array(_, element)
             | TypeSpecKind::OpenArray(_, element)
             | TypeSpecKind::Reference(_, element) => self.spec(element),

@@ -158,6 +158,7 @@ fn sites(application: &Application, active: &[Active<'_>]) -> Vec<FaultSite> {
             Some((Callee::Inner, span)) => format!("{instance}.{}", name(span)),
             Some((Callee::Global, span)) => name(span),
             Some((Callee::Function, _)) => (*unit).to_owned(),
+            None if instance.is_empty() => (*unit).to_owned(),
             None => instance,
         };
         call = if *is_entry { None } else { *made };

@@ -107,7 +107,7 @@ keywords! {
     EndGet "END_GET", EndSet "END_SET", Action "ACTION", EndAction "END_ACTION",
     Namespace "NAMESPACE", EndNamespace "END_NAMESPACE", Using "USING",
     OrganizationBlock "ORGANIZATION_BLOCK", EndOrganizationBlock "END_ORGANIZATION_BLOCK",
-    VarStat "VAR_STAT", DataBlock "DATA_BLOCK", EndDataBlock "END_DATA_BLOCK", Begin "BEGIN",
+    VarStat "VAR_STAT", VarInst "VAR_INST", DataBlock "DATA_BLOCK", EndDataBlock "END_DATA_BLOCK", Begin "BEGIN",
 }
 
 impl Keyword {
@@ -118,6 +118,7 @@ impl Keyword {
             K::OrganizationBlock | K::EndOrganizationBlock | K::DataBlock | K::EndDataBlock | K::Begin => {
                 dialect.has(Feature::Blocks)
             }
+            K::VarInst => dialect.has(Feature::InstanceSection),
             K::VarStat => dialect.has(Feature::StaticSection),
             K::Continue => dialect.has(Feature::Continue),
             _ => true,

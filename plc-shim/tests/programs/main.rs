@@ -34,6 +34,7 @@ mod scl;
 mod shear;
 mod standard_blocks;
 mod standard_functions;
+mod starts;
 mod states;
 mod string_expressions;
 mod strings;

@@ -16,6 +16,7 @@ use crate::check::CheckFormat;
 use crate::new::Template;
 use crate::run::coverage::CoverageFormat;
 use crate::run::{Format, Mode, Transport};
+use crate::scenario::watch::WatchRequest;
 
 /// Deterministic lockstep virtual commissioning.
 ///
@@ -104,7 +105,7 @@ pub struct RunArgs {
     #[arg(long = "record-signals", value_name = "PATTERN", requires = "record")]
     pub record_signals: Vec<SignalPattern>,
     /// Repeat what an operator did: a recording, or a file like its `events.jsonl`
-    #[arg(long, value_name = "RECORDING|FILE")]
+    #[arg(long, value_name = "PATH")]
     pub replay_operator: Option<PathBuf>,
     /// For people, or one JSON object a run for machines
     #[arg(long, value_enum, default_value_t)]
@@ -121,6 +122,14 @@ pub struct RunArgs {
     /// `lcov` or `cobertura` [default: by the file's name: `.xml` is Cobertura]
     #[arg(long, value_enum, requires = "coverage", value_name = "FORMAT")]
     pub coverage_format: Option<CoverageArg>,
+    /// A variable of a soft PLC to look at, as `Main.axis[2].x`, with its PLC in front if there are several, as
+    /// `plc2:Main.x`, and with a format for whole numbers behind, as `Main.status=bin`: `hex`, `dec` or `bin`;
+    /// may be given several times
+    #[arg(long, value_name = "[PLC:]PATH[=FORMAT]")]
+    pub watch: Vec<WatchRequest>,
+    /// `end`: what watched variables are at the end; `change`: all their changes
+    #[arg(long, value_enum, default_value_t, requires = "watch", value_name = "WHEN")]
+    pub watch_on: WatchOnArg,
     /// Where clients and operators may connect [default: a free port of this machine, if one is needed]
     #[arg(long, value_name = "ADDRESS:PORT")]
     pub listen: Option<SocketAddr>,
@@ -387,6 +396,16 @@ impl From<ModeArg> for Mode {
             ModeArg::Freewheel => Self::Freewheel,
         }
     }
+}
+
+/// When watched variables are told.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+pub enum WatchOnArg {
+    /// What they are at the end
+    #[default]
+    End,
+    /// All their changes
+    Change,
 }
 
 /// See [`Transport`].

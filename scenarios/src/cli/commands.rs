@@ -96,6 +96,8 @@ fn config(args: RunArgs) -> RunConfig {
         format,
         plot: args.plot,
         signals: args.signals,
+        watch: args.watch,
+        watch_changes: args.watch_on == super::args::WatchOnArg::Change,
         coverage: args.coverage.map(|path| CoverageRequest::new(path, args.coverage_format.map(Into::into))),
         listen: args.listen,
         join_timeout: Duration::from_nanos(args.join_timeout.as_nanos()),

@@ -14,6 +14,7 @@ use super::error::RunError;
 use super::recorded::RecordRequest;
 use crate::scenario::Scenario;
 use crate::scenario::file::ClientFile;
+use crate::scenario::watch::WatchRequest;
 
 /// How plant and PLC come together.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize)]
@@ -83,6 +84,10 @@ pub struct RunConfig {
     pub signals: Vec<SignalName>,
     /// A coverage report to write.
     pub coverage: Option<CoverageRequest>,
+    /// Variables of soft PLCs to look at.
+    pub watch: Vec<WatchRequest>,
+    /// True if all their changes are wanted, not only what they are last.
+    pub watch_changes: bool,
     /// Where clients and operators may connect.
     pub listen: Option<SocketAddr>,
     /// How long to wait for clients to join.
@@ -113,6 +118,8 @@ impl Default for RunConfig {
             plot: None,
             signals: Vec::new(),
             coverage: None,
+            watch: Vec::new(),
+            watch_changes: false,
             listen: None,
             join_timeout: Duration::from_mins(1),
             reply_timeout: Duration::from_secs(10),
@@ -157,9 +164,10 @@ impl RunConfig {
             let message = format!("--save-at {} is not before the end of the run at {}", save.at, self.end(scenario));
             return Err(RunError::usage(message, Some(format!("the step is {step}"))));
         }
-        if self.coverage.is_some() && self.transport == Transport::Tcp {
-            let help = "what a client in another process executes is not seen here".to_owned();
-            return Err(RunError::usage("--coverage means nothing with --transport tcp".to_owned(), Some(help)));
+        let inside = [("--coverage", self.coverage.is_some()), ("--watch", !self.watch.is_empty())];
+        if let Some((option, _)) = inside.iter().find(|(_, given)| *given && self.transport == Transport::Tcp) {
+            let help = "what a client in another process does is not seen here".to_owned();
+            return Err(RunError::usage(format!("{option} means nothing with --transport tcp"), Some(help)));
         }
         match self.mode {
             Mode::Lockstep => Ok(()),

@@ -14,6 +14,7 @@
 //! | [`recorded`] | a run's recording |
 //! | [`rerun`] | a recorded run once more |
 //! | [`expectation`] | what a run had to show |
+//! | [`watch`] | what watched variables were |
 //! | [`report`] | what came of a run, for people and machines |
 //! | [`output`] | files that appear whole or not at all |
 
@@ -31,6 +32,7 @@ pub mod recorded;
 pub mod report;
 pub mod rerun;
 mod sampler;
+pub mod watch;
 
 use std::cell::RefCell;
 use std::io::Write;
@@ -49,6 +51,7 @@ use expectation::Witness;
 use interrupt::Interrupt;
 use recorded::Recorded;
 use sampler::{Sampler, Samples};
+use watch::WatchReport;
 
 /// Runs a scenario as `config` asks, and writes a report of each run to `out`.
 ///
@@ -61,6 +64,9 @@ pub fn execute(config: &RunConfig, interrupt: &Interrupt, out: &mut dyn Write) -
         scenario.cover();
     }
     config.check(&scenario)?;
+    if !config.watch.is_empty() {
+        scenario.watch(&config.watch, config.watch_changes)?;
+    }
     let mut reports: Vec<RunReport> = Vec::new();
     let mut samples = Vec::new();
     for number in 1..=config.runs {
@@ -116,6 +122,7 @@ fn one_run(
     let mut trace = trace.replace(Trace::default());
     trace.set_end(if report.status == "completed" { TraceEnd::Complete } else { TraceEnd::Cut });
     report.expectations = expectation::judge(scenario, &trace);
+    report.watched = WatchReport::take(config, scenario);
     if let Some(recorded) = &recorded {
         recorded.end(&report)?;
     }

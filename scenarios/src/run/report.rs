@@ -12,6 +12,7 @@ use serde::Serialize;
 use super::config::{Format, Mode, RunConfig, Transport};
 use super::error::ExitCode;
 use super::expectation::ExpectationReport;
+use super::watch::WatchReport;
 use crate::scenario::Scenario;
 
 /// What came of one run. Its JSON form is a contract: fields are added, never changed.
@@ -45,6 +46,9 @@ pub struct RunReport {
     /// What came of the scenario's expectations.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub expectations: Vec<ExpectationReport>,
+    /// What watched variables were.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub watched: Option<WatchReport>,
     /// The step of virtual time.
     #[serde(skip)]
     pub step: TimeSpan,
@@ -78,6 +82,7 @@ impl RunReport {
             error: failure.as_ref().map(ToString::to_string),
             failure,
             expectations: Vec::new(),
+            watched: None,
             step: scenario.file().step,
             version: env!("CARGO_PKG_VERSION"),
         }
@@ -115,6 +120,9 @@ impl RunReport {
                 }
                 for expectation in &self.expectations {
                     expectation.write(out)?;
+                }
+                if let Some(watched) = &self.watched {
+                    watched.write(out)?;
                 }
             }
         }

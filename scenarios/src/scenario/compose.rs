@@ -147,6 +147,11 @@ impl Scenario {
         if let Some((signals, sink)) = self.writers() {
             client.trace(signals, sink.clone());
         }
+        if let Some(watched) = &self.watched {
+            let (watches, changes, sink) = watched.of(name);
+            let watched = client.watch(&watches, changes, sink);
+            watched.map_err(|unknown| self.wrong_option(format!("--watch: {unknown}"), None))?;
+        }
         Ok(client)
     }
 

@@ -14,6 +14,7 @@ use super::arrays;
 use super::error::ScenarioError;
 use super::expectations::Expectations;
 use super::file::{ClientFile, CouplingFile, ScenarioFile, VERSION};
+use super::watch::Watched;
 
 /// The file that makes a folder a scenario.
 pub const FILE_NAME: &str = "scenario.toml";
@@ -32,6 +33,8 @@ pub struct Scenario {
     coverage: Option<CoverageSink>,
     /// Where soft PLCs tell which statements wrote these signals, if that is asked for.
     writers: Option<(BTreeSet<SignalName>, WriterSink)>,
+    /// What soft PLCs look at, if that is asked for.
+    pub(super) watched: Option<Watched>,
 }
 
 impl Scenario {
@@ -74,7 +77,7 @@ impl Scenario {
         let expectations =
             Expectations::bind(&file, &text).map_err(|found| wrong(found.message, Some(found.place), found.help))?;
         let name = name_of(&path);
-        Ok(Self { name, folder, path, text, file, plan, expectations, coverage: None, writers: None })
+        Ok(Self { name, folder, path, text, file, plan, expectations, coverage: None, writers: None, watched: None })
     }
 
     /// Lets soft PLCs note what they execute.
@@ -142,6 +145,11 @@ impl Scenario {
     pub(crate) fn wrong_client(&self, name: &ClientName, message: String, help: Option<String>) -> ScenarioError {
         let place = self.file.clients.get(name).map(toml::Spanned::span);
         wrong(&self.path, &self.text, message, place, help)
+    }
+
+    /// An error of an option, which has no place in the file.
+    pub(super) fn wrong_option(&self, message: String, help: Option<String>) -> ScenarioError {
+        wrong(&self.path, &self.text, message, None, help)
     }
 
     /// An error at the entry of signal `name`.

@@ -7,6 +7,7 @@
 //! | `arrays` | signals written as arrays and patterns |
 //! | [`expectations`] | what it expects of every run |
 //! | [`compose`] | a scenario's plan and its clients |
+//! | [`watch`] | variables of its soft PLCs that a run looks at |
 //! | [`error`] | what can be wrong with it, and where |
 
 mod arrays;
@@ -15,6 +16,7 @@ pub mod error;
 pub mod expectations;
 pub mod file;
 pub mod load;
+pub mod watch;
 
 pub use error::ScenarioError;
 pub use load::Scenario;

@@ -166,7 +166,9 @@ impl Placed<'_> {
     /// The body that targets touch: one with a shape.
     fn shaped(&self, keys: &Keys<'_>, faults: &mut Faults<'_>) -> Option<usize> {
         let body = self.body(keys, faults)?;
-        if self.file.body[body].get_ref().shape.is_none() {
+        let name = text(&self.file.body[body].get_ref().name);
+        let attached = self.file.shape.iter().any(|shape| text(&shape.get_ref().body) == name);
+        if self.file.body[body].get_ref().shape.is_none() && !attached {
             let span = keys.get("body").map_or_else(|| keys.kind.span(), Spanned::span);
             let name = text(&self.file.body[body].get_ref().name).to_owned();
             faults.add(span, SceneFaultKind::Shapeless(name));

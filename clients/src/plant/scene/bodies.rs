@@ -5,6 +5,7 @@ use toml::Spanned;
 use super::error::SceneFaultKind;
 use super::faults::Faults;
 use super::format::{BodyKind, BodyTable};
+use super::meshes::MeshKeys;
 use super::model::{Body, Collisions, GROUPS_MAX, Mass, Shape};
 use super::number::{Allowed, Entry};
 use super::shapes::Measures;
@@ -60,7 +61,7 @@ fn shape(table: &Spanned<BodyTable>, faults: &mut Faults<'_>) -> Option<Shape> {
     let written = table.get_ref();
     let name = text(&written.name);
     let Some(kind) = &written.shape else {
-        if written.kind == BodyKind::Dynamic {
+        if written.kind == BodyKind::Dynamic && written.inertia_kg_m2.is_none() {
             let whose = format!("dynamic body `{name}`");
             faults.add(written.name.span(), SceneFaultKind::Missing { whose, key: "shape" });
         }
@@ -72,6 +73,8 @@ fn shape(table: &Spanned<BodyTable>, faults: &mut Faults<'_>) -> Option<Shape> {
         size_m: written.size_m.as_ref(),
         radius_m: written.radius_m.as_ref(),
         length_m: written.length_m.as_ref(),
+        mesh: MeshKeys { mesh: written.mesh.as_ref(), unit_m: written.unit_m.as_ref(), hull: written.hull.as_ref() },
+        dynamic: written.kind == BodyKind::Dynamic,
     };
     measures.shape(faults)
 }
@@ -89,6 +92,9 @@ fn mass(written: &BodyTable, faults: &mut Faults<'_>) -> Option<Mass> {
         }
         return Some(Mass::Total { kg: 0.0 });
     }
+    if written.centre_m.is_some() || written.inertia_kg_m2.is_some() {
+        return stated(written, faults);
+    }
     match (total.value, density.value) {
         (Some(_), None) => faults.number(total, MASS_KG).map(|kg| Mass::Total { kg }),
         (None, Some(_)) => faults.number(density, DENSITY_KG_M3).map(|kg_m3| Mass::Density { kg_m3 }),
@@ -97,6 +103,33 @@ fn mass(written: &BodyTable, faults: &mut Faults<'_>) -> Option<Mass> {
             None
         }
     }
+}
+
+/// The mass properties that are stated as such, unless they are at fault.
+fn stated(written: &BodyTable, faults: &mut Faults<'_>) -> Option<Mass> {
+    let whose = || format!("body `{}` with mass properties of its own", text(&written.name));
+    let Some(inertia) = &written.inertia_kg_m2 else {
+        let centre = written.centre_m.as_ref()?;
+        faults.add(centre.span(), SceneFaultKind::Missing { whose: whose(), key: "inertia_kg_m2" });
+        return None;
+    };
+    let inertia_kg_m2 = *inertia.get_ref();
+    let [xx, yy, zz, xy, xz, yz] = inertia_kg_m2;
+    let minor = xx * yy - xy * xy;
+    let determinant = xx * (yy * zz - yz * yz) - xy * (xy * zz - yz * xz) + xz * (xy * yz - yy * xz);
+    if !(xx > 0.0 && minor > 0.0 && determinant > 0.0 && determinant.is_finite()) {
+        let wanted = "a tensor whose principal moments are above 0".to_owned();
+        let value = format!("{inertia_kg_m2:?}");
+        faults.add(inertia.span(), SceneFaultKind::Number { key: "inertia_kg_m2", wanted, value });
+        return None;
+    }
+    if written.mass_kg.is_none() {
+        faults.add(inertia.span(), SceneFaultKind::Missing { whose: whose(), key: "mass_kg" });
+    }
+    let kg = faults.number(Entry::new("mass_kg", written.mass_kg.as_ref()), MASS_KG);
+    let origin = faults.triple("position_m", written.position_m.as_ref()).unwrap_or_default();
+    let centre_m = faults.triple("centre_m", written.centre_m.as_ref()).unwrap_or(origin);
+    kg.map(|kg| Mass::Stated { kg, centre_m, inertia_kg_m2 })
 }
 
 fn collisions<'f>(written: &'f BodyTable, groups: &mut Vec<&'f str>, faults: &mut Faults<'_>) -> Collisions {

@@ -129,6 +129,25 @@ pub enum SceneFaultKind {
     /// A range in a name that stands for nothing.
     #[error(transparent)]
     Array(ArrayError),
+    /// A mesh that cannot be used.
+    #[error("mesh `{file}` {cause}")]
+    Mesh {
+        /// Its file.
+        file: String,
+        /// What is wrong with it.
+        cause: String,
+    },
+    /// A robot that cannot be used.
+    #[error("robot `{file}` {cause}")]
+    Urdf {
+        /// Its file.
+        file: String,
+        /// What is wrong with it.
+        cause: String,
+    },
+    /// A surface without an inside, where a body has to have one.
+    #[error("{0} is of a dynamic body and needs its hull: only what no force moves can be a mere surface")]
+    OpenSurface(String),
     /// A shape of another body.
     #[error("shape `{shape}` is none of body `{body}`")]
     ForeignShape {

@@ -24,6 +24,8 @@ pub(super) struct SceneFile {
     #[serde(default)]
     pub(super) shape: Vec<Spanned<ShapeTable>>,
     #[serde(default)]
+    pub(super) urdf: Vec<Spanned<UrdfTable>>,
+    #[serde(default)]
     pub(super) joint: Vec<Spanned<JointTable>>,
     #[serde(default)]
     pub(super) axis: Vec<Spanned<AxisTable>>,
@@ -88,6 +90,7 @@ pub(super) enum ShapeKind {
     Sphere,
     Cylinder,
     Capsule,
+    Mesh,
 }
 
 /// `[[body]]`
@@ -100,11 +103,16 @@ pub(super) struct BodyTable {
     pub(super) size_m: Option<Triple>,
     pub(super) radius_m: Option<Spanned<f64>>,
     pub(super) length_m: Option<Spanned<f64>>,
+    pub(super) mesh: Option<Spanned<String>>,
+    pub(super) unit_m: Option<Spanned<f64>>,
+    pub(super) hull: Option<Spanned<bool>>,
     pub(super) position_m: Option<Triple>,
     pub(super) rpy_deg: Option<Triple>,
     pub(super) velocity_m_s: Option<Triple>,
     pub(super) mass_kg: Option<Spanned<f64>>,
     pub(super) density_kg_m3: Option<Spanned<f64>>,
+    pub(super) centre_m: Option<Triple>,
+    pub(super) inertia_kg_m2: Option<Spanned<[f64; 6]>>,
     pub(super) friction: Option<Spanned<f64>>,
     pub(super) restitution: Option<Spanned<f64>>,
     pub(super) collides: Option<bool>,
@@ -123,6 +131,9 @@ pub(super) struct ShapeTable {
     pub(super) size_m: Option<Triple>,
     pub(super) radius_m: Option<Spanned<f64>>,
     pub(super) length_m: Option<Spanned<f64>>,
+    pub(super) mesh: Option<Spanned<String>>,
+    pub(super) unit_m: Option<Spanned<f64>>,
+    pub(super) hull: Option<Spanned<bool>>,
     pub(super) position_m: Option<Triple>,
     pub(super) rpy_deg: Option<Triple>,
     pub(super) mass_kg: Option<Spanned<f64>>,
@@ -131,6 +142,19 @@ pub(super) struct ShapeTable {
     pub(super) collides: Option<bool>,
     pub(super) turn_about_m: Option<Triple>,
     pub(super) step_m: Option<Triple>,
+}
+
+/// `[[urdf]]`: bodies, shapes and joints from a file.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct UrdfTable {
+    pub(super) name: Spanned<String>,
+    pub(super) file: Spanned<String>,
+    pub(super) position_m: Option<Triple>,
+    pub(super) rpy_deg: Option<Triple>,
+    pub(super) fixed: Option<bool>,
+    pub(super) collides: Option<bool>,
+    pub(super) friction: Option<Spanned<f64>>,
 }
 
 /// What a joint leaves free.

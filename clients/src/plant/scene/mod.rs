@@ -15,10 +15,11 @@
 //! | `[[body]]` | meaning |
 //! |---|---|
 //! | `name`, `kind` | `fixed`, `dynamic` or `kinematic` |
-//! | `shape` | `box` (`size_m`, whole edges), `sphere` (`radius_m`), `cylinder` or `capsule` (`radius_m`, `length_m`, along z; a capsule's caps come on top); only a dynamic body must have one |
+//! | `shape` | `box` (`size_m`, whole edges), `sphere` (`radius_m`), `cylinder` or `capsule` (`radius_m`, `length_m`, along z; a capsule's caps come on top), `mesh` (`mesh`, a file `.stl` or `.obj` beside the scene; `unit_m`, what 1 means in it, 1 if absent; `hull = false` for its very surface in place of its convex hull, where no force moves the body); only a dynamic body must have one |
 //! | `position_m`, `rpy_deg` | origin; roll about x, then pitch about y, then yaw about z |
 //! | `velocity_m_s` | at the start for a dynamic body, always for a kinematic one |
 //! | `mass_kg` or `density_kg_m3` | of a dynamic body |
+//! | `centre_m`, `inertia_kg_m2` | centre of mass and `[ixx, iyy, izz, ixy, ixz, iyz]` about it along the world's axes, with `mass_kg`, in place of those of the shape |
 //! | `friction`, `restitution` | 0.5 and 0 if absent |
 //! | `collides`, `group` | `collides = false` for a body that only sensors see; bodies of one group do not collide with each other |
 //!
@@ -27,6 +28,13 @@
 //! | `name`, `body` | |
 //! | `shape`, its measures, `position_m`, `rpy_deg`, `friction`, `restitution`, `collides` | as of a body |
 //! | `mass_kg` | what it adds to a dynamic body, nothing if absent |
+//!
+//! | `[[urdf]]` | meaning: a robot from a URDF file |
+//! |---|---|
+//! | `name`, `file` | a link `upper` of robot `arm` is body `arm.upper`, a joint `elbow` is joint `arm.elbow` |
+//! | `position_m`, `rpy_deg` | of its root link |
+//! | `fixed` | whether the root stays in place, true if absent |
+//! | `collides`, `friction` | of all of its shapes; links of one robot do not collide with each other |
 //!
 //! | `[[joint]]` | meaning |
 //! |---|---|
@@ -100,7 +108,8 @@
 //! | `faults` | gathering faults, finding their lines |
 //! | `number`, `names` | what a number and a name must be |
 //! | `arrays` | one table for many things |
-//! | `bodies`, `shapes`, `joints`, `axes`, `sensors`, `signals` | the second pass, one sort of table each |
+//! | `robots` | the tables that a URDF file stands for |
+//! | `bodies`, `shapes`, `meshes`, `joints`, `axes`, `sensors`, `signals` | the second pass, one sort of table each |
 //! | `components`, `bindings`, `failures`, `conditions` | the same, for components and what surrounds them |
 //! | [`model`] | the checked scene |
 //! | [`error`] | what can be wrong |
@@ -118,9 +127,11 @@ mod failures;
 mod faults;
 mod format;
 mod joints;
+mod meshes;
 pub mod model;
 mod names;
 mod number;
+mod robots;
 pub mod schema;
 mod sensors;
 mod shapes;
@@ -157,6 +168,7 @@ impl Scene {
         match toml::from_str::<SceneFile>(text) {
             Ok(mut written) => {
                 arrays::expand(&mut written, &mut faults);
+                robots::expand(&mut written, &mut faults);
                 let scene = check(&written, &mut faults);
                 faults.into_result(scene)
             }

@@ -92,7 +92,7 @@ pub struct Attached {
 }
 
 /// The form of a body, centred on its origin.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub enum Shape {
     /// Edges along the body's axes.
     Box {
@@ -118,6 +118,22 @@ pub enum Shape {
         /// Its length without the caps.
         length_m: f64,
     },
+    /// The convex hull of a mesh.
+    Hull {
+        /// The mesh's file.
+        file: String,
+        /// Its corners.
+        corners_m: Vec<[f64; 3]>,
+    },
+    /// The very surface of a mesh, for a body that no force moves.
+    Surface {
+        /// The mesh's file.
+        file: String,
+        /// Its corners.
+        corners_m: Vec<[f64; 3]>,
+        /// Indices of three corners each.
+        triangles: Vec<[u32; 3]>,
+    },
 }
 
 /// How the mass of a body is stated.
@@ -127,6 +143,15 @@ pub enum Mass {
     Total {
         /// The mass.
         kg: f64,
+    },
+    /// Mass properties in place of those of the shape.
+    Stated {
+        /// The mass.
+        kg: f64,
+        /// Centre of mass in the scene's pose, in world coordinates.
+        centre_m: [f64; 3],
+        /// ixx, iyy, izz, ixy, ixz, iyz about it, along the world's axes in the scene's pose.
+        inertia_kg_m2: [f64; 6],
     },
     /// Mass from the volume of the shape.
     Density {

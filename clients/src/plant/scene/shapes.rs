@@ -6,6 +6,7 @@ use super::bodies::{FRICTION, LENGTH_M, MASS_KG, RESTITUTION};
 use super::error::SceneFaultKind;
 use super::faults::Faults;
 use super::format::{BodyKind, BodyTable, ShapeKind, ShapeTable, Triple};
+use super::meshes::MeshKeys;
 use super::model::{Attached, Shape};
 use super::names::Names;
 use super::number::{Allowed, Entry};
@@ -33,6 +34,8 @@ fn attached(
         size_m: written.size_m.as_ref(),
         radius_m: written.radius_m.as_ref(),
         length_m: written.length_m.as_ref(),
+        mesh: MeshKeys { mesh: written.mesh.as_ref(), unit_m: written.unit_m.as_ref(), hull: written.hull.as_ref() },
+        dynamic: body.is_some_and(|body| of[body].get_ref().kind == BodyKind::Dynamic),
     };
     let shape = measures.shape(faults);
     let mass = Entry::new("mass_kg", written.mass_kg.as_ref());
@@ -64,6 +67,9 @@ pub(super) struct Measures<'f> {
     pub(super) size_m: Option<&'f Triple>,
     pub(super) radius_m: Option<&'f Spanned<f64>>,
     pub(super) length_m: Option<&'f Spanned<f64>>,
+    pub(super) mesh: MeshKeys<'f>,
+    /// Whether forces move its body.
+    pub(super) dynamic: bool,
 }
 
 impl Measures<'_> {
@@ -81,20 +87,22 @@ impl Measures<'_> {
                 let (radius_m, length_m) = self.radius_and_length(faults)?;
                 Shape::Capsule { radius_m, length_m }
             }
+            ShapeKind::Mesh => self.mesh.shape(self, faults)?,
         })
     }
 
-    fn whose(&self) -> String {
+    pub(super) fn whose(&self) -> String {
         let kind = match self.kind.get_ref() {
             ShapeKind::Box => "box",
             ShapeKind::Sphere => "sphere",
             ShapeKind::Cylinder => "cylinder",
             ShapeKind::Capsule => "capsule",
+            ShapeKind::Mesh => "mesh",
         };
         format!("{kind} `{}`", self.name)
     }
 
-    fn missing(&self, key: &'static str, faults: &mut Faults<'_>) {
+    pub(super) fn missing(&self, key: &'static str, faults: &mut Faults<'_>) {
         faults.add(self.kind.span(), SceneFaultKind::Missing { whose: self.whose(), key });
     }
 
@@ -125,13 +133,15 @@ impl Measures<'_> {
             ShapeKind::Box => (None, self.radius_m, self.length_m),
             ShapeKind::Sphere => (self.size_m, None, self.length_m),
             ShapeKind::Cylinder | ShapeKind::Capsule => (self.size_m, None, None),
+            ShapeKind::Mesh => (self.size_m, self.radius_m, self.length_m),
         };
         let foreign = [
             (size.map(Triple::span), "size_m"),
             (radius.map(Spanned::span), "radius_m"),
             (length.map(Spanned::span), "length_m"),
         ];
-        for (span, key) in foreign {
+        let of_mesh = self.mesh.written().into_iter().filter(|_| *self.kind.get_ref() != ShapeKind::Mesh);
+        for (span, key) in foreign.into_iter().chain(of_mesh) {
             if let Some(span) = span {
                 faults.add(span, SceneFaultKind::Misplaced { whose: self.whose(), key });
             }

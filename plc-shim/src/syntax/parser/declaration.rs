@@ -27,6 +27,7 @@ pub(super) fn section_kind(kind: Option<TokenKind>) -> Option<SectionKind> {
         TokenKind::Keyword(Keyword::VarInOut) => SectionKind::InOut,
         TokenKind::Keyword(Keyword::VarTemp) => SectionKind::Temp,
         TokenKind::Keyword(Keyword::VarStat) => SectionKind::Static,
+        TokenKind::Keyword(Keyword::VarInst) => SectionKind::Instance,
         TokenKind::Keyword(Keyword::VarGlobal) => SectionKind::Global,
         TokenKind::Keyword(Keyword::VarExternal) => SectionKind::External,
         _ => return None,
@@ -99,6 +100,10 @@ impl Cursor<'_> {
         if self.at_word("VAR_STAT") {
             self.require(Feature::StaticSection, self.span());
             return Some(SectionKind::Static);
+        }
+        if self.at_word("VAR_INST") {
+            self.require(Feature::InstanceSection, self.span());
+            return Some(SectionKind::Instance);
         }
         section_kind(self.peek())
     }

@@ -21,7 +21,7 @@ fn closes_list(keyword: Keyword) -> bool {
         keyword,
         K::EndProgram | K::EndFunctionBlock | K::EndFunction | K::EndIf | K::EndCase | K::EndFor
             | K::EndWhile | K::EndRepeat | K::Elsif | K::Else | K::Until
-            | K::Var | K::VarInput | K::VarOutput | K::VarInOut | K::VarTemp | K::VarExternal | K::VarStat
+            | K::Var | K::VarInput | K::VarOutput | K::VarInOut | K::VarTemp | K::VarExternal | K::VarStat | K::VarInst
             // A new unit begins: the end of the one before is missing.
             | K::Program | K::FunctionBlock | K::Function | K::Type | K::EndType | K::VarGlobal
             | K::OrganizationBlock | K::EndOrganizationBlock | K::DataBlock | K::EndDataBlock

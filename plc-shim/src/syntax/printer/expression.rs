@@ -51,8 +51,13 @@ impl Printer {
 
     pub(super) fn call(&mut self, call: &Call) {
         self.expression(&call.callee);
+        self.arguments(&call.arguments);
+    }
+
+    /// `(x, IN := y)`
+    pub(super) fn arguments(&mut self, arguments: &[Argument]) {
         self.word("(");
-        self.separated(&call.arguments, Self::argument);
+        self.separated(arguments, Self::argument);
         self.word(")");
     }
 
