@@ -6,6 +6,8 @@
 //! | [`soft_plc`] | the embedded soft PLC, which runs IEC 61131-3 source text |
 //! | [`array`] | names with a range, as in `arm[0..9].hold` |
 //! | [`replay`] | a client that repeats what another once did |
+//! | [`operator`] | switches and set points that nobody else writes |
+//! | [`forced`] | a client some of whose outputs are held for a time |
 //!
 //! # Invariants
 //! - A client is a function of its state, its inputs and `t_v`. Nothing here reads a clock, a random
@@ -15,6 +17,8 @@
 //! - Bad input is an error with a place, never a panic.
 
 pub mod array;
+pub mod forced;
+pub mod operator;
 pub mod plant;
 pub mod replay;
 pub mod soft_plc;

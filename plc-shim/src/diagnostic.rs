@@ -10,7 +10,7 @@ use crate::syntax::{SourceMap, Span};
 
 macro_rules! codes {
     ($($variant:ident $text:literal $about:literal),* $(,)?) => {
-        /// Stable codes: `S` syntax, `N` names, `T` types, `C` calls, `D` declarations, `L` limits,
+        /// Stable codes: `G` networks and lists of instructions, `S` syntax, `N` names, `T` types, `C` calls, `D` declarations, `L` limits,
         /// `R` addresses and references, `F` files, `W` warnings of what is legal and seldom meant,
         /// `I` instrumentation for lockstep.
         #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -43,6 +43,17 @@ codes! {
     UnknownCharacter "S0105" "a character begins no token",
     WrongDialect "S0110" "a construct that the file's dialect lacks",
     UnbalancedPragma "S0111" "conditional pragmas do not match",
+    UnknownLabel "G1101" "a jump leads to no label",
+    DanglingConnection "G1102" "a connection comes from no element",
+    DuplicateElement "G1103" "two elements of a network have one id",
+    FeedbackWithoutVariable "G1104" "a loop of a network has no feedback variable",
+    FeedbackWithoutOrder "G1105" "a loop of a network has no order of evaluation",
+    Unconnected "G1106" "an element of a network lacks a connection",
+    UnpairedConnector "G1107" "a continuation has no connector of its own",
+    SeveralConnections "G1108" "several connections end at one input",
+    EdgeInFunction "G1109" "an edge in a function, which keeps nothing",
+    NoCurrentResult "G1120" "an instruction wants a current result and there is none",
+    UnknownInstruction "G1121" "an instruction is not known or lacks its operand",
     UnknownName "N0101" "a name is not declared",
     DuplicateName "N0102" "a name is declared twice",
     UnknownType "N0103" "a type is not declared",
@@ -107,7 +118,6 @@ codes! {
     InvalidAddress "R0901" "a direct address is malformed or out of range",
     UnsuitableAddress "R0902" "a variable does not suit its direct address",
     InvalidPart "R0903" "a value has no such part",
-    Jump "L0510" "a jump or a label",
     UnknownCondition "L0511" "a pragma's condition that is not evaluated",
     ClassicTimer "L0512" "a timer or counter of S5",
     VendorRuntime "L0513" "a part of a vendor's runtime",

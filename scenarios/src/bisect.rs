@@ -137,13 +137,11 @@ impl Search<'_> {
 
     fn run(&self, folder: &Path) -> Result<(PathBuf, Option<Digest>), String> {
         let record = folder.join("record");
+        let scenario = folder.join("tree").join(&self.repository.scenario);
         let config = RunConfig {
-            scenario: folder.join("tree").join(&self.repository.scenario),
             until: self.config.until,
             record: Some(RecordRequest { folder: record.clone(), ..RecordRequest::default() }),
-            format: Format::Json,
-            runs: 1,
-            ..RunConfig::default()
+            ..RunConfig::headless(scenario, None)
         };
         execute(&config, self.interrupt, &mut io::sink()).map_err(|error| error.to_string())?;
         let recording = onescan_server::recording::Recording::open(&record).map_err(|error| error.to_string())?;

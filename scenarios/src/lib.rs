@@ -7,6 +7,8 @@
 //! | [`cli`] | the command line |
 //! | [`scenario`] | a scenario's files, read and checked |
 //! | [`run`] | runs of a scenario: in lockstep or not, recorded, reported |
+//! | [`regress`] | all cases run, compared with reviewed snapshots, reported |
+//! | [`review`] | snapshots looked at, accepted or rejected |
 //! | [`export`], [`diff`], [`bisect`] | recordings in other forms; where two part and why; since which commit |
 //! | [`new`] | scenarios to begin with |
 //! | [`check`] | PLC sources checked without being run |
@@ -31,6 +33,8 @@ pub mod instrument;
 pub mod new;
 pub mod plant;
 pub mod plot;
+pub mod regress;
+pub mod review;
 pub mod run;
 pub mod scenario;
 pub mod wiring;

@@ -105,6 +105,7 @@ fn timed(groups: &[Group], steps: u64, record: Option<Choice>) -> Duration {
             onescan: String::new(),
             scenario: String::new(),
             folder: String::new(),
+            case: None,
             mode: "lockstep".to_owned(),
             until: VirtualTime::ZERO,
             seed: 0,

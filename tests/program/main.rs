@@ -1,5 +1,6 @@
 //! The program as a user types it: commands, files, messages, exit codes.
 
+mod cases;
 mod check;
 mod checkpoint;
 mod configuration;
@@ -19,9 +20,13 @@ mod plant;
 mod plc_faults;
 mod python;
 mod recording;
+mod regression;
+mod reports;
+mod review;
 mod run;
 mod third_party;
 mod typed;
+mod unit_tests;
 mod venv;
 mod watch;
 mod wiring;

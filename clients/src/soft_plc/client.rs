@@ -3,7 +3,9 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::{Arc, Mutex, PoisonError};
 
-use onescan_plc_shim::{Application, Coverage, PlcFault, RunError, SoftPlc, TaskPlan, UnknownVariable, WriteSite};
+use onescan_plc_shim::{
+    Application, Coverage, PlcFault, RunError, SoftPlc, TaskPlan, UnknownVariable, WriteError, WriteSite,
+};
 use onescan_server::client::{Client, ClientFault, JoinRequest, SourcePlace, StateError, Wake};
 use onescan_server::signal::{ClientName, SignalName};
 use onescan_server::time::{TimeSpan, VirtualTime};
@@ -43,6 +45,8 @@ pub struct SoftPlcClient {
     plc: SoftPlc,
     inputs: Vec<Run>,
     outputs: Vec<Run>,
+    /// Variables that begin with other values than the program says: path and literal.
+    presets: Vec<(String, String)>,
     /// Where what was executed goes when the client's part is over.
     coverage: Option<CoverageSink>,
     tracing: Option<Tracing>,
@@ -93,10 +97,21 @@ impl SoftPlcClient {
             plc,
             inputs: runs(&bindings.inputs),
             outputs: runs(&bindings.outputs),
+            presets: Vec::new(),
             coverage: None,
             tracing: None,
             watcher: None,
         })
+    }
+
+    /// Lets the variable at `path` begin with a value, given as a literal, in place of that of its declaration.
+    ///
+    /// # Errors
+    /// There is no such variable, it may not be written, or the text is no value of its type.
+    pub fn preset(&mut self, path: &str, value: &str) -> Result<(), WriteError> {
+        self.plc.write(path, value)?;
+        self.presets.push((path.to_owned(), value.to_owned()));
+        Ok(())
     }
 
     /// Gives what has been executed to `sink` when the client is dropped. The application must have
@@ -195,6 +210,9 @@ impl Client for SoftPlcClient {
 
     fn setup(&mut self, outputs: &mut [u8]) -> Result<(), ClientFault> {
         self.plc.reset();
+        for (path, value) in &self.presets {
+            self.plc.write(path, value).map_err(|error| ClientFault::new(error.to_string()))?;
+        }
         self.take_outputs(outputs);
         self.look(VirtualTime::default());
         Ok(())

@@ -7,7 +7,7 @@ use crate::check::{Checked, check};
 use crate::diagnostic::{Diagnostic, Severity};
 use crate::input::Input;
 use crate::syntax::ast::{CompilationUnit, Configuration, Declaration};
-use crate::syntax::{FileId, SourceFile, SourceMap, parse_in};
+use crate::syntax::{FileId, SourceFile, SourceMap, parse_source};
 
 /// What is known of files once they have been checked.
 pub(crate) struct Front {
@@ -34,7 +34,7 @@ impl Front {
         }
         let mut units = Vec::new();
         for (id, file) in sources.iter() {
-            let parsed = parse_in(file.dialect(), id, file.text());
+            let parsed = parse_source(id, file);
             findings.extend(parsed.diagnostics);
             units.push((id, parsed.unit));
         }

@@ -18,6 +18,14 @@ pub(crate) const FILES: [(&str, &str); 10] = [
     ("iec/timers_by_type.st", include_str!("../../iec/timers_by_type.st")),
 ];
 
+/// Asserts of test programs. They have memory of their own and so are there only for those that use them.
+const ASSERTS: (&str, &str) = ("iec/test/assert.st", include_str!("../../iec/test/assert.st"));
+
+/// Whether a source may mean an assert; one that does not has no use for [`ASSERTS`].
+fn mentions_assert(text: &str) -> bool {
+    text.as_bytes().windows(6).any(|word| word.eq_ignore_ascii_case(b"ASSERT"))
+}
+
 /// Motion control (PLCopen, Function blocks for motion control, 2.0), for programs that name an axis.
 pub(crate) const MOTION: [(&str, &str); 15] = [
     ("iec/motion/activate.st", include_str!("../../iec/motion/activate.st")),
@@ -37,11 +45,13 @@ pub(crate) const MOTION: [(&str, &str); 15] = [
     ("iec/motion/velocity.st", include_str!("../../iec/motion/velocity.st")),
 ];
 
-/// The library for a program of these files: nobody pays for motion control but who uses it.
+/// The library for a program of these files: nobody pays for motion control or asserts but who uses them.
 pub(crate) fn for_program<'s>(files: impl Iterator<Item = &'s SourceFile>) -> Vec<(&'static str, &'static str)> {
-    let axis = files.filter_map(|file| axis_in(file.text())).max();
+    let texts: Vec<_> = files.map(SourceFile::text).collect();
+    let axis = texts.iter().filter_map(|text| axis_in(text)).max();
     let motion: &[_] = if axis == Some(Axis::Used) { &MOTION } else { &[] };
-    FILES.iter().chain(motion).copied().collect()
+    let asserts = texts.iter().any(|text| mentions_assert(text)).then_some(&ASSERTS);
+    FILES.iter().chain(motion).chain(asserts).copied().collect()
 }
 
 /// What a file has to do with the type of an axis.

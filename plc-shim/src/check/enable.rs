@@ -158,7 +158,7 @@ impl Body<'_, '_> {
     }
 
     /// Where the result of a call is kept until it is used.
-    fn kept(&mut self, ty: TypeId, span: Span) -> Option<Place> {
+    pub(super) fn kept(&mut self, ty: TypeId, span: Span) -> Option<Place> {
         match self.elementary(ty) {
             Some(elementary) => {
                 let register = self.scope.register(elementary);
@@ -221,7 +221,10 @@ impl Body<'_, '_> {
         let Some((target, negated)) = enabling.outcome else {
             return Some(Vec::new());
         };
-        let place = self.target(target)?;
+        let place = match self.new_wire(target) {
+            Some(name) => self.wire(name, ElementaryType::Bool.into(), target.span)?,
+            None => self.target(target)?,
+        };
         let (ty, span) = (value.ty, target.span);
         let value = if negated { Expr { kind: ExprKind::Unary(Unary::Not, Box::new(value)), ty, span } } else { value };
         let value = Expr { span, ..value };

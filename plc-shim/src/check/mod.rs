@@ -19,6 +19,7 @@
 //! | [`enable`], [`enable_error`] | EN and ENO |
 //! | [`text`], [`text_function`], [`text_conversion`] | character strings |
 //! | [`statement`], [`assignment`], [`edge`] | statements |
+//! | [`jump`], [`wire`], [`instruction`] | what networks and lists of instructions have beside statements |
 //! | [`configuration`] | resources, tasks, instances of programs |
 //! | [`dialect`] | what dialects do their own way |
 //! | [`recursion`], [`dispatch`] | who calls whom, and what only a run decides |
@@ -30,6 +31,7 @@
 //! and needed again contains itself.
 
 mod address;
+pub(crate) mod asserts;
 mod assignment;
 mod calendar;
 mod call;
@@ -52,7 +54,9 @@ mod initial;
 mod instance;
 mod instance_arguments;
 mod instance_section;
+mod instruction;
 mod interface_value;
+mod jump;
 mod layout;
 mod located;
 mod memory_function;
@@ -78,6 +82,7 @@ mod text_function;
 mod types;
 mod union;
 mod variables;
+mod wire;
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;

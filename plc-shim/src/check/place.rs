@@ -46,6 +46,7 @@ impl Body<'_, '_> {
                     return found;
                 }
                 if !self.is_this(name)
+                    && !super::wire::is_wire(name)
                     && let Meaning::Value(value) = self.meaning(name)?
                 {
                     return Some(Operand::Typed(value));
@@ -141,6 +142,11 @@ impl Body<'_, '_> {
     fn named_place(&mut self, name: &Ident) -> Option<Located> {
         if let Some(found) = self.this_place(name) {
             return found;
+        }
+        if super::wire::is_wire(name) {
+            // One without a value has been reported where it would have got it.
+            let place = self.wires.get(&name.text)?.clone();
+            return Some(Located { place: Place { span: name.span, ..place }, access: Access::ReadWrite });
         }
         match self.variable_named(name) {
             Some(Ok(variable)) => {

@@ -105,7 +105,21 @@ impl Body<'_, '_> {
         Statement { kind, span }
     }
 
-    fn statements(&mut self, list: &[ast::Statement]) -> Vec<Statement> {
+    pub(super) fn statements(&mut self, list: &[ast::Statement]) -> Vec<Statement> {
+        if super::instruction::is_list(list) {
+            let list = self.instructions(list);
+            return self.lowered(&list);
+        }
+        self.lowered(list)
+    }
+
+    /// The same of statements alone.
+    pub(super) fn lowered(&mut self, list: &[ast::Statement]) -> Vec<Statement> {
+        if super::jump::has_labels(list) { self.labelled(list) } else { self.unlabelled(list) }
+    }
+
+    /// Statements that no jump leads into.
+    pub(super) fn unlabelled(&mut self, list: &[ast::Statement]) -> Vec<Statement> {
         let mut checked = Vec::new();
         for statement in list {
             if let ast::StatementKind::Chain(targets, value) = &statement.kind {
@@ -120,8 +134,11 @@ impl Body<'_, '_> {
     fn statement(&mut self, statement: &ast::Statement) -> Option<Statement> {
         let span = statement.span;
         let kind = match &statement.kind {
-            // A chain is several statements.
-            ast::StatementKind::Empty | ast::StatementKind::Error | ast::StatementKind::Chain(..) => return None,
+            // A chain is several statements, and a label is the beginning of some.
+            ast::StatementKind::Empty
+            | ast::StatementKind::Error
+            | ast::StatementKind::Chain(..)
+            | ast::StatementKind::Label(_) => return None,
             ast::StatementKind::Update(operator, target, value) => {
                 return self.update(*operator, target, value, span);
             }
@@ -144,6 +161,9 @@ impl Body<'_, '_> {
             ast::StatementKind::Exit => self.inside_loop("EXIT", StatementKind::Exit, span)?,
             ast::StatementKind::Continue => self.inside_loop("CONTINUE", StatementKind::Continue, span)?,
             ast::StatementKind::Return => StatementKind::Return,
+            ast::StatementKind::Jump(label) => self.jump(label)?,
+            // What it does stands behind it.
+            ast::StatementKind::Instruction(_) => StatementKind::Pass,
         };
         // Statements that contain others are pointed at by their first line's beginning.
         Some(Statement { kind, span })
@@ -172,6 +192,9 @@ impl Body<'_, '_> {
     pub(super) fn assign(&mut self, target: &ast::Expr, value: &ast::Expr, span: Span) -> Option<Statement> {
         if let Some(set) = self.property_assignment(target, value, span) {
             return set;
+        }
+        if let Some(name) = self.new_wire(target) {
+            return self.first_value(name, value, span);
         }
         let target = self.target(target);
         let context = target.as_ref().and_then(|target| self.elementary(target.ty));

@@ -11,7 +11,7 @@
 //! | [`address`], [`place`], [`part`], [`pointer`], [`open_array`], [`memory`] | addresses, loads and stores |
 //! | [`known`], [`effect`], [`survey`] | values that registers hold already, also through loops |
 //! | [`interval`], [`range`], [`refine`], [`drift`] | between what integers lie: expressions, variables, behind conditions, in loops |
-//! | [`statement`], [`selection`], [`choice`], [`repetition`], [`counting`] | statements |
+//! | [`statement`], [`selection`], [`choice`], [`repetition`], [`counting`], [`jump`] | statements |
 //! | [`expression`], [`arithmetic`], [`conversion`], [`intrinsic`], [`bytes`] | expressions |
 //! | [`dispatch`] | methods: which one runs |
 //! | [`host`] | functions that WebAssembly lacks |
@@ -44,6 +44,7 @@ pub(crate) mod host;
 mod inline;
 mod interval;
 mod intrinsic;
+mod jump;
 mod known;
 mod memory;
 mod module;

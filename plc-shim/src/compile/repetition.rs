@@ -61,7 +61,7 @@ impl Emitter<'_, '_> {
     }
 
     /// A loop that pays for its turns; each begins with the condition, if there is one.
-    fn repeated(&mut self, condition: Option<&Expr>, turns: impl Fn(&mut Self)) {
+    pub(super) fn repeated(&mut self, condition: Option<&Expr>, turns: impl Fn(&mut Self)) {
         let survey = self.survey(&turns);
         let drifts = self.drifts(&survey);
         let pins = self.enter_loop(&survey);

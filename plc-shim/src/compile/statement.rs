@@ -51,6 +51,9 @@ impl Emitter<'_, '_> {
             StatementKind::Exit => self.leave_to(|labels| labels.exit),
             StatementKind::Continue => self.leave_to(|labels| labels.next),
             StatementKind::Return => self.return_statement(),
+            StatementKind::Labelled(inner) => self.labelled(inner, statement.span),
+            StatementKind::Jump(label) => self.jump(*label, statement.span),
+            StatementKind::Pass => {}
         }
     }
 

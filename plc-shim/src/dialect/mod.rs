@@ -199,6 +199,7 @@ features! {
     CompoundAssignment "`+=`, `-=`, `*=`, `/=`",
     BareArrayValues "initial values of an array without brackets",
     ConditionalPragmas "`{IF defined (x)}`",
+    Jumps "a jump or a label in Structured Text",
     StaticSection "`VAR_STAT`",
     InstanceSection "`VAR_INST`",
     InitArguments "an instance's arguments for `FB_init`",

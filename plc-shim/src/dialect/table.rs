@@ -33,6 +33,7 @@ pub const FEATURES: &[FeatureRow] = &[
     row(Feature::CompoundAssignment, &[SiemensScl], "TIA Portal: combined value assignments"),
     row(Feature::BareArrayValues, &[Codesys, TwinCat], "CODESYS V2.3 and TwinCAT 2: ARRAY"),
     row(Feature::ConditionalPragmas, &[Codesys, TwinCat], "CODESYS and TwinCAT: conditional pragmas"),
+    row(Feature::Jumps, &[Codesys, TwinCat, SiemensScl], "CODESYS, TwinCAT: ST instruction JMP; TIA Portal: GOTO"),
     row(Feature::StaticSection, &[Codesys, TwinCat], "CODESYS and TwinCAT: VAR_STAT"),
     row(Feature::InstanceSection, &[Codesys, TwinCat], "CODESYS and TwinCAT: VAR_INST"),
     row(Feature::InitArguments, &[Codesys, TwinCat], "CODESYS and TwinCAT: methods FB_init, FB_reinit, FB_exit"),

@@ -51,7 +51,7 @@ use crate::input::encoding::Encoding;
 use crate::input::kind::{FileKind, SourceKind};
 use crate::run::{RunError, Task};
 use crate::syntax::ast::ProgramDeclaration;
-use crate::syntax::parser::parse_in;
+use crate::syntax::parser::parse_source;
 use crate::syntax::{FileId, SourceMap, Span};
 
 /// How a project is to be instrumented.
@@ -128,7 +128,7 @@ pub fn instrument(inputs: &[Input], options: &Options) -> Result<Project, Instru
     let mut units = Vec::new();
     let mut findings = plain.findings.clone();
     for (id, file) in plain.sources.iter() {
-        let parsed = parse_in(file.dialect(), id, file.text());
+        let parsed = parse_source(id, file);
         findings.extend(parsed.diagnostics);
         units.push((id, parsed.unit));
     }

@@ -3,6 +3,7 @@
 mod configuration;
 mod declaration;
 mod expression;
+pub mod instruction;
 mod object;
 mod statement;
 
@@ -16,6 +17,7 @@ pub use declaration::{
     Variable,
 };
 pub use expression::{Argument, BinaryOp, Call, Expr, ExprKind, Literal, MAX_HEIGHT, TypedValue, UnaryOp};
+pub use instruction::{Instruction, ListCall, When};
 pub use object::{Member, MemberKind, Modifier, Namespace, NamespaceKind, Object};
 pub use statement::{
     CaseBranch, CaseLabel, CaseStatement, ForStatement, IfBranch, IfStatement, RepeatStatement, Statement,

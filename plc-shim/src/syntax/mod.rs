@@ -32,5 +32,5 @@ pub mod token;
 pub(crate) mod walk;
 
 pub use lexer::{tokenize, tokenize_in};
-pub use parser::{Parsed, parse, parse_in};
+pub use parser::{Parsed, parse, parse_in, parse_source};
 pub use source::{FileId, SourceFile, SourceMap, Span};

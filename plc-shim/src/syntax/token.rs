@@ -42,6 +42,8 @@ pub enum TokenKind {
     WideString,
     /// `%IX1.0` (2nd ed. 2.4.1.1).
     DirectAddress,
+    /// `` `name` ``: what an element of a network hands on, in text that was made of one.
+    Wire,
     /// An operator, bracket or separator.
     Punctuation(Punctuation),
     /// Text that begins no token.

@@ -23,6 +23,7 @@ fn use_of(feature: Feature) -> &'static str {
             "PROGRAM P VAR a : ARRAY [0..2] OF INT := 1, 2(3); END_VAR a[0] := a[1]; END_PROGRAM"
         }
         Feature::ConditionalPragmas => "PROGRAM P {IF defined (x)} {END_IF} END_PROGRAM",
+        Feature::Jumps => "PROGRAM P VAR a : INT; END_VAR JMP done; a := 1; done: END_PROGRAM",
         Feature::StaticSection => "PROGRAM P VAR_STAT a : INT; END_VAR a := a + 1; END_PROGRAM",
         Feature::InstanceSection => {
             "FUNCTION_BLOCK F METHOD M VAR_INST n : INT; END_VAR n := n + 1; END_METHOD END_FUNCTION_BLOCK

@@ -12,6 +12,7 @@ use onescan_server::signal::pattern::SignalPattern;
 use onescan_server::signal::{ClientName, SignalName};
 use onescan_server::time::{TimeSpan, VirtualTime};
 
+use super::test_args::{ReviewArgs, TestArgs, WorkerArgs};
 use crate::check::CheckFormat;
 use crate::new::Template;
 use crate::run::coverage::CoverageFormat;
@@ -35,8 +36,8 @@ pub struct Args {
 
 const EXIT_CODES: &str = "Exit codes:
   0  all is well
-  1  a run is not what its scenario expects; runs that must be equal are not; a check found warnings that
-     are denied
+  1  a run is not what its scenario expects; runs that must be equal are not; a test failed;
+     a check found warnings that are denied
   2  wrong input: options, scenario, PLC source, scene, checkpoint
   3  a client or a link failed, or the PLC program stopped on a fault";
 
@@ -45,6 +46,13 @@ const EXIT_CODES: &str = "Exit codes:
 pub enum Command {
     /// Run a scenario and print the digest of its trajectories
     Run(Box<RunArgs>),
+    /// Run all scenarios and cases, and hold them against their reviewed snapshots; run test programs in ST
+    Test(Box<TestArgs>),
+    /// Look at snapshots that are new or have changed, and accept or reject them
+    Review(ReviewArgs),
+    /// One test, for `test`
+    #[command(hide = true)]
+    TestWorker(WorkerArgs),
     /// Take part in a session that another process serves, as one client of a scenario
     Join(JoinArgs),
     /// Ask a running session (see `run --listen`) how it is, or to pause, step, go on, reset or stop
@@ -78,6 +86,9 @@ pub enum Command {
 pub struct RunArgs {
     /// The scenario: a folder with a `scenario.toml`
     pub scenario: PathBuf,
+    /// A case of the scenario's `cases.toml` [default: the scenario as it is]
+    #[arg(long, value_name = "NAME")]
+    pub case: Option<String>,
     /// Virtual time at which a run is complete, as in `2.5s` [default: the scenario's `until`]
     #[arg(long, value_name = "TIME")]
     pub until: Option<VirtualTime>,
@@ -122,6 +133,9 @@ pub struct RunArgs {
     /// `lcov` or `cobertura` [default: by the file's name: `.xml` is Cobertura]
     #[arg(long, value_enum, requires = "coverage", value_name = "FORMAT")]
     pub coverage_format: Option<CoverageArg>,
+    /// Write a page with trajectories, expectations, events and coverage of all runs, all in one file
+    #[arg(long, value_name = "FILE")]
+    pub html: Option<PathBuf>,
     /// A variable of a soft PLC to look at, as `Main.axis[2].x`, with its PLC in front if there are several, as
     /// `plc2:Main.x`, and with a format for whole numbers behind, as `Main.status=bin`: `hex`, `dec` or `bin`;
     /// may be given several times
@@ -231,6 +245,9 @@ pub struct JoinArgs {
     /// The server's address
     #[arg(long, value_name = "ADDRESS:PORT")]
     pub server: SocketAddr,
+    /// The case that the server runs [default: the scenario as it is]
+    #[arg(long, value_name = "NAME")]
+    pub case: Option<String>,
 }
 
 /// Options of `control`.

@@ -40,6 +40,12 @@ const OPERATOR_PATIENCE: Duration = Duration::from_secs(30);
 pub fn dispatch(command: Command) -> Result<ExitCode, RunError> {
     match command {
         Command::Run(args) => run(*args),
+        Command::Test(args) => crate::regress::test(&args.config(), &mut std::io::stdout().lock()),
+        Command::Review(args) => crate::review::review(&args.config(), &mut std::io::stdout().lock()),
+        Command::TestWorker(args) => {
+            crate::regress::worker::work(&args.config(), &mut std::io::stdout().lock())?;
+            Ok(ExitCode::Ok)
+        }
         Command::Join(args) => join(&args),
         Command::Control(args) => control(&args),
         Command::Export(args) => export(args),
@@ -79,6 +85,7 @@ fn config(args: RunArgs) -> RunConfig {
     let format = args.format.into();
     RunConfig {
         scenario: args.scenario,
+        case: args.case,
         until: args.until,
         pace: args.pace,
         mode: args.mode.into(),
@@ -99,6 +106,7 @@ fn config(args: RunArgs) -> RunConfig {
         watch: args.watch,
         watch_changes: args.watch_on == super::args::WatchOnArg::Change,
         coverage: args.coverage.map(|path| CoverageRequest::new(path, args.coverage_format.map(Into::into))),
+        html: args.html,
         listen: args.listen,
         join_timeout: Duration::from_nanos(args.join_timeout.as_nanos()),
         reply_timeout: Duration::from_nanos(args.reply_timeout.as_nanos()),
@@ -109,7 +117,7 @@ fn config(args: RunArgs) -> RunConfig {
 }
 
 fn join(args: &JoinArgs) -> Result<ExitCode, RunError> {
-    let scenario = Scenario::load(&args.scenario)?;
+    let scenario = Scenario::load_case(&args.scenario, args.case.as_deref())?;
     let mut client = match scenario.member(&args.client)? {
         Member::Plant(client) | Member::Plc(client) => client,
         Member::External(_) => {

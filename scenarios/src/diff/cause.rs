@@ -66,7 +66,8 @@ fn writers(
     if header.provenance.mode != "lockstep" {
         return Err(format!("a run in mode {} cannot be repeated", header.provenance.mode));
     }
-    let mut scenario = Scenario::load(&recording.scenario()).map_err(|error| error.to_string())?;
+    let mut scenario = Scenario::load_case(&recording.scenario(), header.provenance.case.as_deref())
+        .map_err(|error| error.to_string())?;
     let plc_writes = header.signals.iter().any(|signal| {
         let writer = signal.writer.as_ref().and_then(|writer| scenario.file().clients.get(writer));
         signals.contains(&signal.name) && matches!(writer.map(toml::Spanned::get_ref), Some(ClientFile::SoftPlc { .. }))

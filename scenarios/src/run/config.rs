@@ -62,6 +62,8 @@ pub struct SaveRequest {
 pub struct RunConfig {
     /// The scenario's folder or file.
     pub scenario: PathBuf,
+    /// The case to run; the scenario as it is if absent.
+    pub case: Option<String>,
     /// When a run is complete; the scenario says so if absent.
     pub until: Option<VirtualTime>,
     /// How fast virtual time may run.
@@ -84,6 +86,8 @@ pub struct RunConfig {
     pub signals: Vec<SignalName>,
     /// A coverage report to write.
     pub coverage: Option<CoverageRequest>,
+    /// File for a page about all runs.
+    pub html: Option<PathBuf>,
     /// Variables of soft PLCs to look at.
     pub watch: Vec<WatchRequest>,
     /// True if all their changes are wanted, not only what they are last.
@@ -102,22 +106,24 @@ pub struct RunConfig {
     pub progress: bool,
 }
 
-impl Default for RunConfig {
-    /// One run in lockstep, as fast as it goes, in this process.
-    fn default() -> Self {
+impl RunConfig {
+    /// One run in this process, as fast as it goes, that nobody looks at.
+    pub fn headless(scenario: PathBuf, case: Option<String>) -> Self {
         Self {
-            scenario: PathBuf::new(),
+            scenario,
+            case,
             until: None,
             pace: Pace::Max,
-            mode: Mode::default(),
+            mode: Mode::Lockstep,
             runs: 1,
-            transport: Transport::default(),
+            transport: Transport::Inproc,
             record: None,
             replay_operator: None,
-            format: Format::default(),
+            format: Format::Json,
             plot: None,
             signals: Vec::new(),
             coverage: None,
+            html: None,
             watch: Vec::new(),
             watch_changes: false,
             listen: None,
@@ -128,12 +134,10 @@ impl Default for RunConfig {
             progress: false,
         }
     }
-}
 
-impl RunConfig {
     /// When a run is complete.
     pub fn end(&self, scenario: &Scenario) -> VirtualTime {
-        self.until.unwrap_or(scenario.file().until)
+        self.until.unwrap_or(scenario.until())
     }
 
     /// The signals of the plot with their panels' order.

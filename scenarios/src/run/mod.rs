@@ -40,12 +40,16 @@ use std::rc::Rc;
 use std::time::Instant;
 
 use onescan_server::lockstep::Lockstep;
+use onescan_server::record::Observer;
 
 pub use config::{Format, Mode, RunConfig, Transport};
 pub use error::RunError;
 pub use report::{RunReport, Verdict};
 
 use crate::expect::{Trace, TraceEnd};
+use crate::plot::Plot;
+use crate::regress::page::of_runs;
+use crate::regress::ran::Event;
 use crate::scenario::Scenario;
 use expectation::Witness;
 use interrupt::Interrupt;
@@ -59,8 +63,9 @@ use watch::WatchReport;
 /// See [`RunError`]. A failed client is no error here but a verdict: what there is of the run is
 /// recorded, plotted and reported.
 pub fn execute(config: &RunConfig, interrupt: &Interrupt, out: &mut dyn Write) -> Result<Verdict, RunError> {
-    let mut scenario = Scenario::load(&config.scenario)?;
-    if config.coverage.is_some() {
+    let mut scenario = Scenario::load_case(&config.scenario, config.case.as_deref())?;
+    // A page says what was executed where that is seen.
+    if config.coverage.is_some() || (config.html.is_some() && config.transport == Transport::Inproc) {
         scenario.cover();
     }
     config.check(&scenario)?;
@@ -70,7 +75,7 @@ pub fn execute(config: &RunConfig, interrupt: &Interrupt, out: &mut dyn Write) -
     let mut reports: Vec<RunReport> = Vec::new();
     let mut samples = Vec::new();
     for number in 1..=config.runs {
-        let (report, sampled) = one_run(config, &scenario, number, interrupt)?;
+        let (report, sampled) = one_run(config, &scenario, number, interrupt, Vec::new())?;
         report.write(config.format, config.runs, out).map_err(RunError::Output)?;
         reports.push(report);
         samples.push(sampled);
@@ -85,9 +90,36 @@ pub fn execute(config: &RunConfig, interrupt: &Interrupt, out: &mut dyn Write) -
         let plot = sampler::plot(&scenario, config, &samples, &reports);
         output::write_whole(path, plot.to_svg().as_bytes())?;
     }
+    if let Some(path) = &config.html {
+        let plot = sampler::plot(&scenario, config, &samples, &reports);
+        output::write_whole(path, page(&scenario, &reports, &plot).as_bytes())?;
+    }
     let verdict = Verdict::of(config, &reports);
     verdict.write(config, &reports, out).map_err(RunError::Output)?;
     Ok(verdict)
+}
+
+/// The page about all runs.
+fn page(scenario: &Scenario, reports: &[RunReport], plot: &Plot) -> String {
+    let events: Vec<Event> = scenario.case_events().into_iter().map(|(at_ns, text)| Event { at_ns, text }).collect();
+    let coverage =
+        scenario.coverage().map(|sink| sink.lock().unwrap_or_else(std::sync::PoisonError::into_inner).clone());
+    of_runs(reports, scenario.file().step.as_nanos(), &events, plot, &coverage.unwrap_or_default())
+}
+
+/// One run that others watch, and its plot; without signals unless the run has a plot.
+///
+/// # Errors
+/// See [`RunError`].
+pub(crate) fn watched(
+    config: &RunConfig,
+    scenario: &Scenario,
+    interrupt: &Interrupt,
+    observers: Vec<Box<dyn Observer>>,
+) -> Result<(RunReport, Plot), RunError> {
+    let (report, samples) = one_run(config, scenario, 1, interrupt, observers)?;
+    let plot = sampler::plot(scenario, config, &[samples], std::slice::from_ref(&report));
+    Ok((report, plot))
 }
 
 /// One run, and what a plot needs of it.
@@ -96,6 +128,7 @@ fn one_run(
     scenario: &Scenario,
     number: u32,
     interrupt: &Interrupt,
+    observers: Vec<Box<dyn Observer>>,
 ) -> Result<(RunReport, Samples), RunError> {
     let started = Instant::now();
     let samples = Rc::new(RefCell::new(Samples::new(&config.plotted(scenario))));
@@ -103,7 +136,10 @@ fn one_run(
     let recorded = config.record.as_ref().map(|request| Recorded::begin(request, config, scenario, number));
     let (recorded, recorder) = recorded.transpose()?.unzip();
     let watch = |lockstep: &mut Lockstep| {
-        if config.plot.is_some() {
+        for observer in observers {
+            lockstep.observe(observer);
+        }
+        if config.plot.is_some() || config.html.is_some() {
             lockstep.observe(Box::new(Sampler::new(Rc::clone(&samples))));
         }
         let expected = scenario.expectations();

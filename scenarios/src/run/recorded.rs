@@ -46,12 +46,13 @@ impl Recorded {
             onescan: env!("CARGO_PKG_VERSION").to_owned(),
             scenario: scenario.name().to_owned(),
             folder: own_folder,
+            case: config.case.clone(),
             mode: match config.mode {
                 Mode::Lockstep => "lockstep".to_owned(),
                 Mode::Freewheel => "freewheel".to_owned(),
             },
             until: config.end(scenario),
-            seed: scenario.file().seed,
+            seed: scenario.seed(),
             files,
         };
         let recorder = Recorder::new(&folder, provenance, request.choice.clone());

@@ -20,6 +20,9 @@ use crate::scenario::Scenario;
 pub struct RunReport {
     /// The scenario's name.
     pub scenario: String,
+    /// The case of it, if one was asked for.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub case: Option<String>,
     /// Number of the run, from 1.
     pub run: u32,
     /// In lockstep or not.
@@ -71,6 +74,7 @@ impl RunReport {
         };
         Self {
             scenario: scenario.name().to_owned(),
+            case: scenario.case().map(|case| case.name.clone()),
             run,
             mode: config.mode,
             transport: config.transport,
@@ -110,7 +114,9 @@ impl RunReport {
                 writeln!(out)?;
             }
             Format::Human => {
-                let name = if runs == 1 { self.scenario.clone() } else { format!("run {}/{runs}", self.run) };
+                let case = self.case.as_ref().map(|case| format!(" {case}")).unwrap_or_default();
+                let name =
+                    if runs == 1 { format!("{}{case}", self.scenario) } else { format!("run {}/{runs}", self.run) };
                 let digest = self.digest.map_or_else(|| "none".to_owned(), |digest| digest.to_string());
                 let (steps, t_v, wall) = (self.steps, self.virtual_time, self.wall_time_s);
                 writeln!(out, "{name}: {}, {steps} steps, {t_v} virtual in {wall:.3} s", self.status)?;

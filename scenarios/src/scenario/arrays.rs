@@ -52,7 +52,7 @@ pub(super) fn expand(file: &mut ScenarioFile) -> Result<(), Wrong> {
     Ok(())
 }
 
-fn names(text: &str, place: std::ops::Range<usize>) -> Result<Vec<SignalName>, Wrong> {
+pub(super) fn names(text: &str, place: std::ops::Range<usize>) -> Result<Vec<SignalName>, Wrong> {
     let names = array::names(text).map_err(|error| Wrong::new(error.to_string(), Some(place.clone())))?;
     let named = |name: String| SignalName::new(name).map_err(|bad| Wrong::new(bad.to_string(), Some(place.clone())));
     names.into_iter().map(named).collect()

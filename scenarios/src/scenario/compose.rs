@@ -4,21 +4,23 @@ use std::collections::BTreeMap;
 use std::path::PathBuf;
 
 use miette::{NamedSource, SourceSpan};
+use onescan_clients::operator::Operator;
 use onescan_clients::plant::{Plant, Scene, SceneError, SceneFault};
 use onescan_clients::soft_plc::{SoftPlcClient, bind};
 use onescan_plc_shim::input::kind::{FileKind, SourceKind};
 use onescan_plc_shim::{Application, Dialect, Input, Task, TaskPlan};
 use onescan_server::client::Client;
-use onescan_server::signal::{ClientName, SignalName, did_you_mean};
+use onescan_server::signal::{ClientName, Port, SignalName, did_you_mean};
 
 use super::arrays;
+use super::case::value::bytes_of;
 use super::error::{PlcReport, ScenarioError, SceneReport};
 use super::file::{ClientFile, TaskFile};
 use super::load::Scenario;
 
 /// A client of a scenario.
 pub enum Member {
-    /// A plant in this process.
+    /// A plant in this process, or an operator.
     Plant(Box<dyn Client>),
     /// A soft PLC in this process.
     Plc(Box<dyn Client>),
@@ -47,13 +49,16 @@ impl Scenario {
         };
         match entry.get_ref() {
             ClientFile::Plant { scene, period } => {
-                let plant = Plant::new(self.scene_of(scene)?, name.clone(), period.unwrap_or(self.file().step));
-                Ok(Member::Plant(Box::new(plant.seeded(self.file().seed))))
+                let scene = self.scene_in_case(name, scene)?;
+                let plant = Plant::new(scene, name.clone(), period.unwrap_or(self.file().step));
+                Ok(Member::Plant(self.forced(Box::new(plant.seeded(self.seed())))))
             }
             ClientFile::SoftPlc { sources, dialect, tasks, bind } => {
                 let compiled = self.compiled(name, sources, *dialect, bind)?;
-                self.soft_plc(name, &compiled, tasks).map(|plc| Member::Plc(Box::new(plc)))
+                let plc = self.soft_plc(name, &compiled, tasks)?;
+                Ok(Member::Plc(self.forced(Box::new(plc))))
             }
+            ClientFile::Operator { initial } => Ok(Member::Plant(self.forced(Box::new(self.operator(name, initial)?)))),
             ClientFile::External { command } => Ok(Member::External(command.clone())),
         }
     }
@@ -95,6 +100,16 @@ impl Scenario {
         let named = path.display().to_string();
         let scene = Scene::parse(&text, &named).map_err(|error| Box::new(report(&error, &named, &text)))?;
         Ok(scene)
+    }
+
+    /// The scene of plant `name` as the case wants it.
+    fn scene_in_case(&self, name: &ClientName, file: &str) -> Result<Scene, ScenarioError> {
+        // What is wrong with the scene itself is told first.
+        let plain = self.scene_of(file)?;
+        let path = self.folder().join(file);
+        let (text, named) = (read(&path)?, path.display().to_string());
+        let wanted = self.scene_text(name, &named, text.clone())?;
+        Ok(if wanted == text { plain } else { Scene::parse(&wanted, &named).unwrap_or(plain) })
     }
 
     /// The sources of soft PLC `name`, compiled, and what its `bind` says.
@@ -141,6 +156,7 @@ impl Scenario {
         self.fits_step(name, &plan)?;
         let mut client = SoftPlcClient::new(name.clone(), application, &plan, &bindings, self.file().step)
             .map_err(|error| self.wrong_client(name, error.to_string(), None))?;
+        self.preset(&mut client, name)?;
         if let Some(sink) = self.coverage() {
             client.cover(sink.clone());
         }
@@ -153,6 +169,32 @@ impl Scenario {
             watched.map_err(|unknown| self.wrong_option(format!("--watch: {unknown}"), None))?;
         }
         Ok(client)
+    }
+
+    /// The operator of the signals whose writer it is.
+    fn operator(
+        &self,
+        name: &ClientName,
+        initial: &std::collections::BTreeMap<SignalName, toml::Value>,
+    ) -> Result<Operator, ScenarioError> {
+        let own: Vec<_> = self.plan().signals().iter().filter(|signal| signal.writer.as_ref() == Some(name)).collect();
+        if let Some(unknown) = initial.keys().find(|wanted| own.iter().all(|signal| signal.name != **wanted)) {
+            let help = did_you_mean(unknown.as_str(), own.iter().map(|signal| signal.name.as_str()));
+            return Err(self.wrong_client(name, format!("`{name}` writes no signal `{unknown}`"), help));
+        }
+        let mut signals = Vec::new();
+        for signal in own {
+            let port = Port { name: signal.name.clone(), ty: signal.ty };
+            let bytes = match initial.get(&signal.name) {
+                None => vec![0; signal.ty.size()],
+                Some(value) => bytes_of(signal.ty, value).map_err(|wanted| {
+                    let message = format!("`{}` begins with {value}, which is not {wanted}", signal.name);
+                    self.wrong_client(name, message, None)
+                })?,
+            };
+            signals.push((port, bytes));
+        }
+        Ok(Operator::new(name.clone(), self.file().step, signals))
     }
 
     /// A task can be due at the steps of the session only.

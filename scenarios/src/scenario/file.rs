@@ -102,6 +102,12 @@ pub enum ClientFile {
         #[serde(default)]
         bind: BTreeMap<String, String>,
     },
+    /// Switches and set points that neither plant nor PLC writes; a case says what it does.
+    Operator {
+        /// Values of its signals at the start; 0, FALSE or empty if absent.
+        #[serde(default)]
+        initial: BTreeMap<SignalName, toml::Value>,
+    },
     /// A program of its own that joins over TCP.
     External {
         /// The program to start, with its arguments; `{server}` stands for the server's address.
@@ -171,7 +177,7 @@ pub struct PlotFile {
     pub signals: Vec<Spanned<SignalName>>,
 }
 
-fn from_text<'de, D, T>(deserializer: D) -> Result<T, D::Error>
+pub(super) fn from_text<'de, D, T>(deserializer: D) -> Result<T, D::Error>
 where
     D: Deserializer<'de>,
     T: FromStr,
@@ -180,7 +186,7 @@ where
     String::deserialize(deserializer)?.parse().map_err(serde::de::Error::custom)
 }
 
-fn from_optional_text<'de, D, T>(deserializer: D) -> Result<Option<T>, D::Error>
+pub(super) fn from_optional_text<'de, D, T>(deserializer: D) -> Result<Option<T>, D::Error>
 where
     D: Deserializer<'de>,
     T: FromStr,

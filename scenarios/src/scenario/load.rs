@@ -3,15 +3,16 @@
 use std::collections::BTreeSet;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
-use miette::{NamedSource, SourceSpan};
 use onescan_clients::soft_plc::{CoverageSink, WriterSink};
 use onescan_server::plan::{Coupling, PlanError, SessionPlan};
 use onescan_server::signal::{ClientName, SignalDecl, SignalName, did_you_mean};
-use onescan_server::time::TimeSpan;
+use onescan_server::time::{TimeSpan, VirtualTime};
 
 use super::arrays;
-use super::error::ScenarioError;
+use super::case::{self, Applied, Catalogue};
+use super::error::{ScenarioError, wrong};
 use super::expectations::Expectations;
 use super::file::{ClientFile, CouplingFile, ScenarioFile, VERSION};
 use super::watch::Watched;
@@ -29,6 +30,8 @@ pub struct Scenario {
     file: ScenarioFile,
     plan: SessionPlan,
     expectations: Expectations,
+    /// The case that is tried; nothing for the scenario as it is.
+    applied: Option<Arc<Applied>>,
     /// Where soft PLCs give what they executed, if that is asked for.
     coverage: Option<CoverageSink>,
     /// Where soft PLCs tell which statements wrote these signals, if that is asked for.
@@ -77,7 +80,63 @@ impl Scenario {
         let expectations =
             Expectations::bind(&file, &text).map_err(|found| wrong(found.message, Some(found.place), found.help))?;
         let name = name_of(&path);
-        Ok(Self { name, folder, path, text, file, plan, expectations, coverage: None, writers: None, watched: None })
+        Ok(Self {
+            name,
+            folder,
+            path,
+            text,
+            file,
+            plan,
+            expectations,
+            applied: None,
+            coverage: None,
+            writers: None,
+            watched: None,
+        })
+    }
+
+    /// The scenario in `path` as the case called `name` wants it; as it is without a name.
+    ///
+    /// # Errors
+    /// See [`ScenarioError`].
+    pub fn load_case(path: &Path, name: Option<&str>) -> Result<Self, ScenarioError> {
+        let scenario = Self::load(path)?;
+        let Some(name) = name else { return Ok(scenario) };
+        let catalogue = Catalogue::load(scenario.folder())?;
+        if let Some(case) = catalogue.find(name) {
+            return scenario.with_case(&catalogue, case);
+        }
+        let names = || catalogue.cases().iter().map(|case| case.name.as_str());
+        let all = || format!("its cases are {}", names().collect::<Vec<_>>().join(", "));
+        let help = did_you_mean(name, names()).unwrap_or_else(all);
+        Err(ScenarioError::UnknownCase { scenario: scenario.name, case: name.to_owned(), help })
+    }
+
+    /// The case that is tried.
+    pub fn case(&self) -> Option<&case::Case> {
+        self.applied().map(|applied| &applied.case)
+    }
+
+    pub(super) fn applied(&self) -> Option<&Applied> {
+        self.applied.as_deref()
+    }
+
+    pub(super) fn put_on(&mut self, applied: Applied) {
+        self.applied = Some(Arc::new(applied));
+    }
+
+    pub(super) fn set_expectations(&mut self, expectations: Expectations) {
+        self.expectations = expectations;
+    }
+
+    /// When a run is complete.
+    pub fn until(&self) -> VirtualTime {
+        self.case().and_then(|case| case.until).unwrap_or(self.file.until)
+    }
+
+    /// What chance begins with.
+    pub fn seed(&self) -> u64 {
+        self.case().and_then(|case| case.seed).unwrap_or(self.file.seed)
     }
 
     /// Lets soft PLCs note what they execute.
@@ -119,9 +178,10 @@ impl Scenario {
             match client.get_ref() {
                 ClientFile::Plant { scene, .. } => files.push(scene.into()),
                 ClientFile::SoftPlc { sources, .. } => files.extend(sources.iter().map(PathBuf::from)),
-                ClientFile::External { .. } => {}
+                ClientFile::Operator { .. } | ClientFile::External { .. } => {}
             }
         }
+        files.extend(self.applied().and(Some(case::FILE_NAME.into())));
         files.dedup();
         files
     }
@@ -169,15 +229,6 @@ fn name_of(path: &Path) -> String {
     named.map_or_else(|| "scenario".to_owned(), |name| name.to_string_lossy().into_owned())
 }
 
-fn wrong(path: &Path, text: &str, message: String, place: Option<Range<usize>>, help: Option<String>) -> ScenarioError {
-    ScenarioError::Wrong {
-        message,
-        file: NamedSource::new(path.display().to_string(), text.to_owned()),
-        place: place.map(SourceSpan::from),
-        help,
-    }
-}
-
 /// The line that begins with `key`.
 fn place_of(text: &str, key: &str) -> Option<Range<usize>> {
     let mut start = 0;
@@ -218,6 +269,7 @@ fn place_of_plan_error(error: &PlanError, file: &ScenarioFile, text: &str) -> Op
 pub fn period_of(client: &ClientFile, step: TimeSpan) -> Option<TimeSpan> {
     match client {
         ClientFile::Plant { period, .. } => Some(period.unwrap_or(step)),
+        ClientFile::Operator { .. } => Some(step),
         ClientFile::SoftPlc { .. } | ClientFile::External { .. } => None,
     }
 }

@@ -6,11 +6,13 @@
 //! | [`load`] | `scenario.toml` read and checked |
 //! | `arrays` | signals written as arrays and patterns |
 //! | [`expectations`] | what it expects of every run |
+//! | [`case`] | one scenario, tried in many ways |
 //! | [`compose`] | a scenario's plan and its clients |
 //! | [`watch`] | variables of its soft PLCs that a run looks at |
 //! | [`error`] | what can be wrong with it, and where |
 
 mod arrays;
+pub mod case;
 pub mod compose;
 pub mod error;
 pub mod expectations;

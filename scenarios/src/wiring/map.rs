@@ -108,6 +108,8 @@ impl Map {
                     let Compiled { application, paths } = scenario.compiled(name, sources, *dialect, bind)?;
                     ("soft-plc", Some(of_plc(&application, name, scenario.plan().signals(), &paths)))
                 }
+                // It writes whatever the scenario says that it writes.
+                ClientFile::Operator { .. } => ("operator", None),
                 ClientFile::External { .. } => ("external", None),
             };
             clients.push(Member { name: name.to_string(), kind, known: ends.is_some() });

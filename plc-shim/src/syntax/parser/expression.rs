@@ -91,7 +91,7 @@ impl Cursor<'_> {
         }
     }
 
-    fn unary(&mut self) -> Expr {
+    pub(super) fn unary(&mut self) -> Expr {
         let operator = match self.peek() {
             Some(TokenKind::Punctuation(Punctuation::Minus)) => UnaryOp::Negate,
             Some(TokenKind::Punctuation(Punctuation::Plus)) => UnaryOp::Plus,
@@ -211,7 +211,7 @@ impl Cursor<'_> {
         Ok(arguments)
     }
 
-    fn argument(&mut self) -> Argument {
+    pub(super) fn argument(&mut self) -> Argument {
         let negated =
             self.at_keyword(Keyword::Not) && self.peek_ahead(2) == Some(TokenKind::Punctuation(Punctuation::Output));
         let after_name = self.peek_ahead(1 + usize::from(negated));

@@ -54,6 +54,14 @@ impl Cursor<'_> {
 
     fn statement(&mut self) -> Statement {
         let start = self.span();
+        if let Some(kind) = self.label() {
+            let reported = matches!(kind, StatementKind::Error);
+            let statement = Statement { kind, span: self.span_from(start) };
+            if reported {
+                self.recover(self.position());
+            }
+            return statement;
+        }
         let (position, known) = (self.position(), self.reported());
         let kind = self.nested(Self::statement_kind).unwrap_or(StatementKind::Error);
         let span = self.span_from(start);

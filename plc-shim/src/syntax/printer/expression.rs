@@ -61,7 +61,7 @@ impl Printer {
         self.word(")");
     }
 
-    fn argument(&mut self, argument: &Argument) {
+    pub(super) fn argument(&mut self, argument: &Argument) {
         match argument {
             Argument::Positional(expr) => self.expression(expr),
             Argument::Input(name, expr) => {
