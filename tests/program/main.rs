@@ -12,6 +12,7 @@ mod expectations;
 mod faults;
 mod filling_machine;
 mod freewheel;
+mod gantry_robot;
 mod help;
 mod instrument;
 mod new;

@@ -11,6 +11,7 @@
 //! | [`motion`], [`motion_use`] | motion control, and what of it a project uses |
 //! | [`survey`] | programs and sources of time in a project |
 //! | [`tasks`] | the task table |
+//! | [`constant`] | constant expressions of tasks |
 //! | [`configuration`] | a project's CONFIGURATION |
 //! | [`controller`] | execution controllers |
 //! | [`target`], [`twincat`] | the shim's sources as a vendor's tool takes them |
@@ -20,6 +21,7 @@
 
 mod clock;
 mod configuration;
+mod constant;
 mod controller;
 pub mod diff;
 pub mod edits;
@@ -266,7 +268,7 @@ impl Plain {
         }
         if let Some(configuration) = survey.configuration {
             let wrong = |found| InstrumentError::Text(Diagnostics::new(vec![found], &self.sources));
-            return configuration::tasks(configuration).map_err(wrong);
+            return configuration::tasks(configuration, &survey.constants).map_err(wrong);
         }
         let scheduled = survey.programs.iter().filter(|program| !survey.called.contains(&program.name.key()));
         let programs: Vec<String> = scheduled.map(|program| program.name.text.clone()).collect();

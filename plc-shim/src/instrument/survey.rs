@@ -3,6 +3,7 @@
 use std::collections::BTreeSet;
 
 use super::clock::{self, Fate, Form, Kind};
+use super::constant::{self, Constants};
 use super::motion::Role;
 use crate::application::library;
 use crate::check::{VIRTUAL_TIME_NAME, is_standard_function};
@@ -22,6 +23,8 @@ pub(super) struct Survey<'a> {
     pub(super) programs: Vec<&'a Pou>,
     /// The first configuration.
     pub(super) configuration: Option<&'a Configuration>,
+    /// Global constants.
+    pub(super) constants: Constants<'a>,
     /// Programs that others call.
     pub(super) called: BTreeSet<String>,
     /// Names to be replaced.
@@ -131,7 +134,8 @@ impl<'a> Surveyor<'_, 'a> {
         self.local.clear();
     }
 
-    fn globals(&mut self, section: &Section) {
+    fn globals(&mut self, section: &'a Section) {
+        constant::note(section, &mut self.survey.constants);
         section.variables.iter().flat_map(|each| &each.names).for_each(|name| self.own_name(name));
         self.section(section);
     }
