@@ -111,7 +111,7 @@ impl Scenario {
 
     /// What the PLCs of a run have seen; the next run begins with nothing.
     pub fn take_sightings(&self) -> onescan_clients::soft_plc::watch::Sightings {
-        let Some(watched) = &self.watched else { return Sightings::default() };
+        let Some(watched) = &self.watched else { return onescan_clients::soft_plc::watch::Sightings::default() };
         // A client that panicked has seen what it has seen.
         std::mem::take(&mut watched.sink.lock().unwrap_or_else(std::sync::PoisonError::into_inner))
     }
