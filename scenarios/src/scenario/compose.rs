@@ -124,19 +124,12 @@ impl Scenario {
         bind: &BTreeMap<String, String>,
     ) -> Result<Compiled, ScenarioError> {
         let inputs = sources.iter().map(|source| self.source(name, source, dialect));
-<<<<<<< HEAD
-        let inputs = inputs.collect::<Result<Vec<_>, _>>()?;
+        let plain = inputs.collect::<Result<Vec<_>, _>>()?;
+        let inputs: Vec<Input> = plain.iter().cloned().map(|input| self.with_constants(name, input)).collect();
         let compiled = match (self.writers(), self.coverage()) {
             (Some(_), _) => Application::from_inputs_traced(inputs),
             (None, Some(_)) => Application::from_inputs_with_coverage(inputs),
             (None, None) => Application::from_inputs(inputs),
-=======
-        let plain = inputs.collect::<Result<Vec<_>, _>>()?;
-        let inputs: Vec<Input> = plain.iter().cloned().map(|input| self.with_constants(name, input)).collect();
-        let compiled = match self.coverage() {
-            Some(_) => Application::from_inputs_with_coverage(inputs),
-            None => Application::from_inputs(inputs),
->>>>>>> main
         };
         let application = compiled.map_err(|findings| match self.wrong_constant(name, &plain) {
             Some(error) => error,
