@@ -30,7 +30,7 @@ impl Checker<'_> {
         let mut body = Body::new(self, (*scope).clone(), Some(id));
         let mut statements = body.prologue(ast.kind);
         if let Some((owner, occasion)) = body.checker.stage_of(id) {
-            statements.extend(body.staged(owner, occasion))
+            statements.extend(body.staged(owner, occasion));
         } else {
             statements.extend(body.chart(ast));
             statements.extend(body.statements(&ast.body));

@@ -151,7 +151,7 @@ impl Writer<'_> {
                 End::Wrong(_) => None,
             };
             if let Some(name) = name {
-                self.write(&name.value, &name.span)
+                self.write(&name.value, &name.span);
             } else {
                 let message = "what this transition leads to has no name";
                 self.taken.report(transition.open.clone(), Code::MalformedXml, message);

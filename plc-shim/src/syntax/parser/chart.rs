@@ -143,7 +143,7 @@ impl Cursor<'_> {
         let span = self.span();
         let rank = self.next_text().replace('_', "").parse().ok().filter(|_| self.peek() == Some(TokenKind::Integer));
         if rank.is_some() {
-            self.advance()
+            self.advance();
         } else {
             self.unexpected("a number that is not negative");
             self.skip_until(|kind| kind == TokenKind::Punctuation(Punctuation::RightParen) || ends_chart_part(kind));
