@@ -5,7 +5,7 @@ use crate::syntax::token::{Keyword, Punctuation, TokenKind};
 use crate::syntax::{SourceFile, tokenize};
 
 /// What every program has: file names and texts.
-pub(crate) const FILES: [(&str, &str); 10] = [
+pub(crate) const FILES: [(&str, &str); 11] = [
     ("iec/bcd.st", include_str!("../../iec/bcd.st")),
     ("iec/bistable.st", include_str!("../../iec/bistable.st")),
     ("iec/clock_and_semaphore.st", include_str!("../../iec/clock_and_semaphore.st")),
@@ -14,6 +14,7 @@ pub(crate) const FILES: [(&str, &str); 10] = [
     ("iec/date_and_time.st", include_str!("../../iec/date_and_time.st")),
     ("iec/edge_detection.st", include_str!("../../iec/edge_detection.st")),
     ("iec/long_date_and_time.st", include_str!("../../iec/long_date_and_time.st")),
+    ("iec/sequential_function_chart.st", include_str!("../../iec/sequential_function_chart.st")),
     ("iec/timers.st", include_str!("../../iec/timers.st")),
     ("iec/timers_by_type.st", include_str!("../../iec/timers_by_type.st")),
 ];

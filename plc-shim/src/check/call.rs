@@ -76,7 +76,15 @@ impl Body<'_, '_> {
     }
 
     fn is_local(&self, name: &Ident) -> bool {
-        !name.is_quoted() && self.scope.by_name.contains_key(&name.key())
+        !name.is_quoted() && self.is_callable_variable(&name.key())
+    }
+
+    /// True for a variable of the unit, and for an instance among those that its methods see. Of these
+    /// the others leave their names to functions.
+    fn is_callable_variable(&self, key: &str) -> bool {
+        let outer = || self.scope.outer.as_ref()?.find(key).map(|variable| variable.ty);
+        let is_block = |ty| matches!(self.checker.types.get(ty), Type::FunctionBlock { .. });
+        self.scope.by_name.contains_key(key) || outer().is_some_and(is_block)
     }
 
     /// Inside a function its own name is its result, and a call of it recursion.
@@ -97,7 +105,7 @@ impl Body<'_, '_> {
         match &call.callee.kind {
             ast::ExprKind::Name(name) => {
                 let key = name.key();
-                self.scope.by_name.contains_key(&key) && !self.is_own_result(name)
+                self.is_callable_variable(&key) && !self.is_own_result(name)
             }
             _ => false,
         }

@@ -18,7 +18,8 @@
 //! | [`call`], [`standard_function`], [`function_form`], [`conversion_function`], [`memory_function`] | calls |
 //! | [`enable`], [`enable_error`] | EN and ENO |
 //! | [`text`], [`text_function`], [`text_conversion`] | character strings |
-//! | [`statement`], [`assignment`], [`edge`] | statements |
+//! | [`statement`], [`assignment`], [`edge`], [`build`] | statements |
+//! | [`chart`] | Sequential Function Charts |
 //! | [`jump`], [`wire`], [`instruction`] | what networks and lists of instructions have beside statements |
 //! | [`configuration`] | resources, tasks, instances of programs |
 //! | [`dialect`] | what dialects do their own way |
@@ -33,8 +34,10 @@
 mod address;
 pub(crate) mod asserts;
 mod assignment;
+mod build;
 mod calendar;
 mod call;
+mod chart;
 mod class;
 mod configuration;
 mod constant;
@@ -130,6 +133,8 @@ pub(crate) struct Checked {
     pub(crate) end: Option<Pou>,
     /// The whole memory at a cold start, before `start` runs.
     pub(crate) image: Vec<u8>,
+    /// The steps and transitions of charts: where they stand, and what they are called.
+    pub(crate) chart_parts: Vec<(Span, String)>,
 }
 
 /// Checks all units together. `library` tells the files of the standard function blocks, whose
@@ -171,6 +176,7 @@ pub(crate) fn check(units: &[(FileId, &CompilationUnit)], library: &BTreeSet<Fil
         start,
         end,
         image,
+        chart_parts: checker.chart_parts,
     };
     (result, checker.diagnostics)
 }
@@ -229,6 +235,7 @@ struct Checker<'a> {
     dynamic_calls: BTreeMap<PouId, BTreeSet<PouId>>,
     rows: Rows,
     depth: u32,
+    chart_parts: Vec<(Span, String)>,
     diagnostics: Vec<Diagnostic>,
 }
 

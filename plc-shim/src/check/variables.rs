@@ -108,6 +108,7 @@ impl<'a> Checker<'a> {
             span: name.span,
             image: declared.image.clone(),
             edge: None,
+            of_chart: false,
             visibility: visibility(section, qualifiers),
             owner: None,
         }
@@ -228,7 +229,7 @@ pub(super) struct Interface<'c, 'a> {
 impl<'c, 'a> Interface<'c, 'a> {
     fn new(checker: &'c mut Checker<'a>, id: PouId) -> Self {
         let ast = checker.pou(id).ast;
-        let (kind, referred) = (ast.kind, referred(&ast.body));
+        let (kind, referred) = (ast.kind, referred(ast));
         let body = Body::new(checker, Scope::default(), Some(id));
         let (starts, fleeting, kept) = (Vec::new(), Vec::new(), BTreeMap::new());
         Self { body, kind, align: 1, image: Vec::new(), starts, fleeting, kept, referred }
@@ -255,6 +256,7 @@ impl<'c, 'a> Interface<'c, 'a> {
             self.body.scope.parameters = 1;
             self.inherit();
             self.declare_sections(ast, |_| true);
+            self.declare_chart(ast);
             self.keep_for_methods(ast);
         }
     }

@@ -113,6 +113,12 @@ pub(super) fn fate(key: &str, kind: Kind) -> Option<Fate> {
     if kind == Kind::Block { motion::role(key).map(Fate::Motion) } else { None }
 }
 
+/// What the shim's action control is made of.
+pub(super) fn on_delay() -> &'static Form {
+    let [form, ..] = &FORMS;
+    form
+}
+
 impl Form {
     /// The name that takes its place.
     pub(super) fn new_name(&self) -> String {

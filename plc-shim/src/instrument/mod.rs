@@ -14,11 +14,13 @@
 //! | [`constant`] | constant expressions of tasks |
 //! | [`configuration`] | a project's CONFIGURATION |
 //! | [`controller`] | execution controllers |
+//! | [`chart`] | Sequential Function Charts: execution signal, action control, times of steps |
 //! | [`target`], [`twincat`] | the shim's sources as a vendor's tool takes them |
 //!
 //! Invariants: text goes in and comes out, no file is touched; what is not marked stays byte for byte;
 //! instrumenting twice is instrumenting once; what cannot be replaced is told.
 
+mod chart;
 mod clock;
 mod configuration;
 mod constant;
@@ -144,9 +146,10 @@ pub fn instrument(inputs: &[Input], options: &Options) -> Result<Project, Instru
     }
     let tasks = TaskTable::new(&plain.tasks(&survey, options)?, &entries(&survey))?;
     let mut forms: Vec<_> = survey.renames.iter().map(|(_, form)| *form).collect();
+    forms.extend((!survey.charts.is_empty()).then(clock::on_delay));
     forms.sort_by_key(|form| form.name);
     forms.dedup();
-    let sources = Sources::new(options.target, &tasks, &forms, &motion.blocks);
+    let sources = Sources::new(options.target, &tasks, &forms, &motion.blocks, &survey.charts);
     let mut files = plain.edited(&survey, &motion, &tasks, &sources.globals)?;
     let globals = if survey.configuration.is_some() { Globals::InConfiguration } else { Globals::InFile };
     for source in sources.files(options.target, globals) {
@@ -299,7 +302,14 @@ impl Plain {
                 edits.replace(at, marks::renamed(&new, &name.text));
             });
         }
-        for (pou, number) in tasks.numbered() {
+        for pou in &survey.charts {
+            let number = tasks.numbered().find(|(numbered, _)| std::ptr::eq(*numbered, *pou));
+            let number = number.map(|(_, number)| (number, tasks.programs.len()));
+            changes(pou.name.span.file, &mut |file, edits| {
+                chart::control(pou, number, &survey.renames, file, edits);
+            });
+        }
+        for (pou, number) in tasks.numbered().filter(|(pou, _)| pou.chart.is_empty()) {
             changes(pou.name.span.file, &mut |file, edits| {
                 controller::control(pou, number, tasks.programs.len(), file, edits);
             });

@@ -27,6 +27,8 @@ pub(super) struct Survey<'a> {
     pub(super) constants: Constants<'a>,
     /// Programs that others call.
     pub(super) called: BTreeSet<String>,
+    /// Programs and function blocks that are charts.
+    pub(super) charts: Vec<&'a Pou>,
     /// Names to be replaced.
     pub(super) renames: Vec<(Ident, &'static Form)>,
     /// Names of blocks and types of motion control.
@@ -125,9 +127,16 @@ impl<'a> Surveyor<'_, 'a> {
             pou.object.extends.iter().for_each(|base| self.base(base));
         }
         self.local = pou.sections.iter().flat_map(variable_names).collect();
+        // An action is called by its name.
+        self.local.extend(pou.object.members.iter().map(|member| member.pou.name.key()));
         pou.result.iter().for_each(|result| self.spec(result));
         pou.sections.iter().for_each(|section| self.section(section));
-        walk::statements(&pou.body, self);
+        if !pou.chart.is_empty() {
+            self.survey.charts.push(pou);
+            self.survey.findings.extend(super::chart::findings(pou));
+        }
+        self.own_parts(pou);
+        walk::unit(pou, self);
         for member in pou.object.members.iter().map(|member| &member.pou) {
             self.local.extend(member.sections.iter().flat_map(variable_names));
             member.result.iter().for_each(|result| self.spec(result));
@@ -157,6 +166,12 @@ impl<'a> Surveyor<'_, 'a> {
         configuration.sections.iter().chain(resources).for_each(|section| self.globals(section));
         configuration.access.iter().for_each(|access| self.spec(&access.spec));
         configuration.instances.iter().for_each(|instance| self.spec(&instance.spec));
+    }
+
+    /// Steps and actions have names among those of the shim's own.
+    fn own_parts(&mut self, pou: &Pou) {
+        pou.chart.steps.iter().for_each(|step| self.own_name(&step.name));
+        pou.object.members.iter().for_each(|member| self.own_name(&member.pou.name));
     }
 
     /// A name that a project gives must not be one of the shim's.

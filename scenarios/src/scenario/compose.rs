@@ -124,12 +124,16 @@ impl Scenario {
         bind: &BTreeMap<String, String>,
     ) -> Result<Compiled, ScenarioError> {
         let inputs = sources.iter().map(|source| self.source(name, source, dialect));
-        let inputs = inputs.collect::<Result<Vec<_>, _>>()?;
+        let plain = inputs.collect::<Result<Vec<_>, _>>()?;
+        let inputs: Vec<Input> = plain.iter().cloned().map(|input| self.with_constants(name, input)).collect();
         let compiled = match self.coverage() {
             Some(_) => Application::from_inputs_with_coverage(inputs),
             None => Application::from_inputs(inputs),
         };
-        let application = compiled.map_err(|findings| Box::new(PlcReport { client: name.clone(), findings }))?;
+        let application = compiled.map_err(|findings| match self.wrong_constant(name, &plain) {
+            Some(error) => error,
+            None => Box::new(PlcReport { client: name.clone(), findings }).into(),
+        })?;
         for warning in application.warnings().iter() {
             tracing::warn!(code = %warning.code, "{}", warning.message);
         }
