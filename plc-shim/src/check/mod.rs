@@ -6,7 +6,7 @@
 //! | [`layout`] | offsets in memory |
 //! | [`scope`] | what a name means inside a unit |
 //! | [`types`], [`subrange`], [`union`] | types as written to types |
-//! | [`variables`], [`instance_section`] | sections to placed variables, units' interfaces |
+//! | [`variables`], [`storage`], [`instance_section`] | sections to placed variables, units' interfaces |
 //! | [`located`] | direct addresses to places |
 //! | [`initial`] | initial values to bytes |
 //! | [`start`], [`fb_init`], [`instance_arguments`] | what runs before the first scan |
@@ -15,7 +15,7 @@
 //! | [`expression`], [`operator`], [`calendar`], [`place`], [`part`] | expressions |
 //! | [`reference`], [`address`], [`referred`] | references and pointers |
 //! | [`open_array`] | arrays that come with their bounds |
-//! | [`call`], [`standard_function`], [`function_form`], [`conversion_function`], [`memory_function`] | calls |
+//! | [`call`], [`argument`], [`instance_call`], [`standard_function`], [`function_form`], [`conversion_function`], [`memory_function`] | calls |
 //! | [`enable`], [`enable_error`] | EN and ENO |
 //! | [`text`], [`text_function`], [`text_conversion`] | character strings |
 //! | [`statement`], [`assignment`], [`edge`], [`build`] | statements |
@@ -32,6 +32,7 @@
 //! and needed again contains itself.
 
 mod address;
+mod argument;
 pub(crate) mod asserts;
 mod assignment;
 mod build;
@@ -56,6 +57,7 @@ mod inheritance;
 mod initial;
 mod instance;
 mod instance_arguments;
+mod instance_call;
 mod instance_section;
 mod instruction;
 mod interface_value;
@@ -78,6 +80,7 @@ mod scope;
 mod standard_function;
 mod start;
 mod statement;
+mod storage;
 mod subrange;
 mod text;
 mod text_conversion;

@@ -355,7 +355,7 @@ impl Body<'_, '_> {
     fn index_step(&mut self, bounds: Dimension, index: &ast::Expr, stride: u32) -> Option<Step> {
         let operand = self.within(None, |body| body.expression(index))?;
         let index = self.settle(operand)?;
-        let index = self.as_number(index);
+        let index = self.as_index(index);
         if !self.plain_elementary(&index).is_some_and(ElementaryType::is_integer) {
             let found = self.type_name(index.ty);
             return self.mismatch("an integer", &found, index.span);

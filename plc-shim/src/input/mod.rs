@@ -25,7 +25,7 @@ mod plcopen_object;
 pub mod project;
 mod twincat;
 mod twincat_task;
-mod xml;
+pub(crate) mod xml;
 
 use std::sync::Arc;
 

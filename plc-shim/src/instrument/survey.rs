@@ -33,6 +33,8 @@ pub(super) struct Survey<'a> {
     pub(super) renames: Vec<(Ident, &'static Form)>,
     /// Names of blocks and types of motion control.
     pub(super) motion: Vec<(Ident, Role)>,
+    /// Keys of the units and types that the project declares.
+    declared: BTreeSet<String>,
     /// What cannot be replaced, and names that the shim needs for itself.
     pub(super) findings: Vec<Diagnostic>,
 }
@@ -42,7 +44,8 @@ pub(super) fn survey<'a>(units: &[(FileId, &'a CompilationUnit)]) -> Survey<'a> 
     let declarations = || units.iter().flat_map(|(_, unit)| &unit.declarations);
     let mut names = Names::default();
     declarations().for_each(|declaration| names.add(declaration));
-    let mut surveyor = Surveyor { names: &names, local: BTreeSet::new(), survey: Survey::default() };
+    let survey = Survey { declared: names.units_and_types.clone(), ..Survey::default() };
+    let mut surveyor = Surveyor { names: &names, local: BTreeSet::new(), survey };
     declarations().for_each(|declaration| surveyor.declaration(declaration));
     surveyor.survey
 }
@@ -53,6 +56,13 @@ struct Names {
     programs: BTreeSet<String>,
     units_and_types: BTreeSet<String>,
     globals: BTreeSet<String>,
+}
+
+impl Survey<'_> {
+    /// True for a name that the project gives to a unit or type of its own.
+    pub(super) fn is_declared(&self, name: &str) -> bool {
+        self.declared.contains(&name.to_ascii_uppercase())
+    }
 }
 
 impl Names {

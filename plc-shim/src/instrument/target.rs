@@ -18,6 +18,8 @@ pub enum Target {
     Iec,
     /// TwinCAT 3: an object a file.
     TwinCat,
+    /// CODESYS: a project in PLCopen XML.
+    Codesys,
 }
 
 /// A file of the shim's own.
@@ -74,7 +76,7 @@ impl Sources {
         // A TIME has nanoseconds in the one and milliseconds in the other.
         let (now, now_long) = match target {
             Target::Iec => ("TV * T#0.000001ms", "TV * LT#1ns"),
-            Target::TwinCat => ("LINT_TO_TIME(TV / 1000000)", "LINT_TO_LTIME(TV)"),
+            Target::TwinCat | Target::Codesys => ("LINT_TO_TIME(TV / 1000000)", "LINT_TO_LTIME(TV)"),
         };
         names.extend([("SDSP_NOW_OF_TV", now.to_owned()), ("SDSP_NOWL_OF_TV", now_long.to_owned())]);
         let filled = |template: &str| template::fill(&template::lines_for(template, wanted), &names);
@@ -91,11 +93,16 @@ impl Sources {
         }
     }
 
+    /// The units, for a project that has them in a file of its own.
+    pub(super) fn units(&self) -> Vec<String> {
+        std::iter::once(&self.scheduler).chain(self.forms.iter().map(|unit| &unit.text)).cloned().collect()
+    }
+
     /// The files in which they are.
     pub(super) fn files(self, target: Target, globals: Globals) -> Vec<Source> {
         let own = (globals == Globals::InFile).then_some(self.globals);
         match target {
-            Target::Iec => {
+            Target::Iec | Target::Codesys => {
                 let forms = self.forms.into_iter().map(|unit| unit.text);
                 let motion = self.motion.into_iter().map(|part| part.text);
                 let parts: Vec<String> = own.into_iter().chain([self.scheduler]).chain(forms).chain(motion).collect();

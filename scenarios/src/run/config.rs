@@ -76,6 +76,8 @@ pub struct RunConfig {
     pub transport: Transport,
     /// What is recorded.
     pub record: Option<RecordRequest>,
+    /// A recording, or a file of events, whose operator's inputs are repeated.
+    pub replay_operator: Option<PathBuf>,
     /// For whom reports are.
     pub format: Format,
     /// File for a plot.
@@ -116,6 +118,7 @@ impl RunConfig {
             runs: 1,
             transport: Transport::Inproc,
             record: None,
+            replay_operator: None,
             format: Format::Json,
             plot: None,
             signals: Vec::new(),
@@ -184,6 +187,7 @@ impl RunConfig {
             ("--listen", self.listen.is_some()),
             ("--save-at", self.save.is_some()),
             ("--resume", self.resume.is_some()),
+            ("--replay-operator", self.replay_operator.is_some()),
         ];
         if let Some((option, _)) = options.iter().find(|(_, given)| *given) {
             let help = "free-wheeling clients run in real time in this process, each on its own clock".to_owned();

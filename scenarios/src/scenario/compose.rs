@@ -126,9 +126,10 @@ impl Scenario {
         let inputs = sources.iter().map(|source| self.source(name, source, dialect));
         let plain = inputs.collect::<Result<Vec<_>, _>>()?;
         let inputs: Vec<Input> = plain.iter().cloned().map(|input| self.with_constants(name, input)).collect();
-        let compiled = match self.coverage() {
-            Some(_) => Application::from_inputs_with_coverage(inputs),
-            None => Application::from_inputs(inputs),
+        let compiled = match (self.writers(), self.coverage()) {
+            (Some(_), _) => Application::from_inputs_traced(inputs),
+            (None, Some(_)) => Application::from_inputs_with_coverage(inputs),
+            (None, None) => Application::from_inputs(inputs),
         };
         let application = compiled.map_err(|findings| match self.wrong_constant(name, &plain) {
             Some(error) => error,
@@ -162,6 +163,9 @@ impl Scenario {
         self.preset(&mut client, name)?;
         if let Some(sink) = self.coverage() {
             client.cover(sink.clone());
+        }
+        if let Some((signals, sink)) = self.writers() {
+            client.trace(signals, sink.clone());
         }
         if let Some(watched) = &self.watched {
             let (watches, changes, sink) = watched.of(name);

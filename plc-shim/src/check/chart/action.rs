@@ -1,7 +1,7 @@
 //! Action control and the actions themselves (2nd ed. 2.6.4.5, 3rd ed. 6.7.4.6).
 
+use super::super::argument::Passing;
 use super::super::build::{assign, joined, load, not, operation, when};
-use super::super::call::Passing;
 use super::super::class::Role;
 use super::super::scope::Body;
 use super::association::{Action, Runs};

@@ -8,5 +8,6 @@ mod driver;
 mod equivalence;
 mod grants;
 mod overhead;
+mod plcopen_xml;
 mod random;
 mod rewriting;
