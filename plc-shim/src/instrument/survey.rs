@@ -133,6 +133,9 @@ impl<'a> Surveyor<'_, 'a> {
         if pou.kind == PouKind::Program {
             self.survey.programs.push(pou);
         }
+        if pou.kind == PouKind::FunctionBlock {
+            pou.object.extends.iter().for_each(|base| self.base(base));
+        }
         self.local = pou.sections.iter().flat_map(variable_names).collect();
         // An action is called by its name.
         self.local.extend(pou.object.members.iter().map(|member| member.pou.name.key()));
@@ -151,6 +154,14 @@ impl<'a> Surveyor<'_, 'a> {
             walk::statements(&member.body, self);
         }
         self.local.clear();
+    }
+
+    /// What a function block is derived from. How a derived one is used tells nothing of a motion block's inputs.
+    fn base(&mut self, name: &Ident) {
+        self.type_name(name);
+        if let Some((_, role)) = self.survey.motion.last_mut().filter(|(met, _)| met.span == name.span) {
+            *role = Role::Foreign("a function block is derived from it");
+        }
     }
 
     fn globals(&mut self, section: &'a Section) {

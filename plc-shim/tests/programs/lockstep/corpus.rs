@@ -132,6 +132,18 @@ END_VAR
     IF run.InVelocity THEN n := n + 1; END_IF;
 END_PROGRAM";
 
+const DERIVED: &str = "
+FUNCTION_BLOCK Counting EXTENDS TON
+VAR_OUTPUT n : INT; END_VAR
+VAR on : BOOL; END_VAR
+    SUPER();
+    IF Q AND NOT on THEN n := n + 1; END_IF;
+    on := Q;
+END_FUNCTION_BLOCK
+PROGRAM Main VAR_INPUT i : BOOL; END_VAR VAR_OUTPUT n : INT; et : TIME; q : BOOL; END_VAR VAR c : Counting; END_VAR
+    c(IN := i, PT := T#12ms); n := c.n; et := c.ET; q := c.Q;
+END_PROGRAM";
+
 pub(crate) fn cases() -> Vec<Case> {
     vec![
         Case {
@@ -162,6 +174,7 @@ pub(crate) fn cases() -> Vec<Case> {
             tasks: vec![task("main", 10, 3, &["Main"])],
             inputs: &["Main.i", "Main.j"],
         },
+        Case { name: "derived", text: DERIVED, tasks: vec![task("main", 5, 0, &["Main"])], inputs: &["Main.i"] },
         Case { name: "chart", text: CHART, tasks: vec![task("main", 5, 0, &["Main"])], inputs: &["Main.i", "Main.j"] },
         Case {
             name: "motion",
