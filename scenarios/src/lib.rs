@@ -12,17 +12,21 @@
 //! | [`plant`] | scenes and components, told without a session |
 //! | [`freewheel`] | running without lockstep, to show what it is good for |
 //! | [`expect`] | what a run must show: signal temporal logic |
+//! | [`browse`] | what a real PLC has |
+//! | [`plc`] | a soft PLC as a process of its own |
 //! | [`plot`] | trajectories as SVG |
 //!
 //! Invariants. This is the only crate that reads scenario files, starts processes and prints. What
 //! a session computes is decided in the crates below; nothing here can change a digest.
 
+pub mod browse;
 pub mod check;
 pub mod cli;
 pub mod expect;
 pub mod freewheel;
 pub mod instrument;
 pub mod plant;
+pub mod plc;
 pub mod plot;
 pub mod run;
 pub mod scenario;

@@ -2,6 +2,7 @@
 
 mod check;
 mod checkpoint;
+mod compare;
 mod configuration;
 mod control;
 mod coverage;
@@ -12,7 +13,10 @@ mod freewheel;
 mod help;
 mod instrument;
 mod plant;
+mod plc;
 mod plc_faults;
+mod plc_peers;
+mod plc_untrusted;
 mod run;
 mod third_party;
 mod typed;

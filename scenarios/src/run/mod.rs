@@ -2,6 +2,7 @@
 //!
 //! | module | subject |
 //! |---|---|
+//! | [`compare`] | lockstep beside the other ways |
 //! | [`config`] | what is asked for |
 //! | [`coverage`] | which statements and branches were executed |
 //! | [`error`] | why nothing came of it |
@@ -13,8 +14,10 @@
 //! | [`sampler`] | what a plot shows |
 //! | [`expectation`] | what a run had to show |
 //! | [`report`] | what came of a run, for people and machines |
+//! | [`session_log`] | which client a session waited for |
 //! | [`output`] | files that appear whole or not at all |
 
+pub mod compare;
 pub mod config;
 pub mod coverage;
 pub mod error;
@@ -27,6 +30,7 @@ mod processes;
 mod progress;
 pub mod report;
 mod sampler;
+pub mod session_log;
 
 use std::cell::RefCell;
 use std::io::Write;
@@ -46,6 +50,7 @@ use crate::scenario::Scenario;
 use expectation::Witness;
 use interrupt::Interrupt;
 use sampler::{Sampler, Samples};
+use session_log::SessionLog;
 
 /// Runs a scenario as `config` asks, and writes a report of each run to `out`.
 ///
@@ -56,6 +61,9 @@ pub fn execute(config: &RunConfig, interrupt: &Interrupt, out: &mut dyn Write) -
     let mut scenario = Scenario::load(&config.scenario)?;
     if config.coverage.is_some() {
         scenario.cover();
+    }
+    for (client, url) in &config.gateways {
+        scenario.commission(client, url.clone())?;
     }
     config.check(&scenario)?;
     let mut reports: Vec<RunReport> = Vec::new();
@@ -107,11 +115,13 @@ fn one_run(
             lockstep.observe(Box::new(CsvRecorder::new(&folder.join("trajectory.csv"))));
         }
     };
+    let log = SessionLog::default();
     let outcome = match config.mode {
-        Mode::Lockstep => lockstep::run(config, scenario, number, interrupt, watch)?,
-        Mode::Freewheel => freewheel::run(config, scenario, number, interrupt, watch)?,
+        Mode::Lockstep => lockstep::run(config, scenario, number, interrupt, &log, watch)?,
+        Mode::Freewheel | Mode::Halt | Mode::Follow => freewheel::run(config, scenario, number, interrupt, watch)?,
     };
     let mut report = RunReport::new(config, scenario, number, &outcome, started.elapsed());
+    report.latency = log.latencies();
     let mut trace = trace.replace(Trace::default());
     trace.set_end(if report.status == "completed" { TraceEnd::Complete } else { TraceEnd::Cut });
     report.expectations = expectation::judge(scenario, &trace);

@@ -12,6 +12,7 @@ use serde::Serialize;
 use super::config::{Format, Mode, RunConfig, Transport};
 use super::error::ExitCode;
 use super::expectation::ExpectationReport;
+use super::session_log::{self, ClientLatency};
 use crate::scenario::Scenario;
 
 /// What came of one run. Its JSON form is a contract: fields are added, never changed.
@@ -45,6 +46,9 @@ pub struct RunReport {
     /// What came of the scenario's expectations.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub expectations: Vec<ExpectationReport>,
+    /// How long the session waited for each client, if that was noted.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub latency: Vec<ClientLatency>,
     /// The program that ran it.
     pub version: &'static str,
 }
@@ -75,6 +79,7 @@ impl RunReport {
             error: failure.as_ref().map(ToString::to_string),
             failure,
             expectations: Vec::new(),
+            latency: Vec::new(),
             version: env!("CARGO_PKG_VERSION"),
         }
     }
@@ -107,6 +112,7 @@ impl RunReport {
                 for expectation in &self.expectations {
                     expectation.write(out)?;
                 }
+                session_log::write(&self.latency, out)?;
             }
         }
         out.flush()

@@ -1,10 +1,11 @@
 //! A scenario's clients: its files read, checked and made to run.
 
+use std::collections::BTreeMap;
 use std::path::PathBuf;
 
 use miette::{NamedSource, SourceSpan};
 use onescan_clients::plant::{Plant, SceneError, SceneFault};
-use onescan_clients::soft_plc::{SoftPlcClient, bind};
+use onescan_clients::soft_plc::{Bindings, SoftPlcClient, bind};
 use onescan_plc_shim::input::kind::{FileKind, SourceKind};
 use onescan_plc_shim::{Application, Dialect, Input, Task, TaskPlan};
 use onescan_server::client::Client;
@@ -20,6 +21,8 @@ pub enum Member {
     Plant(Box<dyn Client>),
     /// A soft PLC in this process.
     Plc(Box<dyn Client>),
+    /// A real PLC, connected, of which this process takes care.
+    Gateway(Box<dyn Client>),
     /// A program of its own, with the command that starts it; empty if somebody else does.
     External(Vec<String>),
 }
@@ -43,9 +46,10 @@ impl Scenario {
                 let plant = plant.map_err(|error| Box::new(report(&error, &path.display().to_string(), &text)))?;
                 Ok(Member::Plant(Box::new(plant.seeded(self.file().seed))))
             }
-            ClientFile::SoftPlc { sources, dialect, tasks, bind } => {
-                let inputs = sources.iter().map(|source| self.source(name, source, *dialect));
-                let inputs = inputs.collect::<Result<Vec<_>, _>>()?;
+            ClientFile::Gateway { .. } => self.gateway(name).map(Member::Gateway),
+            ClientFile::SoftPlc { .. } if self.gateways.contains_key(name) => self.gateway(name).map(Member::Gateway),
+            ClientFile::SoftPlc { sources, dialect, tasks, bind, .. } => {
+                let inputs = self.inputs(name, sources, *dialect)?;
                 self.soft_plc(name, inputs, tasks, bind).map(|plc| Member::Plc(Box::new(plc)))
             }
             ClientFile::External { command } => Ok(Member::External(command.clone())),
@@ -58,6 +62,16 @@ impl Scenario {
             ClientFile::SoftPlc { sources, dialect, tasks, .. } => Some((sources.as_slice(), *dialect, plan_of(tasks))),
             _ => None,
         })
+    }
+
+    /// The sources of PLC `name`.
+    pub(super) fn inputs(
+        &self,
+        name: &ClientName,
+        sources: &[String],
+        dialect: Option<Dialect>,
+    ) -> Result<Vec<Input>, ScenarioError> {
+        sources.iter().map(|source| self.source(name, source, dialect)).collect()
     }
 
     /// A source of PLC `name`, in whatever form and encoding it is; one of an unknown kind is text.
@@ -84,7 +98,7 @@ impl Scenario {
         name: &ClientName,
         inputs: Vec<Input>,
         tasks: &[TaskFile],
-        paths: &std::collections::BTreeMap<SignalName, String>,
+        paths: &BTreeMap<SignalName, String>,
     ) -> Result<SoftPlcClient, ScenarioError> {
         let compiled = match self.coverage() {
             Some(_) => Application::from_inputs_with_coverage(inputs),
@@ -94,21 +108,8 @@ impl Scenario {
         for warning in application.warnings().iter() {
             tracing::warn!(code = %warning.code, "{}", warning.message);
         }
-        if let Some(unknown) = paths.keys().find(|signal| !self.file().signals.contains_key(*signal)) {
-            let help = did_you_mean(unknown.as_str(), self.file().signals.keys().map(SignalName::as_str));
-            return Err(self.wrong_client(
-                name,
-                format!("`bind` names a signal `{unknown}` that is not declared"),
-                help,
-            ));
-        }
-        let bindings = bind(&application, name, self.plan().signals(), paths)
-            .map_err(|error| self.wrong_signal(&error.signal, error.message, error.help))?;
-        let plan = plan_of(tasks).or_else(|| TaskPlan::configured(&application));
-        let plan = plan.ok_or_else(|| {
-            let help = "give it `tasks`, or declare a CONFIGURATION in its sources".to_owned();
-            self.wrong_client(name, format!("nothing says when the programs of `{name}` run"), Some(help))
-        })?;
+        let bindings = self.bindings(name, &application, paths)?;
+        let plan = self.task_plan(name, &application, tasks)?;
         self.fits_step(name, &plan)?;
         let mut client = SoftPlcClient::new(name.clone(), &application, &plan, &bindings, self.file().step)
             .map_err(|error| self.wrong_client(name, error.to_string(), None))?;
@@ -116,6 +117,35 @@ impl Scenario {
             client.cover(sink.clone());
         }
         Ok(client)
+    }
+
+    /// The tasks of PLC `name`: the scenario's, or those of its own CONFIGURATION.
+    pub(super) fn task_plan(
+        &self,
+        name: &ClientName,
+        application: &Application,
+        tasks: &[TaskFile],
+    ) -> Result<TaskPlan, ScenarioError> {
+        plan_of(tasks).or_else(|| TaskPlan::configured(application)).ok_or_else(|| {
+            let help = "give it `tasks`, or declare a CONFIGURATION in its sources".to_owned();
+            self.wrong_client(name, format!("nothing says when the programs of `{name}` run"), Some(help))
+        })
+    }
+
+    /// Which signal is which variable of the PLC.
+    pub(super) fn bindings(
+        &self,
+        name: &ClientName,
+        application: &Application,
+        paths: &BTreeMap<SignalName, String>,
+    ) -> Result<Bindings, ScenarioError> {
+        if let Some(unknown) = paths.keys().find(|signal| !self.file().signals.contains_key(*signal)) {
+            let help = did_you_mean(unknown.as_str(), self.file().signals.keys().map(SignalName::as_str));
+            let message = format!("`bind` names a signal `{unknown}` that is not declared");
+            return Err(self.wrong_client(name, message, help));
+        }
+        bind(application, name, self.plan().signals(), paths)
+            .map_err(|error| self.wrong_signal(&error.signal, error.message, error.help))
     }
 
     /// A task can be due at the steps of the session only.
@@ -133,7 +163,7 @@ impl Scenario {
 }
 
 /// The tasks of a scenario; nothing if it has none, so that the PLC's own configuration counts.
-fn plan_of(tasks: &[TaskFile]) -> Option<TaskPlan> {
+pub(super) fn plan_of(tasks: &[TaskFile]) -> Option<TaskPlan> {
     (!tasks.is_empty()).then(|| TaskPlan::new(tasks.iter().map(task).collect()))
 }
 

@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use miette::{Diagnostic, NamedSource, SourceSpan};
+use onescan_clients::gateway::LinkFault;
 use onescan_plc_shim::Diagnostics;
 use onescan_server::signal::ClientName;
 use thiserror::Error;
@@ -46,6 +47,15 @@ pub enum ScenarioError {
     #[error(transparent)]
     #[diagnostic(transparent)]
     Plc(#[from] Box<PlcReport>),
+    /// The link to a real PLC does not come about.
+    #[error("client `{client}`: {fault}")]
+    #[diagnostic(code(gateway::link))]
+    Link {
+        /// The client that speaks for it.
+        client: ClientName,
+        /// Why.
+        fault: LinkFault,
+    },
 }
 
 /// What was found in a PLC's sources, each with its place.

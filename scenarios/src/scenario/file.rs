@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 use std::str::FromStr;
 
+use onescan_clients::gateway::Settings;
 use onescan_plc_shim::Dialect;
 use onescan_server::signal::{ClientName, ElementaryType, SignalName};
 use onescan_server::time::{TimeSpan, VirtualTime};
@@ -100,6 +101,20 @@ pub enum ClientFile {
         /// Signals whose PLC variable is not found by the signal's name, with the variable's path.
         #[serde(default)]
         bind: BTreeMap<SignalName, String>,
+        /// The real PLC that runs the same sources, instrumented (see `run --gateway`).
+        #[serde(default)]
+        gateway: Option<Settings>,
+    },
+    /// A real PLC, of which only the link is known.
+    Gateway {
+        /// Virtual time of one turn; the session's step if absent.
+        #[serde(default, deserialize_with = "from_optional_text")]
+        period: Option<TimeSpan>,
+        /// The signals that it reads.
+        #[serde(default)]
+        reads: Vec<SignalName>,
+        /// Its link.
+        gateway: Settings,
     },
     /// A program of its own that joins over TCP.
     External {

@@ -1,5 +1,6 @@
 //! `scenario.toml` read and checked.
 
+use std::collections::BTreeMap;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
@@ -28,6 +29,8 @@ pub struct Scenario {
     expectations: Expectations,
     /// Where soft PLCs give what they executed, if that is asked for.
     coverage: Option<CoverageSink>,
+    /// The soft PLCs that a real one stands in for, with its URL where the file's does not count.
+    pub(super) gateways: BTreeMap<ClientName, Option<String>>,
 }
 
 impl Scenario {
@@ -72,7 +75,7 @@ impl Scenario {
             .ok()
             .and_then(|folder| folder.file_name().map(|name| name.to_string_lossy().into_owned()))
             .unwrap_or_else(|| "scenario".to_owned());
-        Ok(Self { name, folder, path, text, file, plan, expectations, coverage: None })
+        Ok(Self { name, folder, path, text, file, plan, expectations, coverage: None, gateways: BTreeMap::new() })
     }
 
     /// Lets soft PLCs note what they execute.
@@ -171,7 +174,7 @@ fn place_of_plan_error(error: &PlanError, file: &ScenarioFile, text: &str) -> Op
 /// The period of the client `name` as far as the scenario says it.
 pub fn period_of(client: &ClientFile, step: TimeSpan) -> Option<TimeSpan> {
     match client {
-        ClientFile::Plant { period, .. } => Some(period.unwrap_or(step)),
+        ClientFile::Plant { period, .. } | ClientFile::Gateway { period, .. } => Some(period.unwrap_or(step)),
         ClientFile::SoftPlc { .. } | ClientFile::External { .. } => None,
     }
 }

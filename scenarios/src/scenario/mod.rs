@@ -6,12 +6,14 @@
 //! | [`load`] | `scenario.toml` read and checked |
 //! | [`expectations`] | what it expects of every run |
 //! | [`compose`] | a scenario's plan and its clients |
+//! | [`gateway`] | its real PLCs |
 //! | [`error`] | what can be wrong with it, and where |
 
 pub mod compose;
 pub mod error;
 pub mod expectations;
 pub mod file;
+pub mod gateway;
 pub mod load;
 
 pub use error::ScenarioError;
