@@ -6,7 +6,10 @@
 //! | [`soft_plc`] | the embedded soft PLC, which runs IEC 61131-3 source text |
 //! | [`gateway`] | a real PLC, over the links that it has |
 //! | [`station`] | a soft PLC on a clock of its own, for gateways to be tried on |
+//! | [`array`] | names with a range, as in `arm[0..9].hold` |
 //! | [`replay`] | a client that repeats what another once did |
+//! | [`operator`] | switches and set points that nobody else writes |
+//! | [`forced`] | a client some of whose outputs are held for a time |
 //!
 //! # Invariants
 //! - A client is a function of its state, its inputs and `t_v`. None reads a random
@@ -17,6 +20,9 @@
 //! - Bad input is an error with a place, never a panic.
 
 pub mod gateway;
+pub mod array;
+pub mod forced;
+pub mod operator;
 pub mod plant;
 pub mod replay;
 pub mod soft_plc;

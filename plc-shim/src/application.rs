@@ -5,6 +5,7 @@ mod inspect;
 mod leaves;
 pub(crate) mod library;
 mod namespace;
+mod part;
 mod retain;
 mod room;
 mod root;
@@ -28,7 +29,7 @@ use crate::syntax::{FileId, SourceMap};
 pub(crate) use front::Front;
 pub use inspect::inspect;
 use room::with_room;
-pub use value::WriteError;
+pub use value::{Radix, WriteError};
 pub use variable::{Program, UnknownVariable, Variable, VariableAccess};
 
 /// A compiled program: what it declares, its code, its memory at a cold start. Cheap to clone.
@@ -44,6 +45,7 @@ struct Inner {
     wasm: Vec<u8>,
     faults: FaultTable,
     points: Vec<Point>,
+    is_traced: bool,
     retained: Vec<Range<u32>>,
     persistent: Vec<Range<u32>>,
     warnings: Diagnostics,
@@ -82,6 +84,15 @@ impl Application {
         Self::made(inputs.into_iter().collect(), |library| Noted::AllBut(library))
     }
 
+    /// Like [`Self::from_inputs`], to be run with [`SoftPlc::watch`](crate::SoftPlc::watch). It
+    /// computes the same, slowly; its saved states are its own.
+    ///
+    /// # Errors
+    /// All that is wrong with the files, and the warnings too.
+    pub fn from_inputs_traced(inputs: impl IntoIterator<Item = Input>) -> Result<Self, Diagnostics> {
+        Self::made(inputs.into_iter().collect(), |library| Noted::Traced(library))
+    }
+
     fn made(inputs: Vec<Input>, noted: fn(&BTreeSet<FileId>) -> Noted<'_>) -> Result<Self, Diagnostics> {
         with_room(|| {
             let Front { sources, checked, findings, library, .. } = Front::new(inputs);
@@ -95,11 +106,12 @@ impl Application {
     }
 
     fn compiled(sources: SourceMap, checked: Checked, warnings: Diagnostics, noted: Noted<'_>) -> Self {
+        let is_traced = matches!(noted, Noted::Traced(_));
         let Compiled { wasm, faults, points } = compile(&checked, noted);
         let retained = retain::ranges(&checked, Retention::Retain);
         let persistent = retain::ranges(&checked, Retention::Persistent);
         let module = OnceLock::new();
-        let inner = Inner { sources, checked, wasm, faults, points, retained, persistent, warnings, module };
+        let inner = Inner { sources, checked, wasm, faults, points, is_traced, retained, persistent, warnings, module };
         Self { inner: Arc::new(inner) }
     }
 
@@ -136,6 +148,11 @@ impl Application {
     /// What is noted while the program runs; nothing unless it was compiled for that.
     pub(crate) fn points(&self) -> &[Point] {
         &self.inner.points
+    }
+
+    /// True if its statements tell when they run.
+    pub(crate) fn is_traced(&self) -> bool {
+        self.inner.is_traced
     }
 
     pub(crate) fn faults(&self) -> &FaultTable {

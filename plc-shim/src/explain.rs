@@ -46,13 +46,23 @@ const PAGES: &[(&str, &str)] = pages![
     "D0440",
     "F0601",
     "F0602",
+    "G1101",
+    "G1102",
+    "G1103",
+    "G1104",
+    "G1105",
+    "G1106",
+    "G1107",
+    "G1108",
+    "G1109",
+    "G1120",
+    "G1121",
     "I1001",
     "I1002",
     "I1003",
     "I1004",
     "L0501",
     "L0502",
-    "L0510",
     "L0511",
     "L0512",
     "L0513",
@@ -74,6 +84,7 @@ const PAGES: &[(&str, &str)] = pages![
     "O0809",
     "O0810",
     "O0811",
+    "O0812",
     "R0901",
     "R0902",
     "R0903",
@@ -105,6 +116,7 @@ const PAGES: &[(&str, &str)] = pages![
     "W0705",
     "W0706",
     "W0707",
+    "W0708",
 ];
 
 /// The page that explains `code`, as Markdown.
@@ -130,6 +142,7 @@ mod tests {
         let (language, instrumented) = language.strip_suffix(" instrument").map_or((language, false), |st| (st, true));
         let input = match language {
             "st" | "exp" | "scl" => Input::from_text(&format!("example.{language}"), SourceKind::Text, text),
+            "plcopen" => Input::from_text("example.xml", SourceKind::PlcOpen, text),
             "xml" => Input::from_text("example.TcPOU", SourceKind::TwinCat, text),
             "hex" => {
                 let bytes = text.split_whitespace().map(|byte| u8::from_str_radix(byte, 16).expect("a byte"));

@@ -39,11 +39,11 @@ mod lint;
 pub mod run;
 pub mod syntax;
 
-pub use application::{Application, Program, UnknownVariable, Variable, VariableAccess, WriteError, inspect};
+pub use application::{Application, Program, Radix, UnknownVariable, Variable, VariableAccess, WriteError, inspect};
 pub use compile::fault::FaultKind;
 pub use coverage::Coverage;
 pub use diagnostic::{Code, Diagnostic, Diagnostics, Finding, Severity};
 pub use dialect::Dialect;
 pub use input::Input;
 pub use ir::elementary::ElementaryType;
-pub use run::{FaultSite, PlcFault, RestoreError, RunError, SoftPlc, Task, TaskPlan, VirtualTime};
+pub use run::{FaultSite, PlcFault, RestoreError, RunError, SoftPlc, Task, TaskPlan, VirtualTime, WriteSite};

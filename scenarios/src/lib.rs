@@ -7,8 +7,12 @@
 //! | [`cli`] | the command line |
 //! | [`scenario`] | a scenario's files, read and checked |
 //! | [`run`] | runs of a scenario: in lockstep or not, recorded, reported |
+//! | [`regress`] | all cases run, compared with reviewed snapshots, reported |
+//! | [`review`] | snapshots looked at, accepted or rejected |
+//! | [`new`] | scenarios to begin with |
 //! | [`check`] | PLC sources checked without being run |
 //! | [`instrument`] | PLC projects made to run in lockstep, and back |
+//! | [`wiring`] | signals between clients, told and drawn |
 //! | [`plant`] | scenes and components, told without a session |
 //! | [`freewheel`] | running without lockstep, to show what it is good for |
 //! | [`expect`] | what a run must show: signal temporal logic |
@@ -25,8 +29,12 @@ pub mod cli;
 pub mod expect;
 pub mod freewheel;
 pub mod instrument;
+pub mod new;
 pub mod plant;
 pub mod plc;
 pub mod plot;
+pub mod regress;
+pub mod review;
 pub mod run;
 pub mod scenario;
+pub mod wiring;

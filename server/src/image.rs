@@ -38,6 +38,11 @@ impl ImageLayout {
         &image[offset..offset + self.types[signal.index()].size()]
     }
 
+    /// The first byte of `signal` in an image.
+    pub fn offset(&self, signal: SignalId) -> usize {
+        self.offsets[signal.index()]
+    }
+
     /// The type of `signal`.
     pub fn ty(&self, signal: SignalId) -> ElementaryType {
         self.types[signal.index()]

@@ -20,7 +20,9 @@
 //! | [`mailbox`], [`pacing`] | what operators ask for; how fast virtual time may run |
 //! | [`wire`] | the protocol of clients outside this process |
 //! | [`transport`] | how its frames travel: TCP |
-//! | [`record`] | the digest, trajectories |
+//! | [`operation`] | what operators do, as data |
+//! | [`record`] | the digest, recordings |
+//! | [`recording`] | a recording read back |
 //! | [`checkpoint`] | a session as a value |
 //!
 //! Invariants. Up to [`session`] the crate is *sans-IO*: no clock, no thread, no socket, no random
@@ -36,9 +38,11 @@ pub mod image;
 pub mod join;
 pub mod lockstep;
 pub mod mailbox;
+pub mod operation;
 pub mod pacing;
 pub mod plan;
 pub mod record;
+pub mod recording;
 pub mod session;
 pub mod signal;
 pub mod state;

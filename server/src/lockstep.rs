@@ -7,6 +7,7 @@ use crate::checkpoint::{Checkpoint, CheckpointError};
 use crate::client::{Client, ClientId, StateError, Wake};
 use crate::end::{FailureCause, SessionEnd, Violation};
 use crate::mailbox::Mailbox;
+use crate::operation::OperatorInput;
 use crate::pacing::{Pace, Pacer};
 use crate::record::{Digest, DigestChain, Observer, RecordError};
 use crate::session::{Control, Progress, Session, Turn};
@@ -194,14 +195,14 @@ impl Lockstep {
     /// The loop of a session. Everything that can happen between two states is decided here.
     fn cycle_to(&mut self, t_v: VirtualTime) -> Result<Reached, RecordError> {
         if std::mem::take(&mut self.begin_observers) {
-            self.observers.iter_mut().try_for_each(|observer| observer.begin(&self.session))?;
+            self.show(Observer::begin)?;
         }
         loop {
             if self.session.cycle().is_at_boundary() {
                 if self.digest.is_some() && self.session.t_v() >= t_v {
                     return Ok(Reached::Boundary);
                 }
-                self.take_wishes();
+                self.take_wishes()?;
             }
             match self.session.advance() {
                 Progress::Entered(state) => self.serve(state)?,
@@ -334,19 +335,36 @@ impl Lockstep {
             return Ok(());
         }
         self.digest = Some(DigestChain::begin(&self.session));
-        self.observers.iter_mut().try_for_each(|observer| observer.begin(&self.session))
+        self.show(Observer::begin)
+    }
+
+    /// Shows observers the image that is committed.
+    fn show<F>(&mut self, seen: F) -> Result<(), RecordError>
+    where
+        F: Fn(&mut (dyn Observer + 'static), &Session) -> Result<(), RecordError>,
+    {
+        let digest = self.digest();
+        self.observers.iter_mut().try_for_each(|observer| {
+            if let Some(digest) = digest {
+                observer.digested(digest);
+            }
+            seen(observer.as_mut(), &self.session)
+        })
     }
 
     fn end_step(&mut self) -> Result<(), RecordError> {
         if let Some(digest) = &mut self.digest {
             digest.step(&self.session);
         }
-        self.observers.iter_mut().try_for_each(|observer| observer.step(&self.session))
+        self.show(Observer::step)
     }
 
-    fn take_wishes(&mut self) {
+    fn take_wishes(&mut self) -> Result<(), RecordError> {
         while let Some(request) = self.mailbox.take() {
             if let Some(control) = request.control {
+                let (step, t_v) = self.committed();
+                let input = OperatorInput { step, t_v, operation: control.into() };
+                self.observers.iter_mut().try_for_each(|observer| observer.operated(&input))?;
                 self.session.control(control);
             }
             if let Some(reply) = request.reply {
@@ -354,6 +372,7 @@ impl Lockstep {
                 let _ = reply.send(self.status());
             }
         }
+        Ok(())
     }
 
     fn status(&self) -> Status {

@@ -377,6 +377,11 @@ impl Session {
         Some(SignalId(index as u32))
     }
 
+    /// The client that writes `signal`, once it has joined.
+    pub fn writer(&self, signal: SignalId) -> Option<&ClientName> {
+        self.writers[signal.index()].as_ref()
+    }
+
     /// The values that clients see, in the image's layout.
     pub fn image(&self) -> &[u8] {
         self.image.committed()

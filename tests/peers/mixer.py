@@ -12,8 +12,8 @@ import argparse
 import json
 import sys
 
-from lockstep_client import (Fields, LockstepClient, LostServer, Participant, ProtocolError, Refused,
-                             SessionEnded, SessionFailed)
+from onescan_client import (Fields, LockstepClient, LostServer, Participant, ProtocolError, Refused,
+                            SessionEnded, SessionFailed)
 
 
 class Mixer(Participant):

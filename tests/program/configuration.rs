@@ -25,7 +25,7 @@ fn configured(tasks: &str, configuration: &str) -> tempfile::TempDir {
 }
 
 fn trajectory(folder: &Path) -> String {
-    let said = typed(folder, &["run", ".", "--until", "2s", "--record", "record"]);
+    let said = typed(folder, &["run", ".", "--until", "2s", "--record-also", "csv", "--record", "record"]);
     assert_eq!(said.code, Some(0), "{said:?}");
     std::fs::read_to_string(folder.join("record/run-1/trajectory.csv")).expect("a record")
 }

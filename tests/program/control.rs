@@ -17,7 +17,10 @@ fn ctrl_c_stops_at_a_step_and_leaves_everything_whole() {
     let folder = tempfile::tempdir().unwrap();
     let record = folder.path().to_str().unwrap();
     let words = ["run", ".", "--format", "json", "--until", "1h", "--pace", "1", "--listen", "127.0.0.1:0"];
-    let mut server = begun(&scenario("shear"), &[&words[..], &["--transport", "tcp", "--record", record]].concat());
+    let mut server = begun(
+        &scenario("shear"),
+        &[&words[..], &["--transport", "tcp", "--record", record, "--record-also", "csv"]].concat(),
+    );
     let mut said = BufReader::new(server.stderr.take().unwrap());
     let address = listening_at(&mut said);
     while typed(&scenario("shear"), &["control", &address]).code != Some(0) {}

@@ -48,7 +48,18 @@ fn a_killed_plant_ends_the_session_by_name() {
     for t_v in ["0.25s", "1.5s"] {
         let folder = shear_with_external_plant();
         // Paced, so that there is time to kill; what is checked does not depend on when.
-        let words = ["--until", "600s", "--pace", "50", "--record", "record", "--listen", "127.0.0.1:0"];
+        let words = [
+            "--until",
+            "600s",
+            "--pace",
+            "50",
+            "--record-also",
+            "csv",
+            "--record",
+            "record",
+            "--listen",
+            "127.0.0.1:0",
+        ];
         let (server, address, mut said) = serve(folder.path(), &words);
         let mut plant = plant(&address);
         wait_for(&address, t_v.trim_end_matches('s').parse().expect("a number"));

@@ -16,7 +16,8 @@ fn alignments(csv: &str) -> (u64, usize) {
 
 fn recorded(words: &[&str], runs: usize) -> (Vec<String>, Vec<(u64, usize)>) {
     let folder = tempfile::tempdir().unwrap();
-    let (reports, said) = run_shear(&[words, &["--record", folder.path().to_str().unwrap()]].concat());
+    let (reports, said) =
+        run_shear(&[words, &["--record-also", "csv", "--record", folder.path().to_str().unwrap()]].concat());
     // 1: what the scenario expects is what lockstep gives, and free-wheeling loses.
     assert!(matches!(said.code, Some(0 | 1)), "{said:?}");
     let read = |run| std::fs::read_to_string(folder.path().join(format!("run-{run}/trajectory.csv"))).unwrap();

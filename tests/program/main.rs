@@ -1,5 +1,6 @@
 //! The program as a user types it: commands, files, messages, exit codes.
 
+mod cases;
 mod check;
 mod checkpoint;
 mod compare;
@@ -9,14 +10,23 @@ mod coverage;
 mod errors;
 mod expectations;
 mod faults;
+mod filling_machine;
 mod freewheel;
 mod help;
 mod instrument;
+mod new;
 mod plant;
 mod plc;
 mod plc_faults;
 mod plc_peers;
 mod plc_untrusted;
+mod python;
+mod regression;
+mod reports;
+mod review;
 mod run;
 mod third_party;
 mod typed;
+mod unit_tests;
+mod watch;
+mod wiring;

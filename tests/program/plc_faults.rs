@@ -8,7 +8,7 @@ fn broken_by(declaration: &str, statement: &str) -> String {
     let at_scan_30 = format!("n := n + 1; IF n = 30 THEN {statement} END_IF;\nEND_PROGRAM");
     edit(folder.path(), "plc/alignment.st", "END_PROGRAM", &at_scan_30);
     edit(folder.path(), "plc/alignment.st", "a, b, c : R_TRIG;", &format!("a, b, c : R_TRIG; n : INT; {declaration}"));
-    let said = typed(folder.path(), &["run", ".", "--record", "record"]);
+    let said = typed(folder.path(), &["run", ".", "--record-also", "csv", "--record", "record"]);
     assert_eq!(said.code, Some(3), "{said:?}");
     let rows = std::fs::read_to_string(folder.path().join("record/run-1/trajectory.csv")).unwrap().lines().count();
     assert_eq!(rows, 1 + 1 + 29, "every step before the fault is recorded");

@@ -88,7 +88,7 @@ fn log_level_recording_and_plot_do_not_matter() {
 #[test]
 fn the_trajectory_of_the_shear() {
     let folder = tempfile::tempdir().unwrap();
-    let (_, said) = run_shear(&["--until", "3s", "--record", folder.path().to_str().unwrap()]);
+    let (_, said) = run_shear(&["--until", "3s", "--record", folder.path().to_str().unwrap(), "--record-also", "csv"]);
     assert_eq!(said.code, Some(0), "{said:?}");
     let text = std::fs::read_to_string(folder.path().join("run-1/trajectory.csv")).unwrap();
     let rows: Vec<&str> = text.lines().collect();

@@ -9,8 +9,8 @@ use onescan_plc_shim::input::kind::FileKind;
 use onescan_plc_shim::{Application, Dialect, Finding, Input, Severity, inspect};
 
 /// How many of the files parse, and how many of these compile, each by itself.
-const PARSING: usize = 15;
-const COMPILING: usize = 6;
+const PARSING: usize = 27;
+const COMPILING: usize = 7;
 
 /// The package's sources, unpacked in `folder`.
 fn fetch(folder: &Path) {

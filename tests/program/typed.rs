@@ -64,8 +64,13 @@ pub(crate) fn digests(reports: &[serde_json::Value]) -> Vec<String> {
 
 /// A copy of the shear in a folder of its own, to be broken.
 pub(crate) fn copied_shear() -> tempfile::TempDir {
+    copied("shear")
+}
+
+/// A copy of a scenario of the project in a folder of its own, to be broken.
+pub(crate) fn copied(name: &str) -> tempfile::TempDir {
     let folder = tempfile::tempdir().expect("a folder");
-    copy(&scenario("shear"), folder.path());
+    copy(&scenario(name), folder.path());
     folder
 }
 

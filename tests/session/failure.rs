@@ -1,15 +1,14 @@
 //! One client fails: the session ends for all, with a reason that names client, state and `t_v`.
 
-use std::io::Read as _;
-
 use onescan_server::client::ClientFault;
 use onescan_server::end::{Failure, FailureCause, SessionEnd};
 use onescan_server::plan::Coupling;
-use onescan_server::record::csv::CsvRecorder;
+use onescan_server::record::{Choice, EventKind, Recorder};
+use onescan_server::recording::Recording;
 use onescan_server::state::ClientState;
 use onescan_server::time::StepCount;
 use onescan_server::transport::tcp::participant::ParticipantError;
-use onescan_tests::run::{PATIENCE, boxed, in_process, over_tcp, run};
+use onescan_tests::run::{PATIENCE, boxed, in_process, over_tcp, provenance, run};
 use onescan_tests::toy::{ring, ring_plan};
 use onescan_tests::{at_ms, client};
 
@@ -53,27 +52,31 @@ fn a_failure_reads_as_one_line() {
 #[test]
 fn the_recording_is_whole_up_to_the_failure() {
     let folder = tempfile::tempdir().unwrap();
-    let path = folder.path().join("trajectory.csv");
     let mut clients = ring();
     clients[1].fails_at = Some(at_ms(60));
     let mut lockstep = in_process(ring_plan(&Coupling::Parallel), boxed(clients));
-    lockstep.observe(Box::new(CsvRecorder::new(&path)));
+    let choice = Choice { csv: true, ..Choice::default() };
+    lockstep.observe(Box::new(Recorder::new(folder.path(), provenance(), choice)));
     let outcome = run(lockstep, at_ms(500));
-    let mut text = String::new();
-    std::fs::File::open(&path).unwrap().read_to_string(&mut text).unwrap();
+    let text = std::fs::read_to_string(folder.path().join("trajectory.csv")).unwrap();
     let lines: Vec<&str> = text.lines().collect();
     assert_eq!(lines[0], "t_v_ns,alpha.out,beta.out,gamma.out");
     assert_eq!(lines.len() as u64, 1 + 1 + outcome.steps.0, "header, initial values, a row a step");
     assert!(lines.last().unwrap().starts_with("50000000,"));
-    assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1, "no temporary file is left");
+    let recording = Recording::open(folder.path()).unwrap();
+    assert_eq!(recording.steps(), Some(0..=outcome.steps.0));
+    assert_eq!(recording.digest(outcome.steps.0).ok(), outcome.digest);
+    let events = recording.events().unwrap();
+    assert!(matches!(events[0].what, EventKind::Failed { .. }), "{events:?}");
+    assert_eq!((events[1].step, &events[1].what), (outcome.steps, &EventKind::Ended { status: "failed".to_owned() }));
 }
 
 #[test]
 fn a_recording_that_cannot_be_written_ends_the_session_for_all() {
     let (mut lockstep, threads) = over_tcp(ring_plan(&Coupling::Parallel), boxed(ring()), PATIENCE);
-    lockstep.observe(Box::new(CsvRecorder::new(std::path::Path::new("/no/such/folder/trajectory.csv"))));
+    lockstep.observe(Box::new(Recorder::new(std::path::Path::new("/no/such/folder"), provenance(), Choice::default())));
     let error = lockstep.run().expect_err("it cannot record");
-    assert!(error.to_string().starts_with("cannot write /no/such/folder/trajectory.csv.partial: "), "{error}");
+    assert!(error.to_string().starts_with("cannot write /no/such/folder/events.jsonl: "), "{error}");
     for thread in threads {
         assert!(matches!(thread.join().expect("no panic"), Ok(SessionEnd::Stopped { .. })));
     }

@@ -1,4 +1,4 @@
-//! A client written in Python from PROTOCOL.md alone takes part, and misbehaves.
+//! A client written in Python from PROTOCOL.md alone (clients/python) takes part, and misbehaves.
 
 use std::net::SocketAddr;
 use std::path::Path;
@@ -10,11 +10,12 @@ use onescan_server::formation::Formation;
 use onescan_server::lockstep::{Lockstep, Outcome};
 use onescan_server::mailbox::Mailbox;
 use onescan_server::plan::Coupling;
-use onescan_server::record::csv::CsvRecorder;
+use onescan_server::record::{Choice, Recorder};
+use onescan_server::recording::Recording;
 use onescan_server::state::ClientState;
 use onescan_server::time::StepCount;
 use onescan_server::transport::tcp::Lobby;
-use onescan_tests::run::{PATIENCE, boxed, in_process, loopback, run};
+use onescan_tests::run::{PATIENCE, boxed, in_process, loopback, provenance, run};
 use onescan_tests::toy::{ring, ring_plan};
 use onescan_tests::{at_ms, client};
 
@@ -22,6 +23,8 @@ use onescan_tests::{at_ms, client};
 fn mixer(address: SocketAddr, more: &[&str]) -> Child {
     let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("peers/mixer.py");
     Command::new("python3")
+        .env("PYTHONPATH", Path::new(env!("CARGO_MANIFEST_DIR")).join("../clients/python/src"))
+        .arg("-B")
         .arg(script)
         .args(["--server", &address.to_string(), "--name", "beta", "--reads", "alpha,gamma", "--period-ns", "20000000"])
         .args(more)
@@ -108,9 +111,8 @@ fn whatever_a_client_does_wrong_ends_the_session_by_name() {
 fn killed_at_any_step_the_session_ends_and_the_recording_is_whole() {
     for step in [0, 2, 8, 14, 40] {
         let folder = tempfile::tempdir().unwrap();
-        let path = folder.path().join("trajectory.csv");
         let (mut lockstep, mut python) = mixed(&[], PATIENCE);
-        lockstep.observe(Box::new(CsvRecorder::new(&path)));
+        lockstep.observe(Box::new(Recorder::new(folder.path(), provenance(), Choice::default())));
         lockstep.run_to(at_ms(10 * step)).unwrap();
         python.kill().unwrap();
         python.wait().unwrap();
@@ -120,7 +122,7 @@ fn killed_at_any_step_the_session_ends_and_the_recording_is_whole() {
         let SessionEnd::Failed(failure) = &outcome.end else { panic!("it should have failed") };
         assert_eq!((&failure.client, failure.state, failure.t_v), (&client("beta"), ClientState::Run, at_ms(asked)));
         assert_eq!(failure.cause, FailureCause::Disconnected);
-        let rows = std::fs::read_to_string(&path).unwrap().lines().count() as u64;
-        assert_eq!(rows, 1 + asked / 10, "a header, and every step before the one that failed");
+        let steps = Recording::open(folder.path()).unwrap().steps();
+        assert_eq!(steps, Some(0..=asked / 10 - 1), "every step before the one that failed");
     }
 }

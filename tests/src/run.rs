@@ -10,6 +10,7 @@ use onescan_server::formation::Formation;
 use onescan_server::lockstep::{Lockstep, Outcome};
 use onescan_server::mailbox::Mailbox;
 use onescan_server::plan::SessionPlan;
+use onescan_server::record::Provenance;
 use onescan_server::time::VirtualTime;
 use onescan_server::transport::tcp::Lobby;
 use onescan_server::transport::tcp::participant::{ParticipantError, take_part};
@@ -35,6 +36,19 @@ pub fn in_process(plan: SessionPlan, clients: impl IntoIterator<Item = Box<dyn C
 pub fn run(mut lockstep: Lockstep, until: VirtualTime) -> Outcome {
     lockstep.set_until(Some(until));
     lockstep.run().expect("nothing is recorded")
+}
+
+/// What a recording of a toy session says of it.
+pub fn provenance() -> Provenance {
+    Provenance {
+        onescan: "0".to_owned(),
+        scenario: "toy".to_owned(),
+        folder: String::new(),
+        mode: "lockstep".to_owned(),
+        until: VirtualTime::ZERO,
+        seed: 0,
+        files: Vec::new(),
+    }
 }
 
 /// Boxes clients.

@@ -5,6 +5,8 @@
 //!
 //! | module | subject |
 //! |---|---|
+//! | [`mesh`] | corners and triangles from STL and OBJ files |
+//! | [`urdf`] | robots described in URDF |
 //! | [`scene`] | the scene file: read, checked, plain data |
 //! | `pose` | orientations and joint frames from angles and directions |
 //! | `world` | the scene as a world of rigid bodies |
@@ -38,6 +40,7 @@ mod command;
 pub mod component;
 mod coordinate;
 mod machine;
+pub mod mesh;
 mod part;
 mod pose;
 mod random;
@@ -45,6 +48,7 @@ pub mod scene;
 mod sensor;
 mod setpoint;
 mod state;
+pub mod urdf;
 mod world;
 
 pub use client::{BodyPose, Plant};

@@ -16,7 +16,7 @@ use super::component::library::entry;
 use super::random::seed_for;
 use super::scene::Scene;
 use super::scene::model::{self, Bound, When, Wire};
-use super::world::{World, measured_axis};
+use super::world::{Surface, World, measured_axis};
 
 /// The part of a joint's deviation that one period corrects, as for an axis.
 const CORRECTED_A_PERIOD: f64 = 0.25;
@@ -81,7 +81,8 @@ enum Tie {
     Measured(usize),
     Belt { body: RigidBodyHandle, direction: Vector },
     Ray { body: RigidBodyHandle, point: Vector, direction: Vector, targets: Vec<RigidBodyHandle> },
-    Touch { body: RigidBodyHandle, targets: Vec<RigidBodyHandle> },
+    Touch { surface: Surface, targets: Vec<RigidBodyHandle> },
+    Meet { targets: Vec<RigidBodyHandle> },
     Collect { body: RigidBodyHandle, targets: Vec<RigidBodyHandle> },
     Place { body: RigidBodyHandle, targets: Vec<RigidBodyHandle> },
 }
@@ -297,12 +298,12 @@ impl Part {
                     body.set_linvel(*direction * velocity_m_s, true);
                 }
             }
-            (Effect::Hold(target), Tie::Touch { body, targets }) if self.held.map(|held| held.target) != target => {
+            (Effect::Hold(target), Tie::Touch { surface, targets }) if self.held.map(|held| held.target) != target => {
                 if let Some(held) = self.held.take() {
                     world.physics.remove_impulse_joint(held.joint);
                 }
                 self.held = target.and_then(|target| {
-                    let joint = world.hold(*body, *targets.get(target as usize)?);
+                    let joint = world.hold(surface.body, *targets.get(target as usize)?);
                     Some(Held { target, joint })
                 });
             }
@@ -349,8 +350,15 @@ impl Tie {
                     targets: handles(world, targets),
                 }
             }
-            Bound::Touch { body, targets } => {
-                Self::Touch { body: world.handle(Some(*body)), targets: handles(world, targets) }
+            Bound::Touch { body, shape, targets } => {
+                let shape = shape.map(|shape| world.shape(shape));
+                let surface = Surface { body: world.handle(Some(*body)), shape };
+                Self::Touch { surface, targets: handles(world, targets) }
+            }
+            Bound::Meet { targets } => {
+                let mut targets = handles(world, targets);
+                targets.sort_unstable_by_key(|target| target.0);
+                Self::Meet { targets }
             }
             Bound::Collect { body, targets } => {
                 Self::Collect { body: world.handle(Some(*body)), targets: handles(world, targets) }
@@ -379,11 +387,18 @@ impl Tie {
                 let hits = targets.iter().filter_map(|target| world.ray_distance(&ray, *target));
                 Seen { hit_m: hits.reduce(f64::min), ..Seen::default() }
             }
-            Self::Touch { body, targets } => first(targets, |target| world.touch(*body, target)),
+            Self::Touch { surface, targets } => first(targets, |target| world.touch(*surface, target)),
+            Self::Meet { targets } => Seen { count: world.contacts_among(targets), ..Seen::default() },
             Self::Collect { body, targets } => {
-                first(targets, |target| !world.hangs(target) && world.touch(*body, target))
+                let surface = Surface { body: *body, shape: None };
+                first(targets, |target| !world.hangs(target) && world.touch(surface, target))
             }
-            Self::Place { targets, .. } => first(targets, |target| !world.body(target).is_enabled()),
+            Self::Place { body, targets } => {
+                let surface = Surface { body: *body, shape: None };
+                let seen = first(targets, |target| !world.body(target).is_enabled());
+                let free = !targets.iter().any(|target| world.touch(surface, *target));
+                Seen { target: seen.target.filter(|_| free), ..seen }
+            }
         }
     }
 }

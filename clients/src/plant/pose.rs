@@ -13,6 +13,21 @@ pub(super) fn from_rpy_deg(position_m: [f64; 3], rpy_deg: [f64; 3]) -> Pose {
     Pose::from_parts(Vector::from_array(position_m), about_z * about_y * about_x)
 }
 
+/// The angles that [`from_rpy_deg`] takes for a rotation; with the pitch at a quarter turn, where roll
+/// and yaw are one, the roll is 0.
+pub(super) fn to_rpy_deg(rotation: DQuat) -> [f64; 3] {
+    let DQuat { x, y, z, w } = rotation;
+    let sine = (2.0 * (w * y - z * x)).clamp(-1.0, 1.0);
+    let upright = sine.abs() > 1.0 - 1e-12;
+    let (roll, yaw) = if upright {
+        (0.0, libm::atan2(-2.0 * (x * y - w * z), 1.0 - 2.0 * (x * x + z * z)))
+    } else {
+        let roll = libm::atan2(2.0 * (w * x + y * z), 1.0 - 2.0 * (x * x + y * y));
+        (roll, libm::atan2(2.0 * (w * z + x * y), 1.0 - 2.0 * (y * y + z * z)))
+    };
+    [roll, libm::asin(sine), yaw].map(f64::to_degrees)
+}
+
 /// The frame of a joint in the world: x along `axis`, y along `across`.
 pub(super) fn frame(anchor_m: [f64; 3], axis: [f64; 3], across: [f64; 3]) -> Pose {
     let (x, y) = (Vector::from_array(axis), Vector::from_array(across));
@@ -39,6 +54,17 @@ mod tests {
         // roll takes y to z, which yaw keeps; roll keeps x, which yaw takes to y
         assert!(close(pose * Vector::Y, Vector::Z));
         assert!(close(pose * Vector::X, Vector::Y));
+    }
+
+    #[test]
+    fn angles_come_back() {
+        for rpy in [[10.0, 20.0, 30.0], [-170.0, -80.0, 100.0], [0.0, 90.0, 40.0], [0.0, -90.0, -25.0], [0.0; 3]] {
+            let pose = from_rpy_deg([0.0; 3], rpy);
+            let again = from_rpy_deg([0.0; 3], to_rpy_deg(pose.rotation));
+            for axis in [Vector::X, Vector::Y, Vector::Z] {
+                assert!((pose * axis - again * axis).length() < 1e-7, "{rpy:?}");
+            }
+        }
     }
 
     #[test]

@@ -4,11 +4,11 @@ use std::f64::consts::FRAC_1_SQRT_2;
 
 use onescan_server::client::ClientFault;
 use onescan_server::time::TimeSpan;
-use rapier3d::glamx::DQuat;
+use rapier3d::glamx::{DMat3, DQuat};
 use rapier3d::prelude::*;
 
 use super::pose;
-use super::scene::model::{Body, BodyKind, Collisions, Joint, JointKind, Mass, Scene, Shape};
+use super::scene::model::{Attached, Body, BodyKind, Collisions, Joint, JointKind, Mass, Scene, Shape};
 
 /// Bodies without a group are members of this one.
 const UNGROUPED: Group = Group::GROUP_32;
@@ -16,12 +16,20 @@ const UNGROUPED: Group = Group::GROUP_32;
 /// Sweeps over all joints and contacts in one solver iteration.
 const SWEEPS: usize = 4;
 
+/// A body, or one shape of it.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Surface {
+    pub(super) body: RigidBodyHandle,
+    pub(super) shape: Option<ColliderHandle>,
+}
+
 /// The rigid bodies of a plant, and where each thing of the scene is in them.
 pub(super) struct World {
     /// All of the state that the engine keeps.
     pub(super) physics: PhysicsWorld,
     ground: RigidBodyHandle,
     bodies: Vec<RigidBodyHandle>,
+    shapes: Vec<ColliderHandle>,
     joints: Vec<ImpulseJointHandle>,
     /// Belts, and where they stay while their surfaces run.
     belts: Vec<(RigidBodyHandle, Pose)>,
@@ -37,6 +45,7 @@ impl World {
         physics.integration_parameters = integration(scene, period);
         let ground = physics.insert_body(RigidBodyBuilder::fixed());
         let bodies: Vec<_> = scene.bodies.iter().map(|body| insert_body(&mut physics, body)).collect();
+        let shapes = scene.shapes.iter().map(|shape| attach(&mut physics, shape, scene, bodies[shape.body])).collect();
         let joints = scene
             .joints
             .iter()
@@ -45,7 +54,16 @@ impl World {
                 insert_joint(&mut physics, joint, parent, bodies[joint.child])
             })
             .collect();
-        Self { physics, ground, bodies, joints, belts: Vec::new(), substeps: scene.substeps, extent_m: scene.extent_m }
+        Self {
+            physics,
+            ground,
+            bodies,
+            shapes,
+            joints,
+            belts: Vec::new(),
+            substeps: scene.substeps,
+            extent_m: scene.extent_m,
+        }
     }
 
     /// Moves the world by one period.
@@ -106,6 +124,11 @@ impl World {
         self.joints[index]
     }
 
+    /// The shape of an index in the scene's `[[shape]]`s.
+    pub(super) fn shape(&self, index: usize) -> ColliderHandle {
+        self.shapes[index]
+    }
+
     /// The shapes of a body that is in the world, each where it is now.
     fn shapes(&self, handle: RigidBodyHandle) -> impl Iterator<Item = (Pose, &dyn rapier3d::parry::shape::Shape)> {
         let body = self.body(handle);
@@ -127,14 +150,41 @@ impl World {
         hits.reduce(f64::min)
     }
 
-    /// True if two bodies touch or are in each other, whether they collide or not.
-    pub(super) fn touch(&self, one: RigidBodyHandle, other: RigidBodyHandle) -> bool {
+    /// True if a surface touches a body or is in it, whether they collide or not.
+    pub(super) fn touch(&self, one: Surface, other: RigidBodyHandle) -> bool {
+        if !self.body(other).is_enabled() {
+            return false;
+        }
+        match one.shape.and_then(|shape| self.physics.colliders.get(shape)) {
+            Some(collider) => {
+                let local = collider.position_wrt_parent().copied().unwrap_or(Pose::IDENTITY);
+                self.meets(&(*self.body(one.body).position() * local), collider.shape(), other)
+            }
+            None => self.shapes(one.body).any(|(pose, shape)| self.meets(&pose, shape, other)),
+        }
+    }
+
+    /// True if a shape touches a body. Spheres around both come first: most bodies are far away.
+    fn meets(&self, pose: &Pose, shape: &dyn rapier3d::parry::shape::Shape, other: RigidBodyHandle) -> bool {
         use rapier3d::parry::query::intersection_test;
-        self.shapes(one).any(|(pose, shape)| {
+        let sphere = shape.compute_bounding_sphere(pose);
+        self.shapes(other).any(|(place, met)| {
             // the engine's shapes all know how to meet each other
-            self.shapes(other)
-                .any(|(place, met)| intersection_test(&pose, shape, &place, met).is_ok_and(|met| met.intersecting))
+            met.compute_bounding_sphere(&place).intersects(&sphere)
+                && intersection_test(pose, shape, &place, met).is_ok_and(|met| met.intersecting)
         })
+    }
+
+    /// How many pairs of these bodies, which are in rising order, are in contact.
+    pub(super) fn contacts_among(&self, bodies: &[RigidBodyHandle]) -> u32 {
+        let known = |collider: ColliderHandle| {
+            let parent = self.physics.colliders.get(collider).and_then(Collider::parent);
+            parent.is_some_and(|parent| bodies.binary_search_by_key(&parent.0, |body| body.0).is_ok())
+        };
+        let pairs = self.physics.narrow_phase.contact_pairs();
+        let touching =
+            pairs.filter(|pair| pair.has_any_active_contact() && known(pair.collider1) && known(pair.collider2));
+        touching.count() as u32
     }
 
     /// Takes a body out of the world until it is put in again.
@@ -189,27 +239,73 @@ fn insert_body(physics: &mut PhysicsWorld, body: &Body) -> RigidBodyHandle {
     let builder = builder
         .pose(pose::from_rpy_deg(body.position_m, body.rpy_deg))
         .linvel(Vector::from_array(body.velocity_m_s))
-        .can_sleep(false);
-    match body.shape {
+        .can_sleep(false)
+        .additional_mass_properties(stated(body));
+    match &body.shape {
         None => physics.insert_body(builder),
         Some(shape) => physics.insert(builder, collider(body, shape)).0,
     }
 }
 
-fn collider(body: &Body, shape: Shape) -> ColliderBuilder {
-    let builder = match shape {
+/// Mass properties that a body has beside those of its shapes.
+fn stated(body: &Body) -> MassProperties {
+    let Mass::Stated { kg, centre_m, inertia_kg_m2: [xx, yy, zz, xy, xz, yz] } = body.mass else {
+        return MassProperties::default();
+    };
+    let place = pose::from_rpy_deg(body.position_m, body.rpy_deg);
+    let world = DMat3::from_cols(Vector::new(xx, xy, xz), Vector::new(xy, yy, yz), Vector::new(xz, yz, zz));
+    let turned = DMat3::from_quat(place.rotation);
+    let centre = place.inverse_transform_point(Vector::from_array(centre_m));
+    MassProperties::with_inertia_matrix(centre, kg, turned.transpose() * world * turned)
+}
+
+/// Attaches a shape to its body, which still stands in the scene's pose.
+fn attach(physics: &mut PhysicsWorld, shape: &Attached, scene: &Scene, body: RigidBodyHandle) -> ColliderHandle {
+    let place = pose::from_rpy_deg(shape.position_m, shape.rpy_deg);
+    let local = physics.bodies[body].position().inv_mul(&place);
+    let own = form(&shape.shape);
+    let turned = local * own.position;
+    let collisions = if shape.collides { scene.bodies[shape.body].collisions } else { Collisions::None };
+    let collider = own
+        .position(turned)
+        .mass(shape.mass_kg)
+        .friction(shape.friction)
+        .restitution(shape.restitution)
+        .collision_groups(groups(collisions));
+    physics.insert_collider(collider, Some(body))
+}
+
+fn collider(body: &Body, shape: &Shape) -> ColliderBuilder {
+    let builder = form(shape);
+    let builder = match body.mass {
+        Mass::Total { kg } => builder.mass(kg),
+        Mass::Density { kg_m3 } => builder.density(kg_m3),
+        Mass::Stated { .. } => builder.mass(0.0),
+    };
+    builder.friction(body.friction).restitution(body.restitution).collision_groups(groups(body.collisions))
+}
+
+fn form(shape: &Shape) -> ColliderBuilder {
+    match *shape {
         Shape::Box { size_m: [x, y, z] } => ColliderBuilder::cuboid(x * 0.5, y * 0.5, z * 0.5),
         Shape::Sphere { radius_m } => ColliderBuilder::ball(radius_m),
         // the engine's cylinder stands along y; a quarter turn about x puts it along z
         Shape::Cylinder { radius_m, length_m } => ColliderBuilder::cylinder(length_m * 0.5, radius_m)
             .position(Pose::from_rotation(DQuat::from_xyzw(FRAC_1_SQRT_2, 0.0, 0.0, FRAC_1_SQRT_2))),
         Shape::Capsule { radius_m, length_m } => ColliderBuilder::capsule_z(length_m * 0.5, radius_m),
-    };
-    let builder = match body.mass {
-        Mass::Total { kg } => builder.mass(kg),
-        Mass::Density { kg_m3 } => builder.density(kg_m3),
-    };
-    builder.friction(body.friction).restitution(body.restitution).collision_groups(groups(body.collisions))
+        // a checked scene has meshes with a hull and with triangles only
+        Shape::Hull { ref corners_m, .. } => {
+            ColliderBuilder::convex_hull(&points(corners_m)).unwrap_or_else(|| ColliderBuilder::ball(0.0))
+        }
+        Shape::Surface { ref corners_m, ref triangles, .. } => {
+            let surface = ColliderBuilder::trimesh(points(corners_m), triangles.clone());
+            surface.unwrap_or_else(|_| ColliderBuilder::ball(0.0))
+        }
+    }
+}
+
+fn points(corners_m: &[[f64; 3]]) -> Vec<Vector> {
+    corners_m.iter().map(|corner| Vector::from_array(*corner)).collect()
 }
 
 fn groups(collisions: Collisions) -> InteractionGroups {

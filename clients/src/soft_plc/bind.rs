@@ -17,6 +17,8 @@ pub struct Bound {
     pub port: Port,
     /// Where it lies in memory; several for an input that several programs read.
     pub places: Vec<Place>,
+    /// Their paths.
+    pub variables: Vec<String>,
 }
 
 /// Where a value lies in the PLC's memory.
@@ -59,13 +61,16 @@ pub fn bind(
     application: &Application,
     plc: &ClientName,
     signals: &[SignalDecl],
-    paths: &BTreeMap<SignalName, String>,
+    paths: &BTreeMap<SignalName, Vec<String>>,
 ) -> Result<Bindings, BindError> {
     let mut bindings = Bindings::default();
     for signal in signals {
         let written = signal.writer.as_ref() == Some(plc);
         let variables = match paths.get(&signal.name) {
-            Some(path) => vec![at_path(application, &signal.name, path)?],
+            Some(paths) if written && paths.len() > 1 => return Err(several(&signal.name, paths)),
+            Some(paths) => {
+                paths.iter().map(|path| at_path(application, &signal.name, path)).collect::<Result<_, _>>()?
+            }
             None if written => vec![output_named(application, &signal.name)?],
             None => inputs_named(application, &signal.name),
         };
@@ -73,10 +78,20 @@ pub fn bind(
             continue;
         }
         let places = variables.iter().map(|variable| checked_place(signal, variable)).collect::<Result<_, _>>()?;
-        let bound = Bound { port: Port { name: signal.name.clone(), ty: signal.ty }, places };
+        let paths = variables.into_iter().map(|variable| variable.path).collect();
+        let bound = Bound { port: Port { name: signal.name.clone(), ty: signal.ty }, places, variables: paths };
         if written { bindings.outputs.push(bound) } else { bindings.inputs.push(bound) }
     }
     Ok(bindings)
+}
+
+/// A signal has one value, so one variable that gives it.
+fn several(signal: &SignalName, paths: &[String]) -> BindError {
+    BindError {
+        signal: signal.clone(),
+        message: format!("signal `{signal}` is written by the PLC and bound to {} of its variables", paths.len()),
+        help: Some("only a signal that the PLC reads goes to several".to_owned()),
+    }
 }
 
 fn at_path(application: &Application, signal: &SignalName, path: &str) -> Result<Variable, BindError> {
@@ -155,7 +170,7 @@ mod tests {
             .iter()
             .map(|(n, ty, writer)| SignalDecl { name: name(n), ty: *ty, writer: Some(client(writer)), unit: None })
             .collect();
-        let paths = paths.iter().map(|(n, path)| (name(n), (*path).to_owned())).collect();
+        let paths = paths.iter().map(|(n, path)| (name(n), path.split(' ').map(str::to_owned).collect())).collect();
         bind(&application, &client("plc"), &signals, &paths)
     }
 
@@ -173,11 +188,19 @@ mod tests {
     }
 
     #[test]
+    fn a_signal_that_is_read_goes_to_several_variables() {
+        let several = [("Go", "A.Start B.start")];
+        assert_eq!(bound(&[("Go", ElementaryType::Bool, "plant")], &several).unwrap().inputs[0].places.len(), 2);
+        let error = bound(&[("Go", ElementaryType::Bool, "plc")], &several).unwrap_err();
+        assert_eq!(error.to_string(), "signal `Go` is written by the PLC and bound to 2 of its variables");
+    }
+
+    #[test]
     fn a_signal_can_be_bound_to_a_direct_address() {
         let bindings = bound(&[("Valve", ElementaryType::Bool, "plc")], &[("Valve", "%QX0.3")]).unwrap();
         assert_eq!(bindings.outputs[0].places[0].bit, Some(3));
         let named = bound(&[("Valve", ElementaryType::Bool, "plc")], &[("Valve", "A.valve")]).unwrap();
-        assert_eq!(named, bindings);
+        assert_eq!(named.outputs[0].places, bindings.outputs[0].places);
         let error = bound(&[("Valve", ElementaryType::Bool, "plc")], &[("Valve", "%QX7.3")]).unwrap_err();
         assert_eq!(error.to_string(), "signal `Valve` is bound to `%QX7.3`, which the PLC has not");
     }

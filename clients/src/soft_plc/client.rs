@@ -2,12 +2,13 @@
 
 use std::sync::{Arc, Mutex};
 
-use onescan_plc_shim::{Application, Coverage, PlcFault, RunError, SoftPlc, TaskPlan};
+use onescan_plc_shim::{Application, Coverage, PlcFault, RunError, SoftPlc, TaskPlan, UnknownVariable, WriteError};
 use onescan_server::client::{Client, ClientFault, JoinRequest, SourcePlace, StateError, Wake};
 use onescan_server::signal::ClientName;
 use onescan_server::time::{TimeSpan, VirtualTime};
 
 use super::bind::{Bindings, Bound, Place};
+use super::watch::{SightingSink, Watch, Watcher};
 
 /// A value's bytes in a port and in the PLC's memory.
 #[derive(Clone, Copy, Debug)]
@@ -41,8 +42,11 @@ pub struct SoftPlcClient {
     plc: SoftPlc,
     inputs: Vec<Run>,
     outputs: Vec<Run>,
+    /// Variables that begin with other values than the program says: path and literal.
+    presets: Vec<(String, String)>,
     /// Where what was executed goes when the client's part is over.
     coverage: Option<CoverageSink>,
+    watcher: Option<Watcher>,
 }
 
 /// What the PLCs of a run have executed together.
@@ -66,13 +70,52 @@ impl SoftPlcClient {
         let period = period.ok_or(RunError::NoTasks)?;
         let ports = |bound: &[Bound]| bound.iter().map(|bound| bound.port.clone()).collect();
         let request = JoinRequest { name, period, reads: ports(&bindings.inputs), writes: ports(&bindings.outputs) };
-        Ok(Self { request, plc, inputs: runs(&bindings.inputs), outputs: runs(&bindings.outputs), coverage: None })
+        Ok(Self {
+            request,
+            plc,
+            inputs: runs(&bindings.inputs),
+            outputs: runs(&bindings.outputs),
+            presets: Vec::new(),
+            coverage: None,
+            watcher: None,
+        })
+    }
+
+    /// Lets the variable at `path` begin with a value, given as a literal, in place of that of its declaration.
+    ///
+    /// # Errors
+    /// There is no such variable, it may not be written, or the text is no value of its type.
+    pub fn preset(&mut self, path: &str, value: &str) -> Result<(), WriteError> {
+        self.plc.write(path, value)?;
+        self.presets.push((path.to_owned(), value.to_owned()));
+        Ok(())
     }
 
     /// Gives what has been executed to `sink` when the client is dropped. The application must have
     /// been compiled for it.
     pub fn cover(&mut self, sink: CoverageSink) {
         self.coverage = Some(sink);
+    }
+
+    /// Looks at variables after the set-up and after every turn, all changes if `changes`, else for what
+    /// they are last. A watch comes with its number among those of all PLCs.
+    ///
+    /// # Errors
+    /// A path leads to no variable.
+    pub fn watch(
+        &mut self,
+        watches: &[(usize, Watch)],
+        changes: bool,
+        sink: SightingSink,
+    ) -> Result<(), UnknownVariable> {
+        self.watcher = Some(Watcher::new(self.plc.application(), watches, changes, sink)?);
+        Ok(())
+    }
+
+    fn look(&mut self, t_v: VirtualTime) {
+        if let Some(watcher) = &mut self.watcher {
+            watcher.look(&self.plc, t_v);
+        }
     }
 
     /// The PLC.
@@ -116,7 +159,11 @@ impl Client for SoftPlcClient {
 
     fn setup(&mut self, outputs: &mut [u8]) -> Result<(), ClientFault> {
         self.plc.reset();
+        for (path, value) in &self.presets {
+            self.plc.write(path, value).map_err(|error| ClientFault::new(error.to_string()))?;
+        }
         self.take_outputs(outputs);
+        self.look(VirtualTime::default());
         Ok(())
     }
 
@@ -125,7 +172,9 @@ impl Client for SoftPlcClient {
         for run in &self.inputs {
             run.give(inputs, memory);
         }
-        self.plc.scan(onescan_plc_shim::VirtualTime::from_ns(t_v.as_nanos())).map_err(|fault| client_fault(&fault))?;
+        let scanned = self.plc.scan(onescan_plc_shim::VirtualTime::from_ns(t_v.as_nanos()));
+        self.look(t_v);
+        scanned.map_err(|fault| client_fault(&fault))?;
         self.take_outputs(outputs);
         Ok(if self.plc.wants_every_step() {
             Wake::NextPeriod

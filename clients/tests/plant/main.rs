@@ -1,11 +1,14 @@
 //! The plant as a client, driven turn by turn without a session around it.
 
+mod arrays;
 mod belt;
 mod bench;
 mod components;
 mod faults;
 mod handling;
+mod meshes;
 mod motion;
+mod robots;
 mod robustness;
 mod sensors;
 mod shear;

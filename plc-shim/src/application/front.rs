@@ -7,7 +7,7 @@ use crate::check::{Checked, check};
 use crate::diagnostic::{Diagnostic, Severity};
 use crate::input::Input;
 use crate::syntax::ast::{CompilationUnit, Configuration, Declaration};
-use crate::syntax::{FileId, SourceFile, SourceMap, parse_in};
+use crate::syntax::{FileId, SourceFile, SourceMap, parse_source};
 
 /// What is known of files once they have been checked.
 pub(crate) struct Front {
@@ -28,12 +28,13 @@ impl Front {
         for input in inputs {
             findings.extend(input.add_to(&mut sources));
         }
-        for (name, text) in library::FILES {
+        let needed = library::for_program(sources.iter().map(|(_, file)| file));
+        for (name, text) in needed {
             library.insert(sources.add(SourceFile::new(name, text)));
         }
         let mut units = Vec::new();
         for (id, file) in sources.iter() {
-            let parsed = parse_in(file.dialect(), id, file.text());
+            let parsed = parse_source(id, file);
             findings.extend(parsed.diagnostics);
             units.push((id, parsed.unit));
         }

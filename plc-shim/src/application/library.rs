@@ -1,6 +1,10 @@
-//! The standard function blocks (2nd ed. 2.5.2.3) and some functions, as program text like any other.
+//! The standard function blocks (2nd ed. 2.5.2.3), some functions, and PLCopen's motion blocks, as program text
+//! like any other.
 
-/// File names and texts.
+use crate::syntax::token::{Keyword, TokenKind};
+use crate::syntax::{SourceFile, tokenize};
+
+/// What every program has: file names and texts.
 pub(crate) const FILES: [(&str, &str); 10] = [
     ("iec/bcd.st", include_str!("../../iec/bcd.st")),
     ("iec/bistable.st", include_str!("../../iec/bistable.st")),
@@ -13,3 +17,95 @@ pub(crate) const FILES: [(&str, &str); 10] = [
     ("iec/timers.st", include_str!("../../iec/timers.st")),
     ("iec/timers_by_type.st", include_str!("../../iec/timers_by_type.st")),
 ];
+
+/// Asserts of test programs. They have memory of their own and so are there only for those that use them.
+const ASSERTS: (&str, &str) = ("iec/test/assert.st", include_str!("../../iec/test/assert.st"));
+
+/// Whether a source may mean an assert; one that does not has no use for [`ASSERTS`].
+fn mentions_assert(text: &str) -> bool {
+    text.as_bytes().windows(6).any(|word| word.eq_ignore_ascii_case(b"ASSERT"))
+}
+
+/// Motion control (PLCopen, Function blocks for motion control, 2.0), for programs that name an axis.
+pub(crate) const MOTION: [(&str, &str); 15] = [
+    ("iec/motion/activate.st", include_str!("../../iec/motion/activate.st")),
+    ("iec/motion/axis.st", include_str!("../../iec/motion/axis.st")),
+    ("iec/motion/cam.st", include_str!("../../iec/motion/cam.st")),
+    ("iec/motion/command.st", include_str!("../../iec/motion/command.st")),
+    ("iec/motion/gear.st", include_str!("../../iec/motion/gear.st")),
+    ("iec/motion/home.st", include_str!("../../iec/motion/home.st")),
+    ("iec/motion/move.st", include_str!("../../iec/motion/move.st")),
+    ("iec/motion/parameter.st", include_str!("../../iec/motion/parameter.st")),
+    ("iec/motion/power.st", include_str!("../../iec/motion/power.st")),
+    ("iec/motion/profile.st", include_str!("../../iec/motion/profile.st")),
+    ("iec/motion/status.st", include_str!("../../iec/motion/status.st")),
+    ("iec/motion/stop.st", include_str!("../../iec/motion/stop.st")),
+    ("iec/motion/superimposed.st", include_str!("../../iec/motion/superimposed.st")),
+    ("iec/motion/types.st", include_str!("../../iec/motion/types.st")),
+    ("iec/motion/velocity.st", include_str!("../../iec/motion/velocity.st")),
+];
+
+/// The library for a program of these files: nobody pays for motion control or asserts but who uses them.
+pub(crate) fn for_program<'s>(files: impl Iterator<Item = &'s SourceFile>) -> Vec<(&'static str, &'static str)> {
+    let texts: Vec<_> = files.map(SourceFile::text).collect();
+    let axis = texts.iter().filter_map(|text| axis_in(text)).max();
+    let motion: &[_] = if axis == Some(Axis::Used) { &MOTION } else { &[] };
+    let asserts = texts.iter().any(|text| mentions_assert(text)).then_some(&ASSERTS);
+    FILES.iter().chain(motion).chain(asserts).copied().collect()
+}
+
+/// What a file has to do with the type of an axis.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+enum Axis {
+    Used,
+    /// The project brings its own, and the blocks for it.
+    Declared,
+}
+
+fn axis_in(text: &str) -> Option<Axis> {
+    const NAME: &str = "AXIS_REF";
+    let is_it = |written: Option<&str>| written.is_some_and(|written| written.eq_ignore_ascii_case(NAME));
+    let mut somewhere = text.match_indices('_').filter_map(|(at, _)| at.checked_sub(4));
+    if !somewhere.any(|at| is_it(text.get(at..at + NAME.len()))) {
+        return None;
+    }
+    let tokens: Vec<_> = tokenize(text).into_iter().filter(|token| !token.kind.is_trivia()).collect();
+    let names = tokens.iter().enumerate().filter(|(_, token)| {
+        token.kind == TokenKind::Identifier && is_it(text.get(token.start as usize..token.end as usize))
+    });
+    let declares = |at: usize| {
+        let before = at.checked_sub(1).and_then(|before| tokens.get(before));
+        tokens.get(at + 1).is_some_and(|next| text.get(next.start as usize..).is_some_and(|rest| rest.starts_with(':')))
+            || before.is_some_and(|before| before.kind == TokenKind::Keyword(Keyword::FunctionBlock))
+    };
+    names.map(|(at, _)| if declares(at) { Axis::Declared } else { Axis::Used }).max()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn motion_control_is_for_who_names_an_axis() {
+        for (text, found) in [
+            ("PROGRAM P VAR a : TON; END_VAR END_PROGRAM", None),
+            ("PROGRAM P (* AXIS_REF *) VAR my_AXIS_REFs, _ : INT; END_VAR END_PROGRAM", None),
+            ("PROGRAM P VAR a : Axis_Ref; END_VAR END_PROGRAM", Some(Axis::Used)),
+            ("TYPE AXIS_REF : STRUCT a : INT; END_STRUCT END_TYPE", Some(Axis::Declared)),
+            ("VAR_GLOBAL x : AXIS_REF; END_VAR FUNCTION_BLOCK AXIS_REF END_FUNCTION_BLOCK", Some(Axis::Declared)),
+        ] {
+            assert_eq!(axis_in(text), found, "{text}");
+            let file = SourceFile::new("a.st", text);
+            let count = for_program([&file].into_iter()).len();
+            let motion = if found == Some(Axis::Used) { MOTION.len() } else { 0 };
+            assert_eq!(count, FILES.len() + motion, "{text}");
+        }
+    }
+
+    #[test]
+    fn every_source_of_motion_control_says_what_it_follows() {
+        for (name, text) in MOTION {
+            assert!(text.starts_with("(* ") && text.contains("Function blocks for motion control"), "{name}");
+        }
+    }
+}

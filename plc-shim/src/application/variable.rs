@@ -108,7 +108,7 @@ impl Application {
     }
 
     /// The variable at a path: a global variable or a program's instance, members and indices, as in
-    /// `Shear.axis[2].position`; or at a direct address that the program uses, as in `%QX0.1`. The names
+    /// `Shear.axis[2].position`; or at a direct address that the program uses, as in `%QX0.1`; or a part of a bit string, as in `P.status.%X3`. The names
     /// of configuration and resource may stand in front, as in `Plant.Line.Shear.axis[2].position`; a
     /// name of `VAR_ACCESS` is a path too.
     ///
@@ -171,8 +171,13 @@ impl Application {
                 let (offset, access) = (from.offset + offset, from.access);
                 Ok(Spot { path, offset, bit: None, ty: *element, address: None, access })
             }
+            (_, Piece::Name(name)) => self.part_of(from, name).ok_or(None),
             _ => Err(None),
         }
+    }
+
+    pub(super) fn elementary(&self, spot: &Spot) -> Option<ElementaryType> {
+        self.inner.checked.types.elementary(spot.ty)
     }
 
     /// Offset of an array's element; nothing if it is outside.

@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use super::address::PlaceFunction;
+use super::asserts;
 use super::convert::{Operand, constant};
 use super::enable;
 use super::function_form;
@@ -270,6 +271,7 @@ impl Body<'_, '_> {
                 // The call is carried out, or the function would not read it.
                 _ if enable::is_control(parameter) => Some(Argument::Value(enable::boolean(true, span))),
                 Some(expr) => self.argument(parameter, expr, &mut passing),
+                None if self.checker.is_library(id) && asserts::is_site(parameter) => Some(asserts::site(span)),
                 None => self.default_argument(parameter, named, span),
             };
             sound &= argument.is_some();
@@ -384,7 +386,10 @@ impl Body<'_, '_> {
         let mut statements = Vec::new();
         let mut sound = true;
         for Wanted { variable, negated, target } in wanted {
-            let target_place = self.target(target);
+            let target_place = match self.new_wire(target) {
+                Some(name) => self.wire(name, variable.ty, target.span),
+                None => self.target(target),
+            };
             let Some(target_place) = target_place else {
                 sound = false;
                 continue;

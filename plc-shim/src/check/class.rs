@@ -3,6 +3,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::Checker;
+use super::start::Occasion;
 use crate::diagnostic::{Code, Diagnostic, did_you_mean};
 use crate::ir::PouId;
 use crate::syntax::Span;
@@ -17,6 +18,10 @@ pub(super) enum Role {
     Method,
     Getter,
     Setter,
+    /// What the unit's variables do before the first scan.
+    Start,
+    /// What they do before another start.
+    End,
 }
 
 impl From<MemberKind> for Role {
@@ -44,6 +49,7 @@ pub(super) struct Class {
     pub(super) interfaces: Vec<PouId>,
     pub(super) members: BTreeMap<(Role, String), PouId>,
     derived: Vec<PouId>,
+    pub(super) stages: BTreeMap<Occasion, PouId>,
     /// The number that an instance begins with, if it can be taken for one of another type.
     pub(super) type_id: Option<u32>,
 }

@@ -122,7 +122,8 @@ fn compare(operator: Binary, left: Value, right: Value) -> bool {
     }
 }
 
-fn convert(rounding: Rounding, target: ElementaryType, value: Value) -> Value {
+/// A constant as one of another type.
+pub(super) fn convert(rounding: Rounding, target: ElementaryType, value: Value) -> Value {
     match (target, value) {
         (ElementaryType::Real, Value::Int(value)) => Value::Real(value as f32),
         (ElementaryType::Real, value) => Value::Real(value.as_f64() as f32),

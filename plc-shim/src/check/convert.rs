@@ -1,5 +1,6 @@
 //! Implicit conversions and constants in their context (3rd ed. 6.6.1.6).
 
+use super::constant::convert as folded;
 use super::scope::Body;
 use crate::diagnostic::{Code, Diagnostic};
 use crate::ir::{ElementaryType, Expr, ExprKind, Rounding, Type, TypeId, Value};
@@ -43,7 +44,23 @@ pub(super) fn converted(expr: Expr, ty: ElementaryType, rounding: Rounding) -> E
         return expr;
     }
     let span = expr.span;
-    Expr { kind: ExprKind::Convert(rounding, Box::new(expr)), ty: ty.into(), span }
+    match expr.kind {
+        ExprKind::Constant(Value::Int(number)) if is_exact(number, ty) => {
+            constant(folded(rounding, ty, Value::Int(number)), ty, span)
+        }
+        _ => Expr { kind: ExprKind::Convert(rounding, Box::new(expr)), ty: ty.into(), span },
+    }
+}
+
+/// True if the number is one of the type, so that a constant stays what it is.
+fn is_exact(number: i128, ty: ElementaryType) -> bool {
+    let magnitude = |bits: u32| number.unsigned_abs() <= 1 << bits;
+    match ty {
+        ElementaryType::Bool => false,
+        ElementaryType::Real => magnitude(f32::MANTISSA_DIGITS),
+        ElementaryType::Lreal => magnitude(f64::MANTISSA_DIGITS),
+        _ => ty.takes_integers() && ty.range().is_some_and(|(low, high)| low <= number && number <= high),
+    }
 }
 
 impl Body<'_, '_> {
@@ -71,6 +88,10 @@ impl Body<'_, '_> {
             let expr = self.coerce(operand, base.into())?;
             return self.limited(expr, target, low, high);
         }
+        let operand = match self.enumerated(operand, target) {
+            Ok(value) => return value,
+            Err(operand) => operand,
+        };
         let wanted = match self.checker.types.get(target) {
             Type::Elementary(ty) => Some(*ty),
             _ => None,
@@ -101,6 +122,7 @@ impl Body<'_, '_> {
     }
 
     fn widen(&mut self, expr: Expr, wanted: ElementaryType) -> Option<Expr> {
+        let expr = self.as_number(expr);
         if let Some(number) = self.address_as_number(&expr, wanted) {
             return Some(number);
         }
@@ -111,6 +133,7 @@ impl Body<'_, '_> {
             return self.mismatch(wanted.name(), &found, expr.span);
         };
         if self.widens(found, wanted, expr.span) {
+            self.warn_of_loss(&expr, found, wanted);
             return Some(converted(expr, wanted, Rounding::NearestEven));
         }
         let message = format!("{wanted} is wanted, this is {found}");

@@ -1,6 +1,7 @@
 //! What dialects do their own way. A place in the text tells its file, and the file its dialect.
 
 use super::Checker;
+use super::constant::fold;
 use super::convert::{Operand, constant, converted};
 use super::layout::VIRTUAL_TIME_OFFSET;
 use super::scope::Body;
@@ -60,6 +61,17 @@ fn as_number(ty: E) -> E {
         E::Dword => E::Udint,
         E::Lword => E::Ulint,
         other => other,
+    }
+}
+
+/// True if a constant is the same as one of `ty`.
+fn keeps(value: Value, ty: E) -> bool {
+    match (value, ty) {
+        (Value::Int(value), E::Real) => value as f32 as i128 == value,
+        (Value::Int(value), E::Lreal) => value as f64 as i128 == value,
+        (Value::Int(value), _) => ty.wrap(value) == value,
+        // Whoever writes 0.1 means the nearest.
+        _ => true,
     }
 }
 
@@ -123,7 +135,25 @@ impl Body<'_, '_> {
         let (from, to) =
             if dialect.has(Feature::BitArithmetic) { (as_number(found), as_number(wanted)) } else { (found, wanted) };
         let sign = dialect.has(Feature::SignChange) && from.is_integer() && to.is_integer();
-        from.widens_to(to) || sign && from.size() <= to.size()
+        let real = dialect.has(Feature::LossyReals) && found.is_number() && wanted.is_real();
+        from.widens_to(to) || sign && from.size() <= to.size() || real
+    }
+
+    /// Warns of a value that may not be the same one of type `wanted`, which the dialect allows.
+    pub(super) fn warn_of_loss(&mut self, expr: &Expr, found: E, wanted: E) {
+        let (from, to) = (as_number(found), as_number(wanted));
+        if from.widens_to(to) || found == E::Bool {
+            return;
+        }
+        if let Ok(value) = fold(&self.checker.types, expr)
+            && keeps(value, to)
+        {
+            return;
+        }
+        let what = if to.is_real() { "lose digits" } else { "change its sign" };
+        let message = format!("this {found} may {what} as {wanted}");
+        let help = format!("{found}_TO_{wanted} says that it is meant");
+        self.report(Diagnostic::warning(Code::LossyConversion, expr.span, message).with_help(help));
     }
 
     /// The smallest type that both widen to.

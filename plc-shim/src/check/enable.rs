@@ -114,10 +114,21 @@ impl Body<'_, '_> {
     /// A call of a function with EN or ENO.
     pub(super) fn controlled_call(&mut self, call: &Call, span: Span) -> Option<Operand> {
         let own = self.declares_outcome(call, span);
+        self.controlled(call, own, span, |body, rest| body.plain_call(rest, span)).map(Operand::Typed)
+    }
+
+    /// A call that EN may forbid and ENO tells of; `own` is true if what is called has an ENO itself.
+    pub(super) fn controlled(
+        &mut self,
+        call: &Call,
+        own: bool,
+        span: Span,
+        make: impl FnOnce(&mut Self, &Call) -> Option<Operand>,
+    ) -> Option<Expr> {
         let (enabling, rest) = split(call, own)?;
         let context = self.context;
         let enable = enabling.enable.map(|enable| self.expression_of(enable, ElementaryType::Bool));
-        let called = self.plain_call(&rest, span)?;
+        let called = make(self, &rest)?;
         let called = match context.filter(|ty| Self::adapts(&called, *ty)) {
             Some(ty) => self.coerce(called, ty.into())?,
             None => self.settle(called)?,
@@ -134,7 +145,7 @@ impl Body<'_, '_> {
             body = vec![decide(enable?, body, otherwise)];
         }
         let value = result.map(|place| Box::new(load(place, ty, span)));
-        Some(Operand::Typed(Expr { kind: ExprKind::After(body, value), ty, span }))
+        Some(Expr { kind: ExprKind::After(body, value), ty, span })
     }
 
     /// True if the called function has an ENO of its own.
@@ -147,7 +158,7 @@ impl Body<'_, '_> {
     }
 
     /// Where the result of a call is kept until it is used.
-    fn kept(&mut self, ty: TypeId, span: Span) -> Option<Place> {
+    pub(super) fn kept(&mut self, ty: TypeId, span: Span) -> Option<Place> {
         match self.elementary(ty) {
             Some(elementary) => {
                 let register = self.scope.register(elementary);
@@ -210,7 +221,10 @@ impl Body<'_, '_> {
         let Some((target, negated)) = enabling.outcome else {
             return Some(Vec::new());
         };
-        let place = self.target(target)?;
+        let place = match self.new_wire(target) {
+            Some(name) => self.wire(name, ElementaryType::Bool.into(), target.span)?,
+            None => self.target(target)?,
+        };
         let (ty, span) = (value.ty, target.span);
         let value = if negated { Expr { kind: ExprKind::Unary(Unary::Not, Box::new(value)), ty, span } } else { value };
         let value = Expr { span, ..value };

@@ -11,22 +11,9 @@ impl Checker<'_> {
         let ids: Vec<PouId> = self.classes.keys().copied().collect();
         for id in ids {
             self.check_members(id);
-            self.reject_start_methods(id);
+            self.check_hooks(id);
             if self.pou(id).ast.kind.has_instances() && !self.is_abstract(id) {
                 self.check_complete(id);
-            }
-        }
-    }
-
-    /// Vendors run these without a call when an instance begins or ends.
-    fn reject_start_methods(&mut self, id: PouId) {
-        for name in ["FB_INIT", "FB_REINIT", "FB_EXIT"] {
-            let key = (Role::Method, name.to_owned());
-            if let Some(method) = self.class(id).and_then(|class| class.members.get(&key)).copied() {
-                let name = &self.pou(method).ast.name;
-                let message = format!("`{}`, which vendors run by itself, is not supported yet", name.text);
-                let found = Diagnostic::error(Code::UnsupportedFeature, name.span, message);
-                self.report(found.with_help("call a method of another name in the first scan"));
             }
         }
     }
@@ -53,6 +40,9 @@ impl Checker<'_> {
             }
             let key = (role, name);
             let above = self.ancestors(id).into_iter();
+            if Self::is_hook(&key.1) {
+                continue;
+            }
             let above: Vec<PouId> = above.filter_map(|each| self.class(each)?.members.get(&key).copied()).collect();
             for each in above {
                 self.check_signature(member, each);
@@ -108,7 +98,7 @@ impl Checker<'_> {
             let what = match role {
                 Role::Getter => "GET of the property",
                 Role::Setter => "SET of the property",
-                Role::Body | Role::Method => "the method",
+                Role::Body | Role::Method | Role::Start | Role::End => "the method",
             };
             let owner = &self.pou(self.owner_of(prototype)).ast.name.text;
             let message = format!("`{}` lacks {what} `{}` of `{owner}`", unit.text, wanted.text);

@@ -1,66 +1,124 @@
-//! Initial values to bytes (2nd ed. 2.4.3.2).
+//! Initial values to bytes (2nd ed. 2.4.3.2), and to what a start must do where bytes do not do.
 
+use std::ops::Range;
 use std::sync::Arc;
 
+use super::class::Role;
+use super::constant::{NoValue, fold};
 use super::names::TypedImage;
 use super::scope::Body;
+use super::start::{Occasion, Start, StartKind};
 use crate::diagnostic::{Code, Diagnostic, did_you_mean};
-use crate::ir::{Dimension, Field, Storage, Type, TypeId};
+use crate::dialect::Feature;
+use crate::ir::{self, Dimension, Field, PouId, Storage, Type, TypeId};
 use crate::syntax::Span;
-use crate::syntax::ast::{Expr, Initialiser, InitialiserKind, StructureInit};
+use crate::syntax::ast::{Expr, ExprKind, Initialiser, InitialiserKind, ReferenceKind, StructureInit};
 
-impl Body<'_, '_> {
-    /// The bytes of a variable with an initial value.
-    pub(super) fn initial_image(&mut self, declared: &TypedImage, initial: &Initialiser) -> Option<Arc<[u8]>> {
+/// A variable's initial value while it is made.
+struct Making<'a> {
+    image: Vec<u8>,
+    starts: Vec<Start<'a>>,
+}
+
+/// A value inside of the variable: its type, and bytes from the variable's beginning.
+#[derive(Clone, Copy)]
+struct Spot {
+    ty: TypeId,
+    offset: u32,
+}
+
+impl<'a> Body<'_, 'a> {
+    /// What a variable of the type with an initial value begins with.
+    pub(super) fn with_initial(
+        &mut self,
+        declared: &TypedImage<'a>,
+        initial: &'a Initialiser,
+    ) -> Option<TypedImage<'a>> {
         self.checker.charge_image(declared.image.len() as u64, initial.span)?;
-        let mut image = declared.image.to_vec();
-        self.fill(declared.ty, initial, &mut image)?;
-        Some(image.into())
+        let mut making = Making { image: declared.image.to_vec(), starts: declared.starts.to_vec() };
+        self.fill(Spot { ty: declared.ty, offset: 0 }, initial, &mut making)?;
+        Some(TypedImage { ty: declared.ty, image: making.image.into(), starts: making.starts.into() })
     }
 
-    fn fill(&mut self, ty: TypeId, initial: &Initialiser, image: &mut [u8]) -> Option<()> {
-        let shape = self.checker.types.get(ty).clone();
+    fn range(&self, spot: Spot) -> Range<usize> {
+        let start = spot.offset as usize;
+        start..start + self.checker.types.size(spot.ty) as usize
+    }
+
+    fn fill(&mut self, spot: Spot, initial: &'a Initialiser, making: &mut Making<'a>) -> Option<()> {
+        let shape = self.checker.types.get(spot.ty).clone();
         match (&initial.kind, shape) {
-            (InitialiserKind::Value(expr), _) if self.elementary(ty).is_some() => self.fill_elementary(ty, expr, image),
+            (InitialiserKind::Value(expr), Type::Text(_)) if !self.is_constant_text(expr) => {
+                self.begins_with(spot, expr, making);
+                Some(())
+            }
+            (InitialiserKind::Value(expr), _) if self.elementary(spot.ty).is_some() => {
+                self.fill_elementary(spot, expr, making)
+            }
             (InitialiserKind::Value(expr), Type::Text(shape)) => {
                 let bytes = self.text_image(shape, expr)?;
-                image.iter_mut().zip(bytes).for_each(|(target, source)| *target = source);
+                let range = self.range(spot);
+                making.image.get_mut(range)?.iter_mut().zip(bytes).for_each(|(target, source)| *target = source);
                 Some(())
             }
             (InitialiserKind::Array(elements), Type::Array { dimensions, element }) => {
                 let count = dimensions.iter().map(|each: &Dimension| each.count()).product();
-                self.fill_array(element, count, elements, image)
+                self.fill_array(Spot { ty: element, ..spot }, count, elements, making)
             }
             (InitialiserKind::Struct(members), Type::Struct { fields, .. }) => {
-                self.fill_members(ty, &fields, members, image)
+                self.fill_members(spot, &fields, members, making)
             }
             (InitialiserKind::Struct(members), Type::FunctionBlock { pou, .. }) => {
-                let scope = self.checker.interface(pou, initial.span)?;
-                let fields = scope.variables.iter().filter_map(|variable| match variable.storage {
-                    Storage::Instance(offset) => Some(Field { name: variable.name.clone(), ty: variable.ty, offset }),
-                    _ => None,
-                });
-                let fields: Vec<Field> = fields.collect();
-                self.fill_members(ty, &fields, members, image)
+                self.fill_instance(spot, pou, members, (initial.span, making))
             }
             _ => {
-                let message = format!("this does not initialise {}", self.type_name(ty));
+                let message = format!("this does not initialise {}", self.type_name(spot.ty));
                 self.report(Diagnostic::error(Code::InvalidInitialiser, initial.span, message));
                 None
             }
         }
     }
 
-    fn fill_elementary(&mut self, ty: TypeId, expr: &Expr, image: &mut [u8]) -> Option<()> {
-        let value = self.constant_of_type(expr, ty)?;
-        for (target, source) in image.iter_mut().zip(value.bytes()) {
-            *target = source;
+    fn begins_with(&mut self, spot: Spot, expr: &'a Expr, making: &mut Making<'a>) {
+        making.starts.push(self.start(spot.offset, StartKind::Value(spot.ty, expr), expr.span));
+    }
+
+    fn fill_elementary(&mut self, spot: Spot, expr: &'a Expr, making: &mut Making<'a>) -> Option<()> {
+        let typed = self.expression_for(expr, spot.ty)?;
+        if matches!(fold(&self.checker.types, &typed), Err(NoValue::NotConstant(_))) && self.may_be_computed(&typed) {
+            self.begins_with(spot, expr, making);
+            return Some(());
         }
+        let value = self.value_of(&typed)?;
+        let range = self.range(spot);
+        making.image.get_mut(range)?.iter_mut().zip(value.bytes()).for_each(|(target, source)| *target = source);
         Some(())
     }
 
-    fn fill_array(&mut self, element: TypeId, count: u64, elements: &[Initialiser], image: &mut [u8]) -> Option<()> {
-        let size = self.checker.types.size(element) as usize;
+    /// A reference may begin with `REF` of any variable (3rd ed. 6.4.4.10.2).
+    fn may_be_computed(&self, value: &ir::Expr) -> bool {
+        let refers = matches!(
+            self.checker.types.get(value.ty),
+            Type::Reference { kind: ReferenceKind::RefTo | ReferenceKind::Pointer, .. } | Type::Interface { .. }
+        );
+        refers || self.checker.dialect(value.span).has(Feature::ComputedInitialValues)
+    }
+
+    /// True for what [`Self::text_image`] takes or reports.
+    fn is_constant_text(&mut self, expr: &Expr) -> bool {
+        let computed = self.checker.dialect(expr.span).has(Feature::ComputedInitialValues);
+        let literal = matches!(expr.kind, ExprKind::Literal(_));
+        !computed || literal || self.constant_text(expr).is_some()
+    }
+
+    fn fill_array(
+        &mut self,
+        element: Spot,
+        count: u64,
+        elements: &'a [Initialiser],
+        making: &mut Making<'a>,
+    ) -> Option<()> {
+        let size = self.checker.types.size(element.ty);
         let mut next: u64 = 0;
         for initial in elements {
             let (times, value) = match &initial.kind {
@@ -71,16 +129,30 @@ impl Body<'_, '_> {
             if next.checked_add(times).is_none_or(|end| end > count) {
                 return self.too_many_elements(count, initial.span);
             }
-            let first = next as usize * size;
-            let range = first..first + times as usize * size;
+            let spot = Spot { offset: element.offset + next as u32 * size, ..element };
             next += times;
-            let (Some(value), Some(target)) = (value, image.get_mut(range)) else {
-                continue;
-            };
-            if let Some((target, others)) = target.split_at_mut_checked(size) {
-                self.fill(element, value, target)?;
-                others.chunks_mut(size).for_each(|other| other.copy_from_slice(target));
+            if let Some(value) = value.filter(|_| times > 0) {
+                self.fill_alike(spot, times as u32, value, making)?;
             }
+        }
+        Some(())
+    }
+
+    /// Gives so many elements in a row the same value.
+    fn fill_alike(&mut self, first: Spot, times: u32, value: &'a Initialiser, making: &mut Making<'a>) -> Option<()> {
+        let known = making.starts.len();
+        self.fill(first, value, making)?;
+        let (range, size) = (self.range(first), self.checker.types.size(first.ty));
+        let (from, end) = (range.start, range.start + size as usize * times as usize);
+        let row = making.image.get_mut(from..end)?;
+        if let Some((first, others)) = row.split_at_mut_checked(size as usize) {
+            others.chunks_mut(size as usize).for_each(|other| other.copy_from_slice(first));
+        }
+        if times > 1 && making.starts.len() > known {
+            let own = making.starts.split_off(known);
+            let inside = own.into_iter().map(|start| Start { offset: start.offset - first.offset, ..start });
+            let kind = StartKind::Each { count: times, stride: size, starts: inside.collect() };
+            making.starts.push(self.start(first.offset, kind, value.span));
         }
         Some(())
     }
@@ -91,28 +163,77 @@ impl Body<'_, '_> {
         None
     }
 
-    fn fill_members(
+    /// The variables of an instance, and its properties, which vendors allow here too.
+    fn fill_instance(
         &mut self,
-        ty: TypeId,
-        fields: &[Field],
-        members: &[StructureInit],
-        image: &mut [u8],
+        spot: Spot,
+        pou: PouId,
+        members: &'a [StructureInit],
+        (span, making): (Span, &mut Making<'a>),
     ) -> Option<()> {
+        let scope = self.checker.interface(pou, span)?;
+        let fields = scope.variables.iter().filter_map(|variable| match variable.storage {
+            Storage::Instance(offset) => Some(Field { name: variable.name.clone(), ty: variable.ty, offset }),
+            _ => None,
+        });
+        let fields: Vec<Field> = fields.collect();
+        let overwritten = self.checker.has_hook(pou, Occasion::Start);
         for member in members {
-            let name = &member.name.text;
-            let field = fields.iter().find(|field| field.name.eq_ignore_ascii_case(name));
-            let Some(field) = field else {
-                let message = format!("{} has no member `{name}`", self.type_name(ty));
-                let help = did_you_mean(name, fields.iter().map(|field| field.name.as_str()));
-                let found = Diagnostic::error(Code::UnknownMember, member.name.span, message);
-                self.report(found.with_optional_help(help));
-                return None;
-            };
-            let start = field.offset as usize;
-            let end = start + self.checker.types.size(field.ty) as usize;
-            let target = image.get_mut(start..end)?;
-            self.fill(field.ty, &member.value, target)?;
+            let is_field = fields.iter().any(|field| field.name.eq_ignore_ascii_case(&member.name.text));
+            let setter = self.checker.find_member(pou, Role::Setter, &member.name.text);
+            if let (false, Some(_), InitialiserKind::Value(value)) = (is_field, setter, &member.value.kind) {
+                let kind = StartKind::Property(pou, &member.name, value);
+                making.starts.push(self.start(spot.offset, kind, member.name.span));
+                continue;
+            }
+            let filled = self.fill_member(spot, &fields, member, making)?;
+            if overwritten {
+                let bytes = making.image.get(self.range(filled))?.into();
+                let kind = StartKind::Bytes(filled.ty, bytes);
+                making.starts.push(self.start(filled.offset, kind, member.name.span));
+            }
         }
         Some(())
     }
+
+    fn fill_members(
+        &mut self,
+        spot: Spot,
+        fields: &[Field],
+        members: &'a [StructureInit],
+        making: &mut Making<'a>,
+    ) -> Option<()> {
+        members.iter().try_for_each(|member| self.fill_member(spot, fields, member, making).map(|_| ()))
+    }
+
+    fn fill_member(
+        &mut self,
+        spot: Spot,
+        fields: &[Field],
+        member: &'a StructureInit,
+        making: &mut Making<'a>,
+    ) -> Option<Spot> {
+        let name = &member.name.text;
+        let field = fields.iter().find(|field| field.name.eq_ignore_ascii_case(name));
+        let Some(field) = field else {
+            let message = format!("{} has no member `{name}`", self.type_name(spot.ty));
+            let help = did_you_mean(name, fields.iter().map(|field| field.name.as_str()));
+            let found = Diagnostic::error(Code::UnknownMember, member.name.span, message);
+            self.report(found.with_optional_help(help));
+            return None;
+        };
+        let inner = Spot { ty: field.ty, offset: spot.offset + field.offset };
+        self.fill(inner, &member.value, making)?;
+        Some(inner)
+    }
+}
+
+/// The starts of a list, so many bytes further.
+pub(super) fn moved<'a>(starts: &[Start<'a>], offset: u32) -> impl Iterator<Item = Start<'a>> {
+    starts.iter().map(move |start| Start { offset: start.offset + offset, ..start.clone() })
+}
+
+/// An initial value that bytes alone make.
+pub(super) fn plain<'a>(ty: TypeId, image: Arc<[u8]>) -> TypedImage<'a> {
+    TypedImage { ty, image, starts: Arc::default() }
 }

@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use super::Checker;
 use super::class::{Membership, Role};
-use super::names::TypedImage;
+use super::initial::plain;
 use super::place::{Access, Located};
 use super::scope::{Body, Scope};
 use super::types::Need;
@@ -169,7 +169,7 @@ impl Body<'_, '_> {
         let roles = [Role::Method, Role::Getter, Role::Setter];
         let role = roles.into_iter().find(|role| self.checker.find_member(class, *role, &name.text).is_some())?;
         let (code, message) = match role {
-            Role::Method | Role::Body => {
+            Role::Method | Role::Body | Role::Start | Role::End => {
                 (Code::NotAVariable, format!("`{0}` is a method: call it as `{0}()`", name.text))
             }
             Role::Getter => (Code::WrongProperty, format!("`{}` is a property, which is no variable", name.text)),
@@ -230,7 +230,7 @@ impl<'a> Interface<'_, 'a> {
             // Each level has its own trigger, so that `SUPER()` sees the edge too.
             if let Some(edge) = variable.edge {
                 let image = Arc::from([0]);
-                let memory = TypedImage { ty: ElementaryType::Bool.into(), image };
+                let memory = plain(ElementaryType::Bool.into(), image);
                 let seen = self.body.scope.register(ElementaryType::Bool);
                 let memory = self.in_instance(&memory, span).map_or(edge.memory, Storage::Instance);
                 variable.edge = Some(EdgeDetection { edge: edge.edge, memory, seen });

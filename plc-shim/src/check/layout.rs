@@ -5,6 +5,7 @@
 //! | 0 | nothing; a reference of 0 refers to nothing |
 //! | 8 | virtual time in nanoseconds, `ONESCAN_TV`, written before every task |
 //! | 16 | how deep calls are nested that come back to a unit that still runs |
+//! | 24 | BOOL, `ONESCAN_INIT_RETAINS`, written before a start: RETAIN variables begin anew |
 //! | 64 | global variables, programs, frames |
 //! | behind them | the areas of direct addresses, `%I`, `%Q`, `%M`, as far as they are used |
 
@@ -16,6 +17,10 @@ use crate::syntax::Span;
 pub(crate) const VIRTUAL_TIME_OFFSET: u32 = 8;
 /// Offset of the depth of circular calls; 0 between scans.
 pub(crate) const CALL_DEPTH_OFFSET: u32 = 16;
+/// Offset of what `FB_init` has as `bInitRetains`.
+pub(crate) const INIT_RETAINS_OFFSET: u32 = 24;
+/// Its name.
+pub(crate) const INIT_RETAINS_NAME: &str = "ONESCAN_INIT_RETAINS";
 /// Name of the global variable that holds virtual time.
 pub(crate) const VIRTUAL_TIME_NAME: &str = "ONESCAN_TV";
 /// Greatest size of all variables together.

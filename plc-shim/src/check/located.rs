@@ -69,7 +69,7 @@ impl Checker<'_> {
     }
 
     /// Where a declaration, with `AT` or without, puts its variable; an open address leaves it free.
-    pub(super) fn located(&mut self, ast: &ast::Variable, declared: &TypedImage) -> Option<Placement> {
+    pub(super) fn located(&mut self, ast: &ast::Variable, declared: &TypedImage<'_>) -> Option<Placement> {
         let Some(name) = &ast.address else { return Some(Placement::Free) };
         let (address, location) = self.direct_address(&name.text, name.span)?;
         if !name.text.ends_with('*') || address.width != Width::Bit {
@@ -92,7 +92,11 @@ impl Checker<'_> {
         let suitable = match section {
             SectionKind::Local | SectionKind::Global => unit != PouKind::Function,
             SectionKind::Input | SectionKind::Output => unit == PouKind::Program || open && unit != PouKind::Function,
-            SectionKind::InOut | SectionKind::Temp | SectionKind::Static | SectionKind::External => false,
+            SectionKind::InOut
+            | SectionKind::Temp
+            | SectionKind::Static
+            | SectionKind::Instance
+            | SectionKind::External => false,
         };
         if !suitable {
             let message = "a variable of this section has no direct address";

@@ -4,6 +4,7 @@ use super::Meant;
 use super::call::Passing;
 use super::class::Role;
 use super::convert::Operand;
+use super::enable;
 use super::scope::{Body, Scope};
 use crate::diagnostic::{Code, Diagnostic};
 use crate::ir::{
@@ -69,8 +70,15 @@ impl Body<'_, '_> {
     fn called(&mut self, object: Object, method: PouId, name: &Ident, call: &Call, span: Span) -> Option<Expr> {
         self.check_method_access(method, name.span)?;
         let scope = self.checker.interface(method, span)?;
-        let (arguments, passing) = self.method_arguments(&scope, &name.text, call, span)?;
-        self.on_object(object, Role::Method, method, arguments, passing, span)
+        let make = |body: &mut Self, call: &Call| {
+            let (arguments, passing) = body.method_arguments(&scope, &name.text, call, span)?;
+            body.on_object(object, Role::Method, method, arguments, passing, span)
+        };
+        if !enable::is_controlled(call) {
+            return make(self, call);
+        }
+        let own = scope.own(enable::ENO).is_some_and(enable::is_control);
+        self.controlled(call, own, span, |body, rest| make(body, rest).map(Operand::Typed))
     }
 
     fn unknown_method<T>(&mut self, class: PouId, name: &Ident) -> Option<T> {
@@ -139,7 +147,7 @@ impl Body<'_, '_> {
         Some(Object { address: Expr { kind, ty, span: name.span }, class, known: Known::Exactly })
     }
 
-    fn method_arguments(
+    pub(super) fn method_arguments(
         &mut self,
         scope: &Scope,
         name: &str,
@@ -152,6 +160,8 @@ impl Body<'_, '_> {
         for parameter in scope.inputs() {
             let given = matched.inputs.get(&parameter.name.to_ascii_uppercase()).copied();
             let argument = match given {
+                // The call is carried out, or the method would not read it.
+                _ if enable::is_control(parameter) => Some(Argument::Value(enable::boolean(true, span))),
                 Some(expr) => self.argument(parameter, expr, &mut passing),
                 None => self.default_argument(parameter, named, span),
             };

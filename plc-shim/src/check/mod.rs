@@ -6,11 +6,12 @@
 //! | [`layout`] | offsets in memory |
 //! | [`scope`] | what a name means inside a unit |
 //! | [`types`], [`subrange`], [`union`] | types as written to types |
-//! | [`variables`] | sections to placed variables, units' interfaces |
+//! | [`variables`], [`instance_section`] | sections to placed variables, units' interfaces |
 //! | [`located`] | direct addresses to places |
 //! | [`initial`] | initial values to bytes |
+//! | [`start`], [`fb_init`], [`instance_arguments`] | what runs before the first scan |
 //! | [`constant`] | constant expressions to values |
-//! | [`convert`] | implicit conversions, constants in context |
+//! | [`convert`], [`enumeration`] | implicit conversions, constants in context |
 //! | [`expression`], [`operator`], [`calendar`], [`place`], [`part`] | expressions |
 //! | [`reference`], [`address`], [`referred`] | references and pointers |
 //! | [`open_array`] | arrays that come with their bounds |
@@ -18,6 +19,7 @@
 //! | [`enable`], [`enable_error`] | EN and ENO |
 //! | [`text`], [`text_function`], [`text_conversion`] | character strings |
 //! | [`statement`], [`assignment`], [`edge`] | statements |
+//! | [`jump`], [`wire`], [`instruction`] | what networks and lists of instructions have beside statements |
 //! | [`configuration`] | resources, tasks, instances of programs |
 //! | [`dialect`] | what dialects do their own way |
 //! | [`recursion`], [`dispatch`] | who calls whom, and what only a run decides |
@@ -29,6 +31,7 @@
 //! and needed again contains itself.
 
 mod address;
+pub(crate) mod asserts;
 mod assignment;
 mod calendar;
 mod call;
@@ -42,12 +45,18 @@ mod dispatch;
 mod edge;
 mod enable;
 mod enable_error;
+mod enumeration;
 mod expression;
+mod fb_init;
 mod function_form;
 mod inheritance;
 mod initial;
 mod instance;
+mod instance_arguments;
+mod instance_section;
+mod instruction;
 mod interface_value;
+mod jump;
 mod layout;
 mod located;
 mod memory_function;
@@ -64,6 +73,7 @@ mod reference;
 mod referred;
 mod scope;
 mod standard_function;
+mod start;
 mod statement;
 mod subrange;
 mod text;
@@ -72,6 +82,7 @@ mod text_function;
 mod types;
 mod union;
 mod variables;
+mod wire;
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
@@ -82,6 +93,7 @@ use self::dispatch::Rows;
 use self::layout::Layout;
 use self::names::{Enumerator, GlobalEntry, PouEntry, TypeEntry};
 use self::namespace::Home;
+use self::start::{Occasion, Stages, Started};
 use crate::diagnostic::Diagnostic;
 use crate::dialect::Dialect;
 use crate::ir::{Areas, Configuration, Entry, Pou, PouId, Program, Row, TypeId, TypeTable, Variable};
@@ -89,7 +101,7 @@ use crate::syntax::ast::CompilationUnit;
 use crate::syntax::direct_address::AddressUnit;
 use crate::syntax::{FileId, Span};
 
-pub(crate) use layout::{CALL_DEPTH_OFFSET, VIRTUAL_TIME_NAME, VIRTUAL_TIME_OFFSET};
+pub(crate) use layout::{CALL_DEPTH_OFFSET, INIT_RETAINS_OFFSET, VIRTUAL_TIME_NAME, VIRTUAL_TIME_OFFSET};
 pub(crate) use standard_function::exists as is_standard_function;
 
 /// The checked program.
@@ -112,19 +124,26 @@ pub(crate) struct Checked {
     pub(crate) configuration: Option<Configuration>,
     /// What tasks can run; those of the programs first.
     pub(crate) entries: Vec<Entry>,
-    /// The whole memory at a cold start.
+    /// What runs before the first scan after a start, if anything does.
+    pub(crate) start: Option<Pou>,
+    /// What runs before another start.
+    pub(crate) end: Option<Pou>,
+    /// The whole memory at a cold start, before `start` runs.
     pub(crate) image: Vec<u8>,
 }
 
 /// Checks all units together. `library` tells the files of the standard function blocks, whose
 /// units are compiled only if they are used.
 pub(crate) fn check(units: &[(FileId, &CompilationUnit)], library: &BTreeSet<FileId>) -> (Checked, Vec<Diagnostic>) {
-    let mut checker = Checker::new(library);
+    let stages = start::stages(units);
+    let mut checker = Checker::new(library, &stages);
     checker.collect(units);
     checker.link_classes();
     checker.resolve_declarations();
     checker.check_inheritance();
     checker.configure();
+    checker.enqueue_stages();
+    let (start, end) = (checker.occasion(Occasion::Start), checker.occasion(Occasion::End));
     checker.check_bodies();
     checker.report_recursion();
     checker.guard_circles();
@@ -149,6 +168,8 @@ pub(crate) fn check(units: &[(FileId, &CompilationUnit)], library: &BTreeSet<Fil
         address_unit: checker.address_unit,
         configuration,
         entries,
+        start,
+        end,
         image,
     };
     (result, checker.diagnostics)
@@ -163,6 +184,13 @@ const MAX_DEPTH: u32 = 64;
 /// What is known so far.
 struct Checker<'a> {
     library: &'a BTreeSet<FileId>,
+    stages: &'a Stages,
+    /// What is done at a start outside of units.
+    started: Vec<Started<'a>>,
+    /// Where something was wrong already, and when.
+    faulty_starts: BTreeSet<(u32, u32, Occasion)>,
+    /// Methods `FB_init` that do not suit those of their bases.
+    faulty_hooks: BTreeSet<PouId>,
     dialects: BTreeMap<FileId, Dialect>,
     types: TypeTable,
     type_names: BTreeMap<String, TypeEntry<'a>>,
@@ -220,7 +248,7 @@ impl<'a> Checker<'a> {
         }
         for index in 0..self.pous.len() {
             let id = PouId(index as u32);
-            if !self.is_library(id) {
+            if !self.is_library(id) && self.stage_of(id).is_none() {
                 self.declare(id, None);
                 if !self.is_prototype(id) {
                     self.enqueue(id);

@@ -6,9 +6,10 @@ use std::sync::Arc;
 use super::Checker;
 use super::class::{Class, Membership, Role};
 use super::configuration::Configured;
-use super::layout::{Layout, VIRTUAL_TIME_NAME, VIRTUAL_TIME_OFFSET};
+use super::layout::{INIT_RETAINS_NAME, INIT_RETAINS_OFFSET, Layout, VIRTUAL_TIME_NAME, VIRTUAL_TIME_OFFSET};
 use super::namespace::Home;
 use super::scope::Scope;
+use super::start::{Stages, Starts};
 use crate::diagnostic::{Code, Diagnostic};
 use crate::ir::{Areas, ElementaryType, PouId, Storage, TypeId, TypeTable, Variable, Visibility};
 use crate::syntax::ast::{self, Ident, PouKind, Qualifier, SectionKind, TypeDeclaration};
@@ -23,11 +24,13 @@ pub(super) enum Progress {
     Done,
 }
 
-/// A type together with the initial bytes of its variables: an alias may give its own.
+/// A type together with the initial bytes of its variables, and what a start adds to them: an alias
+/// may give its own.
 #[derive(Debug, Clone)]
-pub(super) struct TypedImage {
+pub(super) struct TypedImage<'a> {
     pub(super) ty: TypeId,
     pub(super) image: Arc<[u8]>,
+    pub(super) starts: Starts<'a>,
 }
 
 pub(super) struct TypeEntry<'a> {
@@ -36,7 +39,7 @@ pub(super) struct TypeEntry<'a> {
     pub(super) progress: Progress,
     /// The type of a structure as soon as something refers to it.
     pub(super) reserved: Option<TypeId>,
-    pub(super) resolved: Option<TypedImage>,
+    pub(super) resolved: Option<TypedImage<'a>>,
 }
 
 pub(super) struct PouEntry<'a> {
@@ -49,6 +52,12 @@ pub(super) struct PouEntry<'a> {
     pub(super) scope: Option<Arc<Scope>>,
     pub(super) align: u32,
     pub(super) image: Arc<[u8]>,
+    /// What a start does to the variables of an instance.
+    pub(super) starts: Starts<'a>,
+    /// What a call does to variables that do not outlive it: their names, and what.
+    pub(super) fleeting: Arc<[(String, Starts<'a>)]>,
+    /// Where `VAR_INST` of its methods lie in an instance, by where they are declared.
+    pub(super) kept: BTreeMap<(u32, u32), u32>,
 }
 
 impl PouEntry<'_> {
@@ -78,9 +87,13 @@ pub(super) struct Enumerator {
 }
 
 impl<'a> Checker<'a> {
-    pub(super) fn new(library: &'a BTreeSet<FileId>) -> Self {
+    pub(super) fn new(library: &'a BTreeSet<FileId>, stages: &'a Stages) -> Self {
         Self {
             library,
+            stages,
+            started: Vec::new(),
+            faulty_starts: BTreeSet::new(),
+            faulty_hooks: BTreeSet::new(),
             dialects: BTreeMap::new(),
             types: TypeTable::new(),
             type_names: BTreeMap::new(),
@@ -94,7 +107,10 @@ impl<'a> Checker<'a> {
             property_names: BTreeSet::new(),
             dynamic_calls: BTreeMap::new(),
             rows: super::dispatch::Rows::default(),
-            globals: BTreeMap::from([(VIRTUAL_TIME_NAME.to_owned(), virtual_time())]),
+            globals: BTreeMap::from([
+                (VIRTUAL_TIME_NAME.to_owned(), provided(VIRTUAL_TIME_NAME, ElementaryType::Time, VIRTUAL_TIME_OFFSET)),
+                (INIT_RETAINS_NAME.to_owned(), provided(INIT_RETAINS_NAME, ElementaryType::Bool, INIT_RETAINS_OFFSET)),
+            ]),
             enumerators: BTreeMap::new(),
             layout: Layout::new(),
             areas: Areas::default(),
@@ -140,19 +156,32 @@ impl<'a> Checker<'a> {
             }
             match role {
                 Role::Getter | Role::Setter => self.property_names.insert(name.key()),
-                Role::Method | Role::Body => self.method_names.insert(name.key()),
+                Role::Method | Role::Body | Role::Start | Role::End => self.method_names.insert(name.key()),
             };
         }
         if ast.kind != PouKind::Function {
             self.classes.insert(id, class);
+            self.collect_stages(id);
         }
     }
 
-    fn add_pou(&mut self, ast: &'a ast::Pou, membership: Option<Membership>) -> PouId {
+    pub(super) fn add_pou(&mut self, ast: &'a ast::Pou, membership: Option<Membership>) -> PouId {
         let id = PouId(self.pous.len() as u32);
         let (home, progress) = (self.home.with(&ast.object.using), Progress::Untouched);
         let image = Arc::from([]);
-        self.pous.push(PouEntry { ast, home, membership, progress, scope: None, align: 1, image });
+        let (starts, fleeting) = (Starts::default(), Arc::default());
+        self.pous.push(PouEntry {
+            ast,
+            home,
+            membership,
+            progress,
+            scope: None,
+            align: 1,
+            image,
+            starts,
+            fleeting,
+            kept: BTreeMap::new(),
+        });
         id
     }
 
@@ -228,24 +257,25 @@ impl<'a> Checker<'a> {
     }
 }
 
-fn virtual_time() -> GlobalEntry<'static> {
+/// What the runtime provides.
+fn provided(name: &str, ty: ElementaryType, offset: u32) -> GlobalEntry<'static> {
     let span = Span::new(FileId(u32::MAX), 0, 0);
     let variable = Variable {
-        name: VIRTUAL_TIME_NAME.to_owned(),
+        name: name.to_owned(),
         section: SectionKind::Global,
-        ty: ElementaryType::Time.into(),
-        storage: Storage::Absolute(VIRTUAL_TIME_OFFSET),
+        ty: ty.into(),
+        storage: Storage::Absolute(offset),
         constant: None,
         is_constant: true,
         retention: None,
         address: None,
         span,
-        image: vec![0; 8].into(),
+        image: vec![0; ty.size() as usize].into(),
         edge: None,
         visibility: Visibility::Public,
         owner: None,
     };
-    let name = VIRTUAL_TIME_NAME.to_owned();
+    let name = name.to_owned();
     let (seen_from, home) = (Arc::default(), None);
     let (progress, variable) = (Progress::Done, Some(variable));
     GlobalEntry { ast: None, name, seen_from, span, progress, variable, home }

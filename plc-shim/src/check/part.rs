@@ -7,17 +7,7 @@ use crate::ir::{ElementaryType, Part, Place, Storage, Type};
 use crate::syntax::Span;
 use crate::syntax::ast::{self, Ident};
 use crate::syntax::direct_address::Width;
-
-/// `%X3`, `%3` or `3`: width and number.
-fn parse(text: &str) -> Option<(Width, u32)> {
-    let behind = text.strip_prefix('%').unwrap_or(text);
-    let letter = behind.chars().next().filter(|letter| letter.is_ascii_alphabetic() && behind.len() < text.len());
-    let width = letter.map_or(Some(Width::Bit), Width::find)?;
-    let digits = behind.get(usize::from(letter.is_some())..)?;
-    let plain = !digits.is_empty() && digits.bytes().all(|byte| byte.is_ascii_digit());
-    let number = if plain { digits.parse().ok() } else { None };
-    Some((width, number?))
-}
+use crate::syntax::part::parse;
 
 impl Body<'_, '_> {
     /// The part of `base` that is written as `name`.

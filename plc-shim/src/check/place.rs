@@ -21,6 +21,8 @@ pub(super) enum Access {
     InstanceOutput,
     /// It is an input of the machine.
     MachineInput,
+    /// It is what a property or a call gives.
+    Value,
 }
 
 /// A place and who may write to it.
@@ -44,6 +46,7 @@ impl Body<'_, '_> {
                     return found;
                 }
                 if !self.is_this(name)
+                    && !super::wire::is_wire(name)
                     && let Meaning::Value(value) = self.meaning(name)?
                 {
                     return Some(Operand::Typed(value));
@@ -96,11 +99,11 @@ impl Body<'_, '_> {
                 if let Some(qualified) = self.qualified_name(expr) {
                     return self.named_place(&qualified);
                 }
-                let base = self.place(base)?;
+                let base = self.base_place(base)?;
                 self.member(base, name, expr.span)
             }
             ast::ExprKind::Index(base, indices) => {
-                let base = self.place(base)?;
+                let base = self.base_place(base)?;
                 self.element(base, indices, expr.span)
             }
             ast::ExprKind::Dereference(inner) => self.dereferenced(inner, expr.span),
@@ -119,9 +122,31 @@ impl Body<'_, '_> {
         }
     }
 
+    /// The place that has the part: a variable, or what a property or a call gives.
+    fn base_place(&mut self, base: &ast::Expr) -> Option<Located> {
+        let value = match &base.kind {
+            ast::ExprKind::Name(name) => self.own_property(name),
+            ast::ExprKind::Member(object, name) => self.property_of(object, name),
+            ast::ExprKind::Call(call) => Some(self.call_expression(call, base.span)),
+            _ => None,
+        };
+        match value {
+            Some(value) => {
+                let value = value?;
+                self.place_of_value(value, base.span)
+            }
+            None => self.place(base),
+        }
+    }
+
     fn named_place(&mut self, name: &Ident) -> Option<Located> {
         if let Some(found) = self.this_place(name) {
             return found;
+        }
+        if super::wire::is_wire(name) {
+            // One without a value has been reported where it would have got it.
+            let place = self.wires.get(&name.text)?.clone();
+            return Some(Located { place: Place { span: name.span, ..place }, access: Access::ReadWrite });
         }
         match self.variable_named(name) {
             Some(Ok(variable)) => {
@@ -220,6 +245,14 @@ impl Body<'_, '_> {
             }
             Type::FunctionBlock { pou, .. } => self.instance_member(base, pou, name, span),
             Type::Elementary(_) if self.is_constant(name) => self.named_bit(base, name, span),
+            Type::Interface { name: interface, pou } => {
+                let message = format!("{interface} has no method or property `{}`", name.text);
+                let known = self.checker.member_names(pou);
+                let help = did_you_mean(&name.text, known.iter().map(String::as_str));
+                let found = Diagnostic::error(Code::UnknownMember, name.span, message);
+                self.report(found.with_optional_help(help));
+                None
+            }
             _ => {
                 let message = format!("{} has no members", self.type_name(base.place.ty));
                 self.report(Diagnostic::error(Code::NotAStructure, span, message));
@@ -314,6 +347,7 @@ impl Body<'_, '_> {
     fn index_step(&mut self, bounds: Dimension, index: &ast::Expr, stride: u32) -> Option<Step> {
         let operand = self.within(None, |body| body.expression(index))?;
         let index = self.settle(operand)?;
+        let index = self.as_number(index);
         if !self.plain_elementary(&index).is_some_and(ElementaryType::is_integer) {
             let found = self.type_name(index.ty);
             return self.mismatch("an integer", &found, index.span);

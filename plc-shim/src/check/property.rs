@@ -58,7 +58,7 @@ impl Body<'_, '_> {
         let read = self
             .check_method_access(getter, name.span)
             .and_then(|()| self.on_object(object, Role::Getter, getter, Vec::new(), Passing::default(), name.span));
-        read.map(Operand::Typed)
+        read.map(|value| self.referred_result(Operand::Typed(value)))
     }
 
     fn lacks<T>(&mut self, name: &Ident, accessor: &str) -> Option<T> {
@@ -82,7 +82,7 @@ impl Body<'_, '_> {
         Some(object.and_then(|object| self.set(object, name, value, span)))
     }
 
-    fn set(&mut self, object: Object, name: &Ident, value: &ast::Expr, span: Span) -> Option<Statement> {
+    pub(super) fn set(&mut self, object: Object, name: &Ident, value: &ast::Expr, span: Span) -> Option<Statement> {
         let Some(setter) = self.checker.find_member(object.class, Role::Setter, &name.text) else {
             return self.lacks(name, "SET");
         };

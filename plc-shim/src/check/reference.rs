@@ -86,6 +86,22 @@ impl Body<'_, '_> {
         }
     }
 
+    /// The place of a value of several parts, which lies in memory until the next call.
+    pub(super) fn place_of_value(&mut self, value: Operand, span: Span) -> Option<Located> {
+        let value = self.referred_result(value);
+        let value = self.settle(value)?;
+        if let ExprKind::Load(place) = value.kind {
+            return Some(Located { place, access: Access::ReadWrite });
+        }
+        let ty = value.ty;
+        if self.elementary(ty).is_some() && !matches!(self.checker.types.get(ty), Type::Interface { .. }) {
+            let message = format!("{} has no members", self.type_name(ty));
+            self.report(Diagnostic::error(Code::NotAStructure, span, message));
+            return None;
+        }
+        Some(Located { access: Access::Value, ..Self::led_to(value, ty, span) })
+    }
+
     /// `p[i]` of vendors: so many targets further. The bounds are those of memory.
     pub(super) fn pointed_element(
         &mut self,

@@ -81,6 +81,14 @@ pub(super) struct Body<'c, 'a> {
     /// Loops around the statement.
     pub(super) loops: u32,
     pub(super) result_assigned: bool,
+    /// What jumps may lead to from here, the innermost last.
+    pub(super) labels: Vec<super::jump::Labels>,
+    /// How many labels the unit has so far.
+    pub(super) label_count: u32,
+    /// Values that elements of a network hand on.
+    pub(super) wires: BTreeMap<String, Place>,
+    /// How many wires lists of instructions have so far.
+    pub(super) instruction_wires: u32,
 }
 
 impl<'c, 'a> Body<'c, 'a> {
@@ -90,7 +98,18 @@ impl<'c, 'a> Body<'c, 'a> {
     }
 
     pub(super) fn new(checker: &'c mut Checker<'a>, scope: Scope, pou: Option<PouId>) -> Self {
-        Self { checker, scope, pou, context: None, loops: 0, result_assigned: false }
+        Self {
+            checker,
+            scope,
+            pou,
+            context: None,
+            loops: 0,
+            result_assigned: false,
+            labels: Vec::new(),
+            label_count: 0,
+            wires: BTreeMap::new(),
+            instruction_wires: 0,
+        }
     }
 
     pub(super) fn report(&mut self, diagnostic: Diagnostic) {

@@ -6,6 +6,7 @@ use super::Checker;
 use super::convert::{Operand, constant};
 use super::place::Access;
 use super::scope::Body;
+use super::start::Occasion;
 use super::variables::decode;
 use crate::diagnostic::{Code, Diagnostic};
 use crate::ir::{
@@ -28,8 +29,11 @@ impl Checker<'_> {
         };
         let mut body = Body::new(self, (*scope).clone(), Some(id));
         let mut statements = body.prologue(ast.kind);
-        statements.extend(body.statements(&ast.body));
-        if body.scope.result.is_some() && !body.result_assigned {
+        match body.checker.stage_of(id) {
+            Some((owner, occasion)) => statements.extend(body.staged(owner, occasion)),
+            None => statements.extend(body.statements(&ast.body)),
+        }
+        if body.scope.result.is_some() && !body.result_assigned && !Self::is_hook(&ast.name.text) {
             let message = format!("function `{}` never assigns its result", ast.name.text);
             body.report(Diagnostic::warning(Code::MissingResult, ast.name.span, message));
         }
@@ -67,15 +71,25 @@ impl Body<'_, '_> {
             }
             let fleeting = match variable.section {
                 SectionKind::Temp => true,
-                SectionKind::External | SectionKind::Global | SectionKind::Static => false,
+                SectionKind::External | SectionKind::Global | SectionKind::Static | SectionKind::Instance => false,
                 _ => kind.keeps_nothing(),
             };
             if fleeting {
                 statements.push(self.initialised(variable));
+                statements.extend(self.computed(variable));
             }
             statements.extend(Self::outcome_begins(variable));
         }
         statements
+    }
+
+    /// What makes an initial value that is no constant.
+    fn computed(&mut self, variable: &Variable) -> Vec<Statement> {
+        let fleeting = self.pou.map(|id| self.checker.pou(id).fleeting.clone()).unwrap_or_default();
+        let key = variable.name.to_ascii_uppercase();
+        let Some((_, starts)) = fleeting.iter().find(|(name, _)| *name == key) else { return Vec::new() };
+        let place = Place::whole(variable.storage, variable.ty, variable.span);
+        self.performed(&place, starts, Occasion::Start)
     }
 
     fn initialised(&self, variable: &Variable) -> Statement {
@@ -91,7 +105,21 @@ impl Body<'_, '_> {
         Statement { kind, span }
     }
 
-    fn statements(&mut self, list: &[ast::Statement]) -> Vec<Statement> {
+    pub(super) fn statements(&mut self, list: &[ast::Statement]) -> Vec<Statement> {
+        if super::instruction::is_list(list) {
+            let list = self.instructions(list);
+            return self.lowered(&list);
+        }
+        self.lowered(list)
+    }
+
+    /// The same of statements alone.
+    pub(super) fn lowered(&mut self, list: &[ast::Statement]) -> Vec<Statement> {
+        if super::jump::has_labels(list) { self.labelled(list) } else { self.unlabelled(list) }
+    }
+
+    /// Statements that no jump leads into.
+    pub(super) fn unlabelled(&mut self, list: &[ast::Statement]) -> Vec<Statement> {
         let mut checked = Vec::new();
         for statement in list {
             if let ast::StatementKind::Chain(targets, value) = &statement.kind {
@@ -106,8 +134,11 @@ impl Body<'_, '_> {
     fn statement(&mut self, statement: &ast::Statement) -> Option<Statement> {
         let span = statement.span;
         let kind = match &statement.kind {
-            // A chain is several statements.
-            ast::StatementKind::Empty | ast::StatementKind::Error | ast::StatementKind::Chain(..) => return None,
+            // A chain is several statements, and a label is the beginning of some.
+            ast::StatementKind::Empty
+            | ast::StatementKind::Error
+            | ast::StatementKind::Chain(..)
+            | ast::StatementKind::Label(_) => return None,
             ast::StatementKind::Update(operator, target, value) => {
                 return self.update(*operator, target, value, span);
             }
@@ -130,6 +161,9 @@ impl Body<'_, '_> {
             ast::StatementKind::Exit => self.inside_loop("EXIT", StatementKind::Exit, span)?,
             ast::StatementKind::Continue => self.inside_loop("CONTINUE", StatementKind::Continue, span)?,
             ast::StatementKind::Return => StatementKind::Return,
+            ast::StatementKind::Jump(label) => self.jump(label)?,
+            // What it does stands behind it.
+            ast::StatementKind::Instruction(_) => StatementKind::Pass,
         };
         // Statements that contain others are pointed at by their first line's beginning.
         Some(Statement { kind, span })
@@ -159,6 +193,9 @@ impl Body<'_, '_> {
         if let Some(set) = self.property_assignment(target, value, span) {
             return set;
         }
+        if let Some(name) = self.new_wire(target) {
+            return self.first_value(name, value, span);
+        }
         let target = self.target(target);
         let context = target.as_ref().and_then(|target| self.elementary(target.ty));
         let value = self.within(context, |body| body.expression(value));
@@ -185,6 +222,12 @@ impl Body<'_, '_> {
             Access::InstanceOutput => {
                 let message = "an output is written by its own instance only";
                 self.report(Diagnostic::error(Code::NotAssignable, expr.span, message));
+                return None;
+            }
+            Access::Value => {
+                let message = "this is a copy of what the property or call gives, which nobody would read";
+                let found = Diagnostic::error(Code::NotAssignable, expr.span, message);
+                self.report(found.with_help("change a copy in a variable and assign that to the property"));
                 return None;
             }
             // 2nd ed. Table 16 forbids it; every vendor allows it, and programs rely on that.

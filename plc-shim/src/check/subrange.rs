@@ -9,7 +9,7 @@ use crate::syntax::ast::{Ident, Subrange};
 
 impl<'a> Body<'_, 'a> {
     /// The type that `INT (0..100)` names.
-    pub(super) fn subrange(&mut self, name: &Ident, ast: &'a Subrange) -> Option<TypedImage> {
+    pub(super) fn subrange(&mut self, name: &Ident, ast: &'a Subrange) -> Option<TypedImage<'a>> {
         let base = self.integer_base(name)?;
         let (low, high) = (self.constant_integer(&ast.low)?, self.constant_integer(&ast.high)?);
         let fits = |value| base.wrap(value) == value;
@@ -28,12 +28,6 @@ impl<'a> Body<'_, 'a> {
         let found = ElementaryType::find(&name.text);
         let suitable = found.filter(|ty| ty.is_integer() || ty.is_bits() && *ty != ElementaryType::Bool);
         if suitable.is_none() {
-            if self.checker.pou_names.contains_key(&name.key()) {
-                let message = "arguments of FB_init are not supported";
-                let found = Diagnostic::error(Code::VendorRuntime, name.span, message);
-                self.report(found.with_help("give the instance's inputs initial values"));
-                return None;
-            }
             let message = format!("an integer type is wanted, this is `{}`", name.text);
             self.report(Diagnostic::error(Code::TypeMismatch, name.span, message));
         }

@@ -266,7 +266,7 @@ impl Body<'_, '_> {
     }
 
     /// The characters of a `CONSTANT` string.
-    fn constant_text(&mut self, expr: &ast::Expr) -> Option<Text> {
+    pub(super) fn constant_text(&mut self, expr: &ast::Expr) -> Option<Text> {
         let ast::ExprKind::Name(name) = &expr.kind else {
             return None;
         };

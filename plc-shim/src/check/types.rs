@@ -2,9 +2,11 @@
 
 use std::sync::Arc;
 
+use super::initial::{moved, plain};
 use super::layout::{MEMORY_LIMIT, align_up};
 use super::names::{Enumerator, Progress, TypedImage};
 use super::scope::Body;
+use super::start::{Start, StartKind};
 use super::{Checker, MAX_DEPTH};
 use crate::diagnostic::{Code, Diagnostic, did_you_mean};
 use crate::ir::{Dimension, ElementaryType, Field, TypeId};
@@ -30,9 +32,9 @@ fn of_pointer_width(key: &str) -> Option<ElementaryType> {
     })
 }
 
-impl Checker<'_> {
+impl<'a> Checker<'a> {
     /// A type of a `TYPE` block; `used` is where it is needed.
-    pub(super) fn named_type(&mut self, key: &str, used: Option<Span>) -> Option<TypedImage> {
+    pub(super) fn named_type(&mut self, key: &str, used: Option<Span>) -> Option<TypedImage<'a>> {
         let entry = self.type_names.get_mut(key)?;
         let (ast, home) = (entry.ast, entry.home.clone());
         match entry.progress {
@@ -90,7 +92,7 @@ impl Checker<'_> {
 }
 
 impl<'a> Body<'_, 'a> {
-    fn declared_type(&mut self, ast: &'a ast::TypeDeclaration) -> Option<TypedImage> {
+    fn declared_type(&mut self, ast: &'a ast::TypeDeclaration) -> Option<TypedImage<'a>> {
         let name = &ast.name.text;
         let mut resolved = match &ast.spec.kind {
             TypeSpecKind::Struct(fields) => {
@@ -105,20 +107,18 @@ impl<'a> Body<'_, 'a> {
             _ => self.resolve(&ast.spec, Need::Size),
         }?;
         if let Some(initial) = &ast.initial {
-            resolved.image = self.initial_image(&resolved, initial)?;
+            resolved = self.with_initial(&resolved, initial)?;
         }
         Some(resolved)
     }
 
     /// The type and the initial bytes of a variable declared with it.
-    pub(super) fn resolve(&mut self, spec: &'a TypeSpec, need: Need) -> Option<TypedImage> {
+    pub(super) fn resolve(&mut self, spec: &'a TypeSpec, need: Need) -> Option<TypedImage<'a>> {
         match &spec.kind {
             TypeSpecKind::Name(name) => self.type_by_name(name, need),
-            TypeSpecKind::Array(dimensions, element) => self.array(dimensions, element, need, spec.span),
+            TypeSpecKind::Array(dimensions, element) => self.array(dimensions, element, spec.span),
             TypeSpecKind::Struct(fields) => self.structure("STRUCT", (None, None), fields, spec.span),
-            TypeSpecKind::Enumeration(_, Some(base)) if self.is_block(base) => {
-                self.unsupported("an instance with arguments for FB_init", spec.span)
-            }
+            TypeSpecKind::Instance(name, arguments) => self.instance_with_arguments(name, arguments, need),
             TypeSpecKind::Reference(kind, target) => self.reference_type(*kind, target),
             TypeSpecKind::OpenArray(dimensions, element) => {
                 let element = self.resolve(element, Need::Size)?.ty;
@@ -144,17 +144,12 @@ impl<'a> Body<'_, 'a> {
         None
     }
 
-    fn is_block(&self, name: &Ident) -> bool {
-        let found = self.checker.pou_named(&name.key());
-        found.is_some_and(|id| self.checker.pou(id).ast.kind.has_instances())
-    }
-
-    pub(super) fn whole(&self, ty: TypeId) -> TypedImage {
-        TypedImage { ty, image: self.checker.types.image(ty).clone() }
+    pub(super) fn whole(&self, ty: TypeId) -> TypedImage<'a> {
+        plain(ty, self.checker.types.image(ty).clone())
     }
 
     /// A reference's target need not be known yet: structures refer to one another, and to themselves.
-    fn reference_type(&mut self, kind: ast::ReferenceKind, target: &'a TypeSpec) -> Option<TypedImage> {
+    fn reference_type(&mut self, kind: ast::ReferenceKind, target: &'a TypeSpec) -> Option<TypedImage<'a>> {
         let reserved = match &target.kind {
             TypeSpecKind::Name(name) => self.checker.reserved(&name.key()),
             _ => None,
@@ -168,13 +163,17 @@ impl<'a> Body<'_, 'a> {
         Some(self.whole(ty))
     }
 
-    pub(super) fn type_by_name(&mut self, name: &Ident, need: Need) -> Option<TypedImage> {
+    pub(super) fn type_by_name(&mut self, name: &Ident, need: Need) -> Option<TypedImage<'a>> {
         let key = name.key();
         if let Some(found) = ElementaryType::find(&key).or_else(|| of_pointer_width(&key)) {
             return Some(self.whole(found.into()));
         }
         if let Some(key) = self.checker.type_key(&key) {
             return self.checker.named_type(&key, Some(name.span));
+        }
+        // Vendors' BIT is a BOOL; only in their structures do several share a byte.
+        if key == "BIT" {
+            return Some(self.whole(ElementaryType::Bool.into()));
         }
         if let Some(id) = self.checker.pou_named(&key) {
             self.checker.check_internal(id, name.span);
@@ -185,11 +184,14 @@ impl<'a> Body<'_, 'a> {
             }
             if ast.kind.has_instances() {
                 let ty = self.checker.types.block(&ast.name.text, id);
-                if need == Need::Size {
-                    self.checker.check_instance(id, name.span);
-                    self.checker.declare(id, Some(name.span))?;
+                if need == Need::Reference {
+                    return Some(self.whole(ty));
                 }
-                return Some(self.whole(ty));
+                self.checker.check_instance(id, name.span);
+                self.checker.declare(id, Some(name.span))?;
+                let begins = self.checker.instance_starts(id);
+                let start = begins.then(|| self.start(0, StartKind::Instance(id, &[]), name.span));
+                return Some(TypedImage { starts: start.into_iter().collect(), ..self.whole(ty) });
             }
             let message = format!("`{}` is a unit that has no instances", name.text);
             self.report(Diagnostic::error(Code::UnknownType, name.span, message));
@@ -211,15 +213,9 @@ impl<'a> Body<'_, 'a> {
         self.report(found.with_optional_help(help));
     }
 
-    fn array(
-        &mut self,
-        dimensions: &'a [ast::Dimension],
-        element: &'a TypeSpec,
-        need: Need,
-        span: Span,
-    ) -> Option<TypedImage> {
+    fn array(&mut self, dimensions: &'a [ast::Dimension], element: &'a TypeSpec, span: Span) -> Option<TypedImage<'a>> {
         let bounds: Vec<_> = dimensions.iter().map(|each| self.dimension(each)).collect();
-        let element = self.resolve(element, if need == Need::Size { need } else { Need::Size })?;
+        let (element, lists) = self.element_type(element)?;
         self.reject_open_array(element.ty, span)?;
         let bounds: Vec<Dimension> = bounds.into_iter().collect::<Option<_>>()?;
         let size = self.checker.types.size(element.ty);
@@ -233,7 +229,15 @@ impl<'a> Body<'_, 'a> {
         self.checker.charge_image(total, span)?;
         let count = total / u64::from(size.max(1));
         let ty = self.checker.types.array(bounds, element.ty, total as u32);
-        Some(TypedImage { ty, image: element.image.repeat(count as usize).into() })
+        let starts = match lists {
+            Some(lists) => self.listed_starts(element.ty, lists, count, span)?,
+            None if element.starts.is_empty() => element.starts,
+            None => {
+                let kind = StartKind::Each { count: count as u32, stride: size, starts: element.starts };
+                Arc::from([self.start(0, kind, span)])
+            }
+        };
+        Some(TypedImage { ty, image: element.image.repeat(count as usize).into(), starts })
     }
 
     fn dimension(&mut self, ast: &'a ast::Dimension) -> Option<Dimension> {
@@ -252,11 +256,11 @@ impl<'a> Body<'_, 'a> {
     }
 
     /// The members of the structure that another adds to, as vendors have it.
-    fn extended_fields(&mut self, base: Option<&Ident>) -> Option<(Vec<Field>, Vec<u8>)> {
-        let Some(name) = base else { return Some((Vec::new(), Vec::new())) };
+    fn extended_fields(&mut self, base: Option<&Ident>) -> Option<(Vec<Field>, Vec<u8>, Vec<Start<'a>>)> {
+        let Some(name) = base else { return Some((Vec::new(), Vec::new(), Vec::new())) };
         let resolved = self.type_by_name(name, Need::Size)?;
         if let crate::ir::Type::Struct { fields, .. } = self.checker.types.get(resolved.ty) {
-            return Some((fields.clone(), resolved.image.to_vec()));
+            return Some((fields.clone(), resolved.image.to_vec(), resolved.starts.to_vec()));
         }
         let message = format!("`{}` is not a structure", name.text);
         self.report(Diagnostic::error(Code::WrongBase, name.span, message));
@@ -269,8 +273,8 @@ impl<'a> Body<'_, 'a> {
         (reserved, extends): (Option<TypeId>, Option<&Ident>),
         ast: &'a [ast::Field],
         span: Span,
-    ) -> Option<TypedImage> {
-        let (mut fields, mut image) = self.extended_fields(extends)?;
+    ) -> Option<TypedImage<'a>> {
+        let (mut fields, mut image, mut starts) = self.extended_fields(extends)?;
         for field in ast {
             if fields.iter().any(|other| other.name.eq_ignore_ascii_case(&field.name.text)) {
                 self.checker.report_duplicate(&field.name, None);
@@ -279,7 +283,7 @@ impl<'a> Body<'_, 'a> {
             let mut resolved = self.resolve(&field.spec, Need::Size)?;
             self.reject_open_array(resolved.ty, field.spec.span)?;
             if let Some(initial) = &field.initial {
-                resolved.image = self.initial_image(&resolved, initial)?;
+                resolved = self.with_initial(&resolved, initial)?;
             }
             let offset = align_up(image.len() as u32, self.checker.types.align(resolved.ty));
             if offset as usize + resolved.image.len() > MEMORY_LIMIT as usize {
@@ -289,6 +293,7 @@ impl<'a> Body<'_, 'a> {
             self.checker.charge_image(resolved.image.len() as u64, span)?;
             image.resize(offset as usize, 0);
             image.extend_from_slice(&resolved.image);
+            starts.extend(moved(&resolved.starts, offset));
             fields.push(Field { name: field.name.text.clone(), ty: resolved.ty, offset });
         }
         // What has no members takes a byte, so that no array has more elements than bytes.
@@ -298,11 +303,11 @@ impl<'a> Body<'_, 'a> {
         let image: Arc<[u8]> = image.into();
         let ty = reserved.unwrap_or_else(|| self.checker.types.structure(name.to_owned()));
         self.checker.types.complete_structure(ty, fields, image.clone());
-        Some(TypedImage { ty, image })
+        Some(TypedImage { ty, image, starts: starts.into() })
     }
 
     /// Values count on from the one before, from 0 (3rd ed. 6.4.4.2, Table 11).
-    fn enumeration(&mut self, name: &str, ast: &'a [EnumValue], base: Option<&Ident>) -> Option<TypedImage> {
+    fn enumeration(&mut self, name: &str, ast: &'a [EnumValue], base: Option<&Ident>) -> Option<TypedImage<'a>> {
         let base = base.map_or(Some(ElementaryType::Int), |base| self.integer_base(base))?;
         let mut values: Vec<(String, i128)> = Vec::new();
         let mut next = 0;

@@ -19,9 +19,10 @@ impl<'a> Body<'_, 'a> {
         reserved: Option<TypeId>,
         ast: &'a [ast::Field],
         span: Span,
-    ) -> Option<TypedImage> {
+    ) -> Option<TypedImage<'a>> {
         let mut fields: Vec<Field> = Vec::new();
         let mut images: Vec<(bool, Arc<[u8]>)> = Vec::new();
+        let mut starts = Vec::new();
         for field in ast {
             if fields.iter().any(|other| other.name.eq_ignore_ascii_case(&field.name.text)) {
                 self.checker.report_duplicate(&field.name, None);
@@ -30,10 +31,14 @@ impl<'a> Body<'_, 'a> {
             let mut resolved = self.resolve(&field.spec, Need::Size)?;
             self.reject_open_array(resolved.ty, field.spec.span)?;
             if let Some(initial) = &field.initial {
-                resolved.image = self.initial_image(&resolved, initial)?;
+                resolved = self.with_initial(&resolved, initial)?;
             }
             fields.push(Field { name: field.name.text.clone(), ty: resolved.ty, offset: 0 });
-            images.push((field.initial.is_some() || images.is_empty(), resolved.image));
+            let counts = field.initial.is_some() || images.is_empty();
+            if counts {
+                starts.extend(resolved.starts.iter().cloned());
+            }
+            images.push((counts, resolved.image));
         }
         let size = images.iter().map(|(_, image)| image.len()).max().unwrap_or(0).max(1) as u32;
         let align = fields.iter().map(|field| self.checker.types.align(field.ty)).max().unwrap_or(1);
@@ -45,6 +50,6 @@ impl<'a> Body<'_, 'a> {
         let image: Arc<[u8]> = image.into();
         let ty = reserved.unwrap_or_else(|| self.checker.types.structure(name.to_owned()));
         self.checker.types.complete_structure(ty, fields, image.clone());
-        Some(TypedImage { ty, image })
+        Some(TypedImage { ty, image, starts: starts.into() })
     }
 }

@@ -1,9 +1,10 @@
 //! Sections to placed variables; the interfaces of units (2nd ed. 2.4.3 and 2.5).
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 use super::Checker;
+use super::initial::{moved, plain};
 use super::instance::visibility;
 use super::layout::{MEMORY_LIMIT, align_up};
 use super::located::Placement;
@@ -11,6 +12,7 @@ use super::names::{Progress, TypedImage};
 use super::open_array::takes_open_arrays;
 use super::referred::referred;
 use super::scope::{Body, Scope};
+use super::start::{Start, Started, Starts};
 use super::types::Need;
 use crate::diagnostic::{Code, Diagnostic, did_you_mean};
 use crate::ir::{EdgeDetection, ElementaryType, Place, PouId, Retention, Storage, TypeId, Value, Variable};
@@ -21,6 +23,14 @@ use crate::syntax::ast::{self, Ident, PouKind, Qualifier, Section, SectionKind};
 pub(super) const POINTER: ElementaryType = ElementaryType::Udint;
 
 impl<'a> Checker<'a> {
+    /// Keeps what a start does to a variable at a fixed place.
+    fn begin(&mut self, storage: Storage, declared: &TypedImage<'a>, span: Span) {
+        if !declared.starts.is_empty() {
+            let place = Place::whole(storage, declared.ty, span);
+            self.started.push(Started { place, starts: declared.starts.clone() });
+        }
+    }
+
     /// A global variable, placed in memory; `used` is where it is needed.
     pub(super) fn global(&mut self, key: &str, used: Option<Span>) -> Option<Variable> {
         if self.globals.get(key)?.progress == Progress::Untouched
@@ -52,14 +62,22 @@ impl<'a> Checker<'a> {
     }
 
     fn place_global(&mut self, name: &Ident, ast: &'a ast::Variable, qualifiers: &[Qualifier]) -> Option<Variable> {
-        let declared = Body::outside(self).declared(ast, Need::Size)?;
-        Body::outside(self).reject_open_array(declared.ty, name.span)?;
+        let mut body = Body::outside(self);
+        let declared = body.declared(ast, Need::Size)?;
+        body.reject_open_array(declared.ty, name.span)?;
+        if qualifiers.contains(&Qualifier::Constant) {
+            body.require_constant(&declared.starts, OF_CONSTANTS);
+        }
         let storage = match self.located(ast, &declared)? {
-            Placement::At(storage) => storage,
+            Placement::At(storage) => {
+                Body::outside(self).require_constant(&declared.starts, OF_LOCATED);
+                storage
+            }
             Placement::Free => {
                 let (size, align) = (self.types.size(declared.ty), self.types.align(declared.ty));
                 let offset = self.allocate(size, align, name.span)?;
                 self.placed.push((offset, declared.image.clone()));
+                self.begin(Storage::Absolute(offset), &declared, name.span);
                 Storage::Absolute(offset)
             }
         };
@@ -73,7 +91,7 @@ impl<'a> Checker<'a> {
         ast: &ast::Variable,
         section: SectionKind,
         qualifiers: &[Qualifier],
-        declared: &TypedImage,
+        declared: &TypedImage<'_>,
         storage: Storage,
     ) -> Variable {
         let is_constant = qualifiers.contains(&Qualifier::Constant);
@@ -115,10 +133,17 @@ impl<'a> Checker<'a> {
             checker.deeper(ast.name.span, |checker| {
                 let mut interface = Interface::new(checker, id);
                 interface.declare(ast);
-                Some((interface.body.scope, interface.align, interface.image))
+                Some(Declared {
+                    scope: interface.body.scope,
+                    align: interface.align,
+                    image: interface.image,
+                    starts: interface.starts,
+                    fleeting: interface.fleeting,
+                    kept: interface.kept,
+                })
             })
         });
-        let (scope, align, mut image) = declared.unwrap_or_default();
+        let Declared { scope, align, mut image, starts, fleeting, kept } = declared.unwrap_or_default();
         // At least a byte, as for structures.
         image.resize(align_up(image.len().max(1) as u32, align) as usize, 0);
         let (align, image): (u32, Arc<[u8]>) = (align.max(1), image.into());
@@ -130,6 +155,7 @@ impl<'a> Checker<'a> {
         entry.scope = Some(Arc::new(scope));
         entry.align = align;
         entry.image = image;
+        (entry.starts, entry.fleeting, entry.kept) = (starts.into(), fleeting.into(), kept);
         entry.progress = Progress::Done;
         Some(())
     }
@@ -140,6 +166,21 @@ impl<'a> Checker<'a> {
         self.pou(id).scope.clone()
     }
 }
+
+/// A unit's variables as they have been declared.
+#[derive(Default)]
+struct Declared<'a> {
+    scope: Scope,
+    align: u32,
+    image: Vec<u8>,
+    starts: Vec<Start<'a>>,
+    fleeting: Vec<(String, Starts<'a>)>,
+    kept: BTreeMap<(u32, u32), u32>,
+}
+
+const OF_CONSTANTS: &str = "a CONSTANT is one before the program runs";
+const OF_LOCATED: &str = "a variable with a direct address begins with its bytes";
+const OF_INPUTS: &str = "an input that is not given has its value from before the program runs";
 
 /// The value that an elementary variable's bytes stand for.
 pub(super) fn decode(ty: ElementaryType, image: &[u8]) -> Value {
@@ -158,12 +199,12 @@ pub(super) fn decode(ty: ElementaryType, image: &[u8]) -> Value {
 
 impl<'a> Body<'_, 'a> {
     /// Type and initial bytes of a declaration.
-    pub(super) fn declared(&mut self, ast: &'a ast::Variable, need: Need) -> Option<TypedImage> {
-        let mut declared = self.resolve(&ast.spec, need)?;
-        if let Some(initial) = &ast.initial {
-            declared.image = self.initial_image(&declared, initial)?;
+    pub(super) fn declared(&mut self, ast: &'a ast::Variable, need: Need) -> Option<TypedImage<'a>> {
+        let declared = self.resolve(&ast.spec, need)?;
+        match &ast.initial {
+            Some(initial) => self.with_initial(&declared, initial),
+            None => Some(declared),
         }
-        Some(declared)
     }
 }
 
@@ -174,6 +215,12 @@ pub(super) struct Interface<'c, 'a> {
     pub(super) align: u32,
     /// Initial bytes of an instance so far.
     pub(super) image: Vec<u8>,
+    /// What a start does to an instance so far.
+    pub(super) starts: Vec<Start<'a>>,
+    /// What a call does to variables that do not outlive it.
+    fleeting: Vec<(String, Starts<'a>)>,
+    /// Where `VAR_INST` of its methods lie in an instance.
+    pub(super) kept: BTreeMap<(u32, u32), u32>,
     /// Variables whose address the body takes.
     referred: BTreeSet<String>,
 }
@@ -183,7 +230,8 @@ impl<'c, 'a> Interface<'c, 'a> {
         let ast = checker.pou(id).ast;
         let (kind, referred) = (ast.kind, referred(&ast.body));
         let body = Body::new(checker, Scope::default(), Some(id));
-        Self { body, kind, align: 1, image: Vec::new(), referred }
+        let (starts, fleeting, kept) = (Vec::new(), Vec::new(), BTreeMap::new());
+        Self { body, kind, align: 1, image: Vec::new(), starts, fleeting, kept, referred }
     }
 
     fn declare(&mut self, ast: &'a ast::Pou) {
@@ -207,6 +255,7 @@ impl<'c, 'a> Interface<'c, 'a> {
             self.body.scope.parameters = 1;
             self.inherit();
             self.declare_sections(ast, |_| true);
+            self.keep_for_methods(ast);
         }
     }
 
@@ -262,6 +311,7 @@ impl<'c, 'a> Interface<'c, 'a> {
                 self.declare_broken(name);
                 continue;
             };
+            self.note_starts(section, name, declared, storage);
             let (kind, qualifiers) = (section.kind, &section.qualifiers);
             let checker = &self.body.checker;
             let mut variable = checker.variable(name, ast, kind, qualifiers, declared, storage);
@@ -270,6 +320,27 @@ impl<'c, 'a> Interface<'c, 'a> {
             }
             self.body.check_control(&variable);
             self.add(name, variable);
+        }
+    }
+
+    /// Keeps what a start, or each call, does to a variable.
+    fn note_starts(&mut self, section: &Section, name: &Ident, declared: &TypedImage<'a>, storage: Storage) {
+        if declared.starts.is_empty() || section.kind == SectionKind::InOut {
+            return;
+        }
+        if section.qualifiers.contains(&Qualifier::Constant) {
+            self.body.require_constant(&declared.starts, OF_CONSTANTS);
+        }
+        if self.kind.keeps_nothing() && section.kind == SectionKind::Input {
+            return self.body.require_constant(&declared.starts, OF_INPUTS);
+        }
+        match storage {
+            // Its unit starts it.
+            Storage::Instance(_) if section.kind == SectionKind::Instance => {}
+            Storage::Instance(offset) => self.starts.extend(moved(&declared.starts, offset)),
+            Storage::Located(_) => self.body.require_constant(&declared.starts, OF_LOCATED),
+            _ if section.kind == SectionKind::Static => self.body.checker.begin(storage, declared, name.span),
+            _ => self.fleeting.push((name.key(), declared.starts.clone())),
         }
     }
 
@@ -288,7 +359,7 @@ impl<'c, 'a> Interface<'c, 'a> {
         &mut self,
         section: &Section,
         ast: &ast::Variable,
-        declared: &TypedImage,
+        declared: &TypedImage<'_>,
         name: &Ident,
     ) -> Option<Storage> {
         if let Some(address) = &ast.address {
@@ -300,7 +371,7 @@ impl<'c, 'a> Interface<'c, 'a> {
         self.storage(section, declared, name)
     }
 
-    fn storage(&mut self, section: &Section, declared: &TypedImage, name: &Ident) -> Option<Storage> {
+    fn storage(&mut self, section: &Section, declared: &TypedImage<'_>, name: &Ident) -> Option<Storage> {
         let span = name.span;
         if !takes_open_arrays(self.kind, section.kind) {
             self.body.reject_open_array(declared.ty, span)?;
@@ -308,6 +379,7 @@ impl<'c, 'a> Interface<'c, 'a> {
             return Some(Storage::RegisterPointer(self.body.scope.register(POINTER)));
         }
         match (self.kind, section.kind) {
+            (_, SectionKind::Instance) => self.kept_storage(section, name),
             (kind, SectionKind::Input) if kind.keeps_nothing() => Some(self.parameter(declared, name)?),
             (PouKind::Method, SectionKind::InOut | SectionKind::Output) | (PouKind::Function, SectionKind::InOut) => {
                 Some(Storage::RegisterPointer(self.body.scope.register(POINTER)))
@@ -327,7 +399,7 @@ impl<'c, 'a> Interface<'c, 'a> {
             (_, SectionKind::InOut) => {
                 let pointer: TypeId = POINTER.into();
                 let image = vec![0; POINTER.size() as usize].into();
-                let offset = self.in_instance(&TypedImage { ty: pointer, image }, span)?;
+                let offset = self.in_instance(&plain(pointer, image), span)?;
                 Some(Storage::InstancePointer(offset))
             }
             _ => Some(Storage::Instance(self.in_instance(declared, span)?)),
@@ -348,7 +420,7 @@ impl<'c, 'a> Interface<'c, 'a> {
             return None;
         }
         let image = Arc::from([0]);
-        let memory = Storage::Instance(self.in_instance(&TypedImage { ty: bool_type, image }, variable.span)?);
+        let memory = Storage::Instance(self.in_instance(&plain(bool_type, image), variable.span)?);
         let seen = self.body.scope.register(ElementaryType::Bool);
         Some(EdgeDetection { edge, memory, seen })
     }
@@ -365,7 +437,7 @@ impl<'c, 'a> Interface<'c, 'a> {
     }
 
     /// A value comes in a register, an aggregate's address too; the callee copies that.
-    pub(super) fn parameter(&mut self, declared: &TypedImage, name: &Ident) -> Option<Storage> {
+    pub(super) fn parameter(&mut self, declared: &TypedImage<'_>, name: &Ident) -> Option<Storage> {
         if let Some(ty) = self.body.elementary(declared.ty) {
             let register = self.body.scope.register(ty);
             let referred = self.referred.contains(&name.key());
@@ -376,7 +448,7 @@ impl<'c, 'a> Interface<'c, 'a> {
         self.frame(declared, name.span)
     }
 
-    fn temporary(&mut self, declared: &TypedImage, name: &Ident) -> Option<Storage> {
+    fn temporary(&mut self, declared: &TypedImage<'_>, name: &Ident) -> Option<Storage> {
         match self.body.elementary(declared.ty) {
             Some(ty) if !self.referred.contains(&name.key()) => Some(Storage::Register(self.body.scope.register(ty))),
             _ => self.frame(declared, name.span),
@@ -384,7 +456,7 @@ impl<'c, 'a> Interface<'c, 'a> {
     }
 
     /// Fixed memory: no unit is active twice (2nd ed. 2.5, no recursion).
-    pub(super) fn frame(&mut self, declared: &TypedImage, span: Span) -> Option<Storage> {
+    pub(super) fn frame(&mut self, declared: &TypedImage<'_>, span: Span) -> Option<Storage> {
         self.body.scope.has_memory = true;
         let types = &self.body.checker.types;
         let (size, align) = (types.size(declared.ty), types.align(declared.ty));
@@ -393,7 +465,7 @@ impl<'c, 'a> Interface<'c, 'a> {
         Some(Storage::Absolute(offset))
     }
 
-    pub(super) fn in_instance(&mut self, declared: &TypedImage, span: Span) -> Option<u32> {
+    pub(super) fn in_instance(&mut self, declared: &TypedImage<'_>, span: Span) -> Option<u32> {
         let align = self.body.checker.types.align(declared.ty);
         let offset = align_up(self.image.len() as u32, align);
         if offset as usize + declared.image.len() > MEMORY_LIMIT as usize {

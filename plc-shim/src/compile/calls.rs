@@ -66,7 +66,15 @@ impl Size {
                 self.expression(expr);
                 self.statements(body);
             }
-            StatementKind::Exit | StatementKind::Continue | StatementKind::Return => {}
+            StatementKind::Labelled(inner) => {
+                self.statements(&inner.first);
+                inner.parts.iter().for_each(|(_, part)| self.statements(part));
+            }
+            StatementKind::Exit
+            | StatementKind::Continue
+            | StatementKind::Return
+            | StatementKind::Jump(_)
+            | StatementKind::Pass => {}
         }
     }
 

@@ -1,8 +1,10 @@
 //! What a piece of code reads and changes, found by compiling it once for trial.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 use super::address::{Address, Base, Extent, Roots};
+use super::drift::Steps;
+use super::range::Slot;
 use super::registers::Register;
 use crate::ir::ElementaryType;
 
@@ -15,11 +17,13 @@ pub(super) struct Effects {
     /// Loads of elementary places at known addresses, and how many of each.
     loads: Vec<(Address, ElementaryType, u32)>,
     /// Stores likewise.
-    stores: BTreeSet<(Address, ElementaryType)>,
+    stores: BTreeMap<(Address, ElementaryType), u32>,
     /// All other changes of memory.
     changes: BTreeSet<Extent>,
-    /// Registers that are set.
-    registers: BTreeSet<Register>,
+    /// Registers that are set, and how often.
+    registers: BTreeMap<Register, u32>,
+    /// Variables that are counted up or down by constants.
+    pub(super) steps: Steps,
     /// Something is changed that could lie anywhere.
     anything: bool,
 }
@@ -35,7 +39,7 @@ impl Effects {
     }
 
     pub(super) fn store(&mut self, address: Address, ty: ElementaryType) {
-        self.stores.insert((address, ty));
+        *self.stores.entry((address, ty)).or_default() += 1;
         self.anything |= self.stores.len() > MAX_ACCESSES;
     }
 
@@ -49,18 +53,18 @@ impl Effects {
     }
 
     pub(super) fn set(&mut self, register: Register) {
-        self.registers.insert(register);
+        *self.registers.entry(register).or_default() += 1;
     }
 
     pub(super) fn sets(&self, register: Register) -> bool {
-        self.registers.contains(&register)
+        self.registers.contains_key(&register)
     }
 
     /// True if memory there may change.
     pub(super) fn changes(&self, extent: Extent, roots: &Roots) -> bool {
         let stored = |(address, ty): &(Address, ElementaryType)| Extent::new(*address, ty.size());
         self.anything
-            || self.stores.iter().any(|store| roots.overlap(stored(store), extent))
+            || self.stores.keys().any(|store| roots.overlap(stored(store), extent))
             || self.changes.iter().any(|change| roots.overlap(*change, extent))
     }
 
@@ -75,13 +79,24 @@ impl Effects {
         found.into_iter().map(|(address, ty, _)| (*address, *ty)).collect()
     }
 
+    /// How many times the variable is set, if nothing else changes it.
+    pub(super) fn sets_of(&self, slot: Slot, ty: ElementaryType, roots: &Roots) -> Option<u32> {
+        match slot {
+            Slot::Register(register) => self.registers.get(&register).copied(),
+            Slot::Memory(address) if !self.anything && self.keeps(address, ty, roots) => {
+                self.stores.get(&(address, ty)).copied()
+            }
+            Slot::Memory(_) => None,
+        }
+    }
+
     fn keeps(&self, address: Address, ty: ElementaryType, roots: &Roots) -> bool {
         let extent = Extent::new(address, ty.size());
-        let steady = !matches!(address.base, Base::Register(register) if self.registers.contains(&register));
+        let steady = !matches!(address.base, Base::Register(register) if self.registers.contains_key(&register));
         let itself = |store: &(Address, ElementaryType)| *store == (address, ty);
         let apart = |store: &(Address, ElementaryType)| {
             itself(store) || !roots.overlap(Extent::new(store.0, store.1.size()), extent)
         };
-        steady && self.stores.iter().all(apart) && !self.changes.iter().any(|change| roots.overlap(*change, extent))
+        steady && self.stores.keys().all(apart) && !self.changes.iter().any(|change| roots.overlap(*change, extent))
     }
 }

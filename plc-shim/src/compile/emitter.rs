@@ -175,6 +175,7 @@ impl<'s, 'p> Emitter<'s, 'p> {
     }
 
     fn note_set(&mut self, register: Register) {
+        self.known.ranges.forget_register(register);
         if let Some(trial) = &mut self.trial {
             trial.set(register);
         }

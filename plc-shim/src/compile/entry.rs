@@ -11,10 +11,10 @@ use crate::ir::{Pou, PouId, StatementKind, Storage};
 /// No unit has it.
 const NONE: PouId = PouId(u32::MAX);
 
-/// A function of an entry, and what its instructions stand for.
-pub(super) fn function(shared: &mut Shared<'_>, unit: &Pou) -> (wasm_encoder::Function, FunctionMarks) {
+/// A function without parameters, and what its instructions stand for; `is_entry` if it is one of an entry.
+pub(super) fn function(shared: &mut Shared<'_>, unit: &Pou, is_entry: bool) -> (wasm_encoder::Function, FunctionMarks) {
     let Made { body, marks, units } = function::unit(shared, NONE, unit, None);
-    (body, FunctionMarks { units, is_entry: true, marks })
+    (body, FunctionMarks { units, is_entry, marks })
 }
 
 /// The programs that have one instance in all entries, with its offset in memory. A function block

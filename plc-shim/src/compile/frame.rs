@@ -24,6 +24,8 @@ pub(super) struct Frame {
     /// Pointers whose address is known without their register.
     pub(super) pointers: BTreeMap<LocalId, Address>,
     pub(super) loops: Vec<LoopLabels>,
+    /// Where jumps lead, the innermost labels last.
+    pub(super) jumps: Vec<super::jump::Targets>,
     /// Where RETURN leads.
     pub(super) end: Option<Label>,
     /// What is known wherever RETURN stands.

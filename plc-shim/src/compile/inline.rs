@@ -51,6 +51,7 @@ impl<'p> Emitter<'_, 'p> {
             registers,
             pointers: std::collections::BTreeMap::new(),
             loops: Vec::new(),
+            jumps: Vec::new(),
             end: None,
             returned: None,
             unit: self.units.len() as u32 - 1,

@@ -1,19 +1,11 @@
 //! Between which numbers an integer lies, so that checks that cannot fail are left out.
 
-use super::address::Address;
 use super::emitter::Emitter;
-use super::registers::Register;
-use crate::ir::{Binary, ElementaryType, Expr, ExprKind, Intrinsic, Place, Storage, Unary, Value};
+pub(super) use super::range::Slot;
+use crate::ir::{Binary, ElementaryType, Expr, ExprKind, Intrinsic, Place, Step, Storage, Unary, Value};
 
 /// Smallest and greatest value.
 pub(super) type Interval = (i128, i128);
-
-/// A variable whose range is known.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Slot {
-    Memory(Address),
-    Register(Register),
-}
 
 /// Control variables of the loops around, which their bodies do not change.
 #[derive(Debug, Clone, Default)]
@@ -30,8 +22,27 @@ impl Facts {
         self.known.pop();
     }
 
-    fn find(&self, slot: Slot) -> Option<Interval> {
+    pub(super) fn find(&self, slot: Slot) -> Option<Interval> {
         self.known.iter().rev().find(|(known, _)| *known == slot).map(|(_, interval)| *interval)
+    }
+}
+
+/// True if to evaluate the expression changes nothing.
+pub(super) fn is_still(expr: &Expr) -> bool {
+    match &expr.kind {
+        ExprKind::Constant(_) => true,
+        ExprKind::Load(place) | ExprKind::Address(place) => place.steps.iter().all(|step| match step {
+            Step::Offset(_) => true,
+            Step::Index { index, .. } => is_still(index),
+            Step::Pointer { .. } | Step::Open { .. } => false,
+        }),
+        ExprKind::Unary(_, operand) | ExprKind::Convert(_, operand) | ExprKind::Limited(_, _, operand) => {
+            is_still(operand)
+        }
+        ExprKind::Binary(_, left, right) => is_still(left) && is_still(right),
+        ExprKind::Conditional(parts) => parts.iter().all(is_still),
+        ExprKind::Intrinsic(_, operands) => operands.iter().all(is_still),
+        ExprKind::Text(_) | ExprKind::Call(_) | ExprKind::After(..) | ExprKind::Cast(_) => false,
     }
 }
 
@@ -45,7 +56,8 @@ const MAX_DEPTH: u32 = 8;
 impl Emitter<'_, '_> {
     /// Where the value of an integer expression lies; nothing for other types.
     pub(super) fn interval(&self, expr: &Expr) -> Option<Interval> {
-        self.interval_at(expr, MAX_DEPTH)
+        // What the expression itself changes on its way is not what is known here.
+        self.interval_at(expr, if is_still(expr) { MAX_DEPTH } else { 0 })
     }
 
     fn interval_at(&self, expr: &Expr, depth: u32) -> Option<Interval> {
@@ -59,7 +71,10 @@ impl Emitter<'_, '_> {
     fn narrower(&self, expr: &Expr, depth: u32) -> Option<Interval> {
         match &expr.kind {
             ExprKind::Constant(Value::Int(value)) => Some((*value, *value)),
-            ExprKind::Load(place) => self.slot(place).and_then(|slot| self.facts.find(slot)),
+            ExprKind::Load(place) => {
+                let (slot, ty) = (self.slot(place)?, self.shared.types.elementary(place.ty)?);
+                self.facts.find(slot).or_else(|| self.known.ranges.find(slot, ty))
+            }
             ExprKind::Convert(_, operand) => self.interval_at(operand, depth),
             ExprKind::Limited(low, high, _) => Some((*low, *high)),
             ExprKind::Unary(Unary::Negate, operand) => {

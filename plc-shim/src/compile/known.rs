@@ -1,9 +1,11 @@
-//! What is known to be in memory at one point of a function: values that registers hold already.
+//! What is known at one point of a function: values in memory that registers hold already, and the
+//! ranges of variables.
 //!
 //! Every store goes to memory at once, so that a fault finds the state as the program left it;
 //! only loads are saved.
 
 use super::address::{Address, Extent, Roots};
+use super::range::Ranges;
 use super::registers::Register;
 use crate::ir::ElementaryType;
 
@@ -28,6 +30,7 @@ impl Entry {
 #[derive(Debug, Clone, Default)]
 pub(super) struct Known {
     entries: Vec<Entry>,
+    pub(super) ranges: Ranges,
     /// No execution comes here.
     unreachable: bool,
 }
@@ -55,26 +58,30 @@ impl Known {
     /// Forgets what a store to `extent` may change.
     pub(super) fn forget(&mut self, extent: Extent, roots: &Roots) {
         self.entries.retain(|entry| !roots.overlap(entry.extent(), extent));
+        self.ranges.forget(extent, roots);
     }
 
     /// Forgets what was found by way of this register.
     pub(super) fn forget_base(&mut self, register: Register) {
         let base = super::address::Base::Register(register);
         self.entries.retain(|entry| entry.address.base != base);
+        self.ranges.forget_register(register);
     }
 
-    /// Forgets what does not fulfil the condition.
-    pub(super) fn retain(&mut self, keep: impl Fn(Extent) -> bool) {
-        self.entries.retain(|entry| keep(entry.extent()));
+    /// Forgets what does not fulfil its condition.
+    pub(super) fn retain(&mut self, memory: impl Fn(Extent) -> bool, register: impl Fn(Register) -> bool) {
+        self.entries.retain(|entry| memory(entry.extent()));
+        self.ranges.retain(memory, register);
     }
 
     pub(super) fn forget_all(&mut self) {
         self.entries.clear();
+        self.ranges.clear();
     }
 
     /// A jump away: what follows is not executed.
     pub(super) fn leave(&mut self) {
-        self.entries.clear();
+        self.forget_all();
         self.unreachable = true;
     }
 
@@ -84,6 +91,7 @@ impl Known {
             self.clone_from(other);
         } else if !other.unreachable {
             self.entries.retain(|entry| other.entries.contains(entry));
+            self.ranges.meet(&other.ranges);
         }
     }
 

@@ -10,13 +10,13 @@
 //! | [`cost`], [`calls`], [`budget`] | what units cost, and how endless loops end |
 //! | [`address`], [`place`], [`part`], [`pointer`], [`open_array`], [`memory`] | addresses, loads and stores |
 //! | [`known`], [`effect`], [`survey`] | values that registers hold already, also through loops |
-//! | [`interval`] | ranges of integers, for checks that cannot fail |
-//! | [`statement`], [`selection`], [`choice`], [`repetition`], [`counting`] | statements |
+//! | [`interval`], [`range`], [`refine`], [`drift`] | between what integers lie: expressions, variables, behind conditions, in loops |
+//! | [`statement`], [`selection`], [`choice`], [`repetition`], [`counting`], [`jump`] | statements |
 //! | [`expression`], [`arithmetic`], [`conversion`], [`intrinsic`], [`bytes`] | expressions |
 //! | [`dispatch`] | methods: which one runs |
 //! | [`host`] | functions that WebAssembly lacks |
 //! | [`text`], [`text_host`] | character strings |
-//! | [`points`] | what is noted for coverage |
+//! | [`points`], [`trace`] | what is noted for coverage; statements as they run |
 //! | [`fault`] | what stops the PLC, and the place in the source that an instruction stands for |
 //!
 //! Integers of up to 32 bits are held in an `i32`, sign- or zero-extended from their width;
@@ -32,6 +32,7 @@ mod conversion;
 mod cost;
 mod counting;
 mod dispatch;
+mod drift;
 mod effect;
 mod emitter;
 mod entry;
@@ -43,6 +44,7 @@ pub(crate) mod host;
 mod inline;
 mod interval;
 mod intrinsic;
+mod jump;
 mod known;
 mod memory;
 mod module;
@@ -51,6 +53,8 @@ mod part;
 mod place;
 mod pointer;
 pub(crate) mod points;
+mod range;
+mod refine;
 mod registers;
 mod repetition;
 mod selection;
@@ -58,6 +62,7 @@ mod statement;
 mod survey;
 mod text;
 pub(crate) mod text_host;
+pub(crate) mod trace;
 
 pub(crate) use budget::BUDGET_EXPORT;
-pub(crate) use module::{Compiled, MEMORY_EXPORT, Noted, compile, entry_export};
+pub(crate) use module::{Compiled, END_EXPORT, MEMORY_EXPORT, Noted, START_EXPORT, compile, entry_export};

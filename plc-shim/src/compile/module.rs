@@ -13,7 +13,7 @@ use super::emitter::{Shared, value_type};
 use super::fault::{FaultTable, FunctionMarks};
 use super::function::Made;
 use super::points::{Point, Points};
-use super::{dispatch, entry, function, host, text_host};
+use super::{dispatch, entry, function, host, text_host, trace};
 use crate::check::Checked;
 use crate::ir::{Pou, PouId, TypeTable};
 use crate::syntax::FileId;
@@ -27,6 +27,11 @@ const PAGE: u64 = 65_536;
 pub(crate) fn entry_export(index: usize, part: usize) -> String {
     format!("entry_{index}_{part}")
 }
+
+/// Name of the export that runs before the first scan.
+pub(crate) const START_EXPORT: &str = "start";
+/// Name of the export that runs before another start.
+pub(crate) const END_EXPORT: &str = "end";
 
 /// The module and what its instructions stand for.
 #[derive(Debug)]
@@ -43,19 +48,27 @@ pub(crate) enum Noted<'l> {
     Nothing,
     /// All that is not in these files.
     AllBut(&'l BTreeSet<FileId>),
+    /// Statements that are not in these files tell the host that they run.
+    Traced(&'l BTreeSet<FileId>),
 }
 
 /// Compiles what has been checked without errors.
 pub(crate) fn compile(checked: &Checked, noted: Noted<'_>) -> Compiled {
-    let first_function = (host::IMPORTS.len() + text_host::IMPORTS.len()) as u32;
+    let traced = matches!(noted, Noted::Traced(_));
+    let tracing = if traced { trace::IMPORTS.len() } else { 0 };
+    let first_function = (host::IMPORTS.len() + text_host::IMPORTS.len() + tracing) as u32;
     let order = checked.pous.keys().zip(first_function..);
     let functions: BTreeMap<_, _> = order.map(|(id, index)| (*id, index)).collect();
     let mut sections = Sections::default();
     sections.add_imports();
+    if traced {
+        sections.add_trace_imports();
+    }
     let rows = dispatch::place_rows(&checked.rows, |parameters, results| sections.add_type(parameters, results));
     let (costs, order) = Costs::new(&checked.pous);
     let points = match noted {
         Noted::Nothing => None,
+        Noted::Traced(library) => Some(Points::traced(library)),
         Noted::AllBut(library) => Some(Points::new(checked.image.len() as u32, library)),
     };
     let mut shared = Shared {
@@ -85,13 +98,21 @@ pub(crate) fn compile(checked: &Checked, noted: Noted<'_>) -> Compiled {
     }
     for (index, entry) in checked.entries.iter().enumerate() {
         for (part, unit) in entry.units.iter().enumerate() {
-            let (body, marks) = entry::function(&mut shared, unit);
+            let (body, marks) = entry::function(&mut shared, unit, true);
             let at = sections.add_function(Vec::new(), Vec::new(), &body);
             sections.exports.export(&entry_export(index, part), ExportKind::Func, at);
             faults.functions.push(marks);
         }
     }
-    let points = shared.points.as_ref().map_or(0, Points::len);
+    for (unit, export) in [(&checked.start, START_EXPORT), (&checked.end, END_EXPORT)] {
+        if let Some(unit) = unit {
+            let (body, marks) = entry::function(&mut shared, unit, false);
+            let at = sections.add_function(Vec::new(), Vec::new(), &body);
+            sections.exports.export(export, ExportKind::Func, at);
+            faults.functions.push(marks);
+        }
+    }
+    let points = shared.points.as_ref().map_or(0, Points::bytes);
     let wasm = sections.finish(checked, points, &shared);
     Compiled { wasm, faults, points: shared.points.map(Points::into_list).unwrap_or_default() }
 }
@@ -136,6 +157,13 @@ impl Sections {
             let (parameters, result) = import.signature();
             let ty = self.add_type(parameters, vec![result]);
             self.imports.import(text_host::MODULE, import.name(), EntityType::Function(ty));
+        }
+    }
+
+    fn add_trace_imports(&mut self) {
+        for (name, count) in trace::IMPORTS {
+            let ty = self.add_type(trace::parameters(count), Vec::new());
+            self.imports.import(trace::MODULE, name, EntityType::Function(ty));
         }
     }
 

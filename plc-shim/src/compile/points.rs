@@ -33,6 +33,8 @@ pub(crate) struct Point {
 pub(super) struct Points {
     /// Offset of the first byte.
     base: u32,
+    /// Statements are told to the host as they run; nothing is noted in memory.
+    traced: bool,
     /// Files that are not the user's.
     library: BTreeSet<FileId>,
     /// A unit may be compiled in several places.
@@ -45,8 +47,16 @@ impl Points {
         Self { base, library: library.clone(), ..Self::default() }
     }
 
-    /// Offset of the point's byte; nothing if it is not the user's.
-    fn offset(&mut self, kind: PointKind, unit: &str, span: Span) -> Option<u32> {
+    pub(super) fn traced(library: &BTreeSet<FileId>) -> Self {
+        Self { traced: true, library: library.clone(), ..Self::default() }
+    }
+
+    pub(super) fn is_traced(&self) -> bool {
+        self.traced
+    }
+
+    /// The point's number; nothing if it is not the user's.
+    pub(super) fn index(&mut self, kind: PointKind, unit: &str, span: Span) -> Option<u32> {
         if self.library.contains(&span.file) {
             return None;
         }
@@ -55,15 +65,16 @@ impl Points {
         if index == next {
             self.list.push(Point { kind, unit: unit.to_owned(), span });
         }
-        self.base.checked_add(index)
+        Some(index)
     }
 
     pub(super) fn into_list(self) -> Vec<Point> {
         self.list
     }
 
-    pub(super) fn len(&self) -> usize {
-        self.list.len()
+    /// Bytes of memory for them.
+    pub(super) fn bytes(&self) -> usize {
+        if self.traced { 0 } else { self.list.len() }
     }
 }
 
@@ -81,7 +92,16 @@ impl Emitter<'_, '_> {
         if kind == PointKind::Statement && pou.variables.iter().any(|variable| variable.span == span) {
             return;
         }
-        let Some(offset) = points.offset(kind, &pou.name, span) else { return };
+        if points.traced && kind != PointKind::Statement {
+            return;
+        }
+        let (traced, base) = (points.traced, points.base);
+        let Some(index) = points.index(kind, &pou.name, span) else { return };
+        if traced {
+            self.trace_begin(index);
+            return;
+        }
+        let Some(offset) = base.checked_add(index) else { return };
         self.emit(Instruction::I32Const(0));
         self.emit(Instruction::I32Const(1));
         self.emit(Instruction::I32Store8(MemArg { offset: u64::from(offset), align: 0, memory_index: 0 }));

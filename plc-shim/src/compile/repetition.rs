@@ -18,7 +18,7 @@ pub(super) const DONE: PointKind = PointKind::Outcome(1);
 
 impl Emitter<'_, '_> {
     pub(super) fn while_statement(&mut self, condition: &Expr, body: &[Statement], span: Span) {
-        self.repeated(|emitter| {
+        self.repeated(Some(condition), |emitter| {
             let exit = emitter.open_block();
             let done = emitter.open_block();
             let top = emitter.open_loop();
@@ -27,6 +27,7 @@ impl Emitter<'_, '_> {
             emitter.expression(condition);
             emitter.emit(Instruction::I32Eqz);
             emitter.branch_if(done);
+            emitter.assume(condition, true);
             emitter.cover(TURN, span);
             emitter.turn(exit, body);
             emitter.pay_turn(cost, span);
@@ -39,7 +40,7 @@ impl Emitter<'_, '_> {
     }
 
     pub(super) fn repeat_statement(&mut self, body: &[Statement], until: &Expr, span: Span) {
-        self.repeated(|emitter| {
+        self.repeated(None, |emitter| {
             let exit = emitter.open_block();
             let done = emitter.open_block();
             let top = emitter.open_loop();
@@ -59,16 +60,19 @@ impl Emitter<'_, '_> {
         });
     }
 
-    /// A loop that pays for its turns.
-    fn repeated(&mut self, turns: impl Fn(&mut Self)) {
+    /// A loop that pays for its turns; each begins with the condition, if there is one.
+    pub(super) fn repeated(&mut self, condition: Option<&Expr>, turns: impl Fn(&mut Self)) {
         let survey = self.survey(&turns);
+        let drifts = self.drifts(&survey);
         let pins = self.enter_loop(&survey);
+        let drifts = condition.map_or_else(Vec::new, |condition| self.expect_drifts(&drifts, condition));
         let opened = self.open_budget();
         turns(self);
         if opened {
             self.close_budget();
         }
         self.leave_loop(pins);
+        self.remember_drifts(&drifts);
     }
 
     /// The body, with CONTINUE leading behind it.
@@ -77,7 +81,13 @@ impl Emitter<'_, '_> {
         if let Some(frame) = self.frames.last_mut() {
             frame.loops.push(LoopLabels { exit, next });
         }
+        if let Some(trial) = &mut self.trial {
+            trial.steps.open_turn();
+        }
         self.statements(body);
+        if let Some(trial) = &mut self.trial {
+            trial.steps.close_turn();
+        }
         if let Some(frame) = self.frames.last_mut() {
             frame.loops.pop();
         }

@@ -20,6 +20,7 @@ impl Emitter<'_, '_> {
             self.mark_statement(statement.span);
             self.cover(PointKind::Statement, statement.span);
             self.statement(statement);
+            self.trace_end(statement);
         }
     }
 
@@ -50,11 +51,17 @@ impl Emitter<'_, '_> {
             StatementKind::Exit => self.leave_to(|labels| labels.exit),
             StatementKind::Continue => self.leave_to(|labels| labels.next),
             StatementKind::Return => self.return_statement(),
+            StatementKind::Labelled(inner) => self.labelled(inner, statement.span),
+            StatementKind::Jump(label) => self.jump(*label, statement.span),
+            StatementKind::Pass => {}
         }
     }
 
     fn assign(&mut self, target: &Place, value: &Expr) {
+        let range = self.interval(value);
+        self.note_drift(target, value);
         self.store(target, |emitter| emitter.settled(value));
+        self.remember_range(target, range);
     }
 
     /// True if a real value is computed: if it is NaN, the machine has chosen which. What is
@@ -172,7 +179,11 @@ impl Emitter<'_, '_> {
             self.expression(&branch.condition);
             self.emit(Instruction::I32Eqz);
             self.branch_if(next);
-            let before = self.known.clone();
+            let mut before = self.known.clone();
+            self.assume(&branch.condition, true);
+            std::mem::swap(&mut self.known, &mut before);
+            self.assume(&branch.condition, false);
+            std::mem::swap(&mut self.known, &mut before);
             self.cover(PointKind::Outcome(outcome), span);
             self.statements(&branch.body);
             self.branch(end);

@@ -67,7 +67,7 @@ impl Emitter<'_, '_> {
             self.pin(address, ty);
         }
         let roots = &self.roots;
-        self.known.retain(|extent| !effects.changes(extent, roots));
+        self.known.retain(|extent| !effects.changes(extent, roots), |register| !effects.sets(register));
         before
     }
 

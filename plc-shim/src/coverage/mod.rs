@@ -4,16 +4,20 @@
 //! |---|---|
 //! | [`lcov`] | as an lcov tracefile |
 //! | [`cobertura`] | as a Cobertura report |
+//! | [`rows`] | as plain rows, to be carried elsewhere |
 //!
 //! Counts are of runs: a line with 2 was executed in two of the runs that were merged.
 
 mod cobertura;
 mod lcov;
+mod rows;
 
 use std::collections::BTreeMap;
 
 use crate::compile::points::{Point, PointKind};
 use crate::syntax::SourceMap;
+
+pub use rows::{Counted, Row};
 
 /// Of all files of an application but the standard library.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]

@@ -7,6 +7,7 @@
 //! | `xml` | text | a tree whose nodes know their place |
 //! | `twincat`, `twincat_task` | TwinCAT's objects | program text |
 //! | `plcopen`, `plcopen_instances`, `plcopen_object` | PLCopen XML, and what CODESYS adds to it | program text |
+//! | `plcopen_network` | its networks in LD and FBD | statements |
 //! | [`project`] | a TwinCAT project | the names of its files |
 //!
 //! Invariants: no file can make it fail, what is wrong with one is a diagnostic; what is not read is
@@ -16,6 +17,7 @@ pub mod encoding;
 pub mod kind;
 mod plcopen;
 mod plcopen_instances;
+mod plcopen_network;
 mod plcopen_object;
 pub mod project;
 mod twincat;

@@ -3,6 +3,7 @@
 //! Only what is text in the file is taken over as it is; the rest is written as the standard would
 //! have it, and every word of it leads back to the element that it stands for.
 
+use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
 
 use super::Taken;
@@ -13,7 +14,7 @@ use crate::dialect::Dialect;
 /// Program text of a project.
 pub(super) fn extract(file: &str) -> Result<Taken, XmlError> {
     let root = parse(file)?;
-    let mut writer = Writer { taken: Taken { dialect: dialect(file, &root), ..Taken::default() }, file };
+    let mut writer = Writer::new(file, dialect(file, &root), programs(&root));
     if root.name != "project" {
         let message = "`<project>` is wanted here: only PLCopen XML is read";
         writer.taken.report(root.open.clone(), Code::MalformedXml, message);
@@ -35,6 +36,19 @@ pub(super) fn extract(file: &str) -> Result<Taken, XmlError> {
     Ok(writer.taken)
 }
 
+/// Names of all programs as keys.
+fn programs(root: &Element) -> BTreeSet<String> {
+    let mut found = BTreeSet::new();
+    let mut open = vec![root];
+    while let Some(element) = open.pop() {
+        let program = element.attribute("pouType").is_some_and(|kind| kind.value == "program");
+        let name = element.attribute("name").filter(|_| element.name == "pou" && program);
+        found.extend(name.map(|name| name.value.to_ascii_uppercase()));
+        open.extend(element.elements());
+    }
+    found
+}
+
 /// The dialect of the tool that wrote the file: its name, or CODESYS' own data in it.
 fn dialect(file: &str, root: &Element) -> Dialect {
     let product = root.child("fileHeader").and_then(|header| header.attribute("productName"));
@@ -51,6 +65,12 @@ fn dialect(file: &str, root: &Element) -> Dialect {
 pub(super) struct Writer<'a> {
     pub(super) taken: Taken,
     pub(super) file: &'a str,
+    /// Names of the file's programs as keys: what is called by such a name keeps its outputs.
+    pub(super) programs: BTreeSet<String>,
+    /// Instances that remember edges, by where the element begins that sees one.
+    pub(super) triggers: BTreeMap<u32, String>,
+    /// How many networks have been written.
+    pub(super) bodies: u32,
 }
 
 /// Sections of an interface and their keywords (TC6 2.01, `interface`).
@@ -63,6 +83,13 @@ const SECTIONS: [(&str, &str); 7] = [
     ("externalVars", "VAR_EXTERNAL"),
     ("globalVars", "VAR_GLOBAL"),
 ];
+
+impl<'a> Writer<'a> {
+    fn new(file: &'a str, dialect: Dialect, programs: BTreeSet<String>) -> Self {
+        let taken = Taken { dialect, ..Taken::default() };
+        Self { taken, file, programs, triggers: BTreeMap::new(), bodies: 0 }
+    }
+}
 
 impl Writer<'_> {
     pub(super) fn write(&mut self, text: &str, place: &Range<u32>) {
@@ -111,6 +138,9 @@ impl Writer<'_> {
         for section in interface.into_iter().flat_map(Element::elements) {
             self.section(section);
         }
+        if keyword != "FUNCTION " {
+            self.declare_triggers(element);
+        }
         for body in element.elements().filter(|inner| inner.name == "body") {
             self.body(body);
         }
@@ -122,10 +152,11 @@ impl Writer<'_> {
     pub(super) fn body(&mut self, body: &Element) {
         for language in body.elements() {
             match language.name.as_str() {
-                "ST" => {
+                "ST" | "IL" => {
                     self.text_below(language);
                     self.write("\n", &language.close);
                 }
+                "LD" | "FBD" => self.network(language),
                 "documentation" | "addData" => {}
                 other => self.taken.unsupported(language.open.clone(), &format!("a body in {other}")),
             }
@@ -323,8 +354,7 @@ mod tests {
     fn elements_become_text() {
         let input = Input::from_text("ramp.xml", SourceKind::PlcOpen, PROJECT);
         insta::assert_snapshot!(input.file().text());
-        let messages: Vec<_> = input.diagnostics.iter().map(|found| found.message.as_str()).collect();
-        assert_eq!(messages, ["a body in LD is not supported yet"]);
+        assert!(input.diagnostics.is_empty(), "{:?}", input.diagnostics);
     }
 
     #[test]

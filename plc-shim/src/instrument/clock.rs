@@ -1,7 +1,7 @@
 //! What reads the clock (seed: Carlsson et al. 2012, sec. V-C), as a table: what replaces it, or what
 //! is told of it.
 
-use super::template;
+use super::{motion, template};
 
 /// What a source of time is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -19,8 +19,8 @@ pub(super) enum Fate {
     Replaced(&'static Form),
     /// It cannot be replaced.
     Told,
-    /// A motion block of PLCopen (Motion Control Part 1): not replaced yet.
-    Motion,
+    /// A block or type of PLCopen's motion control.
+    Motion(motion::Role),
 }
 
 /// A source of the shim and how it is written for one name.
@@ -110,7 +110,7 @@ pub(super) fn fate(key: &str, kind: Kind) -> Option<Fate> {
     if TOLD.contains(&(key, kind)) {
         return Some(Fate::Told);
     }
-    (kind == Kind::Block && key.starts_with("MC_")).then_some(Fate::Motion)
+    if kind == Kind::Block { motion::role(key).map(Fate::Motion) } else { None }
 }
 
 impl Form {
@@ -145,7 +145,7 @@ mod tests {
         all.sort_unstable();
         all.dedup();
         assert_eq!(all.len(), count);
-        assert_eq!(fate("MC_HOME", Kind::Block), Some(Fate::Motion));
+        assert_eq!(fate("MC_HOME", Kind::Block), Some(Fate::Motion(motion::Role::Block)));
         assert_eq!(fate("CTU", Kind::Block), None);
     }
 

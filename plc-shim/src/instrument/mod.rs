@@ -8,6 +8,7 @@
 //! | [`diff`] | a changed file as a unified diff |
 //! | [`template`] | the shim's sources in `iec/shim` |
 //! | [`clock`] | what reads the clock, and what replaces it |
+//! | [`motion`], [`motion_use`] | motion control, and what of it a project uses |
 //! | [`survey`] | programs and sources of time in a project |
 //! | [`tasks`] | the task table |
 //! | [`configuration`] | a project's CONFIGURATION |
@@ -23,6 +24,8 @@ mod controller;
 pub mod diff;
 pub mod edits;
 mod marks;
+mod motion;
+mod motion_use;
 mod survey;
 mod target;
 mod tasks;
@@ -36,6 +39,7 @@ use thiserror::Error;
 
 use self::edits::{Conflict, Edited, Edits, LineMap};
 use self::marks::Original;
+use self::motion_use::Motion;
 use self::survey::{Survey, survey};
 pub use self::target::Target;
 use self::target::{Globals, Sources};
@@ -47,7 +51,7 @@ use crate::input::encoding::Encoding;
 use crate::input::kind::{FileKind, SourceKind};
 use crate::run::{RunError, Task};
 use crate::syntax::ast::ProgramDeclaration;
-use crate::syntax::parser::parse_in;
+use crate::syntax::parser::parse_source;
 use crate::syntax::{FileId, SourceMap, Span};
 
 /// How a project is to be instrumented.
@@ -124,13 +128,15 @@ pub fn instrument(inputs: &[Input], options: &Options) -> Result<Project, Instru
     let mut units = Vec::new();
     let mut findings = plain.findings.clone();
     for (id, file) in plain.sources.iter() {
-        let parsed = parse_in(file.dialect(), id, file.text());
+        let parsed = parse_source(id, file);
         findings.extend(parsed.diagnostics);
         units.push((id, parsed.unit));
     }
     let trees: Vec<_> = units.iter().map(|(id, unit)| (*id, unit)).collect();
     let mut survey = survey(&trees);
     findings.append(&mut survey.findings);
+    let mut motion = motion_use::motion(options.target, &trees, &survey.motion);
+    findings.append(&mut motion.findings);
     if findings.iter().any(|found| found.severity == Severity::Error) {
         return Err(InstrumentError::Text(Diagnostics::new(findings, &plain.sources)));
     }
@@ -138,8 +144,8 @@ pub fn instrument(inputs: &[Input], options: &Options) -> Result<Project, Instru
     let mut forms: Vec<_> = survey.renames.iter().map(|(_, form)| *form).collect();
     forms.sort_by_key(|form| form.name);
     forms.dedup();
-    let sources = Sources::new(options.target, &tasks, &forms);
-    let mut files = plain.edited(&survey, &tasks, &sources.globals)?;
+    let sources = Sources::new(options.target, &tasks, &forms, &motion.blocks);
+    let mut files = plain.edited(&survey, &motion, &tasks, &sources.globals)?;
     let globals = if survey.configuration.is_some() { Globals::InConfiguration } else { Globals::InFile };
     for source in sources.files(options.target, globals) {
         plain.add_own(source, &mut files);
@@ -154,7 +160,7 @@ pub fn instrument(inputs: &[Input], options: &Options) -> Result<Project, Instru
 /// Marks have been damaged.
 pub fn remove(inputs: &[Input]) -> Result<Project, InstrumentError> {
     let plain = Plain::of(inputs)?;
-    let mut files = plain.edited(&Survey::default(), &TaskTable::default(), "")?;
+    let mut files = plain.edited(&Survey::default(), &Motion::default(), &TaskTable::default(), "")?;
     plain.delete_own(&mut files);
     plain.list_own(&mut files)?;
     Ok(Project { files, warnings: Diagnostics::new(Vec::new(), &plain.sources) })
@@ -271,17 +277,24 @@ impl Plain {
     }
 
     /// The project's files with their changes.
-    fn edited(&self, survey: &Survey<'_>, tasks: &TaskTable<'_>, globals: &str) -> Result<Vec<File>, InstrumentError> {
+    fn edited(
+        &self,
+        survey: &Survey<'_>,
+        motion: &Motion,
+        tasks: &TaskTable<'_>,
+        globals: &str,
+    ) -> Result<Vec<File>, InstrumentError> {
         let mut edits: Vec<Edits> = self.given.iter().map(|_| Edits::default()).collect();
         let mut changes = |id: FileId, change: &mut dyn FnMut(&crate::syntax::SourceFile, &mut Edits)| {
             if let (Some(file), Some(edits)) = (self.sources.get(id), edits.get_mut(id.0 as usize)) {
                 change(file, edits);
             }
         };
-        for (name, form) in &survey.renames {
+        let clocks = survey.renames.iter().map(|(name, form)| (name, form.new_name()));
+        for (name, new) in clocks.chain(motion.renames.iter().map(|(name, new)| (name, new.clone()))) {
             changes(name.span.file, &mut |file, edits| {
                 let at = file.shown_range(name.span.start, name.span.end);
-                edits.replace(at, marks::renamed(&form.new_name(), &name.text));
+                edits.replace(at, marks::renamed(&new, &name.text));
             });
         }
         for (pou, number) in tasks.numbered() {

@@ -3,6 +3,7 @@
 use std::collections::BTreeSet;
 
 use super::clock::{self, Fate, Form, Kind};
+use super::motion::Role;
 use crate::application::library;
 use crate::check::{VIRTUAL_TIME_NAME, is_standard_function};
 use crate::diagnostic::{Code, Diagnostic};
@@ -25,6 +26,8 @@ pub(super) struct Survey<'a> {
     pub(super) called: BTreeSet<String>,
     /// Names to be replaced.
     pub(super) renames: Vec<(Ident, &'static Form)>,
+    /// Names of blocks and types of motion control.
+    pub(super) motion: Vec<(Ident, Role)>,
     /// What cannot be replaced, and names that the shim needs for itself.
     pub(super) findings: Vec<Diagnostic>,
 }
@@ -159,6 +162,10 @@ impl<'a> Surveyor<'_, 'a> {
     fn spec(&mut self, spec: &TypeSpec) {
         match &spec.kind {
             TypeSpecKind::Name(name) => self.type_name(name),
+            TypeSpecKind::Instance(name, arguments) => {
+                self.type_name(name);
+                arguments.values().for_each(|value| walk::expression(value, self));
+            }
             TypeSpecKind::Array(_, element)
             | TypeSpecKind::OpenArray(_, element)
             | TypeSpecKind::Reference(_, element) => self.spec(element),
@@ -216,10 +223,7 @@ impl<'a> Surveyor<'_, 'a> {
         match fate {
             Fate::Replaced(form) => self.survey.renames.push((name.clone(), form)),
             Fate::Told => self.told(&name.text, name.span),
-            Fate::Motion => {
-                let message = format!("`{}` moves its axis by the PLC's own clock and is not replaced yet", name.text);
-                self.survey.findings.push(Diagnostic::warning(Code::MotionNotReplaced, name.span, message));
-            }
+            Fate::Motion(role) => self.survey.motion.push((name.clone(), role)),
         }
     }
 

@@ -1,7 +1,10 @@
 //! The forms in which a project takes the shim's own sources.
 
+use std::collections::BTreeMap;
+
 use super::clock::Form;
 use super::marks;
+use super::motion::{self, Part, Use};
 use super::tasks::TaskTable;
 use super::template::{self, Only};
 use super::twincat;
@@ -29,6 +32,7 @@ pub(super) struct Sources {
     pub(super) globals: String,
     scheduler: String,
     forms: Vec<Unit>,
+    motion: Vec<Part>,
 }
 
 /// A function block or function.
@@ -47,7 +51,7 @@ pub(super) enum Globals {
 }
 
 impl Sources {
-    pub(super) fn new(target: Target, tasks: &TaskTable<'_>, forms: &[&Form]) -> Self {
+    pub(super) fn new(target: Target, tasks: &TaskTable<'_>, forms: &[&Form], blocks: &BTreeMap<String, Use>) -> Self {
         let wanted: &[Only] = if forms.iter().any(|form| form.long) { &[Only::LongTime] } else { &[] };
         let mut names = tasks.names();
         // A TIME has nanoseconds in the one and milliseconds in the other.
@@ -62,6 +66,7 @@ impl Sources {
             globals: filled(template::GLOBALS),
             scheduler: filled(template::SCHEDULER),
             forms: forms.iter().map(unit).collect(),
+            motion: motion::parts(target, blocks),
         }
     }
 
@@ -71,7 +76,8 @@ impl Sources {
         match target {
             Target::Iec => {
                 let forms = self.forms.into_iter().map(|unit| unit.text);
-                let parts: Vec<String> = own.into_iter().chain([self.scheduler]).chain(forms).collect();
+                let motion = self.motion.into_iter().map(|part| part.text);
+                let parts: Vec<String> = own.into_iter().chain([self.scheduler]).chain(forms).chain(motion).collect();
                 let text = format!("{}\n{}", marks::FILE, parts.join("\n"));
                 vec![Source { name: "sdsp.st".to_owned(), text }]
             }
@@ -79,7 +85,14 @@ impl Sources {
                 let own = own.map(|text| twincat::globals("SDSP", &text));
                 let scheduler = twincat::unit("SDSP_Scheduler", &self.scheduler);
                 let forms = self.forms.iter().map(|unit| twincat::unit(&unit.name, &unit.text));
-                own.into_iter().chain([scheduler]).chain(forms).collect()
+                let motion = self.motion.iter().map(|part| {
+                    if part.is_type {
+                        twincat::data_type(&part.name, &part.text)
+                    } else {
+                        twincat::unit(&part.name, &part.text)
+                    }
+                });
+                own.into_iter().chain([scheduler]).chain(forms).chain(motion).collect()
             }
         }
     }

@@ -54,11 +54,16 @@ pub(super) fn lines_for(template: &str, wanted: &[Only]) -> String {
 
 /// The template with every token that is one of `names` written as its text says; comments stay.
 pub(super) fn fill(template: &str, names: &[(&str, String)]) -> String {
+    fill_with(template, &|written| names.iter().find(|(name, _)| *name == written).map(|(_, new)| new.clone()))
+}
+
+/// The template with every token for which `name` has another text; comments stay.
+pub(super) fn fill_with(template: &str, name: &dyn Fn(&str) -> Option<String>) -> String {
     let mut text = String::with_capacity(template.len());
     for token in tokenize(template) {
         let written = template.get(token.start as usize..token.end as usize).unwrap_or("");
-        let new = names.iter().find(|(name, _)| *name == written && !token.kind.is_trivia());
-        text.push_str(new.map_or(written, |(_, new)| new));
+        let new = if token.kind.is_trivia() { None } else { name(written) };
+        text.push_str(new.as_deref().unwrap_or(written));
     }
     text
 }

@@ -14,6 +14,12 @@ pub(super) fn globals(name: &str, text: &str) -> Source {
     Source { name: format!("{name}.TcGVL"), text }
 }
 
+/// A data type.
+pub(super) fn data_type(name: &str, text: &str) -> Source {
+    let text = object("DUT", name, &format!("    <Declaration><![CDATA[{}]]></Declaration>\n", text.trim_end()));
+    Source { name: format!("{name}.TcDUT"), text }
+}
+
 /// A program organisation unit: its declarations and its statements stand apart, its end is left out.
 pub(super) fn unit(name: &str, text: &str) -> Source {
     let tokens = tokenize(text);

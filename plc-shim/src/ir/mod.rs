@@ -20,6 +20,8 @@ pub(crate) use expr::{
     Receiver, Rounding, Row, Step, Storage, Unary,
 };
 pub(crate) use pou::{EdgeDetection, Guard, Pou, PouId, Retention, Variable, Visibility};
-pub(crate) use statement::{CaseArm, CaseStatement, ForStatement, IfBranch, InstanceCall, Statement, StatementKind};
+pub(crate) use statement::{
+    CaseArm, CaseStatement, ForStatement, IfBranch, InstanceCall, LabelId, Labelled, Statement, StatementKind,
+};
 pub(crate) use types::{Dimension, Field, Type, TypeId, TypeTable};
 pub(crate) use value::Value;

@@ -32,6 +32,25 @@ pub(crate) enum StatementKind {
     Exit,
     Continue,
     Return,
+    Labelled(Box<Labelled>),
+    /// Goes on at a label of a [`Labelled`] around.
+    Jump(LabelId),
+    /// Does nothing; a place that execution comes to.
+    Pass,
+}
+
+/// Identifies a label of a unit.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub(crate) struct LabelId(pub(crate) u32);
+
+/// Statements that jumps lead into. Execution begins with the first of them and goes on from each
+/// part to the next.
+#[derive(Debug, Clone)]
+pub(crate) struct Labelled {
+    pub(crate) first: Vec<Statement>,
+    pub(crate) parts: Vec<(LabelId, Vec<Statement>)>,
+    /// Holds the part that a jump backwards leads to; nothing if there is none.
+    pub(crate) register: Option<LocalId>,
 }
 
 #[derive(Debug, Clone)]

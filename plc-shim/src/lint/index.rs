@@ -210,7 +210,9 @@ impl<'a> Index<'a> {
     /// The function block whose instance, or array of instances, a type is.
     pub(super) fn block(&self, spec: &'a TypeSpec) -> Option<&'a Pou> {
         match &self.resolved(spec).kind {
-            TypeSpecKind::Name(name) => self.unit(&name.key()).filter(|pou| pou.kind == PouKind::FunctionBlock),
+            TypeSpecKind::Name(name) | TypeSpecKind::Instance(name, _) => {
+                self.unit(&name.key()).filter(|pou| pou.kind == PouKind::FunctionBlock)
+            }
             TypeSpecKind::Array(_, element) => self.block(element),
             _ => None,
         }

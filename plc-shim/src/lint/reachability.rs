@@ -2,7 +2,7 @@
 
 use super::Unit;
 use crate::diagnostic::{Code, Diagnostic};
-use crate::syntax::ast::{Statement, StatementKind};
+use crate::syntax::ast::{Instruction, Statement, StatementKind, When};
 
 pub(super) fn lint(unit: &Unit<'_>, findings: &mut Vec<Diagnostic>) {
     list_ends(&unit.pou.body, findings);
@@ -12,11 +12,12 @@ pub(super) fn lint(unit: &Unit<'_>, findings: &mut Vec<Diagnostic>) {
 fn list_ends(list: &[Statement], findings: &mut Vec<Diagnostic>) -> bool {
     let mut ended = false;
     for statement in list.iter().filter(|each| !matches!(each.kind, StatementKind::Empty)) {
-        if ended {
+        if ended && !matches!(statement.kind, StatementKind::Label(_)) {
             let message = "this is never reached";
             findings.push(Diagnostic::warning(Code::UnreachableCode, statement.span, message));
             return true;
         }
+        // A jump may lead to a label; where there are some, the lists before them are not judged.
         ended = ends(&statement.kind, findings);
     }
     ended
@@ -24,7 +25,10 @@ fn list_ends(list: &[Statement], findings: &mut Vec<Diagnostic>) -> bool {
 
 fn ends(kind: &StatementKind, findings: &mut Vec<Diagnostic>) -> bool {
     match kind {
-        StatementKind::Exit | StatementKind::Continue | StatementKind::Return => true,
+        StatementKind::Instruction(inner) => {
+            matches!(**inner, Instruction::Jump(When::Always, _) | Instruction::Return(When::Always))
+        }
+        StatementKind::Exit | StatementKind::Continue | StatementKind::Return | StatementKind::Jump(_) => true,
         StatementKind::If(inner) => {
             let mut all = true;
             for branch in &inner.branches {

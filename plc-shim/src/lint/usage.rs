@@ -103,6 +103,9 @@ impl Collector<'_> {
             }
             TypeSpecKind::Reference(_, target) | TypeSpecKind::OpenArray(_, target) => self.spec(target),
             TypeSpecKind::String(_, Some(length)) => walk::expression(length, self),
+            TypeSpecKind::Instance(_, arguments) => {
+                arguments.values().for_each(|value| walk::expression(value, self));
+            }
             TypeSpecKind::Subrange(_, bounds) => {
                 walk::expression(&bounds.low, self);
                 walk::expression(&bounds.high, self);

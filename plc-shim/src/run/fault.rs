@@ -83,6 +83,39 @@ pub(super) fn explain(application: &Application, trapped: &Trapped, virtual_time
     PlcFault { kind, at, callers: sites, virtual_time }
 }
 
+/// A statement that wrote something.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct WriteSite {
+    /// The unit of the statement, and where it is.
+    pub at: FaultSite,
+    /// The units that were active, each where it called the next; the innermost first.
+    pub callers: Vec<FaultSite>,
+    /// The statement as it is written, blanks drawn together; its beginning if it is long.
+    pub statement: String,
+}
+
+/// Most characters of a statement that are shown.
+const STATEMENT_CHARACTERS: usize = 120;
+
+/// The statement at `span`, called as the active functions say.
+pub(super) fn write_site(application: &Application, span: Span, frames: &[(u32, Option<u32>)]) -> WriteSite {
+    let table = application.faults();
+    let known: Vec<Frame<'_>> =
+        frames.iter().filter_map(|(index, offset)| Some((table.function(*index)?, *offset))).collect();
+    let mark = known.first().and_then(|(function, offset)| function.statement_before((*offset)?));
+    let mut sites = sites(application, &active(&known, mark));
+    let mut at = sites.pop().unwrap_or_default();
+    place(application, Some(span), &mut at);
+    sites.reverse();
+    sites.truncate(MAX_CALLERS);
+    let written = application.sources().text(span).split_whitespace().collect::<Vec<_>>().join(" ");
+    let mut statement: String = written.chars().take(STATEMENT_CHARACTERS).collect();
+    if statement.len() < written.len() {
+        statement.push('…');
+    }
+    WriteSite { at, callers: sites, statement }
+}
+
 /// A function that was active, and the offset in its body.
 type Frame<'a> = (&'a FunctionMarks, Option<u32>);
 
@@ -125,6 +158,7 @@ fn sites(application: &Application, active: &[Active<'_>]) -> Vec<FaultSite> {
             Some((Callee::Inner, span)) => format!("{instance}.{}", name(span)),
             Some((Callee::Global, span)) => name(span),
             Some((Callee::Function, _)) => (*unit).to_owned(),
+            None if instance.is_empty() => (*unit).to_owned(),
             None => instance,
         };
         call = if *is_entry { None } else { *made };

@@ -4,8 +4,9 @@ use wasmtime::{Config, Engine, Global, Instance, Linker, Memory, Module, Store, 
 
 use super::plan::RunError;
 use super::text::link::{HostState, link};
+use super::trace::{self, Trace};
 use crate::application::Application;
-use crate::compile::{BUDGET_EXPORT, MEMORY_EXPORT, entry_export, host};
+use crate::compile::{BUDGET_EXPORT, END_EXPORT, MEMORY_EXPORT, START_EXPORT, entry_export, host};
 
 /// One instance of the module.
 pub(super) struct Machine {
@@ -16,6 +17,19 @@ pub(super) struct Machine {
     size: usize,
     /// The functions in a row of each thing that tasks can run.
     entries: Vec<Vec<TypedFunc<(), ()>>>,
+    /// What runs before the first scan, if anything does.
+    start: Option<TypedFunc<(), ()>>,
+    /// What runs before another start.
+    end: Option<TypedFunc<(), ()>>,
+}
+
+/// What runs besides tasks.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Occasion {
+    /// Before the first scan.
+    Start,
+    /// Before another start.
+    End,
 }
 
 /// A trap: its cause and the functions that were active, innermost first, each with the offset
@@ -51,12 +65,14 @@ impl Machine {
         let memory = memory.ok_or_else(|| RunError::Module("memory is missing".to_owned()))?;
         let budget = instance.get_global(&mut store, BUDGET_EXPORT);
         let budget = budget.ok_or_else(|| RunError::Module("the budget is missing".to_owned()))?;
-        *store.data_mut() = HostState { memory: Some(memory), budget: Some(budget) };
+        *store.data_mut() = HostState { memory: Some(memory), budget: Some(budget), trace: None };
         let size = application.initial_memory().len();
         let parts = application.entry_parts().enumerate();
         let entries = parts.map(|(index, count)| entry(&instance, &mut store, index, count));
         let entries = entries.collect::<Result<_, _>>()?;
-        Ok(Self { store, memory, budget, size, entries })
+        let start = instance.get_typed_func(&mut store, START_EXPORT).ok();
+        let end = instance.get_typed_func(&mut store, END_EXPORT).ok();
+        Ok(Self { store, memory, budget, size, entries, start, end })
     }
 
     pub(super) fn memory(&self) -> &[u8] {
@@ -83,8 +99,43 @@ impl Machine {
         debug_assert!(set.is_ok(), "the module has a budget");
     }
 
+    /// What statements are held against; nothing unless that was asked for.
+    pub(super) fn trace(&self) -> Option<&Trace> {
+        self.store.data().trace.as_deref()
+    }
+
+    pub(super) fn set_trace(&mut self, trace: Trace) {
+        self.store.data_mut().trace = Some(Box::new(trace));
+    }
+
+    /// A scan begins.
+    pub(super) fn begin_trace(&mut self) {
+        if let Some(mut trace) = self.store.data_mut().trace.take() {
+            trace.begin_scan(self.memory());
+            self.store.data_mut().trace = Some(trace);
+        }
+    }
+
     pub(super) fn parts(&self, entry: usize) -> usize {
         self.entries.get(entry).map_or(0, Vec::len)
+    }
+
+    /// True if something runs at the occasion.
+    pub(super) fn has(&self, occasion: Occasion) -> bool {
+        self.occasion(occasion).is_some()
+    }
+
+    fn occasion(&self, occasion: Occasion) -> Option<&TypedFunc<(), ()>> {
+        match occasion {
+            Occasion::Start => self.start.as_ref(),
+            Occasion::End => self.end.as_ref(),
+        }
+    }
+
+    /// Runs what there is for the occasion.
+    pub(super) fn run_occasion(&mut self, occasion: Occasion) -> Result<(), Trapped> {
+        let Some(function) = self.occasion(occasion).cloned() else { return Ok(()) };
+        function.call(&mut self.store, ()).map_err(|error| trapped(&error))
     }
 
     pub(super) fn run(&mut self, entry: usize, part: usize) -> Result<(), Trapped> {
@@ -125,6 +176,7 @@ fn linker(engine: &Engine) -> Result<Linker<HostState>, wasmtime::Error> {
         };
     }
     link(&mut linker)?;
+    trace::link(&mut linker)?;
     Ok(linker)
 }
 

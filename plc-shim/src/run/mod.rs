@@ -9,9 +9,11 @@
 //! | `fault` | a trap as an error in the source |
 //! | `soft_plc` | the PLC itself |
 //! | `force` | variables that keep a value, reading and writing by path |
+//! | `asserts` | what the asserts of a test program have found |
 //! | `text` | functions on character strings |
 //! | `state` | its state as bytes |
 
+mod asserts;
 mod configured;
 mod fault;
 mod force;
@@ -21,8 +23,10 @@ mod scheduler;
 mod soft_plc;
 mod state;
 pub(crate) mod text;
+mod trace;
 
-pub use fault::{FaultSite, PlcFault};
+pub use asserts::{Asserts, FailedAssert};
+pub use fault::{FaultSite, PlcFault, WriteSite};
 pub use plan::{RunError, Task, TaskPlan};
 pub use soft_plc::SoftPlc;
 pub use state::RestoreError;

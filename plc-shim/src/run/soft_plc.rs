@@ -3,14 +3,15 @@
 use std::ops::Range;
 
 use super::VirtualTime;
-use super::fault::{PlcFault, explain};
+use super::fault::{self, PlcFault, WriteSite, explain};
 use super::force::Forces;
-use super::machine::Machine;
+use super::machine::{Machine, Occasion};
 use super::plan::{Resolved, RunError, TaskPlan, resolve};
 use super::scheduler::Scheduler;
 use super::state::{self, RestoreError, State};
+use super::trace::{Trace, Watched};
 use crate::application::{Application, UnknownVariable, Variable};
-use crate::check::VIRTUAL_TIME_OFFSET;
+use crate::check::{INIT_RETAINS_OFFSET, VIRTUAL_TIME_OFFSET};
 use crate::coverage::Coverage;
 
 /// Runs an application's programs by a task plan, one scan at a time.
@@ -64,24 +65,36 @@ impl SoftPlc {
     }
 
     /// Gives all variables but the persistent ones their initial values and begins again at virtual
-    /// time 0 (2nd ed. 2.4.2). Forces stay.
+    /// time 0 (2nd ed. 2.4.2). Forces stay. A fault in an instance's `FB_init` is that
+    /// of the next scan, as with every start.
     pub fn cold_start(&mut self) {
+        self.end();
         self.initialise(&self.application.clone(), Application::persistent);
-        self.begin(VirtualTime::default());
+        self.begin(VirtualTime::default(), true);
     }
 
     /// Gives all variables but the retained and the persistent ones their initial values
     /// (2nd ed. 2.4.2). Virtual time goes on; every task is due one interval from now. Forces stay.
     pub fn warm_start(&mut self) {
+        self.end();
         self.initialise(&self.application.clone(), Application::retained);
-        self.begin(self.now);
+        self.begin(self.now, false);
     }
 
     /// Makes it a new PLC: all variables have their initial values, nothing is forced.
     pub fn reset(&mut self) {
         self.forces.clear();
         self.initialise(&self.application.clone(), |_| &[]);
-        self.begin(VirtualTime::default());
+        self.begin(VirtualTime::default(), true);
+    }
+
+    /// Lets instances do what they do before another start. A PLC that has stopped does nothing.
+    fn end(&mut self) {
+        if self.fault.is_none() && self.machine.has(Occasion::End) {
+            self.begin_task();
+            // It is left with all it has; a fault there is the past's.
+            self.machine.run_occasion(Occasion::End).ok();
+        }
     }
 
     /// Gives all memory but the kept ranges its initial bytes.
@@ -96,10 +109,18 @@ impl SoftPlc {
         copy_range(memory, image, from, image.len());
     }
 
-    fn begin(&mut self, now: VirtualTime) {
+    /// `initial` tells that RETAIN variables have their initial values, too.
+    fn begin(&mut self, now: VirtualTime, initial: bool) {
         self.scheduler.restart_at(now);
         self.now = now;
         self.fault = None;
+        if self.machine.has(Occasion::Start) {
+            copy_to(self.machine.memory_mut(), INIT_RETAINS_OFFSET as usize, &[u8::from(initial)]);
+            self.begin_task();
+            if let Err(trapped) = self.machine.run_occasion(Occasion::Start) {
+                self.fault = Some(explain(&self.application, &trapped, now));
+            }
+        }
         self.apply_forces();
     }
 
@@ -120,6 +141,7 @@ impl SoftPlc {
         }
         self.now = now;
         self.apply_forces();
+        self.machine.begin_trace();
         self.scheduler.begin_scan();
         self.scheduler.look(now, self.machine.memory());
         while let Some(task) = self.scheduler.take_due(now) {
@@ -206,7 +228,22 @@ impl SoftPlc {
     pub fn coverage(&self) -> Option<Coverage> {
         let points = self.application.points();
         let sources = self.application.sources();
-        (!points.is_empty()).then(|| Coverage::new(sources, points, self.machine.notes()))
+        (!points.is_empty() && !self.application.is_traced())
+            .then(|| Coverage::new(sources, points, self.machine.notes()))
+    }
+
+    /// Watches places in memory from here on, in place of those watched before. The application must
+    /// have been compiled for it ([`Application::from_inputs_traced`]).
+    pub fn watch(&mut self, places: impl IntoIterator<Item = (Range<usize>, Option<u8>)>) {
+        let watched = places.into_iter().map(|(range, bit)| Watched::new(range, bit)).collect();
+        self.machine.set_trace(Trace::new(watched));
+    }
+
+    /// The statement that last wrote the watched place at `index`; nothing if none has.
+    pub fn last_writer(&self, index: usize) -> Option<WriteSite> {
+        let writer = self.machine.trace()?.watched.get(index)?.writer.as_ref()?;
+        let point = self.application.points().get(writer.point as usize)?;
+        Some(fault::write_site(&self.application, point.span, &writer.frames))
     }
 
     /// The complete state as bytes.

@@ -3,6 +3,7 @@
 mod configuration;
 mod declaration;
 mod expression;
+pub mod instruction;
 mod object;
 mod statement;
 
@@ -11,10 +12,12 @@ pub use configuration::{
     TaskDeclaration,
 };
 pub use declaration::{
-    Declaration, Dimension, Edge, EnumValue, Field, Initialiser, InitialiserKind, Pou, PouKind, Qualifier,
-    ReferenceKind, Section, SectionKind, StructureInit, Subrange, TypeDeclaration, TypeSpec, TypeSpecKind, Variable,
+    Declaration, Dimension, Edge, EnumValue, Field, InitArguments, Initialiser, InitialiserKind, Pou, PouKind,
+    Qualifier, ReferenceKind, Section, SectionKind, StructureInit, Subrange, TypeDeclaration, TypeSpec, TypeSpecKind,
+    Variable,
 };
 pub use expression::{Argument, BinaryOp, Call, Expr, ExprKind, Literal, MAX_HEIGHT, TypedValue, UnaryOp};
+pub use instruction::{Instruction, ListCall, When};
 pub use object::{Member, MemberKind, Modifier, Namespace, NamespaceKind, Object};
 pub use statement::{
     CaseBranch, CaseLabel, CaseStatement, ForStatement, IfBranch, IfStatement, RepeatStatement, Statement,

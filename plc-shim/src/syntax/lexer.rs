@@ -71,6 +71,7 @@ impl<'a> Lexer<'a> {
             '\'' => self.string('\'', TokenKind::String),
             '"' => self.string('"', TokenKind::WideString),
             '%' => self.direct_address(),
+            '`' => self.wire(),
             '0'..='9' => self.number(),
             _ if first.is_ascii_alphabetic() || first == '_' => self.word(),
             _ => self.mark(first),
@@ -126,6 +127,18 @@ impl<'a> Lexer<'a> {
             }
         }
         TokenKind::Unterminated
+    }
+
+    fn wire(&mut self) -> TokenKind {
+        let is_part = |one: char| one.is_ascii_alphanumeric() || matches!(one, '_' | '.');
+        let inside = self.rest().get(1..).unwrap_or("");
+        let length = inside.find(|one| !is_part(one)).unwrap_or(inside.len());
+        if length > 0 && inside.as_bytes().get(length) == Some(&b'`') {
+            self.at += length + 2;
+            return TokenKind::Wire;
+        }
+        self.take_while(|character| character == '`');
+        TokenKind::Unknown
     }
 
     fn direct_address(&mut self) -> TokenKind {

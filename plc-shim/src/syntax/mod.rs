@@ -8,6 +8,7 @@
 //! | [`lexer`] | text | every token, blanks and comments too |
 //! | [`literal`], [`text_literal`], [`calendar`] | a literal's text | its value |
 //! | [`direct_address`] | a direct address' text | its area, width and place |
+//! | [`part`] | the text of a part of a bit string | its width and number |
 //! | [`ast`] | | the tree's nodes |
 //! | [`parser`] | tokens | a tree and a list of diagnostics |
 //! | [`printer`] | a tree | text that parses to the same tree |
@@ -23,6 +24,7 @@ pub mod lexer;
 pub mod literal;
 pub mod origin;
 pub mod parser;
+pub mod part;
 pub mod printer;
 pub mod source;
 pub mod text_literal;
@@ -30,5 +32,5 @@ pub mod token;
 pub(crate) mod walk;
 
 pub use lexer::{tokenize, tokenize_in};
-pub use parser::{Parsed, parse, parse_in};
+pub use parser::{Parsed, parse, parse_in, parse_source};
 pub use source::{FileId, SourceFile, SourceMap, Span};

@@ -80,6 +80,11 @@ impl Origin {
         self.pieces.get(after).or(self.pieces.last())
     }
 
+    /// True if the byte at `offset` stands in the file as it is.
+    pub fn is_verbatim(&self, offset: u32) -> bool {
+        self.piece(offset).is_some_and(|piece| piece.verbatim)
+    }
+
     /// Where in the file the last part taken over unchanged ends, of those that begin before `offset`.
     pub fn verbatim_end(&self, offset: u32) -> Option<u32> {
         let before = self.pieces.partition_point(|piece| piece.start < offset);

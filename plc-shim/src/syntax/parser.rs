@@ -10,6 +10,7 @@ mod cursor;
 mod declaration;
 mod expression;
 mod initialiser;
+mod instruction;
 mod object;
 mod scl;
 mod statement;
@@ -18,7 +19,8 @@ mod type_spec;
 use self::cursor::Cursor;
 use super::ast::{CompilationUnit, Expr};
 use super::lexer::{tokenize, tokenize_in};
-use super::source::FileId;
+use super::origin::Origin;
+use super::source::{FileId, SourceFile};
 use super::token::{Token, TokenKind};
 use crate::diagnostic::{Code, Diagnostic};
 use crate::dialect::{Dialect, Feature};
@@ -46,8 +48,18 @@ pub fn parse(file: FileId, text: &str) -> Parsed {
 
 /// Parses `text`, the text of `file`, as `dialect`. Never fails either.
 pub fn parse_in(dialect: Dialect, file: FileId, text: &str) -> Parsed {
+    parse_text(dialect, file, text, None)
+}
+
+/// Parses a file in its own dialect; text that stands for other than text in it may be what only the
+/// extraction writes. Never fails either.
+pub fn parse_source(id: FileId, file: &SourceFile) -> Parsed {
+    parse_text(file.dialect(), id, file.text(), file.origin())
+}
+
+fn parse_text(dialect: Dialect, file: FileId, text: &str, origin: Option<&Origin>) -> Parsed {
     let tokens = tokenize_in(dialect, text);
-    let mut cursor = Cursor::new(dialect, file, text, &tokens);
+    let mut cursor = Cursor::new(dialect, file, text, &tokens).taken_out_of(origin);
     report_lexical_errors(&mut cursor, &tokens);
     conditional::apply(&mut cursor, &tokens);
     let unit = CompilationUnit { dialect, ..cursor.compilation_unit() };
@@ -76,6 +88,10 @@ fn report_lexical_errors(cursor: &mut Cursor<'_>, tokens: &[Token]) {
             TokenKind::LineComment => cursor.require(Feature::LineComments, span),
             TokenKind::BlockComment if cursor.text(span.start, span.end).starts_with('/') => {
                 cursor.require(Feature::StarComments, span);
+            }
+            TokenKind::Wire if !cursor.is_generated(token.start) => {
+                let message = "a name does not stand between backquotes";
+                cursor.report(Diagnostic::error(Code::UnknownCharacter, span, message));
             }
             TokenKind::Unknown => {
                 let text = cursor.text(token.start, token.end).escape_debug().to_string();

@@ -3,6 +3,7 @@
 mod configuration;
 mod declaration;
 mod expression;
+mod instruction;
 mod object;
 mod statement;
 
@@ -87,5 +88,5 @@ impl Printer {
 
 /// True for what is a name without quotes. The part of a bit string is one, too.
 fn is_plain(text: &str) -> bool {
-    text.chars().all(|one| one.is_alphanumeric() || matches!(one, '_' | '%'))
+    text.chars().all(|one| one.is_alphanumeric() || matches!(one, '_' | '%') || text.starts_with('`'))
 }

@@ -42,6 +42,8 @@ pub enum TokenKind {
     WideString,
     /// `%IX1.0` (2nd ed. 2.4.1.1).
     DirectAddress,
+    /// `` `name` ``: what an element of a network hands on, in text that was made of one.
+    Wire,
     /// An operator, bracket or separator.
     Punctuation(Punctuation),
     /// Text that begins no token.
@@ -107,7 +109,7 @@ keywords! {
     EndGet "END_GET", EndSet "END_SET", Action "ACTION", EndAction "END_ACTION",
     Namespace "NAMESPACE", EndNamespace "END_NAMESPACE", Using "USING",
     OrganizationBlock "ORGANIZATION_BLOCK", EndOrganizationBlock "END_ORGANIZATION_BLOCK",
-    VarStat "VAR_STAT", DataBlock "DATA_BLOCK", EndDataBlock "END_DATA_BLOCK", Begin "BEGIN",
+    VarStat "VAR_STAT", VarInst "VAR_INST", DataBlock "DATA_BLOCK", EndDataBlock "END_DATA_BLOCK", Begin "BEGIN",
 }
 
 impl Keyword {
@@ -118,6 +120,7 @@ impl Keyword {
             K::OrganizationBlock | K::EndOrganizationBlock | K::DataBlock | K::EndDataBlock | K::Begin => {
                 dialect.has(Feature::Blocks)
             }
+            K::VarInst => dialect.has(Feature::InstanceSection),
             K::VarStat => dialect.has(Feature::StaticSection),
             K::Continue => dialect.has(Feature::Continue),
             _ => true,

@@ -1,6 +1,6 @@
 //! Every statement and expression of a body, in the order of the text.
 
-use crate::syntax::ast::{Argument, Call, Expr, ExprKind, Statement, StatementKind};
+use crate::syntax::ast::{Argument, Call, Expr, ExprKind, Instruction, Statement, StatementKind};
 
 /// Looks at the parts of a body; what it does not care for it leaves out.
 pub(crate) trait Visitor {
@@ -91,7 +91,27 @@ fn statement(kind: &StatementKind, visitor: &mut impl Visitor) {
             branch(&inner.body, visitor);
             expression(&inner.until, visitor);
         }
+        StatementKind::Instruction(inner) => instruction(inner, visitor),
         _ => {}
+    }
+}
+
+fn instruction(instruction: &Instruction, visitor: &mut impl Visitor) {
+    match instruction {
+        Instruction::Load { value, .. } => expression(value, visitor),
+        Instruction::Store { target: place, .. } => target(place, visitor),
+        Instruction::Set(place) | Instruction::Reset(place) => {
+            expression(place, visitor);
+            target(place, visitor);
+        }
+        Instruction::Operate { operands, .. } => operands.iter().for_each(|operand| expression(operand, visitor)),
+        Instruction::Deferred { list, .. } => statements(list, visitor),
+        Instruction::Call(_, called) | Instruction::Function(called) => {
+            call(&called.call, visitor);
+            called.lists.iter().for_each(|(_, list)| statements(list, visitor));
+        }
+        Instruction::Input(_, instance) => expression(instance, visitor),
+        Instruction::Not | Instruction::Jump(..) | Instruction::Return(_) => {}
     }
 }
 

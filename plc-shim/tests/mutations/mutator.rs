@@ -9,7 +9,7 @@ use onescan_plc_shim::syntax::tokenize;
 pub(crate) fn corpus() -> Vec<String> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     let mut texts = Vec::new();
-    for folder in ["iec", "docs/codes", "../scenarios/shear/plc", "../tests/benches/scan"] {
+    for folder in ["iec", "iec/shim", "docs/codes", "../scenarios/shear/plc", "../tests/benches/scan"] {
         let Ok(entries) = std::fs::read_dir(root.join(folder)) else { continue };
         let mut paths: Vec<_> = entries.filter_map(|entry| Some(entry.ok()?.path())).collect();
         paths.sort();

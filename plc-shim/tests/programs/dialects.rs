@@ -23,9 +23,25 @@ fn use_of(feature: Feature) -> &'static str {
             "PROGRAM P VAR a : ARRAY [0..2] OF INT := 1, 2(3); END_VAR a[0] := a[1]; END_PROGRAM"
         }
         Feature::ConditionalPragmas => "PROGRAM P {IF defined (x)} {END_IF} END_PROGRAM",
+        Feature::Jumps => "PROGRAM P VAR a : INT; END_VAR JMP done; a := 1; done: END_PROGRAM",
         Feature::StaticSection => "PROGRAM P VAR_STAT a : INT; END_VAR a := a + 1; END_PROGRAM",
+        Feature::InstanceSection => {
+            "FUNCTION_BLOCK F METHOD M VAR_INST n : INT; END_VAR n := n + 1; END_METHOD END_FUNCTION_BLOCK
+             PROGRAM P VAR f1 : F; END_VAR f1.M(); END_PROGRAM"
+        }
+        Feature::InitArguments => {
+            "FUNCTION_BLOCK F VAR k : INT; END_VAR
+             METHOD FB_init : BOOL VAR_INPUT bInitRetains, bInCopyCode : BOOL; n : INT; END_VAR k := n; END_METHOD
+             END_FUNCTION_BLOCK
+             PROGRAM P VAR f1 : F(n := 1); END_VAR f1(); END_PROGRAM"
+        }
+        Feature::ComputedInitialValues => "PROGRAM P VAR a : INT := 1; b : INT := a + 1; END_VAR a := b; END_PROGRAM",
         Feature::BitArithmetic => "PROGRAM P VAR b : BYTE; i : INT; END_VAR b := b + 1; i := b; END_PROGRAM",
+        Feature::EnumerationsAsIntegers => {
+            "TYPE C : (Red, Green); END_TYPE PROGRAM P VAR c1 : C; i : INT; END_VAR i := c1; c1 := i; END_PROGRAM"
+        }
         Feature::SignChange => "PROGRAM P VAR u : UINT; i : INT; END_VAR i := u; END_PROGRAM",
+        Feature::LossyReals => "PROGRAM P VAR r : REAL; l : LREAL; d : DINT; END_VAR r := l; r := d; END_PROGRAM",
         Feature::ClockFunctions => "PROGRAM P VAR t : TIME; END_VAR t := TIME(); END_PROGRAM",
         Feature::QuotedNames => "PROGRAM P VAR a : INT; END_VAR a := #a + 1; END_PROGRAM",
         Feature::Blocks => "ORGANIZATION_BLOCK P VAR_TEMP a : INT; END_VAR BEGIN a := 1; END_ORGANIZATION_BLOCK",
@@ -54,7 +70,10 @@ fn every_construct_is_for_its_dialects_alone() {
 }
 
 /// Constructs whose absence is no syntax of its own: another error says it.
-const TOLD_OTHERWISE: [Feature; 7] = [
+const TOLD_OTHERWISE: [Feature; 10] = [
+    Feature::LossyReals,
+    Feature::EnumerationsAsIntegers,
+    Feature::ComputedInitialValues,
     Feature::NestedComments,
     Feature::Continue,
     Feature::LooseEnds,

@@ -246,3 +246,19 @@ fn iec2_2_7_1_table_49_read_only_access_is_kept() {
     assert_eq!(plc.read("Level").as_deref(), Ok("5"));
     plc.scan(VirtualTime::from_ns(MS)).expect("no fault");
 }
+
+#[test]
+fn parts_of_bit_strings_have_paths() {
+    let mut rig = Rig::new(
+        "PROGRAM P VAR w : ARRAY [1..2] OF WORD := [16#1234, 0]; n : INT := -2; b : BOOL; END_VAR END_PROGRAM",
+    );
+    let read = |rig: &Rig, path: &str| rig.plc.read(path).unwrap_or_else(|unknown| unknown.to_string());
+    let values = ["P.w[1].%X2", "P.w[1].3", "P.w[1].%B1", "P.n.0", "P.n.15"].map(|path| read(&rig, path));
+    assert_eq!(values, ["TRUE", "FALSE", "16#12", "FALSE", "TRUE"]);
+    rig.plc.write("P.w[2].%X9", "TRUE").expect("a bit");
+    rig.plc.force("P.w[2].%B0", "16#FF").expect("a byte");
+    assert_eq!(read(&rig, "P.w[2]"), "16#02FF");
+    for wrong in ["P.w[1].%X16", "P.w[1].%W0", "P.n.%X3", "P.b.0", "P.w[1].%Q1"] {
+        assert!(rig.plc.read(wrong).is_err(), "{wrong}");
+    }
+}

@@ -402,12 +402,75 @@ METHOD Alone END_METHOD"
 }
 
 #[test]
-fn what_vendors_run_by_itself_is_told() {
+fn en_and_eno_of_methods() {
+    let rig = run("INTERFACE ICount METHOD Up : INT VAR_INPUT n : INT; END_VAR END_METHOD END_INTERFACE
+FUNCTION_BLOCK Count IMPLEMENTS ICount
+VAR_OUTPUT value : INT; END_VAR
+METHOD Up : INT
+VAR_INPUT n : INT; END_VAR
+  value := value + n; Up := value;
+END_METHOD
+METHOD Check : BOOL
+VAR_INPUT EN : BOOL; limit : INT; END_VAR
+VAR_OUTPUT ENO : BOOL; END_VAR
+  ENO := value < limit; Check := TRUE;
+END_METHOD
+END_FUNCTION_BLOCK
+PROGRAM P VAR c : Count; i : ICount; a, b, d : INT; yes, no, low, high, skipped : BOOL; END_VAR
+  i := c;
+  a := c.Up(EN := TRUE, n := 5, ENO => yes);
+  no := TRUE; b := 7;
+  b := i.Up(EN := FALSE, n := 5, ENO => no);
+  c.Up(EN := a = 5, n := 2);
+  d := c.value;
+  c.Check(limit := 10, ENO => low);
+  c.Check(limit := 3, ENO => high);
+  skipped := TRUE;
+  c.Check(EN := FALSE, limit := 10, ENO => skipped);
+END_PROGRAM");
+    let values = ["a", "b", "d", "yes", "no", "low", "high", "skipped"].map(|name| rig.int(&format!("P.{name}")));
+    assert_eq!(values, [5, 0, 7, 1, 0, 1, 0, 0]);
+}
+
+#[test]
+fn parts_of_what_properties_and_calls_give() {
+    let rig = run("TYPE Pose : STRUCT x, y : INT; list : ARRAY [1..3] OF INT := [7, 8, 9]; END_STRUCT END_TYPE
+INTERFACE IPose
+PROPERTY Here : Pose GET END_GET END_PROPERTY
+END_INTERFACE
+FUNCTION_BLOCK Axis IMPLEMENTS IPose
+VAR at_x : INT := 4; own : Pose := (y := 6); END_VAR
+PROPERTY Here : Pose GET Here.x := at_x; END_GET END_PROPERTY
+PROPERTY There : REFERENCE TO Pose GET There REF= own; END_GET END_PROPERTY
+PROPERTY Self : IPose GET Self := THIS; END_GET END_PROPERTY
+METHOD Give : Pose
+  Give.x := Here.x + 1; Give.list[2] := Here.list[3];
+END_METHOD
+END_FUNCTION_BLOCK
+FUNCTION Origin : Pose
+  Origin.x := 40;
+END_FUNCTION
+PROGRAM P VAR a : Axis; i : IPose; v, w, x, y, z, u : INT; END_VAR
+  i := a;
+  v := a.Here.x; w := i.Here.list[2]; x := a.Give().list[2]; y := a.Self.Here.x + a.There.y;
+  a.There.y := 20; z := a.There.y; u := Origin().x;
+END_PROGRAM");
+    assert_eq!(["v", "w", "x", "y", "z", "u"].map(|name| rig.int(&format!("P.{name}"))), [4, 8, 9, 10, 20, 40]);
+}
+
+#[test]
+fn members_that_are_not_there_are_told_with_the_nearest() {
     insta::assert_snapshot!(crate::rig::findings(
-        "FUNCTION_BLOCK F METHOD FB_init : BOOL VAR_INPUT a : INT; END_VAR FB_init := TRUE; END_METHOD END_FUNCTION_BLOCK
-PROGRAM P VAR f : F(a := 5); END_VAR END_PROGRAM"
-    ), @r#"
-    test.st:1:25: error[L0501]: `FB_init`, which vendors run by itself, is not supported yet (call a method of another name in the first scan)
-    test.st:2:19: error[L0501]: an instance with arguments for FB_init is not supported yet
-    "#);
+        "INTERFACE IValve METHOD Open : BOOL END_METHOD PROPERTY Level : INT GET END_GET END_PROPERTY END_INTERFACE
+TYPE Pose : STRUCT x : INT; END_STRUCT END_TYPE
+FUNCTION_BLOCK Axis PROPERTY Here : Pose GET Here.x := 1; END_GET END_PROPERTY
+PROPERTY Count : INT GET Count := 1; END_GET END_PROPERTY END_FUNCTION_BLOCK
+PROGRAM P VAR v : IValve; a : Axis; n : INT; END_VAR
+  v.Opn();
+  n := v.Lvel;
+  n := a.Here.z;
+  a.Here.x := 3;
+  n := a.Count.x;
+END_PROGRAM"
+    ));
 }

@@ -158,7 +158,7 @@ BEGIN
 	#w := PEEK_WORD(area := 16#84, dbNumber := 1, byteOffset := 2);
 	#w := C#100;
 	#done := P#DB1.DBX0.0;
-	GOTO ende;
+	IF #done THEN GOTO ende; END_IF;
 	#done := "Missing";
 ende:
 	#done := #missing;
@@ -175,9 +175,7 @@ END_DATA_BLOCK
     test.st:11:8: error[L0513]: `PEEK_WORD` is a function of a vendor's controllers (declare a variable and use that)
     test.st:12:8: error[L0512]: a counter's value of S5 is not supported
     test.st:13:11: error[L0513]: a pointer of S7 is not supported
-    test.st:14:2: error[L0510]: jumps and labels are not supported (use IF, a loop, EXIT or RETURN)
     test.st:15:11: error[N0101]: `"Missing"` is not declared
-    test.st:16:1: error[L0510]: jumps and labels are not supported (use IF, a loop, EXIT or RETURN)
     test.st:17:11: error[N0101]: `missing` is not declared
     test.st:22:4: error[L0501]: a start value is given to members by name only (give an array all its values where it is declared)
     "#);

@@ -9,7 +9,7 @@ use serde_json::{Value, json};
 use super::report::Report;
 
 /// Where the log's schema is.
-const SCHEMA: &str = "https://docs.oasis-open.org/sarif/sarif/v2.1.0/errata01/os/schemas/sarif-schema-2.1.0.json";
+pub const SCHEMA: &str = "https://docs.oasis-open.org/sarif/sarif/v2.1.0/errata01/os/schemas/sarif-schema-2.1.0.json";
 
 /// Writes the report.
 ///
@@ -71,7 +71,7 @@ fn result(finding: &Finding) -> Value {
 }
 
 /// A file's name as a URI reference (RFC 3986): everything but unreserved characters is escaped.
-fn uri(file: &str) -> String {
+pub fn uri(file: &str) -> String {
     let path = Path::new(file);
     let mut text = String::new();
     for component in path.components() {

@@ -8,13 +8,17 @@ use onescan_plc_shim::instrument::Target;
 use onescan_plc_shim::{Dialect, Task};
 use onescan_server::pacing::Pace;
 use onescan_server::session::Control;
+use onescan_server::signal::pattern::SignalPattern;
 use onescan_server::signal::{ClientName, SignalName};
 use onescan_server::time::{TimeSpan, VirtualTime};
 
+use super::test_args::{ReviewArgs, TestArgs, WorkerArgs};
 use crate::check::CheckFormat;
 use crate::plc::Cycle;
+use crate::new::Template;
 use crate::run::coverage::CoverageFormat;
 use crate::run::{Format, Mode, Transport};
+use crate::scenario::watch::WatchRequest;
 
 /// Deterministic lockstep virtual commissioning.
 ///
@@ -33,8 +37,8 @@ pub struct Args {
 
 const EXIT_CODES: &str = "Exit codes:
   0  all is well
-  1  a run is not what its scenario expects; runs that must be equal are not; a check found warnings that
-     are denied
+  1  a run is not what its scenario expects; runs that must be equal are not; a test failed;
+     a check found warnings that are denied
   2  wrong input: options, scenario, PLC source, scene, checkpoint
   3  a client or a link failed, or the PLC program stopped on a fault";
 
@@ -46,6 +50,13 @@ pub enum Command {
     /// Run a scenario in lockstep and in the other ways that are in use, and set them side by side: how far
     /// trajectories and edges are off, what is lost, how fast it is
     Compare(CompareArgs),
+    /// Run all scenarios and cases, and hold them against their reviewed snapshots; run test programs in ST
+    Test(Box<TestArgs>),
+    /// Look at snapshots that are new or have changed, and accept or reject them
+    Review(ReviewArgs),
+    /// One test, for `test`
+    #[command(hide = true)]
+    TestWorker(WorkerArgs),
     /// Take part in a session that another process serves, as one client of a scenario
     Join(JoinArgs),
     /// Ask a running session (see `run --listen`) how it is, or to pause, step, go on, reset or stop
@@ -64,6 +75,11 @@ pub enum Command {
     Components(ComponentsArgs),
     /// Tell what a scene is made of: bodies, joints, components, signals
     Describe(DescribeArgs),
+    /// Tell and draw how the signals of a scenario connect its clients, and what is unconnected, doubly written
+    /// or of unequal type
+    Wiring(WiringArgs),
+    /// Write a small scenario that runs at once, to begin with
+    New(NewArgs),
     /// Explain a code of `check`, with an example that is wrong and one that is right
     Explain(ExplainArgs),
 }
@@ -73,6 +89,9 @@ pub enum Command {
 pub struct RunArgs {
     /// The scenario: a folder with a `scenario.toml`
     pub scenario: PathBuf,
+    /// A case of the scenario's `cases.toml` [default: the scenario as it is]
+    #[arg(long, value_name = "NAME")]
+    pub case: Option<String>,
     /// Virtual time at which a run is complete, as in `2.5s` [default: the scenario's `until`]
     #[arg(long, value_name = "TIME")]
     pub until: Option<VirtualTime>,
@@ -93,9 +112,16 @@ pub struct RunArgs {
     /// program [default URL: the scenario's]
     #[arg(long = "gateway", value_name = "CLIENT[=URL]", value_parser = gateway)]
     pub gateways: Vec<(ClientName, Option<String>)>,
-    /// Record every signal of every step as CSV, in a folder `run-N` of this folder
+    /// Record each run in a folder `run-N` of this folder: the scenario's files, every signal and digest of
+    /// every step as Parquet, events
     #[arg(long, value_name = "DIR")]
     pub record: Option<PathBuf>,
+    /// Record the trajectory as `csv` or `mcap` too; both may be given, as in `csv,mcap`
+    #[arg(long, value_enum, value_name = "FORMAT", requires = "record", value_delimiter = ',')]
+    pub record_also: Vec<RecordAlso>,
+    /// Record these signals only: a name, or a pattern with `*` and `?`; may be given several times
+    #[arg(long = "record-signals", value_name = "PATTERN", requires = "record")]
+    pub record_signals: Vec<SignalPattern>,
     /// For people, or one JSON object a run for machines
     #[arg(long, value_enum, default_value_t)]
     pub format: FormatArg,
@@ -111,6 +137,17 @@ pub struct RunArgs {
     /// `lcov` or `cobertura` [default: by the file's name: `.xml` is Cobertura]
     #[arg(long, value_enum, requires = "coverage", value_name = "FORMAT")]
     pub coverage_format: Option<CoverageArg>,
+    /// Write a page with trajectories, expectations, events and coverage of all runs, all in one file
+    #[arg(long, value_name = "FILE")]
+    pub html: Option<PathBuf>,
+    /// A variable of a soft PLC to look at, as `Main.axis[2].x`, with its PLC in front if there are several, as
+    /// `plc2:Main.x`, and with a format for whole numbers behind, as `Main.status=bin`: `hex`, `dec` or `bin`;
+    /// may be given several times
+    #[arg(long, value_name = "[PLC:]PATH[=FORMAT]")]
+    pub watch: Vec<WatchRequest>,
+    /// `end`: what watched variables are at the end; `change`: all their changes
+    #[arg(long, value_enum, default_value_t, requires = "watch", value_name = "WHEN")]
+    pub watch_on: WatchOnArg,
     /// Where clients and operators may connect [default: a free port of this machine, if one is needed]
     #[arg(long, value_name = "ADDRESS:PORT")]
     pub listen: Option<SocketAddr>,
@@ -164,6 +201,9 @@ pub struct JoinArgs {
     /// The server's address
     #[arg(long, value_name = "ADDRESS:PORT")]
     pub server: SocketAddr,
+    /// The case that the server runs [default: the scenario as it is]
+    #[arg(long, value_name = "NAME")]
+    pub case: Option<String>,
 }
 
 /// Options of `control`.
@@ -395,6 +435,16 @@ impl From<ModeArg> for Mode {
     }
 }
 
+/// When watched variables are told.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+pub enum WatchOnArg {
+    /// What they are at the end
+    #[default]
+    End,
+    /// All their changes
+    Change,
+}
+
 /// See [`Transport`].
 #[derive(Clone, Copy, Debug, Default, ValueEnum)]
 pub enum TransportArg {
@@ -410,6 +460,51 @@ impl From<TransportArg> for Transport {
         match arg {
             TransportArg::Inproc => Self::Inproc,
             TransportArg::Tcp => Self::Tcp,
+        }
+    }
+}
+
+/// Options of `wiring`.
+#[derive(Debug, ClapArgs)]
+pub struct WiringArgs {
+    /// The scenario: a folder with a `scenario.toml`
+    pub scenario: PathBuf,
+    /// For people, or JSON for machines
+    #[arg(long, value_enum, default_value_t)]
+    pub format: FormatArg,
+    /// Draw it into this SVG file, too
+    #[arg(long, value_name = "FILE")]
+    pub svg: Option<PathBuf>,
+}
+
+/// Options of `new`.
+#[derive(Debug, ClapArgs)]
+pub struct NewArgs {
+    /// The folder to make; its name is the scenario's
+    pub folder: PathBuf,
+    /// What to begin with
+    #[arg(long, value_enum, default_value_t)]
+    pub template: TemplateArg,
+}
+
+/// See [`Template`].
+#[derive(Clone, Copy, Debug, Default, ValueEnum)]
+pub enum TemplateArg {
+    /// A cylinder pushes boxes off a belt: bodies, a conveyor, a sensor, pneumatics
+    #[default]
+    Cell,
+    /// A tank with a pump, a valve and a level: process engineering, no bodies
+    Tank,
+    /// A plant of your own in Python, over TCP
+    Python,
+}
+
+impl From<TemplateArg> for Template {
+    fn from(arg: TemplateArg) -> Self {
+        match arg {
+            TemplateArg::Cell => Self::Cell,
+            TemplateArg::Tank => Self::Tank,
+            TemplateArg::Python => Self::Python,
         }
     }
 }
@@ -431,6 +526,15 @@ impl From<FormatArg> for Format {
             FormatArg::Json => Self::Json,
         }
     }
+}
+
+/// A form of trajectory that is recorded beside Parquet.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum RecordAlso {
+    /// For spreadsheets
+    Csv,
+    /// For viewers of robots and their logs: Foxglove, `PlotJuggler`
+    Mcap,
 }
 
 /// See [`CoverageFormat`].

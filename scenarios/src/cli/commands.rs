@@ -6,15 +6,17 @@ use std::path::PathBuf;
 use std::time::Duration;
 
 use onescan_clients::station::opcua::Access;
+use onescan_server::record::Choice;
 use onescan_server::transport::tcp::operator::operate;
 use onescan_server::transport::tcp::participant::take_part;
 
 use super::args::{
-    BrowseArgs, CheckArgs, Command, CompareArgs, ControlArgs, ExplainArgs, InstrumentArgs, JoinArgs, PlcArgs, RunArgs,
+    BrowseArgs, CheckArgs, Command, CompareArgs, ControlArgs, ExplainArgs, InstrumentArgs, JoinArgs, PlcArgs, RecordAlso, RunArgs,
 };
 use crate::browse::BrowseConfig;
 use crate::check::{self, CheckConfig, Warnings};
 use crate::instrument::{Destination, Diff, Direction, InstrumentConfig};
+use crate::new;
 use crate::plant;
 use crate::plc::{self, PlcConfig};
 use crate::run::compare::CompareConfig;
@@ -22,9 +24,11 @@ use crate::run::config::SaveRequest;
 use crate::run::coverage::CoverageRequest;
 use crate::run::error::{ExitCode, RunError};
 use crate::run::interrupt::Interrupt;
+use crate::run::recorded::RecordRequest;
 use crate::run::{Format, RunConfig, execute};
 use crate::scenario::Scenario;
 use crate::scenario::compose::Member;
+use crate::wiring::{self, WiringConfig};
 
 /// How long an operator waits for the next step boundary.
 const OPERATOR_PATIENCE: Duration = Duration::from_secs(30);
@@ -37,6 +41,12 @@ pub fn dispatch(command: Command) -> Result<ExitCode, RunError> {
     match command {
         Command::Run(args) => run(*args),
         Command::Compare(args) => compare(args),
+        Command::Test(args) => crate::regress::test(&args.config(), &mut std::io::stdout().lock()),
+        Command::Review(args) => crate::review::review(&args.config(), &mut std::io::stdout().lock()),
+        Command::TestWorker(args) => {
+            crate::regress::worker::work(&args.config(), &mut std::io::stdout().lock())?;
+            Ok(ExitCode::Ok)
+        }
         Command::Join(args) => join(&args),
         Command::Control(args) => control(&args),
         Command::Check(args) => check(args),
@@ -46,6 +56,15 @@ pub fn dispatch(command: Command) -> Result<ExitCode, RunError> {
         Command::Explain(args) => explain(&args),
         Command::Components(args) => {
             plant::components::write(args.kind.as_deref(), args.format.into(), &mut std::io::stdout().lock())?;
+            Ok(ExitCode::Ok)
+        }
+        Command::Wiring(args) => {
+            let config = WiringConfig { scenario: args.scenario, format: args.format.into(), svg: args.svg };
+            let sound = wiring::write(&config, &mut std::io::stdout().lock())?;
+            Ok(if sound { ExitCode::Ok } else { ExitCode::WrongInput })
+        }
+        Command::New(args) => {
+            new::write(&args.folder, args.template.into(), &mut std::io::stdout().lock())?;
             Ok(ExitCode::Ok)
         }
         Command::Describe(args) => {
@@ -65,7 +84,7 @@ fn run(args: RunArgs) -> Result<ExitCode, RunError> {
 fn compare(args: CompareArgs) -> Result<ExitCode, RunError> {
     let interrupt = Interrupt::new();
     interrupt.on_signals();
-    let run = RunConfig { until: args.until, runs: args.runs, ..RunConfig::of(args.scenario) };
+    let run = RunConfig { until: args.until, runs: args.runs, format: Format::Human, ..RunConfig::headless(args.scenario, None) };
     let config = CompareConfig { run, plot: args.plot, format: args.format.into() };
     crate::run::compare::compare(&config, &interrupt, &mut std::io::stdout().lock())?;
     Ok(ExitCode::Ok)
@@ -75,17 +94,28 @@ fn config(args: RunArgs) -> RunConfig {
     let format = args.format.into();
     RunConfig {
         scenario: args.scenario,
+        case: args.case,
         until: args.until,
         pace: args.pace,
         mode: args.mode.into(),
         runs: args.runs,
         transport: args.transport.into(),
         gateways: args.gateways,
-        record: args.record,
+        record: args.record.map(|folder| RecordRequest {
+            folder,
+            choice: Choice {
+                signals: args.record_signals,
+                csv: args.record_also.contains(&RecordAlso::Csv),
+                mcap: args.record_also.contains(&RecordAlso::Mcap),
+            },
+        }),
         format,
         plot: args.plot,
         signals: args.signals,
+        watch: args.watch,
+        watch_changes: args.watch_on == super::args::WatchOnArg::Change,
         coverage: args.coverage.map(|path| CoverageRequest::new(path, args.coverage_format.map(Into::into))),
+        html: args.html,
         listen: args.listen,
         join_timeout: Duration::from_nanos(args.join_timeout.as_nanos()),
         reply_timeout: Duration::from_nanos(args.reply_timeout.as_nanos()),
@@ -97,7 +127,7 @@ fn config(args: RunArgs) -> RunConfig {
 }
 
 fn join(args: &JoinArgs) -> Result<ExitCode, RunError> {
-    let scenario = Scenario::load(&args.scenario)?;
+    let scenario = Scenario::load_case(&args.scenario, args.case.as_deref())?;
     let mut client = match scenario.member(&args.client)? {
         Member::Plant(client) | Member::Plc(client) | Member::Gateway(client) => client,
         Member::External(_) => {

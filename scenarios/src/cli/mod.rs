@@ -3,10 +3,12 @@
 //! | module | subject |
 //! |---|---|
 //! | [`args`] | what may be typed |
+//! | [`test_args`] | the same, for tests |
 //! | [`commands`] | what each command does |
 
 pub mod args;
 pub mod commands;
+pub mod test_args;
 
 use clap::Parser;
 

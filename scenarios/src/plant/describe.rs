@@ -100,15 +100,19 @@ fn body(body: &Body) -> String {
         BodyKind::Dynamic => "dynamic",
         BodyKind::Kinematic => "kinematic",
     };
-    let shape = match body.shape {
+    let shape = match &body.shape {
         None => String::new(),
         Some(Shape::Box { size_m: [x, y, z] }) => format!(", box {x} x {y} x {z} m"),
         Some(Shape::Sphere { radius_m }) => format!(", sphere of radius {radius_m} m"),
         Some(Shape::Cylinder { radius_m, length_m }) => format!(", cylinder of radius {radius_m} m, {length_m} m long"),
         Some(Shape::Capsule { radius_m, length_m }) => format!(", capsule of radius {radius_m} m, {length_m} m long"),
+        Some(Shape::Hull { file, corners_m }) => format!(", hull of {file} with {} corners", corners_m.len()),
+        Some(Shape::Surface { file, triangles, .. }) => {
+            format!(", surface of {file} with {} triangles", triangles.len())
+        }
     };
     let mass = match (body.kind, body.mass) {
-        (BodyKind::Dynamic, Mass::Total { kg }) => format!(", {kg} kg"),
+        (BodyKind::Dynamic, Mass::Total { kg } | Mass::Stated { kg, .. }) => format!(", {kg} kg"),
         (BodyKind::Dynamic, Mass::Density { kg_m3 }) => format!(", {kg_m3} kg/m³"),
         _ => String::new(),
     };
@@ -123,7 +127,11 @@ fn one(component: &Component, scene: &Scene) -> String {
         Bound::Measures(joint) => format!(", measures joint {}", scene.joints[*joint].name),
         Bound::Belt { body, .. } => format!(", belt {}", scene.bodies[*body].name),
         Bound::Ray { targets, .. } => format!(", a ray at {} bodies", targets.len()),
-        Bound::Touch { body, targets } => format!(", body {} and {} others", scene.bodies[*body].name, targets.len()),
+        Bound::Touch { body, shape, targets } => {
+            let name = shape.map_or(&scene.bodies[*body].name, |shape| &scene.shapes[shape].name);
+            format!(", {name} and {} others", targets.len())
+        }
+        Bound::Meet { targets } => format!(", {} bodies among each other", targets.len()),
         Bound::Collect { body, targets } => {
             format!(", body {} takes {} others", scene.bodies[*body].name, targets.len())
         }

@@ -4,22 +4,22 @@
 //! still, so whatever relies on them leaves some air.
 
 /// The typefaces, by preference.
-pub(super) const FONT_FAMILY: &str = "Helvetica, Arial, Liberation Sans, DejaVu Sans, sans-serif";
+pub(crate) const FONT_FAMILY: &str = "Helvetica, Arial, Liberation Sans, DejaVu Sans, sans-serif";
 /// The height of the title's letters.
-pub(super) const TITLE_PX: i64 = 16;
+pub(crate) const TITLE_PX: i64 = 16;
 /// The height of a signal's name and of the legend's letters.
-pub(super) const NAME_PX: i64 = 12;
+pub(crate) const NAME_PX: i64 = 12;
 /// The height of a tick's label.
 pub(super) const TICK_PX: i64 = 11;
 
 /// About how wide a text is, in pixels.
-pub(super) fn width_px(text: &str, size_px: i64) -> i64 {
+pub(crate) fn width_px(text: &str, size_px: i64) -> i64 {
     let thousandths: i64 = text.chars().map(width_thousandths).sum();
     thousandths.saturating_mul(size_px) / 1000 + 1
 }
 
 /// The text, or as much of it as has room, with an ellipsis.
-pub(super) fn shortened(text: &str, size_px: i64, room_px: i64) -> String {
+pub(crate) fn shortened(text: &str, size_px: i64, room_px: i64) -> String {
     if width_px(text, size_px) <= room_px {
         return text.to_owned();
     }

@@ -9,17 +9,17 @@
 //! equal runs are one line with a visible stack of layers.
 
 /// The ground, solid, so that the picture reads the same on any page.
-pub(super) const GROUND: &str = "#ffffff";
+pub(crate) const GROUND: &str = "#ffffff";
 /// Texts that name something.
-pub(super) const INK: &str = "#1f2328";
+pub(crate) const INK: &str = "#1f2328";
 /// Texts beside the point.
-pub(super) const FAINT_INK: &str = "#59636e";
+pub(crate) const FAINT_INK: &str = "#59636e";
 /// Lines across a panel.
 pub(super) const GRID: &str = "#e4e7eb";
 /// What went wrong.
-pub(super) const ALARM: &str = "#b3261e";
+pub(crate) const ALARM: &str = "#b3261e";
 /// The edges of a panel from which values and times are read.
-pub(super) const AXIS: &str = "#a8b0b9";
+pub(crate) const AXIS: &str = "#a8b0b9";
 
 /// Neighbours differ in lightness, too.
 const COLOURS: [&str; 7] = ["#0072b2", "#e69f00", "#009e73", "#d55e00", "#56b4e9", "#cc79a7", "#6e6e6e"];

@@ -7,38 +7,38 @@ use super::palette::{FAINT_INK, Stroke};
 use super::reduce::{PIXEL_CPX, Point};
 
 /// An attribute of an element.
-pub(super) type Attribute<'a> = (&'a str, &'a dyn Display);
+pub(crate) type Attribute<'a> = (&'a str, &'a dyn Display);
 
 /// An SVG document while it is written, one element to a line.
 #[derive(Debug, Default)]
-pub(super) struct Document {
+pub(crate) struct Document {
     text: String,
     open: Vec<&'static str>,
 }
 
 impl Document {
     /// Opens an element; what follows is inside of it until [`Self::close`].
-    pub(super) fn open(&mut self, name: &'static str, attributes: &[Attribute<'_>]) {
+    pub(crate) fn open(&mut self, name: &'static str, attributes: &[Attribute<'_>]) {
         self.tag(name, attributes);
         self.text.push_str(">\n");
         self.open.push(name);
     }
 
     /// Closes the element that was opened last.
-    pub(super) fn close(&mut self) {
+    pub(crate) fn close(&mut self) {
         if let Some(name) = self.open.pop() {
             self.end(name);
         }
     }
 
     /// An element without content.
-    pub(super) fn empty(&mut self, name: &str, attributes: &[Attribute<'_>]) {
+    pub(crate) fn empty(&mut self, name: &str, attributes: &[Attribute<'_>]) {
         self.tag(name, attributes);
         self.text.push_str("/>\n");
     }
 
     /// An element that contains text.
-    pub(super) fn text(&mut self, name: &str, attributes: &[Attribute<'_>], content: &str) {
+    pub(crate) fn text(&mut self, name: &str, attributes: &[Attribute<'_>], content: &str) {
         self.tag(name, attributes);
         self.text.push('>');
         self.escape(content);
@@ -46,7 +46,7 @@ impl Document {
     }
 
     /// The document, with all elements closed.
-    pub(super) fn finish(mut self) -> String {
+    pub(crate) fn finish(mut self) -> String {
         while !self.open.is_empty() {
             self.close();
         }

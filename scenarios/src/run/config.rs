@@ -5,13 +5,16 @@ use std::path::PathBuf;
 use std::time::Duration;
 
 use onescan_server::pacing::Pace;
+use onescan_server::signal::pattern::choose;
 use onescan_server::signal::{ClientName, SignalName, did_you_mean};
 use onescan_server::time::VirtualTime;
 
 use super::coverage::CoverageRequest;
 use super::error::RunError;
+use super::recorded::RecordRequest;
 use crate::scenario::Scenario;
 use crate::scenario::file::ClientFile;
+use crate::scenario::watch::WatchRequest;
 
 /// How plant and PLC come together.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize)]
@@ -75,6 +78,8 @@ pub struct SaveRequest {
 pub struct RunConfig {
     /// The scenario's folder or file.
     pub scenario: PathBuf,
+    /// The case to run; the scenario as it is if absent.
+    pub case: Option<String>,
     /// When a run is complete; the scenario says so if absent.
     pub until: Option<VirtualTime>,
     /// How fast virtual time may run.
@@ -87,8 +92,8 @@ pub struct RunConfig {
     pub transport: Transport,
     /// Real PLCs that stand in for soft ones, with their URL.
     pub gateways: Vec<(ClientName, Option<String>)>,
-    /// Folder for recordings.
-    pub record: Option<PathBuf>,
+    /// What is recorded.
+    pub record: Option<RecordRequest>,
     /// For whom reports are.
     pub format: Format,
     /// File for a plot.
@@ -97,6 +102,12 @@ pub struct RunConfig {
     pub signals: Vec<SignalName>,
     /// A coverage report to write.
     pub coverage: Option<CoverageRequest>,
+    /// File for a page about all runs.
+    pub html: Option<PathBuf>,
+    /// Variables of soft PLCs to look at.
+    pub watch: Vec<WatchRequest>,
+    /// True if all their changes are wanted, not only what they are last.
+    pub watch_changes: bool,
     /// Where clients and operators may connect.
     pub listen: Option<SocketAddr>,
     /// How long to wait for clients to join.
@@ -114,29 +125,31 @@ pub struct RunConfig {
 }
 
 impl RunConfig {
-    /// One run of `scenario` in this process, with nothing written.
-    pub fn of(scenario: PathBuf) -> Self {
-        const JOIN_TIMEOUT: Duration = Duration::from_mins(1);
-        const REPLY_TIMEOUT: Duration = Duration::from_secs(10);
+    /// One run in this process, as fast as it goes, that nobody looks at.
+    pub fn headless(scenario: PathBuf, case: Option<String>) -> Self {
         Self {
             scenario,
+            case,
             until: None,
             pace: Pace::Max,
             mode: Mode::Lockstep,
             runs: 1,
             transport: Transport::Inproc,
             gateways: Vec::new(),
+            latency: false,
             record: None,
-            format: Format::Human,
+            format: Format::Json,
             plot: None,
             signals: Vec::new(),
             coverage: None,
+            html: None,
+            watch: Vec::new(),
+            watch_changes: false,
             listen: None,
-            join_timeout: JOIN_TIMEOUT,
-            reply_timeout: REPLY_TIMEOUT,
+            join_timeout: Duration::from_mins(1),
+            reply_timeout: Duration::from_secs(10),
             save: None,
             resume: None,
-            latency: false,
             progress: false,
         }
     }
@@ -148,7 +161,7 @@ impl RunConfig {
 
     /// When a run is complete.
     pub fn end(&self, scenario: &Scenario) -> VirtualTime {
-        self.until.unwrap_or(scenario.file().until)
+        self.until.unwrap_or(scenario.until())
     }
 
     /// The signals of the plot with their panels' order.
@@ -170,14 +183,19 @@ impl RunConfig {
                 return Err(RunError::usage(format!("the scenario has no signal `{signal}`"), help));
             }
         }
+        if let Some(record) = &self.record {
+            choose(&record.choice.signals, scenario.file().signals.keys())
+                .map_err(|unmatched| RunError::usage(format!("--record-signals: {unmatched}"), None))?;
+        }
         let step = scenario.file().step;
         if let Some(save) = self.save.as_ref().filter(|save| save.at >= self.end(scenario)) {
             let message = format!("--save-at {} is not before the end of the run at {}", save.at, self.end(scenario));
             return Err(RunError::usage(message, Some(format!("the step is {step}"))));
         }
-        if self.coverage.is_some() && self.transport == Transport::Tcp {
-            let help = "what a client in another process executes is not seen here".to_owned();
-            return Err(RunError::usage("--coverage means nothing with --transport tcp".to_owned(), Some(help)));
+        let inside = [("--coverage", self.coverage.is_some()), ("--watch", !self.watch.is_empty())];
+        if let Some((option, _)) = inside.iter().find(|(_, given)| *given && self.transport == Transport::Tcp) {
+            let help = "what a client in another process does is not seen here".to_owned();
+            return Err(RunError::usage(format!("{option} means nothing with --transport tcp"), Some(help)));
         }
         match self.mode {
             Mode::Lockstep => Ok(()),

@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use onescan_clients::soft_plc::CoverageSink;
+use onescan_plc_shim::Coverage;
 
 use super::error::RunError;
 use super::output;
@@ -36,7 +37,11 @@ impl CoverageRequest {
     /// Writes what the runs have executed; their clients are gone.
     pub(super) fn write(&self, sink: &CoverageSink) -> Result<(), RunError> {
         // A client that panicked has given nothing; the rest still counts.
-        let coverage = sink.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
+        self.write_report(&sink.lock().unwrap_or_else(std::sync::PoisonError::into_inner))
+    }
+
+    /// Writes a report of this coverage.
+    pub(crate) fn write_report(&self, coverage: &Coverage) -> Result<(), RunError> {
         let text = match self.format {
             CoverageFormat::Lcov => coverage.to_lcov(),
             CoverageFormat::Cobertura => coverage.to_cobertura(),

@@ -17,6 +17,10 @@ pub enum RunError {
     #[error(transparent)]
     #[diagnostic(transparent)]
     Scenario(#[from] ScenarioError),
+    /// PLC sources that do not compile.
+    #[error(transparent)]
+    #[diagnostic(transparent)]
+    Sources(#[from] Box<crate::regress::unit_test::SourcesReport>),
     /// The options are wrong.
     #[error("{message}")]
     Usage {

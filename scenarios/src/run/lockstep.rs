@@ -77,7 +77,7 @@ fn form(
     let lobby = open_lobby(config, scenario, interrupt)?;
     for (name, command) in &remote {
         match command {
-            None => processes.start_client(name, &config.scenario, lobby.address())?,
+            None => processes.start_client(name, config, lobby.address())?,
             Some(words) => processes.start_command(name, words, scenario.folder(), lobby.address())?,
         }
     }

@@ -7,6 +7,7 @@ use std::time::{Duration, Instant};
 
 use onescan_server::signal::ClientName;
 
+use super::config::RunConfig;
 use super::error::RunError;
 
 /// How long a process may take to leave once the session is over.
@@ -22,15 +23,23 @@ pub(super) struct Processes {
 }
 
 impl Processes {
-    /// Starts this program as the client `name` of the scenario at `path`.
-    pub(super) fn start_client(&mut self, name: &ClientName, path: &Path, server: SocketAddr) -> Result<(), RunError> {
+    /// Starts this program as the client `name` of the run's scenario and case.
+    pub(super) fn start_client(
+        &mut self,
+        name: &ClientName,
+        config: &RunConfig,
+        server: SocketAddr,
+    ) -> Result<(), RunError> {
         let program = std::env::current_exe().map_err(|source| RunError::Spawn {
             client: name.to_string(),
             command: "onescan".to_owned(),
             source,
         })?;
         let mut command = Command::new(program);
-        command.arg("join").arg(path).arg(name.as_str()).arg("--server").arg(server.to_string());
+        command.arg("join").arg(&config.scenario).arg(name.as_str()).arg("--server").arg(server.to_string());
+        if let Some(case) = &config.case {
+            command.arg("--case").arg(case);
+        }
         self.start(name, command)
     }
 

@@ -6,13 +6,14 @@ use std::time::Duration;
 use onescan_server::end::{Failure, SessionEnd};
 use onescan_server::lockstep::Outcome;
 use onescan_server::record::Digest;
-use onescan_server::time::{StepCount, VirtualTime};
+use onescan_server::time::{StepCount, TimeSpan, VirtualTime};
 use serde::Serialize;
 
 use super::config::{Format, Mode, RunConfig, Transport};
 use super::error::ExitCode;
 use super::expectation::ExpectationReport;
 use super::session_log::{self, ClientLatency};
+use super::watch::WatchReport;
 use crate::scenario::Scenario;
 
 /// What came of one run. Its JSON form is a contract: fields are added, never changed.
@@ -20,6 +21,9 @@ use crate::scenario::Scenario;
 pub struct RunReport {
     /// The scenario's name.
     pub scenario: String,
+    /// The case of it, if one was asked for.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub case: Option<String>,
     /// Number of the run, from 1.
     pub run: u32,
     /// In lockstep or not.
@@ -49,6 +53,12 @@ pub struct RunReport {
     /// How long the session waited for each client, if that was noted.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub latency: Vec<ClientLatency>,
+    /// What watched variables were.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub watched: Option<WatchReport>,
+    /// The step of virtual time.
+    #[serde(skip)]
+    pub step: TimeSpan,
     /// The program that ran it.
     pub version: &'static str,
 }
@@ -68,6 +78,7 @@ impl RunReport {
         };
         Self {
             scenario: scenario.name().to_owned(),
+            case: scenario.case().map(|case| case.name.clone()),
             run,
             mode: config.mode,
             transport: config.transport,
@@ -80,8 +91,15 @@ impl RunReport {
             failure,
             expectations: Vec::new(),
             latency: Vec::new(),
+            watched: None,
+            step: scenario.file().step,
             version: env!("CARGO_PKG_VERSION"),
         }
+    }
+
+    /// The step that ends at `t_v`, which is not after the last.
+    pub(super) fn step_at(&self, t_v: VirtualTime) -> StepCount {
+        StepCount(self.steps.0.saturating_sub((self.virtual_time - t_v) / self.step.as_nanos()))
     }
 
     /// True if a client ended it.
@@ -101,7 +119,9 @@ impl RunReport {
                 writeln!(out)?;
             }
             Format::Human => {
-                let name = if runs == 1 { self.scenario.clone() } else { format!("run {}/{runs}", self.run) };
+                let case = self.case.as_ref().map(|case| format!(" {case}")).unwrap_or_default();
+                let name =
+                    if runs == 1 { format!("{}{case}", self.scenario) } else { format!("run {}/{runs}", self.run) };
                 let digest = self.digest.map_or_else(|| "none".to_owned(), |digest| digest.to_string());
                 let (steps, t_v, wall) = (self.steps, self.virtual_time, self.wall_time_s);
                 writeln!(out, "{name}: {}, {steps} steps, {t_v} virtual in {wall:.3} s", self.status)?;
@@ -113,6 +133,9 @@ impl RunReport {
                     expectation.write(out)?;
                 }
                 session_log::write(&self.latency, out)?;
+                if let Some(watched) = &self.watched {
+                    watched.write(out)?;
+                }
             }
         }
         out.flush()

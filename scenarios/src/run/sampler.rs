@@ -107,7 +107,10 @@ pub(super) fn plot(scenario: &Scenario, config: &RunConfig, runs: &[Samples], re
             signal: name.to_string(),
             runs: runs
                 .iter()
-                .map(|run| Trajectory { t_ns: run.t_ns.clone(), values: run.values[row].clone() })
+                .map(|run| Trajectory {
+                    t_ns: run.t_ns.clone(),
+                    values: run.values.get(row).cloned().unwrap_or_default(),
+                })
                 .collect(),
         }
     });

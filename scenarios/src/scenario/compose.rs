@@ -4,20 +4,23 @@ use std::collections::BTreeMap;
 use std::path::PathBuf;
 
 use miette::{NamedSource, SourceSpan};
-use onescan_clients::plant::{Plant, SceneError, SceneFault};
+use onescan_clients::operator::Operator;
+use onescan_clients::plant::{Plant, Scene, SceneError, SceneFault};
 use onescan_clients::soft_plc::{Bindings, SoftPlcClient, bind};
 use onescan_plc_shim::input::kind::{FileKind, SourceKind};
 use onescan_plc_shim::{Application, Dialect, Input, Task, TaskPlan};
 use onescan_server::client::Client;
-use onescan_server::signal::{ClientName, SignalName, did_you_mean};
+use onescan_server::signal::{ClientName, Port, SignalName, did_you_mean};
 
+use super::arrays;
+use super::case::value::bytes_of;
 use super::error::{PlcReport, ScenarioError, SceneReport};
 use super::file::{ClientFile, TaskFile};
 use super::load::Scenario;
 
 /// A client of a scenario.
 pub enum Member {
-    /// A plant in this process.
+    /// A plant in this process, or an operator.
     Plant(Box<dyn Client>),
     /// A soft PLC in this process.
     Plc(Box<dyn Client>),
@@ -25,6 +28,15 @@ pub enum Member {
     Gateway(Box<dyn Client>),
     /// A program of its own, with the command that starts it; empty if somebody else does.
     External(Vec<String>),
+}
+
+/// The variables of signals, as `bind` names them.
+pub(crate) type Paths = BTreeMap<SignalName, Vec<String>>;
+
+/// A soft PLC's sources, compiled, and what its `bind` says.
+pub(crate) struct Compiled {
+    pub(crate) application: Application,
+    pub(crate) paths: Paths,
 }
 
 impl Scenario {
@@ -39,19 +51,18 @@ impl Scenario {
         };
         match entry.get_ref() {
             ClientFile::Plant { scene, period } => {
-                let path = self.folder().join(scene);
-                let text = read(&path)?;
-                let period = period.unwrap_or(self.file().step);
-                let plant = Plant::parse(&text, &path.display().to_string(), name.clone(), period);
-                let plant = plant.map_err(|error| Box::new(report(&error, &path.display().to_string(), &text)))?;
-                Ok(Member::Plant(Box::new(plant.seeded(self.file().seed))))
+                let scene = self.scene_in_case(name, scene)?;
+                let plant = Plant::new(scene, name.clone(), period.unwrap_or(self.file().step));
+                Ok(Member::Plant(self.forced(Box::new(plant.seeded(self.seed())))))
             }
             ClientFile::Gateway { .. } => self.gateway(name).map(Member::Gateway),
             ClientFile::SoftPlc { .. } if self.gateways.contains_key(name) => self.gateway(name).map(Member::Gateway),
             ClientFile::SoftPlc { sources, dialect, tasks, bind, .. } => {
-                let inputs = self.inputs(name, sources, *dialect)?;
-                self.soft_plc(name, inputs, tasks, bind).map(|plc| Member::Plc(Box::new(plc)))
+                let compiled = self.compiled(name, sources, *dialect, bind)?;
+                let plc = self.soft_plc(name, &compiled, tasks)?;
+                Ok(Member::Plc(self.forced(Box::new(plc))))
             }
+            ClientFile::Operator { initial } => Ok(Member::Plant(self.forced(Box::new(self.operator(name, initial)?)))),
             ClientFile::External { command } => Ok(Member::External(command.clone())),
         }
     }
@@ -93,13 +104,40 @@ impl Scenario {
         })
     }
 
-    fn soft_plc(
+    /// The scene of a plant.
+    ///
+    /// # Errors
+    /// A file that cannot be read or is no scene.
+    pub(crate) fn scene_of(&self, file: &str) -> Result<Scene, ScenarioError> {
+        let path = self.folder().join(file);
+        let text = read(&path)?;
+        let named = path.display().to_string();
+        let scene = Scene::parse(&text, &named).map_err(|error| Box::new(report(&error, &named, &text)))?;
+        Ok(scene)
+    }
+
+    /// The scene of plant `name` as the case wants it.
+    fn scene_in_case(&self, name: &ClientName, file: &str) -> Result<Scene, ScenarioError> {
+        // What is wrong with the scene itself is told first.
+        let plain = self.scene_of(file)?;
+        let path = self.folder().join(file);
+        let (text, named) = (read(&path)?, path.display().to_string());
+        let wanted = self.scene_text(name, &named, text.clone())?;
+        Ok(if wanted == text { plain } else { Scene::parse(&wanted, &named).unwrap_or(plain) })
+    }
+
+    /// The sources of soft PLC `name`, compiled, and what its `bind` says.
+    ///
+    /// # Errors
+    /// Sources that cannot be read or do not compile; a `bind` that is wrong in itself.
+    pub(crate) fn compiled(
         &self,
         name: &ClientName,
-        inputs: Vec<Input>,
-        tasks: &[TaskFile],
-        paths: &BTreeMap<SignalName, String>,
-    ) -> Result<SoftPlcClient, ScenarioError> {
+        sources: &[String],
+        dialect: Option<Dialect>,
+        bind: &BTreeMap<String, String>,
+    ) -> Result<Compiled, ScenarioError> {
+        let inputs = self.inputs(name, sources, dialect)?;
         let compiled = match self.coverage() {
             Some(_) => Application::from_inputs_with_coverage(inputs),
             None => Application::from_inputs(inputs),
@@ -108,13 +146,29 @@ impl Scenario {
         for warning in application.warnings().iter() {
             tracing::warn!(code = %warning.code, "{}", warning.message);
         }
-        let bindings = self.bindings(name, &application, paths)?;
-        let plan = self.task_plan(name, &application, tasks)?;
+        let paths = self.paths(name, bind)?;
+        Ok(Compiled { application, paths })
+    }
+
+    fn soft_plc(
+        &self,
+        name: &ClientName,
+        Compiled { application, paths }: &Compiled,
+        tasks: &[TaskFile],
+    ) -> Result<SoftPlcClient, ScenarioError> {
+        let bindings = self.bindings(name, application, paths)?;
+        let plan = self.task_plan(name, application, tasks)?;
         self.fits_step(name, &plan)?;
-        let mut client = SoftPlcClient::new(name.clone(), &application, &plan, &bindings, self.file().step)
+        let mut client = SoftPlcClient::new(name.clone(), application, &plan, &bindings, self.file().step)
             .map_err(|error| self.wrong_client(name, error.to_string(), None))?;
+        self.preset(&mut client, name)?;
         if let Some(sink) = self.coverage() {
             client.cover(sink.clone());
+        }
+        if let Some(watched) = &self.watched {
+            let (watches, changes, sink) = watched.of(name);
+            let watched = client.watch(&watches, changes, sink);
+            watched.map_err(|unknown| self.wrong_option(format!("--watch: {unknown}"), None))?;
         }
         Ok(client)
     }
@@ -132,20 +186,47 @@ impl Scenario {
         })
     }
 
+    /// The variables of signals, as `bind` names them.
+    pub(super) fn paths(&self, name: &ClientName, bind: &BTreeMap<String, String>) -> Result<Paths, ScenarioError> {
+        let declared: Vec<_> = self.file().signals.keys().collect();
+        arrays::bound(bind, &declared).map_err(|found| self.wrong_client(name, found.message, found.help))
+    }
+
     /// Which signal is which variable of the PLC.
     pub(super) fn bindings(
         &self,
         name: &ClientName,
         application: &Application,
-        paths: &BTreeMap<SignalName, String>,
+        paths: &Paths,
     ) -> Result<Bindings, ScenarioError> {
-        if let Some(unknown) = paths.keys().find(|signal| !self.file().signals.contains_key(*signal)) {
-            let help = did_you_mean(unknown.as_str(), self.file().signals.keys().map(SignalName::as_str));
-            let message = format!("`bind` names a signal `{unknown}` that is not declared");
-            return Err(self.wrong_client(name, message, help));
-        }
         bind(application, name, self.plan().signals(), paths)
             .map_err(|error| self.wrong_signal(&error.signal, error.message, error.help))
+    }
+
+    /// The operator of the signals whose writer it is.
+    fn operator(
+        &self,
+        name: &ClientName,
+        initial: &std::collections::BTreeMap<SignalName, toml::Value>,
+    ) -> Result<Operator, ScenarioError> {
+        let own: Vec<_> = self.plan().signals().iter().filter(|signal| signal.writer.as_ref() == Some(name)).collect();
+        if let Some(unknown) = initial.keys().find(|wanted| own.iter().all(|signal| signal.name != **wanted)) {
+            let help = did_you_mean(unknown.as_str(), own.iter().map(|signal| signal.name.as_str()));
+            return Err(self.wrong_client(name, format!("`{name}` writes no signal `{unknown}`"), help));
+        }
+        let mut signals = Vec::new();
+        for signal in own {
+            let port = Port { name: signal.name.clone(), ty: signal.ty };
+            let bytes = match initial.get(&signal.name) {
+                None => vec![0; signal.ty.size()],
+                Some(value) => bytes_of(signal.ty, value).map_err(|wanted| {
+                    let message = format!("`{}` begins with {value}, which is not {wanted}", signal.name);
+                    self.wrong_client(name, message, None)
+                })?,
+            };
+            signals.push((port, bytes));
+        }
+        Ok(Operator::new(name.clone(), self.file().step, signals))
     }
 
     /// A task can be due at the steps of the session only.

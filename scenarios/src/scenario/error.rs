@@ -1,6 +1,7 @@
 //! What can be wrong with a scenario: one error, with file and line where there is one.
 
-use std::path::PathBuf;
+use std::ops::Range;
+use std::path::{Path, PathBuf};
 
 use miette::{Diagnostic, NamedSource, SourceSpan};
 use onescan_clients::gateway::LinkFault;
@@ -39,6 +40,18 @@ pub enum ScenarioError {
         #[help]
         help: Option<String>,
     },
+    /// A case that the scenario has not.
+    #[error("scenario `{scenario}` has no case `{case}`")]
+    #[diagnostic(code(scenario::unknown_case))]
+    UnknownCase {
+        /// The scenario.
+        scenario: String,
+        /// The case as it was asked for.
+        case: String,
+        /// What to do.
+        #[help]
+        help: String,
+    },
     /// The scene of a plant is wrong.
     #[error(transparent)]
     #[diagnostic(transparent)]
@@ -56,6 +69,22 @@ pub enum ScenarioError {
         /// Why.
         fault: LinkFault,
     },
+}
+
+/// An error at a place of a file.
+pub(super) fn wrong(
+    path: &Path,
+    text: &str,
+    message: String,
+    place: Option<Range<usize>>,
+    help: Option<String>,
+) -> ScenarioError {
+    ScenarioError::Wrong {
+        message,
+        file: NamedSource::new(path.display().to_string(), text.to_owned()),
+        place: place.map(SourceSpan::from),
+        help,
+    }
 }
 
 /// What was found in a PLC's sources, each with its place.

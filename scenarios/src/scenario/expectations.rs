@@ -26,6 +26,13 @@ pub(super) struct Wrong {
 
 impl Expectations {
     pub(super) fn bind(file: &ScenarioFile, text: &str) -> Result<Self, Wrong> {
+        let mut all = Self::default();
+        all.add(file, &file.expect, text)?;
+        Ok(all)
+    }
+
+    /// Adds expectations on signals of `file` that stand in `text`.
+    pub(super) fn add(&mut self, file: &ScenarioFile, entries: &[ExpectFile], text: &str) -> Result<(), Wrong> {
         let known: Vec<KnownSignal> = file
             .signals
             .iter()
@@ -34,10 +41,9 @@ impl Expectations {
                 KnownSignal { name: name.to_string(), ty: signal.ty, unit: signal.unit.clone() }
             })
             .collect();
-        let mut columns = Vec::new();
-        let mut named: Vec<(String, Expectation)> = Vec::new();
-        for ExpectFile { name, formula, .. } in &file.expect {
-            if named.iter().any(|(other, _)| other == name.get_ref()) {
+        let mut columns: Vec<String> = self.signals.iter().map(ToString::to_string).collect();
+        for ExpectFile { name, formula, .. } in entries {
+            if self.named.iter().any(|(other, _)| other == name.get_ref()) {
                 let message = format!("two expectations are called `{}`", name.get_ref());
                 return Err(Wrong { message, place: name.span(), help: None });
             }
@@ -46,11 +52,11 @@ impl Expectations {
                 place: place_within(formula, text, &error.place),
                 help: error.help,
             })?;
-            named.push((name.get_ref().clone(), expectation));
+            self.named.push((name.get_ref().clone(), expectation));
         }
         // Columns are names of the file's own signals.
-        let signals = columns.iter().filter_map(|column| SignalName::new(column.as_str()).ok()).collect();
-        Ok(Self { named, signals })
+        self.signals = columns.iter().filter_map(|column| SignalName::new(column.as_str()).ok()).collect();
+        Ok(())
     }
 }
 

@@ -98,9 +98,10 @@ pub enum ClientFile {
         /// Its tasks, in place of those of its own CONFIGURATION.
         #[serde(default)]
         tasks: Vec<TaskFile>,
-        /// Signals whose PLC variable is not found by the signal's name, with the variable's path.
+        /// Signals whose PLC variable is not found by the signal's name, with the variable's path: by
+        /// name, as arrays (`"arm[0..2].x" = "P.arm[0..2].x"`) or as patterns (`"SW_*" = "P.*"`).
         #[serde(default)]
-        bind: BTreeMap<SignalName, String>,
+        bind: BTreeMap<String, String>,
         /// The real PLC that runs the same sources, instrumented (see `run --gateway`).
         #[serde(default)]
         gateway: Option<Settings>,
@@ -115,6 +116,12 @@ pub enum ClientFile {
         reads: Vec<SignalName>,
         /// Its link.
         gateway: Settings,
+    },
+    /// Switches and set points that neither plant nor PLC writes; a case says what it does.
+    Operator {
+        /// Values of its signals at the start; 0, FALSE or empty if absent.
+        #[serde(default)]
+        initial: BTreeMap<SignalName, toml::Value>,
     },
     /// A program of its own that joins over TCP.
     External {
@@ -185,7 +192,7 @@ pub struct PlotFile {
     pub signals: Vec<Spanned<SignalName>>,
 }
 
-fn from_text<'de, D, T>(deserializer: D) -> Result<T, D::Error>
+pub(super) fn from_text<'de, D, T>(deserializer: D) -> Result<T, D::Error>
 where
     D: Deserializer<'de>,
     T: FromStr,
@@ -194,7 +201,7 @@ where
     String::deserialize(deserializer)?.parse().map_err(serde::de::Error::custom)
 }
 
-fn from_optional_text<'de, D, T>(deserializer: D) -> Result<Option<T>, D::Error>
+pub(super) fn from_optional_text<'de, D, T>(deserializer: D) -> Result<Option<T>, D::Error>
 where
     D: Deserializer<'de>,
     T: FromStr,

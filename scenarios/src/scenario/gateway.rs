@@ -9,7 +9,7 @@ use onescan_plc_shim::{Application, Input, Task, TaskPlan};
 use onescan_server::client::{Client, JoinRequest};
 use onescan_server::signal::{ClientName, Port, SignalName, did_you_mean};
 
-use super::compose::plan_of;
+use super::compose::{Compiled, plan_of};
 use super::error::{PlcReport, ScenarioError};
 use super::file::ClientFile;
 use super::load::Scenario;
@@ -94,9 +94,8 @@ impl Scenario {
         let port = |name: &SignalName, ty| Port { name: name.clone(), ty };
         match self.file().clients.get(name).map(toml::Spanned::get_ref) {
             Some(ClientFile::SoftPlc { sources, dialect, tasks, bind, .. }) => {
-                let inputs = self.inputs(name, sources, *dialect)?;
-                let application = self.compiled(name, inputs)?;
-                let bindings = self.bindings(name, &application, bind)?;
+                let Compiled { application, paths } = self.compiled(name, sources, *dialect, bind)?;
+                let bindings = self.bindings(name, &application, &paths)?;
                 let plan = self.task_plan(name, &application, tasks)?;
                 let plc = SoftPlcClient::new(name.clone(), &application, &plan, &bindings, self.file().step);
                 Ok(plc.map_err(|error| self.wrong_client(name, error.to_string(), None))?.join())
@@ -155,8 +154,8 @@ impl Scenario {
             InstrumentError::Text(findings) => Box::new(PlcReport { client: name.clone(), findings }).into(),
             other => self.wrong_client(name, other.to_string(), None),
         })?;
-        let application = self.compiled(name, project.files.into_iter().filter_map(input).collect())?;
-        let bindings = self.bindings(name, &application, bind)?;
+        let application = self.built(name, project.files.into_iter().filter_map(input).collect())?;
+        let bindings = self.bindings(name, &application, &self.paths(name, bind)?)?;
         let plan = match declared {
             Some(plan) if mode == Mode::Lockstep => in_one_task(&plan),
             Some(plan) => plan,
@@ -171,7 +170,7 @@ impl Scenario {
         Ok(Instrumented { application, plan, bindings, exchange, settings })
     }
 
-    fn compiled(&self, name: &ClientName, inputs: Vec<Input>) -> Result<Application, ScenarioError> {
+    fn built(&self, name: &ClientName, inputs: Vec<Input>) -> Result<Application, ScenarioError> {
         let compiled = Application::from_inputs(inputs);
         Ok(compiled.map_err(|findings| Box::new(PlcReport { client: name.clone(), findings }))?)
     }

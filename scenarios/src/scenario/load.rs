@@ -3,16 +3,19 @@
 use std::collections::BTreeMap;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
-use miette::{NamedSource, SourceSpan};
 use onescan_clients::soft_plc::CoverageSink;
 use onescan_server::plan::{Coupling, PlanError, SessionPlan};
 use onescan_server::signal::{ClientName, SignalDecl, SignalName, did_you_mean};
-use onescan_server::time::TimeSpan;
+use onescan_server::time::{TimeSpan, VirtualTime};
 
-use super::error::ScenarioError;
+use super::arrays;
+use super::case::{self, Applied, Catalogue};
+use super::error::{ScenarioError, wrong};
 use super::expectations::Expectations;
 use super::file::{ClientFile, CouplingFile, ScenarioFile, VERSION};
+use super::watch::Watched;
 
 /// The file that makes a folder a scenario.
 pub const FILE_NAME: &str = "scenario.toml";
@@ -27,10 +30,14 @@ pub struct Scenario {
     file: ScenarioFile,
     plan: SessionPlan,
     expectations: Expectations,
+    /// The case that is tried; nothing for the scenario as it is.
+    applied: Option<Arc<Applied>>,
     /// Where soft PLCs give what they executed, if that is asked for.
     coverage: Option<CoverageSink>,
     /// The soft PLCs that a real one stands in for, with its URL where the file's does not count.
     pub(super) gateways: BTreeMap<ClientName, Option<String>>,
+    /// What soft PLCs look at, if that is asked for.
+    pub(super) watched: Option<Watched>,
 }
 
 impl Scenario {
@@ -52,12 +59,13 @@ impl Scenario {
 
     fn parse(text: String, path: PathBuf, folder: PathBuf) -> Result<Self, ScenarioError> {
         let wrong = |message: String, place: Option<Range<usize>>, help| wrong(&path, &text, message, place, help);
-        let file: ScenarioFile =
+        let mut file: ScenarioFile =
             toml::from_str(&text).map_err(|e| wrong(e.message().trim().to_owned(), e.span(), None))?;
         if file.version != VERSION {
             let message = format!("version {} of the scenario format is not known", file.version);
             return Err(wrong(message, place_of(&text, "version"), Some(format!("write `version = {VERSION}`"))));
         }
+        arrays::expand(&mut file).map_err(|found| wrong(found.message, found.place, found.help))?;
         let plan = plan_of(&file).map_err(|error| {
             let place = place_of_plan_error(&error, &file, &text);
             wrong(error.to_string(), place, None)
@@ -71,11 +79,52 @@ impl Scenario {
         }
         let expectations =
             Expectations::bind(&file, &text).map_err(|found| wrong(found.message, Some(found.place), found.help))?;
-        let name = std::path::absolute(&folder)
-            .ok()
-            .and_then(|folder| folder.file_name().map(|name| name.to_string_lossy().into_owned()))
-            .unwrap_or_else(|| "scenario".to_owned());
-        Ok(Self { name, folder, path, text, file, plan, expectations, coverage: None, gateways: BTreeMap::new() })
+        let name = name_of(&path);
+        Ok(Self { name, folder, path, text, file, plan, expectations, applied: None, coverage: None, gateways: BTreeMap::new(), watched: None })
+    }
+
+    /// The scenario in `path` as the case called `name` wants it; as it is without a name.
+    ///
+    /// # Errors
+    /// See [`ScenarioError`].
+    pub fn load_case(path: &Path, name: Option<&str>) -> Result<Self, ScenarioError> {
+        let scenario = Self::load(path)?;
+        let Some(name) = name else { return Ok(scenario) };
+        let catalogue = Catalogue::load(scenario.folder())?;
+        if let Some(case) = catalogue.find(name) {
+            return scenario.with_case(&catalogue, case);
+        }
+        let names = || catalogue.cases().iter().map(|case| case.name.as_str());
+        let all = || format!("its cases are {}", names().collect::<Vec<_>>().join(", "));
+        let help = did_you_mean(name, names()).unwrap_or_else(all);
+        Err(ScenarioError::UnknownCase { scenario: scenario.name, case: name.to_owned(), help })
+    }
+
+    /// The case that is tried.
+    pub fn case(&self) -> Option<&case::Case> {
+        self.applied().map(|applied| &applied.case)
+    }
+
+    pub(super) fn applied(&self) -> Option<&Applied> {
+        self.applied.as_deref()
+    }
+
+    pub(super) fn put_on(&mut self, applied: Applied) {
+        self.applied = Some(Arc::new(applied));
+    }
+
+    pub(super) fn set_expectations(&mut self, expectations: Expectations) {
+        self.expectations = expectations;
+    }
+
+    /// When a run is complete.
+    pub fn until(&self) -> VirtualTime {
+        self.case().and_then(|case| case.until).unwrap_or(self.file.until)
+    }
+
+    /// What chance begins with.
+    pub fn seed(&self) -> u64 {
+        self.case().and_then(|case| case.seed).unwrap_or(self.file.seed)
     }
 
     /// Lets soft PLCs note what they execute.
@@ -88,7 +137,7 @@ impl Scenario {
         self.coverage.as_ref()
     }
 
-    /// The folder's name.
+    /// The folder's name, or the file's if that is not the folder's only one.
     pub fn name(&self) -> &str {
         &self.name
     }
@@ -96,6 +145,21 @@ impl Scenario {
     /// The folder, to which all other files are relative.
     pub fn folder(&self) -> &Path {
         &self.folder
+    }
+
+    /// The files that the scenario is made of, itself first, as it names them: relative to its folder.
+    pub fn files(&self) -> Vec<PathBuf> {
+        let mut files = vec![self.path.file_name().map_or_else(|| FILE_NAME.into(), PathBuf::from)];
+        for client in self.file.clients.values() {
+            match client.get_ref() {
+                ClientFile::Plant { scene, .. } => files.push(scene.into()),
+                ClientFile::SoftPlc { sources, .. } => files.extend(sources.iter().map(PathBuf::from)),
+                ClientFile::Operator { .. } | ClientFile::Gateway { .. } | ClientFile::External { .. } => {}
+            }
+        }
+        files.extend(self.applied().and(Some(case::FILE_NAME.into())));
+        files.dedup();
+        files
     }
 
     /// The file as it is written.
@@ -119,6 +183,11 @@ impl Scenario {
         wrong(&self.path, &self.text, message, place, help)
     }
 
+    /// An error of an option, which has no place in the file.
+    pub(super) fn wrong_option(&self, message: String, help: Option<String>) -> ScenarioError {
+        wrong(&self.path, &self.text, message, None, help)
+    }
+
     /// An error at the entry of signal `name`.
     pub(super) fn wrong_signal(&self, name: &SignalName, message: String, help: Option<String>) -> ScenarioError {
         let place = self.file.signals.get(name).map(toml::Spanned::span);
@@ -126,13 +195,14 @@ impl Scenario {
     }
 }
 
-fn wrong(path: &Path, text: &str, message: String, place: Option<Range<usize>>, help: Option<String>) -> ScenarioError {
-    ScenarioError::Wrong {
-        message,
-        file: NamedSource::new(path.display().to_string(), text.to_owned()),
-        place: place.map(SourceSpan::from),
-        help,
-    }
+/// The name of the folder of a `scenario.toml`; any other file has its own.
+fn name_of(path: &Path) -> String {
+    let named = if path.file_name().is_some_and(|name| name == FILE_NAME) {
+        std::path::absolute(path).ok().and_then(|path| Some(path.parent()?.file_name()?.to_owned()))
+    } else {
+        path.file_stem().map(ToOwned::to_owned)
+    };
+    named.map_or_else(|| "scenario".to_owned(), |name| name.to_string_lossy().into_owned())
 }
 
 /// The line that begins with `key`.
@@ -175,6 +245,7 @@ fn place_of_plan_error(error: &PlanError, file: &ScenarioFile, text: &str) -> Op
 pub fn period_of(client: &ClientFile, step: TimeSpan) -> Option<TimeSpan> {
     match client {
         ClientFile::Plant { period, .. } | ClientFile::Gateway { period, .. } => Some(period.unwrap_or(step)),
+        ClientFile::Operator { .. } => Some(step),
         ClientFile::SoftPlc { .. } | ClientFile::External { .. } => None,
     }
 }

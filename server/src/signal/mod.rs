@@ -8,6 +8,7 @@
 
 pub mod elementary;
 pub mod name;
+pub mod pattern;
 pub mod port;
 
 use serde::{Deserialize, Serialize};

@@ -18,8 +18,12 @@ pub enum Coupling {
     Belt,
     /// A ray, carried by a body, that meets other bodies.
     Ray,
-    /// A body that other bodies touch.
+    /// A body that dynamic bodies touch, or one shape of it.
     Touch,
+    /// A body that other bodies of any kind touch, or one shape of it.
+    Contact,
+    /// Bodies that may meet each other.
+    Meet,
     /// A body that takes out of the world what touches it and is not held.
     Collect,
     /// A body at whose place other bodies appear.
@@ -71,7 +75,16 @@ impl Coupling {
                     ]
                 }
             }
-            Self::Touch | Self::Collect => {
+            Self::Touch | Self::Contact => {
+                const {
+                    &[
+                        needed("body", "body with a shape, which the targets touch"),
+                        optional("shape", "the one of its `[[shape]]`s that counts; all of it if absent"),
+                        optional("targets", "bodies that count; all dynamic ones but itself if absent"),
+                    ]
+                }
+            }
+            Self::Collect => {
                 const {
                     &[
                         needed("body", "body with a shape, which the targets touch"),
@@ -79,10 +92,14 @@ impl Coupling {
                     ]
                 }
             }
+            Self::Meet => const { &[optional("targets", "bodies that count; all dynamic ones if absent")] },
             Self::Place => {
                 const {
                     &[
-                        needed("body", "body at whose place the targets appear"),
+                        needed(
+                            "body",
+                            "body at whose place the targets appear; if it has a shape, only when nothing is in it",
+                        ),
                         needed("targets", "dynamic bodies with a shape, out of the world until they appear"),
                     ]
                 }
@@ -107,7 +124,7 @@ pub(crate) struct Seen {
     pub(crate) hit_m: Option<f64>,
     /// The first of the targets that touches, or that can appear.
     pub(crate) target: Option<u32>,
-    /// How many targets touch, or can appear.
+    /// How many targets touch, or can appear; how many pairs of them meet.
     pub(crate) count: u32,
 }
 

@@ -17,6 +17,7 @@ use crate::plant::component::coupling::Coupling;
 pub(super) struct Placed<'s> {
     pub(super) file: &'s SceneFile,
     pub(super) bodies: &'s Names,
+    pub(super) shapes: &'s Names,
     pub(super) joints: &'s Names,
     pub(super) axes: &'s [Axis],
 }
@@ -81,15 +82,17 @@ impl Placed<'_> {
             }
             Coupling::Belt => self.belt(keys, others, faults),
             Coupling::Ray => self.ray(keys, faults),
-            Coupling::Touch | Coupling::Collect => {
+            Coupling::Touch | Coupling::Contact => self.touch(coupling, keys, faults),
+            Coupling::Collect => {
                 let body = self.shaped(keys, faults);
-                let targets = match keys.texts("targets", faults) {
-                    Some(names) => self.targets(&names, faults),
-                    None => self.dynamic().filter(|index| Some(*index) != body).collect(),
-                };
-                let body = body?;
-                let touch = coupling == Coupling::Touch;
-                Some(if touch { Bound::Touch { body, targets } } else { Bound::Collect { body, targets } })
+                let targets = self.dynamic_targets(keys, body, faults);
+                Some(Bound::Collect { body: body?, targets })
+            }
+            Coupling::Meet => {
+                let mut targets = self.dynamic_targets(keys, None, faults);
+                targets.sort_unstable();
+                targets.dedup();
+                Some(Bound::Meet { targets })
             }
             Coupling::Place => {
                 let body = self.body(keys, faults);
@@ -127,10 +130,45 @@ impl Placed<'_> {
         self.bodies.find(&keys.text("body", "the name of a body", faults)?, faults)
     }
 
+    /// A body that others touch, or one of its shapes.
+    fn touch(&self, coupling: Coupling, keys: &Keys<'_>, faults: &mut Faults<'_>) -> Option<Bound> {
+        let named = keys.text("shape", "the name of a shape", faults);
+        let body = if named.is_some() { self.body(keys, faults) } else { self.shaped(keys, faults) };
+        let shape = named.as_ref().map(|name| (name, self.shapes.find(name, faults)));
+        if let (Some(body), Some((name, Some(shape)))) = (body, &shape)
+            && text(&self.file.shape[*shape].get_ref().body) != text(&self.file.body[body].get_ref().name)
+        {
+            let body = text(&self.file.body[body].get_ref().name).to_owned();
+            faults.add(name.span(), SceneFaultKind::ForeignShape { shape: text(name).to_owned(), body });
+        }
+        let targets = match (coupling, keys.texts("targets", faults)) {
+            (Coupling::Contact, Some(names)) => {
+                names.iter().filter_map(|name| self.bodies.find(name, faults)).collect()
+            }
+            (_, Some(names)) => self.targets(&names, faults),
+            (_, None) => self.dynamic().filter(|index| Some(*index) != body).collect(),
+        };
+        let shape = match shape {
+            Some((_, found)) => Some(found?),
+            None => None,
+        };
+        Some(Bound::Touch { body: body?, shape, targets })
+    }
+
+    /// The dynamic bodies that count, all but one if nothing is said.
+    fn dynamic_targets(&self, keys: &Keys<'_>, but: Option<usize>, faults: &mut Faults<'_>) -> Vec<usize> {
+        match keys.texts("targets", faults) {
+            Some(names) => self.targets(&names, faults),
+            None => self.dynamic().filter(|index| Some(*index) != but).collect(),
+        }
+    }
+
     /// The body that targets touch: one with a shape.
     fn shaped(&self, keys: &Keys<'_>, faults: &mut Faults<'_>) -> Option<usize> {
         let body = self.body(keys, faults)?;
-        if self.file.body[body].get_ref().shape.is_none() {
+        let name = text(&self.file.body[body].get_ref().name);
+        let attached = self.file.shape.iter().any(|shape| text(&shape.get_ref().body) == name);
+        if self.file.body[body].get_ref().shape.is_none() && !attached {
             let span = keys.get("body").map_or_else(|| keys.kind.span(), Spanned::span);
             let name = text(&self.file.body[body].get_ref().name).to_owned();
             faults.add(span, SceneFaultKind::Shapeless(name));

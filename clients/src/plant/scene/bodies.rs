@@ -4,9 +4,11 @@ use toml::Spanned;
 
 use super::error::SceneFaultKind;
 use super::faults::Faults;
-use super::format::{BodyKind, BodyTable, ShapeKind, Triple};
+use super::format::{BodyKind, BodyTable};
+use super::meshes::MeshKeys;
 use super::model::{Body, Collisions, GROUPS_MAX, Mass, Shape};
 use super::number::{Allowed, Entry};
+use super::shapes::Measures;
 use super::text;
 
 /// What joints and sensors call the world itself.
@@ -14,11 +16,11 @@ pub(super) const GROUND: &str = "ground";
 
 // What the engine computes with for certain: beyond, products of several such numbers leave the
 // range in which a double is precise, long before it overflows.
-const LENGTH_M: Allowed = Allowed::Within(1e-4, 1e4);
-const MASS_KG: Allowed = Allowed::Within(1e-6, 1e9);
+pub(super) const LENGTH_M: Allowed = Allowed::Within(1e-4, 1e4);
+pub(super) const MASS_KG: Allowed = Allowed::Within(1e-6, 1e9);
 const DENSITY_KG_M3: Allowed = Allowed::Within(1e-2, 1e5);
-const FRICTION: f64 = 0.5;
-const RESTITUTION: f64 = 0.0;
+pub(super) const FRICTION: f64 = 0.5;
+pub(super) const RESTITUTION: f64 = 0.0;
 
 pub(super) fn check(tables: &[Spanned<BodyTable>], faults: &mut Faults<'_>) -> Vec<Body> {
     let mut groups = Vec::new();
@@ -59,93 +61,22 @@ fn shape(table: &Spanned<BodyTable>, faults: &mut Faults<'_>) -> Option<Shape> {
     let written = table.get_ref();
     let name = text(&written.name);
     let Some(kind) = &written.shape else {
-        if written.kind == BodyKind::Dynamic {
+        if written.kind == BodyKind::Dynamic && written.inertia_kg_m2.is_none() {
             let whose = format!("dynamic body `{name}`");
             faults.add(written.name.span(), SceneFaultKind::Missing { whose, key: "shape" });
         }
         return None;
     };
-    let mut measures = Measures { written, kind, faults };
-    measures.refuse_foreign();
-    let shape = match kind.get_ref() {
-        ShapeKind::Box => Shape::Box { size_m: measures.size()? },
-        ShapeKind::Sphere => Shape::Sphere { radius_m: measures.length("radius_m", written.radius_m.as_ref())? },
-        ShapeKind::Cylinder => {
-            let (radius_m, length_m) = measures.radius_and_length()?;
-            Shape::Cylinder { radius_m, length_m }
-        }
-        ShapeKind::Capsule => {
-            let (radius_m, length_m) = measures.radius_and_length()?;
-            Shape::Capsule { radius_m, length_m }
-        }
+    let measures = Measures {
+        name,
+        kind,
+        size_m: written.size_m.as_ref(),
+        radius_m: written.radius_m.as_ref(),
+        length_m: written.length_m.as_ref(),
+        mesh: MeshKeys { mesh: written.mesh.as_ref(), unit_m: written.unit_m.as_ref(), hull: written.hull.as_ref() },
+        dynamic: written.kind == BodyKind::Dynamic,
     };
-    Some(shape)
-}
-
-/// The measures of one shape.
-struct Measures<'m, 'f, 't> {
-    written: &'f BodyTable,
-    kind: &'f Spanned<ShapeKind>,
-    faults: &'m mut Faults<'t>,
-}
-
-impl Measures<'_, '_, '_> {
-    fn whose(&self) -> String {
-        let kind = match self.kind.get_ref() {
-            ShapeKind::Box => "box",
-            ShapeKind::Sphere => "sphere",
-            ShapeKind::Cylinder => "cylinder",
-            ShapeKind::Capsule => "capsule",
-        };
-        format!("{kind} `{}`", text(&self.written.name))
-    }
-
-    fn missing(&mut self, key: &'static str) {
-        let whose = self.whose();
-        self.faults.add(self.kind.span(), SceneFaultKind::Missing { whose, key });
-    }
-
-    fn length(&mut self, key: &'static str, value: Option<&Spanned<f64>>) -> Option<f64> {
-        if value.is_none() {
-            self.missing(key);
-        }
-        self.faults.number(Entry::new(key, value), LENGTH_M)
-    }
-
-    fn radius_and_length(&mut self) -> Option<(f64, f64)> {
-        let radius_m = self.length("radius_m", self.written.radius_m.as_ref());
-        let length_m = self.length("length_m", self.written.length_m.as_ref());
-        radius_m.zip(length_m)
-    }
-
-    fn size(&mut self) -> Option<[f64; 3]> {
-        let Some(size) = &self.written.size_m else {
-            self.missing("size_m");
-            return None;
-        };
-        self.faults.components("size_m", size, LENGTH_M)
-    }
-
-    /// Measures that belong to another shape are faults.
-    fn refuse_foreign(&mut self) {
-        let written = self.written;
-        let (size, radius, length) = match self.kind.get_ref() {
-            ShapeKind::Box => (None, written.radius_m.as_ref(), written.length_m.as_ref()),
-            ShapeKind::Sphere => (written.size_m.as_ref(), None, written.length_m.as_ref()),
-            ShapeKind::Cylinder | ShapeKind::Capsule => (written.size_m.as_ref(), None, None),
-        };
-        let foreign = [
-            (size.map(Triple::span), "size_m"),
-            (radius.map(Spanned::span), "radius_m"),
-            (length.map(Spanned::span), "length_m"),
-        ];
-        for (span, key) in foreign {
-            if let Some(span) = span {
-                let whose = self.whose();
-                self.faults.add(span, SceneFaultKind::Misplaced { whose, key });
-            }
-        }
-    }
+    measures.shape(faults)
 }
 
 fn mass(written: &BodyTable, faults: &mut Faults<'_>) -> Option<Mass> {
@@ -161,6 +92,9 @@ fn mass(written: &BodyTable, faults: &mut Faults<'_>) -> Option<Mass> {
         }
         return Some(Mass::Total { kg: 0.0 });
     }
+    if written.centre_m.is_some() || written.inertia_kg_m2.is_some() {
+        return stated(written, faults);
+    }
     match (total.value, density.value) {
         (Some(_), None) => faults.number(total, MASS_KG).map(|kg| Mass::Total { kg }),
         (None, Some(_)) => faults.number(density, DENSITY_KG_M3).map(|kg_m3| Mass::Density { kg_m3 }),
@@ -169,6 +103,33 @@ fn mass(written: &BodyTable, faults: &mut Faults<'_>) -> Option<Mass> {
             None
         }
     }
+}
+
+/// The mass properties that are stated as such, unless they are at fault.
+fn stated(written: &BodyTable, faults: &mut Faults<'_>) -> Option<Mass> {
+    let whose = || format!("body `{}` with mass properties of its own", text(&written.name));
+    let Some(inertia) = &written.inertia_kg_m2 else {
+        let centre = written.centre_m.as_ref()?;
+        faults.add(centre.span(), SceneFaultKind::Missing { whose: whose(), key: "inertia_kg_m2" });
+        return None;
+    };
+    let inertia_kg_m2 = *inertia.get_ref();
+    let [xx, yy, zz, xy, xz, yz] = inertia_kg_m2;
+    let minor = xx * yy - xy * xy;
+    let determinant = xx * (yy * zz - yz * yz) - xy * (xy * zz - yz * xz) + xz * (xy * yz - yy * xz);
+    if !(xx > 0.0 && minor > 0.0 && determinant > 0.0 && determinant.is_finite()) {
+        let wanted = "a tensor whose principal moments are above 0".to_owned();
+        let value = format!("{inertia_kg_m2:?}");
+        faults.add(inertia.span(), SceneFaultKind::Number { key: "inertia_kg_m2", wanted, value });
+        return None;
+    }
+    if written.mass_kg.is_none() {
+        faults.add(inertia.span(), SceneFaultKind::Missing { whose: whose(), key: "mass_kg" });
+    }
+    let kg = faults.number(Entry::new("mass_kg", written.mass_kg.as_ref()), MASS_KG);
+    let origin = faults.triple("position_m", written.position_m.as_ref()).unwrap_or_default();
+    let centre_m = faults.triple("centre_m", written.centre_m.as_ref()).unwrap_or(origin);
+    kg.map(|kg| Mass::Stated { kg, centre_m, inertia_kg_m2 })
 }
 
 fn collisions<'f>(written: &'f BodyTable, groups: &mut Vec<&'f str>, faults: &mut Faults<'_>) -> Collisions {

@@ -58,6 +58,8 @@ pub enum Bound {
     Touch {
         /// Index of the body.
         body: usize,
+        /// Index of the only shape of it that counts, all if none.
+        shape: Option<usize>,
         /// Indices of the others.
         targets: Vec<usize>,
     },
@@ -66,6 +68,11 @@ pub enum Bound {
         /// Index of the body.
         body: usize,
         /// Indices of the others.
+        targets: Vec<usize>,
+    },
+    /// Bodies that may meet each other.
+    Meet {
+        /// Their indices, in rising order.
         targets: Vec<usize>,
     },
     /// A body at whose place others appear.

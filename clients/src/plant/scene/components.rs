@@ -3,6 +3,7 @@
 use onescan_server::signal::{ElementaryType, SignalName, nearest};
 use toml::{Spanned, Value};
 
+use super::arrays::listed;
 use super::bindings::Placed;
 use super::error::{SceneFaultKind, Thing};
 use super::faults::Faults;
@@ -66,7 +67,8 @@ impl<'f> Keys<'f> {
         if names.is_none() {
             faults.add(value.span(), SceneFaultKind::Text { key: key.to_owned(), wanted: "a list of names" });
         }
-        Some(names?.into_iter().map(|name| Spanned::new(value.span(), name)).collect())
+        let names: Vec<_> = names?.into_iter().map(|name| Spanned::new(value.span(), name)).collect();
+        Some(listed(&names, faults))
     }
 
     /// Three numbers behind a key.

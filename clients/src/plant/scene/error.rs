@@ -6,6 +6,8 @@ use onescan_server::client::SourcePlace;
 use onescan_server::signal::BadName;
 use thiserror::Error;
 
+use crate::array::ArrayError;
+
 /// Why a scene file is not a scene.
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum SceneError {
@@ -66,6 +68,8 @@ impl std::error::Error for SceneFault {}
 pub enum Thing {
     /// `[[body]]`
     Body,
+    /// `[[shape]]`
+    Shape,
     /// `[[joint]]`
     Joint,
     /// `[[axis]]`
@@ -82,6 +86,7 @@ impl fmt::Display for Thing {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
             Self::Body => "body",
+            Self::Shape => "shape",
             Self::Joint => "joint",
             Self::Axis => "axis",
             Self::Sensor => "sensor",
@@ -120,6 +125,36 @@ pub enum SceneFaultKind {
         thing: Thing,
         /// The name that was looked for.
         name: String,
+    },
+    /// A range in a name that stands for nothing.
+    #[error(transparent)]
+    Array(ArrayError),
+    /// A mesh that cannot be used.
+    #[error("mesh `{file}` {cause}")]
+    Mesh {
+        /// Its file.
+        file: String,
+        /// What is wrong with it.
+        cause: String,
+    },
+    /// A robot that cannot be used.
+    #[error("robot `{file}` {cause}")]
+    Urdf {
+        /// Its file.
+        file: String,
+        /// What is wrong with it.
+        cause: String,
+    },
+    /// A surface without an inside, where a body has to have one.
+    #[error("{0} is of a dynamic body and needs its hull: only what no force moves can be a mere surface")]
+    OpenSurface(String),
+    /// A shape of another body.
+    #[error("shape `{shape}` is none of body `{body}`")]
+    ForeignShape {
+        /// The shape.
+        shape: String,
+        /// The body.
+        body: String,
     },
     /// A text that cannot name a signal.
     #[error(transparent)]

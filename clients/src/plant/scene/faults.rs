@@ -1,6 +1,7 @@
 //! Gathers the faults of one file and finds their lines.
 
 use std::ops::Range;
+use std::path::{Path, PathBuf};
 
 use onescan_server::client::SourcePlace;
 use onescan_server::signal::nearest;
@@ -33,6 +34,11 @@ impl<'t> Faults<'t> {
             line: before.matches('\n').count() as u32 + 1,
             column: before[line_start..].chars().count() as u32 + 1,
         }
+    }
+
+    /// A file that the scene names, found beside its own.
+    pub(super) fn beside(&self, name: &str) -> PathBuf {
+        Path::new(self.file).parent().unwrap_or_else(|| Path::new("")).join(name)
     }
 
     pub(super) fn add(&mut self, span: Range<usize>, kind: SceneFaultKind) {

@@ -22,6 +22,10 @@ pub(super) struct SceneFile {
     #[serde(default)]
     pub(super) body: Vec<Spanned<BodyTable>>,
     #[serde(default)]
+    pub(super) shape: Vec<Spanned<ShapeTable>>,
+    #[serde(default)]
+    pub(super) urdf: Vec<Spanned<UrdfTable>>,
+    #[serde(default)]
     pub(super) joint: Vec<Spanned<JointTable>>,
     #[serde(default)]
     pub(super) axis: Vec<Spanned<AxisTable>>,
@@ -39,7 +43,7 @@ pub(super) struct SceneFile {
 pub(super) type ComponentTable = BTreeMap<Spanned<String>, Spanned<toml::Value>>;
 
 /// `[[failure]]`
-#[derive(Debug, Deserialize)]
+#[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct FailureTable {
     pub(super) component: Spanned<String>,
@@ -50,7 +54,7 @@ pub(super) struct FailureTable {
 }
 
 /// `[[signal]]`
-#[derive(Debug, Deserialize)]
+#[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct SignalTable {
     pub(super) name: Spanned<String>,
@@ -86,10 +90,11 @@ pub(super) enum ShapeKind {
     Sphere,
     Cylinder,
     Capsule,
+    Mesh,
 }
 
 /// `[[body]]`
-#[derive(Debug, Deserialize)]
+#[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct BodyTable {
     pub(super) name: Spanned<String>,
@@ -98,15 +103,58 @@ pub(super) struct BodyTable {
     pub(super) size_m: Option<Triple>,
     pub(super) radius_m: Option<Spanned<f64>>,
     pub(super) length_m: Option<Spanned<f64>>,
+    pub(super) mesh: Option<Spanned<String>>,
+    pub(super) unit_m: Option<Spanned<f64>>,
+    pub(super) hull: Option<Spanned<bool>>,
     pub(super) position_m: Option<Triple>,
     pub(super) rpy_deg: Option<Triple>,
     pub(super) velocity_m_s: Option<Triple>,
     pub(super) mass_kg: Option<Spanned<f64>>,
     pub(super) density_kg_m3: Option<Spanned<f64>>,
+    pub(super) centre_m: Option<Triple>,
+    pub(super) inertia_kg_m2: Option<Spanned<[f64; 6]>>,
     pub(super) friction: Option<Spanned<f64>>,
     pub(super) restitution: Option<Spanned<f64>>,
     pub(super) collides: Option<bool>,
     pub(super) group: Option<Spanned<String>>,
+    pub(super) turn_about_m: Option<Triple>,
+    pub(super) step_m: Option<Triple>,
+}
+
+/// `[[shape]]`: one more shape of a body.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct ShapeTable {
+    pub(super) name: Spanned<String>,
+    pub(super) body: Spanned<String>,
+    pub(super) shape: Spanned<ShapeKind>,
+    pub(super) size_m: Option<Triple>,
+    pub(super) radius_m: Option<Spanned<f64>>,
+    pub(super) length_m: Option<Spanned<f64>>,
+    pub(super) mesh: Option<Spanned<String>>,
+    pub(super) unit_m: Option<Spanned<f64>>,
+    pub(super) hull: Option<Spanned<bool>>,
+    pub(super) position_m: Option<Triple>,
+    pub(super) rpy_deg: Option<Triple>,
+    pub(super) mass_kg: Option<Spanned<f64>>,
+    pub(super) friction: Option<Spanned<f64>>,
+    pub(super) restitution: Option<Spanned<f64>>,
+    pub(super) collides: Option<bool>,
+    pub(super) turn_about_m: Option<Triple>,
+    pub(super) step_m: Option<Triple>,
+}
+
+/// `[[urdf]]`: bodies, shapes and joints from a file.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct UrdfTable {
+    pub(super) name: Spanned<String>,
+    pub(super) file: Spanned<String>,
+    pub(super) position_m: Option<Triple>,
+    pub(super) rpy_deg: Option<Triple>,
+    pub(super) fixed: Option<bool>,
+    pub(super) collides: Option<bool>,
+    pub(super) friction: Option<Spanned<f64>>,
 }
 
 /// What a joint leaves free.
@@ -126,7 +174,7 @@ pub enum JointKind {
 }
 
 /// `[[joint]]`
-#[derive(Debug, Deserialize)]
+#[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct JointTable {
     pub(super) name: Spanned<String>,
@@ -170,7 +218,7 @@ pub enum NumberType {
 }
 
 /// `[[axis]]`
-#[derive(Debug, Deserialize)]
+#[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct AxisTable {
     pub(super) name: Spanned<String>,
@@ -202,7 +250,7 @@ pub(super) enum SensorKind {
 }
 
 /// `[[sensor]]`
-#[derive(Debug, Deserialize)]
+#[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct SensorTable {
     pub(super) name: Spanned<String>,

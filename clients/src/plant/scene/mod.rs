@@ -15,12 +15,26 @@
 //! | `[[body]]` | meaning |
 //! |---|---|
 //! | `name`, `kind` | `fixed`, `dynamic` or `kinematic` |
-//! | `shape` | `box` (`size_m`, whole edges), `sphere` (`radius_m`), `cylinder` or `capsule` (`radius_m`, `length_m`, along z; a capsule's caps come on top); only a dynamic body must have one |
+//! | `shape` | `box` (`size_m`, whole edges), `sphere` (`radius_m`), `cylinder` or `capsule` (`radius_m`, `length_m`, along z; a capsule's caps come on top), `mesh` (`mesh`, a file `.stl` or `.obj` beside the scene; `unit_m`, what 1 means in it, 1 if absent; `hull = false` for its very surface in place of its convex hull, where no force moves the body); only a dynamic body must have one |
 //! | `position_m`, `rpy_deg` | origin; roll about x, then pitch about y, then yaw about z |
 //! | `velocity_m_s` | at the start for a dynamic body, always for a kinematic one |
 //! | `mass_kg` or `density_kg_m3` | of a dynamic body |
+//! | `centre_m`, `inertia_kg_m2` | centre of mass and `[ixx, iyy, izz, ixy, ixz, iyz]` about it along the world's axes, with `mass_kg`, in place of those of the shape |
 //! | `friction`, `restitution` | 0.5 and 0 if absent |
 //! | `collides`, `group` | `collides = false` for a body that only sensors see; bodies of one group do not collide with each other |
+//!
+//! | `[[shape]]` | meaning: one more shape of a body |
+//! |---|---|
+//! | `name`, `body` | |
+//! | `shape`, its measures, `position_m`, `rpy_deg`, `friction`, `restitution`, `collides` | as of a body |
+//! | `mass_kg` | what it adds to a dynamic body, nothing if absent |
+//!
+//! | `[[urdf]]` | meaning: a robot from a URDF file |
+//! |---|---|
+//! | `name`, `file` | a link `upper` of robot `arm` is body `arm.upper`, a joint `elbow` is joint `arm.elbow` |
+//! | `position_m`, `rpy_deg` | of its root link |
+//! | `fixed` | whether the root stays in place, true if absent |
+//! | `collides`, `friction` | of all of its shapes; links of one robot do not collide with each other |
 //!
 //! | `[[joint]]` | meaning |
 //! |---|---|
@@ -77,6 +91,12 @@
 //! | `delay_s`, `jitter_s` | arrives so much later, and up to the jitter later than that, in order |
 //! | `range`, `raw`, `type` | the range in the signal's unit, as it is in the PLC's type: scaled and limited |
 //!
+//! # Arrays
+//! A table whose name has a range, as in `name = "arm[0..9]"`, is there once for each index, and
+//! `[i]` in its other texts is the index: `hold_signal = "LW_ARM[i].OUT_HOLD_CONTAINER"`. In a list, as
+//! `targets`, a range stands for all of its names. Bodies and shapes are put in a row by `step_m`, from
+//! one to the next, or evenly around the vertical through `turn_about_m`.
+//!
 //! # Reading
 //! A scene is read in two passes. The first gives the tables as they are written and stops at the
 //! first fault of form, as TOML readers do. The second checks every value and finds every name; it
@@ -87,12 +107,15 @@
 //! | `format` | the tables and keys of the file |
 //! | `faults` | gathering faults, finding their lines |
 //! | `number`, `names` | what a number and a name must be |
-//! | `bodies`, `joints`, `axes`, `sensors`, `signals` | the second pass, one sort of table each |
+//! | `arrays` | one table for many things |
+//! | `robots` | the tables that a URDF file stands for |
+//! | `bodies`, `shapes`, `meshes`, `joints`, `axes`, `sensors`, `signals` | the second pass, one sort of table each |
 //! | `components`, `bindings`, `failures`, `conditions` | the same, for components and what surrounds them |
 //! | [`model`] | the checked scene |
 //! | [`error`] | what can be wrong |
 //! | [`schema`] | the format as a JSON schema |
 
+mod arrays;
 mod axes;
 mod bindings;
 mod bodies;
@@ -104,11 +127,14 @@ mod failures;
 mod faults;
 mod format;
 mod joints;
+mod meshes;
 pub mod model;
 mod names;
 mod number;
+mod robots;
 pub mod schema;
 mod sensors;
+mod shapes;
 mod signals;
 
 use toml::Spanned;
@@ -140,7 +166,9 @@ impl Scene {
     pub fn parse(text: &str, file: &str) -> Result<Self, SceneError> {
         let mut faults = Faults::new(text, file);
         match toml::from_str::<SceneFile>(text) {
-            Ok(written) => {
+            Ok(mut written) => {
+                arrays::expand(&mut written, &mut faults);
+                robots::expand(&mut written, &mut faults);
                 let scene = check(&written, &mut faults);
                 faults.into_result(scene)
             }
@@ -158,13 +186,15 @@ fn check(written: &SceneFile, faults: &mut Faults<'_>) -> Scene {
     }
     let bodies = Names::gather(Thing::Body, written.body.iter().map(|body| &body.get_ref().name), faults);
     let joints = Names::gather(Thing::Joint, written.joint.iter().map(|joint| &joint.get_ref().name), faults);
+    let shapes = Names::gather(Thing::Shape, written.shape.iter().map(|shape| &shape.get_ref().name), faults);
     let mut signals = Signals::new();
     let extent = Entry::new("extent_m", written.extent_m.as_ref());
     let scene_bodies = bodies::check(&written.body, faults);
+    let scene_shapes = shapes::check(&written.shape, &written.body, &bodies, faults);
     let scene_joints = joints::check(&written.joint, &written.body, &bodies, faults);
     let axes = axes::check(written, &bodies, &joints, &mut signals, faults);
     let sensors = sensors::check(written, &bodies, &joints, &mut signals, faults);
-    let placed = Placed { file: written, bodies: &bodies, joints: &joints, axes: &axes };
+    let placed = Placed { file: written, bodies: &bodies, shapes: &shapes, joints: &joints, axes: &axes };
     let (mut components, lost) = components::check(&placed, &mut signals, faults);
     failures::check(&written.failure, (&mut components, &lost), &mut signals, faults);
     let conditions = conditions::check(&written.signal, &mut signals, faults);
@@ -177,6 +207,7 @@ fn check(written: &SceneFile, faults: &mut Faults<'_>) -> Scene {
             .count("solver_iterations", written.solver_iterations.as_ref(), SOLVER_ITERATIONS_MAX)
             .unwrap_or(SOLVER_ITERATIONS),
         bodies: scene_bodies,
+        shapes: scene_shapes,
         joints: scene_joints,
         axes,
         sensors,

@@ -25,6 +25,8 @@ pub struct Scene {
     pub solver_iterations: u32,
     /// Bodies in the file's order, which is the order of their insertion.
     pub bodies: Vec<Body>,
+    /// More shapes of bodies in the file's order, which is the order of their insertion.
+    pub shapes: Vec<Attached>,
     /// Joints in the file's order, which is the order of their insertion.
     pub joints: Vec<Joint>,
     /// Driven axes in the file's order.
@@ -66,8 +68,31 @@ pub struct Body {
     pub collisions: Collisions,
 }
 
+/// One more shape of a body, which moves with it.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Attached {
+    /// Its name.
+    pub name: String,
+    /// Index of its body.
+    pub body: usize,
+    /// Its form.
+    pub shape: Shape,
+    /// Its centre in the scene's pose, in world coordinates.
+    pub position_m: [f64; 3],
+    /// Its orientation in the scene's pose, as that of a body.
+    pub rpy_deg: [f64; 3],
+    /// What it adds to the mass of its body.
+    pub mass_kg: f64,
+    /// Coefficient of friction.
+    pub friction: f64,
+    /// Coefficient of restitution.
+    pub restitution: f64,
+    /// Whether it collides as its body does, or only sensors see it.
+    pub collides: bool,
+}
+
 /// The form of a body, centred on its origin.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub enum Shape {
     /// Edges along the body's axes.
     Box {
@@ -93,6 +118,22 @@ pub enum Shape {
         /// Its length without the caps.
         length_m: f64,
     },
+    /// The convex hull of a mesh.
+    Hull {
+        /// The mesh's file.
+        file: String,
+        /// Its corners.
+        corners_m: Vec<[f64; 3]>,
+    },
+    /// The very surface of a mesh, for a body that no force moves.
+    Surface {
+        /// The mesh's file.
+        file: String,
+        /// Its corners.
+        corners_m: Vec<[f64; 3]>,
+        /// Indices of three corners each.
+        triangles: Vec<[u32; 3]>,
+    },
 }
 
 /// How the mass of a body is stated.
@@ -102,6 +143,15 @@ pub enum Mass {
     Total {
         /// The mass.
         kg: f64,
+    },
+    /// Mass properties in place of those of the shape.
+    Stated {
+        /// The mass.
+        kg: f64,
+        /// Centre of mass in the scene's pose, in world coordinates.
+        centre_m: [f64; 3],
+        /// ixx, iyy, izz, ixy, ixz, iyz about it, along the world's axes in the scene's pose.
+        inertia_kg_m2: [f64; 6],
     },
     /// Mass from the volume of the shape.
     Density {

@@ -14,6 +14,7 @@ const FLAG: &str = "boolean";
 const WHOLE: &str = "integer";
 const TEXTS: &str = "names";
 const PAIR: &str = "two numbers";
+const TENSOR: &str = "six numbers";
 
 /// Key and type of a fixed table; `!` marks what must be there.
 type Table = &'static [(&'static str, &'static str)];
@@ -29,19 +30,56 @@ const TOP: Table = &[
 const BODY: Table = &[
     ("name!", TEXT),
     ("kind!", "fixed|dynamic|kinematic"),
-    ("shape", "box|sphere|cylinder|capsule"),
+    ("shape", "box|sphere|cylinder|capsule|mesh"),
     ("size_m", NUMBERS),
     ("radius_m", NUMBER),
     ("length_m", NUMBER),
+    ("mesh", TEXT),
+    ("unit_m", NUMBER),
+    ("hull", FLAG),
     ("position_m", NUMBERS),
     ("rpy_deg", NUMBERS),
     ("velocity_m_s", NUMBERS),
     ("mass_kg", NUMBER),
     ("density_kg_m3", NUMBER),
+    ("centre_m", NUMBERS),
+    ("inertia_kg_m2", TENSOR),
     ("friction", NUMBER),
     ("restitution", NUMBER),
     ("collides", FLAG),
     ("group", TEXT),
+    ("turn_about_m", NUMBERS),
+    ("step_m", NUMBERS),
+];
+
+const SHAPE: Table = &[
+    ("name!", TEXT),
+    ("body!", TEXT),
+    ("shape!", "box|sphere|cylinder|capsule|mesh"),
+    ("size_m", NUMBERS),
+    ("radius_m", NUMBER),
+    ("length_m", NUMBER),
+    ("mesh", TEXT),
+    ("unit_m", NUMBER),
+    ("hull", FLAG),
+    ("position_m", NUMBERS),
+    ("rpy_deg", NUMBERS),
+    ("mass_kg", NUMBER),
+    ("friction", NUMBER),
+    ("restitution", NUMBER),
+    ("collides", FLAG),
+    ("turn_about_m", NUMBERS),
+    ("step_m", NUMBERS),
+];
+
+const URDF: Table = &[
+    ("name!", TEXT),
+    ("file!", TEXT),
+    ("position_m", NUMBERS),
+    ("rpy_deg", NUMBERS),
+    ("fixed", FLAG),
+    ("collides", FLAG),
+    ("friction", NUMBER),
 ];
 
 const JOINT: Table = &[
@@ -116,8 +154,16 @@ const SIGNAL: Table = &[
 ];
 
 /// The fixed tables by their names in a scene.
-const TABLES: &[(&str, Table)] =
-    &[("body", BODY), ("joint", JOINT), ("axis", AXIS), ("sensor", SENSOR), ("failure", FAILURE), ("signal", SIGNAL)];
+const TABLES: &[(&str, Table)] = &[
+    ("body", BODY),
+    ("shape", SHAPE),
+    ("urdf", URDF),
+    ("joint", JOINT),
+    ("axis", AXIS),
+    ("sensor", SENSOR),
+    ("failure", FAILURE),
+    ("signal", SIGNAL),
+];
 
 /// The schema of a scene (JSON Schema 2020-12).
 pub fn schema() -> Value {
@@ -140,6 +186,7 @@ fn of(ty: &str) -> Value {
         NUMBER | TEXT | FLAG | WHOLE => json!({ "type": ty }),
         NUMBERS => numbers(3),
         PAIR => numbers(2),
+        TENSOR => numbers(6),
         TEXTS => json!({ "type": "array", "items": { "type": TEXT } }),
         words => json!({ "enum": words.split('|').collect::<Vec<_>>() }),
     }

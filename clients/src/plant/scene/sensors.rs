@@ -3,6 +3,7 @@
 use onescan_server::signal::ElementaryType;
 use toml::Spanned;
 
+use super::arrays::listed;
 use super::bodies::GROUND;
 use super::error::{SceneFaultKind, Thing};
 use super::faults::Faults;
@@ -135,7 +136,7 @@ fn proximity(sensor: &SensorTable, body_count: usize, bodies: &Names, faults: &m
     let direction = needed(sensor, "direction", sensor.direction.as_ref(), faults);
     let range_m = needed(sensor, "range_m", sensor.range_m.as_ref(), faults);
     let targets = match &sensor.targets {
-        Some(names) => names.iter().filter_map(|name| bodies.find(name, faults)).collect(),
+        Some(names) => listed(names, faults).iter().filter_map(|name| bodies.find(name, faults)).collect(),
         None => (0..body_count).filter(|index| Some(*index) != body).collect(),
     };
     let point_m = faults.triple("point_m", point_m);

@@ -4,9 +4,13 @@
 //! |---|---|
 //! | [`show`] | bytes to literals |
 //! | [`read`] | literals to bytes |
+//! | [`radix`] | whole numbers in other bases |
 
+mod radix;
 mod read;
 mod show;
+
+pub use radix::Radix;
 
 use thiserror::Error;
 
@@ -44,6 +48,16 @@ impl Variable {
     /// Offset, size and bit: what it takes of memory.
     pub(crate) fn place(&self) -> (u32, u32, Option<u8>) {
         (self.offset, self.size, self.bit)
+    }
+
+    /// Its bytes, as many as it has; of a bit 0 or 1. Fewer where memory is of another application.
+    pub fn bytes(&self, memory: &[u8]) -> Vec<u8> {
+        let start = self.offset as usize;
+        let bytes = memory.get(start..start + self.size as usize).unwrap_or_default();
+        match (self.bit, bytes) {
+            (Some(bit), [byte, ..]) => vec![byte >> bit & 1],
+            _ => bytes.to_vec(),
+        }
     }
 
     /// Writes its bytes; of a bit, the bit alone.

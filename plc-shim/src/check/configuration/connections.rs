@@ -252,6 +252,9 @@ fn call_of(statements: &[Statement], offset: u32) -> Option<Span> {
                 open.extend(inner.arms.iter().flat_map(|arm| &arm.body).chain(&inner.otherwise));
             }
             StatementKind::For(inner) => open.extend(&inner.body),
+            StatementKind::Labelled(inner) => {
+                open.extend(inner.first.iter().chain(inner.parts.iter().flat_map(|(_, part)| part)));
+            }
             StatementKind::While(_, body) | StatementKind::Repeat(body, _) => open.extend(body),
             _ => {}
         }

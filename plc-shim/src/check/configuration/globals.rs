@@ -7,6 +7,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::super::Checker;
+use super::super::layout::INIT_RETAINS_NAME;
 use super::super::names::{GlobalEntry, Progress};
 use crate::diagnostic::{Code, Diagnostic};
 use crate::ir::{ElementaryType, PouId, Statement, StatementKind, Storage, Variable};
@@ -203,7 +204,7 @@ impl<'a> Checker<'a> {
     }
 
     fn globals_of(&self, home: Option<usize>) -> Vec<Variable> {
-        let found = self.globals.values().filter(|entry| entry.home == home);
+        let found = self.globals.values().filter(|entry| entry.home == home && entry.name != INIT_RETAINS_NAME);
         found.filter_map(|entry| entry.variable.clone()).collect()
     }
 }

@@ -1,8 +1,10 @@
 //! `VAR_CONFIG` and `VAR_ACCESS` (2nd ed. 2.7.1, 2.4.3; Table 49 features 10 and 11).
 
 use super::super::Checker;
+use super::super::initial::plain;
 use super::super::names::TypedImage;
 use super::super::scope::Body;
+use super::super::start::Started;
 use super::super::types::Need;
 use crate::diagnostic::{Code, Diagnostic};
 use crate::ir::{Access, Storage, Target};
@@ -32,8 +34,8 @@ impl<'a> Checker<'a> {
         if let Some(initial) = &value.initial {
             // What is not mentioned keeps the value that its own declaration gives.
             let image = self.image_at(target.inside, self.types.size(target.ty));
-            let declared = TypedImage { ty: target.ty, image: image.into() };
-            let image = Body::outside(self).initial_image(&declared, initial)?;
+            let mut body = Body::outside(self);
+            let TypedImage { image, starts, .. } = body.with_initial(&plain(target.ty, image.into()), initial)?;
             if !matches!(target.storage, Storage::Absolute(_)) {
                 return self.unsuitable_value(
                     &target,
@@ -42,6 +44,8 @@ impl<'a> Checker<'a> {
                 );
             }
             self.placed.push((target.inside, image));
+            let place = super::connections::place(&target, value.path.span);
+            self.configured.values.push(Started { place, starts });
         }
         Some(())
     }

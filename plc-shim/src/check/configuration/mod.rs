@@ -24,6 +24,7 @@ use std::collections::BTreeMap;
 use self::globals::Alternatives;
 use self::locations::InstanceLocation;
 use super::Checker;
+use super::start::Started;
 use crate::diagnostic::{Code, Diagnostic};
 use crate::ir::{self, Entry, PouId};
 use crate::syntax::Span;
@@ -41,6 +42,8 @@ pub(super) struct Configured<'a> {
     pub(super) entries: Vec<Entry>,
     access: Vec<ir::Access>,
     locations: Vec<InstanceLocation>,
+    /// What a start does to single instances' values.
+    pub(super) values: Vec<Started<'a>>,
     /// Instances of function blocks with a task of their own: the program, the instance's offset in
     /// it, where that is said.
     task_blocks: Vec<(usize, u32, Span)>,

@@ -8,6 +8,7 @@ use super::{edit, parse};
 use crate::compile::text_host::{MODULE, TextImport};
 use crate::ir::ElementaryType;
 use crate::ir::text::Edit;
+use crate::run::trace::Trace;
 
 /// What host functions work on.
 #[derive(Debug, Default)]
@@ -16,6 +17,8 @@ pub(in crate::run) struct HostState {
     pub(in crate::run) memory: Option<Memory>,
     /// What is left of the task's budget of instructions.
     pub(in crate::run) budget: Option<Global>,
+    /// What statements are held against, if the program is traced.
+    pub(in crate::run) trace: Option<Box<Trace>>,
 }
 
 /// Characters that cost as much as one instruction.

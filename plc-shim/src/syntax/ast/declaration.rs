@@ -1,6 +1,6 @@
 //! Declarations of units, types and variables (2nd ed. 2.3 to 2.5).
 
-use super::{Configuration, Expr, Ident, Modifier, Namespace, Object, Span, Statement};
+use super::{Argument, Configuration, Expr, Ident, Modifier, Namespace, Object, Span, Statement};
 
 /// Something a file declares.
 #[derive(Debug, Clone)]
@@ -84,6 +84,8 @@ pub enum SectionKind {
     Temp,
     /// `VAR_STAT`: one variable for all instances and calls (vendors).
     Static,
+    /// `VAR_INST` of a method: kept in its instance (vendors).
+    Instance,
     /// `VAR_GLOBAL`
     Global,
     /// `VAR_EXTERNAL`
@@ -170,10 +172,35 @@ pub enum TypeSpecKind {
     Union(Vec<Field>),
     /// `STRUCT .. END_STRUCT`, in a `TYPE` block only.
     Struct(Vec<Field>),
+    /// `FB(a := 1)`, `FB[(a := 1), (a := 2)]`: instances of vendors, and what their `FB_init` is given
+    Instance(Ident, InitArguments),
     /// `(Red, Green := 5)`, `(Red, Green) USINT` or `USINT (Red, Green)`
     Enumeration(Vec<EnumValue>, Option<Ident>),
     /// Text that is no type; a diagnostic has been given.
     Error,
+}
+
+/// What `FB_init` is given where instances are declared (CODESYS, TwinCAT).
+#[derive(Debug, Clone)]
+pub enum InitArguments {
+    /// `(a := 1)`: each instance the same.
+    Same(Vec<Argument>),
+    /// `[(a := 1), (a := 2)]`: the instances of an array in their order.
+    Listed(Vec<Vec<Argument>>),
+}
+
+impl InitArguments {
+    /// Every value that is given.
+    pub fn values(&self) -> impl Iterator<Item = &Expr> {
+        let lists = match self {
+            Self::Same(arguments) => std::slice::from_ref(arguments),
+            Self::Listed(lists) => lists,
+        };
+        lists.iter().flatten().filter_map(|argument| match argument {
+            Argument::Positional(value) | Argument::Input(_, value) => Some(value),
+            Argument::Output { target, .. } => target.as_ref(),
+        })
+    }
 }
 
 /// How a type refers to another.

@@ -1,6 +1,6 @@
 //! Statements (2nd ed. 3.3.2).
 
-use super::{Call, Expr, Ident, Span};
+use super::{Call, Expr, Ident, Instruction, Span};
 
 /// A statement and its place, the semicolon not included.
 #[derive(Debug, Clone)]
@@ -44,6 +44,12 @@ pub enum StatementKind {
     Continue,
     /// `RETURN`
     Return,
+    /// `name:`, where jumps lead to (2nd ed. 4.1.4; vendors have it in ST).
+    Label(Ident),
+    /// `JMP name`
+    Jump(Ident),
+    /// One of a list of instructions.
+    Instruction(Box<Instruction>),
     /// Text that is no statement; a diagnostic has been given.
     Error,
 }

@@ -114,31 +114,32 @@ impl Cursor<'_> {
         Some(operator)
     }
 
-    /// `label:`, `GOTO label`, `JMP label`: known well enough to say that they are not supported.
-    fn jump(&mut self) -> Option<StatementKind> {
-        if self.peek() != Some(TokenKind::Identifier) {
+    /// `label:`
+    pub(super) fn label(&mut self) -> Option<StatementKind> {
+        let colon = self.peek_ahead(1) == Some(TokenKind::Punctuation(Punctuation::Colon));
+        if self.peek() != Some(TokenKind::Identifier) || !colon {
             return None;
         }
-        let start = self.span();
-        let word = self.next_text().to_ascii_uppercase();
-        if self.peek_ahead(1) == Some(TokenKind::Punctuation(Punctuation::Colon)) {
-            self.advance();
-            self.advance();
-            if self.at_type() {
-                let message = "a variable is declared between `VAR` and `END_VAR`";
-                self.report(Diagnostic::error(Code::UnexpectedToken, start, message));
-                return Some(StatementKind::Error);
-            }
-            self.report_jump(start);
-            return Some(self.nested(Self::statement_kind).unwrap_or(StatementKind::Error));
-        }
-        if matches!(word.as_str(), "GOTO" | "JMP") && self.peek_ahead(1) == Some(TokenKind::Identifier) {
-            self.advance();
-            self.advance();
-            self.report_jump(self.span_from(start));
+        let name = self.take_identifier()?;
+        self.advance();
+        if self.at_type() {
+            let message = "a variable is declared between `VAR` and `END_VAR`";
+            self.report(Diagnostic::error(Code::UnexpectedToken, name.span, message));
             return Some(StatementKind::Error);
         }
-        None
+        self.require(Feature::Jumps, name.span);
+        Some(StatementKind::Label(name))
+    }
+
+    /// `JMP label`, `GOTO label`
+    fn jump(&mut self) -> Option<StatementKind> {
+        let named = self.peek_ahead(1) == Some(TokenKind::Identifier);
+        if !named || !(self.at_word("JMP") || self.at_word("GOTO")) {
+            return None;
+        }
+        self.require(Feature::Jumps, self.span());
+        self.advance();
+        self.take_identifier().map(StatementKind::Jump)
     }
 
     /// True for the name of an elementary type or `ARRAY`: what is before it is no label.
@@ -146,11 +147,6 @@ impl Cursor<'_> {
         let text = self.next_text();
         let string = || ["STRING", "WSTRING"].iter().any(|name| name.eq_ignore_ascii_case(text));
         self.at_keyword(Keyword::Array) || ElementaryType::find(text).is_some() || string()
-    }
-
-    fn report_jump(&mut self, span: crate::syntax::Span) {
-        let found = Diagnostic::error(Code::Jump, span, "jumps and labels are not supported");
-        self.report(found.with_help("use IF, a loop, EXIT or RETURN"));
     }
 
     /// Passes `__TRY`, `__CATCH (x)`, `__FINALLY` and `__ENDTRY`, so that the statements between are read.

@@ -6,6 +6,7 @@ use super::MAX_NESTING;
 use crate::diagnostic::{Code, Diagnostic};
 use crate::dialect::{Dialect, Feature};
 use crate::syntax::ast::Ident;
+use crate::syntax::origin::Origin;
 use crate::syntax::source::{FileId, Span};
 use crate::syntax::token::{Keyword, Punctuation, Token, TokenKind};
 
@@ -25,6 +26,8 @@ pub(super) struct Cursor<'a> {
     dialect: Dialect,
     /// What the dialect lacks, at its first use in the file.
     foreign: BTreeMap<Feature, Diagnostic>,
+    /// The way back into the file that the text was taken out of.
+    origin: Option<&'a Origin>,
 }
 
 impl<'a> Cursor<'a> {
@@ -36,6 +39,7 @@ impl<'a> Cursor<'a> {
         let good = |token: &Token| match token.kind {
             // A string without an end still stands where a value is wanted.
             TokenKind::Unterminated if starts_string(token) => Some(Token { kind: TokenKind::String, ..*token }),
+            TokenKind::Wire => Some(Token { kind: TokenKind::Identifier, ..*token }),
             kind if kind.is_trivia() || is_broken(kind) => None,
             _ => Some(*token),
         };
@@ -53,7 +57,18 @@ impl<'a> Cursor<'a> {
             abandoned: false,
             dialect,
             foreign: BTreeMap::new(),
+            origin: None,
         }
+    }
+
+    /// The same, of text that was taken out of a file.
+    pub(super) fn taken_out_of(self, origin: Option<&'a Origin>) -> Self {
+        Self { origin, ..self }
+    }
+
+    /// True if the text there was made for something else in the file: it keeps to no dialect.
+    pub(super) fn is_generated(&self, at: u32) -> bool {
+        self.origin.is_some_and(|origin| !origin.is_verbatim(at))
     }
 
     pub(super) fn file(&self) -> FileId {
@@ -71,7 +86,7 @@ impl<'a> Cursor<'a> {
 
     /// Reports `feature` if the dialect lacks it, once for a file. The grammar goes on as if it had it.
     pub(super) fn require(&mut self, feature: Feature, span: Span) {
-        if !self.dialect.has(feature) {
+        if !self.dialect.has(feature) && !self.is_generated(span.start) {
             let message = format!("{} is not part of {}", feature.about(), self.dialect);
             let help = format!("it is part of {}: --dialect chooses", feature.homes());
             let found = Diagnostic::error(Code::WrongDialect, span, message).with_help(help);
@@ -120,6 +135,18 @@ impl<'a> Cursor<'a> {
 
     pub(super) fn peek_ahead(&self, ahead: usize) -> Option<TokenKind> {
         self.tokens.get(self.at + ahead).map(|token| token.kind)
+    }
+
+    /// The text of the token so many places ahead.
+    pub(super) fn text_ahead(&self, ahead: usize) -> &'a str {
+        self.tokens.get(self.at + ahead).map_or("", |token| self.text(token.start, token.end))
+    }
+
+    /// True if a line ends before the token so many places ahead, or nothing follows.
+    pub(super) fn is_line_break(&self, ahead: usize) -> bool {
+        let Some(next) = self.tokens.get(self.at + ahead) else { return true };
+        let before = (self.at + ahead).checked_sub(1).and_then(|before| self.tokens.get(before));
+        before.is_none_or(|before| self.text(before.end, next.start).contains('\n'))
     }
 
     pub(super) fn take_word(&mut self, word: &str) -> bool {

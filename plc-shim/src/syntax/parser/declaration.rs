@@ -27,6 +27,7 @@ pub(super) fn section_kind(kind: Option<TokenKind>) -> Option<SectionKind> {
         TokenKind::Keyword(Keyword::VarInOut) => SectionKind::InOut,
         TokenKind::Keyword(Keyword::VarTemp) => SectionKind::Temp,
         TokenKind::Keyword(Keyword::VarStat) => SectionKind::Static,
+        TokenKind::Keyword(Keyword::VarInst) => SectionKind::Instance,
         TokenKind::Keyword(Keyword::VarGlobal) => SectionKind::Global,
         TokenKind::Keyword(Keyword::VarExternal) => SectionKind::External,
         _ => return None,
@@ -100,6 +101,10 @@ impl Cursor<'_> {
             self.require(Feature::StaticSection, self.span());
             return Some(SectionKind::Static);
         }
+        if self.at_word("VAR_INST") {
+            self.require(Feature::InstanceSection, self.span());
+            return Some(SectionKind::Instance);
+        }
         section_kind(self.peek())
     }
 
@@ -109,17 +114,17 @@ impl Cursor<'_> {
         sections: &mut Vec<Section>,
         members: &mut Vec<Member>,
     ) -> Vec<Statement> {
-        let mut body = self.statements();
+        let mut body = self.body_statements();
         // A stray closing keyword is reported and passed, so that the rest of the body is read.
         while !self.take_keyword(end) {
             if self.members(members) {
-                body.extend(self.statements());
+                body.extend(self.body_statements());
                 continue;
             }
             if let Some(kind) = section_kind(self.peek()) {
                 self.report_late_section(&body);
                 sections.push(self.section(kind));
-                body.extend(self.statements());
+                body.extend(self.body_statements());
                 continue;
             }
             self.unexpected(&format!("`{}`", end.text()));
@@ -128,9 +133,14 @@ impl Cursor<'_> {
             }
             self.advance();
             self.take_mark(Punctuation::Semicolon);
-            body.extend(self.statements());
+            body.extend(self.body_statements());
         }
         body
+    }
+
+    /// Statements, or instructions if the first is one.
+    fn body_statements(&mut self) -> Vec<Statement> {
+        if self.at_instruction_list() { self.instructions() } else { self.statements() }
     }
 
     /// Reports a section behind statements, unless these are what an error before it has left.

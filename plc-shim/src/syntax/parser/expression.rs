@@ -3,7 +3,7 @@
 use super::cursor::Cursor;
 use crate::diagnostic::{Code, Diagnostic};
 use crate::dialect::Feature;
-use crate::syntax::ast::{Argument, BinaryOp, Call, Expr, ExprKind, Ident, Literal, MAX_HEIGHT, UnaryOp};
+use crate::syntax::ast::{Argument, BinaryOp, Call, Expr, ExprKind, Ident, Literal, MAX_HEIGHT, Subrange, UnaryOp};
 use crate::syntax::literal::{parse_integer, parse_real};
 use crate::syntax::source::Span;
 use crate::syntax::token::{Keyword, Punctuation, TokenKind};
@@ -91,7 +91,7 @@ impl Cursor<'_> {
         }
     }
 
-    fn unary(&mut self) -> Expr {
+    pub(super) fn unary(&mut self) -> Expr {
         let operator = match self.peek() {
             Some(TokenKind::Punctuation(Punctuation::Minus)) => UnaryOp::Negate,
             Some(TokenKind::Punctuation(Punctuation::Plus)) => UnaryOp::Plus,
@@ -182,7 +182,36 @@ impl Cursor<'_> {
         arguments
     }
 
-    fn argument(&mut self) -> Argument {
+    /// `(a := 1)` or, as an error, `(0..10)`.
+    pub(super) fn arguments_or_range(&mut self) -> Result<Vec<Argument>, Subrange> {
+        self.advance();
+        let mut arguments = Vec::new();
+        if self.take_mark(Punctuation::RightParen) {
+            return Ok(arguments);
+        }
+        loop {
+            let argument = self.argument();
+            if arguments.is_empty()
+                && let Argument::Positional(low) = argument
+            {
+                if self.take_mark(Punctuation::Range) {
+                    let high = self.expression();
+                    self.expect_mark(Punctuation::RightParen);
+                    return Err(Subrange { low, high });
+                }
+                arguments.push(Argument::Positional(low));
+            } else {
+                arguments.push(argument);
+            }
+            if !self.take_mark(Punctuation::Comma) {
+                break;
+            }
+        }
+        self.expect_mark(Punctuation::RightParen);
+        Ok(arguments)
+    }
+
+    pub(super) fn argument(&mut self) -> Argument {
         let negated =
             self.at_keyword(Keyword::Not) && self.peek_ahead(2) == Some(TokenKind::Punctuation(Punctuation::Output));
         let after_name = self.peek_ahead(1 + usize::from(negated));

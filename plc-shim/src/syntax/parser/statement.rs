@@ -21,7 +21,7 @@ fn closes_list(keyword: Keyword) -> bool {
         keyword,
         K::EndProgram | K::EndFunctionBlock | K::EndFunction | K::EndIf | K::EndCase | K::EndFor
             | K::EndWhile | K::EndRepeat | K::Elsif | K::Else | K::Until
-            | K::Var | K::VarInput | K::VarOutput | K::VarInOut | K::VarTemp | K::VarExternal | K::VarStat
+            | K::Var | K::VarInput | K::VarOutput | K::VarInOut | K::VarTemp | K::VarExternal | K::VarStat | K::VarInst
             // A new unit begins: the end of the one before is missing.
             | K::Program | K::FunctionBlock | K::Function | K::Type | K::EndType | K::VarGlobal
             | K::OrganizationBlock | K::EndOrganizationBlock | K::DataBlock | K::EndDataBlock
@@ -54,6 +54,14 @@ impl Cursor<'_> {
 
     fn statement(&mut self) -> Statement {
         let start = self.span();
+        if let Some(kind) = self.label() {
+            let reported = matches!(kind, StatementKind::Error);
+            let statement = Statement { kind, span: self.span_from(start) };
+            if reported {
+                self.recover(self.position());
+            }
+            return statement;
+        }
         let (position, known) = (self.position(), self.reported());
         let kind = self.nested(Self::statement_kind).unwrap_or(StatementKind::Error);
         let span = self.span_from(start);

@@ -1,8 +1,11 @@
 //! Types as written (2nd ed. 2.3.3).
 
 use super::cursor::Cursor;
-use crate::diagnostic::{Code, Diagnostic};
-use crate::syntax::ast::{Dimension, EnumValue, Expr, Field, Ident, ReferenceKind, Subrange, TypeSpec, TypeSpecKind};
+use crate::dialect::Feature;
+use crate::ir::ElementaryType;
+use crate::syntax::ast::{
+    Dimension, EnumValue, Expr, Field, Ident, InitArguments, ReferenceKind, Subrange, TypeSpec, TypeSpecKind,
+};
 use crate::syntax::token::{Keyword, Punctuation, TokenKind};
 
 impl Cursor<'_> {
@@ -39,6 +42,9 @@ impl Cursor<'_> {
             return self.string_type(name);
         }
         let name = self.qualified(name);
+        if self.at_mark(Punctuation::LeftParen) && ElementaryType::find(&name.text).is_none() {
+            return self.instance_type(name);
+        }
         if self.take_mark(Punctuation::LeftParen) {
             // The 3rd edition writes it in front (6.4.4.2).
             let named = self.peek() == Some(TokenKind::Identifier);
@@ -53,24 +59,41 @@ impl Cursor<'_> {
             self.expect_mark(Punctuation::RightParen);
             return TypeSpecKind::Subrange(name, Box::new(Subrange { low, high }));
         }
-        if self.at_mark(Punctuation::LeftBracket) {
-            self.pass_init_arguments();
+        if self.at_mark(Punctuation::LeftBracket)
+            && self.peek_ahead(1) == Some(TokenKind::Punctuation(Punctuation::LeftParen))
+        {
+            return self.listed_instances(name);
         }
         TypeSpecKind::Name(name)
     }
 
-    /// `FB[(a := 1), (a := 2)]`: arguments of each instance's `FB_init` (CODESYS, TwinCAT).
-    fn pass_init_arguments(&mut self) {
+    /// `FB(a := 1)`, or `Base (0..10)`, which the checker refuses unless `Base` is an integer type.
+    fn instance_type(&mut self, name: Ident) -> TypeSpecKind {
+        let start = self.span();
+        let arguments = self.arguments_or_range();
+        match arguments {
+            Ok(arguments) => {
+                self.require(Feature::InitArguments, start);
+                TypeSpecKind::Instance(name, InitArguments::Same(arguments))
+            }
+            Err(range) => TypeSpecKind::Subrange(name, Box::new(range)),
+        }
+    }
+
+    /// `FB[(a := 1), (a := 2)]`
+    fn listed_instances(&mut self, name: Ident) -> TypeSpecKind {
         let start = self.span();
         self.advance();
+        let mut lists = Vec::new();
         while self.at_mark(Punctuation::LeftParen) {
-            self.arguments();
-            self.take_mark(Punctuation::Comma);
+            lists.push(self.arguments());
+            if !self.take_mark(Punctuation::Comma) {
+                break;
+            }
         }
         self.expect_mark(Punctuation::RightBracket);
-        let message = "arguments of FB_init are not supported";
-        let found = Diagnostic::error(Code::VendorRuntime, self.span_from(start), message);
-        self.report(found.with_help("give the instance's inputs initial values"));
+        self.require(Feature::InitArguments, start);
+        TypeSpecKind::Instance(name, InitArguments::Listed(lists))
     }
 
     /// `REF_TO`, `POINTER TO` or `REFERENCE TO`; none of them is a keyword of the 2nd edition.

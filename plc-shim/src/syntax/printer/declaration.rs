@@ -2,8 +2,8 @@
 
 use super::Printer;
 use crate::syntax::ast::{
-    Declaration, Edge, EnumValue, Field, Initialiser, InitialiserKind, Pou, PouKind, Qualifier, Section, SectionKind,
-    StructureInit, TypeDeclaration, TypeSpec, TypeSpecKind, Variable,
+    Declaration, Edge, EnumValue, Field, InitArguments, Initialiser, InitialiserKind, Pou, PouKind, Qualifier, Section,
+    SectionKind, StructureInit, TypeDeclaration, TypeSpec, TypeSpecKind, Variable,
 };
 
 impl Printer {
@@ -49,6 +49,7 @@ impl Printer {
             SectionKind::InOut => "VAR_IN_OUT",
             SectionKind::Temp => "VAR_TEMP",
             SectionKind::Static => "VAR_STAT",
+            SectionKind::Instance => "VAR_INST",
             SectionKind::Global => "VAR_GLOBAL",
             SectionKind::External => "VAR_EXTERNAL",
         });
@@ -157,6 +158,17 @@ impl Printer {
             }
             TypeSpecKind::Struct(fields) => self.members("STRUCT", fields),
             TypeSpecKind::Union(fields) => self.members("UNION", fields),
+            TypeSpecKind::Instance(name, arguments) => {
+                self.name(name);
+                match arguments {
+                    InitArguments::Same(arguments) => self.arguments(arguments),
+                    InitArguments::Listed(lists) => {
+                        self.word("[");
+                        self.separated(lists, |printer, arguments| printer.arguments(arguments));
+                        self.word("]");
+                    }
+                }
+            }
             TypeSpecKind::Enumeration(values, base) => {
                 self.word("(");
                 self.separated(values, Self::enum_value);

@@ -51,12 +51,17 @@ impl Printer {
 
     pub(super) fn call(&mut self, call: &Call) {
         self.expression(&call.callee);
+        self.arguments(&call.arguments);
+    }
+
+    /// `(x, IN := y)`
+    pub(super) fn arguments(&mut self, arguments: &[Argument]) {
         self.word("(");
-        self.separated(&call.arguments, Self::argument);
+        self.separated(arguments, Self::argument);
         self.word(")");
     }
 
-    fn argument(&mut self, argument: &Argument) {
+    pub(super) fn argument(&mut self, argument: &Argument) {
         match argument {
             Argument::Positional(expr) => self.expression(expr),
             Argument::Input(name, expr) => {

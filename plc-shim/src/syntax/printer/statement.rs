@@ -14,8 +14,22 @@ impl Printer {
 
     fn statement(&mut self, statement: &Statement) {
         self.begin_line();
+        if let StatementKind::Label(name) = &statement.kind {
+            self.name(name);
+            self.word(":");
+            return self.end_line();
+        }
+        if let StatementKind::Instruction(instruction) = &statement.kind {
+            self.instruction(instruction);
+            return self.end_line();
+        }
         match &statement.kind {
-            StatementKind::Empty | StatementKind::Error => {}
+            // Labels and instructions have lines of their own.
+            StatementKind::Empty | StatementKind::Error | StatementKind::Label(_) | StatementKind::Instruction(_) => {}
+            StatementKind::Jump(label) => {
+                self.word("JMP ");
+                self.name(label);
+            }
             StatementKind::Assign(target, value) => {
                 self.expression(target);
                 self.word(" := ");

@@ -69,6 +69,33 @@ VAR c : CTUD; up : CTU; r : R_TRIG; f : F_TRIG; END_VAR
     r(CLK := i); f(CLK := j); e := r.Q OR f.Q OR up.Q;
 END_PROGRAM";
 
+const MOTION: &str = "
+FUNCTION_BLOCK Station
+VAR_IN_OUT Axis : AXIS_REF; END_VAR
+VAR_INPUT far : LREAL; go : BOOL; END_VAR
+VAR_OUTPUT there : BOOL; END_VAR
+VAR move : ARRAY [1..2] OF MC_MoveAbsolute := [2((Velocity := 5.0))]; END_VAR
+    move[1](Axis := Axis, Execute := go, Position := far, Acceleration := 20.0, Jerk := 200.0, Done => there);
+    move[2](Axis := Axis, Execute := move[1].Done, Position := 0.0, Acceleration := 20.0, BufferMode := mcBuffered);
+END_FUNCTION_BLOCK
+VAR_GLOBAL X, Y : AXIS_REF; END_VAR
+PROGRAM Main
+VAR_INPUT i, j : BOOL; END_VAR
+VAR_OUTPUT px, vx, py : LREAL; there, geared, halted, still : BOOL; id : WORD; n : DINT; END_VAR
+VAR
+    on, onY : MC_Power; s : Station; run : MC_MoveVelocity; gear : MC_GearIn; halt : MC_Halt; st : MC_ReadStatus;
+    rx, ry : MC_ReadActualPosition; rv : MC_ReadActualVelocity;
+END_VAR
+    on(Axis := X, Enable := TRUE); onY(Axis := Y, Enable := on.Status);
+    s(Axis := X, far := 1.5, go := i); there := s.there;
+    gear(Master := X, Slave := Y, Execute := j, RatioNumerator := 2, Acceleration := 50.0, InGear => geared);
+    run(Axis := X, Execute := i AND j, Velocity := -2.0, Acceleration := 5.0); id := run.ErrorID;
+    halt(Axis := X, Execute := NOT i, Deceleration := 30.0, Done => halted);
+    rx(Axis := X, Enable := TRUE, Position => px); ry(Axis := Y, Enable := TRUE, Position => py);
+    rv(Axis := X, Enable := TRUE, Velocity => vx); st(Axis := X, Enable := TRUE, Standstill => still);
+    IF run.InVelocity THEN n := n + 1; END_IF;
+END_PROGRAM";
+
 pub(crate) fn cases() -> Vec<Case> {
     vec![
         Case {
@@ -97,6 +124,12 @@ pub(crate) fn cases() -> Vec<Case> {
             name: "counters",
             text: COUNTERS,
             tasks: vec![task("main", 10, 3, &["Main"])],
+            inputs: &["Main.i", "Main.j"],
+        },
+        Case {
+            name: "motion",
+            text: MOTION,
+            tasks: vec![task("main", 5, 0, &["Main"])],
             inputs: &["Main.i", "Main.j"],
         },
     ]

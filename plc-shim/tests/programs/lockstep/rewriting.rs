@@ -133,6 +133,61 @@ fn what_cannot_be_replaced_is_told() {
     assert!(project.files[0].text.as_deref().expect("a text").contains("t := SDSP_TIME(*@sdsp was TIME*)();"));
 }
 
+/// Motion control is taken over as a whole or not at all.
+#[test]
+fn motion_control_that_cannot_be_replaced_is_told() {
+    for (statement, declaration) in [
+        ("probe();", "probe : MC_TouchProbe;"),
+        ("on(Axis := X, Enable := TRUE, bRegulatorOn := TRUE);", ""),
+        ("on(X, TRUE);", ""),
+        ("IF X.NcToPlc.Error THEN ; END_IF;", ""),
+        ("cam(Axis := X);", "cam : MC_CamIn; t : MC_CAM_REF;"),
+        ("", "Y : AXIS_REF_SM3;"),
+        ("IF on.Fault THEN ; END_IF;", ""),
+    ] {
+        let text = format!(
+            "PROGRAM P VAR X : AXIS_REF; on : MC_Power; {declaration} END_VAR on(Axis := X); {statement} END_PROGRAM"
+        );
+        let project = round_trip(&inputs(&[("p.st", SourceKind::Text, &text)]), &Options::default());
+        let told = project.warnings.to_string();
+        assert!(told.contains("I1002") && told.contains("`MC_Power` is left"), "{statement}: {told}");
+        assert!(!project.files.iter().any(|file| file.text.as_deref().is_some_and(|text| text.contains("SDSP_MC_"))));
+    }
+    let text = "PROGRAM P VAR X : AXIS_REF; on : MC_Power; go : MC_GearIn; probe : MC_TouchProbe; END_VAR
+        on(Axis := X, Enable := TRUE, bDriveStart := TRUE); probe(Axis := X); END_PROGRAM";
+    let project = round_trip(&inputs(&[("p.st", SourceKind::Text, text)]), &Options::default());
+    insta::assert_snapshot!("motion_told", project.warnings.to_string());
+}
+
+#[test]
+fn motion_control_of_twincat_keeps_its_names() {
+    let options = Options { target: Target::TwinCat, ..Options::default() };
+    let text =
+        POU.replace("    t : TON;", "    X : AXIS_REF;\r\n    on : MC_Power;\r\n    go : MC_MoveAbsolute;").replace(
+            "BODY",
+            "on(Axis := X, Enable := TRUE);\r\ngo(Axis := X, Execute := on.Status, Position := 1.0, Velocity := 1.0, \
+         BufferMode := MC_Buffered);\r\n",
+        );
+    let given = inputs(&[("MAIN.TcPOU", SourceKind::TwinCat, &text)]);
+    let project = round_trip(&given, &options);
+    assert_eq!(project.warnings.to_string(), "");
+    let text_of = |name: &str| {
+        let file = project.files.iter().find(|file| file.name == name);
+        file.and_then(|file| file.text.as_deref()).unwrap_or_else(|| panic!("{name} is missing")).to_owned()
+    };
+    assert!(text_of("SDSP_AXIS_REF.TcDUT").contains("Own : AXIS_REF;"));
+    let block = text_of("SDSP_MC_MoveAbsolute.TcPOU");
+    assert!(block.contains("BufferMode : MC_BufferMode;") && block.contains("ErrorID : UDINT;"), "{block}");
+    assert!(block.contains("BufferMode := BufferMode);") && !block.contains("Direction := Direction);"), "{block}");
+    assert!(text_of("SDSP_Accept.TcPOU").contains("MC_Aborting"));
+    // A block that Tc2_MC2 has in another form.
+    let gear = text.replace("go : MC_MoveAbsolute;", "go : MC_GearIn;");
+    let project = instrument(&inputs(&[("MAIN.TcPOU", SourceKind::TwinCat, &gear)]), &options).expect("warnings only");
+    assert!(
+        project.warnings.to_string().contains("`MC_GearIn` is not replaced: the ratio is of other types in Tc2_MC2")
+    );
+}
+
 #[test]
 fn programs_that_others_call_are_not_scheduled() {
     let text = "PROGRAM Sub ; END_PROGRAM PROGRAM Main Sub(); END_PROGRAM";

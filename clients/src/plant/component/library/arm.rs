@@ -1,7 +1,7 @@
 //! An arm that grips and drops packages, with reversed logic.
 //!
 //! # Equations
-//! - the signal false is `Grip`, true is `Drop`;
+//! - the signal `drop` false is `Grip`, true is `Drop`; `hold` is the same the right way round;
 //! - on gripping, the arm holds fast the first target that touches its body, until it drops it.
 //!
 //! # Source
@@ -23,6 +23,8 @@ signals! {
     Inputs {
         /// true lets go, false grips
         drop: bool = true,
+        /// true grips, whatever `drop` says
+        hold: bool,
     }
 }
 
@@ -56,7 +58,7 @@ pub(crate) struct Arm;
 impl Component for Arm {
     const NAME: &'static str = "arm";
     const SUMMARY: &'static str = "arm with reversed logic: false grips, true drops";
-    const FORMULA: &'static [&'static str] = &["drop = false: holds what touches it", "drop = true: lets go"];
+    const FORMULA: &'static [&'static str] = &["drop = false or hold: holds what touches it", "drop = true: lets go"];
     const SOURCE: &'static str = "class Arm of the filling machine (Sivtoft 2002, 4.2.3 and A5)";
     const COUPLING: Coupling = Coupling::Touch;
     type Parameters = Parameters;
@@ -74,7 +76,8 @@ impl Component for Arm {
     }
 
     fn drive(&self, state: &mut State, inputs: &Inputs, turn: &Turn) {
-        state.held = match (inputs.drop && !turn.failed.has(Failure::Stuck), turn.failed.has(Failure::Weak)) {
+        let drop = inputs.drop && !inputs.hold;
+        state.held = match (drop && !turn.failed.has(Failure::Stuck), turn.failed.has(Failure::Weak)) {
             (true, _) | (_, true) => None,
             (false, false) => state.held.or(turn.seen.target),
         };
@@ -100,8 +103,9 @@ mod tests {
         Seen { target: (count > 0).then_some(0), count, ..Seen::default() }
     }
 
-    const GRIP: Inputs = Inputs { drop: false };
-    const DROP: Inputs = Inputs { drop: true };
+    const GRIP: Inputs = Inputs { drop: false, hold: false };
+    const DROP: Inputs = Inputs { drop: true, hold: false };
+    const HOLD: Inputs = Inputs { drop: true, hold: true };
 
     fn rig() -> Rig<Arm> {
         let mut rig = Rig::new(Arm::new(Parameters {}));
@@ -117,6 +121,12 @@ mod tests {
         assert!(rig.run(GRIP, 0.01, 1).holding, "held, whether it touches or not");
         assert_eq!(rig.component.effect(&rig.state), Effect::Hold(Some(0)));
         assert!(!rig.run(DROP, 0.01, 1).holding && !rig.run(GRIP, 0.01, 1).holding, "nothing there");
+    }
+
+    #[test]
+    fn hold_is_the_right_way_round() {
+        let mut rig = rig();
+        assert!(rig.run(HOLD, 0.01, 1).holding && !rig.run(DROP, 0.01, 1).holding);
     }
 
     #[test]

@@ -3,7 +3,8 @@
 //! # Equations
 //! - its targets are out of the world at the set-up;
 //! - while `enable` is true one appears each `interval_s` at the place of its body, at rest; the first at once; on a rising `release` one appears as well;
-//! - when none is left outside it waits for a sink to take one out.
+//! - when none is left outside it waits for a sink to take one out;
+//! - where its body has a shape it waits until none of its targets is in it.
 //!
 //! # Source
 //! closed form.

@@ -1,92 +1,28 @@
-#!/usr/bin/env python3
-"""A client of the onescan protocol, version 1, in plain Python. Section numbers are those of PROTOCOL.md.
+"""The client's side of the protocol, version 1. Section numbers are those of PROTOCOL.md.
 
     with LockstepClient("127.0.0.1", 4840) as client:      # leaving the block closes the connection
         welcome = client.connect("my simulator 2.3")
         client.join("plant", welcome["step_ns"], reads=[("A", "BOOL")], writes=[("B", "LREAL")])
         end = client.run(MyParticipant())
 
-`mixer.py` beside it is a complete example.
+`Simulation` is the easier way for most.
 """
 from __future__ import annotations
 
-import functools
 import json
-import re
 import socket
 import struct
 from abc import ABC, abstractmethod
-from typing import Any, Callable
+from typing import Any, Callable, Dict, List, Mapping, Optional, Sequence, Tuple
 
-Fields = dict[str, Any]  # of a message, or values by the name of their signal
-Signals = list[tuple[str, str]]  # names and types
+from .errors import LostServer, ProtocolError, Refused, SessionEnded, SessionFailed
+from .values import Value, layout, pack, unpack
 
+Fields = Dict[str, Any]
+"""The fields of a message, or values by the name of their signal."""
 
-class LockstepError(Exception):
-    """Base of all that this module raises."""
-
-class ProtocolError(LockstepError):
-    """The server broke the protocol."""
-
-class Refused(LockstepError):
-    """The server answered `refused` (section 3.1)."""
-
-class LostServer(LockstepError):
-    """No connection, no answer in time, or the connection closed without `end` (section 3.5)."""
-
-class SessionEnded(LockstepError):
-    """Completed or stopped (section 3.5) before this client had joined; `run` returns such an `end`."""
-
-    def __init__(self, end: Fields) -> None:
-        super().__init__(json.dumps(end))
-        self.end = end
-
-class SessionFailed(SessionEnded):
-    """The session failed, or this client's own `fault` ended it (sections 3.3 and 3.5)."""
-
-
-# ---- Values (section 3.2)
-
-_FORMATS = {name: code for code, names in {
-    "?": "BOOL", "B": "BYTE USINT CHAR", "b": "SINT", "H": "WORD UINT WCHAR", "h": "INT", "I": "DWORD UDINT",
-    "i": "DINT", "Q": "LWORD ULINT", "q": "LINT TIME LTIME DATE LDATE TOD LTOD DT LDT", "f": "REAL",
-    "d": "LREAL"}.items() for name in names.split()}
-
-@functools.lru_cache(maxsize=None)
-def layout(type_name: str) -> tuple[struct.Struct, int]:
-    """The bytes of a type (their number is `.size`) and, of STRING and WSTRING, those of a character, or 0."""
-    if match := re.fullmatch(r"(W?)STRING\[([0-9]+)\]", type_name):
-        width = 2 if match[1] else 1
-        return struct.Struct(f"<H{width * int(match[2])}s"), width
-    return struct.Struct("<" + _FORMATS[type_name]), 0
-
-def pack(type_name: str, value: Any) -> bytes:
-    """The encoding of a value: bool, int, float, or str (STRING as Latin-1, WSTRING as UTF-16)."""
-    form, width = layout(type_name)
-    if width:
-        text = value.encode("latin-1") if width == 1 else value.encode("utf-16-le", "surrogatepass")
-        if len(text) > form.size - 2:
-            raise ValueError(f"{value!r} is too long for {type_name}")
-        return form.pack(len(text) // width, text)
-    if type_name == "BOOL" and value not in (0, 1):
-        raise ValueError(f"{value!r} is no BOOL")
-    return form.pack(value)
-
-def unpack(type_name: str, data: bytes) -> Any:
-    """The value that `layout(type_name)[0].size` bytes encode."""
-    form, width = layout(type_name)
-    if width:
-        used, text = form.unpack(data)
-        if used * width > len(text):
-            raise ProtocolError(f"{used} characters in a {type_name}")
-        text = text[:used * width]
-        return text.decode("latin-1") if width == 1 else text.decode("utf-16-le", "surrogatepass")
-    if type_name == "BOOL" and data[0] > 1:
-        raise ProtocolError(f"{data[0]} is no BOOL")
-    return form.unpack(data)[0]
-
-
-# ---- Messages (section 3)
+Signals = Sequence[Tuple[str, str]]
+"""Names and types."""
 
 _MESSAGES = {  # kind -> the fields it must have, those it may have
     "welcome": ({"protocol", "agent", "step_ns", "frame_bytes_max", "signals"}, set()),
@@ -95,7 +31,8 @@ _MESSAGES = {  # kind -> the fields it must have, those it may have
     "setup": (set(), set()), "save": (set(), set()), "restore": ({"t_v_ns", "steps"}, set()),
     "end": ({"status", "t_v_ns"}, {"client", "state", "cause"})}
 
-def parse(body: bytes) -> tuple[str, Fields]:
+
+def parse(body: bytes) -> Tuple[str, Fields]:
     """Kind and fields of a server's message. `refused` and `end`, which nothing follows, are raised."""
     try:
         (kind, fields), = json.loads(body.decode("utf-8")).items()
@@ -111,25 +48,37 @@ def parse(body: bytes) -> tuple[str, Fields]:
     return kind, fields
 
 
-# ---- The client
-
 class Participant(ABC):
     """What takes part: a function of its state, its inputs and `t_v` (section 6). An exception is a fault."""
 
-    wake_ns: int = 0  # a turn may set it: when the next one is wanted, 0 for one period on (section 3.3)
+    wake_ns: int = 0
+    """A turn may set it: when the next one is wanted, 0 for one period on (section 3.3)."""
 
     @abstractmethod
-    def setup(self) -> Fields:
+    def setup(self) -> Mapping[str, Value]:
         """Take the initial state, whatever was before, and give the initial outputs."""
+
     @abstractmethod
-    def turn(self, t_v_ns: int, inputs: Fields) -> Fields:
+    def turn(self, t_v_ns: int, inputs: Dict[str, Value]) -> Mapping[str, Value]:
         """Run the turn that ends at `t_v_ns` and give all outputs."""
+
     @abstractmethod
     def save(self) -> bytes:
         """The complete state (section 3.4)."""
+
     @abstractmethod
     def restore(self, state: bytes) -> None:
         """Take the state that `save` once gave."""
+
+
+def _slots(signals: Signals) -> Tuple[int, List[Fields]]:
+    """Size and layout that follow from a list of signals (section 3.1)."""
+    total, result = 0, []
+    for signal, type_name in signals:
+        size = layout(type_name)[0].size
+        result.append({"name": signal, "type": type_name, "offset": total, "size": size})
+        total += size
+    return total, result
 
 
 class LockstepClient:
@@ -141,7 +90,7 @@ class LockstepClient:
         self._reads: Signals = []
         self._writes: Signals = []
         self._input_bytes = 0
-        self._last: tuple[int, int] | None = None  # sequence and t_v of the grant before; None: not set up
+        self._last: Optional[Tuple[int, int]] = None  # sequence and t_v of the grant before; None: not set up
 
     def __enter__(self) -> LockstepClient:
         return self
@@ -177,7 +126,7 @@ class LockstepClient:
             raise LostServer(f"the connection to the server is gone: {error}") from error
         return bytes(data)
 
-    def _read_frame(self) -> tuple[bytes, bytes]:
+    def _read_frame(self) -> Tuple[bytes, bytes]:
         """Type and body of the next frame (section 2)."""
         length = int.from_bytes(self._read(4), "little")
         if not 1 <= length <= self._limit:
@@ -192,7 +141,7 @@ class LockstepClient:
             raise ProtocolError(f"`{kind}` in place of `{expected}`")
         return fields
 
-    def connect(self, agent: str = "lockstep_client.py") -> Fields:
+    def connect(self, agent: str = "onescan-client 0.1.0") -> Fields:
         """Connect, say `hello` and give the fields of `welcome` (section 3.1)."""
         try:
             self._sock.close()
@@ -209,19 +158,12 @@ class LockstepClient:
 
     def join(self, name: str, period_ns: int, reads: Signals, writes: Signals) -> None:
         """Join with these signals and check that `joined` lays them out as section 3.1 says."""
-        def slots(signals: Signals) -> tuple[int, list[Fields]]:
-            total, result = 0, []
-            for signal, type_name in signals:
-                size = layout(type_name)[0].size
-                result.append({"name": signal, "type": type_name, "offset": total, "size": size})
-                total += size
-            return total, result
         self._send_message("join", {"name": name, "period_ns": period_ns,
                                     "reads": [{"name": n, "type": t} for n, t in reads],
                                     "writes": [{"name": n, "type": t} for n, t in writes]})
         joined = self._expect("joined")
         if (joined["input_bytes"], joined["inputs"], joined["output_bytes"], joined["outputs"]) != (
-                *slots(reads), *slots(writes)):
+                *_slots(reads), *_slots(writes)):
             raise ProtocolError(f"a layout that does not follow from `join`: {joined}")
         self._reads, self._writes, self._input_bytes = list(reads), list(writes), joined["input_bytes"]
         self._sock.settimeout(None)  # section 4: the session may be slow or paused
@@ -232,7 +174,7 @@ class LockstepClient:
             while True:
                 frame_type, body = self._read_frame()
                 if frame_type == b"G" and self._last is not None:
-                    self._grant(participant, body)
+                    self._grant(participant, self._last, body)
                 elif frame_type == b"J":
                     self._message(participant, *parse(body))
                 else:
@@ -257,7 +199,7 @@ class LockstepClient:
         elif kind == "restore" and self._last is None:
             frame_type, state = self._read_frame()
             if frame_type != b"S":
-                raise ProtocolError(f"{parse(state) if frame_type == b'J' else frame_type} in place of a state")
+                raise ProtocolError(f"{parse(state) if frame_type == b'J' else frame_type!r} in place of a state")
             try:
                 participant.restore(state)
             except Exception as error:
@@ -268,16 +210,16 @@ class LockstepClient:
         else:
             raise ProtocolError(f"`{kind}` has no place here")
 
-    def _grant(self, participant: Participant, body: bytes) -> None:
+    def _grant(self, participant: Participant, last: Tuple[int, int], body: bytes) -> None:
         """One turn, in the order of section 3.3."""
         if len(body) != 16 + self._input_bytes:
             raise ProtocolError(f"a grant of {len(body)} bytes in place of 16 + {self._input_bytes}")
         sequence, t_v_ns = struct.unpack_from("<QQ", body)
-        assert self._last is not None
-        if sequence <= self._last[0] or t_v_ns <= self._last[1]:
-            raise ProtocolError(f"a grant of {(sequence, t_v_ns)} after {self._last}")
+        if sequence <= last[0] or t_v_ns <= last[1]:
+            raise ProtocolError(f"a grant of {(sequence, t_v_ns)} after {last}")
         self._last = (sequence, t_v_ns)
-        inputs, offset = {}, 16
+        inputs: Dict[str, Value] = {}
+        offset = 16
         for name, type_name in self._reads:
             end = offset + layout(type_name)[0].size
             inputs[name], offset = unpack(type_name, body[offset:end]), end
@@ -285,7 +227,7 @@ class LockstepClient:
         outputs = self._ask(participant.turn, t_v_ns, inputs)
         self._send_turn(sequence, t_v_ns, participant.wake_ns, outputs)
 
-    def _ask(self, action: Callable[..., Fields], *arguments: Any) -> bytes:
+    def _ask(self, action: Callable[..., Mapping[str, Value]], *arguments: Any) -> bytes:
         """The encoded outputs of `setup` or `turn`. An exception becomes a `fault` (section 3.3)."""
         try:
             outputs = action(*arguments)

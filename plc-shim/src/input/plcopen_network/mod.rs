@@ -1,0 +1,158 @@
+//! Networks of PLCopen XML (TC6 2.01, `FBD` and `LD`; IEC 61131-3, 2nd ed. 4, 3rd ed. 8) to statements.
+//!
+//! | module | subject |
+//! |---|---|
+//! | [`element`] | elements, connection points and modifiers as the file has them |
+//! | [`graph`] | which element gets its values from which; where loops begin |
+//! | [`order`] | the order of evaluation |
+//! | [`builder`], [`block`] | elements to statements |
+//! | [`text`] | statements while they are made, and wires |
+//! | [`trigger`] | memory of edges |
+//!
+//! What an element hands on is a wire, written `` `body.id.PIN` ``; where it is used once, at once, its value
+//! stands in its place. Wires are not declared: the checker gives them the types of their values.
+
+mod block;
+mod builder;
+mod element;
+mod graph;
+mod order;
+mod text;
+mod trigger;
+
+use self::builder::Builder;
+use self::element::{Input, Modifiers, Node, nodes};
+use self::text::{Line, Piece, Text};
+use super::plcopen::Writer;
+use super::xml::Element;
+
+/// Which elements of a body are evaluated.
+enum Wanted<'e> {
+    All,
+    /// What the connections that end at this element need; their value goes to the variable.
+    #[allow(dead_code, reason = "for conditions of transitions, which charts have")]
+    For(&'e Element, &'e str),
+}
+
+impl Writer<'_> {
+    /// The statements that a body in LD or FBD stands for.
+    pub(super) fn network(&mut self, body: &Element) {
+        self.statements_of(body, &Wanted::All);
+    }
+
+    #[allow(dead_code, reason = "for conditions of transitions, which charts have")]
+    /// The statements for what is connected to `point` in a body, then `variable := value;`: the condition
+    /// of a transition whose elements stand in the chart (TC6 2.01, `condition`).
+    pub(super) fn network_value(&mut self, body: &Element, point: &Element, variable: &str) {
+        self.statements_of(body, &Wanted::For(point, variable));
+    }
+
+    fn statements_of<'e>(&mut self, body: &'e Element, wanted: &Wanted<'e>) {
+        self.report_foreign(body, wanted);
+        let mut nodes = nodes(body);
+        if let Wanted::For(point, _) = wanted {
+            nodes.push(Node::end(point));
+        }
+        let mut faults = graph::connect(&mut nodes);
+        let mut sources = graph::sources(&nodes);
+        let networks = graph::networks(&nodes, &sources);
+        let order = match wanted {
+            Wanted::All => {
+                faults.extend(graph::cut_loops(&nodes, &mut sources));
+                order::order(&nodes, &networks, &sources)
+            }
+            Wanted::For(..) => {
+                let end = nodes.len().saturating_sub(1);
+                let needed = graph::finished(vec![end], &sources);
+                faults.extend(graph::cut_loops(&nodes, &mut sources));
+                let mut order = order::order(&nodes, &networks, &sources);
+                order.retain(|index| needed.contains(index) && *index != end);
+                order
+            }
+        };
+        for fault in faults {
+            self.taken.report(fault.place, fault.code, &fault.message);
+        }
+        self.bodies += 1;
+        let number = self.bodies;
+        let mut builder = Builder::new(self, &nodes, number, body.name != "FBD");
+        for index in order {
+            builder.evaluate(index);
+        }
+        if let (Wanted::For(_, variable), Some(end)) = (wanted, nodes.last()) {
+            builder.result(end, variable);
+        }
+        let (lines, names) = builder.finish();
+        for line in lines {
+            self.line_of(line, &names);
+        }
+    }
+
+    /// What is told of elements that are part of no network but are connected as if they were.
+    fn report_foreign(&mut self, body: &Element, wanted: &Wanted<'_>) {
+        if matches!(wanted, Wanted::For(..)) {
+            return;
+        }
+        for element in body.elements().filter(|inner| matches!(inner.name.as_str(), "vendorElement" | "actionBlock")) {
+            let id = element::attribute(element, "localId");
+            let is_source = body.elements().any(|inner| refers_to(inner, id));
+            let is_connected = element.elements().any(|inner| refers_to(inner, ""));
+            if is_source || is_connected || element.name == "actionBlock" {
+                self.taken.unsupported(element.open.clone(), &format!("`<{}>` in a network", element.name));
+            }
+        }
+    }
+
+    fn line_of(&mut self, line: Line, names: &[String]) {
+        let name = |wire: usize| names.get(wire).map_or("`none`", String::as_str);
+        let text = match line {
+            Line::Other(text) => text,
+            Line::Define(wire, value) => {
+                let place = match value.pieces.first() {
+                    Some(Piece::Word(_, place) | Piece::Verbatim(place) | Piece::Wire(_, place, _)) => place.clone(),
+                    None => return,
+                };
+                let mut text = Text::wire(wire, &place);
+                text.push(" := ", &place);
+                text.append(value);
+                text.push(";\n", &place);
+                text
+            }
+        };
+        for piece in text.pieces {
+            match piece {
+                Piece::Word(word, place) => self.write(&word, &place),
+                Piece::Verbatim(place) => self.taken.extract.verbatim(self.file, place),
+                Piece::Wire(wire, place, _) => self.write(name(wire), &place),
+            }
+        }
+    }
+}
+
+/// True if a connection somewhere in the element comes from `id`; from anywhere if `id` is empty.
+fn refers_to(element: &Element, id: &str) -> bool {
+    let mut open = vec![element];
+    while let Some(element) = open.pop() {
+        if element.name == "connection" && (id.is_empty() || element::attribute(element, "refLocalId") == id) {
+            return true;
+        }
+        open.extend(element.elements());
+    }
+    false
+}
+
+impl<'e> Node<'e> {
+    /// What a value is wanted for, as an element that comes behind all others.
+    fn end(point: &'e Element) -> Self {
+        let inputs = element::inputs_of(point);
+        Node {
+            kind: element::Kind::RightRail,
+            element: point,
+            id: "end",
+            order: None,
+            position: (i64::MAX, i64::MAX),
+            inputs: vec![Input { modifiers: Modifiers::of(point, ""), ..inputs }],
+            outputs: Vec::new(),
+        }
+    }
+}

@@ -1,0 +1,121 @@
+//! Who wrote what is watched: the last statement, and the calls that led to it.
+
+use std::ops::Range;
+
+use wasmtime::{Caller, Error, Linker, WasmBacktrace};
+
+use super::text::link::HostState;
+use crate::compile::trace::{BEGIN, END, MODULE};
+
+/// Bytes of memory that are watched.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(super) struct Watched {
+    range: Range<usize>,
+    /// The bit that counts; all if absent.
+    bit: Option<u8>,
+    last: Vec<u8>,
+    pub(super) writer: Option<Writer>,
+}
+
+/// The statement that wrote, by its point, and the functions that were active.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(super) struct Writer {
+    pub(super) point: u32,
+    pub(super) frames: Vec<(u32, Option<u32>)>,
+}
+
+/// What the statements of a scan are held against.
+#[derive(Debug, Default)]
+pub(in crate::run) struct Trace {
+    pub(super) watched: Vec<Watched>,
+    /// The statements that have begun and not ended, but for those that were left early.
+    active: Vec<u32>,
+}
+
+impl Watched {
+    pub(super) fn new(range: Range<usize>, bit: Option<u8>) -> Self {
+        Self { last: vec![0; range.len()], range, bit, writer: None }
+    }
+
+    /// Takes the bytes as they are now; true if they have changed.
+    fn look(&mut self, memory: &[u8]) -> bool {
+        let Some(now) = memory.get(self.range.clone()) else { return false };
+        let changed = match self.bit {
+            Some(bit) => now.iter().zip(&self.last).any(|(now, last)| (now ^ last) >> bit & 1 == 1),
+            None => now != self.last,
+        };
+        self.last.copy_from_slice(now);
+        changed
+    }
+
+    /// True if a store there is one to the watched bytes; of a single bit only a change tells.
+    fn is_within(&self, stored: &Range<usize>) -> bool {
+        self.bit.is_none() && stored.start < self.range.end && self.range.start < stored.end
+    }
+}
+
+impl Trace {
+    pub(super) fn new(watched: Vec<Watched>) -> Self {
+        Self { watched, active: Vec::new() }
+    }
+
+    /// A scan begins: what is watched has been written from outside, if at all.
+    pub(super) fn begin_scan(&mut self, memory: &[u8]) {
+        self.active.clear();
+        for watched in &mut self.watched {
+            watched.look(memory);
+        }
+    }
+
+    /// The statement `point` has just done something; `stored` is what it says that it has written.
+    fn look(&mut self, point: Option<u32>, stored: &Range<usize>, memory: &[u8], frames: impl Fn() -> Frames) {
+        for watched in &mut self.watched {
+            let changed = watched.look(memory);
+            if let Some(point) = point.filter(|_| changed || watched.is_within(stored)) {
+                watched.writer = Some(Writer { point, frames: frames() });
+            }
+        }
+    }
+}
+
+type Frames = Vec<(u32, Option<u32>)>;
+
+/// The functions that are active, innermost first, each with the offset in its body.
+fn frames(caller: &Caller<'_, HostState>) -> Frames {
+    let backtrace = WasmBacktrace::force_capture(caller);
+    let frame = |frame: &wasmtime::FrameInfo| (frame.func_index(), frame.func_offset().map(|offset| offset as u32));
+    backtrace.frames().iter().map(frame).collect()
+}
+
+fn with_trace(caller: &mut Caller<'_, HostState>, work: impl FnOnce(&mut Trace, &[u8], &Caller<'_, HostState>)) {
+    let Some(memory) = caller.data().memory else { return };
+    let Some(mut trace) = caller.data_mut().trace.take() else { return };
+    work(&mut trace, memory.data(&*caller), caller);
+    caller.data_mut().trace = Some(trace);
+}
+
+/// What changed before a statement begins was the one's around it.
+fn begin(mut caller: Caller<'_, HostState>, point: u32) {
+    with_trace(&mut caller, |trace, memory, caller| {
+        let around = trace.active.last().copied();
+        trace.look(around, &(0..0), memory, || frames(caller));
+        trace.active.push(point);
+    });
+}
+
+fn end(mut caller: Caller<'_, HostState>, point: u32, address: u32, size: u32) {
+    with_trace(&mut caller, |trace, memory, caller| {
+        let stored = address as usize..(address as usize).saturating_add(size as usize);
+        trace.look(Some(point), &stored, memory, || frames(caller));
+        if let Some(at) = trace.active.iter().rposition(|active| *active == point) {
+            trace.active.truncate(at);
+        }
+    });
+}
+
+/// Gives the module what its statements call.
+pub(super) fn link(linker: &mut Linker<HostState>) -> Result<(), Error> {
+    linker.func_wrap(MODULE, BEGIN, begin)?;
+    linker.func_wrap(MODULE, END, end)?;
+    Ok(())
+}

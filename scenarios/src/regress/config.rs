@@ -1,0 +1,64 @@
+//! What is asked for.
+
+use std::num::NonZeroUsize;
+use std::path::PathBuf;
+
+use onescan_plc_shim::Dialect;
+use onescan_server::time::{TimeSpan, VirtualTime};
+
+use crate::run::Format;
+use crate::run::coverage::CoverageRequest;
+
+/// What becomes of snapshots that are new or have changed.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Policy {
+    /// They wait for a review.
+    #[default]
+    Pending,
+    /// They are accepted unseen.
+    Bless,
+    /// Nothing is written; one that is missing is a failure.
+    Check,
+}
+
+/// All options of a test run.
+#[derive(Clone, Debug)]
+pub struct TestConfig {
+    /// Scenarios, folders with scenarios, PLC sources.
+    pub paths: Vec<PathBuf>,
+    /// Parts of names; a test has one of them.
+    pub filters: Vec<String>,
+    /// Tags; a test has one of them.
+    pub tags: Vec<String>,
+    /// Tags; a test has none of them.
+    pub skipped_tags: Vec<String>,
+    /// How many processes at a time.
+    pub jobs: NonZeroUsize,
+    /// What becomes of snapshots.
+    pub policy: Policy,
+    /// For whom the output is.
+    pub format: Format,
+    /// The cycle of test programs.
+    pub scan: TimeSpan,
+    /// When a test program that is not done has failed.
+    pub until: VirtualTime,
+    /// The dialect of test sources.
+    pub dialect: Option<Dialect>,
+    /// A report in the format of `JUnit`.
+    pub junit: Option<PathBuf>,
+    /// A SARIF log.
+    pub sarif: Option<PathBuf>,
+    /// A page.
+    pub html: Option<PathBuf>,
+    /// A coverage report.
+    pub coverage: Option<CoverageRequest>,
+    /// True where a progress bar would be seen.
+    pub progress: bool,
+}
+
+impl TestConfig {
+    /// True if processes are to note what PLCs execute.
+    pub fn covers(&self) -> bool {
+        self.coverage.is_some() || self.html.is_some()
+    }
+}

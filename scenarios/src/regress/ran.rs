@@ -1,0 +1,153 @@
+//! What a process says of its unit, as JSON on its standard output.
+
+use onescan_plc_shim::coverage::{Counted, Row};
+use onescan_server::client::SourcePlace;
+use serde::{Deserialize, Serialize};
+
+use crate::run::RunReport;
+use crate::run::expectation::SignalValue;
+
+/// All that came of a unit.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Worked {
+    /// Its tests.
+    pub tests: Vec<Ran>,
+    /// What its PLCs executed.
+    pub coverage: Vec<Covered>,
+    /// Why there is nothing: an error, drawn, and the process's exit code.
+    pub error: Option<(String, i32)>,
+}
+
+/// One test that was run.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Ran {
+    /// Its name.
+    pub name: String,
+    /// `completed`, `stopped` or `failed`.
+    pub status: String,
+    /// The digest over all steps.
+    pub digest: Option<String>,
+    /// Steps or scans.
+    pub steps: u64,
+    /// Virtual time of the last of them.
+    pub virtual_time_ns: u64,
+    /// The step or cycle.
+    pub step_ns: u64,
+    /// Why it failed.
+    pub error: Option<String>,
+    /// Where in the PLC's sources.
+    pub place: Option<SourcePlace>,
+    /// What it had to show.
+    pub expectations: Vec<Shown>,
+    /// Asserts that did not hold.
+    pub asserts: Vec<FailedAssert>,
+    /// How many asserts were looked at.
+    pub asserts_made: u64,
+    /// What happened to it from outside.
+    pub events: Vec<Event>,
+    /// Its trajectory, as a snapshot's text.
+    pub snapshot: Option<String>,
+    /// Its trajectory, as SVG.
+    pub picture: Option<String>,
+}
+
+/// What came of an expectation.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Shown {
+    /// Its name.
+    pub name: String,
+    /// `met`, `open` or `violated`.
+    pub verdict: String,
+    /// When it was first violated.
+    pub at_ns: Option<u64>,
+    /// What its signals were then.
+    pub values: Vec<(String, f64)>,
+    /// By how much it was met.
+    pub margin: Option<f64>,
+}
+
+/// An assert that did not hold.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct FailedAssert {
+    /// What was asserted.
+    pub text: String,
+    /// Where it stands.
+    pub place: SourcePlace,
+    /// When it first did not hold.
+    pub at_ns: u64,
+    /// In how many scans.
+    pub times: u64,
+}
+
+/// Something that happened from outside.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Event {
+    /// When.
+    pub at_ns: u64,
+    /// What.
+    pub text: String,
+}
+
+/// A row of coverage.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Covered(String, u32, Option<String>, Option<(u32, u32)>, u64);
+
+impl From<Row> for Covered {
+    fn from(Row { file, line, of, count }: Row) -> Self {
+        match of {
+            Counted::Unit(unit) => Self(file, line, Some(unit), None, count),
+            Counted::Line => Self(file, line, None, None, count),
+            Counted::Outcome { column, outcome } => Self(file, line, None, Some((column, outcome)), count),
+        }
+    }
+}
+
+impl Covered {
+    /// The row, of a file in `folder`.
+    pub fn row(&self, folder: &str) -> Row {
+        let Self(file, line, unit, outcome, count) = self;
+        let of = match (unit, outcome) {
+            (Some(unit), _) => Counted::Unit(unit.clone()),
+            (None, Some((column, outcome))) => Counted::Outcome { column: *column, outcome: *outcome },
+            (None, None) => Counted::Line,
+        };
+        Row { file: within(folder, file), line: *line, of, count: *count }
+    }
+}
+
+/// A file of a scenario as it is found from where the tests were started.
+pub fn within(folder: &str, file: &str) -> String {
+    if folder.is_empty() || folder == "." || std::path::Path::new(file).is_absolute() {
+        file.to_owned()
+    } else {
+        format!("{folder}/{file}")
+    }
+}
+
+impl Ran {
+    /// What a report of a run says.
+    pub fn of(name: &str, report: &RunReport, step_ns: u64) -> Self {
+        use onescan_server::end::FailureCause;
+        let cause = report.failure.as_ref().map(|failure| &failure.cause);
+        let place = if let Some(FailureCause::Fault(fault)) = cause { fault.place.clone() } else { None };
+        let shown = report.expectations.iter().map(|expectation| Shown {
+            name: expectation.name.clone(),
+            verdict: expectation.verdict.to_owned(),
+            at_ns: expectation.at.map(onescan_server::time::VirtualTime::as_nanos),
+            values: expectation.values.iter().map(|SignalValue { signal, value }| (signal.clone(), *value)).collect(),
+            margin: expectation.margin,
+        });
+        Self {
+            name: name.to_owned(),
+            status: report.status.to_owned(),
+            digest: report.digest.map(|digest| digest.to_string()),
+            steps: report.steps.0,
+            virtual_time_ns: report.virtual_time.as_nanos(),
+            step_ns,
+            error: report.error.clone(),
+            place,
+            expectations: shown.collect(),
+            ..Self::default()
+        }
+    }
+}

@@ -1,0 +1,92 @@
+//! Cases: one scenario, tried in many ways. They stand in `cases.toml` beside `scenario.toml`.
+//!
+//! | module | subject |
+//! |---|---|
+//! | [`file`] | `cases.toml` as it is written |
+//! | [`catalogue`] | the file read; all cases, those of matrices one by one |
+//! | [`matrix`] | every combination of values |
+//! | [`value`] | TOML values as those of signals and variables |
+//! | [`scene`] | parameters and failures written into the text of a scene |
+//! | [`apply`] | a case put on its scenario |
+//!
+//! A scenario without the file, and one whose file names no case, has one case, called
+//! [`DEFAULT`]: the scenario as it is.
+
+pub mod apply;
+pub mod catalogue;
+pub mod file;
+pub mod matrix;
+pub mod scene;
+pub mod value;
+
+use std::ops::Range;
+
+use onescan_clients::forced::Force;
+use onescan_server::time::VirtualTime;
+
+pub use catalogue::Catalogue;
+
+/// The one case of a scenario that names none.
+pub const DEFAULT: &str = "default";
+/// The file beside `scenario.toml`.
+pub const FILE_NAME: &str = "cases.toml";
+
+/// A value that a case sets, by the path of what it sets.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Setting {
+    /// The client, then what the client calls it: `plant.actuator_1.speed_m_s`, `plc.Shear.Strokes`.
+    pub path: String,
+    /// The value.
+    pub value: toml::Value,
+    /// Where it stands in `cases.toml`.
+    pub place: Range<usize>,
+}
+
+/// One case, its matrix resolved.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Case {
+    /// Its name, which is also that of its snapshot's file.
+    pub name: String,
+    /// What it is about.
+    pub about: Option<String>,
+    /// Words to choose it by.
+    pub tags: Vec<String>,
+    /// What chance begins with, if not what the scenario says.
+    pub seed: Option<u64>,
+    /// When its run is complete, if not when the scenario says.
+    pub until: Option<VirtualTime>,
+    /// Parameters of plants and initial values of PLCs.
+    pub settings: Vec<Setting>,
+    /// The entry of `cases.toml` it comes from; nothing for the default case.
+    pub entry: Option<usize>,
+}
+
+/// What a case does to a scenario once it is bound to its signals.
+#[derive(Clone, Debug, Default)]
+pub struct Applied {
+    /// The case.
+    pub case: Case,
+    /// Operator's inputs and forced signals.
+    pub forces: Vec<Force>,
+    /// Failures of components.
+    pub failures: Vec<FailureAt>,
+    /// `cases.toml`, for errors that are found when clients are made.
+    pub source: (String, String),
+}
+
+/// A component's failure in a case.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FailureAt {
+    /// The plant.
+    pub client: String,
+    /// The component.
+    pub component: String,
+    /// How it fails.
+    pub mode: String,
+    /// From when,
+    pub from: VirtualTime,
+    /// until when; for ever if absent.
+    pub until: Option<VirtualTime>,
+    /// Where it stands in `cases.toml`.
+    pub place: Range<usize>,
+}

@@ -1,0 +1,185 @@
+//! Trajectories as Parquet: part files, each complete, that open together as one data set.
+//!
+//! | module | subject |
+//! |---|---|
+//! | [`schema`] | types |
+//! | [`transpose`] | rows to columns |
+//! | [`encode`] | values to pages |
+//! | [`chunk`] | pages to column chunks |
+//! | [`read`] | parts read back |
+//!
+//! A part grows under a name that begins with a dot, which readers of data sets leave out, and takes
+//! its own when its footer is written.
+
+mod chunk;
+mod encode;
+pub(crate) mod read;
+pub(crate) mod schema;
+mod transpose;
+
+use std::fs::File;
+use std::io::{self, BufWriter, Write};
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use parquet::basic::Encoding;
+use parquet::file::metadata::KeyValue;
+use parquet::file::properties::{EnabledStatistics, WriterProperties, WriterVersion};
+use parquet::file::writer::SerializedFileWriter;
+
+use super::block::Block;
+use super::column::Column;
+use super::recorder::TRAJECTORY;
+use super::sink::{Shape, Sink};
+use encode::Encoded;
+use schema::Held;
+use transpose::Columns;
+
+/// Key of a part's first step among its metadata.
+pub(crate) const FIRST_STEP: &str = "onescan.first_step";
+
+/// The name of a part, counted from 1.
+fn part_name(number: u64) -> String {
+    format!("part-{number:06}.parquet")
+}
+
+/// One file: a schema, row groups, a footer.
+pub(crate) struct ParquetFile<W: Write + Send> {
+    writer: SerializedFileWriter<W>,
+    signals: Arc<[Column]>,
+    columns: Columns,
+    /// The signals in the order of the image: neighbours are fetched together.
+    order: Vec<usize>,
+    snappy: snap::raw::Encoder,
+}
+
+impl<W: Write + Send> ParquetFile<W> {
+    pub(crate) fn new(out: W, signals: Arc<[Column]>, first_step: u64) -> io::Result<Self> {
+        let properties = WriterProperties::builder()
+            .set_writer_version(WriterVersion::PARQUET_1_0)
+            .set_statistics_enabled(EnabledStatistics::None)
+            .set_offset_index_disabled(true)
+            .set_created_by(concat!("onescan ", env!("CARGO_PKG_VERSION")).to_owned())
+            .build();
+        let mut writer = SerializedFileWriter::new(out, schema::schema(&signals)?, Arc::new(properties))?;
+        writer.append_key_value_metadata(KeyValue::new(FIRST_STEP.to_owned(), first_step.to_string()));
+        let mut order: Vec<usize> = (0..signals.len()).collect();
+        order.sort_by_key(|index| signals[*index].offset);
+        Ok(Self { writer, signals, columns: Columns::default(), order, snappy: snap::raw::Encoder::new() })
+    }
+
+    /// Writes a row group.
+    fn rows(&mut self, block: &Block) -> io::Result<()> {
+        let schema = self.writer.schema_descr();
+        let descriptors: Vec<_> = (0..schema.num_columns()).map(|index| schema.column(index)).collect();
+        let encoded = self.encoded(block);
+        let mut group = self.writer.next_row_group()?;
+        for (descriptor, encoded) in descriptors.into_iter().zip(encoded) {
+            let (bytes, close) = chunk::chunk(descriptor, encoded, block.rows(), &mut self.snappy)?;
+            group.append_column(&bytes, close)?;
+        }
+        group.close()?;
+        Ok(())
+    }
+
+    /// The leading columns, then the signals in their order.
+    fn encoded(&mut self, block: &Block) -> Vec<Encoded> {
+        let rows = block.rows();
+        let t_v_ns = &block.t_v_ns;
+        let step_ns = t_v_ns.get(1).map_or(0, |second| second.wrapping_sub(t_v_ns[0]));
+        let digests = Encoded { dictionary: None, data: block.digests.concat(), encoding: Encoding::PLAIN };
+        let mut all =
+            vec![encode::arithmetic(block.first_step, 1, rows), encode::arithmetic(t_v_ns[0], step_ns, rows), digests];
+        let mut signals: Vec<Option<Encoded>> = self.order.iter().map(|_| None).collect();
+        self.columns.begin(block);
+        for &index in &self.order {
+            let column = &self.signals[index];
+            let values = self.columns.get(block, column);
+            let text = |bytes: &[u8]| column.ty.to_text(bytes);
+            signals[index] = Some(encode::encode(values, rows, column.ty.size(), Held::of(column.ty), &text));
+        }
+        all.extend(signals.into_iter().flatten());
+        all
+    }
+
+    /// Writes the footer.
+    fn finish(&mut self) -> io::Result<()> {
+        self.writer.finish()?;
+        self.writer.inner_mut().flush()
+    }
+}
+
+impl<W: Write + Send> Sink for ParquetFile<W> {
+    fn block(&mut self, block: &Block) -> io::Result<()> {
+        self.rows(block)
+    }
+
+    fn end(&mut self) -> io::Result<()> {
+        self.finish()
+    }
+}
+
+/// Writes parts.
+pub(super) struct ParquetSink {
+    folder: PathBuf,
+    signals: Arc<[Column]>,
+    part: Option<ParquetFile<BufWriter<File>>>,
+    number: u64,
+}
+
+impl ParquetSink {
+    /// Empties the folder of parts and begins anew.
+    pub(super) fn create(shape: &Shape) -> io::Result<Self> {
+        let folder = shape.folder.join(TRAJECTORY);
+        std::fs::create_dir_all(&folder)?;
+        for entry in std::fs::read_dir(&folder)? {
+            let entry = entry?;
+            if entry.file_name().to_string_lossy().trim_start_matches('.').starts_with("part-") {
+                std::fs::remove_file(entry.path())?;
+            }
+        }
+        Ok(Self { folder, signals: shape.columns.clone(), part: None, number: 0 })
+    }
+
+    fn partial(&self) -> PathBuf {
+        self.folder.join(format!(".{}.partial", part_name(self.number)))
+    }
+
+    fn end_part(&mut self) -> io::Result<()> {
+        let Some(mut part) = self.part.take() else { return Ok(()) };
+        part.finish()?;
+        std::fs::rename(self.partial(), self.folder.join(part_name(self.number)))
+    }
+}
+
+impl Sink for ParquetSink {
+    fn block(&mut self, block: &Block) -> io::Result<()> {
+        if self.part.is_none() {
+            self.number += 1;
+            let file = BufWriter::new(File::create(self.partial())?);
+            self.part = Some(ParquetFile::new(file, self.signals.clone(), block.first_step)?);
+        }
+        if let Some(part) = &mut self.part {
+            part.rows(block)?;
+        }
+        if block.ends_part { self.end_part() } else { Ok(()) }
+    }
+
+    fn end(&mut self) -> io::Result<()> {
+        self.end_part()
+    }
+}
+
+/// The parts in `folder` in their order.
+pub(crate) fn parts(folder: &Path) -> io::Result<Vec<PathBuf>> {
+    let mut parts = Vec::new();
+    for entry in std::fs::read_dir(folder)? {
+        let path = entry?.path();
+        let name = path.file_name().unwrap_or_default().to_string_lossy();
+        if name.starts_with("part-") && path.extension().is_some_and(|extension| extension == "parquet") {
+            parts.push(path);
+        }
+    }
+    parts.sort();
+    Ok(parts)
+}

@@ -1,0 +1,170 @@
+//! The recorder: an observer that fills blocks and hands them on.
+//!
+//! A recording is a folder:
+//!
+//! | file | what is in it |
+//! |---|---|
+//! | `recording.json` | [`Header`]: what was run; written first |
+//! | `scenario/` | the scenario's own files; written by who knows them |
+//! | `trajectory/part-000001.parquet` … | step, `t_v`, digest and signals of every step |
+//! | `trajectory.csv`, `trajectory.mcap` | the same for spreadsheets and viewers, if asked for |
+//! | `events.jsonl` | [`Event`]s |
+//!
+//! Every part is complete when it takes its name; CSV and MCAP grow block by block. Whatever ends
+//! the process leaves all steps up to the last of these.
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use super::block::{Block, Schedule};
+use super::column::{Column, columns};
+use super::csv::CsvSink;
+use super::event::{Event, EventKind, EventLog};
+use super::header::{Header, Provenance};
+use super::mcap::McapSink;
+use super::parquet::ParquetSink;
+use super::sink::{Encoder, Shape, Sink, failed};
+use super::{Digest, Observer, RecordError};
+use crate::operation::OperatorInput;
+use crate::session::Session;
+use crate::signal::pattern::SignalPattern;
+use crate::time::{StepCount, VirtualTime};
+
+/// Name of the header's file.
+pub const HEADER: &str = "recording.json";
+/// Name of the file of events.
+pub const EVENTS: &str = "events.jsonl";
+/// Name of the folder with the parts of the trajectory.
+pub const TRAJECTORY: &str = "trajectory";
+
+/// What is recorded, and in which forms beside Parquet.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Choice {
+    /// The signals; all without patterns.
+    pub signals: Vec<SignalPattern>,
+    /// CSV too.
+    pub csv: bool,
+    /// MCAP too.
+    pub mcap: bool,
+}
+
+/// Records a session.
+#[derive(Debug)]
+pub struct Recorder {
+    folder: PathBuf,
+    provenance: Provenance,
+    choice: Choice,
+    encoder: Option<Encoder>,
+    events: Option<EventLog>,
+    block: Block,
+    schedule: Schedule,
+    digest: Option<Digest>,
+    /// The last step that was seen.
+    last: (StepCount, VirtualTime),
+}
+
+impl Recorder {
+    /// A recorder that will write into `folder`, which exists.
+    pub fn new(folder: &Path, provenance: Provenance, choice: Choice) -> Self {
+        Self {
+            folder: folder.to_owned(),
+            provenance,
+            choice,
+            encoder: None,
+            events: None,
+            block: Block::default(),
+            schedule: Schedule::new(1, 1),
+            digest: None,
+            last: (StepCount::default(), VirtualTime::ZERO),
+        }
+    }
+
+    fn start(&mut self, session: &Session) -> std::io::Result<()> {
+        let columns = columns(session, &self.choice.signals).map_err(std::io::Error::other)?;
+        let header = Header::new(session, &self.provenance, &columns);
+        let mut text = serde_json::to_vec_pretty(&header)?;
+        text.push(b'\n');
+        std::fs::write(self.folder.join(HEADER), text)?;
+        self.schedule = Schedule::new(session.step().as_nanos(), session.image().len());
+        self.block = Block::default();
+        let rows = self.schedule.block_rows() as usize;
+        self.block.reserve(rows, session.image().len());
+        self.encoder = Some(Encoder::start(self.sinks(columns)?)?);
+        Ok(())
+    }
+
+    fn sinks(&self, columns: Vec<Column>) -> std::io::Result<Vec<Box<dyn Sink>>> {
+        let columns: Arc<[Column]> = columns.into();
+        let shape = Shape { columns, folder: self.folder.clone() };
+        let mut sinks: Vec<Box<dyn Sink>> = vec![Box::new(ParquetSink::create(&shape)?)];
+        if self.choice.csv {
+            sinks.push(Box::new(CsvSink::create(&shape)?));
+        }
+        if self.choice.mcap {
+            sinks.push(Box::new(McapSink::create(&shape)?));
+        }
+        Ok(sinks)
+    }
+
+    fn row(&mut self, session: &Session) -> Result<(), RecordError> {
+        let (Some(digest), Some(encoder)) = (self.digest, &self.encoder) else { return Ok(()) };
+        self.block.push(session, digest);
+        self.last = (session.cycle().steps(), session.t_v());
+        let (block, part) = self.schedule.row();
+        if !block {
+            return Ok(());
+        }
+        self.block.ends_part = part;
+        match encoder.exchange(std::mem::take(&mut self.block)) {
+            Some(empty) => {
+                self.block = empty;
+                Ok(())
+            }
+            None => self.finish(),
+        }
+    }
+
+    /// Waits for the thread, and tells why it ended if it did so early.
+    fn finish(&mut self) -> Result<(), RecordError> {
+        let block = std::mem::take(&mut self.block);
+        let last = (block.rows() > 0).then_some(block);
+        match self.encoder.take() {
+            Some(encoder) => encoder.finish(last).map_err(failed(&self.folder)),
+            None => Ok(()),
+        }
+    }
+}
+
+impl Observer for Recorder {
+    fn digested(&mut self, digest: Digest) {
+        self.digest = Some(digest);
+    }
+
+    fn begin(&mut self, session: &Session) -> Result<(), RecordError> {
+        // After a reset the trajectory begins anew; what happened before is still told.
+        self.finish()?;
+        if self.events.is_none() {
+            self.events = Some(EventLog::create(&self.folder.join(EVENTS))?);
+        }
+        self.start(session).map_err(failed(&self.folder))?;
+        self.row(session)
+    }
+
+    fn step(&mut self, session: &Session) -> Result<(), RecordError> {
+        self.row(session)
+    }
+
+    fn operated(&mut self, input: &OperatorInput) -> Result<(), RecordError> {
+        let Some(events) = &mut self.events else { return Ok(()) };
+        let what = EventKind::Operator { operation: input.operation.clone() };
+        events.push(&Event { step: input.step, t_v: input.t_v, what })
+    }
+
+    fn end(&mut self, session: &Session) -> Result<(), RecordError> {
+        self.finish()?;
+        match (&mut self.events, session.end()) {
+            (Some(events), Some(end)) => events.end(end, self.last.0, self.last.1),
+            _ => Ok(()),
+        }
+    }
+}

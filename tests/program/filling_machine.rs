@@ -1,0 +1,100 @@
+//! The filling machine: no package lost, with the distortion every one by the emergency drop, and the
+//! same to the bit whatever interrupts it.
+
+use std::path::Path;
+
+use serde_json::Value;
+
+use crate::typed::{Said, copied, digests, edit, scenario, typed};
+
+fn run(folder: &Path, file: &str, words: &[&str]) -> (Vec<Value>, Said) {
+    let mut all = vec!["run", file, "--format", "json"];
+    all.extend_from_slice(words);
+    let said = typed(folder, &all);
+    (said.out.lines().map(|line| serde_json::from_str(line).expect("JSON lines")).collect(), said)
+}
+
+/// The last value of each of these signals in a recorded run.
+fn last(record: &Path, signals: &[&str]) -> Vec<i64> {
+    let text = std::fs::read_to_string(record.join("run-1/trajectory.csv")).expect("a recording");
+    let (head, end) = (text.lines().next().expect("a head"), text.lines().last().expect("a row"));
+    let column = |name: &&str| head.split(',').position(|known| known == *name).expect("recorded");
+    let at = |index: usize| end.split(',').nth(index).and_then(|value| value.parse().ok()).expect("a whole number");
+    signals.iter().map(|name| at(column(name))).collect()
+}
+
+const COUNTS: [&str; 5] = ["Packages_In", "Packages_Out", "Packages_Dropped", "Packages_Lost", "Collisions"];
+
+#[test]
+fn a_shift_without_faults_loses_nothing_and_is_the_same_to_the_bit() {
+    let machine = scenario("filling-machine");
+    let folder = tempfile::tempdir().unwrap();
+    let (record, saved) = (folder.path().join("record"), folder.path().join("half.checkpoint"));
+    let (record_word, saved) = (record.to_str().unwrap(), saved.to_str().unwrap());
+    let words =
+        ["--until", "40s", "--record-also", "csv", "--record", record_word, "--save-at", "21370ms", "--save", saved];
+    let (whole, said) = run(&machine, ".", &words);
+    assert_eq!(said.code, Some(0), "{said:?}");
+    // one each 1.5 s, after setting up both motors; 15 are in the machine
+    assert_eq!(last(&record, &COUNTS), [28, 13, 0, 0, 0]);
+    insta::assert_snapshot!("filling_machine_digest", digests(&whole)[0]);
+    let (resumed, said) = run(&machine, ".", &["--until", "40s", "--resume", saved]);
+    assert_eq!(digests(&resumed), digests(&whole), "a package is between the wheels: {said:?}");
+    let (remote, said) = run(&machine, ".", &["--until", "8s", "--transport", "tcp"]);
+    let (local, _) = run(&machine, ".", &["--until", "8s"]);
+    assert_eq!(digests(&remote), digests(&local), "{said:?}");
+}
+
+#[test]
+fn with_the_distortion_on_every_package_leaves_by_the_emergency_drop() {
+    let folder = tempfile::tempdir().unwrap();
+    let record = folder.path().join("record");
+    let words = ["--until", "65s", "--record-also", "csv", "--record", record.to_str().unwrap()];
+    let (reports, said) = run(&scenario("filling-machine"), "distortion.toml", &words);
+    assert_eq!((reports.len(), said.code), (1, Some(0)), "{said:?}");
+    // one each 1.5 s for 30 s; the last is offered just before the signal comes back, and taken
+    let [_, _, dropped, lost, collisions] = last(&record, &COUNTS)[..] else { panic!("five counts") };
+    assert_eq!((dropped, lost, collisions), (19, 0, 0));
+}
+
+/// What the emergency drop is for: without it a package meets the one that waits on the conveyor.
+#[test]
+fn without_the_emergency_drop_packages_crash() {
+    let machine = copied("filling-machine");
+    let failure = "[[failure]]\ncomponent = \"sw_emergency[0..2]\"\nmode = \"dead\"\n\n[[component]]\nname = \"crash\"";
+    edit(machine.path(), "plant.toml", "[[component]]\nname = \"crash\"", failure);
+    let (reports, said) = run(machine.path(), "distortion.toml", &["--until", "36s"]);
+    assert_eq!(said.code, Some(1), "{said:?}");
+    let violated = reports[0]["expectations"].as_array().expect("verdicts").iter();
+    let names: Vec<_> = violated.filter(|one| one["verdict"] == "violated").map(|one| one["name"].clone()).collect();
+    assert!(names.contains(&"no package meets another".into()), "{names:?}");
+}
+
+/// Without `Motor_Setup` the wheels are out of phase: no package is handed over, and none is lost.
+#[test]
+fn without_motor_setup_every_package_is_dropped() {
+    let machine = copied("filling-machine");
+    edit(machine.path(), "panel/production.st", "Press(IN", "Skip_Setup := TRUE; Press(IN");
+    let record = machine.path().join("record");
+    let (_, said) =
+        run(machine.path(), ".", &["--until", "30s", "--record-also", "csv", "--record", record.to_str().unwrap()]);
+    assert_eq!(said.code, Some(1), "{said:?}");
+    let [_, out, dropped, lost, collisions] = last(&record, &COUNTS)[..] else { panic!("five counts") };
+    assert!(out == 0 && dropped > 10 && lost == 0 && collisions == 0, "{dropped} {lost} {collisions}");
+}
+
+#[test]
+#[ignore = "an hour of virtual time: for release builds, with --ignored"]
+fn an_hour_without_a_package_lost() {
+    let folder = tempfile::tempdir().unwrap();
+    let record = folder.path().join("record");
+    let (reports, said) = run(
+        &scenario("filling-machine"),
+        ".",
+        &["--until", "1h", "--record-also", "csv", "--record", record.to_str().unwrap()],
+    );
+    assert_eq!(said.code, Some(0), "{said:?}");
+    let [came, gone, dropped, lost, collisions] = last(&record, &COUNTS)[..] else { panic!("five counts") };
+    assert_eq!((dropped, lost, collisions), (0, 0, 0));
+    assert!(came == 2402 && gone == 2386, "{came} {gone} {}", reports[0]["wall_time_s"]);
+}

@@ -1,0 +1,87 @@
+//! The Python package: its own tests, and a plant in Python against the shear's PLC.
+
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use onescan::scenario::Scenario;
+use onescan::scenario::compose::Member;
+use onescan_clients::replay::Replay;
+use onescan_server::client::JoinRequest;
+use onescan_server::formation::Formation;
+use onescan_server::signal::ElementaryType;
+use onescan_tests::run::run;
+use onescan_tests::{at_ms, client, port, span_ms};
+use serde_json::Value;
+
+use crate::typed::{copied_shear, digests, edit, onescan};
+
+fn package() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../clients/python")
+}
+
+#[test]
+fn the_package_passes_its_own_tests() {
+    let mut python = Command::new("python3");
+    python.args(["-B", "-m", "unittest", "discover", "-s", "tests"]).current_dir(package());
+    let output = python.env("PYTHONPATH", package().join("src")).output().expect("python3 is on the machine");
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+}
+
+/// The plant's outputs of each turn, the initial ones first, from the CSV of a run.
+fn outputs(csv: &str, signals: &[(&str, ElementaryType)]) -> Vec<Vec<u8>> {
+    let mut lines = csv.lines();
+    let head: Vec<_> = lines.next().expect("a head").split(',').collect();
+    let columns: Vec<_> = signals
+        .iter()
+        .map(|(name, ty)| (head.iter().position(|known| known == name).expect("recorded"), *ty))
+        .collect();
+    let bytes = |line: &str| {
+        let values: Vec<_> = line.split(',').collect();
+        let mut bytes = Vec::new();
+        for (column, ty) in &columns {
+            match ty {
+                ElementaryType::Bool => bytes.push(u8::from(values[*column] == "1")),
+                _ => bytes.extend(values[*column].parse::<f64>().expect("a number").to_le_bytes()),
+            }
+        }
+        bytes
+    };
+    lines.map(bytes).collect()
+}
+
+#[test]
+fn a_plant_in_python_is_as_good_as_its_recording() {
+    let shear = copied_shear();
+    let plant = package().join("examples/shear.py");
+    let external = format!(
+        "kind = \"external\"\ncommand = [\"python3\", \"-B\", \"{}\", \"--server\", \"{{server}}\"]",
+        plant.display()
+    );
+    edit(shear.path(), "scenario.toml", "kind = \"plant\"\nscene = \"plant.toml\"", &external);
+    let words = ["run", ".", "--until", "3s", "--runs", "2", "--record", "record", "--format", "json"];
+    let mut command = onescan(shear.path());
+    let output = command.args(words).env("PYTHONPATH", package().join("src")).output().expect("the program starts");
+    let said = String::from_utf8(output.stdout).expect("text");
+    assert!(output.status.success(), "{said} {}", String::from_utf8_lossy(&output.stderr));
+    let reports: Vec<Value> = said.lines().map(|line| serde_json::from_str(line).expect("JSON")).collect();
+    let digests = digests(&reports);
+    assert_eq!(digests[0], digests[1], "Python, too, gives the same bits again");
+
+    let signals = [
+        ("Sensor_1", ElementaryType::Bool),
+        ("Sensor_2", ElementaryType::Bool),
+        ("Position_1", ElementaryType::Lreal),
+        ("Position_2", ElementaryType::Lreal),
+    ];
+    let csv = std::fs::read_to_string(shear.path().join("record/run-1/trajectory.csv")).unwrap();
+    let writes = signals.iter().map(|(name, ty)| port(name, *ty)).collect();
+    let request = JoinRequest { name: client("plant"), period: span_ms(10), reads: Vec::new(), writes };
+    let scenario = Scenario::load(shear.path()).unwrap();
+    let mut formation = Formation::new(scenario.plan().clone());
+    formation.join(Box::new(Replay::new(request, outputs(&csv, &signals)))).unwrap();
+    let Member::Plc(plc) = scenario.member(&client("plc")).unwrap() else { panic!("it is a soft PLC") };
+    formation.join(plc).unwrap();
+    let replayed = run(formation.start().unwrap(), at_ms(3_000));
+    assert_eq!(replayed.digest.expect("a digest").to_string(), digests[0]);
+    assert!(csv.lines().count() == 302 && csv.contains(",1,"), "the blade has moved");
+}

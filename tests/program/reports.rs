@@ -1,0 +1,139 @@
+//! Reports for others: `JUnit`, Cobertura and lcov, one page; read by the tools of the field.
+
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use crate::typed::{copied_shear, edit, typed};
+
+/// A Python environment with what reads these reports, made once.
+fn peer() -> PathBuf {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("reports-1");
+    let python = folder.join("bin/python");
+    let ready = folder.join("ready");
+    if !ready.exists() {
+        let run = |program: &Path, words: &[&str]| {
+            let output = Command::new(program).args(words).output().expect("Python is on the machine");
+            assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        };
+        run(Path::new("python3"), &["-m", "venv", "--clear", &folder.to_string_lossy()]);
+        run(&python, &["-m", "pip", "install", "--quiet", "junitparser==3.2.0", "pycobertura==4.1.0"]);
+        std::fs::write(ready, "").expect("the folder is there");
+    }
+    python
+}
+
+fn asked(folder: &Path, program: &str) -> String {
+    let output = Command::new(peer()).current_dir(folder).args(["-c", program]).output().expect("the peer starts");
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    String::from_utf8(output.stdout).expect("text")
+}
+
+const SOURCES: &str = "PROGRAM TEST_Odd ASSERT(FALSE, 'a < b & \"c\"'); END_PROGRAM\n";
+
+/// The shear with one case that has changed, and a test program that fails.
+fn reported() -> tempfile::TempDir {
+    let folder = copied_shear();
+    edit(folder.path(), "plc/shear.st", "Position_1 > LowerLimit", "Position_1 >= LowerLimit");
+    std::fs::write(folder.path().join("odd.st"), SOURCES).expect("a file");
+    let words =
+        ["test", ".", "odd.st", "--check", "--junit", "junit.xml", "--coverage", "coverage.xml", "--html", "page.html"];
+    let said = typed(folder.path(), &words);
+    assert_eq!(said.code, Some(1), "{said:?}");
+    folder
+}
+
+#[test]
+fn junit_is_read_by_junitparser() {
+    let folder = reported();
+    let program = "
+import junitparser
+xml = junitparser.JUnitXml.fromfile('junit.xml')
+print(xml.tests, xml.failures, xml.errors)
+for suite in xml:
+    print(len(list(suite)), suite.tests, suite.failures, suite.errors, suite.skipped)
+    for case in suite:
+        for result in case.result:
+            print(case.name, type(result).__name__, result.type, result.message)
+";
+    let told = asked(folder.path(), program);
+    insta::assert_snapshot!(told);
+}
+
+#[test]
+fn cobertura_is_read_by_pycobertura() {
+    let folder = reported();
+    let program = "
+from pycobertura import Cobertura
+from pycobertura.filesystem import filesystem_factory
+report = Cobertura('coverage.xml', filesystem=filesystem_factory('.'))
+for name in sorted(report.files()):
+    print(name, report.total_statements(name), report.total_misses(name))
+";
+    let told = asked(folder.path(), program);
+    insta::assert_snapshot!(told);
+}
+
+/// All but the line that says how long it took.
+fn without_header(text: &str) -> String {
+    let timed = |line: &&str| line.contains("class=\"made\"") || line.starts_with("<testsuites");
+    text.lines().filter(|line| !timed(line)).collect::<Vec<_>>().join("\n")
+}
+
+#[test]
+fn equal_runs_give_equal_reports() {
+    let (one, other) = (reported(), reported());
+    for file in ["junit.xml", "coverage.xml", "page.html"] {
+        let read = |folder: &tempfile::TempDir| {
+            let text = std::fs::read_to_string(folder.path().join(file)).expect("a report");
+            let name = folder.path().file_name().expect("a name").to_string_lossy().into_owned();
+            without_header(&text.replace(&name, "shear"))
+        };
+        assert_eq!(read(&one), read(&other), "{file}");
+    }
+}
+
+#[test]
+fn the_page_is_whole_in_one_file() {
+    let folder = reported();
+    let page = std::fs::read_to_string(folder.path().join("page.html")).expect("a page");
+    assert!(page.contains("<svg") && page.contains("coverage of the PLC's code") && page.contains("on-the-limit"));
+    assert!(page.contains("a &lt; b &amp; &quot;c&quot;"), "text stays text");
+    assert!(!page.contains("<script") && !page.contains("<link") && !page.contains(" src="), "it loads nothing");
+}
+
+#[test]
+fn coverage_of_all_cases_is_that_of_each_together() {
+    let folder = copied_shear();
+    let lcov = |words: &[&str]| {
+        let said = typed(folder.path(), &[&["test", ".", "--check", "--coverage", "all.info"], words].concat());
+        assert_eq!(said.code, Some(0), "{said:?}");
+        std::fs::read_to_string(folder.path().join("all.info")).expect("a report")
+    };
+    let all = lcov(&[]);
+    assert!(all.contains("SF:plc/shear.st"), "{all}");
+    assert!(all.lines().any(|line| line.starts_with("DA:") && line.ends_with(",5")), "five cases: {all}");
+    assert_eq!(lcov(&["--jobs", "1"]), all);
+}
+
+#[test]
+fn a_run_has_a_page_too() {
+    let folder = copied_shear();
+    edit(
+        folder.path(),
+        "scenario.toml",
+        "[plot]",
+        "[[expect]]\nname = \"short\"\nformula = \"always Position_1 > -100 mm\"\n\n[plot]",
+    );
+    let said = typed(folder.path(), &["run", ".", "--case", "sensor-lost", "--html", "run.html"]);
+    assert_eq!(said.code, Some(1), "{said:?}");
+    let page = std::fs::read_to_string(folder.path().join("run.html")).expect("a page");
+    assert!(page.contains("expectation `short` violated") && page.contains("Sensor_1 held at 0"), "{page}");
+    assert!(
+        page.contains("<svg") && page.contains("`short` violated</text>"),
+        "the violation is marked in the picture"
+    );
+    let plain = typed(folder.path(), &["run", ".", "--case", "sensor-lost", "--format", "json"]);
+    let report: serde_json::Value = serde_json::from_str(&plain.out).expect("JSON");
+    let digest = report["digest"].as_str().expect("a digest");
+    assert!(page.contains(digest), "a page changes no bit");
+}

@@ -1,0 +1,73 @@
+//! `onescan review`: old, new and difference, accepted or rejected.
+
+use crate::typed::{copied_shear, edit, scenario, typed};
+
+/// The shear with a change that has been tested.
+fn changed_shear() -> tempfile::TempDir {
+    let folder = copied_shear();
+    edit(folder.path(), "plc/shear.st", "Position_1 > LowerLimit", "Position_1 >= LowerLimit");
+    assert_eq!(typed(folder.path(), &["test", "."]).code, Some(1));
+    folder
+}
+
+fn snapshot(folder: &std::path::Path) -> String {
+    std::fs::read_to_string(folder.join("snapshots/on-the-limit.traj")).expect("a snapshot")
+}
+
+fn named(folder: &tempfile::TempDir, text: &str) -> String {
+    text.replace(&folder.path().file_name().expect("a name").to_string_lossy().into_owned(), "shear")
+}
+
+#[test]
+fn old_new_and_difference_are_shown_in_80_columns() {
+    let folder = changed_shear();
+    let said = typed(folder.path(), &["review", "."]);
+    assert_eq!(said.code, Some(0), "{said:?}");
+    let drawn = said.out.lines().filter(|line| !line.contains("expected"));
+    assert!(drawn.clone().all(|line| line.chars().count() <= 80), "{}", said.out);
+    assert!(!said.out.contains('\u{1b}'), "no colours");
+    insta::assert_snapshot!(named(&folder, &said.out));
+}
+
+#[test]
+fn all_are_listed_rejected_or_accepted() {
+    let folder = changed_shear();
+    let before = snapshot(folder.path());
+    let said = typed(folder.path(), &["review", ".", "--list"]);
+    assert_eq!(named(&folder, &said.out), "changed shear: on-the-limit\n");
+    let said = typed(folder.path(), &["review", ".", "--reject-all"]);
+    assert_eq!(named(&folder, &said.out), "rejected shear: on-the-limit\n");
+    assert_eq!(snapshot(folder.path()), before);
+    let said = typed(folder.path(), &["review"]);
+    assert_eq!((said.out.as_str(), said.code), ("no snapshot waits for a review\n", Some(0)));
+
+    assert_eq!(typed(folder.path(), &["test", "."]).code, Some(1));
+    assert_eq!(typed(folder.path(), &["review", "--accept-all"]).code, Some(0));
+    assert_ne!(snapshot(folder.path()), before);
+    assert_eq!(typed(folder.path(), &["test", ".", "--check"]).code, Some(0));
+}
+
+#[test]
+fn a_page_shows_all_in_one_file() {
+    let folder = changed_shear();
+    let said = typed(folder.path(), &["review", ".", "--list", "--html", "review.html"]);
+    assert_eq!(said.code, Some(0), "{said:?}");
+    let page = std::fs::read_to_string(folder.path().join("review.html")).expect("a page");
+    assert!(page.contains("first difference") && page.contains("Position_1, new less old"), "{page}");
+    assert!(!page.contains("<script") && !page.contains("<link") && !page.contains(" src="), "it loads nothing");
+}
+
+#[test]
+fn a_garbled_pending_snapshot_is_told() {
+    let folder = changed_shear();
+    std::fs::write(folder.path().join("snapshots/on-the-limit.traj.new"), "onescan trajectory 1\n").expect("a file");
+    let said = typed(folder.path(), &["review", "."]);
+    assert_eq!(said.code, Some(2), "{said:?}");
+    assert!(said.err.contains("line 2: the file is cut off here"), "{}", said.err);
+}
+
+#[test]
+fn nothing_waits_in_the_project() {
+    let said = typed(&scenario(""), &["review", ".", "--list"]);
+    assert_eq!(said.out, "no snapshot waits for a review\n");
+}
