@@ -261,7 +261,7 @@ fn what_a_plc_may_say_has_a_name() {
         told(&|report| report.answer = Answer::Held),
         told(&|report| report.answer = Answer::Other(77)),
     ];
-    insta::assert_snapshot!(all.join("\n"), @"");
+    insta::assert_snapshot!(all.join("\n"));
 }
 
 fn luck() -> impl Strategy<Value = Luck> {

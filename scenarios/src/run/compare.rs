@@ -77,7 +77,7 @@ pub fn compare(config: &CompareConfig, interrupt: &Interrupt, out: &mut dyn Writ
         run.check(&scenario)?;
         let mut runs = Vec::new();
         for number in 1..=config.run.runs {
-            let (report, samples) = one_run(&run, &scenario, number, interrupt)?;
+            let (report, samples) = one_run(&run, &scenario, number, interrupt, Vec::new())?;
             if let Some(error) = &report.error {
                 return Err(RunError::usage(format!("{}: {error}", mode.name()), None));
             }

@@ -7,7 +7,7 @@ use onescan_server::record::recorder::EVENTS;
 use onescan_server::record::{Choice, Provenance, Recorder, SourceFile};
 use onescan_server::time::VirtualTime;
 
-use super::config::{Mode, RunConfig};
+use super::config::RunConfig;
 use super::error::RunError;
 use super::output;
 use super::report::RunReport;

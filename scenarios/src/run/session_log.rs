@@ -195,6 +195,6 @@ mod tests {
         let mut out = Vec::new();
         write(&latencies[..1], &mut out).unwrap();
         let text = String::from_utf8(out).unwrap();
-        insta::assert_snapshot!(text, @"");
+        insta::assert_snapshot!(text);
     }
 }

@@ -43,7 +43,7 @@ fn what_is_wrong_with_a_map_is_told() {
         told(Bool, "hr:8.16"),
         told(String(4), "hr:20"),
     ];
-    insta::assert_snapshot!(all.join("\n"), @"");
+    insta::assert_snapshot!(all.join("\n"));
 }
 
 #[test]

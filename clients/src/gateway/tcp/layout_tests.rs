@@ -65,7 +65,7 @@ fn what_is_wrong_with_a_layout_is_told() {
     let told = |from: &str, to: &str| {
         let text = AXIS.replacen(from, to, 1);
         let fault = Layouts::new(&declaration(&text), &axis_exchange()).unwrap_err();
-        format!("{fault} {}", fault.help.unwrap_or_default())
+        format!("{fault} {}", fault.help.as_deref().unwrap_or_default())
     };
     let all = [
         told("InPosition: BOOL", "InPositoin: BOOL"),
@@ -76,7 +76,7 @@ fn what_is_wrong_with_a_layout_is_told() {
         told("ToPlc = [", "ToPlc = [\"Again: ToPlc\", "),
         told("InPosition: BOOL", "InPosition: STRING[8]"),
     ];
-    insta::assert_snapshot!(all.join("\n"), @"");
+    insta::assert_snapshot!(all.join("\n"));
 }
 
 #[test]
