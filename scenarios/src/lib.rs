@@ -17,12 +17,15 @@
 //! | [`plant`] | scenes and components, told without a session |
 //! | [`freewheel`] | running without lockstep, to show what it is good for |
 //! | [`expect`] | what a run must show: signal temporal logic |
+//! | [`browse`] | what a real PLC has |
+//! | [`plc`] | a soft PLC as a process of its own |
 //! | [`plot`] | trajectories as SVG |
 //!
 //! Invariants. This is the only crate that reads scenario files, starts processes and prints. What
 //! a session computes is decided in the crates below; nothing here can change a digest.
 
 pub mod bisect;
+pub mod browse;
 pub mod check;
 pub mod cli;
 pub mod diff;
@@ -32,6 +35,7 @@ pub mod freewheel;
 pub mod instrument;
 pub mod new;
 pub mod plant;
+pub mod plc;
 pub mod plot;
 pub mod regress;
 pub mod review;

@@ -17,7 +17,7 @@ fn shear() -> Lockstep {
     let mut formation = Formation::new(scenario.plan().clone());
     for name in scenario.plan().clients() {
         match scenario.member(name).unwrap() {
-            Member::Plant(client) | Member::Plc(client) => formation.join(client).unwrap(),
+            Member::Plant(client) | Member::Plc(client) | Member::Gateway(client) => formation.join(client).unwrap(),
             Member::External(_) => panic!("the shear has none"),
         };
     }

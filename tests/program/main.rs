@@ -3,6 +3,7 @@
 mod cases;
 mod check;
 mod checkpoint;
+mod compare;
 mod configuration;
 mod control;
 mod coverage;
@@ -18,7 +19,10 @@ mod instrument;
 mod new;
 mod operator;
 mod plant;
+mod plc;
 mod plc_faults;
+mod plc_peers;
+mod plc_untrusted;
 mod python;
 mod recording;
 mod regression;

@@ -15,6 +15,7 @@ use onescan_server::time::{TimeSpan, VirtualTime};
 use super::test_args::{ReviewArgs, TestArgs, WorkerArgs};
 use crate::check::CheckFormat;
 use crate::new::Template;
+use crate::plc::Cycle;
 use crate::run::coverage::CoverageFormat;
 use crate::run::{Format, Mode, Transport};
 use crate::scenario::watch::WatchRequest;
@@ -46,6 +47,9 @@ const EXIT_CODES: &str = "Exit codes:
 pub enum Command {
     /// Run a scenario and print the digest of its trajectories
     Run(Box<RunArgs>),
+    /// Run a scenario in lockstep and in the other ways that are in use, and set them side by side: how far
+    /// trajectories and edges are off, what is lost, how fast it is
+    Compare(CompareArgs),
     /// Run all scenarios and cases, and hold them against their reviewed snapshots; run test programs in ST
     Test(Box<TestArgs>),
     /// Look at snapshots that are new or have changed, and accept or reject them
@@ -68,6 +72,11 @@ pub enum Command {
     /// Make a PLC project run in lockstep on any PLC: scheduler, execution controllers and timers on virtual
     /// time are attached; or take them off again
     Instrument(Box<InstrumentArgs>),
+    /// Run a soft PLC of a scenario as a process of its own: it free-wheels, serves its variables over the
+    /// protocols of real PLCs, and is started and stopped by commands that are typed
+    Plc(PlcArgs),
+    /// List what a real PLC has, and write a mapping to start from
+    Browse(BrowseArgs),
     /// List the library of components, or tell all about one kind
     Components(ComponentsArgs),
     /// Tell what a scene is made of: bodies, joints, components, signals
@@ -105,6 +114,10 @@ pub struct RunArgs {
     /// `inproc`: all clients in this process; `tcp`: each in a process of its own
     #[arg(long, value_enum, default_value_t)]
     pub transport: TransportArg,
+    /// Let a real PLC stand in for a soft PLC, as in `plc=tcp://192.168.0.1:2000`; it runs the instrumented
+    /// program [default URL: the scenario's]
+    #[arg(long = "gateway", value_name = "CLIENT[=URL]", value_parser = gateway)]
+    pub gateways: Vec<(ClientName, Option<String>)>,
     /// Record each run in a folder `run-N` of this folder: the scenario's files, every signal and digest of
     /// every step as Parquet, events
     #[arg(long, value_name = "DIR")]
@@ -162,6 +175,28 @@ pub struct RunArgs {
     /// Go on from this checkpoint
     #[arg(long, value_name = "FILE")]
     pub resume: Option<PathBuf>,
+    /// Report how long the session waited for each client of this process; always with --gateway
+    #[arg(long)]
+    pub latency: bool,
+}
+
+/// Options of `compare`.
+#[derive(Debug, ClapArgs)]
+pub struct CompareArgs {
+    /// The scenario: a folder with a `scenario.toml`
+    pub scenario: PathBuf,
+    /// Virtual time at which a run is complete [default: the scenario's `until`]
+    #[arg(long, value_name = "TIME")]
+    pub until: Option<VirtualTime>,
+    /// Runs of each way
+    #[arg(long, default_value_t = 3, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1_000))]
+    pub runs: u32,
+    /// Draw the signals of the scenario's plot, a run of each way over each other, into this SVG file
+    #[arg(long, value_name = "FILE")]
+    pub plot: Option<PathBuf>,
+    /// For people, or one JSON object a way for machines
+    #[arg(long, value_enum, default_value_t)]
+    pub format: FormatArg,
 }
 
 /// Options of `export`.
@@ -324,6 +359,70 @@ pub struct InstrumentArgs {
     pub format: FormatArg,
 }
 
+/// Options of `plc`.
+#[derive(Debug, ClapArgs)]
+#[command(after_help = PLC_COMMANDS)]
+pub struct PlcArgs {
+    /// The scenario: a folder with a `scenario.toml`
+    pub scenario: PathBuf,
+    /// Which of its soft PLCs [default: the only one]
+    #[arg(long, value_name = "CLIENT", value_parser = client_name)]
+    pub client: Option<ClientName>,
+    /// `lockstep`: its programs run when they are granted; `freewheel`: by its own clock and tasks, as if there
+    /// were no shim
+    #[arg(long, value_enum, default_value_t)]
+    pub mode: ModeArg,
+    /// How often it scans, wall clock: a time, or `max` for one scan behind the other
+    #[arg(long, default_value = "1ms", value_name = "TIME|max")]
+    pub cycle: Cycle,
+    /// Where data blocks are served over raw TCP [default, if no protocol is named: each at a free port of
+    /// this machine]
+    #[arg(long, value_name = "ADDRESS:PORT")]
+    pub tcp: Option<SocketAddr>,
+    /// Where registers are served over Modbus TCP
+    #[arg(long, value_name = "ADDRESS:PORT")]
+    pub modbus: Option<SocketAddr>,
+    /// Where variables are served over OPC UA
+    #[arg(long, value_name = "ADDRESS:PORT")]
+    pub opcua: Option<SocketAddr>,
+    /// The only OPC UA user, whose password is in the environment variable ONESCAN_OPCUA_PASSWORD [default:
+    /// anybody]
+    #[arg(long, value_name = "NAME")]
+    pub opcua_user: Option<String>,
+    /// Folder with the OPC UA server's certificates and those it trusts; with it nobody is let in without
+    /// security
+    #[arg(long, value_name = "DIR")]
+    pub opcua_pki: Option<PathBuf>,
+    /// Trust the certificate of any OPC UA client
+    #[arg(long, requires = "opcua_pki")]
+    pub opcua_trust: bool,
+}
+
+/// Options of `browse`.
+#[derive(Debug, ClapArgs)]
+pub struct BrowseArgs {
+    /// The PLC, as in `opc.tcp://192.168.0.1:4840`
+    pub url: String,
+    /// Map the signals of this scenario, and use what it says of the link
+    #[arg(long, value_name = "SCENARIO")]
+    pub scenario: Option<PathBuf>,
+    /// The client of the scenario that speaks for the PLC
+    #[arg(long, value_name = "CLIENT", value_parser = client_name, default_value = "plc")]
+    pub client: ClientName,
+    /// Write the mapping into this file, as a part of a `scenario.toml`
+    #[arg(long, value_name = "FILE")]
+    pub map: Option<PathBuf>,
+    /// For people, or one JSON object a variable for machines
+    #[arg(long, value_enum, default_value_t)]
+    pub format: FormatArg,
+}
+
+const PLC_COMMANDS: &str = "Commands on standard input:
+  run, stop    the switch: RUN or STOP
+  cold, warm   start it anew: all variables with their initial values, or RETAIN kept
+  status       how it is
+  quit         end it";
+
 /// Options of `components`.
 #[derive(Debug, ClapArgs)]
 pub struct ComponentsArgs {
@@ -407,6 +506,10 @@ pub enum ModeArg {
     Lockstep,
     /// Each on its own clock
     Freewheel,
+    /// The same, the plant held to the PLC's cycle by a timer
+    Halt,
+    /// The same, the plant following the PLC's clock
+    Follow,
 }
 
 impl From<ModeArg> for Mode {
@@ -414,6 +517,8 @@ impl From<ModeArg> for Mode {
         match arg {
             ModeArg::Lockstep => Self::Lockstep,
             ModeArg::Freewheel => Self::Freewheel,
+            ModeArg::Halt => Self::Halt,
+            ModeArg::Follow => Self::Follow,
         }
     }
 }
@@ -609,6 +714,13 @@ fn plc_task(text: &str) -> Result<Task, String> {
         programs: programs.split(',').map(|program| program.trim().to_owned()).collect(),
         ..Task::default()
     })
+}
+
+fn gateway(text: &str) -> Result<(ClientName, Option<String>), String> {
+    match text.split_once('=') {
+        Some((name, url)) => Ok((client_name(name)?, Some(url.to_owned()))),
+        None => Ok((client_name(text)?, None)),
+    }
 }
 
 fn signal_name(text: &str) -> Result<SignalName, String> {

@@ -1,8 +1,11 @@
 //! What each command does.
 
 use std::io::{IsTerminal, Write};
+use std::net::{Ipv4Addr, SocketAddr};
+use std::path::PathBuf;
 use std::time::Duration;
 
+use onescan_clients::station::opcua::Access;
 use onescan_server::record::Choice;
 use onescan_server::recording::ExportFormat;
 use onescan_server::time::VirtualTime;
@@ -10,16 +13,19 @@ use onescan_server::transport::tcp::operator::operate;
 use onescan_server::transport::tcp::participant::take_part;
 
 use super::args::{
-    BisectArgs, CheckArgs, Command, ControlArgs, DiffArgs, ExplainArgs, ExportArg, ExportArgs, InstrumentArgs,
-    JoinArgs, RecordAlso, RunArgs,
+    BisectArgs, BrowseArgs, CheckArgs, Command, CompareArgs, ControlArgs, DiffArgs, ExplainArgs, ExportArg, ExportArgs,
+    InstrumentArgs, JoinArgs, PlcArgs, RecordAlso, RunArgs,
 };
 use crate::bisect::BisectConfig;
+use crate::browse::BrowseConfig;
 use crate::check::{self, CheckConfig, Warnings};
 use crate::diff::DiffConfig;
 use crate::export::ExportConfig;
 use crate::instrument::{Destination, Diff, Direction, InstrumentConfig};
 use crate::new;
 use crate::plant;
+use crate::plc::{self, PlcConfig};
+use crate::run::compare::CompareConfig;
 use crate::run::config::SaveRequest;
 use crate::run::coverage::CoverageRequest;
 use crate::run::error::{ExitCode, RunError};
@@ -40,6 +46,7 @@ const OPERATOR_PATIENCE: Duration = Duration::from_secs(30);
 pub fn dispatch(command: Command) -> Result<ExitCode, RunError> {
     match command {
         Command::Run(args) => run(*args),
+        Command::Compare(args) => compare(args),
         Command::Test(args) => crate::regress::test(&args.config(), &mut std::io::stdout().lock()),
         Command::Review(args) => crate::review::review(&args.config(), &mut std::io::stdout().lock()),
         Command::TestWorker(args) => {
@@ -53,6 +60,8 @@ pub fn dispatch(command: Command) -> Result<ExitCode, RunError> {
         Command::Bisect(args) => bisect(args),
         Command::Check(args) => check(args),
         Command::Instrument(args) => instrument(*args),
+        Command::Plc(args) => run_plc(args),
+        Command::Browse(args) => browse(args),
         Command::Explain(args) => explain(&args),
         Command::Components(args) => {
             plant::components::write(args.kind.as_deref(), args.format.into(), &mut std::io::stdout().lock())?;
@@ -81,6 +90,20 @@ fn run(args: RunArgs) -> Result<ExitCode, RunError> {
     Ok(verdict.exit_code())
 }
 
+fn compare(args: CompareArgs) -> Result<ExitCode, RunError> {
+    let interrupt = Interrupt::new();
+    interrupt.on_signals();
+    let run = RunConfig {
+        until: args.until,
+        runs: args.runs,
+        format: Format::Human,
+        ..RunConfig::headless(args.scenario, None)
+    };
+    let config = CompareConfig { run, plot: args.plot, format: args.format.into() };
+    crate::run::compare::compare(&config, &interrupt, &mut std::io::stdout().lock())?;
+    Ok(ExitCode::Ok)
+}
+
 fn config(args: RunArgs) -> RunConfig {
     let format = args.format.into();
     RunConfig {
@@ -91,6 +114,7 @@ fn config(args: RunArgs) -> RunConfig {
         mode: args.mode.into(),
         runs: args.runs,
         transport: args.transport.into(),
+        gateways: args.gateways,
         record: args.record.map(|folder| RecordRequest {
             folder,
             choice: Choice {
@@ -112,6 +136,7 @@ fn config(args: RunArgs) -> RunConfig {
         reply_timeout: Duration::from_nanos(args.reply_timeout.as_nanos()),
         save: args.save_at.zip(args.save).map(|(at, path)| SaveRequest { at, path }),
         resume: args.resume,
+        latency: args.latency,
         progress: format == Format::Human && std::io::stderr().is_terminal(),
     }
 }
@@ -119,7 +144,7 @@ fn config(args: RunArgs) -> RunConfig {
 fn join(args: &JoinArgs) -> Result<ExitCode, RunError> {
     let scenario = Scenario::load_case(&args.scenario, args.case.as_deref())?;
     let mut client = match scenario.member(&args.client)? {
-        Member::Plant(client) | Member::Plc(client) => client,
+        Member::Plant(client) | Member::Plc(client) | Member::Gateway(client) => client,
         Member::External(_) => {
             let message = format!("client `{}` is external: its own program joins", args.client);
             return Err(RunError::usage(message, None));
@@ -128,6 +153,44 @@ fn join(args: &JoinArgs) -> Result<ExitCode, RunError> {
     let end = take_part(client.as_mut(), args.server)?;
     tracing::info!(%end, "left");
     Ok(ExitCode::Ok)
+}
+
+fn run_plc(args: PlcArgs) -> Result<ExitCode, RunError> {
+    let interrupt = Interrupt::new();
+    interrupt.on_signals();
+    let named = [args.tcp, args.modbus, args.opcua];
+    let somewhere = named.iter().all(Option::is_none).then_some(SocketAddr::from((Ipv4Addr::LOCALHOST, 0)));
+    let [tcp, modbus, opcua] = named.map(|address| address.or(somewhere));
+    let access = access(args.opcua_user, args.opcua_pki, args.opcua_trust)?;
+    let (scenario, client, mode, cycle) = (args.scenario, args.client, args.mode.into(), args.cycle);
+    let config = PlcConfig { scenario, client, mode, cycle, tcp, modbus, opcua, access };
+    plc::run(&config, &interrupt, &mut std::io::stdout().lock())
+}
+
+fn browse(args: BrowseArgs) -> Result<ExitCode, RunError> {
+    let config = BrowseConfig {
+        url: args.url,
+        scenario: args.scenario.map(|path| (path, args.client)),
+        map: args.map,
+        format: args.format.into(),
+    };
+    crate::browse::run(&config, &mut std::io::stdout().lock())?;
+    Ok(ExitCode::Ok)
+}
+
+fn access(user: Option<String>, pki: Option<PathBuf>, trust_clients: bool) -> Result<Access, RunError> {
+    const PASSWORD: &str = "ONESCAN_OPCUA_PASSWORD";
+    let user = match user {
+        None => None,
+        Some(user) => match std::env::var(PASSWORD) {
+            Ok(password) => Some((user, password)),
+            Err(_) => {
+                let help = Some(format!("set the environment variable {PASSWORD}"));
+                return Err(RunError::usage(format!("there is no password for user `{user}`"), help));
+            }
+        },
+    };
+    Ok(Access { user, pki, trust_clients })
 }
 
 fn control(args: &ControlArgs) -> Result<ExitCode, RunError> {

@@ -45,7 +45,8 @@ fn render_errors_in_one_piece() {
 fn start_logging(verbose: u8) {
     use tracing_subscriber::EnvFilter;
     let level = match verbose {
-        0 => "warn,onescan::notice=info",
+        // What OPC UA has to say of its certificates is in the errors that come of it.
+        0 => "warn,onescan::notice=info,opcua_client=off,opcua_server=off,opcua_core=off,opcua_crypto=off",
         1 => "info",
         2 => "debug",
         _ => "trace",

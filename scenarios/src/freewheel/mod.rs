@@ -6,6 +6,7 @@
 //! |---|---|
 //! | [`item`] | values that both sides can reach, one by one |
 //! | [`link`] | the OPC-like exchange: update rate, one item at a time |
+//! | [`synchronizer`] | a plant that follows a PLC's clock |
 //! | [`wheel`] | a client that runs on its own clock |
 //! | [`run`] | all of them for some time, and what came of it |
 //!
@@ -15,4 +16,5 @@
 mod item;
 mod link;
 pub mod run;
+pub mod synchronizer;
 mod wheel;

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::time::Duration;
 
 use onescan_clients::replay::Replay;
@@ -117,6 +117,7 @@ fn end_of(request: &JoinRequest, state: ClientState, t_v: VirtualTime, fault: Cl
 
 /// Gives every client its process images, and a link from its outputs to whoever reads them.
 fn connect(clients: Vec<Freewheeler>, requests: &[JoinRequest], link: &FreewheelFile) -> (Vec<Wheel>, Vec<OpcLink>) {
+    let plc_clock = Arc::new(AtomicU64::new(0));
     let wheels: Vec<Wheel> = clients
         .into_iter()
         .zip(requests)
@@ -128,6 +129,7 @@ fn connect(clients: Vec<Freewheeler>, requests: &[JoinRequest], link: &Freewheel
             outputs: Arc::new(Items::new(&PortLayout::new(request.writes.clone()))),
             recorded: Vec::new(),
             reached: VirtualTime::ZERO,
+            plc_clock: Arc::clone(&plc_clock),
         })
         .collect();
     let mut readers: BTreeMap<&SignalName, Vec<(Arc<Items>, usize)>> = BTreeMap::new();

@@ -1,13 +1,14 @@
 //! A client that runs on its own clock.
 
 use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::time::{Duration, Instant};
 
 use onescan_server::client::{Client, ClientFault};
 use onescan_server::time::{TimeSpan, VirtualTime};
 
 use super::item::Items;
+use super::synchronizer::Synchronizer;
 
 /// How a client keeps its cycle.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -16,6 +17,10 @@ pub enum Clock {
     Grid,
     /// A pause after each cycle, as a simulation tool's: a late cycle delays all after it.
     Pause,
+    /// Held to a PLC's cycle time by a timer of high resolution (seed 004 sec. III-B).
+    Halt,
+    /// Following the PLC's clock, which is looked at so often (seed 002 Fig. 5).
+    Follow(TimeSpan),
 }
 
 /// A client, its process images and its clock.
@@ -29,6 +34,8 @@ pub(super) struct Wheel {
     pub(super) recorded: Vec<Vec<u8>>,
     /// How far its own clock has come.
     pub(super) reached: VirtualTime,
+    /// The clock of the PLC, in ns, which the PLC's wheel writes and who follows it reads.
+    pub(super) plc_clock: Arc<AtomicU64>,
 }
 
 /// Why a free-wheeling client stopped before its time.
@@ -53,6 +60,7 @@ impl Wheel {
         let mut inputs = vec![0; input_bytes];
         let mut outputs = self.recorded.last().cloned().unwrap_or_default();
         let mut t = VirtualTime::ZERO;
+        let mut synchronizer = Synchronizer::default();
         let mut due = Instant::now() + period;
         while t < until && !stops.iter().any(|stop| stop.load(Ordering::Relaxed)) {
             match self.clock {
@@ -60,7 +68,16 @@ impl Wheel {
                     std::thread::sleep(due.saturating_duration_since(Instant::now()));
                     due += period;
                 }
+                Clock::Halt => {
+                    wait_precisely(due);
+                    due += period;
+                }
                 Clock::Pause => std::thread::sleep(period),
+                Clock::Follow(rate) => {
+                    if !self.wait_for_plc(&mut synchronizer, t, rate, stops) {
+                        break;
+                    }
+                }
             }
             t = t + self.period;
             self.inputs.copy_to(&mut inputs);
@@ -68,7 +85,37 @@ impl Wheel {
             self.outputs.copy_from(&outputs);
             self.recorded.push(outputs.clone());
             self.reached = t;
+            if self.clock == Clock::Grid {
+                self.plc_clock.store(t.as_nanos(), Ordering::Relaxed);
+            }
         }
         Ok(())
+    }
+
+    /// Waits until the plant, at `t`, may step; false if it is to stop.
+    fn wait_for_plc(
+        &self,
+        synchronizer: &mut Synchronizer,
+        t: VirtualTime,
+        rate: TimeSpan,
+        stops: [&AtomicBool; 2],
+    ) -> bool {
+        while !synchronizer.may_step(t.as_nanos()) {
+            if stops.iter().any(|stop| stop.load(Ordering::Relaxed)) {
+                return false;
+            }
+            std::thread::sleep(Duration::from_nanos(rate.as_nanos()));
+            synchronizer.observe(self.plc_clock.load(Ordering::Relaxed), t.as_nanos());
+        }
+        true
+    }
+}
+
+/// Sleeps most of the time and spins for the rest.
+fn wait_precisely(due: Instant) {
+    const SPIN: Duration = Duration::from_millis(1);
+    std::thread::sleep(due.saturating_duration_since(Instant::now()).saturating_sub(SPIN));
+    while Instant::now() < due {
+        std::hint::spin_loop();
     }
 }

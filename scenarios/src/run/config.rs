@@ -6,7 +6,7 @@ use std::time::Duration;
 
 use onescan_server::pacing::Pace;
 use onescan_server::signal::pattern::choose;
-use onescan_server::signal::{SignalName, did_you_mean};
+use onescan_server::signal::{ClientName, SignalName, did_you_mean};
 use onescan_server::time::VirtualTime;
 
 use super::coverage::CoverageRequest;
@@ -25,6 +25,22 @@ pub enum Mode {
     Lockstep,
     /// Each on its own clock.
     Freewheel,
+    /// The same, the plant held to the PLC's cycle by a timer (seed 004 sec. III-B).
+    Halt,
+    /// The same, the plant following the PLC's clock (seed 002 Fig. 5).
+    Follow,
+}
+
+impl Mode {
+    /// As it is written on the command line.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Lockstep => "lockstep",
+            Self::Freewheel => "freewheel",
+            Self::Halt => "halt",
+            Self::Follow => "follow",
+        }
+    }
 }
 
 /// How the server reaches the scenario's clients.
@@ -74,6 +90,8 @@ pub struct RunConfig {
     pub runs: u32,
     /// How the scenario's own clients are reached.
     pub transport: Transport,
+    /// Real PLCs that stand in for soft ones, with their URL.
+    pub gateways: Vec<(ClientName, Option<String>)>,
     /// What is recorded.
     pub record: Option<RecordRequest>,
     /// A recording, or a file of events, whose operator's inputs are repeated.
@@ -102,6 +120,8 @@ pub struct RunConfig {
     pub save: Option<SaveRequest>,
     /// A checkpoint to go on from.
     pub resume: Option<PathBuf>,
+    /// Whether it is noted how long each client takes.
+    pub latency: bool,
     /// True where a progress bar would be seen.
     pub progress: bool,
 }
@@ -117,6 +137,8 @@ impl RunConfig {
             mode: Mode::Lockstep,
             runs: 1,
             transport: Transport::Inproc,
+            gateways: Vec::new(),
+            latency: false,
             record: None,
             replay_operator: None,
             format: Format::Json,
@@ -133,6 +155,11 @@ impl RunConfig {
             resume: None,
             progress: false,
         }
+    }
+
+    /// True if turns are noted: on demand, and wherever a real PLC takes part.
+    pub fn is_watched(&self) -> bool {
+        self.latency || !self.gateways.is_empty()
     }
 
     /// When a run is complete.
@@ -175,7 +202,7 @@ impl RunConfig {
         }
         match self.mode {
             Mode::Lockstep => Ok(()),
-            Mode::Freewheel => self.check_freewheel(scenario),
+            Mode::Freewheel | Mode::Halt | Mode::Follow => self.check_freewheel(scenario),
         }
     }
 
@@ -191,7 +218,8 @@ impl RunConfig {
         ];
         if let Some((option, _)) = options.iter().find(|(_, given)| *given) {
             let help = "free-wheeling clients run in real time in this process, each on its own clock".to_owned();
-            return Err(RunError::usage(format!("{option} means nothing with --mode freewheel"), Some(help)));
+            let mode = self.mode.name();
+            return Err(RunError::usage(format!("{option} means nothing with --mode {mode}"), Some(help)));
         }
         let external = |client: &toml::Spanned<ClientFile>| matches!(client.get_ref(), ClientFile::External { .. });
         match scenario.file().clients.iter().find(|(_, client)| external(client)) {

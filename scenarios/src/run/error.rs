@@ -1,6 +1,7 @@
 //! Why nothing came of a run, and whose fault that is.
 
 use miette::Diagnostic;
+use onescan_clients::gateway::{LinkFault, SettingsFault};
 use onescan_server::checkpoint::CheckpointError;
 use onescan_server::formation::FormationError;
 use onescan_server::record::RecordError;
@@ -87,6 +88,9 @@ pub enum RunError {
         /// Why.
         source: CheckpointError,
     },
+    /// A PLC does not say what it has.
+    #[error("{0}")]
+    Browse(SettingsFault),
     /// The report cannot be written.
     #[error("cannot write the report: {0}")]
     Output(std::io::Error),
@@ -121,6 +125,10 @@ impl RunError {
             )
             | Self::ClientProcess { .. }
             | Self::Spawn { .. }
+            | Self::Scenario(ScenarioError::Link { .. })
+            | Self::Browse(SettingsFault::Link(
+                LinkFault::Unreachable { .. } | LinkFault::Refused { .. } | LinkFault::Lost(_),
+            ))
             | Self::Save(_)
             | Self::SaveTooLate(_) => ExitCode::Fault,
             Self::Participant(error) if !matches!(error, ParticipantError::Refused(_)) => ExitCode::Fault,

@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 use onescan_server::end::SessionEnd;
 use onescan_server::lockstep::{Lockstep, Outcome};
 
-use super::config::RunConfig;
+use super::config::{Mode, RunConfig};
 use super::error::RunError;
 use super::interrupt::Interrupt;
 use super::progress::Progress;
@@ -25,10 +25,14 @@ pub(super) fn run(
 ) -> Result<Outcome, RunError> {
     let mut clients = Vec::new();
     for name in scenario.plan().clients() {
+        if let Some(client) = scenario.free_gateway(name) {
+            clients.push(Freewheeler { client: client?, clock: Clock::Grid });
+            continue;
+        }
         match scenario.member(name)? {
-            Member::Plant(client) => clients.push(Freewheeler { client, clock: Clock::Pause }),
+            Member::Plant(client) => clients.push(Freewheeler { client, clock: plant_clock(config.mode, scenario) }),
             Member::Plc(client) => clients.push(Freewheeler { client, clock: Clock::Grid }),
-            Member::External(_) => {
+            Member::Gateway(_) | Member::External(_) => {
                 return Err(RunError::usage(format!("client `{name}` can only take part in lockstep"), None));
             }
         }
@@ -42,6 +46,15 @@ pub(super) fn run(
         None if interrupt.is_raised() => Outcome { end: SessionEnd::Stopped { t_v: outcome.t_v }, ..outcome },
         None => outcome,
     })
+}
+
+/// How a plant keeps its cycle.
+fn plant_clock(mode: Mode, scenario: &Scenario) -> Clock {
+    match mode {
+        Mode::Halt => Clock::Halt,
+        Mode::Follow => Clock::Follow(scenario.file().freewheel.update_rate),
+        Mode::Lockstep | Mode::Freewheel => Clock::Pause,
+    }
 }
 
 /// Lets the clients run, with a bar beside them that follows the wall clock.

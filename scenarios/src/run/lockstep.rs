@@ -17,6 +17,7 @@ use super::interrupt::Interrupt;
 use super::output;
 use super::processes::Processes;
 use super::progress::Progress;
+use super::session_log::SessionLog;
 use crate::scenario::Scenario;
 use crate::scenario::compose::Member;
 
@@ -29,17 +30,18 @@ pub(super) fn run(
     scenario: &Scenario,
     number: u32,
     interrupt: &Interrupt,
+    log: &SessionLog,
     watch: impl FnOnce(&mut Lockstep),
 ) -> Result<Outcome, RunError> {
     let mut processes = Processes::default();
-    let (mut lockstep, _lobby) = form(config, scenario, interrupt, &mut processes)?;
+    let (mut lockstep, _lobby) = form(config, scenario, interrupt, log, &mut processes)?;
     lockstep.set_until(Some(config.end(scenario)));
     lockstep.set_pace(config.pace);
     lockstep.set_mailbox(interrupt.mailbox());
     watch(&mut lockstep);
     if config.progress {
         let label = if config.runs == 1 { scenario.name().to_owned() } else { format!("run {number}/{}", config.runs) };
-        lockstep.observe(Box::new(Progress::new(config.end(scenario), label)));
+        lockstep.observe(Box::new(Progress::new(config.end(scenario), label).with_log(log.clone())));
     }
     if let Some(path) = &config.replay_operator {
         lockstep.replay(operator_inputs(path)?);
@@ -58,6 +60,7 @@ fn form(
     config: &RunConfig,
     scenario: &Scenario,
     interrupt: &Interrupt,
+    log: &SessionLog,
     processes: &mut Processes,
 ) -> Result<(Lockstep, Option<Lobby>), RunError> {
     let mut formation = Formation::new(scenario.plan().clone());
@@ -65,8 +68,9 @@ fn form(
     for name in scenario.plan().clients() {
         // Also a client that will run in its own process is made here: its faults are found at once.
         match (scenario.member(name)?, config.transport) {
-            (Member::Plant(client) | Member::Plc(client), Transport::Inproc) => {
+            (Member::Gateway(client), _) | (Member::Plant(client) | Member::Plc(client), Transport::Inproc) => {
                 let refused = |refusal: JoinRefusal| scenario.wrong_client(name, refusal.to_string(), None);
+                let client = if config.is_watched() { log.watch(client) } else { client };
                 formation.join(client).map_err(refused)?;
             }
             (Member::Plant(_) | Member::Plc(_), Transport::Tcp) => remote.push((name, None)),

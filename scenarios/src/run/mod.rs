@@ -2,6 +2,7 @@
 //!
 //! | module | subject |
 //! |---|---|
+//! | [`compare`] | lockstep beside the other ways |
 //! | [`config`] | what is asked for |
 //! | [`coverage`] | which statements and branches were executed |
 //! | [`error`] | why nothing came of it |
@@ -16,8 +17,10 @@
 //! | [`expectation`] | what a run had to show |
 //! | [`watch`] | what watched variables were |
 //! | [`report`] | what came of a run, for people and machines |
+//! | [`session_log`] | which client a session waited for |
 //! | [`output`] | files that appear whole or not at all |
 
+pub mod compare;
 pub mod config;
 pub mod coverage;
 pub mod error;
@@ -32,6 +35,7 @@ pub mod recorded;
 pub mod report;
 pub mod rerun;
 mod sampler;
+pub mod session_log;
 pub mod watch;
 
 use std::cell::RefCell;
@@ -55,6 +59,7 @@ use expectation::Witness;
 use interrupt::Interrupt;
 use recorded::Recorded;
 use sampler::{Sampler, Samples};
+use session_log::SessionLog;
 use watch::WatchReport;
 
 /// Runs a scenario as `config` asks, and writes a report of each run to `out`.
@@ -67,6 +72,9 @@ pub fn execute(config: &RunConfig, interrupt: &Interrupt, out: &mut dyn Write) -
     // A page says what was executed where that is seen.
     if config.coverage.is_some() || (config.html.is_some() && config.transport == Transport::Inproc) {
         scenario.cover();
+    }
+    for (client, url) in &config.gateways {
+        scenario.commission(client, url.clone())?;
     }
     config.check(&scenario)?;
     if !config.watch.is_empty() {
@@ -150,11 +158,13 @@ fn one_run(
             lockstep.observe(Box::new(recorder));
         }
     };
+    let log = SessionLog::default();
     let outcome = match config.mode {
-        Mode::Lockstep => lockstep::run(config, scenario, number, interrupt, watch)?,
-        Mode::Freewheel => freewheel::run(config, scenario, number, interrupt, watch)?,
+        Mode::Lockstep => lockstep::run(config, scenario, number, interrupt, &log, watch)?,
+        Mode::Freewheel | Mode::Halt | Mode::Follow => freewheel::run(config, scenario, number, interrupt, watch)?,
     };
     let mut report = RunReport::new(config, scenario, number, &outcome, started.elapsed());
+    report.latency = log.latencies();
     let mut trace = trace.replace(Trace::default());
     trace.set_end(if report.status == "completed" { TraceEnd::Complete } else { TraceEnd::Cut });
     report.expectations = expectation::judge(scenario, &trace);

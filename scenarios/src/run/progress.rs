@@ -2,6 +2,7 @@
 
 use std::time::Duration;
 
+use super::session_log::SessionLog;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use onescan_server::record::{Observer, RecordError};
 use onescan_server::session::Session;
@@ -9,10 +10,14 @@ use onescan_server::time::VirtualTime;
 
 /// Steps between two looks at the bar; a power of two.
 const STRIDE: u64 = 16;
+/// Steps between two looks at the session log.
+const LOG_STRIDE: u64 = 256;
 
 /// Shows how far virtual time has come.
 pub(super) struct Progress {
     bar: ProgressBar,
+    label: String,
+    log: SessionLog,
 }
 
 impl Progress {
@@ -23,8 +28,13 @@ impl Progress {
         if let Ok(style) = ProgressStyle::with_template("{msg:12} [{bar:40}] {pos} / {len} ms virtual  {elapsed} ") {
             bar.set_style(style.progress_chars("=> "));
         }
-        bar.set_message(label);
-        Self { bar }
+        bar.set_message(label.clone());
+        Self { bar, label, log: SessionLog::default() }
+    }
+
+    /// The same, with the client beside it that the session waits for most.
+    pub(super) fn with_log(self, log: SessionLog) -> Self {
+        Self { log, ..self }
     }
 
     /// Moves the bar to a time that is known from elsewhere.
@@ -49,6 +59,11 @@ impl Observer for Progress {
     fn step(&mut self, session: &Session) -> Result<(), RecordError> {
         if session.cycle().steps().0.is_multiple_of(STRIDE) {
             self.bar.set_position(session.t_v().as_nanos() / 1_000_000);
+        }
+        if session.cycle().steps().0.is_multiple_of(LOG_STRIDE)
+            && let Some(brief) = self.log.brief()
+        {
+            self.bar.set_message(format!("{} ({brief})", self.label));
         }
         Ok(())
     }

@@ -7,7 +7,7 @@ use onescan_server::record::recorder::EVENTS;
 use onescan_server::record::{Choice, Provenance, Recorder, SourceFile};
 use onescan_server::time::VirtualTime;
 
-use super::config::{Mode, RunConfig};
+use super::config::RunConfig;
 use super::error::RunError;
 use super::output;
 use super::report::RunReport;
@@ -47,10 +47,7 @@ impl Recorded {
             scenario: scenario.name().to_owned(),
             folder: own_folder,
             case: config.case.clone(),
-            mode: match config.mode {
-                Mode::Lockstep => "lockstep".to_owned(),
-                Mode::Freewheel => "freewheel".to_owned(),
-            },
+            mode: config.mode.name().to_owned(),
             until: config.end(scenario),
             seed: scenario.seed(),
             files,

@@ -12,6 +12,7 @@ use serde::Serialize;
 use super::config::{Format, Mode, RunConfig, Transport};
 use super::error::ExitCode;
 use super::expectation::ExpectationReport;
+use super::session_log::{self, ClientLatency};
 use super::watch::WatchReport;
 use crate::scenario::Scenario;
 
@@ -49,6 +50,9 @@ pub struct RunReport {
     /// What came of the scenario's expectations.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub expectations: Vec<ExpectationReport>,
+    /// How long the session waited for each client, if that was noted.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub latency: Vec<ClientLatency>,
     /// What watched variables were.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub watched: Option<WatchReport>,
@@ -86,6 +90,7 @@ impl RunReport {
             error: failure.as_ref().map(ToString::to_string),
             failure,
             expectations: Vec::new(),
+            latency: Vec::new(),
             watched: None,
             step: scenario.file().step,
             version: env!("CARGO_PKG_VERSION"),
@@ -127,6 +132,7 @@ impl RunReport {
                 for expectation in &self.expectations {
                     expectation.write(out)?;
                 }
+                session_log::write(&self.latency, out)?;
                 if let Some(watched) = &self.watched {
                     watched.write(out)?;
                 }

@@ -41,10 +41,10 @@ impl Chosen {
 /// Chosen signals of one run.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Samples {
-    names: Vec<SignalName>,
-    t_ns: Vec<u64>,
+    pub(super) names: Vec<SignalName>,
+    pub(super) t_ns: Vec<u64>,
     /// A row a signal.
-    values: Vec<Vec<f64>>,
+    pub(super) values: Vec<Vec<f64>>,
 }
 
 impl Samples {
@@ -92,6 +92,8 @@ pub(super) fn plot(scenario: &Scenario, config: &RunConfig, runs: &[Samples], re
     let mode = match config.mode {
         Mode::Lockstep => "lockstep",
         Mode::Freewheel => "free-wheeling",
+        Mode::Halt => "held by a timer",
+        Mode::Follow => "following the PLC's clock",
     };
     let count = match runs.len() {
         1 => String::new(),
@@ -134,7 +136,7 @@ fn marks(reports: &[RunReport]) -> Vec<Mark> {
 }
 
 /// Numbers with a fraction change between samples; everything else jumps.
-fn shape(ty: ElementaryType) -> Shape {
+pub(super) fn shape(ty: ElementaryType) -> Shape {
     match ty {
         ElementaryType::Real | ElementaryType::Lreal => Shape::Line,
         _ => Shape::Step,

@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use miette::{NamedSource, SourceSpan};
 use onescan_clients::operator::Operator;
 use onescan_clients::plant::{Plant, Scene, SceneError, SceneFault};
-use onescan_clients::soft_plc::{SoftPlcClient, bind};
+use onescan_clients::soft_plc::{Bindings, SoftPlcClient, bind};
 use onescan_plc_shim::input::kind::{FileKind, SourceKind};
 use onescan_plc_shim::{Application, Dialect, Input, Task, TaskPlan};
 use onescan_server::client::Client;
@@ -24,6 +24,8 @@ pub enum Member {
     Plant(Box<dyn Client>),
     /// A soft PLC in this process.
     Plc(Box<dyn Client>),
+    /// A real PLC, connected, of which this process takes care.
+    Gateway(Box<dyn Client>),
     /// A program of its own, with the command that starts it; empty if somebody else does.
     External(Vec<String>),
 }
@@ -53,7 +55,9 @@ impl Scenario {
                 let plant = Plant::new(scene, name.clone(), period.unwrap_or(self.file().step));
                 Ok(Member::Plant(self.forced(Box::new(plant.seeded(self.seed())))))
             }
-            ClientFile::SoftPlc { sources, dialect, tasks, bind } => {
+            ClientFile::Gateway { .. } => self.gateway(name).map(Member::Gateway),
+            ClientFile::SoftPlc { .. } if self.gateways.contains_key(name) => self.gateway(name).map(Member::Gateway),
+            ClientFile::SoftPlc { sources, dialect, tasks, bind, .. } => {
                 let compiled = self.compiled(name, sources, *dialect, bind)?;
                 let plc = self.soft_plc(name, &compiled, tasks)?;
                 Ok(Member::Plc(self.forced(Box::new(plc))))
@@ -69,6 +73,16 @@ impl Scenario {
             ClientFile::SoftPlc { sources, dialect, tasks, .. } => Some((sources.as_slice(), *dialect, plan_of(tasks))),
             _ => None,
         })
+    }
+
+    /// The sources of PLC `name`.
+    pub(super) fn inputs(
+        &self,
+        name: &ClientName,
+        sources: &[String],
+        dialect: Option<Dialect>,
+    ) -> Result<Vec<Input>, ScenarioError> {
+        sources.iter().map(|source| self.source(name, source, dialect)).collect()
     }
 
     /// A source of PLC `name`, in whatever form and encoding it is; one of an unknown kind is text.
@@ -123,8 +137,7 @@ impl Scenario {
         dialect: Option<Dialect>,
         bind: &BTreeMap<String, String>,
     ) -> Result<Compiled, ScenarioError> {
-        let inputs = sources.iter().map(|source| self.source(name, source, dialect));
-        let plain = inputs.collect::<Result<Vec<_>, _>>()?;
+        let plain = self.inputs(name, sources, dialect)?;
         let inputs: Vec<Input> = plain.iter().cloned().map(|input| self.with_constants(name, input)).collect();
         let compiled = match (self.writers(), self.coverage()) {
             (Some(_), _) => Application::from_inputs_traced(inputs),
@@ -138,9 +151,7 @@ impl Scenario {
         for warning in application.warnings().iter() {
             tracing::warn!(code = %warning.code, "{}", warning.message);
         }
-        let declared: Vec<_> = self.file().signals.keys().collect();
-        let paths =
-            arrays::bound(bind, &declared).map_err(|found| self.wrong_client(name, found.message, found.help))?;
+        let paths = self.paths(name, bind)?;
         Ok(Compiled { application, paths })
     }
 
@@ -150,13 +161,8 @@ impl Scenario {
         Compiled { application, paths }: &Compiled,
         tasks: &[TaskFile],
     ) -> Result<SoftPlcClient, ScenarioError> {
-        let bindings = bind(application, name, self.plan().signals(), paths)
-            .map_err(|error| self.wrong_signal(&error.signal, error.message, error.help))?;
-        let plan = plan_of(tasks).or_else(|| TaskPlan::configured(application));
-        let plan = plan.ok_or_else(|| {
-            let help = "give it `tasks`, or declare a CONFIGURATION in its sources".to_owned();
-            self.wrong_client(name, format!("nothing says when the programs of `{name}` run"), Some(help))
-        })?;
+        let bindings = self.bindings(name, application, paths)?;
+        let plan = self.task_plan(name, application, tasks)?;
         self.fits_step(name, &plan)?;
         let mut client = SoftPlcClient::new(name.clone(), application, &plan, &bindings, self.file().step)
             .map_err(|error| self.wrong_client(name, error.to_string(), None))?;
@@ -173,6 +179,36 @@ impl Scenario {
             watched.map_err(|unknown| self.wrong_option(format!("--watch: {unknown}"), None))?;
         }
         Ok(client)
+    }
+
+    /// The tasks of PLC `name`: the scenario's, or those of its own CONFIGURATION.
+    pub(super) fn task_plan(
+        &self,
+        name: &ClientName,
+        application: &Application,
+        tasks: &[TaskFile],
+    ) -> Result<TaskPlan, ScenarioError> {
+        plan_of(tasks).or_else(|| TaskPlan::configured(application)).ok_or_else(|| {
+            let help = "give it `tasks`, or declare a CONFIGURATION in its sources".to_owned();
+            self.wrong_client(name, format!("nothing says when the programs of `{name}` run"), Some(help))
+        })
+    }
+
+    /// The variables of signals, as `bind` names them.
+    pub(super) fn paths(&self, name: &ClientName, bind: &BTreeMap<String, String>) -> Result<Paths, ScenarioError> {
+        let declared: Vec<_> = self.file().signals.keys().collect();
+        arrays::bound(bind, &declared).map_err(|found| self.wrong_client(name, found.message, found.help))
+    }
+
+    /// Which signal is which variable of the PLC.
+    pub(super) fn bindings(
+        &self,
+        name: &ClientName,
+        application: &Application,
+        paths: &Paths,
+    ) -> Result<Bindings, ScenarioError> {
+        bind(application, name, self.plan().signals(), paths)
+            .map_err(|error| self.wrong_signal(&error.signal, error.message, error.help))
     }
 
     /// The operator of the signals whose writer it is.
@@ -216,7 +252,7 @@ impl Scenario {
 }
 
 /// The tasks of a scenario; nothing if it has none, so that the PLC's own configuration counts.
-fn plan_of(tasks: &[TaskFile]) -> Option<TaskPlan> {
+pub(super) fn plan_of(tasks: &[TaskFile]) -> Option<TaskPlan> {
     (!tasks.is_empty()).then(|| TaskPlan::new(tasks.iter().map(task).collect()))
 }
 

@@ -4,6 +4,7 @@ use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 use miette::{Diagnostic, NamedSource, SourceSpan};
+use onescan_clients::gateway::LinkFault;
 use onescan_plc_shim::Diagnostics;
 use onescan_server::signal::ClientName;
 use thiserror::Error;
@@ -59,6 +60,15 @@ pub enum ScenarioError {
     #[error(transparent)]
     #[diagnostic(transparent)]
     Plc(#[from] Box<PlcReport>),
+    /// The link to a real PLC does not come about.
+    #[error("client `{client}`: {fault}")]
+    #[diagnostic(code(gateway::link))]
+    Link {
+        /// The client that speaks for it.
+        client: ClientName,
+        /// Why.
+        fault: LinkFault,
+    },
 }
 
 /// An error at a place of a file.

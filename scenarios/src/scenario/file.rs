@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 use std::str::FromStr;
 
+use onescan_clients::gateway::Settings;
 use onescan_plc_shim::Dialect;
 use onescan_server::signal::{ClientName, ElementaryType, SignalName};
 use onescan_server::time::{TimeSpan, VirtualTime};
@@ -101,6 +102,20 @@ pub enum ClientFile {
         /// name, as arrays (`"arm[0..2].x" = "P.arm[0..2].x"`) or as patterns (`"SW_*" = "P.*"`).
         #[serde(default)]
         bind: BTreeMap<String, String>,
+        /// The real PLC that runs the same sources, instrumented (see `run --gateway`).
+        #[serde(default)]
+        gateway: Option<Settings>,
+    },
+    /// A real PLC, of which only the link is known.
+    Gateway {
+        /// Virtual time of one turn; the session's step if absent.
+        #[serde(default, deserialize_with = "from_optional_text")]
+        period: Option<TimeSpan>,
+        /// The signals that it reads.
+        #[serde(default)]
+        reads: Vec<SignalName>,
+        /// Its link.
+        gateway: Settings,
     },
     /// Switches and set points that neither plant nor PLC writes; a case says what it does.
     Operator {

@@ -1,6 +1,6 @@
 //! `scenario.toml` read and checked.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -36,6 +36,8 @@ pub struct Scenario {
     coverage: Option<CoverageSink>,
     /// Where soft PLCs tell which statements wrote these signals, if that is asked for.
     writers: Option<(BTreeSet<SignalName>, WriterSink)>,
+    /// The soft PLCs that a real one stands in for, with its URL where the file's does not count.
+    pub(super) gateways: BTreeMap<ClientName, Option<String>>,
     /// What soft PLCs look at, if that is asked for.
     pub(super) watched: Option<Watched>,
 }
@@ -91,6 +93,7 @@ impl Scenario {
             applied: None,
             coverage: None,
             writers: None,
+            gateways: BTreeMap::new(),
             watched: None,
         })
     }
@@ -178,7 +181,7 @@ impl Scenario {
             match client.get_ref() {
                 ClientFile::Plant { scene, .. } => files.push(scene.into()),
                 ClientFile::SoftPlc { sources, .. } => files.extend(sources.iter().map(PathBuf::from)),
-                ClientFile::Operator { .. } | ClientFile::External { .. } => {}
+                ClientFile::Operator { .. } | ClientFile::Gateway { .. } | ClientFile::External { .. } => {}
             }
         }
         files.extend(self.applied().and(Some(case::FILE_NAME.into())));
@@ -268,7 +271,7 @@ fn place_of_plan_error(error: &PlanError, file: &ScenarioFile, text: &str) -> Op
 /// The period of the client `name` as far as the scenario says it.
 pub fn period_of(client: &ClientFile, step: TimeSpan) -> Option<TimeSpan> {
     match client {
-        ClientFile::Plant { period, .. } => Some(period.unwrap_or(step)),
+        ClientFile::Plant { period, .. } | ClientFile::Gateway { period, .. } => Some(period.unwrap_or(step)),
         ClientFile::Operator { .. } => Some(step),
         ClientFile::SoftPlc { .. } | ClientFile::External { .. } => None,
     }

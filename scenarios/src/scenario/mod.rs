@@ -8,6 +8,7 @@
 //! | [`expectations`] | what it expects of every run |
 //! | [`case`] | one scenario, tried in many ways |
 //! | [`compose`] | a scenario's plan and its clients |
+//! | [`gateway`] | its real PLCs |
 //! | [`watch`] | variables of its soft PLCs that a run looks at |
 //! | [`error`] | what can be wrong with it, and where |
 
@@ -17,6 +18,7 @@ pub mod compose;
 pub mod error;
 pub mod expectations;
 pub mod file;
+pub mod gateway;
 pub mod load;
 pub mod watch;
 

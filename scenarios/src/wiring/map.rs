@@ -110,6 +110,7 @@ impl Map {
                 }
                 // It writes whatever the scenario says that it writes.
                 ClientFile::Operator { .. } => ("operator", None),
+                ClientFile::Gateway { .. } => ("gateway", None),
                 ClientFile::External { .. } => ("external", None),
             };
             clients.push(Member { name: name.to_string(), kind, known: ends.is_some() });

@@ -1,0 +1,30 @@
+//! The order of a value's bytes on a link. Packed bytes are little-endian; most PLCs are not.
+
+use onescan_server::signal::ElementaryType;
+use serde::Deserialize;
+
+/// Which byte of a number comes first.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum ByteOrder {
+    /// The most significant one, as in S7 and on the network.
+    #[default]
+    BigEndian,
+    /// The least significant one.
+    LittleEndian,
+}
+
+impl ByteOrder {
+    /// Copies a packed value to or from its form on the link; both have its length.
+    pub fn copy(self, from: &[u8], to: &mut [u8]) {
+        to.copy_from_slice(from);
+        if self == Self::BigEndian {
+            to.reverse();
+        }
+    }
+}
+
+/// True for the types that are one number of whole bytes: all but BOOL and texts.
+pub fn is_number(ty: ElementaryType) -> bool {
+    !matches!(ty, ElementaryType::Bool | ElementaryType::String(_) | ElementaryType::Wstring(_))
+}

@@ -1,0 +1,148 @@
+//! What can be wrong with a link to a PLC, told apart by name.
+
+use std::time::Duration;
+
+use thiserror::Error;
+
+use super::handshake::Answer;
+
+/// Why a link cannot do what it is to do.
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
+pub enum LinkFault {
+    /// Nobody answers there.
+    #[error("unreachable: {url}: {reason}")]
+    Unreachable {
+        /// Where the PLC should be.
+        url: String,
+        /// What the operating system or the protocol says.
+        reason: String,
+    },
+    /// The PLC does not let this user, certificate or security policy in.
+    #[error("authentication refused by {url}: {reason}")]
+    Refused {
+        /// Where.
+        url: String,
+        /// What the PLC says.
+        reason: String,
+    },
+    /// A signal and the PLC do not fit.
+    #[error(transparent)]
+    Mapping(#[from] MappingFault),
+    /// What the scenario says of the link is wrong.
+    #[error("{0}")]
+    Setting(String),
+    /// There was a connection and it is gone.
+    #[error("connection lost: {0}")]
+    Lost(String),
+    /// What the PLC sent is not what the protocol or the declared layout allows.
+    #[error("the PLC sent what cannot be understood: {0}")]
+    Nonsense(String),
+}
+
+impl LinkFault {
+    /// True if another attempt may mend it.
+    pub fn is_transient(&self) -> bool {
+        matches!(self, Self::Unreachable { .. } | Self::Lost(_))
+    }
+}
+
+/// A signal whose address and the PLC do not fit.
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
+#[error("{message}")]
+pub struct MappingFault {
+    /// The signal, or the synchronisation word.
+    pub point: String,
+    /// What is wrong.
+    pub message: String,
+    /// What to do.
+    pub help: Option<String>,
+}
+
+impl MappingFault {
+    /// `point` is wrong, nothing is known that would mend it.
+    pub fn new(point: &str, message: impl Into<String>) -> Self {
+        Self { point: point.to_owned(), message: message.into(), help: None }
+    }
+
+    /// The same with something to do.
+    pub fn with_help(self, help: Option<String>) -> Self {
+        Self { help, ..self }
+    }
+}
+
+/// Why a PLC cannot go on in lockstep.
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
+pub enum GatewayFault {
+    /// The link.
+    #[error(transparent)]
+    Link(#[from] LinkFault),
+    /// The connection broke and did not come back in time.
+    #[error("connection lost during {what} and not back within {after:?}: {reason}")]
+    NotBack {
+        /// The grant or the start under way.
+        what: String,
+        /// How long it was tried, wall clock.
+        after: Duration,
+        /// What the last attempt said.
+        reason: String,
+    },
+    /// The PLC is in STOP.
+    #[error("the PLC is in STOP: {what} is not answered; set it to RUN")]
+    InStop {
+        /// The grant or the start under way.
+        what: String,
+    },
+    /// The PLC was started anew while a session was under way.
+    #[error("the PLC was restarted in mid-session, during {what}{}; the session cannot go on", boots.map(|(was, is)| format!(" (boot counter {was}, now {is})")).unwrap_or_default())]
+    Restarted {
+        /// The grant under way.
+        what: String,
+        /// The boot counter before and after, if the PLC has one.
+        boots: Option<(u32, u32)>,
+    },
+    /// A grant was not run in time.
+    #[error("{what} is not answered within {after:?}: {}", answer.why())]
+    NotAnswered {
+        /// The grant or the start under way.
+        what: String,
+        /// How long was waited, wall clock.
+        after: Duration,
+        /// What the scheduler said last.
+        answer: Answer,
+    },
+    /// The PLC answers a grant that this gateway did not give.
+    #[error(
+        "an answer to another grant: the PLC has run grant {done}, {what} is under way; does another gateway drive it?"
+    )]
+    OtherGrant {
+        /// The grant under way.
+        what: String,
+        /// The grant that the PLC has run last.
+        done: u32,
+    },
+    /// The PLC takes part in a session of somebody else.
+    #[error("the PLC takes part in session {joined}, not in {session}; does another gateway drive it?")]
+    OtherSession {
+        /// The session that it is in.
+        joined: u32,
+        /// The session of this gateway.
+        session: u32,
+    },
+    /// The program is not instrumented to be simulated.
+    #[error("the PLC does not simulate: SDSP_Simulated is FALSE")]
+    NotSimulated,
+    /// Its programs have run, so that its state is not that of a cold start.
+    #[error("the PLC has run since its last start: start it cold, then begin the session")]
+    MustBeStarted,
+    /// A word that the scheduler never writes.
+    #[error("the PLC answers nonsense during {what}: {reason}")]
+    Nonsense {
+        /// The grant or the start under way.
+        what: String,
+        /// What is impossible about it.
+        reason: String,
+    },
+    /// All numbers of grants are used up.
+    #[error("the PLC has counted {0} grants and cannot count on: start it cold")]
+    NumbersUsedUp(u32),
+}

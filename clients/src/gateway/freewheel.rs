@@ -1,0 +1,57 @@
+//! A PLC that is not driven: its inputs written and its outputs read at a rate of the client's own, as an OPC client
+//! does (seed 004 secs. II-C and III). It exists to show what the handshake removes.
+
+use std::time::Duration;
+
+use onescan_server::client::{Client, ClientFault, JoinRequest, Wake};
+use onescan_server::time::VirtualTime;
+
+use super::exchange::{Direction, Exchange};
+use super::link::Link;
+
+/// How long a link that is told of changes is listened to in a turn.
+const GLANCE: Duration = Duration::from_millis(1);
+
+/// A PLC on its own clock, whose program is not simulated (`SDSP_Simulated` is FALSE).
+pub struct FreeGateway {
+    request: JoinRequest,
+    exchange: Exchange,
+    link: Box<dyn Link>,
+    to_plc: Vec<u8>,
+    from_plc: Vec<u8>,
+}
+
+impl FreeGateway {
+    /// A client that speaks over `link`. The words of the handshake stay 0.
+    pub fn new(request: JoinRequest, exchange: Exchange, link: Box<dyn Link>) -> Self {
+        let (to_plc, from_plc) = (vec![0; exchange.size(Direction::ToPlc)], vec![0; exchange.size(Direction::FromPlc)]);
+        Self { request, exchange, link, to_plc, from_plc }
+    }
+
+    fn exchange(&mut self, outputs: &mut [u8]) -> Result<(), ClientFault> {
+        let fault = |fault: super::fault::LinkFault| ClientFault::new(fault.to_string());
+        self.link.write(&self.to_plc).map_err(fault)?;
+        // A PLC that says nothing has changed nothing.
+        self.link.read(GLANCE, &mut self.from_plc).map_err(fault)?;
+        outputs.copy_from_slice(&self.from_plc[self.exchange.outputs()]);
+        Ok(())
+    }
+}
+
+impl Client for FreeGateway {
+    fn join(&self) -> JoinRequest {
+        self.request.clone()
+    }
+
+    fn setup(&mut self, outputs: &mut [u8]) -> Result<(), ClientFault> {
+        self.link.connect().map_err(|fault| ClientFault::new(fault.to_string()))?;
+        self.exchange(outputs)
+    }
+
+    fn turn(&mut self, _t_v: VirtualTime, inputs: &[u8], outputs: &mut [u8]) -> Result<Wake, ClientFault> {
+        let place = self.exchange.inputs();
+        self.to_plc[place].copy_from_slice(inputs);
+        self.exchange(outputs)?;
+        Ok(Wake::NextPeriod)
+    }
+}

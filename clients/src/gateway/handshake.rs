@@ -1,0 +1,399 @@
+//! The handshake of one scan, one step: sans-IO.
+//!
+//! Seed: Carlsson et al. 2012, sec. V-A. The gateway writes inputs and `t_v`, then the number of the grant; it
+//! waits until the PLC names that number as done; it takes the outputs. The words are those of the shim
+//! (`plc-shim/iec/shim/globals.st`).
+//!
+//! | phase | asks for | left when |
+//! |---|---|---|
+//! | unlinked | connect | connected |
+//! | surveying | read | the PLC is as it must be: joined, or fresh |
+//! | writing | write the order | written |
+//! | awaiting | read | the order is answered |
+//! | at rest | nothing | the session wants the next grant |
+//!
+//! A broken connection leads to *unlinked* with the order kept. After it the PLC is surveyed before anything is
+//! written: it has run the grant, or it has not. An order is the same whenever it is written, and the PLC runs
+//! the next number only; so an order that comes twice, or late, is run once.
+
+use onescan_server::time::VirtualTime;
+
+use super::fault::GatewayFault;
+
+/// What the gateway writes: all of it at every write, the grant last.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Order {
+    /// `SDSP_Session`.
+    pub session: u32,
+    /// `SDSP_Limit`.
+    pub limit: u32,
+    /// `SDSP_TV`, ns.
+    pub t_v: VirtualTime,
+    /// `SDSP_Grant`.
+    pub grant: u32,
+    /// `PLC_Start`: a cold start is wanted when it is one more than the boot counter.
+    pub start: u32,
+}
+
+/// What the gateway reads.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Report {
+    /// `SDSP_Joined`.
+    pub joined: u32,
+    /// `SDSP_Done`.
+    pub done: u32,
+    /// `SDSP_Answer`.
+    pub answer: Answer,
+    /// `PLC_Boots`, if the PLC counts its starts.
+    pub boots: Option<u32>,
+    /// `PLC_Running`, if the PLC tells RUN from STOP.
+    pub running: Option<bool>,
+}
+
+/// `SDSP_Answer`: what the scheduler says.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Answer {
+    /// 0: it has nothing to do.
+    #[default]
+    Ready,
+    /// 1: programs run.
+    Running,
+    /// 2: a grant that was run before.
+    OldGrant,
+    /// 3: the number of the grant is not the next one.
+    Missing,
+    /// 4: the grant is beyond the limit.
+    Held,
+    /// 5: the grant is not later than the one before.
+    TimeStandsStill,
+    /// 6: a session is to begin and programs have run.
+    MustBeStarted,
+    /// 7: `SDSP_Simulated` is FALSE.
+    NotSimulated,
+    /// No scheduler says this.
+    Other(i16),
+}
+
+impl From<i16> for Answer {
+    fn from(word: i16) -> Self {
+        match word {
+            0 => Self::Ready,
+            1 => Self::Running,
+            2 => Self::OldGrant,
+            3 => Self::Missing,
+            4 => Self::Held,
+            5 => Self::TimeStandsStill,
+            6 => Self::MustBeStarted,
+            7 => Self::NotSimulated,
+            other => Self::Other(other),
+        }
+    }
+}
+
+impl Answer {
+    /// Why a grant that was answered so is not done.
+    pub fn why(self) -> String {
+        match self {
+            Self::Ready => {
+                "its scheduler has not seen it: the PLC is in STOP, or no task runs SDSP_Scheduler".to_owned()
+            }
+            Self::Running => "programs have begun and do not end: is each in a task that runs?".to_owned(),
+            Self::OldGrant => "the PLC answers that it is old".to_owned(),
+            Self::Missing => "the PLC answers that a grant before it is missing".to_owned(),
+            Self::Held => "the PLC answers that it is held by SDSP_Limit".to_owned(),
+            Self::TimeStandsStill => "the PLC answers that its virtual time is not later than the last".to_owned(),
+            Self::MustBeStarted => "the PLC answers that it must be started anew".to_owned(),
+            Self::NotSimulated => "the PLC answers that it does not simulate".to_owned(),
+            Self::Other(word) => format!("SDSP_Answer is {word}, which no scheduler writes"),
+        }
+    }
+}
+
+/// What the handshake wants done next.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Ask {
+    /// Connect, and check the mapping.
+    Connect,
+    /// Write inputs and this.
+    Write(Order),
+    /// Read the words and the outputs.
+    Read,
+    /// Nothing: the last order is done.
+    Nothing,
+}
+
+/// Something that the session's operator ought to know; nothing is wrong yet.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Notice {
+    /// The PLC must be started cold, and the link cannot do it.
+    StartPlc,
+    /// The connection was lost and is back; the order under way is resumed.
+    Back,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Phase {
+    Unlinked,
+    Surveying,
+    Writing,
+    Awaiting,
+    AtRest,
+}
+
+/// What the order under way is for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Goal {
+    /// That the PLC joins, at this virtual time.
+    Join(VirtualTime),
+    /// That the PLC is started cold and then joins.
+    Start(VirtualTime),
+    /// That it runs the order's grant.
+    Grant,
+}
+
+/// The gateway's side of the handshake.
+#[derive(Clone, Debug)]
+pub struct Handshake {
+    phase: Phase,
+    goal: Goal,
+    order: Order,
+    /// The highest number that was ever used here.
+    highest: u32,
+    /// The boot counter when the PLC joined.
+    boots: Option<u32>,
+    last: Report,
+    notice: Option<Notice>,
+    is_lost: bool,
+}
+
+impl Default for Handshake {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl Handshake {
+    /// There is no connection and no session.
+    pub fn new() -> Self {
+        Self {
+            phase: Phase::Unlinked,
+            goal: Goal::Join(VirtualTime::ZERO),
+            order: Order::default(),
+            highest: 0,
+            boots: None,
+            last: Report::default(),
+            notice: None,
+            is_lost: false,
+        }
+    }
+
+    /// Begins a session at `t_v`; done when the PLC has joined it.
+    pub fn join(&mut self, t_v: VirtualTime) {
+        self.goal = Goal::Join(t_v);
+        self.boots = None;
+        self.survey();
+    }
+
+    /// Grants a turn that ends at `t_v`; done when the PLC has run it.
+    ///
+    /// # Errors
+    /// There is no number left.
+    pub fn grant(&mut self, t_v: VirtualTime) -> Result<(), GatewayFault> {
+        let used_up = GatewayFault::NumbersUsedUp(self.order.grant);
+        self.order.grant = self.order.grant.checked_add(1).ok_or(used_up)?;
+        self.order.t_v = t_v;
+        self.highest = self.highest.max(self.order.grant);
+        self.goal = Goal::Grant;
+        self.phase = if self.phase == Phase::Unlinked { Phase::Unlinked } else { Phase::Writing };
+        Ok(())
+    }
+
+    /// What is to be done now.
+    pub fn ask(&self) -> Ask {
+        match self.phase {
+            Phase::Unlinked => Ask::Connect,
+            Phase::Surveying | Phase::Awaiting => Ask::Read,
+            Phase::Writing => Ask::Write(self.order),
+            Phase::AtRest => Ask::Nothing,
+        }
+    }
+
+    /// There is a connection, and the PLC has all that is mapped.
+    pub fn connected(&mut self) {
+        if std::mem::take(&mut self.is_lost) {
+            self.notice = Some(Notice::Back);
+        }
+        self.phase = Phase::Surveying;
+    }
+
+    /// The connection is gone.
+    pub fn lost(&mut self) {
+        self.is_lost = true;
+        self.phase = Phase::Unlinked;
+    }
+
+    /// The order is on its way.
+    pub fn written(&mut self) {
+        if self.phase == Phase::Writing {
+            self.phase = Phase::Awaiting;
+        }
+    }
+
+    /// Nothing has come of the order for a while: it is written once more.
+    pub fn quiet(&mut self) {
+        if self.phase == Phase::Awaiting {
+            self.phase = Phase::Writing;
+        }
+    }
+
+    /// What the operator ought to know, once.
+    pub fn take_notice(&mut self) -> Option<Notice> {
+        self.notice.take()
+    }
+
+    /// Looks at what was read. The outputs read with it are those of the grant if nothing is asked for then.
+    ///
+    /// # Errors
+    /// The PLC cannot go on in this session.
+    pub fn look(&mut self, report: Report) -> Result<(), GatewayFault> {
+        self.last = report;
+        if let Answer::Other(word) = report.answer {
+            return Err(self.nonsense(format!("SDSP_Answer is {word}")));
+        }
+        match (self.goal, self.phase) {
+            (_, Phase::AtRest | Phase::Unlinked | Phase::Writing) => Ok(()),
+            (Goal::Join(t_v), Phase::Surveying) => self.begin(t_v, report),
+            (Goal::Join(t_v), Phase::Awaiting) => self.look_for_join(t_v, report),
+            (Goal::Start(t_v), _) => self.look_for_start(t_v, report),
+            (Goal::Grant, _) => self.look_for_done(report),
+        }
+    }
+
+    /// Why the order is not done, when the time for it is over.
+    pub fn late(&self, after: std::time::Duration) -> GatewayFault {
+        let what = self.what();
+        match (self.last.running, self.goal, self.last.answer) {
+            (Some(false), ..) => GatewayFault::InStop { what },
+            (_, Goal::Start(_), _) | (_, Goal::Join(_), Answer::MustBeStarted) => GatewayFault::MustBeStarted,
+            (.., answer) => GatewayFault::NotAnswered { what, after, answer },
+        }
+    }
+
+    /// The order under way in words.
+    pub fn what(&self) -> String {
+        match self.goal {
+            Goal::Join(_) => format!("the start of session {}", self.order.session),
+            Goal::Start(_) => "the cold start of the PLC".to_owned(),
+            Goal::Grant => format!("grant {} at t_v = {}", self.order.grant - self.order.session, self.order.t_v),
+        }
+    }
+
+    fn survey(&mut self) {
+        if self.phase != Phase::Unlinked {
+            self.phase = Phase::Surveying;
+        }
+    }
+
+    /// A PLC that has joined nothing is told the new session; another one must be started before.
+    fn begin(&mut self, t_v: VirtualTime, report: Report) -> Result<(), GatewayFault> {
+        if report.answer == Answer::NotSimulated {
+            return Err(GatewayFault::NotSimulated);
+        }
+        if report.joined != 0 || report.answer == Answer::MustBeStarted {
+            return self.want_start(t_v, report);
+        }
+        let highest = self.highest.max(report.done);
+        let session = highest.checked_add(1).ok_or(GatewayFault::NumbersUsedUp(highest))?;
+        self.highest = session;
+        self.order = Order { session, limit: u32::MAX, t_v, grant: session, start: report.boots.unwrap_or(0) };
+        self.boots = report.boots;
+        self.phase = Phase::Writing;
+        Ok(())
+    }
+
+    fn want_start(&mut self, t_v: VirtualTime, report: Report) -> Result<(), GatewayFault> {
+        self.highest = self.highest.max(report.joined).max(report.done);
+        let Some(boots) = report.boots else {
+            if self.goal != Goal::Start(t_v) {
+                self.notice = Some(Notice::StartPlc);
+            }
+            self.goal = Goal::Start(t_v);
+            self.phase = Phase::Surveying;
+            return Ok(());
+        };
+        self.goal = Goal::Start(t_v);
+        self.boots = Some(boots);
+        self.order = Order { start: boots.wrapping_add(1), ..Order::default() };
+        self.phase = Phase::Writing;
+        Ok(())
+    }
+
+    fn look_for_start(&mut self, t_v: VirtualTime, report: Report) -> Result<(), GatewayFault> {
+        let is_new = match (self.boots, report.boots) {
+            (Some(before), Some(now)) => before != now,
+            _ => true,
+        };
+        if is_new && report.joined == 0 && report.answer != Answer::MustBeStarted {
+            self.goal = Goal::Join(t_v);
+            return self.begin(t_v, report);
+        }
+        if self.phase == Phase::Surveying && report.boots.is_some() {
+            self.phase = Phase::Writing;
+        }
+        Ok(())
+    }
+
+    fn look_for_join(&mut self, t_v: VirtualTime, report: Report) -> Result<(), GatewayFault> {
+        let Order { session, .. } = self.order;
+        match (report.joined, report.answer) {
+            (joined, _) if joined == session && report.done == session => {
+                self.boots = report.boots;
+                self.phase = Phase::AtRest;
+                Ok(())
+            }
+            (joined, _) if joined == session => {
+                Err(self.nonsense(format!("it has joined session {session} and done grant {}", report.done)))
+            }
+            (_, Answer::NotSimulated) => Err(GatewayFault::NotSimulated),
+            (_, Answer::MustBeStarted) => self.want_start(t_v, report),
+            (0, _) => Ok(()),
+            (joined, _) => Err(GatewayFault::OtherSession { joined, session }),
+        }
+    }
+
+    fn look_for_done(&mut self, report: Report) -> Result<(), GatewayFault> {
+        let Order { session, grant, .. } = self.order;
+        if let (Some(was), Some(is)) = (self.boots, report.boots)
+            && was != is
+        {
+            return Err(GatewayFault::Restarted { what: self.what(), boots: Some((was, is)) });
+        }
+        let restarted = GatewayFault::Restarted { what: self.what(), boots: None };
+        match (report.joined, report.answer) {
+            (0, Answer::NotSimulated) => Err(GatewayFault::NotSimulated),
+            (0, _) => Err(restarted),
+            (joined, _) if joined != session => Err(GatewayFault::OtherSession { joined, session }),
+            _ if report.done == grant => {
+                self.phase = Phase::AtRest;
+                Ok(())
+            }
+            _ if report.done > grant => Err(GatewayFault::OtherGrant { what: self.what(), done: report.done }),
+            // It has joined this session anew, from a late order, and knows nothing of the grants before.
+            _ if report.done + 1 < grant => Err(restarted),
+            (_, Answer::TimeStandsStill) if self.phase == Phase::Awaiting && grant == session + 1 => Err(restarted),
+            _ if self.phase == Phase::Surveying => {
+                self.phase = Phase::Writing;
+                Ok(())
+            }
+            _ => Ok(()),
+        }
+    }
+
+    fn nonsense(&self, reason: String) -> GatewayFault {
+        GatewayFault::Nonsense { what: self.what(), reason }
+    }
+}
+
+#[cfg(test)]
+#[path = "handshake_tests.rs"]
+mod tests;

@@ -1,0 +1,41 @@
+//! The client that speaks for a real PLC: one lockstep handshake over the links that PLCs have.
+//!
+//! | module | subject |
+//! |---|---|
+//! | [`handshake`] | what is to be written and read next, and what the PLC's words mean: sans-IO |
+//! | [`fault`] | what can be wrong with a link, told apart by name |
+//! | [`byte_order`] | which byte of a number comes first |
+//! | [`exchange`] | the signals and synchronisation words in their order, as packed bytes |
+//! | [`link`] | the interface of all links |
+//! | [`client`] | handshake and link as a client of a session |
+//! | [`settings`] | what a scenario says of a link, and the link made of it |
+//! | [`modbus`] | registers and coils over Modbus TCP |
+//! | [`opcua`] | variables of an OPC UA server |
+//! | [`s7`] | data blocks of an S7 |
+//! | [`freewheel`] | a PLC that is not driven, to compare |
+//! | [`tcp`] | data blocks of declared layout over a raw TCP connection |
+//!
+//! # Invariants
+//! - The handshake knows no socket and no clock. A link knows nothing of grants: it moves bytes.
+//! - No step is run twice and none is skipped, wherever the connection breaks.
+//! - A wall clock decides when to give up, never what a step computes.
+
+pub mod byte_order;
+pub mod client;
+pub mod exchange;
+pub mod fault;
+pub mod freewheel;
+pub mod handshake;
+pub mod link;
+pub mod modbus;
+pub mod opcua;
+pub mod s7;
+pub mod settings;
+pub mod tcp;
+
+pub use client::{Gateway, Patience};
+pub use exchange::{Direction, Exchange, Point};
+pub use fault::{GatewayFault, LinkFault, MappingFault};
+pub use freewheel::FreeGateway;
+pub use link::Link;
+pub use settings::{BadUrl, Settings, SettingsFault};

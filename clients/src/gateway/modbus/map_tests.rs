@@ -1,0 +1,88 @@
+use std::collections::BTreeMap;
+
+use onescan_server::signal::{Port, SignalName};
+use proptest::prelude::*;
+
+use super::*;
+use crate::gateway::exchange::SystemWords;
+use crate::gateway::modbus::registers;
+
+const TYPES: [ElementaryType; 7] = [
+    ElementaryType::Bool,
+    ElementaryType::Byte,
+    ElementaryType::Int,
+    ElementaryType::Dint,
+    ElementaryType::Real,
+    ElementaryType::Lreal,
+    ElementaryType::Bool,
+];
+
+fn exchange(ports: &[(&str, ElementaryType)], addresses: &[(&str, &str)]) -> Exchange {
+    let port = |(name, ty): &(&str, ElementaryType)| Port { name: SignalName::new(*name).unwrap(), ty: *ty };
+    let ports: Vec<Port> = ports.iter().map(port).collect();
+    let addresses: BTreeMap<_, _> = addresses.iter().map(|(a, b)| ((*a).to_owned(), (*b).to_owned())).collect();
+    Exchange::new(&ports, &[], SystemWords::Absent, &addresses)
+}
+
+#[test]
+fn what_is_wrong_with_a_map_is_told() {
+    use ElementaryType::{Bool, Real, String};
+    let told = |ty, address: &str| {
+        let exchange = exchange(&[("a", ty), ("b", ty)], &[("a", address), ("b", "hr:7")]);
+        RegisterMap::new(&Options::default(), &exchange).map(|_| "fine".to_owned()).unwrap_or_else(|f| f.to_string())
+    };
+    let all = [
+        told(Real, "hr:100"),
+        told(Real, "hr:6"),
+        told(Real, "coil:1"),
+        told(Real, "hr:1.3"),
+        told(Real, "ir:1"),
+        told(Real, "hr:65535"),
+        told(Real, "4x100"),
+        told(Bool, "hr:8.3"),
+        told(Bool, "hr:8.16"),
+        told(String(4), "hr:20"),
+    ];
+    insta::assert_snapshot!(all.join("\n"));
+}
+
+#[test]
+fn neighbours_share_a_request_and_the_grant_is_in_the_last() {
+    let named: Vec<String> = (0..100).map(|i| format!("s{i}")).collect();
+    let ports: Vec<_> = named.iter().map(|name| (name.as_str(), ElementaryType::Real)).collect();
+    let map = RegisterMap::new(&Options::default(), &exchange(&ports, &[("s3", "coil:9")])).unwrap_err();
+    assert!(map.to_string().contains("does not fit into the bit coil:9"));
+    let map = RegisterMap::new(&Options::default(), &exchange(&ports, &[("s3", "hr:5000")])).unwrap();
+    let writes = map.writes();
+    let span = |at, count| Span { table: Table::HoldingRegister, at, count };
+    assert_eq!(writes, [span(0, 6), span(5000, 2), span(6, 122), span(128, 80)]);
+    let grant = map.to_plc.last().unwrap();
+    assert_eq!((grant.point.name.as_str(), grant.end()), ("SDSP_Grant", 208));
+    assert_eq!(map.reads(), [span(1000, 5)]);
+}
+
+proptest! {
+    #[test]
+    fn values_come_back(types in prop::collection::vec(0..7_usize, 1..30), is_little in any::<bool>(), seed in any::<u64>()) {
+        let named: Vec<String> = (0..types.len()).map(|i| format!("s{i}")).collect();
+        let ports: Vec<_> = named.iter().zip(&types).map(|(name, ty)| (name.as_str(), TYPES[*ty])).collect();
+        let exchange = exchange(&ports, &[]);
+        let word_order = if is_little { ByteOrder::LittleEndian } else { ByteOrder::BigEndian };
+        let map = RegisterMap::new(&Options { word_order, ..Options::default() }, &exchange).unwrap();
+        let mut state = seed;
+        let mut packed = Vec::new();
+        for point in exchange.to_plc() {
+            for _ in 0..point.ty.size() {
+                state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
+                packed.push(if point.ty == ElementaryType::Bool { (state >> 60) as u8 & 1 } else { (state >> 33) as u8 });
+            }
+        }
+        let mut back = vec![0; packed.len()];
+        for span in map.writes() {
+            let mut words = vec![0xffff; usize::from(span.count)];
+            map.to_plc.iter().for_each(|entry| registers::put(entry, &packed, map.word_order, &span, &mut words));
+            map.to_plc.iter().for_each(|entry| registers::take(entry, &words, map.word_order, &span, &mut back));
+        }
+        prop_assert_eq!(back, packed);
+    }
+}

@@ -1,0 +1,105 @@
+//! What a scenario says of an OPC UA link.
+
+use std::path::PathBuf;
+
+use opcua::client::IdentityToken;
+use opcua::crypto::SecurityPolicy;
+use opcua::types::MessageSecurityMode;
+use serde::Deserialize;
+
+use crate::gateway::fault::LinkFault;
+
+/// The namespace in which `onescan plc` has its variables.
+pub const NAMESPACE: &str = "urn:onescan:plc:variables";
+
+/// How a client presents itself, and where its variables are.
+#[derive(Clone, Debug, PartialEq, Eq, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct Options {
+    /// The namespace of points without an address: each is there under its name.
+    pub namespace: String,
+    /// `None`, `Basic256Sha256`, `Aes128-Sha256-RsaOaep` or `Aes256-Sha256-RsaPss`.
+    pub policy: String,
+    /// With a policy: `Sign` or `SignAndEncrypt`.
+    pub mode: String,
+    /// The user; anonymous if absent.
+    pub user: Option<String>,
+    /// Name of the environment variable that holds the user's password: it has no place in a file.
+    pub password_env: String,
+    /// The user's certificate and private key, in place of a password.
+    pub user_certificate: Option<PathBuf>,
+    /// See `user_certificate`.
+    pub user_key: Option<PathBuf>,
+    /// The folder with the certificates of this program (`own`, `private`) and those it trusts (`trusted`);
+    /// made when it is not there. Without it nothing is kept.
+    pub pki: Option<PathBuf>,
+    /// Trust any server; otherwise its certificate must lie in `trusted` of the folder.
+    pub trust_server: bool,
+}
+
+impl Default for Options {
+    fn default() -> Self {
+        Self {
+            namespace: NAMESPACE.to_owned(),
+            policy: "None".to_owned(),
+            mode: "SignAndEncrypt".to_owned(),
+            user: None,
+            password_env: "ONESCAN_OPCUA_PASSWORD".to_owned(),
+            user_certificate: None,
+            user_key: None,
+            pki: None,
+            trust_server: false,
+        }
+    }
+}
+
+impl Options {
+    /// Policy and mode of the connection.
+    ///
+    /// # Errors
+    /// A name that is none.
+    pub fn security(&self) -> Result<(SecurityPolicy, MessageSecurityMode), LinkFault> {
+        let policy = match self.policy.as_str() {
+            "None" => return Ok((SecurityPolicy::None, MessageSecurityMode::None)),
+            "Basic256Sha256" => SecurityPolicy::Basic256Sha256,
+            "Aes128-Sha256-RsaOaep" => SecurityPolicy::Aes128Sha256RsaOaep,
+            "Aes256-Sha256-RsaPss" => SecurityPolicy::Aes256Sha256RsaPss,
+            other => {
+                let known = "None, Basic256Sha256, Aes128-Sha256-RsaOaep and Aes256-Sha256-RsaPss";
+                return Err(LinkFault::Setting(format!("`{other}` is no security policy; known are {known}")));
+            }
+        };
+        match self.mode.as_str() {
+            "Sign" => Ok((policy, MessageSecurityMode::Sign)),
+            "SignAndEncrypt" => Ok((policy, MessageSecurityMode::SignAndEncrypt)),
+            other => Err(LinkFault::Setting(format!("`{other}` is no mode; write `Sign` or `SignAndEncrypt`"))),
+        }
+    }
+
+    /// Who the client says it is.
+    ///
+    /// # Errors
+    /// A password or a certificate that is not there.
+    pub fn identity(&self) -> Result<IdentityToken, LinkFault> {
+        match (&self.user_certificate, &self.user_key, &self.user) {
+            (Some(certificate), Some(key), _) => IdentityToken::new_x509_path(certificate, key)
+                .map_err(|error| LinkFault::Setting(format!("the user's certificate: {error}"))),
+            (Some(_), None, _) | (None, Some(_), _) => {
+                Err(LinkFault::Setting("`user_certificate` and `user_key` go together".to_owned()))
+            }
+            (None, None, Some(user)) => {
+                let password = std::env::var(&self.password_env).map_err(|_| {
+                    let name = &self.password_env;
+                    LinkFault::Setting(format!("the environment variable `{name}` has no password for user `{user}`"))
+                })?;
+                Ok(IdentityToken::UserName(user.clone(), password.into()))
+            }
+            (None, None, None) => Ok(IdentityToken::Anonymous),
+        }
+    }
+
+    /// True if certificates are needed at all.
+    pub fn is_secured(&self) -> bool {
+        self.policy != "None" || self.user_certificate.is_some()
+    }
+}

@@ -1,0 +1,154 @@
+//! What a scenario says of a link, and the link made of it.
+
+use std::collections::BTreeMap;
+use std::time::Duration;
+
+use onescan_server::signal::did_you_mean;
+use onescan_server::time::TimeSpan;
+use serde::Deserialize;
+use thiserror::Error;
+
+use super::client::Patience;
+use super::exchange::{Exchange, SystemWords};
+use super::fault::{LinkFault, MappingFault};
+use super::link::{Found, Link};
+use super::modbus::{self, ModbusLink};
+use super::opcua::{self, OpcUaLink};
+use super::s7::{self, S7Link};
+use super::tcp::{Declaration, Layouts, TcpLink};
+
+/// A PLC's link as a scenario declares it, `[clients.NAME.gateway]`.
+#[derive(Clone, Debug, Default, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct Settings {
+    /// Where the PLC is, as in `tcp://192.168.0.1:2000`.
+    pub url: String,
+    /// True if the PLC serves `PLC_Start`, `PLC_Boots` and `PLC_Running`.
+    pub system_words: bool,
+    /// How long a grant may stay unanswered.
+    pub grant_timeout: Option<Text<TimeSpan>>,
+    /// How long a lost connection may stay lost.
+    pub reconnect_timeout: Option<Text<TimeSpan>>,
+    /// How long a PLC that must be started cold is waited for.
+    pub start_timeout: Option<Text<TimeSpan>>,
+    /// Addresses of signals and words that do not lie where the link looks for them.
+    pub map: BTreeMap<String, String>,
+    /// Blocks of a raw TCP or an S7 link.
+    pub layout: Declaration,
+    /// CPU and block numbers of an S7 link.
+    pub s7: s7::Options,
+    /// Registers of a Modbus link.
+    pub modbus: modbus::Options,
+    /// Security and namespace of an OPC UA link.
+    pub opcua: opcua::Options,
+}
+
+/// A value written as text with a unit.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Text<T>(pub T);
+
+impl<'de, T> Deserialize<'de> for Text<T>
+where
+    T: std::str::FromStr,
+    T::Err: std::fmt::Display,
+{
+    fn deserialize<D: serde::Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        String::deserialize(deserializer)?.parse().map(Self).map_err(serde::de::Error::custom)
+    }
+}
+
+/// A URL that names no link.
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
+#[error("`{url}` is no PLC's address: {reason}")]
+pub struct BadUrl {
+    /// What was written.
+    pub url: String,
+    /// What is wrong with it.
+    pub reason: String,
+    /// What to do.
+    pub help: Option<String>,
+}
+
+/// The links there are, by the scheme of their URL.
+const SCHEMES: [&str; 4] = ["tcp", "modbus", "opc.tcp", "s7"];
+
+/// Why there is no link.
+#[derive(Clone, Debug, Error)]
+pub enum SettingsFault {
+    /// The URL is wrong.
+    #[error(transparent)]
+    Url(#[from] BadUrl),
+    /// A point has no place on this link.
+    #[error(transparent)]
+    Mapping(#[from] MappingFault),
+    /// The link cannot be made.
+    #[error(transparent)]
+    Link(#[from] LinkFault),
+}
+
+impl Settings {
+    /// Whether the PLC serves words about itself.
+    pub fn system(&self) -> SystemWords {
+        if self.system_words { SystemWords::Present } else { SystemWords::Absent }
+    }
+
+    /// How long the gateway waits.
+    pub fn patience(&self) -> Patience {
+        let or = |text: Option<Text<TimeSpan>>, default| {
+            text.map_or(default, |text| Duration::from_nanos(text.0.as_nanos()))
+        };
+        let default = Patience::default();
+        Patience {
+            grant: or(self.grant_timeout, default.grant),
+            reconnect: or(self.reconnect_timeout, default.reconnect),
+            start: or(self.start_timeout, default.start),
+        }
+    }
+
+    /// Scheme and rest of the URL.
+    ///
+    /// # Errors
+    /// A URL without one, or with one that no link has.
+    pub fn scheme(&self) -> Result<(&str, &str), BadUrl> {
+        let bad = |reason: &str, help| BadUrl { url: self.url.clone(), reason: reason.to_owned(), help };
+        let (scheme, rest) = self
+            .url
+            .split_once("://")
+            .ok_or_else(|| bad("it has no scheme", Some("write it as in `tcp://192.168.0.1:2000`".to_owned())))?;
+        if SCHEMES.contains(&scheme) {
+            return Ok((scheme, rest.trim_end_matches('/')));
+        }
+        let known = SCHEMES.join("`, `");
+        let help = did_you_mean(scheme, SCHEMES).unwrap_or_else(|| format!("known are `{known}`"));
+        Err(bad("no link has this scheme", Some(help)))
+    }
+
+    /// The link for the points of `exchange`, not connected yet.
+    ///
+    /// # Errors
+    /// See [`SettingsFault`].
+    pub fn link(&self, exchange: &Exchange) -> Result<Box<dyn Link>, SettingsFault> {
+        let (scheme, address) = self.scheme()?;
+        Ok(match scheme {
+            "modbus" => Box::new(ModbusLink::new(address, self.modbus, exchange)?),
+            "opc.tcp" => Box::new(OpcUaLink::new(&self.url, self.opcua.clone(), exchange)?),
+            "s7" => Box::new(S7Link::new(address, self.s7, exchange, Layouts::new(&self.layout, exchange)?)),
+            _ => Box::new(TcpLink::new(address, Layouts::new(&self.layout, exchange)?)),
+        })
+    }
+
+    /// Everything that the PLC says it has.
+    ///
+    /// # Errors
+    /// A protocol without names, or the PLC cannot be reached.
+    pub fn browse(&self) -> Result<Vec<Found>, SettingsFault> {
+        let nothing = Exchange::new(&[], &[], SystemWords::Absent, &BTreeMap::new());
+        match self.scheme()?.0 {
+            "opc.tcp" => Ok(OpcUaLink::new(&self.url, self.opcua.clone(), &nothing)?.browse()?),
+            scheme => {
+                let text = format!("nothing can be browsed over {scheme}: its values have addresses and no names");
+                Err(LinkFault::Setting(text).into())
+            }
+        }
+    }
+}

@@ -1,0 +1,35 @@
+//! `onescan compare`: lockstep beside the other ways.
+
+use crate::typed::{scenario, typed};
+
+#[test]
+fn lockstep_is_one_run_and_the_others_are_many() {
+    let folder = tempfile::tempdir().unwrap();
+    let plot = folder.path().join("compare.svg");
+    let words = ["compare", ".", "--until", "2s", "--runs", "2", "--format", "json", "--plot", plot.to_str().unwrap()];
+    let said = typed(&scenario("shear"), &words);
+    assert_eq!(said.code, Some(0), "{said:?}");
+    let rows: Vec<serde_json::Value> = said.out.lines().map(|line| serde_json::from_str(line).unwrap()).collect();
+    let modes: Vec<&str> = rows.iter().map(|row| row["mode"].as_str().unwrap()).collect();
+    assert_eq!(modes, ["lockstep", "freewheel", "halt", "follow"]);
+    assert_eq!(
+        (&rows[0]["digests"], &rows[0]["deviation"], &rows[0]["lost_edges"]),
+        (&1.into(), &0.0.into(), &0.0.into())
+    );
+    for row in &rows[1..] {
+        assert_eq!(row["digests"], 2, "{row}");
+        assert!(row["deviation"].as_f64().unwrap() > 0.0, "{row}");
+    }
+    let svg = std::fs::read_to_string(plot).unwrap();
+    assert!(svg.contains("follow") && svg.contains("Position_1"));
+}
+
+#[test]
+fn people_get_a_table() {
+    let said = typed(&scenario("shear"), &["compare", ".", "--until", "200ms", "--runs", "1"]);
+    assert_eq!((said.code, said.err.as_str()), (Some(0), ""), "{said:?}");
+    let lines: Vec<&str> = said.out.lines().collect();
+    assert_eq!(lines.len(), 5, "{said:?}");
+    assert!(lines[0].starts_with("mode       runs  digests  deviation  time offset  lost edges"));
+    assert!(lines[1].starts_with("lockstep      1        1     0.00 %      +0.0 ms    0.0 of "), "{said:?}");
+}

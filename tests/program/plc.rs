@@ -1,0 +1,185 @@
+//! `onescan plc` in a process of its own, and sessions that drive it in lockstep.
+
+use std::io::{BufRead, BufReader, Write};
+use std::path::Path;
+use std::process::{Child, ChildStdin, ChildStdout, Stdio};
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use crate::typed::{Said, digests, edit, onescan, run_shear, scenario, typed};
+
+/// A PLC that runs, until it is dropped.
+pub(crate) struct Plc {
+    child: Child,
+    commands: ChildStdin,
+    answers: BufReader<ChildStdout>,
+    urls: Vec<String>,
+}
+
+impl Plc {
+    /// `onescan plc` in `folder` with more words.
+    pub(crate) fn start(folder: &Path, words: &[&str]) -> Self {
+        Self::start_with(folder, words, "ONESCAN_OPCUA_PASSWORD", "")
+    }
+
+    /// The same with an environment variable.
+    pub(crate) fn start_with(folder: &Path, words: &[&str], variable: &str, value: &str) -> Self {
+        let mut command = onescan(folder);
+        command.env(variable, value);
+        command.args(["plc", "."]).args(words).stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::null());
+        let mut child = command.spawn().expect("the program starts");
+        let commands = child.stdin.take().expect("piped");
+        let answers = BufReader::new(child.stdout.take().expect("piped"));
+        let mut plc = Self { child, commands, answers, urls: Vec::new() };
+        loop {
+            let line = plc.line();
+            match line.strip_prefix("serving ") {
+                Some(url) => plc.urls.push(url.to_owned()),
+                None => break,
+            }
+        }
+        plc
+    }
+
+    fn line(&mut self) -> String {
+        let mut line = String::new();
+        self.answers.read_line(&mut line).expect("it speaks");
+        assert!(!line.is_empty(), "the PLC has ended");
+        line.trim_end().to_owned()
+    }
+
+    /// Where it serves a protocol, as `--gateway` takes it.
+    pub(crate) fn gateway(&self, scheme: &str) -> String {
+        let url = self.urls.iter().find(|url| url.starts_with(scheme)).expect("it serves this");
+        format!("plc={url}")
+    }
+
+    /// Types a command and gives the answer.
+    pub(crate) fn say(&mut self, command: &str) -> String {
+        writeln!(self.commands, "{command}").expect("it listens");
+        self.line()
+    }
+}
+
+impl Drop for Plc {
+    fn drop(&mut self) {
+        // It may have ended by itself.
+        let _ = self.child.kill();
+        let _ = self.child.wait();
+    }
+}
+
+/// The shear for 2 s with a PLC in another process.
+fn run_with(gateway: &str, words: &[&str]) -> (Vec<serde_json::Value>, Said) {
+    run_shear(&[&["--until", "2s", "--gateway", gateway], words].concat())
+}
+
+fn in_process() -> String {
+    let (reports, _) = run_shear(&["--until", "2s"]);
+    digests(&reports).remove(0)
+}
+
+/// The same bits as with the soft PLC in this process, run after run, on an idle machine and a loaded one.
+fn equals_the_run_in_process(scheme: &str) {
+    let expected = in_process();
+    let plc = Plc::start(&scenario("shear"), &[]);
+    let (reports, said) = run_with(&plc.gateway(scheme), &["--runs", "3"]);
+    assert_eq!(digests(&reports), vec![expected.clone(); 3], "{said:?}");
+    let done = AtomicBool::new(false);
+    std::thread::scope(|scope| {
+        for _ in 0..8 {
+            scope.spawn(|| {
+                while !done.load(Ordering::Relaxed) {
+                    std::hint::spin_loop();
+                }
+            });
+        }
+        let (reports, said) = run_with(&plc.gateway(scheme), &[]);
+        done.store(true, Ordering::Relaxed);
+        assert_eq!(digests(&reports), [expected], "{said:?}");
+    });
+}
+
+#[test]
+fn raw_tcp_equals_the_run_in_process() {
+    equals_the_run_in_process("tcp://");
+}
+
+#[test]
+fn modbus_equals_the_run_in_process() {
+    equals_the_run_in_process("modbus://");
+}
+
+#[test]
+fn opc_ua_equals_the_run_in_process() {
+    equals_the_run_in_process("opc.tcp://");
+}
+
+/// The same processes and link without the handshake: no two runs are equal, and none is that in lockstep.
+#[test]
+fn without_the_handshake_runs_differ() {
+    let plc = Plc::start(&scenario("shear"), &["--mode", "freewheel"]);
+    for scheme in ["tcp://", "modbus://", "opc.tcp://"] {
+        let gateway = plc.gateway(scheme);
+        let words = ["--until", "2s", "--mode", "freewheel", "--runs", "2", "--gateway", &gateway];
+        let (reports, said) = run_shear(&words);
+        let mut all = digests(&reports);
+        assert_eq!(all.len(), 2, "{said:?}");
+        all.push(in_process());
+        all.sort();
+        all.dedup();
+        assert_eq!(all.len(), 3, "{said:?}");
+    }
+}
+
+/// The PLC's cycle is not the session's business.
+#[test]
+fn the_cycle_of_the_plc_does_not_matter() {
+    let expected = in_process();
+    for cycle in ["max", "3ms"] {
+        let plc = Plc::start(&scenario("shear"), &["--cycle", cycle]);
+        let (reports, said) = run_with(&plc.gateway("tcp://"), &[]);
+        assert_eq!(digests(&reports), [expected.clone()], "{cycle}: {said:?}");
+    }
+}
+
+#[test]
+fn the_switch_and_starts_are_obeyed() {
+    let mut plc = Plc::start(&scenario("shear"), &[]);
+    assert!(plc.say("status").starts_with("RUN, start 1, "));
+    assert!(plc.say("stop").starts_with("STOP, start 1, "));
+    assert!(plc.say("cold").starts_with("RUN, start 2, "));
+    assert!(plc.say("warm").starts_with("RUN, start 3, "));
+    assert_eq!(plc.say("strat"), "no command `strat`; did you mean `status`?");
+    writeln!(plc.commands, "quit").unwrap();
+    assert_eq!(plc.child.wait().unwrap().code(), Some(0));
+}
+
+/// What the PLC's operator does in mid-session, by name.
+#[test]
+fn a_plc_in_stop_and_a_restarted_one_are_told_apart() {
+    let folder = crate::typed::copied_shear();
+    edit(folder.path(), "scenario.toml", "system_words = true", "system_words = true\ngrant_timeout = \"300ms\"");
+    for (command, name) in [("stop", "the PLC is in STOP: grant "), ("cold", "the PLC was restarted in mid-session")] {
+        let mut plc = Plc::start(folder.path(), &[]);
+        let gateway = plc.gateway("tcp://");
+        let words = ["run", ".", "--format", "json", "--pace", "1", "--until", "1h", "--gateway", &gateway];
+        let run = onescan(folder.path()).args(words).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+        while !plc.say("status").contains("in session") {}
+        plc.say(command);
+        let said = Said::from(run.wait_with_output().unwrap());
+        assert_eq!(said.code, Some(3), "{said:?}");
+        assert!(said.out.contains(name), "{said:?}");
+    }
+}
+
+#[test]
+fn a_plc_that_is_not_there_is_unreachable() {
+    let said = typed(&scenario("shear"), &["run", ".", "--gateway", "plc=tcp://127.0.0.1:1"]);
+    assert_eq!(said.code, Some(3), "{said:?}");
+    assert!(said.err.contains("unreachable: tcp://127.0.0.1:1"), "{said:?}");
+    let told = |gateway: &str| typed(&scenario("shear"), &["run", ".", "--gateway", gateway]);
+    let all = [told("plc=tpc://127.0.0.1:1"), told("plc=127.0.0.1"), told("plant"), told("plx")];
+    assert!(all.iter().all(|said| said.code == Some(2)), "{all:?}");
+    let text: Vec<String> = all.into_iter().map(|said| said.err).collect();
+    insta::assert_snapshot!(text.join("----\n"));
+}

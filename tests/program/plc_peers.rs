@@ -1,0 +1,82 @@
+//! PLCs that others have made: the shear's program and the shim's scheduler in Python, on servers written by other
+//! people. Each free-wheels, and the digest is that of the soft PLC in this process.
+
+use std::io::{BufRead, BufReader};
+use std::path::{Path, PathBuf};
+use std::process::{Child, Command, Stdio};
+use std::sync::OnceLock;
+
+use crate::typed::{copied_shear, digests, edit, run_shear, typed};
+
+/// A Python with the packages of the peers, made once a build folder.
+fn python() -> &'static PathBuf {
+    static PYTHON: OnceLock<PathBuf> = OnceLock::new();
+    PYTHON.get_or_init(|| {
+        let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("peers");
+        let python = folder.join("bin/python");
+        let is_whole = || {
+            let words = ["-c", "import asyncua, pymodbus, snap7"];
+            Command::new(&python).args(words).stderr(Stdio::null()).status().is_ok_and(|status| status.success())
+        };
+        if !is_whole() {
+            let made = Command::new("python3").args(["-m", "venv"]).arg(&folder).status();
+            assert!(made.expect("python3 is on the machine").success());
+            let packages = ["asyncua==2.1.0", "pymodbus==3.16.1", "python-snap7==3.3.0"];
+            let pip = Command::new(&python).args(["-m", "pip", "install", "--quiet"]).args(packages).output();
+            let pip = pip.expect("it has pip");
+            assert!(pip.status.success(), "{}", String::from_utf8_lossy(&pip.stderr));
+        }
+        python
+    })
+}
+
+/// A peer that runs until it is dropped, and the port that it says.
+struct Peer(Child, u16);
+
+impl Peer {
+    fn start(script: &str) -> Self {
+        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("peers/plc").join(script);
+        let mut command = Command::new(python());
+        command.arg(path).env("PYTHONDONTWRITEBYTECODE", "1").stdout(Stdio::piped()).stderr(Stdio::null());
+        let mut child = command.spawn().expect("Python starts");
+        let mut line = String::new();
+        BufReader::new(child.stdout.take().expect("piped")).read_line(&mut line).expect("it speaks");
+        let port = line.trim().parse().unwrap_or_else(|_| panic!("{script} says {line:?}"));
+        Self(child, port)
+    }
+}
+
+impl Drop for Peer {
+    fn drop(&mut self) {
+        // It may have ended by itself.
+        let _ = self.0.kill();
+        let _ = self.0.wait();
+    }
+}
+
+fn equals_the_run_in_process(script: &str, url: &str) {
+    let (reports, _) = run_shear(&["--until", "2s"]);
+    let folder = copied_shear();
+    edit(folder.path(), "scenario.toml", "system_words = true", "system_words = false");
+    let Peer(_child, port) = &Peer::start(script);
+    let gateway = format!("plc={}", url.replace("PORT", &port.to_string()));
+    let said = typed(folder.path(), &["run", ".", "--format", "json", "--until", "2s", "--gateway", &gateway]);
+    assert_eq!(said.code, Some(0), "{said:?}");
+    let report = serde_json::from_str(&said.out).expect("a report");
+    assert_eq!(digests(&[report]), digests(&reports));
+}
+
+#[test]
+fn a_plc_on_asyncua() {
+    equals_the_run_in_process("opcua_plc.py", "opc.tcp://127.0.0.1:PORT/");
+}
+
+#[test]
+fn a_plc_on_pymodbus() {
+    equals_the_run_in_process("modbus_plc.py", "modbus://127.0.0.1:PORT");
+}
+
+#[test]
+fn a_plc_on_snap7() {
+    equals_the_run_in_process("s7_plc.py", "s7://127.0.0.1:PORT");
+}

@@ -1,0 +1,130 @@
+//! Who is on the other side of a link need not mean well.
+
+use std::io::{Read, Write};
+use std::net::{TcpListener, TcpStream};
+use std::path::Path;
+
+use crate::plc::Plc;
+use crate::typed::{Said, copied_shear, digests, edit, onescan, run_shear, scenario, typed};
+
+/// Bytes of the shear's block from the PLC, with the words about the PLC itself.
+const BLOCK_BYTES: usize = 24;
+const PASSWORD: &str = "ONESCAN_OPCUA_PASSWORD";
+
+/// A PLC that sends the same block again and again.
+fn parrot(block: [u8; BLOCK_BYTES]) -> String {
+    let listener = TcpListener::bind("127.0.0.1:0").unwrap();
+    let address = listener.local_addr().unwrap();
+    std::thread::spawn(move || {
+        while let Ok((mut stream, _)) = listener.accept() {
+            let mut taken = [0; 4096];
+            while stream.write_all(&block).is_ok() && matches!(stream.read(&mut taken), Ok(1..)) {}
+        }
+    });
+    format!("plc=tcp://{address}")
+}
+
+#[test]
+fn a_plc_that_answers_nonsense_ends_the_session() {
+    let mut block = [0; BLOCK_BYTES];
+    block[9] = 77;
+    let said = typed(&scenario("shear"), &["run", ".", "--gateway", &parrot(block)]);
+    assert_eq!(said.code, Some(3), "{said:?}");
+    assert!(said.out.contains("nonsense") && said.out.contains("SDSP_Answer is 77"), "{said:?}");
+}
+
+/// Blocks of another length, and a PLC that closes in the middle of one: the layouts do not agree.
+#[test]
+fn a_plc_with_another_layout_is_told() {
+    let folder = copied_shear();
+    let short = "system_words = true\nreconnect_timeout = \"300ms\"";
+    edit(folder.path(), "scenario.toml", "system_words = true", short);
+    let listener = TcpListener::bind("127.0.0.1:0").unwrap();
+    let address = listener.local_addr().unwrap();
+    std::thread::spawn(move || {
+        while let Ok((mut stream, _)) = listener.accept() {
+            // It may be gone again.
+            let _ = stream.write_all(&[0; BLOCK_BYTES - 1]);
+        }
+    });
+    let said = typed(folder.path(), &["run", ".", "--gateway", &format!("plc=tcp://{address}")]);
+    assert_eq!(said.code, Some(3), "{said:?}");
+    assert!(said.out.contains("closed after 23 of the 24 bytes of a block"), "{said:?}");
+}
+
+#[test]
+fn a_plc_is_not_upset_by_what_is_sent_to_it() {
+    let (expected, _) = run_shear(&["--until", "1s"]);
+    let mut plc = Plc::start(&scenario("shear"), &[]);
+    for scheme in ["tcp://", "modbus://", "opc.tcp://"] {
+        let gateway = plc.gateway(scheme);
+        let address = gateway.rsplit("://").next().unwrap().to_owned();
+        for seed in 0..20_u64 {
+            let mut stream = TcpStream::connect(&address).unwrap();
+            let mut state = seed;
+            let noise = (0..seed * 997).map(|_| {
+                state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
+                (state >> 33) as u8
+            });
+            // A server may close on what it does not understand.
+            let _ = stream.write_all(&noise.collect::<Vec<u8>>());
+        }
+        assert!(plc.say("status").starts_with("RUN"));
+        let (reports, said) = run_shear(&["--until", "1s", "--gateway", &gateway]);
+        assert_eq!(digests(&reports), digests(&expected), "{scheme} {said:?}");
+    }
+}
+
+/// A run of the shear in `folder` over OPC UA, with what the scenario says of the link.
+fn over_opc_ua(folder: &Path, plc: &Plc, options: &str, password: &str) -> Said {
+    let scenario = folder.join("scenario.toml");
+    let text = std::fs::read_to_string(scenario_of_the_project()).unwrap();
+    let text = text.replace("system_words = true\n", &format!("system_words = true\nopcua = {{ {options} }}\n"));
+    std::fs::write(scenario, text).unwrap();
+    let words = ["run", ".", "--format", "json", "--until", "1s", "--gateway", &plc.gateway("opc.tcp://")];
+    onescan(folder).args(words).env(PASSWORD, password).output().unwrap().into()
+}
+
+fn scenario_of_the_project() -> std::path::PathBuf {
+    scenario("shear").join("scenario.toml")
+}
+
+fn assert_refused(said: &Said) {
+    assert_eq!(said.code, Some(3), "{said:?}");
+    assert!(said.err.contains("authentication refused"), "{said:?}");
+}
+
+fn assert_equal(said: &Said) {
+    assert_eq!(said.code, Some(0), "{said:?}");
+    let (expected, _) = run_shear(&["--until", "1s"]);
+    let report = serde_json::from_str(&said.out).expect("a report");
+    assert_eq!(digests(&[report]), digests(&expected));
+}
+
+#[test]
+fn who_is_not_known_is_not_let_in() {
+    let folder = copied_shear();
+    let plc =
+        Plc::start_with(folder.path(), &["--opcua", "127.0.0.1:0", "--opcua-user", "operator"], PASSWORD, "right");
+    assert_refused(&over_opc_ua(folder.path(), &plc, "", "right"));
+    assert_refused(&over_opc_ua(folder.path(), &plc, "user = \"operator\"", "wrong"));
+    assert_refused(&over_opc_ua(folder.path(), &plc, "user = \"somebody\"", "right"));
+    assert_equal(&over_opc_ua(folder.path(), &plc, "user = \"operator\"", "right"));
+}
+
+#[test]
+fn certificates_are_trusted_on_both_sides_or_there_is_no_session() {
+    let folder = copied_shear();
+    let pki = folder.path().join("server-pki");
+    let words = ["--opcua", "127.0.0.1:0", "--opcua-pki", pki.to_str().unwrap()];
+    let secured = "policy = \"Basic256Sha256\", pki = \"client-pki\"";
+    let trusting = format!("{secured}, trust_server = true");
+    let strict = Plc::start(folder.path(), &words);
+    // The client does not trust the server, then the server not the client; without security nobody is let in.
+    assert_refused(&over_opc_ua(folder.path(), &strict, secured, ""));
+    assert_refused(&over_opc_ua(folder.path(), &strict, &trusting, ""));
+    assert_refused(&over_opc_ua(folder.path(), &strict, "", ""));
+    drop(strict);
+    let open = Plc::start(folder.path(), &[&words[..], &["--opcua-trust"]].concat());
+    assert_equal(&over_opc_ua(folder.path(), &open, &trusting, ""));
+}
