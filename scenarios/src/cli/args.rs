@@ -385,7 +385,7 @@ pub struct PlcArgs {
     /// Where variables are served over OPC UA
     #[arg(long, value_name = "ADDRESS:PORT")]
     pub opcua: Option<SocketAddr>,
-    /// The only OPC UA user, whose password is in the environment variable ONESCAN_OPCUA_PASSWORD [default:
+    /// The only OPC UA user, whose password is in the environment variable `ONESCAN_OPCUA_PASSWORD` [default:
     /// anybody]
     #[arg(long, value_name = "NAME")]
     pub opcua_user: Option<String>,

@@ -182,13 +182,13 @@ fn access(user: Option<String>, pki: Option<PathBuf>, trust_clients: bool) -> Re
     const PASSWORD: &str = "ONESCAN_OPCUA_PASSWORD";
     let user = match user {
         None => None,
-        Some(user) => match std::env::var(PASSWORD) {
-            Ok(password) => Some((user, password)),
-            Err(_) => {
+        Some(user) => {
+            let Ok(password) = std::env::var(PASSWORD) else {
                 let help = Some(format!("set the environment variable {PASSWORD}"));
                 return Err(RunError::usage(format!("there is no password for user `{user}`"), help));
-            }
-        },
+            };
+            Some((user, password))
+        }
     };
     Ok(Access { user, pki, trust_clients })
 }

@@ -32,6 +32,10 @@ pub fn rerun(scenario: &Scenario, until: VirtualTime, inputs: Vec<OperatorInput>
                     |refusal: onescan_server::join::JoinRefusal| scenario.wrong_client(name, refusal.to_string(), None);
                 formation.join(client).map_err(refused)?;
             }
+            Member::Gateway(_) => {
+                let message = format!("client `{name}` is a real PLC and cannot be run again");
+                return Err(RunError::usage(message, None));
+            }
             Member::External(_) => {
                 let message = format!("client `{name}` is a program of its own and cannot be run again");
                 return Err(RunError::usage(message, None));
