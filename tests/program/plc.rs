@@ -149,7 +149,7 @@ fn the_switch_and_starts_are_obeyed() {
     assert!(plc.say("stop").starts_with("STOP, start 1, "));
     assert!(plc.say("cold").starts_with("RUN, start 2, "));
     assert!(plc.say("warm").starts_with("RUN, start 3, "));
-    assert_eq!(plc.say("strat"), "no command `strat`; did you mean `status`?");
+    assert_eq!(plc.say("statsu"), "no command `statsu`; did you mean `status`?");
     writeln!(plc.commands, "quit").unwrap();
     assert_eq!(plc.child.wait().unwrap().code(), Some(0));
 }

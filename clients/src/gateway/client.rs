@@ -30,6 +30,16 @@ impl Default for Patience {
 /// An order that is not answered is written again after this; a connection is tried again after this.
 const AGAIN: Duration = Duration::from_millis(200);
 
+/// The clocks of one order.
+struct Wait {
+    /// When its time is over.
+    deadline: Instant,
+    /// When it was written last.
+    written: Instant,
+    /// Since when there is no connection.
+    lost: Option<Instant>,
+}
+
 /// What is said here is for the user, also without `--verbose`.
 const NOTICE: &str = "onescan::notice";
 
@@ -63,68 +73,67 @@ impl Gateway {
 
     /// Does what the handshake asks for until it asks for nothing.
     fn drive(&mut self, patience: Duration) -> Result<(), GatewayFault> {
-        let begun = Instant::now();
-        let mut deadline = begun + patience;
-        let mut lost: Option<Instant> = None;
-        let mut written = begun;
+        let mut wait = Wait { deadline: Instant::now() + patience, written: Instant::now(), lost: None };
         loop {
             let result = match self.handshake.ask() {
                 Ask::Nothing => return Ok(()),
-                Ask::Connect => self.link.connect().map(|()| {
-                    self.handshake.connected();
-                    // What the outage took is not the PLC's to answer for.
-                    deadline += lost.take().map_or(Duration::ZERO, |since| since.elapsed());
-                }),
+                Ask::Connect => self.link.connect().map(|()| self.handshake.connected()),
                 Ask::Write(order) => {
                     self.exchange.put(&order, &mut self.to_plc);
                     self.link.write(&self.to_plc).map(|()| {
                         self.handshake.written();
-                        written = Instant::now();
+                        wait.written = Instant::now();
                     })
                 }
-                Ask::Read => self.read(deadline, &mut written)?,
+                Ask::Read => self.read(&mut wait)?,
             };
             self.tell();
             match result {
                 Ok(()) => {}
-                Err(fault) if fault.is_transient() => self.be_lost(&fault, &mut lost)?,
+                Err(fault) if fault.is_transient() => self.be_lost(&fault, &mut wait)?,
                 Err(fault) => return Err(fault.into()),
             }
-            if lost.is_none() && self.handshake.ask() != Ask::Nothing && Instant::now() > deadline {
+            if wait.lost.is_none() && self.handshake.ask() != Ask::Nothing && Instant::now() > wait.deadline {
                 return Err(self.handshake.late(patience));
             }
         }
     }
 
-    fn read(&mut self, deadline: Instant, written: &mut Instant) -> Result<Result<(), LinkFault>, GatewayFault> {
-        let rest = deadline.saturating_duration_since(Instant::now()).clamp(Duration::from_millis(1), AGAIN);
+    /// Reads once. A connection is back when something has been read over it, not before.
+    fn read(&mut self, wait: &mut Wait) -> Result<Result<(), LinkFault>, GatewayFault> {
+        let rest = wait.deadline.saturating_duration_since(Instant::now()).clamp(Duration::from_millis(1), AGAIN);
         match self.link.read(rest, &mut self.from_plc) {
-            Ok(true) => self.handshake.look(self.exchange.report(&self.from_plc))?,
+            Ok(true) => {
+                // What the outage took is not the PLC's to answer for.
+                wait.deadline += wait.lost.take().map_or(Duration::ZERO, |since| since.elapsed());
+                self.handshake.look(self.exchange.report(&self.from_plc))?;
+            }
+            Ok(false) if wait.lost.is_some_and(|since| since.elapsed() > self.patience.reconnect) => {
+                return Ok(Err(LinkFault::Lost("connected again, but the PLC says nothing".to_owned())));
+            }
             Ok(false) => {}
             Err(fault) => return Ok(Err(fault)),
         }
-        if written.elapsed() > AGAIN {
-            *written = Instant::now();
+        if wait.written.elapsed() > AGAIN {
+            wait.written = Instant::now();
             self.handshake.quiet();
         }
         Ok(Ok(()))
     }
 
-    /// Notes that the connection is gone; waits a little before it is tried again.
-    fn be_lost(&mut self, fault: &LinkFault, lost: &mut Option<Instant>) -> Result<(), GatewayFault> {
+    /// Notes that the connection is gone; waits a little before it is tried once more.
+    fn be_lost(&mut self, fault: &LinkFault, wait: &mut Wait) -> Result<(), GatewayFault> {
         let what = self.handshake.what();
-        if lost.is_none() {
-            tracing::info!(target: NOTICE, "{fault}, during {what}; connecting again");
-        }
-        let since = *lost.get_or_insert_with(Instant::now);
-        let is_again = self.handshake.ask() == Ask::Connect;
         self.handshake.lost();
+        let Some(since) = wait.lost else {
+            tracing::info!(target: NOTICE, "{fault}, during {what}; connecting again");
+            wait.lost = Some(Instant::now());
+            return Ok(());
+        };
         if since.elapsed() > self.patience.reconnect {
             return Err(GatewayFault::NotBack { what, after: self.patience.reconnect, reason: fault.to_string() });
         }
-        if is_again {
-            std::thread::sleep(AGAIN / 4);
-        }
+        std::thread::sleep(AGAIN / 4);
         Ok(())
     }
 

@@ -44,8 +44,9 @@ impl Client for FreeGateway {
     }
 
     fn setup(&mut self, outputs: &mut [u8]) -> Result<(), ClientFault> {
-        self.link.connect().map_err(|fault| ClientFault::new(fault.to_string()))?;
-        self.exchange(outputs)
+        // What the PLC shows already comes as a change, in the first turn.
+        outputs.fill(0);
+        self.link.connect().map_err(|fault| ClientFault::new(fault.to_string()))
     }
 
     fn turn(&mut self, _t_v: VirtualTime, inputs: &[u8], outputs: &mut [u8]) -> Result<Wake, ClientFault> {

@@ -190,6 +190,7 @@ impl Handshake {
     /// Begins a session at `t_v`; done when the PLC has joined it.
     pub fn join(&mut self, t_v: VirtualTime) {
         self.goal = Goal::Join(t_v);
+        self.order = Order::default();
         self.boots = None;
         self.survey();
     }
@@ -220,9 +221,6 @@ impl Handshake {
 
     /// There is a connection, and the PLC has all that is mapped.
     pub fn connected(&mut self) {
-        if std::mem::take(&mut self.is_lost) {
-            self.notice = Some(Notice::Back);
-        }
         self.phase = Phase::Surveying;
     }
 
@@ -257,6 +255,9 @@ impl Handshake {
     /// The PLC cannot go on in this session.
     pub fn look(&mut self, report: Report) -> Result<(), GatewayFault> {
         self.last = report;
+        if std::mem::take(&mut self.is_lost) {
+            self.notice = Some(Notice::Back);
+        }
         if let Answer::Other(word) = report.answer {
             return Err(self.nonsense(format!("SDSP_Answer is {word}")));
         }
@@ -298,6 +299,14 @@ impl Handshake {
     fn begin(&mut self, t_v: VirtualTime, report: Report) -> Result<(), GatewayFault> {
         if report.answer == Answer::NotSimulated {
             return Err(GatewayFault::NotSimulated);
+        }
+        // The order was written before the connection broke: it has been taken, or it is written again.
+        if self.order.session != 0 && report.joined == self.order.session {
+            return self.look_for_join(t_v, report);
+        }
+        if self.order.session != 0 && report.joined == 0 && report.answer != Answer::MustBeStarted {
+            self.phase = Phase::Writing;
+            return Ok(());
         }
         if report.joined != 0 || report.answer == Answer::MustBeStarted {
             self.want_start(t_v, report);

@@ -28,12 +28,12 @@ fn exchange(ports: &[(&str, ElementaryType)], addresses: &[(&str, &str)]) -> Exc
 fn what_is_wrong_with_a_map_is_told() {
     use ElementaryType::{Bool, Real, String};
     let told = |ty, address: &str| {
-        let exchange = exchange(&[("a", ty), ("b", ty)], &[("a", address), ("b", "hr:7")]);
+        let exchange = exchange(&[("a", ty), ("b", ty)], &[("a", address), ("b", "hr:50")]);
         RegisterMap::new(&Options::default(), &exchange).map_or_else(|f| f.to_string(), |_| "fine".to_owned())
     };
     let all = [
         told(Real, "hr:100"),
-        told(Real, "hr:6"),
+        told(Real, "hr:49"),
         told(Real, "coil:1"),
         told(Real, "hr:1.3"),
         told(Real, "ir:1"),

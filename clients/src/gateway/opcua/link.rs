@@ -129,8 +129,9 @@ impl Drop for OpcUaLink {
     fn drop(&mut self) {
         if let Some(connection) = self.connection.take() {
             // A server that is gone needs no farewell.
-            let farewell = tokio::time::timeout(Duration::from_secs(1), connection.session.disconnect());
-            let _ = self.runtime.block_on(farewell);
+            let _ = self.runtime.block_on(async {
+                tokio::time::timeout(Duration::from_secs(1), connection.session.disconnect()).await
+            });
         }
     }
 }
