@@ -19,9 +19,9 @@
 //!   reads a wall clock, and what a step computes does not depend on it.
 //! - Bad input is an error with a place, never a panic.
 
-pub mod gateway;
 pub mod array;
 pub mod forced;
+pub mod gateway;
 pub mod operator;
 pub mod plant;
 pub mod replay;

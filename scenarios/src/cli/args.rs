@@ -14,8 +14,8 @@ use onescan_server::time::{TimeSpan, VirtualTime};
 
 use super::test_args::{ReviewArgs, TestArgs, WorkerArgs};
 use crate::check::CheckFormat;
-use crate::plc::Cycle;
 use crate::new::Template;
+use crate::plc::Cycle;
 use crate::run::coverage::CoverageFormat;
 use crate::run::{Format, Mode, Transport};
 use crate::scenario::watch::WatchRequest;

@@ -11,7 +11,8 @@ use onescan_server::transport::tcp::operator::operate;
 use onescan_server::transport::tcp::participant::take_part;
 
 use super::args::{
-    BrowseArgs, CheckArgs, Command, CompareArgs, ControlArgs, ExplainArgs, InstrumentArgs, JoinArgs, PlcArgs, RecordAlso, RunArgs,
+    BrowseArgs, CheckArgs, Command, CompareArgs, ControlArgs, ExplainArgs, InstrumentArgs, JoinArgs, PlcArgs,
+    RecordAlso, RunArgs,
 };
 use crate::browse::BrowseConfig;
 use crate::check::{self, CheckConfig, Warnings};
@@ -84,7 +85,12 @@ fn run(args: RunArgs) -> Result<ExitCode, RunError> {
 fn compare(args: CompareArgs) -> Result<ExitCode, RunError> {
     let interrupt = Interrupt::new();
     interrupt.on_signals();
-    let run = RunConfig { until: args.until, runs: args.runs, format: Format::Human, ..RunConfig::headless(args.scenario, None) };
+    let run = RunConfig {
+        until: args.until,
+        runs: args.runs,
+        format: Format::Human,
+        ..RunConfig::headless(args.scenario, None)
+    };
     let config = CompareConfig { run, plot: args.plot, format: args.format.into() };
     crate::run::compare::compare(&config, &interrupt, &mut std::io::stdout().lock())?;
     Ok(ExitCode::Ok)

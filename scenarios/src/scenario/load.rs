@@ -80,7 +80,19 @@ impl Scenario {
         let expectations =
             Expectations::bind(&file, &text).map_err(|found| wrong(found.message, Some(found.place), found.help))?;
         let name = name_of(&path);
-        Ok(Self { name, folder, path, text, file, plan, expectations, applied: None, coverage: None, gateways: BTreeMap::new(), watched: None })
+        Ok(Self {
+            name,
+            folder,
+            path,
+            text,
+            file,
+            plan,
+            expectations,
+            applied: None,
+            coverage: None,
+            gateways: BTreeMap::new(),
+            watched: None,
+        })
     }
 
     /// The scenario in `path` as the case called `name` wants it; as it is without a name.
