@@ -112,19 +112,29 @@ fn who_is_not_known_is_not_let_in() {
     assert_equal(&over_opc_ua(folder.path(), &plc, "user = \"operator\"", "right"));
 }
 
+/// What an engineer does with a certificate that was refused and is known.
+fn trust_what_was_rejected(pki: &Path) {
+    let rejected: Vec<_> = std::fs::read_dir(pki.join("rejected")).unwrap().map(|entry| entry.unwrap()).collect();
+    assert!(!rejected.is_empty(), "nothing was rejected in {}", pki.display());
+    for entry in rejected {
+        std::fs::rename(entry.path(), pki.join("trusted").join(entry.file_name())).unwrap();
+    }
+}
+
 #[test]
 fn certificates_are_trusted_on_both_sides_or_there_is_no_session() {
     let folder = copied_shear();
-    let pki = folder.path().join("server-pki");
-    let words = ["--opcua", "127.0.0.1:0", "--opcua-pki", pki.to_str().unwrap()];
+    let [server, client] = ["server-pki", "client-pki"].map(|name| folder.path().join(name));
+    let plc = Plc::start(folder.path(), &["--opcua", "127.0.0.1:0", "--opcua-pki", server.to_str().unwrap()]);
     let secured = "policy = \"Basic256Sha256\", pki = \"client-pki\"";
-    let trusting = format!("{secured}, trust_server = true");
-    let strict = Plc::start(folder.path(), &words);
-    // The client does not trust the server, then the server not the client; without security nobody is let in.
-    assert_refused(&over_opc_ua(folder.path(), &strict, secured, ""));
-    assert_refused(&over_opc_ua(folder.path(), &strict, &trusting, ""));
-    assert_refused(&over_opc_ua(folder.path(), &strict, "", ""));
-    drop(strict);
-    let open = Plc::start(folder.path(), &[&words[..], &["--opcua-trust"]].concat());
-    assert_equal(&over_opc_ua(folder.path(), &open, &trusting, ""));
+    // Without security nobody is let in.
+    let said = over_opc_ua(folder.path(), &plc, "", "");
+    assert_refused(&said);
+    assert!(said.err.contains("no endpoint with policy None"), "{said:?}");
+    // The client does not trust the server, then the server not the client.
+    assert_refused(&over_opc_ua(folder.path(), &plc, secured, ""));
+    trust_what_was_rejected(&client);
+    assert_refused(&over_opc_ua(folder.path(), &plc, secured, ""));
+    trust_what_was_rejected(&server);
+    assert_equal(&over_opc_ua(folder.path(), &plc, secured, ""));
 }

@@ -47,7 +47,14 @@ impl Connection {
             let matched = client.connect_to_matching_endpoint(endpoint, identity);
             let matched = tokio::time::timeout(TIMEOUT, matched).await;
             let matched = matched.map_err(|_| unreachable(url, format!("no answer within {TIMEOUT:?}")))?;
-            let (session, event_loop) = matched.map_err(|error| of_error(url, &error))?;
+            let (session, event_loop) = matched.map_err(|error| {
+                // The server has said which endpoints it has.
+                if error.status().sub_code() == StatusCode::BadTcpEndpointUrlInvalid.sub_code() {
+                    let reason = format!("it has no endpoint with policy {policy} and mode {mode}");
+                    return LinkFault::Refused { url: url.to_owned(), reason };
+                }
+                of_error(url, &error)
+            })?;
             let mut task = event_loop.spawn();
             let connected = tokio::select! {
                 connected = tokio::time::timeout(TIMEOUT, session.wait_for_connection()) => match connected {
