@@ -24,6 +24,7 @@ use crate::diagnostic::Diagnostics;
 use crate::input::Input;
 use crate::input::kind::SourceKind;
 use crate::ir::{Configuration, Retention};
+use crate::syntax::Span;
 use crate::syntax::{FileId, SourceMap};
 
 pub(crate) use front::Front;
@@ -181,6 +182,13 @@ impl Application {
     /// Position of what a task can run by its name.
     pub(crate) fn entry_index(&self, name: &str) -> Option<usize> {
         self.entry_names().position(|entry| entry.eq_ignore_ascii_case(name))
+    }
+
+    /// The part of a chart that a place is in.
+    pub(crate) fn chart_part(&self, at: Span) -> Option<&str> {
+        let holds = |span: &Span| span.file == at.file && (span.start..=span.end).contains(&at.start);
+        let parts = self.inner.checked.chart_parts.iter();
+        parts.filter(|(span, _)| holds(span)).min_by_key(|(span, _)| span.len()).map(|(_, name)| name.as_str())
     }
 
     /// The machine code, made once by `make`.

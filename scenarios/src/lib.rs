@@ -9,6 +9,7 @@
 //! | [`run`] | runs of a scenario: in lockstep or not, recorded, reported |
 //! | [`regress`] | all cases run, compared with reviewed snapshots, reported |
 //! | [`review`] | snapshots looked at, accepted or rejected |
+//! | [`export`], [`diff`], [`bisect`] | recordings in other forms; where two part and why; since which commit |
 //! | [`new`] | scenarios to begin with |
 //! | [`check`] | PLC sources checked without being run |
 //! | [`instrument`] | PLC projects made to run in lockstep, and back |
@@ -23,10 +24,13 @@
 //! Invariants. This is the only crate that reads scenario files, starts processes and prints. What
 //! a session computes is decided in the crates below; nothing here can change a digest.
 
+pub mod bisect;
 pub mod browse;
 pub mod check;
 pub mod cli;
+pub mod diff;
 pub mod expect;
+pub mod export;
 pub mod freewheel;
 pub mod instrument;
 pub mod new;

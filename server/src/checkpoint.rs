@@ -9,7 +9,7 @@ use crate::session::SessionState;
 use crate::signal::ClientName;
 use crate::time::VirtualTime;
 
-const MAGIC: &[u8; 16] = b"onescan state 1\n";
+const MAGIC: &[u8; 16] = b"onescan state 2\n";
 const CHECK_BYTES: usize = 32;
 
 /// The state of a session and of all its clients.

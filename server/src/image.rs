@@ -3,6 +3,8 @@
 //! The layout follows from the signals alone: falling alignment, then name, no padding. Outputs are
 //! staged as they come and become visible together, at the commit.
 
+use std::collections::BTreeMap;
+
 use crate::signal::{BadValue, ElementaryType, PortLayout, SignalDecl, SignalId};
 
 /// Where each signal lies in the image.
@@ -102,12 +104,14 @@ impl PortMap {
 pub struct Image {
     committed: Vec<u8>,
     staged: Vec<u8>,
+    /// What stands there whatever is staged, by its first byte.
+    forces: BTreeMap<usize, Vec<u8>>,
 }
 
 impl Image {
     /// All zero.
     pub fn new(layout: &ImageLayout) -> Self {
-        Self { committed: vec![0; layout.size()], staged: vec![0; layout.size()] }
+        Self { committed: vec![0; layout.size()], staged: vec![0; layout.size()], forces: BTreeMap::new() }
     }
 
     /// The values that clients see.
@@ -144,11 +148,37 @@ impl Image {
 
     /// Makes all staged values visible at once.
     pub fn commit(&mut self) {
+        for (offset, bytes) in &self.forces {
+            self.staged[*offset..*offset + bytes.len()].copy_from_slice(bytes);
+        }
         self.committed.copy_from_slice(&self.staged);
     }
 
-    /// Back to all zero.
+    /// Makes a value visible now, until it is staged again; `bytes` has the signal's size.
+    pub(crate) fn write(&mut self, offset: usize, bytes: &[u8]) {
+        self.committed[offset..offset + bytes.len()].copy_from_slice(bytes);
+        self.staged[offset..offset + bytes.len()].copy_from_slice(bytes);
+    }
+
+    /// Makes a value visible now and at every commit.
+    pub(crate) fn force(&mut self, offset: usize, bytes: Vec<u8>) {
+        self.write(offset, &bytes);
+        self.forces.insert(offset, bytes);
+    }
+
+    /// Lets staged values become visible again; false if there was no force.
+    pub(crate) fn release(&mut self, offset: usize) -> bool {
+        self.forces.remove(&offset).is_some()
+    }
+
+    /// What is forced, by its first byte.
+    pub(crate) fn forces(&self) -> &BTreeMap<usize, Vec<u8>> {
+        &self.forces
+    }
+
+    /// Back to all zero; nothing is forced.
     pub fn clear(&mut self) {
+        self.forces.clear();
         self.committed.fill(0);
         self.staged.fill(0);
     }

@@ -3,11 +3,13 @@
 //! All control flow of a running session is here; clients, image and transports only do as told.
 //! A step of clients in this process is plain function calls, without a channel or an allocation.
 
+use std::collections::VecDeque;
+
 use crate::checkpoint::{Checkpoint, CheckpointError};
 use crate::client::{Client, ClientId, StateError, Wake};
 use crate::end::{FailureCause, SessionEnd, Violation};
 use crate::mailbox::Mailbox;
-use crate::operation::OperatorInput;
+use crate::operation::{Operation, OperationError, OperatorInput};
 use crate::pacing::{Pace, Pacer};
 use crate::record::{Digest, DigestChain, Observer, RecordError};
 use crate::session::{Control, Progress, Session, Turn};
@@ -71,6 +73,10 @@ pub struct Lockstep {
     /// Observers have yet to be shown the image of a checkpoint that was taken up.
     begin_observers: bool,
     closed: bool,
+    /// How often the session has begun anew.
+    resets: u64,
+    /// Inputs of operators that are yet to be replayed.
+    replayed: VecDeque<OperatorInput>,
 }
 
 /// What came of a session.
@@ -117,6 +123,8 @@ impl Lockstep {
             pacer: Pacer::new(Pace::Max),
             begin_observers: false,
             closed: false,
+            resets: 0,
+            replayed: VecDeque::new(),
         }
     }
 
@@ -133,6 +141,11 @@ impl Lockstep {
     /// Takes wishes from `mailbox`.
     pub fn set_mailbox(&mut self, mailbox: Mailbox) {
         self.mailbox = mailbox;
+    }
+
+    /// Repeats what operators once did, each input at its boundary.
+    pub fn replay(&mut self, inputs: Vec<OperatorInput>) {
+        self.replayed = inputs.into();
     }
 
     /// Ends the session as completed at `until`.
@@ -334,6 +347,9 @@ impl Lockstep {
         if self.session.end().is_some() {
             return Ok(());
         }
+        if self.digest.is_some() {
+            self.resets += 1;
+        }
         self.digest = Some(DigestChain::begin(&self.session));
         self.show(Observer::begin)
     }
@@ -360,19 +376,47 @@ impl Lockstep {
     }
 
     fn take_wishes(&mut self) -> Result<(), RecordError> {
-        while let Some(request) = self.mailbox.take() {
-            if let Some(control) = request.control {
-                let (step, t_v) = self.committed();
-                let input = OperatorInput { step, t_v, operation: control.into() };
-                self.observers.iter_mut().try_for_each(|observer| observer.operated(&input))?;
-                self.session.control(control);
+        while let Some(operation) = self.next_replayed() {
+            // What was recorded could be done; a file by hand may ask for what cannot.
+            if let Err(error) = self.operate(operation)? {
+                tracing::warn!(%error, "an operator's input is left out");
             }
+        }
+        while let Some(request) = self.mailbox.take() {
+            let done = request.operation.map_or(Ok(Ok(())), |operation| self.operate(operation))?;
             if let Some(reply) = request.reply {
                 // Who has gone meanwhile does not need an answer.
-                let _ = reply.send(self.status());
+                let _ = reply.send(done.map(|()| self.status()));
             }
         }
         Ok(())
+    }
+
+    /// The next of the inputs replayed, if this is its boundary. Those that only hold time are left
+    /// out: they change nothing, and nobody might let it go on.
+    fn next_replayed(&mut self) -> Option<Operation> {
+        let here = (self.resets, self.session.cycle().steps());
+        loop {
+            let next = self.replayed.front()?;
+            if (next.resets, next.step) > here {
+                return None;
+            }
+            let next = self.replayed.pop_front()?;
+            if (next.resets, next.step) == here && next.operation.is_lasting() {
+                return Some(next.operation);
+            }
+        }
+    }
+
+    /// Does what an operator asks for, and tells observers if it could be done.
+    fn operate(&mut self, operation: Operation) -> Result<Result<(), OperationError>, RecordError> {
+        let done = self.session.operate(&operation);
+        if done.is_ok() {
+            let (step, t_v) = self.committed();
+            let input = OperatorInput { resets: self.resets, step, t_v, operation };
+            self.observers.iter_mut().try_for_each(|observer| observer.operated(&input))?;
+        }
+        Ok(done)
     }
 
     fn status(&self) -> Status {

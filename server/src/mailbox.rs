@@ -1,8 +1,8 @@
 //! Where wishes of operators wait for the next step boundary.
 //!
 //! The session's thread looks at one atomic a step; only when somebody left something does it lock.
-//! What is asked never reaches a client in the middle of a step, so it can delay a session or end
-//! it, but not change it.
+//! What is asked never reaches a client in the middle of a step; with the step at which it is taken it
+//! is data, which can be replayed.
 
 use std::collections::VecDeque;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -11,6 +11,7 @@ use std::time::Duration;
 
 use tokio::sync::oneshot;
 
+use crate::operation::{Operation, OperationError};
 use crate::session::Control;
 use crate::wire::message::Status;
 
@@ -18,9 +19,9 @@ use crate::wire::message::Status;
 #[derive(Debug)]
 pub struct Request {
     /// What is asked; `None` asks only for the status.
-    pub control: Option<Control>,
-    /// Where the status goes.
-    pub reply: Option<oneshot::Sender<Status>>,
+    pub operation: Option<Operation>,
+    /// Where the status goes, or why what is asked cannot be done.
+    pub reply: Option<oneshot::Sender<Result<Status, OperationError>>>,
 }
 
 #[derive(Debug, Default)]
@@ -51,7 +52,7 @@ impl Mailbox {
 
     /// Leaves a wish nobody wants an answer to.
     pub fn control(&self, control: Control) {
-        self.post(Request { control: Some(control), reply: None });
+        self.post(Request { operation: Some(control.into()), reply: None });
     }
 
     /// The oldest wish, if any.
@@ -88,8 +89,8 @@ mod tests {
         mailbox.control(Control::Pause);
         mailbox.clone().control(Control::Step);
         mailbox.wait(Duration::from_mins(1));
-        assert_eq!(mailbox.take().and_then(|r| r.control), Some(Control::Pause));
-        assert_eq!(mailbox.take().and_then(|r| r.control), Some(Control::Step));
+        assert_eq!(mailbox.take().and_then(|r| r.operation), Some(Operation::Pause));
+        assert_eq!(mailbox.take().and_then(|r| r.operation), Some(Operation::Step));
         assert!(mailbox.take().is_none());
     }
 }

@@ -1,9 +1,11 @@
 //! What operators do to a session, as data: each at a step boundary, in an order.
 
 use serde::{Deserialize, Serialize};
+use thiserror::Error;
 
 use crate::session::Control;
 use crate::signal::SignalName;
+use crate::signal::value::BadText;
 use crate::time::{StepCount, VirtualTime};
 
 /// What an operator does. Values are text as in a recording: `1`, `-3.5`; `TRUE` and `FALSE` too.
@@ -67,9 +69,43 @@ impl From<Control> for Operation {
     }
 }
 
+impl Operation {
+    /// True if it can change what the session computes; the others only change when.
+    pub fn is_lasting(&self) -> bool {
+        !matches!(self, Self::Pause | Self::Resume | Self::Step)
+    }
+}
+
+/// Why an operation cannot be done.
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
+pub enum OperationError {
+    /// No such signal.
+    #[error("the session has no signal `{signal}`{}", nearest.as_ref().map(|n| format!("; {n}")).unwrap_or_default())]
+    Unknown {
+        /// The name.
+        signal: SignalName,
+        /// The one that may have been meant.
+        nearest: Option<String>,
+    },
+    /// No such value.
+    #[error("signal `{signal}`: {source}")]
+    Value {
+        /// The signal.
+        signal: SignalName,
+        /// Why.
+        source: BadText,
+    },
+    /// Nothing to release.
+    #[error("signal `{0}` is not forced")]
+    NotForced(SignalName),
+}
+
 /// An operation and the boundary at which it was taken: after `step`, before the next.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct OperatorInput {
+    /// How often the session had begun anew before it.
+    #[serde(default)]
+    pub resets: u64,
     /// The last step committed before it.
     pub step: StepCount,
     /// Its virtual time.

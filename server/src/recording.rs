@@ -9,6 +9,7 @@ use std::sync::Arc;
 
 use thiserror::Error;
 
+use crate::operation::OperatorInput;
 use crate::record::block::Block;
 use crate::record::column::Column;
 use crate::record::event::{self, Event};
@@ -170,6 +171,14 @@ impl Recording {
     pub fn events(&self) -> Result<Vec<Event>, RecordingError> {
         let path = self.folder.join(EVENTS);
         event::read(&path).map_err(|source| RecordingError::Damaged { path, source })
+    }
+
+    /// What operators did, to be replayed.
+    ///
+    /// # Errors
+    /// The file of events cannot be read.
+    pub fn operator_inputs(&self) -> Result<Vec<OperatorInput>, RecordingError> {
+        self.events().map(|events| event::operator_inputs(&events))
     }
 
     /// The first and the last step recorded; nothing if there is none.

@@ -15,6 +15,7 @@
 //! There is no other way to change it, so what holds for every order of these calls holds for every
 //! transport. `tests/proofs` explores those orders.
 
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
@@ -24,8 +25,9 @@ use crate::cycle::Cycle;
 use crate::end::{Failure, FailureCause, SessionEnd, Violation};
 use crate::image::{Image, ImageLayout};
 use crate::join::{JoinRefusal, Membership, admit};
+use crate::operation::{Operation, OperationError};
 use crate::plan::SessionPlan;
-use crate::signal::{ClientName, SignalId, SignalName, nearest};
+use crate::signal::{ClientName, SignalId, SignalName, did_you_mean, nearest};
 use crate::state::{ClientState, ServerState};
 use crate::time::{StepCount, TimeSpan, VirtualTime};
 
@@ -227,6 +229,55 @@ impl Session {
             Control::Step => self.mode = Mode::OneStep,
             Control::Reset => self.reset = true,
         }
+    }
+
+    /// Does what an operator asks for, at a step boundary.
+    ///
+    /// # Errors
+    /// A signal that there is not, a value that it cannot have; nothing has changed then.
+    pub fn operate(&mut self, operation: &Operation) -> Result<(), OperationError> {
+        match operation {
+            Operation::Write { signal, value } => {
+                let (offset, bytes) = self.valued(signal, value)?;
+                self.image.write(offset, &bytes);
+            }
+            Operation::Force { signal, value } => {
+                let (offset, bytes) = self.valued(signal, value)?;
+                self.image.force(offset, bytes);
+            }
+            Operation::Release { signal } => {
+                if !self.image.release(self.layout.offset(self.known(signal)?)) {
+                    return Err(OperationError::NotForced(signal.clone()));
+                }
+            }
+            Operation::Stop | Operation::Pause | Operation::Resume | Operation::Step | Operation::Reset => {
+                if let Some(control) = operation.control() {
+                    self.control(control);
+                }
+            }
+        }
+        Ok(())
+    }
+
+    fn known(&self, signal: &SignalName) -> Result<SignalId, OperationError> {
+        self.signal_id(signal.as_str()).ok_or_else(|| {
+            let names = self.plan.signals().iter().map(|known| known.name.as_str());
+            OperationError::Unknown { signal: signal.clone(), nearest: did_you_mean(signal.as_str(), names) }
+        })
+    }
+
+    /// Where a signal lies, and the bytes of a value.
+    fn valued(&self, signal: &SignalName, value: &str) -> Result<(usize, Vec<u8>), OperationError> {
+        let id = self.known(signal)?;
+        let bytes = self.layout.ty(id).parse_text(value);
+        let bytes = bytes.map_err(|source| OperationError::Value { signal: signal.clone(), source })?;
+        Ok((self.layout.offset(id), bytes))
+    }
+
+    /// True if a signal lies there.
+    fn is_signal(&self, offset: u64, size: usize) -> bool {
+        let here = |id: SignalId| (self.layout.offset(id) as u64, self.layout.ty(id).size()) == (offset, size);
+        self.layout.signals().any(here)
     }
 
     /// The client is initialised and `outputs` are its initial values.
@@ -436,6 +487,7 @@ impl Session {
             t_v: self.cycle.t_v(),
             wakes: self.clients().map(|client| self.cycle.wake(client)).collect(),
             image: self.image.committed().to_vec(),
+            forces: self.image.forces().iter().map(|(offset, bytes)| (*offset as u64, bytes.clone())).collect(),
         })
     }
 
@@ -444,6 +496,7 @@ impl Session {
     pub fn restore(&mut self, state: &SessionState) -> bool {
         let fits = state.wakes.len() == self.members.len()
             && state.image.len() == self.layout.size()
+            && state.forces.iter().all(|(offset, bytes)| self.is_signal(*offset, bytes.len()))
             && state.t_v.is_multiple_of(self.plan.step())
             && state.wakes.iter().all(|wake| wake.is_multiple_of(self.plan.step()) && *wake > state.t_v)
             && self.cycle.server() == ServerState::Start
@@ -451,6 +504,9 @@ impl Session {
         if fits {
             self.cycle.resume_at(state.steps, state.t_v, &state.wakes);
             self.image.load(&state.image);
+            for (offset, bytes) in &state.forces {
+                self.image.force(*offset as usize, bytes.clone());
+            }
         }
         fits
     }
@@ -476,6 +532,7 @@ pub struct SessionState {
     t_v: VirtualTime,
     wakes: Vec<VirtualTime>,
     image: Vec<u8>,
+    forces: BTreeMap<u64, Vec<u8>>,
 }
 
 impl SessionState {

@@ -1,6 +1,6 @@
 //! `cases.toml`: one scenario tried in many ways.
 
-use crate::typed::{Said, copied_shear, digests, typed};
+use crate::typed::{Said, copied_shear, digests, edit, typed};
 
 /// The shear with these cases and no other.
 fn shear_with(cases: &str) -> tempfile::TempDir {
@@ -12,6 +12,17 @@ fn shear_with(cases: &str) -> tempfile::TempDir {
 fn run_case(folder: &tempfile::TempDir, name: &str, more: &[&str]) -> Said {
     let words = [&["run", ".", "--case", name, "--until", "2s", "--format", "json"], more].concat();
     typed(folder.path(), &words)
+}
+
+#[test]
+fn a_constant_of_the_plc_is_set_in_its_place() {
+    let folder =
+        shear_with("[[case]]\nname = \"low\"\nset.plc.Shear.LowerLimit = -0.08\nset.plc.Shear.Rest = \"T#50ms\"\n");
+    let set = digest(&run_case(&folder, "low", &[]));
+    edit(folder.path(), "plc/shear.st", "LREAL := -0.10", "LREAL := -0.08");
+    edit(folder.path(), "plc/shear.st", "TIME := T#100ms", "TIME := T#50ms");
+    let written = typed(folder.path(), &["run", ".", "--until", "2s", "--format", "json"]);
+    assert_eq!(set, digest(&written), "as if it had been written so");
 }
 
 fn digest(said: &Said) -> String {
@@ -128,7 +139,8 @@ fn what_is_wrong_with_a_case_is_told_with_its_place() {
         "set.plant.actuator_1.speed_m_s = -1.0",
         "set.plc.Shear.Storkes = 1",
         "set.plc.Shear.Strokes = \"many\"",
-        "set.plc.Shear.LowerLimit = -0.2",
+        "set.plc.Shear.LowerLimit = \"low\"",
+        "set.plc.Shear.Dwell.PT = 5",
         "force = [{ signal = \"Sensor1\", value = true }]",
         "force = [{ signal = \"Sensor_1\", value = 3 }]",
         "force = [{ signal = \"Sensor_1\", value = true, from = \"2s\", until = \"1s\" }]",
@@ -147,7 +159,8 @@ fn an_unknown_case_is_told_with_the_nearest() {
     let folder = shear_with(CASES);
     let said = typed(folder.path(), &["run", ".", "--case", "slwo"]);
     assert_eq!(said.code, Some(2), "{said:?}");
-    insta::assert_snapshot!(said.err);
+    let own = folder.path().file_name().expect("a name").to_string_lossy().into_owned();
+    insta::assert_snapshot!(said.err.replace(&own, "shear"));
 }
 
 #[test]

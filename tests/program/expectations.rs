@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 use std::io::Write as _;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::process::{Command, Stdio};
 
 use onescan::expect::{Expectation, KnownSignal, Trace};
@@ -10,6 +10,7 @@ use onescan_server::signal::ElementaryType;
 use serde_json::json;
 
 use crate::typed::{copied_shear, edit, run_shear, typed};
+use crate::venv::python;
 
 const STEP_NS: u64 = 100_000_000;
 
@@ -65,28 +66,16 @@ impl Numbers {
     }
 }
 
-/// A Python environment with the peer in it, made once.
-fn peer() -> PathBuf {
-    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("rtamt-0.4.10");
-    let python = folder.join("bin/python");
-    let ready = folder.join("ready");
-    if !ready.exists() {
-        let run = |program: &Path, words: &[&str]| {
-            let output = Command::new(program).args(words).output().expect("Python is on the machine");
-            assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
-        };
-        run(Path::new("python3"), &["-m", "venv", "--clear", &folder.to_string_lossy()]);
-        run(&python, &["-m", "pip", "install", "--quiet", "rtamt==0.4.10"]);
-        std::fs::write(ready, "").expect("the folder is there");
-    }
-    python
-}
-
 /// What the peer says to each case.
 fn ask(cases: &str) -> Vec<f64> {
     let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("peers/stl_oracle.py");
     let pipes = || Stdio::piped();
-    let mut child = Command::new(peer()).arg(script).stdin(pipes()).stdout(pipes()).spawn().expect("the peer starts");
+    let mut child = Command::new(python("rtamt-0.4.10", &["rtamt==0.4.10"]))
+        .arg(script)
+        .stdin(pipes())
+        .stdout(pipes())
+        .spawn()
+        .expect("the peer starts");
     let mut input = child.stdin.take().expect("it has an input");
     let text = cases.to_owned();
     let writer = std::thread::spawn(move || input.write_all(text.as_bytes()));

@@ -58,7 +58,8 @@ fn a_plant_in_python_is_as_good_as_its_recording() {
         plant.display()
     );
     edit(shear.path(), "scenario.toml", "kind = \"plant\"\nscene = \"plant.toml\"", &external);
-    let words = ["run", ".", "--until", "3s", "--runs", "2", "--record", "record", "--format", "json"];
+    let words =
+        ["run", ".", "--until", "3s", "--runs", "2", "--record", "record", "--record-also", "csv", "--format", "json"];
     let mut command = onescan(shear.path());
     let output = command.args(words).env("PYTHONPATH", package().join("src")).output().expect("the program starts");
     let said = String::from_utf8(output.stdout).expect("text");

@@ -8,7 +8,7 @@ fn told(words: &[&str]) -> String {
     let said = typed(&scenario("shear"), &all);
     // What a run takes of the wall's clock, and its digest, are no subject here.
     let steady = said.out.lines().filter(|line| line.starts_with("  ") && !line.starts_with("  digest"));
-    let steady: String = steady.map(|line| format!("{line}\n")).collect();
+    let steady = steady.fold(String::new(), |text, line| text + line + "\n");
     format!("onescan run . {}\n{steady}{}exit code {}\n", words.join(" "), said.err, said.code.unwrap_or(-1))
 }
 

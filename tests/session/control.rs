@@ -29,7 +29,7 @@ fn operated(operator: impl FnOnce(&dyn Fn(Option<Control>) -> onescan_server::wi
         lockstep.set_mailbox(mailbox);
         run(lockstep, at_ms(500))
     });
-    operator(&|control| operate(address, control, PATIENCE).expect("the session answers"));
+    operator(&|control| operate(address, control.map(Into::into), PATIENCE).expect("the session answers"));
     session.join().expect("no panic")
 }
 

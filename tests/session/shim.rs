@@ -1,7 +1,7 @@
 //! The shear with an instrumented PLC: a gateway in between, and the same digest.
 
 use std::collections::BTreeMap;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use onescan::scenario::Scenario;
 use onescan::scenario::compose::Member;
@@ -109,8 +109,8 @@ impl Client for Gateway {
     }
 }
 
-fn shear() -> Scenario {
-    Scenario::load(&Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenarios/shear")).expect("it is a scenario")
+fn shear_folder() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenarios/shear")
 }
 
 fn member(scenario: &Scenario, name: &str) -> Box<dyn Client> {
@@ -120,7 +120,7 @@ fn member(scenario: &Scenario, name: &str) -> Box<dyn Client> {
     }
 }
 
-fn gateway(signals: &[SignalDecl], request: JoinRequest) -> Gateway {
+fn gateway(plc_folder: &Path, signals: &[SignalDecl], request: JoinRequest) -> Gateway {
     let task = |name: &str, interval_ms: u64, priority: u32, programs: &[&str]| Task {
         name: name.to_owned(),
         interval_ns: interval_ms * MS,
@@ -130,8 +130,7 @@ fn gateway(signals: &[SignalDecl], request: JoinRequest) -> Gateway {
     };
     let tasks = vec![task("main", 10, 0, &["Shear", "Alignment"])];
     let sources = ["shear.st", "alignment.st"].map(|name| {
-        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenarios/shear/plc").join(name);
-        Input::from_text(name, SourceKind::Text, std::fs::read_to_string(path).expect("a source"))
+        Input::from_text(name, SourceKind::Text, std::fs::read_to_string(plc_folder.join(name)).expect("a source"))
     });
     let project = instrument(&sources, &Options { tasks: Some(tasks), ..Options::default() }).expect("it is right");
     let files = project.files.into_iter().map(|file| (file.name, file.text.expect("a text")));
@@ -143,14 +142,35 @@ fn gateway(signals: &[SignalDecl], request: JoinRequest) -> Gateway {
     Gateway { request, bindings, plc, own_ns: 0, session: 0, grant: 0 }
 }
 
-#[test]
-fn the_instrumented_shear_has_the_digest_of_the_shear() {
-    let scenario = shear();
+/// The digest of the scenario in a folder with its own PLC, and with the instrumented one.
+fn digests(folder: &Path) -> [String; 2] {
+    let scenario = Scenario::load(folder).expect("it is a scenario");
     let digest = |plc: Box<dyn Client>| {
         let lockstep = in_process(scenario.plan().clone(), [member(&scenario, "plant"), plc]);
-        run(lockstep, at_ms(3_000)).digest.expect("it ran")
+        run(lockstep, at_ms(3_000)).digest.expect("it ran").to_string()
     };
     let plain = digest(member(&scenario, "plc"));
     let request = member(&scenario, "plc").join();
-    assert_eq!(digest(Box::new(gateway(scenario.plan().signals(), request))), plain);
+    [plain, digest(Box::new(gateway(&folder.join("plc"), scenario.plan().signals(), request)))]
+}
+
+#[test]
+fn the_instrumented_shear_has_the_digest_of_the_shear() {
+    let [plain, instrumented] = digests(&shear_folder());
+    assert_eq!(instrumented, plain);
+}
+
+#[test]
+fn the_shear_as_a_chart_has_the_same_digest_instrumented() {
+    let folder = tempfile::tempdir().expect("a folder");
+    std::fs::create_dir(folder.path().join("plc")).expect("a folder");
+    for file in ["scenario.toml", "plant.toml", "plc/alignment.st"] {
+        std::fs::copy(shear_folder().join(file), folder.path().join(file)).expect("a copy");
+    }
+    let chart = include_str!("shear_chart.st");
+    std::fs::write(folder.path().join("plc/shear.st"), chart).expect("a file");
+    let [plain, instrumented] = digests(folder.path());
+    assert_eq!(instrumented, plain);
+    assert_ne!(plain, digests(&shear_folder())[0], "it is the chart that ran");
+    insta::assert_snapshot!(plain);
 }

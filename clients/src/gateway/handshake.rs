@@ -309,7 +309,8 @@ impl Handshake {
             return Ok(());
         }
         if report.joined != 0 || report.answer == Answer::MustBeStarted {
-            return self.want_start(t_v, report);
+            self.want_start(t_v, report);
+            return Ok(());
         }
         let highest = self.highest.max(report.done);
         let session = highest.checked_add(1).ok_or(GatewayFault::NumbersUsedUp(highest))?;
@@ -320,7 +321,7 @@ impl Handshake {
         Ok(())
     }
 
-    fn want_start(&mut self, t_v: VirtualTime, report: Report) -> Result<(), GatewayFault> {
+    fn want_start(&mut self, t_v: VirtualTime, report: Report) {
         self.highest = self.highest.max(report.joined).max(report.done);
         let Some(boots) = report.boots else {
             if self.goal != Goal::Start(t_v) {
@@ -328,13 +329,12 @@ impl Handshake {
             }
             self.goal = Goal::Start(t_v);
             self.phase = Phase::Surveying;
-            return Ok(());
+            return;
         };
         self.goal = Goal::Start(t_v);
         self.boots = Some(boots);
         self.order = Order { start: boots.wrapping_add(1), ..Order::default() };
         self.phase = Phase::Writing;
-        Ok(())
     }
 
     fn look_for_start(&mut self, t_v: VirtualTime, report: Report) -> Result<(), GatewayFault> {
@@ -364,7 +364,10 @@ impl Handshake {
                 Err(self.nonsense(format!("it has joined session {session} and done grant {}", report.done)))
             }
             (_, Answer::NotSimulated) => Err(GatewayFault::NotSimulated),
-            (_, Answer::MustBeStarted) => self.want_start(t_v, report),
+            (_, Answer::MustBeStarted) => {
+                self.want_start(t_v, report);
+                Ok(())
+            }
             (0, _) => Ok(()),
             (joined, _) => Err(GatewayFault::OtherSession { joined, session }),
         }

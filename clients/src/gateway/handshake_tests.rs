@@ -164,7 +164,7 @@ impl World {
 
 fn expected() -> (Vec<(u64, u64)>, Vec<u64>) {
     let steps = 1..=STEPS;
-    (steps.clone().map(|k| (k * 10, k + 100)).collect(), steps.map(|k| k * 10 ^ (k + 100) << 8).collect())
+    (steps.clone().map(|k| (k * 10, k + 100)).collect(), steps.map(|k| (k * 10) ^ ((k + 100) << 8)).collect())
 }
 
 #[test]

@@ -1,10 +1,13 @@
 //! The soft PLC as a client of a session.
 
-use std::sync::{Arc, Mutex};
+use std::collections::{BTreeMap, BTreeSet};
+use std::sync::{Arc, Mutex, PoisonError};
 
-use onescan_plc_shim::{Application, Coverage, PlcFault, RunError, SoftPlc, TaskPlan, UnknownVariable, WriteError};
+use onescan_plc_shim::{
+    Application, Coverage, PlcFault, RunError, SoftPlc, TaskPlan, UnknownVariable, WriteError, WriteSite,
+};
 use onescan_server::client::{Client, ClientFault, JoinRequest, SourcePlace, StateError, Wake};
-use onescan_server::signal::ClientName;
+use onescan_server::signal::{ClientName, SignalName};
 use onescan_server::time::{TimeSpan, VirtualTime};
 
 use super::bind::{Bindings, Bound, Place};
@@ -46,8 +49,27 @@ pub struct SoftPlcClient {
     presets: Vec<(String, String)>,
     /// Where what was executed goes when the client's part is over.
     coverage: Option<CoverageSink>,
+    tracing: Option<Tracing>,
     watcher: Option<Watcher>,
 }
+
+/// The outputs that are watched, in the order in which the PLC watches them.
+struct Tracing {
+    watched: Vec<SignalName>,
+    sink: WriterSink,
+}
+
+/// A statement of a PLC that wrote a signal, and when.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Written {
+    /// The virtual time of the scan.
+    pub t_v: VirtualTime,
+    /// The statement.
+    pub site: WriteSite,
+}
+
+/// The last statement that wrote each watched signal.
+pub type WriterSink = Arc<Mutex<BTreeMap<SignalName, Written>>>;
 
 /// What the PLCs of a run have executed together.
 pub type CoverageSink = Arc<Mutex<Coverage>>;
@@ -77,6 +99,7 @@ impl SoftPlcClient {
             outputs: runs(&bindings.outputs),
             presets: Vec::new(),
             coverage: None,
+            tracing: None,
             watcher: None,
         })
     }
@@ -95,6 +118,34 @@ impl SoftPlcClient {
     /// been compiled for it.
     pub fn cover(&mut self, sink: CoverageSink) {
         self.coverage = Some(sink);
+    }
+
+    /// Tells `sink` which statements write those of `signals` that are its outputs. The application
+    /// must have been compiled for it.
+    pub fn trace(&mut self, signals: &BTreeSet<SignalName>, sink: WriterSink) {
+        let mut tracing = Tracing { watched: Vec::new(), sink };
+        let mut places = Vec::new();
+        // An output has one place.
+        for (port, run) in self.request.writes.iter().zip(&self.outputs) {
+            if signals.contains(&port.name) {
+                let Place { offset, bit } = run.memory;
+                places.push((offset..offset + run.len, bit));
+                tracing.watched.push(port.name.clone());
+            }
+        }
+        self.plc.watch(places);
+        self.tracing = Some(tracing);
+    }
+
+    fn note_writers(&self, t_v: VirtualTime) {
+        let Some(Tracing { watched, sink }) = &self.tracing else { return };
+        // Whoever panicked while it held the lock left whole entries.
+        let mut sink = sink.lock().unwrap_or_else(PoisonError::into_inner);
+        for (index, signal) in watched.iter().enumerate() {
+            if let Some(site) = self.plc.last_writer(index) {
+                sink.insert(signal.clone(), Written { t_v, site });
+            }
+        }
     }
 
     /// Looks at variables after the set-up and after every turn, all changes if `changes`, else for what
@@ -173,6 +224,7 @@ impl Client for SoftPlcClient {
             run.give(inputs, memory);
         }
         let scanned = self.plc.scan(onescan_plc_shim::VirtualTime::from_ns(t_v.as_nanos()));
+        self.note_writers(t_v);
         self.look(t_v);
         scanned.map_err(|fault| client_fault(&fault))?;
         self.take_outputs(outputs);

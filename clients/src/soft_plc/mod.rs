@@ -11,4 +11,4 @@ mod client;
 pub mod watch;
 
 pub use bind::{BindError, Bindings, Bound, bind};
-pub use client::{CoverageSink, SoftPlcClient};
+pub use client::{CoverageSink, SoftPlcClient, WriterSink, Written};

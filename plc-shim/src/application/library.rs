@@ -1,11 +1,11 @@
 //! The standard function blocks (2nd ed. 2.5.2.3), some functions, and PLCopen's motion blocks, as program text
 //! like any other.
 
-use crate::syntax::token::{Keyword, TokenKind};
+use crate::syntax::token::{Keyword, Punctuation, TokenKind};
 use crate::syntax::{SourceFile, tokenize};
 
 /// What every program has: file names and texts.
-pub(crate) const FILES: [(&str, &str); 10] = [
+pub(crate) const FILES: [(&str, &str); 11] = [
     ("iec/bcd.st", include_str!("../../iec/bcd.st")),
     ("iec/bistable.st", include_str!("../../iec/bistable.st")),
     ("iec/clock_and_semaphore.st", include_str!("../../iec/clock_and_semaphore.st")),
@@ -14,6 +14,7 @@ pub(crate) const FILES: [(&str, &str); 10] = [
     ("iec/date_and_time.st", include_str!("../../iec/date_and_time.st")),
     ("iec/edge_detection.st", include_str!("../../iec/edge_detection.st")),
     ("iec/long_date_and_time.st", include_str!("../../iec/long_date_and_time.st")),
+    ("iec/sequential_function_chart.st", include_str!("../../iec/sequential_function_chart.st")),
     ("iec/timers.st", include_str!("../../iec/timers.st")),
     ("iec/timers_by_type.st", include_str!("../../iec/timers_by_type.st")),
 ];
@@ -74,9 +75,9 @@ fn axis_in(text: &str) -> Option<Axis> {
         token.kind == TokenKind::Identifier && is_it(text.get(token.start as usize..token.end as usize))
     });
     let declares = |at: usize| {
-        let before = at.checked_sub(1).and_then(|before| tokens.get(before));
-        tokens.get(at + 1).is_some_and(|next| text.get(next.start as usize..).is_some_and(|rest| rest.starts_with(':')))
-            || before.is_some_and(|before| before.kind == TokenKind::Keyword(Keyword::FunctionBlock))
+        let kind = |at: usize| tokens.get(at).map(|token| token.kind);
+        kind(at + 1) == Some(TokenKind::Punctuation(Punctuation::Colon))
+            || at.checked_sub(1).and_then(kind) == Some(TokenKind::Keyword(Keyword::FunctionBlock))
     };
     names.map(|(at, _)| if declares(at) { Axis::Declared } else { Axis::Used }).max()
 }
@@ -91,6 +92,7 @@ mod tests {
             ("PROGRAM P VAR a : TON; END_VAR END_PROGRAM", None),
             ("PROGRAM P (* AXIS_REF *) VAR my_AXIS_REFs, _ : INT; END_VAR END_PROGRAM", None),
             ("PROGRAM P VAR a : Axis_Ref; END_VAR END_PROGRAM", Some(Axis::Used)),
+            ("PROGRAM P VAR a : AXIS_REF := (Linked := TRUE); END_VAR END_PROGRAM", Some(Axis::Used)),
             ("TYPE AXIS_REF : STRUCT a : INT; END_STRUCT END_TYPE", Some(Axis::Declared)),
             ("VAR_GLOBAL x : AXIS_REF; END_VAR FUNCTION_BLOCK AXIS_REF END_FUNCTION_BLOCK", Some(Axis::Declared)),
         ] {

@@ -55,6 +55,13 @@ impl Collector<'_> {
                 Storage::Located(location) => self.checked.areas.offset(location),
                 _ => continue,
             };
+            if variable.of_chart {
+                // A chart is kept as a whole: steps without their stored actions would be none.
+                if outer.is_some_and(|outer| outer >= self.least) {
+                    self.found.push(offset..offset + self.checked.types.size(variable.ty));
+                }
+                continue;
+            }
             self.variable(variable.ty, offset, variable.retention, variable.retention.or(outer));
         }
     }

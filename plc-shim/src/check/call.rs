@@ -1,24 +1,23 @@
 //! Calls of functions and instances (2nd ed. 2.5.1.1, 2.5.2.1).
 
 use std::collections::BTreeMap;
-use std::sync::Arc;
 
 use super::address::PlaceFunction;
+use super::argument::Passing;
 use super::asserts;
-use super::convert::{Operand, constant};
+use super::convert::Operand;
 use super::enable;
 use super::function_form;
 use super::memory_function;
 use super::scope::{Body, Scope};
 use super::standard_function;
-use super::variables::decode;
 use crate::diagnostic::{Code, Diagnostic, did_you_mean};
 use crate::ir::{
-    Argument, ElementaryType, Expr, ExprKind, FunctionCall, InstanceCall, Intrinsic, MemoryFunction, Place, PouId,
-    Statement, StatementKind, Storage, Type, TypeId, TypeTable, Unary, Variable,
+    Argument, ElementaryType, Expr, ExprKind, FunctionCall, Intrinsic, MemoryFunction, Place, PouId, Statement,
+    StatementKind, Type, TypeTable, Unary, Variable,
 };
 use crate::syntax::Span;
-use crate::syntax::ast::{self, Call, Ident, PouKind, ReferenceKind, SectionKind};
+use crate::syntax::ast::{self, Call, Ident, PouKind, SectionKind};
 
 /// The arguments of a call by the parameter they belong to.
 #[derive(Default)]
@@ -76,7 +75,15 @@ impl Body<'_, '_> {
     }
 
     fn is_local(&self, name: &Ident) -> bool {
-        !name.is_quoted() && self.scope.by_name.contains_key(&name.key())
+        !name.is_quoted() && self.is_callable_variable(&name.key())
+    }
+
+    /// True for a variable of the unit, and for an instance among those that its methods see. Of these
+    /// the others leave their names to functions.
+    fn is_callable_variable(&self, key: &str) -> bool {
+        let outer = || self.scope.outer.as_ref()?.find(key).map(|variable| variable.ty);
+        let is_block = |ty| matches!(self.checker.types.get(ty), Type::FunctionBlock { .. });
+        self.scope.by_name.contains_key(key) || outer().is_some_and(is_block)
     }
 
     /// Inside a function its own name is its result, and a call of it recursion.
@@ -97,7 +104,7 @@ impl Body<'_, '_> {
         match &call.callee.kind {
             ast::ExprKind::Name(name) => {
                 let key = name.key();
-                self.scope.by_name.contains_key(&key) && !self.is_own_result(name)
+                self.is_callable_variable(&key) && !self.is_own_result(name)
             }
             _ => false,
         }
@@ -294,90 +301,6 @@ impl Body<'_, '_> {
         Some(Expr { kind: ExprKind::Call(Box::new(call)), ty, span })
     }
 
-    pub(super) fn default_argument(&mut self, parameter: &Variable, named: bool, span: Span) -> Option<Argument> {
-        match self.elementary(parameter.ty) {
-            Some(ty) if named && parameter.section == SectionKind::Input => {
-                let value = constant(decode(ty, &parameter.image), ty, span);
-                Some(Argument::Value(Expr { ty: parameter.ty, ..value }))
-            }
-            None if named && parameter.section == SectionKind::Input => {
-                let place = self.checker.constant_bytes(parameter.ty, parameter.image.clone(), span)?;
-                let kind = ExprKind::Load(place);
-                Some(Argument::Value(Expr { kind, ty: parameter.ty, span }))
-            }
-            _ => self.missing_argument(&parameter.name, span),
-        }
-    }
-
-    fn missing_argument<T>(&mut self, name: &str, span: Span) -> Option<T> {
-        let message = format!("parameter `{name}` is missing");
-        self.report(Diagnostic::error(Code::MissingArgument, span, message));
-        None
-    }
-
-    pub(super) fn argument(
-        &mut self,
-        parameter: &Variable,
-        expr: &ast::Expr,
-        passing: &mut Passing,
-    ) -> Option<Argument> {
-        if matches!(self.checker.types.get(parameter.ty), Type::OpenArray { .. }) {
-            return self.described(parameter, expr, &mut passing.before).map(Argument::Reference);
-        }
-        if parameter.section == SectionKind::InOut {
-            return self.reference(parameter, expr, passing).map(Argument::Reference);
-        }
-        if matches!(self.checker.types.get(parameter.ty), Type::Reference { kind: ReferenceKind::Reference, .. }) {
-            return self.referring_argument(parameter.ty, expr, passing).map(Argument::Value);
-        }
-        self.expression_for(expr, parameter.ty).map(Argument::Value)
-    }
-
-    /// The variable given for a `VAR_IN_OUT`. One in a register or in a bit goes through memory.
-    fn reference(&mut self, parameter: &Variable, expr: &ast::Expr, passing: &mut Passing) -> Option<Place> {
-        let place = self.target(expr)?;
-        if place.ty != parameter.ty && !self.derives(place.ty, parameter.ty) {
-            let (wanted, found) = (self.type_name(parameter.ty), self.type_name(place.ty));
-            let message = format!("VAR_IN_OUT `{}` is {wanted}, this is {found}", parameter.name);
-            self.report(Diagnostic::error(Code::InvalidArgument, expr.span, message));
-            return None;
-        }
-        self.through_memory(place, passing)
-    }
-
-    /// The place, or memory that holds its value during the call if it has no address.
-    fn through_memory(&mut self, place: Place, passing: &mut Passing) -> Option<Place> {
-        if place.has_address() {
-            return Some(place);
-        }
-        let memory = self.temporary(place.ty, place.span)?;
-        let (there, back) = (copy(&memory, &place), copy(&place, &memory));
-        passing.before.push(there);
-        passing.after.push(back);
-        Some(memory)
-    }
-
-    /// The variable given for a `REFERENCE TO`.
-    fn referring_argument(&mut self, ty: TypeId, expr: &ast::Expr, passing: &mut Passing) -> Option<Expr> {
-        let value = self.referring(ty, expr)?;
-        match value.kind {
-            ExprKind::Address(place) => {
-                let kind = ExprKind::Address(self.through_memory(place, passing)?);
-                Some(Expr { kind, ..value })
-            }
-            _ => Some(value),
-        }
-    }
-
-    /// Memory of the calling unit for one value.
-    pub(super) fn temporary(&mut self, ty: TypeId, span: Span) -> Option<Place> {
-        let types = &self.checker.types;
-        let (size, align) = (types.size(ty), types.align(ty));
-        let offset = self.checker.allocate(size, align, span)?;
-        self.scope.has_memory = true;
-        Some(Place::whole(Storage::Absolute(offset), ty, span))
-    }
-
     pub(super) fn outputs(
         &mut self,
         wanted: &[Wanted<'_>],
@@ -412,70 +335,6 @@ impl Body<'_, '_> {
         sound.then_some(statements)
     }
 
-    fn instance_call(&mut self, call: &Call, span: Span) -> Option<StatementKind> {
-        let callee = self.instance_of(&call.callee);
-        let instance = self.place(callee)?.place;
-        self.instance_call_at(instance, call, span)
-    }
-
-    /// Calls the statements of a function block on the instance at a place.
-    pub(super) fn instance_call_at(&mut self, instance: Place, call: &Call, span: Span) -> Option<StatementKind> {
-        let Type::FunctionBlock { name, pou } = self.checker.types.get(instance.ty).clone() else {
-            let message = format!("this is {}, which cannot be called", self.type_name(instance.ty));
-            self.report(Diagnostic::error(Code::NotCallable, call.callee.span, message));
-            return None;
-        };
-        let dispatch = self.body_dispatch(&instance, pou, call, span)?;
-        let scope = self.checker.interface(pou, span)?;
-        let split = enable::split(call, scope.find(enable::ENO).is_some());
-        let (enabling, rest) = split.map_or((None, None), |(enabling, rest)| (Some(enabling), Some(rest)));
-        let matched = self.matched(&scope, &name, rest.as_ref().unwrap_or(call))?;
-        let pointer = self.scope.register(ElementaryType::Udint);
-        let base = Place::whole(Storage::RegisterPointer(pointer), instance.ty, instance.span);
-        let mut passing = Passing::default();
-        self.instance_inputs(&scope, &matched, &base, &mut passing, span)?;
-        let outputs = self.outputs(&matched.outputs, |variable, span| member_place(&base, variable, span))?;
-        let Passing { before: inputs, after: mut back } = passing;
-        back.extend(outputs);
-        let call = InstanceCall { instance, pou, dispatch, pointer, inputs, outputs: back };
-        self.controlled_instance(&scope, call, enabling)
-    }
-
-    fn instance_inputs(
-        &mut self,
-        scope: &Arc<Scope>,
-        matched: &Matched<'_>,
-        base: &Place,
-        passing: &mut Passing,
-        span: Span,
-    ) -> Option<()> {
-        let mut sound = true;
-        for parameter in scope.inputs() {
-            let given = matched.inputs.get(&parameter.name.to_ascii_uppercase()).copied();
-            let Some(expr) = given else {
-                // An input that is not given keeps its value; a reference must be given anew.
-                if parameter.section == SectionKind::InOut {
-                    self.missing_argument::<()>(&parameter.name, span);
-                    sound = false;
-                }
-                continue;
-            };
-            let target = member_place(base, parameter, expr.span);
-            let statement = match self.argument(parameter, expr, passing) {
-                Some(Argument::Value(value)) => self.assignment(target, value, expr.span),
-                Some(Argument::Reference(place)) => {
-                    Statement { kind: StatementKind::Bind(target, place), span: expr.span }
-                }
-                None => {
-                    sound = false;
-                    continue;
-                }
-            };
-            passing.before.push(statement);
-        }
-        sound.then_some(())
-    }
-
     /// An assignment of a value that has the target's type.
     pub(super) fn assignment(&self, target: Place, value: Expr, span: Span) -> Statement {
         let kind = match self.elementary(target.ty) {
@@ -484,27 +343,4 @@ impl Body<'_, '_> {
         };
         Statement { kind, span }
     }
-}
-
-/// What surrounds a call: copies into memory, and back.
-#[derive(Default)]
-pub(super) struct Passing {
-    pub(super) before: Vec<Statement>,
-    pub(super) after: Vec<Statement>,
-}
-
-fn copy(target: &Place, source: &Place) -> Statement {
-    let (ty, span) = (source.ty, source.span);
-    let value = Expr { kind: ExprKind::Load(source.clone()), ty, span };
-    Statement { kind: StatementKind::Assign(target.clone(), value), span }
-}
-
-/// A variable inside an instance, seen from outside.
-fn member_place(base: &Place, variable: &Variable, span: Span) -> Place {
-    let (offset, ty) = match variable.storage {
-        Storage::Instance(offset) => (offset, variable.ty),
-        Storage::InstancePointer(offset) => (offset, ElementaryType::Udint.into()),
-        _ => (0, variable.ty),
-    };
-    Place { span, ..base.clone().member(offset, ty) }
 }

@@ -8,6 +8,7 @@
 //! | bit string, BOOL | rightmost bit |
 //! | number, BOOL | FALSE for 0 |
 //! | REAL, DWORD and LREAL, LWORD | the same bits; other pairs of reals and bit strings do not exist |
+//! | real and bit string where bit strings are numbers (CODESYS, TwinCAT) | the number |
 //! | TIME, number | milliseconds |
 //! | TOD, number | milliseconds |
 //! | DATE, DT, number | seconds |
@@ -16,8 +17,10 @@
 
 use super::calendar::{day_start, within_day};
 use super::convert::{Operand, constant, converted};
+use super::dialect::as_number;
 use super::scope::Body;
 use crate::diagnostic::{Code, Diagnostic};
+use crate::dialect::Feature;
 use crate::ir::elementary::Kind;
 use crate::ir::{Binary, ElementaryType, Expr, ExprKind, Intrinsic, Rounding, Value};
 use crate::syntax::Span;
@@ -49,7 +52,8 @@ pub(super) fn find(key: &str) -> Option<Conversion> {
         marks.into_iter().find_map(|(mark, rounding)| {
             let (from, to) = key.split_once(mark)?;
             let (from, to) = (ElementaryType::find(from)?, ElementaryType::find(to)?);
-            is_allowed(from, to, rounding).then_some(Conversion { from: Some(from), to, rounding })
+            let exists = is_allowed(from, to, rounding) || is_mixed(from, to) && rounding == Rounding::NearestEven;
+            exists.then_some(Conversion { from: Some(from), to, rounding })
         })
     })
 }
@@ -64,7 +68,15 @@ const WHOLE: [(&str, Rounding); 4] = [
 
 /// True for conversions that a user's own unit of the same name goes before.
 pub(super) fn is_of_vendors(key: &str) -> bool {
+    let between = |from| find(key).is_some_and(|found| !is_defined(from, found.to));
     ["ROUND", "CEIL", "FLOOR", "ANY_TO_"].into_iter().any(|name| key.starts_with(name))
+        || find(key).and_then(|found| found.from).is_some_and(between)
+}
+
+/// True for a real and a bit string, of which vendors convert the number.
+fn is_mixed(from: ElementaryType, to: ElementaryType) -> bool {
+    let bits = |ty: ElementaryType| ty.kind() == Kind::Bits;
+    from.is_real() && bits(to) || bits(from) && to.is_real()
 }
 
 /// True if `from_TO_to` exists.
@@ -108,6 +120,9 @@ impl Body<'_, '_> {
             let found = self.type_name(expr.ty);
             return self.mismatch("an elementary value", &found, expr.span);
         };
+        if is_mixed(from, to) && self.checker.dialect(span).has(Feature::BitArithmetic) {
+            return Some(Operand::Typed(self.as_numbers_do(expr, (from, to), rounding)));
+        }
         if from != to && !is_allowed(from, to, rounding) {
             let message = format!("there is no conversion from {from} to {to}");
             let found = Diagnostic::error(Code::InvalidOperand, span, message);
@@ -117,6 +132,15 @@ impl Body<'_, '_> {
         let rounding = if rounding == Rounding::NearestEven { self.checker.dialect(span).rounding() } else { rounding };
         let value = Expr { span, ..lower(expr, from, to, rounding) };
         Some(Operand::Typed(self.time_value(value)))
+    }
+
+    /// A bit string as the number it is, from a real or to one.
+    fn as_numbers_do(&self, expr: Expr, (from, to): (ElementaryType, ElementaryType), rounding: Rounding) -> Expr {
+        let rounding =
+            if rounding == Rounding::NearestEven { self.checker.dialect(expr.span).rounding() } else { rounding };
+        let number = converted(expr, as_number(from), Rounding::NearestEven);
+        let there = lower(number, as_number(from), as_number(to), rounding);
+        converted(there, to, Rounding::NearestEven)
     }
 }
 
@@ -192,7 +216,7 @@ mod tests {
         let found = find("LREAL_TRUNC_DINT").map(|found| found.rounding);
         assert_eq!(found, Some(Rounding::Truncate));
         assert_eq!(find("TO_SINT").and_then(|found| found.from), None);
-        assert!(find("INT_TO_INT").is_none() && find("REAL_TO_WORD").is_none());
+        assert!(find("INT_TO_INT").is_none() && is_of_vendors("REAL_TO_WORD") && !is_of_vendors("REAL_TO_DWORD"));
         assert!(find("INT_TRUNC_SINT").is_none() && find("GOTO_INT").is_none());
     }
 }

@@ -53,8 +53,19 @@ fn counter(range: TimeRange) -> Option<E> {
     }
 }
 
+/// The bit string of an integer's size; others as they are.
+pub(super) fn as_bits(ty: E) -> E {
+    match ty {
+        E::Usint => E::Byte,
+        E::Uint => E::Word,
+        E::Udint => E::Dword,
+        E::Ulint => E::Lword,
+        other => other,
+    }
+}
+
 /// The integer type that calculates as a bit string does; others as they are.
-fn as_number(ty: E) -> E {
+pub(super) fn as_number(ty: E) -> E {
     match ty {
         E::Byte => E::Usint,
         E::Word => E::Uint,
@@ -119,6 +130,22 @@ impl Body<'_, '_> {
     pub(super) fn bits_are_numbers(&self, ty: E, span: Span) -> bool {
         let has = self.checker.dialect(span).has(Feature::BitArithmetic);
         has && (ty.kind() == Kind::Bits || ty.is_integer())
+    }
+
+    /// True for an unsigned integer that is shifted as its bits are.
+    pub(super) fn shifts_as_bits(&self, expr: &Expr) -> bool {
+        self.plain_elementary(expr).is_some_and(|ty| as_bits(ty) != ty && self.bits_are_numbers(ty, expr.span))
+    }
+
+    /// A value that counts or selects, where bit strings and enumerations are numbers; all else as it is.
+    pub(super) fn as_index(&self, expr: Expr) -> Expr {
+        let expr = self.as_number(expr);
+        match self.plain_elementary(&expr) {
+            Some(ty) if as_number(ty) != ty && self.bits_are_numbers(ty, expr.span) => {
+                converted(expr, as_number(ty), Rounding::NearestEven)
+            }
+            _ => expr,
+        }
     }
 
     /// True if `ty` has bits to invert.

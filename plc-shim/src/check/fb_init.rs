@@ -243,7 +243,7 @@ impl<'a> Body<'_, 'a> {
             Role::Method,
             stage,
             Vec::new(),
-            super::call::Passing::default(),
+            super::argument::Passing::default(),
             span,
         )?;
         Some(Statement { kind: StatementKind::Evaluate(called), span })

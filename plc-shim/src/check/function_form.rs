@@ -146,8 +146,9 @@ impl Form {
         let numbered = || name.strip_prefix("IN")?.parse::<usize>().ok();
         match (self, name) {
             (Self::Text(form), _) if form != TextForm::Edit(Edit::Concat) => {
-                form.parameters().iter().position(|known| *known == name)
+                form.parameters().iter().position(|known| *known == name || *known == text_function::of_vendors(name))
             }
+            (Self::Text(_), "STR1" | "STR2") => self.position(text_function::of_vendors(name)),
             (Self::Limit, "MN") | (Self::RealPair(_), "Y") | (Self::Select, "G") | (Self::Multiplex, "K") => Some(0),
             (Self::Shift(_), "N") | (Self::Limit, "IN") | (Self::RealPair(_), "X") => Some(1),
             (Self::Limit, "MX") => Some(2),

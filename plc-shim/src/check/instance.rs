@@ -222,7 +222,8 @@ impl<'a> Interface<'_, 'a> {
             return;
         }
         (self.align, self.image) = (align, image.to_vec());
-        for variable in &scope.variables {
+        let keys = scope.keys();
+        for (index, variable) in scope.variables.iter().enumerate() {
             if !matches!(variable.storage, Storage::Instance(_) | Storage::InstancePointer(_)) {
                 continue;
             }
@@ -237,7 +238,7 @@ impl<'a> Interface<'_, 'a> {
             }
             // What is PRIVATE to the base is there, and its name is free.
             if variable.visibility != Visibility::Private {
-                let key = variable.name.to_ascii_uppercase();
+                let key = keys.get(&index).map_or_else(|| variable.name.to_ascii_uppercase(), |key| (*key).to_owned());
                 self.body.scope.by_name.insert(key, self.body.scope.variables.len());
             }
             self.body.scope.variables.push(variable);
@@ -279,7 +280,8 @@ impl<'a> Interface<'_, 'a> {
 /// The variables of an instance; what lasts for one call of its statements is left out.
 fn seen_by_methods(scope: &Scope, owner: PouId) -> Scope {
     let mut seen = Scope::default();
-    for variable in &scope.variables {
+    let keys = scope.keys();
+    for (index, variable) in scope.variables.iter().enumerate() {
         let lasting = match variable.storage {
             Storage::Instance(_) | Storage::InstancePointer(_) => true,
             Storage::Register(_) | Storage::RegisterPointer(_) => false,
@@ -287,7 +289,8 @@ fn seen_by_methods(scope: &Scope, owner: PouId) -> Scope {
         };
         let hidden = variable.visibility == Visibility::Private && variable.owner != Some(owner);
         if lasting && !hidden {
-            seen.by_name.insert(variable.name.to_ascii_uppercase(), seen.variables.len());
+            let key = keys.get(&index).map_or_else(|| variable.name.to_ascii_uppercase(), |key| (*key).to_owned());
+            seen.by_name.insert(key, seen.variables.len());
             seen.variables.push(Variable { edge: None, ..variable.clone() });
         }
     }

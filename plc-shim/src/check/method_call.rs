@@ -1,7 +1,7 @@
 //! Calls of methods and actions (3rd ed. 6.6.5.4 and 6.6.5.5).
 
 use super::Meant;
-use super::call::Passing;
+use super::argument::Passing;
 use super::class::Role;
 use super::convert::Operand;
 use super::enable;

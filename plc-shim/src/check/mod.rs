@@ -6,7 +6,7 @@
 //! | [`layout`] | offsets in memory |
 //! | [`scope`] | what a name means inside a unit |
 //! | [`types`], [`subrange`], [`union`] | types as written to types |
-//! | [`variables`], [`instance_section`] | sections to placed variables, units' interfaces |
+//! | [`variables`], [`storage`], [`instance_section`] | sections to placed variables, units' interfaces |
 //! | [`located`] | direct addresses to places |
 //! | [`initial`] | initial values to bytes |
 //! | [`start`], [`fb_init`], [`instance_arguments`] | what runs before the first scan |
@@ -15,10 +15,11 @@
 //! | [`expression`], [`operator`], [`calendar`], [`place`], [`part`] | expressions |
 //! | [`reference`], [`address`], [`referred`] | references and pointers |
 //! | [`open_array`] | arrays that come with their bounds |
-//! | [`call`], [`standard_function`], [`function_form`], [`conversion_function`], [`memory_function`] | calls |
+//! | [`call`], [`argument`], [`instance_call`], [`standard_function`], [`function_form`], [`conversion_function`], [`memory_function`] | calls |
 //! | [`enable`], [`enable_error`] | EN and ENO |
 //! | [`text`], [`text_function`], [`text_conversion`] | character strings |
-//! | [`statement`], [`assignment`], [`edge`] | statements |
+//! | [`statement`], [`assignment`], [`edge`], [`build`] | statements |
+//! | [`chart`] | Sequential Function Charts |
 //! | [`jump`], [`wire`], [`instruction`] | what networks and lists of instructions have beside statements |
 //! | [`configuration`] | resources, tasks, instances of programs |
 //! | [`dialect`] | what dialects do their own way |
@@ -31,10 +32,13 @@
 //! and needed again contains itself.
 
 mod address;
+mod argument;
 pub(crate) mod asserts;
 mod assignment;
+mod build;
 mod calendar;
 mod call;
+mod chart;
 mod class;
 mod configuration;
 mod constant;
@@ -53,6 +57,7 @@ mod inheritance;
 mod initial;
 mod instance;
 mod instance_arguments;
+mod instance_call;
 mod instance_section;
 mod instruction;
 mod interface_value;
@@ -75,6 +80,7 @@ mod scope;
 mod standard_function;
 mod start;
 mod statement;
+mod storage;
 mod subrange;
 mod text;
 mod text_conversion;
@@ -130,6 +136,8 @@ pub(crate) struct Checked {
     pub(crate) end: Option<Pou>,
     /// The whole memory at a cold start, before `start` runs.
     pub(crate) image: Vec<u8>,
+    /// The steps and transitions of charts: where they stand, and what they are called.
+    pub(crate) chart_parts: Vec<(Span, String)>,
 }
 
 /// Checks all units together. `library` tells the files of the standard function blocks, whose
@@ -171,6 +179,7 @@ pub(crate) fn check(units: &[(FileId, &CompilationUnit)], library: &BTreeSet<Fil
         start,
         end,
         image,
+        chart_parts: checker.chart_parts,
     };
     (result, checker.diagnostics)
 }
@@ -229,6 +238,7 @@ struct Checker<'a> {
     dynamic_calls: BTreeMap<PouId, BTreeSet<PouId>>,
     rows: Rows,
     depth: u32,
+    chart_parts: Vec<(Span, String)>,
     diagnostics: Vec<Diagnostic>,
 }
 

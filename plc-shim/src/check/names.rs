@@ -125,6 +125,7 @@ impl<'a> Checker<'a> {
             queued: BTreeSet::new(),
             calls: BTreeMap::new(),
             depth: 0,
+            chart_parts: Vec::new(),
             diagnostics: Vec::new(),
         }
     }
@@ -272,6 +273,7 @@ fn provided(name: &str, ty: ElementaryType, offset: u32) -> GlobalEntry<'static>
         span,
         image: vec![0; ty.size() as usize].into(),
         edge: None,
+        of_chart: false,
         visibility: Visibility::Public,
         owner: None,
     };

@@ -47,7 +47,7 @@ impl Body<'_, '_> {
     fn open_index(&mut self, index: &ast::Expr) -> Option<Expr> {
         let operand = self.within(None, |body| body.expression(index))?;
         let index = self.settle(operand)?;
-        let index = self.as_number(index);
+        let index = self.as_index(index);
         if self.plain_elementary(&index).is_some_and(ElementaryType::is_integer) {
             return Some(index);
         }

@@ -21,6 +21,8 @@ pub(super) enum Access {
     InstanceOutput,
     /// It is an input of the machine.
     MachineInput,
+    /// It is the state of a chart.
+    Chart,
     /// It is what a property or a call gives.
     Value,
 }
@@ -154,6 +156,7 @@ impl Body<'_, '_> {
                 let access = match variable.section {
                     _ if open.is_some() => Access::Constant,
                     _ if variable.is_constant => Access::Constant,
+                    _ if variable.of_chart && !self.is_own_network(&name.key()) => Access::Chart,
                     SectionKind::Input => Access::OwnInput,
                     _ if super::located::is_machine_input(variable.storage) => Access::MachineInput,
                     _ => Access::ReadWrite,
@@ -182,6 +185,10 @@ impl Body<'_, '_> {
         }
         if let Some(found) = self.scope.find(&key).filter(|_| local) {
             return Some(Ok(found.clone()));
+        }
+        // The flag of an action is that of its control (2nd ed. 2.6.4.5).
+        if let Some(control) = self.scope.find(&super::chart::control_key(&key)).filter(|_| local) {
+            return Some(Ok(control.clone()));
         }
         // Vendors make global variables visible everywhere; the standard wants VAR_EXTERNAL.
         if let Some(key) = self.checker.global_key(&key) {
@@ -287,6 +294,7 @@ impl Body<'_, '_> {
         };
         let access = match variable.section {
             _ if variable.is_constant && self.may_see(variable) => Access::Constant,
+            _ if base.access == Access::Chart => Access::Chart,
             _ if self.is_own_instance(pou) => Access::ReadWrite,
             SectionKind::Input => Access::ReadWrite,
             SectionKind::Output => Access::InstanceOutput,
@@ -347,7 +355,7 @@ impl Body<'_, '_> {
     fn index_step(&mut self, bounds: Dimension, index: &ast::Expr, stride: u32) -> Option<Step> {
         let operand = self.within(None, |body| body.expression(index))?;
         let index = self.settle(operand)?;
-        let index = self.as_number(index);
+        let index = self.as_index(index);
         if !self.plain_elementary(&index).is_some_and(ElementaryType::is_integer) {
             let found = self.type_name(index.ty);
             return self.mismatch("an integer", &found, index.span);

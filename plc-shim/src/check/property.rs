@@ -1,7 +1,7 @@
 //! Properties, which vendors have: a value that a method gives, a target that a method takes.
 
 use super::Meant;
-use super::call::Passing;
+use super::argument::Passing;
 use super::class::Role;
 use super::convert::Operand;
 use super::method_call::Object;

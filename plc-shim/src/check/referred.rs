@@ -2,13 +2,13 @@
 
 use std::collections::BTreeSet;
 
-use crate::syntax::ast::{Argument, Call, Expr, ExprKind, Statement};
+use crate::syntax::ast::{Argument, Call, Expr, ExprKind, Pou};
 use crate::syntax::walk::{self, Visitor, root};
 
-/// Keys of the names that `REF`, `ADR` or `REF=` is used on in a body.
-pub(super) fn referred(body: &[Statement]) -> BTreeSet<String> {
+/// Keys of the names that `REF`, `ADR` or `REF=` is used on in a unit's body.
+pub(super) fn referred(unit: &Pou) -> BTreeSet<String> {
     let mut collector = Collector(BTreeSet::new());
-    walk::statements(body, &mut collector);
+    walk::unit(unit, &mut collector);
     collector.0
 }
 

@@ -35,6 +35,11 @@ impl Scope {
         self.by_name.get(key).and_then(|index| self.variables.get(*index))
     }
 
+    /// The names by which variables are found, by their positions; those of a base may have none.
+    pub(super) fn keys(&self) -> BTreeMap<usize, &str> {
+        self.by_name.iter().map(|(key, index)| (*index, key.as_str())).collect()
+    }
+
     /// True for a name that a variable has, be its declaration right or wrong.
     pub(super) fn declares(&self, key: &str) -> bool {
         self.by_name.contains_key(key) || self.outer.as_ref().is_some_and(|outer| outer.declares(key))
@@ -81,6 +86,8 @@ pub(super) struct Body<'c, 'a> {
     /// Loops around the statement.
     pub(super) loops: u32,
     pub(super) result_assigned: bool,
+    /// Key of the transition whose network is being checked.
+    pub(super) network: Option<String>,
     /// What jumps may lead to from here, the innermost last.
     pub(super) labels: Vec<super::jump::Labels>,
     /// How many labels the unit has so far.
@@ -109,6 +116,7 @@ impl<'c, 'a> Body<'c, 'a> {
             label_count: 0,
             wires: BTreeMap::new(),
             instruction_wires: 0,
+            network: None,
         }
     }
 

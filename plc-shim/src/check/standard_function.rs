@@ -2,6 +2,7 @@
 
 use super::conversion_function;
 use super::convert::{Operand, constant, converted};
+use super::dialect::as_bits;
 use super::function_form::{self, Form};
 use super::scope::Body;
 use super::text_conversion;
@@ -295,6 +296,7 @@ impl Body<'_, '_> {
 
     pub(super) fn integer_as_lint(&mut self, operand: Operand) -> Option<Expr> {
         let expr = self.settle(operand)?;
+        let expr = self.as_index(expr);
         if !self.plain_elementary(&expr).is_some_and(ElementaryType::is_integer) {
             let found = self.type_name(expr.ty);
             return self.mismatch("an integer", &found, expr.span);
@@ -305,6 +307,12 @@ impl Body<'_, '_> {
     fn shift(&mut self, kind: Intrinsic, value: Operand, count: Operand, span: Span) -> Option<Operand> {
         let value = match value {
             Operand::Typed(expr) if self.plain_elementary(&expr).is_some_and(ElementaryType::is_bits) => expr,
+            Operand::Typed(expr) if self.shifts_as_bits(&expr) => {
+                let ty = self.plain_elementary(&expr)?;
+                let bits = converted(expr, as_bits(ty), Rounding::NearestEven);
+                let Operand::Typed(shifted) = self.shift(kind, Operand::Typed(bits), count, span)? else { return None };
+                return Some(Operand::Typed(converted(shifted, ty, Rounding::NearestEven)));
+            }
             other => {
                 let found = self.describe(&other);
                 return self.mismatch("a bit string", &found, other.span());

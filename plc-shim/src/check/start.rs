@@ -103,6 +103,7 @@ fn stage(owner: &ast::Pou, name: &str) -> ast::Pou {
         result: None,
         sections: Vec::new(),
         body: Vec::new(),
+        chart: ast::Chart::default(),
         object: ast::Object::default(),
         span: owner.span,
     }

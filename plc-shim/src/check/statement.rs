@@ -29,9 +29,11 @@ impl Checker<'_> {
         };
         let mut body = Body::new(self, (*scope).clone(), Some(id));
         let mut statements = body.prologue(ast.kind);
-        match body.checker.stage_of(id) {
-            Some((owner, occasion)) => statements.extend(body.staged(owner, occasion)),
-            None => statements.extend(body.statements(&ast.body)),
+        if let Some((owner, occasion)) = body.checker.stage_of(id) {
+            statements.extend(body.staged(owner, occasion));
+        } else {
+            statements.extend(body.chart(ast));
+            statements.extend(body.statements(&ast.body));
         }
         if body.scope.result.is_some() && !body.result_assigned && !Self::is_hook(&ast.name.text) {
             let message = format!("function `{}` never assigns its result", ast.name.text);
@@ -217,6 +219,11 @@ impl Body<'_, '_> {
             Access::Constant => {
                 let message = "a constant is not assigned to";
                 self.report(Diagnostic::error(Code::AssignToConstant, expr.span, message));
+                return None;
+            }
+            Access::Chart => {
+                let message = "steps, transitions and action flags are written by their chart only";
+                self.report(Diagnostic::error(Code::NotAssignable, expr.span, message));
                 return None;
             }
             Access::InstanceOutput => {

@@ -35,6 +35,18 @@ pub(super) const FUNCTIONS: [(&str, TextForm); 9] = [
     ("FIND", TextForm::Find),
 ];
 
+/// The standard's name of a parameter that CODESYS and TwinCAT name their own way; else the name.
+pub(super) fn of_vendors(name: &str) -> &str {
+    match name {
+        "STR" => "IN",
+        "STR1" => "IN1",
+        "STR2" => "IN2",
+        "SIZE" | "LEN" => "L",
+        "POS" => "P",
+        _ => name,
+    }
+}
+
 impl TextForm {
     /// Formal parameters in their order; those of CONCAT go on.
     pub(super) fn parameters(self) -> &'static [&'static str] {

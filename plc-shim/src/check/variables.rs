@@ -4,18 +4,17 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 use super::Checker;
-use super::initial::{moved, plain};
+use super::initial::moved;
 use super::instance::visibility;
-use super::layout::{MEMORY_LIMIT, align_up};
+use super::layout::align_up;
 use super::located::Placement;
 use super::names::{Progress, TypedImage};
-use super::open_array::takes_open_arrays;
 use super::referred::referred;
 use super::scope::{Body, Scope};
 use super::start::{Start, Started, Starts};
 use super::types::Need;
 use crate::diagnostic::{Code, Diagnostic, did_you_mean};
-use crate::ir::{EdgeDetection, ElementaryType, Place, PouId, Retention, Storage, TypeId, Value, Variable};
+use crate::ir::{ElementaryType, Place, PouId, Retention, Storage, TypeId, Value, Variable};
 use crate::syntax::Span;
 use crate::syntax::ast::{self, Ident, PouKind, Qualifier, Section, SectionKind};
 
@@ -108,6 +107,7 @@ impl<'a> Checker<'a> {
             span: name.span,
             image: declared.image.clone(),
             edge: None,
+            of_chart: false,
             visibility: visibility(section, qualifiers),
             owner: None,
         }
@@ -222,13 +222,13 @@ pub(super) struct Interface<'c, 'a> {
     /// Where `VAR_INST` of its methods lie in an instance.
     pub(super) kept: BTreeMap<(u32, u32), u32>,
     /// Variables whose address the body takes.
-    referred: BTreeSet<String>,
+    pub(super) referred: BTreeSet<String>,
 }
 
 impl<'c, 'a> Interface<'c, 'a> {
     fn new(checker: &'c mut Checker<'a>, id: PouId) -> Self {
         let ast = checker.pou(id).ast;
-        let (kind, referred) = (ast.kind, referred(&ast.body));
+        let (kind, referred) = (ast.kind, referred(ast));
         let body = Body::new(checker, Scope::default(), Some(id));
         let (starts, fleeting, kept) = (Vec::new(), Vec::new(), BTreeMap::new());
         Self { body, kind, align: 1, image: Vec::new(), starts, fleeting, kept, referred }
@@ -255,6 +255,7 @@ impl<'c, 'a> Interface<'c, 'a> {
             self.body.scope.parameters = 1;
             self.inherit();
             self.declare_sections(ast, |_| true);
+            self.declare_chart(ast);
             self.keep_for_methods(ast);
         }
     }
@@ -369,115 +370,6 @@ impl<'c, 'a> Interface<'c, 'a> {
             }
         }
         self.storage(section, declared, name)
-    }
-
-    fn storage(&mut self, section: &Section, declared: &TypedImage<'_>, name: &Ident) -> Option<Storage> {
-        let span = name.span;
-        if !takes_open_arrays(self.kind, section.kind) {
-            self.body.reject_open_array(declared.ty, span)?;
-        } else if section.kind == SectionKind::Input && self.is_open(declared.ty) {
-            return Some(Storage::RegisterPointer(self.body.scope.register(POINTER)));
-        }
-        match (self.kind, section.kind) {
-            (_, SectionKind::Instance) => self.kept_storage(section, name),
-            (kind, SectionKind::Input) if kind.keeps_nothing() => Some(self.parameter(declared, name)?),
-            (PouKind::Method, SectionKind::InOut | SectionKind::Output) | (PouKind::Function, SectionKind::InOut) => {
-                Some(Storage::RegisterPointer(self.body.scope.register(POINTER)))
-            }
-            // The caller reads outputs after the call, so they outlive it.
-            (PouKind::Function, SectionKind::Output) | (_, SectionKind::Static) => self.frame(declared, span),
-            (kind, section) if kind.keeps_nothing() || section == SectionKind::Temp => {
-                self.reject_instance(declared.ty, span)?;
-                self.temporary(declared, name)
-            }
-            // Nobody calls a program, so nobody could give the variable.
-            (PouKind::Program, SectionKind::InOut) => {
-                let message = "a program has no VAR_IN_OUT";
-                self.body.report(Diagnostic::error(Code::WrongSection, span, message));
-                None
-            }
-            (_, SectionKind::InOut) => {
-                let pointer: TypeId = POINTER.into();
-                let image = vec![0; POINTER.size() as usize].into();
-                let offset = self.in_instance(&plain(pointer, image), span)?;
-                Some(Storage::InstancePointer(offset))
-            }
-            _ => Some(Storage::Instance(self.in_instance(declared, span)?)),
-        }
-    }
-
-    fn is_open(&self, ty: TypeId) -> bool {
-        matches!(self.body.checker.types.get(ty), crate::ir::Type::OpenArray { .. })
-    }
-
-    /// The trigger of an input with `R_EDGE` or `F_EDGE`.
-    fn edge_detection(&mut self, edge: ast::Edge, variable: &Variable) -> Option<EdgeDetection> {
-        let bool_type: TypeId = ElementaryType::Bool.into();
-        let suitable = variable.section == SectionKind::Input && !self.kind.keeps_nothing();
-        if !suitable || variable.ty != bool_type {
-            let message = "R_EDGE and F_EDGE are for BOOL inputs of function blocks and programs";
-            self.body.report(Diagnostic::error(Code::WrongSection, variable.span, message));
-            return None;
-        }
-        let image = Arc::from([0]);
-        let memory = Storage::Instance(self.in_instance(&plain(bool_type, image), variable.span)?);
-        let seen = self.body.scope.register(ElementaryType::Bool);
-        Some(EdgeDetection { edge, memory, seen })
-    }
-
-    /// Functions keep nothing between calls (2nd ed. 2.5.1), instances do.
-    fn reject_instance(&mut self, ty: TypeId, span: Span) -> Option<()> {
-        if matches!(self.body.checker.types.get(ty), crate::ir::Type::FunctionBlock { .. }) {
-            let message = "a function or VAR_TEMP section keeps nothing, so it has no instances";
-            let found = Diagnostic::error(Code::WrongSection, span, message);
-            self.body.report(found.with_help("declare it in VAR or pass it by VAR_IN_OUT"));
-            return None;
-        }
-        Some(())
-    }
-
-    /// A value comes in a register, an aggregate's address too; the callee copies that.
-    pub(super) fn parameter(&mut self, declared: &TypedImage<'_>, name: &Ident) -> Option<Storage> {
-        if let Some(ty) = self.body.elementary(declared.ty) {
-            let register = self.body.scope.register(ty);
-            let referred = self.referred.contains(&name.key());
-            return if referred { self.frame(declared, name.span) } else { Some(Storage::Register(register)) };
-        }
-        self.reject_instance(declared.ty, name.span)?;
-        self.body.scope.register(POINTER);
-        self.frame(declared, name.span)
-    }
-
-    fn temporary(&mut self, declared: &TypedImage<'_>, name: &Ident) -> Option<Storage> {
-        match self.body.elementary(declared.ty) {
-            Some(ty) if !self.referred.contains(&name.key()) => Some(Storage::Register(self.body.scope.register(ty))),
-            _ => self.frame(declared, name.span),
-        }
-    }
-
-    /// Fixed memory: no unit is active twice (2nd ed. 2.5, no recursion).
-    pub(super) fn frame(&mut self, declared: &TypedImage<'_>, span: Span) -> Option<Storage> {
-        self.body.scope.has_memory = true;
-        let types = &self.body.checker.types;
-        let (size, align) = (types.size(declared.ty), types.align(declared.ty));
-        let offset = self.body.checker.allocate(size, align, span)?;
-        self.body.checker.placed.push((offset, declared.image.clone()));
-        Some(Storage::Absolute(offset))
-    }
-
-    pub(super) fn in_instance(&mut self, declared: &TypedImage<'_>, span: Span) -> Option<u32> {
-        let align = self.body.checker.types.align(declared.ty);
-        let offset = align_up(self.image.len() as u32, align);
-        if offset as usize + declared.image.len() > MEMORY_LIMIT as usize {
-            self.body.checker.report_too_large(span);
-            return None;
-        }
-        let size = declared.image.len() as u64;
-        self.body.checker.charge_image(size, span)?;
-        self.align = self.align.max(align);
-        self.image.resize(offset as usize, 0);
-        self.image.extend_from_slice(&declared.image);
-        Some(offset)
     }
 
     /// `VAR_EXTERNAL` names a global variable of the same type (2nd ed. 2.4.3).

@@ -202,6 +202,7 @@ features! {
     Jumps "a jump or a label in Structured Text",
     StaticSection "`VAR_STAT`",
     InstanceSection "`VAR_INST`",
+    FleetingInstances "an instance that lasts for one call of a function or method",
     InitArguments "an instance's arguments for `FB_init`",
     ComputedInitialValues "an initial value that is no constant",
     BitArithmetic "a bit string as a number, or a number as a bit string",

@@ -36,6 +36,7 @@ pub const FEATURES: &[FeatureRow] = &[
     row(Feature::Jumps, &[Codesys, TwinCat, SiemensScl], "CODESYS, TwinCAT: ST instruction JMP; TIA Portal: GOTO"),
     row(Feature::StaticSection, &[Codesys, TwinCat], "CODESYS and TwinCAT: VAR_STAT"),
     row(Feature::InstanceSection, &[Codesys, TwinCat], "CODESYS and TwinCAT: VAR_INST"),
+    row(Feature::FleetingInstances, &[Codesys, TwinCat], "CODESYS and TwinCAT: VAR of methods and functions"),
     row(Feature::InitArguments, &[Codesys, TwinCat], "CODESYS and TwinCAT: methods FB_init, FB_reinit, FB_exit"),
     row(Feature::ComputedInitialValues, &[Codesys, TwinCat], "CODESYS and TwinCAT: initialization of variables"),
     row(Feature::BitArithmetic, &[Codesys, TwinCat], "CODESYS and TwinCAT: integer data types list BYTE to LWORD"),

@@ -142,7 +142,10 @@ impl Writer<'_> {
             self.declare_triggers(element);
         }
         for body in element.elements().filter(|inner| inner.name == "body") {
-            self.body(body);
+            match body.child("SFC") {
+                Some(sfc) => self.chart(sfc, element),
+                None => self.body(body),
+            }
         }
         self.write(end, &element.close);
         self.actions(element);

@@ -18,7 +18,7 @@ fn additions<'e>(element: &'e Element, kind: &'static str) -> impl Iterator<Item
 }
 
 /// The text of an element without markup.
-fn inner_text(file: &str, element: &Element) -> String {
+pub(super) fn inner_text(file: &str, element: &Element) -> String {
     let piece = |node: &Node| match node {
         Node::Verbatim(span) => file.get(span.start as usize..span.end as usize).unwrap_or("").to_owned(),
         Node::Reference(character, _) => character.to_string(),
@@ -71,10 +71,13 @@ impl Writer<'_> {
         }
     }
 
-    /// `<action name="a">`; a transition is part of a chart, which is not read.
+    /// `<action name="a">`; a transition is part of a chart.
     pub(super) fn actions(&mut self, pou: &Element) {
         for part in pou.elements().filter(|inner| matches!(inner.name.as_str(), "actions" | "transitions")) {
             for inner in part.elements() {
+                if inner.name == "transition" && pou.child("body").is_some_and(|body| body.child("SFC").is_some()) {
+                    continue;
+                }
                 if inner.name != "action" {
                     let name = inner.attribute("name").map_or("", |name| name.value.as_str());
                     let what = format!("{} `{name}`", inner.name.to_uppercase());

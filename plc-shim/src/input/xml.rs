@@ -10,29 +10,29 @@ const MAX_DEPTH: usize = 100;
 
 /// An element.
 #[derive(Debug, Default)]
-pub(super) struct Element {
+pub(crate) struct Element {
     /// Its name without a prefix.
-    pub(super) name: String,
-    pub(super) attributes: Vec<Attribute>,
-    pub(super) children: Vec<Node>,
+    pub(crate) name: String,
+    pub(crate) attributes: Vec<Attribute>,
+    pub(crate) children: Vec<Node>,
     /// Its opening tag.
-    pub(super) open: Range<u32>,
+    pub(crate) open: Range<u32>,
     /// Its closing tag; the opening one of an empty element.
-    pub(super) close: Range<u32>,
+    pub(crate) close: Range<u32>,
 }
 
 /// `name="value"`
 #[derive(Debug)]
-pub(super) struct Attribute {
-    pub(super) name: String,
-    pub(super) value: String,
+pub(crate) struct Attribute {
+    pub(crate) name: String,
+    pub(crate) value: String,
     /// Where the value stands.
-    pub(super) span: Range<u32>,
+    pub(crate) span: Range<u32>,
 }
 
 /// What an element holds.
 #[derive(Debug)]
-pub(super) enum Node {
+pub(crate) enum Node {
     Element(Element),
     /// Text that stands in the file as it is meant.
     Verbatim(Range<u32>),
@@ -42,30 +42,30 @@ pub(super) enum Node {
 
 /// Why a file is no XML.
 #[derive(Debug)]
-pub(super) struct XmlError {
-    pub(super) at: u32,
-    pub(super) message: String,
+pub(crate) struct XmlError {
+    pub(crate) at: u32,
+    pub(crate) message: String,
 }
 
 impl Element {
-    pub(super) fn elements(&self) -> impl Iterator<Item = &Self> {
+    pub(crate) fn elements(&self) -> impl Iterator<Item = &Self> {
         self.children.iter().filter_map(|node| match node {
             Node::Element(element) => Some(element),
             _ => None,
         })
     }
 
-    pub(super) fn child(&self, name: &str) -> Option<&Self> {
+    pub(crate) fn child(&self, name: &str) -> Option<&Self> {
         self.elements().find(|element| element.name == name)
     }
 
-    pub(super) fn attribute(&self, name: &str) -> Option<&Attribute> {
+    pub(crate) fn attribute(&self, name: &str) -> Option<&Attribute> {
         self.attributes.iter().find(|attribute| attribute.name == name)
     }
 }
 
 /// The file's outermost element.
-pub(super) fn parse(text: &str) -> Result<Element, XmlError> {
+pub(crate) fn parse(text: &str) -> Result<Element, XmlError> {
     let mut reader = Reader::from_str(text);
     // The innermost open element is the last one.
     let mut open = vec![Element::default()];

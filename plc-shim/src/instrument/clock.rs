@@ -113,6 +113,22 @@ pub(super) fn fate(key: &str, kind: Kind) -> Option<Fate> {
     if kind == Kind::Block { motion::role(key).map(Fate::Motion) } else { None }
 }
 
+/// The name of the block that takes the place of one of this name.
+pub(super) fn replacement(name: &str) -> Option<String> {
+    let key = name.to_ascii_uppercase();
+    let kinds = [Kind::Block, Kind::Function];
+    kinds.into_iter().find_map(|kind| match fate(&key, kind) {
+        Some(Fate::Replaced(form)) => Some(form.new_name()),
+        _ => None,
+    })
+}
+
+/// What the shim's action control is made of.
+pub(super) fn on_delay() -> &'static Form {
+    let [form, ..] = &FORMS;
+    form
+}
+
 impl Form {
     /// The name that takes its place.
     pub(super) fn new_name(&self) -> String {

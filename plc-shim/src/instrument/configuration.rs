@@ -1,12 +1,13 @@
 //! A project's CONFIGURATION (2nd ed. 2.7): its tasks are read, the scheduler is put into it.
 
+use super::constant::{self, Constant, Constants};
 use super::edits::Edits;
 use super::marks;
 use super::tasks::TaskTable;
 use crate::diagnostic::{Code, Diagnostic};
 use crate::run::Task;
 use crate::syntax::SourceFile;
-use crate::syntax::ast::{Configuration, Connection, ExprKind, Ident, Literal, Resource, TaskDeclaration};
+use crate::syntax::ast::{Configuration, Connection, Ident, Resource, TaskDeclaration};
 use crate::syntax::lexer::tokenize_in;
 
 /// What is due at every grant has this interval.
@@ -26,13 +27,13 @@ pub(super) fn entry_name(resource: &Resource, instance: &Ident) -> String {
 ///
 /// # Errors
 /// A task that the scheduler cannot stand for.
-pub(super) fn tasks(configuration: &Configuration) -> Result<Vec<Task>, Diagnostic> {
+pub(super) fn tasks(configuration: &Configuration, constants: &Constants<'_>) -> Result<Vec<Task>, Diagnostic> {
     let mut tasks = Vec::new();
     let mut background = Vec::new();
     for resource in &configuration.resources {
         let first = tasks.len();
         for declared in &resource.tasks {
-            let mut task = task(declared)?;
+            let mut task = task(declared, constants)?;
             if let Some((name, _)) = &resource.name {
                 task.name = format!("{}.{}", name.text, task.name);
             }
@@ -63,17 +64,18 @@ pub(super) fn tasks(configuration: &Configuration) -> Result<Vec<Task>, Diagnost
     Ok(tasks)
 }
 
-fn task(declared: &TaskDeclaration) -> Result<Task, Diagnostic> {
+fn task(declared: &TaskDeclaration, constants: &Constants<'_>) -> Result<Task, Diagnostic> {
     let mut task = Task { name: declared.name.text.clone(), ..Task::default() };
-    for (input, value) in &declared.inputs {
-        match (input.key().as_str(), &value.kind) {
-            ("INTERVAL", ExprKind::Literal(Literal::Duration { ns, .. })) if *ns > 0 => task.interval_ns = *ns as u64,
-            ("PRIORITY", ExprKind::Literal(Literal::Integer(rank))) => {
-                task.priority =
-                    u32::try_from(*rank).map_err(|_| unsupported(input, "PRIORITY other than a literal"))?;
+    for (input, given) in &declared.inputs {
+        match (input.key().as_str(), constant::value(given, constants)) {
+            ("INTERVAL", Some(Constant::Duration(ns))) => {
+                task.interval_ns = u64::try_from(ns).map_err(|_| unsupported(input, "INTERVAL below 0"))?;
+            }
+            ("PRIORITY", Some(Constant::Integer(rank))) => {
+                task.priority = u32::try_from(rank).map_err(|_| unsupported(input, "PRIORITY below 0"))?;
             }
             ("SINGLE", _) => return Err(unsupported(input, "a task with SINGLE")),
-            (input_name, _) => return Err(unsupported(input, &format!("{input_name} other than a literal"))),
+            (name, _) => return Err(unsupported(input, &format!("{name} other than a constant"))),
         }
     }
     if task.interval_ns == 0 {

@@ -11,19 +11,51 @@ use crate::syntax::walk::{self, Visitor};
 
 /// Adds the execution controller of `pou`, one of so many programs.
 pub(super) fn control(pou: &Pou, number: Number, programs: usize, file: &SourceFile, edits: &mut Edits) {
-    let Controller { declarations, header, close, footer } = template::controller(number, programs);
+    let controller = template::controller(number, programs);
+    let Controller { declarations, header, .. } = &controller;
     let line_break = marks::line_break(file.shown_text());
     let places = Places::of(pou, file);
+    if is_list(pou) {
+        return control_list(&controller, &places, line_break, edits);
+    }
     if places.declarations == places.header {
         edits.insert(places.header, marks::lines(&format!("{declarations}\n{header}"), line_break));
     } else {
-        edits.insert(places.declarations, marks::lines(&declarations, line_break));
-        edits.insert(places.header, marks::lines(&header, line_break));
+        edits.insert(places.declarations, marks::lines(declarations, line_break));
+        edits.insert(places.header, marks::lines(header, line_break));
     }
+    end(pou, &controller, &places, file, edits);
+}
+
+/// True for a body in Instruction List.
+fn is_list(pou: &Pou) -> bool {
+    pou.body.iter().any(|statement| matches!(statement.kind, StatementKind::Instruction(_)))
+}
+
+/// A list of instructions stays one: it becomes an action that statements call, so that `RET` ends the action alone.
+fn control_list(controller: &Controller, places: &Places, line_break: &str, edits: &mut Edits) {
+    let Controller { declarations, header, close, footer } = controller;
+    edits.insert(places.header, marks::lines(&format!("{declarations}\nACTION SDSP_Body:"), line_break));
+    let statements = format!("END_ACTION\n{header}\n    SDSP_Body();\n{close}\n{footer}");
+    edits.insert(places.footer, marks::lines(&statements, line_break));
+}
+
+/// The same without its variables, which are declared elsewhere.
+pub(super) fn control_statements(pou: &Pou, controller: &Controller, file: &SourceFile, edits: &mut Edits) {
+    let places = Places::of(pou, file);
+    let line_break = marks::line_break(file.shown_text());
+    edits.insert(places.header, marks::lines(&controller.header, line_break));
+    end(pou, controller, &places, file, edits);
+}
+
+/// What stands at the end of a body and before each RETURN.
+fn end(pou: &Pou, controller: &Controller, places: &Places, file: &SourceFile, edits: &mut Edits) {
+    let Controller { close, footer, .. } = controller;
+    let line_break = marks::line_break(file.shown_text());
     let mut returns = Returns { starts: Vec::new() };
     walk::statements(&pou.body, &mut returns);
     for start in returns.starts {
-        edits.insert(file.shown_range(start, start + 1).start, marks::inline(&footer));
+        edits.insert(file.shown_range(start, start + 1).start, marks::inline(footer));
     }
     // A branch wants a statement (2nd ed. 3.3.2).
     let nothing = if pou.body.is_empty() { ";\n" } else { "" };

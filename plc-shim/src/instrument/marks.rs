@@ -6,7 +6,10 @@
 //! | `(*@sdsp begin*)` .. `(*@sdsp end*)` | this, the marks and a line break behind them was put in |
 //! | `SDSP_TON(*@sdsp was TON*)` | the name in front of the mark stands for another |
 //!
-//! In XML outside of program text the first three are XML comments.
+//! | `<a x="SDSP_TON"/><!--@sdsp was TON-->` | the name in the tag in front of the mark stands for another |
+//! | `<!--@sdsp cut <a/>-->` | this stood here |
+//!
+//! In XML outside of program text the first three are XML comments, too.
 
 use std::ops::Range;
 
@@ -72,6 +75,25 @@ pub(super) fn renamed(new: &str, old: &str) -> String {
     format!("{new}{OPENING}was {old}{CLOSING}")
 }
 
+/// The mark behind a tag in which a name stands for `old`.
+pub(super) fn renamed_before(old: &str) -> String {
+    format!("{XML_OPENING}was {old}{XML_CLOSING}")
+}
+
+/// The mark for a tag that is taken out.
+pub(super) fn cut(tag: &str) -> String {
+    format!("{XML_OPENING}cut {tag}{XML_CLOSING}")
+}
+
+/// Where the name stands in the tag before a mark that says what it was.
+fn renamed_in_tag(before: &str, old: &str) -> Option<Range<u32>> {
+    let new = format!("SDSP_{old}");
+    let tag = before.rfind('<')?;
+    let inside = before.get(tag..)?;
+    let at = tag + inside.to_ascii_uppercase().rfind(&new.to_ascii_uppercase())?;
+    Some(at as u32..(at + new.len()) as u32)
+}
+
 /// Marks that do not fit together.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 #[error("{message}")]
@@ -110,6 +132,16 @@ pub(super) fn original(text: &str) -> Result<Original, DamagedMarks> {
             }
             ("end", None) => return Err(damaged("this mark ends what has not begun")),
             // Within what was put in anything may stand.
+            (says, None) if says.starts_with("cut ") => {
+                edits.replace(mark.at.start as u32..mark.at.end as u32, says.strip_prefix("cut ").unwrap_or(""));
+            }
+            (says, None) if mark.is_xml && says.starts_with("was ") => {
+                let old = says.strip_prefix("was ").unwrap_or("");
+                let before = text.get(..mark.at.start).unwrap_or("");
+                let at = renamed_in_tag(before, old).ok_or_else(|| damaged("the name that this tells of is gone"))?;
+                edits.replace(at, old);
+                edits.replace(mark.at.start as u32..mark.at.end as u32, "");
+            }
             (says, None) => {
                 let old = says.strip_prefix("was ").ok_or_else(|| damaged("this mark is not known"))?;
                 let before = text.get(..mark.at.start).unwrap_or("");
@@ -136,6 +168,8 @@ pub(super) fn original(text: &str) -> Result<Original, DamagedMarks> {
 struct Mark<'t> {
     at: Range<usize>,
     says: &'t str,
+    /// True for a comment of XML.
+    is_xml: bool,
 }
 
 impl<'t> Mark<'t> {
@@ -146,7 +180,7 @@ impl<'t> Mark<'t> {
             let says = rest.get(start + opening.len()..)?;
             let says = says.get(..says.find(closing)?)?;
             let end = start + opening.len() + says.len() + closing.len();
-            Some(Self { at: from + start..from + end, says })
+            Some(Self { at: from + start..from + end, says, is_xml: opening == XML_OPENING })
         };
         let marks = [found(OPENING, CLOSING), found(XML_OPENING, XML_CLOSING)];
         marks.into_iter().flatten().min_by_key(|mark| mark.at.start)

@@ -11,21 +11,28 @@
 //! | [`motion`], [`motion_use`] | motion control, and what of it a project uses |
 //! | [`survey`] | programs and sources of time in a project |
 //! | [`tasks`] | the task table |
+//! | [`constant`] | constant expressions of tasks |
 //! | [`configuration`] | a project's CONFIGURATION |
 //! | [`controller`] | execution controllers |
+//! | [`plcopen`], [`plcopen_unit`] | projects in PLCopen XML |
+//! | [`chart`] | Sequential Function Charts: execution signal, action control, times of steps |
 //! | [`target`], [`twincat`] | the shim's sources as a vendor's tool takes them |
 //!
 //! Invariants: text goes in and comes out, no file is touched; what is not marked stays byte for byte;
 //! instrumenting twice is instrumenting once; what cannot be replaced is told.
 
+mod chart;
 mod clock;
 mod configuration;
+mod constant;
 mod controller;
 pub mod diff;
 pub mod edits;
 mod marks;
 mod motion;
 mod motion_use;
+mod plcopen;
+mod plcopen_unit;
 mod survey;
 mod target;
 mod tasks;
@@ -137,14 +144,20 @@ pub fn instrument(inputs: &[Input], options: &Options) -> Result<Project, Instru
     findings.append(&mut survey.findings);
     let mut motion = motion_use::motion(options.target, &trees, &survey.motion);
     findings.append(&mut motion.findings);
+    findings.extend(plain.unsuited(options.target));
     if findings.iter().any(|found| found.severity == Severity::Error) {
         return Err(InstrumentError::Text(Diagnostics::new(findings, &plain.sources)));
     }
     let tasks = TaskTable::new(&plain.tasks(&survey, options)?, &entries(&survey))?;
     let mut forms: Vec<_> = survey.renames.iter().map(|(_, form)| *form).collect();
+    forms.extend((!survey.charts.is_empty()).then(clock::on_delay));
     forms.sort_by_key(|form| form.name);
     forms.dedup();
-    let sources = Sources::new(options.target, &tasks, &forms, &motion.blocks);
+    let sources = Sources::new(options.target, &tasks, &forms, &motion.blocks, &survey.charts);
+    if plain.is_xml() {
+        let files = vec![plain.edited_xml(&survey, &motion, &tasks, &sources)?];
+        return Ok(Project { files, warnings: Diagnostics::new(findings, &plain.sources) });
+    }
     let mut files = plain.edited(&survey, &motion, &tasks, &sources.globals)?;
     let globals = if survey.configuration.is_some() { Globals::InConfiguration } else { Globals::InFile };
     for source in sources.files(options.target, globals) {
@@ -186,6 +199,8 @@ struct Plain {
     sources: SourceMap,
     /// Of each file in `sources` what it was when it was given.
     given: Vec<Given>,
+    /// What kind of file each of them is.
+    kinds: Vec<SourceKind>,
     /// The shim's own files that were given.
     own: Vec<Given>,
     /// TwinCAT projects, and what they are without the shim.
@@ -206,6 +221,7 @@ impl Plain {
         let mut plain = Self {
             sources: SourceMap::default(),
             given: Vec::new(),
+            kinds: Vec::new(),
             own: Vec::new(),
             manifests: Vec::new(),
             findings: Vec::new(),
@@ -244,12 +260,71 @@ impl Plain {
         self.given.push(given);
         let id = FileId(self.sources.iter().count() as u32);
         self.findings.extend(plain.add_to(&mut self.sources));
+        self.kinds.push(kind);
+        let mixed = self.kinds.contains(&SourceKind::PlcOpen) && self.kinds.len() > 1;
         let refused = match (kind, input.file().dialect()) {
-            (SourceKind::PlcOpen, _) => "PLCopen XML is not instrumented yet",
+            _ if mixed => "a project in PLCopen XML is one file, other sources beside it are not instrumented yet",
             (_, Dialect::SiemensScl) => "SCL is not instrumented yet",
             _ => return,
         };
         self.findings.push(Diagnostic::error(Code::UnsupportedFeature, Span::new(id, 0, 0), refused));
+    }
+
+    /// True for a project in PLCopen XML, which is one file.
+    fn is_xml(&self) -> bool {
+        self.kinds.contains(&SourceKind::PlcOpen)
+    }
+
+    /// A target that does not take the project's kind of file.
+    fn unsuited(&self, target: Target) -> Option<Diagnostic> {
+        let message = match target {
+            Target::Codesys if !self.is_xml() => "the target codesys takes a project in PLCopen XML",
+            Target::TwinCat if self.is_xml() => "the target twincat takes TwinCAT's own files, not PLCopen XML",
+            _ => return None,
+        };
+        let found = Diagnostic::error(Code::UnsupportedFeature, Span::new(FileId(0), 0, 0), message);
+        Some(found.with_help("export the project in that form, or choose another target"))
+    }
+
+    /// The project's only file with its changes and all that is the shim's.
+    fn edited_xml(
+        &self,
+        survey: &Survey<'_>,
+        motion: &Motion,
+        tasks: &TaskTable<'_>,
+        sources: &Sources,
+    ) -> Result<File, InstrumentError> {
+        let wrong = |span, message: &str| {
+            let found = Diagnostic::error(Code::UnsupportedFeature, span, message);
+            InstrumentError::Text(Diagnostics::new(vec![found], &self.sources))
+        };
+        let whole = Span::new(FileId(0), 0, 0);
+        let (Some(given), Some(file)) = (self.given.first(), self.sources.get(FileId(0))) else {
+            return Err(InstrumentError::NoPrograms);
+        };
+        if !survey.charts.is_empty() {
+            return Err(wrong(whole, "a chart in PLCopen XML is not instrumented yet"));
+        }
+        if let Some((name, _)) = motion.renames.first() {
+            return Err(wrong(name.span, "motion control in PLCopen XML is not instrumented yet"));
+        }
+        let root = plcopen::tree(file).ok_or_else(|| wrong(whole, "this is no XML"))?;
+        let mut edits = Edits::default();
+        for (name, form) in &survey.renames {
+            plcopen::rename(file, name.span.start..name.span.end, &name.text, &form.new_name(), &mut edits);
+        }
+        let declared = |name: &str| survey.is_declared(name);
+        let new = |name: &str| clock::replacement(name).filter(|_| !declared(name));
+        plcopen::rename_blocks(&root, file.shown_text(), &new, &mut edits);
+        for (pou, number) in tasks.numbered() {
+            plcopen::control(pou, number, tasks.programs.len(), (file, &root), &mut edits)
+                .map_err(|message| wrong(pou.name.span, message))?;
+        }
+        plcopen::attach(&root, file.shown_text(), tasks, &sources.globals, &sources.units(), &mut edits)
+            .map_err(|message| wrong(whole, message))?;
+        let conflict = |conflict| InstrumentError::Conflict { file: given.name.clone(), conflict };
+        let Edited { text, lines } = edits.apply(file.shown_text()).map_err(conflict)?;
+        Ok(given.file(Some(text.into()), lines))
     }
 
     fn damaged(&mut self, name: &str, text: &Arc<str>, damaged: &marks::DamagedMarks) {
@@ -266,7 +341,7 @@ impl Plain {
         }
         if let Some(configuration) = survey.configuration {
             let wrong = |found| InstrumentError::Text(Diagnostics::new(vec![found], &self.sources));
-            return configuration::tasks(configuration).map_err(wrong);
+            return configuration::tasks(configuration, &survey.constants).map_err(wrong);
         }
         let scheduled = survey.programs.iter().filter(|program| !survey.called.contains(&program.name.key()));
         let programs: Vec<String> = scheduled.map(|program| program.name.text.clone()).collect();
@@ -297,7 +372,14 @@ impl Plain {
                 edits.replace(at, marks::renamed(&new, &name.text));
             });
         }
-        for (pou, number) in tasks.numbered() {
+        for pou in &survey.charts {
+            let number = tasks.numbered().find(|(numbered, _)| std::ptr::eq(*numbered, *pou));
+            let number = number.map(|(_, number)| (number, tasks.programs.len()));
+            changes(pou.name.span.file, &mut |file, edits| {
+                chart::control(pou, number, &survey.renames, file, edits);
+            });
+        }
+        for (pou, number) in tasks.numbered().filter(|(pou, _)| pou.chart.is_empty()) {
             changes(pou.name.span.file, &mut |file, edits| {
                 controller::control(pou, number, tasks.programs.len(), file, edits);
             });

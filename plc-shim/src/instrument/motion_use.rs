@@ -146,6 +146,8 @@ impl Reader {
     /// `m : MC_MoveAbsolute := (Velocity := 1.0)`, and of arrays.
     fn initial_value(&mut self, of: &Kind, initial: &Initialiser) {
         match &initial.kind {
+            // They are the simulated axis's.
+            InitialiserKind::Struct(_) if *of == Kind::Axis => {}
             InitialiserKind::Struct(members) => {
                 for member in members {
                     self.used(Some(of.clone()), &member.name);

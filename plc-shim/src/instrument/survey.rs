@@ -3,6 +3,7 @@
 use std::collections::BTreeSet;
 
 use super::clock::{self, Fate, Form, Kind};
+use super::constant::{self, Constants};
 use super::motion::Role;
 use crate::application::library;
 use crate::check::{VIRTUAL_TIME_NAME, is_standard_function};
@@ -22,12 +23,18 @@ pub(super) struct Survey<'a> {
     pub(super) programs: Vec<&'a Pou>,
     /// The first configuration.
     pub(super) configuration: Option<&'a Configuration>,
+    /// Global constants.
+    pub(super) constants: Constants<'a>,
     /// Programs that others call.
     pub(super) called: BTreeSet<String>,
+    /// Programs and function blocks that are charts.
+    pub(super) charts: Vec<&'a Pou>,
     /// Names to be replaced.
     pub(super) renames: Vec<(Ident, &'static Form)>,
     /// Names of blocks and types of motion control.
     pub(super) motion: Vec<(Ident, Role)>,
+    /// Keys of the units and types that the project declares.
+    declared: BTreeSet<String>,
     /// What cannot be replaced, and names that the shim needs for itself.
     pub(super) findings: Vec<Diagnostic>,
 }
@@ -37,7 +44,8 @@ pub(super) fn survey<'a>(units: &[(FileId, &'a CompilationUnit)]) -> Survey<'a> 
     let declarations = || units.iter().flat_map(|(_, unit)| &unit.declarations);
     let mut names = Names::default();
     declarations().for_each(|declaration| names.add(declaration));
-    let mut surveyor = Surveyor { names: &names, local: BTreeSet::new(), survey: Survey::default() };
+    let survey = Survey { declared: names.units_and_types.clone(), ..Survey::default() };
+    let mut surveyor = Surveyor { names: &names, local: BTreeSet::new(), survey };
     declarations().for_each(|declaration| surveyor.declaration(declaration));
     surveyor.survey
 }
@@ -48,6 +56,13 @@ struct Names {
     programs: BTreeSet<String>,
     units_and_types: BTreeSet<String>,
     globals: BTreeSet<String>,
+}
+
+impl Survey<'_> {
+    /// True for a name that the project gives to a unit or type of its own.
+    pub(super) fn is_declared(&self, name: &str) -> bool {
+        self.declared.contains(&name.to_ascii_uppercase())
+    }
 }
 
 impl Names {
@@ -118,10 +133,20 @@ impl<'a> Surveyor<'_, 'a> {
         if pou.kind == PouKind::Program {
             self.survey.programs.push(pou);
         }
+        if pou.kind == PouKind::FunctionBlock {
+            pou.object.extends.iter().for_each(|base| self.base(base));
+        }
         self.local = pou.sections.iter().flat_map(variable_names).collect();
+        // An action is called by its name.
+        self.local.extend(pou.object.members.iter().map(|member| member.pou.name.key()));
         pou.result.iter().for_each(|result| self.spec(result));
         pou.sections.iter().for_each(|section| self.section(section));
-        walk::statements(&pou.body, self);
+        if !pou.chart.is_empty() {
+            self.survey.charts.push(pou);
+            self.survey.findings.extend(super::chart::findings(pou));
+        }
+        self.own_parts(pou);
+        walk::unit(pou, self);
         for member in pou.object.members.iter().map(|member| &member.pou) {
             self.local.extend(member.sections.iter().flat_map(variable_names));
             member.result.iter().for_each(|result| self.spec(result));
@@ -131,7 +156,16 @@ impl<'a> Surveyor<'_, 'a> {
         self.local.clear();
     }
 
-    fn globals(&mut self, section: &Section) {
+    /// What a function block is derived from. How a derived one is used tells nothing of a motion block's inputs.
+    fn base(&mut self, name: &Ident) {
+        self.type_name(name);
+        if let Some((_, role)) = self.survey.motion.last_mut().filter(|(met, _)| met.span == name.span) {
+            *role = Role::Foreign("a function block is derived from it");
+        }
+    }
+
+    fn globals(&mut self, section: &'a Section) {
+        constant::note(section, &mut self.survey.constants);
         section.variables.iter().flat_map(|each| &each.names).for_each(|name| self.own_name(name));
         self.section(section);
     }
@@ -142,6 +176,12 @@ impl<'a> Surveyor<'_, 'a> {
         configuration.sections.iter().chain(resources).for_each(|section| self.globals(section));
         configuration.access.iter().for_each(|access| self.spec(&access.spec));
         configuration.instances.iter().for_each(|instance| self.spec(&instance.spec));
+    }
+
+    /// Steps and actions have names among those of the shim's own.
+    fn own_parts(&mut self, pou: &Pou) {
+        pou.chart.steps.iter().for_each(|step| self.own_name(&step.name));
+        pou.object.members.iter().for_each(|member| self.own_name(&member.pou.name));
     }
 
     /// A name that a project gives must not be one of the shim's.

@@ -8,6 +8,7 @@ use super::motion::{self, Part, Use};
 use super::tasks::TaskTable;
 use super::template::{self, Only};
 use super::twincat;
+use crate::syntax::ast::Pou;
 
 /// For whom the shim's sources are written.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -17,6 +18,8 @@ pub enum Target {
     Iec,
     /// TwinCAT 3: an object a file.
     TwinCat,
+    /// CODESYS: a project in PLCopen XML.
+    Codesys,
 }
 
 /// A file of the shim's own.
@@ -41,6 +44,16 @@ struct Unit {
     text: String,
 }
 
+/// What charts need.
+fn chart_units() -> impl Iterator<Item = Unit> {
+    let units = [
+        ("SDSP_ACTION_CONTROL", template::ACTION_CONTROL),
+        ("SDSP_SFC_STEP", template::STEP),
+        ("SDSP_ELAPSED", template::ELAPSED),
+    ];
+    units.into_iter().map(|(name, text)| Unit { name: name.to_owned(), text: text.to_owned() })
+}
+
 /// Where the shim's variables are.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Globals {
@@ -51,30 +64,45 @@ pub(super) enum Globals {
 }
 
 impl Sources {
-    pub(super) fn new(target: Target, tasks: &TaskTable<'_>, forms: &[&Form], blocks: &BTreeMap<String, Use>) -> Self {
+    pub(super) fn new(
+        target: Target,
+        tasks: &TaskTable<'_>,
+        forms: &[&Form],
+        blocks: &BTreeMap<String, Use>,
+        charts: &[&Pou],
+    ) -> Self {
         let wanted: &[Only] = if forms.iter().any(|form| form.long) { &[Only::LongTime] } else { &[] };
         let mut names = tasks.names();
         // A TIME has nanoseconds in the one and milliseconds in the other.
         let (now, now_long) = match target {
             Target::Iec => ("TV * T#0.000001ms", "TV * LT#1ns"),
-            Target::TwinCat => ("LINT_TO_TIME(TV / 1000000)", "LINT_TO_LTIME(TV)"),
+            Target::TwinCat | Target::Codesys => ("LINT_TO_TIME(TV / 1000000)", "LINT_TO_LTIME(TV)"),
         };
         names.extend([("SDSP_NOW_OF_TV", now.to_owned()), ("SDSP_NOWL_OF_TV", now_long.to_owned())]);
         let filled = |template: &str| template::fill(&template::lines_for(template, wanted), &names);
         let unit = |form: &&Form| Unit { name: form.new_name(), text: form.text() };
+        let mut units: Vec<Unit> = forms.iter().map(unit).collect();
+        if !charts.is_empty() {
+            units.extend(chart_units());
+        }
         Self {
             globals: filled(template::GLOBALS),
             scheduler: filled(template::SCHEDULER),
-            forms: forms.iter().map(unit).collect(),
+            forms: units,
             motion: motion::parts(target, blocks),
         }
+    }
+
+    /// The units, for a project that has them in a file of its own.
+    pub(super) fn units(&self) -> Vec<String> {
+        std::iter::once(&self.scheduler).chain(self.forms.iter().map(|unit| &unit.text)).cloned().collect()
     }
 
     /// The files in which they are.
     pub(super) fn files(self, target: Target, globals: Globals) -> Vec<Source> {
         let own = (globals == Globals::InFile).then_some(self.globals);
         match target {
-            Target::Iec => {
+            Target::Iec | Target::Codesys => {
                 let forms = self.forms.into_iter().map(|unit| unit.text);
                 let motion = self.motion.into_iter().map(|part| part.text);
                 let parts: Vec<String> = own.into_iter().chain([self.scheduler]).chain(forms).chain(motion).collect();

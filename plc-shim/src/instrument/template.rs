@@ -9,6 +9,10 @@ use crate::syntax::tokenize;
 pub(super) const GLOBALS: &str = include_str!("../../iec/shim/globals.st");
 pub(super) const SCHEDULER: &str = include_str!("../../iec/shim/scheduler.st");
 pub(super) const EXECUTION_CONTROLLER: &str = include_str!("../../iec/shim/execution_controller.st");
+pub(super) const CHART_CONTROLLER: &str = include_str!("../../iec/shim/chart_controller.st");
+pub(super) const ACTION_CONTROL: &str = include_str!("../../iec/shim/action_control.st");
+pub(super) const STEP: &str = include_str!("../../iec/shim/step.st");
+pub(super) const ELAPSED: &str = include_str!("../../iec/shim/elapsed.st");
 pub(super) const ON_DELAY: &str = include_str!("../../iec/shim/on_delay.st");
 pub(super) const OFF_DELAY: &str = include_str!("../../iec/shim/off_delay.st");
 pub(super) const PULSE: &str = include_str!("../../iec/shim/pulse.st");
@@ -77,24 +81,56 @@ pub(super) enum Number {
     OfInstance,
 }
 
-/// The execution controller of one of so many programs.
-pub(super) fn controller(number: Number, programs: usize) -> Controller {
+/// A controller's template for one of so many programs.
+fn numbered(template: &str, number: Number, programs: usize) -> String {
     let (number, wanted): (_, &[Only]) = match number {
         Number::Fixed(number) => (number.to_string(), &[]),
         Number::OfInstance => ("SDSP_Number".to_owned(), &[Only::Instances]),
     };
-    let names = [("SDSP_NUMBER", number), ("SDSP_PROGRAMS", programs.to_string())];
-    let text = fill(&lines_for(EXECUTION_CONTROLLER, wanted), &names);
-    let between = |from: &str, to: &str| {
-        let rest = text.split_once(from).map_or("", |(_, rest)| rest);
-        rest.split_once(to).map_or("", |(part, _)| part).trim_matches('\n').to_owned()
-    };
+    fill(&lines_for(template, wanted), &[("SDSP_NUMBER", number), ("SDSP_PROGRAMS", programs.to_string())])
+}
+
+/// The part of a template between two of its lines.
+fn between(text: &str, from: &str, to: &str) -> String {
+    let rest = text.split_once(from).map_or("", |(_, rest)| rest);
+    rest.split_once(to).map_or("", |(part, _)| part).trim_matches('\n').to_owned()
+}
+
+/// The execution controller of one of so many programs.
+pub(super) fn controller(number: Number, programs: usize) -> Controller {
+    let text = numbered(EXECUTION_CONTROLLER, number, programs);
     Controller {
-        declarations: between("PROGRAM SDSP_PROGRAM", "(* Body *)"),
-        header: between("(* Body *)", "(* Regular program begins here *)"),
-        close: between("(* Regular program ends here *)", "(* Footer *)"),
-        footer: between("(* Footer *)", "END_PROGRAM"),
+        declarations: between(&text, "PROGRAM SDSP_PROGRAM", "(* Body *)"),
+        header: between(&text, "(* Body *)", "(* Regular program begins here *)"),
+        close: between(&text, "(* Regular program ends here *)", "(* Footer *)"),
+        footer: between(&text, "(* Footer *)", "END_PROGRAM"),
     }
+}
+
+/// The execution controller of one of so many programs that is a chart.
+pub(super) fn chart_controller(number: Number, programs: usize) -> ChartController {
+    let text = numbered(CHART_CONTROLLER, number, programs);
+    ChartController {
+        declarations: between(&text, "PROGRAM SDSP_CHART", "(* Chart *)"),
+        gate: between(&text, "(* Gate *)", "(* Condition *)").trim().to_owned(),
+        header: between(&text, "(* Header *)", "(* Steps and actions begin here *)"),
+        close: between(&text, "(* Steps and actions end here *)", "(* Footer *)"),
+        footer: between(&text, "(* Footer *)", "(* End *)"),
+    }
+}
+
+/// The parts of an execution controller of a chart.
+pub(super) struct ChartController {
+    /// Its variables.
+    pub(super) declarations: String,
+    /// Before each condition, `AND` at its end.
+    pub(super) gate: String,
+    /// Before what the action of every step does.
+    pub(super) header: String,
+    /// Directly behind it.
+    pub(super) close: String,
+    /// What ends a scan.
+    pub(super) footer: String,
 }
 
 /// The parts of an execution controller.
@@ -114,10 +150,14 @@ mod tests {
     use super::*;
     use crate::syntax::{FileId, parse};
 
-    const ALL: [(&str, &str); 8] = [
+    const ALL: [(&str, &str); 12] = [
         ("globals", GLOBALS),
         ("scheduler", SCHEDULER),
         ("execution_controller", EXECUTION_CONTROLLER),
+        ("chart_controller", CHART_CONTROLLER),
+        ("action_control", ACTION_CONTROL),
+        ("step", STEP),
+        ("elapsed", ELAPSED),
         ("on_delay", ON_DELAY),
         ("off_delay", OFF_DELAY),
         ("pulse", PULSE),
@@ -146,6 +186,14 @@ mod tests {
         let template = "a\nb (*$ltime*)\nc (*$ltime about it *)\n";
         assert_eq!(lines_for(template, &[]), "a\n");
         assert_eq!(lines_for(template, &[Only::LongTime]), "a\nb\nc (* about it *)\n");
+    }
+
+    #[test]
+    fn a_controller_of_a_chart_has_all_its_parts() {
+        let controller = chart_controller(Number::Fixed(2), 3);
+        assert!(controller.declarations.contains("SDSP_Open : BOOL;") && controller.gate.ends_with(" AND"));
+        assert!(controller.header.ends_with("SDSP_Begun := TRUE;") && controller.close.trim() == "END_IF;");
+        assert!(controller.footer.ends_with("SDSP_Open := SDSP_Turn = 2;"), "{}", controller.footer);
     }
 
     #[test]

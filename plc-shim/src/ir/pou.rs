@@ -61,6 +61,8 @@ pub(crate) struct Variable {
     pub(crate) owner: Option<PouId>,
     /// What the unit itself sees of an input with `R_EDGE` or `F_EDGE`.
     pub(crate) edge: Option<EdgeDetection>,
+    /// True for the state of the unit's chart, which nothing else writes.
+    pub(crate) of_chart: bool,
 }
 
 /// Who sees a variable or method (3rd ed. 6.6.5.10).

@@ -8,7 +8,7 @@ use crate::syntax::ast::{BinaryOp, Expr, ExprKind, Literal, Pou};
 use crate::syntax::walk::{self, Visitor};
 
 pub(super) fn lint(unit: &Unit<'_>, index: &Index<'_>, findings: &mut Vec<Diagnostic>) {
-    walk::statements(&unit.pou.body, &mut Comparisons { pou: unit.pou, index, findings });
+    walk::unit(unit.pou, &mut Comparisons { pou: unit.pou, index, findings });
 }
 
 struct Comparisons<'a, 'f> {

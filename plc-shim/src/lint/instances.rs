@@ -9,7 +9,7 @@ use crate::syntax::walk::{self, Visitor, root};
 
 pub(super) fn lint(unit: &Unit<'_>, index: &Index<'_>, findings: &mut Vec<Diagnostic>) {
     never_called(unit, index, findings);
-    walk::statements(&unit.pou.body, &mut Branches { pou: unit.pou, index, depth: 0, findings });
+    walk::unit(unit.pou, &mut Branches { pou: unit.pou, index, depth: 0, findings });
 }
 
 fn never_called(unit: &Unit<'_>, index: &Index<'_>, findings: &mut Vec<Diagnostic>) {

@@ -42,7 +42,7 @@ impl Usage {
             for section in &each.sections {
                 collector.section(section);
             }
-            walk::statements(&each.body, &mut collector);
+            walk::unit(each, &mut collector);
         }
         collector.usage
     }

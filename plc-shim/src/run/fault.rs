@@ -31,6 +31,8 @@ pub struct FaultSite {
     /// The instance that ran, as in `P1.axis[i].ramp` with indices as they are written; the unit's
     /// name for a function.
     pub instance: String,
+    /// The step or transition of a chart, as in "transition `t`"; else empty.
+    pub part: String,
     /// The file; empty if it is not known.
     pub file: String,
     /// Line, from 1.
@@ -39,11 +41,13 @@ pub struct FaultSite {
     pub column: u32,
 }
 
-/// `Ramp`, or `P1.axis.ramp (Ramp)` if the instance has another name.
+/// `Ramp`, or `P1.axis.ramp (Ramp)` if the instance has another name, with the part of its chart.
 impl fmt::Display for FaultSite {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { pou, instance, .. } = self;
-        if pou == instance { formatter.write_str(pou) } else { write!(formatter, "{instance} ({pou})") }
+        let Self { pou, instance, part, .. } = self;
+        let other = if pou == instance { String::new() } else { format!(" ({pou})") };
+        let part = if part.is_empty() { String::new() } else { format!(", {part}") };
+        write!(formatter, "{instance}{other}{part}")
     }
 }
 
@@ -177,6 +181,7 @@ fn place(application: &Application, span: Option<Span>, site: &mut FaultSite) {
     let (file, place) = application.sources().locate(span);
     file.clone_into(&mut site.file);
     (site.line, site.column) = (place.line, place.column);
+    application.chart_part(span).unwrap_or_default().clone_into(&mut site.part);
 }
 
 fn cause(trap: Option<Trap>, innermost: Option<Frame<'_>>) -> (FaultKind, Option<Mark>) {

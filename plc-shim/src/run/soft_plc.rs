@@ -239,7 +239,7 @@ impl SoftPlc {
         self.machine.set_trace(Trace::new(watched));
     }
 
-    /// The statement that last wrote the watched place at `index`; nothing if none has.
+    /// The statement that wrote the watched place at `index` last in the last scan; nothing if none did.
     pub fn last_writer(&self, index: usize) -> Option<WriteSite> {
         let writer = self.machine.trace()?.watched.get(index)?.writer.as_ref()?;
         let point = self.application.points().get(writer.point as usize)?;

@@ -22,7 +22,7 @@ use super::scheduler::Waiting;
 use crate::application::Application;
 use crate::compile::fault::FaultKind;
 
-const MAGIC: [u8; 8] = *b"OSPLC\0\0\x02";
+const MAGIC: [u8; 8] = *b"OSPLC\0\0\x03";
 
 /// Why bytes were not taken as a state.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
@@ -128,7 +128,7 @@ fn encode_fault(fault: &PlcFault, bytes: &mut Vec<u8>) {
     for site in std::iter::once(&fault.at).chain(&fault.callers) {
         bytes.extend_from_slice(&site.line.to_le_bytes());
         bytes.extend_from_slice(&site.column.to_le_bytes());
-        for text in [&site.file, &site.pou, &site.instance] {
+        for text in [&site.file, &site.pou, &site.instance, &site.part] {
             bytes.extend_from_slice(&(text.len() as u32).to_le_bytes());
             bytes.extend_from_slice(text.as_bytes());
         }
@@ -191,7 +191,8 @@ impl<'m> Reader<'m> {
     fn site(&mut self) -> Option<FaultSite> {
         let (line, column) = (self.small_number()?, self.small_number()?);
         let (file, pou, instance) = (self.text()?, self.text()?, self.text()?);
-        Some(FaultSite { pou, instance, file, line, column })
+        let part = self.text()?;
+        Some(FaultSite { pou, instance, part, file, line, column })
     }
 
     fn forces(&mut self, application: &Application) -> Option<Forces> {

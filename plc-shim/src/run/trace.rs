@@ -64,6 +64,7 @@ impl Trace {
         self.active.clear();
         for watched in &mut self.watched {
             watched.look(memory);
+            watched.writer = None;
         }
     }
 

@@ -1,5 +1,6 @@
 //! The syntax tree: what is written, with its place; no meanings.
 
+mod chart;
 mod configuration;
 mod declaration;
 mod expression;
@@ -7,6 +8,7 @@ pub mod instruction;
 mod object;
 mod statement;
 
+pub use chart::{ActionQualifier, Association, Chart, ChartStep, Priority, Transition, TransitionCondition};
 pub use configuration::{
     AccessDirection, AccessPath, Configuration, Connection, InstanceValue, ProgramDeclaration, Resource,
     TaskDeclaration,

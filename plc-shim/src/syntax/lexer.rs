@@ -208,7 +208,8 @@ impl<'a> Lexer<'a> {
             }
             return TokenKind::Typed;
         }
-        let keyword = Keyword::find(text).filter(|keyword| keyword.is_in(self.dialect) && !keyword.is_soft());
+        let keyword = Keyword::find(text)
+            .filter(|keyword| keyword.is_in(self.dialect) && !keyword.is_soft() && !keyword.is_of_chart());
         keyword.map_or(TokenKind::Identifier, TokenKind::Keyword)
     }
 

@@ -4,6 +4,7 @@
 //! one slip makes one diagnostic.
 
 mod assignment;
+mod chart;
 mod conditional;
 mod configuration;
 mod cursor;

@@ -1,5 +1,6 @@
 //! A tree to text that parses to the same tree, spans aside.
 
+mod chart;
 mod configuration;
 mod declaration;
 mod expression;

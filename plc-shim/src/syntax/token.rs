@@ -79,6 +79,11 @@ macro_rules! keywords {
                 matches!(self, K::Class | K::Interface | K::Method | K::Property | K::Action | K::Namespace | K::Using)
             }
 
+            /// True for the words that begin a chart's parts; programs without charts have them for names.
+            pub fn is_of_chart(self) -> bool {
+                matches!(self, Keyword::InitialStep | Keyword::Step | Keyword::Transition)
+            }
+
             /// Its spelling in capitals.
             pub fn text(self) -> &'static str {
                 match self { $(Self::$variant => $text,)* }
@@ -109,6 +114,8 @@ keywords! {
     EndGet "END_GET", EndSet "END_SET", Action "ACTION", EndAction "END_ACTION",
     Namespace "NAMESPACE", EndNamespace "END_NAMESPACE", Using "USING",
     OrganizationBlock "ORGANIZATION_BLOCK", EndOrganizationBlock "END_ORGANIZATION_BLOCK",
+    InitialStep "INITIAL_STEP", Step "STEP", EndStep "END_STEP",
+    Transition "TRANSITION", EndTransition "END_TRANSITION",
     VarStat "VAR_STAT", VarInst "VAR_INST", DataBlock "DATA_BLOCK", EndDataBlock "END_DATA_BLOCK", Begin "BEGIN",
 }
 

@@ -1,6 +1,8 @@
 //! Every statement and expression of a body, in the order of the text.
 
-use crate::syntax::ast::{Argument, Call, Expr, ExprKind, Instruction, Statement, StatementKind};
+use crate::syntax::ast::{
+    Argument, Call, Expr, ExprKind, Instruction, Pou, Statement, StatementKind, TransitionCondition,
+};
 
 /// Looks at the parts of a body; what it does not care for it leaves out.
 pub(crate) trait Visitor {
@@ -12,7 +14,7 @@ pub(crate) trait Visitor {
     fn leave(&mut self) {}
     /// Where a value goes to.
     fn target(&mut self, _target: &Expr) {}
-    /// A name alone that a value goes to: the control variable of `FOR`.
+    /// A name alone that a value goes to: the control variable of `FOR`, an action of a chart.
     fn control(&mut self, _name: &crate::syntax::ast::Ident) {}
     /// A call, before its arguments.
     fn call(&mut self, _call: &Call) {}
@@ -27,6 +29,22 @@ pub(crate) fn statements(list: &[Statement], visitor: &mut impl Visitor) {
         visitor.statement(each);
         statement(&each.kind, visitor);
     }
+}
+
+/// The statements of a unit, and the conditions, times and actions of its chart.
+pub(crate) fn unit(pou: &Pou, visitor: &mut impl Visitor) {
+    for association in pou.chart.steps.iter().flat_map(|step| &step.associations) {
+        visitor.control(&association.action);
+        association.time.iter().for_each(|time| expression(time, visitor));
+        association.indicators.iter().for_each(|indicator| target(indicator, visitor));
+    }
+    for transition in &pou.chart.transitions {
+        match &transition.condition {
+            TransitionCondition::Expression(condition) => expression(condition, visitor),
+            TransitionCondition::Network(network) => statements(network, visitor),
+        }
+    }
+    statements(&pou.body, visitor);
 }
 
 fn branch(list: &[Statement], visitor: &mut impl Visitor) {

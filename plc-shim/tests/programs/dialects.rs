@@ -29,6 +29,10 @@ fn use_of(feature: Feature) -> &'static str {
             "FUNCTION_BLOCK F METHOD M VAR_INST n : INT; END_VAR n := n + 1; END_METHOD END_FUNCTION_BLOCK
              PROGRAM P VAR f1 : F; END_VAR f1.M(); END_PROGRAM"
         }
+        Feature::FleetingInstances => {
+            "FUNCTION F : BOOL VAR_INPUT a : BOOL; END_VAR VAR t : R_TRIG; END_VAR t(CLK := a); F := t.Q; END_FUNCTION
+             PROGRAM P VAR b : BOOL; END_VAR b := F(b); END_PROGRAM"
+        }
         Feature::InitArguments => {
             "FUNCTION_BLOCK F VAR k : INT; END_VAR
              METHOD FB_init : BOOL VAR_INPUT bInitRetains, bInCopyCode : BOOL; n : INT; END_VAR k := n; END_METHOD
@@ -70,7 +74,8 @@ fn every_construct_is_for_its_dialects_alone() {
 }
 
 /// Constructs whose absence is no syntax of its own: another error says it.
-const TOLD_OTHERWISE: [Feature; 10] = [
+const TOLD_OTHERWISE: [Feature; 11] = [
+    Feature::FleetingInstances,
     Feature::LossyReals,
     Feature::EnumerationsAsIntegers,
     Feature::ComputedInitialValues,
@@ -298,4 +303,35 @@ fn the_clock_is_virtual_time() {
     rig.now_ns = (1_u64 << 32) * 1_000_000;
     rig.scan().expect("no fault");
     assert_eq!(rig.int("P.t"), 10_000_000);
+}
+
+#[test]
+fn enumerations_are_integers_where_the_dialect_says() {
+    let mut rig = Rig::in_dialect(
+        Dialect::Codesys,
+        "TYPE State : (Idle, Run := 10, Stop); END_TYPE
+PROGRAM P VAR s : State; i, x, y, z : INT; a : ARRAY [0..12] OF INT; b : BOOL; END_VAR
+  i := Run; s := i + 1; x := 2 * s - Run; a[Stop] := 5; y := a[s]; b := s = 11 AND s > Run AND s <> Idle;
+  CASE s OF 10: z := 1; Stop: z := 2; END_CASE;
+  s := 10;
+END_PROGRAM",
+    );
+    rig.scan().expect("no fault");
+    assert_eq!(["i", "x", "y", "z", "b", "s"].map(|name| rig.int(&format!("P.{name}"))), [10, 12, 5, 2, 1, 10]);
+}
+
+#[test]
+fn vendors_functions_take_what_vendors_give() {
+    let mut rig = Rig::in_dialect(
+        Dialect::Codesys,
+        "PROGRAM P VAR u : UINT := 16#8001; b : BYTE := 3; a : ARRAY [0..4] OF INT := [1, 2, 3, 4, 5]; n, m, k : INT; left : UINT;
+  w : WORD := 1000; r, q : REAL; d : DWORD; f : WORD; text : STRING; END_VAR
+  left := SHL(u, b); n := a[b]; m := LEN(STR := CONCAT(STR1 := 'ab', STR2 := 'cde'));
+  text := MID(STR := 'abcdef', LEN := 2, POS := 3); k := FIND(STR1 := 'abc', STR2 := 'c');
+  r := WORD_TO_REAL(w); d := REAL_TO_DWORD(2.6); q := DWORD_TO_REAL(d); f := REAL_TO_WORD(7.2);
+END_PROGRAM",
+    );
+    rig.scan().expect("no fault");
+    assert_eq!(["left", "n", "m", "k", "d", "f"].map(|name| rig.int(&format!("P.{name}"))), [8, 4, 5, 3, 3, 7]);
+    assert_eq!(["P.r", "P.q", "P.text"].map(|path| rig.plc.read(path).expect("it exists")), ["1000.0", "3.0", "'cd'"]);
 }

@@ -119,3 +119,15 @@ fn programs_of_one_task_take_turns() {
         @"test.st:1:12: warning[W0707]: `demand` is written by 2 tasks: `lazy`, `quick` (let one of them write it, and the others ask that one by variables of their own)"
     );
 }
+
+#[test]
+fn conversions_of_vendors_that_may_lose_are_told() {
+    let text = "PROGRAM P
+VAR i : INT; u : UINT; w : WORD; d : DINT; l : LREAL; r : REAL; b : BOOL; END_VAR
+  u := i; i := u; d := u; i := w; w := u;
+  r := l; r := d; l := d; r := i;
+  u := 5; r := 0.1; w := b;
+  i := UINT_TO_INT(u); r := LREAL_TO_REAL(l);
+END_PROGRAM";
+    insta::assert_snapshot!(crate::rig::findings_in(onescan_plc_shim::Dialect::Codesys, text));
+}

@@ -35,6 +35,7 @@ mod rig;
 mod robustness;
 mod scheduling;
 mod scl;
+mod sfc;
 mod shear;
 mod standard_blocks;
 mod standard_functions;

@@ -189,6 +189,20 @@ PROGRAM P VAR x : INT := Twice(1); y : INT; text : STRING := CONCAT('x', 'y'); E
 }
 
 #[test]
+fn instances_of_a_call_begin_anew_with_fb_init() {
+    let mut rig = rig(&format!(
+        "{NOTE}FUNCTION Make : LINT
+VAR_INPUT n : LINT; END_VAR
+VAR one : Base(n := n + 1); END_VAR
+  Make := one.own;
+END_FUNCTION
+PROGRAM P VAR x, y : LINT; END_VAR x := Make(1); y := Make(4); END_PROGRAM"
+    ));
+    rig.scan().expect("no fault");
+    assert_eq!(["P.x", "P.y", "trail"].map(|path| rig.int(path)), [2, 5, 25]);
+}
+
+#[test]
 fn var_inst_is_kept_in_the_instance() {
     let text = "FUNCTION_BLOCK F
 VAR t : INT; END_VAR

@@ -114,7 +114,7 @@ fn mapping(scenario: &Scenario, client: &ClientName, url: &str, found: &[Found])
         let near = nearest(name, found.iter().map(|found| found.name.as_str()));
         let near = near.and_then(|near| found.iter().find(|found| found.name == near));
         let near = near.map(|near| format!("; perhaps {}", near.address)).unwrap_or_default();
-        text += &format!("# {name} was not found{near}\n");
+        text.extend(["# ", name, " was not found", &near, "\n"]);
     }
     text
 }

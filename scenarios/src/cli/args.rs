@@ -6,8 +6,8 @@ use std::path::PathBuf;
 use clap::{ArgAction, Args as ClapArgs, Parser, Subcommand, ValueEnum};
 use onescan_plc_shim::instrument::Target;
 use onescan_plc_shim::{Dialect, Task};
+use onescan_server::operation::Operation;
 use onescan_server::pacing::Pace;
-use onescan_server::session::Control;
 use onescan_server::signal::pattern::SignalPattern;
 use onescan_server::signal::{ClientName, SignalName};
 use onescan_server::time::{TimeSpan, VirtualTime};
@@ -61,6 +61,12 @@ pub enum Command {
     Join(JoinArgs),
     /// Ask a running session (see `run --listen`) how it is, or to pause, step, go on, reset or stop
     Control(ControlArgs),
+    /// Write a recording's trajectory as CSV, Parquet or MCAP
+    Export(ExportArgs),
+    /// Compare two recordings: where they first differ, in which signals, and which statement wrote them
+    Diff(DiffArgs),
+    /// Find the commit that first changed what a scenario does, and the statement that did
+    Bisect(BisectArgs),
     /// Check PLC sources without running them
     Check(CheckArgs),
     /// Make a PLC project run in lockstep on any PLC: scheduler, execution controllers and timers on virtual
@@ -122,6 +128,9 @@ pub struct RunArgs {
     /// Record these signals only: a name, or a pattern with `*` and `?`; may be given several times
     #[arg(long = "record-signals", value_name = "PATTERN", requires = "record")]
     pub record_signals: Vec<SignalPattern>,
+    /// Repeat what an operator did: a recording, or a file like its `events.jsonl`
+    #[arg(long, value_name = "PATH")]
+    pub replay_operator: Option<PathBuf>,
     /// For people, or one JSON object a run for machines
     #[arg(long, value_enum, default_value_t)]
     pub format: FormatArg,
@@ -190,6 +199,76 @@ pub struct CompareArgs {
     pub format: FormatArg,
 }
 
+/// Options of `export`.
+#[derive(Debug, ClapArgs)]
+pub struct ExportArgs {
+    /// The recording: a folder with a `recording.json`, or with one such folder in it
+    pub recording: PathBuf,
+    /// The form [default: by the file's name]
+    #[arg(long, value_enum, value_name = "FORMAT")]
+    pub format: Option<ExportArg>,
+    /// The file to write
+    #[arg(short, long, value_name = "FILE")]
+    pub output: PathBuf,
+    /// Only these signals: a name, or a pattern with `*` and `?`; may be given several times
+    #[arg(long, value_name = "PATTERN")]
+    pub signals: Vec<SignalPattern>,
+    /// From this virtual time on, as in `2.5s`
+    #[arg(long, value_name = "TIME")]
+    pub from: Option<VirtualTime>,
+    /// Up to this virtual time
+    #[arg(long, value_name = "TIME")]
+    pub to: Option<VirtualTime>,
+}
+
+/// A form that a recording is written in.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum ExportArg {
+    /// For spreadsheets
+    Csv,
+    /// For analysis, as one file
+    Parquet,
+    /// For viewers of robots and their logs: Foxglove, `PlotJuggler`
+    Mcap,
+}
+
+/// Options of `diff`.
+#[derive(Debug, ClapArgs)]
+pub struct DiffArgs {
+    /// A recording: a folder with a `recording.json`, or with one such folder in it
+    pub a: PathBuf,
+    /// Another
+    pub b: PathBuf,
+    /// What was before this virtual time does not count; then signals are compared, not digests
+    #[arg(long, default_value = "0s", value_name = "TIME")]
+    pub since: VirtualTime,
+    /// Compare these signals only: a name, or a pattern with `*` and `?`; may be given several times
+    #[arg(long, value_name = "PATTERN")]
+    pub signals: Vec<SignalPattern>,
+    /// For people, or a JSON object for machines
+    #[arg(long, value_enum, default_value_t)]
+    pub format: FormatArg,
+}
+
+/// Options of `bisect`.
+#[derive(Debug, ClapArgs)]
+pub struct BisectArgs {
+    /// The scenario: a folder with a `scenario.toml`, in a working tree of git
+    pub scenario: PathBuf,
+    /// A commit whose runs are as they should be
+    #[arg(long, value_name = "COMMIT")]
+    pub good: String,
+    /// A later commit whose runs are not
+    #[arg(long, value_name = "COMMIT", default_value = "HEAD")]
+    pub bad: String,
+    /// Virtual time at which a run is complete [default: the scenario's `until`]
+    #[arg(long, value_name = "TIME")]
+    pub until: Option<VirtualTime>,
+    /// For people, or a JSON object for machines
+    #[arg(long, value_enum, default_value_t)]
+    pub format: FormatArg,
+}
+
 /// Options of `join`.
 #[derive(Debug, ClapArgs)]
 pub struct JoinArgs {
@@ -214,6 +293,12 @@ pub struct ControlArgs {
     /// What to ask for
     #[arg(value_enum, default_value_t)]
     pub wish: WishArg,
+    /// The signal to write, force or release
+    #[arg(required_if_eq_any([("wish", "write"), ("wish", "force"), ("wish", "release")]), value_parser = signal_name)]
+    pub signal: Option<SignalName>,
+    /// Its value, as in `TRUE`, `-3` or `1.5`
+    #[arg(required_if_eq_any([("wish", "write"), ("wish", "force")]), allow_hyphen_values = true)]
+    pub value: Option<String>,
     /// For people, or a JSON object for machines
     #[arg(long, value_enum, default_value_t)]
     pub format: FormatArg,
@@ -246,8 +331,8 @@ pub struct CheckArgs {
 pub struct InstrumentArgs {
     /// A folder, a source file, a TwinCAT project or a scenario
     pub project: PathBuf,
-    /// For whom the shim's own sources are written: `iec`: program text of the standard, `twincat`:
-    /// TwinCAT 3 objects
+    /// For whom the shim's own sources are written: `iec`: program text of the standard, or
+    /// PLCopen XML if the project is, `twincat`: TwinCAT 3 objects, `codesys`: PLCopen XML for CODESYS
     #[arg(long, value_enum, default_value_t)]
     pub target: TargetArg,
     /// A task and its programs, as in `fast:10ms:0=Main,Alarms`; may be given several times [default: the
@@ -300,7 +385,7 @@ pub struct PlcArgs {
     /// Where variables are served over OPC UA
     #[arg(long, value_name = "ADDRESS:PORT")]
     pub opcua: Option<SocketAddr>,
-    /// The only OPC UA user, whose password is in the environment variable ONESCAN_OPCUA_PASSWORD [default:
+    /// The only OPC UA user, whose password is in the environment variable `ONESCAN_OPCUA_PASSWORD` [default:
     /// anybody]
     #[arg(long, value_name = "NAME")]
     pub opcua_user: Option<String>,
@@ -399,6 +484,8 @@ pub enum TargetArg {
     Iec,
     /// TwinCAT 3 objects
     Twincat,
+    /// PLCopen XML as CODESYS imports it
+    Codesys,
 }
 
 impl From<TargetArg> for Target {
@@ -406,6 +493,7 @@ impl From<TargetArg> for Target {
         match arg {
             TargetArg::Iec => Self::Iec,
             TargetArg::Twincat => Self::TwinCat,
+            TargetArg::Codesys => Self::Codesys,
         }
     }
 }
@@ -571,19 +659,34 @@ pub enum WishArg {
     Reset,
     /// End the session
     Stop,
+    /// Give a signal a value until its writer writes it again
+    Write,
+    /// Hold a signal at a value, whatever its writer writes
+    Force,
+    /// Let a forced signal's writer write it again
+    Release,
 }
 
-impl WishArg {
-    /// The same for the server; `None` asks only for the status.
-    pub fn control(self) -> Option<Control> {
-        match self {
-            Self::Status => None,
-            Self::Pause => Some(Control::Pause),
-            Self::Resume => Some(Control::Resume),
-            Self::Step => Some(Control::Step),
-            Self::Reset => Some(Control::Reset),
-            Self::Stop => Some(Control::Stop),
-        }
+impl ControlArgs {
+    /// What is asked, for the server; `None` asks only for the status.
+    ///
+    /// # Errors
+    /// A signal or a value where none belongs.
+    pub fn operation(&self) -> Result<Option<Operation>, String> {
+        let (signal, value) = (self.signal.clone(), self.value.clone());
+        Ok(Some(match (self.wish, signal, value) {
+            (WishArg::Write, Some(signal), Some(value)) => Operation::Write { signal, value },
+            (WishArg::Force, Some(signal), Some(value)) => Operation::Force { signal, value },
+            (WishArg::Release, Some(signal), None) => Operation::Release { signal },
+            (WishArg::Release, Some(_), Some(value)) => return Err(format!("`{value}` means nothing with `release`")),
+            (_, Some(signal), _) => return Err(format!("`{signal}` means nothing here")),
+            (WishArg::Pause, ..) => Operation::Pause,
+            (WishArg::Resume, ..) => Operation::Resume,
+            (WishArg::Step, ..) => Operation::Step,
+            (WishArg::Reset, ..) => Operation::Reset,
+            (WishArg::Stop, ..) => Operation::Stop,
+            (WishArg::Status | WishArg::Write | WishArg::Force | WishArg::Release, ..) => return Ok(None),
+        }))
     }
 }
 

@@ -7,15 +7,20 @@ use std::time::Duration;
 
 use onescan_clients::station::opcua::Access;
 use onescan_server::record::Choice;
+use onescan_server::recording::ExportFormat;
+use onescan_server::time::VirtualTime;
 use onescan_server::transport::tcp::operator::operate;
 use onescan_server::transport::tcp::participant::take_part;
 
 use super::args::{
-    BrowseArgs, CheckArgs, Command, CompareArgs, ControlArgs, ExplainArgs, InstrumentArgs, JoinArgs, PlcArgs,
-    RecordAlso, RunArgs,
+    BisectArgs, BrowseArgs, CheckArgs, Command, CompareArgs, ControlArgs, DiffArgs, ExplainArgs, ExportArg, ExportArgs,
+    InstrumentArgs, JoinArgs, PlcArgs, RecordAlso, RunArgs,
 };
+use crate::bisect::BisectConfig;
 use crate::browse::BrowseConfig;
 use crate::check::{self, CheckConfig, Warnings};
+use crate::diff::DiffConfig;
+use crate::export::ExportConfig;
 use crate::instrument::{Destination, Diff, Direction, InstrumentConfig};
 use crate::new;
 use crate::plant;
@@ -50,6 +55,9 @@ pub fn dispatch(command: Command) -> Result<ExitCode, RunError> {
         }
         Command::Join(args) => join(&args),
         Command::Control(args) => control(&args),
+        Command::Export(args) => export(args),
+        Command::Diff(args) => diff(args),
+        Command::Bisect(args) => bisect(args),
         Command::Check(args) => check(args),
         Command::Instrument(args) => instrument(*args),
         Command::Plc(args) => run_plc(args),
@@ -115,6 +123,7 @@ fn config(args: RunArgs) -> RunConfig {
                 mcap: args.record_also.contains(&RecordAlso::Mcap),
             },
         }),
+        replay_operator: args.replay_operator,
         format,
         plot: args.plot,
         signals: args.signals,
@@ -173,19 +182,20 @@ fn access(user: Option<String>, pki: Option<PathBuf>, trust_clients: bool) -> Re
     const PASSWORD: &str = "ONESCAN_OPCUA_PASSWORD";
     let user = match user {
         None => None,
-        Some(user) => match std::env::var(PASSWORD) {
-            Ok(password) => Some((user, password)),
-            Err(_) => {
+        Some(user) => {
+            let Ok(password) = std::env::var(PASSWORD) else {
                 let help = Some(format!("set the environment variable {PASSWORD}"));
                 return Err(RunError::usage(format!("there is no password for user `{user}`"), help));
-            }
-        },
+            };
+            Some((user, password))
+        }
     };
     Ok(Access { user, pki, trust_clients })
 }
 
 fn control(args: &ControlArgs) -> Result<ExitCode, RunError> {
-    let status = operate(args.server, args.wish.control(), OPERATOR_PATIENCE)?;
+    let operation = args.operation().map_err(|message| RunError::usage(message, None))?;
+    let status = operate(args.server, operation, OPERATOR_PATIENCE)?;
     let mut out = std::io::stdout().lock();
     let written = match Format::from(args.format) {
         Format::Json => {
@@ -198,6 +208,37 @@ fn control(args: &ControlArgs) -> Result<ExitCode, RunError> {
     };
     written.map_err(RunError::Output)?;
     Ok(ExitCode::Ok)
+}
+
+fn export(args: ExportArgs) -> Result<ExitCode, RunError> {
+    let extension = args.output.extension().map(|extension| extension.to_string_lossy().to_ascii_lowercase());
+    let format = match (args.format, extension.as_deref()) {
+        (Some(ExportArg::Csv), _) | (None, Some("csv")) => ExportFormat::Csv,
+        (Some(ExportArg::Parquet), _) | (None, Some("parquet")) => ExportFormat::Parquet,
+        (Some(ExportArg::Mcap), _) | (None, Some("mcap")) => ExportFormat::Mcap,
+        (None, _) => {
+            let message = format!("the name `{}` does not say in which form to write", args.output.display());
+            return Err(RunError::usage(message, Some("add `--format csv`, `parquet` or `mcap`".to_owned())));
+        }
+    };
+    let times = [args.from.unwrap_or(VirtualTime::ZERO), args.to.unwrap_or(VirtualTime::MAX)];
+    let ExportArgs { recording, output, signals, .. } = args;
+    crate::export::export(&ExportConfig { recording, format, output, signals, times })?;
+    Ok(ExitCode::Ok)
+}
+
+fn diff(args: DiffArgs) -> Result<ExitCode, RunError> {
+    let DiffArgs { a, b, since, signals, format } = args;
+    let config = DiffConfig { recordings: [a, b], since, signals, format: format.into() };
+    crate::diff::diff(&config, &mut std::io::stdout().lock())
+}
+
+fn bisect(args: BisectArgs) -> Result<ExitCode, RunError> {
+    let interrupt = Interrupt::new();
+    interrupt.on_signals();
+    let BisectArgs { scenario, good, bad, until, format } = args;
+    let config = BisectConfig { scenario, good, bad, until, format: format.into() };
+    crate::bisect::bisect(&config, &interrupt, &mut std::io::stdout().lock(), &mut std::io::stderr().lock())
 }
 
 fn check(args: CheckArgs) -> Result<ExitCode, RunError> {

@@ -1,7 +1,7 @@
 //! The OPC-like link from one client's outputs to the others' inputs (seed 004 Fig. 1).
 //!
-//! At every update the link compares each item with what it last took, and queues those that
-//! changed: a change that is undone between two updates is never seen (*slow sampling*). The queue
+//! A link begins with the value of each item. At every update it compares each with what it last took, and queues those
+//! that changed: a change that is undone between two updates is never seen (*slow sampling*). The queue
 //! travels through the gateway one item after another, so that what changed together arrives apart
 //! (*race condition*), late (*time delay*), and never equally late (*jitter*).
 
@@ -30,7 +30,8 @@ impl OpcLink {
     /// Exchanges until `stop`.
     pub(super) fn run(&self, stop: &AtomicBool) {
         let mut taken: Vec<Vec<u8>> = self.routes.iter().map(|route| self.source.get(route.source)).collect();
-        let mut queue: VecDeque<usize> = VecDeque::new();
+        // A subscription begins with the value that each item has.
+        let mut queue: VecDeque<usize> = (0..self.routes.len()).collect();
         let mut next_update = Instant::now();
         while !stop.load(Ordering::Relaxed) {
             if Instant::now() >= next_update {

@@ -33,7 +33,13 @@ impl Template {
         match self {
             Self::Cell => files!("cell": "scenario.toml", "plant.toml", "plc/main.st", "README.md"),
             Self::Tank => files!("tank": "scenario.toml", "plant.toml", "plc/main.st", "README.md"),
-            Self::Python => files!("python": "scenario.toml", "plant.py", "plc/main.st", "README.md"),
+            // the plant is the package's own example
+            Self::Python => &[
+                ("scenario.toml", include_str!("../../templates/python/scenario.toml")),
+                ("plant.py", include_str!("../../../clients/python/examples/tank.py")),
+                ("plc/main.st", include_str!("../../templates/python/plc/main.st")),
+                ("README.md", include_str!("../../templates/python/README.md")),
+            ],
         }
     }
 }

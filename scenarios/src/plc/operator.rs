@@ -24,14 +24,11 @@ const COMMANDS: [&str; 6] = ["run", "stop", "cold", "warm", "status", "quit"];
 pub fn attend(controller: &Controller, interrupt: &Interrupt, out: &mut dyn Write) -> Result<ExitCode, RunError> {
     let mut lines = Some(typed());
     while !interrupt.is_raised() {
-        let received = match &lines {
-            Some(lines) => lines.recv_timeout(GLANCE),
-            None => {
-                std::thread::sleep(GLANCE);
-                continue;
-            }
+        let Some(typed) = &lines else {
+            std::thread::sleep(GLANCE);
+            continue;
         };
-        match received {
+        match typed.recv_timeout(GLANCE) {
             Ok(line) => match obey(line.trim(), controller) {
                 Some(answer) => writeln!(out, "{answer}").and_then(|()| out.flush()).map_err(RunError::Output)?,
                 None => break,

@@ -94,6 +94,8 @@ pub struct RunConfig {
     pub gateways: Vec<(ClientName, Option<String>)>,
     /// What is recorded.
     pub record: Option<RecordRequest>,
+    /// A recording, or a file of events, whose operator's inputs are repeated.
+    pub replay_operator: Option<PathBuf>,
     /// For whom reports are.
     pub format: Format,
     /// File for a plot.
@@ -138,6 +140,7 @@ impl RunConfig {
             gateways: Vec::new(),
             latency: false,
             record: None,
+            replay_operator: None,
             format: Format::Json,
             plot: None,
             signals: Vec::new(),
@@ -211,6 +214,7 @@ impl RunConfig {
             ("--listen", self.listen.is_some()),
             ("--save-at", self.save.is_some()),
             ("--resume", self.resume.is_some()),
+            ("--replay-operator", self.replay_operator.is_some()),
         ];
         if let Some((option, _)) = options.iter().find(|(_, given)| *given) {
             let help = "free-wheeling clients run in real time in this process, each on its own clock".to_owned();

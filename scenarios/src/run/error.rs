@@ -5,6 +5,7 @@ use onescan_clients::gateway::{LinkFault, SettingsFault};
 use onescan_server::checkpoint::CheckpointError;
 use onescan_server::formation::FormationError;
 use onescan_server::record::RecordError;
+use onescan_server::recording::RecordingError;
 use onescan_server::transport::tcp::participant::ParticipantError;
 use thiserror::Error;
 
@@ -62,6 +63,9 @@ pub enum RunError {
     /// A recording cannot be written.
     #[error(transparent)]
     Record(#[from] RecordError),
+    /// A recording cannot be read.
+    #[error(transparent)]
+    Recording(#[from] RecordingError),
     /// A file cannot be read or written.
     #[error("{}: {source}", path.display())]
     File {

@@ -6,6 +6,9 @@ use onescan_server::checkpoint::Checkpoint;
 use onescan_server::formation::{Formation, FormationError};
 use onescan_server::join::JoinRefusal;
 use onescan_server::lockstep::{Lockstep, Outcome, Reached};
+use onescan_server::operation::OperatorInput;
+use onescan_server::record::event;
+use onescan_server::recording::Recording;
 use onescan_server::transport::tcp::Lobby;
 
 use super::config::{RunConfig, SaveRequest, Transport};
@@ -39,6 +42,9 @@ pub(super) fn run(
     if config.progress {
         let label = if config.runs == 1 { scenario.name().to_owned() } else { format!("run {number}/{}", config.runs) };
         lockstep.observe(Box::new(Progress::new(config.end(scenario), label).with_log(log.clone())));
+    }
+    if let Some(path) = &config.replay_operator {
+        lockstep.replay(operator_inputs(path)?);
     }
     if let Some(path) = &config.resume {
         resume(&mut lockstep, path)?;
@@ -114,6 +120,15 @@ fn wait_for_clients(
         (Err(FormationError::Interrupted { .. }), Some(ended)) => Err(ended),
         (admitted, _) => Ok(admitted?),
     }
+}
+
+/// What operators did in a recording, or by a file of events.
+fn operator_inputs(path: &std::path::Path) -> Result<Vec<OperatorInput>, RunError> {
+    if path.is_dir() {
+        return Ok(Recording::open(path)?.operator_inputs()?);
+    }
+    let events = event::read(path).map_err(|source| RunError::File { path: path.to_owned(), source })?;
+    Ok(event::operator_inputs(&events))
 }
 
 fn resume(lockstep: &mut Lockstep, path: &std::path::Path) -> Result<(), RunError> {

@@ -13,6 +13,7 @@
 //! | [`progress`] | a bar on a terminal |
 //! | [`sampler`] | what a plot shows |
 //! | [`recorded`] | a run's recording |
+//! | [`rerun`] | a recorded run once more |
 //! | [`expectation`] | what a run had to show |
 //! | [`watch`] | what watched variables were |
 //! | [`report`] | what came of a run, for people and machines |
@@ -32,6 +33,7 @@ mod processes;
 mod progress;
 pub mod recorded;
 pub mod report;
+pub mod rerun;
 mod sampler;
 pub mod session_log;
 pub mod watch;

@@ -13,6 +13,22 @@ pub fn write_whole(path: &Path, bytes: &[u8]) -> Result<(), RunError> {
     persist(stage(path, bytes)?, path)
 }
 
+/// An empty file beside `path`, which [`end_whole`] gives its place.
+///
+/// # Errors
+/// It cannot be made.
+pub fn begin_whole(path: &Path) -> Result<tempfile::NamedTempFile, RunError> {
+    stage(path, &[])
+}
+
+/// Gives a file that was begun beside `path` its place.
+///
+/// # Errors
+/// It cannot be moved there.
+pub fn end_whole(file: tempfile::NamedTempFile, path: &Path) -> Result<(), RunError> {
+    persist(file, path)
+}
+
 /// A file that is to be written, or deleted.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Write {

@@ -11,7 +11,7 @@ use super::config::RunConfig;
 use super::error::RunError;
 use super::output;
 use super::report::RunReport;
-use crate::scenario::Scenario;
+use crate::scenario::{Scenario, ScenarioError};
 
 /// Name of the folder with the scenario's files.
 const SCENARIO: &str = "scenario";
@@ -46,6 +46,7 @@ impl Recorded {
             onescan: env!("CARGO_PKG_VERSION").to_owned(),
             scenario: scenario.name().to_owned(),
             folder: own_folder,
+            case: config.case.clone(),
             mode: config.mode.name().to_owned(),
             until: config.end(scenario),
             seed: scenario.seed(),
@@ -87,7 +88,7 @@ fn copy_scenario(scenario: &Scenario, target: &Path) -> Result<(String, Vec<Sour
     let mut copied = Vec::new();
     for file in files {
         let path = scenario.folder().join(&file);
-        let bytes = std::fs::read(&path).map_err(|source| RunError::File { path, source })?;
+        let bytes = std::fs::read(&path).map_err(|source| ScenarioError::Unreadable { path, source, help: None })?;
         match within(&own_folder, &file) {
             Some(place) => {
                 let to = target.join(&place);

@@ -137,12 +137,17 @@ impl Scenario {
         dialect: Option<Dialect>,
         bind: &BTreeMap<String, String>,
     ) -> Result<Compiled, ScenarioError> {
-        let inputs = self.inputs(name, sources, dialect)?;
-        let compiled = match self.coverage() {
-            Some(_) => Application::from_inputs_with_coverage(inputs),
-            None => Application::from_inputs(inputs),
+        let plain = self.inputs(name, sources, dialect)?;
+        let inputs: Vec<Input> = plain.iter().cloned().map(|input| self.with_constants(name, input)).collect();
+        let compiled = match (self.writers(), self.coverage()) {
+            (Some(_), _) => Application::from_inputs_traced(inputs),
+            (None, Some(_)) => Application::from_inputs_with_coverage(inputs),
+            (None, None) => Application::from_inputs(inputs),
         };
-        let application = compiled.map_err(|findings| Box::new(PlcReport { client: name.clone(), findings }))?;
+        let application = compiled.map_err(|findings| match self.wrong_constant(name, &plain) {
+            Some(error) => error,
+            None => Box::new(PlcReport { client: name.clone(), findings }).into(),
+        })?;
         for warning in application.warnings().iter() {
             tracing::warn!(code = %warning.code, "{}", warning.message);
         }
@@ -164,6 +169,9 @@ impl Scenario {
         self.preset(&mut client, name)?;
         if let Some(sink) = self.coverage() {
             client.cover(sink.clone());
+        }
+        if let Some((signals, sink)) = self.writers() {
+            client.trace(signals, sink.clone());
         }
         if let Some(watched) = &self.watched {
             let (watches, changes, sink) = watched.of(name);

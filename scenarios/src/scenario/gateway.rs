@@ -154,7 +154,7 @@ impl Scenario {
             InstrumentError::Text(findings) => Box::new(PlcReport { client: name.clone(), findings }).into(),
             other => self.wrong_client(name, other.to_string(), None),
         })?;
-        let application = self.built(name, project.files.into_iter().filter_map(input).collect())?;
+        let application = built(name, project.files.into_iter().filter_map(input).collect())?;
         let bindings = self.bindings(name, &application, &self.paths(name, bind)?)?;
         let plan = match declared {
             Some(plan) if mode == Mode::Lockstep => in_one_task(&plan),
@@ -168,11 +168,6 @@ impl Scenario {
         let (reads, writes) = (ports(&bindings.inputs), ports(&bindings.outputs));
         let exchange = Exchange::new(&reads, &writes, SystemWords::Present, &settings.map);
         Ok(Instrumented { application, plan, bindings, exchange, settings })
-    }
-
-    fn built(&self, name: &ClientName, inputs: Vec<Input>) -> Result<Application, ScenarioError> {
-        let compiled = Application::from_inputs(inputs);
-        Ok(compiled.map_err(|findings| Box::new(PlcReport { client: name.clone(), findings }))?)
     }
 
     fn wrong_settings(&self, name: &ClientName, fault: SettingsFault) -> ScenarioError {
@@ -203,4 +198,10 @@ fn in_one_task(plan: &TaskPlan) -> TaskPlan {
     let scheduler = std::iter::once("SDSP_Scheduler".to_owned());
     let programs = scheduler.chain(plan.tasks.iter().flat_map(|task| task.programs.iter().cloned())).collect();
     TaskPlan::new(vec![Task { name: "cycle".to_owned(), interval_ns: CYCLE_NS, programs, ..Task::default() }])
+}
+
+/// The instrumented sources of PLC `name`, compiled.
+fn built(name: &ClientName, inputs: Vec<Input>) -> Result<Application, ScenarioError> {
+    let compiled = Application::from_inputs(inputs);
+    Ok(compiled.map_err(|findings| Box::new(PlcReport { client: name.clone(), findings }))?)
 }

@@ -1,11 +1,11 @@
 //! `scenario.toml` read and checked.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use onescan_clients::soft_plc::CoverageSink;
+use onescan_clients::soft_plc::{CoverageSink, WriterSink};
 use onescan_server::plan::{Coupling, PlanError, SessionPlan};
 use onescan_server::signal::{ClientName, SignalDecl, SignalName, did_you_mean};
 use onescan_server::time::{TimeSpan, VirtualTime};
@@ -34,6 +34,8 @@ pub struct Scenario {
     applied: Option<Arc<Applied>>,
     /// Where soft PLCs give what they executed, if that is asked for.
     coverage: Option<CoverageSink>,
+    /// Where soft PLCs tell which statements wrote these signals, if that is asked for.
+    writers: Option<(BTreeSet<SignalName>, WriterSink)>,
     /// The soft PLCs that a real one stands in for, with its URL where the file's does not count.
     pub(super) gateways: BTreeMap<ClientName, Option<String>>,
     /// What soft PLCs look at, if that is asked for.
@@ -90,6 +92,7 @@ impl Scenario {
             expectations,
             applied: None,
             coverage: None,
+            writers: None,
             gateways: BTreeMap::new(),
             watched: None,
         })
@@ -142,6 +145,18 @@ impl Scenario {
     /// Lets soft PLCs note what they execute.
     pub fn cover(&mut self) {
         self.coverage.get_or_insert_default();
+    }
+
+    /// Lets soft PLCs tell which statements write `signals`; gives where they do.
+    pub fn trace(&mut self, signals: BTreeSet<SignalName>) -> WriterSink {
+        let sink = WriterSink::default();
+        self.writers = Some((signals, sink.clone()));
+        sink
+    }
+
+    /// The signals whose writers are asked for, and where they are told.
+    pub fn writers(&self) -> Option<&(BTreeSet<SignalName>, WriterSink)> {
+        self.writers.as_ref()
     }
 
     /// What soft PLCs have executed, if they note it; complete once they are gone.

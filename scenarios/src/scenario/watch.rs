@@ -2,7 +2,7 @@
 
 use std::str::FromStr;
 
-use onescan_clients::soft_plc::watch::{SightingSink, Watch};
+use onescan_clients::soft_plc::watch::{SightingSink, Sightings, Watch};
 use onescan_plc_shim::Radix;
 use onescan_server::signal::ClientName;
 
@@ -110,8 +110,8 @@ impl Scenario {
     }
 
     /// What the PLCs of a run have seen; the next run begins with nothing.
-    pub fn take_sightings(&self) -> onescan_clients::soft_plc::watch::Sightings {
-        let Some(watched) = &self.watched else { return Default::default() };
+    pub fn take_sightings(&self) -> Sightings {
+        let Some(watched) = &self.watched else { return Sightings::default() };
         // A client that panicked has seen what it has seen.
         std::mem::take(&mut watched.sink.lock().unwrap_or_else(std::sync::PoisonError::into_inner))
     }

@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 
 use super::RecordError;
 use crate::end::{Failure, SessionEnd};
-use crate::operation::Operation;
+use crate::operation::{Operation, OperatorInput};
 use crate::time::{StepCount, VirtualTime};
 
 /// An event, and the step boundary that it belongs to.
@@ -28,6 +28,8 @@ pub struct Event {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "event", rename_all = "kebab-case")]
 pub enum EventKind {
+    /// The session began, or began anew after a reset.
+    Began,
     /// An operator did something.
     Operator {
         /// What.
@@ -119,4 +121,23 @@ pub fn read(path: &Path) -> std::io::Result<Vec<Event>> {
         line.clear();
     }
     Ok(events)
+}
+
+/// The inputs of operators among `events`.
+pub fn operator_inputs(events: &[Event]) -> Vec<OperatorInput> {
+    let mut began = 0_u64;
+    let mut inputs = Vec::new();
+    for Event { step, t_v, what } in events {
+        match what {
+            EventKind::Began => began += 1,
+            EventKind::Operator { operation } => inputs.push(OperatorInput {
+                resets: began.saturating_sub(1),
+                step: *step,
+                t_v: *t_v,
+                operation: operation.clone(),
+            }),
+            _ => {}
+        }
+    }
+    inputs
 }

@@ -20,6 +20,9 @@ pub struct Provenance {
     pub scenario: String,
     /// The scenario's folder within `scenario/`, empty if it is that itself.
     pub folder: String,
+    /// The case of it that was tried, if one was.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub case: Option<String>,
     /// `lockstep` or `freewheel`.
     pub mode: String,
     /// When the run was to be complete.

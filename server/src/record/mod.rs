@@ -25,6 +25,7 @@ pub(crate) mod sink;
 
 use thiserror::Error;
 
+pub use column::Column;
 pub use digest::{Digest, DigestChain};
 pub use event::{Event, EventKind};
 pub use header::{Header, Provenance, SourceFile};

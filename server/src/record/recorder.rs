@@ -147,6 +147,9 @@ impl Observer for Recorder {
             self.events = Some(EventLog::create(&self.folder.join(EVENTS))?);
         }
         self.start(session).map_err(failed(&self.folder))?;
+        if let Some(events) = &mut self.events {
+            events.push(&Event { step: session.cycle().steps(), t_v: session.t_v(), what: EventKind::Began })?;
+        }
         self.row(session)
     }
 

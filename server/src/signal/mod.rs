@@ -10,6 +10,7 @@ pub mod elementary;
 pub mod name;
 pub mod pattern;
 pub mod port;
+pub mod value;
 
 use serde::{Deserialize, Serialize};
 

@@ -5,6 +5,7 @@ use serde::{Deserialize, Serialize};
 use super::VersionRange;
 use crate::client::{ClientFault, JoinRequest};
 use crate::end::SessionEnd;
+use crate::operation::Operation;
 use crate::session::Control;
 use crate::signal::{ElementaryType, PortLayout, SignalDecl, SignalName};
 use crate::state::ServerState;
@@ -41,6 +42,8 @@ pub enum ClientMessage {
     Restored {},
     /// An operator's wish.
     Control(Control),
+    /// An operator writes, forces or releases a signal, or wishes as with `control`.
+    Operate(Operation),
     /// An operator asks how things are.
     Status {},
 }

@@ -187,13 +187,13 @@ fn entry(point: &Point, direction: Direction, next: u16) -> Result<Entry, Mappin
     let (name, ty) = (&point.name, point.ty);
     let address = match &point.address {
         None => Address { table: Table::HoldingRegister, at: next, bit: None },
-        Some(text) => match parse(text) {
-            Some(address) => address,
-            None => {
+        Some(text) => {
+            let Some(address) = parse(text) else {
                 let message = format!("`{name}` is mapped to `{text}`, which is no Modbus address");
                 return fault(message, "write `hr:100`, `ir:100`, `hr:100.3`, `coil:3` or `di:3`");
-            }
-        },
+            };
+            address
+        }
     };
     let is_bool = ty == ElementaryType::Bool;
     if !is_bool && !is_number(ty) {

@@ -29,7 +29,7 @@ fn what_is_wrong_with_a_map_is_told() {
     use ElementaryType::{Bool, Real, String};
     let told = |ty, address: &str| {
         let exchange = exchange(&[("a", ty), ("b", ty)], &[("a", address), ("b", "hr:50")]);
-        RegisterMap::new(&Options::default(), &exchange).map(|_| "fine".to_owned()).unwrap_or_else(|f| f.to_string())
+        RegisterMap::new(&Options::default(), &exchange).map_or_else(|f| f.to_string(), |_| "fine".to_owned())
     };
     let all = [
         told(Real, "hr:100"),

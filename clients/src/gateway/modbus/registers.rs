@@ -8,7 +8,7 @@ use crate::gateway::byte_order::ByteOrder;
 
 /// Puts the value of `entry` into the words of `span`, if it lies there.
 pub fn put(entry: &Entry, packed: &[u8], order: ByteOrder, span: &Span, words: &mut [u16]) {
-    let Some(words) = within(entry, span, words.len()).and_then(|range| words.get_mut(range)) else { return };
+    let Some(words) = within(entry, *span, words.len()).and_then(|range| words.get_mut(range)) else { return };
     let value = &packed[entry.point.range()];
     if let (ElementaryType::Bool, Some(word)) = (entry.point.ty, words.first_mut()) {
         let mask = 1 << entry.address.bit.unwrap_or(0);
@@ -27,7 +27,7 @@ pub fn put(entry: &Entry, packed: &[u8], order: ByteOrder, span: &Span, words: &
 /// Takes the value of `entry` out of the words of `span`, if it lies there. A BOOL that has a register is TRUE
 /// unless that is 0.
 pub fn take(entry: &Entry, words: &[u16], order: ByteOrder, span: &Span, packed: &mut [u8]) {
-    let Some(words) = within(entry, span, words.len()).and_then(|range| words.get(range)) else { return };
+    let Some(words) = within(entry, *span, words.len()).and_then(|range| words.get(range)) else { return };
     let value = &mut packed[entry.point.range()];
     if let (ElementaryType::Bool, Some(word)) = (entry.point.ty, words.first()) {
         value[0] = u8::from(entry.address.bit.map_or(*word != 0, |bit| word >> bit & 1 != 0));
@@ -42,7 +42,7 @@ pub fn take(entry: &Entry, words: &[u16], order: ByteOrder, span: &Span, packed:
 }
 
 /// Where the words of `entry` are among those of `span`.
-fn within(entry: &Entry, span: &Span, len: usize) -> Option<std::ops::Range<usize>> {
+fn within(entry: &Entry, span: Span, len: usize) -> Option<std::ops::Range<usize>> {
     let start = usize::from(entry.address.at.checked_sub(span.at)?);
     let end = start + usize::from(entry.count);
     (entry.address.table == span.table && end <= len.min(usize::from(span.count))).then_some(start..end)

@@ -228,9 +228,9 @@ impl Ruler<'_> {
             Place { byte: self.at - 1, bit: self.bits - 1, ty }
         } else if is_number(ty) {
             if ty.size() == 1 {
-                self.bits = 0
+                self.bits = 0;
             } else {
-                self.even()
+                self.even();
             }
             let byte = self.at;
             self.at += ty.size();

@@ -84,7 +84,7 @@ fn points_may_lie_at_offsets() {
     let port = Port { name: SignalName::new("Valve").unwrap(), ty: ElementaryType::Bool };
     let at = |address: &str| {
         let addresses = [("Valve".to_owned(), address.to_owned())].into();
-        let exchange = Exchange::new(&[port.clone()], &[], SystemWords::Absent, &addresses);
+        let exchange = Exchange::new(std::slice::from_ref(&port), &[], SystemWords::Absent, &addresses);
         Layouts::new(&Declaration::default(), &exchange).map(|layouts| layouts.to_plc.moves[0].place)
     };
     assert_eq!(at("0.3").unwrap(), Place { byte: 0, bit: 3, ty: ElementaryType::Bool });

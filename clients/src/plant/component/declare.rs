@@ -269,6 +269,19 @@ macro_rules! failures {
 }
 pub(crate) use failures;
 
+/// The types of a component, which every kind calls the same: `Parameters`, `Inputs`, `Outputs`, `Failure`
+/// and `State`, those of its own file.
+macro_rules! own_types {
+    () => {
+        type Parameters = Parameters;
+        type Inputs = Inputs;
+        type Outputs = Outputs;
+        type Failure = Failure;
+        type State = State;
+    };
+}
+pub(crate) use own_types;
+
 /// The failure modes that are on.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Failed(pub(crate) u32);

@@ -89,6 +89,13 @@ impl Travel {
     }
 }
 
+/// Whether a proximity switch sees what is so far away: within its switching distance, and by the
+/// hysteresis beyond it as long as it sees it (IEC 60947-5-2, 7.2.1.6).
+pub(crate) fn in_reach(distance_m: Option<f64>, seen: bool, switching_m: f64, hysteresis_pct: f64) -> bool {
+    let reach_m = if seen { switching_m * (1.0 + 0.01 * hysteresis_pct) } else { switching_m };
+    distance_m.is_some_and(|distance_m| distance_m <= reach_m)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -7,6 +7,11 @@ use super::kind::{Form, Setting, Values, unit};
 use super::library::{ENTRIES, entry, kinds};
 use crate::plant::random::Random;
 
+/// What is seen of so many targets.
+pub(crate) fn touched(count: u32) -> Seen {
+    Seen { target: (count > 0).then_some(0), count, ..Seen::default() }
+}
+
 /// A component alone.
 pub(crate) struct Rig<C: Component> {
     pub(crate) component: C,

@@ -1,6 +1,6 @@
 //! Declarations of units, types and variables (2nd ed. 2.3 to 2.5).
 
-use super::{Argument, Configuration, Expr, Ident, Modifier, Namespace, Object, Span, Statement};
+use super::{Argument, Chart, Configuration, Expr, Ident, Modifier, Namespace, Object, Span, Statement};
 
 /// Something a file declares.
 #[derive(Debug, Clone)]
@@ -63,6 +63,8 @@ pub struct Pou {
     pub sections: Vec<Section>,
     /// Its statements.
     pub body: Vec<Statement>,
+    /// Its steps and transitions.
+    pub chart: Chart,
     /// Its bases and methods.
     pub object: Object,
     /// Where it stands.

@@ -117,7 +117,9 @@ impl Cursor<'_> {
     /// `label:`
     pub(super) fn label(&mut self) -> Option<StatementKind> {
         let colon = self.peek_ahead(1) == Some(TokenKind::Punctuation(Punctuation::Colon));
-        if self.peek() != Some(TokenKind::Identifier) || !colon {
+        // `a : = 1` is an assignment with a blank in it.
+        let equals = self.peek_ahead(2) == Some(TokenKind::Punctuation(Punctuation::Equal));
+        if self.peek() != Some(TokenKind::Identifier) || !colon || equals {
             return None;
         }
         let name = self.take_identifier()?;

@@ -303,15 +303,22 @@ impl<'a> Cursor<'a> {
     }
 }
 
-/// A name never follows another, so `METHOD Start` begins a method, and `method := 1` assigns.
+/// A name never follows another, so `METHOD Start` begins a method, and `method := 1` assigns. Nor has
+/// anything but a transition a priority.
 fn promote_soft_keywords(tokens: &mut [Token], text: &str) {
+    let spelling = |token: &Token| text.get(token.start as usize..token.end as usize);
     let mut next_is_name = false;
-    for token in tokens.iter_mut().rev() {
-        let is_name = token.kind == TokenKind::Identifier;
-        if is_name && next_is_name {
-            let word = text.get(token.start as usize..token.end as usize).and_then(Keyword::find);
-            if let Some(soft) = word.filter(|word| word.is_soft()) {
-                token.kind = TokenKind::Keyword(soft);
+    for at in (0..tokens.len()).rev() {
+        let is_name = tokens[at].kind == TokenKind::Identifier;
+        let ranked = || {
+            let behind = (tokens.get(at + 1)?, tokens.get(at + 2)?);
+            let opens = behind.0.kind == TokenKind::Punctuation(Punctuation::LeftParen);
+            Some(opens && spelling(behind.1)?.eq_ignore_ascii_case("PRIORITY"))
+        };
+        if is_name && let Some(word) = spelling(&tokens[at]).and_then(Keyword::find) {
+            let soft = next_is_name && (word.is_soft() || word.is_of_chart());
+            if soft || word == Keyword::Transition && ranked() == Some(true) {
+                tokens[at].kind = TokenKind::Keyword(word);
             }
         }
         next_is_name = is_name;

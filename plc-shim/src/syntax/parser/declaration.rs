@@ -6,8 +6,8 @@ use crate::diagnostic::{Code, Diagnostic};
 use crate::dialect::Feature;
 use crate::ir::ElementaryType;
 use crate::syntax::ast::{
-    CompilationUnit, Declaration, Edge, Ident, Member, Modifier, PouKind, Qualifier, Section, SectionKind, Statement,
-    StatementKind, TypeDeclaration, TypeSpec, TypeSpecKind, Variable,
+    Chart, CompilationUnit, Declaration, Edge, Ident, Member, Modifier, PouKind, Qualifier, Section, SectionKind,
+    Statement, StatementKind, TypeDeclaration, TypeSpec, TypeSpecKind, Variable,
 };
 use crate::syntax::token::{Keyword, Punctuation, TokenKind};
 
@@ -32,6 +32,14 @@ pub(super) fn section_kind(kind: Option<TokenKind>) -> Option<SectionKind> {
         TokenKind::Keyword(Keyword::VarExternal) => SectionKind::External,
         _ => return None,
     })
+}
+
+/// What stands between a unit's head and its end, its statements left out.
+#[derive(Default)]
+pub(super) struct UnitParts {
+    pub(super) sections: Vec<Section>,
+    pub(super) members: Vec<Member>,
+    pub(super) chart: Chart,
 }
 
 impl Cursor<'_> {
@@ -108,22 +116,17 @@ impl Cursor<'_> {
         section_kind(self.peek())
     }
 
-    pub(super) fn body(
-        &mut self,
-        end: Keyword,
-        sections: &mut Vec<Section>,
-        members: &mut Vec<Member>,
-    ) -> Vec<Statement> {
+    pub(super) fn body(&mut self, end: Keyword, parts: &mut UnitParts) -> Vec<Statement> {
         let mut body = self.body_statements();
         // A stray closing keyword is reported and passed, so that the rest of the body is read.
         while !self.take_keyword(end) {
-            if self.members(members) {
+            if self.members(&mut parts.members) || self.chart_part(&mut parts.chart) {
                 body.extend(self.body_statements());
                 continue;
             }
             if let Some(kind) = section_kind(self.peek()) {
                 self.report_late_section(&body);
-                sections.push(self.section(kind));
+                parts.sections.push(self.section(kind));
                 body.extend(self.body_statements());
                 continue;
             }
@@ -139,7 +142,7 @@ impl Cursor<'_> {
     }
 
     /// Statements, or instructions if the first is one.
-    fn body_statements(&mut self) -> Vec<Statement> {
+    pub(super) fn body_statements(&mut self) -> Vec<Statement> {
         if self.at_instruction_list() { self.instructions() } else { self.statements() }
     }
 

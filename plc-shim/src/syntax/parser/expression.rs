@@ -337,7 +337,7 @@ impl Cursor<'_> {
     }
 }
 
-fn error_at(span: Span) -> Expr {
+pub(super) fn error_at(span: Span) -> Expr {
     Expr { kind: ExprKind::Error, span, height: 1 }
 }
 

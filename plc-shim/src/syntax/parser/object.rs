@@ -1,7 +1,7 @@
 //! Classes, interfaces, methods, properties, actions (3rd ed. 6.6.5 to 6.6.8), namespaces (3rd ed. 6.9).
 
 use super::cursor::Cursor;
-use super::declaration::{begins_declaration, ends_unit};
+use super::declaration::{UnitParts, begins_declaration, ends_unit};
 use crate::diagnostic::{Code, Diagnostic};
 use crate::syntax::ast::{
     Declaration, Expr, ExprKind, Ident, Literal, Member, MemberKind, Modifier, Namespace, NamespaceKind, Object, Pou,
@@ -49,17 +49,21 @@ impl Cursor<'_> {
         (name, result, mut object): (Ident, Option<TypeSpec>, Object),
         start: Span,
     ) -> Pou {
-        let mut sections = self.sections_and_members(&mut object);
+        let sections = self.sections_and_members(&mut object);
         self.take_keyword(Keyword::Begin);
         let from = self.span();
-        let body = self.body(end, &mut sections, &mut object.members);
+        let members = std::mem::take(&mut object.members);
+        let mut parts = UnitParts { sections, members, ..UnitParts::default() };
+        let body = self.body(end, &mut parts);
+        let UnitParts { sections, members, chart } = parts;
+        object.members = members;
         if matches!(kind, PouKind::Class | PouKind::Interface) && !body.is_empty() {
             let message = "a class or interface has no statements of its own";
             let found = Diagnostic::error(Code::UnexpectedToken, from, message);
             self.report_syntax(found.with_help("put them into a method"));
         }
         let span = self.span_from(start);
-        Pou { kind, name, result, sections, body, object, span }
+        Pou { kind, name, result, sections, body, chart, object, span }
     }
 
     fn sections_and_members(&mut self, object: &mut Object) -> Vec<Section> {
@@ -146,11 +150,11 @@ impl Cursor<'_> {
         self.advance();
         let Some(name) = self.expect_identifier("the action's name") else { return };
         self.take_mark(Punctuation::Colon);
-        let mut sections = Vec::new();
-        let body = self.body(Keyword::EndAction, &mut sections, &mut Vec::new());
+        let mut parts = UnitParts::default();
+        let body = self.body(Keyword::EndAction, &mut parts);
         let (kind, span) = (PouKind::Action, self.span_from(start));
-        let object = Object::default();
-        let pou = Pou { kind, name, result: None, sections, body, object, span };
+        let UnitParts { sections, chart, .. } = parts;
+        let pou = Pou { kind, name, result: None, sections, body, chart, object: Object::default(), span };
         members.push(Member { kind: MemberKind::Action, pou });
     }
 

@@ -14,13 +14,13 @@ use crate::syntax::token::{Keyword, Punctuation, TokenKind};
 /// Keywords that close a list of statements, whoever opened it.
 fn closes_list(keyword: Keyword) -> bool {
     use Keyword as K;
-    if keyword.is_soft() || ends_object(keyword) {
+    if keyword.is_soft() || keyword.is_of_chart() || ends_object(keyword) {
         return true;
     }
     matches!(
         keyword,
         K::EndProgram | K::EndFunctionBlock | K::EndFunction | K::EndIf | K::EndCase | K::EndFor
-            | K::EndWhile | K::EndRepeat | K::Elsif | K::Else | K::Until
+            | K::EndWhile | K::EndRepeat | K::EndStep | K::EndTransition | K::Elsif | K::Else | K::Until
             | K::Var | K::VarInput | K::VarOutput | K::VarInOut | K::VarTemp | K::VarExternal | K::VarStat | K::VarInst
             // A new unit begins: the end of the one before is missing.
             | K::Program | K::FunctionBlock | K::Function | K::Type | K::EndType | K::VarGlobal

@@ -264,10 +264,46 @@ proptest! {
         "IF", "THEN", "ELSE", "END_IF", "CASE", "OF", "END_CASE", "FOR", "TO", "BY", "DO",
         "END_FOR", "REPEAT", "UNTIL", "a", "b", "1", "2.5", ":=", ":", ";", ",", "(", ")", "[",
         "]", "..", "+", "-", "NOT", "AND", "=>", ".", "T#1s", "ARRAY", "INT", "%IX1", "'s'",
+        "STEP", "END_STEP", "INITIAL_STEP", "TRANSITION", "FROM", "END_TRANSITION", "ACTION", "END_ACTION",
     ]), 0..120)) {
         let text = words.join(" ");
         let parsed = parse(FILE, &text);
         let tokens = parsed.tokens.iter().filter(|token| token.kind != TokenKind::Whitespace);
         prop_assert_eq!(tokens.count(), words.len());
     }
+}
+
+#[test]
+fn iec2_b_1_6_charts_are_printed_as_what_they_are() {
+    let text = "PROGRAM P
+        INITIAL_STEP A: END_STEP
+        STEP B: x(); y(N); z(D, T#1s + t, done, all.done); END_STEP;
+        TRANSITION FROM A TO B := x; END_TRANSITION
+        TRANSITION t1 (PRIORITY := 1_0) FROM (A, B) TO (B, A) := x AND y END_TRANSITION
+        TRANSITION (PRIORITY := 2) FROM A TO B : IF x THEN t := TRUE; END_IF; END_TRANSITION
+        ACTION z: x := NOT x; END_ACTION
+        END_PROGRAM";
+    let parsed = parse(FILE, text);
+    assert_eq!(parsed.diagnostics, []);
+    let printed = print_unit(&parsed.unit);
+    let again = parse(FILE, &printed);
+    assert_eq!(again.diagnostics, [], "{printed}");
+    assert_eq!(printed, print_unit(&again.unit));
+    let spans_aside = |unit: &CompilationUnit| {
+        let text = format!("{unit:?}");
+        text.split("Span {")
+            .map(|part| part.split_once('}').map_or(part, |(_, rest)| rest).to_owned())
+            .collect::<Vec<_>>()
+    };
+    let Some(crate::syntax::ast::Declaration::Pou(pou)) = again.unit.declarations.first() else { panic!("a unit") };
+    assert_eq!((pou.chart.steps.len(), pou.chart.transitions.len(), pou.body.len()), (2, 3, 0));
+    assert_eq!(spans_aside(&parsed.unit), spans_aside(&again.unit));
+}
+
+#[test]
+fn charts_do_not_cost_the_stack() {
+    let deep = format!("PROGRAM p STEP a: x(D, {}1{}); END_STEP END_PROGRAM", "(".repeat(50_000), ")".repeat(50_000));
+    assert_eq!(parse(FILE, &deep).diagnostics[0].code, Code::NestingTooDeep);
+    let open = "PROGRAM p ".to_owned() + &"INITIAL_STEP a: TRANSITION FROM (a TO ".repeat(2_000);
+    assert!(!parse(FILE, &open).diagnostics.is_empty());
 }

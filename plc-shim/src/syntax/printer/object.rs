@@ -43,6 +43,7 @@ impl Printer {
         for member in &pou.object.members {
             self.member(member);
         }
+        self.chart(&pou.chart);
         self.statements(&pou.body);
         self.line(end);
     }

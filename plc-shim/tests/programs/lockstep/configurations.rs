@@ -98,3 +98,30 @@ fn tasks_that_nothing_stands_for_are_refused() {
     insta::assert_snapshot!(refused("TASK t (SINGLE := g, PRIORITY := 1);"), @"c.st:2:37: error[L0501]: a task with SINGLE is not instrumented yet");
     insta::assert_snapshot!(refused("TASK t (PRIORITY := 1);"), @"c.st:2:34: error[L0501]: a task without INTERVAL is not instrumented yet");
 }
+
+/// Intervals and priorities are constant expressions (2nd ed. 2.7.2).
+#[test]
+fn intervals_may_be_constant_expressions() {
+    let table = |declared: &str| {
+        let text = format!(
+            "VAR_GLOBAL CONSTANT cycle : TIME := 2 * T#5ms; half : TIME := cycle / 2; n : INT := 3; END_VAR
+            VAR_GLOBAL other : TIME := T#1s; END_VAR
+            PROGRAM P ; END_PROGRAM CONFIGURATION C
+            RESOURCE R ON X TASK t ({declared}); PROGRAM p WITH t : P; END_RESOURCE END_CONFIGURATION"
+        );
+        let input = Input::from_text("c.st", SourceKind::Text, text);
+        let project = instrument(&[input], &Options::default()).map_err(|error| error.to_string())?;
+        let shim = project.files[1].text.as_deref().expect("a text").to_owned();
+        let line = |name: &str| shim.lines().find(|line| line.contains(name)).unwrap_or("").trim().to_owned();
+        Ok::<_, String>((line("Period :"), line("Rank :")))
+    };
+    let (period, rank) = table("INTERVAL := half + T#1ms, PRIORITY := (n - 1) * 2").expect("constants");
+    assert!(period.contains(":= [6000000];") && rank.contains(":= [4];"), "{period} {rank}");
+    for (declared, told) in [
+        ("INTERVAL := other, PRIORITY := 1", "INTERVAL other than a constant"),
+        ("INTERVAL := T#1ms, PRIORITY := n - 4", "PRIORITY below 0"),
+        ("INTERVAL := T#0s - half, PRIORITY := 1", "INTERVAL below 0"),
+    ] {
+        assert!(table(declared).is_err_and(|error| error.contains(told)), "{declared}");
+    }
+}

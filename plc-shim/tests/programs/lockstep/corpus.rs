@@ -69,6 +69,42 @@ VAR c : CTUD; up : CTU; r : R_TRIG; f : F_TRIG; END_VAR
     r(CLK := i); f(CLK := j); e := r.Q OR f.Q OR up.Q;
 END_PROGRAM";
 
+const CHART: &str = "
+FUNCTION_BLOCK Blink
+VAR_INPUT run : BOOL; END_VAR
+VAR_OUTPUT lamp, late : BOOL; n : INT; END_VAR
+    INITIAL_STEP Off: END_STEP
+    STEP On: lamp(N); late(D, T#10ms); Count(P1); END_STEP
+    TRANSITION FROM Off TO On := run AND Off.T >= T#15ms; END_TRANSITION
+    TRANSITION FROM On TO Off := On.T >= T#20ms; END_TRANSITION
+    ACTION Count: n := n + 1; END_ACTION
+END_FUNCTION_BLOCK
+PROGRAM Main
+VAR_INPUT i, j : BOOL; END_VAR
+VAR_OUTPUT n, l, d, p, s, sd, ds, sl, lamp, late : BOOL; runs, ends, pulses, leaves, blinks : INT; t : TIME; END_VAR
+VAR blink : Blink; delay : TIME := T#25ms; timer : TON; END_VAR
+    INITIAL_STEP Idle: Lamps(N); s(R); sd(R); ds(R); sl(R); END_STEP
+    STEP A: n(N); l(L, T#20ms); d(D, delay); p(P); Work(N); Lamps(N);
+        s(S); Pulse(P1); Leave(P0);
+    END_STEP
+    STEP B: sd(SD, T#20ms); ds(DS, A.T + T#10ms); sl(SL, T#30ms); (* times *) END_STEP
+    STEP C: END_STEP
+    TRANSITION FROM Idle TO (A, B) := i AND NOT j; END_TRANSITION
+    TRANSITION (PRIORITY := 1) FROM A TO C := A.T >= T#40ms OR j; END_TRANSITION
+    TRANSITION both FROM (C, B) TO Idle : both := B.T > T#50ms AND NOT i; END_TRANSITION
+    ACTION Work:
+        runs := runs + 1;
+        IF NOT Work.Q THEN ends := ends + 1; RETURN; END_IF;
+        t := A.T;
+    END_ACTION
+    ACTION Pulse: pulses := pulses + 1; END_ACTION
+    ACTION Leave: leaves := leaves + 1; END_ACTION
+    ACTION Lamps:
+        blink(run := Lamps.Q, lamp => lamp, late => late); blinks := blink.n;
+        timer(IN := i, PT := T#10ms);
+    END_ACTION
+END_PROGRAM";
+
 const MOTION: &str = "
 FUNCTION_BLOCK Station
 VAR_IN_OUT Axis : AXIS_REF; END_VAR
@@ -94,6 +130,18 @@ END_VAR
     rx(Axis := X, Enable := TRUE, Position => px); ry(Axis := Y, Enable := TRUE, Position => py);
     rv(Axis := X, Enable := TRUE, Velocity => vx); st(Axis := X, Enable := TRUE, Standstill => still);
     IF run.InVelocity THEN n := n + 1; END_IF;
+END_PROGRAM";
+
+const DERIVED: &str = "
+FUNCTION_BLOCK Counting EXTENDS TON
+VAR_OUTPUT n : INT; END_VAR
+VAR on : BOOL; END_VAR
+    SUPER();
+    IF Q AND NOT on THEN n := n + 1; END_IF;
+    on := Q;
+END_FUNCTION_BLOCK
+PROGRAM Main VAR_INPUT i : BOOL; END_VAR VAR_OUTPUT n : INT; et : TIME; q : BOOL; END_VAR VAR c : Counting; END_VAR
+    c(IN := i, PT := T#12ms); n := c.n; et := c.ET; q := c.Q;
 END_PROGRAM";
 
 pub(crate) fn cases() -> Vec<Case> {
@@ -126,6 +174,8 @@ pub(crate) fn cases() -> Vec<Case> {
             tasks: vec![task("main", 10, 3, &["Main"])],
             inputs: &["Main.i", "Main.j"],
         },
+        Case { name: "derived", text: DERIVED, tasks: vec![task("main", 5, 0, &["Main"])], inputs: &["Main.i"] },
+        Case { name: "chart", text: CHART, tasks: vec![task("main", 5, 0, &["Main"])], inputs: &["Main.i", "Main.j"] },
         Case {
             name: "motion",
             text: MOTION,

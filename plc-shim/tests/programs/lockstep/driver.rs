@@ -142,7 +142,12 @@ pub(crate) fn original(text: &str, tasks: &[Task]) -> SoftPlc {
 pub(crate) fn state(plc: &SoftPlc) -> Vec<(String, Vec<u8>)> {
     let programs = plc.application().programs().filter(|program| !program.name.starts_with("SDSP_"));
     let variables = programs.flat_map(|program| [program.inputs, program.outputs, program.locals].concat());
-    let own = variables.filter(|variable| variable.ty.is_some() && !variable.path.contains("SDSP_"));
+    // What the PLC notes of its own scans, idle ones too: the first of a chart, a transition that was cleared.
+    let idle = |path: &str| {
+        let last = path.rsplit('.').next();
+        path.contains("SDSP_") || matches!(last, Some("SFC_Begun" | "both"))
+    };
+    let own = variables.filter(|variable| variable.ty.is_some() && !idle(&variable.path));
     own.map(|variable| {
         let range = variable.offset as usize..(variable.offset + variable.size) as usize;
         (variable.path, plc.memory()[range].to_vec())

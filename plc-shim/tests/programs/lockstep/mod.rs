@@ -1,11 +1,13 @@
 //! Instrumented programs (seed: Carlsson et al. 2012, sec. V): the same outputs at the same virtual times,
 //! whatever becomes of the grants.
 
+mod charts;
 mod configurations;
 mod corpus;
 mod driver;
 mod equivalence;
 mod grants;
 mod overhead;
+mod plcopen_xml;
 mod random;
 mod rewriting;

@@ -153,6 +153,10 @@ fn motion_control_that_cannot_be_replaced_is_told() {
         assert!(told.contains("I1002") && told.contains("`MC_Power` is left"), "{statement}: {told}");
         assert!(!project.files.iter().any(|file| file.text.as_deref().is_some_and(|text| text.contains("SDSP_MC_"))));
     }
+    let derived =
+        "FUNCTION_BLOCK Mine EXTENDS MC_Power END_FUNCTION_BLOCK PROGRAM P VAR m : Mine; END_VAR ; END_PROGRAM";
+    let project = round_trip(&inputs(&[("p.st", SourceKind::Text, derived)]), &Options::default());
+    assert!(project.warnings.to_string().contains("`MC_Power` is not replaced: a function block is derived from it"));
     let text = "PROGRAM P VAR X : AXIS_REF; on : MC_Power; go : MC_GearIn; probe : MC_TouchProbe; END_VAR
         on(Axis := X, Enable := TRUE, bDriveStart := TRUE); probe(Axis := X); END_PROGRAM";
     let project = round_trip(&inputs(&[("p.st", SourceKind::Text, text)]), &Options::default());

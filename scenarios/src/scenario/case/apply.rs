@@ -4,6 +4,7 @@ use std::ops::Range;
 
 use onescan_clients::forced::{Force, Forced};
 use onescan_clients::soft_plc::SoftPlcClient;
+use onescan_plc_shim::{Application, Input, VariableAccess};
 use onescan_server::client::Client;
 use onescan_server::signal::{ClientName, SignalName, did_you_mean};
 use onescan_server::time::VirtualTime;
@@ -11,7 +12,7 @@ use toml::{Spanned, Value};
 
 use super::file::{CaseFile, FaultFile};
 use super::value::{bytes_of, literal_of, quoted};
-use super::{Applied, Case, Catalogue, FailureAt, Setting, scene};
+use super::{Applied, Case, Catalogue, FailureAt, Setting, constant, scene};
 use crate::scenario::Scenario;
 use crate::scenario::error::{ScenarioError, wrong};
 use crate::scenario::file::ClientFile;
@@ -168,6 +169,30 @@ impl Scenario {
         edited.map_err(|refused| wrong_case(applied, refused.message, refused.place, refused.help))
     }
 
+    /// A source of PLC `name` with the constants of the case.
+    pub(in crate::scenario) fn with_constants(&self, name: &ClientName, input: Input) -> Input {
+        let Some(applied) = self.applied() else { return input };
+        let settings: Vec<&Setting> = settings_of(applied, name).collect();
+        constant::set(input, &settings)
+    }
+
+    /// The error of a constant without which the sources of PLC `name` compile; `plain` are as they are written.
+    pub(in crate::scenario) fn wrong_constant(&self, name: &ClientName, plain: &[Input]) -> Option<ScenarioError> {
+        let applied = self.applied()?;
+        let found = |inputs: Vec<Input>| {
+            let findings = Application::from_inputs(inputs).err()?;
+            Some(findings.findings().first().map(|found| found.diagnostic().message.clone()).unwrap_or_default())
+        };
+        if found(plain.to_vec()).is_some() {
+            return None;
+        }
+        settings_of(applied, name).find_map(|setting| {
+            let with = plain.iter().map(|input| constant::set(input.clone(), &[setting]));
+            let message = format!("`{name}` does not compile with this constant: {}", found(with.collect())?);
+            Some(wrong_case(applied, message, setting.place.clone(), None))
+        })
+    }
+
     /// Gives a PLC the initial values of the case.
     pub(in crate::scenario) fn preset(&self, plc: &mut SoftPlcClient, name: &ClientName) -> Result<(), ScenarioError> {
         let Some(applied) = self.applied() else { return Ok(()) };
@@ -177,6 +202,10 @@ impl Scenario {
             let Some(literal) = literal_of(&setting.value) else {
                 return Err(refused(format!("`{path}` takes a number, a BOOL or a literal as text"), None));
             };
+            if holds(plc, path, &literal) {
+                // A constant, which was set in the program's text.
+                continue;
+            }
             let mut written = plc.preset(path, &literal);
             if written.is_err() && setting.value.is_str() {
                 // A text may also be that of a string, without its quotation marks.
@@ -189,7 +218,10 @@ impl Scenario {
                     refused(format!("`{name}` has no variable `{}`", unknown.path), unknown.help)
                 }
                 error @ onescan_plc_shim::WriteError::Protected { .. } => {
-                    let help = "programs hold the values of constants; make it a VAR with an initial value".to_owned();
+                    let help =
+                        "programs hold the values of constants; this one is set only where it is declared alone, \
+                                with an initial value, in plain text"
+                            .to_owned();
                     refused(error.to_string(), Some(help))
                 }
                 error @ onescan_plc_shim::WriteError::Value { .. } => refused(error.to_string(), None),
@@ -223,6 +255,16 @@ impl Scenario {
             _ => client,
         }
     }
+}
+
+/// True for a constant that has this value already.
+fn holds(plc: &SoftPlcClient, path: &str, literal: &str) -> bool {
+    let plc = plc.plc();
+    let Ok(variable) = plc.variable(path) else { return false };
+    let wanted = plc.application().value_bytes(&variable, literal);
+    let at = variable.offset as usize;
+    variable.access == VariableAccess::Constant
+        && wanted.is_ok_and(|wanted| plc.memory().get(at..at + wanted.len()) == Some(&wanted[..]))
 }
 
 fn settings_of<'a>(applied: &'a Applied, client: &'a ClientName) -> impl Iterator<Item = &'a Setting> {

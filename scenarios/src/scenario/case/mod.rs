@@ -7,6 +7,7 @@
 //! | [`matrix`] | every combination of values |
 //! | [`value`] | TOML values as those of signals and variables |
 //! | [`scene`] | parameters and failures written into the text of a scene |
+//! | [`constant`] | constants of a PLC, in its text |
 //! | [`apply`] | a case put on its scenario |
 //!
 //! A scenario without the file, and one whose file names no case, has one case, called
@@ -14,6 +15,7 @@
 
 pub mod apply;
 pub mod catalogue;
+pub mod constant;
 pub mod file;
 pub mod matrix;
 pub mod scene;

@@ -190,17 +190,21 @@ async fn take_application(mut connection: Connection, peer: SocketAddr, host: &H
 
 async fn serve_operator(mut connection: Connection, host: &Host) -> Result<(), ReceiveError> {
     loop {
-        let control = match receive(&mut connection, OPERATOR_PATIENCE).await {
-            Ok(ClientMessage::Control(control)) => Some(control),
+        let operation = match receive(&mut connection, OPERATOR_PATIENCE).await {
+            Ok(ClientMessage::Control(control)) => Some(control.into()),
+            Ok(ClientMessage::Operate(operation)) => Some(operation),
             Ok(ClientMessage::Status {}) => None,
-            Ok(_) => return refuse(&mut connection, "an operator may send `control` and `status`").await,
+            Ok(_) => return refuse(&mut connection, "an operator may send `control`, `operate` and `status`").await,
             Err(ReceiveError::Closed) => return Ok(()),
             Err(error) => return Err(error),
         };
         let (reply, answer) = oneshot::channel();
-        host.mailbox.post(Request { control, reply: Some(reply) });
-        let Ok(status) = answer.await else { return Ok(()) };
-        send(&mut connection, &ServerMessage::Status(status)).await?;
+        host.mailbox.post(Request { operation, reply: Some(reply) });
+        let Ok(done) = answer.await else { return Ok(()) };
+        match done {
+            Ok(status) => send(&mut connection, &ServerMessage::Status(status)).await?,
+            Err(error) => return refuse(&mut connection, &error.to_string()).await,
+        }
     }
 }
 

@@ -4,19 +4,30 @@ use std::net::SocketAddr;
 use std::time::Duration;
 
 use super::participant::{ParticipantError, connect, greet};
-use crate::session::Control;
+use crate::operation::Operation;
 use crate::wire::message::{Role, Status};
 use crate::wire::{ClientMessage, ServerMessage};
 
-/// Asks the session at `address` for `control`, or with `None` only how it is, and gives its status
+/// Asks the session at `address` for `operation`, or with `None` only how it is, and gives its status
 /// at the step boundary at which the wish was taken.
 ///
 /// # Errors
-/// Nobody there, no answer within `patience`, or an answer that is none.
-pub fn operate(address: SocketAddr, control: Option<Control>, patience: Duration) -> Result<Status, ParticipantError> {
+/// Nobody there, a signal or value that the session has not, no answer within `patience`, or an answer that is none.
+pub fn operate(
+    address: SocketAddr,
+    operation: Option<Operation>,
+    patience: Duration,
+) -> Result<Status, ParticipantError> {
     let mut connection = connect(address)?;
     greet(&mut connection, Role::Operator)?;
-    let wish = control.map_or(ClientMessage::Status {}, ClientMessage::Control);
+    let wish = match operation {
+        None => ClientMessage::Status {},
+        // What a server of any version knows goes as it always did.
+        Some(operation) => match operation.control() {
+            Some(control) => ClientMessage::Control(control),
+            None => ClientMessage::Operate(operation),
+        },
+    };
     connection.send_message(&wish).map_err(|e| ParticipantError::Handshake(e.into()))?;
     match connection.receive_message(patience).map_err(ParticipantError::Handshake)? {
         ServerMessage::Status(status) => Ok(status),

@@ -11,7 +11,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::plant::component::behaviour::{Component, Start, Turn};
 use crate::plant::component::coupling::Coupling;
-use crate::plant::component::declare::{failures, parameters, signals};
+use crate::plant::component::declare::{failures, own_types, parameters, signals};
 
 parameters! {
     /// Its parameters.
@@ -69,11 +69,7 @@ impl Component for AbsoluteEncoder {
     const FORMULA: &'static [&'static str] = &["n = floor(2^b (x - x_0)/X) mod 2^b", "Gray: n xor (n >> 1)"];
     const SOURCE: &'static str = "F. Gray, US patent 2632058 (1953)";
     const COUPLING: Coupling = Coupling::Measures;
-    type Parameters = Parameters;
-    type Inputs = Inputs;
-    type Outputs = Outputs;
-    type Failure = Failure;
-    type State = State;
+    own_types!();
 
     fn new(p: Parameters) -> Self {
         Self { p }

@@ -11,7 +11,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::plant::component::behaviour::{Component, Start, Turn};
 use crate::plant::component::coupling::{Coupling, Effect};
-use crate::plant::component::declare::{failures, parameters, signals};
+use crate::plant::component::declare::{failures, own_types, parameters, signals};
 
 parameters! {
     /// Its parameters.
@@ -61,11 +61,7 @@ impl Component for Arm {
     const FORMULA: &'static [&'static str] = &["drop = false or hold: holds what touches it", "drop = true: lets go"];
     const SOURCE: &'static str = "class Arm of the filling machine (Sivtoft 2002, 4.2.3 and A5)";
     const COUPLING: Coupling = Coupling::Touch;
-    type Parameters = Parameters;
-    type Inputs = Inputs;
-    type Outputs = Outputs;
-    type Failure = Failure;
-    type State = State;
+    own_types!();
 
     fn new(_: Parameters) -> Self {
         Self
@@ -95,13 +91,7 @@ impl Component for Arm {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::plant::component::tests::Rig;
-
-    use crate::plant::component::coupling::Seen;
-
-    fn touched(count: u32) -> Seen {
-        Seen { target: (count > 0).then_some(0), count, ..Seen::default() }
-    }
+    use crate::plant::component::tests::{Rig, touched};
 
     const GRIP: Inputs = Inputs { drop: false, hold: false };
     const DROP: Inputs = Inputs { drop: true, hold: false };

@@ -18,7 +18,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::plant::component::behaviour::{Component, Start, Turn};
 use crate::plant::component::coupling::{Coupling, Effect};
-use crate::plant::component::declare::{failures, parameters, signals};
+use crate::plant::component::declare::{failures, own_types, parameters, signals};
 use crate::plant::component::dynamics::{Travel, ramp, substeps};
 
 /// Longest sub-step.
@@ -148,11 +148,7 @@ impl Component for AsynchronousMotor {
         &["ω_s = 2π f / p", "s = (ω_s - ω) / ω_s,N", "M = 2 M_k / (s/s_k + s_k/s)", "J dω/dt = M - M_load - d ω"];
     const SOURCE: &'static str = "M. Kloss, Archiv für Elektrotechnik 5 (1916)";
     const COUPLING: Coupling = Coupling::Turns;
-    type Parameters = Parameters;
-    type Inputs = Inputs;
-    type Outputs = Outputs;
-    type Failure = Failure;
-    type State = State;
+    own_types!();
 
     fn new(p: Parameters) -> Self {
         let rated_rad_s = TAU * p.frequency_hz / f64::from(p.pole_pairs);

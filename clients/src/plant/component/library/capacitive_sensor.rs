@@ -12,7 +12,8 @@ use serde::{Deserialize, Serialize};
 
 use crate::plant::component::behaviour::{Component, Start, Turn};
 use crate::plant::component::coupling::Coupling;
-use crate::plant::component::declare::{failures, parameters, signals};
+use crate::plant::component::dynamics::in_reach;
+use crate::plant::component::declare::{failures, own_types, parameters, signals};
 
 parameters! {
     /// A switch and its targets.
@@ -68,11 +69,7 @@ impl Component for CapacitiveSensor {
     const FORMULA: &'static [&'static str] = &["s = s_n (ε - 1)/(ε + 1)", "on at s, off at s (1 + h)"];
     const SOURCE: &'static str = "IEC 60947-5-2; J. D. Jackson, Classical Electrodynamics, 4.4";
     const COUPLING: Coupling = Coupling::Ray;
-    type Parameters = Parameters;
-    type Inputs = Inputs;
-    type Outputs = Outputs;
-    type Failure = Failure;
-    type State = State;
+    own_types!();
 
     fn new(p: Parameters) -> Self {
         Self { p }
@@ -85,8 +82,7 @@ impl Component for CapacitiveSensor {
     fn sense(&self, state: &mut State, _: &Inputs, turn: &Turn) -> Outputs {
         let permittivity = self.p.permittivity_ratio;
         let on_m = self.p.rated_m * (permittivity - 1.0) / (permittivity + 1.0);
-        let reach_m = if state.near { on_m * (1.0 + 0.01 * self.p.hysteresis_pct) } else { on_m };
-        let met = turn.seen.hit_m.is_some_and(|distance| distance <= reach_m);
+        let met = in_reach(turn.seen.hit_m, state.near, on_m, self.p.hysteresis_pct);
         state.near = (met || turn.failed.has(Failure::Wet)) && !turn.failed.has(Failure::Blind);
         Outputs { detected: state.near != self.p.normally_closed }
     }

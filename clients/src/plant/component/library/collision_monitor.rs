@@ -11,7 +11,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::plant::component::behaviour::{Component, Start, Turn};
 use crate::plant::component::coupling::Coupling;
-use crate::plant::component::declare::{failures, parameters, signals};
+use crate::plant::component::declare::{failures, own_types, parameters, signals};
 
 parameters! {
     /// Its parameters.
@@ -59,11 +59,7 @@ impl Component for CollisionMonitor {
     const FORMULA: &'static [&'static str] = &["collisions += max(0, touching - touching a scan ago)"];
     const SOURCE: &'static str = "closed form; crash of packages in the filling machine (Sivtoft 2002, 5.1)";
     const COUPLING: Coupling = Coupling::Meet;
-    type Parameters = Parameters;
-    type Inputs = Inputs;
-    type Outputs = Outputs;
-    type Failure = Failure;
-    type State = State;
+    own_types!();
 
     fn new(_: Parameters) -> Self {
         Self

@@ -11,7 +11,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::plant::component::behaviour::{Component, Start, Turn};
 use crate::plant::component::coupling::Coupling;
-use crate::plant::component::declare::{failures, parameters, signals};
+use crate::plant::component::declare::{failures, own_types, parameters, signals};
 
 parameters! {
     /// Its parameters.
@@ -60,11 +60,7 @@ impl Component for ContactSensor {
     const FORMULA: &'static [&'static str] = &["power = touched", "pulse = touched and not touched a scan ago"];
     const SOURCE: &'static str = "class Sensor of the filling machine (Sivtoft 2002, 4.2.3 and A6)";
     const COUPLING: Coupling = Coupling::Contact;
-    type Parameters = Parameters;
-    type Inputs = Inputs;
-    type Outputs = Outputs;
-    type Failure = Failure;
-    type State = State;
+    own_types!();
 
     fn new(_: Parameters) -> Self {
         Self
@@ -86,13 +82,7 @@ impl Component for ContactSensor {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::plant::component::tests::Rig;
-
-    use crate::plant::component::coupling::Seen;
-
-    fn touched(count: u32) -> Seen {
-        Seen { target: (count > 0).then_some(0), count, ..Seen::default() }
-    }
+    use crate::plant::component::tests::{Rig, touched};
 
     fn rig() -> Rig<ContactSensor> {
         Rig::new(ContactSensor::new(Parameters {}))

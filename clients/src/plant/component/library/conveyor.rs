@@ -14,7 +14,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::plant::component::behaviour::{Component, Start, Turn};
 use crate::plant::component::coupling::{Coupling, Effect};
-use crate::plant::component::declare::{failures, parameters, signals};
+use crate::plant::component::declare::{failures, own_types, parameters, signals};
 use crate::plant::setpoint::{Bounds, Setpoint};
 
 parameters! {
@@ -80,11 +80,7 @@ impl Component for Conveyor {
     const FORMULA: &'static [&'static str] = &["dv/dt = ±a until v = k v_N", "travel = ∫ v dt"];
     const SOURCE: &'static str = "closed form; speed levels: Sivtoft 2002, ch. 5";
     const COUPLING: Coupling = Coupling::Belt;
-    type Parameters = Parameters;
-    type Inputs = Inputs;
-    type Outputs = Outputs;
-    type Failure = Failure;
-    type State = State;
+    own_types!();
 
     fn new(p: Parameters) -> Self {
         Self { p }

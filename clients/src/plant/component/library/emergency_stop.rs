@@ -10,7 +10,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::plant::component::behaviour::{Component, Start, Turn};
-use crate::plant::component::declare::{failures, parameters, signals};
+use crate::plant::component::declare::{failures, own_types, parameters, signals};
 use crate::plant::component::dynamics::OnDelay;
 
 parameters! {
@@ -71,11 +71,7 @@ impl Component for EmergencyStop {
     const SUMMARY: &'static str = "emergency stop: latching, two break contacts";
     const FORMULA: &'static [&'static str] = &["open from a hit until it is reset"];
     const SOURCE: &'static str = "ISO 13850:2015, 4.1; IEC 60947-5-5";
-    type Parameters = Parameters;
-    type Inputs = Inputs;
-    type Outputs = Outputs;
-    type Failure = Failure;
-    type State = State;
+    own_types!();
 
     fn new(p: Parameters) -> Self {
         Self { p }

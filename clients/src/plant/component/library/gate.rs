@@ -10,7 +10,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::plant::component::behaviour::{Component, Start, Turn};
-use crate::plant::component::declare::{choice, failures, parameters, signals};
+use crate::plant::component::declare::{choice, failures, own_types, parameters, signals};
 
 choice! {
     /// What it computes.
@@ -127,11 +127,7 @@ impl Component for Gate {
     const SUMMARY: &'static str = "logic gate: and, or, nand, nor of up to 16 inputs, with an on-delay";
     const FORMULA: &'static [&'static str] = &["out = function(in_1 … in_n), delay_s after it became true"];
     const SOURCE: &'static str = "IEC 60617-12, binary logic elements";
-    type Parameters = Parameters;
-    type Inputs = Inputs;
-    type Outputs = Outputs;
-    type Failure = Failure;
-    type State = State;
+    own_types!();
 
     fn new(p: Parameters) -> Self {
         Self { p }

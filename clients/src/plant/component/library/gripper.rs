@@ -11,7 +11,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::plant::component::behaviour::{Component, Start, Turn};
 use crate::plant::component::coupling::{Coupling, Effect};
-use crate::plant::component::declare::{failures, parameters, signals};
+use crate::plant::component::declare::{failures, own_types, parameters, signals};
 use crate::plant::component::dynamics::ramp;
 
 parameters! {
@@ -72,11 +72,7 @@ impl Component for Gripper {
     const FORMULA: &'static [&'static str] = &["d way/dt = ±1/stroke_s", "holds from way = grip_pct on"];
     const SOURCE: &'static str = "closed form";
     const COUPLING: Coupling = Coupling::Touch;
-    type Parameters = Parameters;
-    type Inputs = Inputs;
-    type Outputs = Outputs;
-    type Failure = Failure;
-    type State = State;
+    own_types!();
 
     fn new(p: Parameters) -> Self {
         Self { p }
@@ -117,13 +113,7 @@ impl Component for Gripper {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::plant::component::tests::Rig;
-
-    use crate::plant::component::coupling::Seen;
-
-    fn touched(count: u32) -> Seen {
-        Seen { target: (count > 0).then_some(0), count, ..Seen::default() }
-    }
+    use crate::plant::component::tests::{Rig, touched};
 
     const CLOSE: Inputs = Inputs { close: true };
     const OPEN: Inputs = Inputs { close: false };

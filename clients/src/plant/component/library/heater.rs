@@ -10,7 +10,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::plant::component::behaviour::{Component, Start, Turn};
-use crate::plant::component::declare::{failures, parameters, signals};
+use crate::plant::component::declare::{failures, own_types, parameters, signals};
 use crate::plant::component::dynamics::lag;
 
 parameters! {
@@ -82,11 +82,7 @@ impl Component for Heater {
     const SUMMARY: &'static str = "heater with a thermal mass";
     const FORMULA: &'static [&'static str] = &["C dϑ/dt = P k - G (ϑ - ϑ_a)"];
     const SOURCE: &'static str = "Newton's law of cooling, in closed form";
-    type Parameters = Parameters;
-    type Inputs = Inputs;
-    type Outputs = Outputs;
-    type Failure = Failure;
-    type State = State;
+    own_types!();
 
     fn new(p: Parameters) -> Self {
         Self { p }

@@ -24,7 +24,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::plant::component::behaviour::{Component, Conflict, Start, Turn};
 use crate::plant::component::coupling::{Coupling, Effect};
-use crate::plant::component::declare::{choice, failures, parameters, signals};
+use crate::plant::component::declare::{choice, failures, own_types, parameters, signals};
 use crate::plant::component::dynamics::{Resistance, Travel, lag, substeps};
 use crate::plant::component::fluid::{BAR_PA, implicit_pa, oil_m3_s};
 
@@ -219,11 +219,7 @@ impl Component for HydraulicCylinder {
     ];
     const SOURCE: &'static str = "M. Jelali, A. Kroll, Hydraulic Servo-systems, 2003, ch. 4; Nyyssönen 2018, 3.1.4";
     const COUPLING: Coupling = Coupling::Slides;
-    type Parameters = Parameters;
-    type Inputs = Inputs;
-    type Outputs = Outputs;
-    type Failure = Failure;
-    type State = State;
+    own_types!();
 
     fn new(p: Parameters) -> Self {
         let cap_m2 = FRAC_PI_4 * p.bore_m * p.bore_m;

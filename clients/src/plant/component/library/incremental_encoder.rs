@@ -12,7 +12,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::plant::component::behaviour::{Component, Start, Turn};
 use crate::plant::component::coupling::Coupling;
-use crate::plant::component::declare::{failures, parameters, signals};
+use crate::plant::component::declare::{failures, own_types, parameters, signals};
 
 parameters! {
     /// Its parameters.
@@ -71,11 +71,7 @@ impl Component for IncrementalEncoder {
     const FORMULA: &'static [&'static str] = &["n = floor(4 N x / X)", "A: n mod 4 in {1, 2}, B: n mod 4 in {2, 3}"];
     const SOURCE: &'static str = "IEC 61800-7-1, annex on encoder feedback";
     const COUPLING: Coupling = Coupling::Measures;
-    type Parameters = Parameters;
-    type Inputs = Inputs;
-    type Outputs = Outputs;
-    type Failure = Failure;
-    type State = State;
+    own_types!();
 
     fn new(p: Parameters) -> Self {
         Self { p }

@@ -12,7 +12,8 @@ use serde::{Deserialize, Serialize};
 
 use crate::plant::component::behaviour::{Component, Start, Turn};
 use crate::plant::component::coupling::Coupling;
-use crate::plant::component::declare::{choice, failures, parameters, signals};
+use crate::plant::component::dynamics::in_reach;
+use crate::plant::component::declare::{choice, failures, own_types, parameters, signals};
 
 choice! {
     /// What the targets are made of.
@@ -98,11 +99,7 @@ impl Component for InductiveSensor {
     const FORMULA: &'static [&'static str] = &["s = s_n k(metal)", "on at s, off at s (1 + h)"];
     const SOURCE: &'static str = "IEC 60947-5-2";
     const COUPLING: Coupling = Coupling::Ray;
-    type Parameters = Parameters;
-    type Inputs = Inputs;
-    type Outputs = Outputs;
-    type Failure = Failure;
-    type State = State;
+    own_types!();
 
     fn new(p: Parameters) -> Self {
         Self { p }
@@ -114,8 +111,7 @@ impl Component for InductiveSensor {
 
     fn sense(&self, state: &mut State, _: &Inputs, turn: &Turn) -> Outputs {
         let on_m = self.p.rated_m * self.p.metal.reduction();
-        let reach_m = if state.near { on_m * (1.0 + 0.01 * self.p.hysteresis_pct) } else { on_m };
-        let met = turn.seen.hit_m.is_some_and(|distance| distance <= reach_m);
+        let met = in_reach(turn.seen.hit_m, state.near, on_m, self.p.hysteresis_pct);
         state.near = (met || turn.failed.has(Failure::Chips)) && !turn.failed.has(Failure::Blind);
         Outputs { detected: state.near != self.p.normally_closed && !turn.failed.has(Failure::BrokenWire) }
     }

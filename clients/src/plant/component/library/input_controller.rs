@@ -10,7 +10,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::plant::component::behaviour::{Component, Start, Turn};
-use crate::plant::component::declare::{failures, parameters, signals};
+use crate::plant::component::declare::{failures, own_types, parameters, signals};
 
 parameters! {
     /// Its parameters.
@@ -66,11 +66,7 @@ impl Component for InputController {
     const SUMMARY: &'static str = "input controller: levels of a speed, such as stop, half and full";
     const FORMULA: &'static [&'static str] = &["fraction = level / levels"];
     const SOURCE: &'static str = "class InputController of the filling machine (Sivtoft 2002, 4.2.3)";
-    type Parameters = Parameters;
-    type Inputs = Inputs;
-    type Outputs = Outputs;
-    type Failure = Failure;
-    type State = State;
+    own_types!();
 
     fn new(p: Parameters) -> Self {
         Self { p }

@@ -9,7 +9,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::plant::component::behaviour::{Component, Start, Turn};
-use crate::plant::component::declare::{failures, parameters, signals};
+use crate::plant::component::declare::{failures, own_types, parameters, signals};
 use crate::plant::component::dynamics::lag;
 
 parameters! {
@@ -62,11 +62,7 @@ impl Component for Lamp {
     const SUMMARY: &'static str = "signal lamp";
     const FORMULA: &'static [&'static str] = &["τ dy/dt = u - y"];
     const SOURCE: &'static str = "closed form";
-    type Parameters = Parameters;
-    type Inputs = Inputs;
-    type Outputs = Outputs;
-    type Failure = Failure;
-    type State = State;
+    own_types!();
 
     fn new(p: Parameters) -> Self {
         Self { p }

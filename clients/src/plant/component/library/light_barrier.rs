@@ -12,7 +12,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::plant::component::behaviour::{Component, Start, Turn};
 use crate::plant::component::coupling::Coupling;
-use crate::plant::component::declare::{failures, parameters, signals};
+use crate::plant::component::declare::{failures, own_types, parameters, signals};
 use crate::plant::component::dynamics::OnDelay;
 
 parameters! {
@@ -76,11 +76,7 @@ impl Component for LightBarrier {
         &["dark while a target is within range_m of the beam, after on_s and off_s"];
     const SOURCE: &'static str = "IEC 60947-5-2";
     const COUPLING: Coupling = Coupling::Ray;
-    type Parameters = Parameters;
-    type Inputs = Inputs;
-    type Outputs = Outputs;
-    type Failure = Failure;
-    type State = State;
+    own_types!();
 
     fn new(p: Parameters) -> Self {
         Self { p }

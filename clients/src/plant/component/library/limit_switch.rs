@@ -12,7 +12,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::plant::component::behaviour::{Component, Conflict, Start, Turn};
 use crate::plant::component::coupling::Coupling;
-use crate::plant::component::declare::{failures, parameters, signals};
+use crate::plant::component::declare::{failures, own_types, parameters, signals};
 
 parameters! {
     /// A switch and its cam; positions in m, or in rad on a revolute joint.
@@ -87,11 +87,7 @@ impl Component for LimitSwitch {
         &["operated in [from, to], released outside [from - d, to + d]", "bounces for bounce_s after a change"];
     const SOURCE: &'static str = "IEC 60947-5-1";
     const COUPLING: Coupling = Coupling::Measures;
-    type Parameters = Parameters;
-    type Inputs = Inputs;
-    type Outputs = Outputs;
-    type Failure = Failure;
-    type State = State;
+    own_types!();
 
     fn new(p: Parameters) -> Self {
         Self { p }

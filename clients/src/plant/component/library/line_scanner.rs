@@ -11,7 +11,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::plant::component::behaviour::{Component, Start, Turn};
 use crate::plant::component::coupling::Coupling;
-use crate::plant::component::declare::{failures, parameters, signals};
+use crate::plant::component::declare::{failures, own_types, parameters, signals};
 use crate::plant::random::Random;
 
 parameters! {
@@ -82,11 +82,7 @@ impl Component for LineScanner {
     const FORMULA: &'static [&'static str] = &["answer after latency_s: count in [least, most]"];
     const SOURCE: &'static str = "closed form; errors are Bernoulli trials of the scenario's seed";
     const COUPLING: Coupling = Coupling::Touch;
-    type Parameters = Parameters;
-    type Inputs = Inputs;
-    type Outputs = Outputs;
-    type Failure = Failure;
-    type State = State;
+    own_types!();
 
     fn new(p: Parameters) -> Self {
         Self { p }
@@ -121,13 +117,7 @@ impl Component for LineScanner {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::plant::component::tests::Rig;
-
-    use crate::plant::component::coupling::Seen;
-
-    fn touched(count: u32) -> Seen {
-        Seen { target: (count > 0).then_some(0), count, ..Seen::default() }
-    }
+    use crate::plant::component::tests::{Rig, touched};
 
     const SHOOT: Inputs = Inputs { trigger: true };
     const WAIT: Inputs = Inputs { trigger: false };

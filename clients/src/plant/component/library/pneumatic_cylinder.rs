@@ -21,7 +21,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::plant::component::behaviour::{Component, Conflict, Start, Turn};
 use crate::plant::component::coupling::{Coupling, Effect};
-use crate::plant::component::declare::{choice, failures, parameters, signals};
+use crate::plant::component::declare::{choice, failures, own_types, parameters, signals};
 use crate::plant::component::dynamics::{OnDelay, Resistance, Travel, substeps};
 use crate::plant::component::fluid::{AIR_J_KG_K, ATMOSPHERE_PA, BAR_PA, ZERO_DEGC_K, air_kg_s, implicit_pa};
 
@@ -235,11 +235,7 @@ impl Component for PneumaticCylinder {
     ];
     const SOURCE: &'static str = "ISO 6358-1:2013; P. Beater, Pneumatic Drives, 2007, ch. 3 and 5";
     const COUPLING: Coupling = Coupling::Slides;
-    type Parameters = Parameters;
-    type Inputs = Inputs;
-    type Outputs = Outputs;
-    type Failure = Failure;
-    type State = State;
+    own_types!();
 
     fn new(p: Parameters) -> Self {
         let cap_m2 = FRAC_PI_4 * p.bore_m * p.bore_m;

@@ -11,7 +11,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::plant::component::behaviour::{Component, Conflict, Start, Turn};
-use crate::plant::component::declare::{failures, parameters, signals};
+use crate::plant::component::declare::{failures, own_types, parameters, signals};
 use crate::plant::component::dynamics::lag;
 use crate::plant::random::Random;
 
@@ -76,11 +76,7 @@ impl Component for PressureSensor {
     const SUMMARY: &'static str = "pressure transmitter with lag, noise and a loop of 4 to 20 mA";
     const FORMULA: &'static [&'static str] = &["τ dx/dt = p - x", "y = x + N(0, σ)", "I = 4 mA + 16 mA (y - p_low)/(p_high - p_low)"];
     const SOURCE: &'static str = "NAMUR NE 43 (current on failure); IEC 60381-1 (4 to 20 mA)";
-    type Parameters = Parameters;
-    type Inputs = Inputs;
-    type Outputs = Outputs;
-    type Failure = Failure;
-    type State = State;
+    own_types!();
 
     fn new(p: Parameters) -> Self {
         Self { p }

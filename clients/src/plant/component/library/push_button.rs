@@ -9,7 +9,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::plant::component::behaviour::{Component, Start, Turn};
-use crate::plant::component::declare::{failures, parameters, signals};
+use crate::plant::component::declare::{failures, own_types, parameters, signals};
 
 parameters! {
     /// Its parameters.
@@ -68,11 +68,7 @@ impl Component for PushButton {
     const SUMMARY: &'static str = "push button with a make and a break contact";
     const FORMULA: &'static [&'static str] = &["make = pressed, break = not pressed"];
     const SOURCE: &'static str = "IEC 60947-5-1";
-    type Parameters = Parameters;
-    type Inputs = Inputs;
-    type Outputs = Outputs;
-    type Failure = Failure;
-    type State = State;
+    own_types!();
 
     fn new(p: Parameters) -> Self {
         Self { p }

@@ -22,7 +22,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::plant::component::behaviour::{Component, Conflict, Start, Turn};
 use crate::plant::component::coupling::{Coupling, Effect};
-use crate::plant::component::declare::{failures, parameters, signals};
+use crate::plant::component::declare::{failures, own_types, parameters, signals};
 use crate::plant::component::dynamics::{Resistance, Travel, ramp, substeps};
 use crate::plant::component::profile::{Limits, Point, Profile};
 
@@ -290,11 +290,7 @@ impl Component for ServoAxis {
     const SOURCE: &'static str =
         "L. Biagiotti, C. Melchiorri, Trajectory Planning, 2008, 3.4; PLCopen Motion Control 2.0 (states)";
     const COUPLING: Coupling = Coupling::Slides;
-    type Parameters = Parameters;
-    type Inputs = Inputs;
-    type Outputs = Outputs;
-    type Failure = Failure;
-    type State = State;
+    own_types!();
 
     fn new(p: Parameters) -> Self {
         Self { p, longest_s: LONGEST_S }

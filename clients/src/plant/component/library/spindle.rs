@@ -14,7 +14,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::plant::component::behaviour::{Component, Start, Turn};
 use crate::plant::component::coupling::{Coupling, Effect};
-use crate::plant::component::declare::{failures, parameters, signals};
+use crate::plant::component::declare::{failures, own_types, parameters, signals};
 use crate::plant::component::dynamics::{Travel, ramp, substeps};
 
 parameters! {
@@ -98,11 +98,7 @@ impl Component for Spindle {
     const FORMULA: &'static [&'static str] = &["J dω/dt = M - M_cut - d ω, |M| ≤ M_max"];
     const SOURCE: &'static str = "closed form";
     const COUPLING: Coupling = Coupling::Turns;
-    type Parameters = Parameters;
-    type Inputs = Inputs;
-    type Outputs = Outputs;
-    type Failure = Failure;
-    type State = State;
+    own_types!();
 
     fn new(p: Parameters) -> Self {
         Self { p }

@@ -14,7 +14,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::plant::component::behaviour::{Component, Conflict, Start, Turn};
-use crate::plant::component::declare::{failures, parameters, signals};
+use crate::plant::component::declare::{failures, own_types, parameters, signals};
 use crate::plant::component::dynamics::{lag, ramp, substeps};
 use crate::plant::component::fluid::BAR_PA;
 
@@ -116,11 +116,7 @@ impl Component for Tank {
     const SUMMARY: &'static str = "tank with a filling pump and an outlet valve";
     const FORMULA: &'static [&'static str] = &["A dh/dt = q_in - q_out", "q_in = Q_P k_P", "q_out = μ a k_V √(2 g h)"];
     const SOURCE: &'static str = "E. Torricelli, De motu gravium (1643); flow coefficient: any hydraulics table";
-    type Parameters = Parameters;
-    type Inputs = Inputs;
-    type Outputs = Outputs;
-    type Failure = Failure;
-    type State = State;
+    own_types!();
 
     fn new(p: Parameters) -> Self {
         Self { p }

@@ -10,7 +10,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::plant::component::behaviour::{Component, Start, Turn};
-use crate::plant::component::declare::{failures, parameters, signals};
+use crate::plant::component::declare::{failures, own_types, parameters, signals};
 use crate::plant::component::dynamics::lag;
 use crate::plant::random::Random;
 
@@ -86,11 +86,7 @@ impl Component for TemperatureSensor {
     const SUMMARY: &'static str = "resistance thermometer (Pt100) with lag and noise";
     const FORMULA: &'static [&'static str] = &["τ dx/dt = ϑ - x", "y = x + N(0, σ)", "R = R_0 (1 + A y + B y² + C (y - 100) y³ for y < 0)"];
     const SOURCE: &'static str = "IEC 60751:2022, 4.2";
-    type Parameters = Parameters;
-    type Inputs = Inputs;
-    type Outputs = Outputs;
-    type Failure = Failure;
-    type State = State;
+    own_types!();
 
     fn new(p: Parameters) -> Self {
         Self { p }

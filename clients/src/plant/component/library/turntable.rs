@@ -14,7 +14,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::plant::component::behaviour::{Component, Start, Turn};
 use crate::plant::component::coupling::{Coupling, Effect};
-use crate::plant::component::declare::{failures, parameters, signals};
+use crate::plant::component::declare::{failures, own_types, parameters, signals};
 use crate::plant::setpoint::{Bounds, Setpoint};
 
 parameters! {
@@ -98,11 +98,7 @@ impl Component for Turntable {
     const FORMULA: &'static [&'static str] = &["dω/dt = ±α until ω = k ω_N", "stations 2π/n apart"];
     const SOURCE: &'static str = "closed form; wheels of the filling machine (Sivtoft 2002, ch. 5)";
     const COUPLING: Coupling = Coupling::Turns;
-    type Parameters = Parameters;
-    type Inputs = Inputs;
-    type Outputs = Outputs;
-    type Failure = Failure;
-    type State = State;
+    own_types!();
 
     fn new(p: Parameters) -> Self {
         Self { p }

@@ -14,7 +14,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::plant::component::behaviour::{Component, Start, Turn};
 use crate::plant::component::coupling::{Coupling, Effect};
-use crate::plant::component::declare::{failures, parameters, signals};
+use crate::plant::component::declare::{failures, own_types, parameters, signals};
 use crate::plant::component::dynamics::lag;
 use crate::plant::component::fluid::BAR_PA;
 
@@ -91,11 +91,7 @@ impl Component for VacuumCup {
     const FORMULA: &'static [&'static str] = &["τ dp/dt = p_max - p", "F = A p ≥ S m g"];
     const SOURCE: &'static str = "closed form; safety factor 2 for horizontal cups is what manufacturers advise";
     const COUPLING: Coupling = Coupling::Touch;
-    type Parameters = Parameters;
-    type Inputs = Inputs;
-    type Outputs = Outputs;
-    type Failure = Failure;
-    type State = State;
+    own_types!();
 
     fn new(p: Parameters) -> Self {
         Self { p }
@@ -137,13 +133,7 @@ impl Component for VacuumCup {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::plant::component::tests::Rig;
-
-    use crate::plant::component::coupling::Seen;
-
-    fn touched(count: u32) -> Seen {
-        Seen { target: (count > 0).then_some(0), count, ..Seen::default() }
-    }
+    use crate::plant::component::tests::{Rig, touched};
 
     const ON: Inputs = Inputs { on: true };
     const OFF: Inputs = Inputs { on: false };

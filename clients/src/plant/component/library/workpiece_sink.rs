@@ -12,7 +12,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::plant::component::behaviour::{Component, Start, Turn};
 use crate::plant::component::coupling::{Coupling, Effect};
-use crate::plant::component::declare::{failures, parameters, signals};
+use crate::plant::component::declare::{failures, own_types, parameters, signals};
 
 parameters! {
     /// Its parameters.
@@ -61,11 +61,7 @@ impl Component for WorkpieceSink {
     const FORMULA: &'static [&'static str] = &["one target that touches it, each period"];
     const SOURCE: &'static str = "closed form";
     const COUPLING: Coupling = Coupling::Collect;
-    type Parameters = Parameters;
-    type Inputs = Inputs;
-    type Outputs = Outputs;
-    type Failure = Failure;
-    type State = State;
+    own_types!();
 
     fn new(_: Parameters) -> Self {
         Self
@@ -93,13 +89,7 @@ impl Component for WorkpieceSink {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::plant::component::tests::Rig;
-
-    use crate::plant::component::coupling::Seen;
-
-    fn touched(count: u32) -> Seen {
-        Seen { target: (count > 0).then_some(0), count, ..Seen::default() }
-    }
+    use crate::plant::component::tests::{Rig, touched};
 
     #[test]
     fn it_takes_one_at_a_time() {

@@ -13,7 +13,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::plant::component::behaviour::{Component, Start, Turn};
 use crate::plant::component::coupling::{Coupling, Effect};
-use crate::plant::component::declare::{failures, parameters, signals};
+use crate::plant::component::declare::{failures, own_types, parameters, signals};
 
 parameters! {
     /// Its parameters.
@@ -73,11 +73,7 @@ impl Component for WorkpieceSource {
     const FORMULA: &'static [&'static str] = &["one each interval_s, or on a rising release"];
     const SOURCE: &'static str = "closed form";
     const COUPLING: Coupling = Coupling::Place;
-    type Parameters = Parameters;
-    type Inputs = Inputs;
-    type Outputs = Outputs;
-    type Failure = Failure;
-    type State = State;
+    own_types!();
 
     fn new(p: Parameters) -> Self {
         Self { p }
@@ -116,13 +112,7 @@ impl Component for WorkpieceSource {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::plant::component::tests::Rig;
-
-    use crate::plant::component::coupling::Seen;
-
-    fn touched(count: u32) -> Seen {
-        Seen { target: (count > 0).then_some(0), count, ..Seen::default() }
-    }
+    use crate::plant::component::tests::{Rig, touched};
 
     const ON: Inputs = Inputs { enable: true, release: false };
     const ASK: Inputs = Inputs { enable: false, release: true };

@@ -1,0 +1,99 @@
+//! What is wrong with a chart, and where.
+
+use crate::rig::findings;
+
+fn chart(body: &str) -> String {
+    findings(&format!("PROGRAM P\nVAR go, valve, lamp : BOOL; n : INT; delay : TIME; END_VAR\n{body}\nEND_PROGRAM"))
+}
+
+#[test]
+fn iec2_2_6_each_rule_of_charts_has_its_finding() {
+    let two = "INITIAL_STEP A: END_STEP STEP B: END_STEP\n";
+    let back = "TRANSITION FROM B TO A := go; END_TRANSITION\n";
+    let there = "TRANSITION FROM A TO B := go; END_TRANSITION\n";
+    let all = [
+        ("step named twice", format!("{two}{there}{back}STEP a: END_STEP")),
+        ("step named like a variable", format!("{two}{there}{back}STEP valve: END_STEP")),
+        ("action named like a variable", "INITIAL_STEP A: Valve(N); END_STEP ACTION Valve: ; END_ACTION".to_owned()),
+        ("unknown step", format!("{two}{there}TRANSITION FROM B TO Bb := go; END_TRANSITION")),
+        ("step twice in a list", format!("{two}{back}TRANSITION FROM A TO (B, b) := go; END_TRANSITION")),
+        ("no initial step", format!("STEP A: END_STEP STEP B: END_STEP {there}{back}")),
+        ("two initial steps", format!("INITIAL_STEP A: END_STEP INITIAL_STEP B: END_STEP {there}{back}")),
+        ("two networks", format!("{two}{there}{back}INITIAL_STEP C: END_STEP")),
+        ("a step alone", format!("{two}{there}{back}STEP C: END_STEP")),
+        ("no condition", format!("{two}{there}TRANSITION FROM B TO A := n; END_TRANSITION")),
+        (
+            "assigned step",
+            "INITIAL_STEP A: Act(N); END_STEP ACTION Act: A.X := TRUE; Act.Q := go; END_ACTION".to_string(),
+        ),
+        (
+            "assigned transition",
+            format!("{two}{back}TRANSITION t FROM A TO B : t := go; END_TRANSITION ACTION x: t := go; END_ACTION"),
+        ),
+        ("nameless network", format!("{two}{back}TRANSITION FROM A TO B : n := 1; END_TRANSITION")),
+        ("unknown action", "INITIAL_STEP A: vale(N); END_STEP".to_owned()),
+        ("action of another type", "INITIAL_STEP A: n(N); END_STEP".to_owned()),
+        ("unknown qualifier", "INITIAL_STEP A: valve(SS); END_STEP".to_owned()),
+        ("missing time", "INITIAL_STEP A: valve(SD); END_STEP".to_owned()),
+        ("needless time", "INITIAL_STEP A: valve(N, T#1s); END_STEP".to_owned()),
+        ("time of another type", "INITIAL_STEP A: valve(L, n); END_STEP".to_owned()),
+        ("indicator of another type", "INITIAL_STEP A: valve(L, delay, n); END_STEP".to_owned()),
+        ("two times", "INITIAL_STEP A: valve(L, delay); valve(D, delay); END_STEP".to_owned()),
+        ("statements", format!("{two}{there}{back}n := 1;")),
+        (
+            "chart as an action",
+            "INITIAL_STEP A: Act(N); END_STEP ACTION Act: INITIAL_STEP B: END_STEP END_ACTION".to_owned(),
+        ),
+        ("end", format!("{two}{there}")),
+        (
+            "halt",
+            format!(
+                "{two}STEP C: END_STEP STEP D: END_STEP
+            STEP E: END_STEP
+            TRANSITION FROM A TO (B, C) := go; END_TRANSITION
+            TRANSITION FROM B TO D := go; END_TRANSITION
+            TRANSITION FROM C TO E := go; END_TRANSITION
+            TRANSITION FROM (D, C) TO A := go; END_TRANSITION
+            TRANSITION FROM (B, E) TO A := go; END_TRANSITION"
+            ),
+        ),
+    ];
+    let report: Vec<String> = all.iter().map(|(what, body)| format!("{what}\n{}", chart(body))).collect();
+    insta::assert_snapshot!(report.join("\n\n"));
+}
+
+#[test]
+fn iec2_b_1_6_a_slip_in_a_chart_is_told_once() {
+    let good = "TRANSITION FROM B TO A := go; END_TRANSITION";
+    let slips = [
+        "STEP B valve(N); END_STEP TRANSITION FROM A TO B := go; END_TRANSITION",
+        "STEP B: valve(N) END_STEP TRANSITION FROM A TO B := go; END_TRANSITION",
+        "STEP B: valve N; END_STEP TRANSITION FROM A TO B := go; END_TRANSITION",
+        "STEP B: valve(N; END_STEP TRANSITION FROM A TO B := go; END_TRANSITION",
+        "STEP B: valve(N); TRANSITION FROM A TO B := go; END_TRANSITION",
+        "STEP B: END_STEP TRANSITION FROM A B := go; END_TRANSITION",
+        "STEP B: END_STEP TRANSITION A TO B := go; END_TRANSITION",
+        "STEP B: END_STEP TRANSITION FROM A TO := go; END_TRANSITION",
+        "STEP B: END_STEP TRANSITION FROM A TO B := ; END_TRANSITION",
+        "STEP B: END_STEP TRANSITION FROM A TO B go; END_TRANSITION",
+        "STEP B: END_STEP TRANSITION FROM (A TO B := go; END_TRANSITION",
+        "STEP B: END_STEP TRANSITION (PRIORITY := x) FROM A TO B := go; END_TRANSITION",
+        "STEP B: END_STEP TRANSITION FROM A TO B := go;",
+    ];
+    let each = slips.iter().map(|slip| {
+        let text = format!("INITIAL_STEP A: END_STEP\n{slip}\n{good}");
+        format!("{slip}\n{}", chart(&text))
+    });
+    insta::assert_snapshot!(each.collect::<Vec<_>>().join("\n\n"));
+}
+
+#[test]
+fn words_of_charts_are_names_elsewhere() {
+    let text = "PROGRAM P VAR step, transition, initial_step, from : INT; END_VAR
+        step := transition + 1;
+        transition := step;
+        initial_step := from;
+        from := initial_step;
+        END_PROGRAM";
+    assert_eq!(findings(text), "");
+}

@@ -1,0 +1,9 @@
+//! Sequential Function Charts (2nd ed. 2.6, 3rd ed. 6.7).
+
+pub(crate) mod chart;
+mod evolution;
+mod findings;
+mod interpret;
+mod plcopen;
+mod random;
+mod running;

@@ -1,0 +1,94 @@
+//! Charts of PLCopen XML (TC6 2.01).
+
+use onescan_plc_shim::input::kind::SourceKind;
+use onescan_plc_shim::{Application, Input, TaskPlan, inspect};
+
+use crate::rig::{MS, Rig};
+
+const MIXER: &str = include_str!("../../inputs/mixer.xml");
+
+fn mixer(text: &str) -> Input {
+    Input::from_text("mixer.xml", SourceKind::PlcOpen, text)
+}
+
+#[test]
+fn elements_become_steps_and_transitions() {
+    insta::assert_snapshot!(mixer(MIXER).file().text());
+}
+
+#[test]
+fn a_chart_of_xml_runs() {
+    let application = Application::from_inputs([mixer(MIXER)]).unwrap_or_else(|found| panic!("{found}"));
+    let mut rig = Rig::with_plan(&application, &TaskPlan::single(&application, 10 * MS));
+    let steps = ["Idle", "Fill", "Stir", "Heat", "Soak", "Done"];
+    let mut seen = Vec::new();
+    for scan in 1..=12 {
+        rig.set("Mixer.start", i64::from((2..=9).contains(&scan)));
+        rig.set("Mixer.level", if scan >= 5 { 90 } else { 0 });
+        rig.scan().expect("no fault");
+        let active = steps.iter().filter(|step| rig.bool(&format!("Mixer.{step}.X")));
+        let on = ["valve", "motor", "heater"].iter().filter(|name| rig.bool(&format!("Mixer.{name}")));
+        let list = |names: Vec<&&str>| names.into_iter().copied().collect::<Vec<_>>().join("+");
+        seen.push(format!(
+            "{:2} {:12} {:14} {}",
+            scan,
+            list(active.collect()),
+            list(on.collect()),
+            rig.int("Mixer.batches")
+        ));
+    }
+    insta::assert_snapshot!(seen.join("\n"));
+}
+
+#[test]
+fn what_is_wrong_with_a_chart_of_xml_is_told_in_its_place() {
+    let changes = [
+        ("an unknown step", "targetName=\"Idle\"", "targetName=\"Idel\""),
+        ("an unknown action", "name=\"heater\"/></action>", "name=\"heatr\"/></action>"),
+        ("a wrong condition", "NOT start", "NOT level"),
+        ("no condition", "<condition><reference name=\"start\"/></condition>", ""),
+        ("a lost connection", "<connection refLocalId=\"13\"/>", "<connection refLocalId=\"99\"/>"),
+        ("two transitions in a row", "<connection refLocalId=\"14\"/>", "<connection refLocalId=\"2\"/>"),
+        ("an unsafe chart", "<connectionPointIn><connection refLocalId=\"12\"/></connectionPointIn>", ""),
+        ("a missing time", "duration=\"T#20ms\"", ""),
+    ];
+    let report = changes.iter().map(|(what, from, to)| {
+        assert!(MIXER.contains(from), "{what}");
+        let found = inspect([mixer(&MIXER.replacen(from, to, 1))], None);
+        format!("{what}\n{found}")
+    });
+    insta::assert_snapshot!(report.collect::<Vec<_>>().join("\n\n"));
+}
+
+/// Conditions in other languages: a network assigns to the transition's name, instructions leave their result.
+#[test]
+fn conditions_of_xml_are_networks_too() {
+    let st = "<ST><xhtml:p>level &gt;= 80</xhtml:p></ST>";
+    let fbd = "<FBD><inVariable localId=\"1\"><connectionPointOut/><expression>level</expression></inVariable>
+        <inVariable localId=\"2\"><connectionPointOut/><expression>80</expression></inVariable>
+        <block localId=\"3\" typeName=\"GE\"><inputVariables>
+        <variable formalParameter=\"IN1\"><connectionPointIn><connection refLocalId=\"1\"/></connectionPointIn></variable>
+        <variable formalParameter=\"IN2\"><connectionPointIn><connection refLocalId=\"2\"/></connectionPointIn></variable>
+        </inputVariables><inOutVariables/><outputVariables><variable formalParameter=\"OUT\"><connectionPointOut/></variable>
+        </outputVariables></block>
+        <outVariable localId=\"4\"><connectionPointIn><connection refLocalId=\"3\" formalParameter=\"OUT\"/>
+        </connectionPointIn><expression>full</expression></outVariable></FBD>";
+    let il = "<IL><xhtml:p>LD level</xhtml:p><xhtml:p>GE 80</xhtml:p></IL>";
+    let steps_after = |body: &str| {
+        let input = mixer(&MIXER.replace(st, body));
+        let application = Application::from_inputs([input]).unwrap_or_else(|found| panic!("{found}"));
+        let mut rig = Rig::with_plan(&application, &TaskPlan::single(&application, 10 * MS));
+        let mut seen = Vec::new();
+        for scan in 1..=5 {
+            rig.set("Mixer.start", 1);
+            rig.set("Mixer.level", if scan >= 4 { 90 } else { 0 });
+            rig.scan().expect("no fault");
+            seen.push((rig.bool("Mixer.Fill.X"), rig.bool("Mixer.Stir.X")));
+        }
+        seen
+    };
+    let wanted = [(false, false), (true, false), (true, false), (false, true), (false, true)];
+    for body in [st, fbd, il] {
+        assert_eq!(steps_after(body), wanted, "{body}");
+    }
+}

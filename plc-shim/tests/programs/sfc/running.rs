@@ -1,0 +1,146 @@
+//! Charts in a PLC: faults, coverage, restarts, instances, calls of actions.
+
+use std::fmt::Write as _;
+
+use onescan_plc_shim::input::kind::SourceKind;
+use onescan_plc_shim::{Application, Input, SoftPlc, TaskPlan, VirtualTime};
+
+use crate::rig::{MS, Rig};
+
+#[test]
+fn a_fault_names_step_action_and_transition() {
+    let text = "PROGRAM P
+VAR n, one, zero : INT; END_VAR
+    INITIAL_STEP Idle: END_STEP
+    STEP Work: Divide(N); END_STEP
+    TRANSITION begin FROM Idle TO Work := 1 / one = 1; END_TRANSITION
+    TRANSITION FROM Work TO Idle := FALSE; END_TRANSITION
+    ACTION Divide: n := 1 / zero; END_ACTION
+END_PROGRAM";
+    let fault = |one| {
+        let mut rig = Rig::new(text);
+        rig.set("P.one", one);
+        rig.scan().expect("the initial situation is not tested");
+        rig.scan().expect_err("a division by zero").to_string()
+    };
+    insta::assert_snapshot!([fault(0), fault(1)].join("\n"));
+}
+
+#[test]
+fn steps_transitions_and_actions_are_covered() {
+    let text = "PROGRAM P
+VAR go : BOOL; n : INT; END_VAR
+    INITIAL_STEP Idle: END_STEP
+    STEP Work:
+        Count(N);
+    END_STEP
+    STEP Rest: END_STEP
+    TRANSITION FROM Idle TO Work := go; END_TRANSITION
+    TRANSITION FROM Work TO Rest := n > 5; END_TRANSITION
+    TRANSITION FROM Rest TO Idle := TRUE; END_TRANSITION
+    ACTION Count:
+        n := n + 1;
+    END_ACTION
+END_PROGRAM";
+    let input = Input::from_text("test.st", SourceKind::Text, text);
+    let application = Application::from_inputs_with_coverage([input]).expect("a sound program");
+    let mut plc = SoftPlc::new(&application, &TaskPlan::single(&application, 10 * MS)).expect("a plan");
+    let mut report = String::new();
+    for (scan, go) in [(1, 0), (2, 0), (3, 1)] {
+        let variable = plc.variable("P.go").expect("a variable");
+        plc.memory_mut()[variable.offset as usize] = go;
+        plc.scan(VirtualTime::from_ns(scan * 10 * MS)).expect("no fault");
+        if scan != 1 {
+            let coverage = plc.coverage().expect("points are noted");
+            writeln!(report, "after scan {scan}\n{coverage:#?}").expect("a text takes all");
+        }
+    }
+    insta::assert_snapshot!(report);
+}
+
+#[test]
+fn iec2_2_6_1_each_instance_of_a_block_has_its_own_steps() {
+    let text = "FUNCTION_BLOCK Blink
+VAR_INPUT period : TIME; END_VAR
+VAR_OUTPUT lamp : BOOL; END_VAR
+    INITIAL_STEP Off: END_STEP
+    STEP On: lamp(N); END_STEP
+    TRANSITION FROM Off TO On := Off.T >= period; END_TRANSITION
+    TRANSITION FROM On TO Off := On.T >= period; END_TRANSITION
+END_FUNCTION_BLOCK
+PROGRAM P VAR fast, slow : Blink; all : ARRAY [1..2] OF Blink; i : INT; END_VAR
+    fast(period := T#10ms);
+    slow(period := T#30ms);
+    FOR i := 1 TO 2 DO
+        all[i](period := T#20ms * i);
+    END_FOR;
+END_PROGRAM";
+    let mut rig = Rig::new(text);
+    let mut seen = Vec::new();
+    for _ in 0..8 {
+        rig.scan().expect("no fault");
+        let level = |path: &str| if rig.bool(path) { '#' } else { '.' };
+        seen.push(["P.fast.lamp", "P.slow.lamp", "P.all[1].lamp", "P.all[2].On.X"].map(level));
+    }
+    let row = |at: usize| seen.iter().map(|scan| scan[at]).collect::<String>();
+    assert_eq!([row(0), row(1), row(2), row(3)], [".#.#.#.#", "...###..", "..##..##", "....####"]);
+}
+
+#[test]
+fn actions_of_a_chart_are_called_by_name_and_overridden() {
+    let text = "FUNCTION_BLOCK Base
+VAR_OUTPUT n, called : INT; END_VAR
+    INITIAL_STEP A: Act(N); Twice(N); END_STEP
+    ACTION Act: n := n + 1; END_ACTION
+    ACTION Twice: Act(); called := called + 1; END_ACTION
+END_FUNCTION_BLOCK
+FUNCTION_BLOCK Derived EXTENDS Base
+    SUPER();
+END_FUNCTION_BLOCK
+PROGRAM P VAR b : Base; d : Derived; END_VAR
+    b();
+    d();
+END_PROGRAM";
+    let mut rig = Rig::new(text);
+    rig.scan().expect("no fault");
+    assert_eq!((rig.int("P.b.n"), rig.int("P.b.called"), rig.int("P.d.n")), (2, 1, 2));
+}
+
+#[test]
+fn a_saved_state_goes_on_where_it_was() {
+    let text = "PROGRAM P VAR valve : BOOL; END_VAR
+        INITIAL_STEP A: valve(SD, T#30ms); END_STEP
+        STEP B: valve(R); END_STEP
+        TRANSITION FROM A TO B := A.T >= T#60ms; END_TRANSITION
+        TRANSITION FROM B TO A := TRUE; END_TRANSITION
+        END_PROGRAM";
+    let trace = |rig: &mut Rig| {
+        let mut seen = String::new();
+        for _ in 0..8 {
+            rig.scan().expect("no fault");
+            seen.push(if rig.bool("P.valve") { '#' } else { '.' });
+        }
+        seen
+    };
+    let mut rig = Rig::new(text);
+    rig.scan().expect("no fault");
+    let (state, now_ns) = (rig.plc.save(), rig.now_ns);
+    let first = trace(&mut rig);
+    assert_eq!(first, "..###...");
+    rig.plc.restore(&state).expect("its own state");
+    rig.now_ns = now_ns;
+    assert_eq!(trace(&mut rig), first);
+}
+
+#[test]
+fn instances_of_the_unit_are_called_in_its_actions() {
+    let text = "PROGRAM P VAR timer : TON; n : CTU; END_VAR
+        INITIAL_STEP A: Act(N); END_STEP
+        ACTION Act: timer(IN := TRUE, PT := T#20ms); n(CU := timer.Q, PV := 3); END_ACTION
+        END_PROGRAM";
+    let mut rig = Rig::new(text);
+    for _ in 0..3 {
+        rig.scan().expect("no fault");
+    }
+    assert_eq!((rig.bool("P.timer.Q"), rig.int("P.n.CV")), (true, 1));
+}

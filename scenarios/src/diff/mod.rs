@@ -1,0 +1,70 @@
+//! `onescan diff`: where two recordings part, and why.
+//!
+//! | module | subject |
+//! |---|---|
+//! | [`first`] | the first step that differs, by digest or by value |
+//! | [`cause`] | who wrote what differs there: client, statement, calls |
+//! | [`sources`] | what differs between the recorded scenarios |
+//! | [`report`] | for people and machines |
+
+pub mod cause;
+pub mod first;
+pub mod report;
+pub mod sources;
+
+use std::io::Write;
+use std::path::{Path, PathBuf};
+
+use onescan_server::recording::Recording;
+use onescan_server::signal::pattern::SignalPattern;
+use onescan_server::time::VirtualTime;
+
+use crate::run::Format;
+use crate::run::error::{ExitCode, RunError};
+use first::{Comparison, Divergence};
+use report::Report;
+
+/// What is compared, and how it is told.
+#[derive(Clone, Debug)]
+pub struct DiffConfig {
+    /// The two recordings.
+    pub recordings: [PathBuf; 2],
+    /// What was before does not count.
+    pub since: VirtualTime,
+    /// Only these signals count; all without patterns.
+    pub signals: Vec<SignalPattern>,
+    /// For whom the report is.
+    pub format: Format,
+}
+
+/// Compares, and writes what was found to `out`.
+///
+/// # Errors
+/// A recording that cannot be read, a signal that neither has.
+pub fn diff(config: &DiffConfig, out: &mut dyn Write) -> Result<ExitCode, RunError> {
+    let [a, b] = &config.recordings;
+    let report = compare(a, b, config.since, &config.signals)?;
+    match config.format {
+        Format::Human => report.write(out),
+        Format::Json => report.write_json(out),
+    }
+    .map_err(RunError::Output)?;
+    Ok(if report.is_equal() { ExitCode::Ok } else { ExitCode::Unmet })
+}
+
+/// Compares two recordings and asks for the cause.
+///
+/// # Errors
+/// A recording that cannot be read, a signal that neither has.
+pub fn compare(a: &Path, b: &Path, since: VirtualTime, signals: &[SignalPattern]) -> Result<Report, RunError> {
+    let recordings = [Recording::open(a)?, Recording::open(b)?];
+    let comparison = Comparison::new(&recordings, since, signals)?;
+    let divergence = comparison.first()?;
+    let causes = match &divergence {
+        Some(Divergence { differences, at, .. }) => cause::causes(&recordings, differences, *at),
+        None => cause::Causes::default(),
+    };
+    let around = divergence.as_ref().map(|found| comparison.around(found)).transpose()?;
+    let files = sources::differing(&recordings);
+    Ok(Report { recordings, divergence, causes, around: around.unwrap_or_default(), files })
+}

@@ -1,0 +1,113 @@
+//! The gantry robot: the same path in every run in lockstep, another in every run without.
+
+use std::path::Path;
+
+use crate::typed::{copied, digests, scenario, typed};
+
+/// Runs the robot; reports and the exit code.
+fn run(words: &[&str]) -> (Vec<serde_json::Value>, Option<i32>) {
+    let mut all = vec!["run", ".", "--format", "json"];
+    all.extend_from_slice(words);
+    let said = typed(&scenario("gantry-robot"), &all);
+    let reports = said.out.lines().map(|line| serde_json::from_str(line).unwrap_or_else(|_| panic!("{said:?}")));
+    (reports.collect(), said.code)
+}
+
+/// The rows of these signals in a recorded run.
+fn recorded(record: &Path, run: usize, signals: &[&str]) -> Vec<Vec<f64>> {
+    let text = std::fs::read_to_string(record.join(format!("run-{run}/trajectory.csv"))).expect("a recording");
+    let mut lines = text.lines();
+    let head: Vec<&str> = lines.next().expect("a head").split(',').collect();
+    let columns: Vec<usize> =
+        signals.iter().map(|name| head.iter().position(|known| known == name).expect("recorded")).collect();
+    let row = |line: &str| {
+        let cells: Vec<&str> = line.split(',').collect();
+        columns.iter().map(|at| cells[*at].parse().unwrap_or(f64::NAN)).collect()
+    };
+    lines.map(row).collect()
+}
+
+/// The path of `plc/robot.st` (Fig. 13), from where the robot begins.
+const PATH: [[f64; 2]; 11] = [
+    [0.2, 0.3],
+    [0.2, 0.9],
+    [0.6, 1.1],
+    [1.0, 0.9],
+    [1.0, 0.4],
+    [1.4, 0.4],
+    [1.4, 0.9],
+    [1.8, 0.9],
+    [1.8, 0.2],
+    [1.0, 0.1],
+    [0.2, 0.3],
+];
+
+/// How far a place is from the line between two points.
+fn off_the_line([x, z]: [f64; 2], from: [f64; 2], to: [f64; 2]) -> f64 {
+    let (dx, dz) = (to[0] - from[0], to[1] - from[1]);
+    let along = ((x - from[0]) * dx + (z - from[1]) * dz) / (dx * dx + dz * dz);
+    let along = along.clamp(0.0, 1.0);
+    (x - from[0] - along * dx).hypot(z - from[1] - along * dz)
+}
+
+/// How far a place is from the path.
+fn off_the_path(place: [f64; 2]) -> f64 {
+    PATH.windows(2).map(|line| off_the_line(place, line[0], line[1])).fold(f64::MAX, f64::min)
+}
+
+#[test]
+fn in_lockstep_it_follows_its_path_in_every_run() {
+    let folder = tempfile::tempdir().unwrap();
+    let words = ["--runs", "3", "--record-also", "csv", "--record", folder.path().to_str().unwrap()];
+    let (reports, code) = run(&words);
+    assert_eq!((reports.len(), code), (3, Some(0)), "{reports:?}");
+    let digests = digests(&reports);
+    assert!(digests.iter().all(|digest| *digest == digests[0]), "{digests:?}");
+    insta::assert_snapshot!("gantry_robot_digest", digests[0]);
+    let rows = recorded(folder.path(), 1, &["X_Position", "Z_Position", "Point", "Cycles"]);
+    let furthest = rows.iter().map(|row| off_the_path([row[0], row[1]])).fold(0.0, f64::max);
+    assert!(furthest < 0.03, "{furthest} m off the path");
+    // It has been at every point, and begun anew.
+    for point in PATH {
+        let nearest = rows.iter().map(|row| (row[0] - point[0]).hypot(row[1] - point[1])).fold(f64::MAX, f64::min);
+        assert!(nearest < 0.002, "{nearest} m from {point:?}");
+    }
+    assert!(rows.last().is_some_and(|row| row[3] >= 1.0));
+}
+
+#[test]
+fn transport_and_checkpoints_do_not_matter() {
+    let folder = tempfile::tempdir().unwrap();
+    let saved = folder.path().join("half.checkpoint");
+    let saved = saved.to_str().unwrap();
+    let (whole, _) = run(&["--until", "6s", "--save-at", "3210ms", "--save", saved]);
+    let (remote, _) = run(&["--until", "6s", "--transport", "tcp"]);
+    let (resumed, _) = run(&["--until", "6s", "--resume", saved]);
+    assert_eq!(digests(&remote), digests(&whole));
+    assert_eq!(digests(&resumed), digests(&whole), "both axes are on their way");
+}
+
+#[test]
+fn free_wheeling_runs_differ() {
+    let (reports, code) = run(&["--mode", "freewheel", "--until", "4s", "--runs", "3"]);
+    assert!(matches!(code, Some(0 | 1)), "{reports:?}");
+    let mut distinct = digests(&reports);
+    distinct.sort();
+    distinct.dedup();
+    assert!(distinct.len() > 1, "three equal runs without lockstep");
+}
+
+/// Its motion control can be taken over as a whole, for any PLC.
+#[test]
+fn it_is_instrumented_with_nothing_left() {
+    let folder = copied("gantry-robot");
+    let said = typed(folder.path(), &["instrument", ".", "--in-place"]);
+    assert_eq!((said.code, said.err.as_str()), (Some(0), ""), "{said:?}");
+    let servo = std::fs::read_to_string(folder.path().join("plc/servo.st")).unwrap();
+    assert!(servo.contains("Axis : SDSP_AXIS_REF(*@sdsp was AXIS_REF*)") && servo.contains("SDSP_MC_MoveAbsolute"));
+    assert_eq!(typed(folder.path(), &["check", "plc"]).code, Some(0));
+    let said = typed(folder.path(), &["instrument", ".", "--in-place", "--remove"]);
+    assert_eq!(said.code, Some(0), "{said:?}");
+    let given = std::fs::read_to_string(scenario("gantry-robot").join("plc/servo.st")).unwrap();
+    assert_eq!(std::fs::read_to_string(folder.path().join("plc/servo.st")).unwrap(), given);
+}
