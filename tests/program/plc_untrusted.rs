@@ -131,10 +131,10 @@ fn certificates_are_trusted_on_both_sides_or_there_is_no_session() {
     let said = over_opc_ua(folder.path(), &plc, "", "");
     assert_refused(&said);
     assert!(said.err.contains("no endpoint with policy None"), "{said:?}");
-    // The client does not trust the server, then the server not the client.
-    assert_refused(&over_opc_ua(folder.path(), &plc, secured, ""));
-    trust_what_was_rejected(&client);
+    // The server does not trust the client, then the client not the server.
     assert_refused(&over_opc_ua(folder.path(), &plc, secured, ""));
     trust_what_was_rejected(&server);
+    assert_refused(&over_opc_ua(folder.path(), &plc, secured, ""));
+    trust_what_was_rejected(&client);
     assert_equal(&over_opc_ua(folder.path(), &plc, secured, ""));
 }
