@@ -93,7 +93,7 @@ fn machines_read_json() {
 fn what_is_wrong_is_told() {
     let folder = tempfile::tempdir().unwrap();
     let write = |name: &str, text: &str| std::fs::write(folder.path().join(name), text).unwrap();
-    write("clock.st", "PROGRAM P VAR m : MC_Home; END_VAR m(); END_PROGRAM\n");
+    write("clock.st", "PROGRAM P VAR m : MC_Phasing; END_VAR m(); END_PROGRAM\n");
     write("none.st", "FUNCTION_BLOCK F END_FUNCTION_BLOCK\n");
     write("wrong.st", "PROGRAM P x := ; END_PROGRAM\n");
     let say = |words: &[&str]| {
