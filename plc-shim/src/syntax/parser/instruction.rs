@@ -143,6 +143,10 @@ impl Cursor<'_> {
             }
             self.skip_line();
         }
+        // What is no instruction may end its own line: it is passed over all the same.
+        if self.peek().is_some() && self.span() == start {
+            self.advance();
+        }
         let kind = kind.map_or(StatementKind::Error, |kind| StatementKind::Instruction(Box::new(kind)));
         Statement { kind, span: self.span_from(start) }
     }
