@@ -85,15 +85,15 @@ pub(super) fn findings(pou: &Pou) -> Vec<Diagnostic> {
     found.collect()
 }
 
-/// Puts the chart of `pou` on virtual time; of a program that is scheduled, `number` is that of so many.
+/// Puts the chart of `pou` on virtual time; of a program that is scheduled, `number` is its number, with the type of the line of programs.
 pub(super) fn control(
     pou: &Pou,
-    number: Option<(Number, usize)>,
+    number: Option<(Number, &str)>,
     renames: &[(Ident, &'static Form)],
     file: &SourceFile,
     edits: &mut Edits,
 ) {
-    let controller = number.map(|(number, programs)| template::chart_controller(number, programs));
+    let controller = number.map(|(number, line)| template::chart_controller(number, line));
     let mut writer = Writer { pou, controller, reads: Reads::of(pou), renames, file, edits };
     writer.declarations();
     writer.steps();

@@ -1,6 +1,7 @@
 //! What reads the clock (seed: Carlsson et al. 2012, sec. V-C), as a table: what replaces it, or what
 //! is told of it.
 
+use super::target::Target;
 use super::{motion, template};
 
 /// What a source of time is.
@@ -30,37 +31,48 @@ pub(super) struct Form {
     pub(super) name: &'static str,
     kind: Kind,
     template: &'static str,
+    /// The same in SCL, if SCL has it.
+    scl: Option<&'static str>,
     /// The name in the template.
     stem: &'static str,
     pub(super) long: bool,
 }
 
-const fn timer(name: &'static str, template: &'static str, stem: &'static str, long: bool) -> Form {
-    Form { name, kind: Kind::Block, template, stem, long }
+const fn timer(name: &'static str, stem: &'static str, templates: [&'static str; 2], long: bool) -> Form {
+    let [template, scl] = templates;
+    Form { name, kind: Kind::Block, template, scl: Some(scl), stem, long }
+}
+
+const ON_DELAY: [&str; 2] = [template::ON_DELAY, template::SCL_ON_DELAY];
+const OFF_DELAY: [&str; 2] = [template::OFF_DELAY, template::SCL_OFF_DELAY];
+const PULSE: [&str; 2] = [template::PULSE, template::SCL_PULSE];
+
+const fn function(name: &'static str, long: bool) -> Form {
+    Form { name, kind: Kind::Function, template: template::TIME_FUNCTION, scl: None, stem: "TIME", long }
 }
 
 /// All that is replaced: 2nd ed. Table 37, 3rd ed. Table 46, the L-forms and functions of CODESYS and
 /// TwinCAT.
 static FORMS: [Form; 15] = [
-    timer("TON", template::ON_DELAY, "TON", false),
-    timer("TON_TIME", template::ON_DELAY, "TON", false),
-    timer("TON_LTIME", template::ON_DELAY, "TON", true),
-    timer("LTON", template::ON_DELAY, "TON", true),
-    timer("TOF", template::OFF_DELAY, "TOF", false),
-    timer("TOF_TIME", template::OFF_DELAY, "TOF", false),
-    timer("TOF_LTIME", template::OFF_DELAY, "TOF", true),
-    timer("LTOF", template::OFF_DELAY, "TOF", true),
-    timer("TP", template::PULSE, "TP", false),
-    timer("TP_TIME", template::PULSE, "TP", false),
-    timer("TP_LTIME", template::PULSE, "TP", true),
-    timer("LTP", template::PULSE, "TP", true),
-    timer("RTC", template::REAL_TIME_CLOCK, "RTC", false),
-    Form { name: "TIME", kind: Kind::Function, template: template::TIME_FUNCTION, stem: "TIME", long: false },
-    Form { name: "LTIME", kind: Kind::Function, template: template::TIME_FUNCTION, stem: "TIME", long: true },
+    timer("TON", "TON", ON_DELAY, false),
+    timer("TON_TIME", "TON", ON_DELAY, false),
+    timer("TON_LTIME", "TON", ON_DELAY, true),
+    timer("LTON", "TON", ON_DELAY, true),
+    timer("TOF", "TOF", OFF_DELAY, false),
+    timer("TOF_TIME", "TOF", OFF_DELAY, false),
+    timer("TOF_LTIME", "TOF", OFF_DELAY, true),
+    timer("LTOF", "TOF", OFF_DELAY, true),
+    timer("TP", "TP", PULSE, false),
+    timer("TP_TIME", "TP", PULSE, false),
+    timer("TP_LTIME", "TP", PULSE, true),
+    timer("LTP", "TP", PULSE, true),
+    Form { name: "RTC", kind: Kind::Block, template: template::REAL_TIME_CLOCK, scl: None, stem: "RTC", long: false },
+    function("TIME", false),
+    function("LTIME", true),
 ];
 
 /// Vendors' sources of time that the shim does not replace, with who has them.
-const TOLD: [(&str, Kind); 35] = [
+const TOLD: [(&str, Kind); 37] = [
     // TwinCAT: Tc2_System, Tc2_Utilities, Tc2_Standard.
     ("GETSYSTEMTIME", Kind::Block),
     ("GETCPUCOUNTER", Kind::Block),
@@ -93,6 +105,8 @@ const TOLD: [(&str, Kind); 35] = [
     ("TONR_TIME", Kind::Block),
     ("IEC_TIMER", Kind::Block),
     ("IEC_LTIMER", Kind::Block),
+    ("RESET_TIMER", Kind::Function),
+    ("PRESET_TIMER", Kind::Function),
     ("TIME_TCK", Kind::Function),
     ("RUNTIME", Kind::Function),
     ("RD_SYS_T", Kind::Function),
@@ -123,6 +137,11 @@ pub(super) fn replacement(name: &str) -> Option<String> {
     })
 }
 
+/// The form of TIME of `TON`, `TOF` or `TP`.
+pub(super) fn timer_of_time(kind: &str) -> Option<&'static Form> {
+    FORMS.iter().find(|form| form.name.strip_suffix("_TIME") == Some(kind))
+}
+
 /// What the shim's action control is made of.
 pub(super) fn on_delay() -> &'static Form {
     let [form, ..] = &FORMS;
@@ -135,8 +154,30 @@ impl Form {
         format!("SDSP_{}", self.name)
     }
 
+    /// True if a target's language has what it is replaced by.
+    pub(super) fn suits(&self, target: Target) -> bool {
+        target != Target::Scl || self.scl.is_some()
+    }
+
     /// The source, written for this name.
-    pub(super) fn text(&self) -> String {
+    pub(super) fn text(&self, target: Target) -> String {
+        match self.scl.filter(|_| target == Target::Scl) {
+            Some(template) => self.scl_text(template),
+            None => self.standard_text(),
+        }
+    }
+
+    fn scl_text(&self, template: &str) -> String {
+        let stem = format!("\"SDSP_{}\"", self.stem);
+        let mut names = vec![(self.stem, self.name.to_owned()), (&stem, format!("\"{}\"", self.new_name()))];
+        if self.long {
+            let long = [("Time", "LTime"), ("T#0s", "LT#0s"), ("SDSP_Now", "SDSP_NowL")];
+            names.extend(long.map(|(short, long)| (short, long.to_owned())));
+        }
+        template::fill_scl(template, &names)
+    }
+
+    fn standard_text(&self) -> String {
         let mut names = vec![(self.stem, self.name.to_owned())];
         let stem = format!("SDSP_{}", self.stem);
         names.push((&stem, self.new_name()));
@@ -168,7 +209,7 @@ mod tests {
     #[test]
     fn forms_are_written_in_their_own_type() {
         let Some(Fate::Replaced(form)) = fate("TON_LTIME", Kind::Block) else { panic!("a form") };
-        let text = form.text();
+        let text = form.text(Target::Iec);
         assert!(text.contains("FUNCTION_BLOCK SDSP_TON_LTIME\nVAR_INPUT IN : BOOL; PT : LTIME; END_VAR"), "{text}");
         assert!(text.contains("Own : TON_LTIME;") && text.contains("SDSP_NowL - since") && !text.contains(" TIME;"));
     }

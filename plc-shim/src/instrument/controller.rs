@@ -2,16 +2,17 @@
 //! scheduled program, the footer also before each RETURN.
 
 use super::edits::Edits;
-use super::marks;
 use super::template::{self, Controller, Number};
+use super::{marks, scl};
 use crate::syntax::SourceFile;
 use crate::syntax::ast::{Pou, Statement, StatementKind};
 use crate::syntax::token::Keyword;
 use crate::syntax::walk::{self, Visitor};
 
-/// Adds the execution controller of `pou`, one of so many programs.
-pub(super) fn control(pou: &Pou, number: Number, programs: usize, file: &SourceFile, edits: &mut Edits) {
-    let controller = template::controller(number, programs);
+/// Adds the execution controller of `pou`; `line` is the type of the line of programs.
+pub(super) fn control(pou: &Pou, number: Number, line: &str, file: &SourceFile, edits: &mut Edits) {
+    let is_scl = scl::is_scl(file);
+    let controller = if is_scl { template::scl_controller(number) } else { template::controller(number, line) };
     let Controller { declarations, header, .. } = &controller;
     let line_break = marks::line_break(file.shown_text());
     let places = Places::of(pou, file);
@@ -71,9 +72,14 @@ struct Places {
 
 impl Places {
     fn of(pou: &Pou, file: &SourceFile) -> Self {
-        let end = pou.span.end.saturating_sub(Keyword::EndProgram.text().len() as u32);
+        let last = if scl::is_scl(file) { Keyword::EndOrganizationBlock } else { Keyword::EndProgram };
+        let end = pou.span.end.saturating_sub(last.text().len() as u32);
         let first = pou.body.first().map_or(end, |statement| statement.span.start);
         let shown = file.shown_text();
+        if let Some(begin) = scl::begin(pou.span, file) {
+            let (declarations, header) = (marks::line_start(shown, begin.start), marks::line_end(shown, begin.end));
+            return Self { declarations, header, footer: marks::line_start(shown, end) };
+        }
         let Some(origin) = file.origin() else {
             let header = marks::line_start(shown, first);
             return Self { declarations: header, header, footer: marks::line_start(shown, end) };

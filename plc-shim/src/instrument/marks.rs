@@ -4,7 +4,8 @@
 //! |---|---|
 //! | `(*@sdsp file*)` | the whole file was added |
 //! | `(*@sdsp begin*)` .. `(*@sdsp end*)` | this, the marks and a line break behind them was put in |
-//! | `SDSP_TON(*@sdsp was TON*)` | the name in front of the mark stands for another |
+//! | `SDSP_TON(*@sdsp was TON*)` | the name in front of the mark, also in quotes, stands for another |
+//! | `(*@sdsp cut .TON*)` | this stood here |
 //!
 //! | `<a x="SDSP_TON"/><!--@sdsp was TON-->` | the name in the tag in front of the mark stands for another |
 //! | `<!--@sdsp cut <a/>-->` | this stood here |
@@ -80,6 +81,19 @@ pub(super) fn renamed_before(old: &str) -> String {
     format!("{XML_OPENING}was {old}{XML_CLOSING}")
 }
 
+/// The mark for text that is taken out.
+pub(super) fn cut_text(text: &str) -> String {
+    format!("{OPENING}cut {text}{CLOSING}")
+}
+
+/// Where the name begins that ends at the end of `before`, with its quotes if it has any.
+fn name_start(before: &str) -> usize {
+    match before.strip_suffix('"') {
+        Some(quoted) => quoted.rfind('"').unwrap_or(quoted.len()),
+        None => before.trim_end_matches(|one: char| one.is_ascii_alphanumeric() || one == '_').len(),
+    }
+}
+
 /// The mark for a tag that is taken out.
 pub(super) fn cut(tag: &str) -> String {
     format!("{XML_OPENING}cut {tag}{XML_CLOSING}")
@@ -145,8 +159,7 @@ pub(super) fn original(text: &str) -> Result<Original, DamagedMarks> {
             (says, None) => {
                 let old = says.strip_prefix("was ").ok_or_else(|| damaged("this mark is not known"))?;
                 let before = text.get(..mark.at.start).unwrap_or("");
-                let name = before.trim_end_matches(|one: char| one.is_ascii_alphanumeric() || one == '_').len();
-                edits.replace(name as u32..mark.at.end as u32, old);
+                edits.replace(name_start(before) as u32..mark.at.end as u32, old);
             }
             ("begin" | "file", Some(_)) => return Err(damaged("this mark stands inside of another")),
             (_, Some(_)) => {}
@@ -207,6 +220,8 @@ mod tests {
         let put_in = lines("VAR x : INT; END_VAR\n    y;", "\r\n");
         let text = format!("a\r\n{put_in}t : {};{}RETURN\r\n", renamed("SDSP_TON", "ton"), inline(" z; "));
         assert_eq!(text_of(&text).as_deref(), Some("a\r\nt : ton;RETURN\r\n"));
+        let scl = format!("t : {};\n#t{}(IN := 1)", renamed("\"SDSP_TON\"", "TON"), cut_text(".TON"));
+        assert_eq!(text_of(&scl).as_deref(), Some("t : TON;\n#t.TON(IN := 1)"));
         assert_eq!(original("(*@sdsp *) no"), Err(DamagedMarks { at: 0..10, message: "this mark is not known" }));
         assert_eq!(original("(* sdsp *)"), Ok(Original::Same));
         assert_eq!(original("(*@sdsp file*)\nx"), Ok(Original::Nothing));

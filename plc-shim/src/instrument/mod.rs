@@ -13,7 +13,9 @@
 //! | [`tasks`] | the task table |
 //! | [`constant`] | constant expressions of tasks |
 //! | [`configuration`] | a project's CONFIGURATION |
+//! | [`plain`] | a project without the shim, and its changes |
 //! | [`controller`] | execution controllers |
+//! | [`scl`] | SCL of TIA Portal: organization blocks, timers |
 //! | [`plcopen`], [`plcopen_unit`] | projects in PLCopen XML |
 //! | [`chart`] | Sequential Function Charts: execution signal, action control, times of steps |
 //! | [`target`], [`twincat`] | the shim's sources as a vendor's tool takes them |
@@ -31,35 +33,33 @@ pub mod edits;
 mod marks;
 mod motion;
 mod motion_use;
+mod plain;
 mod plcopen;
 mod plcopen_unit;
+mod scl;
 mod survey;
 mod target;
 mod tasks;
 mod template;
 mod twincat;
 
-use std::path::Path;
 use std::sync::Arc;
 
 use thiserror::Error;
 
-use self::edits::{Conflict, Edited, Edits, LineMap};
-use self::marks::Original;
+use self::edits::{Conflict, LineMap};
 use self::motion_use::Motion;
+use self::plain::Plain;
 use self::survey::{Survey, survey};
 pub use self::target::Target;
 use self::target::{Globals, Sources};
-use self::tasks::{Entry, TaskTable};
-use crate::diagnostic::{Code, Diagnostic, Diagnostics, Severity};
-use crate::dialect::Dialect;
+use self::tasks::{Entry, Line, TaskTable};
+use crate::diagnostic::{Diagnostics, Severity};
 use crate::input::Input;
 use crate::input::encoding::Encoding;
-use crate::input::kind::{FileKind, SourceKind};
 use crate::run::{RunError, Task};
 use crate::syntax::ast::ProgramDeclaration;
 use crate::syntax::parser::parse_source;
-use crate::syntax::{FileId, SourceMap, Span};
 
 /// How a project is to be instrumented.
 #[derive(Debug, Clone, Default)]
@@ -140,15 +140,17 @@ pub fn instrument(inputs: &[Input], options: &Options) -> Result<Project, Instru
         units.push((id, parsed.unit));
     }
     let trees: Vec<_> = units.iter().map(|(id, unit)| (*id, unit)).collect();
-    let mut survey = survey(&trees);
+    let mut survey = survey(&trees, options.target);
     findings.append(&mut survey.findings);
     let mut motion = motion_use::motion(options.target, &trees, &survey.motion);
     findings.append(&mut motion.findings);
-    findings.extend(plain.unsuited(options.target));
+    findings.extend(plain.unsuited(options.target, &survey));
     if findings.iter().any(|found| found.severity == Severity::Error) {
         return Err(InstrumentError::Text(Diagnostics::new(findings, &plain.sources)));
     }
-    let tasks = TaskTable::new(&plain.tasks(&survey, options)?, &entries(&survey))?;
+    let is_text = options.target == Target::Iec && !plain.is_xml();
+    let line = if is_text { Line::Named } else { Line::InPlace };
+    let tasks = TaskTable::new(&plain.tasks(&survey, options)?, &entries(&survey), line)?;
     let mut forms: Vec<_> = survey.renames.iter().map(|(_, form)| *form).collect();
     forms.extend((!survey.charts.is_empty()).then(clock::on_delay));
     forms.sort_by_key(|form| form.name);
@@ -192,246 +194,4 @@ fn entries<'a>(survey: &Survey<'a>) -> Vec<Entry<'a>> {
         Some(Entry { name, pou })
     };
     declared.filter_map(entry).collect()
-}
-
-/// A project without the shim.
-struct Plain {
-    sources: SourceMap,
-    /// Of each file in `sources` what it was when it was given.
-    given: Vec<Given>,
-    /// What kind of file each of them is.
-    kinds: Vec<SourceKind>,
-    /// The shim's own files that were given.
-    own: Vec<Given>,
-    /// TwinCAT projects, and what they are without the shim.
-    manifests: Vec<(Given, Arc<str>)>,
-    findings: Vec<Diagnostic>,
-}
-
-struct Given {
-    name: String,
-    text: Arc<str>,
-    encoding: Option<Encoding>,
-    /// Where the lines are of what it was before it was instrumented.
-    plain_lines: LineMap,
-}
-
-impl Plain {
-    fn of(inputs: &[Input]) -> Result<Self, InstrumentError> {
-        let mut plain = Self {
-            sources: SourceMap::default(),
-            given: Vec::new(),
-            kinds: Vec::new(),
-            own: Vec::new(),
-            manifests: Vec::new(),
-            findings: Vec::new(),
-        };
-        for input in inputs {
-            plain.add(input);
-        }
-        if plain.findings.iter().any(|found| found.code == Code::DamagedMarks) {
-            return Err(InstrumentError::Text(Diagnostics::new(plain.findings, &plain.sources)));
-        }
-        Ok(plain)
-    }
-
-    fn add(&mut self, input: &Input) {
-        let (name, text) = (input.file().name(), input.file().shown_text());
-        let original = marks::original(text);
-        let plain_lines = match &original {
-            Ok(Original::Text(plain)) => plain.lines.clone(),
-            _ => LineMap::same(text),
-        };
-        let given = Given { name: name.to_owned(), text: text.clone(), encoding: input.encoding(), plain_lines };
-        let kind = match (FileKind::of(Path::new(name)), &original) {
-            (Some(FileKind::Project), Ok(Original::Text(plain))) => {
-                return self.manifests.push((given, plain.text.as_str().into()));
-            }
-            (Some(FileKind::Project), Ok(_)) => return self.manifests.push((given, text.clone())),
-            (Some(FileKind::Source(kind)), _) => kind,
-            _ => SourceKind::Text,
-        };
-        let plain = match original {
-            Ok(Original::Nothing) => return self.own.push(given),
-            Ok(Original::Same) => input.clone(),
-            Ok(Original::Text(plain)) => Input::from_text(name, kind, plain.text).in_dialect(input.file().dialect()),
-            Err(damaged) => return self.damaged(name, text, &damaged),
-        };
-        self.given.push(given);
-        let id = FileId(self.sources.iter().count() as u32);
-        self.findings.extend(plain.add_to(&mut self.sources));
-        self.kinds.push(kind);
-        let mixed = self.kinds.contains(&SourceKind::PlcOpen) && self.kinds.len() > 1;
-        let refused = match (kind, input.file().dialect()) {
-            _ if mixed => "a project in PLCopen XML is one file, other sources beside it are not instrumented yet",
-            (_, Dialect::SiemensScl) => "SCL is not instrumented yet",
-            _ => return,
-        };
-        self.findings.push(Diagnostic::error(Code::UnsupportedFeature, Span::new(id, 0, 0), refused));
-    }
-
-    /// True for a project in PLCopen XML, which is one file.
-    fn is_xml(&self) -> bool {
-        self.kinds.contains(&SourceKind::PlcOpen)
-    }
-
-    /// A target that does not take the project's kind of file.
-    fn unsuited(&self, target: Target) -> Option<Diagnostic> {
-        let message = match target {
-            Target::Codesys if !self.is_xml() => "the target codesys takes a project in PLCopen XML",
-            Target::TwinCat if self.is_xml() => "the target twincat takes TwinCAT's own files, not PLCopen XML",
-            _ => return None,
-        };
-        let found = Diagnostic::error(Code::UnsupportedFeature, Span::new(FileId(0), 0, 0), message);
-        Some(found.with_help("export the project in that form, or choose another target"))
-    }
-
-    /// The project's only file with its changes and all that is the shim's.
-    fn edited_xml(
-        &self,
-        survey: &Survey<'_>,
-        motion: &Motion,
-        tasks: &TaskTable<'_>,
-        sources: &Sources,
-    ) -> Result<File, InstrumentError> {
-        let wrong = |span, message: &str| {
-            let found = Diagnostic::error(Code::UnsupportedFeature, span, message);
-            InstrumentError::Text(Diagnostics::new(vec![found], &self.sources))
-        };
-        let whole = Span::new(FileId(0), 0, 0);
-        let (Some(given), Some(file)) = (self.given.first(), self.sources.get(FileId(0))) else {
-            return Err(InstrumentError::NoPrograms);
-        };
-        if !survey.charts.is_empty() {
-            return Err(wrong(whole, "a chart in PLCopen XML is not instrumented yet"));
-        }
-        if let Some((name, _)) = motion.renames.first() {
-            return Err(wrong(name.span, "motion control in PLCopen XML is not instrumented yet"));
-        }
-        let root = plcopen::tree(file).ok_or_else(|| wrong(whole, "this is no XML"))?;
-        let mut edits = Edits::default();
-        for (name, form) in &survey.renames {
-            plcopen::rename(file, name.span.start..name.span.end, &name.text, &form.new_name(), &mut edits);
-        }
-        let declared = |name: &str| survey.is_declared(name);
-        let new = |name: &str| clock::replacement(name).filter(|_| !declared(name));
-        plcopen::rename_blocks(&root, file.shown_text(), &new, &mut edits);
-        for (pou, number) in tasks.numbered() {
-            plcopen::control(pou, number, tasks.programs.len(), (file, &root), &mut edits)
-                .map_err(|message| wrong(pou.name.span, message))?;
-        }
-        plcopen::attach(&root, file.shown_text(), tasks, &sources.globals, &sources.units(), &mut edits)
-            .map_err(|message| wrong(whole, message))?;
-        let conflict = |conflict| InstrumentError::Conflict { file: given.name.clone(), conflict };
-        let Edited { text, lines } = edits.apply(file.shown_text()).map_err(conflict)?;
-        Ok(given.file(Some(text.into()), lines))
-    }
-
-    fn damaged(&mut self, name: &str, text: &Arc<str>, damaged: &marks::DamagedMarks) {
-        let id = self.sources.add(crate::syntax::SourceFile::new(name, text.clone()));
-        let span = Span::new(id, damaged.at.start, damaged.at.end);
-        let found = Diagnostic::error(Code::DamagedMarks, span, damaged.message);
-        let help = "take the file from before it was instrumented, or take the marks out by hand";
-        self.findings.push(found.with_help(help));
-    }
-
-    fn tasks(&self, survey: &Survey<'_>, options: &Options) -> Result<Vec<Task>, InstrumentError> {
-        if let Some(tasks) = &options.tasks {
-            return Ok(tasks.clone());
-        }
-        if let Some(configuration) = survey.configuration {
-            let wrong = |found| InstrumentError::Text(Diagnostics::new(vec![found], &self.sources));
-            return configuration::tasks(configuration, &survey.constants).map_err(wrong);
-        }
-        let scheduled = survey.programs.iter().filter(|program| !survey.called.contains(&program.name.key()));
-        let programs: Vec<String> = scheduled.map(|program| program.name.text.clone()).collect();
-        if programs.is_empty() {
-            return Err(InstrumentError::NoPrograms);
-        }
-        Ok(vec![Task { name: "main".to_owned(), interval_ns: 10_000_000, programs, ..Task::default() }])
-    }
-
-    /// The project's files with their changes.
-    fn edited(
-        &self,
-        survey: &Survey<'_>,
-        motion: &Motion,
-        tasks: &TaskTable<'_>,
-        globals: &str,
-    ) -> Result<Vec<File>, InstrumentError> {
-        let mut edits: Vec<Edits> = self.given.iter().map(|_| Edits::default()).collect();
-        let mut changes = |id: FileId, change: &mut dyn FnMut(&crate::syntax::SourceFile, &mut Edits)| {
-            if let (Some(file), Some(edits)) = (self.sources.get(id), edits.get_mut(id.0 as usize)) {
-                change(file, edits);
-            }
-        };
-        let clocks = survey.renames.iter().map(|(name, form)| (name, form.new_name()));
-        for (name, new) in clocks.chain(motion.renames.iter().map(|(name, new)| (name, new.clone()))) {
-            changes(name.span.file, &mut |file, edits| {
-                let at = file.shown_range(name.span.start, name.span.end);
-                edits.replace(at, marks::renamed(&new, &name.text));
-            });
-        }
-        for pou in &survey.charts {
-            let number = tasks.numbered().find(|(numbered, _)| std::ptr::eq(*numbered, *pou));
-            let number = number.map(|(_, number)| (number, tasks.programs.len()));
-            changes(pou.name.span.file, &mut |file, edits| {
-                chart::control(pou, number, &survey.renames, file, edits);
-            });
-        }
-        for (pou, number) in tasks.numbered().filter(|(pou, _)| pou.chart.is_empty()) {
-            changes(pou.name.span.file, &mut |file, edits| {
-                controller::control(pou, number, tasks.programs.len(), file, edits);
-            });
-        }
-        if let Some(configuration) = survey.configuration {
-            changes(configuration.name.span.file, &mut |file, edits| {
-                configuration::attach(configuration, tasks, globals, file, edits);
-            });
-        }
-        let each = self.given.iter().zip(self.sources.iter()).zip(edits);
-        each.map(|((given, (_, file)), edits)| {
-            let conflict = |conflict| InstrumentError::Conflict { file: given.name.clone(), conflict };
-            let Edited { text, lines } = edits.apply(file.shown_text()).map_err(conflict)?;
-            Ok(given.file(Some(text.into()), lines))
-        })
-        .collect()
-    }
-
-    /// Adds a file of the shim's own, or puts it in the place of the one that was given.
-    fn add_own(&self, source: target::Source, files: &mut Vec<File>) {
-        let is_it = |given: &&Given| Path::new(&given.name).file_name().is_some_and(|name| *name == *source.name);
-        let text = Some(Arc::from(source.text));
-        files.push(if let Some(given) = self.own.iter().find(is_it) {
-            given.file(text, LineMap::default())
-        } else {
-            let folder = self.given.first().and_then(|first| Path::new(&first.name).parent());
-            let name = folder.unwrap_or(Path::new("")).join(&source.name).display().to_string();
-            File { name, before: None, text, encoding: None, lines: LineMap::default(), from: LineMap::default() }
-        });
-    }
-
-    /// Tells TwinCAT projects of the shim's own files.
-    fn list_own(&self, files: &mut Vec<File>) -> Result<(), InstrumentError> {
-        let is_own = |file: &&File| file.text.is_some() && !self.given.iter().any(|given| given.name == file.name);
-        let own: Vec<String> = files.iter().filter(is_own).map(|file| file.name.clone()).collect();
-        for (given, plain) in &self.manifests {
-            let conflict = |conflict| InstrumentError::Conflict { file: given.name.clone(), conflict };
-            let Edited { text, lines } = twincat::listing(&given.name, plain, &own).apply(plain).map_err(conflict)?;
-            files.push(given.file(Some(text.into()), lines));
-        }
-        Ok(())
-    }
-
-    /// Files of the shim's own that were given are to be deleted.
-    fn delete_own(&self, files: &mut Vec<File>) {
-        files.extend(self.own.iter().map(|given| given.file(None, LineMap::default())));
-    }
-}
-
-impl Given {
-    fn file(&self, text: Option<Arc<str>>, lines: LineMap) -> File {
-        let from = lines.through(&self.plain_lines);
-        File { name: self.name.clone(), before: Some(self.text.clone()), text, encoding: self.encoding, lines, from }
-    }
 }

@@ -66,6 +66,7 @@ pub(super) fn differs(target: Target, key: &str) -> Option<&'static str> {
             ("MC_SETPOSITION", "the mode is another in Tc2_MC2"),
         ],
         Target::Iec | Target::Codesys => &[],
+        Target::Scl => return Some("its axes are technology objects in TIA Portal"),
     };
     differing.iter().find(|(name, _)| *name == key).map(|(_, why)| *why)
 }

@@ -105,7 +105,7 @@ pub(super) type Refused = &'static str;
 pub(super) fn control(
     pou: &Pou,
     number: Number,
-    programs: usize,
+    line: &str,
     (file, root): (&SourceFile, &Element),
     edits: &mut Edits,
 ) -> Result<(), Refused> {
@@ -119,7 +119,7 @@ pub(super) fn control(
         return Err("several instances of one program in PLCopen XML are not instrumented yet");
     }
     let text = file.shown_text();
-    let controller = template::controller(number, programs);
+    let controller = template::controller(number, line);
     let Some(declared) = unit::declarations(&controller.declarations) else {
         return Err("its controller has no form in PLCopen XML");
     };

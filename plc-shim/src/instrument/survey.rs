@@ -5,6 +5,8 @@ use std::collections::BTreeSet;
 use super::clock::{self, Fate, Form, Kind};
 use super::constant::{self, Constants};
 use super::motion::Role;
+use super::scl::{self, TimerCalls};
+use super::target::Target;
 use crate::application::library;
 use crate::check::{VIRTUAL_TIME_NAME, is_standard_function};
 use crate::diagnostic::{Code, Diagnostic};
@@ -33,6 +35,10 @@ pub(super) struct Survey<'a> {
     pub(super) renames: Vec<(Ident, &'static Form)>,
     /// Names of blocks and types of motion control.
     pub(super) motion: Vec<(Ident, Role)>,
+    /// Calls of timers by what they are, in SCL.
+    pub(super) timer_calls: TimerCalls,
+    /// What goes with the timers that are replaced, in SCL.
+    pub(super) cuts: Vec<Span>,
     /// Keys of the units and types that the project declares.
     declared: BTreeSet<String>,
     /// What cannot be replaced, and names that the shim needs for itself.
@@ -40,14 +46,17 @@ pub(super) struct Survey<'a> {
 }
 
 /// Looks through all files of a project.
-pub(super) fn survey<'a>(units: &[(FileId, &'a CompilationUnit)]) -> Survey<'a> {
+pub(super) fn survey<'a>(units: &[(FileId, &'a CompilationUnit)], target: Target) -> Survey<'a> {
     let declarations = || units.iter().flat_map(|(_, unit)| &unit.declarations);
     let mut names = Names::default();
     declarations().for_each(|declaration| names.add(declaration));
-    let survey = Survey { declared: names.units_and_types.clone(), ..Survey::default() };
-    let mut surveyor = Surveyor { names: &names, local: BTreeSet::new(), survey };
+    let timer_calls = if target == Target::Scl { TimerCalls::of(units) } else { TimerCalls::default() };
+    let survey = Survey { declared: names.units_and_types.clone(), timer_calls, ..Survey::default() };
+    let mut surveyor = Surveyor { names: &names, target, unit: String::new(), local: BTreeSet::new(), survey };
     declarations().for_each(|declaration| surveyor.declaration(declaration));
-    surveyor.survey
+    let mut survey = surveyor.survey;
+    survey.cuts = scl::cuts(units, &survey);
+    survey
 }
 
 /// What the project declares, and what everybody has.
@@ -107,6 +116,9 @@ fn is_standard_unit(key: &str) -> bool {
 
 struct Surveyor<'n, 'a> {
     names: &'n Names,
+    target: Target,
+    /// The key of the unit that is looked through; empty outside of one.
+    unit: String,
     /// Variables of the unit that is looked through.
     local: BTreeSet<String>,
     survey: Survey<'a>,
@@ -137,6 +149,7 @@ impl<'a> Surveyor<'_, 'a> {
             pou.object.extends.iter().for_each(|base| self.base(base));
         }
         self.local = pou.sections.iter().flat_map(variable_names).collect();
+        self.unit = pou.name.key();
         // An action is called by its name.
         self.local.extend(pou.object.members.iter().map(|member| member.pou.name.key()));
         pou.result.iter().for_each(|result| self.spec(result));
@@ -154,6 +167,7 @@ impl<'a> Surveyor<'_, 'a> {
             walk::statements(&member.body, self);
         }
         self.local.clear();
+        self.unit.clear();
     }
 
     /// What a function block is derived from. How a derived one is used tells nothing of a motion block's inputs.
@@ -194,7 +208,10 @@ impl<'a> Surveyor<'_, 'a> {
 
     fn section(&mut self, section: &Section) {
         for variable in &section.variables {
-            self.spec(&variable.spec);
+            match self.survey.timer_calls.replacement(&self.unit, variable) {
+                Some((name, form)) => self.survey.renames.push((name.clone(), form)),
+                None => self.spec(&variable.spec),
+            }
             variable.initial.iter().for_each(|initial| self.initialiser(initial));
         }
     }
@@ -261,8 +278,8 @@ impl<'a> Surveyor<'_, 'a> {
 
     fn met(&mut self, name: &Ident, fate: Fate) {
         match fate {
-            Fate::Replaced(form) => self.survey.renames.push((name.clone(), form)),
-            Fate::Told => self.told(&name.text, name.span),
+            Fate::Replaced(form) if form.suits(self.target) => self.survey.renames.push((name.clone(), form)),
+            Fate::Replaced(_) | Fate::Told => self.told(&name.text, name.span),
             Fate::Motion(role) => self.survey.motion.push((name.clone(), role)),
         }
     }

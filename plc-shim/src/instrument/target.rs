@@ -20,6 +20,8 @@ pub enum Target {
     TwinCat,
     /// CODESYS: a project in PLCopen XML.
     Codesys,
+    /// Siemens' TIA Portal: SCL as external source, in one file.
+    Scl,
 }
 
 /// A file of the shim's own.
@@ -31,6 +33,8 @@ pub(super) struct Source {
 
 /// The shim's sources for these tasks, and for the sources of time that are replaced.
 pub(super) struct Sources {
+    /// A type that the variables have.
+    line: Option<String>,
     /// Variables, for a configuration or a file of their own.
     pub(super) globals: String,
     scheduler: String,
@@ -73,21 +77,30 @@ impl Sources {
     ) -> Self {
         let wanted: &[Only] = if forms.iter().any(|form| form.long) { &[Only::LongTime] } else { &[] };
         let mut names = tasks.names();
-        // A TIME has nanoseconds in the one and milliseconds in the other.
+        let sizes = [("SDSP_PROGRAMS", tasks.programs.len().to_string())];
+        // A TIME has nanoseconds in the one and milliseconds in the other. Only durations of whole seconds are exact
+        // in every tool of the one; a number stands behind a TIME (2nd ed. Table 30).
         let (now, now_long) = match target {
-            Target::Iec => ("TV * T#0.000001ms", "TV * LT#1ns"),
+            Target::Iec => ("T#1s * (TV / 1000000000) + T#1s * (TV MOD 1000000000) / 1000000000", "LT#1ns * TV"),
             Target::TwinCat | Target::Codesys => ("LINT_TO_TIME(TV / 1000000)", "LINT_TO_LTIME(TV)"),
+            Target::Scl => ("DINT_TO_TIME(LINT_TO_DINT(#TV / 1000000))", "LINT_TO_LTIME(#TV)"),
         };
         names.extend([("SDSP_NOW_OF_TV", now.to_owned()), ("SDSP_NOWL_OF_TV", now_long.to_owned())]);
-        let filled = |template: &str| template::fill(&template::lines_for(template, wanted), &names);
-        let unit = |form: &&Form| Unit { name: form.new_name(), text: form.text() };
+        let fill = if target == Target::Scl { template::fill_scl } else { template::fill };
+        let filled = |template: &str| fill(&template::lines_for(template, wanted), &names);
+        let unit = |form: &&Form| Unit { name: form.new_name(), text: form.text(target) };
+        let (globals, scheduler) = match target {
+            Target::Scl => (template::SCL_GLOBALS, template::SCL_SCHEDULER),
+            Target::Iec | Target::TwinCat | Target::Codesys => (template::GLOBALS, template::SCHEDULER),
+        };
         let mut units: Vec<Unit> = forms.iter().map(unit).collect();
         if !charts.is_empty() {
             units.extend(chart_units());
         }
         Self {
-            globals: filled(template::GLOBALS),
-            scheduler: filled(template::SCHEDULER),
+            line: tasks.line_declaration().map(|text| template::fill(text, &sizes)),
+            globals: filled(globals),
+            scheduler: filled(scheduler),
             forms: units,
             motion: motion::parts(target, blocks),
         }
@@ -102,12 +115,14 @@ impl Sources {
     pub(super) fn files(self, target: Target, globals: Globals) -> Vec<Source> {
         let own = (globals == Globals::InFile).then_some(self.globals);
         match target {
-            Target::Iec | Target::Codesys => {
+            Target::Iec | Target::Codesys | Target::Scl => {
                 let forms = self.forms.into_iter().map(|unit| unit.text);
                 let motion = self.motion.into_iter().map(|part| part.text);
-                let parts: Vec<String> = own.into_iter().chain([self.scheduler]).chain(forms).chain(motion).collect();
+                let parts: Vec<String> =
+                    self.line.into_iter().chain(own).chain([self.scheduler]).chain(forms).chain(motion).collect();
                 let text = format!("{}\n{}", marks::FILE, parts.join("\n"));
-                vec![Source { name: "sdsp.st".to_owned(), text }]
+                let name = if target == Target::Scl { "sdsp.scl" } else { "sdsp.st" };
+                vec![Source { name: name.to_owned(), text }]
             }
             Target::TwinCat => {
                 let own = own.map(|text| twincat::globals("SDSP", &text));

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use super::template::Number;
+use super::template::{self, Number};
 use crate::diagnostic::did_you_mean;
 use crate::run::{RunError, Task};
 use crate::syntax::ast::Pou;
@@ -13,6 +13,17 @@ use crate::syntax::ast::Pou;
 pub(super) struct TaskTable<'a> {
     pub(super) rows: Vec<Row>,
     pub(super) programs: Vec<Entry<'a>>,
+    line: Line,
+}
+
+/// How the type of the line of programs is written.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub(super) enum Line {
+    /// By the name of its own that `iec/shim/line.st` declares.
+    #[default]
+    Named,
+    /// In its place.
+    InPlace,
 }
 
 /// A program that a task runs.
@@ -39,11 +50,11 @@ impl<'a> TaskTable<'a> {
     ///
     /// # Errors
     /// What would be wrong with the tasks in a soft PLC is wrong here.
-    pub(super) fn new(tasks: &[Task], entries: &[Entry<'a>]) -> Result<Self, RunError> {
+    pub(super) fn new(tasks: &[Task], entries: &[Entry<'a>], line: Line) -> Result<Self, RunError> {
         check(tasks)?;
         let mut order: Vec<&Task> = tasks.iter().collect();
         order.sort_by_key(|task| task.priority);
-        let mut table = Self::default();
+        let mut table = Self { line, ..Self::default() };
         for task in order {
             let first = table.programs.len() + 1;
             for name in &task.programs {
@@ -78,6 +89,19 @@ impl<'a> TaskTable<'a> {
         (same > 1).then_some(at + 1)
     }
 
+    /// The type of the line of programs.
+    pub(super) fn line_type(&self) -> String {
+        match self.line {
+            Line::Named => "SDSP_LINE".to_owned(),
+            Line::InPlace => format!("ARRAY [0..{}] OF INT", self.programs.len()),
+        }
+    }
+
+    /// The declaration of that type, if it has one.
+    pub(super) fn line_declaration(&self) -> Option<&'static str> {
+        (self.line == Line::Named).then_some(template::LINE)
+    }
+
     /// What the scheduler's names stand for.
     pub(super) fn names(&self) -> Vec<(&'static str, String)> {
         let list = |value: &dyn Fn(&Row) -> u64| {
@@ -86,6 +110,7 @@ impl<'a> TaskTable<'a> {
         };
         vec![
             ("SDSP_PROGRAMS", self.programs.len().to_string()),
+            ("SDSP_LINE", self.line_type()),
             ("SDSP_TASKS", self.rows.len().to_string()),
             ("SDSP_INTERVALS", list(&|row| row.interval_ns)),
             ("SDSP_PRIORITIES", list(&|row| u64::from(row.priority))),

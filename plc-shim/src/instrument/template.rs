@@ -4,8 +4,12 @@
 //! projects that use LTIME only, since older systems do not know that type; one with `(*$instances`
 //! for programs of which a configuration has several.
 
+use crate::dialect::Dialect;
+use crate::syntax::lexer::tokenize_in;
+use crate::syntax::token::Token;
 use crate::syntax::tokenize;
 
+pub(super) const LINE: &str = include_str!("../../iec/shim/line.st");
 pub(super) const GLOBALS: &str = include_str!("../../iec/shim/globals.st");
 pub(super) const SCHEDULER: &str = include_str!("../../iec/shim/scheduler.st");
 pub(super) const EXECUTION_CONTROLLER: &str = include_str!("../../iec/shim/execution_controller.st");
@@ -18,6 +22,13 @@ pub(super) const OFF_DELAY: &str = include_str!("../../iec/shim/off_delay.st");
 pub(super) const PULSE: &str = include_str!("../../iec/shim/pulse.st");
 pub(super) const REAL_TIME_CLOCK: &str = include_str!("../../iec/shim/real_time_clock.st");
 pub(super) const TIME_FUNCTION: &str = include_str!("../../iec/shim/time_function.st");
+
+pub(super) const SCL_GLOBALS: &str = include_str!("../../iec/shim/scl/globals.scl");
+pub(super) const SCL_SCHEDULER: &str = include_str!("../../iec/shim/scl/scheduler.scl");
+pub(super) const SCL_EXECUTION_CONTROLLER: &str = include_str!("../../iec/shim/scl/execution_controller.scl");
+pub(super) const SCL_ON_DELAY: &str = include_str!("../../iec/shim/scl/on_delay.scl");
+pub(super) const SCL_OFF_DELAY: &str = include_str!("../../iec/shim/scl/off_delay.scl");
+pub(super) const SCL_PULSE: &str = include_str!("../../iec/shim/scl/pulse.scl");
 
 /// Whom a line marked `(*$..` is for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -63,8 +74,18 @@ pub(super) fn fill(template: &str, names: &[(&str, String)]) -> String {
 
 /// The template with every token for which `name` has another text; comments stay.
 pub(super) fn fill_with(template: &str, name: &dyn Fn(&str) -> Option<String>) -> String {
+    filled(template, tokenize(template), name)
+}
+
+/// The same for a template in SCL, where names stand in quotes or behind `#`.
+pub(super) fn fill_scl(template: &str, names: &[(&str, String)]) -> String {
+    let name = |written: &str| names.iter().find(|(name, _)| *name == written).map(|(_, new)| new.clone());
+    filled(template, tokenize_in(Dialect::SiemensScl, template), &name)
+}
+
+fn filled(template: &str, tokens: Vec<Token>, name: &dyn Fn(&str) -> Option<String>) -> String {
     let mut text = String::with_capacity(template.len());
-    for token in tokenize(template) {
+    for token in tokens {
         let written = template.get(token.start as usize..token.end as usize).unwrap_or("");
         let new = if token.kind.is_trivia() { None } else { name(written) };
         text.push_str(new.as_deref().unwrap_or(written));
@@ -82,12 +103,12 @@ pub(super) enum Number {
 }
 
 /// A controller's template for one of so many programs.
-fn numbered(template: &str, number: Number, programs: usize) -> String {
+fn numbered(template: &str, number: Number, line: &str) -> String {
     let (number, wanted): (_, &[Only]) = match number {
         Number::Fixed(number) => (number.to_string(), &[]),
         Number::OfInstance => ("SDSP_Number".to_owned(), &[Only::Instances]),
     };
-    fill(&lines_for(template, wanted), &[("SDSP_NUMBER", number), ("SDSP_PROGRAMS", programs.to_string())])
+    fill(&lines_for(template, wanted), &[("SDSP_NUMBER", number), ("SDSP_LINE", line.to_owned())])
 }
 
 /// The part of a template between two of its lines.
@@ -96,9 +117,9 @@ fn between(text: &str, from: &str, to: &str) -> String {
     rest.split_once(to).map_or("", |(part, _)| part).trim_matches('\n').to_owned()
 }
 
-/// The execution controller of one of so many programs.
-pub(super) fn controller(number: Number, programs: usize) -> Controller {
-    let text = numbered(EXECUTION_CONTROLLER, number, programs);
+/// The execution controller of a program; `line` is the type of the line of programs.
+pub(super) fn controller(number: Number, line: &str) -> Controller {
+    let text = numbered(EXECUTION_CONTROLLER, number, line);
     Controller {
         declarations: between(&text, "PROGRAM SDSP_PROGRAM", "(* Body *)"),
         header: between(&text, "(* Body *)", "(* Regular program begins here *)"),
@@ -107,9 +128,25 @@ pub(super) fn controller(number: Number, programs: usize) -> Controller {
     }
 }
 
-/// The execution controller of one of so many programs that is a chart.
-pub(super) fn chart_controller(number: Number, programs: usize) -> ChartController {
-    let text = numbered(CHART_CONTROLLER, number, programs);
+/// The execution controller of an organization block.
+pub(super) fn scl_controller(number: Number) -> Controller {
+    let number = match number {
+        Number::Fixed(number) => number,
+        // Organization blocks have no instances.
+        Number::OfInstance => 0,
+    };
+    let text = fill_scl(SCL_EXECUTION_CONTROLLER, &[("SDSP_NUMBER", number.to_string())]);
+    Controller {
+        declarations: between(&text, "(* Declarations *)", "(* Body *)"),
+        header: between(&text, "(* Header *)", "(* Regular program begins here *)"),
+        close: between(&text, "(* Regular program ends here *)", "(* Footer *)"),
+        footer: between(&text, "(* Footer *)", "END_ORGANIZATION_BLOCK"),
+    }
+}
+
+/// The execution controller of a program that is a chart.
+pub(super) fn chart_controller(number: Number, line: &str) -> ChartController {
+    let text = numbered(CHART_CONTROLLER, number, line);
     ChartController {
         declarations: between(&text, "PROGRAM SDSP_CHART", "(* Chart *)"),
         gate: between(&text, "(* Gate *)", "(* Condition *)").trim().to_owned(),
@@ -150,7 +187,8 @@ mod tests {
     use super::*;
     use crate::syntax::{FileId, parse};
 
-    const ALL: [(&str, &str); 12] = [
+    const ALL: [(&str, &str); 13] = [
+        ("line", LINE),
         ("globals", GLOBALS),
         ("scheduler", SCHEDULER),
         ("execution_controller", EXECUTION_CONTROLLER),
@@ -190,7 +228,7 @@ mod tests {
 
     #[test]
     fn a_controller_of_a_chart_has_all_its_parts() {
-        let controller = chart_controller(Number::Fixed(2), 3);
+        let controller = chart_controller(Number::Fixed(2), "SDSP_LINE");
         assert!(controller.declarations.contains("SDSP_Open : BOOL;") && controller.gate.ends_with(" AND"));
         assert!(controller.header.ends_with("SDSP_Begun := TRUE;") && controller.close.trim() == "END_IF;");
         assert!(controller.footer.ends_with("SDSP_Open := SDSP_Turn = 2;"), "{}", controller.footer);
@@ -198,12 +236,12 @@ mod tests {
 
     #[test]
     fn a_controller_has_all_its_parts() {
-        let controller = controller(Number::Fixed(2), 3);
+        let controller = controller(Number::Fixed(2), "ARRAY [0..3] OF INT");
         assert!(controller.declarations.contains("ARRAY [0..3] OF INT"));
         assert!(controller.header.ends_with("OR SDSP_Granted THEN"), "{}", controller.header);
         assert_eq!(controller.close.trim(), "END_IF;");
         assert_eq!(controller.footer.trim(), "IF SDSP_Granted THEN SDSP_Turn := SDSP_Next[2]; END_IF;");
-        let controller = super::controller(Number::OfInstance, 3);
+        let controller = super::controller(Number::OfInstance, "SDSP_LINE");
         assert!(
             controller.declarations.contains("VAR_INPUT SDSP_Number : INT; END_VAR"),
             "{}",

@@ -39,6 +39,7 @@
 mod calendar;
 mod case;
 mod cell;
+mod lockstep;
 mod table;
 mod trace;
 

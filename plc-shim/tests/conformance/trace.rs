@@ -48,8 +48,7 @@ struct Run {
 
 impl Run {
     fn variable(&self, path: &str) -> Result<Variable, String> {
-        let own = self.plc.variable(&format!("{}.{path}", self.prefix));
-        own.or_else(|_| self.plc.variable(path)).map_err(|error| error.to_string())
+        variable(&self.plc, &self.prefix, path)
     }
 
     /// The bytes of a variable; a BOOL that is a bit of one as a byte.
@@ -66,7 +65,7 @@ impl Run {
             Some(other) => return Err(format!("`{other}` is no start")),
         }
         for row in &case.given {
-            self.give(row, scan)?;
+            give(&mut self.plc, &self.prefix, row, scan)?;
         }
         self.now_ns += self.interval_ns;
         let outcome = self.plc.scan(VirtualTime::from_ns(self.now_ns));
@@ -77,18 +76,6 @@ impl Run {
         if wrong.is_empty() { Ok(()) } else { Err(wrong.join("; ")) }
     }
 
-    fn give(&mut self, row: &Row, scan: usize) -> Result<(), String> {
-        let Some(value) = row.given(scan) else { return Ok(()) };
-        let variable = self.variable(&row.path)?;
-        let mut bytes = encoded(value, &variable)?;
-        if let Some(bit) = variable.bit {
-            let others = self.plc.memory()[variable.offset as usize] & !(1 << bit);
-            bytes[0] = others | bytes[0] << bit;
-        }
-        self.plc.memory_mut()[variable.offset as usize..][..bytes.len()].copy_from_slice(&bytes);
-        Ok(())
-    }
-
     /// What is wrong with a variable after a scan.
     fn difference(&self, row: &Row, scan: usize) -> Result<Option<String>, String> {
         let Some(value) = row.wanted(scan) else { return Ok(None) };
@@ -97,6 +84,25 @@ impl Run {
         let same = cell::same(&wanted, &found, &variable);
         Ok((!same).then(|| format!("{} is {}, not {value}", row.path, cell::text(&found, &variable))))
     }
+}
+
+/// The variable of a path, in which the first program needs no prefix.
+fn variable(plc: &SoftPlc, prefix: &str, path: &str) -> Result<Variable, String> {
+    let own = plc.variable(&format!("{prefix}.{path}"));
+    own.or_else(|_| plc.variable(path)).map_err(|error| error.to_string())
+}
+
+/// Writes what is given before a scan.
+pub(crate) fn give(plc: &mut SoftPlc, prefix: &str, row: &Row, scan: usize) -> Result<(), String> {
+    let Some(value) = row.given(scan) else { return Ok(()) };
+    let variable = variable(plc, prefix, &row.path)?;
+    let mut bytes = encoded(value, &variable)?;
+    if let Some(bit) = variable.bit {
+        let others = plc.memory()[variable.offset as usize] & !(1 << bit);
+        bytes[0] = others | bytes[0] << bit;
+    }
+    plc.memory_mut()[variable.offset as usize..][..bytes.len()].copy_from_slice(&bytes);
+    Ok(())
 }
 
 fn encoded(value: &str, variable: &Variable) -> Result<Vec<u8>, String> {

@@ -59,6 +59,8 @@ pub(crate) mod answer {
 /// The instrumented PLC and what the gateway knows.
 pub(crate) struct Driver {
     pub(crate) rig: Rig,
+    /// What stands before the names of the shim's variables.
+    prefix: &'static str,
     pub(crate) session: i64,
     pub(crate) grant: i64,
 }
@@ -66,25 +68,38 @@ pub(crate) struct Driver {
 impl Driver {
     /// A PLC that has joined session 1000.
     pub(crate) fn joined(application: &Application, plan: &TaskPlan) -> Self {
-        let mut driver = Self::started(application, plan);
+        Self::joined_in("", application, plan)
+    }
+
+    /// The same where the shim's variables are parts of another.
+    pub(crate) fn joined_in(prefix: &'static str, application: &Application, plan: &TaskPlan) -> Self {
+        let mut driver = Self { prefix, ..Self::started(application, plan) };
         driver.join(1000);
         driver
+    }
+
+    fn set(&mut self, word: &str, value: i64) {
+        self.rig.set(&format!("{}SDSP_{word}", self.prefix), value);
+    }
+
+    fn word(&self, word: &str) -> i64 {
+        self.rig.int(&format!("{}SDSP_{word}", self.prefix))
     }
 
     /// A PLC that has been started, and goes through its cycles.
     pub(crate) fn started(application: &Application, plan: &TaskPlan) -> Self {
         let plc = SoftPlc::new(application, plan).expect("the plan suits");
-        Self { rig: Rig { plc, step_ns: MS, now_ns: 0 }, session: 0, grant: 0 }
+        Self { rig: Rig { plc, step_ns: MS, now_ns: 0 }, prefix: "", session: 0, grant: 0 }
     }
 
     pub(crate) fn join(&mut self, session: i64) {
-        self.rig.set("SDSP_Limit", i64::from(u32::MAX));
-        self.rig.set("SDSP_TV", 0);
-        self.rig.set("SDSP_Grant", session);
-        self.rig.set("SDSP_Session", session);
+        self.set("Limit", i64::from(u32::MAX));
+        self.set("TV", 0);
+        self.set("Grant", session);
+        self.set("Session", session);
         (self.session, self.grant) = (session, 0);
         let mut cycles = 0;
-        while self.rig.int("SDSP_Joined") != session {
+        while self.word("Joined") != session {
             cycles += 1;
             assert!(cycles < 100, "the PLC does not join and answers {}", self.answer());
             self.cycles(1);
@@ -100,17 +115,17 @@ impl Driver {
 
     /// Writes a grant; its number counts from the session's.
     pub(crate) fn write_grant(&mut self, number: i64, t_v: u64) {
-        self.rig.set("SDSP_TV", t_v as i64);
-        self.rig.set("SDSP_Grant", self.session + number);
+        self.set("TV", t_v as i64);
+        self.set("Grant", self.session + number);
     }
 
     /// The last grant that is done, from the session's number.
     pub(crate) fn done(&self) -> i64 {
-        self.rig.int("SDSP_Done") - self.session
+        self.word("Done") - self.session
     }
 
     pub(crate) fn answer(&self) -> i64 {
-        self.rig.int("SDSP_Answer")
+        self.word("Answer")
     }
 
     /// Grants the next step and waits until it is done; how many cycles that took.

@@ -11,3 +11,4 @@ mod overhead;
 mod plcopen_xml;
 mod random;
 mod rewriting;
+mod scl;

@@ -11,7 +11,7 @@ fn inputs(files: &[(&str, SourceKind, &str)]) -> Vec<Input> {
     files.iter().map(|(name, kind, text)| Input::from_text(name, *kind, *text)).collect()
 }
 
-fn again(project: &Project) -> Vec<Input> {
+pub(super) fn again(project: &Project) -> Vec<Input> {
     let kind = |name: &str| if name.contains(".Tc") { SourceKind::TwinCat } else { SourceKind::Text };
     let text = |file: &onescan_plc_shim::instrument::File| file.text.clone().expect("a text");
     project.files.iter().map(|file| Input::from_text(&file.name, kind(&file.name), text(file))).collect()
@@ -22,7 +22,7 @@ fn texts(project: &Project) -> Vec<Option<String>> {
 }
 
 /// Instrumented, once more, and taken back.
-fn round_trip(given: &[Input], options: &Options) -> Project {
+pub(super) fn round_trip(given: &[Input], options: &Options) -> Project {
     let project = instrument(given, options).unwrap_or_else(|error| panic!("{error}"));
     let twice = instrument(&again(&project), options).unwrap_or_else(|error| panic!("{error}"));
     assert_eq!(texts(&twice), texts(&project));

@@ -1,0 +1,281 @@
+//! A project as it is without the shim, and the changes that make it one with it.
+
+use std::path::Path;
+use std::sync::Arc;
+
+use super::edits::{Edited, Edits, LineMap};
+use super::marks::{self, Original};
+use super::motion_use::Motion;
+use super::survey::Survey;
+use super::target::{self, Sources, Target};
+use super::tasks::TaskTable;
+use super::{File, InstrumentError, Options, chart, clock, configuration, controller, plcopen, scl, twincat};
+use crate::diagnostic::{Code, Diagnostic, Diagnostics};
+use crate::input::Input;
+use crate::input::encoding::Encoding;
+use crate::input::kind::{FileKind, SourceKind};
+use crate::run::Task;
+use crate::syntax::ast::{Ident, Pou};
+use crate::syntax::{FileId, SourceFile, SourceMap, Span};
+
+/// A project without the shim.
+pub(super) struct Plain {
+    pub(super) sources: SourceMap,
+    /// Of each file in `sources` what it was when it was given.
+    given: Vec<Given>,
+    /// What kind of file each of them is.
+    kinds: Vec<SourceKind>,
+    /// The shim's own files that were given.
+    own: Vec<Given>,
+    /// TwinCAT projects, and what they are without the shim.
+    manifests: Vec<(Given, Arc<str>)>,
+    pub(super) findings: Vec<Diagnostic>,
+}
+
+struct Given {
+    name: String,
+    text: Arc<str>,
+    encoding: Option<Encoding>,
+    /// Where the lines are of what it was before it was instrumented.
+    plain_lines: LineMap,
+}
+
+impl Plain {
+    pub(super) fn of(inputs: &[Input]) -> Result<Self, InstrumentError> {
+        let mut plain = Self {
+            sources: SourceMap::default(),
+            given: Vec::new(),
+            kinds: Vec::new(),
+            own: Vec::new(),
+            manifests: Vec::new(),
+            findings: Vec::new(),
+        };
+        for input in inputs {
+            plain.add(input);
+        }
+        if plain.findings.iter().any(|found| found.code == Code::DamagedMarks) {
+            return Err(InstrumentError::Text(Diagnostics::new(plain.findings, &plain.sources)));
+        }
+        Ok(plain)
+    }
+
+    fn add(&mut self, input: &Input) {
+        let (name, text) = (input.file().name(), input.file().shown_text());
+        let original = marks::original(text);
+        let plain_lines = match &original {
+            Ok(Original::Text(plain)) => plain.lines.clone(),
+            _ => LineMap::same(text),
+        };
+        let given = Given { name: name.to_owned(), text: text.clone(), encoding: input.encoding(), plain_lines };
+        let kind = match (FileKind::of(Path::new(name)), &original) {
+            (Some(FileKind::Project), Ok(Original::Text(plain))) => {
+                return self.manifests.push((given, plain.text.as_str().into()));
+            }
+            (Some(FileKind::Project), Ok(_)) => return self.manifests.push((given, text.clone())),
+            (Some(FileKind::Source(kind)), _) => kind,
+            _ => SourceKind::Text,
+        };
+        let plain = match original {
+            Ok(Original::Nothing) => return self.own.push(given),
+            Ok(Original::Same) => input.clone(),
+            Ok(Original::Text(plain)) => Input::from_text(name, kind, plain.text).in_dialect(input.file().dialect()),
+            Err(damaged) => return self.damaged(name, text, &damaged),
+        };
+        self.given.push(given);
+        let id = FileId(self.sources.iter().count() as u32);
+        self.findings.extend(plain.add_to(&mut self.sources));
+        self.kinds.push(kind);
+        let mixed = self.kinds.contains(&SourceKind::PlcOpen) && self.kinds.len() > 1;
+        if mixed {
+            let refused = "a project in PLCopen XML is one file, other sources beside it are not instrumented yet";
+            self.findings.push(Diagnostic::error(Code::UnsupportedFeature, Span::new(id, 0, 0), refused));
+        }
+    }
+
+    /// True for a project in PLCopen XML, which is one file.
+    pub(super) fn is_xml(&self) -> bool {
+        self.kinds.contains(&SourceKind::PlcOpen)
+    }
+
+    /// A target that does not take the project's kind of file.
+    pub(super) fn unsuited(&self, target: Target, survey: &Survey<'_>) -> Option<Diagnostic> {
+        let scl = self.sources.iter().find(|(_, file)| scl::is_scl(file)).map(|(id, _)| id);
+        let foreign = |pou: &&&Pou| self.sources.get(pou.name.span.file).is_some_and(|file| !scl::is_scl(file));
+        let foreign = survey.programs.iter().find(foreign).map(|pou| pou.name.span);
+        let message = match target {
+            Target::Scl if scl.is_some() && foreign.is_some() => "beside SCL there are variables only, not programs",
+            Target::Scl if scl.is_none() => "the target scl takes SCL sources of TIA Portal",
+            Target::Iec | Target::TwinCat | Target::Codesys if scl.is_some() => "SCL sources take the target scl",
+            Target::Codesys if !self.is_xml() => "the target codesys takes a project in PLCopen XML",
+            Target::TwinCat if self.is_xml() => "the target twincat takes TwinCAT's own files, not PLCopen XML",
+            _ => return None,
+        };
+        let at = foreign.filter(|_| scl.is_some()).unwrap_or(Span::new(scl.unwrap_or(FileId(0)), 0, 0));
+        let found = Diagnostic::error(Code::UnsupportedFeature, at, message);
+        Some(found.with_help("export the project in that form, or choose another target"))
+    }
+
+    /// The project's only file with its changes and all that is the shim's.
+    pub(super) fn edited_xml(
+        &self,
+        survey: &Survey<'_>,
+        motion: &Motion,
+        tasks: &TaskTable<'_>,
+        sources: &Sources,
+    ) -> Result<File, InstrumentError> {
+        let wrong = |span, message: &str| {
+            let found = Diagnostic::error(Code::UnsupportedFeature, span, message);
+            InstrumentError::Text(Diagnostics::new(vec![found], &self.sources))
+        };
+        let whole = Span::new(FileId(0), 0, 0);
+        let (Some(given), Some(file)) = (self.given.first(), self.sources.get(FileId(0))) else {
+            return Err(InstrumentError::NoPrograms);
+        };
+        if !survey.charts.is_empty() {
+            return Err(wrong(whole, "a chart in PLCopen XML is not instrumented yet"));
+        }
+        if let Some((name, _)) = motion.renames.first() {
+            return Err(wrong(name.span, "motion control in PLCopen XML is not instrumented yet"));
+        }
+        let root = plcopen::tree(file).ok_or_else(|| wrong(whole, "this is no XML"))?;
+        let mut edits = Edits::default();
+        for (name, form) in &survey.renames {
+            plcopen::rename(file, name.span.start..name.span.end, &name.text, &form.new_name(), &mut edits);
+        }
+        let declared = |name: &str| survey.is_declared(name);
+        let new = |name: &str| clock::replacement(name).filter(|_| !declared(name));
+        plcopen::rename_blocks(&root, file.shown_text(), &new, &mut edits);
+        for (pou, number) in tasks.numbered() {
+            plcopen::control(pou, number, &tasks.line_type(), (file, &root), &mut edits)
+                .map_err(|message| wrong(pou.name.span, message))?;
+        }
+        plcopen::attach(&root, file.shown_text(), tasks, &sources.globals, &sources.units(), &mut edits)
+            .map_err(|message| wrong(whole, message))?;
+        let conflict = |conflict| InstrumentError::Conflict { file: given.name.clone(), conflict };
+        let Edited { text, lines } = edits.apply(file.shown_text()).map_err(conflict)?;
+        Ok(given.file(Some(text.into()), lines))
+    }
+
+    fn damaged(&mut self, name: &str, text: &Arc<str>, damaged: &marks::DamagedMarks) {
+        let id = self.sources.add(SourceFile::new(name, text.clone()));
+        let span = Span::new(id, damaged.at.start, damaged.at.end);
+        let found = Diagnostic::error(Code::DamagedMarks, span, damaged.message);
+        let help = "take the file from before it was instrumented, or take the marks out by hand";
+        self.findings.push(found.with_help(help));
+    }
+
+    pub(super) fn tasks(&self, survey: &Survey<'_>, options: &Options) -> Result<Vec<Task>, InstrumentError> {
+        if let Some(tasks) = &options.tasks {
+            return Ok(tasks.clone());
+        }
+        if let Some(configuration) = survey.configuration {
+            let wrong = |found| InstrumentError::Text(Diagnostics::new(vec![found], &self.sources));
+            return configuration::tasks(configuration, &survey.constants).map_err(wrong);
+        }
+        let scheduled = survey.programs.iter().filter(|program| !survey.called.contains(&program.name.key()));
+        let scheduled: Vec<_> = scheduled.copied().collect();
+        if scheduled.is_empty() {
+            return Err(InstrumentError::NoPrograms);
+        }
+        if options.target == Target::Scl {
+            return Ok(scl::tasks(&scheduled));
+        }
+        let programs = scheduled.iter().map(|program| program.name.text.clone()).collect();
+        Ok(vec![Task { name: "main".to_owned(), interval_ns: 10_000_000, programs, ..Task::default() }])
+    }
+
+    /// The project's files with their changes.
+    pub(super) fn edited(
+        &self,
+        survey: &Survey<'_>,
+        motion: &Motion,
+        tasks: &TaskTable<'_>,
+        globals: &str,
+    ) -> Result<Vec<File>, InstrumentError> {
+        let mut edits: Vec<Edits> = self.given.iter().map(|_| Edits::default()).collect();
+        let mut changes = |id: FileId, change: &mut dyn FnMut(&SourceFile, &mut Edits)| {
+            if let (Some(file), Some(edits)) = (self.sources.get(id), edits.get_mut(id.0 as usize)) {
+                change(file, edits);
+            }
+        };
+        for (name, form) in &survey.renames {
+            changes(name.span.file, &mut |file, edits| match scl::is_scl(file) {
+                true => scl::rename(name, form, file, edits),
+                false => rename(name, &form.new_name(), file, edits),
+            });
+        }
+        for (name, new) in &motion.renames {
+            changes(name.span.file, &mut |file, edits| rename(name, new, file, edits));
+        }
+        for span in &survey.cuts {
+            changes(span.file, &mut |file, edits| scl::cut(*span, file, edits));
+        }
+        let line = tasks.line_type();
+        for pou in &survey.charts {
+            let number = tasks.numbered().find(|(numbered, _)| std::ptr::eq(*numbered, *pou));
+            let number = number.map(|(_, number)| (number, line.as_str()));
+            changes(pou.name.span.file, &mut |file, edits| {
+                chart::control(pou, number, &survey.renames, file, edits);
+            });
+        }
+        for (pou, number) in tasks.numbered().filter(|(pou, _)| pou.chart.is_empty()) {
+            changes(pou.name.span.file, &mut |file, edits| {
+                controller::control(pou, number, &line, file, edits);
+            });
+        }
+        if let Some(configuration) = survey.configuration {
+            changes(configuration.name.span.file, &mut |file, edits| {
+                configuration::attach(configuration, tasks, globals, file, edits);
+            });
+        }
+        let each = self.given.iter().zip(self.sources.iter()).zip(edits);
+        each.map(|((given, (_, file)), edits)| {
+            let conflict = |conflict| InstrumentError::Conflict { file: given.name.clone(), conflict };
+            let Edited { text, lines } = edits.apply(file.shown_text()).map_err(conflict)?;
+            Ok(given.file(Some(text.into()), lines))
+        })
+        .collect()
+    }
+
+    /// Adds a file of the shim's own, or puts it in the place of the one that was given.
+    pub(super) fn add_own(&self, source: target::Source, files: &mut Vec<File>) {
+        let is_it = |given: &&Given| Path::new(&given.name).file_name().is_some_and(|name| *name == *source.name);
+        let text = Some(Arc::from(source.text));
+        files.push(if let Some(given) = self.own.iter().find(is_it) {
+            given.file(text, LineMap::default())
+        } else {
+            let folder = self.given.first().and_then(|first| Path::new(&first.name).parent());
+            let name = folder.unwrap_or(Path::new("")).join(&source.name).display().to_string();
+            File { name, before: None, text, encoding: None, lines: LineMap::default(), from: LineMap::default() }
+        });
+    }
+
+    /// Tells TwinCAT projects of the shim's own files.
+    pub(super) fn list_own(&self, files: &mut Vec<File>) -> Result<(), InstrumentError> {
+        let is_own = |file: &&File| file.text.is_some() && !self.given.iter().any(|given| given.name == file.name);
+        let own: Vec<String> = files.iter().filter(is_own).map(|file| file.name.clone()).collect();
+        for (given, plain) in &self.manifests {
+            let conflict = |conflict| InstrumentError::Conflict { file: given.name.clone(), conflict };
+            let Edited { text, lines } = twincat::listing(&given.name, plain, &own).apply(plain).map_err(conflict)?;
+            files.push(given.file(Some(text.into()), lines));
+        }
+        Ok(())
+    }
+
+    /// Files of the shim's own that were given are to be deleted.
+    pub(super) fn delete_own(&self, files: &mut Vec<File>) {
+        files.extend(self.own.iter().map(|given| given.file(None, LineMap::default())));
+    }
+}
+
+fn rename(name: &Ident, new: &str, file: &SourceFile, edits: &mut Edits) {
+    let at = file.shown_range(name.span.start, name.span.end);
+    edits.replace(at, marks::renamed(new, &name.text));
+}
+
+impl Given {
+    fn file(&self, text: Option<Arc<str>>, lines: LineMap) -> File {
+        let from = lines.through(&self.plain_lines);
+        File { name: self.name.clone(), before: Some(self.text.clone()), text, encoding: self.encoding, lines, from }
+    }
+}

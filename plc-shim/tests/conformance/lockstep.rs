@@ -1,0 +1,216 @@
+//! The suite in lockstep: each case as it is, instrumented and not simulated, and instrumented under the scheduler with
+//! a grant a scan, side by side. All three hold the same after every scan, bit for bit.
+
+use std::collections::BTreeMap;
+
+use onescan_plc_shim::input::kind::SourceKind;
+use onescan_plc_shim::instrument::{Options, instrument};
+use onescan_plc_shim::{Application, FaultKind, Input, SoftPlc, Task, TaskPlan, VirtualTime};
+
+use super::case::Case;
+use super::trace;
+
+const MS: u64 = 1_000_000;
+const SCHEDULER: &str = "SDSP_Scheduler";
+
+/// A PLC that is given grants while it goes through cycles of its own, a millisecond each.
+struct Granted {
+    plc: SoftPlc,
+    /// The PLC's own clock.
+    own_ns: u64,
+    session: u32,
+    grant: u32,
+}
+
+impl Granted {
+    fn write(&mut self, path: &str, bytes: &[u8]) {
+        let offset = self.plc.variable(path).expect("the shim is there").offset as usize;
+        self.plc.memory_mut()[offset..offset + bytes.len()].copy_from_slice(bytes);
+    }
+
+    fn number(&self, path: &str) -> u32 {
+        let offset = self.plc.variable(path).expect("the shim is there").offset as usize;
+        u32::from_le_bytes(*self.plc.memory()[offset..].first_chunk().expect("four bytes"))
+    }
+
+    /// Cycles until the shim's variable has this value.
+    fn cycle_until(&mut self, path: &str, value: u32) -> Result<(), Stop> {
+        for _ in 0..1000 {
+            self.own_ns += MS;
+            self.plc.scan(VirtualTime::from_ns(self.own_ns)).map_err(|fault| Stop::Fault(fault.kind))?;
+            if self.number(path) == value {
+                return Ok(());
+            }
+        }
+        Err(Stop::Silent)
+    }
+
+    /// Joins a session of a number not used before.
+    fn join(&mut self, now_ns: u64) -> Result<(), Stop> {
+        self.session = self.grant + 100;
+        self.grant = self.session;
+        self.write("SDSP_Limit", &u32::MAX.to_le_bytes());
+        self.write("SDSP_TV", &now_ns.to_le_bytes());
+        self.write("SDSP_Grant", &self.session.to_le_bytes());
+        self.write("SDSP_Session", &self.session.to_le_bytes());
+        self.cycle_until("SDSP_Joined", self.session)
+    }
+
+    fn step(&mut self, now_ns: u64) -> Result<(), Stop> {
+        self.grant += 1;
+        self.write("SDSP_TV", &now_ns.to_le_bytes());
+        self.write("SDSP_Grant", &self.grant.to_le_bytes());
+        self.cycle_until("SDSP_Done", self.grant)
+    }
+}
+
+/// Why a scan is not done.
+#[derive(Debug, PartialEq, Eq)]
+enum Stop {
+    Fault(FaultKind),
+    /// A grant is not answered.
+    Silent,
+}
+
+fn task(name: &str, interval_ns: u64, priority: u32, programs: Vec<String>) -> Task {
+    Task { name: name.to_owned(), interval_ns, priority, programs, ..Task::default() }
+}
+
+/// The three, with the name of the first program.
+struct Three {
+    prefix: String,
+    plain: SoftPlc,
+    inert: SoftPlc,
+    granted: Granted,
+    now_ns: u64,
+    interval_ns: u64,
+}
+
+impl Three {
+    /// # Errors
+    /// Why the case has nothing to show here.
+    fn of(case: &Case, text: &str) -> Result<Self, String> {
+        let mut input = Input::from_text("case.st", SourceKind::Text, text);
+        if let Some(dialect) = case.dialect {
+            input = input.in_dialect(dialect);
+        }
+        let first_line = |found: &dyn std::fmt::Display| found.to_string().lines().next().unwrap_or("").to_owned();
+        let plain = Application::from_inputs([input.clone()]);
+        let plain = plain.map_err(|found| format!("does not compile: {}", first_line(&found)))?;
+        let configured = TaskPlan::configured(&plain);
+        let single = || TaskPlan::single(&plain, case.interval.as_nanos() as u64);
+        let plan = configured.clone().unwrap_or_else(single);
+        let tasks = configured.is_none().then(|| plan.tasks.clone());
+        let project = instrument(&[input], &Options { tasks, ..Options::default() });
+        let project = project.map_err(|error| format!("is refused: {}", first_line(&error)))?;
+        let files = project.files.iter().map(|file| {
+            let text = file.text.as_deref().expect("nothing is deleted");
+            let input = Input::from_text(&file.name, SourceKind::Text, text);
+            match case.dialect.filter(|_| file.name == "case.st") {
+                Some(dialect) => input.in_dialect(dialect),
+                None => input,
+            }
+        });
+        let shimmed = Application::from_inputs(files).unwrap_or_else(|found| panic!("{found}"));
+        let plans = TaskPlan::configured(&shimmed).map_or_else(|| plans(&plan), |plan| [plan.clone(), plan]);
+        let [free, own] = plans.map(|plan| SoftPlc::new(&shimmed, &plan).expect("the plan suits"));
+        let plc = SoftPlc::new(&plain, &plan).map_err(|error| error.to_string())?;
+        let prefix = plain.programs().next().map(|program| program.name).unwrap_or_default();
+        let granted = Granted { plc: own, own_ns: 0, session: 0, grant: 0 };
+        Ok(Self { prefix, interval_ns: plc.period_ns(), plain: plc, inert: free, granted, now_ns: 0 })
+    }
+
+    fn begin(&mut self) {
+        let simulated = self.inert.variable("SDSP_Simulated").expect("the shim is there").offset as usize;
+        self.inert.memory_mut()[simulated] = 0;
+        self.granted.join(self.now_ns).expect("the PLC is fresh");
+    }
+
+    fn restart(&mut self, start: &str) {
+        let start: fn(&mut SoftPlc) = match start {
+            "warm" => SoftPlc::warm_start,
+            "cold" => SoftPlc::cold_start,
+            _ => return,
+        };
+        [&mut self.plain, &mut self.inert, &mut self.granted.plc].into_iter().for_each(start);
+        self.begin();
+    }
+
+    /// One scan of each.
+    fn scan(&mut self) -> [Result<(), Stop>; 3] {
+        self.now_ns += self.interval_ns;
+        let now = VirtualTime::from_ns(self.now_ns);
+        let fault = |fault: onescan_plc_shim::PlcFault| Stop::Fault(fault.kind);
+        [self.plain.scan(now).map_err(fault), self.inert.scan(now).map_err(fault), self.granted.step(self.now_ns)]
+    }
+
+    /// Where one of the instrumented holds something else.
+    fn difference(&self) -> Option<String> {
+        let wanted = held(&self.plain);
+        [("not simulated", &self.inert), ("granted", &self.granted.plc)].into_iter().find_map(|(how, plc)| {
+            let found = held(plc);
+            let differs = wanted.iter().find(|(path, bytes)| found.get(*path) != Some(bytes));
+            differs.map(|(path, bytes)| format!("{how}: {path} is {:?}, not {bytes:?}", found.get(path)))
+        })
+    }
+}
+
+/// The tasks beside the scheduler; all programs in one task behind it.
+fn plans(plan: &TaskPlan) -> [TaskPlan; 2] {
+    let scheduler = || vec![task("sdsp", MS, 0, vec![SCHEDULER.to_owned()])];
+    let programs = plan.tasks.iter().flat_map(|task| task.programs.clone()).collect();
+    let moved = [scheduler(), vec![task("programs", 2 * MS, 1, programs)]].concat();
+    let kept = plan.tasks.iter().map(|task| Task { priority: task.priority + 1, ..task.clone() });
+    [TaskPlan::new(scheduler().into_iter().chain(kept).collect()), TaskPlan::new(moved)]
+}
+
+/// All that the project declares, with its bytes; not what timers and charts keep for themselves.
+fn held(plc: &SoftPlc) -> BTreeMap<String, Vec<u8>> {
+    let application = plc.application();
+    let is_own = |path: &str| {
+        let (parent, last) = path.rsplit_once('.').unwrap_or(("", path));
+        let block = application.variable(parent).map(|variable| variable.type_name.to_uppercase()).unwrap_or_default();
+        let timer = block.strip_prefix("SDSP_").unwrap_or(&block);
+        let is_timer = ["TON", "TOF", "TP", "RTC"].contains(&timer.split('_').next().unwrap_or(""));
+        !path.contains("SDSP") && !(is_timer && ["M", "since", "start", "running"].contains(&last))
+    };
+    let bytes = |offset: u32, size: u32| plc.memory()[offset as usize..][..size as usize].to_vec();
+    let leaves = application.leaves().filter(|leaf| is_own(&leaf.path));
+    leaves.map(|leaf| (leaf.path.clone(), bytes(leaf.offset, leaf.size))).collect()
+}
+
+/// Runs a case; the reason why it cannot, if it cannot.
+fn run(name: &str, text: &str) -> Option<String> {
+    let case = Case::parse(text).expect("it has a trace");
+    let mut three = match Three::of(&case, text) {
+        Ok(three) => three,
+        Err(why) => return Some(why),
+    };
+    three.begin();
+    for scan in 0..case.scans {
+        three.restart(case.restarts.get(scan).map_or("-", String::as_str));
+        for row in &case.given {
+            for plc in [&mut three.plain, &mut three.inert, &mut three.granted.plc] {
+                trace::give(plc, &three.prefix, row, scan).expect("it can be given");
+            }
+        }
+        let [plain, inert, granted] = three.scan();
+        assert_eq!(plain, inert, "{name}, scan {}: not simulated", scan + 1);
+        assert_eq!(plain, granted, "{name}, scan {}: granted", scan + 1);
+        if let Some(difference) = three.difference().filter(|_| plain.is_ok()) {
+            panic!("{name}, scan {}: {difference}", scan + 1);
+        }
+    }
+    None
+}
+
+/// Cases that cannot be instrumented are named, with the reason.
+#[test]
+fn every_case_is_the_same_in_lockstep() {
+    let mut left = Vec::new();
+    for path in super::files() {
+        let (name, text) = (super::stem(&path), std::fs::read_to_string(&path).expect("a case"));
+        left.extend(run(&name, &text).map(|why| format!("{name}: {why}")));
+    }
+    insta::assert_snapshot!(left.join("\n"));
+}
