@@ -9,7 +9,17 @@ use crate::ir::{
 #[derive(Debug, Default)]
 pub(super) struct Size {
     pub(super) nodes: u32,
+    /// Calls that are made as a rule.
     pub(super) calls: Vec<PouId>,
+    /// Calls in branches that leave the unit: they are seldom made, and never inlined.
+    pub(super) seldom: Vec<PouId>,
+    /// How many such branches are around.
+    leaving: u32,
+}
+
+/// True for a branch that leaves the unit: it is for the exception, and the rest for the rule.
+pub(super) fn leaves(branch: &[Statement]) -> bool {
+    branch.last().is_some_and(|last| matches!(last.kind, StatementKind::Return))
 }
 
 /// Of a unit's body.
@@ -20,6 +30,11 @@ pub(super) fn measure(body: &[Statement]) -> Size {
 }
 
 impl Size {
+    /// Every call.
+    pub(super) fn all_calls(&self) -> impl Iterator<Item = &PouId> {
+        self.calls.iter().chain(&self.seldom)
+    }
+
     fn statements(&mut self, list: &[Statement]) {
         for statement in list {
             self.nodes = self.nodes.saturating_add(1);
@@ -43,7 +58,9 @@ impl Size {
             StatementKind::If(branches, otherwise) => {
                 for branch in branches {
                     self.expression(&branch.condition);
+                    self.leaving += u32::from(leaves(&branch.body));
                     self.statements(&branch.body);
+                    self.leaving -= u32::from(leaves(&branch.body));
                 }
                 self.statements(otherwise);
             }
@@ -149,8 +166,10 @@ impl Size {
     /// What only the run decides is nobody's callee here.
     fn call(&mut self, pou: PouId, dispatch: Dispatch) {
         self.nodes = self.nodes.saturating_add(4);
-        if dispatch == Dispatch::Direct {
-            self.calls.push(pou);
+        match dispatch {
+            Dispatch::Direct if self.leaving > 0 => self.seldom.push(pou),
+            Dispatch::Direct => self.calls.push(pou),
+            _ => {}
         }
     }
 

@@ -40,7 +40,7 @@ impl Costs {
         let sizes: BTreeMap<PouId, Size> = pous.iter().map(|(id, pou)| (*id, measure(&pou.body))).collect();
         let order = callees_first(&sizes);
         let mut costs = Self::default();
-        for callee in sizes.values().flat_map(|size| &size.calls) {
+        for callee in sizes.values().flat_map(Size::all_calls) {
             costs.units.entry(*callee).or_default().sites += 1;
         }
         for id in &order {
@@ -90,7 +90,7 @@ fn callees_first(sizes: &BTreeMap<PouId, Size>) -> Vec<PouId> {
             continue;
         }
         while let Some((id, next)) = path.last_mut() {
-            let callee = sizes.get(id).and_then(|size| size.calls.get(*next)).copied();
+            let callee = sizes.get(id).and_then(|size| size.all_calls().nth(*next)).copied();
             *next += 1;
             match callee {
                 None => {

@@ -66,6 +66,8 @@ pub(super) struct Emitter<'s, 'p> {
     /// Values that a register has through all turns of the loops around: every store goes there
     /// too.
     pub(super) pins: Vec<Entry>,
+    /// How many branches are around that leave the unit.
+    pub(super) leaving: u32,
     /// How many copies of [`Self::known`] are held for later.
     pub(super) held: u32,
     pub(super) roots: Roots,
@@ -95,6 +97,7 @@ impl<'s, 'p> Emitter<'s, 'p> {
             frames: Vec::new(),
             known: Known::default(),
             pins: Vec::new(),
+            leaving: 0,
             held: 0,
             roots: Roots::default(),
             facts: Facts::default(),

@@ -33,6 +33,9 @@ impl<'p> Emitter<'_, 'p> {
 
     /// The unit, if its body goes in the call's place.
     pub(super) fn inlinable(&self, pou: PouId) -> Option<&'p Pou> {
+        if self.leaving > 0 {
+            return None;
+        }
         let active = self.frames.iter().map(|frame| frame.pou);
         self.shared.costs.is_inlined(pou, active).then(|| self.shared.pous.get(&pou)).flatten()
     }

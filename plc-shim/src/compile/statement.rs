@@ -5,6 +5,7 @@ use std::sync::Arc;
 use wasm_encoder::Instruction;
 
 use super::address::Address;
+use super::calls::leaves;
 use super::emitter::Emitter;
 use super::fault::Callee;
 use super::points::PointKind;
@@ -185,7 +186,9 @@ impl Emitter<'_, '_> {
             self.assume(&branch.condition, false);
             std::mem::swap(&mut self.known, &mut before);
             self.cover(PointKind::Outcome(outcome), span);
+            self.leaving += u32::from(leaves(&branch.body));
             self.statements(&branch.body);
+            self.leaving -= u32::from(leaves(&branch.body));
             self.branch(end);
             self.join(&mut after, before);
             self.close();

@@ -59,6 +59,13 @@ impl Element {
         self.elements().find(|element| element.name == name)
     }
 
+    pub(crate) fn into_child(self, name: &str) -> Option<Self> {
+        self.children.into_iter().find_map(|node| match node {
+            Node::Element(element) if element.name == name => Some(element),
+            _ => None,
+        })
+    }
+
     pub(crate) fn attribute(&self, name: &str) -> Option<&Attribute> {
         self.attributes.iter().find(|attribute| attribute.name == name)
     }

@@ -2,7 +2,7 @@
 //! is told of it.
 
 use super::target::Target;
-use super::{motion, template};
+use super::{foreign, motion, template};
 
 /// What a source of time is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -71,57 +71,12 @@ static FORMS: [Form; 15] = [
     function("LTIME", true),
 ];
 
-/// Vendors' sources of time that the shim does not replace, with who has them.
-const TOLD: [(&str, Kind); 37] = [
-    // TwinCAT: Tc2_System, Tc2_Utilities, Tc2_Standard.
-    ("GETSYSTEMTIME", Kind::Block),
-    ("GETCPUCOUNTER", Kind::Block),
-    ("GETCPUACCOUNT", Kind::Block),
-    ("PROFILER", Kind::Block),
-    ("NT_GETTIME", Kind::Block),
-    ("FB_LOCALSYSTEMTIME", Kind::Block),
-    ("FB_GETSYSTEMTIME", Kind::Block),
-    ("F_GETSYSTEMTIME", Kind::Function),
-    ("F_GETTASKTIME", Kind::Function),
-    ("F_GETCURDCTASKTIME64", Kind::Function),
-    ("F_GETACTUALDCTIME64", Kind::Function),
-    // CODESYS: SysTime, Util.
-    ("SYSTIMEGETMS", Kind::Function),
-    ("SYSTIMEGETUS", Kind::Function),
-    ("SYSTIMEGETNS", Kind::Function),
-    ("SYSTIMERTCGET", Kind::Function),
-    ("SYSTIMERTCHIGHRESGET", Kind::Function),
-    ("BLINK", Kind::Block),
-    ("GEN", Kind::Block),
-    ("FREQ_MEASURE", Kind::Block),
-    ("DERIVATIVE", Kind::Block),
-    ("INTEGRAL", Kind::Block),
-    ("PID", Kind::Block),
-    ("PD", Kind::Block),
-    ("RAMP_INT", Kind::Block),
-    ("RAMP_REAL", Kind::Block),
-    // Siemens: STEP 7.
-    ("TONR", Kind::Block),
-    ("TONR_TIME", Kind::Block),
-    ("IEC_TIMER", Kind::Block),
-    ("IEC_LTIMER", Kind::Block),
-    ("RESET_TIMER", Kind::Function),
-    ("PRESET_TIMER", Kind::Function),
-    ("TIME_TCK", Kind::Function),
-    ("RUNTIME", Kind::Function),
-    ("RD_SYS_T", Kind::Function),
-    ("RD_LOC_T", Kind::Function),
-    // OSCAT.
-    ("T_PLC_MS", Kind::Function),
-    ("T_PLC_US", Kind::Function),
-];
-
 /// What becomes of the source of time of this name; nothing if it is none.
 pub(super) fn fate(key: &str, kind: Kind) -> Option<Fate> {
     if let Some(form) = FORMS.iter().find(|form| form.kind == kind && form.name == key) {
         return Some(Fate::Replaced(form));
     }
-    if TOLD.contains(&(key, kind)) {
+    if foreign::find(key, kind).is_some() {
         return Some(Fate::Told);
     }
     if kind == Kind::Block { motion::role(key).map(Fate::Motion) } else { None }
@@ -195,15 +150,28 @@ mod tests {
 
     #[test]
     fn every_name_has_one_fate() {
-        let forms = FORMS.iter().map(|form| (form.name, form.kind));
-        let mut all: Vec<_> = forms.chain(TOLD).map(|(name, kind)| (name, kind == Kind::Block)).collect();
-        assert!(all.iter().all(|(name, _)| *name == name.to_ascii_uppercase()));
-        let count = all.len();
-        all.sort_unstable();
-        all.dedup();
-        assert_eq!(all.len(), count);
+        assert!(FORMS.iter().all(|form| foreign::find(form.name, form.kind).is_none()));
         assert_eq!(fate("MC_HOME", Kind::Block), Some(Fate::Motion(motion::Role::Block)));
         assert_eq!(fate("CTU", Kind::Block), None);
+        assert_eq!(fate("TIME_TCK", Kind::Function), Some(Fate::Told));
+    }
+
+    /// The page shows what the tables say.
+    #[test]
+    fn the_documented_table_is_this_table() {
+        let kind = |kind: Kind| if kind == Kind::Block { "block" } else { "function" };
+        let replaced = FORMS.iter().map(|form| {
+            let scl = if form.scl.is_some() { "yes" } else { "reported" };
+            format!("| `{}` | {} | `{}` | {scl} |", form.name, kind(form.kind), form.new_name())
+        });
+        let told = foreign::TOLD.iter().flat_map(|library| {
+            let row = move |(name, of): &(&str, Kind)| format!("| `{name}` | {} | {} |", kind(*of), library.name);
+            library.names.iter().map(row)
+        });
+        let page = include_str!("../../docs/clocks.md");
+        let shown: Vec<_> = page.lines().filter(|line| line.starts_with("| `")).collect();
+        let wanted: Vec<_> = replaced.chain(told).collect();
+        assert_eq!(shown, wanted, "docs/clocks.md should say\n{}", wanted.join("\n"));
     }
 
     #[test]

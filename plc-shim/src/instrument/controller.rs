@@ -19,7 +19,10 @@ pub(super) fn control(pou: &Pou, number: Number, line: &str, file: &SourceFile, 
     if is_list(pou) {
         return control_list(&controller, &places, line_break, edits);
     }
-    if places.declarations == places.header {
+    if is_scl {
+        scl::declare(pou, declarations, file, edits);
+        edits.insert(places.header, marks::lines(header, line_break));
+    } else if places.declarations == places.header {
         edits.insert(places.header, marks::lines(&format!("{declarations}\n{header}"), line_break));
     } else {
         edits.insert(places.declarations, marks::lines(declarations, line_break));
@@ -35,9 +38,9 @@ fn is_list(pou: &Pou) -> bool {
 
 /// A list of instructions stays one: it becomes an action that statements call, so that `RET` ends the action alone.
 fn control_list(controller: &Controller, places: &Places, line_break: &str, edits: &mut Edits) {
-    let Controller { declarations, header, close, footer } = controller;
+    let Controller { declarations, header, footer } = controller;
     edits.insert(places.header, marks::lines(&format!("{declarations}\nACTION SDSP_Body:"), line_break));
-    let statements = format!("END_ACTION\n{header}\n    SDSP_Body();\n{close}\n{footer}");
+    let statements = format!("END_ACTION\n{header}\n    SDSP_Body();\n{footer}");
     edits.insert(places.footer, marks::lines(&statements, line_break));
 }
 
@@ -51,16 +54,14 @@ pub(super) fn control_statements(pou: &Pou, controller: &Controller, file: &Sour
 
 /// What stands at the end of a body and before each RETURN.
 fn end(pou: &Pou, controller: &Controller, places: &Places, file: &SourceFile, edits: &mut Edits) {
-    let Controller { close, footer, .. } = controller;
+    let footer = &controller.footer;
     let line_break = marks::line_break(file.shown_text());
     let mut returns = Returns { starts: Vec::new() };
     walk::statements(&pou.body, &mut returns);
     for start in returns.starts {
         edits.insert(file.shown_range(start, start + 1).start, marks::inline(footer));
     }
-    // A branch wants a statement (2nd ed. 3.3.2).
-    let nothing = if pou.body.is_empty() { ";\n" } else { "" };
-    edits.insert(places.footer, marks::lines(&format!("{nothing}{close}\n{footer}"), line_break));
+    edits.insert(places.footer, marks::lines(footer, line_break));
 }
 
 /// Where the parts of a controller go, in the file as its author sees it.

@@ -8,6 +8,7 @@
 //! | [`diff`] | a changed file as a unified diff |
 //! | [`template`] | the shim's sources in `iec/shim` |
 //! | [`clock`] | what reads the clock, and what replaces it |
+//! | [`foreign`] | what reads the clock and is told |
 //! | [`motion`], [`motion_use`] | motion control, and what of it a project uses |
 //! | [`survey`] | programs and sources of time in a project |
 //! | [`tasks`] | the task table |
@@ -30,6 +31,7 @@ mod constant;
 mod controller;
 pub mod diff;
 pub mod edits;
+mod foreign;
 mod marks;
 mod motion;
 mod motion_use;
@@ -161,7 +163,8 @@ pub fn instrument(inputs: &[Input], options: &Options) -> Result<Project, Instru
         return Ok(Project { files, warnings: Diagnostics::new(findings, &plain.sources) });
     }
     let mut files = plain.edited(&survey, &motion, &tasks, &sources.globals)?;
-    let globals = if survey.configuration.is_some() { Globals::InConfiguration } else { Globals::InFile };
+    let is_text = survey.configurations.first().is_some_and(|first| !plain.is_object(first.name.span));
+    let globals = if is_text { Globals::InConfiguration } else { Globals::InFile };
     for source in sources.files(options.target, globals) {
         plain.add_own(source, &mut files);
     }
@@ -183,10 +186,11 @@ pub fn remove(inputs: &[Input]) -> Result<Project, InstrumentError> {
 
 /// What tasks may run: the instances of a configuration, or else the programs themselves.
 fn entries<'a>(survey: &Survey<'a>) -> Vec<Entry<'a>> {
-    let Some(configuration) = survey.configuration else {
+    if survey.configurations.is_empty() {
         return survey.programs.iter().map(|pou| Entry { name: pou.name.text.clone(), pou }).collect();
-    };
-    let declared = configuration.resources.iter().flat_map(|resource| {
+    }
+    let resources = survey.configurations.iter().flat_map(|configuration| &configuration.resources);
+    let declared = resources.flat_map(|resource| {
         resource.programs.iter().map(|instance| (configuration::entry_name(resource, &instance.name), instance))
     });
     let entry = |(name, instance): (String, &ProgramDeclaration)| {

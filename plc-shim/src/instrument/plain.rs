@@ -97,6 +97,11 @@ impl Plain {
         self.kinds.contains(&SourceKind::PlcOpen)
     }
 
+    /// True for text that was taken out of an object of TwinCAT.
+    pub(super) fn is_object(&self, place: Span) -> bool {
+        self.sources.get(place.file).is_some_and(|file| file.origin().is_some())
+    }
+
     /// A target that does not take the project's kind of file.
     pub(super) fn unsuited(&self, target: Target, survey: &Survey<'_>) -> Option<Diagnostic> {
         let scl = self.sources.iter().find(|(_, file)| scl::is_scl(file)).map(|(id, _)| id);
@@ -168,9 +173,10 @@ impl Plain {
         if let Some(tasks) = &options.tasks {
             return Ok(tasks.clone());
         }
-        if let Some(configuration) = survey.configuration {
+        if !survey.configurations.is_empty() {
             let wrong = |found| InstrumentError::Text(Diagnostics::new(vec![found], &self.sources));
-            return configuration::tasks(configuration, &survey.constants).map_err(wrong);
+            let parts = survey.configurations.iter().map(|part| configuration::tasks(part, &survey.constants));
+            return Ok(parts.collect::<Result<Vec<_>, _>>().map_err(wrong)?.concat());
         }
         let scheduled = survey.programs.iter().filter(|program| !survey.called.contains(&program.name.key()));
         let scheduled: Vec<_> = scheduled.copied().collect();
@@ -223,9 +229,14 @@ impl Plain {
                 controller::control(pou, number, &line, file, edits);
             });
         }
-        if let Some(configuration) = survey.configuration {
-            changes(configuration.name.span.file, &mut |file, edits| {
-                configuration::attach(configuration, tasks, globals, file, edits);
+        if let Some(first) = survey.configurations.first() {
+            let is_object = self.is_object(first.name.span);
+            let part =
+                if is_object { twincat::first_task(&survey.configurations, &survey.constants) } else { Some(*first) };
+            let Some(part) = part else { return Err(InstrumentError::NoPrograms) };
+            changes(part.name.span.file, &mut |file, edits| match is_object {
+                true => twincat::call_scheduler(file, edits),
+                false => configuration::attach(part, tasks, globals, file, edits),
             });
         }
         let each = self.given.iter().zip(self.sources.iter()).zip(edits);

@@ -151,7 +151,7 @@ fn into_action(
     edits: &mut Edits,
 ) -> Result<(), Refused> {
     let call = if bodies.is_empty() { String::from("    ;") } else { format!("    {ACTION}();") };
-    let statements = format!("{}\n{call}\n{}\n{}\n", controller.header, controller.close, controller.footer);
+    let statements = format!("{}\n{call}\n{}\n", controller.header, controller.footer);
     let own = unit::body(&statements);
     let (Some(first), Some(last)) = (bodies.first(), bodies.last()) else {
         let behind = pou.elements().filter(|inner| matches!(inner.name.as_str(), "interface" | "actions")).last();

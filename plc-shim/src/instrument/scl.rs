@@ -17,7 +17,8 @@ use super::survey::Survey;
 use crate::dialect::Dialect;
 use crate::run::Task;
 use crate::syntax::ast::{
-    Call, CompilationUnit, Declaration, Expr, ExprKind, Ident, Pou, Section, TypeSpec, TypeSpecKind, Variable,
+    Call, CompilationUnit, Declaration, Expr, ExprKind, Ident, Pou, Section, SectionKind, TypeSpec, TypeSpecKind,
+    Variable,
 };
 use crate::syntax::lexer::tokenize_in;
 use crate::syntax::token::{Keyword, Punctuation, Token, TokenKind};
@@ -211,11 +212,28 @@ pub(super) fn tasks(programs: &[&Pou]) -> Vec<Task> {
     tasks
 }
 
+/// Adds a block's temporary variables; a block has one section of them.
+pub(super) fn declare(pou: &Pou, declarations: &str, file: &SourceFile, edits: &mut Edits) {
+    let (text, line_break) = (file.text(), marks::line_break(file.text()));
+    let section = pou.sections.iter().find(|section| section.kind == SectionKind::Temp);
+    if let Some(end) = section.and_then(|section| keyword(Keyword::EndVar, section.span, file)) {
+        let inner: Vec<&str> = declarations.lines().filter(|line| line.contains(':')).collect();
+        edits.insert(marks::line_start(text, end.start), marks::lines(&inner.join("\n"), line_break));
+    } else if let Some(begin) = begin(pou.span, file) {
+        edits.insert(marks::line_start(text, begin.start), marks::lines(declarations, line_break));
+    }
+}
+
 /// The word `BEGIN` of a block in SCL.
 pub(super) fn begin(block: Span, file: &SourceFile) -> Option<Token> {
-    let tokens = if is_scl(file) { tokenize_in(file.dialect(), file.text()) } else { Vec::new() };
-    let inside = |token: &&Token| block.start <= token.start && token.end <= block.end;
-    tokens.iter().filter(inside).find(|token| token.kind == TokenKind::Keyword(Keyword::Begin)).copied()
+    keyword(Keyword::Begin, block, file).filter(|_| is_scl(file))
+}
+
+/// The first keyword of this kind.
+fn keyword(wanted: Keyword, inside: Span, file: &SourceFile) -> Option<Token> {
+    let tokens = tokenize_in(file.dialect(), file.text());
+    let is_inside = |token: &&Token| inside.start <= token.start && token.end <= inside.end;
+    tokens.iter().filter(is_inside).find(|token| token.kind == TokenKind::Keyword(wanted)).copied()
 }
 
 /// True for a source in SCL.

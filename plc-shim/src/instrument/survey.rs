@@ -4,6 +4,7 @@ use std::collections::BTreeSet;
 
 use super::clock::{self, Fate, Form, Kind};
 use super::constant::{self, Constants};
+use super::foreign;
 use super::motion::Role;
 use super::scl::{self, TimerCalls};
 use super::target::Target;
@@ -23,8 +24,8 @@ use crate::syntax::{FileId, Span, parse};
 pub(super) struct Survey<'a> {
     /// The programs in their order.
     pub(super) programs: Vec<&'a Pou>,
-    /// The first configuration.
-    pub(super) configuration: Option<&'a Configuration>,
+    /// The first configuration; all its parts, of which each of TwinCAT's task files is one.
+    pub(super) configurations: Vec<&'a Configuration>,
     /// Global constants.
     pub(super) constants: Constants<'a>,
     /// Programs that others call.
@@ -185,7 +186,10 @@ impl<'a> Surveyor<'_, 'a> {
     }
 
     fn configuration(&mut self, configuration: &'a Configuration) {
-        self.survey.configuration = self.survey.configuration.or(Some(configuration));
+        let first = self.survey.configurations.first();
+        if first.is_none_or(|first| first.name.key() == configuration.name.key()) {
+            self.survey.configurations.push(configuration);
+        }
         let resources = configuration.resources.iter().flat_map(|resource| &resource.sections);
         configuration.sections.iter().chain(resources).for_each(|section| self.globals(section));
         configuration.access.iter().for_each(|access| self.spec(&access.spec));
@@ -285,7 +289,10 @@ impl<'a> Surveyor<'_, 'a> {
     }
 
     fn told(&mut self, name: &str, span: Span) {
-        let message = format!("`{name}` reads the PLC's own clock and cannot be replaced");
+        let key = |name: &str| name.trim_matches('"').to_ascii_uppercase();
+        let library = [Kind::Block, Kind::Function].into_iter().find_map(|kind| foreign::find(&key(name), kind));
+        let of = library.map_or(String::new(), |library| format!(" ({})", library.name));
+        let message = format!("`{name}`{of} reads the PLC's own clock and cannot be replaced");
         let help = "read the time from SDSP_Now while SDSP_Simulated is TRUE";
         self.survey.findings.push(Diagnostic::warning(Code::ClockNotReplaced, span, message).with_help(help));
     }

@@ -123,7 +123,6 @@ pub(super) fn controller(number: Number, line: &str) -> Controller {
     Controller {
         declarations: between(&text, "PROGRAM SDSP_PROGRAM", "(* Body *)"),
         header: between(&text, "(* Body *)", "(* Regular program begins here *)"),
-        close: between(&text, "(* Regular program ends here *)", "(* Footer *)"),
         footer: between(&text, "(* Footer *)", "END_PROGRAM"),
     }
 }
@@ -139,7 +138,6 @@ pub(super) fn scl_controller(number: Number) -> Controller {
     Controller {
         declarations: between(&text, "(* Declarations *)", "(* Body *)"),
         header: between(&text, "(* Header *)", "(* Regular program begins here *)"),
-        close: between(&text, "(* Regular program ends here *)", "(* Footer *)"),
         footer: between(&text, "(* Footer *)", "END_ORGANIZATION_BLOCK"),
     }
 }
@@ -176,15 +174,16 @@ pub(super) struct Controller {
     pub(super) declarations: String,
     /// Before the body.
     pub(super) header: String,
-    /// Directly behind the body.
-    pub(super) close: String,
-    /// What ends a program's turn: behind `close` and before each RETURN.
+    /// What ends a program's turn: behind the body and before each RETURN.
     pub(super) footer: String,
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::input::Input;
+    use crate::input::kind::SourceKind;
+    use crate::syntax::parser::parse_source;
     use crate::syntax::{FileId, parse};
 
     const ALL: [(&str, &str); 13] = [
@@ -214,6 +213,16 @@ mod tests {
     }
 
     #[test]
+    fn every_source_in_scl_does_too() {
+        let all = [SCL_GLOBALS, SCL_SCHEDULER, SCL_EXECUTION_CONTROLLER, SCL_ON_DELAY, SCL_OFF_DELAY, SCL_PULSE];
+        for text in all {
+            assert!(text.starts_with("(* ") && text.contains("Carlsson et al. 2012, sec. V-"), "{text}");
+            let input = Input::from_text("shim.scl", SourceKind::Text, text);
+            assert_eq!(parse_source(FileId(0), input.file()).diagnostics, [], "{text}");
+        }
+    }
+
+    #[test]
     fn names_are_filled_in_and_comments_are_not() {
         let filled = fill("(* N *) x := N + NN; (* N *)", &[("N", "3".to_owned())]);
         assert_eq!(filled, "(* N *) x := 3 + NN; (* N *)");
@@ -238,8 +247,7 @@ mod tests {
     fn a_controller_has_all_its_parts() {
         let controller = controller(Number::Fixed(2), "ARRAY [0..3] OF INT");
         assert!(controller.declarations.contains("ARRAY [0..3] OF INT"));
-        assert!(controller.header.ends_with("OR SDSP_Granted THEN"), "{}", controller.header);
-        assert_eq!(controller.close.trim(), "END_IF;");
+        assert!(controller.header.ends_with("NOT SDSP_Granted THEN RETURN; END_IF;"), "{}", controller.header);
         assert_eq!(controller.footer.trim(), "IF SDSP_Granted THEN SDSP_Turn := SDSP_Next[2]; END_IF;");
         let controller = super::controller(Number::OfInstance, "SDSP_LINE");
         assert!(

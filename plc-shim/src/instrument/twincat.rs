@@ -2,9 +2,13 @@
 
 use std::path::{Component, Path};
 
+use super::constant::Constants;
 use super::edits::Edits;
-use super::marks;
 use super::target::Source;
+use super::{configuration, marks};
+use crate::input::xml;
+use crate::syntax::SourceFile;
+use crate::syntax::ast::Configuration;
 use crate::syntax::token::{Keyword, TokenKind};
 use crate::syntax::tokenize;
 
@@ -46,6 +50,26 @@ fn object(kind: &str, name: &str, parts: &str) -> String {
          <{kind} Name=\"{name}\" Id=\"{}\"{special}>\n{parts}  </{kind}>\n</TcPlcObject>\n",
         identity(name)
     )
+}
+
+/// The part of a project's configuration with the task that comes first in a cycle.
+pub(super) fn first_task<'a>(parts: &[&'a Configuration], constants: &Constants<'_>) -> Option<&'a Configuration> {
+    let rank = |part: &&&Configuration| {
+        let tasks = configuration::tasks(part, constants).unwrap_or_default();
+        tasks.iter().map(|task| (task.priority, task.interval_ns)).min().unwrap_or((u32::MAX, u64::MAX))
+    };
+    parts.iter().min_by_key(rank).copied()
+}
+
+/// Lets a task, in its file, call the scheduler before its programs.
+pub(super) fn call_scheduler(file: &SourceFile, edits: &mut Edits) {
+    let text = file.shown_text();
+    let Some(task) = xml::parse(text).ok().and_then(|root| root.into_child("Task")) else { return };
+    let at = task.child("PouCall").map_or(task.close.start, |call| call.open.start);
+    let start = marks::line_start(text, at);
+    let indentation = text.get(start as usize..at as usize).unwrap_or("");
+    let call = format!("{indentation}<PouCall>\n{indentation}  <Name>SDSP_Scheduler</Name>\n{indentation}</PouCall>");
+    edits.insert(start, marks::xml_lines(&call, marks::line_break(text)));
 }
 
 /// Lists `files` in the project `name`.

@@ -332,7 +332,8 @@ pub struct InstrumentArgs {
     /// A folder, a source file, a TwinCAT project or a scenario
     pub project: PathBuf,
     /// For whom the shim's own sources are written: `iec`: program text of the standard, or
-    /// PLCopen XML if the project is, `twincat`: TwinCAT 3 objects, `codesys`: PLCopen XML for CODESYS
+    /// PLCopen XML if the project is, `twincat`: TwinCAT 3 objects, `codesys`: PLCopen XML for CODESYS,
+    /// `scl`: external sources for TIA Portal
     #[arg(long, value_enum, default_value_t)]
     pub target: TargetArg,
     /// A task and its programs, as in `fast:10ms:0=Main,Alarms`; may be given several times [default: the
@@ -486,6 +487,8 @@ pub enum TargetArg {
     Twincat,
     /// PLCopen XML as CODESYS imports it
     Codesys,
+    /// SCL as TIA Portal imports it
+    Scl,
 }
 
 impl From<TargetArg> for Target {
@@ -494,6 +497,7 @@ impl From<TargetArg> for Target {
             TargetArg::Iec => Self::Iec,
             TargetArg::Twincat => Self::TwinCat,
             TargetArg::Codesys => Self::Codesys,
+            TargetArg::Scl => Self::Scl,
         }
     }
 }

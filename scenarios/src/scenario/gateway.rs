@@ -4,7 +4,7 @@ use onescan_clients::gateway::exchange::{SystemWords, is_word};
 use onescan_clients::gateway::{Exchange, FreeGateway, Gateway, LinkFault, Settings, SettingsFault};
 use onescan_clients::soft_plc::{Bindings, SoftPlcClient};
 use onescan_plc_shim::input::kind::{FileKind, SourceKind};
-use onescan_plc_shim::instrument::{File, InstrumentError, Options, instrument};
+use onescan_plc_shim::instrument::{File, InstrumentError, Options, Target, instrument};
 use onescan_plc_shim::{Application, Input, Task, TaskPlan};
 use onescan_server::client::{Client, JoinRequest};
 use onescan_server::signal::{ClientName, Port, SignalName, did_you_mean};
@@ -141,6 +141,19 @@ impl Scenario {
     /// # Errors
     /// The client is no soft PLC, or its sources or its link are wrong.
     pub fn instrumented(&self, name: &ClientName, mode: Mode) -> Result<Instrumented, ScenarioError> {
+        self.instrumented_for(Target::default(), name, mode)
+    }
+
+    /// The same as another target takes it.
+    ///
+    /// # Errors
+    /// As above, or the target cannot carry the program.
+    pub fn instrumented_for(
+        &self,
+        target: Target,
+        name: &ClientName,
+        mode: Mode,
+    ) -> Result<Instrumented, ScenarioError> {
         let Some(ClientFile::SoftPlc { sources, dialect, tasks, bind, gateway }) =
             self.file().clients.get(name).map(toml::Spanned::get_ref)
         else {
@@ -149,7 +162,7 @@ impl Scenario {
         };
         let inputs = self.inputs(name, sources, *dialect)?;
         let declared = plan_of(tasks);
-        let options = Options { tasks: declared.clone().map(|plan| plan.tasks), ..Options::default() };
+        let options = Options { target, tasks: declared.clone().map(|plan| plan.tasks) };
         let project = instrument(&inputs, &options).map_err(|error| match error {
             InstrumentError::Text(findings) => Box::new(PlcReport { client: name.clone(), findings }).into(),
             other => self.wrong_client(name, other.to_string(), None),

@@ -48,20 +48,17 @@ struct Bench {
     grants: Option<[usize; 3]>,
 }
 
-fn task(name: &str, priority: u32, program: &str) -> Task {
-    let programs = vec![program.to_owned()];
-    Task { name: name.to_owned(), interval_ns: INTERVAL_NS, priority, programs, ..Task::default() }
-}
-
 impl Bench {
     fn new(files: Vec<(String, String)>) -> Self {
         let application = Application::from_sources(files).unwrap_or_else(|found| panic!("{found}"));
         let names: Vec<String> = application.programs().map(|program| program.name).collect();
         let main = names.iter().find(|name| *name != SCHEDULER).expect("a case is one program");
         let is_granted = names.len() > 1;
-        let scheduler = is_granted.then(|| task("sdsp", 0, SCHEDULER));
-        let tasks = scheduler.into_iter().chain([task("main", 1, main)]).collect();
-        let plc = SoftPlc::new(&application, &TaskPlan::new(tasks)).expect("it can run");
+        // As `onescan plc` has it in lockstep: scheduler and programs in one task.
+        let scheduler = is_granted.then(|| SCHEDULER.to_owned());
+        let programs = scheduler.into_iter().chain([main.clone()]).collect();
+        let task = Task { name: "main".to_owned(), interval_ns: INTERVAL_NS, programs, ..Task::default() };
+        let plc = SoftPlc::new(&application, &TaskPlan::new(vec![task])).expect("it can run");
         let offset = |path: &str| plc.variable(path).expect("it is there").offset as usize;
         let grants = is_granted.then(|| ["SDSP_TV", "SDSP_Grant", "SDSP_Done"].map(offset));
         Self { sum: offset(&format!("{main}.sum")), grants, plc }

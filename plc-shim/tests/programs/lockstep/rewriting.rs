@@ -98,6 +98,40 @@ fn twincat_objects_stay_objects() {
     insta::assert_snapshot!("twincat", diff::unified(&round_trip(&given, &options).files[0]).replace('\r', ""));
 }
 
+/// The scheduler comes first in the task that comes first.
+#[test]
+fn tasks_of_twincat_call_the_scheduler() {
+    let task = |name: &str, cycle: u32, priority: u32, program: &str| {
+        format!(
+            "<?xml version=\"1.0\" encoding=\"utf-8\"?>\r\n<TcPlcObject Version=\"1.1.0.1\">\r\n  <Task Name=\"{name}\" \
+             Id=\"{{0}}\">\r\n    <!--CycleTime in micro seconds.-->\r\n    <CycleTime>{cycle}</CycleTime>\r\n    \
+             <Priority>{priority}</Priority>\r\n    <PouCall>\r\n      <Name>{program}</Name>\r\n    </PouCall>\r\n  \
+             </Task>\r\n</TcPlcObject>"
+        )
+    };
+    let pou = |name: &str| POU.replace("MAIN", name).replace("BODY", "t(IN := TRUE, PT := T#1s);");
+    let (slow, fast) = (task("Slow", 20_000, 20, "MAIN"), task("Fast", 5_000, 10, "Quick"));
+    let (main, quick) = (pou("MAIN"), pou("Quick"));
+    let given = inputs(&[
+        ("Slow.TcTTO", SourceKind::TwinCat, &slow),
+        ("Fast.TcTTO", SourceKind::TwinCat, &fast),
+        ("MAIN.TcPOU", SourceKind::TwinCat, &main),
+        ("Quick.TcPOU", SourceKind::TwinCat, &quick),
+    ]);
+    let project = round_trip(&given, &Options { target: Target::TwinCat, ..Options::default() });
+    assert!(!project.files[0].is_changed());
+    insta::assert_snapshot!("twincat_task", diff::unified(&project.files[1]).replace('\r', ""));
+    let scheduler = project.files.iter().find(|file| file.name == "SDSP_Scheduler.TcPOU").expect("a scheduler");
+    let scheduler = scheduler.text.as_deref().expect("a text");
+    assert!(scheduler.contains(":= [5000000, 20000000]; (* ns *)"), "{scheduler}");
+    let found = onescan_plc_shim::inspect(again(&project), None);
+    assert!(!found.has_errors(), "{found}");
+    let application =
+        onescan_plc_shim::Application::from_inputs(again(&project)).unwrap_or_else(|found| panic!("{found}"));
+    let plan = onescan_plc_shim::TaskPlan::configured(&application).expect("it has tasks");
+    assert_eq!(plan.tasks[1].programs, ["SDSP_Scheduler", "Quick"]);
+}
+
 #[test]
 fn a_twincat_project_lists_the_shim() {
     let options = Options { target: Target::TwinCat, ..Options::default() };
