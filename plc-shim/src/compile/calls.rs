@@ -169,7 +169,7 @@ impl Size {
         match dispatch {
             Dispatch::Direct if self.leaving > 0 => self.seldom.push(pou),
             Dispatch::Direct => self.calls.push(pou),
-            _ => {}
+            Dispatch::Row(_) => {}
         }
     }
 

@@ -205,9 +205,12 @@ impl Plain {
             }
         };
         for (name, form) in &survey.renames {
-            changes(name.span.file, &mut |file, edits| match scl::is_scl(file) {
-                true => scl::rename(name, form, file, edits),
-                false => rename(name, &form.new_name(), file, edits),
+            changes(name.span.file, &mut |file, edits| {
+                if scl::is_scl(file) {
+                    scl::rename(name, form, file, edits);
+                } else {
+                    rename(name, &form.new_name(), file, edits);
+                }
             });
         }
         for (name, new) in &motion.renames {
@@ -234,9 +237,12 @@ impl Plain {
             let part =
                 if is_object { twincat::first_task(&survey.configurations, &survey.constants) } else { Some(*first) };
             let Some(part) = part else { return Err(InstrumentError::NoPrograms) };
-            changes(part.name.span.file, &mut |file, edits| match is_object {
-                true => twincat::call_scheduler(file, edits),
-                false => configuration::attach(part, tasks, globals, file, edits),
+            changes(part.name.span.file, &mut |file, edits| {
+                if is_object {
+                    twincat::call_scheduler(file, edits);
+                } else {
+                    configuration::attach(part, tasks, globals, file, edits);
+                }
             });
         }
         let each = self.given.iter().zip(self.sources.iter()).zip(edits);

@@ -94,17 +94,17 @@ impl Three {
         if let Some(dialect) = case.dialect {
             input = input.in_dialect(dialect);
         }
-        let first_line = |found: &dyn std::fmt::Display| {
+        let first_error = |found: &dyn std::fmt::Display| {
             found.to_string().lines().find(|line| line.contains("error")).unwrap_or("").to_owned()
         };
         let plain = Application::from_inputs([input.clone()]);
-        let plain = plain.map_err(|found| format!("does not compile: {}", first_line(&found)))?;
+        let plain = plain.map_err(|found| format!("does not compile: {}", first_error(&found)))?;
         let configured = TaskPlan::configured(&plain);
         let single = || TaskPlan::single(&plain, case.interval.as_nanos() as u64);
         let plan = configured.clone().unwrap_or_else(single);
         let tasks = configured.is_none().then(|| plan.tasks.clone());
         let project = instrument(&[input], &Options { tasks, ..Options::default() });
-        let project = project.map_err(|error| format!("is refused: {}", first_line(&error)))?;
+        let project = project.map_err(|error| format!("is refused: {}", first_error(&error)))?;
         let files = project.files.iter().map(|file| {
             let text = file.text.as_deref().expect("nothing is deleted");
             let input = Input::from_text(&file.name, SourceKind::Text, text);

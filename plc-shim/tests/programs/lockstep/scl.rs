@@ -184,7 +184,7 @@ fn it_runs_as_the_original_does() {
             assert_eq!(blocks(&plain), blocks(&inert), "not simulated, t_v = {now}");
             assert_eq!(blocks(&plain), blocks(&driver.rig.plc), "granted, {form:?}, t_v = {now}");
         }
-        assert!(plain.read("Station_DB.count").expect("it is there").to_string() != "0");
+        assert_ne!(plain.read("Station_DB.count").expect("it is there"), "0");
     }
     assert!(blocks(&plain).len() > 8 && state(&plain).is_empty());
 }
