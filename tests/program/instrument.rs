@@ -95,6 +95,7 @@ fn what_is_wrong_is_told() {
     let write = |name: &str, text: &str| std::fs::write(folder.path().join(name), text).unwrap();
     write("clock.st", "PROGRAM P VAR m : MC_Phasing; END_VAR m(); END_PROGRAM\n");
     write("none.st", "FUNCTION_BLOCK F END_FUNCTION_BLOCK\n");
+    write("line.L5X", "<RSLogix5000Content/>");
     write("wrong.st", "PROGRAM P x := ; END_PROGRAM\n");
     let say = |words: &[&str]| {
         let said = instrumented(folder.path(), words);
@@ -108,6 +109,8 @@ fn what_is_wrong_is_told() {
         say(&["clock.st", "--diff", "--task", "a:1ms:0=Q"]),
         say(&["clock.st", "--diff", "--task", "a:1ms=P"]),
         say(&["clock.st"]),
+        say(&["line.L5X", "--diff"]),
+        say(&["clock.st", "--diff", "--target", "scl"]),
     ];
     assert!(!folder.path().join("no").exists());
     insta::assert_snapshot!(all.join("----\n"));

@@ -143,10 +143,12 @@ pub fn instrument(inputs: &[Input], options: &Options) -> Result<Project, Instru
     }
     let trees: Vec<_> = units.iter().map(|(id, unit)| (*id, unit)).collect();
     let mut survey = survey(&trees, options.target);
+    if let Some(refused) = plain.unsuited(options.target, &survey) {
+        return Err(InstrumentError::Text(Diagnostics::new(vec![refused], &plain.sources)));
+    }
     findings.append(&mut survey.findings);
     let mut motion = motion_use::motion(options.target, &trees, &survey.motion);
     findings.append(&mut motion.findings);
-    findings.extend(plain.unsuited(options.target, &survey));
     if findings.iter().any(|found| found.severity == Severity::Error) {
         return Err(InstrumentError::Text(Diagnostics::new(findings, &plain.sources)));
     }

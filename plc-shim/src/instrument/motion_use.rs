@@ -41,6 +41,10 @@ pub(super) fn motion(target: Target, units: &[(FileId, &CompilationUnit)], names
             reader.blocks.entry(name.key()).or_default();
         }
     }
+    if reader.blocks.is_empty() && target == Target::Scl {
+        // What a technology object is called with is not PLCopen's to judge.
+        return Motion { findings: reader.findings, ..Motion::default() };
+    }
     if reader.blocks.is_empty() && reader.findings.is_empty() {
         return Motion::default();
     }

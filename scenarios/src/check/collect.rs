@@ -77,6 +77,12 @@ impl Files {
         }
         // A missing file is told before its wrong name.
         std::fs::metadata(path).map_err(|source| unreadable(path, source))?;
+        if path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("l5x")) {
+            let help = "its timers and motion instructions are the controller's own and have no form in IEC 61131-3; \
+                write the program in Structured Text, or let the controller take part as it is by a gateway";
+            let message = format!("{}: projects of Logix controllers are not read", path.display());
+            return Err(RunError::usage(message, Some(help.to_owned())));
+        }
         let known: Vec<_> = EXTENSIONS.iter().map(|(extension, _)| format!(".{extension}")).collect();
         let help = format!("files with PLC sources end in {}", known.join(" "));
         Err(RunError::usage(format!("{} is of no kind that is read", path.display()), Some(help)))
