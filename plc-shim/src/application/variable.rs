@@ -156,7 +156,7 @@ impl Application {
                 let field = field.ok_or_else(|| did_you_mean(name, fields.iter().map(|field| field.name.as_str())))?;
                 let path = format!("{}.{}", from.path, field.name);
                 let (offset, access) = (from.offset + field.offset, from.access);
-                Ok(Spot { path, offset, bit: None, ty: field.ty, address: None, access })
+                Ok(Spot { path, offset, bit: field.bit, ty: field.ty, address: None, access })
             }
             (Type::FunctionBlock { pou, .. }, Piece::Name(name)) => {
                 let variables = checked.interfaces.get(pou).map_or(&[][..], Vec::as_slice);

@@ -5,7 +5,7 @@
 //! | [`names`] | what the files declare, by name |
 //! | [`layout`] | offsets in memory |
 //! | [`scope`] | what a name means inside a unit |
-//! | [`types`], [`subrange`], [`union`] | types as written to types |
+//! | [`types`], [`subrange`], [`structure`], [`union`] | types as written to types |
 //! | [`variables`], [`storage`], [`instance_section`] | sections to placed variables, units' interfaces |
 //! | [`located`] | direct addresses to places |
 //! | [`initial`] | initial values to bytes |
@@ -81,6 +81,7 @@ mod standard_function;
 mod start;
 mod statement;
 mod storage;
+mod structure;
 mod subrange;
 mod text;
 mod text_conversion;

@@ -74,6 +74,8 @@ impl Body<'_, '_> {
             let fleeting = match variable.section {
                 SectionKind::Temp => true,
                 SectionKind::External | SectionKind::Global | SectionKind::Static | SectionKind::Instance => false,
+                // What the caller gives has its values already.
+                SectionKind::Output if self.is_open(variable.ty) => false,
                 _ => kind.keeps_nothing(),
             };
             if fleeting {

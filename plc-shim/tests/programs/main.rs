@@ -30,6 +30,7 @@ mod plcopen;
 mod random_programs;
 mod recovery;
 mod references;
+mod relative_addresses;
 mod restarts;
 mod rig;
 mod robustness;
