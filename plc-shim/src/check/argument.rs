@@ -10,7 +10,8 @@ use crate::syntax::ast::{self, ReferenceKind, SectionKind};
 
 impl Body<'_, '_> {
     pub(super) fn default_argument(&mut self, parameter: &Variable, named: bool, span: Span) -> Option<Argument> {
-        let has_default = !self.is_open(parameter.ty) && !self.is_instance_type(parameter.ty);
+        let has_default =
+            !self.is_open(parameter.ty) && !self.is_instance_type(parameter.ty) && !self.is_generic(parameter.ty);
         match self.elementary(parameter.ty) {
             Some(ty) if named && parameter.section == SectionKind::Input => {
                 let value = constant(decode(ty, &parameter.image), ty, span);
@@ -44,6 +45,9 @@ impl Body<'_, '_> {
         if matches!(self.checker.types.get(parameter.ty), Type::OpenArray { .. }) {
             return self.described(parameter, expr, &mut passing.before).map(Argument::Reference);
         }
+        if let Some(generic) = self.checker.generics.get(&parameter.ty) {
+            return self.generic_argument(*generic, parameter, expr, passing);
+        }
         if parameter.section == SectionKind::InOut {
             return self.reference(parameter, expr, passing).map(Argument::Reference);
         }
@@ -66,7 +70,7 @@ impl Body<'_, '_> {
     }
 
     /// The place, or memory that holds its value during the call if it has no address.
-    fn through_memory(&mut self, place: Place, passing: &mut Passing) -> Option<Place> {
+    pub(super) fn through_memory(&mut self, place: Place, passing: &mut Passing) -> Option<Place> {
         if place.has_address() {
             return Some(place);
         }

@@ -15,6 +15,7 @@
 //! | [`expression`], [`operator`], [`calendar`], [`place`], [`part`] | expressions |
 //! | [`reference`], [`address`], [`referred`] | references and pointers |
 //! | [`open_array`] | arrays that come with their bounds |
+//! | [`any_input`] | inputs of generic types |
 //! | [`call`], [`argument`], [`instance_call`], [`standard_function`], [`function_form`], [`conversion_function`], [`memory_function`] | calls |
 //! | [`enable`], [`enable_error`] | EN and ENO |
 //! | [`text`], [`text_function`], [`text_conversion`] | character strings |
@@ -32,6 +33,7 @@
 //! and needed again contains itself.
 
 mod address;
+mod any_input;
 mod argument;
 pub(crate) mod asserts;
 mod assignment;
@@ -237,6 +239,8 @@ struct Checker<'a> {
     calls: BTreeMap<PouId, Vec<(PouId, Span)>>,
     /// Who may be called in ways that only a run decides.
     dynamic_calls: BTreeMap<PouId, BTreeSet<PouId>>,
+    /// What inputs of generic types are inside of their units.
+    generics: BTreeMap<TypeId, any_input::Generic>,
     rows: Rows,
     depth: u32,
     chart_parts: Vec<(Span, String)>,

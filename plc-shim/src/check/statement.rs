@@ -330,9 +330,7 @@ impl Body<'_, '_> {
     }
 
     fn for_statement(&mut self, inner: &ast::ForStatement) -> Option<StatementKind> {
-        let name =
-            ast::Expr { kind: ast::ExprKind::Name(inner.variable.clone()), span: inner.variable.span, height: 1 };
-        let variable = self.target(&name).and_then(|place| self.control_variable(place));
+        let variable = self.target(&inner.variable).and_then(|place| self.control_variable(place));
         let header = variable.and_then(|(place, ty)| {
             let from = self.expression_of(&inner.from, ty);
             let to = self.expression_of(&inner.to, ty);

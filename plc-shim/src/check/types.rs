@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use super::any_input::Generic;
 use super::initial::plain;
 use super::layout::MEMORY_LIMIT;
 use super::names::{Enumerator, Progress, TypedImage};
@@ -26,9 +27,9 @@ pub(super) enum Need {
 /// Vendors' names of the types that are as wide as a pointer.
 fn of_pointer_width(key: &str) -> Option<ElementaryType> {
     Some(match key {
-        "__XWORD" => ElementaryType::Dword,
-        "__UXINT" | "PVOID" => ElementaryType::Udint,
-        "__XINT" => ElementaryType::Dint,
+        "__XWORD" | "XWORD" => ElementaryType::Dword,
+        "__UXINT" | "UXINT" | "PVOID" => ElementaryType::Udint,
+        "__XINT" | "XINT" => ElementaryType::Dint,
         _ => return None,
     })
 }
@@ -176,11 +177,14 @@ impl<'a> Body<'_, 'a> {
 
     pub(super) fn type_by_name(&mut self, name: &Ident, need: Need) -> Option<TypedImage<'a>> {
         let key = name.key();
-        if let Some(found) = ElementaryType::find(&key).or_else(|| of_pointer_width(&key)) {
+        if let Some(found) = ElementaryType::find(&key) {
             return Some(self.whole(found.into()));
         }
         if let Some(key) = self.checker.type_key(&key) {
             return self.checker.named_type(&key, Some(name.span));
+        }
+        if let Some(found) = of_pointer_width(&key) {
+            return Some(self.whole(found.into()));
         }
         // Vendors' BIT is a BOOL; only in their structures do several share a byte.
         if key == "BIT" {
@@ -213,6 +217,9 @@ impl<'a> Body<'_, 'a> {
     }
 
     fn report_unknown_type(&mut self, name: &Ident) {
+        if Generic::find(&name.key()).is_some() {
+            return self.reject_generic(name);
+        }
         let elementary = ElementaryType::ALL.iter().map(|ty| ty.name());
         let derived = self.checker.type_names.values().map(|entry| entry.ast.name.text.as_str());
         let blocks = self.checker.pous.iter().filter(|pou| pou.ast.kind.has_instances());

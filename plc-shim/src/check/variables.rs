@@ -294,7 +294,10 @@ impl<'c, 'a> Interface<'c, 'a> {
         }
         let need = if section.kind == SectionKind::InOut { Need::Reference } else { Need::Size };
         // Every name has the same type; an error in it is told once.
-        let declared = self.body.declared(ast, need);
+        let declared = match self.body.generic_input(self.kind, section.kind, &ast.spec) {
+            Some(generic) => generic,
+            None => self.body.declared(ast, need),
+        };
         for name in &ast.names {
             if let Some(first) = self.declared_before(name) {
                 self.body.checker.report_duplicate(name, Some(first));

@@ -1,5 +1,6 @@
 //! Programs in, traces out: the whole way from text to a scanning PLC.
 
+mod any_inputs;
 mod bit_strings;
 mod configurations;
 mod conversions;

@@ -41,6 +41,9 @@ impl Cursor<'_> {
         if matches!(name.key().as_str(), "STRING" | "WSTRING") {
             return self.string_type(name);
         }
+        if is_generic(&name) {
+            self.require(Feature::GenericInputs, name.span);
+        }
         let name = self.qualified(name);
         if self.at_mark(Punctuation::LeftParen) && ElementaryType::find(&name.text).is_none() {
             return self.instance_type(name);
@@ -223,4 +226,9 @@ impl Cursor<'_> {
         self.expect_mark(Punctuation::RightParen);
         values
     }
+}
+
+/// True for what vendors let inputs have as a type (CODESYS, TwinCAT: `ANY`, `ANY_<type>`).
+fn is_generic(name: &Ident) -> bool {
+    matches!(name.key().as_str(), "ANY" | "ANY_BIT" | "ANY_DATE" | "ANY_NUM" | "ANY_REAL" | "ANY_INT" | "ANY_STRING")
 }
