@@ -59,7 +59,7 @@ impl Generic {
     }
 }
 
-/// Numbers of `__SYSTEM.TYPE_CLASS` (CODESYS, Base Interfaces: TypeClass).
+/// Numbers of `__SYSTEM.TYPE_CLASS` (CODESYS, Base Interfaces: `TypeClass`).
 fn class_of(ty: ElementaryType) -> i128 {
     use ElementaryType as E;
     match ty {

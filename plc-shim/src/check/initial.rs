@@ -63,6 +63,12 @@ impl<'a> Body<'_, 'a> {
                 making.image.get_mut(range)?.iter_mut().zip(bytes).for_each(|(target, source)| *target = source);
                 Some(())
             }
+            (InitialiserKind::Value(expr), Type::Struct { .. }) if super::dtl::is_literal(expr) => {
+                let bytes = self.dtl_bytes(expr, spot.ty)?;
+                let range = self.range(spot);
+                making.image.get_mut(range)?.copy_from_slice(&bytes);
+                Some(())
+            }
             (InitialiserKind::Array(elements), Type::Array { dimensions, element }) => {
                 let count = dimensions.iter().map(|each: &Dimension| each.count()).product();
                 self.fill_array(Spot { ty: element, ..spot }, count, elements, making)

@@ -12,7 +12,7 @@
 //! | [`start`], [`fb_init`], [`instance_arguments`] | what runs before the first scan |
 //! | [`constant`] | constant expressions to values |
 //! | [`convert`], [`enumeration`] | implicit conversions, constants in context |
-//! | [`expression`], [`operator`], [`calendar`], [`place`], [`part`] | expressions |
+//! | [`expression`], [`operator`], [`calendar`], [`dtl`], [`place`], [`part`] | expressions |
 //! | [`reference`], [`address`], [`referred`] | references and pointers |
 //! | [`open_array`] | arrays that come with their bounds |
 //! | [`any_input`] | inputs of generic types |
@@ -48,6 +48,7 @@ mod conversion_function;
 mod convert;
 mod dialect;
 mod dispatch;
+mod dtl;
 mod edge;
 mod enable;
 mod enable_error;
@@ -110,6 +111,7 @@ use crate::syntax::ast::CompilationUnit;
 use crate::syntax::direct_address::AddressUnit;
 use crate::syntax::{FileId, Span};
 
+pub(crate) use instance_section::Kept;
 pub(crate) use layout::{CALL_DEPTH_OFFSET, INIT_RETAINS_OFFSET, VIRTUAL_TIME_NAME, VIRTUAL_TIME_OFFSET};
 pub(crate) use standard_function::exists as is_standard_function;
 
@@ -121,6 +123,8 @@ pub(crate) struct Checked {
     pub(crate) pous: BTreeMap<PouId, Pou>,
     /// The variables of every unit that has been declared, whether it runs or not.
     pub(crate) interfaces: BTreeMap<PouId, Vec<Variable>>,
+    /// What methods of units keep in the instance.
+    pub(crate) kept: BTreeMap<PouId, Vec<Kept>>,
     /// The global variables that belong to no resource.
     pub(crate) globals: Vec<Variable>,
     pub(crate) programs: Vec<Program>,
@@ -170,6 +174,7 @@ pub(crate) fn check(units: &[(FileId, &CompilationUnit)], library: &BTreeSet<Fil
         .filter_map(|(index, entry)| Some((PouId(index as u32), entry.scope.as_ref()?.variables.clone())));
     let result = Checked {
         interfaces: interfaces.collect(),
+        kept: checker.kept_by_methods(),
         types: checker.types,
         pous: checker.checked,
         globals,

@@ -1,4 +1,4 @@
-//! Inputs of type ANY, ANY_NUM and the like (CODESYS, TwinCAT).
+//! Inputs of type `ANY`, `ANY_NUM` and the like (CODESYS, TwinCAT).
 
 use onescan_plc_shim::Dialect;
 

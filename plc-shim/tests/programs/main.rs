@@ -10,6 +10,7 @@ mod depth;
 mod diagnostics;
 mod dialects;
 mod direct_addresses;
+mod dtl;
 mod expressions;
 mod faults;
 mod fbd;
