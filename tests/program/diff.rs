@@ -46,6 +46,49 @@ fn the_statement_that_differs_is_named() {
     }
 }
 
+/// The statement is the same in both, and runs in one only: what differs is the condition around it.
+#[test]
+fn the_decision_that_differs_is_named() {
+    const STATEMENT: &str = "Actuator_1_Down := ixDown AND Position_1 > LowerLimit;";
+    const BRANCHES: &str = "Actuator_1_Down := FALSE;
+    IF Strokes > 0 (* the first is for looking *) THEN
+        IF ixDown AND Position_1 > LowerLimit THEN
+            Actuator_1_Down := TRUE;
+        END_IF;
+    END_IF;";
+    let folder = copied_shear();
+    edit(folder.path(), "plc/shear.st", STATEMENT, BRANCHES);
+    record(folder.path(), "a", "3s");
+    edit(folder.path(), "plc/shear.st", "IF Strokes > 0 (*", "IF Strokes >= 0 (*");
+    record(folder.path(), "b", "3s");
+    edit(folder.path(), "plc/shear.st", "IF Strokes >= 0 (*", "IF Strokes > 1 (*");
+    record(folder.path(), "c", "3s");
+    let said = typed(folder.path(), &["diff", "a", "b"]);
+    assert_eq!(said.code, Some(0), "a stroke is counted when it begins: {said:?}");
+    let said = typed(folder.path(), &["diff", "a", "c"]);
+    assert_eq!(said.code, Some(1), "{said:?}");
+    let name = folder.path().file_name().unwrap().to_string_lossy().into_owned();
+    insta::assert_snapshot!(said.out.replace(&name, "shear"));
+    let said = typed(folder.path(), &["diff", "a", "c", "--format", "json"]);
+    let found: serde_json::Value = serde_json::from_str(&said.out).unwrap();
+    let parting = &found["partings"][0];
+    assert_eq!((&parting["a"]["question"], &parting["a"]["answer"]), (&"IF Strokes > 0".into(), &"THEN".into()));
+    assert_eq!((&parting["b"]["question"], &parting["b"]["answer"]), (&"IF Strokes > 1".into(), &"ELSE".into()));
+    assert_eq!(parting["t_v_ns"], found["t_v_ns"], "the way differs in the scan in which the signal does");
+}
+
+/// Decisions are known again when others come and go around them.
+#[test]
+fn a_decision_that_is_new_does_not_count() {
+    let folder = copied_shear();
+    record(folder.path(), "a", "3s");
+    edit(folder.path(), "plc/shear.st", OWN, &format!("IF Strokes < 0 THEN RETURN; END_IF;\n{OWN}"));
+    edit(folder.path(), "plc/shear.st", OWN, OTHER);
+    record(folder.path(), "b", "3s");
+    let said = typed(folder.path(), &["diff", "a", "b"]);
+    assert!(said.out.contains("Strokes > 1") && !said.out.contains("goes another way"), "{said:?}");
+}
+
 #[test]
 fn a_change_that_alters_nothing_is_no_difference() {
     let folder = recorded(["3s", "3s"], |folder| edit(folder, "plc/shear.st", BEFORE, AFTER));

@@ -4,11 +4,13 @@
 //! |---|---|
 //! | [`first`] | the first step that differs, by digest or by value |
 //! | [`cause`] | who wrote what differs there: client, statement, calls |
+//! | [`parting`] | the first decision of a PLC that went another way |
 //! | [`sources`] | what differs between the recorded scenarios |
 //! | [`report`] | for people and machines |
 
 pub mod cause;
 pub mod first;
+pub mod parting;
 pub mod report;
 pub mod sources;
 

@@ -322,9 +322,7 @@ impl Cursor<'_> {
 
     /// Vendors write `THIS^` and `SUPER^` for what the standard calls `THIS` and `SUPER`.
     pub(super) fn pass_object_caret(&mut self, expr: &Expr) {
-        if let ExprKind::Name(name) = &expr.kind
-            && matches!(name.key().as_str(), "THIS" | "SUPER")
-        {
+        if expr.names_the_object() {
             self.take_mark(Punctuation::Caret);
         }
     }
