@@ -9,6 +9,7 @@ use super::convert::Operand;
 use super::enable;
 use super::function_form;
 use super::memory_function;
+use super::query::Query;
 use super::scope::{Body, Scope};
 use super::standard_function;
 use crate::diagnostic::{Code, Diagnostic, did_you_mean};
@@ -61,6 +62,9 @@ impl Body<'_, '_> {
         }
         if let Some(function) = PlaceFunction::find(&name.key()) {
             return self.place_call(function, name, call, span);
+        }
+        if let Some(query) = Query::find(&name.key()) {
+            return self.query(query, name, call, span);
         }
         if standard_function::exists(&name.key()) {
             return self.standard_call(name, &call.arguments, span);

@@ -49,6 +49,7 @@ fn use_of(feature: Feature) -> &'static str {
         }
         Feature::SignChange => "PROGRAM P VAR u : UINT; i : INT; END_VAR i := u; END_PROGRAM",
         Feature::LossyReals => "PROGRAM P VAR r : REAL; l : LREAL; d : DINT; END_VAR r := l; r := d; END_PROGRAM",
+        Feature::CharactersAsBytes => "PROGRAM P VAR s : STRING; b : BYTE; END_VAR b := s[0]; s[0] := b; END_PROGRAM",
         Feature::GenericInputs => {
             "FUNCTION F : DINT VAR_INPUT v : ANY; END_VAR F := v.diSize; END_FUNCTION
              PROGRAM P VAR a : INT; n : DINT; END_VAR n := F(a); END_PROGRAM"
@@ -82,7 +83,8 @@ fn every_construct_is_for_its_dialects_alone() {
 }
 
 /// Constructs whose absence is no syntax of its own: another error says it.
-const TOLD_OTHERWISE: [Feature; 12] = [
+const TOLD_OTHERWISE: [Feature; 13] = [
+    Feature::CharactersAsBytes,
     Feature::IntegerShifts,
     Feature::FleetingInstances,
     Feature::LossyReals,
