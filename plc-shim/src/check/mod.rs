@@ -16,7 +16,7 @@
 //! | [`reference`], [`address`], [`referred`] | references and pointers |
 //! | [`open_array`] | arrays that come with their bounds |
 //! | [`any_input`] | inputs of generic types |
-//! | [`call`], [`argument`], [`instance_call`], [`standard_function`], [`function_form`], [`conversion_function`], [`memory_function`] | calls |
+//! | [`call`], [`argument`], [`instance_call`], [`standard_function`], [`vendor_parameter`], [`function_form`], [`conversion_function`], [`memory_function`] | calls |
 //! | [`enable`], [`enable_error`] | EN and ENO |
 //! | [`text`], [`character`], [`text_function`], [`text_conversion`] | character strings |
 //! | [`statement`], [`assignment`], [`edge`], [`build`] | statements |
@@ -94,6 +94,7 @@ mod text_function;
 mod types;
 mod union;
 mod variables;
+mod vendor_parameter;
 mod wire;
 
 use std::collections::{BTreeMap, BTreeSet};

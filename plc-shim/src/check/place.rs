@@ -293,7 +293,8 @@ impl Body<'_, '_> {
         if scope.is_broken(&name.key()) {
             return None;
         }
-        let Some(variable) = scope.find(&name.key()) else {
+        let found = scope.find(&name.key()).filter(|variable| self.checker.is_called_so(variable, name));
+        let Some(variable) = found else {
             if let Some(found) = self.not_a_variable(pou, name) {
                 return found;
             }
