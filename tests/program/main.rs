@@ -25,6 +25,7 @@ mod plc;
 mod plc_faults;
 mod plc_peers;
 mod plc_untrusted;
+mod plcopen_schema;
 mod python;
 mod recording;
 mod regression;

@@ -9,6 +9,7 @@ mod coverage;
 mod dates;
 mod depth;
 mod diagnostics;
+mod diagram;
 mod dialects;
 mod direct_addresses;
 mod dtl;
