@@ -67,8 +67,9 @@ impl Body<'_, '_> {
     pub(super) fn character(&mut self, text: Located, index: &ast::Expr, span: Span) -> Option<Operand> {
         let shape = self.shape(text.place.ty)?;
         let Indexed { text, position, before } = self.indexed(text.place, self.readable(shape, span), index, span)?;
-        let behind = self.compared(Binary::GreaterEqual, &position, self.count(&text));
-        let inside = self.compared(Binary::LessEqual, &position, lint(i64::from(self.readable(shape, span)) - 1, span));
+        let behind = compared(Binary::GreaterEqual, load(&position), count_of(&text));
+        let inside =
+            compared(Binary::LessEqual, load(&position), lint(i64::from(self.readable(shape, span)) - 1, span));
         let ended = joined(Binary::And, [behind, inside])?;
         let step = Step::Index {
             index: Box::new(load(&position)),
@@ -129,9 +130,9 @@ impl Body<'_, '_> {
         let character =
             self.character_at(Located { place: text.clone(), access: Access::ReadWrite }, shape, step, span).place;
         let count = text.clone().member(0, ElementaryType::Uint.into());
-        let zero = self.compared_with(Binary::Equal, load(&register), constant(Value::Int(0), ty, span));
-        let shorter = self.compared(Binary::Less, &position, self.count(&text));
-        let longer = self.compared(Binary::Equal, &position, self.count(&text));
+        let zero = compared(Binary::Equal, load(&register), constant(Value::Int(0), ty, span));
+        let shorter = compared(Binary::Less, load(&position), count_of(&text));
+        let longer = compared(Binary::Equal, load(&position), count_of(&text));
         let cut = assign(&count, as_count(&position));
         let grown = assign(
             &count,
@@ -152,7 +153,7 @@ impl Body<'_, '_> {
     fn ended(&self, text: &Place, shape: TextShape, position: &Place) -> Statement {
         let span = position.span;
         let next = operation(Binary::Add, load(position), lint(1, span));
-        let room = self.compared_with(Binary::Less, next.clone(), lint(i64::from(shape.capacity), span));
+        let room = compared(Binary::Less, next.clone(), lint(i64::from(shape.capacity), span));
         let step = Step::Index { index: Box::new(next), low: 0, count: shape.capacity.into(), stride: shape.unit() };
         let located = Located { place: text.clone(), access: Access::ReadWrite };
         let behind = self.character_at(located, shape, step, span).place;
@@ -178,22 +179,18 @@ impl Body<'_, '_> {
         let before = assign(&position, from_0);
         Some(Indexed { text, position, before })
     }
+}
 
-    /// Characters in use, as LINT.
-    fn count(&self, text: &Place) -> Expr {
-        let count = load(&text.clone().member(0, ElementaryType::Uint.into()));
-        converted(count, ElementaryType::Lint, Rounding::NearestEven)
-    }
+/// Characters in use, as LINT.
+fn count_of(text: &Place) -> Expr {
+    let count = load(&text.clone().member(0, ElementaryType::Uint.into()));
+    converted(count, ElementaryType::Lint, Rounding::NearestEven)
+}
 
-    fn compared(&self, operator: Binary, position: &Place, with: Expr) -> Expr {
-        self.compared_with(operator, load(position), with)
-    }
-
-    fn compared_with(&self, operator: Binary, left: Expr, right: Expr) -> Expr {
-        let span = left.span;
-        let kind = ExprKind::Binary(operator, Box::new(left), Box::new(right));
-        Expr { kind, ty: ElementaryType::Bool.into(), span }
-    }
+fn compared(operator: Binary, left: Expr, right: Expr) -> Expr {
+    let span = left.span;
+    let kind = ExprKind::Binary(operator, Box::new(left), Box::new(right));
+    Expr { kind, ty: ElementaryType::Bool.into(), span }
 }
 
 fn lint(value: i64, span: Span) -> Expr {

@@ -139,7 +139,7 @@ impl Body<'_, '_> {
                     Some(Expr { ty: wanted, ..expr })
                 }
                 Type::FunctionBlock { .. } if self.is_this_instance(&expr) && self.derives(expr.ty, target) => {
-                    self.pointer_to_own(expr, wanted)
+                    pointer_to(expr, wanted)
                 }
                 Type::Reference { kind: ReferenceKind::Pointer, target: other } => {
                     let (target, other) = (self.type_name(target), self.type_name(other));
@@ -161,11 +161,6 @@ impl Body<'_, '_> {
         let own = self.own_class().and_then(|class| self.checker.types.known_block(class));
         let is_this = |place: &Place| place.storage == Storage::Instance(0) && place.steps.is_empty();
         own == Some(expr.ty) && matches!(&expr.kind, ExprKind::Load(place) if is_this(place))
-    }
-
-    fn pointer_to_own(&self, this: Expr, wanted: TypeId) -> Option<Expr> {
-        let ExprKind::Load(place) = this.kind else { return None };
-        Some(Expr { kind: ExprKind::Address(place), ty: wanted, span: this.span })
     }
 
     fn no_reference<T>(&mut self, operand: &Operand, wanted: TypeId) -> Option<T> {
@@ -339,4 +334,10 @@ impl Body<'_, '_> {
         };
         Some(Statement { kind: StatementKind::Assign(place, value), span })
     }
+}
+
+/// The address of what lies at a place.
+fn pointer_to(value: Expr, wanted: TypeId) -> Option<Expr> {
+    let ExprKind::Load(place) = value.kind else { return None };
+    Some(Expr { kind: ExprKind::Address(place), ty: wanted, span: value.span })
 }
