@@ -16,6 +16,7 @@ mod freewheel;
 mod gantry_robot;
 mod help;
 mod instrument;
+mod load;
 mod new;
 mod operator;
 mod plant;

@@ -1,9 +1,9 @@
 //! `onescan plc` in a process of its own, and sessions that drive it in lockstep.
 
+use crate::load::under_load;
 use std::io::{BufRead, BufReader, Write};
 use std::path::Path;
 use std::process::{Child, ChildStdin, ChildStdout, Stdio};
-use std::sync::atomic::{AtomicBool, Ordering};
 
 use crate::typed::{Said, digests, edit, onescan, run_shear, scenario, typed};
 
@@ -84,19 +84,8 @@ fn equals_the_run_in_process(scheme: &str) {
     let plc = Plc::start(&scenario("shear"), &[]);
     let (reports, said) = run_with(&plc.gateway(scheme), &["--runs", "3"]);
     assert_eq!(digests(&reports), vec![expected.clone(); 3], "{said:?}");
-    let done = AtomicBool::new(false);
-    std::thread::scope(|scope| {
-        for _ in 0..8 {
-            scope.spawn(|| {
-                while !done.load(Ordering::Relaxed) {
-                    std::hint::spin_loop();
-                }
-            });
-        }
-        let (reports, said) = run_with(&plc.gateway(scheme), &[]);
-        done.store(true, Ordering::Relaxed);
-        assert_eq!(digests(&reports), [expected], "{said:?}");
-    });
+    let (reports, said) = under_load(|| run_with(&plc.gateway(scheme), &[]));
+    assert_eq!(digests(&reports), [expected], "{said:?}");
 }
 
 #[test]

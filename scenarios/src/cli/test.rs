@@ -1,4 +1,4 @@
-//! What may be typed for tests: `test`, `review`, and the processes of `test`.
+//! `onescan test` with its processes, and `onescan review`.
 
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
@@ -7,12 +7,14 @@ use clap::Args as ClapArgs;
 use onescan_plc_shim::Dialect;
 use onescan_server::time::{TimeSpan, VirtualTime};
 
-use super::args::{CoverageArg, FormatArg};
+use super::run::CoverageArg;
+use super::value::FormatArg;
 use crate::regress::worker::WorkerConfig;
 use crate::regress::{Policy, TestConfig};
 use crate::review::{Choice, ReviewConfig};
 use crate::run::Format;
 use crate::run::coverage::CoverageRequest;
+use crate::run::error::{ExitCode, RunError};
 
 /// Options of `test`.
 #[derive(Debug, ClapArgs)]
@@ -69,8 +71,7 @@ pub struct TestArgs {
 }
 
 impl TestArgs {
-    /// The same as a plain configuration.
-    pub fn config(self) -> TestConfig {
+    fn config(self) -> TestConfig {
         let one = NonZeroUsize::MIN;
         let format: Format = self.format.into();
         TestConfig {
@@ -119,8 +120,7 @@ pub struct ReviewArgs {
 }
 
 impl ReviewArgs {
-    /// The same as a plain configuration.
-    pub fn config(self) -> ReviewConfig {
+    fn config(self) -> ReviewConfig {
         let choice = match (self.accept_all, self.reject_all, self.list) {
             (true, ..) => Choice::AcceptAll,
             (_, true, _) => Choice::RejectAll,
@@ -161,9 +161,33 @@ pub struct WorkerArgs {
 }
 
 impl WorkerArgs {
-    /// The same as a plain configuration.
-    pub fn config(self) -> WorkerConfig {
+    fn config(self) -> WorkerConfig {
         let Self { scenario, case, sources, scan, until, dialect, cover, draw } = self;
         WorkerConfig { scenario, case, sources, scan, until, dialect, cover, draw }
     }
+}
+
+/// Runs tests.
+///
+/// # Errors
+/// See [`RunError`].
+pub fn test(args: TestArgs) -> Result<ExitCode, RunError> {
+    crate::regress::test(&args.config(), &mut std::io::stdout().lock())
+}
+
+/// Decides on snapshots.
+///
+/// # Errors
+/// See [`RunError`].
+pub fn review(args: ReviewArgs) -> Result<ExitCode, RunError> {
+    crate::review::review(&args.config(), &mut std::io::stdout().lock())
+}
+
+/// Runs one test, as a process of [`test`].
+///
+/// # Errors
+/// See [`RunError`].
+pub fn work(args: WorkerArgs) -> Result<ExitCode, RunError> {
+    crate::regress::worker::work(&args.config(), &mut std::io::stdout().lock())?;
+    Ok(ExitCode::Ok)
 }
