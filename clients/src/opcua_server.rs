@@ -135,4 +135,3 @@ fn builder(address: SocketAddr, name: &str, access: &Access, pki: &Pki) -> Serve
     }
     builder
 }
-

@@ -1,10 +1,10 @@
 //! Nodes in a server.
 
-use opcua::nodes::{DataTypeBuilder, MethodBuilder, ObjectBuilder, ObjectTypeBuilder, ReferenceDirection, VariableBuilder};
+use opcua::nodes::{DataTypeBuilder, MethodBuilder, ObjectBuilder, ObjectTypeBuilder, VariableBuilder};
 use opcua::server::address_space::AddressSpace;
 use opcua::types::{
-    Argument as UaArgument, DataTypeDefinition, DataTypeId, EnumDefinition, EnumField, ExtensionObject, LocalizedText,
-    NodeId, QualifiedName, ReferenceTypeId, UAString, Variant, VariantScalarTypeId,
+    Argument as UaArgument, DataTypeDefinition, EnumDefinition, EnumField, ExtensionObject, LocalizedText, NodeId,
+    QualifiedName, ReferenceTypeId, UAString, Variant, VariantScalarTypeId,
 };
 
 use super::node::{Argument, Id, Kind, Node, Relation, Rule, Space, Value};
@@ -74,7 +74,11 @@ impl Namespaces {
                 if *is_writable { builder.writable() } else { builder }.insert(space);
             }
             Kind::Method => {
-                MethodBuilder::new(&id, name, shown).description(about).executable(true).user_executable(true).insert(space);
+                MethodBuilder::new(&id, name, shown)
+                    .description(about)
+                    .executable(true)
+                    .user_executable(true)
+                    .insert(space);
             }
         }
         let reference = match node.relation {

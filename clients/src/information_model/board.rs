@@ -2,7 +2,7 @@
 //!
 //! One lock over all of it, held for moments: what is read in one request is of one moment.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, OnceLock, PoisonError};
 use std::time::{Duration, Instant};
 
@@ -56,8 +56,8 @@ pub struct Shared {
     pub seats: Vec<Seat>,
     /// Whether the holder of each is no more.
     gone: Vec<Option<IsGone>>,
-    /// Who has read of the end.
-    informed: BTreeSet<Holder>,
+    /// Operators, and whether they are no more.
+    operators: BTreeMap<Holder, IsGone>,
     /// Items with subscribers.
     watched: BTreeSet<Item>,
 }
@@ -118,7 +118,7 @@ impl Board {
             view,
             seats: clients.iter().map(seat).collect(),
             gone: vec![None; clients.len()],
-            informed: BTreeSet::new(),
+            operators: BTreeMap::new(),
             watched: BTreeSet::new(),
         };
         Self {
@@ -236,6 +236,11 @@ impl Board {
         Ok(())
     }
 
+    /// Somebody operates the session: it is told of the end, too.
+    pub(super) fn operated_by(&self, who: Holder, is_gone: IsGone) {
+        self.lock().operators.insert(who, is_gone);
+    }
+
     /// The names of clients that have not started.
     pub fn missing(&self) -> Vec<String> {
         let shared = self.lock();
@@ -309,24 +314,13 @@ impl Board {
         self.granted.notify_waiters();
     }
 
-    /// Somebody has read something after the end.
-    pub(super) fn inform(&self, who: Holder) {
-        let mut shared = self.lock();
-        if shared.view.end.is_some() && shared.informed.insert(who) {
-            drop(shared);
-            self.answered.notify_all();
-        }
-    }
-
-    /// Waits until every client that takes part knows of the end, `patience` at most.
+    /// Waits until all who took part or operated have seen the end and closed their sessions, `patience` at most.
     pub fn farewell(&self, patience: Duration) {
         let deadline = Instant::now() + patience;
         let mut shared = self.lock();
         loop {
-            let waits = shared.seats.iter().zip(&shared.gone).any(|(seat, gone)| {
-                let is_gone = gone.as_ref().is_some_and(|is_gone| is_gone());
-                seat.holder().is_some_and(|holder| !shared.informed.contains(&holder)) && !is_gone
-            });
+            let mut known = shared.gone.iter().flatten().chain(shared.operators.values());
+            let waits = known.any(|is_gone| !is_gone());
             let now = Instant::now();
             if !waits || now >= deadline {
                 return;

@@ -89,7 +89,14 @@ pub(super) async fn turn(
 }
 
 /// Answers a grant as a whole: nothing of it counts if a value is none.
-fn answer(board: &Board, seat: usize, who: Holder, done: u64, wake_ns: i64, outputs: &[Variant]) -> Result<(), StatusCode> {
+fn answer(
+    board: &Board,
+    seat: usize,
+    who: Holder,
+    done: u64,
+    wake_ns: i64,
+    outputs: &[Variant],
+) -> Result<(), StatusCode> {
     let types: Vec<_> = board.lock().seats[seat].outputs.ports().iter().map(|port| port.ty).collect();
     if !outputs.is_empty() && outputs.len() != types.len() {
         return Err(status(Refusal::Count));
@@ -119,10 +126,8 @@ fn list(given: &Variant) -> Result<&[Variant], StatusCode> {
 
 /// What a client has to know for its turn.
 fn told(seat: &Seat) -> Vec<Variant> {
-    let wrapped: Vec<Variant> = value::all(&seat.inputs, seat.given())
-        .into_iter()
-        .map(|value| Variant::Variant(Box::new(value)))
-        .collect();
+    let wrapped: Vec<Variant> =
+        value::all(&seat.inputs, seat.given()).into_iter().map(|value| Variant::Variant(Box::new(value))).collect();
     let inputs = Array { value_type: VariantScalarTypeId::Variant, values: wrapped, dimensions: None };
     vec![
         Variant::UInt32(value::of_client(seat) as u32),

@@ -82,6 +82,10 @@ pub mod number {
     pub const DONE: u32 = 2107;
     /// `Fault`.
     pub const FAULT: u32 = 2108;
+    /// `InputOrder`.
+    pub const INPUT_ORDER: u32 = 2109;
+    /// `OutputOrder`.
+    pub const OUTPUT_ORDER: u32 = 2110;
     /// `Turn`.
     pub const TURN: u32 = 4101;
 }
@@ -173,7 +177,13 @@ fn variable(path: &str, name: &str, folder: &str, ty: ElementaryType, is_writabl
         about: ty.to_string(),
         parent: Id::Instance(folder.to_owned()),
         relation: Relation::Organizes,
-        kind: Kind::Variable { of: BASE_DATA_VARIABLE_TYPE, data_type, is_array: false, is_writable, value: Value::Live },
+        kind: Kind::Variable {
+            of: BASE_DATA_VARIABLE_TYPE,
+            data_type,
+            is_array: false,
+            is_writable,
+            value: Value::Live,
+        },
         rule: None,
     }
 }

@@ -132,7 +132,8 @@ pub(super) fn packed(ty: ElementaryType, given: &Variant) -> Result<Vec<u8>, Sta
     };
     let mut bytes = vec![0; ty.size()];
     if !value::from_variant(ty, given, &mut bytes) {
-        let is_text = matches!(given, Variant::String(_)) && matches!(ty, ElementaryType::String(_) | ElementaryType::Wstring(_));
+        let is_text =
+            matches!(given, Variant::String(_)) && matches!(ty, ElementaryType::String(_) | ElementaryType::Wstring(_));
         return Err(if is_text { StatusCode::BadOutOfRange } else { StatusCode::BadTypeMismatch });
     }
     ty.canonicalise(&mut bytes).map_err(|_| StatusCode::BadOutOfRange)?;
@@ -183,21 +184,17 @@ impl InMemoryNodeManagerImpl for SessionNodes {
         max_age: f64,
         timestamps: TimestampsToReturn,
     ) -> Vec<DataValue> {
-        let values = {
-            let space = space.read();
-            let shared = self.board.lock();
-            let read = |node: &&ParsedReadValueId| match self.items.get(&node.node_id) {
-                Some(item) => match (space.validate_node_read(context, node), of_item(&self.board, &shared, *item)) {
-                    (Err(status), _) => DataValue { status: Some(status), ..DataValue::default() },
-                    (Ok(_), Some(value)) if !node.index_range.has_range() => DataValue::new_now(value),
-                    (Ok(_), _) => DataValue { status: Some(StatusCode::BadIndexRangeNoData), ..DataValue::default() },
-                },
-                None => space.read(context, node, max_age, timestamps),
-            };
-            nodes.iter().map(read).collect()
+        let space = space.read();
+        let shared = self.board.lock();
+        let read = |node: &&ParsedReadValueId| match self.items.get(&node.node_id) {
+            Some(item) => match (space.validate_node_read(context, node), of_item(&self.board, &shared, *item)) {
+                (Err(status), _) => DataValue { status: Some(status), ..DataValue::default() },
+                (Ok(_), Some(value)) if !node.index_range.has_range() => DataValue::new_now(value),
+                (Ok(_), _) => DataValue { status: Some(StatusCode::BadIndexRangeNoData), ..DataValue::default() },
+            },
+            None => space.read(context, node, max_age, timestamps),
         };
-        self.board.inform(Holder(context.session_id));
-        values
+        nodes.iter().map(read).collect()
     }
 
     async fn create_value_monitored_items(
@@ -217,6 +214,7 @@ impl InMemoryNodeManagerImpl for SessionNodes {
                 Some(status) if status.is_bad() => item.set_status(status),
                 _ => {
                     item.set_initial_value(value);
+                    item.revise_sampling_interval(EVERY_CHANGE_MS);
                     item.set_status(StatusCode::Good);
                 }
             }
@@ -255,7 +253,10 @@ impl InMemoryNodeManagerImpl for SessionNodes {
     ) -> Result<(), StatusCode> {
         for call in calls {
             let status = match self.items.get(call.method_id()).copied() {
-                Some(Item::Session(method)) => call::operate(&self.board, method, call.arguments()).await,
+                Some(Item::Session(method)) => {
+                    self.board.operated_by(Holder(context.session_id), is_gone(context));
+                    call::operate(&self.board, method, call.arguments()).await
+                }
                 Some(Item::Seat(seat, number::TURN)) => {
                     let who = (Holder(context.session_id), is_gone(context));
                     match call::turn(&self.board, seat, who, call.arguments()).await {
@@ -270,10 +271,12 @@ impl InMemoryNodeManagerImpl for SessionNodes {
             };
             call.set_status(status);
         }
-        self.board.inform(Holder(context.session_id));
         Ok(())
     }
 }
+
+/// Items are told when they change, not sampled: a grant that is told late holds all clients up.
+const EVERY_CHANGE_MS: f64 = 0.001;
 
 /// How long a method waits for the step boundary at which it takes effect.
 pub(super) const BOUNDARY_TIMEOUT: Duration = Duration::from_secs(3);

@@ -42,11 +42,14 @@ fn head() -> String {
          <UANodeSet xmlns=\"http://opcfoundation.org/UA/2011/03/UANodeSet.xsd\">\n",
     );
     push(&mut xml, format_args!("  <NamespaceUris>\n    <Uri>{TYPES_URI}</Uri>\n  </NamespaceUris>\n"));
-    push(&mut xml, format_args!(
-        "  <Models>\n    <Model ModelUri=\"{TYPES_URI}\" Version=\"{VERSION}\" PublicationDate=\"{DATE}\">\n      \
+    push(
+        &mut xml,
+        format_args!(
+            "  <Models>\n    <Model ModelUri=\"{TYPES_URI}\" Version=\"{VERSION}\" PublicationDate=\"{DATE}\">\n      \
          <RequiredModel ModelUri=\"http://opcfoundation.org/UA/\" Version=\"1.05.01\" \
          PublicationDate=\"2022-02-24T00:00:00Z\"/>\n    </Model>\n  </Models>\n",
-    ));
+        ),
+    );
     xml.push_str("  <Aliases>\n");
     for (name, number) in ALIASES {
         push(&mut xml, format_args!("    <Alias Alias=\"{name}\">i={number}</Alias>\n"));
@@ -125,10 +128,13 @@ fn references(xml: &mut String, node: &Node) {
     if let Some(rule) = rule {
         push(xml, format_args!("      <Reference ReferenceType=\"HasModellingRule\">{rule}</Reference>\n"));
     }
-    push(xml, format_args!(
-        "      <Reference ReferenceType=\"{relation}\" IsForward=\"false\">{}</Reference>\n    </References>\n",
-        id(&node.parent)
-    ));
+    push(
+        xml,
+        format_args!(
+            "      <Reference ReferenceType=\"{relation}\" IsForward=\"false\">{}</Reference>\n    </References>\n",
+            id(&node.parent)
+        ),
+    );
 }
 
 fn definition(xml: &mut String, node: &Node, fields: &[&str]) {
@@ -149,19 +155,28 @@ fn texts_value(xml: &mut String, texts: &[&str]) {
 
 fn arguments_value(xml: &mut String, arguments: &[Argument]) {
     const ARGUMENT_XML: u32 = 297;
-    xml.push_str("    <Value>\n      <ListOfExtensionObject xmlns=\"http://opcfoundation.org/UA/2008/02/Types.xsd\">\n");
+    xml.push_str(
+        "    <Value>\n      <ListOfExtensionObject xmlns=\"http://opcfoundation.org/UA/2008/02/Types.xsd\">\n",
+    );
     for Argument { name, data_type, is_array, about } in arguments {
-        let (rank, dimensions) = if *is_array { (1, "<ArrayDimensions><UInt32>0</UInt32></ArrayDimensions>") } else { (-1, "<ArrayDimensions/>") };
-        push(xml, format_args!(
-            "        <ExtensionObject>\n          \
+        let (rank, dimensions) = if *is_array {
+            (1, "<ArrayDimensions><UInt32>0</UInt32></ArrayDimensions>")
+        } else {
+            (-1, "<ArrayDimensions/>")
+        };
+        push(
+            xml,
+            format_args!(
+                "        <ExtensionObject>\n          \
              <TypeId><Identifier>i={ARGUMENT_XML}</Identifier></TypeId>\n          \
              <Body>\n            <Argument>\n              <Name>{name}</Name>\n              \
              <DataType><Identifier>i={data_type}</Identifier></DataType>\n              \
              <ValueRank>{rank}</ValueRank>\n              {dimensions}\n              \
              <Description><Text>{}</Text></Description>\n            </Argument>\n          </Body>\n        \
              </ExtensionObject>\n",
-            escaped(about)
-        ));
+                escaped(about)
+            ),
+        );
     }
     xml.push_str("      </ListOfExtensionObject>\n    </Value>\n");
 }
@@ -179,7 +194,10 @@ fn alias(data_type: &Id) -> String {
         Id::Core(number) => *number,
         other => return id(other),
     };
-    ALIASES.iter().find(|(_, known)| *known == number).map_or_else(|| format!("i={number}"), |(name, _)| (*name).to_owned())
+    ALIASES
+        .iter()
+        .find(|(_, known)| *known == number)
+        .map_or_else(|| format!("i={number}"), |(name, _)| (*name).to_owned())
 }
 
 fn browse_name(node: &Node) -> String {

@@ -48,7 +48,6 @@ impl Drop for Service {
 pub fn serve(address: SocketAddr, board: &Arc<Board>, access: &Access) -> Result<Service, ServeError> {
     let nodes = Arc::clone(board);
     let build = move |context: ServerContext, space: &mut AddressSpace| SessionNodes::new(nodes, &context, space);
-    let running =
-        opcua_server::start(address, "session", access, InMemoryNodeManagerBuilder::new(build), |_| Ok(()))?;
+    let running = opcua_server::start(address, "session", access, InMemoryNodeManagerBuilder::new(build), |_| Ok(()))?;
     Ok(Service { board: Arc::clone(board), running })
 }

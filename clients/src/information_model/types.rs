@@ -17,6 +17,8 @@ pub struct VariableType {
     pub name: &'static str,
     /// The type of its value.
     pub data: Data,
+    /// True for a list.
+    pub is_array: bool,
     /// True if a client may write it.
     pub is_writable: bool,
     /// What it means.
@@ -94,11 +96,15 @@ pub const SESSION_STATES: [&str; 7] = ["Start", "InitialWrite", "PreRead", "Read
 pub const CLIENT_STATES: [&str; 7] = ["Start", "Setup", "Ready", "Read", "Run", "Write", "Ended"];
 
 const fn variable(number: u32, name: &'static str, data: Data, about: &'static str) -> VariableType {
-    VariableType { number, name, data, is_writable: false, about }
+    VariableType { number, name, data, is_array: false, is_writable: false, about }
 }
 
 const fn writable(number: u32, name: &'static str, data: Data, about: &'static str) -> VariableType {
-    VariableType { number, name, data, is_writable: true, about }
+    VariableType { number, name, data, is_array: false, is_writable: true, about }
+}
+
+const fn names(number: u32, name: &'static str, about: &'static str) -> VariableType {
+    VariableType { number, name, data: Data::Core(STRING), is_array: true, is_writable: false, about }
 }
 
 const fn command(number: u32, name: &'static str, about: &'static str) -> MethodType {
@@ -170,10 +176,27 @@ pub const CLIENT: ObjectType = ObjectType {
         variable(2102, "Period", Data::Core(INT64), "Virtual time that one turn covers, in ns"),
         writable(2103, "Start", Data::Core(BOOLEAN), "The client writes TRUE when it is ready to start"),
         variable(2104, "Grant", Data::Core(UINT64), "Number of the last grant; 0 before the first, never smaller"),
-        variable(2105, "GrantTime", Data::Core(INT64), "Virtual time t_v at the end of the granted turn, in ns; 0 asks for the initial state"),
-        writable(2106, "Wake", Data::Core(INT64), "Virtual time of the next turn wanted, in ns; 0 for one period later. Taken with Done, then 0 again"),
-        writable(2107, "Done", Data::Core(UINT64), "The client writes the number of the grant that it has run, after its outputs"),
+        variable(
+            2105,
+            "GrantTime",
+            Data::Core(INT64),
+            "Virtual time t_v at the end of the granted turn, in ns; 0 asks for the initial state",
+        ),
+        writable(
+            2106,
+            "Wake",
+            Data::Core(INT64),
+            "Virtual time of the next turn wanted, in ns; 0 for one period later. Taken with Done, then 0 again",
+        ),
+        writable(
+            2107,
+            "Done",
+            Data::Core(UINT64),
+            "The client writes the number of the grant that it has run, after its outputs",
+        ),
         writable(2108, "Fault", Data::Core(STRING), "The client writes why it cannot go on; the session ends for all"),
+        names(2109, "InputOrder", "Names of the inputs in the order of the method Turn"),
+        names(2110, "OutputOrder", "Names of the outputs in the order of the method Turn"),
     ],
     methods: &[MethodType {
         number: 4101,
@@ -266,8 +289,8 @@ pub fn members(of: &ObjectType, parent: &Id, rule: Option<Rule>, id: &dyn Fn(u32
         kind,
         rule,
     };
-    for VariableType { number, name, data, is_writable, about } in of.variables {
-        let (of, data_type, is_array, value) = (BASE_DATA_VARIABLE_TYPE, data.id(), false, Value::Live);
+    for VariableType { number, name, data, is_array, is_writable, about } in of.variables {
+        let (of, data_type, is_array, value) = (BASE_DATA_VARIABLE_TYPE, data.id(), *is_array, Value::Live);
         let kind = Kind::Variable { of, data_type, is_array, is_writable: *is_writable, value };
         nodes.push(member(*number, name, about, kind));
     }
@@ -316,7 +339,11 @@ mod tests {
         let mut seen = Vec::new();
         for node in nodes() {
             assert!(!seen.contains(&node.id), "{:?} twice", node.id);
-            assert!(matches!(node.parent, Id::Core(_)) || seen.contains(&node.parent), "{} hangs in the air", node.name);
+            assert!(
+                matches!(node.parent, Id::Core(_)) || seen.contains(&node.parent),
+                "{} hangs in the air",
+                node.name
+            );
             seen.push(node.id);
         }
     }

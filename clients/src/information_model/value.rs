@@ -3,7 +3,7 @@
 use onescan_server::signal::PortLayout;
 use onescan_server::state::{ClientState, ServerState};
 use onescan_server::time::VirtualTime;
-use opcua::types::Variant;
+use opcua::types::{UAString, Variant};
 
 use super::board::{Board, Shared, View};
 use super::instance::{Item, number};
@@ -64,8 +64,15 @@ fn of_seat(seat: &Seat, of: u32) -> Option<Variant> {
         number::WAKE => Variant::Int64(seat.wake_ns()),
         number::DONE => Variant::UInt64(seat.done_number()),
         number::FAULT => Variant::from(seat.fault().unwrap_or_default()),
+        number::INPUT_ORDER => names(&seat.inputs),
+        number::OUTPUT_ORDER => names(&seat.outputs),
         _ => return None,
     })
+}
+
+fn names(layout: &PortLayout) -> Variant {
+    let names: Vec<UAString> = layout.ports().iter().map(|port| UAString::from(port.name.as_str())).collect();
+    Variant::from(names)
 }
 
 fn ns(t_v: VirtualTime) -> Variant {
