@@ -160,7 +160,7 @@ fn an_operator_with_an_opc_ua_client_is_data_too() {
     assert_eq!((&again["digest"], &again["steps"]), (&live["digest"], &live["steps"]));
 }
 
-/// The NodeSet2 file is taken in by a server of others, and says what a session serves.
+/// The published node set is taken in by a server of others, and says what a session serves.
 #[test]
 fn the_published_node_set_is_what_is_served() {
     let server = Server::start(&scenario("shear"), &["--until", "1h", "--pace", "1"]);

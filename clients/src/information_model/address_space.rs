@@ -68,7 +68,7 @@ impl Namespaces {
                     .description(about)
                     .data_type(self.node_id(data_type))
                     .value_rank(if *is_array { LIST } else { SCALAR })
-                    .value(self.value(*value))
+                    .value(variant(*value))
                     .minimum_sampling_interval(0.0)
                     .has_type_definition(NodeId::new(0, *of));
                 if *is_writable { builder.writable() } else { builder }.insert(space);
@@ -96,19 +96,19 @@ impl Namespaces {
             space.insert_reference(&id, &NodeId::new(0, rule), ReferenceTypeId::HasModellingRule);
         }
     }
+}
 
-    fn value(self, value: Value) -> Variant {
-        match value {
-            Value::Live => Variant::Empty,
-            Value::Texts(texts) => {
-                let texts: Vec<Variant> = texts.iter().map(|text| Variant::from(LocalizedText::from(*text))).collect();
-                Variant::from((VariantScalarTypeId::LocalizedText, texts))
-            }
-            Value::Arguments(arguments) => {
-                let object = |argument: &Argument| Variant::from(ExtensionObject::from_message(ua_argument(argument)));
-                let objects: Vec<Variant> = arguments.iter().map(object).collect();
-                Variant::from((VariantScalarTypeId::ExtensionObject, objects))
-            }
+fn variant(value: Value) -> Variant {
+    match value {
+        Value::Live => Variant::Empty,
+        Value::Texts(texts) => {
+            let texts: Vec<Variant> = texts.iter().map(|text| Variant::from(LocalizedText::from(*text))).collect();
+            Variant::from((VariantScalarTypeId::LocalizedText, texts))
+        }
+        Value::Arguments(arguments) => {
+            let object = |argument: &Argument| Variant::from(ExtensionObject::from_message(ua_argument(argument)));
+            let objects: Vec<Variant> = arguments.iter().map(object).collect();
+            Variant::from((VariantScalarTypeId::ExtensionObject, objects))
         }
     }
 }

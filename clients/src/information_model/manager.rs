@@ -165,6 +165,7 @@ fn tell_subscribers(board: &Arc<Board>, nodes: Vec<(Item, NodeId)>, subscription
 }
 
 #[async_trait]
+#[expect(clippy::mut_mut, reason = "the trait's own")]
 impl InMemoryNodeManagerImpl for SessionNodes {
     async fn init(&self, _space: &mut AddressSpace, _context: ServerContext) {}
 

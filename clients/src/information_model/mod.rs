@@ -6,7 +6,7 @@
 //! | [`node`] | a node as data |
 //! | [`types`] | the types: of a session, of a client, of their states |
 //! | [`instance`] | the objects of one session: its signals, its clients |
-//! | [`nodeset`] | nodes as a NodeSet2 file (OPC 10000-6 annex F) |
+//! | [`nodeset`] | nodes as a `NodeSet2` file (OPC 10000-6 annex F) |
 //! | [`address_space`] | nodes in a server |
 //! | [`seat`] | a client's place in the session, sans-IO: grants and answers, and what is told apart |
 //! | [`board`] | the session as all see it: written by its driver, read and answered over OPC UA |
@@ -16,7 +16,7 @@
 //! | [`service`] | the server |
 //!
 //! # Invariants
-//! - What is served and what is published as NodeSet2 are made of the same tables.
+//! - What is served and what is published as `NodeSet2` are made of the same tables.
 //! - Outputs count when their grant is answered, all at once; nothing that comes late or twice changes a step.
 //! - A wall clock decides when to give up, never what a step computes.
 

@@ -9,15 +9,15 @@ pub const SESSION_URI: &str = "urn:onescan:session";
 pub mod core {
     /// Data type Boolean.
     pub const BOOLEAN: u32 = 1;
-    /// Data type UInt32.
+    /// Data type `UInt32`.
     pub const UINT32: u32 = 7;
     /// Data type Int64.
     pub const INT64: u32 = 8;
-    /// Data type UInt64.
+    /// Data type `UInt64`.
     pub const UINT64: u32 = 9;
     /// Data type String.
     pub const STRING: u32 = 12;
-    /// Data type LocalizedText.
+    /// Data type `LocalizedText`.
     pub const LOCALIZED_TEXT: u32 = 21;
     /// Any data type.
     pub const BASE_DATA_TYPE: u32 = 24;

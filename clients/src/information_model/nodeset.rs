@@ -1,4 +1,4 @@
-//! Nodes as a NodeSet2 file (OPC 10000-6 annex F), to be taken in by other servers and tools.
+//! Nodes as a `NodeSet2` file (OPC 10000-6 annex F), to be taken in by other servers and tools.
 
 use std::fmt::Write as _;
 
@@ -26,7 +26,7 @@ const ALIASES: [(&str, u32); 13] = [
     ("HasComponent", 47),
 ];
 
-/// The types of the model as a NodeSet2 file.
+/// The types of the model as a `NodeSet2` file.
 pub fn of_types() -> String {
     let mut xml = head();
     for node in types::nodes() {

@@ -37,7 +37,7 @@ pub(super) fn run(
     watch: impl FnOnce(&mut Lockstep),
 ) -> Result<Outcome, RunError> {
     let mut processes = Processes::default();
-    let Formed { mut lockstep, _lobby, desk } = form(config, scenario, interrupt, log, &mut processes)?;
+    let Formed { mut lockstep, lobby: _lobby, desk } = form(config, scenario, interrupt, log, &mut processes)?;
     lockstep.set_until(Some(config.end(scenario)));
     lockstep.set_pace(config.pace);
     lockstep.set_mailbox(interrupt.mailbox());
@@ -64,7 +64,7 @@ pub(super) fn run(
 /// A session that is about to begin, and what stays open for operators.
 struct Formed {
     lockstep: Lockstep,
-    _lobby: Option<Lobby>,
+    lobby: Option<Lobby>,
     desk: Option<Desk>,
 }
 
@@ -106,11 +106,11 @@ fn form(
         }
         desk.start(scenario.folder(), processes)?;
     }
-    let _lobby = admit_remote(config, scenario, &mut formation, &remote, interrupt, processes)?;
+    let lobby = admit_remote(config, scenario, &mut formation, &remote, interrupt, processes)?;
     if let Some(desk) = &desk {
         desk.wait(config, interrupt, processes)?;
     }
-    Ok(Formed { lockstep: formation.start()?, _lobby, desk })
+    Ok(Formed { lockstep: formation.start()?, lobby, desk })
 }
 
 /// Lets in those that come over TCP, if there are any or `--listen` asks for it. The lobby stays open for operators.
