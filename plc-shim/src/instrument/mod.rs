@@ -14,14 +14,16 @@
 //! | [`constant`] | constant expressions of tasks |
 //! | [`configuration`] | a project's CONFIGURATION |
 //! | [`controller`] | execution controllers |
-//! | [`plcopen`], [`plcopen_unit`] | projects in PLCopen XML |
-//! | [`chart`] | Sequential Function Charts: execution signal, action control, times of steps |
+//! | [`plcopen_project`], [`plcopen`], [`plcopen_unit`] | projects in PLCopen XML |
+//! | [`chart`], [`chart_plan`] | Sequential Function Charts: execution signal, action control, times of steps |
+//! | [`plcopen_chart`], [`plcopen_gate`] | the same of charts that are drawn, in PLCopen XML |
 //! | [`target`], [`twincat`] | the shim's sources as a vendor's tool takes them |
 //!
 //! Invariants: text goes in and comes out, no file is touched; what is not marked stays byte for byte;
 //! instrumenting twice is instrumenting once; what cannot be replaced is told.
 
 mod chart;
+mod chart_plan;
 mod clock;
 mod configuration;
 mod constant;
@@ -32,6 +34,9 @@ mod marks;
 mod motion;
 mod motion_use;
 mod plcopen;
+mod plcopen_chart;
+mod plcopen_gate;
+mod plcopen_project;
 mod plcopen_unit;
 mod survey;
 mod target;
@@ -44,6 +49,7 @@ use std::sync::Arc;
 
 use thiserror::Error;
 
+use self::chart_plan::Plan as ChartPlan;
 use self::edits::{Conflict, Edited, Edits, LineMap};
 use self::marks::Original;
 use self::motion_use::Motion;
@@ -286,47 +292,6 @@ impl Plain {
         Some(found.with_help("export the project in that form, or choose another target"))
     }
 
-    /// The project's only file with its changes and all that is the shim's.
-    fn edited_xml(
-        &self,
-        survey: &Survey<'_>,
-        motion: &Motion,
-        tasks: &TaskTable<'_>,
-        sources: &Sources,
-    ) -> Result<File, InstrumentError> {
-        let wrong = |span, message: &str| {
-            let found = Diagnostic::error(Code::UnsupportedFeature, span, message);
-            InstrumentError::Text(Diagnostics::new(vec![found], &self.sources))
-        };
-        let whole = Span::new(FileId(0), 0, 0);
-        let (Some(given), Some(file)) = (self.given.first(), self.sources.get(FileId(0))) else {
-            return Err(InstrumentError::NoPrograms);
-        };
-        if !survey.charts.is_empty() {
-            return Err(wrong(whole, "a chart in PLCopen XML is not instrumented yet"));
-        }
-        if let Some((name, _)) = motion.renames.first() {
-            return Err(wrong(name.span, "motion control in PLCopen XML is not instrumented yet"));
-        }
-        let root = plcopen::tree(file).ok_or_else(|| wrong(whole, "this is no XML"))?;
-        let mut edits = Edits::default();
-        for (name, form) in &survey.renames {
-            plcopen::rename(file, name.span.start..name.span.end, &name.text, &form.new_name(), &mut edits);
-        }
-        let declared = |name: &str| survey.is_declared(name);
-        let new = |name: &str| clock::replacement(name).filter(|_| !declared(name));
-        plcopen::rename_blocks(&root, file.shown_text(), &new, &mut edits);
-        for (pou, number) in tasks.numbered() {
-            plcopen::control(pou, number, tasks.programs.len(), (file, &root), &mut edits)
-                .map_err(|message| wrong(pou.name.span, message))?;
-        }
-        plcopen::attach(&root, file.shown_text(), tasks, &sources.globals, &sources.units(), &mut edits)
-            .map_err(|message| wrong(whole, message))?;
-        let conflict = |conflict| InstrumentError::Conflict { file: given.name.clone(), conflict };
-        let Edited { text, lines } = edits.apply(file.shown_text()).map_err(conflict)?;
-        Ok(given.file(Some(text.into()), lines))
-    }
-
     fn damaged(&mut self, name: &str, text: &Arc<str>, damaged: &marks::DamagedMarks) {
         let id = self.sources.add(crate::syntax::SourceFile::new(name, text.clone()));
         let span = Span::new(id, damaged.at.start, damaged.at.end);
@@ -376,7 +341,7 @@ impl Plain {
             let number = tasks.numbered().find(|(numbered, _)| std::ptr::eq(*numbered, *pou));
             let number = number.map(|(_, number)| (number, tasks.programs.len()));
             changes(pou.name.span.file, &mut |file, edits| {
-                chart::control(pou, number, &survey.renames, file, edits);
+                chart::control(&ChartPlan::new(pou, number, &survey.renames, file), edits);
             });
         }
         for (pou, number) in tasks.numbered().filter(|(pou, _)| pou.chart.is_empty()) {

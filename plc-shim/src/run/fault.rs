@@ -6,6 +6,8 @@ use wasmtime::Trap;
 
 use super::VirtualTime;
 use super::machine::Trapped;
+use super::trace::Writer;
+use super::way::WayId;
 use crate::application::Application;
 use crate::compile::fault::{Callee, FaultKind, FunctionMarks, Mark};
 use crate::syntax::Span;
@@ -96,13 +98,13 @@ pub struct WriteSite {
     pub callers: Vec<FaultSite>,
     /// The statement as it is written, blanks drawn together; its beginning if it is long.
     pub statement: String,
+    /// The ways that decisions around it had gone, those of callers too, innermost first.
+    pub within: Vec<WayId>,
 }
 
-/// Most characters of a statement that are shown.
-const STATEMENT_CHARACTERS: usize = 120;
-
-/// The statement at `span`, called as the active functions say.
-pub(super) fn write_site(application: &Application, span: Span, frames: &[(u32, Option<u32>)]) -> WriteSite {
+/// The statement at `span`, as `writer` says.
+pub(super) fn write_site(application: &Application, span: Span, writer: &Writer) -> WriteSite {
+    let Writer { frames, within, .. } = writer;
     let table = application.faults();
     let known: Vec<Frame<'_>> =
         frames.iter().filter_map(|(index, offset)| Some((table.function(*index)?, *offset))).collect();
@@ -112,12 +114,8 @@ pub(super) fn write_site(application: &Application, span: Span, frames: &[(u32, 
     place(application, Some(span), &mut at);
     sites.reverse();
     sites.truncate(MAX_CALLERS);
-    let written = application.sources().text(span).split_whitespace().collect::<Vec<_>>().join(" ");
-    let mut statement: String = written.chars().take(STATEMENT_CHARACTERS).collect();
-    if statement.len() < written.len() {
-        statement.push('…');
-    }
-    WriteSite { at, callers: sites, statement }
+    let within = within.iter().copied().map(WayId).collect();
+    WriteSite { at, callers: sites, statement: application.shown(span), within }
 }
 
 /// A function that was active, and the offset in its body.

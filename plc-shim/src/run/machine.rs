@@ -116,6 +116,13 @@ impl Machine {
         }
     }
 
+    /// A unit that a task runs begins.
+    pub(super) fn begin_traced_unit(&mut self) {
+        if let Some(trace) = &mut self.store.data_mut().trace {
+            trace.begin_unit();
+        }
+    }
+
     pub(super) fn parts(&self, entry: usize) -> usize {
         self.entries.get(entry).map_or(0, Vec::len)
     }

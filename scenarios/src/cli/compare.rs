@@ -3,9 +3,10 @@
 use std::path::PathBuf;
 
 use clap::Args as ClapArgs;
+use onescan_server::signal::SignalName;
 use onescan_server::time::VirtualTime;
 
-use super::value::FormatArg;
+use super::value::{FormatArg, plane};
 use crate::run::compare::CompareConfig;
 use crate::run::error::{ExitCode, RunError};
 use crate::run::interrupt::Interrupt;
@@ -25,6 +26,9 @@ pub struct CompareArgs {
     /// Draw the signals of the scenario's plot, a run of each way over each other, into this SVG file
     #[arg(long, value_name = "FILE")]
     pub plot: Option<PathBuf>,
+    /// Draw two signals against each other, across and up, as `x.position,z.position`
+    #[arg(long, value_name = "X,Y", requires = "plot", value_parser = plane)]
+    pub xy: Option<[SignalName; 2]>,
     /// For people, or one JSON object a way for machines
     #[arg(long, value_enum, default_value_t)]
     pub format: FormatArg,
@@ -40,6 +44,7 @@ pub fn compare(args: CompareArgs) -> Result<ExitCode, RunError> {
     let run = RunConfig {
         until: args.until,
         runs: args.runs,
+        plane: args.xy,
         format: Format::Human,
         ..RunConfig::headless(args.scenario, None)
     };

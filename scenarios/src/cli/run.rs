@@ -13,7 +13,7 @@ use onescan_server::signal::{ClientName, SignalName};
 use onescan_server::time::{TimeSpan, VirtualTime};
 
 use super::opcua::AccessArgs;
-use super::value::{FormatArg, client_name, signal_name};
+use super::value::{FormatArg, client_name, plane, signal_name};
 use crate::run::config::SaveRequest;
 use crate::run::coverage::{CoverageFormat, CoverageRequest};
 use crate::run::error::{ExitCode, RunError};
@@ -72,6 +72,9 @@ pub struct RunArgs {
     /// A signal to draw; may be given several times [default: the scenario's choice]
     #[arg(long = "signal", value_name = "NAME", requires = "plot", value_parser = signal_name)]
     pub signals: Vec<SignalName>,
+    /// Draw two signals against each other, across and up, as `x.position,z.position`: the paths of all runs
+    #[arg(long, value_name = "X,Y", requires = "plot", conflicts_with = "signals", value_parser = plane)]
+    pub xy: Option<[SignalName; 2]>,
     /// Write which statements and branches of the soft PLCs were executed, in all runs together
     #[arg(long, value_name = "FILE")]
     pub coverage: Option<PathBuf>,
@@ -237,6 +240,7 @@ fn config(args: RunArgs) -> Result<RunConfig, RunError> {
         format,
         plot: args.plot,
         signals: args.signals,
+        plane: args.xy,
         watch: args.watch,
         watch_changes: args.watch_on == WatchOnArg::Change,
         coverage: args.coverage.map(|path| CoverageRequest::new(path, args.coverage_format.map(Into::into))),

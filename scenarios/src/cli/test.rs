@@ -10,7 +10,7 @@ use onescan_server::time::{TimeSpan, VirtualTime};
 use super::run::CoverageArg;
 use super::value::FormatArg;
 use crate::regress::worker::WorkerConfig;
-use crate::regress::{Policy, TestConfig};
+use crate::regress::{Policy, Selection, TestConfig};
 use crate::review::{Choice, ReviewConfig};
 use crate::run::Format;
 use crate::run::coverage::CoverageRequest;
@@ -26,10 +26,10 @@ pub struct TestArgs {
     /// Only tests whose name, as in `scenarios/shear/default`, has this text in it; may be given several times
     #[arg(short, long = "filter", value_name = "TEXT")]
     pub filters: Vec<String>,
-    /// Only cases with this tag; may be given several times
+    /// Only tests with this tag; may be given several times
     #[arg(long = "tag", value_name = "TAG")]
     pub tags: Vec<String>,
-    /// No cases with this tag; may be given several times
+    /// No tests with this tag; may be given several times
     #[arg(long = "skip-tag", value_name = "TAG")]
     pub skipped_tags: Vec<String>,
     /// How many tests at a time, each in a process of its own [default: as many as there are processors]
@@ -76,9 +76,7 @@ impl TestArgs {
         let format: Format = self.format.into();
         TestConfig {
             paths: self.paths,
-            filters: self.filters,
-            tags: self.tags,
-            skipped_tags: self.skipped_tags,
+            selection: Selection { filters: self.filters, tags: self.tags, skipped_tags: self.skipped_tags },
             jobs: self.jobs.unwrap_or_else(|| std::thread::available_parallelism().unwrap_or(one)),
             policy: match (self.bless, self.check) {
                 (true, _) => Policy::Bless,
@@ -152,6 +150,12 @@ pub struct WorkerArgs {
     /// Their dialect
     #[arg(long)]
     pub dialect: Option<Dialect>,
+    /// With one of these tags
+    #[arg(long = "tag")]
+    pub tags: Vec<String>,
+    /// With none of these
+    #[arg(long = "skip-tag")]
+    pub skipped_tags: Vec<String>,
     /// Note what is executed
     #[arg(long)]
     pub cover: bool,
@@ -162,8 +166,9 @@ pub struct WorkerArgs {
 
 impl WorkerArgs {
     fn config(self) -> WorkerConfig {
-        let Self { scenario, case, sources, scan, until, dialect, cover, draw } = self;
-        WorkerConfig { scenario, case, sources, scan, until, dialect, cover, draw }
+        let Self { scenario, case, sources, scan, until, dialect, tags, skipped_tags, cover, draw } = self;
+        let selection = Selection { tags, skipped_tags, ..Selection::default() };
+        WorkerConfig { scenario, case, sources, scan, until, dialect, selection, cover, draw }
     }
 }
 

@@ -39,3 +39,12 @@ pub fn signal_name(text: &str) -> Result<SignalName, String> {
 pub fn client_name(text: &str) -> Result<ClientName, String> {
     ClientName::new(text).map_err(|error| error.to_string())
 }
+
+/// Two signals, as in `axis.x,axis.z`.
+///
+/// # Errors
+/// Why they are not two names.
+pub fn plane(text: &str) -> Result<[SignalName; 2], String> {
+    let (across, up) = text.split_once(',').ok_or("write two signals with a comma between them")?;
+    Ok([signal_name(across.trim())?, signal_name(up.trim())?])
+}

@@ -103,6 +103,8 @@ pub struct RunConfig {
     pub plot: Option<PathBuf>,
     /// The signals of the plot; the scenario's choice if empty.
     pub signals: Vec<SignalName>,
+    /// Two signals to be drawn against each other in the plot, across and up, in place of all over time.
+    pub plane: Option<[SignalName; 2]>,
     /// A coverage report to write.
     pub coverage: Option<CoverageRequest>,
     /// File for a page about all runs.
@@ -151,6 +153,7 @@ impl RunConfig {
             format: Format::Json,
             plot: None,
             signals: Vec::new(),
+            plane: None,
             coverage: None,
             html: None,
             watch: Vec::new(),
@@ -187,9 +190,20 @@ impl RunConfig {
         if chosen.is_empty() { scenario.file().signals.keys().cloned().collect() } else { chosen }
     }
 
+    /// The signals that are sampled: those of the plot and of its plane.
+    pub(super) fn sampled(&self, scenario: &Scenario) -> Vec<SignalName> {
+        let mut names = self.plotted(scenario);
+        for name in self.plane.iter().flatten() {
+            if !names.contains(name) {
+                names.push(name.clone());
+            }
+        }
+        names
+    }
+
     /// Refuses options that contradict each other or the scenario, before anything has begun.
     pub(super) fn check(&self, scenario: &Scenario) -> Result<(), RunError> {
-        for signal in &self.signals {
+        for signal in self.signals.iter().chain(self.plane.iter().flatten()) {
             if !scenario.file().signals.contains_key(signal) {
                 let known = scenario.file().signals.keys().map(SignalName::as_str);
                 let help = did_you_mean(signal.as_str(), known);

@@ -5,7 +5,6 @@ use std::net::{Ipv4Addr, SocketAddr};
 use onescan_server::checkpoint::Checkpoint;
 use onescan_server::client::Client;
 use onescan_server::formation::{Formation, FormationError};
-use onescan_server::join::JoinRefusal;
 use onescan_server::lockstep::{Lockstep, Outcome, Reached};
 use onescan_server::operation::OperatorInput;
 use onescan_server::record::event;
@@ -78,7 +77,6 @@ fn form(
 ) -> Result<Formed, RunError> {
     let mut formation = Formation::new(scenario.plan().clone());
     let (mut remote, mut seats) = (Vec::new(), Seats::default());
-    let refused = |name: &ClientName, refusal: JoinRefusal| scenario.wrong_client(name, refusal.to_string(), None);
     for name in scenario.plan().clients() {
         // Also a client that will run in its own process is made here: its faults are found at once.
         match (scenario.member(name)?, config.transport) {
@@ -89,8 +87,9 @@ fn form(
                 seats.add(client.join(), Vec::new());
             }
             (Member::Gateway(client), _) | (Member::Plant(client) | Member::Plc(client), Transport::Inproc) => {
+                let request = client.join();
                 let client = if config.is_watched() { log.watch(client) } else { client };
-                formation.join(client).map_err(|refusal| refused(name, refusal))?;
+                formation.join(client).map_err(|refusal| scenario.refused(&request, &refusal))?;
             }
             (Member::Plant(_) | Member::Plc(_), Transport::Tcp) => remote.push((name, None)),
             (Member::External(command), _) => remote.push((name, Some(command))),
@@ -99,10 +98,10 @@ fn form(
     let desk = seats.open(config, scenario.plan(), interrupt)?;
     if let Some(desk) = &desk {
         for client in desk.clients(config.reply_timeout) {
-            let name = client.join().name;
+            let request = client.join();
             let client: Box<dyn Client> = Box::new(client);
             let client = if config.is_watched() { log.watch(client) } else { client };
-            formation.join(client).map_err(|refusal| refused(&name, refusal))?;
+            formation.join(client).map_err(|refusal| scenario.refused(&request, &refusal))?;
         }
         desk.start(scenario.folder(), processes)?;
     }
