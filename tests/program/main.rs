@@ -26,6 +26,7 @@ mod plc_ads;
 mod plc_faults;
 mod plc_peers;
 mod plc_untrusted;
+mod plcopen_schema;
 mod python;
 mod recording;
 mod regression;

@@ -29,8 +29,8 @@ pub(super) struct Matched<'e> {
 /// An output that the caller wants.
 pub(super) struct Wanted<'e> {
     pub(super) variable: Variable,
-    negated: bool,
-    target: &'e ast::Expr,
+    pub(super) negated: bool,
+    pub(super) target: &'e ast::Expr,
 }
 
 impl Body<'_, '_> {
@@ -284,6 +284,11 @@ impl Body<'_, '_> {
             sound &= argument.is_some();
             arguments.extend(argument);
         }
+        for output in scope.outputs().filter(|output| self.is_open(output.ty)).collect::<Vec<_>>() {
+            let argument = self.open_output(output, &matched, &mut passing, span);
+            sound &= argument.is_some();
+            arguments.extend(argument);
+        }
         let outputs =
             self.outputs(&matched.outputs, |variable, span| Place::whole(variable.storage, variable.ty, span));
         let mut after = passing.after;
@@ -308,6 +313,10 @@ impl Body<'_, '_> {
     ) -> Option<Vec<Statement>> {
         let mut statements = Vec::new();
         let mut sound = true;
+        // An array without bounds is the target itself.
+        let copied =
+            |wanted: &&Wanted<'_>| !matches!(self.checker.types.get(wanted.variable.ty), Type::OpenArray { .. });
+        let wanted: Vec<_> = wanted.iter().filter(copied).collect();
         for Wanted { variable, negated, target } in wanted {
             let target_place = match self.new_wire(target) {
                 Some(name) => self.wire(name, variable.ty, target.span),

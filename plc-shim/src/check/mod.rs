@@ -5,16 +5,17 @@
 //! | [`names`] | what the files declare, by name |
 //! | [`layout`] | offsets in memory |
 //! | [`scope`] | what a name means inside a unit |
-//! | [`types`], [`subrange`], [`union`] | types as written to types |
+//! | [`types`], [`subrange`], [`structure`], [`union`] | types as written to types |
 //! | [`variables`], [`storage`], [`instance_section`] | sections to placed variables, units' interfaces |
 //! | [`located`] | direct addresses to places |
 //! | [`initial`] | initial values to bytes |
 //! | [`start`], [`fb_init`], [`instance_arguments`] | what runs before the first scan |
 //! | [`constant`] | constant expressions to values |
 //! | [`convert`], [`enumeration`] | implicit conversions, constants in context |
-//! | [`expression`], [`operator`], [`calendar`], [`place`], [`part`] | expressions |
+//! | [`expression`], [`operator`], [`calendar`], [`dtl`], [`place`], [`part`] | expressions |
 //! | [`reference`], [`address`], [`referred`] | references and pointers |
 //! | [`open_array`] | arrays that come with their bounds |
+//! | [`any_input`] | inputs of generic types |
 //! | [`call`], [`argument`], [`instance_call`], [`standard_function`], [`function_form`], [`conversion_function`], [`memory_function`] | calls |
 //! | [`enable`], [`enable_error`] | EN and ENO |
 //! | [`text`], [`text_function`], [`text_conversion`] | character strings |
@@ -32,6 +33,7 @@
 //! and needed again contains itself.
 
 mod address;
+mod any_input;
 mod argument;
 pub(crate) mod asserts;
 mod assignment;
@@ -46,6 +48,7 @@ mod conversion_function;
 mod convert;
 mod dialect;
 mod dispatch;
+mod dtl;
 mod edge;
 mod enable;
 mod enable_error;
@@ -81,6 +84,7 @@ mod standard_function;
 mod start;
 mod statement;
 mod storage;
+mod structure;
 mod subrange;
 mod text;
 mod text_conversion;
@@ -107,6 +111,7 @@ use crate::syntax::ast::CompilationUnit;
 use crate::syntax::direct_address::AddressUnit;
 use crate::syntax::{FileId, Span};
 
+pub(crate) use instance_section::Kept;
 pub(crate) use layout::{CALL_DEPTH_OFFSET, INIT_RETAINS_OFFSET, VIRTUAL_TIME_NAME, VIRTUAL_TIME_OFFSET};
 pub(crate) use standard_function::exists as is_standard_function;
 
@@ -118,6 +123,8 @@ pub(crate) struct Checked {
     pub(crate) pous: BTreeMap<PouId, Pou>,
     /// The variables of every unit that has been declared, whether it runs or not.
     pub(crate) interfaces: BTreeMap<PouId, Vec<Variable>>,
+    /// What methods of units keep in the instance.
+    pub(crate) kept: BTreeMap<PouId, Vec<Kept>>,
     /// The global variables that belong to no resource.
     pub(crate) globals: Vec<Variable>,
     pub(crate) programs: Vec<Program>,
@@ -167,6 +174,7 @@ pub(crate) fn check(units: &[(FileId, &CompilationUnit)], library: &BTreeSet<Fil
         .filter_map(|(index, entry)| Some((PouId(index as u32), entry.scope.as_ref()?.variables.clone())));
     let result = Checked {
         interfaces: interfaces.collect(),
+        kept: checker.kept_by_methods(),
         types: checker.types,
         pous: checker.checked,
         globals,
@@ -236,6 +244,8 @@ struct Checker<'a> {
     calls: BTreeMap<PouId, Vec<(PouId, Span)>>,
     /// Who may be called in ways that only a run decides.
     dynamic_calls: BTreeMap<PouId, BTreeSet<PouId>>,
+    /// What inputs of generic types are inside of their units.
+    generics: BTreeMap<TypeId, any_input::Generic>,
     rows: Rows,
     depth: u32,
     chart_parts: Vec<(Span, String)>,

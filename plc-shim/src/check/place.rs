@@ -5,7 +5,7 @@ use super::expression::enumeration_value;
 use super::scope::Body;
 use crate::diagnostic::{Code, Diagnostic, did_you_mean};
 use crate::dialect::Feature;
-use crate::ir::{Dimension, ElementaryType, Expr, ExprKind, Place, Step, Storage, Type, TypeId, Variable};
+use crate::ir::{Dimension, ElementaryType, Expr, ExprKind, Part, Place, Step, Storage, Type, TypeId, Variable};
 use crate::syntax::Span;
 use crate::syntax::ast::{self, Ident, ReferenceKind, SectionKind};
 
@@ -247,7 +247,8 @@ impl Body<'_, '_> {
                     let names: Vec<_> = fields.iter().map(|field| field.name.as_str()).collect();
                     return self.report_unknown_member(base.place.ty, name, &names);
                 };
-                let place = Place { span, ..base.place.member(field.offset, field.ty) };
+                let place = base.place.member(field.offset, field.ty);
+                let place = Place { span, part: field.bit.map(Part::bit), ..place };
                 Some(Located { place, access: base.access })
             }
             Type::FunctionBlock { pou, .. } => self.instance_member(base, pou, name, span),

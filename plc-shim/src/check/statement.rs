@@ -74,6 +74,8 @@ impl Body<'_, '_> {
             let fleeting = match variable.section {
                 SectionKind::Temp => true,
                 SectionKind::External | SectionKind::Global | SectionKind::Static | SectionKind::Instance => false,
+                // What the caller gives has its values already.
+                SectionKind::Output if self.is_open(variable.ty) => false,
                 _ => kind.keeps_nothing(),
             };
             if fleeting {
@@ -328,9 +330,7 @@ impl Body<'_, '_> {
     }
 
     fn for_statement(&mut self, inner: &ast::ForStatement) -> Option<StatementKind> {
-        let name =
-            ast::Expr { kind: ast::ExprKind::Name(inner.variable.clone()), span: inner.variable.span, height: 1 };
-        let variable = self.target(&name).and_then(|place| self.control_variable(place));
+        let variable = self.target(&inner.variable).and_then(|place| self.control_variable(place));
         let header = variable.and_then(|(place, ty)| {
             let from = self.expression_of(&inner.from, ty);
             let to = self.expression_of(&inner.to, ty);

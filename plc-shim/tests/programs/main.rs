@@ -1,5 +1,6 @@
 //! Programs in, traces out: the whole way from text to a scanning PLC.
 
+mod any_inputs;
 mod bit_strings;
 mod configurations;
 mod conversions;
@@ -7,8 +8,10 @@ mod coverage;
 mod dates;
 mod depth;
 mod diagnostics;
+mod diagram;
 mod dialects;
 mod direct_addresses;
+mod dtl;
 mod expressions;
 mod faults;
 mod fbd;
@@ -30,6 +33,7 @@ mod plcopen;
 mod random_programs;
 mod recovery;
 mod references;
+mod relative_addresses;
 mod restarts;
 mod rig;
 mod robustness;

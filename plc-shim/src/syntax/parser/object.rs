@@ -303,7 +303,7 @@ impl Cursor<'_> {
         let start = self.span();
         self.advance();
         let base = self.extended_structure();
-        let kind = self.nested(Self::struct_type).unwrap_or(TypeSpecKind::Error);
+        let kind = self.nested(Self::structure_type).unwrap_or(TypeSpecKind::Error);
         (TypeSpec { kind, span: self.span_from(start) }, base)
     }
 

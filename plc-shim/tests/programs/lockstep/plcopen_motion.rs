@@ -5,7 +5,7 @@ use crate::plcopen::{block, coil, contact, input, output, pou, project, rail};
 use crate::rig::task;
 
 /// An axis that is powered in a ladder diagram and moved in a function block diagram.
-fn drive() -> String {
+pub(super) fn drive() -> String {
     let ld = rail(1)
         + &contact(2, (0, 0), "1", "i", "")
         + &block(3, (50, 0), "MC_Power power", "Enable=2", "Status", "").replace(

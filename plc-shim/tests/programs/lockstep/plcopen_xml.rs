@@ -17,7 +17,7 @@ pub(super) fn text(project: &Project) -> String {
 }
 
 /// Programs in every language, each with a timer.
-fn line() -> String {
+pub(super) fn line() -> String {
     let sections = "local go : BOOL, delay : TON, done : BOOL, n : INT";
     let st = "delay(IN := go, PT := T#30ms);\nIF NOT delay.Q THEN\n    RETURN;\nEND_IF;\ndone := delay.Q AND n &lt; 30000;\nn := n + 1;";
     let fbd = [

@@ -8,3 +8,4 @@ mod interpret;
 mod plcopen;
 mod random;
 mod running;
+mod timing;
