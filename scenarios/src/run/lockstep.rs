@@ -69,7 +69,8 @@ fn form(
         // Also a client that will run in its own process is made here: its faults are found at once.
         match (scenario.member(name)?, config.transport) {
             (Member::Gateway(client), _) | (Member::Plant(client) | Member::Plc(client), Transport::Inproc) => {
-                let refused = |refusal: JoinRefusal| scenario.wrong_client(name, refusal.to_string(), None);
+                let request = client.join();
+                let refused = |refusal: JoinRefusal| scenario.refused(&request, &refusal);
                 let client = if config.is_watched() { log.watch(client) } else { client };
                 formation.join(client).map_err(refused)?;
             }
