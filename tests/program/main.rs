@@ -23,6 +23,7 @@ mod opcua;
 mod operator;
 mod plant;
 mod plc;
+mod plc_ads;
 mod plc_equal;
 mod plc_faults;
 mod plc_peers;

@@ -65,6 +65,11 @@ fn the_shear_over_opc_ua() {
 }
 
 #[test]
+fn the_shear_over_ads() {
+    every_run_is_that_in_one_process("shear", &SHEAR, "ads://");
+}
+
+#[test]
 fn the_gantry_robot_over_raw_tcp() {
     every_run_is_that_in_one_process("gantry-robot", &ROBOT, "tcp://");
 }
@@ -79,12 +84,17 @@ fn the_gantry_robot_over_opc_ua() {
     every_run_is_that_in_one_process("gantry-robot", &ROBOT, "opc.tcp://");
 }
 
+#[test]
+fn the_gantry_robot_over_ads() {
+    every_run_is_that_in_one_process("gantry-robot", &ROBOT, "ads://");
+}
+
 /// The same processes and link without the handshake: no two runs are equal, and none is that in lockstep.
 fn without_the_handshake_runs_differ(scenario: &str, until: &str) {
     let folder = prepared(scenario);
     let plc = Plc::start(folder.path(), &["--mode", "freewheel"]);
     let lockstep = run(folder.path(), until, &[]).0;
-    for scheme in ["tcp://", "modbus://", "opc.tcp://"] {
+    for scheme in ["tcp://", "modbus://", "opc.tcp://", "ads://"] {
         let gateway = plc.gateway(scheme);
         let words = ["--mode", "freewheel", "--runs", "2", "--gateway", &gateway];
         let (mut all, said) = run(folder.path(), until, &words);
