@@ -32,7 +32,7 @@ pub fn components(args: &ComponentsArgs) -> Result<ExitCode, RunError> {
 /// Options of `describe`.
 #[derive(Debug, ClapArgs)]
 pub struct DescribeArgs {
-    /// The scene, a `plant.toml`
+    /// The scene, a `plant.toml`; or a scenario, for the scenes of its plants
     pub scene: PathBuf,
     /// For people, or JSON for machines
     #[arg(long, value_enum, default_value_t)]

@@ -71,7 +71,7 @@ pub fn export(args: ExportArgs) -> Result<ExitCode, RunError> {
 /// Options of `diff`.
 #[derive(Debug, ClapArgs)]
 pub struct DiffArgs {
-    /// A recording: a folder with a `recording.json`, or with one such folder in it
+    /// A recording: a folder with a `recording.json`, or with one such folder in it; or a snapshot
     pub a: PathBuf,
     /// Another
     pub b: PathBuf,

@@ -19,7 +19,7 @@ const EXPLAINED: usize = 4;
 /// Decisions around a statement that are told to people, the innermost.
 const WITHIN: usize = 3;
 /// What the two recordings are called.
-const NAMES: [&str; 2] = ["A", "B"];
+pub(super) const NAMES: [&str; 2] = ["A", "B"];
 
 /// All that was found.
 #[derive(Debug)]
@@ -268,7 +268,7 @@ fn json_parting(Parting { client, at, ways: [a, b] }: &Parting) -> Value {
 }
 
 /// Columns as wide as their widest cell.
-fn table(rows: &[Vec<String>], out: &mut dyn Write) -> io::Result<()> {
+pub(super) fn table(rows: &[Vec<String>], out: &mut dyn Write) -> io::Result<()> {
     let columns = rows.iter().map(Vec::len).max().unwrap_or(0);
     let width = |column: usize| rows.iter().filter_map(|row| row.get(column)).map(|cell| cell.chars().count()).max();
     let widths: Vec<usize> = (0..columns).map(|column| width(column).unwrap_or(0)).collect();
