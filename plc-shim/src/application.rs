@@ -11,6 +11,7 @@ mod room;
 mod root;
 mod value;
 mod variable;
+mod vendor_library;
 
 use std::collections::BTreeSet;
 use std::ops::Range;

@@ -125,6 +125,7 @@ codes! {
     NotAReference "R0905" "a reference is wanted",
     PointerOfOtherType "R0906" "a pointer is made of one to another type",
     OpenArray "R0907" "an array without bounds stands where it may not",
+    SharedBytes "R0908" "members of a structure lie on the same bytes",
     MixedBody "Q1201" "statements stand beside the steps of a chart",
     MisplacedChart "Q1202" "a chart stands where no step can be kept",
     InitialStep "Q1203" "a network of a chart has not exactly one initial step",

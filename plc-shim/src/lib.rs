@@ -46,4 +46,6 @@ pub use diagnostic::{Code, Diagnostic, Diagnostics, Finding, Severity};
 pub use dialect::Dialect;
 pub use input::Input;
 pub use ir::elementary::ElementaryType;
-pub use run::{FaultSite, PlcFault, RestoreError, RunError, SoftPlc, Task, TaskPlan, VirtualTime, WriteSite};
+pub use run::{
+    FaultSite, PlcFault, RestoreError, RunError, SoftPlc, Task, TaskPlan, VirtualTime, Way, WayId, WriteSite,
+};

@@ -35,6 +35,27 @@ fn a_small_picture() {
 }
 
 #[test]
+fn a_small_plane() {
+    let circle = |radius: f64| {
+        let places = [(1.0, 0.0), (0.7, 0.7), (0.0, 1.0), (-0.7, 0.7), (-1.0, 0.0), (f64::NAN, 0.0), (0.0, -1.0)];
+        let (x, z): (Vec<f64>, Vec<f64>) = places.map(|(x, z)| (radius * x, radius * z)).into_iter().unzip();
+        [every_ms(x), every_ms(z)]
+    };
+    let [[x, z], [wider_x, wider_z]] = [circle(1.0), circle(1.5)];
+    let plane = Plot {
+        title: "Tool".to_owned(),
+        runs: vec!["first".to_owned(), "second".to_owned()],
+        panels: vec![
+            panel("tool.x", Some("m"), Shape::Line, vec![x, wider_x]),
+            panel("tool.z", Some("m"), Shape::Line, vec![z, wider_z]),
+        ],
+        marks: Vec::new(),
+    };
+    insta::assert_snapshot!(plane.to_plane_svg().expect("two signals"));
+    assert_eq!(Plot { panels: Vec::new(), ..plane }.to_plane_svg(), None);
+}
+
+#[test]
 fn nothing_to_draw_is_a_picture_too() {
     insta::assert_snapshot!(
         Plot { title: String::new(), runs: Vec::new(), panels: Vec::new(), marks: Vec::new() }.to_svg()
@@ -122,12 +143,15 @@ proptest! {
     fn any_data_make_a_picture(plot in any_plot()) {
         let svg = plot.to_svg();
         prop_assert_eq!(&svg, &plot.clone().to_svg());
-        prop_assert!(svg.starts_with("<svg ") && svg.ends_with("</svg>\n"));
-        prop_assert_eq!(svg.matches("<g ").count(), svg.matches("</g>").count());
-        prop_assert!(!svg.chars().any(|c| c < ' ' && c != '\n'), "a control character is not XML");
-        for data in svg.split(" d=\"").skip(1).filter_map(|rest| rest.split('"').next()) {
-            prop_assert!(data.chars().all(|c| "Mhvl-. ".contains(c) || c.is_ascii_digit()), "{}", data);
-            prop_assert!(numbers(data).all(|number| number < 10_000.0), "{}", data);
+        prop_assert_eq!(plot.to_plane_svg().is_some(), plot.panels.len() >= 2);
+        for svg in std::iter::once(svg).chain(plot.to_plane_svg()) {
+            prop_assert!(svg.starts_with("<svg ") && svg.ends_with("</svg>\n"));
+            prop_assert_eq!(svg.matches("<g ").count(), svg.matches("</g>").count());
+            prop_assert!(!svg.chars().any(|c| c < ' ' && c != '\n'), "a control character is not XML");
+            for data in svg.split(" d=\"").skip(1).filter_map(|rest| rest.split('"').next()) {
+                prop_assert!(data.chars().all(|c| "Mhvl-. ".contains(c) || c.is_ascii_digit()), "{}", data);
+                prop_assert!(numbers(data).all(|number| number < 10_000.0), "{}", data);
+            }
         }
     }
 }

@@ -1,5 +1,6 @@
 //! Steps a second of a session with 1,000 signals at 1 kHz, recorded, beside the same session
-//! without; and how much memory the process has while it records.
+//! without; the time of processors that a step costs, which another load of the machine hardly
+//! changes; and how much memory the process has while it records.
 //!
 //! `cargo bench -p onescan-server --bench recording`; with `-- --steps 10000000` one long run, to see
 //! that memory stays flat.
@@ -95,8 +96,29 @@ fn session(groups: &[Group]) -> Lockstep {
     formation.start().expect("all have joined")
 }
 
-/// Time of `steps` steps, up to the last byte of the recording if there is one.
-fn timed(groups: &[Group], steps: u64, record: Option<Choice>) -> Duration {
+/// What some steps take.
+#[derive(Clone, Copy, Debug)]
+struct Cost {
+    /// By the clock, up to the last byte of the recording if there is one.
+    wall: Duration,
+    /// Time of processors of the session's thread, where the system tells it.
+    session: Option<Duration>,
+    /// The same of all threads.
+    all: Option<Duration>,
+}
+
+/// Time of processors that the process or thread behind `path` of procfs has had, as `stat` counts
+/// it: in hundredths of a second.
+fn processors(path: &str) -> Option<Duration> {
+    let stat = std::fs::read_to_string(path).ok()?;
+    // The name, in parentheses, may hold blanks; behind it user time is the 12th field, system time the 13th.
+    let mut fields = stat.rsplit_once(')')?.1.split_whitespace().skip(11).map(str::parse::<u64>);
+    let (user, system) = (fields.next()?.ok()?, fields.next()?.ok()?);
+    Some(Duration::from_millis(10 * (user + system)))
+}
+
+/// Runs `steps` steps.
+fn timed(groups: &[Group], steps: u64, record: Option<Choice>) -> Cost {
     let folder = tempfile::tempdir().expect("a folder");
     let mut lockstep = session(groups);
     lockstep.set_until(Some(VirtualTime::from_nanos(steps * 1_000_000)));
@@ -113,9 +135,12 @@ fn timed(groups: &[Group], steps: u64, record: Option<Choice>) -> Duration {
         };
         lockstep.observe(Box::new(Recorder::new(folder.path(), provenance, choice)));
     }
-    let started = Instant::now();
+    let used = || (processors("/proc/thread-self/stat"), processors("/proc/self/stat"));
+    let (started, before) = (Instant::now(), used());
     lockstep.run().expect("it can be recorded");
-    started.elapsed()
+    let (wall, after) = (started.elapsed(), used());
+    let between = |(before, after): (Option<Duration>, Option<Duration>)| after?.checked_sub(before?);
+    Cost { wall, session: between((before.0, after.0)), all: between((before.1, after.1)) }
 }
 
 /// Resident memory in MiB, where the system tells it.
@@ -138,17 +163,29 @@ fn compare(name: &str, groups: &[Group], steps: u64) {
         ("Parquet and CSV", Choice { csv: true, ..Choice::default() }),
     ];
     // In turns, so that what else the machine does meets all alike.
-    let mut times = vec![Vec::new(); forms.len() + 1];
+    let mut costs = vec![Vec::new(); forms.len() + 1];
     for _ in 0..5 {
-        times[0].push(timed(groups, steps, None).as_secs_f64());
-        for (times, (_, choice)) in times[1..].iter_mut().zip(&forms) {
-            times.push(timed(groups, steps, Some(choice.clone())).as_secs_f64());
+        costs[0].push(timed(groups, steps, None));
+        for (costs, (_, choice)) in costs[1..].iter_mut().zip(&forms) {
+            costs.push(timed(groups, steps, Some(choice.clone())));
         }
     }
-    let medians: Vec<f64> = times.into_iter().map(median).collect();
-    println!("{name}: {:.0} steps/s unrecorded", steps as f64 / medians[0]);
-    for ((form, _), time) in forms.iter().zip(&medians[1..]) {
-        println!("  {form:18} {:>9.0} steps/s  {:5.1} %", steps as f64 / time, 100.0 * medians[0] / time);
+    let of = |costs: &[Cost], part: fn(&Cost) -> Option<Duration>| {
+        let parts: Option<Vec<f64>> = costs.iter().map(|cost| part(cost).map(|part| part.as_secs_f64())).collect();
+        parts.map(median)
+    };
+    let walls: Vec<f64> = costs.iter().filter_map(|costs| of(costs, |cost| Some(cost.wall))).collect();
+    let per_step = |costs: &[Cost], part| of(costs, part).map_or(f64::NAN, |time| time / steps as f64 * 1e6);
+    println!("{name}: a step's time of processors is that of the session's thread, and of all threads");
+    let names = std::iter::once("unrecorded").chain(forms.iter().map(|(form, _)| *form));
+    for ((form, costs), wall) in names.zip(&costs).zip(&walls) {
+        println!(
+            "  {form:18} {:>9.0} steps/s  {:5.1} %   {:6.2} µs  {:6.2} µs",
+            steps as f64 / wall,
+            100.0 * walls[0] / wall,
+            per_step(costs, |cost| cost.session),
+            per_step(costs, |cost| cost.all)
+        );
     }
 }
 
@@ -165,7 +202,7 @@ fn memory(steps: u64) {
                 std::thread::sleep(Duration::from_secs(2));
             }
         });
-        let time = timed(&MACHINE, steps, Some(Choice::default()));
+        let time = timed(&MACHINE, steps, Some(Choice::default())).wall;
         done.store(true, std::sync::atomic::Ordering::Relaxed);
         println!(
             "{steps} steps recorded in {:.1} s, {:.0} steps/s",

@@ -46,6 +46,81 @@ fn the_statement_that_differs_is_named() {
     }
 }
 
+/// The statement is the same in both, and runs in one only: what differs is the condition around it.
+#[test]
+fn the_decision_that_differs_is_named() {
+    const STATEMENT: &str = "Actuator_1_Down := ixDown AND Position_1 > LowerLimit;";
+    const BRANCHES: &str = "Actuator_1_Down := FALSE;
+    IF Strokes > 0 (* the first is for looking *) THEN
+        IF ixDown AND Position_1 > LowerLimit THEN
+            Actuator_1_Down := TRUE;
+        END_IF;
+    END_IF;";
+    let folder = copied_shear();
+    edit(folder.path(), "plc/shear.st", STATEMENT, BRANCHES);
+    record(folder.path(), "a", "3s");
+    edit(folder.path(), "plc/shear.st", "IF Strokes > 0 (*", "IF Strokes >= 0 (*");
+    record(folder.path(), "b", "3s");
+    edit(folder.path(), "plc/shear.st", "IF Strokes >= 0 (*", "IF Strokes > 1 (*");
+    record(folder.path(), "c", "3s");
+    let said = typed(folder.path(), &["diff", "a", "b"]);
+    assert_eq!(said.code, Some(0), "a stroke is counted when it begins: {said:?}");
+    let said = typed(folder.path(), &["diff", "a", "c"]);
+    assert_eq!(said.code, Some(1), "{said:?}");
+    let name = folder.path().file_name().unwrap().to_string_lossy().into_owned();
+    insta::assert_snapshot!(said.out.replace(&name, "shear"));
+    let said = typed(folder.path(), &["diff", "a", "c", "--format", "json"]);
+    let found: serde_json::Value = serde_json::from_str(&said.out).unwrap();
+    let parting = &found["partings"][0];
+    assert_eq!((&parting["a"]["question"], &parting["a"]["answer"]), (&"IF Strokes > 0".into(), &"THEN".into()));
+    assert_eq!((&parting["b"]["question"], &parting["b"]["answer"]), (&"IF Strokes > 1".into(), &"ELSE".into()));
+    assert_eq!(parting["t_v_ns"], found["t_v_ns"], "the way differs in the scan in which the signal does");
+}
+
+/// The snapshot that was reviewed and the one that waits.
+#[test]
+fn snapshots_are_compared() {
+    let folder = copied_shear();
+    edit(folder.path(), "plc/shear.st", "Position_1 > LowerLimit", "Position_1 >= LowerLimit");
+    assert_eq!(typed(folder.path(), &["test", "."]).code, Some(1));
+    let [old, new] = ["snapshots/on-the-limit.traj", "snapshots/on-the-limit.traj.new"];
+    let said = typed(folder.path(), &["diff", old, new]);
+    assert_eq!(said.code, Some(1), "{said:?}");
+    // The new one has the name of the copy's folder.
+    let name = folder.path().file_name().unwrap().to_string_lossy().into_owned();
+    insta::assert_snapshot!(said.out.replace(&name, "shear"));
+    let json = |words: &[&str]| -> serde_json::Value {
+        serde_json::from_str(&typed(folder.path(), &[&["diff", old, new, "--format", "json"], words].concat()).out)
+            .unwrap()
+    };
+    let found = json(&[]);
+    assert_eq!(
+        (&found["t_v_ns"], &found["differences"][0]["signal"]),
+        (&860_000_000.into(), &"Actuator_1_Down".into())
+    );
+    assert_eq!(json(&["--signals", "Strokes"])["equal"], true);
+    let since = json(&["--since", "1s", "--signals", "Position_1"]);
+    assert!(since["t_v_ns"].as_u64().is_none_or(|at| at >= 1_000_000_000), "{since}");
+    let said = typed(folder.path(), &["diff", old, old]);
+    assert_eq!((said.code, said.out.lines().last()), (Some(0), Some("no difference")));
+    let said = typed(folder.path(), &["diff", old, "snapshots"]);
+    assert!(said.code == Some(2) && said.err.contains("compare two recordings"), "{said:?}");
+    let said = typed(folder.path(), &["diff", old, "scenario.toml"]);
+    assert!(said.code == Some(2) && said.err.contains("scenario.toml: line 1"), "{said:?}");
+}
+
+/// Decisions are known again when others come and go around them.
+#[test]
+fn a_decision_that_is_new_does_not_count() {
+    let folder = copied_shear();
+    record(folder.path(), "a", "3s");
+    edit(folder.path(), "plc/shear.st", OWN, &format!("IF Strokes < 0 THEN RETURN; END_IF;\n{OWN}"));
+    edit(folder.path(), "plc/shear.st", OWN, OTHER);
+    record(folder.path(), "b", "3s");
+    let said = typed(folder.path(), &["diff", "a", "b"]);
+    assert!(said.out.contains("Strokes > 1") && !said.out.contains("goes another way"), "{said:?}");
+}
+
 #[test]
 fn a_change_that_alters_nothing_is_no_difference() {
     let folder = recorded(["3s", "3s"], |folder| edit(folder, "plc/shear.st", BEFORE, AFTER));

@@ -97,6 +97,23 @@ fn free_wheeling_runs_differ() {
     assert!(distinct.len() > 1, "three equal runs without lockstep");
 }
 
+/// Figs. 14 and 15: the path of the tool in the plane.
+#[test]
+fn its_path_is_drawn_in_the_plane() {
+    let folder = tempfile::tempdir().unwrap();
+    let plot = folder.path().join("path.svg");
+    let words = ["--until", "12s", "--runs", "2", "--xy", "X_Position,Z_Position", "--plot", plot.to_str().unwrap()];
+    let (reports, code) = run(&words);
+    assert_eq!((reports.len(), code), (2, Some(0)));
+    let svg = std::fs::read_to_string(&plot).unwrap();
+    assert!(svg.contains("<desc>Z_Position (m) over X_Position (m). Runs: run 1, run 2.</desc>"), "{svg}");
+    assert!(!svg.contains("time (s)"), "it is over no time");
+    let said = typed(&scenario("gantry-robot"), &["run", ".", "--xy", "X_Position,Z_Postion", "--plot", "no.svg"]);
+    assert!(said.code == Some(2) && said.err.contains("`Z_Position`"), "{said:?}");
+    let said = typed(&scenario("gantry-robot"), &["run", ".", "--xy", "X_Position", "--plot", "no.svg"]);
+    assert!(said.code == Some(2) && said.err.contains("two signals with a comma"), "{said:?}");
+}
+
 /// Its motion control can be taken over as a whole, for any PLC.
 #[test]
 fn it_is_instrumented_with_nothing_left() {

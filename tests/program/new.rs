@@ -62,3 +62,25 @@ fn what_the_readme_tells_to_try_can_be_tried() {
     let said = typed(folder.path(), &["run", "my-cell"]);
     assert!(said.code == Some(1) && said.out.contains("`boxes are pushed off` violated"), "{said:?}");
 }
+
+/// A sensor more, as the cell's README tells: the error names the line to write, and with it the run is green.
+#[test]
+fn a_sensor_is_added_by_what_the_program_says() {
+    let folder = tempfile::tempdir().unwrap();
+    typed(folder.path(), &["new", "my-cell"]);
+    let file = |name: &str| folder.path().join("my-cell").join(name);
+    let text = std::fs::read_to_string(file("plant.toml")).unwrap();
+    let barrier = text.split("[[component]]").find(|part| part.contains("name = \"barrier\"")).expect("it has one");
+    let another = barrier.replace("\"barrier\"", "\"end\"").replace("Box_There", "Box_At_End").replace("0.36,", "0.9,");
+    std::fs::write(file("plant.toml"), format!("{text}\n[[component]]{another}")).unwrap();
+    let said = typed(folder.path(), &["run", "my-cell"]);
+    assert_eq!(said.code, Some(2), "{said:?}");
+    insta::assert_snapshot!("a_signal_that_is_not_declared", said.err);
+    let line = said.err.split_once("under [signals]:").expect("a help").1;
+    let line = line.lines().map(str::trim).collect::<Vec<_>>().join(" ");
+    let text = std::fs::read_to_string(file("scenario.toml")).unwrap();
+    std::fs::write(file("scenario.toml"), text.replace("[signals]\n", &format!("[signals]\n{}\n", line.trim())))
+        .unwrap();
+    let said = typed(folder.path(), &["run", "my-cell", "--signal", "Box_At_End", "--plot", "end.svg"]);
+    assert_eq!((said.code, said.err.as_str()), (Some(0), ""), "{said:?}");
+}

@@ -73,6 +73,15 @@ fn a_scene_is_told_as_a_tree() {
 }
 
 #[test]
+fn a_scenario_is_described_by_its_scenes() {
+    let shear = scenario("shear");
+    let (by_file, by_folder) = (typed(&shear, &["describe", "plant.toml"]), typed(&shear, &["describe", "."]));
+    assert_eq!((by_folder.code, by_folder.out), (Some(0), by_file.out));
+    let said = typed(&shear, &["describe", "plnat.toml"]);
+    assert!(said.code == Some(2) && said.err.contains("the folder of its scenario"), "{said:?}");
+}
+
+#[test]
 fn a_wrong_scene_is_shown_where_it_is_wrong() {
     let folder = tempfile::tempdir().expect("a folder");
     std::fs::write(folder.path().join("cell.toml"), CELL.replace("valve =", "valves =")).expect("written");

@@ -2,33 +2,11 @@
 //! people. Each free-wheels, and the digest is that of the soft PLC in this process.
 
 use std::io::{BufRead, BufReader};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::process::{Child, Command, Stdio};
-use std::sync::OnceLock;
 
 use crate::typed::{copied_shear, digests, edit, run_shear, typed};
-
-/// A Python with the packages of the peers, made once a build folder.
-fn python() -> &'static PathBuf {
-    static PYTHON: OnceLock<PathBuf> = OnceLock::new();
-    PYTHON.get_or_init(|| {
-        let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("peers");
-        let python = folder.join("bin/python");
-        let is_whole = || {
-            let words = ["-c", "import asyncua, pymodbus, snap7"];
-            Command::new(&python).args(words).stderr(Stdio::null()).status().is_ok_and(|status| status.success())
-        };
-        if !is_whole() {
-            let made = Command::new("python3").args(["-m", "venv"]).arg(&folder).status();
-            assert!(made.expect("python3 is on the machine").success());
-            let packages = ["asyncua==2.1.0", "pymodbus==3.16.1", "python-snap7==3.3.0"];
-            let pip = Command::new(&python).args(["-m", "pip", "install", "--quiet"]).args(packages).output();
-            let pip = pip.expect("it has pip");
-            assert!(pip.status.success(), "{}", String::from_utf8_lossy(&pip.stderr));
-        }
-        python
-    })
-}
+use crate::venv::python;
 
 /// A peer that runs until it is dropped, and the port that it says.
 struct Peer(Child, u16);
@@ -36,7 +14,8 @@ struct Peer(Child, u16);
 impl Peer {
     fn start(script: &str) -> Self {
         let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("peers/plc").join(script);
-        let mut command = Command::new(python());
+        let packages = ["asyncua==2.1.0", "pyads==3.6.0", "pymodbus==3.16.1", "python-snap7==3.3.0"];
+        let mut command = Command::new(python("plc-peers-2", &packages));
         command.arg(path).env("PYTHONDONTWRITEBYTECODE", "1").stdout(Stdio::piped()).stderr(Stdio::null());
         let mut child = command.spawn().expect("Python starts");
         let mut line = String::new();
@@ -69,6 +48,11 @@ fn equals_the_run_in_process(script: &str, url: &str) {
 #[test]
 fn a_plc_on_asyncua() {
     equals_the_run_in_process("opcua_plc.py", "opc.tcp://127.0.0.1:PORT/");
+}
+
+#[test]
+fn a_plc_on_pyads() {
+    equals_the_run_in_process("ads_plc.py", "ads://127.0.0.1:PORT");
 }
 
 #[test]

@@ -4,22 +4,11 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use crate::typed::{copied_shear, edit, typed};
+use crate::venv::python;
 
-/// A Python environment with what reads these reports, made once.
+/// A Python with what reads these reports.
 fn peer() -> PathBuf {
-    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("reports-1");
-    let python = folder.join("bin/python");
-    let ready = folder.join("ready");
-    if !ready.exists() {
-        let run = |program: &Path, words: &[&str]| {
-            let output = Command::new(program).args(words).output().expect("Python is on the machine");
-            assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
-        };
-        run(Path::new("python3"), &["-m", "venv", "--clear", &folder.to_string_lossy()]);
-        run(&python, &["-m", "pip", "install", "--quiet", "junitparser==3.2.0", "pycobertura==4.1.0"]);
-        std::fs::write(ready, "").expect("the folder is there");
-    }
-    python
+    python("reports-1", &["junitparser==3.2.0", "pycobertura==4.1.0"])
 }
 
 fn asked(folder: &Path, program: &str) -> String {

@@ -47,6 +47,44 @@ fn all_are_listed_rejected_or_accepted() {
     assert_eq!(typed(folder.path(), &["test", ".", "--check"]).code, Some(0));
 }
 
+/// What a user types on a terminal: a key that means nothing, then accept; reject; skip; quit.
+#[cfg(unix)]
+#[test]
+fn keys_decide_one_by_one() {
+    let folder = copied_shear();
+    edit(folder.path(), "plc/shear.st", "T#100ms", "T#110ms");
+    assert_eq!(typed(folder.path(), &["test", "."]).code, Some(1));
+    let files = |ending: &str| {
+        let names = std::fs::read_dir(folder.path().join("snapshots")).expect("a folder");
+        let names = names.map(|entry| entry.expect("an entry").file_name().to_string_lossy().into_owned());
+        let mut cases: Vec<String> = names.filter_map(|name| Some(name.strip_suffix(ending)?.to_owned())).collect();
+        cases.sort();
+        cases
+    };
+    let text = |case: &str| std::fs::read_to_string(folder.path().join(format!("snapshots/{case}.traj"))).expect("one");
+    let waiting = files(".traj.new");
+    assert_eq!(waiting.len(), 5, "{waiting:?}");
+    let before: Vec<String> = waiting.iter().map(|case| text(case)).collect();
+    let terminal = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("peers/terminal.py");
+    let output = std::process::Command::new("python3")
+        .arg(terminal)
+        .args(["xa,r,s,q", env!("CARGO_BIN_EXE_onescan-under-test"), "review", "."])
+        .current_dir(folder.path())
+        .env("NO_COLOR", "1")
+        .output()
+        .expect("Python is on the machine");
+    let said = named(&folder, &String::from_utf8_lossy(&output.stdout));
+    assert_eq!(output.status.code(), Some(0), "{said}");
+    let told: Vec<&str> =
+        said.lines().filter(|line| line.starts_with("accepted ") || line.starts_with("rejected ")).collect();
+    let [accepted, rejected] = [0, 1].map(|index| waiting[index].clone());
+    assert_eq!(told, [format!("accepted shear: {accepted}"), format!("rejected shear: {rejected}")], "{said}");
+    assert!(said.contains("[1/5]  a accept") && said.contains("[4/5]") && !said.contains("[5/5]"), "{said}");
+    assert_eq!(files(".traj.new"), waiting[2..], "what was skipped, and what was not asked for, waits");
+    let changed: Vec<bool> = waiting.iter().zip(&before).map(|(case, before)| text(case) != *before).collect();
+    assert_eq!(changed, [true, false, false, false, false]);
+}
+
 #[test]
 fn a_page_shows_all_in_one_file() {
     let folder = changed_shear();

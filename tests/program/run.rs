@@ -1,6 +1,6 @@
 //! `onescan run`: the same bits whatever is around the session.
 
-use std::sync::atomic::{AtomicBool, Ordering};
+use crate::load::under_load;
 
 use crate::typed::{digests, run_shear, scenario, typed};
 
@@ -39,21 +39,10 @@ fn transport_and_pace_do_not_matter() {
 #[test]
 fn load_does_not_matter() {
     let expected = shear_digest();
-    let done = AtomicBool::new(false);
-    std::thread::scope(|scope| {
-        for _ in 0..8 {
-            scope.spawn(|| {
-                while !done.load(Ordering::Relaxed) {
-                    std::hint::spin_loop();
-                }
-            });
-        }
-        let runs = [&["--until", "2s"][..], &["--until", "2s", "--transport", "tcp"]].map(run_shear);
-        done.store(true, Ordering::Relaxed);
-        for (reports, said) in runs {
-            assert_eq!(digests(&reports).first(), Some(&expected), "{said:?}");
-        }
-    });
+    let words = [&["--until", "2s"][..], &["--until", "2s", "--transport", "tcp"]];
+    for (reports, said) in under_load(|| words.map(run_shear)) {
+        assert_eq!(digests(&reports).first(), Some(&expected), "{said:?}");
+    }
 }
 
 /// A source is the same program in any encoding, with any line ends.

@@ -122,6 +122,28 @@ fn one_test_is_chosen_by_its_name() {
 }
 
 #[test]
+fn tests_are_chosen_by_name_and_tag() {
+    let tagged =
+        TESTS.replace("FUNCTION_BLOCK TEST_Delay", "{attribute 'tags' := 'slow, timing'}\nFUNCTION_BLOCK TEST_Delay");
+    let failing = format!("{{attribute 'tags' := 'slow, broken'}}{FAILING}");
+    let folder = sources(&[("units.st", UNITS), ("tests.st", &tagged), ("failing.st", &failing)]);
+    let names = |words: &[&str]| {
+        let said =
+            tested(folder.path(), &[&["units.st", "tests.st", "failing.st", "--format", "json"], words].concat());
+        let outcomes = said.out.lines().map(|line| serde_json::from_str::<serde_json::Value>(line).expect("JSON"));
+        outcomes.filter_map(|outcome| Some(outcome["name"].as_str()?.to_owned())).collect::<Vec<_>>()
+    };
+    assert_eq!(names(&["--tag", "slow"]), ["TEST_Delay", "TEST_Wrong"]);
+    assert_eq!(names(&["--tag", "slow", "--skip-tag", "broken"]), ["TEST_Delay"]);
+    assert_eq!(names(&["--skip-tag", "slow", "--filter", "T_F"]), ["TEST_Fault"]);
+    assert_eq!(names(&["--tag", "slow", "--filter", "Twice"]), [""; 0]);
+    let said = tested(folder.path(), &["units.st", "tests.st", "--tag", "nightly"]);
+    assert!(said.code == Some(2) && said.err.contains("none of the tests is chosen"), "{said:?}");
+    let said = tested(folder.path(), &["units.st", "tests.st", "--tag", "timing", "--format", "json"]);
+    assert!(said.out.contains("\"tags\":[\"slow\",\"timing\"]"), "{said:?}");
+}
+
+#[test]
 fn sources_that_do_not_compile_or_have_no_test_are_told() {
     let folder = sources(&[("wrong.st", "PROGRAM TEST_A ASSERT(2.5, 'one'); END_PROGRAM"), ("units.st", UNITS)]);
     let said = tested(folder.path(), &["wrong.st"]);

@@ -1,16 +1,15 @@
 //! The soft PLC as a client of a session.
 
-use std::collections::{BTreeMap, BTreeSet};
-use std::sync::{Arc, Mutex, PoisonError};
+use std::collections::BTreeSet;
+use std::sync::{Arc, Mutex};
 
-use onescan_plc_shim::{
-    Application, Coverage, PlcFault, RunError, SoftPlc, TaskPlan, UnknownVariable, WriteError, WriteSite,
-};
+use onescan_plc_shim::{Application, Coverage, PlcFault, RunError, SoftPlc, TaskPlan, UnknownVariable, WriteError};
 use onescan_server::client::{Client, ClientFault, JoinRequest, SourcePlace, StateError, Wake};
 use onescan_server::signal::{ClientName, SignalName};
 use onescan_server::time::{TimeSpan, VirtualTime};
 
 use super::bind::{Bindings, Bound, Place};
+use super::trace::{TraceSink, Tracing};
 use super::watch::{SightingSink, Watch, Watcher};
 
 /// A value's bytes in a port and in the PLC's memory.
@@ -52,24 +51,6 @@ pub struct SoftPlcClient {
     tracing: Option<Tracing>,
     watcher: Option<Watcher>,
 }
-
-/// The outputs that are watched, in the order in which the PLC watches them.
-struct Tracing {
-    watched: Vec<SignalName>,
-    sink: WriterSink,
-}
-
-/// A statement of a PLC that wrote a signal, and when.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Written {
-    /// The virtual time of the scan.
-    pub t_v: VirtualTime,
-    /// The statement.
-    pub site: WriteSite,
-}
-
-/// The last statement that wrote each watched signal.
-pub type WriterSink = Arc<Mutex<BTreeMap<SignalName, Written>>>;
 
 /// What the PLCs of a run have executed together.
 pub type CoverageSink = Arc<Mutex<Coverage>>;
@@ -120,32 +101,15 @@ impl SoftPlcClient {
         self.coverage = Some(sink);
     }
 
-    /// Tells `sink` which statements write those of `signals` that are its outputs. The application
-    /// must have been compiled for it.
-    pub fn trace(&mut self, signals: &BTreeSet<SignalName>, sink: WriterSink) {
-        let mut tracing = Tracing { watched: Vec::new(), sink };
-        let mut places = Vec::new();
+    /// Tells `sink` which statements write those of `signals` that are its outputs, and which ways
+    /// decisions go. The application must have been compiled for it.
+    pub fn trace(&mut self, signals: &BTreeSet<SignalName>, sink: TraceSink) {
         // An output has one place.
-        for (port, run) in self.request.writes.iter().zip(&self.outputs) {
-            if signals.contains(&port.name) {
-                let Place { offset, bit } = run.memory;
-                places.push((offset..offset + run.len, bit));
-                tracing.watched.push(port.name.clone());
-            }
-        }
-        self.plc.watch(places);
-        self.tracing = Some(tracing);
-    }
-
-    fn note_writers(&self, t_v: VirtualTime) {
-        let Some(Tracing { watched, sink }) = &self.tracing else { return };
-        // Whoever panicked while it held the lock left whole entries.
-        let mut sink = sink.lock().unwrap_or_else(PoisonError::into_inner);
-        for (index, signal) in watched.iter().enumerate() {
-            if let Some(site) = self.plc.last_writer(index) {
-                sink.insert(signal.clone(), Written { t_v, site });
-            }
-        }
+        let outputs = self.request.writes.iter().zip(&self.outputs).map(|(port, run)| {
+            let Place { offset, bit } = run.memory;
+            (port.name.clone(), (offset..offset + run.len, bit))
+        });
+        self.tracing = Some(Tracing::start(&self.request.name, &mut self.plc, signals, outputs, sink));
     }
 
     /// Looks at variables after the set-up and after every turn, all changes if `changes`, else for what
@@ -210,6 +174,9 @@ impl Client for SoftPlcClient {
 
     fn setup(&mut self, outputs: &mut [u8]) -> Result<(), ClientFault> {
         self.plc.reset();
+        if let Some(tracing) = &self.tracing {
+            tracing.begin();
+        }
         for (path, value) in &self.presets {
             self.plc.write(path, value).map_err(|error| ClientFault::new(error.to_string()))?;
         }
@@ -224,7 +191,9 @@ impl Client for SoftPlcClient {
             run.give(inputs, memory);
         }
         let scanned = self.plc.scan(onescan_plc_shim::VirtualTime::from_ns(t_v.as_nanos()));
-        self.note_writers(t_v);
+        if let Some(tracing) = &self.tracing {
+            tracing.note(&self.plc, t_v);
+        }
         self.look(t_v);
         scanned.map_err(|fault| client_fault(&fault))?;
         self.take_outputs(outputs);
@@ -249,5 +218,8 @@ fn client_fault(fault: &PlcFault) -> ClientFault {
     let at = &fault.at;
     let place = SourcePlace { file: at.file.clone(), line: at.line, column: at.column };
     let place = (!at.file.is_empty()).then_some(place);
-    ClientFault { message: format!("PLC fault: {} in {at}{}", fault.kind, fault.way()), place }
+    let way = fault.way();
+    // The place comes last, so that who called stands before what happened there.
+    let way = way.strip_prefix(", ").map(|way| format!(" ({way})")).unwrap_or_default();
+    ClientFault { message: format!("PLC fault: {} in {at}{way}", fault.kind), place }
 }

@@ -1,8 +1,9 @@
 //! Every variable that has a value of its own.
 
-use super::variable::{Piece, Spot, spot};
+use super::variable::{Piece, Spot, kept, spot};
 use super::{Application, Variable};
-use crate::ir::{Storage, Type};
+use crate::check::Checked;
+use crate::ir::{PouId, Storage, Type};
 
 impl Application {
     /// Every variable of elementary type and every string, with its path, in the order of
@@ -20,7 +21,11 @@ impl Application {
             let held = variables
                 .iter()
                 .filter(|variable| matches!(variable.storage, Storage::Instance(_) | Storage::Located(_)));
-            held.filter_map(move |variable| spot(checked, name, variable, program.offset))
+            let held = held.filter_map(move |variable| spot(checked, name, variable, program.offset));
+            held.chain(kept(checked, program.pou).iter().flat_map(move |kept| {
+                let prefix = format!("{name}.{}", kept.method);
+                kept.variables.iter().filter_map(move |variable| spot(checked, &prefix, variable, program.offset))
+            }))
         });
         let roots: Vec<Spot> = shared.chain(own).chain(programs).collect();
         roots.into_iter().flat_map(|root| Leaves { application: self, open: vec![Open::new(root)] })
@@ -78,7 +83,13 @@ impl Application {
         let index = usize::try_from(at).ok()?;
         match checked.types.get(of.ty) {
             Type::Struct { fields, .. } => Some(Piece::Name(fields.get(index)?.name.clone())),
-            Type::FunctionBlock { pou, .. } => Some(Piece::Name(checked.interfaces.get(pou)?.get(index)?.name.clone())),
+            Type::FunctionBlock { pou, .. } => {
+                let own = checked.interfaces.get(pou)?;
+                match own.get(index) {
+                    Some(variable) => Some(Piece::Name(variable.name.clone())),
+                    None => kept_at(checked, *pou, index - own.len()),
+                }
+            }
             Type::Array { dimensions, .. } => {
                 let mut rest = at;
                 let mut indices = Vec::with_capacity(dimensions.len());
@@ -93,4 +104,12 @@ impl Application {
             _ => None,
         }
     }
+}
+
+/// The way to a variable that a method of the unit keeps, by its position among all of them.
+fn kept_at(checked: &Checked, unit: PouId, at: usize) -> Option<Piece> {
+    let mut all =
+        kept(checked, unit).iter().flat_map(|kept| kept.variables.iter().map(move |variable| (kept, variable)));
+    let (kept, variable) = all.nth(at)?;
+    Some(Piece::Kept(kept.method.clone(), variable.name.clone()))
 }

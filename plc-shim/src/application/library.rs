@@ -1,6 +1,7 @@
 //! The standard function blocks (2nd ed. 2.5.2.3), some functions, and PLCopen's motion blocks, as program text
 //! like any other.
 
+use super::vendor_library;
 use crate::syntax::token::{Keyword, Punctuation, TokenKind};
 use crate::syntax::{SourceFile, tokenize};
 
@@ -51,8 +52,9 @@ pub(crate) fn for_program<'s>(files: impl Iterator<Item = &'s SourceFile>) -> Ve
     let texts: Vec<_> = files.map(SourceFile::text).collect();
     let axis = texts.iter().filter_map(|text| axis_in(text)).max();
     let motion: &[_] = if axis == Some(Axis::Used) { &MOTION } else { &[] };
+    let vendors = vendor_library::for_texts(&texts);
     let asserts = texts.iter().any(|text| mentions_assert(text)).then_some(&ASSERTS);
-    FILES.iter().chain(motion).chain(asserts).copied().collect()
+    FILES.iter().chain(motion).chain(asserts).copied().chain(vendors).collect()
 }
 
 /// What a file has to do with the type of an axis.

@@ -3,7 +3,7 @@
 use thiserror::Error;
 
 use super::Application;
-use crate::check::Checked;
+use crate::check::{Checked, Kept};
 use crate::diagnostic::did_you_mean;
 use crate::ir::{self, ElementaryType, Location, Storage, Type, TypeId};
 use crate::syntax::ast::SectionKind;
@@ -73,6 +73,8 @@ pub struct UnknownVariable {
 #[derive(Debug, Clone)]
 pub(super) enum Piece {
     Name(String),
+    /// A method, and a variable of its `VAR_INST`.
+    Kept(String, String),
     Index(Vec<i64>),
 }
 
@@ -110,7 +112,8 @@ impl Application {
     /// The variable at a path: a global variable or a program's instance, members and indices, as in
     /// `Shear.axis[2].position`; or at a direct address that the program uses, as in `%QX0.1`; or a part of a bit string, as in `P.status.%X3`. The names
     /// of configuration and resource may stand in front, as in `Plant.Line.Shear.axis[2].position`; a
-    /// name of `VAR_ACCESS` is a path too.
+    /// name of `VAR_ACCESS` is a path too. What a method keeps stands behind its name, as in
+    /// `Shear.axis.Count.calls`.
     ///
     /// # Errors
     /// The path leads nowhere; the error has the nearest name.
@@ -122,8 +125,16 @@ impl Application {
         }
         let pieces = pieces(path).ok_or_else(|| unknown(None))?;
         let (mut spot, rest) = self.root(&pieces).map_err(unknown)?;
-        for piece in rest {
-            spot = self.step(&spot, piece).map_err(unknown)?;
+        let mut rest = rest.iter();
+        while let Some(piece) = rest.next() {
+            spot = match (piece, rest.as_slice()) {
+                (Piece::Name(method), [Piece::Name(name), ..]) if self.keeps(&spot, method) => {
+                    rest.next();
+                    self.step(&spot, &Piece::Kept(method.clone(), name.clone()))
+                }
+                _ => self.step(&spot, piece),
+            }
+            .map_err(unknown)?;
         }
         if self.is_program(spot.ty) {
             return Err(unknown(None));
@@ -156,11 +167,19 @@ impl Application {
                 let field = field.ok_or_else(|| did_you_mean(name, fields.iter().map(|field| field.name.as_str())))?;
                 let path = format!("{}.{}", from.path, field.name);
                 let (offset, access) = (from.offset + field.offset, from.access);
-                Ok(Spot { path, offset, bit: None, ty: field.ty, address: None, access })
+                Ok(Spot { path, offset, bit: field.bit, ty: field.ty, address: None, access })
             }
             (Type::FunctionBlock { pou, .. }, Piece::Name(name)) => {
                 let variables = checked.interfaces.get(pou).map_or(&[][..], Vec::as_slice);
                 let found = member(checked, &from.path, variables, from.offset, name)?;
+                let access = if from.access == VariableAccess::ReadWrite { found.access } else { from.access };
+                Ok(Spot { access, ..found })
+            }
+            (Type::FunctionBlock { pou, .. }, Piece::Kept(method, name)) => {
+                let kept =
+                    kept(checked, *pou).iter().find(|kept| kept.method.eq_ignore_ascii_case(method)).ok_or(None)?;
+                let prefix = format!("{}.{}", from.path, kept.method);
+                let found = member(checked, &prefix, &kept.variables, from.offset, name)?;
                 let access = if from.access == VariableAccess::ReadWrite { found.access } else { from.access };
                 Ok(Spot { access, ..found })
             }
@@ -174,6 +193,15 @@ impl Application {
             (_, Piece::Name(name)) => self.part_of(from, name).ok_or(None),
             _ => Err(None),
         }
+    }
+
+    /// True if the name is that of a method which keeps something in the instance, and of no variable.
+    fn keeps(&self, instance: &Spot, method: &str) -> bool {
+        let checked = &self.inner.checked;
+        let Type::FunctionBlock { pou, .. } = checked.types.get(instance.ty) else { return false };
+        let variables = checked.interfaces.get(pou).map_or(&[][..], Vec::as_slice);
+        !variables.iter().any(|variable| variable.name.eq_ignore_ascii_case(method))
+            && kept(checked, *pou).iter().any(|kept| kept.method.eq_ignore_ascii_case(method))
     }
 
     pub(super) fn elementary(&self, spot: &Spot) -> Option<ElementaryType> {
@@ -209,6 +237,11 @@ impl Application {
             type_id: spot.ty,
         }
     }
+}
+
+/// What the methods of a unit keep in its instances.
+pub(super) fn kept(checked: &Checked, unit: ir::PouId) -> &[Kept] {
+    checked.kept.get(&unit).map_or(&[], Vec::as_slice)
 }
 
 /// Where a variable of an instance at `base` lies, if it lies in memory for good.

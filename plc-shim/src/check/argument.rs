@@ -10,18 +10,24 @@ use crate::syntax::ast::{self, ReferenceKind, SectionKind};
 
 impl Body<'_, '_> {
     pub(super) fn default_argument(&mut self, parameter: &Variable, named: bool, span: Span) -> Option<Argument> {
+        let has_default =
+            !self.is_open(parameter.ty) && !self.is_instance_type(parameter.ty) && !self.is_generic(parameter.ty);
         match self.elementary(parameter.ty) {
             Some(ty) if named && parameter.section == SectionKind::Input => {
                 let value = constant(decode(ty, &parameter.image), ty, span);
                 Some(Argument::Value(Expr { ty: parameter.ty, ..value }))
             }
-            None if named && parameter.section == SectionKind::Input => {
+            None if named && parameter.section == SectionKind::Input && has_default => {
                 let place = self.checker.constant_bytes(parameter.ty, parameter.image.clone(), span)?;
                 let kind = ExprKind::Load(place);
                 Some(Argument::Value(Expr { kind, ty: parameter.ty, span }))
             }
             _ => self.missing_argument(&parameter.name, span),
         }
+    }
+
+    pub(super) fn is_instance_type(&self, ty: TypeId) -> bool {
+        matches!(self.checker.types.get(ty), Type::FunctionBlock { .. })
     }
 
     pub(super) fn missing_argument<T>(&mut self, name: &str, span: Span) -> Option<T> {
@@ -38,6 +44,9 @@ impl Body<'_, '_> {
     ) -> Option<Argument> {
         if matches!(self.checker.types.get(parameter.ty), Type::OpenArray { .. }) {
             return self.described(parameter, expr, &mut passing.before).map(Argument::Reference);
+        }
+        if let Some(generic) = self.checker.generics.get(&parameter.ty) {
+            return self.generic_argument(*generic, parameter, expr, passing);
         }
         if parameter.section == SectionKind::InOut {
             return self.reference(parameter, expr, passing).map(Argument::Reference);
@@ -61,7 +70,7 @@ impl Body<'_, '_> {
     }
 
     /// The place, or memory that holds its value during the call if it has no address.
-    fn through_memory(&mut self, place: Place, passing: &mut Passing) -> Option<Place> {
+    pub(super) fn through_memory(&mut self, place: Place, passing: &mut Passing) -> Option<Place> {
         if place.has_address() {
             return Some(place);
         }

@@ -15,7 +15,7 @@ use crate::syntax::ast::{self, BinaryOp, Call, Ident};
 use ElementaryType as E;
 
 /// Functions of vendors' controllers that have no equal here, by how their names begin, and what to use.
-const VENDOR_FUNCTIONS: [(&str, Code, &str); 16] = [
+const VENDOR_FUNCTIONS: [(&str, Code, &str); 14] = [
     ("S_PULSE", Code::ClassicTimer, "use TP"),
     ("S_PEXT", Code::ClassicTimer, "use TP"),
     ("S_ODTS", Code::ClassicTimer, "use TON"),
@@ -30,8 +30,6 @@ const VENDOR_FUNCTIONS: [(&str, Code, &str); 16] = [
     ("TIME_TCK", Code::VendorRuntime, "use a timer: it counts virtual time"),
     ("__NEW", Code::VendorRuntime, "declare the instance"),
     ("__DELETE", Code::VendorRuntime, "declare the instance"),
-    ("__QUERYINTERFACE", Code::VendorRuntime, "assign the interface"),
-    ("__QUERYPOINTER", Code::VendorRuntime, "use a reference"),
 ];
 
 /// Nanoseconds of the unit in which 32 bit dialects count TIME.
@@ -56,10 +54,10 @@ fn counter(range: TimeRange) -> Option<E> {
 /// The bit string of an integer's size; others as they are.
 pub(super) fn as_bits(ty: E) -> E {
     match ty {
-        E::Usint => E::Byte,
-        E::Uint => E::Word,
-        E::Udint => E::Dword,
-        E::Ulint => E::Lword,
+        E::Usint | E::Sint => E::Byte,
+        E::Uint | E::Int => E::Word,
+        E::Udint | E::Dint => E::Dword,
+        E::Ulint | E::Lint => E::Lword,
         other => other,
     }
 }
@@ -132,9 +130,10 @@ impl Body<'_, '_> {
         has && (ty.kind() == Kind::Bits || ty.is_integer())
     }
 
-    /// True for an unsigned integer that is shifted as its bits are.
-    pub(super) fn shifts_as_bits(&self, expr: &Expr) -> bool {
-        self.plain_elementary(expr).is_some_and(|ty| as_bits(ty) != ty && self.bits_are_numbers(ty, expr.span))
+    /// The type of an integer that is shifted as its bits are.
+    pub(super) fn shifted_integer(&self, expr: &Expr) -> Option<E> {
+        let has = self.checker.dialect(expr.span).has(Feature::IntegerShifts);
+        self.plain_elementary(expr).filter(|ty| has && ty.is_integer())
     }
 
     /// A value that counts or selects, where bit strings and enumerations are numbers; all else as it is.

@@ -51,6 +51,7 @@ impl Body<'_, '_> {
                 self.check_duration(ty, *ns, span)?;
                 Operand::Typed(constant(Value::Int(i128::from(*ns)), ty, span))
             }
+            Literal::Calendar { kind: CalendarKind::Parts, ns, .. } => return self.dtl_literal(*ns, span),
             Literal::Calendar { kind, long, ns, .. } => {
                 let value = Value::Int(i128::from(*ns));
                 Operand::Typed(constant(value, calendar_type(*kind, *long), span))
@@ -127,7 +128,7 @@ fn calendar_type(kind: CalendarKind, long: bool) -> ElementaryType {
         (CalendarKind::TimeOfDay, false) => ElementaryType::Tod,
         (CalendarKind::TimeOfDay, true) => ElementaryType::Ltod,
         (CalendarKind::DateAndTime, false) => ElementaryType::Dt,
-        (CalendarKind::DateAndTime, true) => ElementaryType::Ldt,
+        (CalendarKind::DateAndTime | CalendarKind::Parts, _) => ElementaryType::Ldt,
     }
 }
 

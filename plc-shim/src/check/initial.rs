@@ -25,6 +25,8 @@ struct Making<'a> {
 struct Spot {
     ty: TypeId,
     offset: u32,
+    /// Of a BOOL that is one bit of its byte, which.
+    bit: Option<u8>,
 }
 
 impl<'a> Body<'_, 'a> {
@@ -36,7 +38,7 @@ impl<'a> Body<'_, 'a> {
     ) -> Option<TypedImage<'a>> {
         self.checker.charge_image(declared.image.len() as u64, initial.span)?;
         let mut making = Making { image: declared.image.to_vec(), starts: declared.starts.to_vec() };
-        self.fill(Spot { ty: declared.ty, offset: 0 }, initial, &mut making)?;
+        self.fill(Spot { ty: declared.ty, offset: 0, bit: None }, initial, &mut making)?;
         Some(TypedImage { ty: declared.ty, image: making.image.into(), starts: making.starts.into() })
     }
 
@@ -59,6 +61,12 @@ impl<'a> Body<'_, 'a> {
                 let bytes = self.text_image(shape, expr)?;
                 let range = self.range(spot);
                 making.image.get_mut(range)?.iter_mut().zip(bytes).for_each(|(target, source)| *target = source);
+                Some(())
+            }
+            (InitialiserKind::Value(expr), Type::Struct { .. }) if super::dtl::is_literal(expr) => {
+                let bytes = self.dtl_bytes(expr, spot.ty)?;
+                let range = self.range(spot);
+                making.image.get_mut(range)?.copy_from_slice(&bytes);
                 Some(())
             }
             (InitialiserKind::Array(elements), Type::Array { dimensions, element }) => {
@@ -86,11 +94,21 @@ impl<'a> Body<'_, 'a> {
     fn fill_elementary(&mut self, spot: Spot, expr: &'a Expr, making: &mut Making<'a>) -> Option<()> {
         let typed = self.expression_for(expr, spot.ty)?;
         if matches!(fold(&self.checker.types, &typed), Err(NoValue::NotConstant(_))) && self.may_be_computed(&typed) {
+            if spot.bit.is_some() {
+                let message = "a member that is one bit of a byte begins with a constant";
+                self.report(Diagnostic::error(Code::InvalidInitialiser, expr.span, message));
+                return None;
+            }
             self.begins_with(spot, expr, making);
             return Some(());
         }
         let value = self.value_of(&typed)?;
         let range = self.range(spot);
+        if let Some(bit) = spot.bit {
+            let byte = making.image.get_mut(range.start)?;
+            *byte = *byte & !(1 << bit) | (value.bytes()[0] & 1) << bit;
+            return Some(());
+        }
         making.image.get_mut(range)?.iter_mut().zip(value.bytes()).for_each(|(target, source)| *target = source);
         Some(())
     }
@@ -173,7 +191,9 @@ impl<'a> Body<'_, 'a> {
     ) -> Option<()> {
         let scope = self.checker.interface(pou, span)?;
         let fields = scope.variables.iter().filter_map(|variable| match variable.storage {
-            Storage::Instance(offset) => Some(Field { name: variable.name.clone(), ty: variable.ty, offset }),
+            Storage::Instance(offset) => {
+                Some(Field { name: variable.name.clone(), ty: variable.ty, offset, bit: None })
+            }
             _ => None,
         });
         let fields: Vec<Field> = fields.collect();
@@ -222,7 +242,7 @@ impl<'a> Body<'_, 'a> {
             self.report(found.with_optional_help(help));
             return None;
         };
-        let inner = Spot { ty: field.ty, offset: spot.offset + field.offset };
+        let inner = Spot { ty: field.ty, offset: spot.offset + field.offset, bit: field.bit };
         self.fill(inner, &member.value, making)?;
         Some(inner)
     }

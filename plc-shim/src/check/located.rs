@@ -49,7 +49,7 @@ impl Width {
 }
 
 impl Checker<'_> {
-    fn invalid_address<T>(&mut self, text: &str, error: AddressError, span: Span) -> Option<T> {
+    pub(super) fn invalid_address<T>(&mut self, text: &str, error: AddressError, span: Span) -> Option<T> {
         let message = format!("`{text}` is no direct address: {error}");
         self.report(Diagnostic::error(Code::InvalidAddress, span, message));
         None
@@ -113,13 +113,13 @@ impl Checker<'_> {
         let elementary = self.types.elementary(ty);
         let (suitable, help) = match (elementary, self.types.get(ty)) {
             (_, Type::FunctionBlock { .. } | Type::Nothing) => (false, "instances have no direct address".to_owned()),
-            (Some(ElementaryType::Bool), _) => (width == Width::Bit, "a BOOL takes a bit, as in %IX0.0".to_owned()),
+            (Some(ElementaryType::Bool), _) => (width == Width::Bit, "a BOOL takes a bit, as in %X0.0".to_owned()),
             (Some(ty), _) => {
                 let bits = ty.size() * 8;
                 let letter = ["B", "W", "D", "L"][ty.size().trailing_zeros().min(3) as usize];
                 (width.bits() == bits, format!("{found} takes {bits} bits: write %{letter} behind the area"))
             }
-            (None, _) => (width != Width::Bit, format!("{found} begins at a byte, as in %MB0")),
+            (None, _) => (width != Width::Bit, format!("{found} begins at a byte, as in %B0")),
         };
         if !suitable {
             let message = format!("`{}` does not suit a variable of type {found}", address.text);

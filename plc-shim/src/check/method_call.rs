@@ -12,7 +12,7 @@ use crate::ir::{
     Value, Variable,
 };
 use crate::syntax::Span;
-use crate::syntax::ast::{self, Call, Ident, PouKind, SectionKind};
+use crate::syntax::ast::{self, Call, Ident, PouKind};
 
 /// How much is known of the instance that a method is called on.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -170,7 +170,13 @@ impl Body<'_, '_> {
         }
         // The caller owns what the outputs are written to: which method runs may not be known.
         let mut places = Vec::new();
-        for output in scope.variables.iter().filter(|variable| variable.section == SectionKind::Output) {
+        for output in scope.outputs() {
+            if self.is_open(output.ty) {
+                let argument = self.open_output(output, &matched, &mut passing, span);
+                sound &= argument.is_some();
+                arguments.extend(argument);
+                continue;
+            }
             let place = self.temporary(output.ty, span)?;
             arguments.push(Argument::Reference(place.clone()));
             places.push((output.name.clone(), place));

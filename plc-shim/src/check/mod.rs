@@ -5,19 +5,20 @@
 //! | [`names`] | what the files declare, by name |
 //! | [`layout`] | offsets in memory |
 //! | [`scope`] | what a name means inside a unit |
-//! | [`types`], [`subrange`], [`union`] | types as written to types |
+//! | [`types`], [`subrange`], [`structure`], [`union`] | types as written to types |
 //! | [`variables`], [`storage`], [`instance_section`] | sections to placed variables, units' interfaces |
 //! | [`located`] | direct addresses to places |
 //! | [`initial`] | initial values to bytes |
 //! | [`start`], [`fb_init`], [`instance_arguments`] | what runs before the first scan |
 //! | [`constant`] | constant expressions to values |
 //! | [`convert`], [`enumeration`] | implicit conversions, constants in context |
-//! | [`expression`], [`operator`], [`calendar`], [`place`], [`part`] | expressions |
+//! | [`expression`], [`operator`], [`calendar`], [`dtl`], [`place`], [`part`] | expressions |
 //! | [`reference`], [`address`], [`referred`] | references and pointers |
 //! | [`open_array`] | arrays that come with their bounds |
-//! | [`call`], [`argument`], [`instance_call`], [`standard_function`], [`function_form`], [`conversion_function`], [`memory_function`] | calls |
+//! | [`any_input`] | inputs of generic types |
+//! | [`call`], [`argument`], [`instance_call`], [`standard_function`], [`vendor_parameter`], [`function_form`], [`conversion_function`], [`memory_function`] | calls |
 //! | [`enable`], [`enable_error`] | EN and ENO |
-//! | [`text`], [`text_function`], [`text_conversion`] | character strings |
+//! | [`text`], [`character`], [`text_function`], [`text_conversion`] | character strings |
 //! | [`statement`], [`assignment`], [`edge`], [`build`] | statements |
 //! | [`chart`] | Sequential Function Charts |
 //! | [`jump`], [`wire`], [`instruction`] | what networks and lists of instructions have beside statements |
@@ -26,18 +27,20 @@
 //! | [`recursion`], [`dispatch`] | who calls whom, and what only a run decides |
 //! | [`namespace`] | what a name means where it stands |
 //! | [`class`], [`inheritance`] | bases, interfaces, members |
-//! | [`instance`], [`method_call`], [`property`], [`interface_value`] | `THIS`, methods, properties, interfaces |
+//! | [`instance`], [`method_call`], [`property`], [`interface_value`], [`query`] | `THIS`, methods, properties, interfaces |
 //!
 //! A unit, type or global variable is resolved when it is first needed; what is being resolved
 //! and needed again contains itself.
 
 mod address;
+mod any_input;
 mod argument;
 pub(crate) mod asserts;
 mod assignment;
 mod build;
 mod calendar;
 mod call;
+mod character;
 mod chart;
 mod class;
 mod configuration;
@@ -46,6 +49,7 @@ mod conversion_function;
 mod convert;
 mod dialect;
 mod dispatch;
+mod dtl;
 mod edge;
 mod enable;
 mod enable_error;
@@ -73,6 +77,7 @@ mod operator;
 mod part;
 mod place;
 mod property;
+mod query;
 mod recursion;
 mod reference;
 mod referred;
@@ -81,6 +86,7 @@ mod standard_function;
 mod start;
 mod statement;
 mod storage;
+mod structure;
 mod subrange;
 mod text;
 mod text_conversion;
@@ -88,6 +94,7 @@ mod text_function;
 mod types;
 mod union;
 mod variables;
+mod vendor_parameter;
 mod wire;
 
 use std::collections::{BTreeMap, BTreeSet};
@@ -107,6 +114,7 @@ use crate::syntax::ast::CompilationUnit;
 use crate::syntax::direct_address::AddressUnit;
 use crate::syntax::{FileId, Span};
 
+pub(crate) use instance_section::Kept;
 pub(crate) use layout::{CALL_DEPTH_OFFSET, INIT_RETAINS_OFFSET, VIRTUAL_TIME_NAME, VIRTUAL_TIME_OFFSET};
 pub(crate) use standard_function::exists as is_standard_function;
 
@@ -118,6 +126,8 @@ pub(crate) struct Checked {
     pub(crate) pous: BTreeMap<PouId, Pou>,
     /// The variables of every unit that has been declared, whether it runs or not.
     pub(crate) interfaces: BTreeMap<PouId, Vec<Variable>>,
+    /// What methods of units keep in the instance.
+    pub(crate) kept: BTreeMap<PouId, Vec<Kept>>,
     /// The global variables that belong to no resource.
     pub(crate) globals: Vec<Variable>,
     pub(crate) programs: Vec<Program>,
@@ -167,6 +177,7 @@ pub(crate) fn check(units: &[(FileId, &CompilationUnit)], library: &BTreeSet<Fil
         .filter_map(|(index, entry)| Some((PouId(index as u32), entry.scope.as_ref()?.variables.clone())));
     let result = Checked {
         interfaces: interfaces.collect(),
+        kept: checker.kept_by_methods(),
         types: checker.types,
         pous: checker.checked,
         globals,
@@ -236,6 +247,8 @@ struct Checker<'a> {
     calls: BTreeMap<PouId, Vec<(PouId, Span)>>,
     /// Who may be called in ways that only a run decides.
     dynamic_calls: BTreeMap<PouId, BTreeSet<PouId>>,
+    /// What inputs of generic types are inside of their units.
+    generics: BTreeMap<TypeId, any_input::Generic>,
     rows: Rows,
     depth: u32,
     chart_parts: Vec<(Span, String)>,

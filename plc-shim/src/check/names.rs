@@ -106,6 +106,7 @@ impl<'a> Checker<'a> {
             method_names: BTreeSet::new(),
             property_names: BTreeSet::new(),
             dynamic_calls: BTreeMap::new(),
+            generics: BTreeMap::new(),
             rows: super::dispatch::Rows::default(),
             globals: BTreeMap::from([
                 (VIRTUAL_TIME_NAME.to_owned(), provided(VIRTUAL_TIME_NAME, ElementaryType::Time, VIRTUAL_TIME_OFFSET)),
@@ -187,6 +188,10 @@ impl<'a> Checker<'a> {
     }
 
     pub(super) fn collect_type(&mut self, ast: &'a TypeDeclaration) {
+        // The library comes last. What it declares of vendors many projects declare for themselves.
+        if self.library.contains(&ast.name.span.file) && self.declared_at(&ast.name).is_some() {
+            return;
+        }
         if !self.is_taken(&ast.name) {
             let (home, progress) = (self.home.clone(), Progress::Untouched);
             let entry = TypeEntry { ast, home, progress, reserved: None, resolved: None };

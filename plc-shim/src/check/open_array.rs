@@ -4,22 +4,26 @@
 //! is passed is the description's address, and a unit passes on the one it was given.
 
 use super::address::PlaceFunction;
+use super::argument::Passing;
+use super::call::Matched;
 use super::convert::Operand;
 use super::place::{Access, Located};
 use super::scope::Body;
 use crate::diagnostic::{Code, Diagnostic};
 use crate::ir::types::OPEN_BOUNDS;
 use crate::ir::{
-    Dimension, ElementaryType, Expr, ExprKind, Place, Statement, StatementKind, Step, Type, TypeId, Value, Variable,
+    Argument, Dimension, ElementaryType, Expr, ExprKind, Place, Statement, StatementKind, Step, Type, TypeId, Value,
+    Variable,
 };
 use crate::syntax::Span;
 use crate::syntax::ast::{self, PouKind, SectionKind};
 
-/// True for parameters that take arrays of any bounds: of functions, and in-outs of blocks.
+/// True for parameters that take arrays of any bounds: all of functions and methods, and in-outs of
+/// blocks, which could not keep what they are given.
 pub(super) fn takes_open_arrays(unit: PouKind, section: SectionKind) -> bool {
     match section {
         SectionKind::InOut => true,
-        SectionKind::Input => unit == PouKind::Function,
+        SectionKind::Input | SectionKind::Output => matches!(unit, PouKind::Function | PouKind::Method),
         _ => false,
     }
 }
@@ -62,8 +66,8 @@ impl Body<'_, '_> {
         expr: &ast::Expr,
         before: &mut Vec<Statement>,
     ) -> Option<Place> {
-        let located = self.place(expr)?;
-        let place = if parameter.section == SectionKind::InOut { self.target(expr)? } else { located.place };
+        let written = matches!(parameter.section, SectionKind::InOut | SectionKind::Output);
+        let place = if written { self.target(expr)? } else { self.place(expr)?.place };
         if place.ty == parameter.ty {
             return Some(place);
         }
@@ -85,6 +89,30 @@ impl Body<'_, '_> {
             return None;
         };
         self.description(parameter.ty, &dimensions, place, before)
+    }
+
+    /// The array that an output of a call is given, which the unit writes to. It must be given: without it
+    /// the output has no bounds.
+    pub(super) fn open_output(
+        &mut self,
+        output: &Variable,
+        matched: &Matched<'_>,
+        passing: &mut Passing,
+        span: Span,
+    ) -> Option<Argument> {
+        let given = matched.outputs.iter().find(|wanted| wanted.variable.name == output.name);
+        let Some(given) = given else {
+            return self.missing_argument(&output.name, span);
+        };
+        if given.negated {
+            let found = self.type_name(output.ty);
+            return self.mismatch("BOOL", &found, given.target.span);
+        }
+        self.described(output, given.target, &mut passing.before).map(Argument::Reference)
+    }
+
+    pub(super) fn is_open(&self, ty: TypeId) -> bool {
+        matches!(self.checker.types.get(ty), Type::OpenArray { .. })
     }
 
     /// The bounds never change, so they stand in memory from the start.
@@ -158,10 +186,10 @@ impl Body<'_, '_> {
 
     /// Reports a variable without bounds that is no such parameter.
     pub(super) fn reject_open_array(&mut self, ty: TypeId, span: Span) -> Option<()> {
-        if !matches!(self.checker.types.get(ty), Type::OpenArray { .. }) {
+        if !self.is_open(ty) {
             return Some(());
         }
-        let message = "ARRAY [*] is for VAR_IN_OUT, and VAR_INPUT of functions";
+        let message = "ARRAY [*] is for VAR_IN_OUT, and VAR_INPUT and VAR_OUTPUT of functions and methods";
         self.report(Diagnostic::error(Code::OpenArray, span, message));
         None
     }

@@ -64,6 +64,11 @@ impl Scope {
         self.variables.iter().filter(move |variable| accepts(variable.section))
     }
 
+    /// What a caller can take: outputs in their order.
+    pub(super) fn outputs(&self) -> impl Iterator<Item = &Variable> {
+        self.variables.iter().filter(|variable| variable.section == SectionKind::Output)
+    }
+
     /// What stands in a list without names, which EN never does.
     pub(super) fn positional(&self) -> impl Iterator<Item = &Variable> {
         self.inputs().filter(|variable| !super::enable::is_control(variable))

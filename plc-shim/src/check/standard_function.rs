@@ -307,8 +307,13 @@ impl Body<'_, '_> {
     fn shift(&mut self, kind: Intrinsic, value: Operand, count: Operand, span: Span) -> Option<Operand> {
         let value = match value {
             Operand::Typed(expr) if self.plain_elementary(&expr).is_some_and(ElementaryType::is_bits) => expr,
-            Operand::Typed(expr) if self.shifts_as_bits(&expr) => {
-                let ty = self.plain_elementary(&expr)?;
+            Operand::Typed(expr) if self.shifted_integer(&expr).is_some() => {
+                let ty = self.shifted_integer(&expr)?;
+                if kind == Intrinsic::ShiftRight && ty.is_signed() {
+                    // The sign moves in from the left.
+                    let count = self.integer_as_lint(count)?;
+                    return Some(Self::intrinsic(kind, vec![expr, count], ty.into(), span));
+                }
                 let bits = converted(expr, as_bits(ty), Rounding::NearestEven);
                 let Operand::Typed(shifted) = self.shift(kind, Operand::Typed(bits), count, span)? else { return None };
                 return Some(Operand::Typed(converted(shifted, ty, Rounding::NearestEven)));

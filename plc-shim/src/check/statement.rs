@@ -74,6 +74,8 @@ impl Body<'_, '_> {
             let fleeting = match variable.section {
                 SectionKind::Temp => true,
                 SectionKind::External | SectionKind::Global | SectionKind::Static | SectionKind::Instance => false,
+                // What the caller gives has its values already.
+                SectionKind::Output if self.is_open(variable.ty) => false,
                 _ => kind.keeps_nothing(),
             };
             if fleeting {
@@ -194,6 +196,9 @@ impl Body<'_, '_> {
     pub(super) fn assign(&mut self, target: &ast::Expr, value: &ast::Expr, span: Span) -> Option<Statement> {
         if let Some(set) = self.property_assignment(target, value, span) {
             return set;
+        }
+        if let Some(assigned) = self.character_assignment(target, value, span) {
+            return assigned;
         }
         if let Some(name) = self.new_wire(target) {
             return self.first_value(name, value, span);
@@ -328,9 +333,7 @@ impl Body<'_, '_> {
     }
 
     fn for_statement(&mut self, inner: &ast::ForStatement) -> Option<StatementKind> {
-        let name =
-            ast::Expr { kind: ast::ExprKind::Name(inner.variable.clone()), span: inner.variable.span, height: 1 };
-        let variable = self.target(&name).and_then(|place| self.control_variable(place));
+        let variable = self.target(&inner.variable).and_then(|place| self.control_variable(place));
         let header = variable.and_then(|(place, ty)| {
             let from = self.expression_of(&inner.from, ty);
             let to = self.expression_of(&inner.to, ty);

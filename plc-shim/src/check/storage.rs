@@ -19,7 +19,7 @@ impl Interface<'_, '_> {
         let span = name.span;
         if !takes_open_arrays(self.kind, section.kind) {
             self.body.reject_open_array(declared.ty, span)?;
-        } else if section.kind == SectionKind::Input && self.is_open(declared.ty) {
+        } else if matches!(section.kind, SectionKind::Input | SectionKind::Output) && self.body.is_open(declared.ty) {
             return Some(Storage::RegisterPointer(self.body.scope.register(POINTER)));
         }
         match (self.kind, section.kind) {
@@ -50,10 +50,6 @@ impl Interface<'_, '_> {
             }
             _ => Some(Storage::Instance(self.in_instance(declared, span)?)),
         }
-    }
-
-    fn is_open(&self, ty: TypeId) -> bool {
-        matches!(self.body.checker.types.get(ty), crate::ir::Type::OpenArray { .. })
     }
 
     /// The trigger of an input with `R_EDGE` or `F_EDGE`.
@@ -89,7 +85,6 @@ impl Interface<'_, '_> {
             let referred = self.referred.contains(&name.key());
             return if referred { self.frame(declared, name.span) } else { Some(Storage::Register(register)) };
         }
-        self.reject_instance(declared.ty, name.span)?;
         self.body.scope.register(POINTER);
         self.frame(declared, name.span)
     }

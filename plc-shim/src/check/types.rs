@@ -2,14 +2,16 @@
 
 use std::sync::Arc;
 
-use super::initial::{moved, plain};
-use super::layout::{MEMORY_LIMIT, align_up};
+use super::any_input::Generic;
+use super::initial::plain;
+use super::layout::MEMORY_LIMIT;
 use super::names::{Enumerator, Progress, TypedImage};
 use super::scope::Body;
-use super::start::{Start, StartKind};
+use super::start::StartKind;
+use super::structure::Sharing;
 use super::{Checker, MAX_DEPTH};
 use crate::diagnostic::{Code, Diagnostic, did_you_mean};
-use crate::ir::{Dimension, ElementaryType, Field, TypeId};
+use crate::ir::{Dimension, ElementaryType, TypeId};
 use crate::syntax::Span;
 use crate::syntax::ast::{self, EnumValue, Ident, PouKind, TypeSpec, TypeSpecKind};
 
@@ -22,12 +24,15 @@ pub(super) enum Need {
     Reference,
 }
 
+/// The namespace of what vendors' compilers declare.
+const SYSTEM: &str = "__SYSTEM";
+
 /// Vendors' names of the types that are as wide as a pointer.
 fn of_pointer_width(key: &str) -> Option<ElementaryType> {
     Some(match key {
-        "__XWORD" => ElementaryType::Dword,
-        "__UXINT" | "PVOID" => ElementaryType::Udint,
-        "__XINT" => ElementaryType::Dint,
+        "__XWORD" | "XWORD" => ElementaryType::Dword,
+        "__UXINT" | "UXINT" | "PVOID" => ElementaryType::Udint,
+        "__XINT" | "XINT" => ElementaryType::Dint,
         _ => return None,
     })
 }
@@ -58,7 +63,8 @@ impl<'a> Checker<'a> {
     /// The type of a structure that may not be resolved yet; nothing for other types.
     pub(super) fn reserved(&mut self, key: &str) -> Option<TypeId> {
         let entry = self.type_names.get_mut(key)?;
-        if !matches!(entry.ast.spec.kind, TypeSpecKind::Struct(_) | TypeSpecKind::Union(_)) {
+        let kind = &entry.ast.spec.kind;
+        if !matches!(kind, TypeSpecKind::Struct(_) | TypeSpecKind::Overlapping(_) | TypeSpecKind::Union(_)) {
             return None;
         }
         let name = &entry.ast.name.text;
@@ -97,7 +103,11 @@ impl<'a> Body<'_, 'a> {
         let mut resolved = match &ast.spec.kind {
             TypeSpecKind::Struct(fields) => {
                 let ty = self.checker.own_reserved(&ast.name);
-                self.structure(name, (ty, ast.extends.as_ref()), fields, ast.name.span)
+                self.structure(name, (ty, ast.extends.as_ref()), (fields, Sharing::Refused), ast.name.span)
+            }
+            TypeSpecKind::Overlapping(fields) => {
+                let ty = self.checker.own_reserved(&ast.name);
+                self.structure(name, (ty, ast.extends.as_ref()), (fields, Sharing::Allowed), ast.name.span)
             }
             TypeSpecKind::Union(fields) => {
                 let ty = self.checker.own_reserved(&ast.name);
@@ -117,7 +127,12 @@ impl<'a> Body<'_, 'a> {
         match &spec.kind {
             TypeSpecKind::Name(name) => self.type_by_name(name, need),
             TypeSpecKind::Array(dimensions, element) => self.array(dimensions, element, spec.span),
-            TypeSpecKind::Struct(fields) => self.structure("STRUCT", (None, None), fields, spec.span),
+            TypeSpecKind::Struct(fields) => {
+                self.structure("STRUCT", (None, None), (fields, Sharing::Refused), spec.span)
+            }
+            TypeSpecKind::Overlapping(fields) => {
+                self.structure("STRUCT", (None, None), (fields, Sharing::Allowed), spec.span)
+            }
             TypeSpecKind::Instance(name, arguments) => self.instance_with_arguments(name, arguments, need),
             TypeSpecKind::Reference(kind, target) => self.reference_type(*kind, target),
             TypeSpecKind::OpenArray(dimensions, element) => {
@@ -165,11 +180,14 @@ impl<'a> Body<'_, 'a> {
 
     pub(super) fn type_by_name(&mut self, name: &Ident, need: Need) -> Option<TypedImage<'a>> {
         let key = name.key();
-        if let Some(found) = ElementaryType::find(&key).or_else(|| of_pointer_width(&key)) {
+        if let Some(found) = ElementaryType::find(&key) {
             return Some(self.whole(found.into()));
         }
         if let Some(key) = self.checker.type_key(&key) {
             return self.checker.named_type(&key, Some(name.span));
+        }
+        if let Some(found) = of_pointer_width(&key) {
+            return Some(self.whole(found.into()));
         }
         // Vendors' BIT is a BOOL; only in their structures do several share a byte.
         if key == "BIT" {
@@ -202,6 +220,9 @@ impl<'a> Body<'_, 'a> {
     }
 
     fn report_unknown_type(&mut self, name: &Ident) {
+        if Generic::find(&name.key()).is_some() {
+            return self.reject_generic(name);
+        }
         let elementary = ElementaryType::ALL.iter().map(|ty| ty.name());
         let derived = self.checker.type_names.values().map(|entry| entry.ast.name.text.as_str());
         let blocks = self.checker.pous.iter().filter(|pou| pou.ast.kind.has_instances());
@@ -255,57 +276,6 @@ impl<'a> Body<'_, 'a> {
         }
     }
 
-    /// The members of the structure that another adds to, as vendors have it.
-    fn extended_fields(&mut self, base: Option<&Ident>) -> Option<(Vec<Field>, Vec<u8>, Vec<Start<'a>>)> {
-        let Some(name) = base else { return Some((Vec::new(), Vec::new(), Vec::new())) };
-        let resolved = self.type_by_name(name, Need::Size)?;
-        if let crate::ir::Type::Struct { fields, .. } = self.checker.types.get(resolved.ty) {
-            return Some((fields.clone(), resolved.image.to_vec(), resolved.starts.to_vec()));
-        }
-        let message = format!("`{}` is not a structure", name.text);
-        self.report(Diagnostic::error(Code::WrongBase, name.span, message));
-        None
-    }
-
-    fn structure(
-        &mut self,
-        name: &str,
-        (reserved, extends): (Option<TypeId>, Option<&Ident>),
-        ast: &'a [ast::Field],
-        span: Span,
-    ) -> Option<TypedImage<'a>> {
-        let (mut fields, mut image, mut starts) = self.extended_fields(extends)?;
-        for field in ast {
-            if fields.iter().any(|other| other.name.eq_ignore_ascii_case(&field.name.text)) {
-                self.checker.report_duplicate(&field.name, None);
-                continue;
-            }
-            let mut resolved = self.resolve(&field.spec, Need::Size)?;
-            self.reject_open_array(resolved.ty, field.spec.span)?;
-            if let Some(initial) = &field.initial {
-                resolved = self.with_initial(&resolved, initial)?;
-            }
-            let offset = align_up(image.len() as u32, self.checker.types.align(resolved.ty));
-            if offset as usize + resolved.image.len() > MEMORY_LIMIT as usize {
-                self.checker.report_too_large(span);
-                return None;
-            }
-            self.checker.charge_image(resolved.image.len() as u64, span)?;
-            image.resize(offset as usize, 0);
-            image.extend_from_slice(&resolved.image);
-            starts.extend(moved(&resolved.starts, offset));
-            fields.push(Field { name: field.name.text.clone(), ty: resolved.ty, offset });
-        }
-        // What has no members takes a byte, so that no array has more elements than bytes.
-        image.resize(image.len().max(1), 0);
-        let align = fields.iter().map(|field| self.checker.types.align(field.ty)).max();
-        image.resize(align_up(image.len() as u32, align.unwrap_or(1)) as usize, 0);
-        let image: Arc<[u8]> = image.into();
-        let ty = reserved.unwrap_or_else(|| self.checker.types.structure(name.to_owned()));
-        self.checker.types.complete_structure(ty, fields, image.clone());
-        Some(TypedImage { ty, image, starts: starts.into() })
-    }
-
     /// Values count on from the one before, from 0 (3rd ed. 6.4.4.2, Table 11).
     fn enumeration(&mut self, name: &str, ast: &'a [EnumValue], base: Option<&Ident>) -> Option<TypedImage<'a>> {
         let base = base.map_or(Some(ElementaryType::Int), |base| self.integer_base(base))?;
@@ -328,7 +298,9 @@ impl<'a> Body<'_, 'a> {
             next += 1;
         }
         let ty = self.checker.types.enumeration(name.to_owned(), base, values.clone());
-        for (name, value) in values {
+        // Values of vendors' system are known by their type only: projects have values of the same names.
+        let known = if self.checker.home.namespace == SYSTEM { Vec::new() } else { values };
+        for (name, value) in known {
             let known = self.checker.enumerators.entry(name.to_ascii_uppercase()).or_default();
             known.push(Enumerator { ty, value });
         }

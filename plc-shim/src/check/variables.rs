@@ -151,6 +151,8 @@ impl<'a> Checker<'a> {
             let ty = self.types.block(&ast.name.text, id);
             self.types.complete_block(ty, align, image.clone());
         }
+        let mut scope = scope;
+        self.add_vendor_names(id, &mut scope);
         let entry = &mut self.pous[index];
         entry.scope = Some(Arc::new(scope));
         entry.align = align;
@@ -240,15 +242,11 @@ impl<'c, 'a> Interface<'c, 'a> {
             self.inherit();
             self.declare_sections(ast, |kind| matches!(kind, SectionKind::Input | SectionKind::InOut));
             self.declare_new_value(ast);
-            if self.kind != PouKind::Function {
-                self.declare_sections(ast, |kind| kind == SectionKind::Output);
-            }
+            self.declare_sections(ast, |kind| kind == SectionKind::Output);
             self.body.scope.parameters = self.body.scope.registers.len() as u32;
             self.declare_result(ast);
-            let is_method = self.kind != PouKind::Function;
-            self.declare_sections(ast, |kind| {
-                !(matches!(kind, SectionKind::Input | SectionKind::InOut) || is_method && kind == SectionKind::Output)
-            });
+            let of_callers = [SectionKind::Input, SectionKind::InOut, SectionKind::Output];
+            self.declare_sections(ast, |kind| !of_callers.contains(&kind));
         } else {
             // The first parameter is the instance's address.
             self.body.scope.register(POINTER);
@@ -270,6 +268,10 @@ impl<'c, 'a> Interface<'c, 'a> {
 
     fn declare_result(&mut self, ast: &'a ast::Pou) {
         let Some(spec) = ast.result.as_ref().filter(|_| !self.is_setter()) else { return };
+        if let Some(parameter) = self.declared_before(&ast.name) {
+            self.body.checker.report_duplicate(&ast.name, Some(parameter));
+            return;
+        }
         let Some(declared) = self.body.resolve(spec, Need::Size) else {
             return;
         };
@@ -294,7 +296,10 @@ impl<'c, 'a> Interface<'c, 'a> {
         }
         let need = if section.kind == SectionKind::InOut { Need::Reference } else { Need::Size };
         // Every name has the same type; an error in it is told once.
-        let declared = self.body.declared(ast, need);
+        let declared = match self.body.generic_input(self.kind, section.kind, &ast.spec) {
+            Some(generic) => generic,
+            None => self.body.declared(ast, need),
+        };
         for name in &ast.names {
             if let Some(first) = self.declared_before(name) {
                 self.body.checker.report_duplicate(name, Some(first));
@@ -333,6 +338,10 @@ impl<'c, 'a> Interface<'c, 'a> {
             self.body.require_constant(&declared.starts, OF_CONSTANTS);
         }
         if self.kind.keeps_nothing() && section.kind == SectionKind::Input {
+            // An instance is always given, and begins as the one that is.
+            if self.body.is_instance_type(declared.ty) {
+                return;
+            }
             return self.body.require_constant(&declared.starts, OF_INPUTS);
         }
         match storage {

@@ -81,6 +81,9 @@ impl Drift {
 impl Emitter<'_, '_> {
     /// In a trial: the assignment may be a step.
     pub(super) fn note_drift(&mut self, target: &Place, value: &Expr) {
+        if self.trial.is_none() {
+            return;
+        }
         let ExprKind::Binary(operator, left, right) = &value.kind else { return };
         let (Some(slot), Some(ty)) = (self.slot(target), self.shared.types.elementary(target.ty)) else { return };
         let own = |expr: &Expr| matches!(&expr.kind, ExprKind::Load(place) if self.slot(place) == Some(slot));
@@ -114,8 +117,8 @@ impl Emitter<'_, '_> {
         let Some(effects) = &survey.effects else { return Vec::new() };
         let alone = |step: &&Step| effects.sets_of(step.slot, step.ty, &self.roots) == Some(step.count);
         let before = |step: &Step| {
-            let range = self.facts.find(step.slot).or_else(|| self.known.ranges.find(step.slot, step.ty));
-            Some(Drift { step: *step, before: range.or_else(|| step.ty.range())? })
+            let range = self.range_of(step.slot, step.ty).or_else(|| step.ty.range())?;
+            Some(Drift { step: *step, before: range })
         };
         effects.steps.found.iter().filter(alone).filter_map(before).collect()
     }

@@ -67,13 +67,18 @@ impl Emitter<'_, '_> {
         Some(found.filter(|found| within(full, *found)).unwrap_or(full))
     }
 
+    /// What is known of a variable of type `ty` here: always so, or by the way to this place.
+    pub(super) fn range_of(&self, slot: Slot, ty: ElementaryType) -> Option<Interval> {
+        self.facts.find(slot).or_else(|| self.known.ranges.find(slot, ty))
+    }
+
     /// What the expression's form says; it holds only if the type has all of it.
     fn narrower(&self, expr: &Expr, depth: u32) -> Option<Interval> {
         match &expr.kind {
             ExprKind::Constant(Value::Int(value)) => Some((*value, *value)),
             ExprKind::Load(place) => {
                 let (slot, ty) = (self.slot(place)?, self.shared.types.elementary(place.ty)?);
-                self.facts.find(slot).or_else(|| self.known.ranges.find(slot, ty))
+                self.range_of(slot, ty)
             }
             ExprKind::Convert(_, operand) => self.interval_at(operand, depth),
             ExprKind::Limited(low, high, _) => Some((*low, *high)),

@@ -169,7 +169,7 @@ impl Emitter<'_, '_> {
     }
 
     /// 2nd ed. Table 25. A count of the type's width or more shifts everything out; a negative
-    /// one, which is an error there, does too. Rotation takes the count modulo the width.
+    /// one, which is an error there, does too; of a signed integer, which only vendors shift, the sign is left. Rotation takes the count modulo the width.
     fn shift(&mut self, kind: Intrinsic, operands: &[Expr], ty: ElementaryType) {
         if let [value, Expr { kind: ExprKind::Constant(Value::Int(count)), .. }] = operands
             && matches!(kind, Intrinsic::ShiftLeft | Intrinsic::ShiftRight)
@@ -183,7 +183,7 @@ impl Emitter<'_, '_> {
             match kind {
                 Intrinsic::ShiftLeft | Intrinsic::ShiftRight => {
                     self.shifted(value, count, ty, kind == Intrinsic::ShiftLeft);
-                    self.constant(ty, Value::Int(0));
+                    self.shifted_out(value, ty);
                     self.get(count);
                     self.emit(Instruction::I64Const(bits));
                     self.emit(Instruction::I64LtU);
@@ -209,17 +209,32 @@ impl Emitter<'_, '_> {
     fn shift_by_constant(&mut self, left: bool, value: &Expr, count: i128, ty: ElementaryType) {
         let bits = if ty == ElementaryType::Bool { 1 } else { i128::from(ty.size()) * 8 };
         self.expression(value);
-        if !(0..bits).contains(&count) {
+        let inside = (0..bits).contains(&count);
+        // What is left of a signed integer that is shifted out is its sign.
+        let count = if inside || !ty.is_signed() { count } else { bits - 1 };
+        if !inside && !ty.is_signed() {
             self.emit(Instruction::Drop);
             self.constant(ty, Value::Int(0));
         } else if ty.size() == 8 {
             self.emit(Instruction::I64Const(count as i64));
-            self.emit(if left { Instruction::I64Shl } else { Instruction::I64ShrU });
+            self.emit(shift_instruction(ty, left));
         } else if count > 0 {
             self.emit(Instruction::I32Const(count as i32));
-            self.emit(if left { Instruction::I32Shl } else { Instruction::I32ShrU });
+            self.emit(shift_instruction(ty, left));
             self.wrap(ty);
         }
+    }
+
+    /// Pushes what is left of a value whose bits are all shifted out.
+    fn shifted_out(&mut self, value: Register, ty: ElementaryType) {
+        if !ty.is_signed() {
+            self.constant(ty, Value::Int(0));
+            return;
+        }
+        self.get(value);
+        let sign = i64::from(ty.size()) * 8 - 1;
+        self.emit(if ty.size() == 8 { Instruction::I64Const(sign) } else { Instruction::I32Const(sign as i32) });
+        self.emit(shift_instruction(ty, false));
     }
 
     /// Of 64 bit numbers; the divisor is a constant greater than 0.
@@ -269,11 +284,23 @@ impl Emitter<'_, '_> {
         self.get(value);
         self.get(count);
         if ty.size() == 8 {
-            self.emit(if left { Instruction::I64Shl } else { Instruction::I64ShrU });
+            self.emit(shift_instruction(ty, left));
             return;
         }
         self.emit(Instruction::I32WrapI64);
-        self.emit(if left { Instruction::I32Shl } else { Instruction::I32ShrU });
+        self.emit(shift_instruction(ty, left));
         self.wrap(ty);
+    }
+}
+
+/// Bit strings are held without a sign, so that zeros move in from the left.
+fn shift_instruction(ty: ElementaryType, left: bool) -> Instruction<'static> {
+    match (left, ty.size() == 8, ty.is_signed()) {
+        (true, true, _) => Instruction::I64Shl,
+        (true, false, _) => Instruction::I32Shl,
+        (false, true, true) => Instruction::I64ShrS,
+        (false, true, false) => Instruction::I64ShrU,
+        (false, false, true) => Instruction::I32ShrS,
+        (false, false, false) => Instruction::I32ShrU,
     }
 }

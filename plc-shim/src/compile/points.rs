@@ -92,18 +92,34 @@ impl Emitter<'_, '_> {
         if kind == PointKind::Statement && pou.variables.iter().any(|variable| variable.span == span) {
             return;
         }
-        if points.traced && kind != PointKind::Statement {
+        if points.traced {
+            self.trace(kind, span);
             return;
         }
-        let (traced, base) = (points.traced, points.base);
+        let base = points.base;
         let Some(index) = points.index(kind, &pou.name, span) else { return };
-        if traced {
-            self.trace_begin(index);
-            return;
-        }
         let Some(offset) = base.checked_add(index) else { return };
         self.emit(Instruction::I32Const(0));
         self.emit(Instruction::I32Const(1));
         self.emit(Instruction::I32Store8(MemArg { offset: u64::from(offset), align: 0, memory_index: 0 }));
+    }
+
+    fn trace(&mut self, kind: PointKind, span: Span) {
+        let pou = self.frames.last().and_then(|frame| self.shared.pous.get(&frame.pou));
+        let (Some(points), Some(pou)) = (&mut self.shared.points, pou) else { return };
+        let mut point = |kind| points.index(kind, &pou.name, span);
+        match kind {
+            PointKind::Unit => {}
+            PointKind::Statement => {
+                if let Some(statement) = point(kind) {
+                    self.trace_begin(statement);
+                }
+            }
+            PointKind::Outcome(_) => {
+                if let Some((statement, outcome)) = point(PointKind::Statement).zip(point(kind)) {
+                    self.trace_choice(statement, outcome);
+                }
+            }
+        }
     }
 }

@@ -180,17 +180,16 @@ impl Emitter<'_, '_> {
             self.expression(&branch.condition);
             self.emit(Instruction::I32Eqz);
             self.branch_if(next);
-            let mut before = self.known.clone();
-            self.assume(&branch.condition, true);
-            std::mem::swap(&mut self.known, &mut before);
+            let before = self.known.clone();
             self.assume(&branch.condition, false);
-            std::mem::swap(&mut self.known, &mut before);
+            let passed = std::mem::replace(&mut self.known, before);
+            self.assume(&branch.condition, true);
             self.cover(PointKind::Outcome(outcome), span);
             self.leaving += u32::from(leaves(&branch.body));
             self.statements(&branch.body);
             self.leaving -= u32::from(leaves(&branch.body));
             self.branch(end);
-            self.join(&mut after, before);
+            self.join(&mut after, passed);
             self.close();
         }
         self.cover(PointKind::Outcome(branches.len() as u32), span);

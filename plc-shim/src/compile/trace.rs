@@ -1,4 +1,5 @@
-//! Statements tell the host when they begin and end, so that it can say which of them wrote a byte.
+//! Statements tell the host when they begin and end, and decisions which way they go, so that it can
+//! say which statement wrote a byte, and why that one.
 //!
 //! The end of an assignment says what it has written, as far as that is known; what other
 //! statements write the host finds by comparing. Statements of the library are silent: what they
@@ -19,9 +20,11 @@ pub(crate) const MODULE: &str = "trace";
 pub(crate) const BEGIN: &str = "begin";
 /// A statement ends; address and size of what it has written follow, or zeros.
 pub(crate) const END: &str = "end";
+/// A statement, by its point, goes one of its ways, by the outcome's point.
+pub(crate) const CHOOSE: &str = "choose";
 
 /// The imports, in their order behind all others, with their numbers of parameters.
-pub(super) const IMPORTS: [(&str, usize); 2] = [(BEGIN, 1), (END, 3)];
+pub(super) const IMPORTS: [(&str, usize); 3] = [(BEGIN, 1), (END, 3), (CHOOSE, 2)];
 
 /// Parameters of an import; there is no result.
 pub(super) fn parameters(count: usize) -> Vec<ValType> {
@@ -37,6 +40,13 @@ impl Emitter<'_, '_> {
     pub(super) fn trace_begin(&mut self, point: u32) {
         self.emit(Instruction::I32Const(point as i32));
         self.emit(Instruction::Call(index(0)));
+    }
+
+    /// Tells that a statement goes a way.
+    pub(super) fn trace_choice(&mut self, statement: u32, outcome: u32) {
+        self.emit(Instruction::I32Const(statement as i32));
+        self.emit(Instruction::I32Const(outcome as i32));
+        self.emit(Instruction::Call(index(2)));
     }
 
     /// Tells that a statement ends, if the program is traced.

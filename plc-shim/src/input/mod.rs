@@ -7,7 +7,7 @@
 //! | `xml` | text | a tree whose nodes know their place |
 //! | `twincat`, `twincat_task` | TwinCAT's objects | program text |
 //! | `plcopen`, `plcopen_instances`, `plcopen_object` | PLCopen XML, and what CODESYS adds to it | program text |
-//! | `plcopen_chart`, `plcopen_chart_graph` | its Sequential Function Charts | program text |
+//! | `plcopen_chart`, `plcopen_chart_graph`, `plcopen_condition` | its Sequential Function Charts | program text |
 //! | `plcopen_network` | its networks in LD and FBD | statements |
 //! | [`project`] | a TwinCAT project | the names of its files |
 //!
@@ -17,11 +17,12 @@
 pub mod encoding;
 pub mod kind;
 mod plcopen;
-mod plcopen_chart;
-mod plcopen_chart_graph;
+pub(crate) mod plcopen_chart;
+pub(crate) mod plcopen_chart_graph;
+pub(crate) mod plcopen_condition;
 mod plcopen_instances;
 mod plcopen_network;
-mod plcopen_object;
+pub(crate) mod plcopen_object;
 pub mod project;
 mod twincat;
 mod twincat_task;

@@ -5,27 +5,24 @@
 //! | `step`, its `actionBlock`s | STEP with associations |
 //! | `macroStep` | the steps inside of it |
 //! | `jumpStep`, divergences and convergences | the lists behind FROM and TO |
-//! | `transition` | TRANSITION; those further to the left first |
+//! | `transition` | TRANSITION; those further to the left first. See [`super::plcopen_condition`] |
 //! | `<inline>` of an action | an ACTION named after the step |
 
 use super::plcopen::Writer;
-use super::plcopen_chart_graph::{End, Graph, Kind, NodeId};
-use super::plcopen_object::inner_text;
+use super::plcopen_chart_graph::{End, Graph, Kind, Node, NodeId};
+use super::plcopen_condition::{named, named_transitions};
 use super::xml::Element;
 use crate::diagnostic::Code;
-use crate::syntax::parser::parse_expression;
 
 /// A chart and the transitions that its unit defines beside it.
-struct Chart<'e> {
-    graph: Graph<'e>,
+pub(super) struct Chart<'e> {
+    pub(super) graph: Graph<'e>,
     named: Vec<&'e Element>,
 }
 
 impl<'e> Chart<'e> {
-    fn named(&self, name: &str) -> Option<&'e Element> {
-        let is_it =
-            |element: &&Element| element.attribute("name").is_some_and(|found| found.value.eq_ignore_ascii_case(name));
-        self.named.iter().copied().find(|element| is_it(element))
+    pub(super) fn named(&self, name: &str) -> Option<&'e Element> {
+        named(&self.named, name)
     }
 
     fn name_of(&self, id: NodeId) -> Option<&'e super::xml::Attribute> {
@@ -41,9 +38,7 @@ impl Writer<'_> {
             let message = "this connection leads to nothing";
             self.taken.report(lost.connection.open.clone(), Code::MalformedXml, message);
         }
-        let lists = unit.elements().filter(|inner| inner.name == "transitions");
-        let named = lists.flat_map(Element::elements).filter(|inner| inner.name == "transition").collect();
-        let chart = Chart { graph, named };
+        let chart = Chart { graph, named: named_transitions(unit) };
         for (id, node) in chart.graph.of(Kind::Step) {
             self.step(&chart, id, node.element);
         }
@@ -52,6 +47,17 @@ impl Writer<'_> {
         let mut used = Vec::new();
         for id in transitions {
             self.transition(&chart, id, &mut used);
+        }
+        for (_, node) in chart.graph.of(Kind::Other) {
+            self.report_stray(node);
+        }
+    }
+
+    /// What stands in a chart and would do something of its own: only what a condition needs has a meaning there.
+    fn report_stray(&mut self, node: &Node<'_>) {
+        let name = node.element.name.as_str();
+        if matches!(name, "coil" | "outVariable" | "jump" | "return" | "label" | "vendorElement") {
+            self.taken.unsupported(node.element.open.clone(), &format!("`<{name}>` beside the steps of a chart"));
         }
     }
 
@@ -87,7 +93,7 @@ impl Writer<'_> {
                 self.attribute(reference, "name");
             } else if let Some(inline) = action.child("inline") {
                 let name = step.attribute("name").map_or("", |name| name.value.as_str());
-                let name = format!("{name}_inline_{}", own.len() + 1);
+                let name = inline_action_name(name, own.len() + 1);
                 self.write(&name, &inline.open);
                 own.push((name, inline));
             } else {
@@ -111,7 +117,8 @@ impl Writer<'_> {
     }
 
     fn transition(&mut self, chart: &Chart<'_>, id: NodeId, used: &mut Vec<String>) {
-        let Some(element) = chart.graph.node(id).map(|node| node.element) else { return };
+        let Some(node) = chart.graph.node(id) else { return };
+        let element = node.element;
         let (from, to) = (chart.graph.before(id), chart.graph.behind(id));
         for (ends, side) in [(&from, "before"), (&to, "behind")] {
             if ends.is_empty() || ends.iter().any(|end| matches!(end, End::Wrong(_))) {
@@ -119,7 +126,7 @@ impl Writer<'_> {
                 return self.taken.report(element.open.clone(), Code::MalformedXml, &message);
             }
         }
-        let condition = self.condition(chart, element);
+        let condition = self.condition(chart, node);
         self.write("TRANSITION ", &element.open);
         let name = condition.name(element, used);
         if let Some(name) = &name {
@@ -159,116 +166,9 @@ impl Writer<'_> {
         }
         self.write(if several { ")" } else { "" }, &transition.open);
     }
-
-    fn condition<'c>(&mut self, chart: &Chart<'c>, transition: &'c Element) -> Condition<'c> {
-        let Some(holder) = transition.child("condition") else {
-            let message = "`<transition>` has no `<condition>`";
-            self.taken.report(transition.open.clone(), Code::MalformedXml, message);
-            return Condition::Missing;
-        };
-        let negated = holder.attribute("negated").is_some_and(|found| matches!(found.value.trim(), "true" | "1"));
-        if let Some(reference) = holder.child("reference") {
-            let Some(name) = reference.attribute("name") else {
-                self.attribute(reference, "name");
-                return Condition::Missing;
-            };
-            return match chart.named(&name.value).and_then(|named| named.child("body")) {
-                Some(body) => Condition::Body { name: Some(name.value.clone()), body, negated },
-                None => Condition::Variable { name, negated },
-            };
-        }
-        if let Some(inline) = holder.child("inline") {
-            Condition::Body { name: None, body: inline, negated }
-        } else {
-            self.taken.unsupported(holder.open.clone(), "a condition that a network is connected to");
-            Condition::Missing
-        }
-    }
-
-    fn write_condition(&mut self, condition: &Condition<'_>, name: &str, transition: &Element) {
-        let open = &transition.open;
-        match condition {
-            // It has been told; the rest of the chart is read all the same.
-            Condition::Missing => self.write(" := FALSE", open),
-            Condition::Variable { name, negated } => {
-                self.write(if *negated { " := NOT " } else { " := " }, open);
-                self.write(&name.value, &name.span);
-            }
-            Condition::Body { body, negated, .. } => {
-                let Some(text) = body.child("ST") else {
-                    // A network assigns to the transition's name; a list of instructions leaves its result.
-                    self.write(" :\n", open);
-                    self.body(body);
-                    match (body.child("IL").is_some(), negated) {
-                        (true, false) => self.write(&format!("ST {name}\n"), open),
-                        (true, true) => self.write(&format!("STN {name}\n"), open),
-                        (false, true) => self.write(&format!("{name} := NOT {name};\n"), open),
-                        (false, false) => {}
-                    }
-                    return;
-                };
-                match (Form::of(&inner_text(self.file, text)), negated) {
-                    (Form::Expression, false) => self.write(" := ", open),
-                    (Form::Expression, true) => self.write(" := NOT (", open),
-                    (Form::Assigned, _) => self.write(" ", open),
-                    (Form::Statements, _) => self.write(" :\n", open),
-                }
-                if *negated {
-                    let inside = inner_text(self.file, text);
-                    self.write(inside.trim_end().trim_end_matches(';'), &text.open);
-                    self.write(")", open);
-                } else {
-                    self.text_below(text);
-                }
-            }
-        }
-    }
 }
 
-/// When a transition is cleared, as the file has it.
-enum Condition<'c> {
-    /// A variable's name.
-    Variable { name: &'c super::xml::Attribute, negated: bool },
-    /// Text, perhaps that of a transition which the unit defines by name.
-    Body { name: Option<String>, body: &'c Element, negated: bool },
-    /// It has been told that there is none.
-    Missing,
-}
-
-impl Condition<'_> {
-    /// The transition's name: each is given once, and where statements need one.
-    fn name(&self, transition: &Element, used: &mut Vec<String>) -> Option<String> {
-        let Self::Body { name, body, .. } = self else { return None };
-        let free = name.as_ref().filter(|name| !used.iter().any(|known| known.eq_ignore_ascii_case(name)));
-        let name = match free {
-            Some(name) => name.clone(),
-            None if body.child("ST").is_some() => return None,
-            None => format!("transition_{}", transition.attribute("localId").map_or("", |id| id.value.trim())),
-        };
-        used.push(name.clone());
-        Some(name)
-    }
-}
-
-/// What the text of a condition is: tools differ.
-enum Form {
-    /// `a AND b`
-    Expression,
-    /// `:= a AND b;`
-    Assigned,
-    /// `t := a AND b;`
-    Statements,
-}
-
-impl Form {
-    fn of(text: &str) -> Self {
-        let text = text.trim();
-        if text.starts_with(":=") {
-            Self::Assigned
-        } else if parse_expression(text.trim_end_matches(';')).is_some() || !text.contains(":=") {
-            Self::Expression
-        } else {
-            Self::Statements
-        }
-    }
+/// The name of an action that is written in a step.
+pub(crate) fn inline_action_name(step: &str, number: usize) -> String {
+    format!("{step}_inline_{number}")
 }

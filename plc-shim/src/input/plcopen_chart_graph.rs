@@ -5,19 +5,21 @@ use std::collections::{BTreeMap, BTreeSet};
 use super::xml::Element;
 
 /// An element of a chart, by its number.
-pub(super) type NodeId = usize;
+pub(crate) type NodeId = usize;
 
 /// A network of elements, those inside of macro steps too.
 #[derive(Default)]
-pub(super) struct Graph<'e> {
-    pub(super) nodes: Vec<Node<'e>>,
+pub(crate) struct Graph<'e> {
+    pub(crate) nodes: Vec<Node<'e>>,
     /// The elements behind each.
     behind: BTreeMap<NodeId, Vec<NodeId>>,
 }
 
-pub(super) struct Node<'e> {
-    pub(super) element: &'e Element,
-    pub(super) kind: Kind,
+pub(crate) struct Node<'e> {
+    pub(crate) element: &'e Element,
+    /// The `SFC` that it stands in: the unit's, or that of a macro step.
+    pub(crate) chart: &'e Element,
+    pub(crate) kind: Kind,
     /// The elements before it.
     before: Vec<NodeId>,
     /// Of a macro step, what it stands for.
@@ -25,7 +27,7 @@ pub(super) struct Node<'e> {
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Kind {
+pub(crate) enum Kind {
     Step,
     Macro,
     Jump,
@@ -39,7 +41,7 @@ pub(super) enum Kind {
 
 /// Where a path along the links comes to.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub(super) enum End {
+pub(crate) enum End {
     /// A step.
     Step(NodeId),
     /// What jumps to a step.
@@ -49,8 +51,8 @@ pub(super) enum End {
 }
 
 /// A connection to an element that is not there.
-pub(super) struct Dangling<'e> {
-    pub(super) connection: &'e Element,
+pub(crate) struct Dangling<'e> {
+    pub(crate) connection: &'e Element,
 }
 
 fn kind(element: &Element) -> Kind {
@@ -68,19 +70,19 @@ fn kind(element: &Element) -> Kind {
 }
 
 /// What an element's own inputs are connected to; the condition of a transition is none of them.
-pub(super) fn connections(element: &Element) -> impl Iterator<Item = &Element> {
+pub(crate) fn connections(element: &Element) -> impl Iterator<Item = &Element> {
     let inputs = element.elements().filter(|inner| inner.name == "connectionPointIn");
     inputs.flat_map(Element::elements).filter(|inner| inner.name == "connection")
 }
 
-pub(super) fn number(value: &str) -> Option<i64> {
+pub(crate) fn number(value: &str) -> Option<i64> {
     // Some tools write coordinates as reals.
     value.trim().parse().ok().or_else(|| value.trim().parse::<f64>().ok().map(|real| real as i64))
 }
 
 impl<'e> Graph<'e> {
     /// The elements below `chart`, and the connections that lead nowhere.
-    pub(super) fn new(chart: &'e Element) -> (Self, Vec<Dangling<'e>>) {
+    pub(crate) fn new(chart: &'e Element) -> (Self, Vec<Dangling<'e>>) {
         let mut graph = Self::default();
         let mut dangling = Vec::new();
         graph.add(chart, &mut dangling);
@@ -98,7 +100,7 @@ impl<'e> Graph<'e> {
         let mut own = Vec::new();
         for element in chart.elements() {
             let id = self.nodes.len();
-            self.nodes.push(Node { element, kind: kind(element), before: Vec::new(), inside: Vec::new() });
+            self.nodes.push(Node { element, chart, kind: kind(element), before: Vec::new(), inside: Vec::new() });
             own.push(id);
             if let Some(local) = element.attribute("localId") {
                 by_number.entry(local.value.trim().to_owned()).or_insert(id);
@@ -131,29 +133,29 @@ impl<'e> Graph<'e> {
         own
     }
 
-    pub(super) fn of(&self, wanted: Kind) -> impl Iterator<Item = (NodeId, &Node<'e>)> {
+    pub(crate) fn of(&self, wanted: Kind) -> impl Iterator<Item = (NodeId, &Node<'e>)> {
         self.nodes.iter().enumerate().filter(move |(_, node)| node.kind == wanted)
     }
 
-    pub(super) fn node(&self, id: NodeId) -> Option<&Node<'e>> {
+    pub(crate) fn node(&self, id: NodeId) -> Option<&Node<'e>> {
         self.nodes.get(id)
     }
 
     /// Where it stands from left to right; what has no place keeps that of the file.
-    pub(super) fn column(&self, id: NodeId) -> i64 {
+    pub(crate) fn column(&self, id: NodeId) -> i64 {
         let position = self.node(id).and_then(|node| node.element.child("position"));
         position.and_then(|position| position.attribute("x")).and_then(|x| number(&x.value)).unwrap_or(0)
     }
 
     /// The steps before an element.
-    pub(super) fn before(&self, id: NodeId) -> Vec<End> {
+    pub(crate) fn before(&self, id: NodeId) -> Vec<End> {
         let mut found = Vec::new();
         self.collect(id, Way::Before, &mut BTreeSet::new(), &mut found);
         found
     }
 
     /// The steps behind an element.
-    pub(super) fn behind(&self, id: NodeId) -> Vec<End> {
+    pub(crate) fn behind(&self, id: NodeId) -> Vec<End> {
         let mut found = Vec::new();
         self.collect(id, Way::Behind, &mut BTreeSet::new(), &mut found);
         found

@@ -18,7 +18,7 @@ fn additions<'e>(element: &'e Element, kind: &'static str) -> impl Iterator<Item
 }
 
 /// The text of an element without markup.
-pub(super) fn inner_text(file: &str, element: &Element) -> String {
+pub(crate) fn inner_text(file: &str, element: &Element) -> String {
     let piece = |node: &Node| match node {
         Node::Verbatim(span) => file.get(span.start as usize..span.end as usize).unwrap_or("").to_owned(),
         Node::Reference(character, _) => character.to_string(),

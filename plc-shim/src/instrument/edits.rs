@@ -45,6 +45,18 @@ impl Edits {
         self.edits.push(Edit { at, text: text.into() });
     }
 
+    /// Takes out what changes within `place`, as changes of that part alone.
+    pub(super) fn take_within(&mut self, place: &Range<u32>) -> Self {
+        let is_inside = |edit: &Edit| place.start <= edit.at.start && edit.at.end <= place.end;
+        let (inside, others) = std::mem::take(&mut self.edits).into_iter().partition(is_inside);
+        self.edits = others;
+        let mut taken = Self { edits: inside };
+        for edit in &mut taken.edits {
+            edit.at = edit.at.start - place.start..edit.at.end - place.start;
+        }
+        taken
+    }
+
     /// True if nothing changes.
     pub fn is_empty(&self) -> bool {
         self.edits.is_empty()

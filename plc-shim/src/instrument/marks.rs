@@ -8,7 +8,7 @@
 //! | `(*@sdsp cut .TON*)` | this stood here |
 //!
 //! | `<a x="SDSP_TON"/><!--@sdsp was TON-->` | the name in the tag in front of the mark stands for another |
-//! | `<!--@sdsp cut <a/>-->` | this stood here |
+//! | `<!--@sdsp cut <a/>-->` | this stood here, `-&#45;` for two hyphens and `&amp;` for an ampersand |
 //!
 //! In XML outside of program text the first three are XML comments, too.
 
@@ -94,18 +94,49 @@ fn name_start(before: &str) -> usize {
     }
 }
 
-/// The mark for a tag that is taken out.
-pub(super) fn cut(tag: &str) -> String {
-    format!("{XML_OPENING}cut {tag}{XML_CLOSING}")
+/// The mark for XML that is taken out; no `--` stands in a comment.
+pub(super) fn cut(xml: &str) -> String {
+    let escaped = xml.replace('&', "&amp;").replace("--", "-&#45;");
+    format!("{XML_OPENING}cut {escaped}{XML_CLOSING}")
 }
 
-/// Where the name stands in the tag before a mark that says what it was.
+/// What was taken out.
+fn uncut(escaped: &str) -> String {
+    escaped.replace("&#45;", "-").replace("&amp;", "&")
+}
+
+/// Text to put in before `at`, wherever that is in a line.
+pub(super) fn within(text: &str, at: u32, new: &str) -> String {
+    let ends_line = text.get(at as usize..).is_some_and(|rest| rest.starts_with(['\r', '\n']));
+    if ends_line || new.contains('\n') { lines(new, line_break(text)) } else { inline(new) }
+}
+
+/// Text without the marks in it, but with what they mark.
+pub(super) fn unmarked(text: &str) -> String {
+    let mut plain = String::with_capacity(text.len());
+    let mut from = 0;
+    while let Some(mark) = Mark::next(text, from) {
+        plain.push_str(text.get(from..mark.at.start).unwrap_or(""));
+        from = mark.at.end;
+    }
+    plain + text.get(from..).unwrap_or("")
+}
+
+/// Where the name stands in the tag before a mark that says what it was: the word of the shim's own that ends with it.
 fn renamed_in_tag(before: &str, old: &str) -> Option<Range<u32>> {
-    let new = format!("SDSP_{old}");
     let tag = before.rfind('<')?;
     let inside = before.get(tag..)?;
-    let at = tag + inside.to_ascii_uppercase().rfind(&new.to_ascii_uppercase())?;
-    Some(at as u32..(at + new.len()) as u32)
+    let is_word = |one: char| one.is_ascii_alphanumeric() || one == '_';
+    let mut found = None;
+    for (at, _) in inside.match_indices("SDSP_") {
+        let rest = inside.get(at..)?;
+        let word = rest.get(..rest.find(|one| !is_word(one)).unwrap_or(rest.len()))?;
+        let is_begin = !inside.get(..at)?.ends_with(is_word);
+        if is_begin && word.to_ascii_uppercase().ends_with(&format!("_{}", old.to_ascii_uppercase())) {
+            found = Some((tag + at) as u32..(tag + at + word.len()) as u32);
+        }
+    }
+    found
 }
 
 /// Marks that do not fit together.
@@ -147,7 +178,9 @@ pub(super) fn original(text: &str) -> Result<Original, DamagedMarks> {
             ("end", None) => return Err(damaged("this mark ends what has not begun")),
             // Within what was put in anything may stand.
             (says, None) if says.starts_with("cut ") => {
-                edits.replace(mark.at.start as u32..mark.at.end as u32, says.strip_prefix("cut ").unwrap_or(""));
+                let cut = says.strip_prefix("cut ").unwrap_or("");
+                let text = if mark.is_xml { uncut(cut) } else { cut.to_owned() };
+                edits.replace(mark.at.start as u32..mark.at.end as u32, text);
             }
             (says, None) if mark.is_xml && says.starts_with("was ") => {
                 let old = says.strip_prefix("was ").unwrap_or("");

@@ -17,14 +17,16 @@
 //! | [`plain`] | a project without the shim, and its changes |
 //! | [`controller`] | execution controllers |
 //! | [`scl`] | SCL of TIA Portal: organization blocks, timers |
-//! | [`plcopen`], [`plcopen_unit`] | projects in PLCopen XML |
-//! | [`chart`] | Sequential Function Charts: execution signal, action control, times of steps |
+//! | [`plcopen_project`], [`plcopen`], [`plcopen_unit`] | projects in PLCopen XML |
+//! | [`chart`], [`chart_plan`] | Sequential Function Charts: execution signal, action control, times of steps |
+//! | [`plcopen_chart`], [`plcopen_gate`] | the same of charts that are drawn, in PLCopen XML |
 //! | [`target`], [`twincat`] | the shim's sources as a vendor's tool takes them |
 //!
 //! Invariants: text goes in and comes out, no file is touched; what is not marked stays byte for byte;
 //! instrumenting twice is instrumenting once; what cannot be replaced is told.
 
 mod chart;
+mod chart_plan;
 mod clock;
 mod configuration;
 mod constant;
@@ -37,6 +39,9 @@ mod motion;
 mod motion_use;
 mod plain;
 mod plcopen;
+mod plcopen_chart;
+mod plcopen_gate;
+mod plcopen_project;
 mod plcopen_unit;
 mod scl;
 mod survey;

@@ -26,6 +26,14 @@ pub(super) struct Motion {
     pub(super) findings: Vec<Diagnostic>,
 }
 
+impl Motion {
+    /// The name of the block that takes the place of one of this name.
+    pub(super) fn replacement(&self, name: &str) -> Option<String> {
+        let key = name.to_ascii_uppercase();
+        self.blocks.contains_key(&key).then(|| motion::new_name(&key))
+    }
+}
+
 /// Looks through a project in which `names` stand for blocks and types of motion control.
 pub(super) fn motion(target: Target, units: &[(FileId, &CompilationUnit)], names: &[(Ident, Role)]) -> Motion {
     let mut reader = Reader::default();

@@ -3,13 +3,14 @@
 use std::path::Path;
 use std::sync::Arc;
 
+use super::chart_plan::Plan as ChartPlan;
 use super::edits::{Edited, Edits, LineMap};
 use super::marks::{self, Original};
 use super::motion_use::Motion;
 use super::survey::Survey;
-use super::target::{self, Sources, Target};
+use super::target::{self, Target};
 use super::tasks::TaskTable;
-use super::{File, InstrumentError, Options, chart, clock, configuration, controller, plcopen, scl, twincat};
+use super::{File, InstrumentError, Options, chart, configuration, controller, scl, twincat};
 use crate::diagnostic::{Code, Diagnostic, Diagnostics};
 use crate::input::Input;
 use crate::input::encoding::Encoding;
@@ -22,7 +23,7 @@ use crate::syntax::{FileId, SourceFile, SourceMap, Span};
 pub(super) struct Plain {
     pub(super) sources: SourceMap,
     /// Of each file in `sources` what it was when it was given.
-    given: Vec<Given>,
+    pub(super) given: Vec<Given>,
     /// What kind of file each of them is.
     kinds: Vec<SourceKind>,
     /// The shim's own files that were given.
@@ -32,8 +33,8 @@ pub(super) struct Plain {
     pub(super) findings: Vec<Diagnostic>,
 }
 
-struct Given {
-    name: String,
+pub(super) struct Given {
+    pub(super) name: String,
     text: Arc<str>,
     encoding: Option<Encoding>,
     /// Where the lines are of what it was before it was instrumented.
@@ -120,47 +121,6 @@ impl Plain {
         Some(found.with_help("export the project in that form, or choose another target"))
     }
 
-    /// The project's only file with its changes and all that is the shim's.
-    pub(super) fn edited_xml(
-        &self,
-        survey: &Survey<'_>,
-        motion: &Motion,
-        tasks: &TaskTable<'_>,
-        sources: &Sources,
-    ) -> Result<File, InstrumentError> {
-        let wrong = |span, message: &str| {
-            let found = Diagnostic::error(Code::UnsupportedFeature, span, message);
-            InstrumentError::Text(Diagnostics::new(vec![found], &self.sources))
-        };
-        let whole = Span::new(FileId(0), 0, 0);
-        let (Some(given), Some(file)) = (self.given.first(), self.sources.get(FileId(0))) else {
-            return Err(InstrumentError::NoPrograms);
-        };
-        if !survey.charts.is_empty() {
-            return Err(wrong(whole, "a chart in PLCopen XML is not instrumented yet"));
-        }
-        if let Some((name, _)) = motion.renames.first() {
-            return Err(wrong(name.span, "motion control in PLCopen XML is not instrumented yet"));
-        }
-        let root = plcopen::tree(file).ok_or_else(|| wrong(whole, "this is no XML"))?;
-        let mut edits = Edits::default();
-        for (name, form) in &survey.renames {
-            plcopen::rename(file, name.span.start..name.span.end, &name.text, &form.new_name(), &mut edits);
-        }
-        let declared = |name: &str| survey.is_declared(name);
-        let new = |name: &str| clock::replacement(name).filter(|_| !declared(name));
-        plcopen::rename_blocks(&root, file.shown_text(), &new, &mut edits);
-        for (pou, number) in tasks.numbered() {
-            plcopen::control(pou, number, &tasks.line_type(), (file, &root), &mut edits)
-                .map_err(|message| wrong(pou.name.span, message))?;
-        }
-        plcopen::attach(&root, file.shown_text(), tasks, &sources.globals, &sources.units(), &mut edits)
-            .map_err(|message| wrong(whole, message))?;
-        let conflict = |conflict| InstrumentError::Conflict { file: given.name.clone(), conflict };
-        let Edited { text, lines } = edits.apply(file.shown_text()).map_err(conflict)?;
-        Ok(given.file(Some(text.into()), lines))
-    }
-
     fn damaged(&mut self, name: &str, text: &Arc<str>, damaged: &marks::DamagedMarks) {
         let id = self.sources.add(SourceFile::new(name, text.clone()));
         let span = Span::new(id, damaged.at.start, damaged.at.end);
@@ -224,7 +184,7 @@ impl Plain {
             let number = tasks.numbered().find(|(numbered, _)| std::ptr::eq(*numbered, *pou));
             let number = number.map(|(_, number)| (number, line.as_str()));
             changes(pou.name.span.file, &mut |file, edits| {
-                chart::control(pou, number, &survey.renames, file, edits);
+                chart::control(&ChartPlan::new(pou, number, &survey.renames, file), edits);
             });
         }
         for (pou, number) in tasks.numbered().filter(|(pou, _)| pou.chart.is_empty()) {
@@ -291,7 +251,7 @@ fn rename(name: &Ident, new: &str, file: &SourceFile, edits: &mut Edits) {
 }
 
 impl Given {
-    fn file(&self, text: Option<Arc<str>>, lines: LineMap) -> File {
+    pub(super) fn file(&self, text: Option<Arc<str>>, lines: LineMap) -> File {
         let from = lines.through(&self.plain_lines);
         File { name: self.name.clone(), before: Some(self.text.clone()), text, encoding: self.encoding, lines, from }
     }

@@ -10,11 +10,12 @@ use super::controller;
 use super::edits::Edits;
 use super::marks;
 use super::plcopen_unit as unit;
+use super::target::Sources;
 use super::tasks::TaskTable;
 use super::template::{self, Controller, Number};
 use crate::input::xml::{self, Element};
 use crate::syntax::SourceFile;
-use crate::syntax::ast::Pou;
+use crate::syntax::ast::{Pou, PouKind};
 
 /// The action that a body becomes which is no text.
 const ACTION: &str = "SDSP_Body";
@@ -47,7 +48,7 @@ fn is_named(element: &Element, name: &str) -> bool {
 }
 
 /// The end of the tag around `at`.
-fn tag_end(text: &str, at: u32) -> u32 {
+pub(super) fn tag_end(text: &str, at: u32) -> u32 {
     let rest = text.get(at as usize..).unwrap_or("");
     // `at` stands in a value: the quote that ends it comes first.
     rest.find(['"', '\''])
@@ -81,12 +82,12 @@ pub(super) fn rename_blocks(root: &Element, text: &str, new: &dyn Fn(&str) -> Op
 }
 
 /// Lines in front of `at`, and nothing else.
-fn insert(text: &str, at: u32, xml: &str, edits: &mut Edits) {
+pub(super) fn insert(text: &str, at: u32, xml: &str, edits: &mut Edits) {
     edits.insert(at, marks::xml_lines(xml, marks::line_break(text)));
 }
 
 /// Lines at the end of an element's content.
-fn append(text: &str, element: &Element, xml: &str, edits: &mut Edits) {
+pub(super) fn append(text: &str, element: &Element, xml: &str, edits: &mut Edits) {
     if element.open != element.close {
         return insert(text, element.close.start, xml, edits);
     }
@@ -101,6 +102,30 @@ fn append(text: &str, element: &Element, xml: &str, edits: &mut Edits) {
 /// What cannot be done with a project.
 pub(super) type Refused = &'static str;
 
+/// The element of a unit.
+pub(super) fn element<'e>(pou: &Pou, number: Option<Number>, root: &'e Element) -> Result<&'e Element, Refused> {
+    let kind = if pou.kind == PouKind::Program { "program" } else { "functionBlock" };
+    let is_it = |element: &&Element| {
+        is_named(element, &pou.name.text) && element.attribute("pouType").is_some_and(|found| found.value == kind)
+    };
+    if number == Some(Number::OfInstance) {
+        return Err("several instances of one program in PLCopen XML are not instrumented yet");
+    }
+    all(root, "pou").into_iter().find(is_it).ok_or("this program has no element of its own")
+}
+
+/// Puts variables into the interface of a unit.
+pub(super) fn declare(pou: &Element, declared: &str, text: &str, edits: &mut Edits) {
+    let Some(interface) = pou.child("interface") else {
+        return insert(text, pou.open.end, &format!("<interface>\n{declared}</interface>\n"), edits);
+    };
+    let remarks = interface.elements().find(|inner| matches!(inner.name.as_str(), "addData" | "documentation"));
+    match remarks {
+        Some(first) => insert(text, first.open.start, declared, edits),
+        None => append(text, interface, declared, edits),
+    }
+}
+
 /// The execution controller of a program.
 pub(super) fn control(
     pou: &Pou,
@@ -109,30 +134,13 @@ pub(super) fn control(
     (file, root): (&SourceFile, &Element),
     edits: &mut Edits,
 ) -> Result<(), Refused> {
-    let is_it = |element: &&Element| {
-        is_named(element, &pou.name.text) && element.attribute("pouType").is_some_and(|kind| kind.value == "program")
-    };
-    let Some(element) = all(root, "pou").into_iter().find(is_it) else {
-        return Err("this program has no element of its own");
-    };
-    if number == Number::OfInstance {
-        return Err("several instances of one program in PLCopen XML are not instrumented yet");
-    }
+    let element = element(pou, Some(number), root)?;
     let text = file.shown_text();
     let controller = template::controller(number, line);
     let Some(declared) = unit::declarations(&controller.declarations) else {
         return Err("its controller has no form in PLCopen XML");
     };
-    match element.child("interface") {
-        Some(interface) => {
-            let remarks = interface.elements().find(|inner| matches!(inner.name.as_str(), "addData" | "documentation"));
-            match remarks {
-                Some(first) => insert(text, first.open.start, &declared, edits),
-                None => append(text, interface, &declared, edits),
-            }
-        }
-        None => insert(text, element.open.end, &format!("<interface>\n{declared}</interface>\n"), edits),
-    }
+    declare(element, &declared, text, edits);
     let bodies: Vec<&Element> = element.elements().filter(|inner| inner.name == "body").collect();
     let is_text = bodies.iter().any(|body| body.child("ST").is_some()) && !pou.body.is_empty();
     if is_text {
@@ -159,8 +167,8 @@ fn into_action(
         insert(text, at, &own, edits);
         return Ok(());
     };
-    if first.child("SFC").is_some() || pou.child("transitions").is_some() {
-        return Err("a chart in PLCopen XML is not instrumented yet");
+    if pou.child("transitions").is_some_and(|list| list.elements().next().is_some()) {
+        return Err("a unit with transitions is a chart, and this one has none");
     }
     match pou.child("actions") {
         Some(actions) if actions.open != actions.close => {
@@ -184,19 +192,21 @@ pub(super) fn attach(
     root: &Element,
     text: &str,
     tasks: &TaskTable<'_>,
-    globals: &str,
-    units: &[String],
+    sources: &Sources,
     edits: &mut Edits,
 ) -> Result<(), Refused> {
     let nothing = || "a unit of the shim has no form in PLCopen XML";
-    let mut pous = String::new();
-    for text in units {
-        pous += &unit::unit(text).ok_or_else(nothing)?;
-    }
-    let Some(place) = root.child("types").and_then(|types| types.child("pous")) else {
-        return Err("this project has no `<pous>`");
+    let of = |texts: Vec<String>, form: fn(&str) -> Option<String>| -> Option<String> {
+        texts.iter().map(|text| form(text)).collect()
     };
-    append(text, place, &pous, edits);
+    let pous = of(sources.units(), unit::unit).ok_or_else(nothing)?;
+    let types = of(sources.types(), unit::data_type).ok_or_else(nothing)?;
+    let place = |list| root.child("types").and_then(|types| types.child(list));
+    append(text, place("pous").ok_or("this project has no `<pous>`")?, &pous, edits);
+    if !types.is_empty() {
+        append(text, place("dataTypes").ok_or("this project has no `<dataTypes>`")?, &types, edits);
+    }
+    let globals = &sources.globals;
     let configuration = all(root, "configuration").into_iter().find(|each| !all(each, "pouInstance").is_empty());
     let Some(configuration) = configuration else {
         return alone(root, text, globals, edits).ok_or_else(nothing);

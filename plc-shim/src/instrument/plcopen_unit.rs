@@ -4,7 +4,8 @@ use std::fmt::Write;
 
 use crate::ir::ElementaryType;
 use crate::syntax::ast::{
-    Declaration, Initialiser, InitialiserKind, Pou, PouKind, Qualifier, Section, SectionKind, TypeSpec, TypeSpecKind,
+    Declaration, Ident, Initialiser, InitialiserKind, Pou, PouKind, Qualifier, Section, SectionKind, TypeSpec,
+    TypeSpecKind,
 };
 use crate::syntax::printer::print_expression;
 use crate::syntax::token::{Keyword, TokenKind};
@@ -20,8 +21,35 @@ pub(super) fn escaped(text: &str) -> String {
 
 /// A body in ST.
 pub(super) fn body(statements: &str) -> String {
-    let text = statements.trim_matches('\n').replace("]]>", "]] >");
-    format!("<body><ST><xhtml:p xmlns:xhtml=\"{XHTML}\"><![CDATA[{text}\n]]></xhtml:p></ST></body>\n")
+    format!("<body>{}</body>\n", text(&format!("{}\n", statements.trim_matches('\n'))))
+}
+
+/// Text in ST.
+pub(super) fn text(statements: &str) -> String {
+    let text = statements.replace("]]>", "]] >");
+    format!("<ST><xhtml:p xmlns:xhtml=\"{XHTML}\"><![CDATA[{text}]]></xhtml:p></ST>")
+}
+
+/// `<dataType>` of a type of the shim; nothing if it has no element here.
+pub(super) fn data_type(text: &str) -> Option<String> {
+    let unit = parse(FileId(0), text).unit;
+    let found = unit.declarations.iter().find_map(|each| match each {
+        Declaration::Type(named) => Some(named),
+        _ => None,
+    })?;
+    let ty = match &found.spec.kind {
+        TypeSpecKind::Struct(fields) => {
+            let all: Option<String> =
+                fields.iter().map(|field| variable(&field.name, &field.spec, field.initial.as_ref())).collect();
+            format!("<struct>\n{}</struct>", all?)
+        }
+        TypeSpecKind::Enumeration(values, _) => {
+            let names = values.iter().map(|value| format!("<value name=\"{}\"/>", value.name.text));
+            format!("<enum><values>{}</values></enum>", names.collect::<String>())
+        }
+        _ => type_of(&found.spec)?,
+    };
+    Some(format!("<dataType name=\"{}\">\n<baseType>{ty}</baseType>\n</dataType>\n", found.name.text))
 }
 
 /// `<pou>` of a unit of the shim; nothing if a type in it has no element here.
@@ -97,19 +125,23 @@ fn sections<'s>(sections: impl IntoIterator<Item = &'s Section>) -> Option<Strin
         };
         let constant = section.qualifiers.iter().any(|each| matches!(each, Qualifier::Constant));
         writeln!(xml, "<{element}{}>", if constant { " constant=\"true\"" } else { "" }).ok()?;
-        for variable in &section.variables {
-            let ty = type_of(&variable.spec)?;
-            let initial = match &variable.initial {
-                Some(initial) => format!("<initialValue>{}</initialValue>", value(initial)?),
-                None => String::new(),
-            };
-            for name in &variable.names {
-                writeln!(xml, "<variable name=\"{}\"><type>{ty}</type>{initial}</variable>", name.text).ok()?;
+        for each in &section.variables {
+            for name in &each.names {
+                xml += &variable(name, &each.spec, each.initial.as_ref())?;
             }
         }
         writeln!(xml, "</{element}>").ok()?;
     }
     Some(xml)
+}
+
+fn variable(name: &Ident, spec: &TypeSpec, initial: Option<&Initialiser>) -> Option<String> {
+    let ty = type_of(spec)?;
+    let initial = match initial {
+        Some(initial) => format!("<initialValue>{}</initialValue>", value(initial)?),
+        None => String::new(),
+    };
+    Some(format!("<variable name=\"{}\"><type>{ty}</type>{initial}</variable>\n", name.text))
 }
 
 fn type_of(spec: &TypeSpec) -> Option<String> {

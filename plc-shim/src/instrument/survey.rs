@@ -230,7 +230,7 @@ impl<'a> Surveyor<'_, 'a> {
             TypeSpecKind::Array(_, element)
             | TypeSpecKind::OpenArray(_, element)
             | TypeSpecKind::Reference(_, element) => self.spec(element),
-            TypeSpecKind::Struct(fields) | TypeSpecKind::Union(fields) => {
+            TypeSpecKind::Struct(fields) | TypeSpecKind::Overlapping(fields) | TypeSpecKind::Union(fields) => {
                 for field in fields {
                     self.spec(&field.spec);
                     field.initial.iter().for_each(|initial| self.initialiser(initial));

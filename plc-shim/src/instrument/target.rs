@@ -108,7 +108,14 @@ impl Sources {
 
     /// The units, for a project that has them in a file of its own.
     pub(super) fn units(&self) -> Vec<String> {
-        std::iter::once(&self.scheduler).chain(self.forms.iter().map(|unit| &unit.text)).cloned().collect()
+        let forms = self.forms.iter().map(|unit| &unit.text);
+        let motion = self.motion.iter().filter(|part| !part.is_type).map(|part| &part.text);
+        std::iter::once(&self.scheduler).chain(forms).chain(motion).cloned().collect()
+    }
+
+    /// The types beside them.
+    pub(super) fn types(&self) -> Vec<String> {
+        self.motion.iter().filter(|part| part.is_type).map(|part| part.text.clone()).collect()
     }
 
     /// The files in which they are.

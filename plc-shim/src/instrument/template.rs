@@ -168,6 +168,13 @@ pub(super) struct ChartController {
     pub(super) footer: String,
 }
 
+impl ChartController {
+    /// The execution signal as an expression.
+    pub(super) fn is_open(&self) -> &str {
+        self.gate.strip_suffix("AND").unwrap_or(&self.gate).trim()
+    }
+}
+
 /// The parts of an execution controller.
 pub(super) struct Controller {
     /// Its variables.

@@ -94,6 +94,8 @@ pub(crate) struct Field {
     pub(crate) name: String,
     pub(crate) ty: TypeId,
     pub(crate) offset: u32,
+    /// Of a BOOL that is one bit of its byte, which.
+    pub(crate) bit: Option<u8>,
 }
 
 #[derive(Debug, Clone)]

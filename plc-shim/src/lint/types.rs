@@ -81,7 +81,9 @@ fn spec_of<'a>(expr: &Expr, pou: &'a Pou, index: &Index<'a>) -> Option<&'a TypeS
         },
         ExprKind::Member(inner, member) => {
             let spec = index.resolved(spec_of(inner, pou, index)?);
-            if let TypeSpecKind::Struct(fields) | TypeSpecKind::Union(fields) = &spec.kind {
+            if let TypeSpecKind::Struct(fields) | TypeSpecKind::Overlapping(fields) | TypeSpecKind::Union(fields) =
+                &spec.kind
+            {
                 return fields.iter().find(|field| field.name.key() == member.key()).map(|field| &field.spec);
             }
             let (section, variable) = declared(index.block(spec)?, &member.key())?;

@@ -110,7 +110,7 @@ impl Collector<'_> {
                 walk::expression(&bounds.low, self);
                 walk::expression(&bounds.high, self);
             }
-            TypeSpecKind::Struct(fields) | TypeSpecKind::Union(fields) => {
+            TypeSpecKind::Struct(fields) | TypeSpecKind::Overlapping(fields) | TypeSpecKind::Union(fields) => {
                 for field in fields {
                     self.spec(&field.spec);
                     field.initial.iter().for_each(|initial| self.initialiser(initial));

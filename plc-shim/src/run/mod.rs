@@ -12,6 +12,7 @@
 //! | `asserts` | what the asserts of a test program have found |
 //! | `text` | functions on character strings |
 //! | `state` | its state as bytes |
+//! | `trace`, `way` | which statement wrote a byte; which ways decisions went |
 
 mod asserts;
 mod configured;
@@ -24,12 +25,14 @@ mod soft_plc;
 mod state;
 pub(crate) mod text;
 mod trace;
+mod way;
 
 pub use asserts::{Asserts, FailedAssert};
 pub use fault::{FaultSite, PlcFault, WriteSite};
 pub use plan::{RunError, Task, TaskPlan};
 pub use soft_plc::SoftPlc;
 pub use state::RestoreError;
+pub use way::{Way, WayId};
 
 /// Virtual time: nanoseconds since the session's start.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Default)]

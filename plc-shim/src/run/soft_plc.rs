@@ -10,6 +10,7 @@ use super::plan::{Resolved, RunError, TaskPlan, resolve};
 use super::scheduler::Scheduler;
 use super::state::{self, RestoreError, State};
 use super::trace::{Trace, Watched};
+use super::way::WayId;
 use crate::application::{Application, UnknownVariable, Variable};
 use crate::check::{INIT_RETAINS_OFFSET, VIRTUAL_TIME_OFFSET};
 use crate::coverage::Coverage;
@@ -166,6 +167,7 @@ impl SoftPlc {
     }
 
     fn run_entry(&mut self, entry: usize) -> Result<(), PlcFault> {
+        self.machine.begin_traced_unit();
         for part in 0..self.machine.parts(entry) {
             if let Err(trapped) = self.machine.run(entry, part) {
                 let found = explain(&self.application, &trapped, self.now);
@@ -243,7 +245,13 @@ impl SoftPlc {
     pub fn last_writer(&self, index: usize) -> Option<WriteSite> {
         let writer = self.machine.trace()?.watched.get(index)?.writer.as_ref()?;
         let point = self.application.points().get(writer.point as usize)?;
-        Some(fault::write_site(&self.application, point.span, &writer.frames))
+        Some(fault::write_site(&self.application, point.span, writer))
+    }
+
+    /// The ways that decisions of the last scan went, in their order; nothing unless places are
+    /// watched. What they are is in [`Application::ways`].
+    pub fn ways(&self) -> impl Iterator<Item = WayId> {
+        self.machine.trace().into_iter().flat_map(|trace| trace.ways.iter().copied().map(WayId))
     }
 
     /// The complete state as bytes.

@@ -1,11 +1,11 @@
-//! Who wrote what is watched: the last statement, and the calls that led to it.
+//! Who wrote what is watched: the last statement, and the calls and decisions that led to it.
 
 use std::ops::Range;
 
 use wasmtime::{Caller, Error, Linker, WasmBacktrace};
 
 use super::text::link::HostState;
-use crate::compile::trace::{BEGIN, END, MODULE};
+use crate::compile::trace::{BEGIN, CHOOSE, END, MODULE};
 
 /// Bytes of memory that are watched.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -22,14 +22,19 @@ pub(super) struct Watched {
 pub(super) struct Writer {
     pub(super) point: u32,
     pub(super) frames: Vec<(u32, Option<u32>)>,
+    /// The ways that decisions around it had gone, by their points, innermost first.
+    pub(super) within: Vec<u32>,
 }
 
 /// What the statements of a scan are held against.
 #[derive(Debug, Default)]
 pub(in crate::run) struct Trace {
     pub(super) watched: Vec<Watched>,
-    /// The statements that have begun and not ended, but for those that were left early.
-    active: Vec<u32>,
+    /// The statements that have begun and not ended, but for those that were left early, each with
+    /// the way that it went last.
+    active: Vec<(u32, Option<u32>)>,
+    /// The ways of all decisions of the scan, in their order.
+    pub(super) ways: Vec<u32>,
 }
 
 impl Watched {
@@ -56,15 +61,30 @@ impl Watched {
 
 impl Trace {
     pub(super) fn new(watched: Vec<Watched>) -> Self {
-        Self { watched, active: Vec::new() }
+        Self { watched, ..Self::default() }
     }
 
     /// A scan begins: what is watched has been written from outside, if at all.
     pub(super) fn begin_scan(&mut self, memory: &[u8]) {
         self.active.clear();
+        self.ways.clear();
         for watched in &mut self.watched {
             watched.look(memory);
             watched.writer = None;
+        }
+    }
+
+    /// A unit that a task runs begins: nothing is around its statements.
+    pub(in crate::run) fn begin_unit(&mut self) {
+        self.active.clear();
+    }
+
+    /// The statement `statement` goes a way. What began in it and was left early is over.
+    fn choose(&mut self, statement: u32, way: u32) {
+        self.ways.push(way);
+        if let Some(at) = self.active.iter().rposition(|(active, _)| *active == statement) {
+            self.active.truncate(at + 1);
+            self.active[at].1 = Some(way);
         }
     }
 
@@ -73,7 +93,8 @@ impl Trace {
         for watched in &mut self.watched {
             let changed = watched.look(memory);
             if let Some(point) = point.filter(|_| changed || watched.is_within(stored)) {
-                watched.writer = Some(Writer { point, frames: frames() });
+                let within = self.active.iter().rev().filter_map(|(_, way)| *way).collect();
+                watched.writer = Some(Writer { point, frames: frames(), within });
             }
         }
     }
@@ -98,9 +119,9 @@ fn with_trace(caller: &mut Caller<'_, HostState>, work: impl FnOnce(&mut Trace, 
 /// What changed before a statement begins was the one's around it.
 fn begin(mut caller: Caller<'_, HostState>, point: u32) {
     with_trace(&mut caller, |trace, memory, caller| {
-        let around = trace.active.last().copied();
+        let around = trace.active.last().map(|(statement, _)| *statement);
         trace.look(around, &(0..0), memory, || frames(caller));
-        trace.active.push(point);
+        trace.active.push((point, None));
     });
 }
 
@@ -108,15 +129,22 @@ fn end(mut caller: Caller<'_, HostState>, point: u32, address: u32, size: u32) {
     with_trace(&mut caller, |trace, memory, caller| {
         let stored = address as usize..(address as usize).saturating_add(size as usize);
         trace.look(Some(point), &stored, memory, || frames(caller));
-        if let Some(at) = trace.active.iter().rposition(|active| *active == point) {
+        if let Some(at) = trace.active.iter().rposition(|(active, _)| *active == point) {
             trace.active.truncate(at);
         }
     });
+}
+
+fn choose(mut caller: Caller<'_, HostState>, statement: u32, way: u32) {
+    if let Some(trace) = &mut caller.data_mut().trace {
+        trace.choose(statement, way);
+    }
 }
 
 /// Gives the module what its statements call.
 pub(super) fn link(linker: &mut Linker<HostState>) -> Result<(), Error> {
     linker.func_wrap(MODULE, BEGIN, begin)?;
     linker.func_wrap(MODULE, END, end)?;
+    linker.func_wrap(MODULE, CHOOSE, choose)?;
     Ok(())
 }

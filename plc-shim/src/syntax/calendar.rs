@@ -12,6 +12,8 @@ pub enum CalendarKind {
     TimeOfDay,
     /// `DT#1994-06-15-15:36:55.36`
     DateAndTime,
+    /// `DTL#1994-06-15-15:36:55.36` of Siemens, a structure
+    Parts,
 }
 
 /// The kind and length (`true` for the types of 64 bits of the 3rd edition) of a prefix.
@@ -23,6 +25,7 @@ pub fn calendar_prefix(prefix: &str) -> Option<(CalendarKind, bool)> {
         "LTOD" | "LTIME_OF_DAY" => (CalendarKind::TimeOfDay, true),
         "DT" | "DATE_AND_TIME" => (CalendarKind::DateAndTime, false),
         "LDT" | "LDATE_AND_TIME" => (CalendarKind::DateAndTime, true),
+        "DTL" => (CalendarKind::Parts, true),
         _ => return None,
     })
 }
@@ -35,7 +38,7 @@ pub fn parse_calendar(kind: CalendarKind, text: &str) -> Result<i64, String> {
     let (date, time) = match kind {
         CalendarKind::Date => (Some(text), None),
         CalendarKind::TimeOfDay => (None, Some(text)),
-        CalendarKind::DateAndTime => {
+        CalendarKind::DateAndTime | CalendarKind::Parts => {
             let middle = text.match_indices('-').nth(2).map(|(at, _)| at).ok_or("the time of day is missing")?;
             (Some(&text[..middle]), Some(&text[middle + 1..]))
         }

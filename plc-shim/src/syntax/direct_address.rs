@@ -125,6 +125,9 @@ pub enum AddressError {
     /// Greater than 7.
     #[error("a byte has the bits 0 to 7")]
     Bit,
+    /// The letter of an area, or an open place, where a member stands.
+    #[error("a member's address counts from the beginning of its structure, as in %B4 or %X4.0")]
+    Relative,
     /// Beyond [`AREA_LIMIT`].
     #[error("an area ends at byte {}", AREA_LIMIT - 1)]
     TooLarge,
@@ -158,18 +161,48 @@ impl DirectAddress {
     /// # Errors
     /// It lies beyond [`AREA_LIMIT`].
     pub fn place(self, unit: AddressUnit) -> Result<Option<(u32, Option<u8>)>, AddressError> {
-        let (byte, bit) = match (self.position, self.width) {
-            (Position::Open, _) => return Ok(None),
-            (Position::Bit(byte, bit), _) => (byte, Some(bit)),
-            (Position::Number(number), Width::Bit) => (number / 8, Some((number % 8) as u8)),
-            (Position::Number(number), width) => {
-                let scale = if unit == AddressUnit::Element { width.bytes() } else { 1 };
-                (number.checked_mul(scale).ok_or(AddressError::TooLarge)?, None)
-            }
-        };
-        let end = byte.checked_add(self.width.bytes()).filter(|end| *end <= AREA_LIMIT);
-        end.map(|_| Some((byte, bit))).ok_or(AddressError::TooLarge)
+        place(self.width, self.position, unit)
     }
+}
+
+/// Where a member lies in its structure: `%B4`, `%X3.0` (3rd ed. 6.4.4.6, Table 11).
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct RelativeAddress {
+    /// How much.
+    pub width: Width,
+    /// First byte.
+    pub byte: u32,
+    /// Of a bit, its number in that byte.
+    pub bit: Option<u8>,
+}
+
+impl RelativeAddress {
+    /// Reads an address as written, with its `%`.
+    ///
+    /// # Errors
+    /// What is wrong with it.
+    pub fn parse(text: &str, unit: AddressUnit) -> Result<Self, AddressError> {
+        let text = text.strip_prefix('%').unwrap_or(text);
+        let width = text.chars().next().and_then(Width::find).ok_or(AddressError::Relative)?;
+        let position = position(width, text.get(1..).unwrap_or_default())?;
+        let (byte, bit) = place(width, position, unit)?.ok_or(AddressError::Relative)?;
+        Ok(Self { width, byte, bit })
+    }
+}
+
+/// First byte and bit of a place in its area; nothing if it is open.
+fn place(width: Width, position: Position, unit: AddressUnit) -> Result<Option<(u32, Option<u8>)>, AddressError> {
+    let (byte, bit) = match (position, width) {
+        (Position::Open, _) => return Ok(None),
+        (Position::Bit(byte, bit), _) => (byte, Some(bit)),
+        (Position::Number(number), Width::Bit) => (number / 8, Some((number % 8) as u8)),
+        (Position::Number(number), width) => {
+            let scale = if unit == AddressUnit::Element { width.bytes() } else { 1 };
+            (number.checked_mul(scale).ok_or(AddressError::TooLarge)?, None)
+        }
+    };
+    let end = byte.checked_add(width.bytes()).filter(|end| *end <= AREA_LIMIT);
+    end.map(|_| Some((byte, bit))).ok_or(AddressError::TooLarge)
 }
 
 fn position(width: Width, text: &str) -> Result<Position, AddressError> {
@@ -221,6 +254,27 @@ mod tests {
             assert_eq!(place(text, Byte), Ok(Some(byte)), "{text}");
         }
         assert_eq!(place("%IW*", Element), Ok(None));
+    }
+
+    #[test]
+    fn iec3_table_11_members_have_addresses_in_their_structure() {
+        let parse = |text| RelativeAddress::parse(text, AddressUnit::Element);
+        let at = |width, byte, bit| Ok(RelativeAddress { width, byte, bit });
+        assert_eq!(parse("%B25"), at(Width::Byte, 25, None));
+        assert_eq!(parse("%x3.7"), at(Width::Bit, 3, Some(7)));
+        assert_eq!(parse("%W2"), at(Width::Word, 4, None));
+        assert_eq!(RelativeAddress::parse("%W2", AddressUnit::Byte), at(Width::Word, 2, None));
+        for (text, error) in [
+            ("%IX0.0", AddressError::Relative),
+            ("%5", AddressError::Relative),
+            ("%B*", AddressError::Relative),
+            ("%B", AddressError::Number),
+            ("%X1.8", AddressError::Bit),
+            ("%B1.2", AddressError::Levels),
+            ("%L999999", AddressError::TooLarge),
+        ] {
+            assert_eq!(parse(text), Err(error), "{text}");
+        }
     }
 
     #[test]

@@ -14,7 +14,7 @@ pub(crate) trait Visitor {
     fn leave(&mut self) {}
     /// Where a value goes to.
     fn target(&mut self, _target: &Expr) {}
-    /// A name alone that a value goes to: the control variable of `FOR`, an action of a chart.
+    /// A name alone that a value goes to: an action of a chart.
     fn control(&mut self, _name: &crate::syntax::ast::Ident) {}
     /// A call, before its arguments.
     fn call(&mut self, _call: &Call) {}
@@ -95,7 +95,7 @@ fn statement(kind: &StatementKind, visitor: &mut impl Visitor) {
             branch(&inner.otherwise, visitor);
         }
         StatementKind::For(inner) => {
-            visitor.control(&inner.variable);
+            target(&inner.variable, visitor);
             expression(&inner.from, visitor);
             expression(&inner.to, visitor);
             inner.by.iter().for_each(|by| expression(by, visitor));

@@ -1,35 +1,71 @@
 //! Texts made of others.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
+use onescan_plc_shim::input::kind::{FileKind, SourceKind};
 use onescan_plc_shim::syntax::tokenize;
 
-/// The ST programs of the project: the standard library, the scenarios, the benches and the
-/// examples of the diagnostics' pages.
-pub(crate) fn corpus() -> Vec<String> {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
-    let mut texts = Vec::new();
-    for folder in ["iec", "iec/shim", "docs/codes", "../scenarios/shear/plc", "../tests/benches/scan"] {
-        let Ok(entries) = std::fs::read_dir(root.join(folder)) else { continue };
-        let mut paths: Vec<_> = entries.filter_map(|entry| Some(entry.ok()?.path())).collect();
-        paths.sort();
-        for path in paths {
-            let extension = path.extension().and_then(|extension| extension.to_str());
-            let Ok(text) = std::fs::read_to_string(&path) else { continue };
-            match extension {
-                Some("st") => texts.push(text),
-                Some("md") => texts.extend(
-                    text.split("```")
-                        .skip(1)
-                        .step_by(2)
-                        .map(|block| block.split_once('\n').map_or(block, |(_, code)| code).to_owned()),
-                ),
-                _ => {}
-            }
-        }
+/// A source file.
+#[derive(Clone, Debug)]
+pub(crate) struct Source {
+    pub(crate) kind: SourceKind,
+    pub(crate) text: String,
+}
+
+/// The sources of the project.
+pub(crate) struct Corpus {
+    /// Program text: the standard library, the shim, the scenarios, the benches, the conformance suite and the examples
+    /// of the diagnostics' pages.
+    texts: Vec<Source>,
+    /// Text in XML.
+    documents: Vec<Source>,
+}
+
+/// Where they are.
+const FOLDERS: [&str; 11] = [
+    "iec",
+    "iec/motion",
+    "iec/shim",
+    "docs/codes",
+    "tests/inputs",
+    "tests/conformance/cases",
+    "../scenarios/shear/plc",
+    "../scenarios/filling-machine/plc",
+    "../scenarios/gantry-robot/plc",
+    "../tests/benches/scan",
+    "../tests/session",
+];
+
+impl Corpus {
+    pub(crate) fn read() -> Self {
+        let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+        let files = FOLDERS.iter().flat_map(|folder| sorted(&root.join(folder)));
+        let all = files.flat_map(|path| sources(&path));
+        let (texts, documents): (Vec<_>, Vec<_>) = all.partition(|source| source.kind == SourceKind::Text);
+        assert!(texts.len() > 100 && documents.len() > 3, "the corpus is there");
+        Self { texts, documents }
     }
-    assert!(texts.len() > 20, "the corpus is there");
-    texts
+}
+
+fn sorted(folder: &Path) -> Vec<PathBuf> {
+    let Ok(entries) = std::fs::read_dir(folder) else { return Vec::new() };
+    let mut paths: Vec<_> = entries.filter_map(|entry| Some(entry.ok()?.path())).collect();
+    paths.sort();
+    paths
+}
+
+/// What a file holds: a page holds its examples.
+fn sources(path: &Path) -> Vec<Source> {
+    let Ok(text) = std::fs::read_to_string(path) else { return Vec::new() };
+    if path.extension().is_some_and(|extension| extension == "md") {
+        let blocks = text.split("```").skip(1).step_by(2);
+        let code = |block: &str| block.split_once('\n').map_or(block, |(_, code)| code).to_owned();
+        return blocks.map(|block| Source { kind: SourceKind::Text, text: code(block) }).collect();
+    }
+    match FileKind::of(path) {
+        Some(FileKind::Source(kind)) => vec![Source { kind, text }],
+        _ => Vec::new(),
+    }
 }
 
 /// A seeded source of changes (Knuth's linear congruential generator).
@@ -52,16 +88,17 @@ impl Mutator {
         (self.state >> 33) as usize % limit.max(1)
     }
 
-    /// A text of the corpus after one to four changes.
-    pub(crate) fn mutant(&mut self, corpus: &[String]) -> String {
-        let mut text = corpus[self.below(corpus.len())].clone();
+    /// A source of the corpus after one to four changes; one of eight is XML.
+    pub(crate) fn mutant(&mut self, corpus: &Corpus) -> Source {
+        let among = if self.below(8) == 0 { &corpus.documents } else { &corpus.texts };
+        let mut source = among[self.below(among.len())].clone();
         for _ in 0..=self.below(4) {
-            text = self.change(&text, corpus);
+            source.text = self.change(&source.text, among);
         }
-        text
+        source
     }
 
-    fn change(&mut self, text: &str, corpus: &[String]) -> String {
+    fn change(&mut self, text: &str, corpus: &[Source]) -> String {
         match self.below(8) {
             0 | 1 => self.tokens(text, |mutator, words| {
                 let (one, other) = (mutator.below(words.len()), mutator.below(words.len()));
@@ -108,8 +145,8 @@ impl Mutator {
         at
     }
 
-    fn splice(&mut self, text: &str, corpus: &[String]) -> String {
-        let other = &corpus[self.below(corpus.len())];
+    fn splice(&mut self, text: &str, corpus: &[Source]) -> String {
+        let other = &corpus[self.below(corpus.len())].text;
         let (front, back) = (self.place(text), self.place(other));
         format!("{}{}", &text[..front], &other[back..])
     }

@@ -154,3 +154,36 @@ VAR d : DATE; t : TOD; dt : DT; c : CHAR; x : DINT; END_VAR
 END_PROGRAM"
     ));
 }
+
+#[test]
+fn iec3_table_10_durations_and_moments_take_all_of_64_bits() {
+    let text = "PROGRAM P VAR a : LTIME := LTIME#106751d23h47m16s854ms775us807ns; b : LTIME := LTIME#-106751d23h47m16s854ms775us808ns;
+      d : LDT := LDT#2262-04-11-23:47:16.854775807; e, f : LTIME; g : LDT; h, i : BOOL; n : LTIME; first : LDT := LDT#1677-09-21-00:12:43.145224192;
+      s : LTIME; m : LTIME; q : LTIME; END_VAR
+      e := a + LTIME#1ns; f := b - LTIME#1ns; g := d + LTIME#1ns; h := a > b; i := g < d; n := a - b; s := d - first; m := a * 2; q := b / 2; END_PROGRAM";
+    let mut rig = Rig::new(text);
+    rig.scan().expect("no fault");
+    let (least, greatest) = (i64::MIN, i64::MAX);
+    assert_eq!(["a", "b", "d", "first"].map(|name| rig.int(&format!("P.{name}"))), [greatest, least, greatest, least]);
+    assert_eq!(["e", "f", "g", "n", "s"].map(|name| rig.int(&format!("P.{name}"))), [least, greatest, least, -1, -1]);
+    assert_eq!((rig.int("P.m"), rig.int("P.q"), rig.bool("P.h"), rig.bool("P.i")), (-2, least / 2, true, true));
+    let shown = ["P.a", "P.b", "P.d", "P.first"].map(|path| rig.plc.read(path).expect(path));
+    assert_eq!(shown[0], "LT#106751d23h47m16s854ms775us807ns");
+    for (name, text) in ["a", "b", "d", "first"].iter().zip(shown) {
+        let path = format!("P.{name}");
+        rig.plc.write(&path, &text).expect("what is shown is read");
+        assert_eq!(rig.plc.read(&path).expect("it exists"), text);
+    }
+    for beyond in [
+        "LTIME#106751d23h47m16s854ms775us808ns",
+        "LDT#2262-04-11-23:47:16.854775808",
+        "LDT#1677-09-21-00:12:43.145224191",
+    ] {
+        let text = format!(
+            "PROGRAM P VAR t : {}; END_VAR t := {beyond}; END_PROGRAM",
+            &beyond[..beyond.find('#').unwrap_or(0)]
+        );
+        let found = crate::rig::findings(&text);
+        assert!(found.contains("S0103"), "{beyond}: {found}");
+    }
+}

@@ -24,6 +24,9 @@ fn use_of(feature: Feature) -> &'static str {
         }
         Feature::ConditionalPragmas => "PROGRAM P {IF defined (x)} {END_IF} END_PROGRAM",
         Feature::Jumps => "PROGRAM P VAR a : INT; END_VAR JMP done; a := 1; done: END_PROGRAM",
+        Feature::ControlParts => {
+            "PROGRAM P VAR a : ARRAY [0..1] OF INT; n : INT; END_VAR FOR a[1] := 0 TO 3 DO n := n + 1; END_FOR; END_PROGRAM"
+        }
         Feature::StaticSection => "PROGRAM P VAR_STAT a : INT; END_VAR a := a + 1; END_PROGRAM",
         Feature::InstanceSection => {
             "FUNCTION_BLOCK F METHOD M VAR_INST n : INT; END_VAR n := n + 1; END_METHOD END_FUNCTION_BLOCK
@@ -46,6 +49,15 @@ fn use_of(feature: Feature) -> &'static str {
         }
         Feature::SignChange => "PROGRAM P VAR u : UINT; i : INT; END_VAR i := u; END_PROGRAM",
         Feature::LossyReals => "PROGRAM P VAR r : REAL; l : LREAL; d : DINT; END_VAR r := l; r := d; END_PROGRAM",
+        Feature::CharactersAsBytes => "PROGRAM P VAR s : STRING; b : BYTE; END_VAR b := s[0]; s[0] := b; END_PROGRAM",
+        Feature::VendorParameters => {
+            "PROGRAM P VAR c : CTU; b : BOOL; END_VAR c(CU := b, RESET := b, PV := 3); c.RESET := TRUE; END_PROGRAM"
+        }
+        Feature::GenericInputs => {
+            "FUNCTION F : DINT VAR_INPUT v : ANY; END_VAR F := v.diSize; END_FUNCTION
+             PROGRAM P VAR a : INT; n : DINT; END_VAR n := F(a); END_PROGRAM"
+        }
+        Feature::IntegerShifts => "PROGRAM P VAR i : INT; END_VAR i := SHR(i, 1); END_PROGRAM",
         Feature::ClockFunctions => "PROGRAM P VAR t : TIME; END_VAR t := TIME(); END_PROGRAM",
         Feature::QuotedNames => "PROGRAM P VAR a : INT; END_VAR a := #a + 1; END_PROGRAM",
         Feature::Blocks => "ORGANIZATION_BLOCK P VAR_TEMP a : INT; END_VAR BEGIN a := 1; END_ORGANIZATION_BLOCK",
@@ -74,7 +86,10 @@ fn every_construct_is_for_its_dialects_alone() {
 }
 
 /// Constructs whose absence is no syntax of its own: another error says it.
-const TOLD_OTHERWISE: [Feature; 11] = [
+const TOLD_OTHERWISE: [Feature; 14] = [
+    Feature::VendorParameters,
+    Feature::CharactersAsBytes,
+    Feature::IntegerShifts,
     Feature::FleetingInstances,
     Feature::LossyReals,
     Feature::EnumerationsAsIntegers,
@@ -104,6 +119,59 @@ fn a_construct_of_others_is_told_once_with_its_dialects() {
     test.st:1:11: error[S0110]: a comment with `//` is not part of iec2 (it is part of iec3, codesys, twincat and siemens-scl: --dialect chooses)
     test.st:3:25: error[S0110]: `S=`, `R=` is not part of iec2 (it is part of codesys and twincat: --dialect chooses)
     ");
+}
+
+#[test]
+fn shifts_of_signed_integers_keep_their_width_and_to_the_right_their_sign() {
+    for dialect in [Dialect::Codesys, Dialect::TwinCat, Dialect::SiemensScl] {
+        let text = "PROGRAM P
+            VAR s : SINT := -100; i : INT := -32767; d : DINT := -8; l : LINT := -4; u : USINT := 200; n : INT := 40; k : INT := -1;
+              r1, r2, r3 : SINT; r4, r5 : INT; r6, r7 : DINT; r8, r9 : LINT; r10 : USINT; r11 : INT; END_VAR
+            r1 := SHR(s, 2); r2 := SHL(s, 1); r3 := ROL(s, 4); r4 := SHR(i, n); r5 := ROR(i, 1); r6 := SHR(d, 99); r7 := SHR(d, k);
+            r8 := SHR(l, 1); r9 := SHR(l, n + 40); r10 := SHR(u, 1); r11 := SHR(INT#100, 3); END_PROGRAM";
+        let mut rig = Rig::in_dialect(dialect, text);
+        rig.scan().expect("no fault");
+        let found: Vec<_> = (1..=11).map(|at| rig.int(&format!("P.r{at}"))).collect();
+        assert_eq!(found, [-25, 56, -55, -1, -16384, -1, -1, -2, -1, 100, 12], "{dialect}");
+    }
+}
+
+#[test]
+fn counters_and_bistables_have_their_vendors_names() {
+    let text = "PROGRAM P VAR u : CTU; d : CTD; ud : CTUD; s : SR; r : RS; l : CTUD_LINT; t : BOOL := TRUE; END_VAR
+        u(CU := t, RESET := FALSE, PV := 2); d(CD := FALSE, LOAD := t, PV := 7); ud(CU := FALSE, CD := FALSE, RESET := FALSE, LOAD := t, PV := 5);
+        s(SET1 := t, RESET := t); r(SET := t, RESET1 := t); l.LOAD := TRUE; l(CU := FALSE, CD := FALSE, PV := 9); END_PROGRAM";
+    for dialect in [Dialect::Codesys, Dialect::TwinCat] {
+        let mut rig = Rig::in_dialect(dialect, text);
+        rig.scan().expect("no fault");
+        assert_eq!(
+            ["u.CV", "d.CV", "ud.CV", "l.CV"].map(|name| rig.int(&format!("P.{name}"))),
+            [1, 7, 5, 9],
+            "{dialect}"
+        );
+        assert_eq!((rig.bool("P.s.Q1"), rig.bool("P.r.Q1")), (true, false));
+        Rig::in_dialect(
+            dialect,
+            &text.replace("RESET", "R").replace("LOAD", "LD").replace("SET1", "S1").replace("SET :=", "S :="),
+        );
+    }
+}
+
+#[test]
+fn a_control_variable_may_be_a_part_of_another() {
+    let text = "TYPE S : STRUCT x : INT; list : ARRAY [0..2] OF DINT; END_STRUCT END_TYPE
+        FUNCTION_BLOCK Counting VAR n : INT; END_VAR VAR_OUTPUT turns : INT; END_VAR
+        FOR THIS^.n := 1 TO 3 DO turns := turns + 1; END_FOR; END_FUNCTION_BLOCK
+        PROGRAM P VAR a : ARRAY [0..2] OF INT; s : S; p : POINTER TO INT; i, n, m, k : INT; c : Counting; END_VAR
+        FOR a[i + 1] := 0 TO 3 DO n := n + a[1]; END_FOR;
+        FOR s.list[2] := 10 TO 1 BY -3 DO m := m + 1; IF s.list[2] < 5 THEN EXIT; END_IF; END_FOR;
+        p := ADR(s.x); FOR p^ := 5 TO 7 DO k := k + s.x; END_FOR; c(); END_PROGRAM";
+    for dialect in [Dialect::Codesys, Dialect::TwinCat] {
+        let mut rig = Rig::in_dialect(dialect, text);
+        rig.scan().expect("no fault");
+        let found = ["n", "a[1]", "m", "s.list[2]", "k", "s.x", "c.turns"].map(|name| rig.int(&format!("P.{name}")));
+        assert_eq!(found, [6, 4, 3, 4, 18, 8, 3], "{dialect}");
+    }
 }
 
 #[test]

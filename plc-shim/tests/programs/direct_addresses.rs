@@ -126,8 +126,8 @@ fn wrong_addresses_are_told() {
     let declarations = [
         ("a AT %QX0.1 : INT;", "(INT takes 16 bits: write %QW behind the area)"),
         ("a AT %MW1 : DINT;", "(DINT takes 32 bits: write %MD behind the area)"),
-        ("a AT %MB1 : BOOL;", "(a BOOL takes a bit, as in %MIX0.0)"),
-        ("a AT %IX0.0 : ARRAY [0..7] OF BOOL;", "(ARRAY [0..7] OF BOOL begins at a byte, as in %IMB0)"),
+        ("a AT %MB1 : BOOL;", "(a BOOL takes a bit, as in %MX0.0)"),
+        ("a AT %IX0.0 : ARRAY [0..7] OF BOOL;", "(ARRAY [0..7] OF BOOL begins at a byte, as in %IB0)"),
         ("a AT %MB1 : TON;", "(instances have no direct address)"),
         ("a AT %MB1048570 : ARRAY [0..7] OF BYTE;", "an area ends at byte 1048575"),
         ("a AT %MX7.9 : BOOL;", "a byte has the bits 0 to 7"),

@@ -1,15 +1,20 @@
 //! Programs in, traces out: the whole way from text to a scanning PLC.
 
+mod any_inputs;
 mod bit_strings;
+mod characters;
 mod configurations;
 mod conversions;
 mod coverage;
 mod dates;
 mod depth;
 mod diagnostics;
+mod diagram;
 mod dialects;
 mod direct_addresses;
+mod dtl;
 mod expressions;
+mod fault_forms;
 mod faults;
 mod fbd;
 mod field;
@@ -30,6 +35,7 @@ mod plcopen;
 mod random_programs;
 mod recovery;
 mod references;
+mod relative_addresses;
 mod restarts;
 mod rig;
 mod robustness;

@@ -5,6 +5,7 @@ use crate::rig::{Rig, findings};
 const SUM: &str = "FUNCTION Sum : DINT VAR_INPUT a : ARRAY [*] OF INT; END_VAR VAR i : DINT; END_VAR
   FOR i := LOWER_BOUND(a, 1) TO UPPER_BOUND(a, 1) DO Sum := Sum + a[i]; END_FOR; END_FUNCTION
 FUNCTION Scale VAR_IN_OUT a : ARRAY [*] OF INT; END_VAR VAR_INPUT by : INT; END_VAR END_FUNCTION
+FUNCTION Make VAR_INPUT n : INT; END_VAR VAR_OUTPUT a : ARRAY [*] OF INT; END_VAR a[1] := n; END_FUNCTION
 ";
 
 #[test]
@@ -50,6 +51,35 @@ PROGRAM P VAR a : ARRAY [1..4] OF INT; x : INT; END_VAR x := Get(a, {index}); EN
 }
 
 #[test]
+fn iec3_6_5_3_functions_and_methods_write_to_the_arrays_of_their_outputs() {
+    let text = "
+        FUNCTION Ramp VAR_INPUT from : INT; END_VAR VAR_OUTPUT a : ARRAY [*] OF INT; last : INT; END_VAR VAR i : DINT; END_VAR
+        FOR i := LOWER_BOUND(a, 1) TO UPPER_BOUND(a, 1) DO a[i] := from + DINT_TO_INT(i); END_FOR;
+        last := a[UPPER_BOUND(a, 1)]; END_FUNCTION
+        FUNCTION Both VAR_OUTPUT x, y : ARRAY [*] OF INT; END_VAR
+        Ramp(from := 100, a => x); Ramp(from := 200, a => y); x[LOWER_BOUND(x, 1)] := 7; END_FUNCTION
+        INTERFACE IStore METHOD Copy : DINT VAR_INPUT a : ARRAY [*] OF INT; END_VAR VAR_OUTPUT b : ARRAY [*] OF INT; n : INT; END_VAR END_METHOD END_INTERFACE
+        CLASS Store IMPLEMENTS IStore
+          METHOD Copy : DINT VAR_INPUT a : ARRAY [*] OF INT; END_VAR VAR_OUTPUT b : ARRAY [*] OF INT; n : INT; END_VAR VAR i : DINT; END_VAR
+          FOR i := 0 TO UPPER_BOUND(a, 1) - LOWER_BOUND(a, 1) DO b[LOWER_BOUND(b, 1) + i] := a[LOWER_BOUND(a, 1) + i]; n := n + 1; END_FOR;
+          Copy := UPPER_BOUND(b, 1); END_METHOD
+        END_CLASS
+        CLASS Twice EXTENDS Store METHOD OVERRIDE Copy : DINT VAR_INPUT a : ARRAY [*] OF INT; END_VAR VAR_OUTPUT b : ARRAY [*] OF INT; n : INT; END_VAR
+          Copy := SUPER.Copy(a, b => b, n => n); b[LOWER_BOUND(b, 1)] := -1; END_METHOD END_CLASS
+        PROGRAM P VAR a : ARRAY [1..3] OF INT; b : ARRAY [-2..1] OF INT; c : ARRAY [0..4] OF INT := [5(9)]; n, last : INT; x : DINT;
+          store : Store; twice : Twice; i : IStore; END_VAR
+        Ramp(from := 10, a => a, last => last); Both(x => b, y => c);
+        x := store.Copy(a, b => c, n => n); i := twice; x := x + 10 * i.Copy(a, b => b); END_PROGRAM";
+    let mut rig = Rig::new(text);
+    rig.scan().expect("no fault");
+    let list = |name: &str, from: i32, to: i32| (from..=to).map(|at| rig.int(&format!("P.{name}[{at}]"))).collect();
+    let (a, b, c): (Vec<i64>, Vec<i64>, Vec<i64>) = (list("a", 1, 3), list("b", -2, 1), list("c", 0, 4));
+    assert_eq!((a, rig.int("P.last")), (vec![11, 12, 13], 13));
+    assert_eq!(b, [-1, 12, 13, 101]);
+    assert_eq!((c, rig.int("P.n"), rig.int("P.x")), (vec![11, 12, 13, 203, 204], 3, 14));
+}
+
+#[test]
 fn wrong_arrays_are_told() {
     let told = |statement: &str| {
         let declarations =
@@ -59,18 +89,24 @@ fn wrong_arrays_are_told() {
         findings(&text).lines().next().unwrap_or_default().to_owned()
     };
     for (statement, expected) in [
-        ("x := Sum(d);", "test.st:5:10: error[C0305]: `a` is ARRAY [*] OF INT, this is ARRAY [1..4] OF DINT"),
-        ("x := Sum(m);", "test.st:5:10: error[C0305]: `a` is ARRAY [*] OF INT, this is ARRAY [1..2, 1..2] OF INT"),
-        ("x := Sum(i);", "test.st:5:10: error[C0305]: `a` is ARRAY [*] OF INT, this is INT"),
-        ("x := UPPER_BOUND(a, 2);", "test.st:5:21: error[T0207]: the array has the dimensions 1 to 1, not 2"),
-        ("x := UPPER_BOUND(i, 1);", "test.st:5:18: error[T0206]: INT is not an array"),
-        ("x := UPPER_BOUND(a);", "test.st:5:6: error[C0302]: UPPER_BOUND takes an array and a dimension"),
-        ("x := UPPER_BOUND(a, x);", "test.st:5:21: error[T0204]: a constant is wanted here"),
+        ("x := Sum(d);", "test.st:6:10: error[C0305]: `a` is ARRAY [*] OF INT, this is ARRAY [1..4] OF DINT"),
+        ("x := Sum(m);", "test.st:6:10: error[C0305]: `a` is ARRAY [*] OF INT, this is ARRAY [1..2, 1..2] OF INT"),
+        ("x := Sum(i);", "test.st:6:10: error[C0305]: `a` is ARRAY [*] OF INT, this is INT"),
+        ("x := UPPER_BOUND(a, 2);", "test.st:6:21: error[T0207]: the array has the dimensions 1 to 1, not 2"),
+        ("x := UPPER_BOUND(i, 1);", "test.st:6:18: error[T0206]: INT is not an array"),
+        ("x := UPPER_BOUND(a);", "test.st:6:6: error[C0302]: UPPER_BOUND takes an array and a dimension"),
+        ("Scale(n := 1);", "test.st:6:1: error[C0302]: parameter `a` is missing"),
+        ("Make(n := 1);", "test.st:6:1: error[C0302]: parameter `a` is missing"),
+        ("Make(n := 1, a => d);", "test.st:6:19: error[C0305]: `a` is ARRAY [*] OF INT, this is ARRAY [1..4] OF DINT"),
+        ("Make(n := 1, NOT a => a);", "test.st:6:23: error[T0201]: BOOL is wanted, this is ARRAY [*] OF INT"),
+        ("x := UPPER_BOUND(a, x);", "test.st:6:21: error[T0204]: a constant is wanted here"),
     ] {
         assert_eq!(told(statement), expected, "{statement}");
     }
     for (unit, expected) in [
         ("PROGRAM P VAR a : ARRAY [*] OF INT; END_VAR END_PROGRAM", "error[R0907]"),
+        ("FUNCTION_BLOCK B VAR_OUTPUT a : ARRAY [*] OF INT; END_VAR END_FUNCTION_BLOCK", "error[R0907]"),
+        ("FUNCTION F VAR a : ARRAY [*] OF INT; END_VAR END_FUNCTION", "error[R0907]"),
         ("FUNCTION_BLOCK B VAR_INPUT a : ARRAY [*] OF INT; END_VAR END_FUNCTION_BLOCK", "error[R0907]"),
         ("FUNCTION F : ARRAY [*] OF INT VAR_INPUT a : INT; END_VAR END_FUNCTION", "error[R0907]"),
         ("VAR_GLOBAL a : ARRAY [*] OF INT; END_VAR", "error[R0907]"),

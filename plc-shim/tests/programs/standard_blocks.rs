@@ -1,39 +1,11 @@
 //! Timing diagrams of the standard function blocks, one column a scan.
 
-use std::fmt::Write;
-
 use crate::rig::Rig;
 
-/// Draws `IN` as given and the outputs after each scan of 10 ms; times in ms.
+/// A block's timing diagram, in scans of 10 ms.
 fn diagram(block: &str, preset: &str, inputs: &[(&str, &str)], outputs: &[&str]) -> String {
     let mut rig = Rig::new(&format!("PROGRAM P VAR b : {block} := ({preset}); END_VAR b(); END_PROGRAM"));
-    let columns = inputs.first().map_or(0, |(_, levels)| levels.len());
-    let mut rows: Vec<String> = outputs.iter().map(|name| format!("{name:4}")).collect();
-    for column in 0..columns {
-        for (name, levels) in inputs {
-            let level = levels.as_bytes()[column] == b'#';
-            rig.set(&format!("P.b.{name}"), i64::from(level));
-        }
-        rig.scan().expect("no fault");
-        for (row, name) in rows.iter_mut().zip(outputs) {
-            let value = rig.int(&format!("P.b.{name}"));
-            let cell = match rig.variable(&format!("P.b.{name}")).type_name.as_str() {
-                "BOOL" => (if value == 1 { "#" } else { "." }).to_owned(),
-                "TIME" => (value / 1_000_000).to_string(),
-                _ => value.to_string(),
-            };
-            write!(row, "{cell:>4}").expect("a string takes all");
-        }
-    }
-    let mut text = String::new();
-    for (name, levels) in inputs {
-        write!(text, "{name:4}").expect("a string takes all");
-        for level in levels.chars() {
-            write!(text, "{level:>4}").expect("a string takes all");
-        }
-        text.push('\n');
-    }
-    text + &rows.join("\n")
+    crate::diagram::diagram(&mut rig, "P.b", inputs, outputs)
 }
 
 #[test]

@@ -227,6 +227,58 @@ END_PROGRAM";
 }
 
 #[test]
+fn fb_reinit_runs_when_it_is_called() {
+    let text = "FUNCTION_BLOCK F VAR n, m : INT; END_VAR
+METHOD FB_init : BOOL VAR_INPUT bInitRetains, bInCopyCode : BOOL; END_VAR n := 1; END_METHOD
+METHOD FB_reinit : BOOL m := m + n; FB_reinit := TRUE; END_METHOD
+n := n + 1;
+END_FUNCTION_BLOCK
+PROGRAM P VAR f1 : F; k : INT; done : BOOL; END_VAR k := k + 1; f1(); IF k = 2 THEN done := f1.FB_reinit(); END_IF; END_PROGRAM";
+    let mut rig = rig(text);
+    for (n, m) in [(2, 0), (3, 3), (4, 3)] {
+        rig.scan().expect("no fault");
+        assert_eq!((rig.int("P.f1.n"), rig.int("P.f1.m"), rig.bool("P.done")), (n, m, m > 0));
+    }
+}
+
+#[test]
+fn var_inst_has_a_path_and_is_forced() {
+    let text = "FUNCTION_BLOCK F
+VAR Total : INT; END_VAR
+METHOD PUBLIC Count : INT
+VAR_INST n : INT := 10; seen : ARRAY [1..2] OF INT; END_VAR
+  n := n + 1; seen[2] := n; Count := n;
+END_METHOD
+END_FUNCTION_BLOCK
+FUNCTION_BLOCK G EXTENDS F
+METHOD Other VAR_INST k : BOOL; Count : INT; END_VAR k := NOT k; END_METHOD
+END_FUNCTION_BLOCK
+PROGRAM P VAR a : ARRAY [0..1] OF F; g1 : G; x : INT; END_VAR
+METHOD Own : INT VAR_INST calls : DINT; END_VAR calls := calls + 1; Own := DINT_TO_INT(calls); END_METHOD
+  x := a[1].Count(); g1.Count(); g1.Other(); THIS^.Own();
+END_PROGRAM";
+    let mut rig = rig(text);
+    rig.scan().expect("no fault");
+    let paths =
+        ["P.a[1].Count.n", "P.A[1].count.SEEN[2]", "P.a[0].Count.n", "P.g1.Count.n", "P.g1.Other.k", "P.Own.calls"];
+    assert_eq!(paths.map(|path| rig.plc.read(path).expect(path)), ["11", "11", "10", "11", "TRUE", "1"]);
+    rig.plc.force("P.a[1].Count.n", "40").expect("it is a variable");
+    rig.plc.write("P.Own.calls", "7").expect("it is a variable");
+    for _ in 0..3 {
+        rig.scan().expect("no fault");
+        assert_eq!((rig.int("P.x"), rig.int("P.a[1].Count.n")), (41, 40));
+    }
+    assert_eq!(rig.int("P.Own.calls"), 10);
+    let leaves: Vec<_> = rig.plc.application().leaves().map(|leaf| leaf.path).collect();
+    for path in ["P.a[1].Count.n", "P.a[0].Count.seen[1]", "P.g1.Other.k", "P.g1.Count.n", "P.Own.calls"] {
+        assert!(leaves.iter().any(|leaf| leaf == path), "{path} in {leaves:?}");
+    }
+    let wrong = ["P.a[1].Count", "P.a[1].Count.m", "P.a[1].Other.k", "P.Own.calls.x"];
+    let said = wrong.map(|path| rig.plc.read(path).expect_err(path).to_string());
+    insta::assert_snapshot!(said.join("\n"));
+}
+
+#[test]
 fn what_is_wrong_with_starts_is_told() {
     let cases = [
         ("PROGRAM P VAR f : Base; END_VAR END_PROGRAM"),

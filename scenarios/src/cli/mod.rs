@@ -2,13 +2,28 @@
 //!
 //! | module | subject |
 //! |---|---|
-//! | [`args`] | what may be typed |
-//! | [`test_args`] | the same, for tests |
-//! | [`commands`] | what each command does |
+//! | [`args`] | the commands, and who does them |
+//! | [`run`], [`compare`] | a scenario |
+//! | [`test`] | all scenarios, and test programs |
+//! | [`session`] | a session that another process serves |
+//! | [`recording`] | what was recorded |
+//! | [`source`] | PLC sources |
+//! | [`plc`] | PLCs |
+//! | [`opcua`] | who is let in over OPC UA |
+//! | [`plant`] | scenes |
+//! | [`value`] | words that several commands know |
 
 pub mod args;
-pub mod commands;
-pub mod test_args;
+pub mod compare;
+pub mod opcua;
+pub mod plant;
+pub mod plc;
+pub mod recording;
+pub mod run;
+pub mod session;
+pub mod source;
+pub mod test;
+pub mod value;
 
 use clap::Parser;
 
@@ -17,7 +32,7 @@ pub fn main() -> std::process::ExitCode {
     let args = args::Args::parse();
     start_logging(args.verbose);
     render_errors_in_one_piece();
-    let code = match commands::dispatch(args.command) {
+    let code = match args::dispatch(args.command) {
         Ok(code) => code,
         Err(error) => {
             let code = error.exit_code();

@@ -1,17 +1,18 @@
 //! Who wrote what differs.
 //!
 //! The recorded scenarios are run again up to the first difference, with statements that tell what
-//! they write. A re-run whose digest is not that of the recording says nothing, and is not believed.
+//! they write and which way they go. A re-run whose digest is not that of the recording says nothing, and is not believed.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeSet;
 use std::sync::PoisonError;
 
-use onescan_clients::soft_plc::Written;
+use onescan_clients::soft_plc::{Traced, Written};
 use onescan_server::recording::Recording;
 use onescan_server::signal::{ClientName, SignalName};
 use onescan_server::time::VirtualTime;
 
 use super::first::Difference;
+use super::parting::{Parting, parting};
 use crate::run::rerun::{Rerun, rerun};
 use crate::scenario::Scenario;
 use crate::scenario::file::ClientFile;
@@ -33,6 +34,8 @@ pub struct Cause {
 pub struct Causes {
     /// One for each signal that differs.
     pub signals: Vec<Cause>,
+    /// Where the PLCs that wrote them first went another way, if they did.
+    pub partings: Vec<Parting>,
     /// Why statements are not known, for each run of which they are not.
     pub unknown: [Option<String>; 2],
 }
@@ -41,27 +44,27 @@ pub struct Causes {
 pub(super) fn causes(recordings: &[Recording; 2], differences: &[Difference], at: VirtualTime) -> Causes {
     let signals: BTreeSet<SignalName> = differences.iter().map(|difference| difference.signal.clone()).collect();
     let mut unknown = [None, None];
-    let mut written: [BTreeMap<SignalName, Written>; 2] = Default::default();
+    let mut traced: [Traced; 2] = Default::default();
     for (index, recording) in recordings.iter().enumerate() {
-        match writers(recording, &signals, at) {
-            Ok(found) => written[index] = found,
+        match again(recording, &signals, at) {
+            Ok(found) => traced[index] = found,
             Err(why) => unknown[index] = Some(why),
         }
     }
     let cause = |difference: &Difference| Cause {
         signal: difference.signal.clone(),
         client: difference.writer.clone(),
-        written: [0, 1].map(|index: usize| written[index].get(&difference.signal).cloned()),
+        written: traced.each_ref().map(|traced| traced.writers.get(&difference.signal).cloned()),
     };
-    Causes { signals: differences.iter().map(cause).collect(), unknown }
+    let writers: BTreeSet<&ClientName> = differences.iter().filter_map(|one| one.writer.as_ref()).collect();
+    let [a, b] = &traced;
+    let parted = writers.into_iter().filter_map(|client| parting(client, a.ways.get(client)?, b.ways.get(client)?));
+    let partings = parted.collect();
+    Causes { signals: differences.iter().map(cause).collect(), partings, unknown }
 }
 
 /// Runs a recorded scenario again up to `at`. An error says in words why that cannot be.
-fn writers(
-    recording: &Recording,
-    signals: &BTreeSet<SignalName>,
-    at: VirtualTime,
-) -> Result<BTreeMap<SignalName, Written>, String> {
+fn again(recording: &Recording, signals: &BTreeSet<SignalName>, at: VirtualTime) -> Result<Traced, String> {
     let header = recording.header();
     if header.provenance.mode != "lockstep" {
         return Err(format!("a run in mode {} cannot be repeated", header.provenance.mode));
@@ -73,7 +76,7 @@ fn writers(
         signals.contains(&signal.name) && matches!(writer.map(toml::Spanned::get_ref), Some(ClientFile::SoftPlc { .. }))
     });
     if !plc_writes {
-        return Ok(BTreeMap::new());
+        return Ok(Traced::default());
     }
     if header.first_step.0 != 0 {
         return Err("the run went on from a checkpoint".to_owned());

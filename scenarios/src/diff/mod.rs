@@ -1,16 +1,20 @@
-//! `onescan diff`: where two recordings part, and why.
+//! `onescan diff`: where two recordings part, and why; where two snapshots do.
 //!
 //! | module | subject |
 //! |---|---|
 //! | [`first`] | the first step that differs, by digest or by value |
 //! | [`cause`] | who wrote what differs there: client, statement, calls |
+//! | [`parting`] | the first decision of a PLC that went another way |
 //! | [`sources`] | what differs between the recorded scenarios |
 //! | [`report`] | for people and machines |
+//! | [`trajectory`] | two snapshots of trajectories |
 
 pub mod cause;
 pub mod first;
+pub mod parting;
 pub mod report;
 pub mod sources;
+pub mod trajectory;
 
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -23,11 +27,12 @@ use crate::run::Format;
 use crate::run::error::{ExitCode, RunError};
 use first::{Comparison, Divergence};
 use report::Report;
+use trajectory::TrajectoryReport;
 
 /// What is compared, and how it is told.
 #[derive(Clone, Debug)]
 pub struct DiffConfig {
-    /// The two recordings.
+    /// The two recordings, or two files with snapshots.
     pub recordings: [PathBuf; 2],
     /// What was before does not count.
     pub since: VirtualTime,
@@ -43,7 +48,28 @@ pub struct DiffConfig {
 /// A recording that cannot be read, a signal that neither has.
 pub fn diff(config: &DiffConfig, out: &mut dyn Write) -> Result<ExitCode, RunError> {
     let [a, b] = &config.recordings;
+    match [a, b].map(|path| path.is_file()) {
+        [true, true] => return snapshots(config, out),
+        [false, false] => {}
+        [is_snapshot, _] => {
+            let (file, folder) = if is_snapshot { (a, b) } else { (b, a) };
+            let message = format!("{} is a file and {} is not", file.display(), folder.display());
+            let help = "compare two recordings, which are folders, or two snapshots".to_owned();
+            return Err(RunError::usage(message, Some(help)));
+        }
+    }
     let report = compare(a, b, config.since, &config.signals)?;
+    match config.format {
+        Format::Human => report.write(out),
+        Format::Json => report.write_json(out),
+    }
+    .map_err(RunError::Output)?;
+    Ok(if report.is_equal() { ExitCode::Ok } else { ExitCode::Unmet })
+}
+
+fn snapshots(config: &DiffConfig, out: &mut dyn Write) -> Result<ExitCode, RunError> {
+    let [a, b] = &config.recordings;
+    let report = TrajectoryReport::of([a, b], config.since, &config.signals)?;
     match config.format {
         Format::Human => report.write(out),
         Format::Json => report.write_json(out),

@@ -3,20 +3,23 @@
 use std::io::{self, Write};
 
 use onescan_clients::soft_plc::Written;
-use onescan_plc_shim::FaultSite;
+use onescan_plc_shim::{FaultSite, Way};
 use onescan_server::recording::Recording;
 use serde_json::{Value, json};
 
 use super::cause::{Cause, Causes};
 use super::first::{Around, Basis, Divergence};
+use super::parting::Parting;
 use super::sources::FileDifference;
 
 /// Signals that are listed for people.
 const LISTED: usize = 20;
 /// Signals whose statements are told to people.
 const EXPLAINED: usize = 4;
+/// Decisions around a statement that are told to people, the innermost.
+const WITHIN: usize = 3;
 /// What the two recordings are called.
-const NAMES: [&str; 2] = ["A", "B"];
+pub(super) const NAMES: [&str; 2] = ["A", "B"];
 
 /// All that was found.
 #[derive(Debug)]
@@ -66,6 +69,9 @@ impl Report {
         for cause in self.causes.signals.iter().take(EXPLAINED) {
             self.write_cause(cause, out)?;
         }
+        for parting in &self.causes.partings {
+            write_parting(parting, out)?;
+        }
         for (name, why) in NAMES.iter().zip(&self.causes.unknown) {
             if let Some(why) = why {
                 writeln!(out, "\nstatements of {name} are not known: {why}")?;
@@ -90,10 +96,13 @@ impl Report {
         for (name, written) in NAMES.iter().zip(&cause.written) {
             match written {
                 None => writeln!(out, "  {name}  by no statement so far")?,
-                Some(Written { t_v, site }) => {
+                Some(Written { t_v, site, within }) => {
                     let FaultSite { file, line, .. } = &site.at;
                     writeln!(out, "  {name}  {file}:{line} in {}, at {t_v}", site.at)?;
                     writeln!(out, "       {}", site.statement)?;
+                    for way in within.iter().take(WITHIN) {
+                        writeln!(out, "       within {}:{}  {way}", way.file, way.line)?;
+                    }
                     for caller in &site.callers {
                         writeln!(out, "       called by {caller} at {}:{}", caller.file, caller.line)?;
                     }
@@ -161,6 +170,8 @@ impl Report {
             object.insert("basis".to_owned(), json!(if found.basis == Basis::Digests { "digests" } else { "values" }));
             object.insert("ended".to_owned(), json!(found.ended.map(|ended| ["a", "b"][ended])));
             object.insert("signals".to_owned(), self.json_signals(found));
+            let partings: Vec<Value> = self.causes.partings.iter().map(json_parting).collect();
+            object.insert("partings".to_owned(), json!(partings));
             let unknown = &self.causes.unknown;
             object.insert("statements_unknown".to_owned(), json!({ "a": unknown[0], "b": unknown[1] }));
         }
@@ -191,6 +202,18 @@ fn write_place(found: &Divergence, out: &mut dyn Write) -> io::Result<()> {
     }
     let steps = if a == b { format!("step {a}") } else { format!("step {a} of A, step {b} of B") };
     writeln!(out, "first difference at t_v = {}, {steps}", found.at)
+}
+
+/// Where a PLC went another way.
+fn write_parting(Parting { client, at, ways }: &Parting, out: &mut dyn Write) -> io::Result<()> {
+    writeln!(out, "\nclient `{client}` goes another way at {at}")?;
+    for (name, way) in NAMES.iter().zip(ways) {
+        match way {
+            Some(way) => writeln!(out, "  {name}  {}:{} in {}\n       {way}", way.file, way.line, way.unit)?,
+            None => writeln!(out, "  {name}  nothing more is decided in this scan")?,
+        }
+    }
+    Ok(())
 }
 
 fn write_differences(found: &Divergence, out: &mut dyn Write) -> io::Result<()> {
@@ -228,11 +251,24 @@ fn json_written(written: &Written) -> Value {
         "statement": written.site.statement,
         "at": site(&written.site.at),
         "callers": written.site.callers.iter().map(site).collect::<Vec<_>>(),
+        "within": written.within.iter().map(json_way).collect::<Vec<_>>(),
     })
 }
 
+fn json_way(way: &Way) -> Value {
+    json!({
+        "file": way.file, "line": way.line, "column": way.column, "unit": way.unit,
+        "question": way.question, "answer": way.answer,
+    })
+}
+
+fn json_parting(Parting { client, at, ways: [a, b] }: &Parting) -> Value {
+    let way = |way: &Option<Way>| way.as_ref().map(json_way);
+    json!({ "client": client, "t_v_ns": at.as_nanos(), "a": way(a), "b": way(b) })
+}
+
 /// Columns as wide as their widest cell.
-fn table(rows: &[Vec<String>], out: &mut dyn Write) -> io::Result<()> {
+pub(super) fn table(rows: &[Vec<String>], out: &mut dyn Write) -> io::Result<()> {
     let columns = rows.iter().map(Vec::len).max().unwrap_or(0);
     let width = |column: usize| rows.iter().filter_map(|row| row.get(column)).map(|cell| cell.chars().count()).max();
     let widths: Vec<usize> = (0..columns).map(|column| width(column).unwrap_or(0)).collect();

@@ -9,17 +9,41 @@ use onescan_clients::plant::scene::model::{
 };
 
 use crate::run::{Format, RunError};
-use crate::scenario::ScenarioError;
 use crate::scenario::compose::report;
+use crate::scenario::file::ClientFile;
+use crate::scenario::{Scenario, ScenarioError};
 
-/// Reads the scene of a file and writes what it is made of.
+/// Reads the scene of a file, or those of a scenario's plants, and writes what it is made of.
 ///
 /// # Errors
-/// A file that cannot be read or is not a scene; those of `out`.
+/// A file that cannot be read or is not a scene, a scenario without one; those of `out`.
 pub fn write(path: &Path, format: Format, out: &mut dyn Write) -> Result<(), RunError> {
+    if !path.is_dir() {
+        return one_scene(path, format, out);
+    }
+    let scenario = Scenario::load(path)?;
+    let scenes = scenario.file().clients.values().filter_map(|client| match client.get_ref() {
+        ClientFile::Plant { scene, .. } => Some(scenario.folder().join(scene)),
+        _ => None,
+    });
+    let scenes: Vec<_> = scenes.collect();
+    for scene in &scenes {
+        if scenes.len() > 1 && format == Format::Human {
+            writeln!(out, "{}", scene.display()).map_err(RunError::Output)?;
+        }
+        one_scene(scene, format, out)?;
+    }
+    if scenes.is_empty() {
+        return Err(RunError::usage(format!("no client of {} has a scene", path.display()), None));
+    }
+    Ok(())
+}
+
+fn one_scene(path: &Path, format: Format, out: &mut dyn Write) -> Result<(), RunError> {
     let file = path.display().to_string();
     let text = std::fs::read_to_string(path).map_err(|source| {
-        RunError::Scenario(ScenarioError::Unreadable { path: path.to_owned(), source, help: None })
+        let help = Some("give a scene, as `my-cell/plant.toml`, or the folder of its scenario".to_owned());
+        RunError::Scenario(ScenarioError::Unreadable { path: path.to_owned(), source, help })
     })?;
     let scene =
         Scene::parse(&text, &file).map_err(|error| ScenarioError::from(Box::new(report(&error, &file, &text))))?;

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use std::str::FromStr;
 use std::time::Duration;
 
-use onescan_clients::station::opcua::Access;
+use onescan_clients::opcua_server::Access;
 use onescan_server::signal::ClientName;
 use onescan_server::time::TimeSpan;
 
@@ -26,6 +26,8 @@ pub struct PlcConfig {
     pub tcp: Option<SocketAddr>,
     /// Where its registers are served over Modbus TCP.
     pub modbus: Option<SocketAddr>,
+    /// Where its symbols are served over ADS.
+    pub ads: Option<SocketAddr>,
     /// Where its variables are served over OPC UA.
     pub opcua: Option<SocketAddr>,
     /// Who is let in there.

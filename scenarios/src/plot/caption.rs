@@ -38,6 +38,11 @@ pub(super) fn description(times: TimeRange, panels: &[Axis<'_>], run_labels: &[S
     )
 }
 
+/// What a picture of paths shows.
+pub(super) fn of_plane(up: &str, along: &str, run_labels: &[String]) -> String {
+    format!("{up} over {along}. Runs: {}.", listed(run_labels))
+}
+
 /// A unit and a power of ten in parentheses, if there is one of them.
 fn in_unit(unit: Option<&str>, exponent: i32) -> String {
     match (unit, exponent) {

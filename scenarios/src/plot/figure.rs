@@ -40,7 +40,7 @@ pub(super) fn draw(plot: &Plot) -> String {
     document.finish()
 }
 
-fn open(document: &mut Document, height_px: i64) {
+pub(super) fn open(document: &mut Document, height_px: i64) {
     document.open(
         "svg",
         &[
@@ -55,7 +55,7 @@ fn open(document: &mut Document, height_px: i64) {
     );
 }
 
-fn draw_title(document: &mut Document, title: &str, layout: &Layout) {
+pub(super) fn draw_title(document: &mut Document, title: &str, layout: &Layout) {
     if title.is_empty() {
         return;
     }
@@ -70,7 +70,7 @@ fn draw_title(document: &mut Document, title: &str, layout: &Layout) {
     );
 }
 
-fn draw_legend(document: &mut Document, layout: &Layout) {
+pub(super) fn draw_legend(document: &mut Document, layout: &Layout) {
     if layout.legend.is_empty() {
         return;
     }

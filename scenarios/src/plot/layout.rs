@@ -32,6 +32,8 @@ pub(super) enum Height {
     Analog,
     /// Room for two levels.
     Bool,
+    /// So many pixels.
+    Plane(i64),
 }
 
 /// One entry of the legend: where it begins, and its label as far as it fits.
@@ -80,6 +82,7 @@ impl Layout {
             let height_px = match height {
                 Height::Analog => ANALOG_HEIGHT_PX,
                 Height::Bool => BOOL_HEIGHT_PX,
+                Height::Plane(height_px) => *height_px,
             };
             panels.push(Area { left_px, top_px: top_px + HEADING_ROOM_PX, width_px, height_px });
             top_px += HEADING_ROOM_PX + height_px + PANEL_GAP_PX;

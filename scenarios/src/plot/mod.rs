@@ -20,6 +20,7 @@
 //! | `svg` | elements, paths, escapes |
 //! | `panel`, `mark`, `time_axis` | the parts of the picture |
 //! | `figure` | all of these as one picture |
+//! | `plane` | two signals against each other |
 //!
 //! Invariants. No input makes it panic, nothing is read from the machine (no clock, no fonts, no
 //! locale), and arithmetic is limited to the operations that IEEE 754 rounds exactly. Whatever is
@@ -52,6 +53,7 @@ pub(crate) mod lettering;
 mod mark;
 pub(crate) mod palette;
 mod panel;
+mod plane;
 mod range;
 mod reduce;
 pub(crate) mod svg;
@@ -119,5 +121,12 @@ impl Plot {
     /// The picture as an SVG document: the same plot, the same bytes.
     pub fn to_svg(&self) -> String {
         figure::draw(self)
+    }
+
+    /// The first signal against the second, across and up, as an SVG document: the paths of all
+    /// runs; nothing if there are not two signals. Marks have no place in it.
+    pub fn to_plane_svg(&self) -> Option<String> {
+        let [along, up, ..] = &self.panels[..] else { return None };
+        Some(plane::draw(self, along, up))
     }
 }

@@ -108,7 +108,7 @@ impl<'a> Axis<'a> {
 }
 
 /// The lines of a run, and its lone samples as dots.
-fn draw_pieces(document: &mut Document, pieces: &[Vec<Point>], stroke: Stroke) {
+pub(super) fn draw_pieces(document: &mut Document, pieces: &[Vec<Point>], stroke: Stroke) {
     let pieces = pieces.iter().map(Vec::as_slice);
     let (lines, dots): (Vec<&[Point]>, Vec<&[Point]>) = pieces.partition(|piece| piece.len() > 1);
     if !lines.is_empty() {

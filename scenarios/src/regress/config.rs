@@ -6,6 +6,7 @@ use std::path::PathBuf;
 use onescan_plc_shim::Dialect;
 use onescan_server::time::{TimeSpan, VirtualTime};
 
+use super::selection::Selection;
 use crate::run::Format;
 use crate::run::coverage::CoverageRequest;
 
@@ -26,12 +27,8 @@ pub enum Policy {
 pub struct TestConfig {
     /// Scenarios, folders with scenarios, PLC sources.
     pub paths: Vec<PathBuf>,
-    /// Parts of names; a test has one of them.
-    pub filters: Vec<String>,
-    /// Tags; a test has one of them.
-    pub tags: Vec<String>,
-    /// Tags; a test has none of them.
-    pub skipped_tags: Vec<String>,
+    /// Which of their tests.
+    pub selection: Selection,
     /// How many processes at a time.
     pub jobs: NonZeroUsize,
     /// What becomes of snapshots.

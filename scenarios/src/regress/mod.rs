@@ -6,10 +6,11 @@
 //! |---|---|
 //! | [`config`] | what is asked for |
 //! | [`discover`] | which scenarios and sources are meant |
+//! | [`selection`] | which tests are meant, by name and tag |
 //! | [`plan`] | units of work, filtered |
 //! | [`pool`] | units in processes of their own, several at a time |
 //! | [`worker`] | one unit, in such a process |
-//! | [`unit_test`] | test programs in ST, each in a fresh PLC |
+//! | [`unit_test`], `test_tags` | test programs in ST, each in a fresh PLC |
 //! | [`ran`] | what a process says of its unit |
 //! | [`snapshot`] | trajectories as text, compared |
 //! | [`outcome`] | passed, changed, failed: what came of each test |
@@ -30,14 +31,17 @@ pub mod plan;
 pub mod pool;
 pub mod ran;
 pub mod sarif;
+pub mod selection;
 pub mod snapshot;
 pub mod summary;
+mod test_tags;
 pub mod unit_test;
 pub mod worker;
 
 use std::io::Write;
 
 pub use config::{Policy, TestConfig};
+pub use selection::Selection;
 
 use crate::run::error::ExitCode;
 use crate::run::{Format, RunError, output};
@@ -55,6 +59,9 @@ pub fn test(config: &TestConfig, out: &mut dyn Write) -> Result<ExitCode, RunErr
     let mut outcomes: Vec<Outcome> = Vec::new();
     for (unit, worked) in units.iter().zip(&worked) {
         outcomes.extend(outcome::judge(config, unit, worked)?);
+    }
+    if outcomes.is_empty() {
+        return Err(plan::none_chosen("none of the tests"));
     }
     let orphans = plan::orphans(config, &units)?;
     let executed = coverage::merged(&units, &worked);

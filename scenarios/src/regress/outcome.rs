@@ -7,7 +7,7 @@ use onescan_server::client::SourcePlace;
 use serde::Serialize;
 
 use super::config::{Policy, TestConfig};
-use super::plan::{CaseUnit, Unit, is_named, shown};
+use super::plan::{CaseUnit, Unit, shown};
 use super::ran::{Event, FailedAssert, Ran, Shown, Worked, within};
 use super::snapshot::{Difference, Snapshot, compare};
 use crate::run::RunError;
@@ -166,7 +166,7 @@ pub fn judge(config: &TestConfig, unit: &Unit, worked: &Worked) -> Result<Vec<Ou
     match unit {
         Unit::Case(unit) => worked.tests.iter().map(|ran| case(config, unit, &suite, ran)).collect(),
         Unit::Sources(_) | Unit::Unreadable { .. } => {
-            let chosen = worked.tests.iter().filter(|ran| is_named(config, &suite, &ran.name));
+            let chosen = worked.tests.iter().filter(|ran| config.selection.has_name(&suite, &ran.name));
             Ok(chosen.map(|ran| test_program(&suite, ran)).collect())
         }
     }
@@ -208,7 +208,7 @@ fn outcome(suite: &str, ran: &Ran, folder: &str, status: Status) -> Outcome {
 fn test_program(suite: &str, ran: &Ran) -> Outcome {
     let failed = ran.error.is_some() || !ran.asserts.is_empty();
     let status = if failed { Status::Failed } else { Status::Passed };
-    Outcome { asserts_made: Some(ran.asserts_made), ..outcome(suite, ran, "", status) }
+    Outcome { asserts_made: Some(ran.asserts_made), tags: ran.tags.clone(), ..outcome(suite, ran, "", status) }
 }
 
 fn case(config: &TestConfig, unit: &CaseUnit, suite: &str, ran: &Ran) -> Result<Outcome, RunError> {

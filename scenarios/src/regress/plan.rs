@@ -91,8 +91,8 @@ pub fn units(config: &TestConfig) -> Result<Vec<Unit>, RunError> {
             }
         }
     }
-    // Test programs have no tags; their names are known once they are compiled.
-    if !found.sources.is_empty() && config.tags.is_empty() {
+    // The names of test programs are known once they are compiled.
+    if !found.sources.is_empty() {
         units.push(Unit::Sources(found.sources));
     }
     match (units.is_empty(), left_out) {
@@ -101,10 +101,7 @@ pub fn units(config: &TestConfig) -> Result<Vec<Unit>, RunError> {
             let help = "a scenario is a folder with a `scenario.toml`; test programs are in PLC sources".to_owned();
             Err(RunError::usage("there is nothing to test here", Some(help)))
         }
-        (true, _) => {
-            let help = "see `--filter`, `--tag` and `--skip-tag`".to_owned();
-            Err(RunError::usage(format!("none of {left_out} cases is chosen"), Some(help)))
-        }
+        (true, _) => Err(none_chosen(&format!("none of {left_out} cases"))),
     }
 }
 
@@ -122,16 +119,14 @@ fn cases(folder: &Path) -> Result<Vec<CaseUnit>, RunError> {
 }
 
 fn is_chosen(config: &TestConfig, case: &CaseUnit) -> bool {
-    let has = |wanted: &[String]| wanted.iter().any(|tag| case.tags.contains(tag));
-    is_named(config, &suite_of(&case.place.scenario), &case.place.case)
-        && (config.tags.is_empty() || has(&config.tags))
-        && !has(&config.skipped_tags)
+    config.selection.has_name(&suite_of(&case.place.scenario), &case.place.case)
+        && config.selection.has_tags(&case.tags)
 }
 
-/// True if a test of this name passes the filters.
-pub fn is_named(config: &TestConfig, suite: &str, name: &str) -> bool {
-    let full = format!("{suite}/{name}");
-    config.filters.is_empty() || config.filters.iter().any(|part| full.contains(part.as_str()))
+/// The error of a selection that leaves nothing.
+pub(super) fn none_chosen(of: &str) -> RunError {
+    let help = "see `--filter`, `--tag` and `--skip-tag`".to_owned();
+    RunError::usage(format!("{of} is chosen"), Some(help))
 }
 
 /// Reviewed snapshots of the scenarios tested that belong to no case any more.
@@ -140,7 +135,7 @@ pub fn is_named(config: &TestConfig, suite: &str, name: &str) -> bool {
 /// A folder cannot be read.
 pub fn orphans(config: &TestConfig, units: &[Unit]) -> Result<Vec<PathBuf>, RunError> {
     // What was left out is not known here.
-    if !(config.filters.is_empty() && config.tags.is_empty() && config.skipped_tags.is_empty()) {
+    if !config.selection.is_all() {
         return Ok(Vec::new());
     }
     let places: Vec<&Place> =

@@ -7,6 +7,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
+use super::Selection;
 use super::config::TestConfig;
 use super::plan::Unit;
 use super::ran::Worked;
@@ -86,6 +87,10 @@ fn command(config: &TestConfig, unit: &Unit, program: &Path) -> Command {
         Unit::Sources(paths) => {
             for path in paths {
                 command.arg("--source").arg(path);
+            }
+            let Selection { tags, skipped_tags, .. } = &config.selection;
+            for (option, tags) in [("--tag", tags), ("--skip-tag", skipped_tags)] {
+                command.args(tags.iter().map(|tag| format!("{option}={tag}")));
             }
             command.arg("--scan").arg(config.scan.to_string());
             command.arg("--until").arg(format!("{}ns", config.until.as_nanos()));

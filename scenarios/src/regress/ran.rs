@@ -23,6 +23,9 @@ pub struct Worked {
 pub struct Ran {
     /// Its name.
     pub name: String,
+    /// The tags of a test program.
+    #[serde(default)]
+    pub tags: Vec<String>,
     /// `completed`, `stopped` or `failed`.
     pub status: String,
     /// The digest over all steps.

@@ -2,7 +2,7 @@
 //!
 //! A test is a PROGRAM, or a `FUNCTION_BLOCK` without inputs, whose name begins with `TEST_`. If it has a
 //! BOOL output `Done`, it runs until that is TRUE; else it runs for one scan. Its asserts (`ASSERT` and
-//! its kin, `iec/test/assert.st` of the shim) must all hold.
+//! its kin, `iec/test/assert.st` of the shim) must all hold. Its tags stand before it.
 
 use onescan_plc_shim::input::kind::SourceKind;
 use onescan_plc_shim::run::FailedAssert as Failed;
@@ -16,6 +16,7 @@ use onescan_server::time::TimeSpan;
 use thiserror::Error;
 
 use super::ran::{FailedAssert, Ran, Worked};
+use super::test_tags;
 use super::worker::{WorkerConfig, rows};
 use crate::check::collect;
 use crate::run::RunError;
@@ -47,6 +48,7 @@ struct Test {
     name: String,
     is_program: bool,
     place: SourcePlace,
+    tags: Vec<String>,
 }
 
 impl Test {
@@ -79,7 +81,7 @@ pub fn run(config: &WorkerConfig) -> Result<Worked, RunError> {
     let application = compiled.map_err(|findings| RunError::Sources(Box::new(SourcesReport { findings })))?;
     let mut worked = Worked::default();
     let mut coverage = Coverage::default();
-    for test in &tests {
+    for test in tests.iter().filter(|test| config.selection.has_tags(&test.tags)) {
         worked.tests.push(one(config, &application, test, &mut coverage)?);
     }
     worked.coverage = rows(&coverage);
@@ -99,7 +101,8 @@ fn declared(input: &Input) -> Vec<Test> {
         if is_test && (is_program || pou.kind == PouKind::FunctionBlock) {
             let at = file.line_column(name.span.start);
             let place = SourcePlace { file: file.name().to_owned(), line: at.line, column: at.column };
-            tests.push(Test { name: name.text.clone(), is_program, place });
+            let tags = test_tags::tags(file.dialect(), file.text(), name.span.start);
+            tests.push(Test { name: name.text.clone(), is_program, place, tags });
         }
     }
     tests
@@ -131,6 +134,7 @@ fn one(
     let done = done_offset(application, test)?;
     let mut ran = Ran {
         name: test.name.clone(),
+        tags: test.tags.clone(),
         status: "completed".to_owned(),
         step_ns: interval_ns,
         place: Some(test.place.clone()),

@@ -10,7 +10,7 @@ use onescan_server::time::{TimeSpan, VirtualTime};
 
 use super::ran::{Event, Ran, Worked};
 use super::snapshot::take::{Choice, Taker};
-use super::unit_test;
+use super::{Selection, unit_test};
 use crate::run::interrupt::Interrupt;
 use crate::run::{RunConfig, RunError, watched};
 use crate::scenario::Scenario;
@@ -31,6 +31,8 @@ pub struct WorkerConfig {
     pub until: VirtualTime,
     /// Their dialect.
     pub dialect: Option<Dialect>,
+    /// Which of their tests; names are held against filters elsewhere.
+    pub selection: Selection,
     /// Whether to note what is executed.
     pub cover: bool,
     /// Whether to draw trajectories.

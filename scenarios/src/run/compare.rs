@@ -9,9 +9,9 @@ use serde::Serialize;
 use super::config::{Format, Mode, RunConfig};
 use super::error::RunError;
 use super::interrupt::Interrupt;
-use super::sampler::{Samples, shape};
+use super::sampler::{Samples, panel};
 use super::{one_run, output};
-use crate::plot::{Panel, Plot, Trajectory};
+use crate::plot::Plot;
 use crate::scenario::Scenario;
 
 /// The ways, lockstep first: the others are held against it.
@@ -93,7 +93,9 @@ pub fn compare(config: &CompareConfig, interrupt: &Interrupt, out: &mut dyn Writ
     let rows: Vec<Row> =
         MODES.iter().zip(&all).map(|(mode, runs)| row(*mode, runs, &all[0][0].samples, &types)).collect();
     if let Some(path) = &config.plot {
-        output::write_whole(path, plot(&config.run, &scenario, &all).to_svg().as_bytes())?;
+        let plot = plot(&config.run, &scenario, &all);
+        let picture = config.run.plane.as_ref().and_then(|_| plot.to_plane_svg()).unwrap_or_else(|| plot.to_svg());
+        output::write_whole(path, picture.as_bytes())?;
     }
     write(&rows, config.format, out).map_err(RunError::Output)?;
     Ok(rows)
@@ -154,24 +156,13 @@ fn edges_of(samples: &Samples, index: usize) -> Vec<u64> {
 
 /// One run of each mode over each other.
 fn plot(config: &RunConfig, scenario: &Scenario, all: &[Vec<Run>]) -> Plot {
-    let panel = |name: SignalName| {
-        let signal = scenario.file().signals.get(&name).map(toml::Spanned::get_ref);
-        let of = |runs: &Vec<Run>| {
-            let samples = &runs[0].samples;
-            let row = samples.names.iter().position(|known| *known == name).unwrap_or(0);
-            Trajectory { t_ns: samples.t_ns.clone(), values: samples.values[row].clone() }
-        };
-        Panel {
-            shape: signal.map_or(crate::plot::Shape::Line, |signal| shape(signal.ty)),
-            unit: signal.and_then(|signal| signal.unit.clone()),
-            signal: name.to_string(),
-            runs: all.iter().map(of).collect(),
-        }
-    };
+    let first = |runs: &'_ [Run]| runs.first().map(|run| run.samples.clone()).unwrap_or_default();
+    let samples: Vec<Samples> = all.iter().map(|runs| first(runs)).collect();
+    let names = config.plane.as_ref().map_or_else(|| config.plotted(scenario), |plane| plane.to_vec());
     Plot {
         title: format!("{}: lockstep and the other ways", scenario.name()),
         runs: MODES.iter().map(|mode| mode.name().to_owned()).collect(),
-        panels: config.plotted(scenario).into_iter().map(panel).collect(),
+        panels: names.iter().map(|name| panel(scenario, name, samples.iter())).collect(),
         marks: Vec::new(),
     }
 }

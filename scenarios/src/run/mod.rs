@@ -17,6 +17,7 @@
 //! | [`expectation`] | what a run had to show |
 //! | [`watch`] | what watched variables were |
 //! | [`report`] | what came of a run, for people and machines |
+//! | `seats` | clients that take part over OPC UA |
 //! | [`session_log`] | which client a session waited for |
 //! | [`output`] | files that appear whole or not at all |
 
@@ -35,6 +36,7 @@ pub mod recorded;
 pub mod report;
 pub mod rerun;
 mod sampler;
+mod seats;
 pub mod session_log;
 pub mod watch;
 
@@ -95,8 +97,7 @@ pub fn execute(config: &RunConfig, interrupt: &Interrupt, out: &mut dyn Write) -
         request.write(sink)?;
     }
     if let Some(path) = &config.plot {
-        let plot = sampler::plot(&scenario, config, &samples, &reports);
-        output::write_whole(path, plot.to_svg().as_bytes())?;
+        output::write_whole(path, sampler::picture(&scenario, config, &samples, &reports).as_bytes())?;
     }
     if let Some(path) = &config.html {
         let plot = sampler::plot(&scenario, config, &samples, &reports);
@@ -139,7 +140,7 @@ fn one_run(
     observers: Vec<Box<dyn Observer>>,
 ) -> Result<(RunReport, Samples), RunError> {
     let started = Instant::now();
-    let samples = Rc::new(RefCell::new(Samples::new(&config.plotted(scenario))));
+    let samples = Rc::new(RefCell::new(Samples::new(&config.sampled(scenario))));
     let trace = Rc::new(RefCell::new(Trace::default()));
     let recorded = config.record.as_ref().map(|request| Recorded::begin(request, config, scenario, number));
     let (recorded, recorder) = recorded.transpose()?.unzip();

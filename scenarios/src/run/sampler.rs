@@ -87,6 +87,30 @@ impl Observer for Sampler {
     }
 }
 
+/// The picture of a plot: over time, or in the plane that was asked for.
+pub(super) fn picture(scenario: &Scenario, config: &RunConfig, runs: &[Samples], reports: &[RunReport]) -> String {
+    let plot = plot(scenario, config, runs, reports);
+    let Some(plane) = &config.plane else { return plot.to_svg() };
+    let panels = plane.iter().map(|name| panel(scenario, name, runs.iter())).collect();
+    Plot { panels, ..plot }.to_plane_svg().unwrap_or_default()
+}
+
+/// A signal of several runs.
+pub(super) fn panel<'r>(scenario: &Scenario, name: &SignalName, runs: impl Iterator<Item = &'r Samples>) -> Panel {
+    let signal = scenario.file().signals.get(name).map(toml::Spanned::get_ref);
+    let trajectory = |run: &Samples| {
+        let row = run.names.iter().position(|known| known == name);
+        let values = row.and_then(|row| run.values.get(row).cloned()).unwrap_or_default();
+        Trajectory { t_ns: run.t_ns.clone(), values }
+    };
+    Panel {
+        shape: signal.map_or(Shape::Line, |signal| shape(signal.ty)),
+        unit: signal.and_then(|signal| signal.unit.clone()),
+        signal: name.to_string(),
+        runs: runs.map(trajectory).collect(),
+    }
+}
+
 /// The plot of several runs, laid over each other.
 pub(super) fn plot(scenario: &Scenario, config: &RunConfig, runs: &[Samples], reports: &[RunReport]) -> Plot {
     let mode = match config.mode {
@@ -99,21 +123,7 @@ pub(super) fn plot(scenario: &Scenario, config: &RunConfig, runs: &[Samples], re
         1 => String::new(),
         n => format!(", {n} runs"),
     };
-    let panels = config.plotted(scenario).into_iter().enumerate().map(|(row, name)| {
-        let signal = scenario.file().signals.get(&name).map(toml::Spanned::get_ref);
-        Panel {
-            shape: signal.map_or(Shape::Line, |signal| shape(signal.ty)),
-            unit: signal.and_then(|signal| signal.unit.clone()),
-            signal: name.to_string(),
-            runs: runs
-                .iter()
-                .map(|run| Trajectory {
-                    t_ns: run.t_ns.clone(),
-                    values: run.values.get(row).cloned().unwrap_or_default(),
-                })
-                .collect(),
-        }
-    });
+    let panels = config.plotted(scenario).into_iter().map(|name| panel(scenario, &name, runs.iter()));
     Plot {
         title: format!("{}: {mode}{count}", scenario.name()),
         runs: (1..=runs.len()).map(|number| format!("run {number}")).collect(),

@@ -5,7 +5,7 @@ use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use onescan_clients::soft_plc::{CoverageSink, WriterSink};
+use onescan_clients::soft_plc::{CoverageSink, TraceSink};
 use onescan_server::plan::{Coupling, PlanError, SessionPlan};
 use onescan_server::signal::{ClientName, SignalDecl, SignalName, did_you_mean};
 use onescan_server::time::{TimeSpan, VirtualTime};
@@ -35,7 +35,7 @@ pub struct Scenario {
     /// Where soft PLCs give what they executed, if that is asked for.
     coverage: Option<CoverageSink>,
     /// Where soft PLCs tell which statements wrote these signals, if that is asked for.
-    writers: Option<(BTreeSet<SignalName>, WriterSink)>,
+    writers: Option<(BTreeSet<SignalName>, TraceSink)>,
     /// The soft PLCs that a real one stands in for, with its URL where the file's does not count.
     pub(super) gateways: BTreeMap<ClientName, Option<String>>,
     /// What soft PLCs look at, if that is asked for.
@@ -148,14 +148,14 @@ impl Scenario {
     }
 
     /// Lets soft PLCs tell which statements write `signals`; gives where they do.
-    pub fn trace(&mut self, signals: BTreeSet<SignalName>) -> WriterSink {
-        let sink = WriterSink::default();
+    pub fn trace(&mut self, signals: BTreeSet<SignalName>) -> TraceSink {
+        let sink = TraceSink::default();
         self.writers = Some((signals, sink.clone()));
         sink
     }
 
     /// The signals whose writers are asked for, and where they are told.
-    pub fn writers(&self) -> Option<&(BTreeSet<SignalName>, WriterSink)> {
+    pub fn writers(&self) -> Option<&(BTreeSet<SignalName>, TraceSink)> {
         self.writers.as_ref()
     }
 
@@ -181,7 +181,10 @@ impl Scenario {
             match client.get_ref() {
                 ClientFile::Plant { scene, .. } => files.push(scene.into()),
                 ClientFile::SoftPlc { sources, .. } => files.extend(sources.iter().map(PathBuf::from)),
-                ClientFile::Operator { .. } | ClientFile::Gateway { .. } | ClientFile::External { .. } => {}
+                ClientFile::Operator { .. }
+                | ClientFile::Gateway { .. }
+                | ClientFile::OpcUa { .. }
+                | ClientFile::External { .. } => {}
             }
         }
         files.extend(self.applied().and(Some(case::FILE_NAME.into())));
@@ -271,7 +274,9 @@ fn place_of_plan_error(error: &PlanError, file: &ScenarioFile, text: &str) -> Op
 /// The period of the client `name` as far as the scenario says it.
 pub fn period_of(client: &ClientFile, step: TimeSpan) -> Option<TimeSpan> {
     match client {
-        ClientFile::Plant { period, .. } | ClientFile::Gateway { period, .. } => Some(period.unwrap_or(step)),
+        ClientFile::Plant { period, .. } | ClientFile::Gateway { period, .. } | ClientFile::OpcUa { period, .. } => {
+            Some(period.unwrap_or(step))
+        }
         ClientFile::Operator { .. } => Some(step),
         ClientFile::SoftPlc { .. } | ClientFile::External { .. } => None,
     }

@@ -10,6 +10,7 @@
 //! | [`compose`] | a scenario's plan and its clients |
 //! | [`gateway`] | its real PLCs |
 //! | [`watch`] | variables of its soft PLCs that a run looks at |
+//! | `refusal` | a client that its session does not let in |
 //! | [`error`] | what can be wrong with it, and where |
 
 mod arrays;
@@ -20,6 +21,7 @@ pub mod expectations;
 pub mod file;
 pub mod gateway;
 pub mod load;
+mod refusal;
 pub mod watch;
 
 pub use error::ScenarioError;

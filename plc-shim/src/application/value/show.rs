@@ -47,7 +47,18 @@ impl Application {
             }
             Type::Struct { fields, .. } => {
                 let fields = fields.iter().filter_map(|field| {
-                    Some((Some(field.name.as_str()), field.ty, bytes.get(field.offset as usize..)?))
+                    let bytes = bytes.get(field.offset as usize..)?;
+                    let bytes = match (field.bit, bytes) {
+                        (Some(bit), [byte, ..]) => {
+                            if byte >> bit & 1 == 0 {
+                                &[0]
+                            } else {
+                                &[1]
+                            }
+                        }
+                        _ => bytes,
+                    };
+                    Some((Some(field.name.as_str()), field.ty, bytes))
                 });
                 self.show_list(('(', ')'), fields, text);
             }

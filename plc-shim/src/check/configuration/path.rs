@@ -168,6 +168,12 @@ impl Checker<'_> {
                 let Some(field) = fields.iter().find(|field| field.name.eq_ignore_ascii_case(&name.text)) else {
                     return self.no_member(&at, name, &names);
                 };
+                if field.bit.is_some() {
+                    let message = format!("`{}` is one bit of a byte of its structure", field.name);
+                    let found = Diagnostic::error(Code::UnsuitableConnection, name.span, message);
+                    self.report(found.with_help("connect a variable of its own"));
+                    return None;
+                }
                 let path = format!("{}.{}", at.path, field.name);
                 Some(Target { path, inside: at.inside + field.offset, ty: field.ty, ..at })
             }

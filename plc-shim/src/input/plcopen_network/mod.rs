@@ -20,6 +20,8 @@ mod order;
 mod text;
 mod trigger;
 
+use std::collections::BTreeSet;
+
 use self::builder::Builder;
 use self::element::{Input, Modifiers, Node, nodes};
 use self::text::{Line, Piece, Text};
@@ -30,7 +32,6 @@ use super::xml::Element;
 enum Wanted<'e> {
     All,
     /// What the connections that end at this element need; their value goes to the variable.
-    #[allow(dead_code, reason = "for conditions of transitions, which charts have")]
     For(&'e Element, &'e str),
 }
 
@@ -40,7 +41,6 @@ impl Writer<'_> {
         self.statements_of(body, &Wanted::All);
     }
 
-    #[allow(dead_code, reason = "for conditions of transitions, which charts have")]
     /// The statements for what is connected to `point` in a body, then `variable := value;`: the condition
     /// of a transition whose elements stand in the chart (TC6 2.01, `condition`).
     pub(super) fn network_value(&mut self, body: &Element, point: &Element, variable: &str) {
@@ -56,20 +56,20 @@ impl Writer<'_> {
         let mut faults = graph::connect(&mut nodes);
         let mut sources = graph::sources(&nodes);
         let networks = graph::networks(&nodes, &sources);
-        let order = match wanted {
-            Wanted::All => {
-                faults.extend(graph::cut_loops(&nodes, &mut sources));
-                order::order(&nodes, &networks, &sources)
-            }
+        let needed: Option<BTreeSet<usize>> = match wanted {
+            Wanted::All => None,
             Wanted::For(..) => {
-                let end = nodes.len().saturating_sub(1);
-                let needed = graph::finished(vec![end], &sources);
-                faults.extend(graph::cut_loops(&nodes, &mut sources));
-                let mut order = order::order(&nodes, &networks, &sources);
-                order.retain(|index| needed.contains(index) && *index != end);
-                order
+                Some(graph::finished(vec![nodes.len().saturating_sub(1)], &sources).into_iter().collect())
             }
         };
+        faults.extend(graph::cut_loops(&nodes, &mut sources));
+        let mut order = order::order(&nodes, &networks, &sources);
+        if let Some(needed) = &needed {
+            order.retain(|index| needed.contains(index));
+            faults.retain(|fault| {
+                needed.iter().filter_map(|index| nodes.get(*index)).any(|node| node.holds(fault.place.start))
+            });
+        }
         for fault in faults {
             self.taken.report(fault.place, fault.code, &fault.message);
         }
@@ -142,6 +142,11 @@ fn refers_to(element: &Element, id: &str) -> bool {
 }
 
 impl<'e> Node<'e> {
+    /// True if the element stands around this place of the file.
+    fn holds(&self, at: u32) -> bool {
+        (self.element.open.start..self.element.close.end).contains(&at)
+    }
+
     /// What a value is wanted for, as an element that comes behind all others.
     fn end(point: &'e Element) -> Self {
         let inputs = element::inputs_of(point);

@@ -99,7 +99,7 @@ fn calendar(kind: CalendarKind, text: &str) -> i64 {
     let prefixes = match kind {
         CalendarKind::Date => ["D", "DATE", "LD", "LDATE"],
         CalendarKind::TimeOfDay => ["TOD", "TIME_OF_DAY", "LTOD", "LTIME_OF_DAY"],
-        CalendarKind::DateAndTime => ["DT", "DATE_AND_TIME", "LDT", "LDATE_AND_TIME"],
+        CalendarKind::DateAndTime | CalendarKind::Parts => ["DT", "DATE_AND_TIME", "LDT", "LDATE_AND_TIME"],
     };
     parse_calendar(kind, after_prefix(text, &prefixes)).unwrap_or(0)
 }

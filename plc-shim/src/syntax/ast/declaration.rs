@@ -174,6 +174,8 @@ pub enum TypeSpecKind {
     Union(Vec<Field>),
     /// `STRUCT .. END_STRUCT`, in a `TYPE` block only.
     Struct(Vec<Field>),
+    /// `STRUCT OVERLAP .. END_STRUCT`: members with addresses may share bytes (3rd ed. Table 11)
+    Overlapping(Vec<Field>),
     /// `FB(a := 1)`, `FB[(a := 1), (a := 2)]`: instances of vendors, and what their `FB_init` is given
     Instance(Ident, InitArguments),
     /// `(Red, Green := 5)`, `(Red, Green) USINT` or `USINT (Red, Green)`
@@ -250,6 +252,8 @@ pub struct Dimension {
 pub struct Field {
     /// Its name.
     pub name: Ident,
+    /// Where it lies in its structure, as written: `%B4`, `%X3.0`.
+    pub address: Option<Ident>,
     /// Its type.
     pub spec: TypeSpec,
     /// Its initial value.

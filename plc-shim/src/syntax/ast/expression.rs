@@ -18,6 +18,13 @@ pub struct Expr {
     pub height: u16,
 }
 
+impl Expr {
+    /// `THIS` or `SUPER`: the object itself, which a caret after it does not change.
+    pub(crate) fn names_the_object(&self) -> bool {
+        matches!(&self.kind, ExprKind::Name(name) if matches!(name.key().as_str(), "THIS" | "SUPER"))
+    }
+}
+
 /// The forms of an expression.
 #[derive(Debug, Clone)]
 pub enum ExprKind {

@@ -135,8 +135,8 @@ pub struct CaseLabel {
 /// `FOR i := a TO b BY c DO .. END_FOR`
 #[derive(Debug, Clone)]
 pub struct ForStatement {
-    /// The control variable.
-    pub variable: Ident,
+    /// The control variable; with vendors also a part of one.
+    pub variable: Expr,
     /// Its first value.
     pub from: Expr,
     /// Its last value.

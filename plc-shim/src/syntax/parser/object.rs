@@ -303,7 +303,7 @@ impl Cursor<'_> {
         let start = self.span();
         self.advance();
         let base = self.extended_structure();
-        let kind = self.nested(Self::struct_type).unwrap_or(TypeSpecKind::Error);
+        let kind = self.nested(Self::structure_type).unwrap_or(TypeSpecKind::Error);
         (TypeSpec { kind, span: self.span_from(start) }, base)
     }
 
@@ -322,9 +322,7 @@ impl Cursor<'_> {
 
     /// Vendors write `THIS^` and `SUPER^` for what the standard calls `THIS` and `SUPER`.
     pub(super) fn pass_object_caret(&mut self, expr: &Expr) {
-        if let ExprKind::Name(name) = &expr.kind
-            && matches!(name.key().as_str(), "THIS" | "SUPER")
-        {
+        if expr.names_the_object() {
             self.take_mark(Punctuation::Caret);
         }
     }

@@ -72,7 +72,7 @@ impl Cursor<'_> {
                 }
             }
             for Variable { names, spec, initial, .. } in section.variables {
-                let field = |name| Field { name, spec: spec.clone(), initial: initial.clone() };
+                let field = |name| Field { name, address: None, spec: spec.clone(), initial: initial.clone() };
                 fields.extend(names.into_iter().map(field));
             }
         }

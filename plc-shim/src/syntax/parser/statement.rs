@@ -5,7 +5,7 @@ use super::object::ends_object;
 use crate::diagnostic::{Code, Diagnostic};
 use crate::dialect::Feature;
 use crate::syntax::ast::{
-    CaseBranch, CaseLabel, CaseStatement, ForStatement, IfBranch, IfStatement, RepeatStatement, Statement,
+    CaseBranch, CaseLabel, CaseStatement, ExprKind, ForStatement, IfBranch, IfStatement, RepeatStatement, Statement,
     StatementKind, WhileStatement,
 };
 use crate::syntax::source::Span;
@@ -271,9 +271,14 @@ impl Cursor<'_> {
 
     fn for_statement(&mut self) -> StatementKind {
         self.advance();
-        let Some(variable) = self.expect_identifier("the control variable's name") else {
+        if self.peek() != Some(TokenKind::Identifier) {
+            self.unexpected("the control variable's name");
             return StatementKind::Error;
-        };
+        }
+        let variable = self.postfix();
+        if !matches!(variable.kind, ExprKind::Name(_)) {
+            self.require(Feature::ControlParts, variable.span);
+        }
         self.expect_mark(Punctuation::Assign);
         self.take_mark(Punctuation::Equal);
         let from = self.expression();

@@ -20,7 +20,7 @@ impl Cursor<'_> {
             return self.array_type();
         }
         if self.take_keyword(Keyword::Struct) {
-            return TypeSpecKind::Struct(self.members_of(Keyword::EndStruct));
+            return self.structure_type();
         }
         if self.take_keyword(Keyword::Union) {
             return TypeSpecKind::Union(self.members_of(Keyword::EndUnion));
@@ -40,6 +40,9 @@ impl Cursor<'_> {
         };
         if matches!(name.key().as_str(), "STRING" | "WSTRING") {
             return self.string_type(name);
+        }
+        if is_generic(&name) {
+            self.require(Feature::GenericInputs, name.span);
         }
         let name = self.qualified(name);
         if self.at_mark(Punctuation::LeftParen) && ElementaryType::find(&name.text).is_none() {
@@ -164,8 +167,16 @@ impl Cursor<'_> {
         TypeSpecKind::OpenArray(dimensions, Box::new(self.type_spec()))
     }
 
-    pub(super) fn struct_type(&mut self) -> TypeSpecKind {
-        TypeSpecKind::Struct(self.members_of(Keyword::EndStruct))
+    /// Behind `STRUCT`. `OVERLAP` is a word of the 3rd edition only, so members may bear the name.
+    pub(super) fn structure_type(&mut self) -> TypeSpecKind {
+        let overlap = self.peek() == Some(TokenKind::Identifier)
+            && self.next_text().eq_ignore_ascii_case("OVERLAP")
+            && matches!(self.peek_ahead(1), Some(TokenKind::Identifier | TokenKind::Keyword(Keyword::EndStruct)));
+        if !overlap {
+            return TypeSpecKind::Struct(self.members_of(Keyword::EndStruct));
+        }
+        self.advance();
+        TypeSpecKind::Overlapping(self.members_of(Keyword::EndStruct))
     }
 
     fn members_of(&mut self, end: Keyword) -> Vec<Field> {
@@ -177,15 +188,16 @@ impl Cursor<'_> {
         fields
     }
 
-    /// `a, b : INT := 5;`
+    /// `a, b : INT := 5;`, `a AT %B4 : INT;`
     fn fields(&mut self, fields: &mut Vec<Field>) {
         let known = self.reported();
         let names = self.identifier_list("a member's name");
+        let address = self.take_keyword(Keyword::At).then(|| self.address()).flatten();
         self.expect_mark(Punctuation::Colon);
         let spec = self.type_spec();
         let initial = self.optional_initialiser();
         for name in names {
-            fields.push(Field { name, spec: spec.clone(), initial: initial.clone() });
+            fields.push(Field { name, address: address.clone(), spec: spec.clone(), initial: initial.clone() });
         }
         self.end_of_declaration(known);
     }
@@ -214,4 +226,9 @@ impl Cursor<'_> {
         self.expect_mark(Punctuation::RightParen);
         values
     }
+}
+
+/// True for what vendors let inputs have as a type (CODESYS, TwinCAT: `ANY`, `ANY_<type>`).
+fn is_generic(name: &Ident) -> bool {
+    matches!(name.key().as_str(), "ANY" | "ANY_BIT" | "ANY_DATE" | "ANY_NUM" | "ANY_REAL" | "ANY_INT" | "ANY_STRING")
 }

@@ -156,8 +156,9 @@ impl Printer {
                 self.word("] OF ");
                 self.type_spec(element);
             }
-            TypeSpecKind::Struct(fields) => self.members("STRUCT", fields),
-            TypeSpecKind::Union(fields) => self.members("UNION", fields),
+            TypeSpecKind::Struct(fields) => self.members(("STRUCT", "END_STRUCT"), fields),
+            TypeSpecKind::Overlapping(fields) => self.members(("STRUCT OVERLAP", "END_STRUCT"), fields),
+            TypeSpecKind::Union(fields) => self.members(("UNION", "END_UNION"), fields),
             TypeSpecKind::Instance(name, arguments) => {
                 self.name(name);
                 match arguments {
@@ -188,19 +189,22 @@ impl Printer {
         self.expression(high);
     }
 
-    fn members(&mut self, word: &str, fields: &[Field]) {
-        self.word(word);
+    fn members(&mut self, (begin, end): (&str, &str), fields: &[Field]) {
+        self.word(begin);
         self.end_line();
         self.indented(|printer| {
             for field in fields {
                 printer.begin_line();
                 printer.name(&field.name);
+                if let Some(address) = &field.address {
+                    printer.word(" AT ");
+                    printer.word(&address.text);
+                }
                 printer.typed(&field.spec, field.initial.as_ref());
             }
         });
         self.begin_line();
-        self.word("END_");
-        self.word(word);
+        self.word(end);
     }
 
     fn enum_value(&mut self, value: &EnumValue) {

@@ -16,7 +16,8 @@ impl Printer {
             }
             ExprKind::Dereference(base) => {
                 self.expression(base);
-                self.word("^");
+                // The first caret is part of the name.
+                self.word(if base.names_the_object() { "^^" } else { "^" });
             }
             ExprKind::Index(base, indices) => {
                 self.expression(base);

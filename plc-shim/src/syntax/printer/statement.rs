@@ -133,7 +133,7 @@ impl Printer {
 
     fn for_statement(&mut self, inner: &ForStatement) {
         self.word("FOR ");
-        self.variable_name(&inner.variable);
+        self.expression(&inner.variable);
         self.head(" := ", &inner.from, " TO ");
         self.expression(&inner.to);
         if let Some(by) = &inner.by {

@@ -8,6 +8,8 @@ mod driver;
 mod equivalence;
 mod grants;
 mod overhead;
+mod plcopen_charts;
+mod plcopen_motion;
 mod plcopen_xml;
 mod random;
 mod rewriting;

@@ -8,16 +8,16 @@ use super::driver::{Driver, Tasks, own_plan, scan, state, write};
 use crate::plcopen::{block, coil, contact, input, output, pou, project, rail};
 use crate::rig::{MS, task};
 
-fn read(text: &str) -> Input {
+pub(super) fn read(text: &str) -> Input {
     Input::from_text("line.xml", SourceKind::PlcOpen, text)
 }
 
-fn text(project: &Project) -> String {
+pub(super) fn text(project: &Project) -> String {
     project.files[0].text.as_deref().expect("a text").to_owned()
 }
 
 /// Programs in every language, each with a timer.
-fn line() -> String {
+pub(super) fn line() -> String {
     let sections = "local go : BOOL, delay : TON, done : BOOL, n : INT";
     let st = "delay(IN := go, PT := T#30ms);\nIF NOT delay.Q THEN\n    RETURN;\nEND_IF;\ndone := delay.Q AND n &lt; 30000;\nn := n + 1;";
     let fbd = [
@@ -64,7 +64,7 @@ fn options(target: Target) -> Options {
 }
 
 /// Instrumented, once more, and taken back.
-fn round_trip(given: &str, options: &Options) -> Project {
+pub(super) fn round_trip(given: &str, options: &Options) -> Project {
     let project = instrument(&[read(given)], options).unwrap_or_else(|error| panic!("{error}"));
     let again = text(&project);
     let twice = instrument(&[read(&again)], options).unwrap_or_else(|error| panic!("{error}"));

@@ -33,6 +33,14 @@ pub(crate) struct Use {
     pub(crate) time_ms: u64,
 }
 
+impl Use {
+    /// Its time as it is written; nothing if its qualifier has none.
+    pub(crate) fn time(&self) -> String {
+        let timed = ["L", "D", "SD", "DS", "SL"].contains(&self.qualifier);
+        if timed { format!("T#{}ms", self.time_ms) } else { String::new() }
+    }
+}
+
 /// When a transition is cleared.
 #[derive(Debug, Clone)]
 pub(crate) enum Condition {
@@ -156,13 +164,8 @@ impl Chart {
         for step in 0..self.steps {
             let word = if step == 0 { "INITIAL_STEP" } else { "STEP" };
             let uses = self.uses.iter().filter(|used| used.step == step).map(|used| {
-                let time = if used.qualifier.len() == 2 && !used.qualifier.starts_with('P')
-                    || matches!(used.qualifier, "L" | "D")
-                {
-                    format!(", T#{}ms", used.time_ms)
-                } else {
-                    String::new()
-                };
+                let time = used.time();
+                let time = if time.is_empty() { time } else { format!(", {time}") };
                 format!("b{}({}{time}); ", used.action, used.qualifier)
             });
             let uses: String = uses.collect();

@@ -1,9 +1,11 @@
 //! Sequential Function Charts (2nd ed. 2.6, 3rd ed. 6.7).
 
 pub(crate) mod chart;
+pub(crate) mod drawn;
 mod evolution;
 mod findings;
 mod interpret;
 mod plcopen;
 mod random;
 mod running;
+mod timing;

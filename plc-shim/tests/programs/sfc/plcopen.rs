@@ -3,6 +3,7 @@
 use onescan_plc_shim::input::kind::SourceKind;
 use onescan_plc_shim::{Application, Input, TaskPlan, inspect};
 
+use crate::plcopen::{block, coil, contact, input, rail};
 use crate::rig::{MS, Rig};
 
 const MIXER: &str = include_str!("../../inputs/mixer.xml");
@@ -57,6 +58,49 @@ fn what_is_wrong_with_a_chart_of_xml_is_told_in_its_place() {
         let found = inspect([mixer(&MIXER.replacen(from, to, 1))], None);
         format!("{what}\n{found}")
     });
+    insta::assert_snapshot!(report.collect::<Vec<_>>().join("\n\n"));
+}
+
+/// Contacts and blocks in the chart itself that lead to a transition.
+#[test]
+fn conditions_are_wired_to_elements_of_the_chart() {
+    let start = "<condition><reference name=\"start\"/></condition>";
+    let wired = |id: u32, pin: &str| {
+        format!("<condition><connectionPointIn><connection refLocalId=\"{id}\"{pin}/></connectionPointIn></condition>")
+    };
+    let with = |condition: &str, elements: &str| {
+        MIXER
+            .replace(start, condition)
+            .replace("<transition localId=\"2\">", &format!("{elements}<transition localId=\"2\">"))
+    };
+    let rung = rail(40) + &contact(41, (0, 0), "40", "start", "edge=\"rising\"");
+    let compare =
+        input(42, (0, 0), "level") + &input(43, (0, 20), "50") + &block(44, (40, 0), "GE", "IN1=42 IN2=43", "OUT", "");
+    let begins_at = |text: &str| {
+        let application = Application::from_inputs([mixer(text)]).unwrap_or_else(|found| panic!("{found}"));
+        let mut rig = Rig::with_plan(&application, &TaskPlan::single(&application, 10 * MS));
+        (1..=8).find(|scan| {
+            // The edge is seen in scan 4 only, the level from scan 6.
+            rig.set("Mixer.start", i64::from(*scan == 4));
+            rig.set("Mixer.level", if *scan >= 6 { 60 } else { 0 });
+            rig.scan().expect("no fault");
+            rig.bool("Mixer.Fill.X")
+        })
+    };
+    assert_eq!(begins_at(&with(&wired(41, ""), &rung)), Some(4));
+    assert_eq!(begins_at(&with(&wired(44, " formalParameter=\"OUT\""), &compare)), Some(6));
+    assert_eq!(
+        begins_at(&with(&wired(44, "").replace("<condition>", "<condition negated=\"true\">"), &compare)),
+        Some(2)
+    );
+    let wrong = [
+        ("nothing leads there", with("<condition><connectionPointIn/></condition>", "")),
+        ("it leads to nothing", with(&wired(99, ""), "")),
+        ("a contact without its left", with(&wired(41, ""), &contact(41, (0, 0), "", "start", ""))),
+        ("no BOOL", with(&wired(42, ""), &input(42, (0, 0), "level"))),
+        ("an element of its own", with(start, &(rail(40) + &coil(41, (0, 0), "40", "valve", "")))),
+    ];
+    let report = wrong.iter().map(|(what, text)| format!("{what}\n{}", inspect([mixer(text)], None)));
     insta::assert_snapshot!(report.collect::<Vec<_>>().join("\n\n"));
 }
 

@@ -4,6 +4,7 @@ use proptest::prelude::*;
 
 use super::chart::{BOOLEAN, Chart, INPUTS, arbitrary_part};
 use super::interpret::Interpreter;
+use crate::plcopen::rig;
 use crate::rig::{MS, Rig};
 
 const SCANS: usize = 60;
@@ -37,6 +38,31 @@ proptest! {
                 prop_assert_eq!(flag, interpreter.flag(action), "b{} in scan {}\n{}", action, scan + 1, text);
             }
             prop_assert_eq!(rig.int("P.log") as u32, interpreter.log, "actions in scan {}\n{}", scan + 1, text);
+        }
+    }
+
+    /// A drawn chart does what the same chart in text does.
+    #[test]
+    fn drawn_charts_are_the_same_as_charts_in_text(
+        part in arbitrary_part(),
+        numbers in prop::collection::vec(any::<u32>(), 61),
+        inputs in prop::collection::vec(any::<[bool; INPUTS]>(), SCANS),
+    ) {
+        let chart = Chart::new(&part, &numbers);
+        let (mut text, mut drawn) = (Rig::new(&chart.text()), rig(&chart.drawn()));
+        for (scan, inputs) in inputs.into_iter().enumerate() {
+            for (number, value) in inputs.into_iter().enumerate() {
+                text.set(&format!("P.c{number}"), i64::from(value));
+                drawn.set(&format!("P.c{number}"), i64::from(value));
+            }
+            text.scan().expect("no fault");
+            drawn.scan().expect("no fault");
+            let state = |rig: &Rig| {
+                let steps = (0..chart.steps).map(|step| (rig.bool(&format!("P.s{step}.X")), rig.int(&format!("P.s{step}.T"))));
+                let flags = (0..BOOLEAN).map(|action| rig.bool(&format!("P.b{action}")));
+                (steps.collect::<Vec<_>>(), flags.collect::<Vec<_>>(), rig.int("P.log"))
+            };
+            prop_assert_eq!(state(&text), state(&drawn), "scan {}\n{}\n{}", scan + 1, chart.text(), chart.drawn());
         }
     }
 }

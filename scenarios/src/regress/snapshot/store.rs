@@ -82,7 +82,11 @@ impl Place {
     }
 }
 
-fn read(path: &Path) -> Result<Option<Snapshot>, RunError> {
+/// The snapshot in a file, if it is there.
+///
+/// # Errors
+/// It cannot be read, or is none.
+pub fn read(path: &Path) -> Result<Option<Snapshot>, RunError> {
     let bytes = match std::fs::read(path) {
         Ok(bytes) => bytes,
         Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Ok(None),

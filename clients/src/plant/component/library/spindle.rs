@@ -174,6 +174,24 @@ mod tests {
     }
 
     #[test]
+    fn it_runs_out_by_its_closed_form_and_halving_the_step_halves_the_error() {
+        // without a drive J dω/dt = -d ω: ω = ω0 exp(-d t/J)
+        let error = |dt_s: f64| {
+            let p = Parameters { viscous_nm_s: 0.01, ..Parameters::default() };
+            let mut rig = Rig::new(Spindle::new(p));
+            let before = rig.run(RUN, 0.01, 200);
+            assert!((before.speed_1_min - 6000.0).abs() < 1e-9, "{before:?}");
+            let out = rig.failing(Failure::DriveFault).run(RUN, dt_s, (1.0 / dt_s).round() as u32);
+            (out.speed_1_min - 6000.0 * libm::exp(-1.0)).abs()
+        };
+        let errors = [1e-3, 5e-4, 2.5e-4].map(error);
+        // half of d dt/J in a time constant
+        assert!(errors[0] < 0.0006 * 6000.0 * libm::exp(-1.0), "{errors:?}");
+        // first order: the ratio tends to 2
+        assert!(errors.windows(2).all(|pair| (pair[0] / pair[1] - 2.0).abs() < 0.05), "{errors:?}");
+    }
+
+    #[test]
     fn a_cut_is_made_up_for_until_the_torque_is_spent() {
         let mut rig = rig();
         rig.run(RUN, 0.01, 50);

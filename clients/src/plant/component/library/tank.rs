@@ -197,6 +197,21 @@ mod tests {
     }
 
     #[test]
+    fn halving_the_step_quarters_the_error() {
+        // A tank that is empty in 2.9 s, half-way: √h = 1 - μ a/A √(g/2) t
+        let exact = 1.0 - 0.62 * 0.25 * (0.5 * GRAVITY_M_S2).sqrt() * 1.5;
+        let error = |dt_s: f64| {
+            let p = Parameters { initial_m: 1.0, area_m2: 0.04, valve_m2: 0.01, ..at_once() };
+            let level_m = rig(p).run(Inputs { valve: 1.0, ..REST }, dt_s, (1.5 / dt_s).round() as u32).level_m;
+            (level_m - exact * exact).abs()
+        };
+        let errors = [0.01, 0.005, 0.0025].map(error);
+        assert!(errors[0] < 1e-5, "{errors:?}");
+        // second order: the ratio tends to 4
+        assert!(errors.windows(2).all(|pair| (pair[0] / pair[1] - 4.0).abs() < 0.1), "{errors:?}");
+    }
+
+    #[test]
     fn volume_is_kept_in_balance() {
         let mut rig = rig(at_once());
         let (mut filled, mut drained) = (0.0, 0.0);

@@ -1,4 +1,4 @@
-//! What may be typed for tests: `test`, `review`, and the processes of `test`.
+//! `onescan test` with its processes, and `onescan review`.
 
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
@@ -7,12 +7,14 @@ use clap::Args as ClapArgs;
 use onescan_plc_shim::Dialect;
 use onescan_server::time::{TimeSpan, VirtualTime};
 
-use super::args::{CoverageArg, FormatArg};
+use super::run::CoverageArg;
+use super::value::FormatArg;
 use crate::regress::worker::WorkerConfig;
-use crate::regress::{Policy, TestConfig};
+use crate::regress::{Policy, Selection, TestConfig};
 use crate::review::{Choice, ReviewConfig};
 use crate::run::Format;
 use crate::run::coverage::CoverageRequest;
+use crate::run::error::{ExitCode, RunError};
 
 /// Options of `test`.
 #[derive(Debug, ClapArgs)]
@@ -24,10 +26,10 @@ pub struct TestArgs {
     /// Only tests whose name, as in `scenarios/shear/default`, has this text in it; may be given several times
     #[arg(short, long = "filter", value_name = "TEXT")]
     pub filters: Vec<String>,
-    /// Only cases with this tag; may be given several times
+    /// Only tests with this tag; may be given several times
     #[arg(long = "tag", value_name = "TAG")]
     pub tags: Vec<String>,
-    /// No cases with this tag; may be given several times
+    /// No tests with this tag; may be given several times
     #[arg(long = "skip-tag", value_name = "TAG")]
     pub skipped_tags: Vec<String>,
     /// How many tests at a time, each in a process of its own [default: as many as there are processors]
@@ -69,15 +71,12 @@ pub struct TestArgs {
 }
 
 impl TestArgs {
-    /// The same as a plain configuration.
-    pub fn config(self) -> TestConfig {
+    fn config(self) -> TestConfig {
         let one = NonZeroUsize::MIN;
         let format: Format = self.format.into();
         TestConfig {
             paths: self.paths,
-            filters: self.filters,
-            tags: self.tags,
-            skipped_tags: self.skipped_tags,
+            selection: Selection { filters: self.filters, tags: self.tags, skipped_tags: self.skipped_tags },
             jobs: self.jobs.unwrap_or_else(|| std::thread::available_parallelism().unwrap_or(one)),
             policy: match (self.bless, self.check) {
                 (true, _) => Policy::Bless,
@@ -119,8 +118,7 @@ pub struct ReviewArgs {
 }
 
 impl ReviewArgs {
-    /// The same as a plain configuration.
-    pub fn config(self) -> ReviewConfig {
+    fn config(self) -> ReviewConfig {
         let choice = match (self.accept_all, self.reject_all, self.list) {
             (true, ..) => Choice::AcceptAll,
             (_, true, _) => Choice::RejectAll,
@@ -152,6 +150,12 @@ pub struct WorkerArgs {
     /// Their dialect
     #[arg(long)]
     pub dialect: Option<Dialect>,
+    /// With one of these tags
+    #[arg(long = "tag")]
+    pub tags: Vec<String>,
+    /// With none of these
+    #[arg(long = "skip-tag")]
+    pub skipped_tags: Vec<String>,
     /// Note what is executed
     #[arg(long)]
     pub cover: bool,
@@ -161,9 +165,34 @@ pub struct WorkerArgs {
 }
 
 impl WorkerArgs {
-    /// The same as a plain configuration.
-    pub fn config(self) -> WorkerConfig {
-        let Self { scenario, case, sources, scan, until, dialect, cover, draw } = self;
-        WorkerConfig { scenario, case, sources, scan, until, dialect, cover, draw }
+    fn config(self) -> WorkerConfig {
+        let Self { scenario, case, sources, scan, until, dialect, tags, skipped_tags, cover, draw } = self;
+        let selection = Selection { tags, skipped_tags, ..Selection::default() };
+        WorkerConfig { scenario, case, sources, scan, until, dialect, selection, cover, draw }
     }
+}
+
+/// Runs tests.
+///
+/// # Errors
+/// See [`RunError`].
+pub fn test(args: TestArgs) -> Result<ExitCode, RunError> {
+    crate::regress::test(&args.config(), &mut std::io::stdout().lock())
+}
+
+/// Decides on snapshots.
+///
+/// # Errors
+/// See [`RunError`].
+pub fn review(args: ReviewArgs) -> Result<ExitCode, RunError> {
+    crate::review::review(&args.config(), &mut std::io::stdout().lock())
+}
+
+/// Runs one test, as a process of [`test`].
+///
+/// # Errors
+/// See [`RunError`].
+pub fn work(args: WorkerArgs) -> Result<ExitCode, RunError> {
+    crate::regress::worker::work(&args.config(), &mut std::io::stdout().lock())?;
+    Ok(ExitCode::Ok)
 }

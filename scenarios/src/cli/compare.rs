@@ -1,0 +1,54 @@
+//! `onescan compare`.
+
+use std::path::PathBuf;
+
+use clap::Args as ClapArgs;
+use onescan_server::signal::SignalName;
+use onescan_server::time::VirtualTime;
+
+use super::value::{FormatArg, plane};
+use crate::run::compare::CompareConfig;
+use crate::run::error::{ExitCode, RunError};
+use crate::run::interrupt::Interrupt;
+use crate::run::{Format, RunConfig};
+
+/// Options of `compare`.
+#[derive(Debug, ClapArgs)]
+pub struct CompareArgs {
+    /// The scenario: a folder with a `scenario.toml`
+    pub scenario: PathBuf,
+    /// Virtual time at which a run is complete [default: the scenario's `until`]
+    #[arg(long, value_name = "TIME")]
+    pub until: Option<VirtualTime>,
+    /// Runs of each way
+    #[arg(long, default_value_t = 3, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1_000))]
+    pub runs: u32,
+    /// Draw the signals of the scenario's plot, a run of each way over each other, into this SVG file
+    #[arg(long, value_name = "FILE")]
+    pub plot: Option<PathBuf>,
+    /// Draw two signals against each other, across and up, as `x.position,z.position`
+    #[arg(long, value_name = "X,Y", requires = "plot", value_parser = plane)]
+    pub xy: Option<[SignalName; 2]>,
+    /// For people, or one JSON object a way for machines
+    #[arg(long, value_enum, default_value_t)]
+    pub format: FormatArg,
+}
+
+/// Sets lockstep beside the other ways.
+///
+/// # Errors
+/// See [`RunError`].
+pub fn compare(args: CompareArgs) -> Result<ExitCode, RunError> {
+    let interrupt = Interrupt::new();
+    interrupt.on_signals();
+    let run = RunConfig {
+        until: args.until,
+        runs: args.runs,
+        plane: args.xy,
+        format: Format::Human,
+        ..RunConfig::headless(args.scenario, None)
+    };
+    let config = CompareConfig { run, plot: args.plot, format: args.format.into() };
+    crate::run::compare::compare(&config, &interrupt, &mut std::io::stdout().lock())?;
+    Ok(ExitCode::Ok)
+}

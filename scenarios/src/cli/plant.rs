@@ -1,0 +1,113 @@
+//! With scenes and scenarios: `onescan components`, `describe`, `wiring` and `new`.
+
+use std::path::PathBuf;
+
+use clap::{Args as ClapArgs, ValueEnum};
+
+use super::value::FormatArg;
+use crate::new::{self, Template};
+use crate::plant::{components, describe};
+use crate::run::error::{ExitCode, RunError};
+use crate::wiring::{self, WiringConfig};
+
+/// Options of `components`.
+#[derive(Debug, ClapArgs)]
+pub struct ComponentsArgs {
+    /// A kind, for its equations, parameters, signals and failure modes
+    pub kind: Option<String>,
+    /// For people, or JSON for machines
+    #[arg(long, value_enum, default_value_t)]
+    pub format: FormatArg,
+}
+
+/// Tells of the library of components.
+///
+/// # Errors
+/// See [`RunError`].
+pub fn components(args: &ComponentsArgs) -> Result<ExitCode, RunError> {
+    components::write(args.kind.as_deref(), args.format.into(), &mut std::io::stdout().lock())?;
+    Ok(ExitCode::Ok)
+}
+
+/// Options of `describe`.
+#[derive(Debug, ClapArgs)]
+pub struct DescribeArgs {
+    /// The scene, a `plant.toml`; or a scenario, for the scenes of its plants
+    pub scene: PathBuf,
+    /// For people, or JSON for machines
+    #[arg(long, value_enum, default_value_t)]
+    pub format: FormatArg,
+}
+
+/// Tells what a scene is made of.
+///
+/// # Errors
+/// See [`RunError`].
+pub fn describe(args: &DescribeArgs) -> Result<ExitCode, RunError> {
+    describe::write(&args.scene, args.format.into(), &mut std::io::stdout().lock())?;
+    Ok(ExitCode::Ok)
+}
+
+/// Options of `wiring`.
+#[derive(Debug, ClapArgs)]
+pub struct WiringArgs {
+    /// The scenario: a folder with a `scenario.toml`
+    pub scenario: PathBuf,
+    /// For people, or JSON for machines
+    #[arg(long, value_enum, default_value_t)]
+    pub format: FormatArg,
+    /// Draw it into this SVG file, too
+    #[arg(long, value_name = "FILE")]
+    pub svg: Option<PathBuf>,
+}
+
+/// Tells how signals connect clients.
+///
+/// # Errors
+/// See [`RunError`].
+pub fn wiring(args: WiringArgs) -> Result<ExitCode, RunError> {
+    let config = WiringConfig { scenario: args.scenario, format: args.format.into(), svg: args.svg };
+    let sound = wiring::write(&config, &mut std::io::stdout().lock())?;
+    Ok(if sound { ExitCode::Ok } else { ExitCode::WrongInput })
+}
+
+/// Options of `new`.
+#[derive(Debug, ClapArgs)]
+pub struct NewArgs {
+    /// The folder to make; its name is the scenario's
+    pub folder: PathBuf,
+    /// What to begin with
+    #[arg(long, value_enum, default_value_t)]
+    pub template: TemplateArg,
+}
+
+/// See [`Template`].
+#[derive(Clone, Copy, Debug, Default, ValueEnum)]
+pub enum TemplateArg {
+    /// A cylinder pushes boxes off a belt: bodies, a conveyor, a sensor, pneumatics
+    #[default]
+    Cell,
+    /// A tank with a pump, a valve and a level: process engineering, no bodies
+    Tank,
+    /// A plant of your own in Python, over TCP
+    Python,
+}
+
+impl From<TemplateArg> for Template {
+    fn from(arg: TemplateArg) -> Self {
+        match arg {
+            TemplateArg::Cell => Self::Cell,
+            TemplateArg::Tank => Self::Tank,
+            TemplateArg::Python => Self::Python,
+        }
+    }
+}
+
+/// Writes a scenario to begin with.
+///
+/// # Errors
+/// See [`RunError`].
+pub fn new(args: &NewArgs) -> Result<ExitCode, RunError> {
+    new::write(&args.folder, args.template.into(), &mut std::io::stdout().lock())?;
+    Ok(ExitCode::Ok)
+}

@@ -1,0 +1,105 @@
+//! With PLCs: `onescan plc` and `browse`.
+
+use std::net::{Ipv4Addr, SocketAddr};
+use std::path::PathBuf;
+
+use clap::Args as ClapArgs;
+use onescan_server::signal::ClientName;
+
+use super::opcua::AccessArgs;
+use super::run::ModeArg;
+use super::value::{FormatArg, client_name};
+use crate::browse::BrowseConfig;
+use crate::plc::{self, Cycle, PlcConfig};
+use crate::run::error::{ExitCode, RunError};
+use crate::run::interrupt::Interrupt;
+
+/// Options of `plc`.
+#[derive(Debug, ClapArgs)]
+#[command(after_help = PLC_COMMANDS)]
+pub struct PlcArgs {
+    /// The scenario: a folder with a `scenario.toml`
+    pub scenario: PathBuf,
+    /// Which of its soft PLCs [default: the only one]
+    #[arg(long, value_name = "CLIENT", value_parser = client_name)]
+    pub client: Option<ClientName>,
+    /// `lockstep`: its programs run when they are granted; `freewheel`: by its own clock and tasks, as if there
+    /// were no shim
+    #[arg(long, value_enum, default_value_t)]
+    pub mode: ModeArg,
+    /// How often it scans, wall clock: a time, or `max` for one scan behind the other
+    #[arg(long, default_value = "1ms", value_name = "TIME|max")]
+    pub cycle: Cycle,
+    /// Where data blocks are served over raw TCP [default, if no protocol is named: each at a free port of
+    /// this machine]
+    #[arg(long, value_name = "ADDRESS:PORT")]
+    pub tcp: Option<SocketAddr>,
+    /// Where registers are served over Modbus TCP
+    #[arg(long, value_name = "ADDRESS:PORT")]
+    pub modbus: Option<SocketAddr>,
+    /// Where symbols are served over ADS, as TwinCAT does
+    #[arg(long, value_name = "ADDRESS:PORT")]
+    pub ads: Option<SocketAddr>,
+    /// Where variables are served over OPC UA
+    #[arg(long, value_name = "ADDRESS:PORT")]
+    pub opcua: Option<SocketAddr>,
+    /// Who is let in over OPC UA
+    #[command(flatten)]
+    pub access: AccessArgs,
+}
+
+const PLC_COMMANDS: &str = "Commands on standard input:
+  run, stop    the switch: RUN or STOP
+  cold, warm   start it anew: all variables with their initial values, or RETAIN kept
+  status       how it is
+  quit         end it";
+
+/// Runs a soft PLC.
+///
+/// # Errors
+/// See [`RunError`].
+pub fn run_plc(args: PlcArgs) -> Result<ExitCode, RunError> {
+    let interrupt = Interrupt::new();
+    interrupt.on_signals();
+    let named = [args.tcp, args.modbus, args.ads, args.opcua];
+    let somewhere = named.iter().all(Option::is_none).then_some(SocketAddr::from((Ipv4Addr::LOCALHOST, 0)));
+    let [tcp, modbus, ads, opcua] = named.map(|address| address.or(somewhere));
+    let access = args.access.access()?;
+    let (scenario, client, mode, cycle) = (args.scenario, args.client, args.mode.into(), args.cycle);
+    let config = PlcConfig { scenario, client, mode, cycle, tcp, modbus, ads, opcua, access };
+    plc::run(&config, &interrupt, &mut std::io::stdout().lock())
+}
+
+/// Options of `browse`.
+#[derive(Debug, ClapArgs)]
+pub struct BrowseArgs {
+    /// The PLC, as in `opc.tcp://192.168.0.1:4840`
+    pub url: String,
+    /// Map the signals of this scenario, and use what it says of the link
+    #[arg(long, value_name = "SCENARIO")]
+    pub scenario: Option<PathBuf>,
+    /// The client of the scenario that speaks for the PLC
+    #[arg(long, value_name = "CLIENT", value_parser = client_name, default_value = "plc")]
+    pub client: ClientName,
+    /// Write the mapping into this file, as a part of a `scenario.toml`
+    #[arg(long, value_name = "FILE")]
+    pub map: Option<PathBuf>,
+    /// For people, or one JSON object a variable for machines
+    #[arg(long, value_enum, default_value_t)]
+    pub format: FormatArg,
+}
+
+/// Lists what a PLC has.
+///
+/// # Errors
+/// See [`RunError`].
+pub fn browse(args: BrowseArgs) -> Result<ExitCode, RunError> {
+    let config = BrowseConfig {
+        url: args.url,
+        scenario: args.scenario.map(|path| (path, args.client)),
+        map: args.map,
+        format: args.format.into(),
+    };
+    crate::browse::run(&config, &mut std::io::stdout().lock())?;
+    Ok(ExitCode::Ok)
+}

@@ -1,0 +1,128 @@
+//! What is done with recordings: `onescan export`, `diff`, and `bisect`, which makes its own.
+
+use std::path::PathBuf;
+
+use clap::{Args as ClapArgs, ValueEnum};
+use onescan_server::recording::ExportFormat;
+use onescan_server::signal::pattern::SignalPattern;
+use onescan_server::time::VirtualTime;
+
+use super::value::FormatArg;
+use crate::bisect::BisectConfig;
+use crate::diff::DiffConfig;
+use crate::export::ExportConfig;
+use crate::run::error::{ExitCode, RunError};
+use crate::run::interrupt::Interrupt;
+
+/// Options of `export`.
+#[derive(Debug, ClapArgs)]
+pub struct ExportArgs {
+    /// The recording: a folder with a `recording.json`, or with one such folder in it
+    pub recording: PathBuf,
+    /// The form [default: by the file's name]
+    #[arg(long, value_enum, value_name = "FORMAT")]
+    pub format: Option<ExportArg>,
+    /// The file to write
+    #[arg(short, long, value_name = "FILE")]
+    pub output: PathBuf,
+    /// Only these signals: a name, or a pattern with `*` and `?`; may be given several times
+    #[arg(long, value_name = "PATTERN")]
+    pub signals: Vec<SignalPattern>,
+    /// From this virtual time on, as in `2.5s`
+    #[arg(long, value_name = "TIME")]
+    pub from: Option<VirtualTime>,
+    /// Up to this virtual time
+    #[arg(long, value_name = "TIME")]
+    pub to: Option<VirtualTime>,
+}
+
+/// A form that a recording is written in.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum ExportArg {
+    /// For spreadsheets
+    Csv,
+    /// For analysis, as one file
+    Parquet,
+    /// For viewers of robots and their logs: Foxglove, `PlotJuggler`
+    Mcap,
+}
+
+/// Writes a recording in another form.
+///
+/// # Errors
+/// See [`RunError`].
+pub fn export(args: ExportArgs) -> Result<ExitCode, RunError> {
+    let extension = args.output.extension().map(|extension| extension.to_string_lossy().to_ascii_lowercase());
+    let format = match (args.format, extension.as_deref()) {
+        (Some(ExportArg::Csv), _) | (None, Some("csv")) => ExportFormat::Csv,
+        (Some(ExportArg::Parquet), _) | (None, Some("parquet")) => ExportFormat::Parquet,
+        (Some(ExportArg::Mcap), _) | (None, Some("mcap")) => ExportFormat::Mcap,
+        (None, _) => {
+            let message = format!("the name `{}` does not say in which form to write", args.output.display());
+            return Err(RunError::usage(message, Some("add `--format csv`, `parquet` or `mcap`".to_owned())));
+        }
+    };
+    let times = [args.from.unwrap_or(VirtualTime::ZERO), args.to.unwrap_or(VirtualTime::MAX)];
+    let ExportArgs { recording, output, signals, .. } = args;
+    crate::export::export(&ExportConfig { recording, format, output, signals, times })?;
+    Ok(ExitCode::Ok)
+}
+
+/// Options of `diff`.
+#[derive(Debug, ClapArgs)]
+pub struct DiffArgs {
+    /// A recording: a folder with a `recording.json`, or with one such folder in it; or a snapshot
+    pub a: PathBuf,
+    /// Another
+    pub b: PathBuf,
+    /// What was before this virtual time does not count; then signals are compared, not digests
+    #[arg(long, default_value = "0s", value_name = "TIME")]
+    pub since: VirtualTime,
+    /// Compare these signals only: a name, or a pattern with `*` and `?`; may be given several times
+    #[arg(long, value_name = "PATTERN")]
+    pub signals: Vec<SignalPattern>,
+    /// For people, or a JSON object for machines
+    #[arg(long, value_enum, default_value_t)]
+    pub format: FormatArg,
+}
+
+/// Compares two recordings.
+///
+/// # Errors
+/// See [`RunError`].
+pub fn diff(args: DiffArgs) -> Result<ExitCode, RunError> {
+    let DiffArgs { a, b, since, signals, format } = args;
+    let config = DiffConfig { recordings: [a, b], since, signals, format: format.into() };
+    crate::diff::diff(&config, &mut std::io::stdout().lock())
+}
+
+/// Options of `bisect`.
+#[derive(Debug, ClapArgs)]
+pub struct BisectArgs {
+    /// The scenario: a folder with a `scenario.toml`, in a working tree of git
+    pub scenario: PathBuf,
+    /// A commit whose runs are as they should be
+    #[arg(long, value_name = "COMMIT")]
+    pub good: String,
+    /// A later commit whose runs are not
+    #[arg(long, value_name = "COMMIT", default_value = "HEAD")]
+    pub bad: String,
+    /// Virtual time at which a run is complete [default: the scenario's `until`]
+    #[arg(long, value_name = "TIME")]
+    pub until: Option<VirtualTime>,
+    /// For people, or a JSON object for machines
+    #[arg(long, value_enum, default_value_t)]
+    pub format: FormatArg,
+}
+
+/// Finds the commit that first changed a run.
+///
+/// # Errors
+/// See [`RunError`].
+pub fn bisect(args: BisectArgs) -> Result<ExitCode, RunError> {
+    let interrupt = Interrupt::new();
+    interrupt.on_signals();
+    let BisectArgs { scenario, good, bad, until, format } = args;
+    let config = BisectConfig { scenario, good, bad, until, format: format.into() };
+    crate::bisect::bisect(&config, &interrupt, &mut std::io::stdout().lock(), &mut std::io::stderr().lock())
+}

@@ -1,0 +1,201 @@
+//! Two signals against each other: the paths of several runs in a plane.
+//!
+//! Signals of one unit have one scale, so that a circle is one. Samples that lie within 0.05 pixels
+//! of the line between their neighbours are left out.
+
+use super::agreement::Agreement;
+use super::caption;
+use super::figure::{draw_legend, draw_title, open};
+use super::layout::{Contents, Height, LABEL_GAP_PX, Layout};
+use super::lettering::{NAME_PX, TICK_PX, width_px};
+use super::palette::{AXIS, FAINT_INK, GRID, GROUND, stroke};
+use super::panel::draw_pieces;
+use super::range::{ValueRange, is_empty};
+use super::reduce::{PIXEL_CPX, Point};
+use super::svg::{Document, Pixels, draw_note};
+use super::ticks::{Numbers, Ticks};
+use super::trace::Area;
+use super::{Panel, Plot, Trajectory};
+
+/// How high the plane is.
+const HEIGHT_PX: (i64, i64) = (160, 620);
+/// About how many ticks each axis has.
+const TICKS: u32 = 8;
+/// How far a sample that is left out may lie from the line.
+const OFF_CPX: i64 = 5;
+/// Samples of one straight stretch at most.
+const STRETCH: usize = 64;
+
+/// Draws the paths of `along` and `up`; a run's samples of both belong together one by one.
+pub(super) fn draw(plot: &Plot, along: &Panel, up: &Panel) -> String {
+    let (x, y) = (ValueRange::of(along), ValueRange::of(up));
+    let run_labels = caption::run_labels(plot);
+    let ticks = |range| Ticks::within(range, TICKS, Numbers::Real);
+    let layout = |value_label_px, height_px| {
+        Layout::of(&Contents {
+            title: &plot.title,
+            run_labels: &run_labels,
+            value_label_px,
+            panels: &[Height::Plane(height_px)],
+        })
+    };
+    let labels_px = ticks(y).marks.iter().map(|mark| width_px(&mark.label, TICK_PX)).max().unwrap_or(0);
+    let room_px = layout(labels_px, 0).panels.first().map_or(1, |area| area.width_px);
+    let (x, y, height_px) = scaled(x, y, room_px, along.unit == up.unit);
+    let layout = layout(labels_px, height_px);
+    let Some(&area) = layout.panels.first() else { return String::new() };
+    let plane = Plane { area, x, y };
+
+    let mut document = Document::default();
+    open(&mut document, layout.height_px);
+    document.text("title", &[], if plot.title.is_empty() { "Paths" } else { &plot.title });
+    let (across, upwards) = (caption::heading(along, 0), caption::heading(up, 0));
+    document.text("desc", &[], &caption::of_plane(&upwards, &across, &run_labels));
+    document.empty("rect", &[("width", &super::layout::WIDTH_PX), ("height", &layout.height_px), ("fill", &GROUND)]);
+    draw_title(&mut document, &plot.title, &layout);
+    draw_legend(&mut document, &layout);
+    plane.draw_axes(&mut document, (&ticks(x), along), (&ticks(y), up));
+    if is_empty(along) || is_empty(up) {
+        draw_note(&mut document, area.left_px + area.width_px / 2, area.top_px + height_px / 2 + 4, "no samples");
+        return document.finish();
+    }
+    let agreements = [Agreement::of(along), Agreement::of(up)];
+    document.open("g", &[("fill", &"none"), ("stroke-linejoin", &"round")]);
+    for (run, (across, upwards)) in along.runs.iter().zip(&up.runs).enumerate() {
+        let equals = agreements.iter().map(|agreement| agreement.equals_after(run)).min().unwrap_or(0);
+        draw_pieces(&mut document, &plane.pieces(across, upwards), stroke(run, run_labels.len(), equals));
+    }
+    document.finish()
+}
+
+/// The ranges and the height that show both: one scale if `alike`, widening what is left over.
+fn scaled(x: ValueRange, y: ValueRange, width_px: i64, alike: bool) -> (ValueRange, ValueRange, i64) {
+    let (width, least, most) = (width_px as f64, HEIGHT_PX.0 as f64, HEIGHT_PX.1 as f64);
+    let (across, up) = (x.high / 2.0 - x.low / 2.0, y.high / 2.0 - y.low / 2.0);
+    let per_px = (across / width).max(up / most);
+    if !alike || !per_px.is_finite() || per_px <= 0.0 {
+        return (x, y, HEIGHT_PX.1 * 2 / 3);
+    }
+    let height = (up / per_px).clamp(least, most).round();
+    let around = |range: ValueRange, half: f64| {
+        let middle = range.low / 2.0 + range.high / 2.0;
+        ValueRange { low: (middle - half).max(f64::MIN), high: (middle + half).min(f64::MAX) }
+    };
+    (around(x, per_px * width), around(y, per_px * height), height as i64)
+}
+
+/// The area of the plane and what its edges mean.
+struct Plane {
+    area: Area,
+    x: ValueRange,
+    y: ValueRange,
+}
+
+impl Plane {
+    /// The path of a run, one list of points for each piece between gaps.
+    fn pieces(&self, across: &Trajectory, upwards: &Trajectory) -> Vec<Vec<Point>> {
+        let mut pieces: Vec<Vec<Point>> = vec![Vec::new()];
+        for (x, y) in across.values.iter().zip(&upwards.values) {
+            if !(x.is_finite() && y.is_finite()) {
+                pieces.push(Vec::new());
+                continue;
+            }
+            let x_cpx = self.area.x_cpx(self.x.fraction(*x));
+            let point = Point { x_cpx, y_cpx: self.area.y_cpx(self.y.fraction(*y)) };
+            if let Some(piece) = pieces.last_mut().filter(|piece| piece.last() != Some(&point)) {
+                piece.push(point);
+            }
+        }
+        pieces.iter().filter(|piece| !piece.is_empty()).map(|piece| straightened(piece)).collect()
+    }
+
+    fn draw_axes(&self, document: &mut Document, x: (&Ticks, &Panel), y: (&Ticks, &Panel)) {
+        let area = self.area;
+        let at = |value| Pixels(area.x_cpx(self.x.fraction(value)));
+        let height = |value| area.y_cpx(self.y.fraction(value));
+        let across = x.0.marks.iter().map(|mark| format!("M{} {}v{}", at(mark.value), area.top_px, area.height_px));
+        let up =
+            y.0.marks.iter().map(|mark| format!("M{} {}h{}", area.left_px, Pixels(height(mark.value)), area.width_px));
+        let grid: String = across.chain(up).collect();
+        document.empty("path", &[("d", &grid), ("stroke", &GRID), ("fill", &"none")]);
+        let axes = format!("M{} {}v{}h{}", area.left_px, area.top_px, area.height_px, area.width_px);
+        document.empty("path", &[("d", &axes), ("stroke", &AXIS), ("fill", &"none")]);
+        document.open("g", &[("font-size", &TICK_PX), ("fill", &FAINT_INK), ("text-anchor", &"end")]);
+        for mark in &y.0.marks {
+            let baseline = Pixels(height(mark.value) + 4 * PIXEL_CPX);
+            document.text("text", &[("x", &(area.left_px - LABEL_GAP_PX)), ("y", &baseline)], &mark.label);
+        }
+        document.close();
+        document.open("g", &[("font-size", &TICK_PX), ("fill", &FAINT_INK), ("text-anchor", &"middle")]);
+        for mark in &x.0.marks {
+            document.text("text", &[("x", &at(mark.value)), ("y", &(area.bottom_px() + 16))], &mark.label);
+        }
+        document.close();
+        let (middle_px, baseline_px) = (area.left_px + area.width_px / 2, area.bottom_px() + 36);
+        let named = |(ticks, panel): (&Ticks, &Panel)| caption::heading(panel, ticks.exponent);
+        let upwards =
+            [("x", &area.left_px as &dyn std::fmt::Display), ("y", &(area.top_px - 7)), ("font-size", &NAME_PX)];
+        document.text("text", &upwards, &named(y));
+        document.text(
+            "text",
+            &[("x", &middle_px), ("y", &baseline_px), ("font-size", &NAME_PX), ("text-anchor", &"middle")],
+            &named(x),
+        );
+    }
+}
+
+/// A path without the points that lie on the lines between those that are kept.
+fn straightened(piece: &[Point]) -> Vec<Point> {
+    let mut kept: Vec<Point> = piece.first().copied().into_iter().collect();
+    let mut from = 0;
+    for to in 1..piece.len() {
+        let ends = piece.get(to + 1).is_none_or(|next| {
+            to + 1 - from > STRETCH || !piece[from + 1..=to].iter().all(|point| is_near(*point, piece[from], *next))
+        });
+        if ends {
+            kept.push(piece[to]);
+            from = to;
+        }
+    }
+    kept
+}
+
+/// True if a point lies between two others, and next to the line between them.
+fn is_near(point: Point, from: Point, to: Point) -> bool {
+    let (dx, dy) = (to.x_cpx - from.x_cpx, to.y_cpx - from.y_cpx);
+    let (px, py) = (point.x_cpx - from.x_cpx, point.y_cpx - from.y_cpx);
+    let (length, along, across) = (dx * dx + dy * dy, px * dx + py * dy, (px * dy - py * dx).abs());
+    // Beside the line by |across| / sqrt(length).
+    (0..=length).contains(&along)
+        && i128::from(across) * i128::from(across) <= i128::from(OFF_CPX * OFF_CPX) * i128::from(length)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn corners_stay_and_straight_lines_have_two_points() {
+        let at = |x_cpx, y_cpx| Point { x_cpx, y_cpx };
+        let mut path: Vec<Point> = (0..20).map(|step| at(step * 100, step * 50)).collect();
+        path.extend((0..20).map(|step| at(1900, 950 - step * 30)));
+        path.push(at(0, 0));
+        assert_eq!(straightened(&path), [at(0, 0), at(1900, 950), at(1900, 380), at(0, 0)]);
+        let back = [at(0, 0), at(500, 0), at(100, 0)];
+        assert_eq!(straightened(&back), back, "a path that turns back is not shortened");
+        assert_eq!(straightened(&[at(1, 1)]), [at(1, 1)]);
+        assert_eq!(straightened(&[]), []);
+    }
+
+    #[test]
+    fn one_unit_is_one_scale() {
+        let range = |low, high| ValueRange { low, high };
+        let (x, y, height_px) = scaled(range(0.0, 8.0), range(0.0, 2.0), 800, true);
+        assert_eq!((x, y, height_px), (range(0.0, 8.0), range(0.0, 2.0), 200));
+        let (x, y, height_px) = scaled(range(0.0, 1.0), range(0.0, 2.0), 800, true);
+        assert_eq!(height_px, HEIGHT_PX.1);
+        assert!(((x.high - x.low) / 800.0 - (y.high - y.low) / HEIGHT_PX.1 as f64).abs() < 1e-12);
+        assert_eq!(scaled(range(0.0, 1.0), range(0.0, 9.0), 800, false).1, range(0.0, 9.0));
+        assert!(scaled(range(f64::MIN, f64::MAX), range(0.0, 1.0), 800, true).2 >= HEIGHT_PX.0);
+    }
+}

@@ -1,0 +1,294 @@
+//! The session: plan, members, cycle and image as one sans-IO machine.
+//!
+//! Whoever drives it calls [`Session::advance`] until it waits, does for the awaited clients what
+//! the state entered asks for, and says so with one of
+//!
+//! | state | call |
+//! |---|---|
+//! | start | [`Session::join`] |
+//! | setup | [`Session::initialise`] |
+//! | ready, write | [`Session::ready`] |
+//! | read | [`Session::read`] |
+//! | run | [`Session::submit`] |
+//! | any | [`Session::fail`], [`Session::control`] |
+//!
+//! There is no other way to change it, so what holds for every order of these calls holds for every
+//! transport. `tests/proofs` explores those orders.
+//!
+//! | module | subject |
+//! |---|---|
+//! | `turn` | what clients say |
+//! | `operate` | what operators ask for |
+//! | `view` | what can be seen |
+//! | `saved` | its part of a checkpoint |
+
+mod operate;
+mod saved;
+mod turn;
+mod view;
+
+use std::sync::Arc;
+
+pub use saved::SessionState;
+use serde::{Deserialize, Serialize};
+pub use turn::Turn;
+
+use crate::client::{ClientId, JoinRequest};
+use crate::cycle::Cycle;
+use crate::end::SessionEnd;
+use crate::image::{Image, ImageLayout};
+use crate::join::{JoinRefusal, Membership, admit};
+use crate::plan::SessionPlan;
+use crate::signal::{ClientName, SignalName, nearest};
+use crate::state::ServerState;
+use crate::time::VirtualTime;
+
+/// What somebody who watches over a session may ask for. All of it acts at a step boundary.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Control {
+    /// End the session for all.
+    Stop,
+    /// Hold virtual time.
+    Pause,
+    /// Let virtual time run again.
+    Resume,
+    /// Run exactly one step, then hold.
+    Step,
+    /// Begin anew at `t_v = 0`; held if it was held.
+    Reset,
+}
+
+/// How the session goes on at the next boundary.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+enum Mode {
+    Running,
+    Held,
+    OneStep,
+}
+
+/// What [`Session::advance`] found.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Progress {
+    /// A state was entered; its awaited clients have something to do.
+    Entered(ServerState),
+    /// A client has not yet done what the state asks for.
+    Waiting,
+    /// At a step boundary, by request.
+    Held,
+    /// Over; see [`Session::end`].
+    Ended,
+}
+
+/// A session in any state.
+#[derive(Clone, Debug)]
+pub struct Session {
+    plan: Arc<SessionPlan>,
+    layout: Arc<ImageLayout>,
+    members: Vec<Option<Arc<Membership>>>,
+    writers: Arc<Vec<Option<ClientName>>>,
+    cycle: Cycle,
+    image: Image,
+    mode: Mode,
+    start_logic: bool,
+    stop: bool,
+    reset: bool,
+    until: Option<VirtualTime>,
+    end: Option<SessionEnd>,
+}
+
+impl Session {
+    /// A session in `start` with nobody in.
+    pub fn new(plan: SessionPlan) -> Self {
+        let layout = ImageLayout::new(plan.signals());
+        Self {
+            members: vec![None; plan.clients().len()],
+            writers: Arc::new(vec![None; plan.signals().len()]),
+            cycle: Cycle::new(plan.step(), plan.coupling().clone(), plan.clients().len()),
+            image: Image::new(&layout),
+            layout: Arc::new(layout),
+            plan: Arc::new(plan),
+            mode: Mode::Running,
+            start_logic: true,
+            stop: false,
+            reset: false,
+            until: None,
+            end: None,
+        }
+    }
+
+    /// Ends the session as completed at the first boundary at or after `until`.
+    pub fn set_until(&mut self, until: Option<VirtualTime>) {
+        self.until = until;
+    }
+
+    /// The condition for a start beside those of the clients: `start = AND(start logic, client_i.start)`
+    /// (seed 004 sec. IV). True unless said otherwise; it means nothing once the session has begun.
+    pub fn set_start_logic(&mut self, start_logic: bool) {
+        self.start_logic = start_logic;
+    }
+
+    /// Lets a client in. Its start signal is part of `start = AND(start logic, client_i.start)`.
+    ///
+    /// # Errors
+    /// See [`JoinRefusal`]; the session is as before then.
+    pub fn join(&mut self, request: &JoinRequest) -> Result<ClientId, JoinRefusal> {
+        let name = &request.name;
+        let id = self.plan.client_id(name).ok_or_else(|| JoinRefusal::NotExpected {
+            name: name.clone(),
+            nearest: nearest(name.as_str(), self.plan.clients().iter().map(ClientName::as_str)).map(str::to_owned),
+        })?;
+        if self.members[id.index()].is_some() {
+            return Err(JoinRefusal::AlreadyJoined(name.clone()));
+        }
+        if self.cycle.server() != ServerState::Start || self.end.is_some() {
+            return Err(JoinRefusal::TooLate(name.clone()));
+        }
+        let membership = admit(request, &self.plan, &self.layout, &self.writers)?;
+        let writers = Arc::make_mut(&mut self.writers);
+        for signal in &membership.writes {
+            writers[signal.index()] = Some(name.clone());
+        }
+        self.members[id.index()] = Some(Arc::new(membership));
+        self.cycle.signal_ready(id);
+        Ok(id)
+    }
+
+    /// Clients that the session still waits for in `start`.
+    pub fn missing_clients(&self) -> impl Iterator<Item = &ClientName> {
+        self.plan.clients().iter().zip(&self.members).filter(|(_, member)| member.is_none()).map(|(name, _)| name)
+    }
+
+    /// Signals that nobody who joined writes; a session with such a signal is no session.
+    pub fn unwritten_signals(&self) -> impl Iterator<Item = &SignalName> {
+        self.plan.signals().iter().zip(self.writers.iter()).filter(|(_, writer)| writer.is_none()).map(|(s, _)| &s.name)
+    }
+
+    /// Goes on by one state if it can.
+    pub fn advance(&mut self) -> Progress {
+        if self.end.is_some() {
+            return Progress::Ended;
+        }
+        if self.cycle.server() == ServerState::Start {
+            if self.stop {
+                return self.finish(SessionEnd::Stopped { t_v: VirtualTime::ZERO });
+            }
+            if !self.start_logic || self.unwritten_signals().next().is_some() {
+                return Progress::Waiting;
+            }
+        }
+        if self.cycle.is_at_boundary()
+            && let Some(progress) = self.at_boundary()
+        {
+            return progress;
+        }
+        self.next_state()
+    }
+
+    /// One transition of the cycle and its effect on the image.
+    fn next_state(&mut self) -> Progress {
+        if !self.cycle.is_synchronised() {
+            return Progress::Waiting;
+        }
+        let left = self.cycle.server();
+        match self.cycle.advance() {
+            None => self.finish(SessionEnd::Completed { t_v: self.cycle.t_v() }),
+            Some(entered) => {
+                if left == ServerState::PreWrite {
+                    self.image.commit();
+                }
+                Progress::Entered(entered)
+            }
+        }
+    }
+
+    /// Acts on what was asked for since the last boundary. `None` lets the cycle go on.
+    fn at_boundary(&mut self) -> Option<Progress> {
+        let t_v = self.cycle.t_v();
+        if self.stop {
+            return Some(self.finish(SessionEnd::Stopped { t_v }));
+        }
+        if self.reset {
+            self.reset = false;
+            self.cycle.restart();
+            self.image.clear();
+            return Some(Progress::Entered(ServerState::InitialWrite));
+        }
+        if self.until.is_some_and(|until| t_v >= until) {
+            return Some(self.finish(SessionEnd::Completed { t_v }));
+        }
+        match self.mode {
+            Mode::Running => None,
+            Mode::Held => Some(Progress::Held),
+            Mode::OneStep => {
+                self.mode = Mode::Held;
+                None
+            }
+        }
+    }
+
+    fn finish(&mut self, end: SessionEnd) -> Progress {
+        self.end = Some(end);
+        Progress::Ended
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::client::Wake;
+    use crate::end::Violation;
+    use crate::plan::Coupling;
+    use crate::signal::{ElementaryType, Port, SignalDecl};
+    use crate::time::{StepCount, TimeSpan};
+
+    fn formed() -> Session {
+        let name = ClientName::new("plc").unwrap();
+        let signal = SignalName::new("x").unwrap();
+        let ty = ElementaryType::Bool;
+        let step = TimeSpan::from_millis(10).unwrap();
+        let decl = SignalDecl { name: signal.clone(), ty, writer: Some(name.clone()), unit: None };
+        let mut session =
+            Session::new(SessionPlan::new(step, &Coupling::Parallel, vec![decl], vec![name.clone()]).unwrap());
+        let writes = vec![Port { name: signal, ty }];
+        session.join(&JoinRequest { name, period: step, reads: vec![], writes }).unwrap();
+        session
+    }
+
+    #[test]
+    fn a_session_starts_when_all_clients_and_the_start_logic_say_so() {
+        let mut session = formed();
+        session.set_start_logic(false);
+        assert_eq!(session.advance(), Progress::Waiting);
+        session.set_start_logic(true);
+        assert_eq!(session.advance(), Progress::Entered(ServerState::InitialWrite));
+    }
+
+    #[test]
+    fn an_output_that_is_no_value_ends_the_session() {
+        let mut session = formed();
+        session.advance();
+        let violation = session.initialise(ClientId(0), &[2]).unwrap_err();
+        assert_eq!(violation.to_string(), "its output `x` is no value: a BOOL must be 0 or 1, not 2");
+        assert_eq!(session.advance(), Progress::Ended);
+        assert_eq!(session.image(), [0], "nothing of it was committed");
+        assert_eq!(session.initialise(ClientId(0), &[1]), Err(Violation::SessionOver));
+    }
+
+    #[test]
+    fn a_wake_must_be_later_and_on_the_grid() {
+        for wake in [0, 10_000_000, 15_000_000] {
+            let mut session = formed();
+            session.advance();
+            session.initialise(ClientId(0), &[0]).unwrap();
+            session.advance();
+            session.ready(ClientId(0)).unwrap();
+            session.advance();
+            session.read(ClientId(0), &mut []).unwrap();
+            session.advance();
+            let wake = VirtualTime::from_nanos(wake);
+            let turn = Turn { sequence: StepCount(1), t_v: session.t_v(), wake: Wake::At(wake), outputs: &[1] };
+            assert_eq!(session.submit(ClientId(0), &turn), Err(Violation::BadWake { wake }));
+        }
+    }
+}

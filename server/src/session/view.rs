@@ -1,0 +1,86 @@
+//! What can be seen of a session.
+
+use super::{Mode, Session};
+use crate::client::ClientId;
+use crate::cycle::Cycle;
+use crate::end::SessionEnd;
+use crate::image::ImageLayout;
+use crate::join::Membership;
+use crate::plan::SessionPlan;
+use crate::signal::{ClientName, SignalId};
+use crate::time::{TimeSpan, VirtualTime};
+
+impl Session {
+    /// The member in `client`'s seat, if it has joined.
+    pub fn member(&self, client: ClientId) -> Option<&Membership> {
+        self.members[client.index()].as_deref()
+    }
+
+    /// The plan.
+    pub fn plan(&self) -> &SessionPlan {
+        &self.plan
+    }
+
+    /// Where each signal lies in the image.
+    pub fn layout(&self) -> &ImageLayout {
+        &self.layout
+    }
+
+    /// The signal of this name.
+    pub fn signal_id(&self, name: &str) -> Option<SignalId> {
+        let index = self.plan.signals().binary_search_by(|signal| signal.name.as_str().cmp(name)).ok()?;
+        Some(SignalId(index as u32))
+    }
+
+    /// The client that writes `signal`, once it has joined.
+    pub fn writer(&self, signal: SignalId) -> Option<&ClientName> {
+        self.writers[signal.index()].as_ref()
+    }
+
+    /// The values that clients see, in the image's layout.
+    pub fn image(&self) -> &[u8] {
+        self.image.committed()
+    }
+
+    /// The values of the next commit, for those who watch over the session; no client sees them.
+    pub fn staged(&self) -> &[u8] {
+        self.image.staged()
+    }
+
+    /// The states and delays.
+    pub fn cycle(&self) -> &Cycle {
+        &self.cycle
+    }
+
+    /// Virtual time.
+    pub fn t_v(&self) -> VirtualTime {
+        self.cycle.t_v()
+    }
+
+    /// The step of the session.
+    pub fn step(&self) -> TimeSpan {
+        self.plan.step()
+    }
+
+    /// How it ended, if it did.
+    pub fn end(&self) -> Option<&SessionEnd> {
+        self.end.as_ref()
+    }
+
+    /// True while virtual time is held at a boundary by request.
+    pub fn is_held(&self) -> bool {
+        self.mode == Mode::Held && self.cycle.is_at_boundary()
+    }
+
+    /// Copies the client's own outputs back from the image, as its last turn left them.
+    pub(crate) fn read_back(&self, client: ClientId, outputs: &mut [u8]) {
+        if let Some(member) = &self.members[client.index()] {
+            self.image.gather(&member.outputs, outputs);
+        }
+    }
+
+    /// All clients in the order of their names.
+    pub fn clients(&self) -> impl ExactSizeIterator<Item = ClientId> + use<> {
+        (0..self.members.len()).map(ClientId::from_index)
+    }
+}
