@@ -16,7 +16,7 @@ use onescan_clients::gateway::modbus::RegisterMap;
 use onescan_clients::gateway::tcp::Layouts;
 use onescan_clients::gateway::{Exchange, Gateway, Link, Patience, Settings};
 use onescan_clients::opcua_server::Access;
-use onescan_clients::station::{Clockwork, Controller, Wires, modbus, opcua, tcp};
+use onescan_clients::station::{Clockwork, Controller, Wires, ads, modbus, opcua, tcp};
 use onescan_plc_shim::SoftPlc;
 use onescan_server::client::{Client, JoinRequest};
 use onescan_server::time::VirtualTime;
@@ -50,10 +50,12 @@ fn station() -> Station {
     let map = RegisterMap::new(&program.settings.modbus, &program.exchange).expect("a map");
     let tcp = tcp::serve(loopback(), &controller, layouts).expect("a free port");
     let modbus = modbus::serve(loopback(), &controller, map).expect("a free port");
+    let ads = ads::serve(loopback(), &controller, &program.settings.ads).expect("a free port");
     let opcua = opcua::serve(loopback(), &controller, &Access::default()).expect("a free port");
     let urls = BTreeMap::from([
         ("raw TCP", format!("tcp://{tcp}")),
         ("Modbus TCP", format!("modbus://{modbus}")),
+        ("ADS", format!("ads://{ads}")),
         ("OPC UA", format!("opc.tcp://{}", opcua.address())),
     ]);
     let ports = |bound: &[onescan_clients::soft_plc::bind::Bound]| {
@@ -117,6 +119,7 @@ fn main() {
     let pairs = [
         ("lockstep over raw TCP", "bare blocks to and fro", "raw TCP"),
         ("lockstep over Modbus TCP", "bare registers to and fro", "Modbus TCP"),
+        ("lockstep over ADS", "bare sum commands", "ADS"),
         ("lockstep over OPC UA", "bare Write and Read", "OPC UA"),
     ];
     for _ in 0..ROUNDS {
