@@ -22,6 +22,7 @@ mod new;
 mod operator;
 mod plant;
 mod plc;
+mod plc_ads;
 mod plc_faults;
 mod plc_peers;
 mod plc_untrusted;

@@ -103,11 +103,16 @@ fn opc_ua_equals_the_run_in_process() {
     equals_the_run_in_process("opc.tcp://");
 }
 
+#[test]
+fn ads_equals_the_run_in_process() {
+    equals_the_run_in_process("ads://");
+}
+
 /// The same processes and link without the handshake: no two runs are equal, and none is that in lockstep.
 #[test]
 fn without_the_handshake_runs_differ() {
     let plc = Plc::start(&scenario("shear"), &["--mode", "freewheel"]);
-    for scheme in ["tcp://", "modbus://", "opc.tcp://"] {
+    for scheme in ["tcp://", "modbus://", "opc.tcp://", "ads://"] {
         let gateway = plc.gateway(scheme);
         let words = ["--until", "2s", "--mode", "freewheel", "--runs", "2", "--gateway", &gateway];
         let (reports, said) = run_shear(&words);

@@ -14,8 +14,8 @@ struct Peer(Child, u16);
 impl Peer {
     fn start(script: &str) -> Self {
         let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("peers/plc").join(script);
-        let packages = ["asyncua==2.1.0", "pymodbus==3.16.1", "python-snap7==3.3.0"];
-        let mut command = Command::new(python("plc-peers-1", &packages));
+        let packages = ["asyncua==2.1.0", "pyads==3.6.0", "pymodbus==3.16.1", "python-snap7==3.3.0"];
+        let mut command = Command::new(python("plc-peers-2", &packages));
         command.arg(path).env("PYTHONDONTWRITEBYTECODE", "1").stdout(Stdio::piped()).stderr(Stdio::null());
         let mut child = command.spawn().expect("Python starts");
         let mut line = String::new();
@@ -48,6 +48,11 @@ fn equals_the_run_in_process(script: &str, url: &str) {
 #[test]
 fn a_plc_on_asyncua() {
     equals_the_run_in_process("opcua_plc.py", "opc.tcp://127.0.0.1:PORT/");
+}
+
+#[test]
+fn a_plc_on_pyads() {
+    equals_the_run_in_process("ads_plc.py", "ads://127.0.0.1:PORT");
 }
 
 #[test]

@@ -9,6 +9,7 @@
 //! | [`link`] | the interface of all links |
 //! | [`client`] | handshake and link as a client of a session |
 //! | [`settings`] | what a scenario says of a link, and the link made of it |
+//! | [`ads`] | symbols of a TwinCAT PLC |
 //! | [`modbus`] | registers and coils over Modbus TCP |
 //! | [`opcua`] | variables of an OPC UA server |
 //! | [`s7`] | data blocks of an S7 |
@@ -20,6 +21,7 @@
 //! - No step is run twice and none is skipped, wherever the connection breaks.
 //! - A wall clock decides when to give up, never what a step computes.
 
+pub mod ads;
 pub mod byte_order;
 pub mod client;
 pub mod exchange;

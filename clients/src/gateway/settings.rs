@@ -8,6 +8,7 @@ use onescan_server::time::TimeSpan;
 use serde::Deserialize;
 use thiserror::Error;
 
+use super::ads::{self, AdsLink};
 use super::client::Patience;
 use super::exchange::{Exchange, SystemWords};
 use super::fault::{LinkFault, MappingFault};
@@ -39,6 +40,8 @@ pub struct Settings {
     pub s7: s7::Options,
     /// Registers of a Modbus link.
     pub modbus: modbus::Options,
+    /// AMS addresses of an ADS link.
+    pub ads: ads::Options,
     /// Security and namespace of an OPC UA link.
     pub opcua: opcua::Options,
 }
@@ -70,7 +73,7 @@ pub struct BadUrl {
 }
 
 /// The links there are, by the scheme of their URL.
-const SCHEMES: [&str; 4] = ["tcp", "modbus", "opc.tcp", "s7"];
+const SCHEMES: [&str; 5] = ["tcp", "modbus", "opc.tcp", "s7", "ads"];
 
 /// Why there is no link.
 #[derive(Clone, Debug, Error)]
@@ -132,6 +135,7 @@ impl Settings {
         Ok(match scheme {
             "modbus" => Box::new(ModbusLink::new(address, self.modbus, exchange)?),
             "opc.tcp" => Box::new(OpcUaLink::new(&self.url, self.opcua.clone(), exchange)?),
+            "ads" => Box::new(AdsLink::new(address, self.ads.clone(), exchange)),
             "s7" => Box::new(S7Link::new(address, self.s7, exchange, Layouts::new(&self.layout, exchange)?)),
             _ => Box::new(TcpLink::new(address, Layouts::new(&self.layout, exchange)?)),
         })
@@ -145,6 +149,7 @@ impl Settings {
         let nothing = Exchange::new(&[], &[], SystemWords::Absent, &BTreeMap::new());
         match self.scheme()?.0 {
             "opc.tcp" => Ok(OpcUaLink::new(&self.url, self.opcua.clone(), &nothing)?.browse()?),
+            "ads" => Ok(AdsLink::new(self.scheme()?.1, self.ads.clone(), &nothing).browse()?),
             scheme => {
                 let text = format!("nothing can be browsed over {scheme}: its values have addresses and no names");
                 Err(LinkFault::Setting(text).into())

@@ -5,16 +5,18 @@
 //! | [`wires`] | which point is which place in the PLC's memory |
 //! | [`controller`] | the PLC between its cycles: points, RUN and STOP, starts |
 //! | [`cycle`] | the wall clock that drives it |
+//! | [`ads`] | symbols over ADS |
 //! | [`modbus`] | registers and coils over Modbus TCP |
 //! | [`opcua`] | variables of an OPC UA server |
 //! | [`tcp`] | data blocks over raw TCP |
 //!
 //! # Invariants
 //! - The PLC never waits for its clients: it runs a cycle when its clock says so.
-//! - What one block or one Modbus request writes is in place between two cycles. An OPC UA server takes values one
+//! - What one block, one Modbus request or one ADS command writes is in place between two cycles. An OPC UA server takes values one
 //!   by one, in their order.
 //! - A server listens where it is told to and nowhere else; of two gateways the newer one has the PLC.
 
+pub mod ads;
 pub mod controller;
 pub mod cycle;
 pub mod modbus;

@@ -37,6 +37,9 @@ pub struct PlcArgs {
     /// Where registers are served over Modbus TCP
     #[arg(long, value_name = "ADDRESS:PORT")]
     pub modbus: Option<SocketAddr>,
+    /// Where symbols are served over ADS, as TwinCAT does
+    #[arg(long, value_name = "ADDRESS:PORT")]
+    pub ads: Option<SocketAddr>,
     /// Where variables are served over OPC UA
     #[arg(long, value_name = "ADDRESS:PORT")]
     pub opcua: Option<SocketAddr>,
@@ -66,12 +69,12 @@ const PLC_COMMANDS: &str = "Commands on standard input:
 pub fn run_plc(args: PlcArgs) -> Result<ExitCode, RunError> {
     let interrupt = Interrupt::new();
     interrupt.on_signals();
-    let named = [args.tcp, args.modbus, args.opcua];
+    let named = [args.tcp, args.modbus, args.ads, args.opcua];
     let somewhere = named.iter().all(Option::is_none).then_some(SocketAddr::from((Ipv4Addr::LOCALHOST, 0)));
-    let [tcp, modbus, opcua] = named.map(|address| address.or(somewhere));
+    let [tcp, modbus, ads, opcua] = named.map(|address| address.or(somewhere));
     let access = access(args.opcua_user, args.opcua_pki, args.opcua_trust)?;
     let (scenario, client, mode, cycle) = (args.scenario, args.client, args.mode.into(), args.cycle);
-    let config = PlcConfig { scenario, client, mode, cycle, tcp, modbus, opcua, access };
+    let config = PlcConfig { scenario, client, mode, cycle, tcp, modbus, ads, opcua, access };
     plc::run(&config, &interrupt, &mut std::io::stdout().lock())
 }
 

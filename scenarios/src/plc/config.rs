@@ -26,6 +26,8 @@ pub struct PlcConfig {
     pub tcp: Option<SocketAddr>,
     /// Where its registers are served over Modbus TCP.
     pub modbus: Option<SocketAddr>,
+    /// Where its symbols are served over ADS.
+    pub ads: Option<SocketAddr>,
     /// Where its variables are served over OPC UA.
     pub opcua: Option<SocketAddr>,
     /// Who is let in there.

@@ -15,7 +15,7 @@ use onescan_clients::gateway::MappingFault;
 use onescan_clients::gateway::modbus::RegisterMap;
 use onescan_clients::gateway::tcp::Layouts;
 use onescan_clients::station::opcua::{Running, ServeError};
-use onescan_clients::station::{Clockwork, Controller, Wires, modbus, opcua, tcp};
+use onescan_clients::station::{Clockwork, Controller, Wires, ads, modbus, opcua, tcp};
 use onescan_plc_shim::SoftPlc;
 use onescan_server::signal::ClientName;
 
@@ -94,6 +94,12 @@ fn serve(
         let map = RegisterMap::new(&program.settings.modbus, &program.exchange).map_err(unfit)?;
         let address = modbus::serve(address, controller, map).map_err(|source| RunError::Listen { address, source })?;
         urls.push(format!("modbus://{address}"));
+    }
+    if let Some(address) = config.ads {
+        let options = &program.settings.ads;
+        let address =
+            ads::serve(address, controller, options).map_err(|source| RunError::Listen { address, source })?;
+        urls.push(format!("ads://{address}"));
     }
     if let Some(address) = config.opcua {
         let running = opcua::serve(address, controller, &config.access).map_err(|error| match error {
