@@ -82,7 +82,9 @@ fn run_length<const N: usize>(values: &[u8]) -> (usize, usize) {
     const MANY: usize = 32;
     let values = values.as_chunks::<N>().0;
     let Some(first) = values.first() else { return (N, 0) };
-    let differ = |many: &&[[u8; N]; MANY]| many.iter().fold(false, |differ, value| differ | (value != first));
+    // Without a way out within the chunk, so that all of it is compared at once.
+    let differ =
+        |many: &&[[u8; N]; MANY]| many.iter().fold(0_u8, |differ, value| differ | u8::from(value != first)) != 0;
     let equal = values.as_chunks::<MANY>().0.iter().take_while(|many| !differ(many)).count() * MANY;
     (N, equal + values[equal..].iter().take_while(|value| *value == first).count())
 }
@@ -105,11 +107,11 @@ fn order(a: &[u8], b: &[u8]) -> Ordering {
 
 /// A value of an elementary size as a number.
 fn number(value: &[u8]) -> Option<u64> {
-    match *value {
-        [a] => Some(u64::from(a)),
-        [a, b] => Some(u64::from(u16::from_le_bytes([a, b]))),
-        [a, b, c, d] => Some(u64::from(u32::from_le_bytes([a, b, c, d]))),
-        [a, b, c, d, e, f, g, h] => Some(u64::from_le_bytes([a, b, c, d, e, f, g, h])),
+    match value.len() {
+        1 => value.first().copied().map(u64::from),
+        2 => Some(u64::from(u16::from_le_bytes(value.try_into().ok()?))),
+        4 => Some(u64::from(u32::from_le_bytes(value.try_into().ok()?))),
+        8 => Some(u64::from_le_bytes(value.try_into().ok()?)),
         _ => None,
     }
 }
