@@ -18,7 +18,7 @@ fn shear() -> Lockstep {
     for name in scenario.plan().clients() {
         match scenario.member(name).unwrap() {
             Member::Plant(client) | Member::Plc(client) | Member::Gateway(client) => formation.join(client).unwrap(),
-            Member::External(_) => panic!("the shear has none"),
+            Member::External(_) | Member::Seated { .. } => panic!("the shear has none"),
         };
     }
     formation.start().unwrap()

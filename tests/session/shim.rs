@@ -116,7 +116,7 @@ fn shear_folder() -> PathBuf {
 fn member(scenario: &Scenario, name: &str) -> Box<dyn Client> {
     match scenario.member(&client(name)).expect("it has this client") {
         Member::Plant(client) | Member::Plc(client) | Member::Gateway(client) => client,
-        Member::External(_) => panic!("no client of the shear is external"),
+        Member::External(_) | Member::Seated { .. } => panic!("no client of the shear is external"),
     }
 }
 

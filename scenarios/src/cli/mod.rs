@@ -9,11 +9,13 @@
 //! | [`recording`] | what was recorded |
 //! | [`source`] | PLC sources |
 //! | [`plc`] | PLCs |
+//! | [`opcua`] | who is let in over OPC UA |
 //! | [`plant`] | scenes |
 //! | [`value`] | words that several commands know |
 
 pub mod args;
 pub mod compare;
+pub mod opcua;
 pub mod plant;
 pub mod plc;
 pub mod recording;

@@ -4,9 +4,9 @@ use std::net::{Ipv4Addr, SocketAddr};
 use std::path::PathBuf;
 
 use clap::Args as ClapArgs;
-use onescan_clients::station::opcua::Access;
 use onescan_server::signal::ClientName;
 
+use super::opcua::AccessArgs;
 use super::run::ModeArg;
 use super::value::{FormatArg, client_name};
 use crate::browse::BrowseConfig;
@@ -43,17 +43,9 @@ pub struct PlcArgs {
     /// Where variables are served over OPC UA
     #[arg(long, value_name = "ADDRESS:PORT")]
     pub opcua: Option<SocketAddr>,
-    /// The only OPC UA user, whose password is in the environment variable `ONESCAN_OPCUA_PASSWORD` [default:
-    /// anybody]
-    #[arg(long, value_name = "NAME")]
-    pub opcua_user: Option<String>,
-    /// Folder with the OPC UA server's certificates and those it trusts; with it nobody is let in without
-    /// security
-    #[arg(long, value_name = "DIR")]
-    pub opcua_pki: Option<PathBuf>,
-    /// Trust the certificate of any OPC UA client
-    #[arg(long, requires = "opcua_pki")]
-    pub opcua_trust: bool,
+    /// Who is let in over OPC UA
+    #[command(flatten)]
+    pub access: AccessArgs,
 }
 
 const PLC_COMMANDS: &str = "Commands on standard input:
@@ -72,25 +64,10 @@ pub fn run_plc(args: PlcArgs) -> Result<ExitCode, RunError> {
     let named = [args.tcp, args.modbus, args.ads, args.opcua];
     let somewhere = named.iter().all(Option::is_none).then_some(SocketAddr::from((Ipv4Addr::LOCALHOST, 0)));
     let [tcp, modbus, ads, opcua] = named.map(|address| address.or(somewhere));
-    let access = access(args.opcua_user, args.opcua_pki, args.opcua_trust)?;
+    let access = args.access.access()?;
     let (scenario, client, mode, cycle) = (args.scenario, args.client, args.mode.into(), args.cycle);
     let config = PlcConfig { scenario, client, mode, cycle, tcp, modbus, ads, opcua, access };
     plc::run(&config, &interrupt, &mut std::io::stdout().lock())
-}
-
-fn access(user: Option<String>, pki: Option<PathBuf>, trust_clients: bool) -> Result<Access, RunError> {
-    const PASSWORD: &str = "ONESCAN_OPCUA_PASSWORD";
-    let user = match user {
-        None => None,
-        Some(user) => {
-            let Ok(password) = std::env::var(PASSWORD) else {
-                let help = Some(format!("set the environment variable {PASSWORD}"));
-                return Err(RunError::usage(format!("there is no password for user `{user}`"), help));
-            };
-            Some((user, password))
-        }
-    };
-    Ok(Access { user, pki, trust_clients })
 }
 
 /// Options of `browse`.

@@ -12,6 +12,7 @@ use onescan_server::signal::pattern::SignalPattern;
 use onescan_server::signal::{ClientName, SignalName};
 use onescan_server::time::{TimeSpan, VirtualTime};
 
+use super::opcua::AccessArgs;
 use super::value::{FormatArg, client_name, plane, signal_name};
 use crate::run::config::SaveRequest;
 use crate::run::coverage::{CoverageFormat, CoverageRequest};
@@ -94,6 +95,16 @@ pub struct RunArgs {
     /// Where clients and operators may connect [default: a free port of this machine, if one is needed]
     #[arg(long, value_name = "ADDRESS:PORT")]
     pub listen: Option<SocketAddr>,
+    /// Serve the session over OPC UA at this address, for operators and clients (`docs/opcua.md`) [default: a free
+    /// port of this machine, if a client needs one]
+    #[arg(long, value_name = "ADDRESS:PORT")]
+    pub opcua: Option<SocketAddr>,
+    /// Let a program with an OPC UA client stand in for this client; may be given several times
+    #[arg(long = "opcua-client", value_name = "CLIENT", value_parser = client_name)]
+    pub opcua_clients: Vec<ClientName>,
+    /// Who is let in over OPC UA
+    #[command(flatten)]
+    pub access: AccessArgs,
     /// How long to wait for clients to join
     #[arg(long, default_value = "60s", value_name = "TIME")]
     pub join_timeout: TimeSpan,
@@ -202,13 +213,13 @@ impl From<CoverageArg> for CoverageFormat {
 pub fn run(args: RunArgs) -> Result<ExitCode, RunError> {
     let interrupt = Interrupt::new();
     interrupt.on_signals();
-    let verdict = execute(&config(args), &interrupt, &mut std::io::stdout().lock())?;
+    let verdict = execute(&config(args)?, &interrupt, &mut std::io::stdout().lock())?;
     Ok(verdict.exit_code())
 }
 
-fn config(args: RunArgs) -> RunConfig {
+fn config(args: RunArgs) -> Result<RunConfig, RunError> {
     let format = args.format.into();
-    RunConfig {
+    Ok(RunConfig {
         scenario: args.scenario,
         case: args.case,
         until: args.until,
@@ -235,13 +246,16 @@ fn config(args: RunArgs) -> RunConfig {
         coverage: args.coverage.map(|path| CoverageRequest::new(path, args.coverage_format.map(Into::into))),
         html: args.html,
         listen: args.listen,
+        opcua: args.opcua,
+        opcua_clients: args.opcua_clients,
+        opcua_access: args.access.access()?,
         join_timeout: Duration::from_nanos(args.join_timeout.as_nanos()),
         reply_timeout: Duration::from_nanos(args.reply_timeout.as_nanos()),
         save: args.save_at.zip(args.save).map(|(at, path)| SaveRequest { at, path }),
         resume: args.resume,
         latency: args.latency,
         progress: format == Format::Human && std::io::stderr().is_terminal(),
-    }
+    })
 }
 
 fn pace(text: &str) -> Result<Pace, String> {

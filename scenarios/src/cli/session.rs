@@ -48,6 +48,10 @@ pub fn join(args: &JoinArgs) -> Result<ExitCode, RunError> {
             let message = format!("client `{}` is external: its own program joins", args.client);
             return Err(RunError::usage(message, None));
         }
+        Member::Seated { .. } => {
+            let message = format!("client `{}` takes part over OPC UA: its own program does", args.client);
+            return Err(RunError::usage(message, None));
+        }
     };
     let end = take_part(client.as_mut(), args.server)?;
     tracing::info!(%end, "left");

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use std::str::FromStr;
 use std::time::Duration;
 
-use onescan_clients::station::opcua::Access;
+use onescan_clients::opcua_server::Access;
 use onescan_server::signal::ClientName;
 use onescan_server::time::TimeSpan;
 

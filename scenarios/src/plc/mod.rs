@@ -14,7 +14,7 @@ use std::sync::Arc;
 use onescan_clients::gateway::MappingFault;
 use onescan_clients::gateway::modbus::RegisterMap;
 use onescan_clients::gateway::tcp::Layouts;
-use onescan_clients::station::opcua::{Running, ServeError};
+use onescan_clients::opcua_server::{Running, ServeError};
 use onescan_clients::station::{Clockwork, Controller, Wires, ads, modbus, opcua, tcp};
 use onescan_plc_shim::SoftPlc;
 use onescan_server::signal::ClientName;

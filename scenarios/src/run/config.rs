@@ -4,6 +4,7 @@ use std::net::SocketAddr;
 use std::path::PathBuf;
 use std::time::Duration;
 
+use onescan_clients::opcua_server::Access;
 use onescan_server::pacing::Pace;
 use onescan_server::signal::pattern::choose;
 use onescan_server::signal::{ClientName, SignalName, did_you_mean};
@@ -114,6 +115,12 @@ pub struct RunConfig {
     pub watch_changes: bool,
     /// Where clients and operators may connect.
     pub listen: Option<SocketAddr>,
+    /// Where the session is served over OPC UA.
+    pub opcua: Option<SocketAddr>,
+    /// Clients in whose place somebody takes part over OPC UA.
+    pub opcua_clients: Vec<ClientName>,
+    /// Who is let in there.
+    pub opcua_access: Access,
     /// How long to wait for clients to join.
     pub join_timeout: Duration,
     /// How long a client may leave a grant unanswered.
@@ -152,6 +159,9 @@ impl RunConfig {
             watch: Vec::new(),
             watch_changes: false,
             listen: None,
+            opcua: None,
+            opcua_clients: Vec::new(),
+            opcua_access: Access::default(),
             join_timeout: Duration::from_mins(1),
             reply_timeout: Duration::from_secs(10),
             save: None,
@@ -214,10 +224,38 @@ impl RunConfig {
             let help = "what a client in another process does is not seen here".to_owned();
             return Err(RunError::usage(format!("{option} means nothing with --transport tcp"), Some(help)));
         }
+        self.check_opcua(scenario)?;
         match self.mode {
             Mode::Lockstep => Ok(()),
             Mode::Freewheel | Mode::Halt | Mode::Follow => self.check_freewheel(scenario),
         }
+    }
+
+    /// Who is to come over OPC UA must be somebody of the scenario, and come as he is.
+    fn check_opcua(&self, scenario: &Scenario) -> Result<(), RunError> {
+        for name in &self.opcua_clients {
+            match scenario.file().clients.get(name).map(toml::Spanned::get_ref) {
+                None => {
+                    let help = did_you_mean(name.as_str(), scenario.file().clients.keys().map(ClientName::as_str));
+                    return Err(RunError::usage(format!("the scenario has no client `{name}`"), help));
+                }
+                Some(ClientFile::External { .. } | ClientFile::OpcUa { .. }) => {
+                    let message = format!("--opcua-client {name}: it is a program of its own anyway");
+                    return Err(RunError::usage(message, None));
+                }
+                Some(_) => {}
+            }
+            if self.gateways.iter().any(|(gateway, _)| gateway == name) {
+                let message =
+                    format!("`{name}` cannot be a real PLC (--gateway) and come over OPC UA (--opcua-client)");
+                return Err(RunError::usage(message, None));
+            }
+        }
+        if self.case.is_some() && !self.opcua_clients.is_empty() {
+            let help = "what a case changes in a client does not reach a program that stands in for it".to_owned();
+            return Err(RunError::usage("--opcua-client means nothing with --case", Some(help)));
+        }
+        Ok(())
     }
 
     /// Free-wheeling has no server: what only a server can do is refused, not ignored.
@@ -226,6 +264,8 @@ impl RunConfig {
             ("--transport tcp", self.transport == Transport::Tcp),
             ("--pace", self.pace != Pace::Max),
             ("--listen", self.listen.is_some()),
+            ("--opcua", self.opcua.is_some()),
+            ("--opcua-client", !self.opcua_clients.is_empty()),
             ("--save-at", self.save.is_some()),
             ("--resume", self.resume.is_some()),
             ("--replay-operator", self.replay_operator.is_some()),
@@ -235,7 +275,9 @@ impl RunConfig {
             let mode = self.mode.name();
             return Err(RunError::usage(format!("{option} means nothing with --mode {mode}"), Some(help)));
         }
-        let external = |client: &toml::Spanned<ClientFile>| matches!(client.get_ref(), ClientFile::External { .. });
+        let external = |client: &toml::Spanned<ClientFile>| {
+            matches!(client.get_ref(), ClientFile::External { .. } | ClientFile::OpcUa { .. })
+        };
         match scenario.file().clients.iter().find(|(_, client)| external(client)) {
             Some((name, _)) => {
                 Err(RunError::usage(format!("the external client `{name}` can only take part in lockstep"), None))

@@ -32,7 +32,7 @@ pub(super) fn run(
         match scenario.member(name)? {
             Member::Plant(client) => clients.push(Freewheeler { client, clock: plant_clock(config.mode, scenario) }),
             Member::Plc(client) => clients.push(Freewheeler { client, clock: Clock::Grid }),
-            Member::Gateway(_) | Member::External(_) => {
+            Member::Gateway(_) | Member::External(_) | Member::Seated { .. } => {
                 return Err(RunError::usage(format!("client `{name}` can only take part in lockstep"), None));
             }
         }

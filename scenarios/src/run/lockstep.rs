@@ -3,12 +3,13 @@
 use std::net::{Ipv4Addr, SocketAddr};
 
 use onescan_server::checkpoint::Checkpoint;
+use onescan_server::client::Client;
 use onescan_server::formation::{Formation, FormationError};
-use onescan_server::join::JoinRefusal;
 use onescan_server::lockstep::{Lockstep, Outcome, Reached};
 use onescan_server::operation::OperatorInput;
 use onescan_server::record::event;
 use onescan_server::recording::Recording;
+use onescan_server::signal::ClientName;
 use onescan_server::transport::tcp::Lobby;
 
 use super::config::{RunConfig, SaveRequest, Transport};
@@ -17,6 +18,7 @@ use super::interrupt::Interrupt;
 use super::output;
 use super::processes::Processes;
 use super::progress::Progress;
+use super::seats::{Desk, Seats};
 use super::session_log::SessionLog;
 use crate::scenario::Scenario;
 use crate::scenario::compose::Member;
@@ -34,11 +36,14 @@ pub(super) fn run(
     watch: impl FnOnce(&mut Lockstep),
 ) -> Result<Outcome, RunError> {
     let mut processes = Processes::default();
-    let (mut lockstep, _lobby) = form(config, scenario, interrupt, log, &mut processes)?;
+    let Formed { mut lockstep, lobby: _lobby, desk } = form(config, scenario, interrupt, log, &mut processes)?;
     lockstep.set_until(Some(config.end(scenario)));
     lockstep.set_pace(config.pace);
     lockstep.set_mailbox(interrupt.mailbox());
     watch(&mut lockstep);
+    if let Some(desk) = &desk {
+        lockstep.observe(Box::new(desk.observer()));
+    }
     if config.progress {
         let label = if config.runs == 1 { scenario.name().to_owned() } else { format!("run {number}/{}", config.runs) };
         lockstep.observe(Box::new(Progress::new(config.end(scenario), label).with_log(log.clone())));
@@ -55,37 +60,75 @@ pub(super) fn run(
     Ok(lockstep.run()?)
 }
 
-/// Brings all clients together. The lobby stays open for operators.
+/// A session that is about to begin, and what stays open for operators.
+struct Formed {
+    lockstep: Lockstep,
+    lobby: Option<Lobby>,
+    desk: Option<Desk>,
+}
+
+/// Brings all clients together.
 fn form(
     config: &RunConfig,
     scenario: &Scenario,
     interrupt: &Interrupt,
     log: &SessionLog,
     processes: &mut Processes,
-) -> Result<(Lockstep, Option<Lobby>), RunError> {
+) -> Result<Formed, RunError> {
     let mut formation = Formation::new(scenario.plan().clone());
-    let mut remote = Vec::new();
+    let (mut remote, mut seats) = (Vec::new(), Seats::default());
     for name in scenario.plan().clients() {
         // Also a client that will run in its own process is made here: its faults are found at once.
         match (scenario.member(name)?, config.transport) {
+            (Member::Seated { request, command }, _) => seats.add(request, command),
+            (Member::Gateway(client) | Member::Plant(client) | Member::Plc(client), _)
+                if config.opcua_clients.contains(name) =>
+            {
+                seats.add(client.join(), Vec::new());
+            }
             (Member::Gateway(client), _) | (Member::Plant(client) | Member::Plc(client), Transport::Inproc) => {
                 let request = client.join();
-                let refused = |refusal: JoinRefusal| scenario.refused(&request, &refusal);
                 let client = if config.is_watched() { log.watch(client) } else { client };
-                formation.join(client).map_err(refused)?;
+                formation.join(client).map_err(|refusal| scenario.refused(&request, &refusal))?;
             }
             (Member::Plant(_) | Member::Plc(_), Transport::Tcp) => remote.push((name, None)),
             (Member::External(command), _) => remote.push((name, Some(command))),
         }
     }
+    let desk = seats.open(config, scenario.plan(), interrupt)?;
+    if let Some(desk) = &desk {
+        for client in desk.clients(config.reply_timeout) {
+            let request = client.join();
+            let client: Box<dyn Client> = Box::new(client);
+            let client = if config.is_watched() { log.watch(client) } else { client };
+            formation.join(client).map_err(|refusal| scenario.refused(&request, &refusal))?;
+        }
+        desk.start(scenario.folder(), processes)?;
+    }
+    let lobby = admit_remote(config, scenario, &mut formation, &remote, interrupt, processes)?;
+    if let Some(desk) = &desk {
+        desk.wait(config, interrupt, processes)?;
+    }
+    Ok(Formed { lockstep: formation.start()?, lobby, desk })
+}
+
+/// Lets in those that come over TCP, if there are any or `--listen` asks for it. The lobby stays open for operators.
+fn admit_remote(
+    config: &RunConfig,
+    scenario: &Scenario,
+    formation: &mut Formation,
+    remote: &[(&ClientName, Option<Vec<String>>)],
+    interrupt: &Interrupt,
+    processes: &mut Processes,
+) -> Result<Option<Lobby>, RunError> {
     if remote.is_empty() && config.listen.is_none() {
-        return Ok((formation.start()?, None));
+        return Ok(None);
     }
     let lobby = open_lobby(config, scenario, interrupt)?;
-    for (name, command) in &remote {
+    for (name, command) in remote {
         match command {
             None => processes.start_client(name, config, lobby.address())?,
-            Some(words) => processes.start_command(name, words, scenario.folder(), lobby.address())?,
+            Some(words) => processes.start_command(name, words, scenario.folder(), &lobby.address().to_string())?,
         }
     }
     if config.listen.is_some() {
@@ -94,8 +137,8 @@ fn form(
     for (name, _) in remote.iter().filter(|(_, command)| command.as_ref().is_some_and(Vec::is_empty)) {
         tracing::info!(target: NOTICE, "waiting at {} for client `{name}`", lobby.address());
     }
-    wait_for_clients(config, &mut formation, &lobby, interrupt, processes)?;
-    Ok((formation.start()?, Some(lobby)))
+    wait_for_clients(config, formation, &lobby, interrupt, processes)?;
+    Ok(Some(lobby))
 }
 
 fn open_lobby(config: &RunConfig, scenario: &Scenario, interrupt: &Interrupt) -> Result<Lobby, RunError> {

@@ -17,6 +17,7 @@
 //! | [`expectation`] | what a run had to show |
 //! | [`watch`] | what watched variables were |
 //! | [`report`] | what came of a run, for people and machines |
+//! | `seats` | clients that take part over OPC UA |
 //! | [`session_log`] | which client a session waited for |
 //! | [`output`] | files that appear whole or not at all |
 
@@ -35,6 +36,7 @@ pub mod recorded;
 pub mod report;
 pub mod rerun;
 mod sampler;
+mod seats;
 pub mod session_log;
 pub mod watch;
 

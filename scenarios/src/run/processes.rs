@@ -49,11 +49,11 @@ impl Processes {
         name: &ClientName,
         words: &[String],
         folder: &Path,
-        server: SocketAddr,
+        server: &str,
     ) -> Result<(), RunError> {
         let Some((program, arguments)) = words.split_first() else { return Ok(()) };
         let mut command = Command::new(program);
-        command.args(arguments.iter().map(|word| word.replace(SERVER, &server.to_string())));
+        command.args(arguments.iter().map(|word| word.replace(SERVER, server)));
         if folder != Path::new("") {
             command.current_dir(folder);
         }

@@ -36,7 +36,7 @@ pub fn rerun(scenario: &Scenario, until: VirtualTime, inputs: Vec<OperatorInput>
                 let message = format!("client `{name}` is a real PLC and cannot be run again");
                 return Err(RunError::usage(message, None));
             }
-            Member::External(_) => {
+            Member::External(_) | Member::Seated { .. } => {
                 let message = format!("client `{name}` is a program of its own and cannot be run again");
                 return Err(RunError::usage(message, None));
             }

@@ -9,7 +9,7 @@ use onescan_clients::plant::{Plant, Scene, SceneError, SceneFault};
 use onescan_clients::soft_plc::{Bindings, SoftPlcClient, bind};
 use onescan_plc_shim::input::kind::{FileKind, SourceKind};
 use onescan_plc_shim::{Application, Dialect, Input, Task, TaskPlan};
-use onescan_server::client::Client;
+use onescan_server::client::{Client, JoinRequest};
 use onescan_server::signal::{ClientName, Port, SignalName, did_you_mean};
 
 use super::arrays;
@@ -28,6 +28,13 @@ pub enum Member {
     Gateway(Box<dyn Client>),
     /// A program of its own, with the command that starts it; empty if somebody else does.
     External(Vec<String>),
+    /// The same over OPC UA: what it reads and writes, and the command.
+    Seated {
+        /// What it reads and writes, and how often.
+        request: JoinRequest,
+        /// The command; empty if somebody else starts it.
+        command: Vec<String>,
+    },
 }
 
 /// The variables of signals, as `bind` names them.
@@ -64,6 +71,9 @@ impl Scenario {
             }
             ClientFile::Operator { initial } => Ok(Member::Plant(self.forced(Box::new(self.operator(name, initial)?)))),
             ClientFile::External { command } => Ok(Member::External(command.clone())),
+            ClientFile::OpcUa { command, .. } => {
+                Ok(Member::Seated { request: self.request(name)?, command: command.clone() })
+            }
         }
     }
 

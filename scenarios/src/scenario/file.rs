@@ -123,6 +123,19 @@ pub enum ClientFile {
         #[serde(default)]
         initial: BTreeMap<SignalName, toml::Value>,
     },
+    /// A program of its own that takes part over OPC UA, in the session's information model (`docs/opcua.md`).
+    OpcUa {
+        /// Virtual time of one turn; the session's step if absent.
+        #[serde(default, deserialize_with = "from_optional_text")]
+        period: Option<TimeSpan>,
+        /// The signals that it reads. It writes those whose writer it is.
+        #[serde(default)]
+        reads: Vec<SignalName>,
+        /// The program to start, with its arguments; `{server}` stands for the server's endpoint.
+        /// Without it the server waits for somebody to start it.
+        #[serde(default)]
+        command: Vec<String>,
+    },
     /// A program of its own that joins over TCP.
     External {
         /// The program to start, with its arguments; `{server}` stands for the server's address.

@@ -88,8 +88,8 @@ impl Scenario {
         Ok(Settings { url, ..declared })
     }
 
-    /// What the PLC `name` reads and writes, and how often.
-    fn request(&self, name: &ClientName) -> Result<JoinRequest, ScenarioError> {
+    /// What the client `name`, a PLC or one that comes over OPC UA, reads and writes, and how often.
+    pub(super) fn request(&self, name: &ClientName) -> Result<JoinRequest, ScenarioError> {
         let signals = self.plan().signals();
         let port = |name: &SignalName, ty| Port { name: name.clone(), ty };
         match self.file().clients.get(name).map(toml::Spanned::get_ref) {
@@ -100,7 +100,7 @@ impl Scenario {
                 let plc = SoftPlcClient::new(name.clone(), &application, &plan, &bindings, self.file().step);
                 Ok(plc.map_err(|error| self.wrong_client(name, error.to_string(), None))?.join())
             }
-            Some(ClientFile::Gateway { period, reads, .. }) => {
+            Some(ClientFile::Gateway { period, reads, .. } | ClientFile::OpcUa { period, reads, .. }) => {
                 let known = || signals.iter().map(|signal| signal.name.as_str());
                 let read = |wanted: &SignalName| {
                     let found = signals.iter().find(|signal| signal.name == *wanted);

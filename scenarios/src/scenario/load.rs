@@ -181,7 +181,10 @@ impl Scenario {
             match client.get_ref() {
                 ClientFile::Plant { scene, .. } => files.push(scene.into()),
                 ClientFile::SoftPlc { sources, .. } => files.extend(sources.iter().map(PathBuf::from)),
-                ClientFile::Operator { .. } | ClientFile::Gateway { .. } | ClientFile::External { .. } => {}
+                ClientFile::Operator { .. }
+                | ClientFile::Gateway { .. }
+                | ClientFile::OpcUa { .. }
+                | ClientFile::External { .. } => {}
             }
         }
         files.extend(self.applied().and(Some(case::FILE_NAME.into())));
@@ -271,7 +274,9 @@ fn place_of_plan_error(error: &PlanError, file: &ScenarioFile, text: &str) -> Op
 /// The period of the client `name` as far as the scenario says it.
 pub fn period_of(client: &ClientFile, step: TimeSpan) -> Option<TimeSpan> {
     match client {
-        ClientFile::Plant { period, .. } | ClientFile::Gateway { period, .. } => Some(period.unwrap_or(step)),
+        ClientFile::Plant { period, .. } | ClientFile::Gateway { period, .. } | ClientFile::OpcUa { period, .. } => {
+            Some(period.unwrap_or(step))
+        }
         ClientFile::Operator { .. } => Some(step),
         ClientFile::SoftPlc { .. } | ClientFile::External { .. } => None,
     }

@@ -111,6 +111,7 @@ impl Map {
                 // It writes whatever the scenario says that it writes.
                 ClientFile::Operator { .. } => ("operator", None),
                 ClientFile::Gateway { .. } => ("gateway", None),
+                ClientFile::OpcUa { .. } => ("opc-ua", None),
                 ClientFile::External { .. } => ("external", None),
             };
             clients.push(Member { name: name.to_string(), kind, known: ends.is_some() });

@@ -87,7 +87,7 @@ impl Scenario {
             let help = did_you_mean(name.as_str(), self.file().signals.keys().map(SignalName::as_str));
             return Err(catalogue.wrong(format!("the scenario has no signal `{name}`"), Some(signal.span()), help));
         };
-        if let Some(ClientFile::External { .. }) = self.client(declared.writer.as_str()) {
+        if let Some(ClientFile::External { .. } | ClientFile::OpcUa { .. }) = self.client(declared.writer.as_str()) {
             let message = format!("`{name}` is written by `{}`, an external client", declared.writer);
             let help = "only what this program runs itself can be held".to_owned();
             return Err(catalogue.wrong(message, Some(signal.span()), Some(help)));

@@ -1,0 +1,332 @@
+//! The session as all see it: its driver writes here, OPC UA clients read here and answer.
+//!
+//! One lock over all of it, held for moments: what is read in one request is of one moment.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::sync::{Arc, Condvar, Mutex, MutexGuard, OnceLock, PoisonError};
+use std::time::{Duration, Instant};
+
+use onescan_server::client::JoinRequest;
+use onescan_server::image::ImageLayout;
+use onescan_server::mailbox::Mailbox;
+use onescan_server::plan::SessionPlan;
+use onescan_server::record::Digest;
+use onescan_server::signal::PortLayout;
+use onescan_server::state::ServerState;
+use onescan_server::time::{StepCount, VirtualTime};
+use thiserror::Error;
+use tokio::sync::Notify;
+
+use super::instance::Item;
+use super::seat::{Answer, Holder, Refusal, Seat};
+
+/// Tells whether an OPC UA session is no more.
+pub type IsGone = Arc<dyn Fn() -> bool + Send + Sync>;
+
+/// Tells subscribers that these items may have changed.
+type Notifier = Box<dyn Fn(&[Item]) + Send + Sync>;
+
+/// How often somebody who waits looks whether the other is still there.
+const GLANCE: Duration = Duration::from_millis(50);
+
+/// What the session says of itself.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct View {
+    /// Its state.
+    pub state: ServerState,
+    /// Virtual time of the last committed step.
+    pub t_v: VirtualTime,
+    /// Steps committed.
+    pub steps: StepCount,
+    /// True while virtual time is held.
+    pub is_held: bool,
+    /// Hash over all steps so far.
+    pub digest: Option<Digest>,
+    /// How it ended, in words.
+    pub end: Option<String>,
+    /// All signals as of the last committed step.
+    pub image: Vec<u8>,
+}
+
+/// What is under the lock.
+pub struct Shared {
+    /// The session.
+    pub view: View,
+    /// The clients' places.
+    pub seats: Vec<Seat>,
+    /// Whether the holder of each is no more.
+    gone: Vec<Option<IsGone>>,
+    /// Operators, and whether they are no more.
+    operators: BTreeMap<Holder, IsGone>,
+    /// Items with subscribers.
+    watched: BTreeSet<Item>,
+}
+
+/// A session, its signals and its seats.
+pub struct Board {
+    plan: SessionPlan,
+    layout: ImageLayout,
+    mailbox: Mailbox,
+    shared: Mutex<Shared>,
+    /// An answer has come, or somebody has started.
+    answered: Condvar,
+    /// A grant was given, or the session has ended.
+    granted: Notify,
+    notifier: OnceLock<Notifier>,
+}
+
+/// Why a client gives no answer.
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
+pub enum SeatFault {
+    /// It said so.
+    #[error("{0}")]
+    Told(String),
+    /// Its OPC UA session was closed or has run out.
+    #[error("its OPC UA session has ended while grant {grant} waits for `Done`")]
+    Gone {
+        /// The grant.
+        grant: u64,
+    },
+    /// Nothing came.
+    #[error("grant {grant} is not done within {} s: its OPC UA client is dead, hangs or does not write `Done`", patience.as_secs_f64())]
+    Late {
+        /// The grant.
+        grant: u64,
+        /// How long it was waited for, wall clock.
+        patience: Duration,
+    },
+}
+
+impl Board {
+    /// The board of a session of `plan`, whose operators' wishes go to `mailbox`, with a seat for each of `clients`.
+    pub fn new(plan: SessionPlan, clients: &[JoinRequest], mailbox: Mailbox) -> Self {
+        let layout = ImageLayout::new(plan.signals());
+        let seat = |client: &JoinRequest| {
+            let layout = |ports: &[_]| PortLayout::new(ports.to_vec());
+            Seat::new(client.name.clone(), client.period, layout(&client.reads), layout(&client.writes))
+        };
+        let view = View {
+            state: ServerState::Start,
+            t_v: VirtualTime::ZERO,
+            steps: StepCount(0),
+            is_held: false,
+            digest: None,
+            end: None,
+            image: vec![0; layout.size()],
+        };
+        let shared = Shared {
+            view,
+            seats: clients.iter().map(seat).collect(),
+            gone: vec![None; clients.len()],
+            operators: BTreeMap::new(),
+            watched: BTreeSet::new(),
+        };
+        Self {
+            plan,
+            layout,
+            mailbox,
+            shared: Mutex::new(shared),
+            answered: Condvar::new(),
+            granted: Notify::new(),
+            notifier: OnceLock::new(),
+        }
+    }
+
+    /// The session's plan.
+    pub fn plan(&self) -> &SessionPlan {
+        &self.plan
+    }
+
+    /// Where signals lie in the image.
+    pub fn layout(&self) -> &ImageLayout {
+        &self.layout
+    }
+
+    /// Where wishes of operators go.
+    pub fn mailbox(&self) -> &Mailbox {
+        &self.mailbox
+    }
+
+    /// A look at all of it. A thread that panicked under the lock has left whole values.
+    pub fn lock(&self) -> MutexGuard<'_, Shared> {
+        self.shared.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Who is told of items that change; set once, by the server.
+    pub(super) fn set_notifier(&self, notifier: Notifier) {
+        // A second server of one session there is not.
+        let _ = self.notifier.set(notifier);
+    }
+
+    /// Somebody subscribes to an item.
+    pub(super) fn watch(&self, item: Item) {
+        self.lock().watched.insert(item);
+    }
+
+    /// Changes something and tells subscribers of those `items` that they watch.
+    fn publish(&self, items: &[Item], change: impl FnOnce(&mut Shared)) {
+        let watched: Vec<Item> = {
+            let mut shared = self.lock();
+            change(&mut shared);
+            if shared.watched.is_empty() {
+                Vec::new()
+            } else {
+                items.iter().copied().filter(|item| shared.watched.contains(item)).collect()
+            }
+        };
+        self.tell(&watched);
+    }
+
+    fn tell(&self, items: &[Item]) {
+        if let (Some(notify), false) = (self.notifier.get(), items.is_empty()) {
+            notify(items);
+        }
+    }
+
+    /// Changes what the session says of itself.
+    pub fn show(&self, change: impl FnOnce(&mut View)) {
+        let signals = self.layout.signals().map(|signal| Item::Signal(signal.index()));
+        let items: Vec<Item> = if self.lock().watched.is_empty() {
+            Vec::new()
+        } else {
+            super::instance::session_items().into_iter().chain(signals).collect()
+        };
+        self.publish(&items, |shared| change(&mut shared.view));
+    }
+
+    /// Asks the client of `seat` for its initial state.
+    pub fn begin(&self, seat: usize) {
+        self.publish(&Item::grant(seat), |shared| {
+            shared.view.state = ServerState::InitialWrite;
+            shared.seats[seat].begin();
+        });
+        self.granted.notify_waiters();
+    }
+
+    /// Grants the client of `seat` a turn.
+    pub fn grant(&self, seat: usize, t_v: VirtualTime, inputs: &[u8]) {
+        self.publish(&Item::grant(seat), |shared| {
+            shared.view.state = ServerState::PreWrite;
+            shared.seats[seat].grant(t_v, inputs);
+        });
+        self.granted.notify_waiters();
+    }
+
+    /// Does something to a seat in the name of an OPC UA client.
+    ///
+    /// # Errors
+    /// The seat refuses.
+    pub fn attempt<T>(&self, seat: usize, what: impl FnOnce(&mut Seat) -> Result<T, Refusal>) -> Result<T, Refusal> {
+        let done = what(&mut self.lock().seats[seat]);
+        self.answered.notify_all();
+        done
+    }
+
+    /// An OPC UA client is ready to start as the client of `seat`.
+    ///
+    /// # Errors
+    /// Somebody else is in.
+    pub fn start(&self, seat: usize, who: Holder, is_gone: IsGone) -> Result<(), Refusal> {
+        let mut shared = self.lock();
+        let before = shared.gone[seat].clone();
+        shared.seats[seat].start(who, |_| before.as_ref().is_some_and(|is_gone| is_gone()))?;
+        shared.gone[seat] = Some(is_gone);
+        drop(shared);
+        self.answered.notify_all();
+        Ok(())
+    }
+
+    /// Somebody operates the session: it is told of the end, too.
+    pub(super) fn operated_by(&self, who: Holder, is_gone: IsGone) {
+        self.lock().operators.insert(who, is_gone);
+    }
+
+    /// The names of clients that have not started.
+    pub fn missing(&self) -> Vec<String> {
+        let shared = self.lock();
+        shared.seats.iter().filter(|seat| seat.holder().is_none()).map(|seat| format!("`{}`", seat.name)).collect()
+    }
+
+    /// Waits a moment for somebody to start.
+    pub fn wait_for_start(&self, moment: Duration) {
+        let shared = self.lock();
+        let is_missing = |shared: &mut Shared| shared.seats.iter().any(|seat| seat.holder().is_none());
+        let _unused = self.answered.wait_timeout_while(shared, moment, is_missing);
+    }
+
+    /// The answer to the grant of `seat`, for which is waited `patience` at most.
+    ///
+    /// # Errors
+    /// There is none, and why.
+    pub fn wait_for_answer(&self, seat: usize, patience: Duration) -> Result<Answer, SeatFault> {
+        let deadline = Instant::now() + patience;
+        let mut shared = self.lock();
+        loop {
+            if let Some(answer) = shared.seats[seat].take_answer() {
+                return Ok(answer);
+            }
+            let grant = shared.seats[seat].grant_number();
+            if let Some(why) = shared.seats[seat].fault() {
+                return Err(SeatFault::Told(why.to_owned()));
+            }
+            let gone = shared.gone[seat].clone();
+            if gone.is_some_and(|is_gone| is_gone()) {
+                return Err(SeatFault::Gone { grant });
+            }
+            let now = Instant::now();
+            if now >= deadline {
+                return Err(SeatFault::Late { grant, patience });
+            }
+            let waited = self.answered.wait_timeout(shared, GLANCE.min(deadline - now));
+            shared = waited.unwrap_or_else(PoisonError::into_inner).0;
+        }
+    }
+
+    /// Waits until `seat` has a grant to be answered, or the session is over; false if `patience` was not enough.
+    pub async fn wait_for_grant(&self, seat: usize, patience: Duration) -> bool {
+        let wait = async {
+            loop {
+                let granted = self.granted.notified();
+                tokio::pin!(granted);
+                // From here on a grant is not missed.
+                granted.as_mut().enable();
+                {
+                    let shared = self.lock();
+                    if shared.seats[seat].is_granted() || shared.seats[seat].is_ended() {
+                        return;
+                    }
+                }
+                granted.await;
+            }
+        };
+        tokio::time::timeout(patience, wait).await.is_ok()
+    }
+
+    /// The session is over; `text` says how.
+    pub fn end(&self, text: &str) {
+        let seats = self.lock().seats.len();
+        let mut items: Vec<Item> = super::instance::session_items();
+        items.extend((0..seats).flat_map(Item::grant));
+        self.publish(&items, |shared| {
+            shared.view.end.get_or_insert_with(|| text.to_owned());
+            shared.seats.iter_mut().for_each(Seat::end);
+        });
+        self.granted.notify_waiters();
+    }
+
+    /// Waits until all who took part or operated have seen the end and closed their sessions, `patience` at most.
+    pub fn farewell(&self, patience: Duration) {
+        let deadline = Instant::now() + patience;
+        let mut shared = self.lock();
+        loop {
+            let mut known = shared.gone.iter().flatten().chain(shared.operators.values());
+            let waits = known.any(|is_gone| !is_gone());
+            let now = Instant::now();
+            if !waits || now >= deadline {
+                return;
+            }
+            let waited = self.answered.wait_timeout(shared, GLANCE.min(deadline - now));
+            shared = waited.unwrap_or_else(PoisonError::into_inner).0;
+        }
+    }
+}

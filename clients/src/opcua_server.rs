@@ -1,0 +1,137 @@
+//! An OPC UA server: endpoints, users, certificates, and the thread that it runs on. What it serves is others' business.
+
+use std::net::SocketAddr;
+use std::path::PathBuf;
+use std::thread::JoinHandle;
+
+use opcua::crypto::SecurityPolicy;
+use opcua::server::node_manager::NodeManagerBuilder;
+use opcua::server::{ANONYMOUS_USER_TOKEN_ID, ServerBuilder, ServerHandle, ServerUserToken};
+use opcua::types::MessageSecurityMode;
+use thiserror::Error;
+use tokio::net::TcpListener;
+
+use crate::gateway::opcua::pki::Pki;
+
+/// Shortest publishing interval, and how often subscriptions are looked at.
+const SUBSCRIPTIONS_MS: u64 = 1;
+
+/// Who is let in.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Access {
+    /// User and password; without them anybody is let in.
+    pub user: Option<(String, String)>,
+    /// The folder with the server's certificates and those of clients it trusts; with it there are no endpoints
+    /// without security.
+    pub pki: Option<PathBuf>,
+    /// Trust any client's certificate.
+    pub trust_clients: bool,
+}
+
+/// Why there is no server.
+#[derive(Debug, Error)]
+pub enum ServeError {
+    /// The address, or the folder for certificates.
+    #[error(transparent)]
+    Io(#[from] std::io::Error),
+    /// What the server is to be does not go together.
+    #[error("the OPC UA server cannot be set up: {0}")]
+    Setup(String),
+}
+
+/// A server that runs until this is dropped.
+pub struct Running {
+    address: SocketAddr,
+    handle: ServerHandle,
+    thread: Option<JoinHandle<()>>,
+}
+
+impl Running {
+    /// Where it listens.
+    pub fn address(&self) -> SocketAddr {
+        self.address
+    }
+}
+
+impl Drop for Running {
+    fn drop(&mut self) {
+        self.handle.cancel();
+        if let Some(thread) = self.thread.take() {
+            // A panic in there has been told by the thread itself.
+            let _ = thread.join();
+        }
+    }
+}
+
+/// A server of the nodes of `manager`, which `fill` may add to before anybody is let in.
+///
+/// # Errors
+/// The address cannot be listened on, or the server cannot be set up.
+pub(crate) fn start(
+    address: SocketAddr,
+    name: &str,
+    access: &Access,
+    manager: impl NodeManagerBuilder + 'static,
+    fill: impl FnOnce(&ServerHandle) -> Result<(), ServeError>,
+) -> Result<Running, ServeError> {
+    let listener = std::net::TcpListener::bind(address)?;
+    let address = listener.local_addr()?;
+    listener.set_nonblocking(true)?;
+    let pki = Pki::new(access.pki.as_deref())?;
+    let runtime = tokio::runtime::Builder::new_multi_thread().worker_threads(1).enable_all().build()?;
+    let (server, handle) = {
+        let _inside = runtime.enter();
+        builder(address, name, access, &pki).with_node_manager(manager).build().map_err(ServeError::Setup)?
+    };
+    fill(&handle)?;
+    let thread = std::thread::spawn(move || {
+        let _kept = pki;
+        let ended = runtime.block_on(async {
+            let listener = TcpListener::from_std(listener).map_err(|error| error.to_string())?;
+            server.run_with(listener).await
+        });
+        if let Err(error) = ended {
+            tracing::warn!(%error, "the OPC UA server has ended");
+        }
+        // Connections of clients that stay are no reason to.
+        runtime.shutdown_background();
+    });
+    Ok(Running { address, handle, thread: Some(thread) })
+}
+
+fn builder(address: SocketAddr, name: &str, access: &Access, pki: &Pki) -> ServerBuilder {
+    let mut builder = ServerBuilder::new()
+        .application_name(format!("onescan {name}"))
+        .application_uri(format!("urn:onescan:{name}:application"))
+        .product_uri("urn:onescan")
+        .host(address.ip().to_string())
+        .port(address.port())
+        .discovery_urls(vec!["/".to_owned()])
+        .create_sample_keypair(access.pki.is_some() || access.user.is_some())
+        .pki_dir(pki.path())
+        .trust_client_certs(access.trust_clients)
+        .subscription_poll_interval_ms(SUBSCRIPTIONS_MS);
+    let limits = &mut builder.limits_mut().subscriptions;
+    limits.min_publishing_interval_ms = SUBSCRIPTIONS_MS as f64;
+    limits.min_sampling_interval_ms = 0.0;
+    let mut users = Vec::new();
+    match &access.user {
+        Some((user, password)) => {
+            builder = builder.add_user_token("user", ServerUserToken::user_pass(user, password));
+            users.push("user");
+        }
+        None => users.push(ANONYMOUS_USER_TOKEN_ID),
+    }
+    if access.pki.is_none() {
+        let none = ("/", SecurityPolicy::None, MessageSecurityMode::None, &users[..]);
+        return builder.add_endpoint("none", none);
+    }
+    let policies =
+        [SecurityPolicy::Basic256Sha256, SecurityPolicy::Aes128Sha256RsaOaep, SecurityPolicy::Aes256Sha256RsaPss];
+    for policy in policies {
+        for mode in [MessageSecurityMode::Sign, MessageSecurityMode::SignAndEncrypt] {
+            builder = builder.add_endpoint(format!("{policy}-{mode}"), ("/", policy, mode, &users[..]));
+        }
+    }
+    builder
+}

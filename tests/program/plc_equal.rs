@@ -1,0 +1,117 @@
+//! Ten runs with `onescan plc` in a process of its own, over each link, on an idle machine and on a loaded one: every
+//! digest is that of the run in one process. Without the handshake none is.
+
+use std::path::Path;
+
+use crate::load::under_load;
+use crate::plc::Plc;
+use crate::typed::{Said, copied, digests, typed};
+
+const RUNS: usize = 10;
+
+/// The digests of runs in `folder` up to `until`.
+fn run(folder: &Path, until: &str, words: &[&str]) -> (Vec<String>, Said) {
+    let said = typed(folder, &[&["run", ".", "--format", "json", "--until", until], words].concat());
+    let reports: Vec<_> = said.out.lines().map(|line| serde_json::from_str(line).expect("JSON lines")).collect();
+    (digests(&reports), said)
+}
+
+/// A scenario of the project whose PLC is one that can be started over its link.
+fn prepared(name: &str) -> tempfile::TempDir {
+    let folder = copied(name);
+    let path = folder.path().join("scenario.toml");
+    let text = std::fs::read_to_string(&path).unwrap();
+    if !text.contains("[clients.plc.gateway]") {
+        let link = "\n[clients.plc.gateway]\nurl = \"tcp://127.0.0.1:2000\"\nsystem_words = true\n";
+        std::fs::write(&path, text + link).unwrap();
+    }
+    folder
+}
+
+/// Until when a run goes: on an idle machine far enough for something to happen, on a loaded one shorter.
+struct Until {
+    idle: &'static str,
+    loaded: &'static str,
+}
+
+const SHEAR: Until = Until { idle: "1s", loaded: "300ms" };
+const ROBOT: Until = Until { idle: "1s", loaded: "300ms" };
+
+fn every_run_is_that_in_one_process(scenario: &str, until: &Until, scheme: &str) {
+    let folder = prepared(scenario);
+    let plc = Plc::start(folder.path(), &[]);
+    let (gateway, runs) = (plc.gateway(scheme), RUNS.to_string());
+    let words = ["--runs", &runs, "--gateway", &gateway];
+    let one = |until: &str| run(folder.path(), until, &[]).0.remove(0);
+    let (all, said) = run(folder.path(), until.idle, &words);
+    assert_eq!(all, vec![one(until.idle); RUNS], "{said:?}");
+    let (all, said) = under_load(|| run(folder.path(), until.loaded, &words));
+    assert_eq!(all, vec![one(until.loaded); RUNS], "{said:?}");
+}
+
+#[test]
+fn the_shear_over_raw_tcp() {
+    every_run_is_that_in_one_process("shear", &SHEAR, "tcp://");
+}
+
+#[test]
+fn the_shear_over_modbus() {
+    every_run_is_that_in_one_process("shear", &SHEAR, "modbus://");
+}
+
+#[test]
+fn the_shear_over_opc_ua() {
+    every_run_is_that_in_one_process("shear", &SHEAR, "opc.tcp://");
+}
+
+#[test]
+fn the_shear_over_ads() {
+    every_run_is_that_in_one_process("shear", &SHEAR, "ads://");
+}
+
+#[test]
+fn the_gantry_robot_over_raw_tcp() {
+    every_run_is_that_in_one_process("gantry-robot", &ROBOT, "tcp://");
+}
+
+#[test]
+fn the_gantry_robot_over_modbus() {
+    every_run_is_that_in_one_process("gantry-robot", &ROBOT, "modbus://");
+}
+
+#[test]
+fn the_gantry_robot_over_opc_ua() {
+    every_run_is_that_in_one_process("gantry-robot", &ROBOT, "opc.tcp://");
+}
+
+#[test]
+fn the_gantry_robot_over_ads() {
+    every_run_is_that_in_one_process("gantry-robot", &ROBOT, "ads://");
+}
+
+/// The same processes and link without the handshake: no two runs are equal, and none is that in lockstep.
+fn without_the_handshake_runs_differ(scenario: &str, until: &str) {
+    let folder = prepared(scenario);
+    let plc = Plc::start(folder.path(), &["--mode", "freewheel"]);
+    let lockstep = run(folder.path(), until, &[]).0;
+    for scheme in ["tcp://", "modbus://", "opc.tcp://", "ads://"] {
+        let gateway = plc.gateway(scheme);
+        let words = ["--mode", "freewheel", "--runs", "2", "--gateway", &gateway];
+        let (mut all, said) = run(folder.path(), until, &words);
+        assert_eq!(all.len(), 2, "{said:?}");
+        all.extend_from_slice(&lockstep);
+        all.sort();
+        all.dedup();
+        assert_eq!(all.len(), 3, "{said:?}");
+    }
+}
+
+#[test]
+fn the_shear_without_the_handshake() {
+    without_the_handshake_runs_differ("shear", "2s");
+}
+
+#[test]
+fn the_gantry_robot_without_the_handshake() {
+    without_the_handshake_runs_differ("gantry-robot", "2s");
+}
