@@ -57,6 +57,30 @@ fn with_the_distortion_on_every_package_leaves_by_the_emergency_drop() {
     assert_eq!((dropped, lost, collisions), (19, 0, 0));
 }
 
+/// The chart of Fig. 5.4, drawn as PLCopen XML, is the program in Structured Text to the bit; so is the chart with the
+/// shim that is not simulated.
+#[test]
+fn the_drawn_chart_gives_the_same_digest() {
+    let machine = copied("filling-machine");
+    let digest = |file: &str| {
+        let (reports, said) = run(machine.path(), file, &["--until", "15s"]);
+        assert_eq!(said.code, Some(0), "{said:?}");
+        digests(&reports)
+    };
+    let text = digest(".");
+    assert_eq!(digest("sfc.toml"), text);
+    let drawn = machine.path().join("plc-sfc/machine.xml");
+    let before = std::fs::read(&drawn).unwrap();
+    let said = typed(machine.path(), &["instrument", "plc-sfc/machine.xml", "--in-place"]);
+    assert_eq!((said.code, said.err.as_str()), (Some(0), ""), "{said:?}");
+    let simulated = "<variable name=\"SDSP_Simulated\"><type><BOOL/></type><initialValue><simpleValue value=\"TRUE\"/>";
+    edit(machine.path(), "plc-sfc/machine.xml", simulated, &simulated.replace("TRUE", "FALSE"));
+    assert_eq!(digest("sfc.toml"), text);
+    let said = typed(machine.path(), &["instrument", "plc-sfc/machine.xml", "--in-place", "--remove"]);
+    assert_eq!(said.code, Some(0), "{said:?}");
+    assert_eq!(std::fs::read(&drawn).unwrap(), before);
+}
+
 /// What the emergency drop is for: without it a package meets the one that waits on the conveyor.
 #[test]
 fn without_the_emergency_drop_packages_crash() {

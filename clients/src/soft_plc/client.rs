@@ -218,5 +218,8 @@ fn client_fault(fault: &PlcFault) -> ClientFault {
     let at = &fault.at;
     let place = SourcePlace { file: at.file.clone(), line: at.line, column: at.column };
     let place = (!at.file.is_empty()).then_some(place);
-    ClientFault { message: format!("PLC fault: {} in {at}{}", fault.kind, fault.way()), place }
+    let way = fault.way();
+    // The place comes last, so that who called stands before what happened there.
+    let way = way.strip_prefix(", ").map(|way| format!(" ({way})")).unwrap_or_default();
+    ClientFault { message: format!("PLC fault: {} in {at}{way}", fault.kind), place }
 }

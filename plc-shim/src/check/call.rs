@@ -9,6 +9,7 @@ use super::convert::Operand;
 use super::enable;
 use super::function_form;
 use super::memory_function;
+use super::query::Query;
 use super::scope::{Body, Scope};
 use super::standard_function;
 use crate::diagnostic::{Code, Diagnostic, did_you_mean};
@@ -61,6 +62,9 @@ impl Body<'_, '_> {
         }
         if let Some(function) = PlaceFunction::find(&name.key()) {
             return self.place_call(function, name, call, span);
+        }
+        if let Some(query) = Query::find(&name.key()) {
+            return self.query(query, name, call, span);
         }
         if standard_function::exists(&name.key()) {
             return self.standard_call(name, &call.arguments, span);
@@ -216,8 +220,10 @@ impl Body<'_, '_> {
                 ast::Argument::Input(name, expr) => {
                     let accepts =
                         |variable: &Variable| matches!(variable.section, SectionKind::Input | SectionKind::InOut);
-                    sound &= self.has_parameter(scope, callee, name, accepts).is_some();
-                    (name.key(), name.span, expr)
+                    let found = self.has_parameter(scope, callee, name, accepts);
+                    sound &= found.is_some();
+                    let key = found.map_or_else(|| name.key(), |found| found.name.to_ascii_uppercase());
+                    (key, name.span, expr)
                 }
                 ast::Argument::Output { name, negated, target } => {
                     let output = |variable: &Variable| variable.section == SectionKind::Output;
@@ -246,7 +252,8 @@ impl Body<'_, '_> {
         name: &Ident,
         accepts: impl Fn(&Variable) -> bool,
     ) -> Option<Variable> {
-        let found = scope.own(&name.key()).filter(|variable| accepts(variable));
+        let known = |variable: &&Variable| accepts(variable) && self.checker.is_called_so(variable, name);
+        let found = scope.own(&name.key()).filter(known);
         if found.is_none() && !scope.is_broken(&name.key()) {
             let names = scope.variables.iter().filter(|variable| accepts(variable));
             let help = did_you_mean(&name.text, names.map(|variable| variable.name.as_str()));

@@ -15,7 +15,7 @@ use crate::syntax::ast::{self, BinaryOp, Call, Ident};
 use ElementaryType as E;
 
 /// Functions of vendors' controllers that have no equal here, by how their names begin, and what to use.
-const VENDOR_FUNCTIONS: [(&str, Code, &str); 16] = [
+const VENDOR_FUNCTIONS: [(&str, Code, &str); 14] = [
     ("S_PULSE", Code::ClassicTimer, "use TP"),
     ("S_PEXT", Code::ClassicTimer, "use TP"),
     ("S_ODTS", Code::ClassicTimer, "use TON"),
@@ -30,8 +30,6 @@ const VENDOR_FUNCTIONS: [(&str, Code, &str); 16] = [
     ("TIME_TCK", Code::VendorRuntime, "use a timer: it counts virtual time"),
     ("__NEW", Code::VendorRuntime, "declare the instance"),
     ("__DELETE", Code::VendorRuntime, "declare the instance"),
-    ("__QUERYINTERFACE", Code::VendorRuntime, "assign the interface"),
-    ("__QUERYPOINTER", Code::VendorRuntime, "use a reference"),
 ];
 
 /// Nanoseconds of the unit in which 32 bit dialects count TIME.

@@ -93,7 +93,7 @@ impl Body<'_, '_> {
     }
 
     /// The address that an operand stands for.
-    fn reference_value(&mut self, operand: Operand) -> Option<Expr> {
+    pub(super) fn reference_value(&mut self, operand: Operand) -> Option<Expr> {
         let address = ElementaryType::Udint.into();
         match operand {
             Operand::Integer { value: 0, span } => {

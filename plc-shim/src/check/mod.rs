@@ -16,9 +16,9 @@
 //! | [`reference`], [`address`], [`referred`] | references and pointers |
 //! | [`open_array`] | arrays that come with their bounds |
 //! | [`any_input`] | inputs of generic types |
-//! | [`call`], [`argument`], [`instance_call`], [`standard_function`], [`function_form`], [`conversion_function`], [`memory_function`] | calls |
+//! | [`call`], [`argument`], [`instance_call`], [`standard_function`], [`vendor_parameter`], [`function_form`], [`conversion_function`], [`memory_function`] | calls |
 //! | [`enable`], [`enable_error`] | EN and ENO |
-//! | [`text`], [`text_function`], [`text_conversion`] | character strings |
+//! | [`text`], [`character`], [`text_function`], [`text_conversion`] | character strings |
 //! | [`statement`], [`assignment`], [`edge`], [`build`] | statements |
 //! | [`chart`] | Sequential Function Charts |
 //! | [`jump`], [`wire`], [`instruction`] | what networks and lists of instructions have beside statements |
@@ -27,7 +27,7 @@
 //! | [`recursion`], [`dispatch`] | who calls whom, and what only a run decides |
 //! | [`namespace`] | what a name means where it stands |
 //! | [`class`], [`inheritance`] | bases, interfaces, members |
-//! | [`instance`], [`method_call`], [`property`], [`interface_value`] | `THIS`, methods, properties, interfaces |
+//! | [`instance`], [`method_call`], [`property`], [`interface_value`], [`query`] | `THIS`, methods, properties, interfaces |
 //!
 //! A unit, type or global variable is resolved when it is first needed; what is being resolved
 //! and needed again contains itself.
@@ -40,6 +40,7 @@ mod assignment;
 mod build;
 mod calendar;
 mod call;
+mod character;
 mod chart;
 mod class;
 mod configuration;
@@ -76,6 +77,7 @@ mod operator;
 mod part;
 mod place;
 mod property;
+mod query;
 mod recursion;
 mod reference;
 mod referred;
@@ -92,6 +94,7 @@ mod text_function;
 mod types;
 mod union;
 mod variables;
+mod vendor_parameter;
 mod wire;
 
 use std::collections::{BTreeMap, BTreeSet};

@@ -67,6 +67,16 @@ impl Body<'_, '_> {
                     return Some(Operand::Typed(value));
                 }
             }
+            ast::ExprKind::Index(base, indices) => {
+                let base = self.base_place(base)?;
+                if let (Type::Text(_), [index]) = (self.checker.types.get(base.place.ty), &indices[..]) {
+                    return self.character(base, index, expr.span);
+                }
+                let located = self.element(base, indices, expr.span)?;
+                let place = self.through_reference(located).place;
+                let ty = self.checker.types.of_value(place.ty);
+                return Some(Operand::Typed(Expr { kind: ExprKind::Load(place), ty, span: expr.span }));
+            }
             _ => {}
         }
         let place = self.place(expr)?.place;
@@ -125,7 +135,7 @@ impl Body<'_, '_> {
     }
 
     /// The place that has the part: a variable, or what a property or a call gives.
-    fn base_place(&mut self, base: &ast::Expr) -> Option<Located> {
+    pub(super) fn base_place(&mut self, base: &ast::Expr) -> Option<Located> {
         let value = match &base.kind {
             ast::ExprKind::Name(name) => self.own_property(name),
             ast::ExprKind::Member(object, name) => self.property_of(object, name),
@@ -283,7 +293,8 @@ impl Body<'_, '_> {
         if scope.is_broken(&name.key()) {
             return None;
         }
-        let Some(variable) = scope.find(&name.key()) else {
+        let found = scope.find(&name.key()).filter(|variable| self.checker.is_called_so(variable, name));
+        let Some(variable) = found else {
             if let Some(found) = self.not_a_variable(pou, name) {
                 return found;
             }
@@ -326,6 +337,9 @@ impl Body<'_, '_> {
         if matches!(self.checker.types.get(base.place.ty), Type::OpenArray { .. }) {
             return self.open_element(base, indices, span);
         }
+        if let (Type::Text(_), [index]) = (self.checker.types.get(base.place.ty), indices) {
+            return self.character_place(base, index, span)?;
+        }
         let Type::Array { dimensions, element } = self.checker.types.get(base.place.ty).clone() else {
             let message = format!("{} is not an array", self.type_name(base.place.ty));
             self.report(Diagnostic::error(Code::NotIndexable, span, message));
@@ -353,7 +367,7 @@ impl Body<'_, '_> {
         Some(Located { place, access: base.access })
     }
 
-    fn index_step(&mut self, bounds: Dimension, index: &ast::Expr, stride: u32) -> Option<Step> {
+    pub(super) fn index_step(&mut self, bounds: Dimension, index: &ast::Expr, stride: u32) -> Option<Step> {
         let operand = self.within(None, |body| body.expression(index))?;
         let index = self.settle(operand)?;
         let index = self.as_index(index);

@@ -135,6 +135,12 @@ impl Body<'_, '_> {
             }
             (Operand::Typed(expr), ReferenceKind::Pointer) => match *self.checker.types.get(expr.ty) {
                 Type::Address { .. } => Some(Expr { ty: wanted, ..expr }),
+                Type::Reference { kind: ReferenceKind::Pointer, target: other } if self.derives(other, target) => {
+                    Some(Expr { ty: wanted, ..expr })
+                }
+                Type::FunctionBlock { .. } if self.is_this_instance(&expr) && self.derives(expr.ty, target) => {
+                    pointer_to(expr, wanted)
+                }
                 Type::Reference { kind: ReferenceKind::Pointer, target: other } => {
                     let (target, other) = (self.type_name(target), self.type_name(other));
                     let message = format!("a pointer to {target} is made of one to {other}");
@@ -148,6 +154,13 @@ impl Body<'_, '_> {
             },
             (operand, _) => self.no_reference(&operand, wanted),
         }
+    }
+
+    /// True for `THIS`, which is a pointer with vendors.
+    fn is_this_instance(&self, expr: &Expr) -> bool {
+        let own = self.own_class().and_then(|class| self.checker.types.known_block(class));
+        let is_this = |place: &Place| place.storage == Storage::Instance(0) && place.steps.is_empty();
+        own == Some(expr.ty) && matches!(&expr.kind, ExprKind::Load(place) if is_this(place))
     }
 
     fn no_reference<T>(&mut self, operand: &Operand, wanted: TypeId) -> Option<T> {
@@ -321,4 +334,10 @@ impl Body<'_, '_> {
         };
         Some(Statement { kind: StatementKind::Assign(place, value), span })
     }
+}
+
+/// The address of what lies at a place.
+fn pointer_to(value: Expr, wanted: TypeId) -> Option<Expr> {
+    let ExprKind::Load(place) = value.kind else { return None };
+    Some(Expr { kind: ExprKind::Address(place), ty: wanted, span: value.span })
 }

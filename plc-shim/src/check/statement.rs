@@ -197,6 +197,9 @@ impl Body<'_, '_> {
         if let Some(set) = self.property_assignment(target, value, span) {
             return set;
         }
+        if let Some(assigned) = self.character_assignment(target, value, span) {
+            return assigned;
+        }
         if let Some(name) = self.new_wire(target) {
             return self.first_value(name, value, span);
         }

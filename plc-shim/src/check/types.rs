@@ -24,6 +24,9 @@ pub(super) enum Need {
     Reference,
 }
 
+/// The namespace of what vendors' compilers declare.
+const SYSTEM: &str = "__SYSTEM";
+
 /// Vendors' names of the types that are as wide as a pointer.
 fn of_pointer_width(key: &str) -> Option<ElementaryType> {
     Some(match key {
@@ -295,7 +298,9 @@ impl<'a> Body<'_, 'a> {
             next += 1;
         }
         let ty = self.checker.types.enumeration(name.to_owned(), base, values.clone());
-        for (name, value) in values {
+        // Values of vendors' system are known by their type only: projects have values of the same names.
+        let known = if self.checker.home.namespace == SYSTEM { Vec::new() } else { values };
+        for (name, value) in known {
             let known = self.checker.enumerators.entry(name.to_ascii_uppercase()).or_default();
             known.push(Enumerator { ty, value });
         }

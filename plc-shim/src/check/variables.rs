@@ -151,6 +151,8 @@ impl<'a> Checker<'a> {
             let ty = self.types.block(&ast.name.text, id);
             self.types.complete_block(ty, align, image.clone());
         }
+        let mut scope = scope;
+        self.add_vendor_names(id, &mut scope);
         let entry = &mut self.pous[index];
         entry.scope = Some(Arc::new(scope));
         entry.align = align;

@@ -210,6 +210,8 @@ features! {
     EnumerationsAsIntegers "an enumeration as an integer, or an integer as an enumeration",
     SignChange "an integer as one of the other sign, without conversion",
     LossyReals "a REAL from an LREAL or a wide integer, without conversion",
+    CharactersAsBytes "characters `s[0]` as BYTE, with a 0 behind the last",
+    VendorParameters "`RESET`, `LOAD` and the like of counters and bistables",
     GenericInputs "an input of type `ANY`, `ANY_NUM` and the like",
     IntegerShifts "a shift or rotation of an integer",
     ClockFunctions "`TIME()`, `LTIME()`",

@@ -44,6 +44,12 @@ pub const FEATURES: &[FeatureRow] = &[
     row(Feature::EnumerationsAsIntegers, &[Codesys, TwinCat], "CODESYS and TwinCAT: enumerations that are not strict"),
     row(Feature::SignChange, &[Codesys, TwinCat], "CODESYS and TwinCAT: implicit conversion, a warning only"),
     row(Feature::LossyReals, &[Codesys, TwinCat], "CODESYS and TwinCAT: implicit conversion, a warning only"),
+    row(
+        Feature::CharactersAsBytes,
+        &[Codesys, TwinCat],
+        "CODESYS and TwinCAT: STRING, index access; else 3rd ed. 6.4.2.2",
+    ),
+    row(Feature::VendorParameters, &[Codesys, TwinCat], "CODESYS: library Standard; TwinCAT: Tc2_Standard"),
     row(Feature::GenericInputs, &[Codesys, TwinCat], "CODESYS and TwinCAT: data types ANY and ANY_<type>"),
     row(Feature::IntegerShifts, &[Codesys, TwinCat, SiemensScl], "CODESYS V2.3, TwinCAT 2: SHR; TIA Portal: SHR, ROR"),
     row(Feature::ClockFunctions, &[Codesys, TwinCat], "CODESYS and TwinCAT: operators TIME, LTIME"),

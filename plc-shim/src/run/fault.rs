@@ -55,10 +55,25 @@ impl fmt::Display for FaultSite {
 
 impl PlcFault {
     /// Who called whom: `, called by P1.axis (Axis) at axis.st:5, called by P1 (P) at main.st:9`;
-    /// nothing for a program.
+    /// nothing for a program. What called itself is told once, with how often, and of a long way its two ends.
     pub fn way(&self) -> String {
-        let site = |site: &FaultSite| format!(", called by {site} at {}:{}", site.file, site.line);
-        self.callers.iter().map(site).collect()
+        let mut lines: Vec<(String, usize)> = Vec::new();
+        for site in &self.callers {
+            let line = format!(", called by {site} at {}:{}", site.file, site.line);
+            match lines.last_mut() {
+                Some((last, times)) if *last == line => *times += 1,
+                _ => lines.push((line, 1)),
+            }
+        }
+        if lines.len() > 2 * SHOWN_CALLERS {
+            let left_out: usize = lines.drain(SHOWN_CALLERS..lines.len() - SHOWN_CALLERS).map(|(_, times)| times).sum();
+            lines.insert(SHOWN_CALLERS, (format!(", {left_out} more"), 1));
+        }
+        let shown = lines.into_iter().map(|(line, times)| match times {
+            1 => line,
+            times => format!("{line} ({times} times)"),
+        });
+        shown.collect()
     }
 }
 
@@ -72,8 +87,10 @@ impl fmt::Display for PlcFault {
 
 impl std::error::Error for PlcFault {}
 
-/// Most callers that a fault reports, the innermost.
-const MAX_CALLERS: usize = 64;
+/// Most callers that a fault knows, the innermost.
+pub(super) const MAX_CALLERS: usize = 1024;
+/// How many a message shows of the innermost, and as many of the outermost, if the way is long.
+const SHOWN_CALLERS: usize = 16;
 
 /// What the trap means in the source.
 pub(super) fn explain(application: &Application, trapped: &Trapped, virtual_time: VirtualTime) -> PlcFault {

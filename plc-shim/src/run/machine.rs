@@ -1,7 +1,10 @@
 //! The compiled module with its memory, in wasmtime.
 
+use std::num::NonZeroUsize;
+
 use wasmtime::{Config, Engine, Global, Instance, Linker, Memory, Module, Store, Trap, TypedFunc, Val, WasmBacktrace};
 
+use super::fault::MAX_CALLERS;
 use super::plan::RunError;
 use super::text::link::{HostState, link};
 use super::trace::{self, Trace};
@@ -42,6 +45,7 @@ pub(super) struct Trapped {
 
 fn engine() -> Result<Engine, String> {
     let mut config = Config::new();
+    config.wasm_backtrace_max_frames(NonZeroUsize::new(MAX_CALLERS));
     // The module counts its instructions itself and makes every NaN that it stores the same one:
     // both are needed at few places only.
     config.cranelift_nan_canonicalization(false);

@@ -109,4 +109,6 @@ fn a_project_s_own_declarations_go_before() {
         s := 'x'; a.a := 1; p := 851; TYPE_INT := 3; END_PROGRAM";
     let rig = Rig::in_dialect(Dialect::TwinCat, text);
     assert_eq!(rig.variable("P.s").type_name, "STRING[10]");
+    let values = "TYPE Kind : (TYPE_BOOL, TYPE_REAL); END_TYPE (* not ANY *) PROGRAM P VAR k : Kind; END_VAR k := TYPE_REAL; END_PROGRAM";
+    assert_eq!(Rig::in_dialect(Dialect::TwinCat, values).variable("P.k").type_name, "Kind");
 }

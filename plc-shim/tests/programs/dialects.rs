@@ -49,6 +49,10 @@ fn use_of(feature: Feature) -> &'static str {
         }
         Feature::SignChange => "PROGRAM P VAR u : UINT; i : INT; END_VAR i := u; END_PROGRAM",
         Feature::LossyReals => "PROGRAM P VAR r : REAL; l : LREAL; d : DINT; END_VAR r := l; r := d; END_PROGRAM",
+        Feature::CharactersAsBytes => "PROGRAM P VAR s : STRING; b : BYTE; END_VAR b := s[0]; s[0] := b; END_PROGRAM",
+        Feature::VendorParameters => {
+            "PROGRAM P VAR c : CTU; b : BOOL; END_VAR c(CU := b, RESET := b, PV := 3); c.RESET := TRUE; END_PROGRAM"
+        }
         Feature::GenericInputs => {
             "FUNCTION F : DINT VAR_INPUT v : ANY; END_VAR F := v.diSize; END_FUNCTION
              PROGRAM P VAR a : INT; n : DINT; END_VAR n := F(a); END_PROGRAM"
@@ -82,7 +86,9 @@ fn every_construct_is_for_its_dialects_alone() {
 }
 
 /// Constructs whose absence is no syntax of its own: another error says it.
-const TOLD_OTHERWISE: [Feature; 12] = [
+const TOLD_OTHERWISE: [Feature; 14] = [
+    Feature::VendorParameters,
+    Feature::CharactersAsBytes,
     Feature::IntegerShifts,
     Feature::FleetingInstances,
     Feature::LossyReals,
@@ -127,6 +133,27 @@ fn shifts_of_signed_integers_keep_their_width_and_to_the_right_their_sign() {
         rig.scan().expect("no fault");
         let found: Vec<_> = (1..=11).map(|at| rig.int(&format!("P.r{at}"))).collect();
         assert_eq!(found, [-25, 56, -55, -1, -16384, -1, -1, -2, -1, 100, 12], "{dialect}");
+    }
+}
+
+#[test]
+fn counters_and_bistables_have_their_vendors_names() {
+    let text = "PROGRAM P VAR u : CTU; d : CTD; ud : CTUD; s : SR; r : RS; l : CTUD_LINT; t : BOOL := TRUE; END_VAR
+        u(CU := t, RESET := FALSE, PV := 2); d(CD := FALSE, LOAD := t, PV := 7); ud(CU := FALSE, CD := FALSE, RESET := FALSE, LOAD := t, PV := 5);
+        s(SET1 := t, RESET := t); r(SET := t, RESET1 := t); l.LOAD := TRUE; l(CU := FALSE, CD := FALSE, PV := 9); END_PROGRAM";
+    for dialect in [Dialect::Codesys, Dialect::TwinCat] {
+        let mut rig = Rig::in_dialect(dialect, text);
+        rig.scan().expect("no fault");
+        assert_eq!(
+            ["u.CV", "d.CV", "ud.CV", "l.CV"].map(|name| rig.int(&format!("P.{name}"))),
+            [1, 7, 5, 9],
+            "{dialect}"
+        );
+        assert_eq!((rig.bool("P.s.Q1"), rig.bool("P.r.Q1")), (true, false));
+        Rig::in_dialect(
+            dialect,
+            &text.replace("RESET", "R").replace("LOAD", "LD").replace("SET1", "S1").replace("SET :=", "S :="),
+        );
     }
 }
 

@@ -2,6 +2,7 @@
 
 mod any_inputs;
 mod bit_strings;
+mod characters;
 mod configurations;
 mod conversions;
 mod coverage;
@@ -13,6 +14,7 @@ mod dialects;
 mod direct_addresses;
 mod dtl;
 mod expressions;
+mod fault_forms;
 mod faults;
 mod fbd;
 mod field;

@@ -16,6 +16,27 @@ fn fault(text: &str) -> String {
 }
 
 #[test]
+fn this_is_a_pointer_to_the_own_instance_and_its_bases() {
+    let text = "FUNCTION_BLOCK Base VAR n : INT; p : POINTER TO Base; END_VAR
+        METHOD Add VAR_INPUT by1 : INT; END_VAR n := n + by1; END_METHOD
+        METHOD Me : POINTER TO Base Me := THIS; END_METHOD
+        METHOD Keep p := THIS; END_METHOD END_FUNCTION_BLOCK
+        FUNCTION_BLOCK Derived EXTENDS Base VAR q : POINTER TO Base; d : POINTER TO Derived; END_VAR
+        METHOD Own q := THIS; d := THIS; q := d; q^.Add(10); d^.Add(100); END_METHOD END_FUNCTION_BLOCK
+        PROGRAM P VAR b : Base; d : Derived; p : POINTER TO Base; END_VAR
+        b.Keep(); p := b.Me(); p^.Add(1); d.Own(); END_PROGRAM";
+    for dialect in [onescan_plc_shim::Dialect::Codesys, onescan_plc_shim::Dialect::TwinCat] {
+        let mut rig = Rig::in_dialect(dialect, text);
+        rig.scan().expect("no fault");
+        assert_eq!((rig.int("P.b.n"), rig.int("P.d.n")), (1, 110), "{dialect}");
+        let found = crate::rig::findings_in(dialect, &text.replace("d := THIS; q := d;", "d := THIS; d := q;"));
+        assert!(found.to_string().contains("R0906"), "{found}");
+        let found = crate::rig::findings_in(dialect, &text.replace("p := b.Me();", "p := b;"));
+        assert!(found.to_string().contains("T0201"), "{found}");
+    }
+}
+
+#[test]
 fn iec3_6_4_4_10_table_12_references_are_declared_assigned_and_followed() {
     let rig = run("TYPE R : REF_TO INT; S : STRUCT a, b : INT; END_STRUCT END_TYPE
         VAR_GLOBAL g : INT := 40; r0 : R := REF(g); END_VAR
