@@ -24,6 +24,7 @@ mod operator;
 mod plant;
 mod plc;
 mod plc_ads;
+mod plc_chart;
 mod plc_equal;
 mod plc_faults;
 mod plc_peers;

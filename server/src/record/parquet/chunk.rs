@@ -13,6 +13,16 @@ use super::encode::Encoded;
 
 /// Pages shorter than this are not worth compressing.
 const COMPRESS_MIN: usize = 256;
+/// Bytes of a long page that are tried first: noise and digests do not shrink.
+const TRIED: usize = 4096;
+
+/// The bytes compressed; nothing if that saves none, or less than an eighth of the first part of many.
+fn shrunk(bytes: &[u8], snappy: &mut snap::raw::Encoder) -> Option<Vec<u8>> {
+    if let Some(tried) = bytes.get(..TRIED).filter(|_| bytes.len() > 4 * TRIED) {
+        snappy.compress_vec(tried).ok().filter(|shorter| shorter.len() < TRIED / 8 * 7)?;
+    }
+    snappy.compress_vec(bytes).ok().filter(|shorter| shorter.len() < bytes.len())
+}
 
 /// A chunk's bytes and what the footer says of it.
 pub(super) fn chunk(
@@ -22,9 +32,7 @@ pub(super) fn chunk(
     snappy: &mut snap::raw::Encoder,
 ) -> Result<(Bytes, ColumnCloseResult)> {
     let compressed = match (&encoded.dictionary, encoded.encoding) {
-        (None, Encoding::PLAIN) if encoded.data.len() >= COMPRESS_MIN => {
-            snappy.compress_vec(&encoded.data).ok().filter(|bytes| bytes.len() < encoded.data.len())
-        }
+        (None, Encoding::PLAIN) if encoded.data.len() >= COMPRESS_MIN => shrunk(&encoded.data, snappy),
         _ => None,
     };
     let codec = if compressed.is_some() { Compression::SNAPPY } else { Compression::UNCOMPRESSED };

@@ -30,6 +30,14 @@ pub(super) enum Values<'v> {
     All(&'v [u8]),
 }
 
+impl<'v> Values<'v> {
+    /// The bytes of the values, or of the one.
+    pub(super) fn bytes(self) -> &'v [u8] {
+        let (Self::One(bytes) | Self::All(bytes)) = self;
+        bytes
+    }
+}
+
 impl Columns {
     /// Finds what changes in a block.
     pub(super) fn begin(&mut self, block: &Block) {
