@@ -55,7 +55,9 @@ fn projects() -> Vec<(String, String)> {
             } else if path.extension().is_some_and(|extension| extension == "xml") {
                 let name = path.file_stem().unwrap().to_string_lossy().into_owned();
                 // CODESYS writes version 2.0, of which what is used here is the same.
-                found.push((name, read_to_string(path).unwrap().replace("/tc6_0200\"", "/tc6_0201\"")));
+                let text = read_to_string(path).unwrap().replace("/tc6_0200\"", "/tc6_0201\"");
+                // Reports are XML, too.
+                found.extend(text.contains("plcopen.org/xml/tc6").then_some((name, text)));
             }
         }
     }

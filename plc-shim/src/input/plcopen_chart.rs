@@ -56,7 +56,7 @@ impl Writer<'_> {
     /// What stands in a chart and would do something of its own: only what a condition needs has a meaning there.
     fn report_stray(&mut self, node: &Node<'_>) {
         let name = node.element.name.as_str();
-        if matches!(name, "coil" | "outVariable" | "jump" | "return" | "label" | "vendorElement") {
+        if matches!(name, "coil" | "outVariable" | "jump" | "return" | "label") {
             self.taken.unsupported(node.element.open.clone(), &format!("`<{name}>` beside the steps of a chart"));
         }
     }
