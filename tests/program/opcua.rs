@@ -123,12 +123,12 @@ fn what_is_wrong_is_refused_and_changes_nothing() {
 /// A client that is killed, that leaves, that says it cannot go on, or that does not come.
 #[test]
 fn a_client_that_fails_is_told_by_name() {
-    let words = ["--until", "1h", "--opcua-client", "plc", "--reply-timeout", "1s"];
-    for (how, told) in [
-        ("dies", "is not done within 1 s: its OPC UA client is dead, hangs or does not write `Done`"),
-        ("leaves", "its OPC UA session has ended while grant "),
-        ("fault", "client `plc` failed in state run at t_v = 0.200 s: the valve is stuck"),
+    for (how, patience, told) in [
+        ("dies", "3s", "is not done within 3 s: its OPC UA client is dead, hangs or does not write `Done`"),
+        ("leaves", "60s", "its OPC UA session has ended while grant "),
+        ("fault", "60s", "client `plc` failed in state run at t_v = 0.200 s: the valve is stuck"),
     ] {
+        let words = ["--until", "1h", "--opcua-client", "plc", "--reply-timeout", patience];
         let server = Server::start(&scenario("shear"), &words);
         let peer = begun("failing.py", &[&server.url, how]);
         let said = server.end();
