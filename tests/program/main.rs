@@ -37,6 +37,7 @@ mod reports;
 mod review;
 mod run;
 mod third_party;
+mod twincat;
 mod typed;
 mod unit_tests;
 mod venv;
