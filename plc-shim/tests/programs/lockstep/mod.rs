@@ -7,7 +7,6 @@ mod corpus;
 mod driver;
 mod equivalence;
 mod grants;
-mod overhead;
 mod plcopen_charts;
 mod plcopen_motion;
 mod plcopen_xml;
