@@ -28,6 +28,7 @@ const PARTS: [Part; 3] = [
             "HRESULT",
             "OTCID",
             "GUID",
+            "ST_LibVersion",
             "T_FILETIME",
             "TIMESTRUCT",
         ],
