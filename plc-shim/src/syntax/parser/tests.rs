@@ -139,6 +139,15 @@ fn one_caret_behind_the_object_is_part_of_its_name() {
 }
 
 #[test]
+fn a_part_is_printed_as_it_was_written_whatever_number_it_is() {
+    for written in ["x.3", "x.%B1", "x.1_0", "x.16#00"] {
+        let (text, diagnostics) = reparse(&format!("PROGRAM p y := {written}; END_PROGRAM"));
+        assert_eq!(diagnostics, []);
+        assert!(text.contains(&format!("y := {written};")), "{text}");
+    }
+}
+
+#[test]
 fn operators_bind_as_table_52_says() {
     let shape = |text: &str| {
         let parsed = parse(FILE, &format!("PROGRAM p x := {text}; END_PROGRAM"));

@@ -9,10 +9,15 @@ impl Printer {
             ExprKind::Literal(literal) => self.literal(literal),
             ExprKind::Name(name) => self.variable_name(name),
             ExprKind::DirectAddress(text) => self.word(text),
-            ExprKind::Member(base, name) | ExprKind::Part(base, name) => {
+            ExprKind::Member(base, name) => {
                 self.expression(base);
                 self.word(".");
                 self.name(name);
+            }
+            ExprKind::Part(base, part) => {
+                self.expression(base);
+                self.word(".");
+                self.word(&part.text);
             }
             ExprKind::Dereference(base) => {
                 self.expression(base);
