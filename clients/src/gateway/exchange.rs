@@ -124,13 +124,17 @@ impl Exchange {
         &self.from_plc
     }
 
-    /// Bytes of all points of a direction.
-    pub fn size(&self, direction: Direction) -> usize {
-        let points = match direction {
+    /// What goes one way, in order.
+    pub fn points(&self, direction: Direction) -> &[Point] {
+        match direction {
             Direction::ToPlc => &self.to_plc,
             Direction::FromPlc => &self.from_plc,
-        };
-        points.last().map_or(0, |point| point.range().end)
+        }
+    }
+
+    /// Bytes of all points of a direction.
+    pub fn size(&self, direction: Direction) -> usize {
+        self.points(direction).last().map_or(0, |point| point.range().end)
     }
 
     /// Where the inputs lie in what is written.

@@ -40,6 +40,11 @@ pub enum LinkFault {
 }
 
 impl LinkFault {
+    /// Something is asked of a link that is not connected.
+    pub(super) fn not_connected() -> Self {
+        Self::Lost("there is no connection".to_owned())
+    }
+
     /// True if another attempt may mend it.
     pub fn is_transient(&self) -> bool {
         matches!(self, Self::Unreachable { .. } | Self::Lost(_))

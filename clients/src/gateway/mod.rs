@@ -13,6 +13,7 @@
 //! | [`modbus`] | registers and coils over Modbus TCP |
 //! | [`opcua`] | variables of an OPC UA server |
 //! | [`s7`] | data blocks of an S7 |
+//! | `socket` | the TCP connection that several links begin with |
 //! | [`freewheel`] | a PLC that is not driven, to compare |
 //! | [`tcp`] | data blocks of declared layout over a raw TCP connection |
 //!
@@ -33,6 +34,7 @@ pub mod modbus;
 pub mod opcua;
 pub mod s7;
 pub mod settings;
+mod socket;
 pub mod tcp;
 
 pub use client::{Gateway, Patience};

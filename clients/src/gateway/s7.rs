@@ -13,10 +13,11 @@ use serde::Deserialize;
 use super::exchange::{Direction, Exchange};
 use super::fault::{LinkFault, MappingFault};
 use super::link::Link;
+use super::socket::{TIMEOUT, host_and_port};
 use super::tcp::Layouts;
 
-/// How long a connection may take to come about, and a request to be answered.
-const TIMEOUT_MS: u64 = 3_000;
+/// Where ISO-on-TCP listens.
+const ISO_PORT: u16 = 102;
 /// Bytes that the smallest PDU of an S7 (240) has room for.
 const SHORT_BYTES: usize = 200;
 /// Bytes of `SDSP_Grant`.
@@ -70,12 +71,10 @@ impl S7Link {
     }
 
     fn open(&self) -> Result<S7Client, S7Error> {
-        let (host, port) = match self.address.rsplit_once(':') {
-            Some((host, port)) => (host, port.parse().map_err(|_| S7Error::Other(format!("`{port}` is no port")))?),
-            None => (self.address.as_str(), 102),
-        };
+        let (host, port) = host_and_port(&self.address, ISO_PORT).map_err(S7Error::Other)?;
         let mut client = S7Client::new();
-        client.set_timeout(TIMEOUT_MS, TIMEOUT_MS, TIMEOUT_MS)?;
+        let ms = TIMEOUT.as_millis() as u64;
+        client.set_timeout(ms, ms, ms)?;
         client.set_connection_port(port)?;
         client.connect_rack_slot(host, self.options.rack, self.options.slot)?;
         Ok(client)
@@ -86,7 +85,7 @@ impl S7Link {
         self.block.clear();
         self.block.resize(size, 0);
         self.layouts.to_plc.encode(packed, &mut self.block);
-        let client = self.client.as_mut().ok_or_else(not_connected)?;
+        let client = self.client.as_mut().ok_or_else(LinkFault::not_connected)?;
         client.write_db(db, 0, &self.block).map_err(|error| fault(&error, db, size))
     }
 
@@ -94,15 +93,11 @@ impl S7Link {
         let (db, size) = (self.options.db_from_plc, self.layouts.from_plc.size());
         self.block.clear();
         self.block.resize(size, 0);
-        let client = self.client.as_mut().ok_or_else(not_connected)?;
+        let client = self.client.as_mut().ok_or_else(LinkFault::not_connected)?;
         client.read_db(db, 0, &mut self.block).map_err(|error| fault(&error, db, size))?;
         self.layouts.from_plc.decode(&self.block, packed);
         Ok(())
     }
-}
-
-fn not_connected() -> LinkFault {
-    LinkFault::Lost("there is no connection".to_owned())
 }
 
 fn fault(error: &S7Error, db: u16, size: usize) -> LinkFault {
@@ -135,7 +130,7 @@ impl Link for S7Link {
         let (db, size) = (self.options.db_to_plc, self.layouts.to_plc.size());
         self.block.clear();
         self.block.resize(size, 0);
-        let client = self.client.as_mut().ok_or_else(not_connected)?;
+        let client = self.client.as_mut().ok_or_else(LinkFault::not_connected)?;
         client.read_db(db, 0, &mut self.block).map_err(|error| fault(&error, db, size))
     }
 

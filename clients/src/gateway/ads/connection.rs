@@ -1,16 +1,14 @@
 //! Requests and their responses, one at a time.
 
 use std::io::Write;
-use std::net::{IpAddr, Ipv4Addr, TcpStream, ToSocketAddrs};
-use std::time::Duration;
+use std::net::{IpAddr, Ipv4Addr, TcpStream};
 
 use super::command::{self, meaning};
 use super::frame::{AmsAddress, Bytes, Frame, Kind, NetId};
 use super::options::Options;
 use crate::gateway::fault::LinkFault;
+use crate::gateway::socket::{TIMEOUT, connect, host_and_port};
 
-/// How long a connection may take to come about, and a request to be answered.
-const TIMEOUT: Duration = Duration::from_secs(3);
 /// Where AMS routers listen.
 const TCP_PORT: u16 = 48_898;
 
@@ -57,7 +55,8 @@ impl Connection {
     /// Connects to `address`, a host and perhaps a port.
     pub(super) fn open(address: &str, options: &Options) -> Result<Self, LinkFault> {
         let unreachable = |reason: String| LinkFault::Unreachable { url: format!("ads://{address}"), reason };
-        let stream = connected(address).map_err(unreachable)?;
+        let stream = host_and_port(address, TCP_PORT).and_then(connect).map_err(unreachable)?;
+        stream.set_read_timeout(Some(TIMEOUT)).map_err(|error| unreachable(error.to_string()))?;
         let ends = stream.local_addr().and_then(|local| Ok((local.ip(), stream.peer_addr()?.ip())));
         let (local, peer) = ends.map_err(|error| unreachable(error.to_string()))?;
         let target = AmsAddress { net_id: options.net_id.unwrap_or_else(|| usual(peer)), port: options.port };
@@ -157,25 +156,4 @@ fn usual(address: IpAddr) -> NetId {
         IpAddr::V4(address) => NetId::of(address),
         IpAddr::V6(address) => NetId::of(address.to_ipv4().unwrap_or(Ipv4Addr::LOCALHOST)),
     }
-}
-
-fn connected(address: &str) -> Result<TcpStream, String> {
-    let (host, port) = match address.rsplit_once(':') {
-        Some((host, port)) => (host, port.parse().map_err(|_| format!("`{port}` is no port"))?),
-        None => (address, TCP_PORT),
-    };
-    let mut reason = "no such host".to_owned();
-    for address in (host, port).to_socket_addrs().map_err(|error| error.to_string())? {
-        match TcpStream::connect_timeout(&address, TIMEOUT) {
-            Ok(stream) => {
-                let prepared = stream
-                    .set_nodelay(true)
-                    .and_then(|()| stream.set_write_timeout(Some(TIMEOUT)))
-                    .and_then(|()| stream.set_read_timeout(Some(TIMEOUT)));
-                return prepared.map(|()| stream).map_err(|error| error.to_string());
-            }
-            Err(error) => reason = error.to_string(),
-        }
-    }
-    Err(reason)
 }

@@ -24,23 +24,41 @@ pub struct AdsLink {
     options: Options,
     exchange: Exchange,
     connection: Option<Connection>,
-    /// Where the values of all points are, by direction and in their order.
-    to_plc: Vec<Symbol>,
-    from_plc: Vec<Symbol>,
+    /// The sum commands of a step, by direction.
+    writes: Vec<Sum>,
+    reads: Vec<Sum>,
+}
+
+/// A sum command for some points of a direction, one behind the other.
+struct Sum {
+    points: Vec<Point>,
+    /// Group, offset and length of each.
+    heads: Vec<u8>,
+    /// Bytes of all values.
+    size: u32,
+}
+
+impl Sum {
+    /// The commands for all points; more than one takes go in several.
+    fn of(points: &[Point], symbols: &[Symbol]) -> Vec<Self> {
+        let sum = |(points, symbols): (&[Point], &[Symbol])| Self {
+            points: points.to_vec(),
+            heads: symbols.iter().flat_map(|symbol| numbers(&[symbol.place.0, symbol.place.1, symbol.size])).collect(),
+            size: symbols.iter().map(|symbol| symbol.size).sum(),
+        };
+        points.chunks(SUM_MAX).zip(symbols.chunks(SUM_MAX)).map(sum).collect()
+    }
+
+    fn count(&self) -> u32 {
+        self.points.len() as u32
+    }
 }
 
 impl AdsLink {
     /// A link to `address`, a host and perhaps a port.
     pub fn new(address: &str, options: Options, exchange: &Exchange) -> Self {
         let exchange = exchange.clone();
-        Self {
-            address: address.to_owned(),
-            options,
-            exchange,
-            connection: None,
-            to_plc: Vec::new(),
-            from_plc: Vec::new(),
-        }
+        Self { address: address.to_owned(), options, exchange, connection: None, writes: Vec::new(), reads: Vec::new() }
     }
 
     /// Everything that the PLC has.
@@ -60,7 +78,7 @@ impl AdsLink {
     }
 
     fn connected(&mut self) -> Result<&mut Connection, LinkFault> {
-        self.connection.as_mut().ok_or_else(|| LinkFault::Lost("there is no connection".to_owned()))
+        self.connection.as_mut().ok_or_else(LinkFault::not_connected)
     }
 
     /// Connects and asks for the state, which a PLC without a route to this gateway does not tell.
@@ -102,13 +120,11 @@ impl AdsLink {
         Ok(symbols)
     }
 
-    /// The symbols of all points of a direction; each is there, has its type, and may be written if it must.
-    fn check(&mut self, direction: Direction) -> Result<Vec<Symbol>, LinkFault> {
-        let points = match direction {
-            Direction::ToPlc => self.exchange.to_plc(),
-            Direction::FromPlc => self.exchange.from_plc(),
-        };
-        points.to_vec().iter().map(|point| self.check_point(point, direction)).collect()
+    /// The sum commands of a direction; the symbol of each point is there, has its type, and may be written if it must.
+    fn check(&mut self, direction: Direction) -> Result<Vec<Sum>, LinkFault> {
+        let points = self.exchange.points(direction).to_vec();
+        let symbols: Result<Vec<_>, _> = points.iter().map(|point| self.check_point(point, direction)).collect();
+        Ok(Sum::of(&points, &symbols?))
     }
 
     fn check_point(&mut self, point: &Point, direction: Direction) -> Result<Symbol, LinkFault> {
@@ -146,11 +162,6 @@ impl AdsLink {
     }
 }
 
-/// What a sum command says of its parts: group, offset and length of each.
-fn heads(symbols: &[Symbol]) -> Vec<u8> {
-    symbols.iter().flat_map(|symbol| numbers(&[symbol.place.0, symbol.place.1, symbol.size])).collect()
-}
-
 /// The return codes of a sum command's parts, of which none may be an error.
 fn all_well(codes: &mut Bytes<'_>, points: &[Point], what: &str) -> Result<(), LinkFault> {
     for point in points {
@@ -174,38 +185,34 @@ impl Link for AdsLink {
             let reason = format!("the PLC is in {}; set it to RUN", state_name(state));
             return Err(LinkFault::Unreachable { url: format!("ads://{}", self.address), reason });
         }
-        self.to_plc = self.check(Direction::ToPlc)?;
-        self.from_plc = self.check(Direction::FromPlc)?;
+        self.writes = self.check(Direction::ToPlc)?;
+        self.reads = self.check(Direction::FromPlc)?;
         Ok(())
     }
 
-    /// More points than a sum command takes go in several, the grant in the last.
+    /// The grant is in the last command.
     fn write(&mut self, to_plc: &[u8]) -> Result<(), LinkFault> {
-        let connection = self.connection.as_mut();
-        let connection = connection.ok_or_else(|| LinkFault::Lost("there is no connection".to_owned()))?;
-        for (points, symbols) in self.exchange.to_plc().chunks(SUM_MAX).zip(self.to_plc.chunks(SUM_MAX)) {
-            let mut sum = heads(symbols);
-            for point in points {
-                Form::of(point.ty).put(&to_plc[point.range()], &mut sum);
+        let connection = self.connection.as_mut().ok_or_else(LinkFault::not_connected)?;
+        for sum in &self.writes {
+            let mut written = sum.heads.clone();
+            for point in &sum.points {
+                Form::of(point.ty).put(&to_plc[point.range()], &mut written);
             }
-            let count = points.len() as u32;
-            let codes = connection.read_write(command::SUM_WRITE, count, 4 * count, &sum);
-            all_well(&mut Bytes(&codes.map_err(Refusal::into_fault)?), points, "written")?;
+            let codes = connection.read_write(command::SUM_WRITE, sum.count(), 4 * sum.count(), &written);
+            all_well(&mut Bytes(&codes.map_err(Refusal::into_fault)?), &sum.points, "written")?;
         }
         Ok(())
     }
 
     fn read(&mut self, _patience: Duration, from_plc: &mut [u8]) -> Result<bool, LinkFault> {
-        let connection = self.connection.as_mut();
-        let connection = connection.ok_or_else(|| LinkFault::Lost("there is no connection".to_owned()))?;
-        for (points, symbols) in self.exchange.from_plc().chunks(SUM_MAX).zip(self.from_plc.chunks(SUM_MAX)) {
-            let count = points.len() as u32;
-            let length = 4 * count + symbols.iter().map(|symbol| symbol.size).sum::<u32>();
-            let answer = connection.read_write(command::SUM_READ, count, length, &heads(symbols));
+        let connection = self.connection.as_mut().ok_or_else(LinkFault::not_connected)?;
+        for sum in &self.reads {
+            let length = 4 * sum.count() + sum.size;
+            let answer = connection.read_write(command::SUM_READ, sum.count(), length, &sum.heads);
             let answer = answer.map_err(Refusal::into_fault)?;
             let mut answer = Bytes(&answer);
-            all_well(&mut answer, points, "read")?;
-            for point in points {
+            all_well(&mut answer, &sum.points, "read")?;
+            for point in &sum.points {
                 let form = Form::of(point.ty);
                 let value = answer.take(form.size());
                 if !value.is_some_and(|value| form.take(value, &mut from_plc[point.range()])) {

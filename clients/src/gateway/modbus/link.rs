@@ -13,9 +13,7 @@ use crate::gateway::byte_order::ByteOrder;
 use crate::gateway::exchange::Exchange;
 use crate::gateway::fault::{LinkFault, MappingFault};
 use crate::gateway::link::Link;
-
-/// How long a connection may take to come about, and a request to be answered.
-const TIMEOUT: Duration = Duration::from_secs(3);
+use crate::gateway::socket::TIMEOUT;
 
 /// Registers and coils over Modbus TCP.
 pub struct ModbusLink {

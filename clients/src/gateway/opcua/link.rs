@@ -44,7 +44,7 @@ impl OpcUaLink {
     }
 
     fn connected(&self) -> Result<&Connection, LinkFault> {
-        self.connection.as_ref().ok_or_else(|| LinkFault::Lost("there is no connection".to_owned()))
+        self.connection.as_ref().ok_or_else(LinkFault::not_connected)
     }
 
     /// The node of each point; that it is there, its type and access are checked.

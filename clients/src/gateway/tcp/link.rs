@@ -1,7 +1,7 @@
 //! The gateway's side: blocking, as a step waits for exactly one thing at a time.
 
 use std::io::{ErrorKind, Read, Write};
-use std::net::{TcpStream, ToSocketAddrs};
+use std::net::TcpStream;
 use std::time::Duration;
 
 use bytes::BytesMut;
@@ -11,9 +11,8 @@ use super::codec::BlockCodec;
 use super::layout::Layouts;
 use crate::gateway::fault::LinkFault;
 use crate::gateway::link::Link;
+use crate::gateway::socket;
 
-/// How long a connection may take to come about, and a block to be taken.
-const TIMEOUT: Duration = Duration::from_secs(3);
 /// Bytes asked for in one read.
 const READ_BYTES: usize = 16 * 1024;
 
@@ -45,28 +44,10 @@ impl TcpLink {
             patience: None,
         }
     }
-
-    fn open(&self) -> Result<TcpStream, String> {
-        let mut reason = "no such host".to_owned();
-        for address in self.address.to_socket_addrs().map_err(|error| error.to_string())? {
-            match TcpStream::connect_timeout(&address, TIMEOUT) {
-                Ok(stream) => {
-                    let prepared = stream.set_nodelay(true).and_then(|()| stream.set_write_timeout(Some(TIMEOUT)));
-                    return prepared.map(|()| stream).map_err(|error| error.to_string());
-                }
-                Err(error) => reason = error.to_string(),
-            }
-        }
-        Err(reason)
-    }
 }
 
 fn lost(error: &std::io::Error) -> LinkFault {
     LinkFault::Lost(error.to_string())
-}
-
-fn not_connected() -> LinkFault {
-    LinkFault::Lost("there is no connection".to_owned())
 }
 
 impl Link for TcpLink {
@@ -76,13 +57,14 @@ impl Link for TcpLink {
         self.incoming.clear();
         self.patience = None;
         let url = || format!("tcp://{}", self.address);
-        let stream = self.open().map_err(|reason| LinkFault::Unreachable { url: url(), reason })?;
+        let stream =
+            socket::connect(&self.address[..]).map_err(|reason| LinkFault::Unreachable { url: url(), reason })?;
         self.stream = Some(stream);
         Ok(())
     }
 
     fn write(&mut self, to_plc: &[u8]) -> Result<(), LinkFault> {
-        let stream = self.stream.as_mut().ok_or_else(not_connected)?;
+        let stream = self.stream.as_mut().ok_or_else(LinkFault::not_connected)?;
         self.layouts.to_plc.encode(to_plc, &mut self.block);
         self.outgoing.clear();
         self.codec.encode(&self.block, &mut self.outgoing).map_err(|error| lost(&error))?;
@@ -90,7 +72,7 @@ impl Link for TcpLink {
     }
 
     fn read(&mut self, patience: Duration, from_plc: &mut [u8]) -> Result<bool, LinkFault> {
-        let stream = self.stream.as_mut().ok_or_else(not_connected)?;
+        let stream = self.stream.as_mut().ok_or_else(LinkFault::not_connected)?;
         if self.patience != Some(patience) {
             stream.set_read_timeout(Some(patience)).map_err(|error| lost(&error))?;
             self.patience = Some(patience);

@@ -1,0 +1,46 @@
+//! Listening, and clients that come one by one, for servers with a thread a client.
+
+use std::net::{SocketAddr, TcpListener, TcpStream};
+use std::time::Duration;
+
+use super::controller::Controller;
+
+/// How often a thread that waits looks whether all is over.
+pub(super) const GLANCE: Duration = Duration::from_millis(100);
+/// A client that does not take what is sent to it for so long is left.
+const WRITE_TIMEOUT: Duration = Duration::from_secs(3);
+
+/// A listener that does not block, and the address that it got.
+///
+/// # Errors
+/// The address cannot be listened on.
+pub(crate) fn bind(address: SocketAddr) -> std::io::Result<(TcpListener, SocketAddr)> {
+    let listener = TcpListener::bind(address)?;
+    let address = listener.local_addr()?;
+    listener.set_nonblocking(true)?;
+    Ok((listener, address))
+}
+
+/// Hands each client to `attend`, until all is over.
+pub(super) fn accept(listener: &TcpListener, controller: &Controller, mut attend: impl FnMut(TcpStream, SocketAddr)) {
+    while !controller.is_over() {
+        match listener.accept() {
+            Ok((stream, peer)) => match prepare(&stream) {
+                Ok(()) => attend(stream, peer),
+                Err(error) => tracing::info!(%peer, %error, "a client has gone before it was served"),
+            },
+            Err(error) if error.kind() == std::io::ErrorKind::WouldBlock => std::thread::sleep(GLANCE / 10),
+            Err(error) => {
+                tracing::warn!(%error, "cannot accept a connection");
+                std::thread::sleep(GLANCE);
+            }
+        }
+    }
+}
+
+/// For requests that are answered one by one, by a thread of their own.
+fn prepare(stream: &TcpStream) -> std::io::Result<()> {
+    stream.set_nonblocking(false)?;
+    stream.set_nodelay(true)?;
+    stream.set_write_timeout(Some(WRITE_TIMEOUT))
+}
