@@ -11,7 +11,7 @@ use super::edits::Edits;
 use super::marks;
 use super::plcopen_unit as unit;
 use super::target::Sources;
-use super::tasks::TaskTable;
+use super::tasks::{ALWAYS_NS, TaskTable};
 use super::template::{self, Controller, Number};
 use crate::input::xml::{self, Element};
 use crate::syntax::SourceFile;
@@ -21,8 +21,6 @@ use crate::syntax::ast::{Pou, PouKind};
 const ACTION: &str = "SDSP_Body";
 /// Interval of the scheduler where no task has one.
 const DEFAULT_NS: u64 = 10_000_000;
-/// What is due at every grant has this interval.
-const ALWAYS_NS: u64 = 1;
 
 /// The file as a tree; it has been read once already.
 pub(super) fn tree(file: &SourceFile) -> Option<Element> {

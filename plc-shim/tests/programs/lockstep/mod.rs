@@ -11,5 +11,7 @@ mod plcopen_charts;
 mod plcopen_motion;
 mod plcopen_xml;
 mod random;
+mod random_single;
 mod rewriting;
 mod scl;
+mod single;
