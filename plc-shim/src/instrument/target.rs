@@ -75,9 +75,7 @@ impl Sources {
         blocks: &BTreeMap<String, Use>,
         charts: &[&Pou],
     ) -> Self {
-        let long = forms.iter().any(|form| form.long).then_some(Only::LongTime);
-        let single = tasks.has_singles().then_some(Only::Single);
-        let wanted: Vec<Only> = long.into_iter().chain(single).collect();
+        let wanted: &[Only] = if forms.iter().any(|form| form.long) { &[Only::LongTime] } else { &[] };
         let mut names = tasks.names();
         let sizes = [("SDSP_PROGRAMS", tasks.programs.len().to_string())];
         // A TIME has nanoseconds in the one and milliseconds in the other. Only durations of whole seconds are exact
@@ -89,10 +87,11 @@ impl Sources {
         };
         names.extend([("SDSP_NOW_OF_TV", now.to_owned()), ("SDSP_NOWL_OF_TV", now_long.to_owned())]);
         let fill = if target == Target::Scl { template::fill_scl } else { template::fill };
-        let filled = |template: &str| fill(&template::lines_for(&tasks.with_singles(template), &wanted), &names);
+        let filled = |template: &str| fill(&template::lines_for(&tasks.with_singles(template), wanted), &names);
         let unit = |form: &&Form| Unit { name: form.new_name(), text: form.text(target) };
         let (globals, scheduler) = match target {
             Target::Scl => (template::SCL_GLOBALS, template::SCL_SCHEDULER),
+            _ if tasks.has_singles() => (template::GLOBALS, template::EVENT_SCHEDULER),
             Target::Iec | Target::TwinCat | Target::Codesys => (template::GLOBALS, template::SCHEDULER),
         };
         let mut units: Vec<Unit> = forms.iter().map(unit).collect();

@@ -147,7 +147,6 @@ impl<'a> TaskTable<'a> {
             ("SDSP_FIRSTS", list(&|row| row.first as u64)),
             ("SDSP_COUNTS", list(&|row| row.count as u64)),
             ("SDSP_BACKGROUND", self.background().to_string()),
-            ("SDSP_SINCE", if self.has_singles() { "Since" } else { "Due" }.to_owned()),
         ]
     }
 }

@@ -2,9 +2,8 @@
 //!
 //! Each is program text that can be read and parsed as it is. A line with `(*$ltime` in it is for
 //! projects that use LTIME only, since older systems do not know that type; one with `(*$instances`
-//! for programs of which a configuration has several; one with `(*$single` for tasks with SINGLE. One with
-//! `(*$each` is repeated for each of these, with `(*$input`, `(*$external` or `(*$event` where it reads SINGLE
-//! so, or starts the task so.
+//! for programs of which a configuration has several. A line with `(*$each` is repeated for each task with
+//! SINGLE; one with `(*$input`, `(*$external` or `(*$event` for those that are read or started in that way.
 
 use crate::dialect::Dialect;
 use crate::syntax::lexer::tokenize_in;
@@ -14,6 +13,7 @@ use crate::syntax::tokenize;
 pub(super) const LINE: &str = include_str!("../../iec/shim/line.st");
 pub(super) const GLOBALS: &str = include_str!("../../iec/shim/globals.st");
 pub(super) const SCHEDULER: &str = include_str!("../../iec/shim/scheduler.st");
+pub(super) const EVENT_SCHEDULER: &str = include_str!("../../iec/shim/event_scheduler.st");
 pub(super) const FOLLOW: &str = include_str!("../../iec/shim/follow.st");
 pub(super) const EXECUTION_CONTROLLER: &str = include_str!("../../iec/shim/execution_controller.st");
 pub(super) const CHART_CONTROLLER: &str = include_str!("../../iec/shim/chart_controller.st");
@@ -40,8 +40,6 @@ pub(super) enum Only {
     LongTime,
     /// Programs of which there are several instances.
     Instances,
-    /// Tasks with SINGLE.
-    Single,
 }
 
 impl Only {
@@ -49,7 +47,6 @@ impl Only {
         match text.split(|one: char| !one.is_ascii_alphabetic()).next() {
             Some("ltime") => Some(Self::LongTime),
             Some("instances") => Some(Self::Instances),
-            Some("single") => Some(Self::Single),
             _ => None,
         }
     }
@@ -218,10 +215,11 @@ mod tests {
     use crate::syntax::parser::parse_source;
     use crate::syntax::{FileId, parse};
 
-    const ALL: [(&str, &str); 14] = [
+    const ALL: [(&str, &str); 15] = [
         ("line", LINE),
         ("globals", GLOBALS),
         ("scheduler", SCHEDULER),
+        ("event_scheduler", EVENT_SCHEDULER),
         ("follow", FOLLOW),
         ("execution_controller", EXECUTION_CONTROLLER),
         ("chart_controller", CHART_CONTROLLER),
