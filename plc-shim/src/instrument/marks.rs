@@ -26,6 +26,9 @@ const XML_CLOSING: &str = "-->";
 /// The first line of a file that was added.
 pub(super) const FILE: &str = "(*@sdsp file*)";
 
+/// The same in XML, behind its declaration.
+pub(super) const XML_FILE: &str = "<!--@sdsp file-->";
+
 /// How lines end in a file.
 pub(super) fn line_break(text: &str) -> &'static str {
     let first = text.find('\n').map_or("", |at| text.get(..at).unwrap_or(""));
@@ -115,9 +118,15 @@ pub(super) fn within(text: &str, at: u32, new: &str) -> String {
 pub(super) fn unmarked(text: &str) -> String {
     let mut plain = String::with_capacity(text.len());
     let mut from = 0;
+    let is_word = |one: char| one.is_ascii_alphanumeric() || one == '_';
     while let Some(mark) = Mark::next(text, from) {
         plain.push_str(text.get(from..mark.at.start).unwrap_or(""));
         from = mark.at.end;
+        // A mark may be all that keeps two words apart.
+        let behind = text.get(from..).unwrap_or("");
+        if plain.ends_with(is_word) && behind.starts_with(is_word) {
+            plain.push(' ');
+        }
     }
     plain + text.get(from..).unwrap_or("")
 }
