@@ -32,7 +32,7 @@ pub(super) fn port(plain: &Plain, attached: &Attached) -> Result<Source, Instrum
         refused(found.into_iter().map(beginning).collect())
     };
     let text = written(&behind, &cycles).map_err(own)?;
-    let text = text.replacen("?>\n", &format!("?>\n{}\n", marks::XML_FILE), 1);
+    let text = text.replacen("?>\n", &format!("?>\n{}\n", marks::XML_WHOLE), 1);
     Ok(Source { name: "sdsp.xml".to_owned(), text })
 }
 

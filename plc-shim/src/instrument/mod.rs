@@ -214,6 +214,11 @@ fn attach(plain: &Plain, options: &Options) -> Result<Attached, InstrumentError>
     Ok(Attached { project, tasks: survey.configurations.is_empty().then_some(declared) })
 }
 
+/// True for the text of a file that is a whole project with its shim, made of the files beside it.
+pub fn is_whole(text: &str) -> bool {
+    marks::is_whole(text)
+}
+
 /// Takes the shim off: every file as it was before.
 ///
 /// # Errors

@@ -1,6 +1,8 @@
 //! Projects in text for CODESYS: one file in PLCopen XML that is the same program, with the shim.
 
-use onescan_plc_shim::input::kind::SourceKind;
+use std::path::Path;
+
+use onescan_plc_shim::input::kind::{FileKind, SourceKind};
 use onescan_plc_shim::instrument::{File, Options, Project, Target, instrument, remove};
 use onescan_plc_shim::{Application, Dialect, Input, Severity, SoftPlc, Task, TaskPlan};
 
@@ -20,7 +22,10 @@ fn options(tasks: &[Task]) -> Options {
 }
 
 fn read(file: &File) -> Input {
-    let kind = if file.name.ends_with(".xml") { SourceKind::PlcOpen } else { SourceKind::Text };
+    let kind = match FileKind::of(Path::new(&file.name)) {
+        Some(FileKind::Source(kind)) => kind,
+        other => panic!("{}: {other:?}", file.name),
+    };
     Input::from_text(&file.name, kind, file.text.clone().expect("a text")).in_dialect(Dialect::Codesys)
 }
 
