@@ -36,8 +36,9 @@ pub(super) fn check_given(tasks: &[Task], survey: &Survey<'_>, target: Target) -
         let reason = match target {
             Target::TwinCat => "tasks of TwinCAT are cyclic",
             Target::Scl => "SCL does not tell what starts an organization block",
-            Target::Iec | Target::Codesys if !survey.is_global(path) => "the scheduler reads a global variable",
-            Target::Iec | Target::Codesys => continue,
+            Target::Codesys => "it is not instrumented in PLCopen XML yet",
+            Target::Iec if !survey.is_global(path) => "the scheduler reads a global variable",
+            Target::Iec => continue,
         };
         let (task, path, reason) = (task.name.clone(), path.clone(), reason.to_owned());
         return Err(RunError::Trigger { task, path, reason });

@@ -10,6 +10,8 @@ use crate::syntax::ast::Pou;
 
 /// What is due at every grant has this interval.
 pub(super) const ALWAYS_NS: u64 = 1;
+/// Interval of the scheduler where no task has one.
+const DEFAULT_NS: u64 = 10_000_000;
 
 /// Tasks in the order in which they come when all are due, and their programs, numbered from 1 in the
 /// same order.
@@ -89,6 +91,11 @@ impl<'a> TaskTable<'a> {
         })
     }
 
+    /// The interval of the scheduler's task.
+    pub(super) fn shortest_ns(&self) -> u64 {
+        shortest_ns(self.rows.iter().map(|row| row.interval_ns))
+    }
+
     /// The number of an instance that must be told it.
     pub(super) fn number_of_instance(&self, name: &str) -> Option<usize> {
         let at = self.programs.iter().position(|entry| entry.name == name)?;
@@ -149,6 +156,11 @@ impl<'a> TaskTable<'a> {
             ("SDSP_BACKGROUND", self.background().to_string()),
         ]
     }
+}
+
+/// The interval of the scheduler's task: the shortest of the others' own.
+pub(super) fn shortest_ns(intervals: impl Iterator<Item = u64>) -> u64 {
+    intervals.filter(|interval| *interval > ALWAYS_NS).min().unwrap_or(DEFAULT_NS)
 }
 
 fn check(tasks: &[Task]) -> Result<(), RunError> {
