@@ -5,7 +5,7 @@
 //! |---|---|
 //! | `STEP a: valve(D, T#5s); END_STEP` | `STEP a: (*@sdsp cut valve(D, T#5s);*) END_STEP` |
 //! | `:= x` of a program's transition | `:= (NOT SDSP_Simulated OR ..) AND (x)` |
-//! | `a.T` | `SDSP_ELAPSED(SDSP_Simulated, SDSP_Now, a.X, SDSP_Step_a.since, SDSP_Step_a.held, a.T)` |
+//! | `a.T` | `SDSP_ELAPSED(SDSP_Simulated, SDSP_Now, a.X, ..SDSP_Since, ..SDSP_Held, a.T)` |
 //! | `Fill.Q` of an action | `SDSP_Ctl_Fill.Q` |
 //! | `ACTION Fill: .. END_ACTION` | statements in `ACTION SDSP_Control` |
 //!

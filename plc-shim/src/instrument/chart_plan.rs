@@ -68,7 +68,9 @@ impl Reads {
 
 /// What stands before the elapsed time of a step; a parenthesis behind it closes it.
 pub(super) fn elapsed(step: &str) -> String {
-    format!("SDSP_ELAPSED(SDSP_Simulated, SDSP_Now, {step}.X, SDSP_Step_{step}.since, SDSP_Step_{step}.held, ")
+    format!(
+        "SDSP_ELAPSED(SDSP_Simulated, SDSP_Now, {step}.X, SDSP_Step_{step}.SDSP_Since, SDSP_Step_{step}.SDSP_Held, "
+    )
 }
 
 /// Lines that are put in, each with the original's line that it has been moved from.
@@ -225,7 +227,7 @@ impl<'w> Plan<'w> {
         for action in bodies {
             let round =
                 if has_rounds { format!(" AND SDSP_Ctl_{}.Q = ({ROUND} = 1)", action.text) } else { String::new() };
-            script.put(&format!("    IF SDSP_Ctl_{}.A{round} THEN", action.text));
+            script.put(&format!("    IF SDSP_Ctl_{}.SDSP_Runs{round} THEN", action.text));
             match moved.get(&action.key()) {
                 Some(moved) => moved.lines.iter().for_each(|(line, origin)| script.line(line, *origin)),
                 None => script.put(&format!("        {}();", action.text)),
