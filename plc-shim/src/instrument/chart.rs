@@ -17,7 +17,8 @@
 use std::collections::BTreeMap;
 
 use super::chart_action::{self, Moved, Text};
-use super::chart_plan::{CONTROL, Plan, Reads, Script, controlled_by, elapsed};
+use super::chart_plan::{CONTROL, Plan, Reads, controlled_by, elapsed};
+use super::chart_script::Script;
 use super::edits::Edits;
 use super::marks;
 use super::survey::Survey;

@@ -4,6 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write as _;
 
 use super::chart_action::{LEFT, Moved};
+use super::chart_script::{ROUND, Script};
 use super::clock::Form;
 use super::edits::Edits;
 use super::template::{self, ChartController, Number};
@@ -14,8 +15,6 @@ use crate::syntax::walk::{self, Visitor};
 
 /// The action that runs in every scan.
 pub(super) const CONTROL: &str = "SDSP_Control";
-/// Which of two rounds over the actions is run.
-const ROUND: &str = "SDSP_Round";
 
 /// The name under which the PLC's own action control keeps the flag of an action, which nobody reads.
 pub(super) fn own_flag(action: &str) -> String {
@@ -71,30 +70,6 @@ pub(super) fn elapsed(step: &str) -> String {
     format!(
         "SDSP_ELAPSED(SDSP_Simulated, SDSP_Now, {step}.X, SDSP_Step_{step}.SDSP_Since, SDSP_Step_{step}.SDSP_Held, "
     )
-}
-
-/// Lines that are put in, each with the original's line that it has been moved from.
-#[derive(Default)]
-pub(super) struct Script {
-    pub(super) text: String,
-    pub(super) origins: Vec<Option<u32>>,
-}
-
-impl Script {
-    pub(super) fn put(&mut self, lines: &str) {
-        lines.lines().for_each(|line| self.line(line, None));
-    }
-
-    pub(super) fn join(&mut self, other: Self) {
-        self.text.push_str(&other.text);
-        self.origins.extend(other.origins);
-    }
-
-    fn line(&mut self, line: &str, origin: Option<u32>) {
-        self.text.push_str(line);
-        self.text.push('\n');
-        self.origins.push(origin);
-    }
 }
 
 /// A chart, and what is made of it.
@@ -206,37 +181,12 @@ impl<'w> Plan<'w> {
             }
         }
         let runs = |action: &&Ident| moved.get(&action.key()).is_none_or(|moved| !moved.is_empty);
-        self.run(self.bodies(&uses).filter(runs), moved, &mut script);
+        script.run(self.bodies(&uses).filter(runs), moved);
         if let Some(found) = &self.controller {
-            [&found.close, &found.footer].into_iter().for_each(|part| script.put(part));
+            script.put(&found.close);
+            script.put(&found.footer);
         }
         script
-    }
-
-    /// Runs actions, those whose flag is FALSE before the others, in two rounds.
-    fn run<'u>(
-        &self,
-        bodies: impl Iterator<Item = &'u Ident> + Clone,
-        moved: &BTreeMap<String, Moved>,
-        script: &mut Script,
-    ) {
-        let has_rounds = bodies.clone().count() > 1;
-        if has_rounds {
-            script.put(&format!("    FOR {ROUND} := 0 TO 1 DO (* what runs for the last time comes first *)"));
-        }
-        for action in bodies {
-            let round =
-                if has_rounds { format!(" AND SDSP_Ctl_{}.Q = ({ROUND} = 1)", action.text) } else { String::new() };
-            script.put(&format!("    IF SDSP_Ctl_{}.SDSP_Runs{round} THEN", action.text));
-            match moved.get(&action.key()) {
-                Some(moved) => moved.lines.iter().for_each(|(line, origin)| script.line(line, *origin)),
-                None => script.put(&format!("        {}();", action.text)),
-            }
-            script.put("    END_IF;");
-        }
-        if has_rounds {
-            script.put("    END_FOR;");
-        }
     }
 
     /// The call of an action's control.

@@ -18,7 +18,7 @@
 //! | [`controller`] | execution controllers |
 //! | [`scl`] | SCL of TIA Portal: organization blocks, timers |
 //! | [`plcopen_project`], [`plcopen`], [`plcopen_unit`] | projects in PLCopen XML |
-//! | [`chart`], [`chart_plan`], [`chart_action`] | Sequential Function Charts: execution signal, action control, times of steps |
+//! | [`chart`], [`chart_plan`], [`chart_script`], [`chart_action`] | Sequential Function Charts: execution signal, action control, times of steps |
 //! | [`plcopen_chart`], [`plcopen_gate`] | the same of charts that are drawn, in PLCopen XML |
 //! | [`target`], [`twincat`] | the shim's sources as a vendor's tool takes them |
 //!
@@ -28,6 +28,7 @@
 mod chart;
 mod chart_action;
 mod chart_plan;
+mod chart_script;
 mod clock;
 mod configuration;
 mod constant;

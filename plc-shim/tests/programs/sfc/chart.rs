@@ -204,15 +204,14 @@ impl Chart {
         let parts = rest.find("ACTION ").or_else(|| rest.find("END_PROGRAM")).expect("it has an end");
         let (chart, behind) = rest.split_at(parts);
         format!(
-            "{}VAR go : BOOL; END_VAR
+            "{declared}VAR go : BOOL; END_VAR
 INITIAL_STEP Off: END_STEP
 STEP On: Inner(N); END_STEP
 TRANSITION FROM Off TO On := go; END_TRANSITION
 TRANSITION FROM On TO Off := NOT go; END_TRANSITION
 ACTION Inner:
 {chart}END_ACTION
-{behind}",
-            declared
+{behind}"
         )
     }
 }
