@@ -11,7 +11,7 @@ use super::edits::Edits;
 use super::marks;
 use super::plcopen_unit as unit;
 use super::target::Sources;
-use super::tasks::{ALWAYS_NS, TaskTable};
+use super::tasks::TaskTable;
 use super::template::{self, Controller, Number};
 use crate::input::plcopen_instances;
 use crate::input::xml::{self, Element};
