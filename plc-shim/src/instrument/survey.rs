@@ -22,6 +22,8 @@ use crate::syntax::{FileId, Span, parse};
 /// What was found.
 #[derive(Debug, Default)]
 pub(super) struct Survey<'a> {
+    /// For whom the project is instrumented.
+    pub(super) target: Target,
     /// The programs in their order.
     pub(super) programs: Vec<&'a Pou>,
     /// The first configuration; all its parts, of which each of TwinCAT's task files is one.
@@ -57,7 +59,7 @@ pub(super) fn survey<'a>(units: &[(FileId, &'a CompilationUnit)], target: Target
     declarations().for_each(|declaration| names.add(declaration));
     let timer_calls = if target == Target::Scl { TimerCalls::of(units) } else { TimerCalls::default() };
     let (declared, globals) = (names.units_and_types.clone(), names.globals.clone());
-    let survey = Survey { timer_calls, declared, globals, ..Survey::default() };
+    let survey = Survey { target, timer_calls, declared, globals, ..Survey::default() };
     let mut surveyor = Surveyor { names: &names, target, unit: String::new(), local: BTreeSet::new(), survey };
     declarations().for_each(|declaration| surveyor.declaration(declaration));
     let mut survey = surveyor.survey;
