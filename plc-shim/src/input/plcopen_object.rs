@@ -1,5 +1,5 @@
 //! What PLCopen XML has for actions, and what CODESYS adds to it in `addData`: methods, properties,
-//! interfaces, bases, lists of global variables.
+//! interfaces, bases, unions, lists of global variables.
 
 use super::plcopen::Writer;
 use super::xml::{Element, Node};
@@ -36,6 +36,9 @@ impl Writer<'_> {
         for data_type in additions(element, "datatype") {
             self.data_type(data_type);
         }
+        for union in additions(element, "union") {
+            self.union(union);
+        }
         for interface in additions(element, "interface") {
             self.interface(interface);
         }
@@ -63,6 +66,22 @@ impl Writer<'_> {
         }
     }
 
+    /// ` EXTENDS a` of a structure
+    pub(super) fn type_heritage(&mut self, data_type: &Element) {
+        for inheritance in additions(data_type, "datatypeinheritance") {
+            self.names(inheritance, "Extends", " EXTENDS ");
+        }
+    }
+
+    /// `<union name="u">`, whose members are those of a structure.
+    fn union(&mut self, union: &Element) {
+        self.write("TYPE ", &union.open);
+        self.attribute(union, "name");
+        self.write(" : UNION\n", &union.open);
+        self.fields(union);
+        self.write("END_UNION;\nEND_TYPE\n", &union.close);
+    }
+
     fn names(&mut self, holder: &Element, element: &str, word: &str) {
         for (index, name) in holder.elements().filter(|inner| inner.name == element).enumerate() {
             self.write(if index == 0 { word } else { ", " }, &name.open);
@@ -71,26 +90,39 @@ impl Writer<'_> {
         }
     }
 
-    /// `<action name="a">`; a transition is part of a chart.
-    pub(super) fn actions(&mut self, pou: &Element) {
-        for part in pou.elements().filter(|inner| matches!(inner.name.as_str(), "actions" | "transitions")) {
-            for inner in part.elements() {
-                if inner.name == "transition" && pou.child("body").is_some_and(|body| body.child("SFC").is_some()) {
-                    continue;
-                }
-                if inner.name != "action" {
-                    let name = inner.attribute("name").map_or("", |name| name.value.as_str());
-                    let what = format!("{} `{name}`", inner.name.to_uppercase());
-                    self.taken.unsupported(inner.open.clone(), &what);
-                    continue;
-                }
-                self.write("ACTION ", &inner.open);
-                self.attribute(inner, "name");
-                self.write(":\n", &inner.open);
-                self.bodies(inner);
-                self.write("END_ACTION\n", &inner.close);
+    /// `<action name="a">`; a transition is part of a chart. `used` are names of transitions that have been written.
+    pub(super) fn actions(&mut self, pou: &Element, used: &mut Vec<String>) {
+        let sfc = |element: &Element| element.child("body").is_some_and(|body| body.child("SFC").is_some());
+        let lists = || pou.elements().filter(|inner| matches!(inner.name.as_str(), "actions" | "transitions"));
+        let has_chart = sfc(pou) || lists().flat_map(Element::elements).any(sfc);
+        for inner in lists().flat_map(Element::elements) {
+            if inner.name == "transition" && has_chart {
+                continue;
+            }
+            if inner.name != "action" {
+                let name = inner.attribute("name").map_or("", |name| name.value.as_str());
+                let what = format!("{} `{name}`", inner.name.to_uppercase());
+                self.taken.unsupported(inner.open.clone(), &what);
+                continue;
+            }
+            self.action(inner, pou, used);
+        }
+    }
+
+    /// Actions that are written in the steps of an action's chart stand behind it.
+    fn action(&mut self, action: &Element, pou: &Element, used: &mut Vec<String>) {
+        self.write("ACTION ", &action.open);
+        self.attribute(action, "name");
+        self.write(":\n", &action.open);
+        let mut inline = Vec::new();
+        for body in action.elements().filter(|inner| inner.name == "body") {
+            match body.child("SFC") {
+                Some(sfc) => inline.extend(self.chart_parts(sfc, pou, used)),
+                None => self.body(body),
             }
         }
+        self.write("END_ACTION\n", &action.close);
+        self.inline_actions(inline);
     }
 
     fn bodies(&mut self, element: &Element) {
@@ -117,16 +149,21 @@ impl Writer<'_> {
         self.write("END_METHOD\n", &method.close);
     }
 
-    /// Access, name and type of a method or property.
-    fn member_head(&mut self, member: &Element) {
-        let interface = member.child("interface");
-        for holder in [Some(member), interface].into_iter().flatten() {
+    /// Who may use a unit or member, and what may be derived from it.
+    pub(super) fn modifiers(&mut self, element: &Element) {
+        for holder in [Some(element), element.child("interface")].into_iter().flatten() {
             for modifiers in additions(holder, "accessmodifiers") {
                 for modifier in modifiers.attributes.iter().filter(|found| found.value == "true") {
                     self.write(&format!("{} ", modifier.name.to_uppercase()), &modifier.span);
                 }
             }
         }
+    }
+
+    /// Access, name and type of a method or property.
+    fn member_head(&mut self, member: &Element) {
+        let interface = member.child("interface");
+        self.modifiers(member);
         self.attribute(member, "name");
         if let Some(result) = interface.and_then(|interface| interface.child("returnType")) {
             self.write(" : ", &result.open);

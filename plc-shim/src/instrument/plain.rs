@@ -98,6 +98,12 @@ impl Plain {
         self.kinds.contains(&SourceKind::PlcOpen)
     }
 
+    /// True for program text alone, in the standard's language.
+    pub(super) fn is_text(&self) -> bool {
+        let is_scl = self.sources.iter().any(|(_, file)| scl::is_scl(file));
+        !is_scl && self.kinds.iter().all(|kind| *kind == SourceKind::Text)
+    }
+
     /// True for text that was taken out of an object of TwinCAT.
     pub(super) fn is_object(&self, place: Span) -> bool {
         self.sources.get(place.file).is_some_and(|file| file.origin().is_some())
@@ -112,7 +118,9 @@ impl Plain {
             Target::Scl if scl.is_some() && foreign.is_some() => "beside SCL there are variables only, not programs",
             Target::Scl if scl.is_none() => "the target scl takes SCL sources of TIA Portal",
             Target::Iec | Target::TwinCat | Target::Codesys if scl.is_some() => "SCL sources take the target scl",
-            Target::Codesys if !self.is_xml() => "the target codesys takes a project in PLCopen XML",
+            Target::Codesys if !self.is_xml() && !self.is_text() => {
+                "the target codesys takes program text or a project in PLCopen XML"
+            }
             Target::TwinCat if self.is_xml() => "the target twincat takes TwinCAT's own files, not PLCopen XML",
             _ => return None,
         };
@@ -150,6 +158,11 @@ impl Plain {
         Ok(vec![Task { name: "main".to_owned(), interval_ns: 10_000_000, programs, ..Task::default() }])
     }
 
+    /// The project's files without the shim.
+    pub(super) fn unchanged(&self) -> Result<Vec<File>, InstrumentError> {
+        self.edited(&Survey::default(), &Motion::default(), &TaskTable::default(), "")
+    }
+
     /// The project's files with their changes.
     pub(super) fn edited(
         &self,
@@ -184,7 +197,7 @@ impl Plain {
             let number = tasks.numbered().find(|(numbered, _)| std::ptr::eq(*numbered, *pou));
             let number = number.map(|(_, number)| (number, line.as_str()));
             changes(pou.name.span.file, &mut |file, edits| {
-                chart::control(&ChartPlan::new(pou, number, &survey.renames, file), edits);
+                chart::control(&ChartPlan::new(pou, number, &survey.renames, file), survey, edits);
             });
         }
         for (pou, number) in tasks.numbered().filter(|(pou, _)| pou.chart.is_empty()) {
@@ -237,6 +250,14 @@ impl Plain {
             files.push(given.file(Some(text.into()), lines));
         }
         Ok(())
+    }
+
+    /// Files of the shim's own that were given, and are none of the result, are to be deleted.
+    pub(super) fn delete_stale(&self, files: &mut Vec<File>) {
+        let is_stale = |given: &&Given| files.iter().all(|file| file.name != given.name);
+        let stale: Vec<File> =
+            self.own.iter().filter(is_stale).map(|given| given.file(None, LineMap::default())).collect();
+        files.extend(stale);
     }
 
     /// Files of the shim's own that were given are to be deleted.

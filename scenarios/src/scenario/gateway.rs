@@ -167,7 +167,7 @@ impl Scenario {
             InstrumentError::Text(findings) => Box::new(PlcReport { client: name.clone(), findings }).into(),
             other => self.wrong_client(name, other.to_string(), None),
         })?;
-        let application = built(name, project.files.into_iter().filter_map(input).collect())?;
+        let application = built(name, project.program().filter_map(input).collect())?;
         let bindings = self.bindings(name, &application, &self.paths(name, bind)?)?;
         let plan = match declared {
             Some(plan) if mode == Mode::Lockstep => in_one_task(&plan),
@@ -196,12 +196,12 @@ impl Scenario {
 }
 
 /// A file of the instrumented project as the compiler takes it.
-fn input(file: File) -> Option<Input> {
+fn input(file: &File) -> Option<Input> {
     let kind = match FileKind::of(std::path::Path::new(&file.name)) {
         Some(FileKind::Source(kind)) => kind,
         _ => SourceKind::Text,
     };
-    file.text.map(|text| Input::from_text(&file.name, kind, text.as_ref()))
+    file.text.clone().map(|text| Input::from_text(&file.name, kind, text))
 }
 
 /// Scheduler and programs in one task, in this order, in every cycle: when a program is due is the scheduler's
