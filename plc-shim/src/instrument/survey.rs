@@ -22,6 +22,8 @@ use crate::syntax::{FileId, Span, parse};
 /// What was found.
 #[derive(Debug, Default)]
 pub(super) struct Survey<'a> {
+    /// For whom the project is instrumented.
+    pub(super) target: Target,
     /// The programs in their order.
     pub(super) programs: Vec<&'a Pou>,
     /// The first configuration; all its parts, of which each of TwinCAT's task files is one.
@@ -54,7 +56,7 @@ pub(super) fn survey<'a>(units: &[(FileId, &'a CompilationUnit)], target: Target
     let mut names = Names::default();
     declarations().for_each(|declaration| names.add(declaration));
     let timer_calls = if target == Target::Scl { TimerCalls::of(units) } else { TimerCalls::default() };
-    let survey = Survey { declared: names.units_and_types.clone(), timer_calls, ..Survey::default() };
+    let survey = Survey { target, declared: names.units_and_types.clone(), timer_calls, ..Survey::default() };
     let mut surveyor = Surveyor { names: &names, target, unit: String::new(), local: BTreeSet::new(), survey };
     declarations().for_each(|declaration| surveyor.declaration(declaration));
     let mut survey = surveyor.survey;
