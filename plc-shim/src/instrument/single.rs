@@ -118,8 +118,18 @@ fn expression(task: &TaskDeclaration) -> Option<&Expr> {
     task.inputs.iter().find(|(input, _)| input.key() == "SINGLE").map(|(_, value)| value)
 }
 
-fn is_in(configuration: &Configuration) -> bool {
-    triggered(configuration).next().is_some()
+/// Those of them that run a program, with their numbers.
+fn running(configuration: &Configuration) -> impl Iterator<Item = (usize, &Resource, &Expr)> {
+    let numbered = triggered(configuration).enumerate();
+    numbered
+        .filter(|(_, (resource, task, _))| runs(resource, task))
+        .map(|(at, (owner, _, value))| (at + 1, owner, value))
+}
+
+/// True if a task has a program.
+fn runs(resource: &Resource, task: &TaskDeclaration) -> bool {
+    let is_it = |wanted: &Ident| wanted.key() == task.name.key();
+    resource.programs.iter().any(|program| program.task.as_ref().is_some_and(is_it))
 }
 
 /// Number of a task among those with SINGLE, from 1.
@@ -138,23 +148,18 @@ pub(super) fn is_source(value: &Expr) -> bool {
 
 /// Lets the tasks wait for events, and a program at the end of each task pass on what SINGLE is.
 pub(super) fn attach(configuration: &Configuration, file: &SourceFile, edits: &mut Edits) {
-    for (index, (_, _, value)) in triggered(configuration).enumerate() {
+    for (number, _, value) in running(configuration) {
         let at = value.span.start..value.span.end;
-        let old = written(file, value);
-        edits.replace(at, marks::renamed(&event(index + 1), old));
+        edits.replace(at, marks::renamed(&event(number), written(file, value)));
     }
-    if !is_in(configuration) {
+    if running(configuration).next().is_none() {
         return;
     }
     let mut number = 0;
     for resource in &configuration.resources {
         let told = connections(configuration, resource, file);
-        let runs = |task: &&TaskDeclaration| {
-            let of = |wanted: &Ident| wanted.key() == task.name.key();
-            resource.programs.iter().any(|program| program.task.as_ref().is_some_and(of))
-        };
-        let mut homes: Vec<String> =
-            resource.tasks.iter().filter(runs).map(|task| format!(" WITH {}", task.name.text)).collect();
+        let tasks = resource.tasks.iter().filter(|task| runs(resource, task));
+        let mut homes: Vec<String> = tasks.map(|task| format!(" WITH {}", task.name.text)).collect();
         homes.extend(resource.programs.iter().any(|program| program.task.is_none()).then(String::new));
         let followers = homes.iter().map(|home| {
             number += 1;
@@ -170,9 +175,9 @@ pub(super) fn attach(configuration: &Configuration, file: &SourceFile, edits: &m
 
 /// What connects a program of the shim in `viewer` to all SINGLE inputs; nothing if there are none.
 pub(super) fn connections(configuration: &Configuration, viewer: &Resource, file: &SourceFile) -> String {
-    let told = triggered(configuration).enumerate().map(|(index, (owner, _, value))| {
+    let told = running(configuration).map(|(number, owner, value)| {
         let seen = seen_from(viewer, owner, value, written(file, value));
-        format!("{} := {seen}", input(index + 1))
+        format!("{} := {seen}", input(number))
     });
     let told: Vec<String> = told.collect();
     if told.is_empty() { String::new() } else { format!("({})", told.join(", ")) }
