@@ -36,6 +36,7 @@ pub mod input;
 pub mod instrument;
 mod ir;
 mod lint;
+mod output;
 pub mod run;
 pub mod syntax;
 

@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use onescan::run::Mode;
 use onescan::scenario::{Scenario, ScenarioError};
 use onescan_plc_shim::input::kind::{FileKind, SourceKind};
-use onescan_plc_shim::instrument::{InstrumentError, Options, Project, Target, instrument, remove};
+use onescan_plc_shim::instrument::{File, InstrumentError, Options, Project, Target, instrument, remove};
 use onescan_plc_shim::{Code, Input, Severity, SoftPlc};
 use onescan_server::client::Client;
 use onescan_tests::run::{in_process, run};
@@ -62,8 +62,8 @@ fn inputs<'f>(files: impl IntoIterator<Item = (&'f str, &'f str)>) -> Vec<Input>
     files.into_iter().map(read).collect()
 }
 
-fn texts(project: &Project) -> Vec<(&str, &str)> {
-    let texts = project.files.iter().filter_map(|file| Some((file.name.as_str(), file.text.as_deref()?)));
+fn texts<'f>(files: impl IntoIterator<Item = &'f File>) -> Vec<(&'f str, &'f str)> {
+    let texts = files.into_iter().filter_map(|file| Some((file.name.as_str(), file.text.as_deref()?)));
     texts.collect()
 }
 
@@ -75,17 +75,17 @@ fn round_trip(given: &Given, target: Target) -> Result<(Project, BTreeSet<String
     let before: Vec<(&str, &str)> = before.iter().map(|(name, text)| (*name, text.as_str())).collect();
     let options = Options { target, ..Options::default() };
     let project = instrument(&inputs(before.iter().copied()), &options)?;
-    let emitted = texts(&project);
-    let found = onescan_plc_shim::inspect(inputs(emitted.iter().copied()), None);
+    let emitted = texts(&project.files);
+    let found = onescan_plc_shim::inspect(inputs(texts(project.program())), None);
     let errors = || found.iter().filter(|each| each.severity == Severity::Error);
     let is_name = |code: Code| matches!(code, Code::UnknownName | Code::UnknownType);
     assert!(errors().all(|each| is_name(each.code)), "{target:?}: {found}");
     let name = |message: &str| message.split('`').nth(1).unwrap_or("").to_owned();
     let missing = errors().map(|each| name(&each.message)).collect();
     let twice = instrument(&inputs(emitted.iter().copied()), &options)?;
-    assert_eq!(texts(&twice), emitted, "{target:?}");
+    assert_eq!(texts(&twice.files), emitted, "{target:?}");
     let back = remove(&inputs(emitted.iter().copied()))?;
-    assert_eq!(texts(&back), before, "{target:?}");
+    assert_eq!(texts(&back.files), before, "{target:?}");
     Ok((project, missing))
 }
 

@@ -122,6 +122,16 @@ pub(super) fn unmarked(text: &str) -> String {
     plain + text.get(from..).unwrap_or("")
 }
 
+/// Text with all that was put in, and without a sign of it.
+pub(super) fn plain_text(text: &str) -> String {
+    let is_mark = |line: &&str| {
+        let line = line.trim();
+        [FILE, "(*@sdsp begin*)", "(*@sdsp end*)"].contains(&line)
+    };
+    let lines: Vec<&str> = text.split('\n').filter(|line| !is_mark(line)).collect();
+    unmarked(&lines.join("\n"))
+}
+
 /// Where the name stands in the tag before a mark that says what it was: the word of the shim's own that ends with it.
 fn renamed_in_tag(before: &str, old: &str) -> Option<Range<u32>> {
     let tag = before.rfind('<')?;

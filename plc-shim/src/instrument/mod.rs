@@ -29,7 +29,7 @@ mod chart;
 mod chart_plan;
 mod clock;
 mod configuration;
-mod constant;
+pub(crate) mod constant;
 mod controller;
 pub mod diff;
 pub mod edits;
@@ -44,6 +44,7 @@ mod plcopen_gate;
 mod plcopen_project;
 mod plcopen_unit;
 mod scl;
+mod scl_port;
 mod survey;
 mod target;
 mod tasks;
@@ -107,6 +108,30 @@ pub struct Project {
     pub files: Vec<File>,
     /// What could not be replaced.
     pub warnings: Diagnostics,
+    /// The name of the file that is the whole project, and alone is to be given to the tool; nothing where all are.
+    pub whole: Option<String>,
+    /// The tasks of the program, where they run other units than those that were asked for.
+    pub tasks: Option<Vec<Task>>,
+    /// The data blocks that global variables have become members of.
+    homes: scl_port::Homes,
+}
+
+impl Project {
+    /// A project whose files all are given to the tool.
+    fn of(files: Vec<File>, warnings: Diagnostics) -> Self {
+        Self { files, warnings, whole: None, tasks: None, homes: scl_port::Homes::new() }
+    }
+
+    /// The files that together are the program.
+    pub fn program(&self) -> impl Iterator<Item = &File> {
+        let is_part = |file: &&File| self.whole.as_ref().is_none_or(|whole| file.name == *whole);
+        self.files.iter().filter(|file| file.text.is_some()).filter(is_part)
+    }
+
+    /// The path in the program of what has this path in the project.
+    pub fn path(&self, path: &str) -> String {
+        scl_port::path(&self.homes, path)
+    }
 }
 
 /// A file of a project.
@@ -139,6 +164,9 @@ impl File {
 /// Text or tasks are wrong; see [`InstrumentError`].
 pub fn instrument(inputs: &[Input], options: &Options) -> Result<Project, InstrumentError> {
     let plain = Plain::of(inputs)?;
+    if options.target == Target::Scl && plain.is_text() {
+        return scl_port::ported(&plain, options);
+    }
     let mut units = Vec::new();
     let mut findings = plain.findings.clone();
     for (id, file) in plain.sources.iter() {
@@ -167,7 +195,7 @@ pub fn instrument(inputs: &[Input], options: &Options) -> Result<Project, Instru
     let sources = Sources::new(options.target, &tasks, &forms, &motion.blocks, &survey.charts);
     if plain.is_xml() {
         let files = vec![plain.edited_xml(&survey, &motion, &tasks, &sources)?];
-        return Ok(Project { files, warnings: Diagnostics::new(findings, &plain.sources) });
+        return Ok(Project::of(files, Diagnostics::new(findings, &plain.sources)));
     }
     let mut files = plain.edited(&survey, &motion, &tasks, &sources.globals)?;
     let is_text = survey.configurations.first().is_some_and(|first| !plain.is_object(first.name.span));
@@ -176,7 +204,7 @@ pub fn instrument(inputs: &[Input], options: &Options) -> Result<Project, Instru
         plain.add_own(source, &mut files);
     }
     plain.list_own(&mut files)?;
-    Ok(Project { files, warnings: Diagnostics::new(findings, &plain.sources) })
+    Ok(Project::of(files, Diagnostics::new(findings, &plain.sources)))
 }
 
 /// Takes the shim off: every file as it was before.
@@ -188,7 +216,7 @@ pub fn remove(inputs: &[Input]) -> Result<Project, InstrumentError> {
     let mut files = plain.edited(&Survey::default(), &Motion::default(), &TaskTable::default(), "")?;
     plain.delete_own(&mut files);
     plain.list_own(&mut files)?;
-    Ok(Project { files, warnings: Diagnostics::new(Vec::new(), &plain.sources) })
+    Ok(Project::of(files, Diagnostics::new(Vec::new(), &plain.sources)))
 }
 
 /// What tasks may run: the instances of a configuration, or else the programs themselves.

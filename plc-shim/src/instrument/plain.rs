@@ -98,6 +98,12 @@ impl Plain {
         self.kinds.contains(&SourceKind::PlcOpen)
     }
 
+    /// True for program text alone, in the standard's language.
+    pub(super) fn is_text(&self) -> bool {
+        let is_scl = self.sources.iter().any(|(_, file)| scl::is_scl(file));
+        !is_scl && self.kinds.iter().all(|kind| *kind == SourceKind::Text)
+    }
+
     /// True for text that was taken out of an object of TwinCAT.
     pub(super) fn is_object(&self, place: Span) -> bool {
         self.sources.get(place.file).is_some_and(|file| file.origin().is_some())
@@ -110,7 +116,7 @@ impl Plain {
         let foreign = survey.programs.iter().find(foreign).map(|pou| pou.name.span);
         let message = match target {
             Target::Scl if scl.is_some() && foreign.is_some() => "beside SCL there are variables only, not programs",
-            Target::Scl if scl.is_none() => "the target scl takes SCL sources of TIA Portal",
+            Target::Scl if scl.is_none() => "the target scl takes program text or SCL sources of TIA Portal",
             Target::Iec | Target::TwinCat | Target::Codesys if scl.is_some() => "SCL sources take the target scl",
             Target::Codesys if !self.is_xml() => "the target codesys takes a project in PLCopen XML",
             Target::TwinCat if self.is_xml() => "the target twincat takes TwinCAT's own files, not PLCopen XML",
@@ -150,6 +156,11 @@ impl Plain {
         Ok(vec![Task { name: "main".to_owned(), interval_ns: 10_000_000, programs, ..Task::default() }])
     }
 
+    /// The project's files without the shim.
+    pub(super) fn unchanged(&self) -> Result<Vec<File>, InstrumentError> {
+        self.edited(&Survey::default(), &Motion::default(), &TaskTable::default(), "")
+    }
+
     /// The project's files with their changes.
     pub(super) fn edited(
         &self,
@@ -166,11 +177,7 @@ impl Plain {
         };
         for (name, form) in &survey.renames {
             changes(name.span.file, &mut |file, edits| {
-                if scl::is_scl(file) {
-                    scl::rename(name, form, file, edits);
-                } else {
-                    rename(name, &form.new_name(), file, edits);
-                }
+                rename(name, &form.new_name(), file, edits);
             });
         }
         for (name, new) in &motion.renames {
@@ -239,6 +246,14 @@ impl Plain {
         Ok(())
     }
 
+    /// Files of the shim's own that were given, and are none of the result, are to be deleted.
+    pub(super) fn delete_stale(&self, files: &mut Vec<File>) {
+        let is_stale = |given: &&Given| files.iter().all(|file| file.name != given.name);
+        let stale: Vec<File> =
+            self.own.iter().filter(is_stale).map(|given| given.file(None, LineMap::default())).collect();
+        files.extend(stale);
+    }
+
     /// Files of the shim's own that were given are to be deleted.
     pub(super) fn delete_own(&self, files: &mut Vec<File>) {
         files.extend(self.own.iter().map(|given| given.file(None, LineMap::default())));
@@ -246,6 +261,9 @@ impl Plain {
 }
 
 fn rename(name: &Ident, new: &str, file: &SourceFile, edits: &mut Edits) {
+    if scl::is_scl(file) {
+        return scl::rename(name, new, file, edits);
+    }
     let at = file.shown_range(name.span.start, name.span.end);
     edits.replace(at, marks::renamed(new, &name.text));
 }

@@ -170,6 +170,6 @@ fn value(initial: &Initialiser) -> Option<String> {
             }
             xml + "</arrayValue>"
         }
-        InitialiserKind::Repeat(..) | InitialiserKind::Struct(_) => return None,
+        InitialiserKind::Repeat(..) | InitialiserKind::Struct(_) | InitialiserKind::Elements(_) => return None,
     })
 }

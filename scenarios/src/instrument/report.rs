@@ -16,6 +16,9 @@ use crate::run::{Format, RunError};
 #[derive(Serialize)]
 struct Json<'a> {
     files: Vec<JsonFile<'a>>,
+    /// The file that alone is to be given to the tool, if one holds the whole project.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    whole: Option<&'a str>,
     findings: Vec<Line<'a>>,
 }
 
@@ -62,7 +65,8 @@ fn write_json(config: &InstrumentConfig, project: &Project, out: &mut dyn Write)
         diff: (config.diff == Diff::Shown).then(|| diff::unified(file)),
     };
     let findings = project.warnings.findings().iter().map(Line::from).collect();
-    let report = Json { files: project.files.iter().map(file).collect(), findings };
+    let whole = project.whole.as_deref();
+    let report = Json { files: project.files.iter().map(file).collect(), whole, findings };
     serde_json::to_writer(&mut *out, &report)?;
     writeln!(out)
 }
@@ -79,8 +83,12 @@ fn write_human(config: &InstrumentConfig, project: &Project, out: &mut dyn Write
     for file in &project.files {
         writeln!(out, "{:<8} {}", change(file), file_name(file))?;
     }
+    if let Some(whole) = &project.whole {
+        writeln!(out, "\n{whole} is the whole project with the shim: import it alone.")?;
+    }
     if config.direction == Direction::Attach {
-        writeln!(out, "\nRun SDSP_Scheduler first in every cycle, in a task of the highest priority.")?;
+        let gap = if project.whole.is_some() { "" } else { "\n" };
+        writeln!(out, "{gap}Run SDSP_Scheduler first in every cycle, in a task of the highest priority.")?;
     }
     Ok(())
 }

@@ -13,3 +13,4 @@ mod plcopen_xml;
 mod random;
 mod rewriting;
 mod scl;
+mod scl_port;
