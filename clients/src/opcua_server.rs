@@ -12,6 +12,7 @@ use thiserror::Error;
 use tokio::net::TcpListener;
 
 use crate::gateway::opcua::pki::Pki;
+use crate::station::listen::bind;
 
 /// Shortest publishing interval, and how often subscriptions are looked at.
 const SUBSCRIPTIONS_MS: u64 = 1;
@@ -74,9 +75,7 @@ pub(crate) fn start(
     manager: impl NodeManagerBuilder + 'static,
     fill: impl FnOnce(&ServerHandle) -> Result<(), ServeError>,
 ) -> Result<Running, ServeError> {
-    let listener = std::net::TcpListener::bind(address)?;
-    let address = listener.local_addr()?;
-    listener.set_nonblocking(true)?;
+    let (listener, address) = bind(address)?;
     let pki = Pki::new(access.pki.as_deref())?;
     let runtime = tokio::runtime::Builder::new_multi_thread().worker_threads(1).enable_all().build()?;
     let (server, handle) = {

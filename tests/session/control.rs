@@ -27,7 +27,10 @@ fn operated(operator: impl FnOnce(&dyn Fn(Option<Control>) -> onescan_server::wi
     let session = std::thread::spawn(move || {
         let mut lockstep = in_process(ring_plan(&Coupling::Parallel), boxed(ring()));
         lockstep.set_mailbox(mailbox);
-        run(lockstep, at_ms(500))
+        let outcome = run(lockstep, at_ms(500));
+        // As a run that is over does, at once.
+        drop(lobby);
+        outcome
     });
     operator(&|control| operate(address, control.map(Into::into), PATIENCE).expect("the session answers"));
     session.join().expect("no panic")
@@ -75,6 +78,15 @@ fn a_stop_ends_the_session_at_the_boundary() {
     });
     assert_eq!(outcome.end, SessionEnd::Stopped { t_v: at_ms(20) });
     assert_eq!(outcome.digest, run(in_process(ring_plan(&Coupling::Parallel), boxed(ring())), at_ms(20)).digest);
+}
+
+/// The session and its lobby end while the answer is on its way.
+#[test]
+fn whoever_stops_a_session_hears_that_it_is_stopped() {
+    for _ in 0..50 {
+        let outcome = operated(|ask| assert_eq!(ask(Some(Control::Stop)).steps, StepCount(0)));
+        assert_eq!(outcome.end, SessionEnd::Stopped { t_v: at_ms(0) });
+    }
 }
 
 #[test]

@@ -4,19 +4,15 @@
 use std::io::Write;
 use std::net::{Shutdown, SocketAddr, TcpListener, TcpStream};
 use std::sync::Arc;
-use std::time::Duration;
 
-use super::controller::Controller;
+use super::controller::{Controller, Snapshot};
+use super::listen::{accept, bind};
 use crate::gateway::ads::Options;
 use crate::gateway::ads::command::{self, SUM_MAX};
 use crate::gateway::ads::frame::{Bytes, Frame, Kind, MAX_DATA};
 use crate::gateway::ads::symbol::{Form, READ_ONLY, Symbol};
 use crate::gateway::exchange::{Direction, Point};
 
-/// How often a thread that waits looks whether all is over.
-const GLANCE: Duration = Duration::from_millis(100);
-/// A client that does not take its answers for so long is left.
-const WRITE_TIMEOUT: Duration = Duration::from_secs(3);
 /// Index group of a PLC's data; the offset is that of the packed value, behind [`FROM_PLC`] of those that it writes.
 const DATA: u32 = 0x4040;
 /// Where the PLC's own values begin.
@@ -30,34 +26,23 @@ const DEVICE: &[u8; 20] = b"\x01\x00\x00\x00onescan plc\0\0\0\0\0";
 /// # Errors
 /// The address cannot be listened on.
 pub fn serve(address: SocketAddr, controller: &Arc<Controller>, options: &Options) -> std::io::Result<SocketAddr> {
-    let listener = TcpListener::bind(address)?;
-    let address = listener.local_addr()?;
-    listener.set_nonblocking(true)?;
+    let (listener, address) = bind(address)?;
     let device = Arc::new(Device::new(Arc::clone(controller), options));
-    std::thread::spawn(move || accept(&listener, &device));
+    std::thread::spawn(move || serve_all(&listener, &device));
     Ok(address)
 }
 
-fn accept(listener: &TcpListener, device: &Arc<Device>) {
-    while !device.controller.is_over() {
-        match listener.accept() {
-            Ok((stream, peer)) => {
-                let device = Arc::clone(device);
-                std::thread::spawn(move || {
-                    if let Err(error) = device.attend(&stream) {
-                        tracing::info!(%peer, %error, "an ADS client has gone");
-                    }
-                    // It may be gone already.
-                    let _ = stream.shutdown(Shutdown::Both);
-                });
+fn serve_all(listener: &TcpListener, device: &Arc<Device>) {
+    accept(listener, &device.controller, |stream, peer| {
+        let device = Arc::clone(device);
+        std::thread::spawn(move || {
+            if let Err(error) = device.attend(&stream) {
+                tracing::info!(%peer, %error, "an ADS client has gone");
             }
-            Err(error) if error.kind() == std::io::ErrorKind::WouldBlock => std::thread::sleep(GLANCE / 10),
-            Err(error) => {
-                tracing::warn!(%error, "cannot accept a connection");
-                std::thread::sleep(GLANCE);
-            }
-        }
-    }
+            // It may be gone already.
+            let _ = stream.shutdown(Shutdown::Both);
+        });
+    });
 }
 
 /// A symbol, its point, and the point's number among those of its direction.
@@ -76,6 +61,7 @@ type Answer = Result<Vec<u8>, Refused>;
 
 struct Device {
     controller: Arc<Controller>,
+    /// In the order of their places.
     entries: Vec<Entry>,
 }
 
@@ -83,8 +69,8 @@ impl Device {
     fn new(controller: Arc<Controller>, options: &Options) -> Self {
         let mut entries = Vec::new();
         let exchange = controller.wires().exchange();
-        for (direction, points) in [(Direction::ToPlc, exchange.to_plc()), (Direction::FromPlc, exchange.from_plc())] {
-            for (index, point) in points.iter().enumerate() {
+        for direction in [Direction::ToPlc, Direction::FromPlc] {
+            for (index, point) in exchange.points(direction).iter().enumerate() {
                 let form = Form::of(point.ty);
                 let (first, flags) = if direction == Direction::ToPlc { (0, 0) } else { (FROM_PLC, READ_ONLY) };
                 let symbol = Symbol {
@@ -103,9 +89,6 @@ impl Device {
 
     /// Answers what a client asks until it goes.
     fn attend(&self, mut stream: &TcpStream) -> std::io::Result<()> {
-        stream.set_nonblocking(false)?;
-        stream.set_nodelay(true)?;
-        stream.set_write_timeout(Some(WRITE_TIMEOUT))?;
         while let Some(request) = Frame::read(&mut stream)? {
             if request.kind == Kind::Request && !self.controller.is_over() {
                 stream.write_all(&self.response(&request).encoded())?;
@@ -179,7 +162,9 @@ impl Device {
                 if length != entry.symbol.size {
                     return Err(Refused(command::BAD_SIZE));
                 }
-                return Ok(entry.value(&self.snapshot()));
+                let mut packed = vec![0; entry.point.ty.size()];
+                self.controller.read_point(entry.direction, entry.index, &mut packed);
+                return Ok(entry.value(&packed));
             }
         };
         Ok(whole.into_iter().take(length as usize).collect())
@@ -221,25 +206,19 @@ impl Device {
     fn entry(&self, group: u32, offset: u32) -> Result<&Entry, Refused> {
         let found = match group {
             command::VALUE_BY_HANDLE => (offset as usize).checked_sub(1).and_then(|index| self.entries.get(index)),
-            DATA => self.entries.iter().find(|entry| entry.symbol.place.1 == offset),
+            DATA => self
+                .entries
+                .binary_search_by_key(&offset, |entry| entry.symbol.place.1)
+                .ok()
+                .map(|at| &self.entries[at]),
             _ => return Err(Refused(command::BAD_GROUP)),
         };
         found.ok_or(Refused(command::BAD_OFFSET))
     }
 
-    /// All values, between two cycles.
-    fn snapshot(&self) -> [Vec<u8>; 2] {
-        let exchange = self.controller.wires().exchange();
-        [Direction::ToPlc, Direction::FromPlc].map(|direction| {
-            let mut packed = vec![0; exchange.size(direction)];
-            self.controller.read(direction, &mut packed);
-            packed
-        })
-    }
-
     fn sum_read(&self, count: u32, written: &[u8]) -> Answer {
         let parts = parts(count, &mut Bytes(written))?;
-        let snapshot = self.snapshot();
+        let snapshot = self.controller.snapshot();
         let (mut codes, mut values) = (Vec::new(), Vec::new());
         for [group, offset, length] in parts {
             let entry = self.entry(group, offset).and_then(|entry| {
@@ -248,7 +227,7 @@ impl Device {
             let end = values.len().saturating_add(length as usize);
             let code = match entry {
                 Ok(entry) => {
-                    values.extend(entry.value(&snapshot));
+                    values.extend(entry.value_in(&snapshot));
                     0
                 }
                 // Nobody may have more written for him than there is.
@@ -283,12 +262,15 @@ impl Device {
 }
 
 impl Entry {
-    /// The value, as it stands in a device's memory.
-    fn value(&self, snapshot: &[Vec<u8>; 2]) -> Vec<u8> {
-        let packed = if self.direction == Direction::ToPlc { &snapshot[0] } else { &snapshot[1] };
+    /// A packed value, as it stands in a device's memory.
+    fn value(&self, packed: &[u8]) -> Vec<u8> {
         let mut value = Vec::new();
-        Form::of(self.point.ty).put(&packed[self.point.range()], &mut value);
+        Form::of(self.point.ty).put(packed, &mut value);
         value
+    }
+
+    fn value_in(&self, snapshot: &Snapshot) -> Vec<u8> {
+        self.value(&snapshot.of(self.direction)[self.point.range()])
     }
 
     /// A value that is to be written, packed.

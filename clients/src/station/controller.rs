@@ -183,14 +183,23 @@ impl Controller {
 
     /// Reads all points of a direction, between two cycles.
     pub fn read(&self, direction: Direction, packed: &mut [u8]) {
+        self.read_in(&self.enter(), direction, packed);
+    }
+
+    /// All points of both directions, between the same two cycles.
+    pub(super) fn snapshot(&self) -> Snapshot {
+        let packed = |direction| vec![0; self.wires.exchange().size(direction)];
+        let (mut to_plc, mut from_plc) = (packed(Direction::ToPlc), packed(Direction::FromPlc));
         let state = self.enter();
-        let wires = match direction {
-            Direction::ToPlc => &self.wires.to_plc,
-            Direction::FromPlc => &self.wires.from_plc,
-        };
-        for wire in wires {
+        self.read_in(&state, Direction::ToPlc, &mut to_plc);
+        self.read_in(&state, Direction::FromPlc, &mut from_plc);
+        Snapshot { to_plc, from_plc }
+    }
+
+    fn read_in(&self, state: &State, direction: Direction, packed: &mut [u8]) {
+        for wire in self.wires.of(direction) {
             if let Some(value) = packed.get_mut(wire.point.range()) {
-                get(&state, wire, value);
+                get(state, wire, value);
             }
         }
     }
@@ -198,11 +207,7 @@ impl Controller {
     /// Reads one point, by its index among those of a direction.
     pub fn read_point(&self, direction: Direction, index: usize, value: &mut [u8]) {
         let state = self.enter();
-        let wires = match direction {
-            Direction::ToPlc => &self.wires.to_plc,
-            Direction::FromPlc => &self.wires.from_plc,
-        };
-        if let Some(wire) = wires.get(index).filter(|wire| wire.point.ty.size() == value.len()) {
+        if let Some(wire) = self.wires.of(direction).get(index).filter(|wire| wire.point.ty.size() == value.len()) {
             get(&state, wire, value);
         }
     }
@@ -270,6 +275,22 @@ impl Controller {
     /// True once it has been ended.
     pub fn is_over(&self) -> bool {
         self.enter().is_over
+    }
+}
+
+/// The packed values of all points.
+pub(super) struct Snapshot {
+    to_plc: Vec<u8>,
+    from_plc: Vec<u8>,
+}
+
+impl Snapshot {
+    /// Those of a direction.
+    pub(super) fn of(&self, direction: Direction) -> &[u8] {
+        match direction {
+            Direction::ToPlc => &self.to_plc,
+            Direction::FromPlc => &self.from_plc,
+        }
     }
 }
 

@@ -6,6 +6,7 @@
 //! | [`controller`] | the PLC between its cycles: points, RUN and STOP, starts |
 //! | [`cycle`] | the wall clock that drives it |
 //! | [`ads`] | symbols over ADS |
+//! | `listen` | clients that come one by one |
 //! | [`modbus`] | registers and coils over Modbus TCP |
 //! | [`opcua`] | variables of an OPC UA server |
 //! | [`tcp`] | data blocks over raw TCP |
@@ -19,6 +20,7 @@
 pub mod ads;
 pub mod controller;
 pub mod cycle;
+pub(crate) mod listen;
 pub mod modbus;
 pub mod opcua;
 pub mod tcp;

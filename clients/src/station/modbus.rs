@@ -3,7 +3,6 @@
 use std::future::{Ready, ready};
 use std::net::SocketAddr;
 use std::sync::Arc;
-use std::time::Duration;
 
 use tokio::net::TcpListener;
 use tokio_modbus::prelude::{ExceptionCode, Request, Response};
@@ -11,22 +10,18 @@ use tokio_modbus::server::Service;
 use tokio_modbus::server::tcp::{Server, accept_tcp_connection};
 
 use super::controller::Controller;
+use super::listen::{GLANCE, bind};
 use crate::gateway::exchange::Direction;
 use crate::gateway::modbus::RegisterMap;
 use crate::gateway::modbus::map::{Entry, Span, Table};
 use crate::gateway::modbus::registers;
-
-/// How often the server looks whether all is over.
-const GLANCE: Duration = Duration::from_millis(100);
 
 /// Serves the PLC's registers at `address`; gives the address that it got. The server ends with the controller.
 ///
 /// # Errors
 /// The address cannot be listened on.
 pub fn serve(address: SocketAddr, controller: &Arc<Controller>, map: RegisterMap) -> std::io::Result<SocketAddr> {
-    let listener = std::net::TcpListener::bind(address)?;
-    let address = listener.local_addr()?;
-    listener.set_nonblocking(true)?;
+    let (listener, address) = bind(address)?;
     let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build()?;
     let service = Registers(Arc::new(Bank { controller: Arc::clone(controller), map }));
     std::thread::spawn(move || {
@@ -137,15 +132,11 @@ impl Bank {
 
     /// The words of `span`; a value that lies in it in part is there in part.
     fn words(&self, span: Span) -> Vec<u16> {
-        let exchange = self.controller.wires().exchange();
-        let mut packed = [Direction::ToPlc, Direction::FromPlc].map(|direction| vec![0; exchange.size(direction)]);
-        self.controller.read(Direction::ToPlc, &mut packed[0]);
-        self.controller.read(Direction::FromPlc, &mut packed[1]);
+        let snapshot = self.controller.snapshot();
         let (span, from) = self.widened(span);
         let mut words = vec![0; usize::from(span.1.count)];
         for (entry, direction) in self.entries(span.1.table) {
-            let packed = if direction == Direction::ToPlc { &packed[0] } else { &packed[1] };
-            registers::put(entry, packed, self.map.word_order, &span.1, &mut words);
+            registers::put(entry, snapshot.of(direction), self.map.word_order, &span.1, &mut words);
         }
         words[from..from + usize::from(span.0)].to_vec()
     }

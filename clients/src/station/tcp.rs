@@ -7,63 +7,44 @@ use std::io::{Read, Write};
 use std::net::{Shutdown, SocketAddr, TcpListener, TcpStream};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
-use std::time::Duration;
 
 use bytes::BytesMut;
 use tokio_util::codec::Decoder;
 
 use super::controller::Controller;
+use super::listen::{GLANCE, accept, bind};
 use crate::gateway::exchange::Direction;
 use crate::gateway::tcp::{BlockCodec, Layouts};
-
-/// How often a thread that waits looks whether all is over.
-const GLANCE: Duration = Duration::from_millis(100);
-/// A client that does not take its blocks for so long is left.
-const WRITE_TIMEOUT: Duration = Duration::from_secs(3);
 
 /// Serves the PLC's blocks at `address`; gives the address that it got. The server ends with the controller.
 ///
 /// # Errors
 /// The address cannot be listened on.
 pub fn serve(address: SocketAddr, controller: &Arc<Controller>, layouts: Layouts) -> std::io::Result<SocketAddr> {
-    let listener = TcpListener::bind(address)?;
-    let address = listener.local_addr()?;
-    listener.set_nonblocking(true)?;
+    let (listener, address) = bind(address)?;
     let controller = Arc::clone(controller);
-    std::thread::spawn(move || accept(&listener, &controller, &Arc::new(layouts)));
+    std::thread::spawn(move || serve_one_by_one(&listener, &controller, &Arc::new(layouts)));
     Ok(address)
 }
 
-fn accept(listener: &TcpListener, controller: &Arc<Controller>, layouts: &Arc<Layouts>) {
+fn serve_one_by_one(listener: &TcpListener, controller: &Arc<Controller>, layouts: &Arc<Layouts>) {
     let mut last: Option<TcpStream> = None;
-    while !controller.is_over() {
-        match listener.accept() {
-            Ok((stream, peer)) => {
-                if let Some(last) = last.take() {
-                    // It may be gone already.
-                    let _ = last.shutdown(Shutdown::Both);
-                }
-                let holder = controller.take_hold();
-                tracing::info!(%peer, "a gateway has connected");
-                last = stream.try_clone().ok();
-                if let Err(error) = attend(stream, holder, controller, layouts) {
-                    tracing::info!(%peer, %error, "a gateway has gone before it was served");
-                }
-            }
-            Err(error) if error.kind() == std::io::ErrorKind::WouldBlock => std::thread::sleep(GLANCE / 10),
-            Err(error) => {
-                tracing::warn!(%error, "cannot accept a connection");
-                std::thread::sleep(GLANCE);
-            }
+    accept(listener, controller, |stream, peer| {
+        if let Some(last) = last.take() {
+            // It may be gone already.
+            let _ = last.shutdown(Shutdown::Both);
         }
-    }
+        let holder = controller.take_hold();
+        tracing::info!(%peer, "a gateway has connected");
+        last = stream.try_clone().ok();
+        if let Err(error) = attend(stream, holder, controller, layouts) {
+            tracing::info!(%peer, %error, "a gateway has gone before it was served");
+        }
+    });
 }
 
 /// Two threads for one gateway: one that takes its blocks, one that sends the PLC's.
 fn attend(stream: TcpStream, holder: u64, controller: &Arc<Controller>, layouts: &Arc<Layouts>) -> std::io::Result<()> {
-    stream.set_nonblocking(false)?;
-    stream.set_nodelay(true)?;
-    stream.set_write_timeout(Some(WRITE_TIMEOUT))?;
     let taken = Arc::new(AtomicU64::new(0));
     let incoming = stream.try_clone()?;
     let (a, b) = (Arc::clone(controller), Arc::clone(controller));

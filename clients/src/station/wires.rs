@@ -4,7 +4,7 @@ use onescan_plc_shim::{Application, UnknownVariable};
 use onescan_server::signal::SignalName;
 use thiserror::Error;
 
-use crate::gateway::exchange::{BOOTS, Exchange, Point, RUNNING, START, is_word};
+use crate::gateway::exchange::{BOOTS, Direction, Exchange, Point, RUNNING, START, is_word};
 use crate::soft_plc::bind::{Bindings, Bound, Place};
 
 /// Where a point's value is.
@@ -69,6 +69,14 @@ impl Wires {
             from_plc: wires(exchange.from_plc(), &bindings.outputs)?,
             exchange: exchange.clone(),
         })
+    }
+
+    /// Those of a direction, in the order of its points.
+    pub(super) fn of(&self, direction: Direction) -> &[Wire] {
+        match direction {
+            Direction::ToPlc => &self.to_plc,
+            Direction::FromPlc => &self.from_plc,
+        }
     }
 
     /// The points.

@@ -4,6 +4,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::calls::{Size, measure};
+use super::reach;
 use crate::ir::{Guard, Pou, PouId};
 
 /// A unit of at most this size goes wherever it is called.
@@ -23,6 +24,8 @@ struct Cost {
     /// How many calls of it there are.
     sites: u32,
     inlined: bool,
+    /// It changes nothing but registers and its instance.
+    inside: bool,
     /// What a call costs that the unit does not pay for itself.
     call: u64,
     metered: bool,
@@ -48,8 +51,11 @@ impl Costs {
             let inside = own.calls.iter().filter_map(|callee| costs.units.get(callee));
             let inside: u32 = inside.filter(|cost| cost.inlined).map(|cost| cost.size).fold(0, u32::saturating_add);
             // What may come back to itself is guarded at its beginning, which only a function has.
+            let is_inside = |callee: PouId| costs.units.get(&callee).is_some_and(|cost| cost.inside);
+            let stays_inside = pous.get(id).is_some_and(|pou| reach::stays_inside(pou, &is_inside));
             let guarded = pous.get(id).is_none_or(|pou| pou.guard != Guard::None);
             let cost = costs.units.entry(*id).or_default();
+            cost.inside = stays_inside;
             cost.size = own.nodes.saturating_add(inside);
             cost.inlined = !guarded && (cost.size <= TINY || (cost.sites == 1 && cost.size <= LONE));
         }
@@ -68,6 +74,11 @@ impl Costs {
     pub(super) fn found(&mut self, pou: PouId, call: u64, metered: bool) {
         let cost = self.units.entry(pou).or_default();
         (cost.call, cost.metered) = (call, metered);
+    }
+
+    /// True if a call of the unit changes nothing but the instance that it runs on.
+    pub(super) fn stays_inside(&self, pou: PouId) -> bool {
+        self.units.get(&pou).is_some_and(|cost| cost.inside)
     }
 
     pub(super) fn of_call(&self, pou: PouId) -> u64 {

@@ -6,6 +6,7 @@ use wasm_encoder::{ConstExpr, ElementSection, Elements, Instruction, MemArg, Ref
 use super::address::Address;
 use super::emitter::{Emitter, Register, Shared, value_type};
 use super::fault::{Callee, FaultKind};
+use super::reach::RunsOn;
 use crate::check::CALL_DEPTH_OFFSET;
 use crate::ir::{Cast, Dispatch, Guard, LocalId, Pou, PouId, Receiver, Row};
 use crate::syntax::Span;
@@ -84,9 +85,15 @@ impl Emitter<'_, '_> {
     }
 
     /// Calls what is known, or what the table has for the type of the instance at `address`.
-    pub(super) fn call_on(&mut self, address: Address, dispatch: Dispatch, pou: PouId, (callee, span): (Callee, Span)) {
+    pub(super) fn call_on(
+        &mut self,
+        (address, on): (Address, RunsOn),
+        dispatch: Dispatch,
+        pou: PouId,
+        (callee, span): (Callee, Span),
+    ) {
         let Dispatch::Row(row) = dispatch else {
-            return self.call(pou, callee, span);
+            return self.call(pou, on, callee, span);
         };
         let Some(RowPlace { start, first, signature }) = self.shared.rows.get(row).copied() else { return };
         self.metered = true;

@@ -8,12 +8,13 @@ use super::fault::{Callee, Unit};
 use super::frame::Frame;
 use super::place::INSTANCE;
 use super::points::PointKind;
+use super::reach::RunsOn;
 use crate::ir::{Argument, Expr, ExprKind, FunctionCall, InstanceCall, LocalId, Place, Pou, PouId};
 use crate::syntax::Span;
 
 impl<'p> Emitter<'_, 'p> {
-    /// Calls a function of the module. What it changes is not known.
-    pub(super) fn call(&mut self, pou: PouId, callee: Callee, span: Span) {
+    /// Calls a function of the module.
+    pub(super) fn call(&mut self, pou: PouId, on: RunsOn, callee: Callee, span: Span) {
         let metered = self.shared.costs.is_metered(pou);
         if metered {
             self.put_budget_back();
@@ -28,7 +29,11 @@ impl<'p> Emitter<'_, 'p> {
         if metered {
             self.take_budget();
         }
-        self.changed(None);
+        match on {
+            RunsOn::Nothing if self.shared.costs.stays_inside(pou) => {}
+            RunsOn::Instance(extent) if self.shared.costs.stays_inside(pou) => self.changed(Some(extent)),
+            _ => self.changed(None),
+        }
     }
 
     /// The unit, if its body goes in the call's place.
@@ -111,7 +116,8 @@ impl<'p> Emitter<'_, 'p> {
                 self.side_statements(&call.before);
                 self.push_address(instance);
                 self.push_arguments(&call.arguments);
-                self.call_on(instance, receiver.dispatch, call.pou, (Callee::Function, span));
+                let on = (instance, RunsOn::Anywhere);
+                self.call_on(on, receiver.dispatch, call.pou, (Callee::Function, span));
             }
             None => self.call_plain_function(call, span),
         }
@@ -127,7 +133,7 @@ impl<'p> Emitter<'_, 'p> {
             self.inline_function(call, pou, span);
         } else {
             self.push_arguments(&call.arguments);
-            self.call(call.pou, Callee::Function, span);
+            self.call(call.pou, RunsOn::Nothing, Callee::Function, span);
         }
     }
 

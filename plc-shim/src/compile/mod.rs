@@ -7,7 +7,7 @@
 //! | [`entry`] | what a task runs |
 //! | [`emitter`], [`registers`] | instructions, labels, marks; locals |
 //! | [`frame`], [`inline`] | a unit's own terms; calls, and units put in their place |
-//! | [`cost`], [`calls`], [`budget`] | what units cost, and how endless loops end |
+//! | [`cost`], [`calls`], [`reach`], [`budget`] | what units cost and may change, and how endless loops end |
 //! | [`address`], [`place`], [`part`], [`pointer`], [`open_array`], [`memory`] | addresses, loads and stores |
 //! | [`known`], [`effect`], [`survey`] | values that registers hold already, also through loops |
 //! | [`interval`], [`range`], [`refine`], [`drift`] | between what integers lie: expressions, variables, behind conditions, in loops |
@@ -54,6 +54,7 @@ mod place;
 mod pointer;
 pub(crate) mod points;
 mod range;
+mod reach;
 mod refine;
 mod registers;
 mod repetition;

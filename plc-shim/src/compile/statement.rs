@@ -4,11 +4,12 @@ use std::sync::Arc;
 
 use wasm_encoder::Instruction;
 
-use super::address::Address;
+use super::address::{Address, Extent};
 use super::calls::leaves;
 use super::emitter::Emitter;
 use super::fault::Callee;
 use super::points::PointKind;
+use super::reach::RunsOn;
 use crate::ir::{
     Dispatch, Expr, ExprKind, IfBranch, InstanceCall, Intrinsic, Place, Statement, StatementKind, Storage, TypeTable,
 };
@@ -128,7 +129,9 @@ impl Emitter<'_, '_> {
             self.inline_instance(call, pou, callee, address);
         } else {
             self.push_address(address);
-            self.call_on(address, call.dispatch, call.pou, (callee, call.instance.span));
+            let size = self.shared.types.size(call.instance.ty);
+            let on = (address, RunsOn::Instance(Extent::new(address, size)));
+            self.call_on(on, call.dispatch, call.pou, (callee, call.instance.span));
         }
         self.side_statements(&call.outputs);
     }

@@ -29,6 +29,10 @@ impl Forces {
         }
     }
 
+    pub(super) fn is_empty(&self) -> bool {
+        self.list.is_empty()
+    }
+
     pub(super) fn iter(&self) -> impl ExactSizeIterator<Item = &Force> {
         self.list.iter()
     }

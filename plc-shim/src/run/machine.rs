@@ -6,6 +6,7 @@ use wasmtime::{Config, Engine, Global, Instance, Linker, Memory, Module, Store, 
 
 use super::fault::MAX_CALLERS;
 use super::plan::RunError;
+use super::row;
 use super::text::link::{HostState, link};
 use super::trace::{self, Trace};
 use crate::application::Application;
@@ -20,6 +21,8 @@ pub(super) struct Machine {
     size: usize,
     /// The functions in a row of each thing that tasks can run.
     entries: Vec<Vec<TypedFunc<(), ()>>>,
+    /// All that each task runs, as one function.
+    rows: Vec<Option<TypedFunc<(), ()>>>,
     /// What runs before the first scan, if anything does.
     start: Option<TypedFunc<(), ()>>,
     /// What runs before another start.
@@ -58,7 +61,8 @@ fn module_error(error: &wasmtime::Error) -> RunError {
 }
 
 impl Machine {
-    pub(super) fn new(application: &Application) -> Result<Self, RunError> {
+    /// `tasks` are the entries that each task runs.
+    pub(super) fn new(application: &Application, tasks: &[Vec<usize>]) -> Result<Self, RunError> {
         let module = application.module(|wasm| Module::new(&engine()?, wasm).map_err(|error| format!("{error:#}")));
         let module = module.map_err(RunError::Module)?;
         let mut store = Store::new(module.engine(), HostState::default());
@@ -73,10 +77,13 @@ impl Machine {
         let size = application.initial_memory().len();
         let parts = application.entry_parts().enumerate();
         let entries = parts.map(|(index, count)| entry(&instance, &mut store, index, count));
-        let entries = entries.collect::<Result<_, _>>()?;
+        let entries: Vec<Vec<_>> = entries.collect::<Result<_, _>>()?;
+        let functions = |task: &Vec<usize>| task.iter().filter_map(|at| entries.get(*at)).flatten().cloned().collect();
+        let functions: Vec<Vec<_>> = tasks.iter().map(functions).collect();
+        let rows = row::link(&mut store, &functions).map_err(|error| module_error(&error))?;
         let start = instance.get_typed_func(&mut store, START_EXPORT).ok();
         let end = instance.get_typed_func(&mut store, END_EXPORT).ok();
-        Ok(Self { store, memory, budget, size, entries, start, end })
+        Ok(Self { store, memory, budget, size, entries, rows, start, end })
     }
 
     pub(super) fn memory(&self) -> &[u8] {
@@ -127,6 +134,11 @@ impl Machine {
         }
     }
 
+    /// True if the host has something to do between the parts of what a task runs.
+    pub(super) fn is_traced(&self) -> bool {
+        self.store.data().trace.is_some()
+    }
+
     pub(super) fn parts(&self, entry: usize) -> usize {
         self.entries.get(entry).map_or(0, Vec::len)
     }
@@ -146,6 +158,12 @@ impl Machine {
     /// Runs what there is for the occasion.
     pub(super) fn run_occasion(&mut self, occasion: Occasion) -> Result<(), Trapped> {
         let Some(function) = self.occasion(occasion).cloned() else { return Ok(()) };
+        function.call(&mut self.store, ()).map_err(|error| trapped(&error))
+    }
+
+    /// Runs all of a task, without a halt between its parts.
+    pub(super) fn run_row(&mut self, task: usize) -> Result<(), Trapped> {
+        let Some(Some(function)) = self.rows.get(task) else { return Ok(()) };
         function.call(&mut self.store, ()).map_err(|error| trapped(&error))
     }
 
@@ -203,6 +221,7 @@ fn canonical_double(value: f64) -> f64 {
 fn trapped(error: &wasmtime::Error) -> Trapped {
     let backtrace = error.downcast_ref::<WasmBacktrace>();
     let frames = backtrace.map(WasmBacktrace::frames).unwrap_or_default().iter();
+    let frames = frames.filter(|frame| frame.module().name() != Some(row::NAME));
     let frames = frames.map(|frame| (frame.func_index(), frame.func_offset().map(|offset| offset as u32)));
     Trapped { trap: error.downcast_ref::<Trap>().copied(), frames: frames.collect() }
 }

@@ -6,6 +6,7 @@
 //! | `plan` | tasks with interval and priority, validated |
 //! | `scheduler` | which task is due when |
 //! | `machine` | the compiled module with its memory |
+//! | `row` | the programs of a task as one call |
 //! | `fault` | a trap as an error in the source |
 //! | `soft_plc` | the PLC itself |
 //! | `force` | variables that keep a value, reading and writing by path |
@@ -20,6 +21,7 @@ mod fault;
 mod force;
 mod machine;
 mod plan;
+mod row;
 mod scheduler;
 mod soft_plc;
 mod state;

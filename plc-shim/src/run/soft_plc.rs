@@ -5,7 +5,7 @@ use std::ops::Range;
 use super::VirtualTime;
 use super::fault::{self, PlcFault, WriteSite, explain};
 use super::force::Forces;
-use super::machine::{Machine, Occasion};
+use super::machine::{Machine, Occasion, Trapped};
 use super::plan::{Resolved, RunError, TaskPlan, resolve};
 use super::scheduler::Scheduler;
 use super::state::{self, RestoreError, State};
@@ -47,7 +47,7 @@ impl SoftPlc {
     /// The plan does not suit the application.
     pub fn new(application: &Application, plan: &TaskPlan) -> Result<Self, RunError> {
         let Resolved { tasks, singles, background } = resolve(plan, application)?;
-        let machine = Machine::new(application)?;
+        let machine = Machine::new(application, &tasks)?;
         let mut plc = Self {
             application: application.clone(),
             machine,
@@ -147,9 +147,7 @@ impl SoftPlc {
         self.scheduler.look(now, self.machine.memory());
         while let Some(task) = self.scheduler.take_due(now) {
             self.begin_task();
-            for at in 0..self.tasks.get(task).map_or(0, Vec::len) {
-                self.run_entry(self.tasks[task][at])?;
-            }
+            self.run_task(task)?;
             self.scheduler.look(now, self.machine.memory());
         }
         for at in 0..self.background.len() {
@@ -166,14 +164,28 @@ impl SoftPlc {
         self.machine.refuel(self.fuel_per_task);
     }
 
+    fn run_task(&mut self, task: usize) -> Result<(), PlcFault> {
+        if self.forces.is_empty() && !self.machine.is_traced() {
+            let ended = self.machine.run_row(task);
+            return ended.map_err(|trapped| self.stop(&trapped));
+        }
+        for at in 0..self.tasks.get(task).map_or(0, Vec::len) {
+            self.run_entry(self.tasks[task][at])?;
+        }
+        Ok(())
+    }
+
+    /// The program has failed.
+    fn stop(&mut self, trapped: &Trapped) -> PlcFault {
+        let found = explain(&self.application, trapped, self.now);
+        self.fault = Some(found.clone());
+        found
+    }
+
     fn run_entry(&mut self, entry: usize) -> Result<(), PlcFault> {
         self.machine.begin_traced_unit();
         for part in 0..self.machine.parts(entry) {
-            if let Err(trapped) = self.machine.run(entry, part) {
-                let found = explain(&self.application, &trapped, self.now);
-                self.fault = Some(found.clone());
-                return Err(found);
-            }
+            self.machine.run(entry, part).map_err(|trapped| self.stop(&trapped))?;
             self.apply_forces();
         }
         Ok(())

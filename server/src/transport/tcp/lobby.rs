@@ -1,6 +1,7 @@
 //! The lobby: listens, greets, and hands those who want to join to the session's thread.
 
 use std::net::SocketAddr;
+use std::ops::ControlFlow;
 use std::sync::mpsc::{Receiver, Sender, channel};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
@@ -11,10 +12,12 @@ use serde::de::DeserializeOwned;
 use tokio::net::{TcpListener, TcpStream};
 use tokio::sync::{Notify, Semaphore, oneshot};
 use tokio_util::codec::Framed;
+use tokio_util::task::TaskTracker;
 
 use super::{AGENT, FAREWELL_TIMEOUT, HANDSHAKE_TIMEOUT, ReceiveError};
 use crate::client::JoinRequest;
 use crate::mailbox::{Mailbox, Request};
+use crate::operation::Operation;
 use crate::plan::SessionPlan;
 use crate::wire::message::Role;
 use crate::wire::{
@@ -63,6 +66,8 @@ struct Host {
     applicants: Sender<Applicant>,
     mailbox: Mailbox,
     seats: Semaphore,
+    /// Operators that wait for an answer.
+    answers: TaskTracker,
 }
 
 impl Lobby {
@@ -83,7 +88,8 @@ impl Lobby {
             frame_bytes_max: FRAME_BYTES_MAX as u32,
             signals: plan.signals().to_vec(),
         };
-        let host = Host { welcome, applicants: sender, mailbox, seats: Semaphore::new(GUESTS_MAX) };
+        let seats = Semaphore::new(GUESTS_MAX);
+        let host = Host { welcome, applicants: sender, mailbox, seats, answers: TaskTracker::new() };
         let close = Arc::new(Notify::new());
         let closing = Arc::clone(&close);
         let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build()?;
@@ -121,7 +127,7 @@ async fn receive_guests(listener: std::net::TcpListener, host: Arc<Host>, closin
     };
     loop {
         let accepted = tokio::select! {
-            () = closing.notified() => return,
+            () = closing.notified() => return part_from_operators(&host).await,
             accepted = listener.accept() => accepted,
         };
         match accepted {
@@ -140,6 +146,16 @@ async fn receive_guests(listener: std::net::TcpListener, host: Arc<Host>, closin
             }
         }
     }
+}
+
+/// One who asked for the session's end still hears that it came: what has been taken from the mailbox is answered
+/// before the connections close.
+async fn part_from_operators(host: &Host) {
+    host.answers.close();
+    // Nobody takes these any more.
+    while host.mailbox.take().is_some() {}
+    // An operator that does not read is left.
+    let _ = tokio::time::timeout(FAREWELL_TIMEOUT, host.answers.wait()).await;
 }
 
 async fn greet(stream: TcpStream, peer: SocketAddr, host: &Host) -> Result<(), ReceiveError> {
@@ -198,13 +214,27 @@ async fn serve_operator(mut connection: Connection, host: &Host) -> Result<(), R
             Err(ReceiveError::Closed) => return Ok(()),
             Err(error) => return Err(error),
         };
-        let (reply, answer) = oneshot::channel();
-        host.mailbox.post(Request { operation, reply: Some(reply) });
-        let Ok(done) = answer.await else { return Ok(()) };
-        match done {
-            Ok(status) => send(&mut connection, &ServerMessage::Status(status)).await?,
-            Err(error) => return refuse(&mut connection, &error.to_string()).await,
+        if host.answers.track_future(answer(&mut connection, operation, host)).await?.is_break() {
+            return Ok(());
         }
+    }
+}
+
+/// Leaves a wish and tells what came of it; breaks off after a refusal, or when the session is over.
+async fn answer(
+    connection: &mut Connection,
+    operation: Option<Operation>,
+    host: &Host,
+) -> Result<ControlFlow<()>, ReceiveError> {
+    let (reply, answer) = oneshot::channel();
+    host.mailbox.post(Request { operation, reply: Some(reply) });
+    match answer.await {
+        Ok(Ok(status)) => {
+            send(connection, &ServerMessage::Status(status)).await?;
+            Ok(ControlFlow::Continue(()))
+        }
+        Ok(Err(error)) => refuse(connection, &error.to_string()).await.map(ControlFlow::Break),
+        Err(_) => Ok(ControlFlow::Break(())),
     }
 }
 
