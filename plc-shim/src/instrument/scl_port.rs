@@ -47,11 +47,12 @@ pub(super) fn ported(plain: &Plain, options: &Options) -> Result<Project, Instru
             other => other,
         })?;
         let translated = Application::from_inputs([in_scl(NAME, &text)]).map_err(|found| refused(plain, &found))?;
-        values = start_values(&homes, &original, &translated);
+        let missing = start_values(&homes, &original, &translated);
         last = Some(text);
-        if values.is_empty() {
+        if missing.is_empty() {
             break;
         }
+        values = if values.is_empty() { missing } else { return Err(no_start_values(plain, &missing)) };
     }
     let mut files = plain.unchanged()?;
     plain.add_own(Own { name: NAME.to_owned(), text: last.unwrap_or_default() }, &mut files);
@@ -131,6 +132,17 @@ pub(super) fn path(homes: &Homes, path: &str) -> String {
     let end = path.find(['.', '[']).unwrap_or(path.len());
     let root = path.get(..end).unwrap_or("").to_ascii_uppercase();
     homes.get(&root).map_or_else(|| path.to_owned(), |home| format!("{home}.{path}"))
+}
+
+/// Values that a data block of TIA Portal cannot begin with.
+fn no_start_values(plain: &Plain, missing: &StartValues) -> InstrumentError {
+    let all = missing.iter().flat_map(|(block, values)| values.iter().map(move |(path, value)| (block, path, value)));
+    let findings = all.map(|(block, path, value)| {
+        let message = format!("`{block}.{path}` cannot begin with {value} in SCL of TIA Portal");
+        let found = Diagnostic::error(Code::UnsupportedFeature, Span::new(FileId(0), 0, 0), message);
+        found.with_help("a TIME counts milliseconds there; assign other values in the first scan")
+    });
+    InstrumentError::Text(Diagnostics::new(findings.collect(), &plain.sources))
 }
 
 /// What the project begins with and the translation does not.

@@ -65,7 +65,7 @@ fn declaration<'a>(names: &Names<'a>, global: &Global<'a>, findings: &mut Vec<Di
     let spec = spec::written(names, &constants, &global.variable.spec, findings);
     let scope = Scope { locals: BTreeMap::new(), constants };
     let initial = global.variable.initial.as_ref();
-    let initial = initial.and_then(|initial| value(names, &scope, file, &global.variable.spec, initial));
+    let initial = initial.and_then(|initial| value(names, &scope, file, &global.variable.spec, initial, findings));
     let initial = initial.map_or(String::new(), |value| format!(" := {value}"));
     let is_last = global.variable.names.last().is_some_and(|last| last.span == global.name.span);
     let end = semicolon(file, global.name.span.end);

@@ -61,7 +61,7 @@ fn members<'a>(
     let constants = Constants::new();
     let scope = Scope { locals: BTreeMap::new(), constants: Constants::new() };
     let spec = spec::written(names, &constants, &first.spec, findings);
-    let initial = first.initial.as_ref().and_then(|initial| value(names, &scope, file, &first.spec, initial));
+    let initial = first.initial.as_ref().and_then(|initial| value(names, &scope, file, &first.spec, initial, findings));
     let initial = initial.map_or(String::new(), |value| format!(" := {value}"));
     let lines: Vec<String> =
         group.iter().map(|field| format!("{} : {spec}{initial};", member(&field.name.text))).collect();

@@ -169,7 +169,11 @@ impl<'a> Writer<'_, 'a> {
     fn value(&mut self, variable: &'a Variable, kind: Kind) -> Option<String> {
         let initial = variable.initial.as_ref()?;
         let own = Scope { locals: BTreeMap::new(), constants: self.scope.constants.clone() };
-        let found = value(self.names, &own, self.file, &variable.spec, initial);
+        let known = self.all.findings.len();
+        let found = value(self.names, &own, self.file, &variable.spec, initial, &mut self.all.findings);
+        if self.all.findings.len() > known {
+            return None;
+        }
         if found.is_none() && (kind == Kind::Constant || self.is_assigned(kind) || self.keeps_nothing) {
             let help = "write a literal, or assign it in the body";
             self.all.findings.push(refused(initial.span, "initial value like this here", help));
@@ -185,12 +189,13 @@ pub(super) fn value<'a>(
     file: &'a SourceFile,
     of: &'a TypeSpec,
     initial: &'a Initialiser,
+    findings: &mut Vec<Diagnostic>,
 ) -> Option<String> {
     match &initial.kind {
         InitialiserKind::Value(expr) => {
             let shape = names.shape(of)?;
             if matches!(shape, Shape::Elementary(_) | Shape::Text { .. }) && is_plain(expr) {
-                return literal(names, scope, file, expr);
+                return literal(names, scope, file, expr, findings);
             }
             // The name of an enumeration's value, or of another constant.
             match (&expr.kind, shape) {
@@ -214,7 +219,7 @@ pub(super) fn value<'a>(
                 return None;
             }
             let values: Option<Vec<String>> =
-                values.iter().map(|each| value(names, scope, file, element, each)).collect();
+                values.iter().map(|each| value(names, scope, file, element, each, findings)).collect();
             Some(format!("[{}]", values?.join(", ")))
         }
         _ => None,
@@ -241,12 +246,16 @@ fn is_plain(expr: &Expr) -> bool {
     }
 }
 
-fn literal<'a>(names: &Names<'a>, scope: &Scope<'a>, file: &'a SourceFile, expr: &Expr) -> Option<String> {
+fn literal<'a>(
+    names: &Names<'a>,
+    scope: &Scope<'a>,
+    file: &'a SourceFile,
+    expr: &Expr,
+    findings: &mut Vec<Diagnostic>,
+) -> Option<String> {
     let mut body = Body::new(names, scope, file);
     body::expression(&mut body, expr);
-    if !body.findings.is_empty() {
-        return None;
-    }
+    findings.append(&mut body.findings);
     let place = expr.span.start..expr.span.end;
     let edited = body.edits.take_within(&place).apply(layout::part(file, place.start, place.end)).ok()?;
     Some(edited.text)

@@ -8,6 +8,7 @@ use onescan_plc_shim::{Application, Input, SoftPlc, Task, TaskPlan};
 
 use super::corpus::{cases, input};
 use super::driver::{Driver, Tasks, original, own_plan, scan, write};
+use super::random::{statements, two_programs};
 use crate::rig::{MS, task};
 
 fn ported(files: &[(&str, &str)], tasks: Option<Vec<Task>>) -> Result<Project, InstrumentError> {
@@ -230,4 +231,16 @@ fn what_scl_has_not_is_told_with_its_place() {
         refused("PROGRAM P VAR x : INT; END_VAR x := ; END_PROGRAM"),
     ];
     insta::assert_snapshot!(told.join("\n"));
+}
+
+proptest::proptest! {
+    #![proptest_config(proptest::prelude::ProptestConfig { cases: 6, ..Default::default() })]
+
+    #[test]
+    fn random_programs_do_in_scl_what_they_do_in_text(first in statements(), second in statements()) {
+        let text = two_programs(&first, &second);
+        let tasks = [task("slow", 15, 1, &["First"]), task("fast", 5, 0, &["Second"])];
+        let project = ported(&[("test.st", &text)], Some(tasks.to_vec())).unwrap_or_else(|refused| panic!("{refused}"));
+        assert_equal("random", &text, &tasks, &["First.i", "First.j", "Second.i", "Second.j"], &project);
+    }
 }
