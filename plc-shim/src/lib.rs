@@ -12,6 +12,7 @@
 //! | `lint` | trees | warnings of what is legal and seldom meant |
 //! | `compile` | the checked program | one WebAssembly module, and the source behind each trap |
 //! | [`application`] | files | all of the above in one value |
+//! | `output` | program text | the files that other tools import |
 //! | [`instrument`] | a project | the same, made to run in lockstep |
 //! | [`run`] | an application and a task plan | a soft PLC that scans |
 //! | [`coverage`] | what has been executed | reports of it |

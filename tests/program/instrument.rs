@@ -48,6 +48,37 @@ fn a_scenario_is_instrumented_and_comes_back() {
     assert_eq!(files(folder.path()), before);
 }
 
+/// For CODESYS a project in text becomes one file; the project's own stay as they are.
+#[test]
+fn a_scenario_becomes_plcopen_xml_and_comes_back() {
+    let folder = copied_shear();
+    let before = files(folder.path());
+    let said = instrumented(folder.path(), &[".", "--target", "codesys", "-o", "out"]);
+    assert_eq!((said.code, said.err.as_str()), (Some(0), ""), "{said:?}");
+    insta::assert_snapshot!(said.out);
+    let out = files(&folder.path().join("out"));
+    let mut made = out.clone();
+    let xml = made.remove("plc/sdsp.xml").expect("the whole project");
+    assert!(made.iter().all(|(name, bytes)| before.get(name) == Some(bytes)) && made.len() == 2, "{:?}", made.keys());
+    // Both the file alone, and the folder in which the sources are, are a program without errors.
+    for path in ["out/plc/sdsp.xml", "out"] {
+        let said = typed(folder.path(), &["check", path]);
+        assert_eq!(said.code, Some(0), "{said:?}");
+    }
+    std::fs::remove_dir_all(folder.path().join("out")).unwrap();
+    // In place, and once more.
+    for change in ["new", "same"] {
+        let said = instrumented(folder.path(), &[".", "--target", "codesys", "--in-place"]);
+        assert!(said.code == Some(0) && said.out.contains(&format!("{change:<8} plc/sdsp.xml")), "{said:?}");
+    }
+    let after = files(folder.path());
+    assert_eq!(after.get("plc/sdsp.xml"), Some(&xml));
+    assert_eq!(after.len(), before.len() + 1);
+    let said = instrumented(folder.path(), &[".", "--in-place", "--remove"]);
+    assert_eq!(said.code, Some(0), "{said:?}");
+    assert_eq!(files(folder.path()), before);
+}
+
 #[test]
 fn changes_are_shown_and_nothing_is_written() {
     let folder = copied_shear();
@@ -128,6 +159,7 @@ fn what_is_wrong_is_told() {
     let folder = tempfile::tempdir().unwrap();
     let write = |name: &str, text: &str| std::fs::write(folder.path().join(name), text).unwrap();
     write("clock.st", "PROGRAM P VAR m : MC_Phasing; END_VAR m(); END_PROGRAM\n");
+    write("class.st", "CLASS C END_CLASS PROGRAM P VAR x : REAL; END_VAR x := x ** 2.0; END_PROGRAM\n");
     write("none.st", "FUNCTION_BLOCK F END_FUNCTION_BLOCK\n");
     write("line.L5X", "<RSLogix5000Content/>");
     write("wrong.st", "PROGRAM P x := ; END_PROGRAM\n");
@@ -145,6 +177,7 @@ fn what_is_wrong_is_told() {
         say(&["clock.st"]),
         say(&["line.L5X", "--diff"]),
         say(&["clock.st", "--diff", "--target", "scl"]),
+        say(&["class.st", "--target", "codesys", "-o", "no"]),
     ];
     assert!(!folder.path().join("no").exists());
     insta::assert_snapshot!(all.join("----\n"));

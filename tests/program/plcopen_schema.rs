@@ -5,9 +5,9 @@ use std::fs::{read_dir, read_to_string, write};
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use onescan_plc_shim::Input;
 use onescan_plc_shim::input::kind::SourceKind;
 use onescan_plc_shim::instrument::{Options, Target, instrument};
+use onescan_plc_shim::{Dialect, Input};
 
 use crate::venv::python;
 
@@ -70,10 +70,34 @@ fn instrumented(name: &str, text: &str, target: Target) -> Option<String> {
     let input = Input::from_text(&format!("{name}.xml"), SourceKind::PlcOpen, text);
     match instrument(&[input], &Options { target, tasks: None }) {
         Ok(project) => project.files[0].text.as_deref().map(str::to_owned),
-        // It has several instances of a program, and a task with SINGLE.
+        // It has a task with SINGLE.
         Err(_) if name == "line" => None,
         Err(error) => panic!("{name}: {error}"),
     }
+}
+
+/// The scenarios, and all that a project in text may declare, as they are written for CODESYS.
+fn ported() -> Vec<(String, String)> {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).parent().expect("the workspace");
+    let projects: [(&str, &[&str]); 4] = [
+        ("shear", &["scenarios/shear/plc/shear.st", "scenarios/shear/plc/alignment.st"]),
+        ("filling-machine", &["scenarios/filling-machine/plc/machine.st", "scenarios/filling-machine/plc/grip_arm.st"]),
+        ("gantry-robot", &["scenarios/gantry-robot/plc/robot.st", "scenarios/gantry-robot/plc/servo.st"]),
+        ("press", &["plc-shim/tests/inputs/press.st", "tests/session/shear_chart.st"]),
+    ];
+    let port = |(name, sources): (&str, &[&str])| {
+        let read = |path: &&str| {
+            let text = read_to_string(root.join(path)).expect("a source");
+            Input::from_text(path, SourceKind::Text, text).in_dialect(Dialect::Codesys)
+        };
+        let inputs: Vec<Input> = sources.iter().map(read).collect();
+        let project = instrument(&inputs, &Options { target: Target::Codesys, tasks: None });
+        let project = project.unwrap_or_else(|error| panic!("{name}: {error}"));
+        let text = project.program().next().and_then(|file| file.text.as_deref()).expect("one file");
+        // See above.
+        (format!("{name}-whole.xml"), text.replace("/tc6_0200\"", "/tc6_0201\""))
+    };
+    projects.into_iter().map(port).collect()
 }
 
 #[test]
@@ -102,7 +126,10 @@ fn plcopen_xml_keeps_to_the_schema_and_is_read_by_others() {
             }
         }
     }
-    assert!(outputs >= 8, "{files:?}");
+    for (name, text) in ported() {
+        add(&name, &text);
+    }
+    assert!(outputs >= 10, "{files:?}");
     assert_eq!(check(&files), "");
     // The schema is one that finds something.
     let wrong = read_to_string(&files[0]).unwrap().replacen(" localId=\"1\"", "", 1);

@@ -20,7 +20,7 @@ mod plcopen;
 pub(crate) mod plcopen_chart;
 pub(crate) mod plcopen_chart_graph;
 pub(crate) mod plcopen_condition;
-mod plcopen_instances;
+pub(crate) mod plcopen_instances;
 mod plcopen_network;
 pub(crate) mod plcopen_object;
 pub mod project;

@@ -84,6 +84,10 @@ const SECTIONS: [(&str, &str); 7] = [
     ("globalVars", "VAR_GLOBAL"),
 ];
 
+/// What a section may be beside (TC6 2.01, `varList`).
+const QUALIFIERS: [(&str, &str); 4] =
+    [("constant", " CONSTANT"), ("retain", " RETAIN"), ("nonretain", " NON_RETAIN"), ("persistent", " PERSISTENT")];
+
 impl<'a> Writer<'a> {
     fn new(file: &'a str, dialect: Dialect, programs: BTreeSet<String>) -> Self {
         let taken = Taken { dialect, ..Taken::default() };
@@ -109,6 +113,7 @@ impl Writer<'_> {
     pub(super) fn data_type(&mut self, element: &Element) {
         self.write("TYPE ", &element.open);
         self.attribute(element, "name");
+        self.type_heritage(element);
         self.write(" : ", &element.open);
         self.inner_type(element, "baseType");
         self.initial_value(element);
@@ -127,8 +132,11 @@ impl Writer<'_> {
             }
         };
         self.write(keyword, &element.open);
-        self.attribute(element, "name");
         let interface = element.child("interface");
+        if keyword == "FUNCTION_BLOCK " {
+            self.modifiers(element);
+        }
+        self.attribute(element, "name");
         self.heritage(interface);
         if let Some(result) = interface.and_then(|interface| interface.child("returnType")) {
             self.write(" : ", &result.open);
@@ -194,7 +202,7 @@ impl Writer<'_> {
             return;
         };
         self.write(keyword, &element.open);
-        for (qualifier, text) in [("constant", " CONSTANT"), ("retain", " RETAIN"), ("nonretain", " NON_RETAIN")] {
+        for (qualifier, text) in QUALIFIERS {
             let set = element.attribute(qualifier).filter(|found| found.value == "true");
             if let Some(set) = set {
                 self.write(text, &set.span);
@@ -206,6 +214,13 @@ impl Writer<'_> {
             self.variable(variable);
         }
         self.write("END_VAR\n", &element.close);
+    }
+
+    /// The members of a structure or union.
+    pub(super) fn fields(&mut self, element: &Element) {
+        for field in element.elements().filter(|inner| inner.name == "variable") {
+            self.variable(field);
+        }
     }
 
     fn variable(&mut self, element: &Element) {
@@ -257,9 +272,7 @@ impl Writer<'_> {
             }
             "struct" => {
                 self.write("STRUCT\n", &element.open);
-                for field in element.elements().filter(|inner| inner.name == "variable") {
-                    self.variable(field);
-                }
+                self.fields(element);
                 self.write("END_STRUCT", &element.close);
             }
             "enum" => self.enumeration(element),

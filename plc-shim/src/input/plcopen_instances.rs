@@ -42,9 +42,7 @@ impl Writer<'_> {
             self.attribute(element, name);
             return;
         };
-        let plain = |one: char| if one.is_alphanumeric() { one } else { '_' };
-        let text: String = found.value.chars().map(plain).collect();
-        self.write(&text, &found.span);
+        self.write(&plain(&found.value), &found.span);
     }
 
     fn lines(&mut self, keyword: &str, element: &Element, each: fn(&mut Self, &Element)) {
@@ -97,8 +95,12 @@ impl Writer<'_> {
         }
         self.write(" : ", &element.open);
         // Older files name the type `type`.
-        let program = if element.attribute("typeName").is_some() { "typeName" } else { "type" };
-        self.attribute(element, program);
+        let program = ["typeName", "type"].into_iter().find(|name| element.attribute(name).is_some());
+        match program.and_then(|name| element.attribute(name)) {
+            // CODESYS has no instances: a task calls programs by their names.
+            Some(program) if program.value.is_empty() => self.identifier(element, "name"),
+            _ => self.attribute(element, program.unwrap_or("typeName")),
+        }
         self.write(";\n", &element.close);
     }
 
@@ -118,6 +120,15 @@ impl Writer<'_> {
         self.attribute(element, "instancePathAndName");
         self.address_and_type(element);
     }
+}
+
+/// What an element is called in program text.
+pub(crate) fn name_of(element: &Element) -> Option<String> {
+    element.attribute("name").map(|name| plain(&name.value))
+}
+
+fn plain(name: &str) -> String {
+    name.chars().map(|one| if one.is_alphanumeric() { one } else { '_' }).collect()
 }
 
 /// A duration as XML Schema writes it, `PT0.02S`, as the standard does; anything else as it is.

@@ -1,5 +1,5 @@
 //! What PLCopen XML has for actions, and what CODESYS adds to it in `addData`: methods, properties,
-//! interfaces, bases, lists of global variables.
+//! interfaces, bases, unions, lists of global variables.
 
 use super::plcopen::Writer;
 use super::xml::{Element, Node};
@@ -36,6 +36,9 @@ impl Writer<'_> {
         for data_type in additions(element, "datatype") {
             self.data_type(data_type);
         }
+        for union in additions(element, "union") {
+            self.union(union);
+        }
         for interface in additions(element, "interface") {
             self.interface(interface);
         }
@@ -61,6 +64,22 @@ impl Writer<'_> {
                 self.names(inheritance, element, word);
             }
         }
+    }
+
+    /// ` EXTENDS a` of a structure
+    pub(super) fn type_heritage(&mut self, data_type: &Element) {
+        for inheritance in additions(data_type, "datatypeinheritance") {
+            self.names(inheritance, "Extends", " EXTENDS ");
+        }
+    }
+
+    /// `<union name="u">`, whose members are those of a structure.
+    fn union(&mut self, union: &Element) {
+        self.write("TYPE ", &union.open);
+        self.attribute(union, "name");
+        self.write(" : UNION\n", &union.open);
+        self.fields(union);
+        self.write("END_UNION;\nEND_TYPE\n", &union.close);
     }
 
     fn names(&mut self, holder: &Element, element: &str, word: &str) {
@@ -117,16 +136,21 @@ impl Writer<'_> {
         self.write("END_METHOD\n", &method.close);
     }
 
-    /// Access, name and type of a method or property.
-    fn member_head(&mut self, member: &Element) {
-        let interface = member.child("interface");
-        for holder in [Some(member), interface].into_iter().flatten() {
+    /// Who may use a unit or member, and what may be derived from it.
+    pub(super) fn modifiers(&mut self, element: &Element) {
+        for holder in [Some(element), element.child("interface")].into_iter().flatten() {
             for modifiers in additions(holder, "accessmodifiers") {
                 for modifier in modifiers.attributes.iter().filter(|found| found.value == "true") {
                     self.write(&format!("{} ", modifier.name.to_uppercase()), &modifier.span);
                 }
             }
         }
+    }
+
+    /// Access, name and type of a method or property.
+    fn member_head(&mut self, member: &Element) {
+        let interface = member.child("interface");
+        self.modifiers(member);
         self.attribute(member, "name");
         if let Some(result) = interface.and_then(|interface| interface.child("returnType")) {
             self.write(" : ", &result.open);

@@ -3,17 +3,12 @@
 use super::constant::{self, Constant, Constants};
 use super::edits::Edits;
 use super::marks;
-use super::tasks::TaskTable;
+use super::tasks::{ALWAYS_NS, TaskTable};
 use crate::diagnostic::{Code, Diagnostic};
 use crate::run::Task;
 use crate::syntax::SourceFile;
 use crate::syntax::ast::{Configuration, Connection, Ident, Resource, TaskDeclaration};
 use crate::syntax::lexer::tokenize_in;
-
-/// What is due at every grant has this interval.
-const ALWAYS_NS: u64 = 1;
-/// Interval of the scheduler where no task has one.
-const DEFAULT_NS: u64 = 10_000_000;
 
 /// The name of an instance of a program, as tasks have it.
 pub(super) fn entry_name(resource: &Resource, instance: &Ident) -> String {
@@ -106,8 +101,7 @@ pub(super) fn attach(
         return;
     };
     let Some(program) = resource.programs.first() else { return };
-    let periodic = tasks.rows.iter().map(|row| row.interval_ns).filter(|interval| *interval > ALWAYS_NS);
-    let interval = periodic.min().unwrap_or(DEFAULT_NS);
+    let interval = tasks.shortest_ns();
     let (whole, part) = (interval / 1_000_000, interval % 1_000_000);
     let duration = if part == 0 { format!("T#{whole}ms") } else { format!("T#{whole}.{part:06}ms") };
     let cycle = format!("    TASK SDSP_Cycle (INTERVAL := {duration}, PRIORITY := 0);");

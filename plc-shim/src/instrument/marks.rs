@@ -3,6 +3,7 @@
 //! | mark | says |
 //! |---|---|
 //! | `(*@sdsp file*)` | the whole file was added |
+//! | `(*@sdsp whole*)` | the whole file was added, and is the project as a whole, in the form of another tool |
 //! | `(*@sdsp begin*)` .. `(*@sdsp end*)` | this, the marks and a line break behind them was put in |
 //! | `SDSP_TON(*@sdsp was TON*)` | the name in front of the mark, also in quotes, stands for another |
 //! | `(*@sdsp cut .TON*)` | this stood here |
@@ -25,6 +26,20 @@ const XML_CLOSING: &str = "-->";
 
 /// The first line of a file that was added.
 pub(super) const FILE: &str = "(*@sdsp file*)";
+
+/// The first line of a file that was added and is the project as a whole.
+pub(super) const WHOLE: &str = "(*@sdsp whole*)";
+
+/// The same in XML, behind its declaration.
+pub(super) const XML_FILE: &str = "<!--@sdsp file-->";
+
+/// What stands there in a file that was added and is the project as a whole.
+pub(super) const XML_WHOLE: &str = "<!--@sdsp whole-->";
+
+/// True for a file that was added and is the project as a whole.
+pub(super) fn is_whole(text: &str) -> bool {
+    Mark::next(text, 0).is_some_and(|mark| mark.says == "whole")
+}
 
 /// How lines end in a file.
 pub(super) fn line_break(text: &str) -> &'static str {
@@ -115,9 +130,15 @@ pub(super) fn within(text: &str, at: u32, new: &str) -> String {
 pub(super) fn unmarked(text: &str) -> String {
     let mut plain = String::with_capacity(text.len());
     let mut from = 0;
+    let is_word = |one: char| one.is_ascii_alphanumeric() || one == '_';
     while let Some(mark) = Mark::next(text, from) {
         plain.push_str(text.get(from..mark.at.start).unwrap_or(""));
         from = mark.at.end;
+        // A mark may be all that keeps two words apart.
+        let behind = text.get(from..).unwrap_or("");
+        if plain.ends_with(is_word) && behind.starts_with(is_word) {
+            plain.push(' ');
+        }
     }
     plain + text.get(from..).unwrap_or("")
 }
@@ -177,7 +198,7 @@ pub(super) fn original(text: &str) -> Result<Original, DamagedMarks> {
         from = mark.at.end;
         let damaged = |message| DamagedMarks { at: mark.at.start as u32..mark.at.end as u32, message };
         match (mark.says, &open) {
-            ("file", None) => return Ok(Original::Nothing),
+            ("file" | "whole", None) => return Ok(Original::Nothing),
             ("begin", None) => open = Some(mark),
             ("end", Some(begin)) => {
                 let end = mark.at.end + line_break_length(text.get(mark.at.end..).unwrap_or(""));
@@ -204,7 +225,7 @@ pub(super) fn original(text: &str) -> Result<Original, DamagedMarks> {
                 let before = text.get(..mark.at.start).unwrap_or("");
                 edits.replace(name_start(before) as u32..mark.at.end as u32, old);
             }
-            ("begin" | "file", Some(_)) => return Err(damaged("this mark stands inside of another")),
+            ("begin" | "file" | "whole", Some(_)) => return Err(damaged("this mark stands inside of another")),
             (_, Some(_)) => {}
         }
     }

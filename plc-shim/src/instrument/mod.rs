@@ -20,6 +20,7 @@
 //! | [`plcopen_project`], [`plcopen`], [`plcopen_unit`] | projects in PLCopen XML |
 //! | [`chart`], [`chart_plan`] | Sequential Function Charts: execution signal, action control, times of steps |
 //! | [`plcopen_chart`], [`plcopen_gate`] | the same of charts that are drawn, in PLCopen XML |
+//! | [`port`], [`codesys`] | a project in text for a tool that takes another form |
 //! | [`target`], [`twincat`] | the shim's sources as a vendor's tool takes them |
 //!
 //! Invariants: text goes in and comes out, no file is touched; what is not marked stays byte for byte;
@@ -28,6 +29,7 @@
 mod chart;
 mod chart_plan;
 mod clock;
+mod codesys;
 mod configuration;
 pub(crate) mod constant;
 mod controller;
@@ -43,6 +45,7 @@ mod plcopen_chart;
 mod plcopen_gate;
 mod plcopen_project;
 mod plcopen_unit;
+mod port;
 mod scl;
 mod scl_port;
 mod survey;
@@ -56,7 +59,6 @@ use std::sync::Arc;
 use thiserror::Error;
 
 use self::edits::{Conflict, LineMap};
-use self::motion_use::Motion;
 use self::plain::Plain;
 use self::survey::{Survey, survey};
 pub use self::target::Target;
@@ -66,7 +68,7 @@ use crate::diagnostic::{Diagnostics, Severity};
 use crate::input::Input;
 use crate::input::encoding::Encoding;
 use crate::run::{RunError, Task};
-use crate::syntax::ast::ProgramDeclaration;
+use crate::syntax::ast::{Configuration, ProgramDeclaration};
 use crate::syntax::parser::parse_source;
 
 /// How a project is to be instrumented.
@@ -163,10 +165,21 @@ impl File {
 /// # Errors
 /// Text or tasks are wrong; see [`InstrumentError`].
 pub fn instrument(inputs: &[Input], options: &Options) -> Result<Project, InstrumentError> {
-    let plain = Plain::of(inputs)?;
-    if options.target == Target::Scl && plain.is_text() {
-        return scl_port::ported(&plain, options);
+    let plain = Plain::of(&port::read_by(options.target, inputs))?;
+    match port::ported(&plain, options) {
+        Some(ported) => ported,
+        None => Ok(attach(&plain, options)?.project),
     }
+}
+
+/// A project with the shim attached to its own files.
+struct Attached {
+    project: Project,
+    /// The tasks, unless a configuration of the project's declares them.
+    tasks: Option<Vec<Task>>,
+}
+
+fn attach(plain: &Plain, options: &Options) -> Result<Attached, InstrumentError> {
     let mut units = Vec::new();
     let mut findings = plain.findings.clone();
     for (id, file) in plain.sources.iter() {
@@ -187,7 +200,8 @@ pub fn instrument(inputs: &[Input], options: &Options) -> Result<Project, Instru
     }
     let is_text = options.target == Target::Iec && !plain.is_xml();
     let line = if is_text { Line::Named } else { Line::InPlace };
-    let tasks = TaskTable::new(&plain.tasks(&survey, options)?, &entries(&survey), line)?;
+    let declared = plain.tasks(&survey, options)?;
+    let tasks = TaskTable::new(&declared, &entries(&survey), line)?;
     let mut forms: Vec<_> = survey.renames.iter().map(|(_, form)| *form).collect();
     forms.extend((!survey.charts.is_empty()).then(clock::on_delay));
     forms.sort_by_key(|form| form.name);
@@ -195,16 +209,29 @@ pub fn instrument(inputs: &[Input], options: &Options) -> Result<Project, Instru
     let sources = Sources::new(options.target, &tasks, &forms, &motion.blocks, &survey.charts);
     if plain.is_xml() {
         let files = vec![plain.edited_xml(&survey, &motion, &tasks, &sources)?];
-        return Ok(Project::of(files, Diagnostics::new(findings, &plain.sources)));
+        let project = Project::of(files, Diagnostics::new(findings, &plain.sources));
+        return Ok(Attached { project, tasks: None });
     }
-    let mut files = plain.edited(&survey, &motion, &tasks, &sources.globals)?;
-    let is_text = survey.configurations.first().is_some_and(|first| !plain.is_object(first.name.span));
-    let globals = if is_text { Globals::InConfiguration } else { Globals::InFile };
+    // CODESYS has global variables in lists of their own.
+    let is_list = |first: &&Configuration| options.target == Target::Codesys || plain.is_object(first.name.span);
+    let globals = match survey.configurations.first() {
+        Some(first) if !is_list(first) => Globals::InConfiguration,
+        _ => Globals::InFile,
+    };
+    let declared_there = if globals == Globals::InConfiguration { sources.globals.as_str() } else { "" };
+    let mut files = plain.edited(&survey, &motion, &tasks, declared_there)?;
     for source in sources.files(options.target, globals) {
         plain.add_own(source, &mut files);
     }
+    plain.delete_stale(&mut files);
     plain.list_own(&mut files)?;
-    Ok(Project::of(files, Diagnostics::new(findings, &plain.sources)))
+    let project = Project::of(files, Diagnostics::new(findings, &plain.sources));
+    Ok(Attached { project, tasks: survey.configurations.is_empty().then_some(declared) })
+}
+
+/// True for the text of a file that is a whole project with its shim, made of the files beside it.
+pub fn is_whole(text: &str) -> bool {
+    marks::is_whole(text)
 }
 
 /// Takes the shim off: every file as it was before.
@@ -213,7 +240,7 @@ pub fn instrument(inputs: &[Input], options: &Options) -> Result<Project, Instru
 /// Marks have been damaged.
 pub fn remove(inputs: &[Input]) -> Result<Project, InstrumentError> {
     let plain = Plain::of(inputs)?;
-    let mut files = plain.edited(&Survey::default(), &Motion::default(), &TaskTable::default(), "")?;
+    let mut files = plain.unchanged()?;
     plain.delete_own(&mut files);
     plain.list_own(&mut files)?;
     Ok(Project::of(files, Diagnostics::new(Vec::new(), &plain.sources)))

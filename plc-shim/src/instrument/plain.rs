@@ -118,7 +118,9 @@ impl Plain {
             Target::Scl if scl.is_some() && foreign.is_some() => "beside SCL there are variables only, not programs",
             Target::Scl if scl.is_none() => "the target scl takes program text or SCL sources of TIA Portal",
             Target::Iec | Target::TwinCat | Target::Codesys if scl.is_some() => "SCL sources take the target scl",
-            Target::Codesys if !self.is_xml() => "the target codesys takes a project in PLCopen XML",
+            Target::Codesys if !self.is_xml() && !self.is_text() => {
+                "the target codesys takes program text or a project in PLCopen XML"
+            }
             Target::TwinCat if self.is_xml() => "the target twincat takes TwinCAT's own files, not PLCopen XML",
             _ => return None,
         };

@@ -13,16 +13,13 @@ use super::plcopen_unit as unit;
 use super::target::Sources;
 use super::tasks::TaskTable;
 use super::template::{self, Controller, Number};
+use crate::input::plcopen_instances;
 use crate::input::xml::{self, Element};
 use crate::syntax::SourceFile;
 use crate::syntax::ast::{Pou, PouKind};
 
 /// The action that a body becomes which is no text.
 const ACTION: &str = "SDSP_Body";
-/// Interval of the scheduler where no task has one.
-const DEFAULT_NS: u64 = 10_000_000;
-/// What is due at every grant has this interval.
-const ALWAYS_NS: u64 = 1;
 
 /// The file as a tree; it has been read once already.
 pub(super) fn tree(file: &SourceFile) -> Option<Element> {
@@ -103,14 +100,11 @@ pub(super) fn append(text: &str, element: &Element, xml: &str, edits: &mut Edits
 pub(super) type Refused = &'static str;
 
 /// The element of a unit.
-pub(super) fn element<'e>(pou: &Pou, number: Option<Number>, root: &'e Element) -> Result<&'e Element, Refused> {
+pub(super) fn element<'e>(pou: &Pou, root: &'e Element) -> Result<&'e Element, Refused> {
     let kind = if pou.kind == PouKind::Program { "program" } else { "functionBlock" };
     let is_it = |element: &&Element| {
         is_named(element, &pou.name.text) && element.attribute("pouType").is_some_and(|found| found.value == kind)
     };
-    if number == Some(Number::OfInstance) {
-        return Err("several instances of one program in PLCopen XML are not instrumented yet");
-    }
     all(root, "pou").into_iter().find(is_it).ok_or("this program has no element of its own")
 }
 
@@ -134,7 +128,7 @@ pub(super) fn control(
     (file, root): (&SourceFile, &Element),
     edits: &mut Edits,
 ) -> Result<(), Refused> {
-    let element = element(pou, Some(number), root)?;
+    let element = element(pou, root)?;
     let text = file.shown_text();
     let controller = template::controller(number, line);
     let Some(declared) = unit::declarations(&controller.declarations) else {
@@ -219,7 +213,35 @@ pub(super) fn attach(
     if let Some(resource) = resource {
         insert(text, resource.open.end, &cycle(configuration, tasks), edits);
     }
+    number(configuration, text, tasks, edits);
     Ok(())
+}
+
+/// Tells each of several instances of a program its number, by an initial value of its own (2nd ed. 2.7.1): the schema
+/// has no connections of a program's variables.
+fn number(configuration: &Element, text: &str, tasks: &TaskTable<'_>, edits: &mut Edits) {
+    let mut values = String::new();
+    for resource in configuration.elements().filter(|inner| inner.name == "resource") {
+        for instance in all(resource, "pouInstance") {
+            let path = [resource, instance].map(|each| plcopen_instances::name_of(each).unwrap_or_default()).join(".");
+            let Some(number) = tasks.number_of_instance(&path) else { continue };
+            values += &unit::instance_number(&path, number);
+        }
+    }
+    if values.is_empty() {
+        return;
+    }
+    if let Some(list) = configuration.child("configVars") {
+        let remarks = list.elements().find(|inner| inner.name != "configVariable");
+        return match remarks {
+            Some(first) => insert(text, first.open.start, &values, edits),
+            None => append(text, list, &values, edits),
+        };
+    }
+    let list = format!("<configVars>\n{values}</configVars>\n");
+    let before = |inner: &&Element| matches!(inner.name.as_str(), "resource" | "globalVars" | "accessVars");
+    let at = configuration.elements().filter(before).last().map_or(configuration.open.end, |inner| inner.close.end);
+    insert(text, at, &list, edits);
 }
 
 /// Variables of a project that has no tasks: CODESYS' own list, or a configuration of the standard's.
@@ -254,8 +276,7 @@ fn alone(root: &Element, text: &str, globals: &str, edits: &mut Edits) -> Option
 
 /// The scheduler's task, its interval written as the others are.
 fn cycle(configuration: &Element, tasks: &TaskTable<'_>) -> String {
-    let periodic = tasks.rows.iter().map(|row| row.interval_ns).filter(|interval| *interval > ALWAYS_NS);
-    let ns = periodic.min().unwrap_or(DEFAULT_NS);
+    let ns = tasks.shortest_ns();
     let is_schema = |task: &&Element| task.attribute("interval").is_some_and(|found| found.value.starts_with("PT"));
     let interval = if all(configuration, "task").iter().any(is_schema) {
         format!("PT{}.{:09}S", ns / 1_000_000_000, ns % 1_000_000_000)

@@ -36,8 +36,7 @@ impl Plain {
         for pou in &survey.charts {
             let number = tasks.numbered().find(|(numbered, _)| std::ptr::eq(*numbered, *pou));
             let number = number.map(|(_, number)| (number, line.as_str()));
-            let element = plcopen::element(pou, number.map(|(number, _)| number), &root)
-                .map_err(|message| self.refused(pou.name.span, message))?;
+            let element = plcopen::element(pou, &root).map_err(|message| self.refused(pou.name.span, message))?;
             let plan = ChartPlan::new(pou, number, &survey.renames, file);
             plcopen_chart::control(&plan, element, &mut edits)
                 .map_err(|(span, message)| self.refused(span, message))?;

@@ -59,7 +59,7 @@ pub(super) fn ported(plain: &Plain, options: &Options) -> Result<Project, Instru
     let whole = files.last().map(|file| file.name.clone());
     plain.delete_stale(&mut files);
     let warnings = Diagnostics::new(warnings, &plain.sources);
-    Ok(Project { files, warnings, whole, tasks: Some(called(&tasks)), homes })
+    Ok(Project { whole, tasks: Some(called(&tasks)), homes, ..Project::of(files, warnings) })
 }
 
 fn input(file: &crate::syntax::SourceFile) -> Input {
@@ -110,7 +110,7 @@ fn attached(text: &str, tasks: &[Task]) -> Result<String, InstrumentError> {
     let texts = |files: Vec<&File>| -> Vec<String> {
         files.into_iter().filter_map(|file| file.text.as_deref().map(marks::plain_text)).collect()
     };
-    Ok(format!("{}\n{}\n{}", marks::FILE, texts(own).join("\n").trim_start(), texts(others).join("\n")))
+    Ok(format!("{}\n{}\n{}", marks::WHOLE, texts(own).join("\n").trim_start(), texts(others).join("\n")))
 }
 
 /// The translation is not right: its own words do not help, but say what SCL has not.

@@ -7,6 +7,11 @@ use crate::diagnostic::did_you_mean;
 use crate::run::{RunError, Task};
 use crate::syntax::ast::Pou;
 
+/// What is due at every grant has this interval.
+pub(super) const ALWAYS_NS: u64 = 1;
+/// Interval of the scheduler where no task has one.
+const DEFAULT_NS: u64 = 10_000_000;
+
 /// Tasks in the order in which they come when all are due, and their programs, numbered from 1 in the
 /// same order.
 #[derive(Debug, Default)]
@@ -81,6 +86,11 @@ impl<'a> TaskTable<'a> {
         })
     }
 
+    /// The interval of the scheduler's task.
+    pub(super) fn shortest_ns(&self) -> u64 {
+        shortest_ns(self.rows.iter().map(|row| row.interval_ns))
+    }
+
     /// The number of an instance that must be told it.
     pub(super) fn number_of_instance(&self, name: &str) -> Option<usize> {
         let at = self.programs.iter().position(|entry| entry.name == name)?;
@@ -118,6 +128,11 @@ impl<'a> TaskTable<'a> {
             ("SDSP_COUNTS", list(&|row| row.count as u64)),
         ]
     }
+}
+
+/// The interval of the scheduler's task: the shortest of the others' own.
+pub(super) fn shortest_ns(intervals: impl Iterator<Item = u64>) -> u64 {
+    intervals.filter(|interval| *interval > ALWAYS_NS).min().unwrap_or(DEFAULT_NS)
 }
 
 fn check(tasks: &[Task]) -> Result<(), RunError> {

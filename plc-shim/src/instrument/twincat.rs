@@ -46,8 +46,9 @@ pub(super) fn unit(name: &str, text: &str) -> Source {
 fn object(kind: &str, name: &str, parts: &str) -> String {
     let special = if kind == "POU" { " SpecialFunc=\"None\"" } else { "" };
     format!(
-        "<?xml version=\"1.0\" encoding=\"utf-8\"?>\n<!--@sdsp file-->\n<TcPlcObject Version=\"1.1.0.1\">\n  \
+        "<?xml version=\"1.0\" encoding=\"utf-8\"?>\n{}\n<TcPlcObject Version=\"1.1.0.1\">\n  \
          <{kind} Name=\"{name}\" Id=\"{}\"{special}>\n{parts}  </{kind}>\n</TcPlcObject>\n",
+        marks::XML_FILE,
         identity(name)
     )
 }

@@ -1,11 +1,12 @@
 //! The suite in lockstep: each case as it is, instrumented and not simulated, and instrumented under the scheduler with
-//! a grant a scan, side by side. All three hold the same after every scan, bit for bit.
+//! a grant a scan, side by side. All three hold the same after every scan, bit for bit. Once as text, and once as
+//! PLCopen XML for CODESYS, in whose dialect the cases are then read.
 
 use std::collections::{BTreeMap, BTreeSet};
 
 use onescan_plc_shim::input::kind::SourceKind;
-use onescan_plc_shim::instrument::{Options, instrument};
-use onescan_plc_shim::{Application, FaultKind, Input, SoftPlc, Task, TaskPlan, VirtualTime};
+use onescan_plc_shim::instrument::{Options, Target, instrument};
+use onescan_plc_shim::{Application, Dialect, FaultKind, Input, SoftPlc, Task, TaskPlan, VirtualTime};
 
 use super::case::Case;
 use super::trace;
@@ -89,9 +90,13 @@ struct Three {
 impl Three {
     /// # Errors
     /// Why the case has nothing to show here.
-    fn of(case: &Case, text: &str) -> Result<Self, String> {
+    fn of(case: &Case, text: &str, target: Target) -> Result<Self, String> {
         let mut input = Input::from_text("case.st", SourceKind::Text, text);
-        if let Some(dialect) = case.dialect {
+        let dialect = if target == Target::Codesys { Some(Dialect::Codesys) } else { case.dialect };
+        if case.dialect.is_some() && case.dialect != dialect {
+            return Err("is of another dialect".to_owned());
+        }
+        if let Some(dialect) = dialect {
             input = input.in_dialect(dialect);
         }
         let first_error = |found: &dyn std::fmt::Display| {
@@ -103,12 +108,13 @@ impl Three {
         let single = || TaskPlan::single(&plain, case.interval.as_nanos() as u64);
         let plan = configured.clone().unwrap_or_else(single);
         let tasks = configured.is_none().then(|| plan.tasks.clone());
-        let project = instrument(&[input], &Options { tasks, ..Options::default() });
+        let project = instrument(&[input], &Options { tasks, target });
         let project = project.map_err(|error| format!("is refused: {}", first_error(&error)))?;
-        let files = project.files.iter().map(|file| {
+        let files = project.program().map(|file| {
             let text = file.text.as_deref().expect("nothing is deleted");
-            let input = Input::from_text(&file.name, SourceKind::Text, text);
-            match case.dialect.filter(|_| file.name == "case.st") {
+            let kind = if project.whole.is_some() { SourceKind::PlcOpen } else { SourceKind::Text };
+            let input = Input::from_text(&file.name, kind, text);
+            match dialect.filter(|_| file.name == "case.st") {
                 Some(dialect) => input.in_dialect(dialect),
                 None => input,
             }
@@ -195,7 +201,14 @@ fn held(plc: &SoftPlc) -> BTreeMap<String, Vec<u8>> {
     };
     let bytes = |offset: u32, size: u32| plc.memory()[offset as usize..][..size as usize].to_vec();
     let leaves = application.leaves().filter(|leaf| is_own(&leaf.path));
-    leaves.map(|leaf| (leaf.path.clone(), bytes(leaf.offset, leaf.size))).collect()
+    leaves.map(|leaf| (in_text(&leaf.path), bytes(leaf.offset, leaf.size))).collect()
+}
+
+/// The path that a variable has in text. PLCopen XML has lists of global variables, and its resources have names.
+fn in_text(path: &str) -> String {
+    let path = path.strip_prefix("Application.").unwrap_or(path);
+    let names: Vec<&str> = path.split('.').filter(|name| !name.starts_with("GVL_case")).collect();
+    names.join(".")
 }
 
 /// Runs a case; what is not the same.
@@ -219,18 +232,29 @@ fn run(case: &Case, three: &mut Three) -> Result<(), String> {
     Ok(())
 }
 
-/// Cases that cannot be instrumented are named, with the reason.
-#[test]
-fn every_case_is_the_same_in_lockstep() {
-    let (mut left, mut failures) = (Vec::new(), Vec::new());
+/// How many cases are the same, and those that cannot be instrumented, with the reason.
+fn outcome(target: Target) -> String {
+    let (mut same, mut left, mut failures) = (0, Vec::new(), Vec::new());
     for path in super::files() {
         let (name, text) = (super::stem(&path), std::fs::read_to_string(&path).expect("a case"));
         let case = Case::parse(&text).expect("it has a trace");
-        match Three::of(&case, &text) {
-            Ok(mut three) => failures.extend(run(&case, &mut three).err().map(|why| format!("{name}, {why}"))),
+        let ran = Three::of(&case, &text, target).map(|mut three| run(&case, &mut three));
+        match ran {
+            Ok(Ok(())) => same += 1,
+            Ok(Err(why)) => failures.push(format!("{name}, {why}")),
             Err(why) => left.push(format!("{name}: {why}")),
         }
     }
     assert!(failures.is_empty(), "{}", failures.join("\n"));
-    insta::assert_snapshot!(left.join("\n"));
+    format!("{same} are the same, {} are not there:\n{}", left.len(), left.join("\n"))
+}
+
+#[test]
+fn every_case_is_the_same_in_lockstep() {
+    insta::assert_snapshot!(outcome(Target::Iec));
+}
+
+#[test]
+fn every_case_is_the_same_in_plcopen_xml() {
+    insta::assert_snapshot!(outcome(Target::Codesys));
 }

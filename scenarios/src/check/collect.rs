@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 
 use onescan_plc_shim::input::kind::{EXTENSIONS, FileKind};
 use onescan_plc_shim::input::project;
+use onescan_plc_shim::instrument;
 use onescan_plc_shim::{Code, Dialect, Input, TaskPlan};
 
 use crate::run::RunError;
@@ -139,12 +140,16 @@ impl Files {
         if let Some(project) = entries.iter().find(is_project) {
             return self.file(project, FileKind::Project);
         }
+        let is_source = |file: &PathBuf| matches!(FileKind::of(file), Some(FileKind::Source(_))) && !is_other_xml(file);
+        let sources = entries.iter().filter(|file| is_source(file)).count();
         for entry in entries {
             // A link to a folder may lead in a circle.
             if entry.is_dir() && !entry.is_symlink() {
                 self.folder(&entry)?;
             } else if let Some(kind) = FileKind::of(&entry).filter(|_| entry.is_file())
                 && !is_other_xml(&entry)
+                // What was made of the sources beside it is the same program once more.
+                && !(sources > 1 && is_whole(&entry))
             {
                 self.file(&entry, kind)?;
             }
@@ -157,6 +162,12 @@ impl Files {
 fn is_other_xml(path: &Path) -> bool {
     let is_xml = path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("xml"));
     is_xml && !std::fs::read(path).is_ok_and(|bytes| bytes.windows(11).any(|part| part == b"plcopen.org"))
+}
+
+/// True for a project with its shim that `instrument` wrote as one file.
+fn is_whole(path: &Path) -> bool {
+    let is_own = path.file_stem().is_some_and(|stem| stem.eq_ignore_ascii_case("sdsp"));
+    is_own && std::fs::read(path).is_ok_and(|bytes| instrument::is_whole(&String::from_utf8_lossy(&bytes)))
 }
 
 fn unreadable(path: &Path, source: std::io::Error) -> RunError {

@@ -10,6 +10,7 @@ mod grants;
 mod plcopen_charts;
 mod plcopen_motion;
 mod plcopen_xml;
+mod ported;
 mod random;
 mod rewriting;
 mod scl;

@@ -133,20 +133,59 @@ fn tasks_of_the_project_get_a_scheduler() {
     assert!(application.programs().count() >= 4);
 }
 
+/// Programs of which the configuration has several instances, in every language and as a chart.
+fn with_twins() -> String {
+    let fast = "<task name=\"Fast\" priority=\"1\" interval=\"PT0.01S\">";
+    let slow = "<task name=\"Slow\" priority=\"2\" interval=\"PT0.02S\">";
+    let twin = |name: &str, of: &str| format!("<pouInstance name=\"{name}\" typeName=\"{of}\"/>");
+    let given = configured().replace(fast, &[fast, &twin("text2", "Text"), &twin("list2", "List")].concat());
+    given.replace(slow, &[slow, &twin("net2", "Net"), &twin("rung2", "Rung")].concat())
+}
+
+#[test]
+fn several_instances_of_a_program_are_numbered() {
+    let given = with_twins();
+    let options = Options { target: Target::Iec, tasks: None };
+    let again = text(&round_trip(&given, &options));
+    assert_eq!(again.matches("<configVariable").count(), 8, "{again}");
+    // A list that the project has of its own takes them in.
+    let own = "<configVars><configVariable instancePathAndName=\"Station.text.n\"><type><INT/></type><initialValue>\
+               <simpleValue value=\"5\"/></initialValue></configVariable></configVars></configuration>";
+    let own = given.replace("</configuration>", own);
+    assert_eq!(text(&round_trip(&own, &options)).matches("<configVars>").count(), 1);
+    let compiled =
+        |text: &str| Application::from_inputs([read(text)]).unwrap_or_else(|found| panic!("{found}\n{text}"));
+    let plain = compiled(&own);
+    let mut plain = SoftPlc::new(&plain, &TaskPlan::configured(&plain).expect("tasks")).expect("the plan suits");
+    let application = compiled(&text(&round_trip(&own, &options)));
+    let mut driver = Driver::joined(&application, &TaskPlan::configured(&application).expect("tasks"));
+    for step in 1..80 {
+        for (index, name) in ["text", "text2", "net", "net2", "rung", "rung2", "list", "list2"].iter().enumerate() {
+            let value = super::corpus::input(index, step);
+            write(&mut plain, &format!("Station.{name}.go"), value);
+            driver.rig.set(&format!("Station.{name}.go"), value);
+        }
+        scan(&mut plain, step * 10 * MS);
+        driver.step(step * 10 * MS);
+        let mut granted = state(&driver.rig.plc);
+        granted.retain(|(path, _)| !path.starts_with("SDSP."));
+        assert_eq!(state(&plain), granted, "step {step}");
+    }
+    assert!(driver.rig.int("Station.text.n") > driver.rig.int("Station.text2.n"));
+}
+
 #[test]
 fn what_is_not_instrumented_is_told() {
-    let two = "<task name=\"Fast\" priority=\"1\" interval=\"PT0.01S\"><pouInstance name=\"again\" typeName=\"Text\"/>";
-    let given = configured().replace("<task name=\"Fast\" priority=\"1\" interval=\"PT0.01S\">", two);
-    let error = instrument(&[read(&given)], &Options::default()).expect_err("two instances");
-    assert!(error.to_string().contains("several instances of one program"), "{error}");
     let beside = Input::from_text("a.st", SourceKind::Text, "PROGRAM A END_PROGRAM");
     let error = instrument(&[read(&line()), beside], &Options::default()).expect_err("two files");
     assert!(error.to_string().contains("is one file"), "{error}");
     let error = instrument(&[read(&line())], &options(Target::TwinCat)).expect_err("no XML of TwinCAT");
     assert!(error.to_string().contains("not PLCopen XML"), "{error}");
-    let text = Input::from_text("a.st", SourceKind::Text, "PROGRAM A END_PROGRAM");
-    let error = instrument(&[text], &Options { target: Target::Codesys, tasks: None }).expect_err("no XML");
-    assert!(error.to_string().contains("takes a project in PLCopen XML"), "{error}");
+    let object = "<TcPlcObject><POU Name=\"A\"><Declaration><![CDATA[PROGRAM A]]></Declaration><Implementation><ST>\
+                  <![CDATA[]]></ST></Implementation></POU></TcPlcObject>";
+    let object = Input::from_text("A.TcPOU", SourceKind::TwinCat, object);
+    let error = instrument(&[object], &Options { target: Target::Codesys, tasks: None }).expect_err("no XML");
+    assert!(error.to_string().contains("takes program text or a project in PLCopen XML"), "{error}");
 }
 
 #[test]
