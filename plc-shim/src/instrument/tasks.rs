@@ -70,10 +70,13 @@ impl<'a> TaskTable<'a> {
                 table.programs.push(entry);
             }
             let count = table.programs.len() + 1 - first;
-            let (interval_ns, priority) = (task.interval_ns, task.priority);
-            table.rows.push(Row { interval_ns, priority, first, count });
+            // One that runs nothing would have no last program.
+            if count > 0 {
+                let (interval_ns, priority) = (task.interval_ns, task.priority);
+                table.rows.push(Row { interval_ns, priority, first, count });
+            }
         }
-        Ok(table)
+        if table.rows.is_empty() { Err(RunError::NoTasks) } else { Ok(table) }
     }
 
     /// The programs that run, each once, and how each knows its number.
@@ -125,7 +128,7 @@ impl<'a> TaskTable<'a> {
             ("SDSP_INTERVALS", list(&|row| row.interval_ns)),
             ("SDSP_PRIORITIES", list(&|row| u64::from(row.priority))),
             ("SDSP_FIRSTS", list(&|row| row.first as u64)),
-            ("SDSP_COUNTS", list(&|row| row.count as u64)),
+            ("SDSP_FINALS", list(&|row| (row.first + row.count) as u64 - 1)),
         ]
     }
 }
