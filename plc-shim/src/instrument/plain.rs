@@ -116,7 +116,7 @@ impl Plain {
         let foreign = survey.programs.iter().find(foreign).map(|pou| pou.name.span);
         let message = match target {
             Target::Scl if scl.is_some() && foreign.is_some() => "beside SCL there are variables only, not programs",
-            Target::Scl if scl.is_none() => "the target scl takes SCL sources of TIA Portal",
+            Target::Scl if scl.is_none() => "the target scl takes program text or SCL sources of TIA Portal",
             Target::Iec | Target::TwinCat | Target::Codesys if scl.is_some() => "SCL sources take the target scl",
             Target::Codesys if !self.is_xml() && !self.is_text() => {
                 "the target codesys takes program text or a project in PLCopen XML"
@@ -185,11 +185,7 @@ impl Plain {
         };
         for (name, form) in &survey.renames {
             changes(name.span.file, &mut |file, edits| {
-                if scl::is_scl(file) {
-                    scl::rename(name, form, file, edits);
-                } else {
-                    rename(name, &form.new_name(), file, edits);
-                }
+                rename(name, &form.new_name(), file, edits);
             });
         }
         for (name, new) in &motion.renames {
@@ -273,6 +269,9 @@ impl Plain {
 }
 
 fn rename(name: &Ident, new: &str, file: &SourceFile, edits: &mut Edits) {
+    if scl::is_scl(file) {
+        return scl::rename(name, new, file, edits);
+    }
     let at = file.shown_range(name.span.start, name.span.end);
     edits.replace(at, marks::renamed(new, &name.text));
 }

@@ -277,6 +277,7 @@ impl<'a> Surveyor<'_, 'a> {
             InitialiserKind::Array(values) => values.iter().for_each(|value| self.initialiser(value)),
             InitialiserKind::Repeat(_, value) => value.iter().for_each(|value| self.initialiser(value)),
             InitialiserKind::Struct(members) => members.iter().for_each(|member| self.initialiser(&member.value)),
+            InitialiserKind::Elements(elements) => elements.iter().for_each(|each| self.initialiser(&each.value)),
         }
     }
 

@@ -15,4 +15,5 @@ mod random;
 mod random_single;
 mod rewriting;
 mod scl;
+mod scl_port;
 mod single;
