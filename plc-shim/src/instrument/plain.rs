@@ -145,8 +145,8 @@ impl Plain {
             return Ok(tasks.clone());
         }
         if !survey.configurations.is_empty() {
-            let is_xml = self.is_xml() || options.target == Target::Codesys;
-            if let Some(found) = single::refused_in_xml(&survey.configurations).filter(|_| is_xml) {
+            let is_text = options.target == Target::Iec && !self.is_xml();
+            if let Some(found) = single::refused_elsewhere(&survey.configurations).filter(|_| !is_text) {
                 return Err(wrong(found));
             }
             let parts = survey.configurations.iter().map(|part| configuration::tasks(part, &survey.constants));
