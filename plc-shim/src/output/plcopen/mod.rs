@@ -89,13 +89,16 @@ impl Document {
     fn file(&mut self, file: &SourceFile, unit: &CompilationUnit) {
         let page = Page::of(file);
         let mut from = 0;
-        for declaration in &unit.declarations {
+        let starts = unit.declarations.iter().skip(1).map(|next| place(next).map_or(u32::MAX, |(start, _)| start));
+        let starts = starts.chain(std::iter::once(u32::MAX));
+        for (declaration, next) in unit.declarations.iter().zip(starts) {
             let (start, end) = place(declaration).unwrap_or((from, from));
-            let words = page.remarks(from..start);
+            let until = page.line_end(end).min(next).max(end);
+            let words = variables::words(&page, from..start, end..until);
             if let Err(refused) = self.declaration(declaration, &words, file, &page) {
                 self.refused.push(refused);
             }
-            from = end.max(from);
+            from = until.max(from);
         }
     }
 
