@@ -138,6 +138,7 @@ codes! {
     UnsafeChart "Q1210" "a step may be activated while it is active",
     TimeConflict "Q1211" "an action may have two times at once",
     DeadEnd "Q1212" "a chart comes to an end",
+    SharedAction "Q1213" "two charts of a unit control one action",
     NotText "F0601" "a file is not text in an encoding that is read",
     MalformedXml "F0602" "a file is not the XML that its name promises",
     OutputNeverWritten "W0701" "an output is never written",

@@ -52,7 +52,7 @@ pub(crate) fn for_program<'s>(files: impl Iterator<Item = &'s SourceFile>) -> Ve
     let texts: Vec<_> = files.map(SourceFile::text).collect();
     let axis = texts.iter().filter_map(|text| axis_in(text)).max();
     let motion: &[_] = if axis == Some(Axis::Used) { &MOTION } else { &[] };
-    let vendors = vendor_library::for_texts(&texts);
+    let vendors = vendor_library::for_texts(&texts, !motion.is_empty());
     let asserts = texts.iter().any(|text| mentions_assert(text)).then_some(&ASSERTS);
     FILES.iter().chain(motion).chain(asserts).copied().chain(vendors).collect()
 }

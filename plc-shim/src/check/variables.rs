@@ -253,7 +253,7 @@ impl<'c, 'a> Interface<'c, 'a> {
             self.body.scope.parameters = 1;
             self.inherit();
             self.declare_sections(ast, |_| true);
-            self.declare_chart(ast);
+            self.declare_charts(ast);
             self.keep_for_methods(ast);
         }
     }

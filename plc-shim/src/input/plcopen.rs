@@ -149,14 +149,15 @@ impl Writer<'_> {
         if keyword != "FUNCTION " {
             self.declare_triggers(element);
         }
+        let mut used = Vec::new();
         for body in element.elements().filter(|inner| inner.name == "body") {
             match body.child("SFC") {
-                Some(sfc) => self.chart(sfc, element),
+                Some(sfc) => self.chart(sfc, element, &mut used),
                 None => self.body(body),
             }
         }
         self.write(end, &element.close);
-        self.actions(element);
+        self.actions(element, &mut used);
         self.members(element);
     }
 

@@ -7,6 +7,7 @@
 //! | `jumpStep`, divergences and convergences | the lists behind FROM and TO |
 //! | `transition` | TRANSITION; those further to the left first. See [`super::plcopen_condition`] |
 //! | `<inline>` of an action | an ACTION named after the step |
+//! | `SFC` as the body of an `action` | steps and transitions of that ACTION |
 
 use super::plcopen::Writer;
 use super::plcopen_chart_graph::{End, Graph, Kind, Node, NodeId};
@@ -30,27 +31,52 @@ impl<'e> Chart<'e> {
     }
 }
 
+/// What is written in a step, under a name of its own.
+type Inline<'e> = Vec<(String, &'e Element)>;
+
 impl Writer<'_> {
-    /// `<SFC>` as steps and transitions; `unit` is what holds its body.
-    pub(super) fn chart(&mut self, sfc: &Element, unit: &Element) {
+    /// `<SFC>` as steps and transitions; `unit` is the `<pou>`, and `used` are names of its transitions.
+    pub(super) fn chart(&mut self, sfc: &Element, unit: &Element, used: &mut Vec<String>) {
+        let inline = self.chart_parts(sfc, unit, used);
+        self.inline_actions(inline);
+    }
+
+    pub(super) fn inline_actions(&mut self, inline: Inline<'_>) {
+        for (name, body) in inline {
+            self.write("ACTION ", &body.open);
+            self.write(&name, &body.open);
+            self.write(":\n", &body.open);
+            self.body(body);
+            self.write("END_ACTION\n", &body.close);
+        }
+    }
+
+    /// The same; gives back the actions that are written in its steps.
+    pub(super) fn chart_parts<'e>(
+        &mut self,
+        sfc: &'e Element,
+        unit: &'e Element,
+        used: &mut Vec<String>,
+    ) -> Inline<'e> {
         let (graph, dangling) = Graph::new(sfc);
         for lost in dangling {
             let message = "this connection leads to nothing";
             self.taken.report(lost.connection.open.clone(), Code::MalformedXml, message);
         }
         let chart = Chart { graph, named: named_transitions(unit) };
+        let mut inline = Vec::new();
         for (id, node) in chart.graph.of(Kind::Step) {
-            self.step(&chart, id, node.element);
+            inline.extend(self.step(&chart, id, node.element));
         }
         let mut transitions: Vec<NodeId> = chart.graph.of(Kind::Transition).map(|(id, _)| id).collect();
         transitions.sort_by_key(|id| chart.graph.column(*id));
-        let mut used = Vec::new();
         for id in transitions {
-            self.transition(&chart, id, &mut used);
+            self.transition(&chart, id, used);
         }
         for (_, node) in chart.graph.of(Kind::Other) {
             self.report_stray(node);
         }
+        inline
     }
 
     /// What stands in a chart and would do something of its own: only what a condition needs has a meaning there.
@@ -61,7 +87,7 @@ impl Writer<'_> {
         }
     }
 
-    fn step(&mut self, chart: &Chart<'_>, id: NodeId, element: &Element) {
+    fn step<'e>(&mut self, chart: &Chart<'e>, id: NodeId, element: &Element) -> Inline<'e> {
         let initial = element.attribute("initialStep").is_some_and(|found| matches!(found.value.trim(), "true" | "1"));
         self.write(if initial { "INITIAL_STEP " } else { "STEP " }, &element.open);
         self.attribute(element, "name");
@@ -73,17 +99,11 @@ impl Writer<'_> {
             }
         }
         self.write("END_STEP\n", &element.close);
-        for (name, inline) in own {
-            self.write("ACTION ", &inline.open);
-            self.write(&name, &inline.open);
-            self.write(":\n", &inline.open);
-            self.body(inline);
-            self.write("END_ACTION\n", &inline.close);
-        }
+        own
     }
 
     /// The associations of an action block; what stands in it goes to `own`, under a name of its own.
-    fn action_block<'e>(&mut self, step: &Element, block: &'e Element, own: &mut Vec<(String, &'e Element)>) {
+    fn action_block<'e>(&mut self, step: &Element, block: &'e Element, own: &mut Inline<'e>) {
         if block.attribute("negated").is_some_and(|found| found.value.trim() == "true") {
             self.taken.unsupported(block.open.clone(), "a negated action block");
         }

@@ -90,26 +90,39 @@ impl Writer<'_> {
         }
     }
 
-    /// `<action name="a">`; a transition is part of a chart.
-    pub(super) fn actions(&mut self, pou: &Element) {
-        for part in pou.elements().filter(|inner| matches!(inner.name.as_str(), "actions" | "transitions")) {
-            for inner in part.elements() {
-                if inner.name == "transition" && pou.child("body").is_some_and(|body| body.child("SFC").is_some()) {
-                    continue;
-                }
-                if inner.name != "action" {
-                    let name = inner.attribute("name").map_or("", |name| name.value.as_str());
-                    let what = format!("{} `{name}`", inner.name.to_uppercase());
-                    self.taken.unsupported(inner.open.clone(), &what);
-                    continue;
-                }
-                self.write("ACTION ", &inner.open);
-                self.attribute(inner, "name");
-                self.write(":\n", &inner.open);
-                self.bodies(inner);
-                self.write("END_ACTION\n", &inner.close);
+    /// `<action name="a">`; a transition is part of a chart. `used` are names of transitions that have been written.
+    pub(super) fn actions(&mut self, pou: &Element, used: &mut Vec<String>) {
+        let sfc = |element: &Element| element.child("body").is_some_and(|body| body.child("SFC").is_some());
+        let lists = || pou.elements().filter(|inner| matches!(inner.name.as_str(), "actions" | "transitions"));
+        let has_chart = sfc(pou) || lists().flat_map(Element::elements).any(sfc);
+        for inner in lists().flat_map(Element::elements) {
+            if inner.name == "transition" && has_chart {
+                continue;
+            }
+            if inner.name != "action" {
+                let name = inner.attribute("name").map_or("", |name| name.value.as_str());
+                let what = format!("{} `{name}`", inner.name.to_uppercase());
+                self.taken.unsupported(inner.open.clone(), &what);
+                continue;
+            }
+            self.action(inner, pou, used);
+        }
+    }
+
+    /// Actions that are written in the steps of an action's chart stand behind it.
+    fn action(&mut self, action: &Element, pou: &Element, used: &mut Vec<String>) {
+        self.write("ACTION ", &action.open);
+        self.attribute(action, "name");
+        self.write(":\n", &action.open);
+        let mut inline = Vec::new();
+        for body in action.elements().filter(|inner| inner.name == "body") {
+            match body.child("SFC") {
+                Some(sfc) => inline.extend(self.chart_parts(sfc, pou, used)),
+                None => self.body(body),
             }
         }
+        self.write("END_ACTION\n", &action.close);
+        self.inline_actions(inline);
     }
 
     fn bodies(&mut self, element: &Element) {

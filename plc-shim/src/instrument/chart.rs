@@ -3,22 +3,30 @@
 //!
 //! | in the chart | becomes |
 //! |---|---|
-//! | `STEP a: valve(D, T#5s); END_STEP` | `STEP a: SDSP_Own_valve(D, T#5s); SDSP_Control(N); END_STEP` |
+//! | `STEP a: valve(D, T#5s); END_STEP` | `STEP a: (*@sdsp cut valve(D, T#5s);*) END_STEP` |
 //! | `:= x` of a program's transition | `:= (NOT SDSP_Simulated OR ..) AND (x)` |
-//! | `a.T` | `SDSP_ELAPSED(a.X, SDSP_Step_a.since, SDSP_Step_a.held, a.T)` |
+//! | `a.T` | `SDSP_ELAPSED(SDSP_Simulated, SDSP_Now, a.X, ..SDSP_Since, ..SDSP_Held, a.T)` |
 //! | `Fill.Q` of an action | `SDSP_Ctl_Fill.Q` |
+//! | `ACTION Fill: .. END_ACTION` | statements in `ACTION SDSP_Control` |
 //!
-//! The action `SDSP_Control` of every step does what the PLC's own action control did. A function block goes
-//! on when it is called, which only a program that runs does: it needs no execution signal.
+//! One more network is a step alone, which is always active; its action `SDSP_Control` does what the PLC's own
+//! action control did, and runs what that ran, in the order of the soft PLC. All of it is text of the standard.
+//! An action that the user calls by its name, or whose statements cannot be moved, stays and is called. A function
+//! block goes on when it is called, which only a program that runs does: it needs no execution signal.
 
-use super::chart_plan::{CONTROL, Plan, Reads, controlled_by, elapsed, own_flag};
+use std::collections::BTreeMap;
+
+use super::chart_action::{self, Moved, Text};
+use super::chart_plan::{CONTROL, Plan, Reads, controlled_by, elapsed};
+use super::chart_script::Script;
 use super::edits::Edits;
 use super::marks;
+use super::survey::Survey;
 use super::template::ChartController;
 use crate::diagnostic::{Code, Diagnostic};
 use crate::syntax::Span;
 use crate::syntax::ast::{Ident, Pou, PouKind, Transition, TransitionCondition};
-use crate::syntax::token::Keyword;
+use crate::syntax::token::{Keyword, Punctuation};
 
 /// What of a chart cannot be put on virtual time.
 pub(super) fn findings(pou: &Pou) -> Vec<Diagnostic> {
@@ -35,44 +43,56 @@ pub(super) fn findings(pou: &Pou) -> Vec<Diagnostic> {
     found.collect()
 }
 
-/// Puts a chart in text on virtual time.
-pub(super) fn control(plan: &Plan<'_>, edits: &mut Edits) {
-    let mut writer = Writer { plan, edits };
-    writer.declarations();
-    writer.steps();
+/// Puts a chart in text on virtual time. Other changes of its text have been made before.
+pub(super) fn control(plan: &Plan<'_>, survey: &Survey<'_>, edits: &mut Edits) {
+    let text = plan.file.shown_text();
+    let mut writer = Writer { plan, text: Text::new(text), line_break: marks::line_break(text), edits };
     writer.conditions();
     writer.flags();
-    writer.action();
+    writer.steps();
+    let moved = writer.actions(survey);
+    writer.declarations(&moved);
+    writer.always(&moved);
 }
 
 struct Writer<'w> {
     plan: &'w Plan<'w>,
+    text: Text<'w>,
+    line_break: &'static str,
     edits: &'w mut Edits,
 }
 
 impl Writer<'_> {
-    fn line_break(&self) -> &'static str {
-        marks::line_break(self.plan.file.shown_text())
+    fn line_start(&self, at: u32) -> u32 {
+        marks::line_start(self.plan.file.shown_text(), at)
     }
 
-    fn declarations(&mut self) {
+    fn declarations(&mut self, moved: &BTreeMap<String, Moved>) {
         let pou = self.plan.pou;
         let members = pou.object.members.iter().map(|member| member.pou.span.start);
         let chart = pou.chart.span().map(|span| span.start);
         let Some(first) = members.chain(chart).min() else { return };
-        let at = marks::line_start(self.plan.file.shown_text(), first);
-        self.edits.insert(at, marks::lines(&self.plan.declarations(), self.line_break()));
+        self.edits.insert(self.line_start(first), marks::lines(&self.plan.declarations(moved), self.line_break));
     }
 
+    /// The PLC's own action control has nothing to do.
     fn steps(&mut self) {
-        for step in &self.plan.pou.chart.steps {
-            for association in &step.associations {
-                let Ident { text, span } = &association.action;
-                self.edits.replace(span.start..span.end, marks::renamed(&own_flag(text), text));
-            }
-            let end = step.span.end.saturating_sub(Keyword::EndStep.text().len() as u32);
-            self.edits.insert(end, marks::inline(&format!("{CONTROL}(N);")));
+        for association in self.plan.pou.chart.steps.iter().flat_map(|step| &step.associations) {
+            let span = association.span;
+            let whole = span.start..self.text.behind(span.end, Punctuation::Semicolon);
+            // The action's control reads its time.
+            self.edits.take_within(&whole);
+            self.edits.replace(whole.clone(), marks::cut_text(self.text.part(&whole)));
         }
+    }
+
+    /// Actions that the chart runs, by their keys.
+    fn actions(&mut self, survey: &Survey<'_>) -> BTreeMap<String, Moved> {
+        let pou = self.plan.pou;
+        let can_move = |name: &Ident| self.plan.controls(name) && !survey.calls(pou, name);
+        let members = pou.object.members.iter();
+        let movable = members.filter(|member| chart_action::is_movable(member) && can_move(&member.pou.name));
+        movable.map(|member| (member.pou.name.key(), self.text.take_out(member, self.edits))).collect()
     }
 
     fn conditions(&mut self) {
@@ -87,9 +107,6 @@ impl Writer<'_> {
             if let Some((_, _, at, text)) = &gated {
                 self.edits.insert(*at, marks::inline(text));
             }
-        }
-        for step in &pou.chart.steps {
-            self.times_within(step.span);
         }
         for member in &pou.object.members {
             self.times_within(member.pou.span);
@@ -111,16 +128,22 @@ impl Writer<'_> {
         }
     }
 
-    /// The action that every step has.
-    fn action(&mut self) {
-        let mut lines = vec![format!("ACTION {CONTROL}:")];
-        lines.extend(self.plan.statements());
-        lines.push("END_ACTION".to_owned());
+    /// The step that is always active, and its action.
+    fn always(&mut self, moved: &BTreeMap<String, Moved>) {
+        let statements = self.plan.statements(moved);
+        if statements.text.is_empty() {
+            return;
+        }
+        let mut script = Script::default();
+        script.put(&format!("INITIAL_STEP SDSP_Always: {CONTROL}(N); END_STEP\nACTION {CONTROL}:"));
+        script.join(statements);
+        script.put("END_ACTION");
         let pou = self.plan.pou;
         let last = if pou.kind == PouKind::Program { Keyword::EndProgram } else { Keyword::EndFunctionBlock };
-        let end = pou.span.end.saturating_sub(last.text().len() as u32);
-        let at = marks::line_start(self.plan.file.shown_text(), end);
-        self.edits.insert(at, marks::lines(&lines.join("\n"), self.line_break()));
+        let at = self.line_start(pou.span.end.saturating_sub(last.text().len() as u32));
+        // A line with a mark is above them.
+        let origins = [None].into_iter().chain(script.origins).collect();
+        self.edits.insert_moved(at, marks::lines(&script.text, self.line_break), origins);
     }
 }
 

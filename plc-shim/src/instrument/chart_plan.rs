@@ -3,6 +3,8 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write as _;
 
+use super::chart_action::{LEFT, Moved};
+use super::chart_script::{ROUND, Script};
 use super::clock::Form;
 use super::edits::Edits;
 use super::template::{self, ChartController, Number};
@@ -11,7 +13,7 @@ use crate::syntax::Span;
 use crate::syntax::ast::{ActionQualifier, Association, ChartStep, Expr, ExprKind, Ident, MemberKind, Pou};
 use crate::syntax::walk::{self, Visitor};
 
-/// The action of every step.
+/// The action that runs in every scan.
 pub(super) const CONTROL: &str = "SDSP_Control";
 
 /// The name under which the PLC's own action control keeps the flag of an action, which nobody reads.
@@ -65,7 +67,9 @@ impl Reads {
 
 /// What stands before the elapsed time of a step; a parenthesis behind it closes it.
 pub(super) fn elapsed(step: &str) -> String {
-    format!("SDSP_ELAPSED({step}.X, SDSP_Step_{step}.since, SDSP_Step_{step}.held, ")
+    format!(
+        "SDSP_ELAPSED(SDSP_Simulated, SDSP_Now, {step}.X, SDSP_Step_{step}.SDSP_Since, SDSP_Step_{step}.SDSP_Held, "
+    )
 }
 
 /// A chart, and what is made of it.
@@ -114,51 +118,75 @@ impl<'w> Plan<'w> {
         self.pou.chart.steps.iter().filter(read).map(|step| (step.name.key(), step)).collect()
     }
 
-    /// The variables.
-    pub(super) fn declarations(&self) -> String {
+    /// True for an action with statements that some step controls.
+    pub(super) fn controls(&self, action: &Ident) -> bool {
+        self.bodies(&self.uses()).any(|body| body.key() == action.key())
+    }
+
+    /// The actions that have statements, of all.
+    fn bodies<'u>(&'u self, uses: &'u Uses<'w>) -> impl Iterator<Item = &'w Ident> + Clone + 'u {
+        uses.iter().map(|(action, _)| *action).filter(|action| self.reads.actions.contains(&action.key()))
+    }
+
+    /// The variables, where the statements of some actions have been moved.
+    pub(super) fn declarations(&self, moved: &BTreeMap<String, Moved>) -> String {
         let mut text = self.controller.as_ref().map_or(String::new(), |found| format!("{}\n", found.declarations));
-        text.push_str("VAR\n");
+        let is_timed = !self.reads.times.is_empty();
+        if is_timed {
+            let simulated = if self.controller.is_none() { "SDSP_Simulated : BOOL; " } else { "" };
+            let _ = writeln!(text, "VAR_EXTERNAL {simulated}SDSP_Now : TIME; END_VAR");
+        }
+        let uses = self.uses();
+        let mut own = String::new();
         for step in self.timed_steps().values() {
-            let _ = writeln!(text, "    SDSP_Step_{} : SDSP_SFC_STEP;", step.name.text);
+            let _ = writeln!(own, "    SDSP_Step_{} : SDSP_SFC_STEP;", step.name.text);
         }
-        for (action, _) in self.uses() {
-            let _ = writeln!(text, "    {} : SDSP_ACTION_CONTROL;", controlled_by(&action.text));
-            let _ = writeln!(
-                text,
-                "    SDSP_Own_{} : BOOL; (* what the PLC's own action control makes of it *)",
-                action.text
-            );
+        for (action, _) in &uses {
+            let _ = writeln!(own, "    {} : SDSP_ACTION_CONTROL;", controlled_by(&action.text));
         }
-        text.push_str("END_VAR\n");
+        if self.bodies(&uses).count() > 1 {
+            let _ = writeln!(own, "    {ROUND} : INT;");
+        }
+        if moved.values().any(|moved| moved.sets_left) {
+            let _ = writeln!(own, "    {LEFT} : BOOL;");
+        }
+        if !own.is_empty() {
+            let _ = writeln!(text, "VAR\n{own}END_VAR");
+        }
         text
     }
 
-    /// The statements of the action that every step has.
-    pub(super) fn statements(&self) -> Vec<String> {
-        let mut lines = Vec::new();
-        lines.extend(self.controller.as_ref().map(|found| found.header.clone()));
+    /// The flags that the PLC's own action control sets, where it cannot be without.
+    pub(super) fn own_flags(&self) -> String {
+        let flags = self.uses().into_iter().map(|(action, _)| {
+            format!("    {} : BOOL; (* what the PLC's own action control makes of it *)\n", own_flag(&action.text))
+        });
+        let flags: String = flags.collect();
+        if flags.is_empty() { flags } else { format!("VAR\n{flags}END_VAR\n") }
+    }
+
+    /// The statements of the action that runs in every scan. The statements of actions stand in it where they have
+    /// been moved, by their keys; others are called.
+    pub(super) fn statements(&self, moved: &BTreeMap<String, Moved>) -> Script {
+        let mut script = Script::default();
+        self.controller.iter().for_each(|found| script.put(&found.header));
         for step in self.timed_steps().values() {
-            lines.push(format!("    SDSP_Step_{0}(X := {0}.X);", step.name.text));
+            script.put(&format!("    SDSP_Step_{0}(X := {0}.X);", step.name.text));
         }
         let uses = self.uses();
         for (action, found) in &uses {
-            lines.extend(self.controlled(&action.text, found));
+            self.controlled(&action.text, found).iter().for_each(|line| script.put(line));
             if !self.reads.actions.contains(&action.key()) {
-                lines.push(format!("    {0} := SDSP_Ctl_{0}.Q;", action.text));
+                script.put(&format!("    {0} := SDSP_Ctl_{0}.Q;", action.text));
             }
         }
-        let bodies = || uses.iter().filter(|(action, _)| self.reads.actions.contains(&action.key()));
-        for (action, _) in bodies() {
-            lines.push(format!("    IF SDSP_Ctl_{0}.A AND NOT SDSP_Ctl_{0}.Q THEN {0}(); END_IF;", action.text));
+        let runs = |action: &&Ident| moved.get(&action.key()).is_none_or(|moved| !moved.is_empty);
+        script.run(self.bodies(&uses).filter(runs), moved);
+        if let Some(found) = &self.controller {
+            script.put(&found.close);
+            script.put(&found.footer);
         }
-        for (action, _) in bodies() {
-            lines.push(format!("    IF SDSP_Ctl_{0}.Q THEN {0}(); END_IF;", action.text));
-        }
-        match &self.controller {
-            Some(found) => lines.extend([found.close.clone(), found.footer.clone()]),
-            None => lines.push("    ;".to_owned()),
-        }
-        lines
+        script
     }
 
     /// The call of an action's control.

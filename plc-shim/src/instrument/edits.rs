@@ -9,6 +9,8 @@ use thiserror::Error;
 struct Edit {
     at: Range<u32>,
     text: String,
+    /// The original's line of each line of `text`, where that has been moved.
+    origins: Vec<Option<u32>>,
 }
 
 /// Changes of one text, in any order.
@@ -30,8 +32,8 @@ pub struct Conflict {
 enum Piece {
     /// A range of the original.
     Kept(Range<u32>),
-    /// Text that was put in, for this many bytes of the original.
-    New(String),
+    /// Text that was put in, and where its lines come from.
+    New(String, Vec<Option<u32>>),
 }
 
 impl Edits {
@@ -40,9 +42,14 @@ impl Edits {
         self.replace(at..at, text);
     }
 
+    /// The same with lines that come from others of the original; lines count from 1.
+    pub(super) fn insert_moved(&mut self, at: u32, text: String, origins: Vec<Option<u32>>) {
+        self.edits.push(Edit { at: at..at, text, origins });
+    }
+
     /// Puts `text` in the place of `at`.
     pub fn replace(&mut self, at: Range<u32>, text: impl Into<String>) {
-        self.edits.push(Edit { at, text: text.into() });
+        self.edits.push(Edit { at, text: text.into(), origins: Vec::new() });
     }
 
     /// Takes out what changes within `place`, as changes of that part alone.
@@ -71,7 +78,7 @@ impl Edits {
         let mut pieces = Vec::new();
         let mut text = String::with_capacity(original.len() + 64 * self.edits.len());
         let mut done = 0;
-        for Edit { at, text: new } in self.edits {
+        for Edit { at, text: new, origins } in self.edits {
             let kept = if at.start < done { None } else { original.get(done as usize..at.start as usize) };
             let (Some(kept), true) = (kept, original.is_char_boundary(at.end as usize)) else {
                 return Err(Conflict { at: at.start });
@@ -79,7 +86,7 @@ impl Edits {
             text.push_str(kept);
             text.push_str(&new);
             pieces.push(Piece::Kept(done..at.start));
-            pieces.push(Piece::New(new));
+            pieces.push(Piece::New(new, origins));
             done = at.end;
         }
         text.push_str(original.get(done as usize..).unwrap_or(""));
@@ -152,10 +159,12 @@ fn line_map(original: &str, pieces: &[Piece]) -> LineMap {
                     }
                 }
             }
-            Piece::New(text) => {
-                for _ in 0..breaks(text) {
-                    origins.push(None);
+            Piece::New(text, moved) => {
+                let from = |line: u32| moved.get(line as usize).copied().flatten();
+                if let Some(last) = origins.last_mut() {
+                    *last = last.or(from(0));
                 }
+                origins.extend((1..=breaks(text)).map(from));
             }
         }
     }

@@ -6,7 +6,7 @@
 //! | `(*@sdsp whole*)` | the whole file was added, and is the project as a whole, in the form of another tool |
 //! | `(*@sdsp begin*)` .. `(*@sdsp end*)` | this, the marks and a line break behind them was put in |
 //! | `SDSP_TON(*@sdsp was TON*)` | the name in front of the mark, also in quotes, stands for another |
-//! | `(*@sdsp cut .TON*)` | this stood here |
+//! | `(*@sdsp cut .TON*)` | this stood here, `(&#42;` and `&#42;)` for the ends of comments, `&amp;` for an ampersand |
 //!
 //! | `<a x="SDSP_TON"/><!--@sdsp was TON-->` | the name in the tag in front of the mark stands for another |
 //! | `<!--@sdsp cut <a/>-->` | this stood here, `-&#45;` for two hyphens and `&amp;` for an ampersand |
@@ -93,9 +93,10 @@ pub(super) fn renamed_before(old: &str) -> String {
     format!("{XML_OPENING}was {old}{XML_CLOSING}")
 }
 
-/// The mark for text that is taken out.
+/// The mark for text that is taken out; no comment ends in a comment.
 pub(super) fn cut_text(text: &str) -> String {
-    format!("{OPENING}cut {text}{CLOSING}")
+    let escaped = text.replace('&', "&amp;").replace("(*", "(&#42;").replace("*)", "&#42;)");
+    format!("{OPENING}cut {escaped}{CLOSING}")
 }
 
 /// Where the name begins that ends at the end of `before`, with its quotes if it has any.
@@ -114,7 +115,7 @@ pub(super) fn cut(xml: &str) -> String {
 
 /// What was taken out.
 fn uncut(escaped: &str) -> String {
-    escaped.replace("&#45;", "-").replace("&amp;", "&")
+    escaped.replace("&#45;", "-").replace("&#42;", "*").replace("&amp;", "&")
 }
 
 /// Text to put in before `at`, wherever that is in a line.
@@ -197,8 +198,7 @@ pub(super) fn original(text: &str) -> Result<Original, DamagedMarks> {
             // Within what was put in anything may stand.
             (says, None) if says.starts_with("cut ") => {
                 let cut = says.strip_prefix("cut ").unwrap_or("");
-                let text = if mark.is_xml { uncut(cut) } else { cut.to_owned() };
-                edits.replace(mark.at.start as u32..mark.at.end as u32, text);
+                edits.replace(mark.at.start as u32..mark.at.end as u32, uncut(cut));
             }
             (says, None) if mark.is_xml && says.starts_with("was ") => {
                 let old = says.strip_prefix("was ").unwrap_or("");

@@ -18,7 +18,7 @@
 //! | [`controller`] | execution controllers |
 //! | [`scl`] | SCL of TIA Portal: organization blocks, timers |
 //! | [`plcopen_project`], [`plcopen`], [`plcopen_unit`] | projects in PLCopen XML |
-//! | [`chart`], [`chart_plan`] | Sequential Function Charts: execution signal, action control, times of steps |
+//! | [`chart`], [`chart_plan`], [`chart_script`], [`chart_action`] | Sequential Function Charts: execution signal, action control, times of steps |
 //! | [`plcopen_chart`], [`plcopen_gate`] | the same of charts that are drawn, in PLCopen XML |
 //! | [`port`], [`codesys`] | a project in text for a tool that takes another form |
 //! | [`target`], [`twincat`] | the shim's sources as a vendor's tool takes them |
@@ -27,7 +27,9 @@
 //! instrumenting twice is instrumenting once; what cannot be replaced is told.
 
 mod chart;
+mod chart_action;
 mod chart_plan;
+mod chart_script;
 mod clock;
 mod codesys;
 mod configuration;

@@ -144,7 +144,7 @@ impl Reader {
             Self::variables(section, &mut self.locals);
         }
         pou.sections.iter().for_each(|section| self.initial_values(section));
-        walk::statements(&pou.body, self);
+        walk::unit(pou, self);
     }
 
     fn initial_values(&mut self, section: &Section) {

@@ -197,7 +197,7 @@ impl Plain {
             let number = tasks.numbered().find(|(numbered, _)| std::ptr::eq(*numbered, *pou));
             let number = number.map(|(_, number)| (number, line.as_str()));
             changes(pou.name.span.file, &mut |file, edits| {
-                chart::control(&ChartPlan::new(pou, number, &survey.renames, file), edits);
+                chart::control(&ChartPlan::new(pou, number, &survey.renames, file), survey, edits);
             });
         }
         for (pou, number) in tasks.numbered().filter(|(pou, _)| pou.chart.is_empty()) {

@@ -9,7 +9,7 @@
 //! | `a.T`, `Fill.Q` in program text | as in a chart in text |
 //! | conditions of a program's transitions | joined with the execution signal, see [`super::plcopen_gate`] |
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write as _;
 
 use super::chart_plan::{CONTROL, Plan, controlled_by, elapsed, own_flag};
@@ -214,14 +214,18 @@ impl Writer<'_> {
 
     /// The unit's variables and actions.
     fn unit(self, pou: &Element, has_signal: bool) -> Option<()> {
-        let mut declared = self.plan.declarations();
-        let mut statements = self.plan.statements();
+        let stay = BTreeMap::new();
+        let mut declared = self.plan.declarations(&stay) + &self.plan.own_flags();
+        let mut statements = self.plan.statements(&stay);
         if let Some(controller) = self.plan.controller.as_ref().filter(|_| has_signal) {
             let _ = writeln!(declared, "VAR {SIGNAL} : BOOL; END_VAR");
-            statements.push(format!("    {SIGNAL} := {};", controller.is_open()));
+            statements.put(&format!("    {SIGNAL} := {};", controller.is_open()));
         }
         plcopen::declare(pou, &unit::declarations(&declared)?, self.text, self.edits);
-        let control = unit::body(&statements.join("\n"));
+        if statements.text.is_empty() {
+            statements.put("    ;");
+        }
+        let control = unit::body(&statements.text);
         let actions = format!("{}<action name=\"{CONTROL}\">{}</action>\n", self.moved, control.trim_end());
         if let Some(place) = pou.child("actions") {
             plcopen::append(self.text, place, &actions, self.edits);

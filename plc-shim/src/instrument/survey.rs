@@ -30,6 +30,8 @@ pub(super) struct Survey<'a> {
     pub(super) constants: Constants<'a>,
     /// Programs that others call.
     pub(super) called: BTreeSet<String>,
+    /// Actions and methods that are called, by their keys: `UNIT.NAME` within a unit, `.NAME` of an instance.
+    called_members: BTreeSet<String>,
     /// Programs and function blocks that are charts.
     pub(super) charts: Vec<&'a Pou>,
     /// Names to be replaced.
@@ -72,6 +74,12 @@ impl Survey<'_> {
     /// True for a name that the project gives to a unit or type of its own.
     pub(super) fn is_declared(&self, name: &str) -> bool {
         self.declared.contains(&name.to_ascii_uppercase())
+    }
+
+    /// True if an action of `unit` is called by its name, there or elsewhere.
+    pub(super) fn calls(&self, unit: &Pou, action: &Ident) -> bool {
+        let keys = [format!("{}.{}", unit.name.key(), action.key()), format!(".{}", action.key())];
+        keys.iter().any(|key| self.called_members.contains(key))
     }
 }
 
@@ -165,10 +173,20 @@ impl<'a> Surveyor<'_, 'a> {
             self.local.extend(member.sections.iter().flat_map(variable_names));
             member.result.iter().for_each(|result| self.spec(result));
             member.sections.iter().for_each(|section| self.section(section));
-            walk::statements(&member.body, self);
+            walk::unit(member, self);
+            self.nested_chart(member);
         }
         self.local.clear();
         self.unit.clear();
+    }
+
+    /// A chart in an action has steps and actions of its own, whose clock is not replaced yet.
+    fn nested_chart(&mut self, action: &Pou) {
+        if let Some(chart) = action.chart.span() {
+            let message = format!("the chart in action `{}` is not put on virtual time", action.name.text);
+            let found = Diagnostic::error(Code::UnsupportedFeature, chart, message);
+            self.survey.findings.push(found.with_help("make it a function block, and call that in the action"));
+        }
     }
 
     /// What a function block is derived from. How a derived one is used tells nothing of a motion block's inputs.
@@ -306,8 +324,15 @@ impl<'a> Surveyor<'_, 'a> {
 
 impl Visitor for Surveyor<'_, '_> {
     fn call(&mut self, call: &Call) {
-        if let ExprKind::Name(name) = &call.callee.kind {
-            self.function_name(name);
+        match &call.callee.kind {
+            ExprKind::Name(name) => {
+                self.survey.called_members.insert(format!("{}.{}", self.unit, name.key()));
+                self.function_name(name);
+            }
+            ExprKind::Member(_, name) => {
+                self.survey.called_members.insert(format!(".{}", name.key()));
+            }
+            _ => {}
         }
     }
 

@@ -4,10 +4,10 @@ use super::super::build::{assign, joined, load, operation, truth, when};
 use super::super::layout::VIRTUAL_TIME_OFFSET;
 use super::super::scope::Body;
 use super::net::Net;
-use super::state::BEGUN;
+use super::state::begun_key;
 use crate::ir::{Binary, ElementaryType, Expr, IfBranch, Place, Statement, StatementKind, Storage, Value};
 use crate::syntax::Span;
-use crate::syntax::ast::{Chart, Transition, TransitionCondition};
+use crate::syntax::ast::{Pou, Transition, TransitionCondition};
 
 /// The places that a step's state is made of.
 struct StepState {
@@ -28,7 +28,8 @@ struct Test<'t> {
 }
 
 impl Body<'_, '_> {
-    pub(super) fn evolution(&mut self, chart: &Chart, net: &Net) -> Vec<Statement> {
+    pub(super) fn evolution(&mut self, pou: &Pou, net: &Net) -> Vec<Statement> {
+        let chart = &pou.chart;
         let Some(quiet) = self.quiet() else { return Vec::new() };
         let states: Vec<Option<StepState>> = chart.steps.iter().map(|step| self.step_state(step, quiet)).collect();
         let states: Option<Vec<StepState>> = states.into_iter().collect();
@@ -40,7 +41,7 @@ impl Body<'_, '_> {
         tests.sort_by_key(|test| test.ast.priority.map_or(u64::from(u32::MAX) + 1, |priority| priority.rank.into()));
         // Conditions are checked even where a step is wrong.
         let conditions: Vec<_> = tests.iter().map(|test| self.tested(test, quiet)).collect();
-        let (Some(states), Some(begun)) = (states, self.chart_place(BEGUN, quiet)) else { return Vec::new() };
+        let (Some(states), Some(begun)) = (states, self.chart_place(&begun_key(pou), quiet)) else { return Vec::new() };
         let mut evolve = Vec::new();
         for state in &states {
             evolve.push(assign(&state.token, load(&state.flag)));

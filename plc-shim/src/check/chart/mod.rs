@@ -22,6 +22,10 @@
 //!    which the steps name them first. A Boolean action takes the value of its flag `Q`.
 //! 5. Actions run whose flag is FALSE: those of `P0` and `P1`, and the final scan of those that end. Then
 //!    those run whose flag is TRUE.
+//!
+//! A chart may also be the body of an action (2nd ed. Table 42, feature 4). It goes on whenever that action runs, by
+//! its control or called by its name, its final scan included, and stands still in between: its steps keep what they
+//! are, and `T` of an active one counts from its activation all the same. An action has one chart that controls it.
 
 mod action;
 mod association;
@@ -44,18 +48,27 @@ const STEP_TYPE: &str = "ONESCAN_SFC_STEP";
 /// The library's function block of action control.
 const CONTROL_TYPE: &str = "ONESCAN_SFC_CONTROL";
 
+/// True for units whose instances keep the state of charts.
+fn keeps_charts(kind: PouKind) -> bool {
+    matches!(kind, PouKind::Program | PouKind::FunctionBlock)
+}
+
 impl Body<'_, '_> {
     /// What a unit's chart does in each scan; nothing where it is no chart.
     pub(super) fn chart(&mut self, ast: &ast::Pou) -> Vec<Statement> {
         let Some(first) = ast.chart.span() else { return Vec::new() };
-        if !matches!(ast.kind, PouKind::Program | PouKind::FunctionBlock) {
-            let message = "a chart is the body of a PROGRAM or FUNCTION_BLOCK: nothing else keeps its steps";
+        let owner = if ast.kind == PouKind::Action { self.own_class() } else { None };
+        if !keeps_charts(owner.map_or(ast.kind, |owner| self.checker.pou(owner).ast.kind)) {
+            let message = "a chart is the body of a PROGRAM or FUNCTION_BLOCK, or of an action of one: nothing else \
+                           keeps its steps";
             self.report(Diagnostic::error(Code::MisplacedChart, first, message));
             return Vec::new();
         }
         let stray = ast.body.iter().find(|each| !matches!(each.kind, StatementKind::Empty | StatementKind::Error));
         if let Some(stray) = stray {
             let message = "a unit is a chart as a whole, or not at all";
+            let message =
+                if ast.kind == PouKind::Action { "an action is a chart as a whole, or not at all" } else { message };
             let found = Diagnostic::error(Code::MixedBody, stray.span, message).with_label(first, "the chart");
             self.report(found.with_help("write the statements as an action of a step that is always active"));
         }
@@ -65,7 +78,7 @@ impl Body<'_, '_> {
         if links.are_whole {
             self.check_soundness(&ast.chart, &links.net, &actions);
         }
-        let mut statements = self.evolution(&ast.chart, &links.net);
+        let mut statements = self.evolution(ast, &links.net);
         statements.extend(self.action_control(&ast.chart, &actions));
         statements
     }
@@ -92,7 +105,7 @@ impl Body<'_, '_> {
 
     /// A variable of the chart's own.
     fn chart_place(&self, key: &str, span: Span) -> Option<Place> {
-        let variable = self.scope.own(key)?;
+        let variable = self.scope.find(key)?;
         variable.of_chart.then(|| Place::whole(variable.storage, variable.ty, span))
     }
 

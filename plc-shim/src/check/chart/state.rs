@@ -6,23 +6,28 @@
 //! | a named transition: TRUE in the scan in which it is cleared | the transition's | the same |
 //! | the control of an action with statements, whose `Q` the program reads | the action's | [`control_key`] |
 //! | the control of a Boolean action | `SFC_` and the variable's | [`control_key`] |
-//! | whether the initial situation has been | `SFC_Begun` | [`BEGUN`] |
+//! | whether the initial situation has been | `SFC_Begun`; of an action's chart `SFC_Begun_` and the action's | [`begun_key`] |
 //!
-//! No text spells a key with a blank.
+//! No text spells a key with a blank. Charts that are the bodies of actions keep theirs in the unit, too: names of
+//! steps, transitions and actions are those of the whole unit (2nd ed. 2.6.2 to 2.6.4.1).
 
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use super::super::class::Role;
 use super::super::names::TypedImage;
 use super::super::types::Need;
 use super::super::variables::Interface;
-use super::{CONTROL_TYPE, STEP_TYPE};
+use super::{CONTROL_TYPE, STEP_TYPE, keeps_charts};
+use crate::diagnostic::{Code, Diagnostic};
 use crate::ir::{ElementaryType, Storage, Type, TypeId, Variable, Visibility};
 use crate::syntax::Span;
-use crate::syntax::ast::{self, ChartStep, Ident, PouKind, SectionKind};
+use crate::syntax::ast::{self, Association, ChartStep, Ident, MemberKind, PouKind, SectionKind};
 
-/// Key of the flag that the initial situation has been.
-pub(super) const BEGUN: &str = "CHART BEGUN";
+/// Key of the flag that the initial situation of the chart in `pou` has been.
+pub(super) fn begun_key(pou: &ast::Pou) -> String {
+    if pou.kind == PouKind::Action { format!("CHART BEGUN {}", pou.name.key()) } else { "CHART BEGUN".to_owned() }
+}
 
 /// Key of the variable that controls an action.
 pub(in super::super) fn control_key(action: &str) -> String {
@@ -30,11 +35,22 @@ pub(in super::super) fn control_key(action: &str) -> String {
 }
 
 impl<'a> Interface<'_, 'a> {
-    /// Declares what the chart needs.
-    pub(in super::super) fn declare_chart(&mut self, ast: &ast::Pou) {
-        if ast.chart.is_empty() || !matches!(ast.kind, PouKind::Program | PouKind::FunctionBlock) {
+    /// Declares what a unit's charts need: its own, and those of its actions.
+    pub(in super::super) fn declare_charts(&mut self, ast: &ast::Pou) {
+        if !keeps_charts(ast.kind) {
             return;
         }
+        let actions = ast.object.members.iter().filter(|member| member.kind == MemberKind::Action);
+        let mut controlled = BTreeMap::new();
+        for pou in std::iter::once(ast).chain(actions.map(|member| &member.pou)) {
+            if !pou.chart.is_empty() {
+                self.declare_chart(pou, &mut controlled);
+            }
+        }
+    }
+
+    /// `controlled` are the actions of charts before it, and where they are named first.
+    fn declare_chart(&mut self, ast: &ast::Pou, controlled: &mut BTreeMap<String, Span>) {
         for step in &ast.chart.steps {
             self.declare_step(step);
         }
@@ -42,10 +58,29 @@ impl<'a> Interface<'_, 'a> {
         for name in ast.chart.transitions.iter().filter_map(|transition| transition.name.as_ref()) {
             self.declare_of_chart(&name.key(), &name.text, name.span, &flag());
         }
-        for association in ast.chart.steps.iter().flat_map(|step| &step.associations) {
-            self.declare_control(&association.action);
+        let mut own = BTreeMap::new();
+        for Association { action, .. } in ast.chart.steps.iter().flat_map(|step| &step.associations) {
+            if own.insert(action.key(), action.span).is_some() {
+                continue;
+            }
+            match controlled.get(&action.key()) {
+                Some(first) => self.report_shared(action, *first),
+                None => self.declare_control(action),
+            }
         }
-        self.keep_state(BEGUN, "SFC_Begun", ast.name.span, &flag());
+        for (key, span) in own {
+            controlled.entry(key).or_insert(span);
+        }
+        let name =
+            if ast.kind == PouKind::Action { format!("SFC_Begun_{}", ast.name.text) } else { "SFC_Begun".to_owned() };
+        self.keep_state(&begun_key(ast), &name, ast.name.span, &flag());
+    }
+
+    /// An action has one action control (2nd ed. 2.6.4.5).
+    fn report_shared(&mut self, action: &Ident, first: Span) {
+        let message = format!("another chart of this unit controls `{}`, too", action.text);
+        let found = Diagnostic::error(Code::SharedAction, action.span, message).with_label(first, "there");
+        self.body.report(found.with_help("an action is controlled by the steps of one chart: use a second action"));
     }
 
     /// An initial step is active before the first scan (2nd ed. 2.6.5).

@@ -195,6 +195,27 @@ impl Chart {
     }
 }
 
+impl Chart {
+    /// It as the body of an action, which runs while `go` holds and once more when it ends.
+    pub(crate) fn nested(&self) -> String {
+        let text = self.text();
+        let split = |word: &str| text.find(word).map(|at| text.split_at(at));
+        let (declared, rest) = split("INITIAL_STEP").expect("it has a step");
+        let parts = rest.find("ACTION ").or_else(|| rest.find("END_PROGRAM")).expect("it has an end");
+        let (chart, behind) = rest.split_at(parts);
+        format!(
+            "{declared}VAR go : BOOL; END_VAR
+INITIAL_STEP Off: END_STEP
+STEP On: Inner(N); END_STEP
+TRANSITION FROM Off TO On := go; END_TRANSITION
+TRANSITION FROM On TO Off := NOT go; END_TRANSITION
+ACTION Inner:
+{chart}END_ACTION
+{behind}"
+        )
+    }
+}
+
 /// Each of the one joined with each of the other.
 fn both(one: &[Vec<usize>], other: &[Vec<usize>]) -> Vec<Vec<usize>> {
     one.iter().flat_map(|left| other.iter().map(|right| [left.clone(), right.clone()].concat())).collect()

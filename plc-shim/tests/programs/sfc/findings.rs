@@ -41,8 +41,35 @@ fn iec2_2_6_each_rule_of_charts_has_its_finding() {
         ("two times", "INITIAL_STEP A: valve(L, delay); valve(D, delay); END_STEP".to_owned()),
         ("statements", format!("{two}{there}{back}n := 1;")),
         (
-            "chart as an action",
-            "INITIAL_STEP A: Act(N); END_STEP ACTION Act: INITIAL_STEP B: END_STEP END_ACTION".to_owned(),
+            "step of two charts",
+            "INITIAL_STEP A: Act(N); END_STEP ACTION Act: INITIAL_STEP a: END_STEP END_ACTION".to_owned(),
+        ),
+        (
+            "action of two charts",
+            "INITIAL_STEP A: Act(N); valve(R); END_STEP
+            ACTION Act: INITIAL_STEP B: Valve(S); Valve(N); END_STEP END_ACTION"
+                .to_owned(),
+        ),
+        (
+            "statements beside a chart in an action",
+            "INITIAL_STEP A: Act(N); END_STEP ACTION Act: INITIAL_STEP B: END_STEP n := 1; END_ACTION".to_owned(),
+        ),
+        (
+            "transition from one chart to another",
+            format!(
+                "{two}{there}{back}ACTION x: INITIAL_STEP C: END_STEP STEP D: END_STEP
+            TRANSITION FROM C TO A := go; END_TRANSITION END_ACTION"
+            ),
+        ),
+        (
+            "action in its own chart",
+            "INITIAL_STEP A: Act(N); END_STEP ACTION Act: INITIAL_STEP B: Again(N); END_STEP END_ACTION
+            ACTION Again: Act(); END_ACTION"
+                .to_owned(),
+        ),
+        (
+            "chart of a function",
+            "END_PROGRAM FUNCTION F : BOOL INITIAL_STEP B: END_STEP F := TRUE; END_FUNCTION PROGRAM Q".to_owned(),
         ),
         ("end", format!("{two}{there}")),
         (

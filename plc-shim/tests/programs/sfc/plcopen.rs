@@ -3,7 +3,8 @@
 use onescan_plc_shim::input::kind::SourceKind;
 use onescan_plc_shim::{Application, Input, TaskPlan, inspect};
 
-use crate::plcopen::{block, coil, contact, input, rail};
+use super::drawn::{Step, Transition, chart, condition};
+use crate::plcopen::{block, coil, contact, input, pou, project, rail};
 use crate::rig::{MS, Rig};
 
 const MIXER: &str = include_str!("../../inputs/mixer.xml");
@@ -39,6 +40,48 @@ fn a_chart_of_xml_runs() {
         ));
     }
     insta::assert_snapshot!(seen.join("\n"));
+}
+
+/// 2nd ed. Table 42, feature 4: both charts use the transition `ready` of the unit, and the inner one has statements in
+/// a step.
+#[test]
+fn a_chart_of_xml_is_the_body_of_an_action() {
+    let text = |text: &str| format!("<ST><p xmlns=\"http://www.w3.org/1999/xhtml\">{text}</p></ST>");
+    let go = |from: usize, to: usize, name: &str| Transition {
+        from: vec![from],
+        to: vec![to],
+        priority: None,
+        condition: condition(&format!("<reference name=\"{name}\"/>")),
+        elements: String::new(),
+    };
+    let action = |qualifier, does: &str| (qualifier, String::new(), does.to_owned());
+    let count = format!("<inline>{}</inline>", text("n := n + 1;"));
+    let inner = chart(
+        &[Step { name: "Soak", actions: vec![] }, Step { name: "Spin", actions: vec![action("N", &count)] }],
+        &[go(0, 1, "ready"), go(1, 0, "ready")],
+    );
+    let outer = chart(
+        &[Step { name: "Idle", actions: vec![] }, Step { name: "Wash", actions: vec![action("N", "Turn")] }],
+        &[go(0, 1, "ready"), go(1, 0, "stop")],
+    );
+    let parts = format!(
+        "</interface><actions><action name=\"Turn\"><body><SFC>{inner}</SFC></body></action></actions>\
+         <transitions><transition name=\"ready\"><body>{}</body></transition></transitions>",
+        text("i")
+    );
+    let unit =
+        pou("program", "P", "in i : BOOL, stop : BOOL; out n : INT", "SFC", &outer).replace("</interface>", &parts);
+    let mut rig = crate::plcopen::rig(&project(&unit));
+    let mut seen = Vec::new();
+    for (i, stop) in [(1, 0), (1, 0), (1, 0), (0, 0), (1, 1), (0, 0), (1, 0)] {
+        rig.set("P.i", i);
+        rig.set("P.stop", stop);
+        rig.scan().expect("no fault");
+        let steps = ["Idle", "Wash", "Soak", "Spin"].into_iter().filter(|step| rig.bool(&format!("P.{step}.X")));
+        seen.push(format!("{}{}", steps.collect::<Vec<_>>().join("+"), rig.int("P.n")));
+    }
+    let expected = "Idle+Soak0 Wash+Soak0 Wash+Spin1 Wash+Spin2 Idle+Soak3 Idle+Soak3 Wash+Spin4";
+    assert_eq!(seen.join(" "), expected);
 }
 
 #[test]

@@ -41,6 +41,37 @@ proptest! {
         }
     }
 
+    /// 2nd ed. Table 42, feature 4: a chart in an action goes on whenever that runs, and keeps its steps in between.
+    #[test]
+    fn a_chart_in_an_action_does_what_the_interpreter_does_when_it_runs(
+        part in arbitrary_part(),
+        numbers in prop::collection::vec(any::<u32>(), 61),
+        inputs in prop::collection::vec((any::<[bool; INPUTS]>(), prop::bool::weighted(0.7)), SCANS),
+    ) {
+        let chart = Chart::new(&part, &numbers);
+        let text = chart.nested();
+        let mut rig = Rig::new(&text);
+        let mut interpreter = Interpreter::new(&chart);
+        let (mut on, mut ran) = (false, 0);
+        for (scan, (inputs, go)) in inputs.into_iter().enumerate() {
+            for (number, value) in inputs.into_iter().enumerate() {
+                rig.set(&format!("P.c{number}"), i64::from(value));
+            }
+            rig.set("P.go", i64::from(go));
+            rig.scan().expect("no fault");
+            // Nothing is tested in the first scan; an action that ends has its final scan.
+            let before = std::mem::replace(&mut on, scan > 0 && go);
+            if on || before {
+                interpreter.scan(rig.now_ns / MS, inputs);
+                ran += 1;
+            }
+            let flags: Vec<bool> = (0..chart.steps).map(|step| rig.bool(&format!("P.s{step}.X"))).collect();
+            prop_assert_eq!(&flags, &interpreter.active, "steps in scan {}\n{}", scan + 1, text);
+            prop_assert_eq!(rig.int("P.log") as u32, interpreter.log, "actions in scan {}\n{}", scan + 1, text);
+        }
+        prop_assert!(ran > 0);
+    }
+
     /// A drawn chart does what the same chart in text does.
     #[test]
     fn drawn_charts_are_the_same_as_charts_in_text(

@@ -106,6 +106,39 @@ END_PROGRAM";
     assert_eq!((rig.int("P.b.n"), rig.int("P.b.called"), rig.int("P.d.n")), (2, 1, 2));
 }
 
+/// 2nd ed. Table 42, feature 4.
+#[test]
+fn iec2_2_6_4_1_a_chart_in_an_action_goes_on_when_the_action_runs() {
+    let text = "PROGRAM P VAR go : BOOL; n, m : INT; END_VAR
+        ACTION Run:
+            INITIAL_STEP A: Count(P1); END_STEP
+            STEP B: Deeper(N); END_STEP
+            TRANSITION FROM A TO B := A.T >= T#20ms; END_TRANSITION
+            TRANSITION FROM B TO A := D.X; END_TRANSITION
+        END_ACTION
+        ACTION Count: n := n + 1; END_ACTION
+        ACTION Deeper:
+            INITIAL_STEP C: END_STEP
+            STEP D: More(N); END_STEP
+            TRANSITION FROM C TO D := TRUE; END_TRANSITION
+            TRANSITION FROM D TO C := TRUE; END_TRANSITION
+        END_ACTION
+        ACTION More: m := m + 1; END_ACTION
+        IF go THEN Run(); END_IF;
+        END_PROGRAM";
+    let mut rig = Rig::new(text);
+    let mut seen = Vec::new();
+    for go in [1, 0, 1, 1, 1, 1, 0, 1] {
+        rig.set("P.go", go);
+        rig.scan().expect("no fault");
+        let active: String = ["A", "B", "C", "D"].into_iter().filter(|step| rig.bool(&format!("P.{step}.X"))).collect();
+        seen.push(format!("{active}{}{}", rig.int("P.n"), rig.int("P.m")));
+    }
+    // Where a chart stands still its steps keep what they are, and time goes on. The final scan of `Deeper` is one
+    // more evolution of its chart, and has that of `More`.
+    assert_eq!(seen.join(" "), "AC10 AC10 BC10 BD11 AC22 AC22 AC22 BD23");
+}
+
 #[test]
 fn a_saved_state_goes_on_where_it_was() {
     let text = "PROGRAM P VAR valve : BOOL; END_VAR
