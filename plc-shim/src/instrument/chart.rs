@@ -10,7 +10,8 @@
 //! | `ACTION Fill: .. END_ACTION` | statements in `ACTION SDSP_Control` |
 //!
 //! One more network is a step alone, which is always active; its action `SDSP_Control` does what the PLC's own
-//! action control did, and runs what that ran, in the order of the soft PLC. All of it is text of the standard.
+//! action control did, and runs what that ran, in the order of the soft PLC. All of it is text of the standard. CODESYS
+//! draws a chart as one network: there every step has that action.
 //! An action that the user calls by its name, or whose statements cannot be moved, stays and is called. A function
 //! block goes on when it is called, which only a program that runs does: it needs no execution signal.
 
@@ -22,6 +23,7 @@ use super::chart_script::Script;
 use super::edits::Edits;
 use super::marks;
 use super::survey::Survey;
+use super::target::Target;
 use super::template::ChartController;
 use crate::diagnostic::{Code, Diagnostic};
 use crate::syntax::Span;
@@ -52,7 +54,7 @@ pub(super) fn control(plan: &Plan<'_>, survey: &Survey<'_>, edits: &mut Edits) {
     writer.steps();
     let moved = writer.actions(survey);
     writer.declarations(&moved);
-    writer.always(&moved);
+    writer.always(&moved, survey.target);
 }
 
 struct Writer<'w> {
@@ -128,14 +130,22 @@ impl Writer<'_> {
         }
     }
 
-    /// The step that is always active, and its action.
-    fn always(&mut self, moved: &BTreeMap<String, Moved>) {
+    /// The action that is always active, and its step.
+    fn always(&mut self, moved: &BTreeMap<String, Moved>, target: Target) {
         let statements = self.plan.statements(moved);
         if statements.text.is_empty() {
             return;
         }
         let mut script = Script::default();
-        script.put(&format!("INITIAL_STEP SDSP_Always: {CONTROL}(N); END_STEP\nACTION {CONTROL}:"));
+        if target == Target::Codesys {
+            for step in &self.plan.pou.chart.steps {
+                let end = step.span.end.saturating_sub(Keyword::EndStep.text().len() as u32);
+                self.edits.insert(end, marks::inline(&format!("{CONTROL}(N);")));
+            }
+        } else {
+            script.put(&format!("INITIAL_STEP SDSP_Always: {CONTROL}(N); END_STEP"));
+        }
+        script.put(&format!("ACTION {CONTROL}:"));
         script.join(statements);
         script.put("END_ACTION");
         let pou = self.plan.pou;

@@ -2,7 +2,7 @@
 
 use onescan_plc_shim::Input;
 use onescan_plc_shim::input::kind::SourceKind;
-use onescan_plc_shim::instrument::{Options, diff, instrument};
+use onescan_plc_shim::instrument::{Options, Target, diff, instrument, remove};
 use proptest::prelude::*;
 
 use super::driver::{Driver, Tasks, application, original, own_plan, scan, state, write};
@@ -32,6 +32,57 @@ fn a_chart_is_put_on_virtual_time() {
     let project = instrument(&[input], &Options::default()).unwrap_or_else(|error| panic!("{error}"));
     assert_eq!(project.warnings.to_string(), "");
     insta::assert_snapshot!(diff::unified(&project.files[0]));
+}
+
+/// A RETURN in a loop, comments in comments and an action without statements.
+#[test]
+fn statements_of_actions_come_back_byte_for_byte() {
+    let text = MIXER.replace(
+        "batches := batches + 1;",
+        "WHILE batches < 9 DO (* & (**) *) batches := batches + 1; // no\r\nIF start THEN RETURN; END_IF; END_WHILE;",
+    );
+    let text = text.replace("END_PROGRAM", "ACTION Nothing: (* yet *) END_ACTION END_PROGRAM");
+    let text = text.replace("Count(P1);", "Count(P1); Nothing(S);");
+    let given = Input::from_text("mixer.st", SourceKind::Text, text.as_str());
+    let project = instrument(&[given], &Options::default()).unwrap_or_else(|error| panic!("{error}"));
+    let emitted = project.files[0].text.clone().expect("a text");
+    assert!(emitted.contains("END_WHILE; IF SDSP_Left THEN EXIT; END_IF;"), "{emitted}");
+    // Each line that has been moved knows where it was.
+    let at = emitted.lines().position(|line| line.contains("motor := SDSP_Ctl_Count.Q")).expect("it is there");
+    let was = text.lines().position(|line| line.contains("motor := Count.Q")).expect("it is there");
+    assert_eq!(project.files[0].lines.original(at as u32 + 1), Some(was as u32 + 1));
+    let back = remove(&[Input::from_text("mixer.st", SourceKind::Text, emitted)]).expect("its marks are whole");
+    assert_eq!(back.files[0].text.as_deref(), Some(text.as_str()));
+}
+
+/// What vendors have goes on as it is: an action that is called by its name stays.
+#[test]
+fn an_action_that_is_called_stays_where_it_is() {
+    let text = MIXER.replace("motor := Count.Q;", "motor := Count.Q; END_ACTION ACTION Again: Count();");
+    let text = text.replace("Count(P1);", "Count(P1); Again(P0);");
+    let project = instrument(&[Input::from_text("mixer.st", SourceKind::Text, text)], &Options::default());
+    let emitted = project.unwrap_or_else(|error| panic!("{error}")).files[0].text.clone().expect("a text");
+    assert!(emitted.contains("\n    ACTION Count:") && emitted.contains("        Count();\n    END_IF;"), "{emitted}");
+    assert!(emitted.contains("(*@sdsp cut ACTION Again:"), "{emitted}");
+}
+
+/// CODESYS draws a chart as one network.
+#[test]
+fn every_step_of_a_chart_for_codesys_has_the_control() {
+    let options = Options { target: Target::Codesys, ..Options::default() };
+    let input = Input::from_text("mixer.st", SourceKind::Text, MIXER);
+    let project = instrument(&[input], &options).unwrap_or_else(|error| panic!("{error}"));
+    let drawn = project.files.last().and_then(|file| file.text.as_deref()).expect("a text");
+    assert_eq!(drawn.matches("<reference name=\"SDSP_Control\"/>").count(), 2, "{drawn}");
+    assert!(!drawn.contains("SDSP_Always"), "{drawn}");
+}
+
+#[test]
+fn a_chart_in_an_action_is_refused() {
+    let text = MIXER.replace("batches := batches + 1;", "INITIAL_STEP One: END_STEP").replace("motor := Count.Q;", "");
+    let refused = instrument(&[Input::from_text("mixer.st", SourceKind::Text, text)], &Options::default());
+    let told = refused.err().map_or_else(String::new, |error| error.to_string());
+    assert!(told.contains("the chart in action `Count` is not put on virtual time"), "{told}");
 }
 
 #[test]

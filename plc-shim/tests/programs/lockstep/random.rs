@@ -36,7 +36,13 @@ fn program(name: &str, statements: &[(u32, u32)]) -> String {
 
 type Statements = Vec<(u32, u32)>;
 
-fn statements() -> impl Strategy<Value = Statements> {
+/// Programs `First` and `Second` with a variable in common.
+pub(crate) fn two_programs(first: &[(u32, u32)], second: &[(u32, u32)]) -> String {
+    let globals = "VAR_GLOBAL shared : DINT; END_VAR\n";
+    format!("{globals}{}{}", program("First", first), program("Second", second))
+}
+
+pub(crate) fn statements() -> impl Strategy<Value = Statements> {
     proptest::collection::vec((0..10_u32, 0..40_u32), 0..8)
 }
 
@@ -51,8 +57,7 @@ proptest! {
         priorities in (0..3_u32, 0..3_u32),
         lengths in proptest::collection::vec(1..30_000_000_u64, 20..40),
     ) {
-        let globals = "VAR_GLOBAL shared : DINT; END_VAR\n";
-        let text = format!("{globals}{}{}", program("First", &first), program("Second", &second));
+        let text = two_programs(&first, &second);
         let tasks = [
             task("slow", slow * 5, priorities.0, &["First"]),
             task("fast", fast * 3, priorities.1, &["Second"]),
