@@ -30,7 +30,7 @@ use crate::syntax::{FileId, SourceMap};
 
 pub(crate) use front::Front;
 pub use inspect::inspect;
-use room::with_room;
+pub(crate) use room::with_room;
 pub use value::{Radix, WriteError};
 pub use variable::{Program, UnknownVariable, Variable, VariableAccess};
 

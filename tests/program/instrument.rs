@@ -120,6 +120,40 @@ fn machines_read_json() {
     assert!(report["files"][0]["lines"].as_array().unwrap().len() > 60);
 }
 
+/// Structured Text for TIA Portal: one file to import, and the text as it was.
+#[test]
+fn text_becomes_a_source_of_tia_portal_and_goes_again() {
+    let folder = copied_shear();
+    let before = files(folder.path());
+    let said = instrumented(folder.path(), &[".", "--target", "scl", "--in-place"]);
+    assert_eq!((said.code, said.err.as_str()), (Some(0), ""), "{said:?}");
+    insta::assert_snapshot!("shear_for_tia_portal", said.out);
+    let mut after = files(folder.path());
+    assert_eq!(typed(folder.path(), &["check", "plc/sdsp.scl"]).code, Some(0));
+    let said = instrumented(folder.path(), &[".", "--target", "scl", "--in-place"]);
+    assert!(said.code == Some(0) && !said.out.contains("changed"), "{said:?}");
+    assert_eq!(files(folder.path()), after);
+    // Another target takes its place, and gives it back.
+    let said = instrumented(folder.path(), &[".", "--in-place", "--remove"]);
+    assert_eq!(said.code, Some(0), "{said:?}");
+    assert_eq!(files(folder.path()), before);
+    assert!(after.remove("plc/sdsp.scl").is_some());
+    assert_eq!(after, before);
+}
+
+/// What SCL has not is told, and nothing is written.
+#[test]
+fn what_has_no_form_in_scl_is_told() {
+    let folder = tempfile::tempdir().unwrap();
+    let text =
+        "PROGRAM P\nVAR\n    t : TIME := T#500us;\n    r : REF_TO TIME;\nEND_VAR\n    r := REF(t);\nEND_PROGRAM\n";
+    std::fs::write(folder.path().join("p.st"), text).unwrap();
+    let said = instrumented(folder.path(), &["p.st", "--target", "scl", "-o", "out"]);
+    assert_eq!(said.code, Some(2), "{said:?}");
+    assert!(!folder.path().join("out").exists());
+    insta::assert_snapshot!("refused_for_tia_portal", said.out);
+}
+
 #[test]
 fn what_is_wrong_is_told() {
     let folder = tempfile::tempdir().unwrap();

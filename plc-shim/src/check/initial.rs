@@ -12,7 +12,7 @@ use crate::diagnostic::{Code, Diagnostic, did_you_mean};
 use crate::dialect::Feature;
 use crate::ir::{self, Dimension, Field, PouId, Storage, Type, TypeId};
 use crate::syntax::Span;
-use crate::syntax::ast::{Expr, ExprKind, Initialiser, InitialiserKind, ReferenceKind, StructureInit};
+use crate::syntax::ast::{ElementInit, Expr, ExprKind, Initialiser, InitialiserKind, ReferenceKind, StructureInit};
 
 /// A variable's initial value while it is made.
 struct Making<'a> {
@@ -72,6 +72,10 @@ impl<'a> Body<'_, 'a> {
             (InitialiserKind::Array(elements), Type::Array { dimensions, element }) => {
                 let count = dimensions.iter().map(|each: &Dimension| each.count()).product();
                 self.fill_array(Spot { ty: element, ..spot }, count, elements, making)
+            }
+            (InitialiserKind::Elements(elements), Type::Array { dimensions, element }) => {
+                let first = Spot { ty: element, ..spot };
+                elements.iter().try_for_each(|each| self.fill_element(first, &dimensions, each, making))
             }
             (InitialiserKind::Struct(members), Type::Struct { fields, .. }) => {
                 self.fill_members(spot, &fields, members, making)
@@ -154,6 +158,35 @@ impl<'a> Body<'_, 'a> {
             }
         }
         Some(())
+    }
+
+    /// One element by its indices; `first` is that of the smallest ones.
+    fn fill_element(
+        &mut self,
+        first: Spot,
+        dimensions: &[Dimension],
+        element: &'a ElementInit,
+        making: &mut Making<'a>,
+    ) -> Option<()> {
+        let span = element.indices.first().map_or(element.value.span, |index| index.span);
+        if element.indices.len() != dimensions.len() {
+            let message = format!("{} indices for {} dimensions", element.indices.len(), dimensions.len());
+            self.report(Diagnostic::error(Code::WrongDimensions, span, message));
+            return None;
+        }
+        let mut number: u64 = 0;
+        for (bounds, index) in dimensions.iter().zip(&element.indices) {
+            let value = self.constant_integer(index)?;
+            let Some(value) = i64::try_from(value).ok().filter(|value| (bounds.low..=bounds.high).contains(value))
+            else {
+                let message = format!("index {value} is outside of {}..{}", bounds.low, bounds.high);
+                self.report(Diagnostic::error(Code::IndexOutOfRange, index.span, message));
+                return None;
+            };
+            number = number * bounds.count() + (value - bounds.low) as u64;
+        }
+        let offset = first.offset + number as u32 * self.checker.types.size(first.ty);
+        self.fill(Spot { offset, ..first }, &element.value, making)
     }
 
     /// Gives so many elements in a row the same value.

@@ -134,6 +134,11 @@ impl<'s, 'p> Emitter<'s, 'p> {
         self.marks.push((self.code.len(), Mark { span, kind: MarkKind::Call(callee), unit: self.unit() }));
     }
 
+    /// Says that the next instruction is a branch that is taken as a rule: what lies behind it goes out of the way.
+    pub(super) fn mark_likely(&mut self, span: Span) {
+        self.marks.push((self.code.len(), Mark { span, kind: MarkKind::Likely, unit: self.unit() }));
+    }
+
     /// Stops the PLC if the value on the stack is not 0.
     /// The branch traps by itself where the machine can do so.
     pub(super) fn fault_if(&mut self, fault: FaultKind, span: Span) {

@@ -92,6 +92,8 @@ pub(crate) enum MarkKind {
     Fault(FaultKind),
     /// It calls.
     Call(Callee),
+    /// It is a branch that is taken as a rule.
+    Likely,
 }
 
 /// What is called, for the path to where a fault is.
@@ -130,6 +132,11 @@ impl FunctionMarks {
             MarkKind::Call(callee) => Some((callee, mark)),
             _ => None,
         })
+    }
+
+    /// Where branches are that are taken as a rule.
+    pub(crate) fn likely(&self) -> impl Iterator<Item = u32> {
+        self.marks.iter().filter(|(_, mark)| mark.kind == MarkKind::Likely).map(|(at, _)| *at)
     }
 
     fn marks_at(&self, offset: u32) -> impl Iterator<Item = Mark> {

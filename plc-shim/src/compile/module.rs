@@ -3,8 +3,8 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use wasm_encoder::{
-    CodeSection, DataCountSection, DataSection, EntityType, ExportKind, ExportSection, Function, FunctionSection,
-    ImportSection, MemorySection, MemoryType, Module, TypeSection, ValType,
+    BranchHint, BranchHints, CodeSection, DataCountSection, DataSection, EntityType, ExportKind, ExportSection,
+    Function, FunctionSection, ImportSection, MemorySection, MemoryType, Module, TypeSection, ValType,
 };
 
 use super::budget::{self, BUDGET_EXPORT};
@@ -113,8 +113,21 @@ pub(crate) fn compile(checked: &Checked, noted: Noted<'_>) -> Compiled {
         }
     }
     let points = shared.points.as_ref().map_or(0, Points::bytes);
-    let wasm = sections.finish(checked, points, &shared);
+    let wasm = sections.finish(checked, points, &shared, &hints(&faults));
     Compiled { wasm, faults, points: shared.points.map(Points::into_list).unwrap_or_default() }
+}
+
+/// Which branches are taken as a rule.
+fn hints(faults: &FaultTable) -> BranchHints {
+    let mut hints = BranchHints::new();
+    for (index, function) in (faults.first_function..).zip(&faults.functions) {
+        let likely = function.likely().map(|at| BranchHint { branch_func_offset: at, branch_hint_value: 1 });
+        let likely: Vec<_> = likely.collect();
+        if !likely.is_empty() {
+            hints.function_hints(index, likely);
+        }
+    }
+    hints
 }
 
 fn signature(pou: &Pou, types: &TypeTable) -> (Vec<ValType>, Vec<ValType>) {
@@ -176,7 +189,7 @@ impl Sections {
     }
 
     /// `noted` bytes for what is noted while the program runs lie behind those of the program.
-    fn finish(mut self, checked: &Checked, noted: usize, shared: &Shared<'_>) -> Vec<u8> {
+    fn finish(mut self, checked: &Checked, noted: usize, shared: &Shared<'_>, hints: &BranchHints) -> Vec<u8> {
         let pages = ((checked.image.len() + noted) as u64).div_ceil(PAGE);
         let mut memories = MemorySection::new();
         memories.memory(MemoryType {
@@ -202,6 +215,7 @@ impl Sections {
             module.section(&self.exports).section(&elements);
         }
         module.section(&DataCountSection { count: data.len() });
+        module.section(hints);
         module.section(&self.code).section(&data);
         module.finish()
     }

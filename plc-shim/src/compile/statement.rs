@@ -182,6 +182,9 @@ impl Emitter<'_, '_> {
             let next = self.open_block();
             self.expression(&branch.condition);
             self.emit(Instruction::I32Eqz);
+            if leaves(&branch.body) {
+                self.mark_likely(branch.condition.span);
+            }
             self.branch_if(next);
             let before = self.known.clone();
             self.assume(&branch.condition, false);

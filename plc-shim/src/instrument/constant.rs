@@ -8,17 +8,17 @@ use crate::syntax::ast::{
 
 /// The value of a constant expression.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Constant {
+pub(crate) enum Constant {
     Integer(i128),
     /// ns
     Duration(i128),
 }
 
 /// Global constants by name in capitals.
-pub(super) type Constants<'a> = BTreeMap<String, &'a Expr>;
+pub(crate) type Constants<'a> = BTreeMap<String, &'a Expr>;
 
 /// Notes the constants that a section declares.
-pub(super) fn note<'a>(section: &'a Section, constants: &mut Constants<'a>) {
+pub(crate) fn note<'a>(section: &'a Section, constants: &mut Constants<'a>) {
     if !section.qualifiers.contains(&Qualifier::Constant) {
         return;
     }
@@ -33,7 +33,7 @@ pub(super) fn note<'a>(section: &'a Section, constants: &mut Constants<'a>) {
 const DEPTH_MAX: u32 = 32;
 
 /// The value of `expr`; nothing if it has none that the text alone tells.
-pub(super) fn value(expr: &Expr, constants: &Constants<'_>) -> Option<Constant> {
+pub(crate) fn value(expr: &Expr, constants: &Constants<'_>) -> Option<Constant> {
     within(expr, constants, DEPTH_MAX)
 }
 

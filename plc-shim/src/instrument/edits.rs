@@ -53,7 +53,7 @@ impl Edits {
     }
 
     /// Takes out what changes within `place`, as changes of that part alone.
-    pub(super) fn take_within(&mut self, place: &Range<u32>) -> Self {
+    pub(crate) fn take_within(&mut self, place: &Range<u32>) -> Self {
         let is_inside = |edit: &Edit| place.start <= edit.at.start && edit.at.end <= place.end;
         let (inside, others) = std::mem::take(&mut self.edits).into_iter().partition(is_inside);
         self.edits = others;
@@ -112,17 +112,17 @@ pub struct LineMap {
 }
 
 impl LineMap {
-    pub(super) fn of(origins: Vec<Option<u32>>) -> Self {
+    pub(crate) fn of(origins: Vec<Option<u32>>) -> Self {
         Self { origins }
     }
 
     /// Every line of `text` comes from itself.
-    pub(super) fn same(text: &str) -> Self {
+    pub(crate) fn same(text: &str) -> Self {
         Self::of((1..=breaks(text) + 1).map(Some).collect())
     }
 
     /// Where the lines come from in what `earlier` leads back to.
-    pub(super) fn through(&self, earlier: &Self) -> Self {
+    pub(crate) fn through(&self, earlier: &Self) -> Self {
         Self::of(self.origins.iter().map(|line| line.and_then(|line| earlier.original(line))).collect())
     }
 

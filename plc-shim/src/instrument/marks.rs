@@ -27,6 +27,9 @@ const XML_CLOSING: &str = "-->";
 /// The first line of a file that was added.
 pub(super) const FILE: &str = "(*@sdsp file*)";
 
+/// The first line of a file that was added and is the project as a whole.
+pub(super) const WHOLE: &str = "(*@sdsp whole*)";
+
 /// The same in XML, behind its declaration.
 pub(super) const XML_FILE: &str = "<!--@sdsp file-->";
 
@@ -139,6 +142,16 @@ pub(super) fn unmarked(text: &str) -> String {
         }
     }
     plain + text.get(from..).unwrap_or("")
+}
+
+/// Text with all that was put in, and without a sign of it.
+pub(super) fn plain_text(text: &str) -> String {
+    let is_mark = |line: &&str| {
+        let line = line.trim();
+        [FILE, "(*@sdsp begin*)", "(*@sdsp end*)"].contains(&line)
+    };
+    let lines: Vec<&str> = text.split('\n').filter(|line| !is_mark(line)).collect();
+    unmarked(&lines.join("\n"))
 }
 
 /// Where the name stands in the tag before a mark that says what it was: the word of the shim's own that ends with it.

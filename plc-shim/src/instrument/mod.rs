@@ -12,6 +12,7 @@
 //! | [`motion`], [`motion_use`] | motion control, and what of it a project uses |
 //! | [`survey`] | programs and sources of time in a project |
 //! | [`tasks`] | the task table |
+//! | [`single`] | tasks with SINGLE |
 //! | [`constant`] | constant expressions of tasks |
 //! | [`configuration`] | a project's CONFIGURATION |
 //! | [`plain`] | a project without the shim, and its changes |
@@ -33,7 +34,7 @@ mod chart_script;
 mod clock;
 mod codesys;
 mod configuration;
-mod constant;
+pub(crate) mod constant;
 mod controller;
 pub mod diff;
 pub mod edits;
@@ -49,6 +50,8 @@ mod plcopen_project;
 mod plcopen_unit;
 mod port;
 mod scl;
+mod scl_port;
+mod single;
 mod survey;
 mod target;
 mod tasks;
@@ -113,13 +116,27 @@ pub struct Project {
     pub warnings: Diagnostics,
     /// The name of the file that is the whole project, and alone is to be given to the tool; nothing where all are.
     pub whole: Option<String>,
+    /// The tasks of the program, where they run other units than those that were asked for.
+    pub tasks: Option<Vec<Task>>,
+    /// The data blocks that global variables have become members of.
+    homes: scl_port::Homes,
 }
 
 impl Project {
+    /// A project whose files all are given to the tool.
+    fn of(files: Vec<File>, warnings: Diagnostics) -> Self {
+        Self { files, warnings, whole: None, tasks: None, homes: scl_port::Homes::new() }
+    }
+
     /// The files that together are the program.
     pub fn program(&self) -> impl Iterator<Item = &File> {
         let is_part = |file: &&File| self.whole.as_ref().is_none_or(|whole| file.name == *whole);
         self.files.iter().filter(|file| file.text.is_some()).filter(is_part)
+    }
+
+    /// The path in the program of what has this path in the project.
+    pub fn path(&self, path: &str) -> String {
+        scl_port::path(&self.homes, path)
     }
 }
 
@@ -196,7 +213,7 @@ fn attach(plain: &Plain, options: &Options) -> Result<Attached, InstrumentError>
     let sources = Sources::new(options.target, &tasks, &forms, &motion.blocks, &survey.charts);
     if plain.is_xml() {
         let files = vec![plain.edited_xml(&survey, &motion, &tasks, &sources)?];
-        let project = Project { files, warnings: Diagnostics::new(findings, &plain.sources), whole: None };
+        let project = Project::of(files, Diagnostics::new(findings, &plain.sources));
         return Ok(Attached { project, tasks: None });
     }
     // CODESYS has global variables in lists of their own.
@@ -212,7 +229,7 @@ fn attach(plain: &Plain, options: &Options) -> Result<Attached, InstrumentError>
     }
     plain.delete_stale(&mut files);
     plain.list_own(&mut files)?;
-    let project = Project { files, warnings: Diagnostics::new(findings, &plain.sources), whole: None };
+    let project = Project::of(files, Diagnostics::new(findings, &plain.sources));
     Ok(Attached { project, tasks: survey.configurations.is_empty().then_some(declared) })
 }
 
@@ -230,7 +247,7 @@ pub fn remove(inputs: &[Input]) -> Result<Project, InstrumentError> {
     let mut files = plain.unchanged()?;
     plain.delete_own(&mut files);
     plain.list_own(&mut files)?;
-    Ok(Project { files, warnings: Diagnostics::new(Vec::new(), &plain.sources), whole: None })
+    Ok(Project::of(files, Diagnostics::new(Vec::new(), &plain.sources)))
 }
 
 /// What tasks may run: the instances of a configuration, or else the programs themselves.

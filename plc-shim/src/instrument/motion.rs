@@ -9,8 +9,9 @@ use std::sync::OnceLock;
 use super::target::Target;
 use super::template;
 use crate::application::library;
+use crate::output::scl;
 use crate::syntax::ast::{CompilationUnit, Declaration, Pou, PouKind, SectionKind, TypeSpecKind};
-use crate::syntax::{FileId, parse};
+use crate::syntax::{FileId, SourceFile, SourceMap, parse};
 
 /// What a name is to motion control.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -65,8 +66,7 @@ pub(super) fn differs(target: Target, key: &str) -> Option<&'static str> {
             ("MC_MOVESUPERIMPOSED", "Tc2_MC2 has another block of this name"),
             ("MC_SETPOSITION", "the mode is another in Tc2_MC2"),
         ],
-        Target::Iec | Target::Codesys => &[],
-        Target::Scl => return Some("its axes are technology objects in TIA Portal"),
+        Target::Iec | Target::Codesys | Target::Scl => &[],
     };
     differing.iter().find(|(name, _)| *name == key).map(|(_, why)| *why)
 }
@@ -110,6 +110,9 @@ pub(super) fn parts(target: Target, used: &BTreeMap<String, Use>) -> Vec<Part> {
     if used.is_empty() {
         return Vec::new();
     }
+    if target == Target::Scl {
+        return scl_parts(used);
+    }
     let library = Library::get();
     let name = |written: &str| renamed(target, written);
     // Enumerations are the PLC's own.
@@ -127,6 +130,25 @@ pub(super) fn parts(target: Target, used: &BTreeMap<String, Use>) -> Vec<Part> {
         Part { name: name(&part.pou.name.text).unwrap_or_default(), text, is_type: false }
     });
     types.chain(units).collect()
+}
+
+/// The same in SCL. TIA Portal has no axis of this kind: there is none to hand anything on to while not simulated.
+fn scl_parts(used: &BTreeMap<String, Use>) -> Vec<Part> {
+    let mut sources = SourceMap::default();
+    let mut units = Vec::new();
+    for (name, text) in library::MOTION {
+        let id = sources.add(SourceFile::new(name, text));
+        units.push((id, parse(id, text).unit));
+    }
+    let source = scl::Source { sources: &sources, units: &units, library: &BTreeSet::new() };
+    let rename = |written: &str| match written {
+        "ONESCAN_TV" => Some("\"SDSP\".SDSP_Now".to_owned()),
+        _ => renamed(Target::Scl, written),
+    };
+    let parts = scl::library(source, &rename, &|key| key == "AXIS_REF" || used.contains_key(key));
+    // A test shows that all of it has a form in SCL.
+    let texts = parts.unwrap_or_default().into_iter();
+    texts.map(|text| Part { name: String::new(), text, is_type: false }).collect()
 }
 
 /// An axis of the shim holds the PLC's own.
@@ -313,6 +335,21 @@ mod tests {
         assert!(is_input("MC_POWER", "enable") && is_output("MC_POWER", "Status") && is_axis("MC_GEARIN", "slave"));
         assert!(!is_input("MC_POWER", "bRegulatorOn"));
         assert_eq!(new_name("MC_MOVEABSOLUTE"), "SDSP_MC_MoveAbsolute");
+    }
+
+    /// Every block that the shim has is there in SCL, and needs nothing that is not.
+    #[test]
+    fn all_of_it_has_a_form_in_scl() {
+        let used = Library::get().blocks.keys().map(|key| (key.clone(), Use::default())).collect();
+        let text: String = parts(Target::Scl, &used).into_iter().map(|part| part.text).collect();
+        for unit in Library::get().blocks.values() {
+            assert!(
+                text.contains(&format!("FUNCTION_BLOCK \"SDSP_{}\"", unit.pou.name.text)),
+                "{}",
+                unit.pou.name.text
+            );
+        }
+        assert!(text.contains("TYPE \"SDSP_AXIS_REF\"") && !text.contains("ONESCAN_"), "{text}");
     }
 
     #[test]

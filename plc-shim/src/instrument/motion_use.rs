@@ -36,10 +36,14 @@ impl Motion {
 
 /// Looks through a project in which `names` stand for blocks and types of motion control.
 pub(super) fn motion(target: Target, units: &[(FileId, &CompilationUnit)], names: &[(Ident, Role)]) -> Motion {
-    let mut reader = Reader::default();
+    // In TIA Portal axes are technology objects, unless the project has them as PLCopen does.
+    let has_axes = names.iter().any(|(_, role)| *role == Role::Axis);
+    let is_foreign = target == Target::Scl && !has_axes;
+    let mut reader = Reader { has_own_axis: target != Target::Scl, ..Reader::default() };
     for (name, role) in names {
         let why = match role {
             Role::Foreign(why) => Some(*why),
+            Role::Block if is_foreign => Some("its axes are technology objects in TIA Portal"),
             Role::Block => motion::differs(target, &name.key()),
             Role::Axis | Role::Vocabulary => None,
         };
@@ -73,6 +77,8 @@ enum Kind {
 
 #[derive(Default)]
 struct Reader {
+    /// True if the PLC has an axis of its own beside that of the shim.
+    has_own_axis: bool,
     globals: BTreeMap<String, Kind>,
     locals: BTreeMap<String, Kind>,
     blocks: BTreeMap<String, Use>,
@@ -167,6 +173,11 @@ impl Reader {
             }
             InitialiserKind::Array(values) => values.iter().for_each(|value| self.initial_value(of, value)),
             InitialiserKind::Repeat(_, value) => value.iter().for_each(|value| self.initial_value(of, value)),
+            InitialiserKind::Elements(elements) => {
+                for element in elements {
+                    self.initial_value(of, &element.value);
+                }
+            }
             InitialiserKind::Value(_) => {}
         }
     }
@@ -194,11 +205,11 @@ impl Reader {
                     self.problem(name.span, message);
                 }
             }
-            Some(Kind::Axis) => {
+            Some(Kind::Axis) if self.has_own_axis => {
                 let message = format!("`{}` is read or written in the PLC's own axis", name.text);
                 self.problem(name.span, message);
             }
-            Some(Kind::Other) => {}
+            Some(Kind::Axis | Kind::Other) => {}
             None => self.blocks.iter_mut().for_each(|(block, uses)| {
                 note(block, uses, &key);
             }),

@@ -10,7 +10,7 @@ use super::motion_use::Motion;
 use super::survey::Survey;
 use super::target::{self, Target};
 use super::tasks::TaskTable;
-use super::{File, InstrumentError, Options, chart, configuration, controller, scl, twincat};
+use super::{File, InstrumentError, Options, chart, configuration, controller, scl, single, twincat};
 use crate::diagnostic::{Code, Diagnostic, Diagnostics};
 use crate::input::Input;
 use crate::input::encoding::Encoding;
@@ -116,7 +116,7 @@ impl Plain {
         let foreign = survey.programs.iter().find(foreign).map(|pou| pou.name.span);
         let message = match target {
             Target::Scl if scl.is_some() && foreign.is_some() => "beside SCL there are variables only, not programs",
-            Target::Scl if scl.is_none() => "the target scl takes SCL sources of TIA Portal",
+            Target::Scl if scl.is_none() => "the target scl takes program text or SCL sources of TIA Portal",
             Target::Iec | Target::TwinCat | Target::Codesys if scl.is_some() => "SCL sources take the target scl",
             Target::Codesys if !self.is_xml() && !self.is_text() => {
                 "the target codesys takes program text or a project in PLCopen XML"
@@ -138,11 +138,17 @@ impl Plain {
     }
 
     pub(super) fn tasks(&self, survey: &Survey<'_>, options: &Options) -> Result<Vec<Task>, InstrumentError> {
+        let wrong = |found| InstrumentError::Text(Diagnostics::new(vec![found], &self.sources));
         if let Some(tasks) = &options.tasks {
+            single::refused_beside(&survey.configurations).map_or(Ok(()), |found| Err(wrong(found)))?;
+            single::check_given(tasks, survey, options.target)?;
             return Ok(tasks.clone());
         }
         if !survey.configurations.is_empty() {
-            let wrong = |found| InstrumentError::Text(Diagnostics::new(vec![found], &self.sources));
+            let is_xml = self.is_xml() || options.target == Target::Codesys;
+            if let Some(found) = single::refused_in_xml(&survey.configurations).filter(|_| is_xml) {
+                return Err(wrong(found));
+            }
             let parts = survey.configurations.iter().map(|part| configuration::tasks(part, &survey.constants));
             return Ok(parts.collect::<Result<Vec<_>, _>>().map_err(wrong)?.concat());
         }
@@ -179,11 +185,7 @@ impl Plain {
         };
         for (name, form) in &survey.renames {
             changes(name.span.file, &mut |file, edits| {
-                if scl::is_scl(file) {
-                    scl::rename(name, form, file, edits);
-                } else {
-                    rename(name, &form.new_name(), file, edits);
-                }
+                rename(name, &form.new_name(), file, edits);
             });
         }
         for (name, new) in &motion.renames {
@@ -267,6 +269,9 @@ impl Plain {
 }
 
 fn rename(name: &Ident, new: &str, file: &SourceFile, edits: &mut Edits) {
+    if scl::is_scl(file) {
+        return scl::rename(name, new, file, edits);
+    }
     let at = file.shown_range(name.span.start, name.span.end);
     edits.replace(at, marks::renamed(new, &name.text));
 }

@@ -5,7 +5,7 @@
 
 use super::plain::Plain;
 use super::target::Target;
-use super::{InstrumentError, Options, Project, attach, codesys};
+use super::{InstrumentError, Options, Project, attach, codesys, scl_port};
 use crate::dialect::Dialect;
 use crate::input::Input;
 
@@ -28,7 +28,9 @@ pub(super) fn ported(plain: &Plain, options: &Options) -> Option<Result<Project,
     }
     let port = match options.target {
         Target::Codesys => codesys::port,
-        Target::Iec | Target::TwinCat | Target::Scl => return None,
+        // SCL is another language: the shim is attached to what is written in it.
+        Target::Scl => return Some(scl_port::ported(plain, options)),
+        Target::Iec | Target::TwinCat => return None,
     };
     let whole = || {
         let attached = attach(plain, options)?;
@@ -37,7 +39,7 @@ pub(super) fn ported(plain: &Plain, options: &Options) -> Option<Result<Project,
         plain.add_own(source, &mut files);
         let whole = files.last().map(|file| file.name.clone());
         plain.delete_stale(&mut files);
-        Ok(Project { files, warnings: attached.project.warnings, whole })
+        Ok(Project { whole, ..Project::of(files, attached.project.warnings) })
     };
     Some(whole())
 }

@@ -154,7 +154,7 @@ pub(super) fn cut(span: Span, file: &SourceFile, edits: &mut Edits) {
 }
 
 /// Puts a block of the shim in the place of a timer; what the portal notes of the timer's version goes with it.
-pub(super) fn rename(name: &Ident, form: &Form, file: &SourceFile, edits: &mut Edits) {
+pub(super) fn rename(name: &Ident, new: &str, file: &SourceFile, edits: &mut Edits) {
     let text = file.text();
     let tokens = tokenize_in(file.dialect(), text);
     let before = tokens.iter().rev().skip_while(|token| token.end > name.span.start);
@@ -165,7 +165,7 @@ pub(super) fn rename(name: &Ident, form: &Form, file: &SourceFile, edits: &mut E
         }
     }
     let written = text.get(name.span.start as usize..name.span.end as usize).unwrap_or("");
-    edits.replace(name.span.start..name.span.end, marks::renamed(&format!("\"{}\"", form.new_name()), written));
+    edits.replace(name.span.start..name.span.end, marks::renamed(&format!("\"{new}\""), written));
 }
 
 /// True for what stands before the declaration of a variable or behind the words `DATA_BLOCK`.

@@ -134,6 +134,7 @@ impl Collector<'_> {
                 }
             }
             InitialiserKind::Struct(members) => members.iter().for_each(|member| self.initialiser(&member.value)),
+            InitialiserKind::Elements(elements) => elements.iter().for_each(|each| self.initialiser(&each.value)),
         }
     }
 

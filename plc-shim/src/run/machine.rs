@@ -53,6 +53,8 @@ fn engine() -> Result<Engine, String> {
     // both are needed at few places only.
     config.cranelift_nan_canonicalization(false);
     config.relaxed_simd_deterministic(true);
+    // Advice to the layout of code, nothing that could be seen but by a clock.
+    config.wasm_branch_hinting(true);
     Engine::new(&config).map_err(|error| error.to_string())
 }
 

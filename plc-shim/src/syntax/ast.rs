@@ -14,9 +14,9 @@ pub use configuration::{
     TaskDeclaration,
 };
 pub use declaration::{
-    Declaration, Dimension, Edge, EnumValue, Field, InitArguments, Initialiser, InitialiserKind, Pou, PouKind,
-    Qualifier, ReferenceKind, Section, SectionKind, StructureInit, Subrange, TypeDeclaration, TypeSpec, TypeSpecKind,
-    Variable,
+    Declaration, Dimension, Edge, ElementInit, EnumValue, Field, InitArguments, Initialiser, InitialiserKind, Pou,
+    PouKind, Qualifier, ReferenceKind, Section, SectionKind, StructureInit, Subrange, TypeDeclaration, TypeSpec,
+    TypeSpecKind, Variable,
 };
 pub use expression::{Argument, BinaryOp, Call, Expr, ExprKind, Literal, MAX_HEIGHT, TypedValue, UnaryOp};
 pub use instruction::{Instruction, ListCall, When};

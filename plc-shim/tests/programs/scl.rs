@@ -166,7 +166,7 @@ END_ORGANIZATION_BLOCK
 DATA_BLOCK "d"
    STRUCT a : Array[0..1] of Int; END_STRUCT;
 BEGIN
-   a[1] := 5;
+   a[5] := 5;
 END_DATA_BLOCK
 "#;
     insta::assert_snapshot!(findings_in(SiemensScl, text), @r#"
@@ -177,6 +177,52 @@ END_DATA_BLOCK
     test.st:13:11: error[L0513]: a pointer of S7 is not supported
     test.st:15:11: error[N0101]: `"Missing"` is not declared
     test.st:17:11: error[N0101]: `missing` is not declared
-    test.st:22:4: error[L0501]: a start value is given to members by name only (give an array all its values where it is declared)
+    test.st:22:6: error[T0205]: index 5 is outside of 0..1
     "#);
+}
+
+/// Start values of single elements, of structures in arrays, and of what an instance holds.
+#[test]
+fn data_blocks_begin_with_the_values_of_single_elements() {
+    let text = r#"TYPE "Place"
+   STRUCT
+      X : LReal := 1.5;
+      Dwell : Time;
+   END_STRUCT;
+END_TYPE
+FUNCTION_BLOCK "Arm"
+   VAR
+      state : Int := 7;
+      path : Array[1..2] of "Place";
+   END_VAR
+BEGIN
+END_FUNCTION_BLOCK
+FUNCTION_BLOCK "Machine"
+   VAR
+      arms : Array[0..1, 1..2] of "Arm";
+      list : Array[1..3] of Int := [1, 2, 3];
+   END_VAR
+BEGIN
+END_FUNCTION_BLOCK
+DATA_BLOCK "Machine_DB"
+"Machine"
+BEGIN
+   arms[1, 2].path[2].Dwell := T#20ms;
+   arms[1, 2].state := 9;
+   arms[0, 1].state := 8;
+   list[2] := 20;
+   list[3] := 30;
+END_DATA_BLOCK
+ORGANIZATION_BLOCK "Main"
+BEGIN
+	"Machine_DB"();
+END_ORGANIZATION_BLOCK
+"#;
+    let rig = Rig::in_dialect(SiemensScl, text);
+    let shown = |path: &str| rig.plc.read(path).expect("it is there");
+    let paths = ["arms[0,1].state", "arms[0,2].state", "arms[1,2].state", "list[1]", "list[2]", "list[3]"];
+    let values = paths.map(|path| rig.int(&format!("Machine_DB.{path}")));
+    assert_eq!(values, [8, 7, 9, 1, 20, 30]);
+    let dwell = ["Machine_DB.arms[1,2].path[2].Dwell", "Machine_DB.arms[1,2].path[2].X"].map(shown);
+    assert_eq!(dwell, ["T#20ms", "1.5"]);
 }

@@ -96,8 +96,8 @@ pub struct InstrumentArgs {
     /// A folder, a source file, a TwinCAT project or a scenario
     pub project: PathBuf,
     /// For whom the shim's own sources are written: `iec`: program text of the standard, or
-    /// PLCopen XML if the project is, `twincat`: TwinCAT 3 objects, `codesys`: PLCopen XML for CODESYS, to
-    /// which a project in program text is put as a whole, `scl`: external sources for TIA Portal
+    /// PLCopen XML if the project is, `twincat`: TwinCAT 3 objects, `codesys`: PLCopen XML for CODESYS, `scl`:
+    /// external sources for TIA Portal; to the last two a project in program text is put as a whole
     #[arg(long, value_enum, default_value_t)]
     pub target: TargetArg,
     /// A task and its programs, as in `fast:10ms:0=Main,Alarms`; may be given several times [default: the

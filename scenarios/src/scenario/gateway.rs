@@ -4,12 +4,12 @@ use onescan_clients::gateway::exchange::{SystemWords, is_word};
 use onescan_clients::gateway::{Exchange, FreeGateway, Gateway, LinkFault, Settings, SettingsFault};
 use onescan_clients::soft_plc::{Bindings, SoftPlcClient};
 use onescan_plc_shim::input::kind::{FileKind, SourceKind};
-use onescan_plc_shim::instrument::{File, InstrumentError, Options, Target, instrument};
+use onescan_plc_shim::instrument::{File, InstrumentError, Options, Project, Target, instrument};
 use onescan_plc_shim::{Application, Input, Task, TaskPlan};
 use onescan_server::client::{Client, JoinRequest};
 use onescan_server::signal::{ClientName, Port, SignalName, did_you_mean};
 
-use super::compose::{Compiled, plan_of};
+use super::compose::{Compiled, Paths, plan_of};
 use super::error::{PlcReport, ScenarioError};
 use super::file::ClientFile;
 use super::load::Scenario;
@@ -161,15 +161,17 @@ impl Scenario {
             return Err(self.wrong_client(name, format!("client `{name}` is no soft PLC"), help));
         };
         let inputs = self.inputs(name, sources, *dialect)?;
-        let declared = plan_of(tasks);
-        let options = Options { target, tasks: declared.clone().map(|plan| plan.tasks) };
+        let asked = plan_of(tasks);
+        let options = Options { target, tasks: asked.clone().map(|plan| plan.tasks) };
         let project = instrument(&inputs, &options).map_err(|error| match error {
             InstrumentError::Text(findings) => Box::new(PlcReport { client: name.clone(), findings }).into(),
             other => self.wrong_client(name, other.to_string(), None),
         })?;
         let application = built(name, project.program().filter_map(input).collect())?;
-        let bindings = self.bindings(name, &application, &self.paths(name, bind)?)?;
-        let plan = match declared {
+        let paths = self.paths(name, bind)?;
+        let paths = if project.tasks.is_some() { self.moved_paths(name, inputs, &paths, &project)? } else { paths };
+        let bindings = self.bindings(name, &application, &paths)?;
+        let plan = match project.tasks.map(TaskPlan::new).or(asked) {
             Some(plan) if mode == Mode::Lockstep => in_one_task(&plan),
             Some(plan) => plan,
             None => self.task_plan(name, &application, tasks)?,
@@ -181,6 +183,23 @@ impl Scenario {
         let (reads, writes) = (ports(&bindings.inputs), ports(&bindings.outputs));
         let exchange = Exchange::new(&reads, &writes, SystemWords::Present, &settings.map);
         Ok(Instrumented { application, plan, bindings, exchange, settings })
+    }
+
+    /// The paths of all signals in a project that was written in another form: signals are found by their names in the
+    /// project's own programs.
+    fn moved_paths(
+        &self,
+        name: &ClientName,
+        inputs: Vec<Input>,
+        paths: &Paths,
+        project: &Project,
+    ) -> Result<Paths, ScenarioError> {
+        let own = self.bindings(name, &built(name, inputs)?, paths)?;
+        let moved = own.inputs.into_iter().chain(own.outputs).map(|bound| {
+            let paths = bound.variables.iter().map(|path| project.path(path)).collect();
+            (bound.port.name, paths)
+        });
+        Ok(moved.collect())
     }
 
     fn wrong_settings(&self, name: &ClientName, fault: SettingsFault) -> ScenarioError {

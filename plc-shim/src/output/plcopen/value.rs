@@ -33,6 +33,7 @@ fn value(initial: &Initialiser, page: &Page<'_>) -> Written {
             format!("<structValue>{}</structValue>", members.collect::<Written<String>>()?)
         }
         InitialiserKind::Repeat(..) => return Err(Refused::plcopen(initial.span, "a repetition outside of an array")),
+        InitialiserKind::Elements(_) => return Err(Refused::plcopen(initial.span, "a start value of single elements")),
     })
 }
 

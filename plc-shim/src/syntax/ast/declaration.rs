@@ -304,6 +304,17 @@ pub enum InitialiserKind {
     Repeat(Box<Expr>, Option<Box<Initialiser>>),
     /// `(a := 1, b := 2)`
     Struct(Vec<StructureInit>),
+    /// `a[1] := 5; a[2].b := 6;` behind BEGIN of a data block in SCL: some elements of an array
+    Elements(Vec<ElementInit>),
+}
+
+/// One element of an array's start values.
+#[derive(Debug, Clone)]
+pub struct ElementInit {
+    /// Its indices.
+    pub indices: Vec<Expr>,
+    /// Its value.
+    pub value: Initialiser,
 }
 
 /// One member of a structure's initial value.

@@ -5,8 +5,8 @@ use super::declaration::{begins_declaration, section_kind};
 use crate::diagnostic::{Code, Diagnostic};
 use crate::dialect::{Dialect, Feature};
 use crate::syntax::ast::{
-    Declaration, Expr, ExprKind, Field, Ident, Initialiser, InitialiserKind, Literal, PouKind, Qualifier, Section,
-    SectionKind, StructureInit, TypeSpec, TypeSpecKind, Variable,
+    Declaration, ElementInit, Expr, ExprKind, Field, Ident, Initialiser, InitialiserKind, Literal, PouKind, Qualifier,
+    Section, SectionKind, StructureInit, TypeSpec, TypeSpecKind, Variable,
 };
 use crate::syntax::literal::{parse_duration, parse_typed};
 use crate::syntax::source::Span;
@@ -98,13 +98,14 @@ impl Cursor<'_> {
     }
 
     fn start_value(&mut self, members: &mut Vec<StructureInit>, target: &Expr, value: Initialiser) {
-        if let Some(path) = path(target) {
-            insert(members, &path, value);
-            return;
+        let mut pieces = Vec::new();
+        if path(target, &mut pieces)
+            && let Some((Piece::Member(name), rest)) = pieces.split_first()
+        {
+            return insert(members, name, rest, value);
         }
-        let message = "a start value is given to members by name only";
-        let found = Diagnostic::error(Code::UnsupportedFeature, target.span, message);
-        self.report(found.with_help("give an array all its values where it is declared"));
+        let message = "a start value is given to members and elements only";
+        self.report(Diagnostic::error(Code::UnsupportedFeature, target.span, message));
     }
 
     /// `Void`, which SCL writes as the result of a function without one.
@@ -169,35 +170,54 @@ impl Cursor<'_> {
     }
 }
 
-/// The names of `a.b.c`; nothing if there is more to it.
-fn path(target: &Expr) -> Option<Vec<Ident>> {
+/// A part of the way to what has a start value.
+enum Piece {
+    Member(Ident),
+    Element(Vec<Expr>),
+}
+
+/// The parts of `a.b[1].c`; false if there is more to it.
+fn path(target: &Expr, pieces: &mut Vec<Piece>) -> bool {
     match &target.kind {
         ExprKind::Name(name) => {
             let text = name.text.trim_matches('"').to_owned();
-            Some(vec![Ident { text, span: name.span }])
+            pieces.push(Piece::Member(Ident { text, span: name.span }));
+            true
         }
         ExprKind::Member(base, name) => {
-            let mut names = path(base)?;
-            names.push(name.clone());
-            Some(names)
+            let known = path(base, pieces);
+            pieces.push(Piece::Member(name.clone()));
+            known
         }
-        _ => None,
+        ExprKind::Index(base, indices) => {
+            let known = path(base, pieces);
+            pieces.push(Piece::Element(indices.clone()));
+            known
+        }
+        _ => false,
     }
 }
 
-/// Puts `value` where `path` leads to among the members of a structure.
-fn insert(members: &mut Vec<StructureInit>, path: &[Ident], value: Initialiser) {
-    let Some((first, rest)) = path.split_first() else { return };
-    if rest.is_empty() {
-        members.push(StructureInit { name: first.clone(), value });
-        return;
+/// Puts `value` where the path leads to among the members of a structure.
+fn insert(members: &mut Vec<StructureInit>, name: &Ident, rest: &[Piece], value: Initialiser) {
+    let last = members.last_mut().filter(|last| last.name.key() == name.key());
+    match (rest.split_first(), last.map(|last| &mut last.value.kind)) {
+        (Some((Piece::Member(name), rest)), Some(InitialiserKind::Struct(inner))) => insert(inner, name, rest, value),
+        (Some((Piece::Element(indices), rest)), Some(InitialiserKind::Elements(elements))) => {
+            elements.push(ElementInit { indices: indices.clone(), value: wrapped(rest, value) });
+        }
+        _ => members.push(StructureInit { name: name.clone(), value: wrapped(rest, value) }),
     }
-    let last = members.last_mut().filter(|last| last.name.key() == first.key());
-    if let Some(StructureInit { value: Initialiser { kind: InitialiserKind::Struct(inner), .. }, .. }) = last {
-        return insert(inner, rest, value);
-    }
-    let (mut inner, span) = (Vec::new(), value.span);
-    insert(&mut inner, rest, value);
-    let value = Initialiser { kind: InitialiserKind::Struct(inner), span };
-    members.push(StructureInit { name: first.clone(), value });
+}
+
+/// The value as part of what the path leads through.
+fn wrapped(rest: &[Piece], value: Initialiser) -> Initialiser {
+    let span = value.span;
+    rest.iter().rev().fold(value, |value, piece| {
+        let kind = match piece {
+            Piece::Member(name) => InitialiserKind::Struct(vec![StructureInit { name: name.clone(), value }]),
+            Piece::Element(indices) => InitialiserKind::Elements(vec![ElementInit { indices: indices.clone(), value }]),
+        };
+        Initialiser { kind, span }
+    })
 }

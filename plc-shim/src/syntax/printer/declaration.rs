@@ -2,8 +2,8 @@
 
 use super::Printer;
 use crate::syntax::ast::{
-    Declaration, Edge, EnumValue, Field, InitArguments, Initialiser, InitialiserKind, Pou, PouKind, Qualifier, Section,
-    SectionKind, StructureInit, TypeDeclaration, TypeSpec, TypeSpecKind, Variable,
+    Declaration, Edge, ElementInit, EnumValue, Field, InitArguments, Initialiser, InitialiserKind, Pou, PouKind,
+    Qualifier, Section, SectionKind, StructureInit, TypeDeclaration, TypeSpec, TypeSpecKind, Variable,
 };
 
 impl Printer {
@@ -236,7 +236,19 @@ impl Printer {
                 self.separated(members, Self::structure_init);
                 self.word(")");
             }
+            InitialiserKind::Elements(elements) => {
+                self.word("(");
+                self.separated(elements, Self::element_init);
+                self.word(")");
+            }
         }
+    }
+
+    fn element_init(&mut self, element: &ElementInit) {
+        self.word("[");
+        self.separated(&element.indices, Self::expression);
+        self.word("] := ");
+        self.initialiser(&element.value);
     }
 
     fn structure_init(&mut self, member: &StructureInit) {

@@ -4,7 +4,8 @@ use proptest::prelude::*;
 
 use super::driver::Tasks;
 use super::equivalence::assert_equal;
-use crate::rig::task;
+use super::ported;
+use crate::rig::{MS, task};
 
 /// One statement of program `Main`, with instance and number `n`.
 fn statement(kind: u32, n: usize, ms: u32) -> String {
@@ -35,7 +36,13 @@ fn program(name: &str, statements: &[(u32, u32)]) -> String {
 
 type Statements = Vec<(u32, u32)>;
 
-fn statements() -> impl Strategy<Value = Statements> {
+/// Programs `First` and `Second` with a variable in common.
+pub(crate) fn two_programs(first: &[(u32, u32)], second: &[(u32, u32)]) -> String {
+    let globals = "VAR_GLOBAL shared : DINT; END_VAR\n";
+    format!("{globals}{}{}", program("First", first), program("Second", second))
+}
+
+pub(crate) fn statements() -> impl Strategy<Value = Statements> {
     proptest::collection::vec((0..10_u32, 0..40_u32), 0..8)
 }
 
@@ -50,8 +57,7 @@ proptest! {
         priorities in (0..3_u32, 0..3_u32),
         lengths in proptest::collection::vec(1..30_000_000_u64, 20..40),
     ) {
-        let globals = "VAR_GLOBAL shared : DINT; END_VAR\n";
-        let text = format!("{globals}{}{}", program("First", &first), program("Second", &second));
+        let text = two_programs(&first, &second);
         let tasks = [
             task("slow", slow * 5, priorities.0, &["First"]),
             task("fast", fast * 3, priorities.1, &["Second"]),
@@ -61,5 +67,22 @@ proptest! {
         for form in [Tasks::Kept, Tasks::Moved] {
             assert_equal("random", &text, &tasks, &inputs, &times, form);
         }
+    }
+
+    /// A TIME of CODESYS counts milliseconds.
+    #[test]
+    fn random_programs_are_the_same_in_plcopen_xml(
+        first in statements(),
+        second in statements(),
+        (slow, fast) in (1..5_u64, 1..4_u64),
+        lengths in proptest::collection::vec(1..30_u64, 20..40),
+    ) {
+        let globals = "VAR_GLOBAL shared : DINT; END_VAR\n";
+        let text = format!("{globals}{}{}", program("First", &first), program("Second", &second));
+        let tasks = [task("slow", slow * 5, 1, &["First"]), task("fast", fast * 3, 0, &["Second"])];
+        let times: Vec<u64> = lengths.iter().scan(0, |now, length| { *now += length * MS; Some(*now) }).collect();
+        let inputs = ["First.i", "First.j", "Second.i", "Second.j"];
+        let same = ported::assert_equal(&text, &tasks, &inputs, &times, Tasks::Moved);
+        prop_assert_eq!(same, Ok(()));
     }
 }

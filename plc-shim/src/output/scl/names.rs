@@ -1,0 +1,323 @@
+//! What the names of a project stand for, and how each is written in SCL.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use crate::instrument::constant::{self, Constant, Constants};
+use crate::ir::ElementaryType;
+use crate::syntax::ast::{
+    CompilationUnit, Configuration, Declaration, EnumValue, Expr, Field, Ident, Pou, PouKind, Qualifier, Section,
+    TypeDeclaration, TypeSpec, TypeSpecKind, Variable,
+};
+use crate::syntax::{FileId, SourceMap};
+
+/// The data block of global variables that have no block of their own.
+pub(super) const GLOBALS: &str = "Globals";
+/// The same of those that survive a restart.
+pub(super) const RETAINED_GLOBALS: &str = "RetainedGlobals";
+
+/// Function blocks that TIA Portal has, and its name where it is another.
+const NATIVE: [(&str, &str); 21] = [
+    ("TON", "TON_TIME"),
+    ("TOF", "TOF_TIME"),
+    ("TP", "TP_TIME"),
+    ("TON_TIME", "TON_TIME"),
+    ("TOF_TIME", "TOF_TIME"),
+    ("TP_TIME", "TP_TIME"),
+    ("TON_LTIME", "TON_LTIME"),
+    ("TOF_LTIME", "TOF_LTIME"),
+    ("TP_LTIME", "TP_LTIME"),
+    ("LTON", "TON_LTIME"),
+    ("LTOF", "TOF_LTIME"),
+    ("LTP", "TP_LTIME"),
+    ("R_TRIG", "R_TRIG"),
+    ("F_TRIG", "F_TRIG"),
+    ("CTU", "CTU_INT"),
+    ("CTD", "CTD_INT"),
+    ("CTUD", "CTUD_INT"),
+    ("CTU_INT", "CTU_INT"),
+    ("CTD_INT", "CTD_INT"),
+    ("CTUD_INT", "CTUD_INT"),
+    ("CTU_DINT", "CTU_DINT"),
+];
+
+/// TIA Portal's name of a standard function block.
+pub(super) fn native(key: &str) -> Option<&'static str> {
+    NATIVE.iter().find(|(name, _)| *name == key).map(|(_, new)| *new)
+}
+
+/// What a type comes to, behind aliases and subranges.
+#[derive(Clone, Copy)]
+pub(super) enum Shape<'a> {
+    Elementary(ElementaryType),
+    Text { wide: bool },
+    Enumeration(ElementaryType),
+    Structure(&'a [Field]),
+    Array(&'a TypeSpec),
+    Block(&'a Pou),
+}
+
+impl Shape<'_> {
+    /// The type that holds a value of it.
+    pub(super) fn elementary(self) -> Option<ElementaryType> {
+        match self {
+            Self::Elementary(ty) | Self::Enumeration(ty) => Some(ty),
+            _ => None,
+        }
+    }
+}
+
+/// A global variable.
+#[derive(Clone, Copy)]
+pub(super) struct Global<'a> {
+    pub(super) name: &'a Ident,
+    pub(super) variable: &'a Variable,
+    pub(super) is_constant: bool,
+    pub(super) is_retained: bool,
+}
+
+/// A value of an enumeration.
+#[derive(Clone, Copy)]
+pub(super) struct EnumeratedValue<'a> {
+    pub(super) of: &'a TypeDeclaration,
+    pub(super) name: &'a Ident,
+    pub(super) number: i128,
+    pub(super) base: ElementaryType,
+}
+
+/// Whose blocks and types are written.
+pub(super) type Rename<'r> = &'r dyn Fn(&str) -> Option<String>;
+
+/// All names of a project.
+pub(super) struct Names<'a> {
+    pub(super) sources: &'a SourceMap,
+    pub(super) units: BTreeMap<String, &'a Pou>,
+    pub(super) types: BTreeMap<String, &'a TypeDeclaration>,
+    pub(super) globals: BTreeMap<String, Global<'a>>,
+    values: BTreeMap<String, Vec<EnumeratedValue<'a>>>,
+    constants: Constants<'a>,
+    /// Names that the shim gives to blocks, types and variables.
+    rename: Rename<'a>,
+    /// The files of the standard's and the shim's own blocks.
+    library: &'a BTreeSet<FileId>,
+}
+
+impl<'a> Names<'a> {
+    pub(super) fn new(
+        sources: &'a SourceMap,
+        units: &'a [(FileId, CompilationUnit)],
+        library: &'a BTreeSet<FileId>,
+        rename: Rename<'a>,
+    ) -> Self {
+        let mut names = Self {
+            sources,
+            units: BTreeMap::new(),
+            types: BTreeMap::new(),
+            globals: BTreeMap::new(),
+            values: BTreeMap::new(),
+            constants: Constants::new(),
+            rename,
+            library,
+        };
+        // What a project declares goes before what everybody has.
+        let (own, of_library): (Vec<_>, Vec<_>) = units.iter().partition(|(file, _)| !library.contains(file));
+        for (_, unit) in of_library.into_iter().chain(own) {
+            unit.declarations.iter().for_each(|declaration| names.add(declaration));
+        }
+        names
+    }
+
+    fn add(&mut self, declaration: &'a Declaration) {
+        match declaration {
+            Declaration::Pou(pou) => {
+                self.units.insert(pou.name.key(), pou);
+            }
+            Declaration::Type(named) => self.add_type(named),
+            Declaration::Globals(section) => self.add_globals(section),
+            Declaration::Configuration(configuration) => {
+                sections(configuration).for_each(|section| self.add_globals(section));
+            }
+            Declaration::Namespace(_) | Declaration::Using(_) => {}
+        }
+    }
+
+    fn add_type(&mut self, named: &'a TypeDeclaration) {
+        self.types.insert(named.name.key(), named);
+        let TypeSpecKind::Enumeration(values, base) = &named.spec.kind else { return };
+        let base = base.as_ref().and_then(|base| ElementaryType::find(&base.text)).unwrap_or(ElementaryType::Int);
+        let mut next = 0;
+        for value in values {
+            let number = self.number(value).unwrap_or(next);
+            next = number + 1;
+            let value = EnumeratedValue { of: named, name: &value.name, number, base };
+            self.values.entry(value.name.key()).or_default().push(value);
+        }
+    }
+
+    fn number(&self, value: &EnumValue) -> Option<i128> {
+        self.integer(value.value.as_ref()?)
+    }
+
+    fn add_globals(&mut self, section: &'a Section) {
+        constant::note(section, &mut self.constants);
+        let is_constant = section.qualifiers.contains(&Qualifier::Constant);
+        let retains = |each: &Qualifier| matches!(each, Qualifier::Retain | Qualifier::Persistent);
+        let is_retained = section.qualifiers.iter().any(retains);
+        for variable in &section.variables {
+            for name in &variable.names {
+                self.globals.insert(name.key(), Global { name, variable, is_constant, is_retained });
+            }
+        }
+    }
+
+    /// True for what the project itself declares.
+    pub(super) fn is_own(&self, file: FileId) -> bool {
+        !self.library.contains(&file)
+    }
+
+    /// A constant expression's value, if the text tells it.
+    pub(super) fn integer(&self, expr: &Expr) -> Option<i128> {
+        self.integer_with(expr, &Constants::new())
+    }
+
+    /// The same in a unit that declares constants of its own.
+    pub(super) fn integer_with(&self, expr: &Expr, own: &Constants<'_>) -> Option<i128> {
+        let mut all: Constants<'_> = self.constants.clone();
+        all.extend(own.iter().map(|(key, value)| (key.clone(), *value)));
+        match constant::value(expr, &all)? {
+            Constant::Integer(value) => Some(value),
+            Constant::Duration(_) => None,
+        }
+    }
+
+    /// The value of an enumeration by its name; `of` is the enumeration, if it is named.
+    pub(super) fn value(&self, key: &str, of: Option<&str>) -> Option<EnumeratedValue<'a>> {
+        let mut all = self.values.get(key)?.iter();
+        all.find(|value| of.is_none_or(|of| value.of.name.key() == of)).copied()
+    }
+
+    /// The program of this name.
+    pub(super) fn program(&self, key: &str) -> Option<&'a Pou> {
+        self.units.get(key).copied().filter(|pou| pou.kind == PouKind::Program)
+    }
+
+    /// What a type comes to; nothing if it is not known.
+    pub(super) fn shape(&self, spec: &'a TypeSpec) -> Option<Shape<'a>> {
+        match &spec.kind {
+            TypeSpecKind::String(name, _) => Some(Shape::Text { wide: name.key() == "WSTRING" }),
+            TypeSpecKind::Name(name) | TypeSpecKind::Subrange(name, _) => self.named_shape(name),
+            TypeSpecKind::Array(_, element) | TypeSpecKind::OpenArray(_, element) => Some(Shape::Array(element)),
+            _ => None,
+        }
+    }
+
+    fn named_shape(&self, name: &Ident) -> Option<Shape<'a>> {
+        let key = name.key();
+        if let Some(named) = self.types.get(&key) {
+            return match &named.spec.kind {
+                TypeSpecKind::Struct(fields) => Some(Shape::Structure(fields)),
+                TypeSpecKind::Enumeration(_, base) => {
+                    let base = base.as_ref().and_then(|base| ElementaryType::find(&base.text));
+                    Some(Shape::Enumeration(base.unwrap_or(ElementaryType::Int)))
+                }
+                // A checked project has no circles of aliases.
+                _ => self.shape(&named.spec),
+            };
+        }
+        match key.as_str() {
+            "STRING" | "WSTRING" => Some(Shape::Text { wide: key == "WSTRING" }),
+            _ => match ElementaryType::find(&key) {
+                Some(ty) => Some(Shape::Elementary(ty)),
+                None => self.units.get(&key).map(|pou| Shape::Block(pou)),
+            },
+        }
+    }
+
+    /// A block's or type's name as it stands in SCL.
+    pub(super) fn block(&self, name: &str) -> String {
+        let key = name.to_ascii_uppercase();
+        if let Some(new) = (self.rename)(name) {
+            return quoted(&new);
+        }
+        let declared = self.units.get(&key).map(|pou| &pou.name).or(self.types.get(&key).map(|named| &named.name));
+        match declared {
+            Some(declared) if !self.is_own(declared.span.file) => match native(&key) {
+                Some(native) => native.to_owned(),
+                None if is_left(&key) => declared.text.clone(),
+                // The standard's own names are no names of blocks.
+                None => quoted(&format!("IEC_{}", declared.text)),
+            },
+            Some(declared) => quoted(&declared.text),
+            None => name.to_owned(),
+        }
+    }
+
+    /// A global variable as it stands in SCL; constants are local ones there.
+    pub(super) fn global(&self, key: &str) -> Option<String> {
+        if let Some(new) = (self.rename)(key) {
+            return Some(new);
+        }
+        let global = self.globals.get(key)?;
+        let home = self.home(global);
+        Some(match home {
+            Some(home) => format!("{}.{}", quoted(home), member(&global.name.text)),
+            None => quoted(&global.name.text),
+        })
+    }
+
+    /// The data block that a global variable is a member of; nothing if it is one itself.
+    pub(super) fn home(&self, global: &Global<'a>) -> Option<&'static str> {
+        match self.shape(&global.variable.spec) {
+            Some(Shape::Block(_)) => None,
+            _ if global.is_retained => Some(RETAINED_GLOBALS),
+            _ => Some(GLOBALS),
+        }
+    }
+}
+
+/// Blocks and types that instrumenting puts others in the place of.
+pub(super) fn is_left(key: &str) -> bool {
+    key.starts_with("MC_") || key == "AXIS_REF"
+}
+
+/// The sections of global variables of a configuration.
+pub(super) fn sections(configuration: &Configuration) -> impl Iterator<Item = &Section> {
+    configuration.sections.iter().chain(configuration.resources.iter().flat_map(|resource| &resource.sections))
+}
+
+/// `"name"`
+pub(super) fn quoted(name: &str) -> String {
+    format!("\"{name}\"")
+}
+
+/// Words that are names in the standard and none in SCL.
+const RESERVED: [&str; 24] = [
+    "BEGIN",
+    "BLOCK_DB",
+    "BLOCK_FB",
+    "BLOCK_FC",
+    "COUNTER",
+    "DATA_BLOCK",
+    "DIV",
+    "DTL",
+    "GOTO",
+    "LABEL",
+    "NAME",
+    "NIL",
+    "ORGANIZATION_BLOCK",
+    "POINTER",
+    "REF_TO",
+    "REGION",
+    "END_REGION",
+    "TIMER",
+    "TITLE",
+    "VARIANT",
+    "VERSION",
+    "VOID",
+    "ANY",
+    "S5TIME",
+];
+
+/// A member's or variable's name as it is declared, and behind a point.
+pub(super) fn member(name: &str) -> String {
+    if RESERVED.contains(&name.to_ascii_uppercase().as_str()) { quoted(name) } else { name.to_owned() }
+}
