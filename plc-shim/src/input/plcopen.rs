@@ -318,6 +318,10 @@ impl Writer<'_> {
             }
         }
         self.write(")", &element.close);
+        if let Some(base) = element.child("baseType") {
+            self.write(" ", &base.open);
+            self.type_in(base);
+        }
     }
 
     fn initial_value(&mut self, element: &Element) {

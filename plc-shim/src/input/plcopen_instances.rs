@@ -186,4 +186,14 @@ mod tests {
         insta::assert_snapshot!(input.file().text());
         assert!(input.diagnostics.is_empty(), "{:?}", input.diagnostics);
     }
+
+    #[test]
+    fn tasks_of_codesys_call_programs_by_name() {
+        let project = r#"<project><types><dataTypes/><pous><pou name="PLC_PRG" pouType="program"><body><ST><p>;</p></ST>
+            </body></pou></pous></types><instances><configurations><configuration name="Device"><resource name="App">
+            <task name="Main" interval="PT0.02S" priority="1"><pouInstance name="PLC_PRG" typeName=""/></task></resource>
+            </configuration></configurations></instances></project>"#;
+        let input = Input::from_text("app.xml", SourceKind::PlcOpen, project);
+        assert!(input.file().text().contains("PROGRAM PLC_PRG WITH Main : PLC_PRG;"), "{}", input.file().text());
+    }
 }

@@ -3,6 +3,7 @@
 use super::constant::{self, Constant, Constants};
 use super::edits::Edits;
 use super::marks;
+use super::single;
 use super::tasks::{ALWAYS_NS, TaskTable};
 use crate::diagnostic::{Code, Diagnostic};
 use crate::run::Task;
@@ -29,6 +30,7 @@ pub(super) fn tasks(configuration: &Configuration, constants: &Constants<'_>) ->
         let first = tasks.len();
         for declared in &resource.tasks {
             let mut task = task(declared, constants)?;
+            task.single = single::number(configuration, declared).map(single::input);
             if let Some((name, _)) = &resource.name {
                 task.name = format!("{}.{}", name.text, task.name);
             }
@@ -69,12 +71,14 @@ fn task(declared: &TaskDeclaration, constants: &Constants<'_>) -> Result<Task, D
             ("PRIORITY", Some(Constant::Integer(rank))) => {
                 task.priority = u32::try_from(rank).map_err(|_| unsupported(input, "PRIORITY below 0"))?;
             }
-            ("SINGLE", _) => return Err(unsupported(input, "a task with SINGLE")),
+            ("SINGLE", _) if single::is_source(given) => {}
+            ("SINGLE", _) => return Err(unsupported(input, "SINGLE other than a variable")),
             (name, _) => return Err(unsupported(input, &format!("{name} other than a constant"))),
         }
     }
-    if task.interval_ns == 0 {
-        return Err(unsupported(&declared.name, "a task without INTERVAL"));
+    let is_triggered = declared.inputs.iter().any(|(input, _)| input.key() == "SINGLE");
+    if task.interval_ns == 0 && !is_triggered {
+        return Err(unsupported(&declared.name, "a task without INTERVAL and SINGLE"));
     }
     Ok(task)
 }
@@ -105,17 +109,19 @@ pub(super) fn attach(
     let (whole, part) = (interval / 1_000_000, interval % 1_000_000);
     let duration = if part == 0 { format!("T#{whole}ms") } else { format!("T#{whole}.{part:06}ms") };
     let cycle = format!("    TASK SDSP_Cycle (INTERVAL := {duration}, PRIORITY := 0);");
-    let run = "    PROGRAM SDSP WITH SDSP_Cycle : SDSP_Scheduler;";
+    let told = single::connections(configuration, resource, file);
+    let run = format!("    PROGRAM SDSP WITH SDSP_Cycle : SDSP_Scheduler{told};");
     let before_program = marks::line_start(text, program.span.start);
     match resource.tasks.first() {
         Some(task) => {
             let keyword = token_before(file, task.name.span.start).unwrap_or(task.name.span.start);
             edits.insert(marks::line_start(text, keyword), marks::lines(&cycle, line_break));
-            edits.insert(before_program, marks::lines(run, line_break));
+            edits.insert(before_program, marks::lines(&run, line_break));
         }
         None => edits.insert(before_program, marks::lines(&format!("{cycle}\n{run}"), line_break)),
     }
     number(configuration, tasks, file, edits);
+    single::attach(configuration, file, edits);
 }
 
 /// Tells each of several instances of a program its number.

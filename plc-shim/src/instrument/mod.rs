@@ -12,6 +12,7 @@
 //! | [`motion`], [`motion_use`] | motion control, and what of it a project uses |
 //! | [`survey`] | programs and sources of time in a project |
 //! | [`tasks`] | the task table |
+//! | [`single`] | tasks with SINGLE |
 //! | [`constant`] | constant expressions of tasks |
 //! | [`configuration`] | a project's CONFIGURATION |
 //! | [`plain`] | a project without the shim, and its changes |
@@ -50,6 +51,7 @@ mod plcopen_unit;
 mod port;
 mod scl;
 mod scl_port;
+mod single;
 mod survey;
 mod target;
 mod tasks;

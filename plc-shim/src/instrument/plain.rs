@@ -10,7 +10,7 @@ use super::motion_use::Motion;
 use super::survey::Survey;
 use super::target::{self, Target};
 use super::tasks::TaskTable;
-use super::{File, InstrumentError, Options, chart, configuration, controller, scl, twincat};
+use super::{File, InstrumentError, Options, chart, configuration, controller, scl, single, twincat};
 use crate::diagnostic::{Code, Diagnostic, Diagnostics};
 use crate::input::Input;
 use crate::input::encoding::Encoding;
@@ -138,11 +138,17 @@ impl Plain {
     }
 
     pub(super) fn tasks(&self, survey: &Survey<'_>, options: &Options) -> Result<Vec<Task>, InstrumentError> {
+        let wrong = |found| InstrumentError::Text(Diagnostics::new(vec![found], &self.sources));
         if let Some(tasks) = &options.tasks {
+            single::refused_beside(&survey.configurations).map_or(Ok(()), |found| Err(wrong(found)))?;
+            single::check_given(tasks, survey, options.target)?;
             return Ok(tasks.clone());
         }
         if !survey.configurations.is_empty() {
-            let wrong = |found| InstrumentError::Text(Diagnostics::new(vec![found], &self.sources));
+            let is_xml = self.is_xml() || options.target == Target::Codesys;
+            if let Some(found) = single::refused_in_xml(&survey.configurations).filter(|_| is_xml) {
+                return Err(wrong(found));
+            }
             let parts = survey.configurations.iter().map(|part| configuration::tasks(part, &survey.constants));
             return Ok(parts.collect::<Result<Vec<_>, _>>().map_err(wrong)?.concat());
         }

@@ -96,6 +96,20 @@ pub(super) fn append(text: &str, element: &Element, xml: &str, edits: &mut Edits
     edits.replace(element.open.clone(), marks::cut(tag));
 }
 
+/// Takes out declarations that CODESYS keeps as text beside their elements: it would read that text, not the elements,
+/// and so not what is put in there.
+pub(super) fn cut_plain_text(root: &Element, text: &str, edits: &mut Edits) {
+    let is_plain_text = |data: &&&Element| {
+        let name = data.attribute("name").map_or("", |name| name.value.as_str());
+        name.rsplit('/').next().is_some_and(|kind| kind.eq_ignore_ascii_case("interfaceasplaintext"))
+    };
+    for data in all(root, "data").iter().filter(is_plain_text) {
+        let at = data.open.start..data.close.end;
+        let written = text.get(at.start as usize..at.end as usize).unwrap_or("");
+        edits.replace(at, marks::cut(written));
+    }
+}
+
 /// What cannot be done with a project.
 pub(super) type Refused = &'static str;
 

@@ -29,6 +29,7 @@ impl Plain {
         let mut edits = Edits::default();
         let line = tasks.line_type();
         rename(survey, motion, file, &root, &mut edits);
+        plcopen::cut_plain_text(&root, file.shown_text(), &mut edits);
         for (pou, number) in tasks.numbered().filter(|(pou, _)| pou.chart.is_empty()) {
             plcopen::control(pou, number, &line, (file, &root), &mut edits)
                 .map_err(|message| self.refused(pou.name.span, message))?;

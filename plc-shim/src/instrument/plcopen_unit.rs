@@ -3,6 +3,7 @@
 //! A source of the shim's that has no form gives nothing; tests see to it that there is none.
 
 use crate::output::page::Page;
+use crate::output::plcopen::about::About;
 use crate::output::plcopen::markup::{self, Wrapper};
 use crate::output::plcopen::{body as bodies, types, unit as units, variables};
 use crate::syntax::ast::{Declaration, Pou, Section};
@@ -23,7 +24,7 @@ pub(super) fn data_type(text: &str) -> Option<String> {
     let unit = parse(FileId(0), text).unit;
     let page = Page::bare(text);
     let xml = unit.declarations.iter().map(|each| match each {
-        Declaration::Type(named) => match types::data_type(named, "", &page) {
+        Declaration::Type(named) => match types::data_type(named, About::default(), &page) {
             Ok(types::DataType::Standard(xml)) => Some(xml),
             _ => None,
         },
@@ -35,7 +36,7 @@ pub(super) fn data_type(text: &str) -> Option<String> {
 /// `<pou>` of a unit of the shim.
 pub(super) fn unit(text: &str) -> Option<String> {
     let unit = parse(FileId(0), text).unit;
-    unit.declarations.iter().find_map(pou).and_then(|pou| units::unit(pou, "", &Page::bare(text)).ok())
+    unit.declarations.iter().find_map(pou).and_then(|pou| units::unit(pou, About::default(), &Page::bare(text)).ok())
 }
 
 fn pou(declaration: &Declaration) -> Option<&Pou> {
@@ -68,5 +69,5 @@ pub(super) fn globals(text: &str, name: Option<&str>) -> Option<String> {
         Declaration::Globals(section) => Some(section),
         _ => None,
     });
-    sections.map(|section| variables::section(section, name, "", &page).ok()).collect()
+    sections.map(|section| variables::section(section, name, &About::default(), &page).ok()).collect()
 }

@@ -46,6 +46,8 @@ pub(super) struct Survey<'a> {
     pub(super) cuts: Vec<Span>,
     /// Keys of the units and types that the project declares.
     declared: BTreeSet<String>,
+    /// Keys of its global variables.
+    globals: BTreeSet<String>,
     /// What cannot be replaced, and names that the shim needs for itself.
     pub(super) findings: Vec<Diagnostic>,
 }
@@ -56,7 +58,8 @@ pub(super) fn survey<'a>(units: &[(FileId, &'a CompilationUnit)], target: Target
     let mut names = Names::default();
     declarations().for_each(|declaration| names.add(declaration));
     let timer_calls = if target == Target::Scl { TimerCalls::of(units) } else { TimerCalls::default() };
-    let survey = Survey { target, declared: names.units_and_types.clone(), timer_calls, ..Survey::default() };
+    let (declared, globals) = (names.units_and_types.clone(), names.globals.clone());
+    let survey = Survey { target, timer_calls, declared, globals, ..Survey::default() };
     let mut surveyor = Surveyor { names: &names, target, unit: String::new(), local: BTreeSet::new(), survey };
     declarations().for_each(|declaration| surveyor.declaration(declaration));
     let mut survey = surveyor.survey;
@@ -76,6 +79,11 @@ impl Survey<'_> {
     /// True for a name that the project gives to a unit or type of its own.
     pub(super) fn is_declared(&self, name: &str) -> bool {
         self.declared.contains(&name.to_ascii_uppercase())
+    }
+
+    /// True for a global variable of the project.
+    pub(super) fn is_global(&self, name: &str) -> bool {
+        self.globals.contains(&name.to_ascii_uppercase())
     }
 
     /// True if an action of `unit` is called by its name, there or elsewhere.

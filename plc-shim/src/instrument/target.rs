@@ -87,15 +87,19 @@ impl Sources {
         };
         names.extend([("SDSP_NOW_OF_TV", now.to_owned()), ("SDSP_NOWL_OF_TV", now_long.to_owned())]);
         let fill = if target == Target::Scl { template::fill_scl } else { template::fill };
-        let filled = |template: &str| fill(&template::lines_for(template, wanted), &names);
+        let filled = |template: &str| fill(&template::lines_for(&tasks.with_singles(template), wanted), &names);
         let unit = |form: &&Form| Unit { name: form.new_name(), text: form.text(target) };
         let (globals, scheduler) = match target {
             Target::Scl => (template::SCL_GLOBALS, template::SCL_SCHEDULER),
+            _ if tasks.has_singles() => (template::GLOBALS, template::EVENT_SCHEDULER),
             Target::Iec | Target::TwinCat | Target::Codesys => (template::GLOBALS, template::SCHEDULER),
         };
         let mut units: Vec<Unit> = forms.iter().map(unit).collect();
         if !charts.is_empty() {
             units.extend(chart_units());
+        }
+        if tasks.has_events() {
+            units.push(Unit { name: "SDSP_Follow".to_owned(), text: filled(template::FOLLOW) });
         }
         Self {
             line: tasks.line_declaration().map(|text| template::fill(text, &sizes)),

@@ -2,6 +2,7 @@
 
 use std::collections::BTreeSet;
 
+use super::single::{self, Single};
 use super::template::{self, Number};
 use crate::diagnostic::did_you_mean;
 use crate::run::{RunError, Task};
@@ -42,8 +43,11 @@ pub(super) struct Entry<'a> {
 /// One task.
 #[derive(Debug, PartialEq, Eq)]
 pub(super) struct Row {
+    /// 0 if it has none.
     pub(super) interval_ns: u64,
     pub(super) priority: u32,
+    /// What starts it at its edges.
+    pub(super) single: Option<Single>,
     /// Number of its first program.
     pub(super) first: usize,
     /// How many programs it has.
@@ -72,8 +76,9 @@ impl<'a> TaskTable<'a> {
             let count = table.programs.len() + 1 - first;
             // One that runs nothing would have no last program.
             if count > 0 {
+                let single = task.single.as_deref().map(Single::of);
                 let (interval_ns, priority) = (task.interval_ns, task.priority);
-                table.rows.push(Row { interval_ns, priority, first, count });
+                table.rows.push(Row { interval_ns, priority, single, first, count });
             }
         }
         if table.rows.is_empty() { Err(RunError::NoTasks) } else { Ok(table) }
@@ -115,6 +120,28 @@ impl<'a> TaskTable<'a> {
         (self.line == Line::Named).then_some(template::LINE)
     }
 
+    /// True if tasks have SINGLE.
+    pub(super) fn has_singles(&self) -> bool {
+        self.rows.iter().any(|row| row.single.is_some())
+    }
+
+    /// True if events start them.
+    pub(super) fn has_events(&self) -> bool {
+        self.rows.iter().any(|row| matches!(row.single, Some(Single::Input(_))))
+    }
+
+    /// A template with its lines for tasks with SINGLE.
+    pub(super) fn with_singles(&self, template: &str) -> String {
+        let rows = self.rows.iter().enumerate();
+        let singles: Vec<_> = rows.filter_map(|(at, row)| Some((at + 1, row.single.as_ref()?))).collect();
+        single::fill(template, &singles)
+    }
+
+    /// Number of the row that stands for programs without a task; 0 if there are none.
+    fn background(&self) -> usize {
+        self.rows.iter().position(|row| row.interval_ns == ALWAYS_NS).map_or(0, |at| at + 1)
+    }
+
     /// What the scheduler's names stand for.
     pub(super) fn names(&self) -> Vec<(&'static str, String)> {
         let list = |value: &dyn Fn(&Row) -> u64| {
@@ -129,6 +156,7 @@ impl<'a> TaskTable<'a> {
             ("SDSP_PRIORITIES", list(&|row| u64::from(row.priority))),
             ("SDSP_FIRSTS", list(&|row| row.first as u64)),
             ("SDSP_FINALS", list(&|row| (row.first + row.count) as u64 - 1)),
+            ("SDSP_BACKGROUND", self.background().to_string()),
         ]
     }
 }
@@ -147,7 +175,7 @@ fn check(tasks: &[Task]) -> Result<(), RunError> {
         if !names.insert(task.name.to_ascii_uppercase()) {
             return Err(RunError::DuplicateTask(task.name.clone()));
         }
-        if task.interval_ns == 0 || task.single.is_some() {
+        if task.interval_ns == 0 && task.single.is_none() {
             return Err(RunError::ZeroInterval(task.name.clone()));
         }
     }

@@ -2,7 +2,8 @@
 //!
 //! Each is program text that can be read and parsed as it is. A line with `(*$ltime` in it is for
 //! projects that use LTIME only, since older systems do not know that type; one with `(*$instances`
-//! for programs of which a configuration has several.
+//! for programs of which a configuration has several. A line with `(*$each` is repeated for each task with
+//! SINGLE; one with `(*$input`, `(*$external` or `(*$event` for those that are read or started in that way.
 
 use crate::dialect::Dialect;
 use crate::syntax::lexer::tokenize_in;
@@ -12,6 +13,8 @@ use crate::syntax::tokenize;
 pub(super) const LINE: &str = include_str!("../../iec/shim/line.st");
 pub(super) const GLOBALS: &str = include_str!("../../iec/shim/globals.st");
 pub(super) const SCHEDULER: &str = include_str!("../../iec/shim/scheduler.st");
+pub(super) const EVENT_SCHEDULER: &str = include_str!("../../iec/shim/event_scheduler.st");
+pub(super) const FOLLOW: &str = include_str!("../../iec/shim/follow.st");
 pub(super) const EXECUTION_CONTROLLER: &str = include_str!("../../iec/shim/execution_controller.st");
 pub(super) const CHART_CONTROLLER: &str = include_str!("../../iec/shim/chart_controller.st");
 pub(super) const ACTION_CONTROL: &str = include_str!("../../iec/shim/action_control.st");
@@ -55,14 +58,33 @@ pub(super) fn lines_for(template: &str, wanted: &[Only]) -> String {
     for line in template.lines() {
         match line.split_once("(*$").and_then(|(before, about)| Some((before, Only::named(about)?, about))) {
             None => text.push_str(line),
-            Some((before, only, about)) if wanted.contains(&only) => {
-                let about = about.trim_start_matches(|one: char| one.is_ascii_alphabetic());
-                let comment = if about == "*)" { String::new() } else { format!("(*{about}") };
-                text.push_str(format!("{before}{comment}").trim_end());
-            }
+            Some((before, only, about)) if wanted.contains(&only) => text.push_str(&unmarked(before, about)),
             Some(_) => continue,
         }
         text.push('\n');
+    }
+    text
+}
+
+/// A line without its mark; what the mark says about it stays.
+fn unmarked(before: &str, mark: &str) -> String {
+    let about = mark.trim_start_matches(|one: char| one.is_ascii_alphabetic());
+    let comment = if about == "*)" { String::new() } else { format!("(*{about}") };
+    format!("{before}{comment}").trim_end().to_owned()
+}
+
+/// The template with the lines marked `kind` once for each of `every`, whose names are filled in.
+pub(super) fn repeat(template: &str, kind: &str, every: &[Vec<(&str, String)>]) -> String {
+    let mark = format!("(*${kind}");
+    let mut text = String::with_capacity(template.len());
+    for line in template.lines() {
+        let Some((before, rest)) = line.split_once(&mark).filter(|(_, rest)| rest.starts_with([' ', '*'])) else {
+            text = text + line + "\n";
+            continue;
+        };
+        for names in every {
+            text = text + &fill(&unmarked(before, rest), names) + "\n";
+        }
     }
     text
 }
@@ -193,10 +215,12 @@ mod tests {
     use crate::syntax::parser::parse_source;
     use crate::syntax::{FileId, parse};
 
-    const ALL: [(&str, &str); 13] = [
+    const ALL: [(&str, &str); 15] = [
         ("line", LINE),
         ("globals", GLOBALS),
         ("scheduler", SCHEDULER),
+        ("event_scheduler", EVENT_SCHEDULER),
+        ("follow", FOLLOW),
         ("execution_controller", EXECUTION_CONTROLLER),
         ("chart_controller", CHART_CONTROLLER),
         ("action_control", ACTION_CONTROL),
@@ -240,6 +264,17 @@ mod tests {
         let template = "a\nb (*$ltime*)\nc (*$ltime about it *)\n";
         assert_eq!(lines_for(template, &[]), "a\n");
         assert_eq!(lines_for(template, &[Only::LongTime]), "a\nb\nc (* about it *)\n");
+    }
+
+    #[test]
+    fn lines_are_repeated() {
+        let names = |name: &str| vec![("X", name.to_owned())];
+        let template = "a := X;\nX : BOOL; (*$each about X *)\nX; (*$eachof*)\n";
+        assert_eq!(
+            repeat(template, "each", &[names("b"), names("c")]),
+            "a := X;\nb : BOOL; (* about X *)\nc : BOOL; (* about X *)\nX; (*$eachof*)\n"
+        );
+        assert_eq!(repeat(template, "each", &[]), "a := X;\nX; (*$eachof*)\n");
     }
 
     #[test]

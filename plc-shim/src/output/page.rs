@@ -39,11 +39,22 @@ impl<'t> Page<'t> {
 
     /// The words of all comments in a range, each comment from a line of its own; empty without any.
     pub(crate) fn remarks(&self, within: Range<u32>) -> String {
-        let first = self.tokens.partition_point(|token| token.start < within.start);
-        let tokens = self.tokens.get(first..).unwrap_or(&[]).iter().take_while(|token| token.start < within.end);
-        let comments = tokens.filter(|token| matches!(token.kind, TokenKind::BlockComment | TokenKind::LineComment));
+        let is_comment = |token: &&Token| matches!(token.kind, TokenKind::BlockComment | TokenKind::LineComment);
+        let comments = self.within(within).filter(is_comment);
         let words: Vec<String> = comments.map(|token| words(self.slice(token.start..token.end))).collect();
         words.join("\n").trim().to_owned()
+    }
+
+    /// All pragmas in a range.
+    pub(crate) fn pragmas(&self, within: Range<u32>) -> Vec<&'t str> {
+        let pragmas = self.within(within).filter(|token| token.kind == TokenKind::Pragma);
+        pragmas.map(|token| self.slice(token.start..token.end)).collect()
+    }
+
+    fn within(&self, range: Range<u32>) -> impl Iterator<Item = &Token> {
+        let first = self.tokens.partition_point(|token| token.start < range.start);
+        let tokens = self.tokens.get(first..).unwrap_or(&[]).iter();
+        tokens.take_while(move |token| token.start < range.end)
     }
 
     /// The first of the words `text` at or behind `from`.

@@ -13,7 +13,7 @@ use super::markup::escaped;
 use super::value::expression;
 use crate::syntax::ast::{Association, ChartStep, Ident, Pou, Transition, TransitionCondition};
 
-/// The body of a unit that is a chart, and the transitions that it refers to; nothing for any other unit.
+/// The body of a unit or action that is a chart, and the transitions that it refers to; nothing for any other.
 pub(super) fn parts(pou: &Pou, page: &Page<'_>) -> Written<(String, String)> {
     if pou.chart.is_empty() {
         return Ok((String::new(), String::new()));
@@ -195,8 +195,7 @@ impl<'a> Drawing<'a> {
             };
             Some(format!("<transition name=\"{}\">\n{body}</transition>\n", escaped(&name.text)))
         };
-        let xml: String = self.transitions.iter().filter_map(transition).collect();
-        if xml.is_empty() { xml } else { format!("<transitions>\n{xml}</transitions>\n") }
+        self.transitions.iter().filter_map(transition).collect()
     }
 
     /// The text between the colon of a transition and its end.

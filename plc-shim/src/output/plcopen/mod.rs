@@ -7,12 +7,14 @@
 //! | [`body`] | statements and instructions |
 //! | [`chart`], [`chart_element`] | Sequential Function Charts, drawn |
 //! | [`variables`], [`types`], [`value`] | declarations |
+//! | [`about`] | what comments and pragmas say of a declaration |
 //! | [`markup`] | pieces of XML |
 //!
 //! The namespace is that of version 2.0, which CODESYS writes; what is used of it is the same in 2.01. Declarations are
 //! elements, what is said of them in comments is their documentation. What the schema lacks is an addition of CODESYS,
 //! in the form in which it exports it, or it is refused.
 
+pub(crate) mod about;
 pub(crate) mod body;
 mod chart;
 mod chart_element;
@@ -27,6 +29,7 @@ pub(crate) mod variables;
 use std::collections::BTreeSet;
 use std::path::Path;
 
+use self::about::About;
 use self::configuration::Cycle;
 use self::markup::{additions, data};
 use self::types::DataType;
@@ -89,30 +92,33 @@ impl Document {
     fn file(&mut self, file: &SourceFile, unit: &CompilationUnit) {
         let page = Page::of(file);
         let mut from = 0;
-        for declaration in &unit.declarations {
+        let starts = unit.declarations.iter().skip(1).map(|next| place(next).map_or(u32::MAX, |(start, _)| start));
+        let starts = starts.chain(std::iter::once(u32::MAX));
+        for (declaration, next) in unit.declarations.iter().zip(starts) {
             let (start, end) = place(declaration).unwrap_or((from, from));
-            let words = page.remarks(from..start);
-            if let Err(refused) = self.declaration(declaration, &words, file, &page) {
+            let until = page.line_end(end).min(next).max(end);
+            let about = About::of(&page, from..start, end..until);
+            if let Err(refused) = self.declaration(declaration, about, file, &page) {
                 self.refused.push(refused);
             }
-            from = end.max(from);
+            from = until.max(from);
         }
     }
 
     fn declaration(
         &mut self,
         declaration: &Declaration,
-        words: &str,
+        about: About,
         file: &SourceFile,
         page: &Page<'_>,
     ) -> Written<()> {
         match declaration {
-            Declaration::Type(named) => match types::data_type(named, words, page)? {
+            Declaration::Type(named) => match types::data_type(named, about, page)? {
                 DataType::Standard(xml) => self.types += &xml,
                 DataType::Addition(xml) => self.added += &xml,
             },
-            Declaration::Pou(pou) => self.pou(pou, words, page)?,
-            Declaration::Globals(section) => self.globals(section, words, file, page)?,
+            Declaration::Pou(pou) => self.pou(pou, about, page)?,
+            Declaration::Globals(section) => self.globals(section, &about, file, page)?,
             Declaration::Namespace(namespace) => self.namespace(namespace, page)?,
             Declaration::Using(names) => {
                 let Some(first) = names.first() else { return Ok(()) };
@@ -123,17 +129,17 @@ impl Document {
         Ok(())
     }
 
-    fn pou(&mut self, pou: &Pou, words: &str, page: &Page<'_>) -> Written<()> {
+    fn pou(&mut self, pou: &Pou, about: About, page: &Page<'_>) -> Written<()> {
         if pou.kind == PouKind::Interface {
             self.added += &object::interface(pou, page)?;
         } else {
-            self.units += &unit::unit(pou, words, page)?;
+            self.units += &unit::unit(pou, about, page)?;
         }
         Ok(())
     }
 
     /// CODESYS has global variables in lists, each with a name: here that of the file.
-    fn globals(&mut self, section: &Section, words: &str, file: &SourceFile, page: &Page<'_>) -> Written<()> {
+    fn globals(&mut self, section: &Section, about: &About, file: &SourceFile, page: &Page<'_>) -> Written<()> {
         let stem =
             Path::new(file.name()).file_stem().map_or_else(String::new, |stem| stem.to_string_lossy().into_owned());
         let plain = |one: char| if one.is_ascii_alphanumeric() { one } else { '_' };
@@ -143,11 +149,11 @@ impl Document {
         let mut names = std::iter::once(first.clone()).chain(others);
         let name = names.find(|name| !self.taken.contains(&name.to_ascii_uppercase())).unwrap_or(first);
         self.taken.insert(name.to_ascii_uppercase());
-        self.list(&name, section, words, page)
+        self.list(&name, section, about, page)
     }
 
-    fn list(&mut self, name: &str, section: &Section, words: &str, page: &Page<'_>) -> Written<()> {
-        self.added += &data("globalvars", &variables::section(section, Some(name), words, page)?);
+    fn list(&mut self, name: &str, section: &Section, about: &About, page: &Page<'_>) -> Written<()> {
+        self.added += &data("globalvars", &variables::section(section, Some(name), about, page)?);
         Ok(())
     }
 
@@ -155,7 +161,7 @@ impl Document {
     fn namespace(&mut self, namespace: &Namespace, page: &Page<'_>) -> Written<()> {
         match (namespace.kind, namespace.declarations.as_slice()) {
             (NamespaceKind::Open, [Declaration::Globals(section)]) => {
-                self.list(&namespace.name.text, section, "", page)
+                self.list(&namespace.name.text, section, &About::default(), page)
             }
             _ => Err(Refused::plcopen(namespace.name.span, "a NAMESPACE")),
         }

@@ -9,9 +9,9 @@
 
 use super::super::page::Page;
 use super::super::{Refused, Written};
-use super::markup::{additions, data, documentation, escaped};
+use super::about::About;
+use super::markup::{data, escaped};
 use super::value::{expression, initial};
-use super::variables;
 use crate::ir::ElementaryType;
 use crate::syntax::ast::{
     Dimension, EnumValue, Field, Ident, ReferenceKind, Subrange, TypeDeclaration, TypeSpec, TypeSpecKind,
@@ -30,11 +30,12 @@ pub(crate) enum DataType {
     Addition(String),
 }
 
-/// One type of a `TYPE` block; `words` are said of it.
-pub(crate) fn data_type(declared: &TypeDeclaration, words: &str, page: &Page<'_>) -> Written<DataType> {
+/// One type of a `TYPE` block.
+pub(crate) fn data_type(declared: &TypeDeclaration, about: About, page: &Page<'_>) -> Written<DataType> {
     let name = escaped(&declared.name.text);
     if let TypeSpecKind::Union(fields) = &declared.spec.kind {
-        let xml = format!("<union name=\"{name}\">\n{}</union>\n", members(fields, &declared.spec, page)?);
+        let (members, about) = (members(fields, &declared.spec, page)?, about.xml(""));
+        let xml = format!("<union name=\"{name}\">\n{members}{about}</union>\n");
         return Ok(DataType::Addition(data("union", &xml)));
     }
     let base = declared.extends.iter().map(|base| {
@@ -46,8 +47,7 @@ pub(crate) fn data_type(declared: &TypeDeclaration, words: &str, page: &Page<'_>
     let is_enumeration = matches!(declared.spec.kind, TypeSpecKind::Enumeration(..));
     let inner =
         if is_enumeration { page.remarks(declared.spec.span.start..declared.spec.span.end) } else { String::new() };
-    let words = [words, &inner].join("\n");
-    let about = format!("{}{}", additions(&base.collect::<String>()), documentation(words.trim()));
+    let about = about.with_words(&inner).xml(&base.collect::<String>());
     Ok(DataType::Standard(format!(
         "<dataType name=\"{name}\">\n<baseType>{ty}</baseType>\n{initial}{about}</dataType>\n"
     )))
@@ -136,11 +136,11 @@ fn members(fields: &[Field], spec: &TypeSpec, page: &Page<'_>) -> Written {
         let end = field.initial.as_ref().map_or(field.spec.span.end, |initial| initial.span.end);
         let last = index + 1 == fields.len();
         let until = if last { spec.span.end } else { page.line_end(end) };
-        let words = variables::words(page, from..field.name.span.start, end..until);
+        let about = About::of(page, from..field.name.span.start, end..until);
         from = until;
         let (ty, initial) = (type_of(&field.spec, page)?, initial(field.initial.as_ref(), page)?);
-        let (name, words) = (escaped(&field.name.text), documentation(&words));
-        Ok(format!("<variable name=\"{name}\"><type>{ty}</type>{initial}{words}</variable>\n"))
+        let (name, about) = (escaped(&field.name.text), about.xml(""));
+        Ok(format!("<variable name=\"{name}\"><type>{ty}</type>{initial}{about}</variable>\n"))
     };
     fields.iter().enumerate().map(member).collect()
 }

@@ -2,13 +2,14 @@
 
 use super::super::page::Page;
 use super::super::{Refused, Written};
-use super::markup::{additions, documentation, escaped};
+use super::about::About;
+use super::markup::{additions, escaped};
 use super::types::type_of;
 use super::{body, chart, object, variables};
 use crate::syntax::ast::{Member, MemberKind, Pou, PouKind};
 
-/// `<pou>`; `words` are said of it.
-pub(crate) fn unit(pou: &Pou, words: &str, page: &Page<'_>) -> Written {
+/// `<pou>`
+pub(crate) fn unit(pou: &Pou, about: About, page: &Page<'_>) -> Written {
     let kind = match pou.kind {
         PouKind::Program => "program",
         PouKind::Function => "function",
@@ -21,17 +22,18 @@ pub(crate) fn unit(pou: &Pou, words: &str, page: &Page<'_>) -> Written {
     if let Some(using) = pou.object.using.first() {
         return Err(Refused::plcopen(using.span, "USING"));
     }
-    let heritage = object::heritage(&pou.object) + &object::modifiers(&pou.object.modifiers);
-    let words = [words, &body::words_of_head(pou, page)].join("\n");
+    let heritage = object::heritage(&pou.object) + &object::modifiers(&pou.object.modifiers) + about.added();
+    let about = about.with_words(&body::words_of_head(pou, page));
     let (steps, transitions) = chart::parts(pou, page)?;
     let body = if steps.is_empty() { body::of_unit(pou, page) } else { steps };
+    let (actions, others) = actions(pou, page)?;
+    let transitions = list("transitions", &[transitions, others].concat());
     Ok(format!(
-        "<pou name=\"{}\" pouType=\"{kind}\">\n{}{}{transitions}{body}{}{}</pou>\n",
+        "<pou name=\"{}\" pouType=\"{kind}\">\n{}{actions}{transitions}{body}{}{}</pou>\n",
         escaped(&pou.name.text),
         interface(pou, &heritage, page)?,
-        actions(pou, page)?,
         additions(&object::members(pou, page)?),
-        documentation(words.trim()),
+        about.documentation(),
     ))
 }
 
@@ -45,19 +47,23 @@ pub(super) fn interface(pou: &Pou, added: &str, page: &Page<'_>) -> Written {
     Ok(format!("<interface>\n{result}{sections}{}</interface>\n", additions(added)))
 }
 
-fn actions(pou: &Pou, page: &Page<'_>) -> Written {
+/// `<actions>`, and the transitions to which those refer that are charts.
+fn actions(pou: &Pou, page: &Page<'_>) -> Written<(String, String)> {
     let action = |member: &Member| {
         let action = &member.pou;
         if let Some(section) = action.sections.first() {
             return Err(Refused::plcopen(section.span, "variables of an action"));
         }
-        if !action.chart.is_empty() {
-            return Err(Refused::plcopen(action.name.span, "a chart in an action"));
-        }
-        let body = body::of_action(action, page);
-        Ok(format!("<action name=\"{}\">\n{body}</action>\n", escaped(&action.name.text)))
+        let (steps, transitions) = chart::parts(action, page)?;
+        let body = if steps.is_empty() { body::of_action(action, page) } else { steps };
+        Ok((format!("<action name=\"{}\">\n{body}</action>\n", escaped(&action.name.text)), transitions))
     };
     let actions = pou.object.members.iter().filter(|member| member.kind == MemberKind::Action);
-    let xml = actions.map(action).collect::<Written<String>>()?;
-    Ok(if xml.is_empty() { xml } else { format!("<actions>\n{xml}</actions>\n") })
+    let (xml, transitions): (Vec<_>, Vec<_>) = actions.map(action).collect::<Written<Vec<_>>>()?.into_iter().unzip();
+    Ok((list("actions", &xml.concat()), transitions.concat()))
+}
+
+/// A list of elements; nothing without any.
+fn list(element: &str, inner: &str) -> String {
+    if inner.is_empty() { String::new() } else { format!("<{element}>\n{inner}</{element}>\n") }
 }

@@ -85,20 +85,6 @@ fn the_scheduler_is_part_of_the_configuration_and_comes_out_again() {
     assert_eq!(remove(&again).expect("it is marked").files[0].text.as_deref(), Some(TEXT));
 }
 
-#[test]
-fn tasks_that_nothing_stands_for_are_refused() {
-    let refused = |task: &str| {
-        let text = format!(
-            "PROGRAM P ; END_PROGRAM CONFIGURATION C VAR_GLOBAL g : BOOL; END_VAR
-            RESOURCE R ON X {task} PROGRAM p WITH t : P; END_RESOURCE END_CONFIGURATION"
-        );
-        let input = Input::from_text("c.st", SourceKind::Text, text);
-        instrument(&[input], &Options::default()).expect_err("refused").to_string()
-    };
-    insta::assert_snapshot!(refused("TASK t (SINGLE := g, PRIORITY := 1);"), @"c.st:2:37: error[L0501]: a task with SINGLE is not instrumented yet");
-    insta::assert_snapshot!(refused("TASK t (PRIORITY := 1);"), @"c.st:2:34: error[L0501]: a task without INTERVAL is not instrumented yet");
-}
-
 /// Intervals and priorities are constant expressions (2nd ed. 2.7.2).
 #[test]
 fn intervals_may_be_constant_expressions() {

@@ -23,7 +23,7 @@ pub(crate) fn application(text: &str, tasks: &[Task]) -> Application {
 /// Where programs run on the PLC.
 #[derive(Debug, Clone, Copy)]
 pub(crate) enum Tasks {
-    /// In the tasks that they came from, at those tasks' own pace.
+    /// In the tasks that they came from, at those tasks' own pace; in place of edges at a pace, too.
     Kept,
     /// In one task of lower priority, in their order.
     Moved,
@@ -33,7 +33,10 @@ pub(crate) enum Tasks {
 pub(crate) fn own_plan(tasks: &[Task], form: Tasks) -> TaskPlan {
     let mut plan = vec![task("sdsp", 1, 0, &["SDSP_Scheduler"])];
     match form {
-        Tasks::Kept => plan.extend(tasks.iter().map(|each| Task { priority: each.priority + 1, ..each.clone() })),
+        Tasks::Kept => plan.extend(tasks.iter().map(|each| {
+            let interval_ns = if each.interval_ns == 0 { MS } else { each.interval_ns };
+            Task { priority: each.priority + 1, single: None, interval_ns, ..each.clone() }
+        })),
         Tasks::Moved => {
             let mut order: Vec<&Task> = tasks.iter().collect();
             order.sort_by_key(|each| each.priority);

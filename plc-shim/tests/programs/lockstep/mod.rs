@@ -12,6 +12,8 @@ mod plcopen_motion;
 mod plcopen_xml;
 mod ported;
 mod random;
+mod random_single;
 mod rewriting;
 mod scl;
 mod scl_port;
+mod single;

@@ -133,6 +133,21 @@ fn tasks_of_the_project_get_a_scheduler() {
     assert!(application.programs().count() >= 4);
 }
 
+/// CODESYS keeps declarations as text beside their elements if it is told to, and reads that text.
+#[test]
+fn declarations_as_plain_text_are_taken_out_and_come_back() {
+    let plain = "<addData><data name=\"http://www.3s-software.com/plcopenxml/interfaceasplaintext\" \
+                 handleUnknown=\"implementation\"><InterfaceAsPlainText><xhtml xmlns=\"http://www.w3.org/1999/xhtml\">\
+                 PROGRAM Text\nVAR\n  delay : TON; // -- &lt;so&gt; --\nEND_VAR</xhtml></InterfaceAsPlainText></data></addData>";
+    let given = line().replacen("</pou>", &format!("{plain}</pou>"), 1);
+    for target in [Target::Iec, Target::Codesys] {
+        let again = text(&round_trip(&given, &options(target)));
+        assert!(again.contains("<addData><!--@sdsp cut <data name="), "{again}");
+        let shown = Application::from_inputs([read(&again)]).unwrap_or_else(|found| panic!("{found}\n{again}"));
+        assert!(shown.variable("Text.SDSP_Granted").is_ok());
+    }
+}
+
 /// Programs of which the configuration has several instances, in every language and as a chart.
 fn with_twins() -> String {
     let fast = "<task name=\"Fast\" priority=\"1\" interval=\"PT0.01S\">";

@@ -6,7 +6,7 @@ use onescan_plc_shim::input::kind::{FileKind, SourceKind};
 use onescan_plc_shim::instrument::{File, Options, Project, Target, instrument, remove};
 use onescan_plc_shim::{Application, Dialect, Input, Severity, SoftPlc, Task, TaskPlan};
 
-use super::corpus::{Case, cases, input};
+use super::corpus::{cases, input};
 use super::driver::{Driver, Tasks, own_plan, scan, state, write};
 use crate::rig::{MS, task};
 
@@ -51,21 +51,29 @@ fn application(project: &Project) -> Application {
 }
 
 /// The original on its own tasks, and its port under grants: the same after every step.
-fn assert_equal(case: &Case, form: Tasks) -> Result<(), String> {
-    let plain = Application::from_inputs([given(case.text)]).unwrap_or_else(|found| panic!("{}: {found}", case.name));
-    let mut plain = SoftPlc::new(&plain, &TaskPlan::new(case.tasks.clone())).expect("the plan suits");
-    let application = application(&ported(case.text, &options(&case.tasks))?);
-    let mut driver = Driver::joined(&application, &own_plan(&case.tasks, form));
-    for step in 0..120 {
-        for (index, path) in case.inputs.iter().enumerate() {
+///
+/// # Errors
+/// It has no form.
+pub(super) fn assert_equal(
+    text: &str,
+    tasks: &[Task],
+    inputs: &[&str],
+    times: &[u64],
+    form: Tasks,
+) -> Result<(), String> {
+    let plain = Application::from_inputs([given(text)]).unwrap_or_else(|found| panic!("{found}\n{text}"));
+    let mut plain = SoftPlc::new(&plain, &TaskPlan::new(tasks.to_vec())).expect("the plan suits");
+    let application = application(&ported(text, &options(tasks))?);
+    let mut driver = Driver::joined(&application, &own_plan(tasks, form));
+    for (step, t_v) in (0..).zip(times) {
+        for (index, path) in inputs.iter().enumerate() {
             write(&mut plain, path, input(index, step));
             driver.rig.set(path, input(index, step));
         }
-        let t_v = (step + 1) * 5 * MS;
-        scan(&mut plain, t_v);
-        driver.step(t_v);
+        scan(&mut plain, *t_v);
+        driver.step(*t_v);
         driver.cycles((step % 4) as u32);
-        assert_eq!(state(&plain), state(&driver.rig.plc), "{}: {form:?}, t_v = {t_v}", case.name);
+        assert_eq!(state(&plain), state(&driver.rig.plc), "{form:?}, t_v = {t_v}\n{text}");
     }
     Ok(())
 }
@@ -73,8 +81,10 @@ fn assert_equal(case: &Case, form: Tasks) -> Result<(), String> {
 #[test]
 fn every_program_is_the_same_in_plcopen_xml() {
     let mut outcomes = Vec::new();
+    let times: Vec<u64> = (1..=120).map(|step| step * 5 * MS).collect();
     for case in cases() {
-        let outcome = [Tasks::Kept, Tasks::Moved].into_iter().try_for_each(|form| assert_equal(&case, form));
+        let mut forms = [Tasks::Kept, Tasks::Moved].into_iter();
+        let outcome = forms.try_for_each(|form| assert_equal(case.text, &case.tasks, case.inputs, &times, form));
         let outcome = outcome.err().unwrap_or_else(|| "the same".to_owned());
         outcomes.push(format!("{}: {outcome}", case.name));
     }

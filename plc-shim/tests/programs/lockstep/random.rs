@@ -4,7 +4,8 @@ use proptest::prelude::*;
 
 use super::driver::Tasks;
 use super::equivalence::assert_equal;
-use crate::rig::task;
+use super::ported;
+use crate::rig::{MS, task};
 
 /// One statement of program `Main`, with instance and number `n`.
 fn statement(kind: u32, n: usize, ms: u32) -> String {
@@ -66,5 +67,22 @@ proptest! {
         for form in [Tasks::Kept, Tasks::Moved] {
             assert_equal("random", &text, &tasks, &inputs, &times, form);
         }
+    }
+
+    /// A TIME of CODESYS counts milliseconds.
+    #[test]
+    fn random_programs_are_the_same_in_plcopen_xml(
+        first in statements(),
+        second in statements(),
+        (slow, fast) in (1..5_u64, 1..4_u64),
+        lengths in proptest::collection::vec(1..30_u64, 20..40),
+    ) {
+        let globals = "VAR_GLOBAL shared : DINT; END_VAR\n";
+        let text = format!("{globals}{}{}", program("First", &first), program("Second", &second));
+        let tasks = [task("slow", slow * 5, 1, &["First"]), task("fast", fast * 3, 0, &["Second"])];
+        let times: Vec<u64> = lengths.iter().scan(0, |now, length| { *now += length * MS; Some(*now) }).collect();
+        let inputs = ["First.i", "First.j", "Second.i", "Second.j"];
+        let same = ported::assert_equal(&text, &tasks, &inputs, &times, Tasks::Moved);
+        prop_assert_eq!(same, Ok(()));
     }
 }
