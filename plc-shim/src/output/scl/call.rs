@@ -141,7 +141,7 @@ impl<'a> Body<'_, 'a> {
                     self.edits.insert(end, ")".repeat(nested));
                 }
             }
-            Function::Power => self.power(call, &values),
+            Function::Operator(operator) => self.operator(call, operator, &values),
             Function::Missing(help) => {
                 self.refuse(name.span, &format!("function `{}`", name.text), help);
             }
@@ -149,10 +149,12 @@ impl<'a> Body<'_, 'a> {
     }
 
     /// `EXPT(a, b)` becomes `((a) ** (b))`.
-    fn power(&mut self, call: &Call, values: &[&Expr]) {
-        let ([base, exponent], Some(end)) = (values, self.closing(call)) else { return };
-        self.edits.replace(call.callee.span.start..base.span.start, "((");
-        self.edits.replace(base.span.end..exponent.span.start, ") ** (");
+    fn operator(&mut self, call: &Call, operator: &str, values: &[&Expr]) {
+        let (Some(first), Some(end)) = (values.first(), self.closing(call)) else { return };
+        self.edits.replace(call.callee.span.start..first.span.start, "((");
+        for (left, right) in values.iter().zip(values.iter().skip(1)) {
+            self.edits.replace(left.span.end..right.span.start, format!(") {operator} ("));
+        }
         self.edits.insert(end, ")");
     }
 

@@ -230,3 +230,64 @@ fn what_cannot_be_carried_is_told() {
         ORGANIZATION_BLOCK OB1\nBEGIN\nEND_ORGANIZATION_BLOCK\n";
     insta::assert_snapshot!("scl_told", round_trip(&given(text), &options()).warnings.to_string());
 }
+
+/// PLCopen's axes in SCL: what is written there moves as in text, and no technology object is touched.
+#[test]
+fn axes_of_plcopen_move_on_virtual_time() {
+    let text = r#"DATA_BLOCK "Line"
+   STRUCT
+      X : AXIS_REF;
+      go : Bool;
+      position : LReal;
+      done : Bool;
+   END_STRUCT;
+BEGIN
+   X.MaxVelocity := 2.0;
+END_DATA_BLOCK
+FUNCTION_BLOCK "Station"
+   VAR_IN_OUT
+      Axis : AXIS_REF;
+   END_VAR
+   VAR
+      power {InstructionName := 'MC_POWER'; LibVersion := '3.0'} : MC_Power;
+      move : MC_MoveAbsolute;
+      actual : MC_ReadActualPosition;
+   END_VAR
+BEGIN
+	#power(Axis := #Axis, Enable := TRUE);
+	#move(Axis := #Axis, Execute := "Line".go, Position := 1.5, Velocity := 1.0, Acceleration := 10.0);
+	#actual(Axis := #Axis, Enable := TRUE);
+	"Line".position := #actual.Position;
+	"Line".done := #move.Done;
+END_FUNCTION_BLOCK
+DATA_BLOCK "Station_DB"
+"Station"
+BEGIN
+END_DATA_BLOCK
+ORGANIZATION_BLOCK "Main"
+BEGIN
+	"Station_DB"(Axis := "Line".X);
+END_ORGANIZATION_BLOCK
+"#;
+    let tasks = [task("OB1", 10, 1, &["Main"])];
+    let project = round_trip(&given(text), &options());
+    assert_eq!(project.warnings.to_string(), "");
+    let changed = project.files[0].text.as_deref().expect("a text");
+    assert!(changed.contains("X : \"SDSP_AXIS_REF\"(*@sdsp was AXIS_REF*);"), "{changed}");
+    assert!(
+        changed.contains(": \"SDSP_MC_Power\"(*@sdsp was MC_Power*);") && !changed.contains("LibVersion := '3.0'} :")
+    );
+    let plain = Application::from_inputs(given(text)).unwrap_or_else(|found| panic!("{found}"));
+    let mut plain = SoftPlc::new(&plain, &TaskPlan::new(tasks.to_vec())).expect("the plan suits");
+    let mut driver = Driver::joined_in("SDSP.", &compiled(&project), &own_plan(&tasks, Tasks::Moved));
+    for step in 1..250 {
+        let (now, go) = (step * 10 * MS, i64::from(step > 5));
+        write(&mut plain, "Line.go", go);
+        driver.rig.set("Line.go", go);
+        scan(&mut plain, now);
+        driver.step(now);
+        let held = |plc: &SoftPlc| ["Line.position", "Line.done"].map(|path| plc.read(path).expect("it is there"));
+        assert_eq!(held(&plain), held(&driver.rig.plc), "t_v = {now}");
+    }
+    assert_eq!(plain.read("Line.done").expect("it is there"), "TRUE");
+}
