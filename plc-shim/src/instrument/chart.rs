@@ -12,13 +12,14 @@
 //! One more network is a step alone, which is always active; its action `SDSP_Control` does what the PLC's own
 //! action control did, and runs what that ran, in the order of the soft PLC. All of it is text of the standard. CODESYS
 //! draws a chart as one network: there every step has that action.
-//! An action that the user calls by its name, or whose statements cannot be moved, stays and is called. A function
+//! A chart that is the body of an action has such a step and such an action of its own; the action itself stays and is
+//! called. An action that the user calls by its name, or whose statements cannot be moved, stays and is called. A function
 //! block goes on when it is called, which only a program that runs does: it needs no execution signal.
 
 use std::collections::BTreeMap;
 
 use super::chart_action::{self, Moved, Text};
-use super::chart_plan::{CONTROL, Plan, Reads, controlled_by, elapsed};
+use super::chart_plan::{CONTROL, Plan, Reads, charts, controlled_by, elapsed, of_chart};
 use super::chart_script::Script;
 use super::edits::Edits;
 use super::marks;
@@ -30,9 +31,34 @@ use crate::syntax::Span;
 use crate::syntax::ast::{Ident, Pou, PouKind, Transition, TransitionCondition};
 use crate::syntax::token::{Keyword, Punctuation};
 
-/// What of a chart cannot be put on virtual time.
+/// What of a unit's charts cannot be put on virtual time.
 pub(super) fn findings(pou: &Pou) -> Vec<Diagnostic> {
     let reads = Reads::of(pou);
+    let restarting = charts(pou).flat_map(|chart| restarting(chart, &reads));
+    restarting
+        .chain(charts(pou).filter(|chart| chart.kind == PouKind::Action).flat_map(|chart| read_outside(pou, chart)))
+        .collect()
+}
+
+/// The time of a step that is read where its chart does not go on has its value from when it did.
+fn read_outside(pou: &Pou, chart: &Pou) -> Vec<Diagnostic> {
+    let of_chart = Reads::of_steps(chart, pou);
+    let controlled: Vec<String> =
+        chart.chart.steps.iter().flat_map(|step| &step.associations).map(|each| each.action.key()).collect();
+    let mut inside = vec![chart.span];
+    let members = pou.object.members.iter().map(|member| &member.pou);
+    inside.extend(members.filter(|member| controlled.contains(&member.name.key())).map(|member| member.span));
+    let is_outside = |span: &Span| !inside.iter().any(|part| part.start <= span.start && span.end <= part.end);
+    let found = of_chart.times.iter().filter(|(_, span)| is_outside(span)).map(|(step, span)| {
+        let message =
+            format!("the time of `{}` is read outside of the chart in action `{}`", step.text, chart.name.text);
+        Diagnostic::error(Code::UnsupportedFeature, *span, message).with_help("read it in an action of that chart")
+    });
+    found.collect()
+}
+
+/// Transitions that enter a step anew whose time is read.
+fn restarting(pou: &Pou, reads: &Reads) -> Vec<Diagnostic> {
     let restarts = |transition: &&Transition| {
         let timed = |step: &&Ident| reads.times.iter().any(|(name, _)| name.key() == step.key());
         transition.from.iter().filter(timed).any(|step| transition.to.iter().any(|to| to.key() == step.key()))
@@ -54,7 +80,9 @@ pub(super) fn control(plan: &Plan<'_>, survey: &Survey<'_>, edits: &mut Edits) {
     writer.steps();
     let moved = writer.actions(survey);
     writer.declarations(&moved);
-    writer.always(&moved, survey.target);
+    for chart in charts(plan.pou) {
+        writer.always(chart, &moved, survey.target);
+    }
 }
 
 struct Writer<'w> {
@@ -64,7 +92,7 @@ struct Writer<'w> {
     edits: &'w mut Edits,
 }
 
-impl Writer<'_> {
+impl<'w> Writer<'w> {
     fn line_start(&self, at: u32) -> u32 {
         marks::line_start(self.plan.file.shown_text(), at)
     }
@@ -79,7 +107,8 @@ impl Writer<'_> {
 
     /// The PLC's own action control has nothing to do.
     fn steps(&mut self) {
-        for association in self.plan.pou.chart.steps.iter().flat_map(|step| &step.associations) {
+        let steps = charts(self.plan.pou).flat_map(|chart| &chart.chart.steps);
+        for association in steps.flat_map(|step| &step.associations) {
             let span = association.span;
             let whole = span.start..self.text.behind(span.end, Punctuation::Semicolon);
             // The action's control reads its time.
@@ -130,30 +159,41 @@ impl Writer<'_> {
         }
     }
 
-    /// The action that is always active, and its step.
-    fn always(&mut self, moved: &BTreeMap<String, Moved>, target: Target) {
-        let statements = self.plan.statements(moved);
+    /// The action of a chart that is always active, and its step.
+    fn always(&mut self, chart: &'w Pou, moved: &BTreeMap<String, Moved>, target: Target) {
+        let statements = self.plan.statements(chart, moved);
         if statements.text.is_empty() {
             return;
         }
+        let control = of_chart(CONTROL, chart);
+        let step = format!("INITIAL_STEP {}: {control}(N); END_STEP", of_chart("SDSP_Always", chart));
         let mut script = Script::default();
         if target == Target::Codesys {
-            for step in &self.plan.pou.chart.steps {
+            for step in &chart.chart.steps {
                 let end = step.span.end.saturating_sub(Keyword::EndStep.text().len() as u32);
-                self.edits.insert(end, marks::inline(&format!("{CONTROL}(N);")));
+                self.edits.insert(end, marks::inline(&format!("{control}(N);")));
             }
+        } else if chart.kind == PouKind::Action {
+            let at = self.line_start(chart.span.end.saturating_sub(Keyword::EndAction.text().len() as u32));
+            self.edits.insert(at, marks::lines(&step, self.line_break));
         } else {
-            script.put(&format!("INITIAL_STEP SDSP_Always: {CONTROL}(N); END_STEP"));
+            script.put(&step);
         }
-        script.put(&format!("ACTION {CONTROL}:"));
+        script.put(&format!("ACTION {control}:"));
         script.join(statements);
         script.put("END_ACTION");
-        let pou = self.plan.pou;
-        let last = if pou.kind == PouKind::Program { Keyword::EndProgram } else { Keyword::EndFunctionBlock };
-        let at = self.line_start(pou.span.end.saturating_sub(last.text().len() as u32));
         // A line with a mark is above them.
         let origins = [None].into_iter().chain(script.origins).collect();
-        self.edits.insert_moved(at, marks::lines(&script.text, self.line_break), origins);
+        self.edits.insert_moved(self.place(), marks::lines(&script.text, self.line_break), origins);
+    }
+
+    /// Where actions go: behind a chart, before statements.
+    fn place(&self) -> u32 {
+        let pou = self.plan.pou;
+        let first = pou.object.members.iter().map(|member| member.pou.span.start).min();
+        let last = if pou.kind == PouKind::Program { Keyword::EndProgram } else { Keyword::EndFunctionBlock };
+        let end = pou.span.end.saturating_sub(last.text().len() as u32);
+        self.line_start(first.filter(|_| pou.chart.is_empty()).unwrap_or(end))
     }
 }
 

@@ -4,7 +4,7 @@
 //! | in an action | where it has moved to |
 //! |---|---|
 //! | `RETURN` | `EXIT` of a loop around the statements that runs once |
-//! | `RETURN` in loops | `SDSP_Left := TRUE; EXIT`, and the same `EXIT` behind each of those loops |
+//! | `RETURN` in loops | `SDSP_Left_.. := TRUE; EXIT`, and the same `EXIT` behind each of those loops |
 
 use std::ops::Range;
 
@@ -14,9 +14,6 @@ use crate::syntax::ast::{Member, MemberKind, Statement, StatementKind};
 use crate::syntax::token::{Keyword, Punctuation, Token, TokenKind};
 use crate::syntax::tokenize;
 
-/// Set by a RETURN that stands in loops.
-pub(super) const LEFT: &str = "SDSP_Left";
-
 /// An action's statements, to be put in at another place.
 #[derive(Debug, PartialEq, Eq)]
 pub(super) struct Moved {
@@ -24,8 +21,8 @@ pub(super) struct Moved {
     pub(super) lines: Vec<(String, Option<u32>)>,
     /// There is nothing but comments.
     pub(super) is_empty: bool,
-    /// Some RETURN stands in a loop.
-    pub(super) sets_left: bool,
+    /// The flag that is set by a RETURN in loops, if there is one. It is the action's own: in it others may be called.
+    pub(super) left: Option<String>,
 }
 
 /// True for an action that can stand elsewhere: lists of instructions and jumps stay what they are.
@@ -85,7 +82,7 @@ impl<'t> Text<'t> {
         let pou = &member.pou;
         let end = pou.span.end.saturating_sub(Keyword::EndAction.text().len() as u32);
         let body = self.behind(pou.name.span.end, Punctuation::Colon)..end;
-        let mut returns = Returns::default();
+        let mut returns = Returns { left: format!("SDSP_Left_{}", pou.name.text), any: false, in_loops: false };
         returns.within(&pou.body, false, edits);
         let given = self.part(&body);
         let edited = edits.take_within(&body).apply(given);
@@ -97,13 +94,13 @@ impl<'t> Text<'t> {
         let origins = lines.lines().iter().map(|line| line.map(|line| line + above));
         let lines = returns.around(&marks::unmarked(&text), origins.collect());
         let is_empty = pou.body.iter().all(|each| matches!(each.kind, StatementKind::Empty));
-        Moved { lines, is_empty, sets_left: returns.in_loops }
+        Moved { lines, is_empty, left: returns.in_loops.then_some(returns.left) }
     }
 }
 
 /// RETURN in statements that stand in a loop which runs once.
-#[derive(Default)]
 struct Returns {
+    left: String,
     any: bool,
     in_loops: bool,
 }
@@ -115,7 +112,7 @@ impl Returns {
         for statement in list {
             let span = statement.span;
             if matches!(statement.kind, StatementKind::Return) {
-                let exit = if in_loop { format!("{LEFT} := TRUE; EXIT") } else { "EXIT".to_owned() };
+                let exit = if in_loop { format!("{} := TRUE; EXIT", self.left) } else { "EXIT".to_owned() };
                 edits.replace(span.start..span.end, exit);
                 self.in_loops |= in_loop;
                 any = true;
@@ -128,7 +125,7 @@ impl Returns {
                 inside |= self.within(part, in_loop || is_loop, edits);
             }
             if inside && is_loop {
-                edits.insert(span.end, format!("; IF {LEFT} THEN EXIT; END_IF"));
+                edits.insert(span.end, format!("; IF {} THEN EXIT; END_IF", self.left));
             }
             any |= inside;
         }
@@ -139,9 +136,8 @@ impl Returns {
     /// The statements without the blank lines above and below them, in the loop that a RETURN leaves.
     fn around(&self, statements: &str, origins: Vec<Option<u32>>) -> Vec<(String, Option<u32>)> {
         let mut lines: Vec<(&str, Option<u32>)> = Vec::new();
-        if self.in_loops {
-            lines.push(("SDSP_Left := FALSE;", None));
-        }
+        let begin = format!("{} := FALSE;", self.left);
+        lines.extend(self.in_loops.then_some((begin.as_str(), None)));
         lines.extend(self.any.then_some(("REPEAT", None)));
         let mut inside: Vec<_> = statements.lines().zip(origins).collect();
         let is_blank = |(line, _): &(&str, _)| line.trim().is_empty();
@@ -182,17 +178,17 @@ mod tests {
         let (moved, _) = moved(text);
         let lines: Vec<_> = moved.lines.iter().map(|(line, _)| line.as_str()).collect();
         let expected = [
-            "SDSP_Left := FALSE;",
+            "SDSP_Left_a := FALSE;",
             "REPEAT",
             "IF x THEN EXIT; END_IF;",
             "FOR i := 1 TO 3 DO",
             "WHILE y DO",
-            "SDSP_Left := TRUE; EXIT;",
-            "END_WHILE; IF SDSP_Left THEN EXIT; END_IF;",
-            "END_FOR; IF SDSP_Left THEN EXIT; END_IF;",
+            "SDSP_Left_a := TRUE; EXIT;",
+            "END_WHILE; IF SDSP_Left_a THEN EXIT; END_IF;",
+            "END_FOR; IF SDSP_Left_a THEN EXIT; END_IF;",
             "UNTIL TRUE END_REPEAT;",
         ];
         assert_eq!(lines, expected);
-        assert!(moved.sets_left);
+        assert_eq!(moved.left.as_deref(), Some("SDSP_Left_a"));
     }
 }

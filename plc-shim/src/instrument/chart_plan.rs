@@ -1,19 +1,20 @@
-//! What takes the place of a chart's own action control: variables, and the action that every step has.
+//! What takes the place of the action control of a unit's charts: variables, and for each chart an action that runs in
+//! every scan of it. A chart may be the body of an action: what is its own has that action's name behind it.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write as _;
 
-use super::chart_action::{LEFT, Moved};
+use super::chart_action::Moved;
 use super::chart_script::{ROUND, Script};
 use super::clock::Form;
 use super::edits::Edits;
 use super::template::{self, ChartController, Number};
 use crate::syntax::SourceFile;
 use crate::syntax::Span;
-use crate::syntax::ast::{ActionQualifier, Association, ChartStep, Expr, ExprKind, Ident, MemberKind, Pou};
+use crate::syntax::ast::{ActionQualifier, Association, ChartStep, Expr, ExprKind, Ident, MemberKind, Pou, PouKind};
 use crate::syntax::walk::{self, Visitor};
 
-/// The action that runs in every scan.
+/// The action that runs in every scan of the unit's own chart.
 pub(super) const CONTROL: &str = "SDSP_Control";
 
 /// The name under which the PLC's own action control keeps the flag of an action, which nobody reads.
@@ -50,19 +51,42 @@ impl Visitor for Reads {
 }
 
 impl Reads {
+    /// What in `pou` reads the times of the steps of one chart.
+    pub(super) fn of_steps(chart: &Pou, pou: &Pou) -> Self {
+        let mut reads =
+            Self { steps: chart.chart.steps.iter().map(|step| step.name.key()).collect(), ..Self::default() };
+        reads.look_through(pou);
+        reads
+    }
+
     pub(super) fn of(pou: &Pou) -> Self {
         let members = pou.object.members.iter().filter(|member| member.kind == MemberKind::Action);
         let mut reads = Self {
-            steps: pou.chart.steps.iter().map(|step| step.name.key()).collect(),
+            steps: charts(pou).flat_map(|chart| &chart.chart.steps).map(|step| step.name.key()).collect(),
             actions: members.map(|member| member.pou.name.key()).collect(),
             ..Self::default()
         };
-        walk::unit(pou, &mut reads);
-        for member in &pou.object.members {
-            walk::unit(&member.pou, &mut reads);
-        }
+        reads.look_through(pou);
         reads
     }
+
+    fn look_through(&mut self, pou: &Pou) {
+        walk::unit(pou, self);
+        for member in &pou.object.members {
+            walk::unit(&member.pou, self);
+        }
+    }
+}
+
+/// The unit if it is a chart, and its actions that are.
+pub(super) fn charts(pou: &Pou) -> impl Iterator<Item = &Pou> {
+    let actions = pou.object.members.iter().filter(|member| member.kind == MemberKind::Action);
+    std::iter::once(pou).chain(actions.map(|member| &member.pou)).filter(|pou| !pou.chart.is_empty())
+}
+
+/// A name of the shim's own for the chart of a unit or of an action.
+pub(super) fn of_chart(name: &str, chart: &Pou) -> String {
+    if chart.kind == PouKind::Action { format!("{name}_{}", chart.name.text) } else { name.to_owned() }
 }
 
 /// What stands before the elapsed time of a step; a parenthesis behind it closes it.
@@ -72,12 +96,14 @@ pub(super) fn elapsed(step: &str) -> String {
     )
 }
 
-/// A chart, and what is made of it.
+/// The charts of a unit, and what is made of them.
 pub(super) struct Plan<'w> {
     pub(super) pou: &'w Pou,
     pub(super) file: &'w SourceFile,
-    /// Of a program that is scheduled.
+    /// Of a chart that is a program which is scheduled.
     pub(super) controller: Option<ChartController>,
+    /// It has a controller of a chart or of statements, which declares `SDSP_Simulated`.
+    is_scheduled: bool,
     pub(super) reads: Reads,
     renames: &'w [(Ident, &'static Form)],
 }
@@ -86,21 +112,22 @@ pub(super) struct Plan<'w> {
 type Uses<'w> = Vec<(&'w Ident, Vec<(&'w ChartStep, &'w Association)>)>;
 
 impl<'w> Plan<'w> {
-    /// The chart of `pou`; of a program that is scheduled, `number` is that of so many.
+    /// The charts of `pou`; of a chart that is a program which is scheduled, `number` is that of so many.
     pub(super) fn new(
         pou: &'w Pou,
         number: Option<(Number, &str)>,
         renames: &'w [(Ident, &'static Form)],
         file: &'w SourceFile,
     ) -> Self {
-        let controller = number.map(|(number, line)| template::chart_controller(number, line));
-        Self { pou, file, controller, reads: Reads::of(pou), renames }
+        let controller =
+            number.filter(|_| !pou.chart.is_empty()).map(|(number, line)| template::chart_controller(number, line));
+        Self { pou, file, controller, is_scheduled: number.is_some(), reads: Reads::of(pou), renames }
     }
 
-    /// The actions in the order in which the steps name them first.
-    fn uses(&self) -> Uses<'w> {
+    /// The actions of a chart in the order in which its steps name them first.
+    fn uses(chart: &'w Pou) -> Uses<'w> {
         let mut uses: Uses<'w> = Vec::new();
-        for step in &self.pou.chart.steps {
+        for step in &chart.chart.steps {
             for association in &step.associations {
                 let key = association.action.key();
                 match uses.iter_mut().find(|(name, _)| name.key() == key) {
@@ -113,14 +140,14 @@ impl<'w> Plan<'w> {
     }
 
     /// The steps whose time is read, by their keys.
-    fn timed_steps(&self) -> BTreeMap<String, &'w ChartStep> {
+    fn timed_steps(&self, chart: &'w Pou) -> BTreeMap<String, &'w ChartStep> {
         let read = |step: &&ChartStep| self.reads.times.iter().any(|(name, _)| name.key() == step.name.key());
-        self.pou.chart.steps.iter().filter(read).map(|step| (step.name.key(), step)).collect()
+        chart.chart.steps.iter().filter(read).map(|step| (step.name.key(), step)).collect()
     }
 
     /// True for an action with statements that some step controls.
     pub(super) fn controls(&self, action: &Ident) -> bool {
-        self.bodies(&self.uses()).any(|body| body.key() == action.key())
+        charts(self.pou).any(|chart| self.bodies(&Self::uses(chart)).any(|body| body.key() == action.key()))
     }
 
     /// The actions that have statements, of all.
@@ -133,22 +160,12 @@ impl<'w> Plan<'w> {
         let mut text = self.controller.as_ref().map_or(String::new(), |found| format!("{}\n", found.declarations));
         let is_timed = !self.reads.times.is_empty();
         if is_timed {
-            let simulated = if self.controller.is_none() { "SDSP_Simulated : BOOL; " } else { "" };
+            let simulated = if self.is_scheduled { "" } else { "SDSP_Simulated : BOOL; " };
             let _ = writeln!(text, "VAR_EXTERNAL {simulated}SDSP_Now : TIME; END_VAR");
         }
-        let uses = self.uses();
         let mut own = String::new();
-        for step in self.timed_steps().values() {
-            let _ = writeln!(own, "    SDSP_Step_{} : SDSP_SFC_STEP;", step.name.text);
-        }
-        for (action, _) in &uses {
-            let _ = writeln!(own, "    {} : SDSP_ACTION_CONTROL;", controlled_by(&action.text));
-        }
-        if self.bodies(&uses).count() > 1 {
-            let _ = writeln!(own, "    {ROUND} : INT;");
-        }
-        if moved.values().any(|moved| moved.sets_left) {
-            let _ = writeln!(own, "    {LEFT} : BOOL;");
+        for chart in charts(self.pou) {
+            self.declare(chart, moved, &mut own);
         }
         if !own.is_empty() {
             let _ = writeln!(text, "VAR\n{own}END_VAR");
@@ -156,24 +173,45 @@ impl<'w> Plan<'w> {
         text
     }
 
+    fn declare(&self, chart: &'w Pou, moved: &BTreeMap<String, Moved>, own: &mut String) {
+        let uses = Self::uses(chart);
+        for step in self.timed_steps(chart).values() {
+            let _ = writeln!(own, "    SDSP_Step_{} : SDSP_SFC_STEP;", step.name.text);
+        }
+        for (action, _) in &uses {
+            let _ = writeln!(own, "    {} : SDSP_ACTION_CONTROL;", controlled_by(&action.text));
+        }
+        if self.bodies(&uses).count() > 1 {
+            let _ = writeln!(own, "    {} : INT;", of_chart(ROUND, chart));
+        }
+        for (action, _) in &uses {
+            if let Some(left) = moved.get(&action.key()).and_then(|moved| moved.left.as_ref()) {
+                let _ = writeln!(own, "    {left} : BOOL;");
+            }
+        }
+    }
+
     /// The flags that the PLC's own action control sets, where it cannot be without.
     pub(super) fn own_flags(&self) -> String {
-        let flags = self.uses().into_iter().map(|(action, _)| {
+        let flags = Self::uses(self.pou).into_iter().map(|(action, _)| {
             format!("    {} : BOOL; (* what the PLC's own action control makes of it *)\n", own_flag(&action.text))
         });
         let flags: String = flags.collect();
         if flags.is_empty() { flags } else { format!("VAR\n{flags}END_VAR\n") }
     }
 
-    /// The statements of the action that runs in every scan. The statements of actions stand in it where they have
+    /// The statements of the action that runs in every scan of a chart. The statements of actions stand in it where they have
     /// been moved, by their keys; others are called.
-    pub(super) fn statements(&self, moved: &BTreeMap<String, Moved>) -> Script {
+    pub(super) fn statements(&self, chart: &'w Pou, moved: &BTreeMap<String, Moved>) -> Script {
         let mut script = Script::default();
-        self.controller.iter().for_each(|found| script.put(&found.header));
-        for step in self.timed_steps().values() {
+        let controller = self.controller.as_ref().filter(|_| std::ptr::eq(chart, self.pou));
+        if let Some(found) = controller {
+            script.put(&found.header);
+        }
+        for step in self.timed_steps(chart).values() {
             script.put(&format!("    SDSP_Step_{0}(X := {0}.X);", step.name.text));
         }
-        let uses = self.uses();
+        let uses = Self::uses(chart);
         for (action, found) in &uses {
             self.controlled(&action.text, found).iter().for_each(|line| script.put(line));
             if !self.reads.actions.contains(&action.key()) {
@@ -181,8 +219,8 @@ impl<'w> Plan<'w> {
             }
         }
         let runs = |action: &&Ident| moved.get(&action.key()).is_none_or(|moved| !moved.is_empty);
-        script.run(self.bodies(&uses).filter(runs), moved);
-        if let Some(found) = &self.controller {
+        script.run(self.bodies(&uses).filter(runs), moved, &of_chart(ROUND, chart));
+        if let Some(found) = controller {
             script.put(&found.close);
             script.put(&found.footer);
         }

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use super::chart_action::Moved;
 use crate::syntax::ast::Ident;
 
-/// Which of two rounds over the actions is run.
+/// Which of two rounds over the actions of a chart is run.
 pub(super) const ROUND: &str = "SDSP_Round";
 
 /// Lines that are put in, each with the original's line that it has been moved from.
@@ -31,15 +31,20 @@ impl Script {
         self.origins.push(origin);
     }
 
-    /// Runs actions, those whose flag is FALSE before the others, in two rounds.
-    pub(super) fn run<'u>(&mut self, bodies: impl Iterator<Item = &'u Ident> + Clone, moved: &BTreeMap<String, Moved>) {
+    /// Runs actions, those whose flag is FALSE before the others, in two rounds that `counter` counts.
+    pub(super) fn run<'u>(
+        &mut self,
+        bodies: impl Iterator<Item = &'u Ident> + Clone,
+        moved: &BTreeMap<String, Moved>,
+        counter: &str,
+    ) {
         let has_rounds = bodies.clone().count() > 1;
         if has_rounds {
-            self.put(&format!("    FOR {ROUND} := 0 TO 1 DO (* what runs for the last time comes first *)"));
+            self.put(&format!("    FOR {counter} := 0 TO 1 DO (* what runs for the last time comes first *)"));
         }
         for action in bodies {
             let round =
-                if has_rounds { format!(" AND SDSP_Ctl_{}.Q = ({ROUND} = 1)", action.text) } else { String::new() };
+                if has_rounds { format!(" AND SDSP_Ctl_{}.Q = ({counter} = 1)", action.text) } else { String::new() };
             self.put(&format!("    IF SDSP_Ctl_{}.SDSP_Runs{round} THEN", action.text));
             match moved.get(&action.key()) {
                 Some(moved) => moved.lines.iter().for_each(|(line, origin)| self.line(line, *origin)),

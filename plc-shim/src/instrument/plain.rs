@@ -145,9 +145,8 @@ impl Plain {
             return Ok(tasks.clone());
         }
         if !survey.configurations.is_empty() {
-            let is_xml = self.is_xml() || options.target == Target::Codesys;
-            if let Some(found) = single::refused_in_xml(&survey.configurations).filter(|_| is_xml) {
-                return Err(wrong(found));
+            if options.target != Target::Iec || self.is_xml() {
+                self.refuse_singles(survey)?;
             }
             let parts = survey.configurations.iter().map(|part| configuration::tasks(part, &survey.constants));
             return Ok(parts.collect::<Result<Vec<_>, _>>().map_err(wrong)?.concat());
@@ -162,6 +161,12 @@ impl Plain {
         }
         let programs = scheduled.iter().map(|program| program.name.text.clone()).collect();
         Ok(vec![Task { name: "main".to_owned(), interval_ns: 10_000_000, programs, ..Task::default() }])
+    }
+
+    /// Refuses tasks of a configuration that start at edges.
+    pub(super) fn refuse_singles(&self, survey: &Survey<'_>) -> Result<(), InstrumentError> {
+        let refused = |found| InstrumentError::Text(Diagnostics::new(vec![found], &self.sources));
+        single::refused_elsewhere(&survey.configurations).map_or(Ok(()), |found| Err(refused(found)))
     }
 
     /// The project's files without the shim.

@@ -216,7 +216,7 @@ impl Writer<'_> {
     fn unit(self, pou: &Element, has_signal: bool) -> Option<()> {
         let stay = BTreeMap::new();
         let mut declared = self.plan.declarations(&stay) + &self.plan.own_flags();
-        let mut statements = self.plan.statements(&stay);
+        let mut statements = self.plan.statements(self.plan.pou, &stay);
         if let Some(controller) = self.plan.controller.as_ref().filter(|_| has_signal) {
             let _ = writeln!(declared, "VAR {SIGNAL} : BOOL; END_VAR");
             statements.put(&format!("    {SIGNAL} := {};", controller.is_open()));

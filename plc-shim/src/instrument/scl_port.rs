@@ -88,6 +88,7 @@ fn asked(
         return Err(InstrumentError::Text(Diagnostics::new(findings, &plain.sources)));
     }
     let in_text = Options { target: Target::Iec, ..options.clone() };
+    plain.refuse_singles(&survey)?;
     let mut tasks = plain.tasks(&survey, &in_text)?;
     let table = TaskTable::new(&tasks, &entries(&survey), Line::InPlace)?;
     for name in tasks.iter_mut().flat_map(|task| &mut task.programs) {

@@ -56,9 +56,10 @@ pub(super) fn refused_beside(configurations: &[&Configuration]) -> Option<Diagno
     Some(found.with_help("leave it to the configuration which tasks there are"))
 }
 
-/// What the form of the file has no place for.
-pub(super) fn refused_in_xml(configurations: &[&Configuration]) -> Option<Diagnostic> {
-    refused(configurations, "a task with SINGLE is not instrumented in PLCopen XML yet")
+/// What other forms than program text of the standard's own have no place for.
+pub(super) fn refused_elsewhere(configurations: &[&Configuration]) -> Option<Diagnostic> {
+    let found = refused(configurations, "a task with SINGLE is instrumented in program text for the target iec only")?;
+    Some(found.with_help("give the task an INTERVAL, or choose that target"))
 }
 
 fn refused(configurations: &[&Configuration], message: &str) -> Option<Diagnostic> {

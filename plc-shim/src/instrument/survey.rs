@@ -2,6 +2,7 @@
 
 use std::collections::BTreeSet;
 
+use super::chart_plan::charts;
 use super::clock::{self, Fate, Form, Kind};
 use super::constant::{self, Constants};
 use super::foreign;
@@ -34,7 +35,7 @@ pub(super) struct Survey<'a> {
     pub(super) called: BTreeSet<String>,
     /// Actions and methods that are called, by their keys: `UNIT.NAME` within a unit, `.NAME` of an instance.
     called_members: BTreeSet<String>,
-    /// Programs and function blocks that are charts.
+    /// Programs and function blocks that are charts, or have actions that are.
     pub(super) charts: Vec<&'a Pou>,
     /// Names to be replaced.
     pub(super) renames: Vec<(Ident, &'static Form)>,
@@ -173,7 +174,7 @@ impl<'a> Surveyor<'_, 'a> {
         self.local.extend(pou.object.members.iter().map(|member| member.pou.name.key()));
         pou.result.iter().for_each(|result| self.spec(result));
         pou.sections.iter().for_each(|section| self.section(section));
-        if !pou.chart.is_empty() {
+        if charts(pou).next().is_some() {
             self.survey.charts.push(pou);
             self.survey.findings.extend(super::chart::findings(pou));
         }
@@ -184,19 +185,9 @@ impl<'a> Surveyor<'_, 'a> {
             member.result.iter().for_each(|result| self.spec(result));
             member.sections.iter().for_each(|section| self.section(section));
             walk::unit(member, self);
-            self.nested_chart(member);
         }
         self.local.clear();
         self.unit.clear();
-    }
-
-    /// A chart in an action has steps and actions of its own, whose clock is not replaced yet.
-    fn nested_chart(&mut self, action: &Pou) {
-        if let Some(chart) = action.chart.span() {
-            let message = format!("the chart in action `{}` is not put on virtual time", action.name.text);
-            let found = Diagnostic::error(Code::UnsupportedFeature, chart, message);
-            self.survey.findings.push(found.with_help("make it a function block, and call that in the action"));
-        }
     }
 
     /// What a function block is derived from. How a derived one is used tells nothing of a motion block's inputs.
@@ -226,7 +217,7 @@ impl<'a> Surveyor<'_, 'a> {
 
     /// Steps and actions have names among those of the shim's own.
     fn own_parts(&mut self, pou: &Pou) {
-        pou.chart.steps.iter().for_each(|step| self.own_name(&step.name));
+        charts(pou).flat_map(|chart| &chart.chart.steps).for_each(|step| self.own_name(&step.name));
         pou.object.members.iter().for_each(|member| self.own_name(&member.pou.name));
     }
 

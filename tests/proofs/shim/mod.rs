@@ -56,16 +56,25 @@ const EXPECTED: [i64; 5] = [0, 11, 11_22_12, 11_22_12_13, 11_22_12_13_24_14];
 /// A start of the PLC is answered with a session of a new number, greater than that of any grant before.
 const SESSIONS: [u32; 4] = [100, 200, 300, 400];
 
+fn task(name: &str, ms: u64, priority: u32, program: &str) -> Task {
+    let programs = vec![program.to_owned()];
+    Task { name: name.to_owned(), interval_ns: ms * 1_000_000, priority, programs, ..Task::default() }
+}
+
 fn project() -> Project {
-    let task = |name: &str, ms: u64, priority: u32, program: &str| Task {
-        name: name.to_owned(),
-        interval_ns: ms * 1_000_000,
-        priority,
-        programs: vec![program.to_owned()],
-        ..Task::default()
-    };
     let tasks = vec![task("fast", 1, 2, "Fast"), task("slow", 2, 1, "Slow")];
-    Project { text: TEXT, programs: &["Fast", "Slow"], tasks }
+    Project { text: TEXT, programs: &["Fast", "Slow"], tasks, expected: EXPECTED }
+}
+
+/// The same where an edge that `Fast` makes in every second step starts `Slow` behind it (2nd ed. 2.7.2).
+fn project_with_single() -> Project {
+    let text = "
+VAR_GLOBAL log : LINT; flag : BOOL; END_VAR
+PROGRAM Fast log := log * 100 + 10 + TIME_TO_LINT(SDSP_Now); flag := NOT flag; END_PROGRAM
+PROGRAM Slow log := log * 100 + 20 + TIME_TO_LINT(SDSP_Now); END_PROGRAM";
+    let slow = Task { single: Some("flag".to_owned()), ..task("slow", 0, 1, "Slow") };
+    let expected = [0, 11_21, 11_21_12, 11_21_12_13_23, 11_21_12_13_23_14];
+    Project { text, programs: &["Fast", "Slow"], tasks: vec![task("fast", 1, 2, "Fast"), slow], expected }
 }
 
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
@@ -90,11 +99,17 @@ pub(crate) enum ShimAct {
 pub(crate) struct Shim {
     plc: Mutex<Plc>,
     gateway: Gateway,
+    /// What stands in the log behind each grant.
+    expected: [i64; 5],
 }
 
 impl Shim {
     fn new(gateway: Gateway, changes: &[Change]) -> Self {
-        Self { plc: Mutex::new(Plc::new(&project(), changes)), gateway }
+        Self::of(&project(), gateway, changes)
+    }
+
+    fn of(project: &Project, gateway: Gateway, changes: &[Change]) -> Self {
+        Self { plc: Mutex::new(Plc::new(project, changes)), gateway, expected: project.expected }
     }
 
     fn view(&self, state: &ShimState) -> View {
@@ -115,8 +130,8 @@ impl Shim {
         let grant =
             usize::try_from(after.done - after.joined).ok().filter(|grant| *grant <= self.gateway.grants as usize);
         let is_right = grant.is_some_and(|grant| {
-            let end = EXPECTED[(grant + 1).min(self.gateway.grants as usize)];
-            after.log >= EXPECTED[grant] && beginnings(end).any(|beginning| beginning == after.log)
+            let end = self.expected[(grant + 1).min(self.gateway.grants as usize)];
+            after.log >= self.expected[grant] && beginnings(end).any(|beginning| beginning == after.log)
         });
         (!is_right).then_some("a program ran twice, not at all, or out of order for a grant")
     }
@@ -153,7 +168,7 @@ impl Model for Shim {
             ShimAct::Cycle(task) => Event::Cycle(task),
             ShimAct::Deliver(message) => Event::Deliver(message),
             ShimAct::Read(seen, verdict) => {
-                let is_right = seen.log == EXPECTED[last.gateway.waiting as usize];
+                let is_right = seen.log == self.expected[last.gateway.waiting as usize];
                 if verdict == Verdict::Done && !is_right {
                     state.broken = Some("outputs are taken for those of a grant that was not run");
                 }
@@ -198,12 +213,21 @@ impl Model for Shim {
 
 #[test]
 fn no_program_runs_twice_or_not_at_all_for_a_grant() {
-    for (sessions, grants) in [(2, 3), (3, 3), (4, 4)] {
-        let model = Shim::new(Gateway::new(&SESSIONS[..sessions], grants), &[]);
+    check("shim", &project(), &[(2, 3), (3, 3), (4, 4)]);
+}
+
+#[test]
+fn no_edge_starts_a_program_twice_or_not_at_all_for_a_grant() {
+    check("shim with SINGLE", &project_with_single(), &[(3, 4)]);
+}
+
+fn check(name: &str, project: &Project, sizes: &[(usize, u32)]) {
+    for &(sessions, grants) in sizes {
+        let model = Shim::of(project, Gateway::new(&SESSIONS[..sessions], grants), &[]);
         let checker = model.checker().threads(2).spawn_bfs().join();
         checker.assert_properties();
         report(format_args!(
-            "shim, {sessions} sessions of {grants} grants, the PLC started anew any number of times: {} states, {} of \
+            "{name}, {sessions} sessions of {grants} grants, the PLC started anew any number of times: {} states, {} of \
              the PLC",
             checker.unique_state_count(),
             checker.model().plc.lock().expect("no panic").states()

@@ -5,7 +5,7 @@ use stateright::{Checker, HasDiscoveries, Model};
 use super::gateway::Gateway;
 use super::plc::Change;
 use super::undisturbed::stuck;
-use super::{SESSIONS, Shim};
+use super::{SESSIONS, Shim, project_with_single};
 
 fn is_broken(gateway: Gateway, changes: &[Change]) -> bool {
     let checker = Shim::new(gateway, changes).checker().finish_when(HasDiscoveries::AnyFailures).spawn_bfs().join();
@@ -63,6 +63,15 @@ fn the_execution_controller_needs_to_hand_on() {
 fn the_execution_controller_needs_the_line() {
     assert!(is_broken(right(), &[("SDSP_Turn := SDSP_Next[1];", "SDSP_Turn := 0;")]));
     assert!(is_broken(right(), &[("SDSP_Turn := SDSP_Next[1];", "SDSP_Turn := SDSP_Next[0];")]));
+}
+
+/// Behind each task an edge may be due: a grant that is done with its first task leaves programs out.
+#[test]
+fn the_event_scheduler_needs_to_look_behind_each_task() {
+    let changes = [("ELSIF Running AND best = 0 THEN", "ELSIF Running THEN")];
+    let checker = Shim::of(&project_with_single(), right(), &changes).checker();
+    let checker = checker.finish_when(HasDiscoveries::AnyFailures).spawn_bfs().join();
+    checker.assert_any_discovery("nothing is broken");
 }
 
 /// A grant that is answered with the number that stands there now, perhaps that of a late one, is never

@@ -15,16 +15,7 @@ pub(crate) type TaskIndex = usize;
 pub(crate) type MemoryId = usize;
 
 /// What is written before it is read in whatever runs: it tells nothing of what comes.
-const DEAD: [&str; 8] = [
-    "SDSP_Scheduler.Grant",
-    "SDSP_Scheduler.TV",
-    "SDSP_Scheduler.k",
-    "SDSP_Scheduler.best",
-    "SDSP_Scheduler.tail",
-    "SDSP_Scheduler.p",
-    "Fast.SDSP_Granted",
-    "Slow.SDSP_Granted",
-];
+const DEAD: [&str; 2] = ["Fast.SDSP_Granted", "Slow.SDSP_Granted"];
 
 /// What a project for the model has.
 pub(crate) struct Project {
@@ -32,6 +23,8 @@ pub(crate) struct Project {
     /// In the order in which they write.
     pub(crate) programs: &'static [&'static str],
     pub(crate) tasks: Vec<Task>,
+    /// What stands in the log behind each grant: program and time of every run.
+    pub(crate) expected: [i64; 5],
 }
 
 /// A text of the instrumented project, and what stands there instead.

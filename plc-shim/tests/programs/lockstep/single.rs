@@ -193,6 +193,8 @@ fn what_no_edge_can_start_is_refused() {
     insta::assert_snapshot!(refused(&of("TASK t (SINGLE := g AND g);"), Target::Iec, None), @"c.st:2:37: error[L0501]: SINGLE other than a variable is not instrumented yet");
     let given = Some(vec![task("t", 10, 1, &["p"])]);
     insta::assert_snapshot!(refused(&of("TASK t (SINGLE := g);"), Target::Iec, given), @"c.st:2:34: error[L0501]: a task with SINGLE is not instrumented where other tasks are given (leave it to the configuration which tasks there are)");
+    insta::assert_snapshot!(refused(&of("TASK t (SINGLE := g);"), Target::Codesys, None), @"c.st:2:34: error[L0501]: a task with SINGLE is instrumented in program text for the target iec only (give the task an INTERVAL, or choose that target)");
+    insta::assert_snapshot!(refused(&of("TASK t (SINGLE := g);"), Target::Scl, None), @"c.st:2:34: error[L0501]: a task with SINGLE is instrumented in program text for the target iec only (give the task an INTERVAL, or choose that target)");
     let on = |path: &str| Some(vec![Task { single: Some(path.to_owned()), ..task("t", 0, 1, &["Main"]) }]);
     insta::assert_snapshot!(refused(EDGES, Target::Iec, on("Main.i")), @"task `t` is triggered by `Main.i`: the scheduler reads a global variable");
     insta::assert_snapshot!(refused(EDGES, Target::TwinCat, on("a")), @"task `t` is triggered by `a`: tasks of TwinCAT are cyclic");
