@@ -30,15 +30,19 @@ pub(super) enum Single {
 ///
 /// # Errors
 /// It cannot.
-pub(super) fn check_given(tasks: &[Task], survey: &Survey<'_>, target: Target) -> Result<(), RunError> {
+pub(super) fn check_given(
+    tasks: &[Task],
+    survey: &Survey<'_>,
+    (target, is_xml): (Target, bool),
+) -> Result<(), RunError> {
     for task in tasks {
         let Some(path) = &task.single else { continue };
         let reason = match target {
             Target::TwinCat => "tasks of TwinCAT are cyclic",
             Target::Scl => "SCL does not tell what starts an organization block",
-            Target::Codesys => "it is not instrumented in PLCopen XML yet",
-            Target::Iec if !survey.is_global(path) => "the scheduler reads a global variable",
-            Target::Iec => continue,
+            Target::Codesys if is_xml => "it is not instrumented in PLCopen XML yet",
+            Target::Iec | Target::Codesys if !survey.is_global(path) => "the scheduler reads a global variable",
+            Target::Iec | Target::Codesys => continue,
         };
         let (task, path, reason) = (task.name.clone(), path.clone(), reason.to_owned());
         return Err(RunError::Trigger { task, path, reason });

@@ -27,7 +27,8 @@ impl About {
             data("attributes", &format!("<Attributes>{written}</Attributes>\n"))
         };
         let words = [page.remarks(before), others.join("\n"), page.remarks(behind)];
-        Self { added, words: words.join("\n").trim().to_owned() }
+        let words: Vec<String> = words.into_iter().filter(|words| !words.is_empty()).collect();
+        Self { added, words: words.join("\n") }
     }
 
     /// The same, with more words.

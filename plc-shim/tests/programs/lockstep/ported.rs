@@ -122,6 +122,26 @@ fn what_has_no_form_is_told_with_its_place() {
     assert!(instrument(&[given(text)], &iec).is_ok());
 }
 
+/// A task with SINGLE is periodic in the file, and runs at the same edges.
+#[test]
+fn a_variable_starts_a_task() {
+    let text = "VAR_GLOBAL go : BOOL; END_VAR\nPROGRAM P VAR_INPUT i : BOOL; END_VAR VAR n : INT; END_VAR\n    go := i;\n    \
+                n := n + 1;\nEND_PROGRAM\nPROGRAM Q VAR n : INT; END_VAR n := n + 1; END_PROGRAM\n";
+    let edges = Task { single: Some("go".to_owned()), ..task("edges", 0, 0, &["Q"]) };
+    let tasks = [edges, task("main", 10, 1, &["P"])];
+    let project = ported(text, &options(&tasks)).expect("it has a form");
+    let xml = project.program().next().and_then(|file| file.text.as_deref()).expect("a text");
+    let task = "<task name=\"edges\" interval=\"PT0.01S\" priority=\"1\">\n<pouInstance name=\"Q\"";
+    assert!(xml.contains(task), "{xml}");
+    let times: Vec<u64> = (1..=60).map(|step| step * 5 * MS).collect();
+    assert_eq!(assert_equal(text, &tasks, &["P.i"], &times, Tasks::Moved), Ok(()));
+    let configured = "PROGRAM P VAR n : INT; END_VAR n := n + 1; END_PROGRAM\nCONFIGURATION C\nVAR_GLOBAL go : BOOL; END_VAR\n\
+                      RESOURCE r ON p\nTASK t (SINGLE := go);\nPROGRAM q WITH t : P;\nEND_RESOURCE\nEND_CONFIGURATION\n";
+    let options = Options { target: Target::Codesys, tasks: None };
+    let refused = instrument(&[given(configured)], &options).expect_err("no connections");
+    assert!(refused.to_string().starts_with("plc/line.st:5:6: error[L0501]: a task with SINGLE is not"), "{refused}");
+}
+
 /// A shim of another form that was there before goes.
 #[test]
 fn another_target_takes_the_place_of_the_one_before() {
