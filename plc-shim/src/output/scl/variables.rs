@@ -11,7 +11,7 @@ use crate::diagnostic::Diagnostic;
 use crate::instrument::edits::Edits;
 use crate::syntax::ast::{
     Edge, Expr, ExprKind, Initialiser, InitialiserKind, Literal, Pou, PouKind, Qualifier, Section, SectionKind,
-    TypeSpec, UnaryOp, Variable,
+    TypeSpec, TypeSpecKind, TypedValue, UnaryOp, Variable,
 };
 use crate::syntax::token::{Keyword, Punctuation, TokenKind};
 use crate::syntax::{SourceFile, Span};
@@ -228,10 +228,10 @@ pub(super) fn value<'a>(
 
 /// The key of the enumeration that a type comes to.
 fn enumeration(names: &Names<'_>, of: &TypeSpec) -> Option<String> {
-    let crate::syntax::ast::TypeSpecKind::Name(name) = &of.kind else { return None };
+    let TypeSpecKind::Name(name) = &of.kind else { return None };
     let named = names.types.get(&name.key())?;
     match &named.spec.kind {
-        crate::syntax::ast::TypeSpecKind::Enumeration(..) => Some(name.key()),
+        TypeSpecKind::Enumeration(..) => Some(name.key()),
         _ => enumeration(names, &named.spec),
     }
 }
@@ -239,7 +239,7 @@ fn enumeration(names: &Names<'_>, of: &TypeSpec) -> Option<String> {
 /// A literal, also with a sign.
 fn is_plain(expr: &Expr) -> bool {
     match &expr.kind {
-        ExprKind::Literal(Literal::Typed { value: crate::syntax::ast::TypedValue::Name(_), .. }) => false,
+        ExprKind::Literal(Literal::Typed { value: TypedValue::Name(_), .. }) => false,
         ExprKind::Literal(_) => true,
         ExprKind::Unary(UnaryOp::Negate, inner) => is_plain(inner),
         _ => false,
