@@ -19,6 +19,8 @@ const DEFAULT_NS: u64 = 10_000_000;
 pub(super) struct TaskTable<'a> {
     pub(super) rows: Vec<Row>,
     pub(super) programs: Vec<Entry<'a>>,
+    /// The shortest interval, of tasks without programs too: so fine the PLC's clock is to be.
+    shortest_ns: u64,
     line: Line,
 }
 
@@ -63,7 +65,8 @@ impl<'a> TaskTable<'a> {
         check(tasks)?;
         let mut order: Vec<&Task> = tasks.iter().collect();
         order.sort_by_key(|task| task.priority);
-        let mut table = Self { line, ..Self::default() };
+        let shortest_ns = shortest_ns(tasks.iter().map(|task| task.interval_ns));
+        let mut table = Self { line, shortest_ns, ..Self::default() };
         for task in order {
             let first = table.programs.len() + 1;
             for name in &task.programs {
@@ -96,7 +99,7 @@ impl<'a> TaskTable<'a> {
 
     /// The interval of the scheduler's task.
     pub(super) fn shortest_ns(&self) -> u64 {
-        shortest_ns(self.rows.iter().map(|row| row.interval_ns))
+        self.shortest_ns
     }
 
     /// The number of an instance that must be told it.
