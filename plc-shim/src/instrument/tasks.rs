@@ -66,7 +66,7 @@ impl<'a> TaskTable<'a> {
         let mut order: Vec<&Task> = tasks.iter().collect();
         order.sort_by_key(|task| task.priority);
         let shortest_ns = shortest_ns(tasks.iter().map(|task| task.interval_ns));
-        let mut table = Self { line, shortest_ns, ..Self::default() };
+        let mut table = Self { shortest_ns, line, ..Self::default() };
         for task in order {
             let first = table.programs.len() + 1;
             for name in &task.programs {

@@ -4,8 +4,8 @@
 //! `cargo bench -p onescan-tests --bench shim`; names after `--` choose programs.
 //!
 //! The two take turns in one run, end with the same checksum, and each figure is its fastest round, which other work
-//! on the machine disturbs least. A granted scan includes the gateway's part, which writes time and number of the
-//! grant. The limit is 5 % of a scan, and 1 µs.
+//! on the machine disturbs least. In front of each scan two inputs are written from outside: those of a grant, its time
+//! and its number, or two as large that nobody reads. The limit is 5 % of a scan, and 1 µs.
 
 mod random;
 mod rungs;
@@ -24,6 +24,8 @@ const ROUND_NS: f64 = 4e6;
 /// The session that an instrumented PLC takes part in, which is the number of its first grant less 1.
 const SESSION: u32 = 1;
 const SCHEDULER: &str = "SDSP_Scheduler";
+/// What is written from outside where there are no grants.
+const INPUTS: &str = "VAR_GLOBAL time_input : LINT; number_input : UDINT; END_VAR\n";
 
 fn cases() -> Vec<(&'static str, String)> {
     let [rungs, _] = rungs::programs(1);
@@ -44,8 +46,10 @@ struct Bench {
     plc: SoftPlc,
     /// Offset of the checksum.
     sum: usize,
-    /// Offsets of time and number of the grant, and of the number of the last one done.
-    grants: Option<[usize; 3]>,
+    /// Offsets of what is written from outside: a time, and a number.
+    inputs: [usize; 2],
+    /// Offset of the number of the last grant done.
+    done: Option<usize>,
 }
 
 impl Bench {
@@ -60,26 +64,25 @@ impl Bench {
         let task = Task { name: "main".to_owned(), interval_ns: INTERVAL_NS, programs, ..Task::default() };
         let plc = SoftPlc::new(&application, &TaskPlan::new(vec![task])).expect("it can run");
         let offset = |path: &str| plc.variable(path).expect("it is there").offset as usize;
-        let grants = is_granted.then(|| ["SDSP_TV", "SDSP_Grant", "SDSP_Done"].map(offset));
-        Self { sum: offset(&format!("{main}.sum")), grants, plc }
+        let inputs = if is_granted { ["SDSP_TV", "SDSP_Grant"] } else { ["time_input", "number_input"] };
+        let done = is_granted.then(|| offset("SDSP_Done"));
+        Self { sum: offset(&format!("{main}.sum")), inputs: inputs.map(offset), done, plc }
     }
 
     fn scan(&mut self, number: u64) {
-        let mut now = number * INTERVAL_NS;
-        if let Some([tv, grant, _]) = self.grants {
-            let memory = self.plc.memory_mut();
-            memory[tv..tv + 8].copy_from_slice(&now.to_le_bytes());
-            memory[grant..grant + 4].copy_from_slice(&(SESSION + number as u32).to_le_bytes());
-            // It used a cycle of its own to join.
-            now += INTERVAL_NS;
-        }
-        self.plc.scan(VirtualTime::from_ns(now)).expect("it runs");
+        let [time, count] = self.inputs;
+        let now = number * INTERVAL_NS;
+        let memory = self.plc.memory_mut();
+        memory[time..time + 8].copy_from_slice(&now.to_le_bytes());
+        memory[count..count + 4].copy_from_slice(&(SESSION + number as u32).to_le_bytes());
+        // A cycle has been used to join.
+        self.plc.scan(VirtualTime::from_ns(now + INTERVAL_NS)).expect("it runs");
     }
 
     /// A cold start; an instrumented PLC joins the session.
     fn start(&mut self) {
         self.plc.cold_start();
-        if self.grants.is_some() {
+        if self.done.is_some() {
             for (path, value) in [("SDSP_Limit", u32::MAX), ("SDSP_Session", SESSION)] {
                 let at = self.plc.variable(path).expect("it is there").offset as usize;
                 self.plc.memory_mut()[at..at + 4].copy_from_slice(&value.to_le_bytes());
@@ -97,7 +100,7 @@ impl Bench {
         }
         let time = started.elapsed().as_nanos() as f64 / scans as f64;
         let memory = self.plc.memory();
-        if let Some([.., done]) = self.grants {
+        if let Some(done) = self.done {
             // The next cycle would tell that the last is done.
             assert_eq!(memory[done..done + 4], (SESSION + scans as u32 - 1).to_le_bytes(), "every grant was done");
         }
@@ -114,8 +117,9 @@ fn instrumented(name: &str, text: &str) -> Vec<(String, String)> {
 /// Nanoseconds of one scan, original and granted.
 fn compare(name: &str, text: &str) -> [f64; 2] {
     let name = format!("{name}.st");
-    let mut original = Bench::new(vec![(name.clone(), text.to_owned())]);
-    let mut granted = Bench::new(instrumented(&name, text));
+    let text = format!("{INPUTS}{text}");
+    let mut original = Bench::new(vec![(name.clone(), text.clone())]);
+    let mut granted = Bench::new(instrumented(&name, &text));
     let (trial, _) = original.run(100);
     let scans = (ROUND_NS / trial).clamp(100.0, 100_000.0) as u64;
     let mut times = [f64::INFINITY; 2];
