@@ -193,7 +193,7 @@ impl<'w> Plan<'w> {
 
     /// The flags that the PLC's own action control sets, where it cannot be without.
     pub(super) fn own_flags(&self) -> String {
-        let flags = Self::uses(self.pou).into_iter().map(|(action, _)| {
+        let flags = charts(self.pou).flat_map(Self::uses).map(|(action, _)| {
             format!("    {} : BOOL; (* what the PLC's own action control makes of it *)\n", own_flag(&action.text))
         });
         let flags: String = flags.collect();

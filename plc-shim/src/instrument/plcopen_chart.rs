@@ -5,14 +5,14 @@
 //! |---|---|
 //! | `<reference name="valve"/>` of an action block | `<reference name="SDSP_Own_valve"/>` |
 //! | `<inline>` of an action block | an action of the unit, and a reference as above |
-//! | every step's action block, a new one if it has none | has one more action, `SDSP_Control` |
+//! | every step's action block, a new one if it has none | has one more action, `SDSP_Control`; in the chart of an action `Turn` it is `SDSP_Control_Turn` |
 //! | `a.T`, `Fill.Q` in program text | as in a chart in text |
 //! | conditions of a program's transitions | joined with the execution signal, see [`super::plcopen_gate`] |
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write as _;
 
-use super::chart_plan::{CONTROL, Plan, controlled_by, elapsed, own_flag};
+use super::chart_plan::{CONTROL, Plan, charts, controlled_by, elapsed, of_chart, own_flag};
 use super::edits::Edits;
 use super::marks;
 use super::plcopen::{self, Refused};
@@ -23,22 +23,27 @@ use crate::input::plcopen_chart_graph::{End, Graph, Kind, number};
 use crate::input::plcopen_condition::named_transitions;
 use crate::input::xml::Element;
 use crate::syntax::Span;
+use crate::syntax::ast::{Pou, PouKind};
 
 /// What cannot be put on virtual time, and where it stands.
 pub(super) type RefusedAt = (Span, Refused);
 
-/// Puts the chart in `<pou>` on virtual time. Other changes of its text have been made before.
+/// Puts the charts in `<pou>` on virtual time. Other changes of their text have been made before.
 pub(super) fn control(plan: &Plan<'_>, pou: &Element, edits: &mut Edits) -> Result<(), RefusedAt> {
     let name = plan.pou.name.span;
-    let sfc = pou.elements().filter(|inner| inner.name == "body").find_map(|body| body.child("SFC"));
-    let sfc = sfc.ok_or((name, "this chart is not drawn"))?;
-    let (graph, _) = Graph::new(sfc);
+    let mut drawn = Vec::new();
+    for chart in charts(plan.pou) {
+        let sfc = drawing(chart, pou).ok_or((chart.name.span, "this chart is not drawn"))?;
+        let (graph, _) = Graph::new(sfc);
+        drawn.push((chart, graph));
+    }
     let mut ids = LocalIds::of(pou);
-    let mut writer = Writer { plan, text: plan.file.shown_text(), graph: &graph, moved: String::new(), edits };
-    let closed = match &plan.controller {
-        Some(controller) => {
+    let mut writer = Writer { plan, text: plan.file.shown_text(), moved: String::new(), edits };
+    let own = drawn.iter().find(|(chart, _)| std::ptr::eq(*chart, plan.pou));
+    let closed = match plan.controller.as_ref().zip(own) {
+        Some((controller, (_, graph))) => {
             let gate = Gate::new(plan, controller.is_open(), named_transitions(pou));
-            gate.close(&graph, &mut ids, writer.edits)?
+            gate.close(graph, &mut ids, writer.edits)?
         }
         None => Closed::default(),
     };
@@ -47,8 +52,22 @@ pub(super) fn control(plan: &Plan<'_>, pou: &Element, edits: &mut Edits) -> Resu
     for (at, text) in closed.behind {
         writer.edits.insert(at, text);
     }
-    writer.steps(&mut ids);
+    for (chart, graph) in &drawn {
+        writer.steps(graph, &of_chart(CONTROL, chart), &mut ids);
+    }
     writer.unit(pou, closed.uses_signal).ok_or((name, "its controller has no form in PLCopen XML"))
+}
+
+/// The drawing of a unit's own chart, or of that of an action.
+fn drawing<'e>(chart: &Pou, pou: &'e Element) -> Option<&'e Element> {
+    let is_it = |action: &&Element| {
+        action.attribute("name").is_some_and(|name| name.value.eq_ignore_ascii_case(&chart.name.text))
+    };
+    let holder = match chart.kind {
+        PouKind::Action => pou.child("actions")?.elements().find(is_it)?,
+        _ => pou,
+    };
+    holder.elements().filter(|inner| inner.name == "body").find_map(|body| body.child("SFC"))
 }
 
 /// Numbers of new elements: those that no element of the unit has.
@@ -86,7 +105,6 @@ pub(super) fn position(element: &Element) -> (i64, i64) {
 struct Writer<'w> {
     plan: &'w Plan<'w>,
     text: &'w str,
-    graph: &'w Graph<'w>,
     /// Actions that were written in steps.
     moved: String,
     edits: &'w mut Edits,
@@ -100,14 +118,8 @@ impl Writer<'_> {
             let file = self.plan.file;
             if !file.origin().is_some_and(|origin| origin.is_verbatim(span.start)) {
                 // The time of an association is read by `SDSP_Control` alone.
-                if self
-                    .plan
-                    .pou
-                    .chart
-                    .steps
-                    .iter()
-                    .any(|step| step.span.start <= span.start && span.end <= step.span.end)
-                {
+                let mut steps = charts(self.plan.pou).flat_map(|chart| &chart.chart.steps);
+                if steps.any(|step| step.span.start <= span.start && span.end <= step.span.end) {
                     continue;
                 }
                 return Err((*span, "the time of a step is read in an attribute"));
@@ -132,8 +144,8 @@ impl Writer<'_> {
         }
     }
 
-    fn steps(&mut self, ids: &mut LocalIds) {
-        let graph = self.graph;
+    /// Every step of a chart gets the action `control`.
+    fn steps(&mut self, graph: &Graph<'_>, control: &str, ids: &mut LocalIds) {
         for (id, step) in graph.of(Kind::Step) {
             let is_its = |block: usize| graph.before(block).contains(&End::Step(id));
             let blocks: Vec<&Element> =
@@ -143,8 +155,8 @@ impl Writer<'_> {
                 self.associations(step.element, block, &mut inline);
             }
             match blocks.first() {
-                Some(block) => self.add_to(block, ids),
-                None => self.add_block(step.element, ids),
+                Some(block) => self.add_to(block, control, ids),
+                None => self.add_block(step.element, control, ids),
             }
         }
     }
@@ -176,12 +188,12 @@ impl Writer<'_> {
     }
 
     /// One more action, below the others.
-    fn add_to(&mut self, block: &Element, ids: &mut LocalIds) {
+    fn add_to(&mut self, block: &Element, control: &str, ids: &mut LocalIds) {
         let last = block.elements().filter(|inner| inner.name == "action").last();
         let before =
             block.elements().filter(|inner| matches!(inner.name.as_str(), "position" | "connectionPointIn")).last();
         let y = last.map_or(0, |action| position(action).1 + ROW);
-        let action = association(ids.next(), y);
+        let action = association(ids.next(), y, control);
         match last.or(before) {
             Some(element) => plcopen::insert(self.text, element.close.end, &action, self.edits),
             None => plcopen::append(self.text, block, &action, self.edits),
@@ -189,7 +201,7 @@ impl Writer<'_> {
     }
 
     /// An action block at the right of a step that has none.
-    fn add_block(&mut self, step: &Element, ids: &mut LocalIds) {
+    fn add_block(&mut self, step: &Element, control: &str, ids: &mut LocalIds) {
         let (x, y) = position(step);
         let width = step.attribute("width").and_then(|width| number(&width.value)).unwrap_or(3 * ROW);
         let from = step.attribute("localId").map_or("", |id| id.value.trim());
@@ -198,7 +210,7 @@ impl Writer<'_> {
              <connectionPointIn><connection refLocalId=\"{from}\"/></connectionPointIn>\n{}</actionBlock>\n",
             ids.next(),
             x.saturating_add(width).saturating_add(ROW),
-            association(ids.next(), 0),
+            association(ids.next(), 0, control),
         );
         plcopen::insert(self.text, step.close.end, &block, self.edits);
         if step.child("connectionPointOutAction").is_none() {
@@ -216,17 +228,23 @@ impl Writer<'_> {
     fn unit(self, pou: &Element, has_signal: bool) -> Option<()> {
         let stay = BTreeMap::new();
         let mut declared = self.plan.declarations(&stay) + &self.plan.own_flags();
-        let mut statements = self.plan.statements(self.plan.pou, &stay);
-        if let Some(controller) = self.plan.controller.as_ref().filter(|_| has_signal) {
+        let signal = self.plan.controller.as_ref().filter(|_| has_signal);
+        if signal.is_some() {
             let _ = writeln!(declared, "VAR {SIGNAL} : BOOL; END_VAR");
-            statements.put(&format!("    {SIGNAL} := {};", controller.is_open()));
         }
         plcopen::declare(pou, &unit::declarations(&declared)?, self.text, self.edits);
-        if statements.text.is_empty() {
-            statements.put("    ;");
+        let mut actions = self.moved;
+        for chart in charts(self.plan.pou) {
+            let mut statements = self.plan.statements(chart, &stay);
+            if let Some(controller) = signal.filter(|_| std::ptr::eq(chart, self.plan.pou)) {
+                statements.put(&format!("    {SIGNAL} := {};", controller.is_open()));
+            }
+            if statements.text.is_empty() {
+                statements.put("    ;");
+            }
+            let body = unit::body(&statements.text);
+            let _ = writeln!(actions, "<action name=\"{}\">{}</action>", of_chart(CONTROL, chart), body.trim_end());
         }
-        let control = unit::body(&statements.text);
-        let actions = format!("{}<action name=\"{CONTROL}\">{}</action>\n", self.moved, control.trim_end());
         if let Some(place) = pou.child("actions") {
             plcopen::append(self.text, place, &actions, self.edits);
         } else {
@@ -240,8 +258,8 @@ impl Writer<'_> {
 /// Height of a line of an action block.
 const ROW: i64 = 20;
 
-fn association(id: u64, y: i64) -> String {
+fn association(id: u64, y: i64, control: &str) -> String {
     format!(
-        "<action localId=\"{id}\" qualifier=\"N\"><relPosition x=\"0\" y=\"{y}\"/><reference name=\"{CONTROL}\"/></action>\n"
+        "<action localId=\"{id}\" qualifier=\"N\"><relPosition x=\"0\" y=\"{y}\"/><reference name=\"{control}\"/></action>\n"
     )
 }

@@ -1,6 +1,6 @@
 //! A project in PLCopen XML as a whole: one file, with its changes and all that is the shim's.
 
-use super::chart_plan::{Plan as ChartPlan, charts};
+use super::chart_plan::Plan as ChartPlan;
 use super::edits::{Edited, Edits};
 use super::motion_use::Motion;
 use super::plain::Plain;
@@ -10,7 +10,6 @@ use super::tasks::TaskTable;
 use super::{File, InstrumentError, clock, plcopen, plcopen_chart};
 use crate::diagnostic::{Code, Diagnostic, Diagnostics};
 use crate::input::xml::Element;
-use crate::syntax::ast::PouKind;
 use crate::syntax::{FileId, SourceFile, Span};
 
 impl Plain {
@@ -36,11 +35,6 @@ impl Plain {
                 .map_err(|message| self.refused(pou.name.span, message))?;
         }
         for pou in &survey.charts {
-            if let Some(inner) = charts(pou).find(|chart| chart.kind == PouKind::Action) {
-                let message =
-                    "a chart in an action in PLCopen XML is not put on virtual time: make it a function block";
-                return Err(self.refused(inner.name.span, message));
-            }
             let number = tasks.numbered().find(|(numbered, _)| std::ptr::eq(*numbered, *pou));
             let number = number.map(|(_, number)| (number, line.as_str()));
             let element = plcopen::element(pou, &root).map_err(|message| self.refused(pou.name.span, message))?;

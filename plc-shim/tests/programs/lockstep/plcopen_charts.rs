@@ -11,6 +11,7 @@ use crate::plcopen::{block, contact, input as variable, output, pou, project, ra
 use crate::rig::{MS, task};
 use crate::sfc::chart::{Chart, INPUTS, arbitrary_part};
 use crate::sfc::drawn::{Step, Transition, chart, condition, negated};
+use crate::sfc::plcopen::chart_in_an_action;
 
 const MIXER: &str = include_str!("../../inputs/mixer.xml");
 
@@ -164,6 +165,23 @@ fn forms() -> String {
 fn conditions_and_actions_of_every_form_give_the_same() {
     let tasks = [task("main", 5, 1, &["P", "Main"])];
     assert_equal(&forms(), &tasks, &["P.i", "P.j", "Main.i", "Main.j"]);
+}
+
+/// With statements in a step of the inner one; with the time of its step; and in a unit that is none itself.
+#[test]
+fn a_chart_in_an_action_gives_the_same() {
+    let tasks = [task("main", 5, 1, &["P"])];
+    let inputs = ["P.i", "P.stop"];
+    let given = chart_in_an_action();
+    assert_equal(&given, &tasks, &inputs);
+    let timed = given.replace("n := n + 1;", "IF Spin.T &gt; T#7ms THEN n := n + 1; END_IF;");
+    assert_ne!(timed, given);
+    assert_equal(&timed, &tasks, &inputs);
+    let (before, rest) = given.rsplit_once("<body><SFC>").expect("the unit's own chart");
+    let (_, behind) = rest.split_once("</body>").expect("its end");
+    let called = "IF i OR stop THEN Turn(); END_IF;";
+    let text = format!("{before}<body><ST><p xmlns=\"http://www.w3.org/1999/xhtml\">{called}</p></ST></body>{behind}");
+    assert_equal(&text, &tasks, &inputs);
 }
 
 /// The project that `tests/program/plcopen_schema.rs` holds against TC6's schema.

@@ -5,7 +5,7 @@ pub(crate) mod drawn;
 mod evolution;
 mod findings;
 mod interpret;
-mod plcopen;
+pub(crate) mod plcopen;
 mod random;
 mod running;
 mod timing;

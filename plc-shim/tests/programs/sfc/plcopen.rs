@@ -44,8 +44,7 @@ fn a_chart_of_xml_runs() {
 
 /// 2nd ed. Table 42, feature 4: both charts use the transition `ready` of the unit, and the inner one has statements in
 /// a step.
-#[test]
-fn a_chart_of_xml_is_the_body_of_an_action() {
+pub(crate) fn chart_in_an_action() -> String {
     let text = |text: &str| format!("<ST><p xmlns=\"http://www.w3.org/1999/xhtml\">{text}</p></ST>");
     let go = |from: usize, to: usize, name: &str| Transition {
         from: vec![from],
@@ -69,9 +68,14 @@ fn a_chart_of_xml_is_the_body_of_an_action() {
          <transitions><transition name=\"ready\"><body>{}</body></transition></transitions>",
         text("i")
     );
-    let unit =
-        pou("program", "P", "in i : BOOL, stop : BOOL; out n : INT", "SFC", &outer).replace("</interface>", &parts);
-    let mut rig = crate::plcopen::rig(&project(&unit));
+    project(
+        &pou("program", "P", "in i : BOOL, stop : BOOL; out n : INT", "SFC", &outer).replace("</interface>", &parts),
+    )
+}
+
+#[test]
+fn a_chart_of_xml_is_the_body_of_an_action() {
+    let mut rig = crate::plcopen::rig(&chart_in_an_action());
     let mut seen = Vec::new();
     for (i, stop) in [(1, 0), (1, 0), (1, 0), (0, 0), (1, 1), (0, 0), (1, 0)] {
         rig.set("P.i", i);
