@@ -1,36 +1,25 @@
 //! Original, instrumented and not simulated, instrumented under grants: the same to the last bit.
 
-use onescan_plc_shim::{SoftPlc, Task, TaskPlan};
+use onescan_plc_shim::{Task, TaskPlan};
 
-use super::corpus::{cases, input};
-use super::driver::{Driver, Tasks, application, original, own_plan, scan, state, write};
+use super::abreast::Abreast;
+use super::corpus::cases;
+use super::driver::{Tasks, application, original, own_plan, state};
 
 /// Runs all three side by side, and compares all variables after every step.
 pub(crate) fn assert_equal(name: &str, text: &str, tasks: &[Task], inputs: &[&str], times: &[u64], form: Tasks) {
-    let mut plain = original(text, tasks);
-    let application = application(text, tasks);
-    let mut inert = SoftPlc::new(&application, &free_plan(tasks)).expect("the plan suits");
-    write(&mut inert, "SDSP_Simulated", 0);
-    let mut driver = Driver::joined(&application, &own_plan(tasks, form));
-    for (step, t_v) in times.iter().enumerate() {
-        for (index, path) in inputs.iter().enumerate() {
-            let value = input(index, step as u64);
-            write(&mut plain, path, value);
-            write(&mut inert, path, value);
-            driver.rig.set(path, value);
-        }
-        scan(&mut plain, *t_v);
-        scan(&mut inert, *t_v);
-        driver.step(*t_v);
-        // The PLC idles for a while, as its gateway is slow.
-        driver.cycles((step % 4) as u32);
-        assert_eq!(state(&plain), state(&inert), "{name}: not simulated, t_v = {t_v}");
-        assert_eq!(state(&plain), state(&driver.rig.plc), "{name}: granted, {form:?}, t_v = {t_v}");
+    let shimmed = application(text, tasks);
+    let mut plcs = Abreast::new(original(text, tasks), &shimmed, &free_plan(tasks), &own_plan(tasks, form));
+    for (step, t_v) in (0..).zip(times) {
+        plcs.step(step, *t_v, inputs);
+        let expected = state(&plcs.plain);
+        assert_eq!(expected, state(&plcs.inert), "{name}: not simulated, t_v = {t_v}");
+        assert_eq!(expected, state(plcs.granted()), "{name}: granted, {form:?}, t_v = {t_v}");
     }
 }
 
 /// The tasks as they were, and the scheduler.
-fn free_plan(tasks: &[Task]) -> TaskPlan {
+pub(crate) fn free_plan(tasks: &[Task]) -> TaskPlan {
     let mut plan = vec![Task { priority: 0, ..crate::rig::task("sdsp", 1, 0, &["SDSP_Scheduler"]) }];
     plan.extend(tasks.iter().cloned());
     TaskPlan::new(plan)

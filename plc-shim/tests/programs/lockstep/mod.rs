@@ -1,6 +1,7 @@
 //! Instrumented programs (seed: Carlsson et al. 2012, sec. V): the same outputs at the same virtual times,
 //! whatever becomes of the grants.
 
+mod abreast;
 mod charts;
 mod configurations;
 mod corpus;

@@ -4,8 +4,9 @@ use onescan_plc_shim::instrument::{Options, Target, diff, instrument};
 use onescan_plc_shim::{Application, SoftPlc, Task, TaskPlan};
 use proptest::prelude::*;
 
-use super::corpus::input;
+use super::abreast::Abreast;
 use super::driver::{Driver, Tasks, own_plan, scan, state, write};
+use super::equivalence::free_plan;
 use super::plcopen_xml::{read, round_trip, text};
 use crate::plcopen::{block, contact, input as variable, output, pou, project, rail};
 use crate::rig::{MS, task};
@@ -30,25 +31,14 @@ pub(super) fn assert_equal(given: &str, tasks: &[Task], inputs: &[&str]) {
             continue;
         }
         let shimmed = compiled(&text(&project));
-        let mut plain = SoftPlc::new(&compiled(given), &TaskPlan::new(tasks.to_vec())).expect("the plan suits");
-        let free = [&[Task { priority: 0, ..task("sdsp", 1, 0, &["SDSP_Scheduler"]) }], tasks].concat();
-        let mut inert = SoftPlc::new(&shimmed, &TaskPlan::new(free)).expect("the plan suits");
-        write(&mut inert, "SDSP_Simulated", 0);
-        let mut driver = Driver::joined(&shimmed, &own_plan(tasks, Tasks::Moved));
+        let plain = SoftPlc::new(&compiled(given), &TaskPlan::new(tasks.to_vec())).expect("the plan suits");
+        let mut plcs = Abreast::new(plain, &shimmed, &free_plan(tasks), &own_plan(tasks, Tasks::Moved));
         for step in 1..120_u64 {
             let t_v = step * 5 * MS;
-            for (index, path) in inputs.iter().enumerate() {
-                let value = input(index, step);
-                write(&mut plain, path, value);
-                write(&mut inert, path, value);
-                driver.rig.set(path, value);
-            }
-            scan(&mut plain, t_v);
-            scan(&mut inert, t_v);
-            driver.step(t_v);
-            driver.cycles((step % 4) as u32);
-            assert_eq!(changing(&plain), changing(&inert), "not simulated, t_v = {t_v}\n{}", text(&project));
-            assert_eq!(changing(&plain), changing(&driver.rig.plc), "granted, t_v = {t_v}\n{}", text(&project));
+            plcs.step(step, t_v, inputs);
+            let expected = changing(&plcs.plain);
+            assert_eq!(expected, changing(&plcs.inert), "not simulated, t_v = {t_v}\n{}", text(&project));
+            assert_eq!(expected, changing(plcs.granted()), "granted, t_v = {t_v}\n{}", text(&project));
         }
     }
 }

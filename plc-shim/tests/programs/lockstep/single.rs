@@ -6,8 +6,8 @@ use onescan_plc_shim::input::kind::SourceKind;
 use onescan_plc_shim::instrument::{Options, Target, diff, instrument, remove};
 use onescan_plc_shim::{Application, Input, SoftPlc, Task, TaskPlan};
 
-use super::corpus::input;
-use super::driver::{Driver, Tasks, scan, state, write};
+use super::abreast::Abreast;
+use super::driver::{Tasks, state};
 use super::equivalence;
 use crate::rig::{MS, task};
 
@@ -38,29 +38,18 @@ fn all(plc: &SoftPlc, paths: &[&str]) -> BTreeMap<String, Vec<u8>> {
 /// Runs a project with a CONFIGURATION on its own clock, not simulated, and under the scheduler, side by side.
 pub(crate) fn assert_equal(text: &str, globals: &[&str], inputs: &[&str], times: &[u64]) {
     let (plain, plan) = compiled(&[("cell.st".to_owned(), text.to_owned())]);
-    let mut plain = SoftPlc::new(&plain, &plan).expect("the plan suits");
+    let plain = SoftPlc::new(&plain, &plan).expect("the plan suits");
     let (shimmed, plan) = compiled(&instrumented(text));
-    let mut inert = SoftPlc::new(&shimmed, &plan).expect("the plan suits");
-    write(&mut inert, "SDSP_Simulated", 0);
-    let mut driver = Driver::joined(&shimmed, &plan);
-    for (step, t_v) in times.iter().enumerate() {
-        for (index, path) in inputs.iter().enumerate() {
-            let value = input(index, step as u64);
-            write(&mut plain, path, value);
-            write(&mut inert, path, value);
-            driver.rig.set(path, value);
-        }
-        scan(&mut plain, *t_v);
-        scan(&mut inert, *t_v);
-        driver.step(*t_v);
-        driver.cycles((step % 4) as u32);
-        let expected = all(&plain, globals);
+    let mut plcs = Abreast::new(plain, &shimmed, &plan, &plan);
+    for (step, t_v) in (0..).zip(times) {
+        plcs.step(step, *t_v, inputs);
+        let expected = all(&plcs.plain, globals);
         assert!(expected.len() > globals.len());
         // What falls from outside is seen when the scheduler has run: a cycle late for an interval that is suspended.
         if !text.contains("SINGLE := i, INTERVAL") {
-            assert_eq!(expected, all(&inert, globals), "not simulated, t_v = {t_v}\n{text}");
+            assert_eq!(expected, all(&plcs.inert, globals), "not simulated, t_v = {t_v}\n{text}");
         }
-        assert_eq!(expected, all(&driver.rig.plc, globals), "granted, t_v = {t_v}\n{text}");
+        assert_eq!(expected, all(plcs.granted(), globals), "granted, t_v = {t_v}\n{text}");
     }
 }
 

@@ -1,0 +1,41 @@
+//! Three PLCs side by side: the original on its own clock, the instrumented one that is not simulated, and the
+//! instrumented one under grants.
+
+use onescan_plc_shim::{Application, SoftPlc, TaskPlan};
+
+use super::corpus::input;
+use super::driver::{Driver, scan, write};
+
+pub(crate) struct Abreast {
+    pub(crate) plain: SoftPlc,
+    pub(crate) inert: SoftPlc,
+    pub(crate) driver: Driver,
+}
+
+impl Abreast {
+    /// `free` has the tasks as they were and the scheduler, `granted` those of a PLC under grants.
+    pub(crate) fn new(plain: SoftPlc, shimmed: &Application, free: &TaskPlan, granted: &TaskPlan) -> Self {
+        let mut inert = SoftPlc::new(shimmed, free).expect("the plan suits");
+        write(&mut inert, "SDSP_Simulated", 0);
+        Self { plain, inert, driver: Driver::joined(shimmed, granted) }
+    }
+
+    /// All go to `t_v` with the same inputs; the granted PLC idles behind it for a while, as its gateway is slow.
+    pub(crate) fn step(&mut self, step: u64, t_v: u64, inputs: &[&str]) {
+        for (index, path) in inputs.iter().enumerate() {
+            let value = input(index, step);
+            write(&mut self.plain, path, value);
+            write(&mut self.inert, path, value);
+            self.driver.rig.set(path, value);
+        }
+        scan(&mut self.plain, t_v);
+        scan(&mut self.inert, t_v);
+        self.driver.step(t_v);
+        self.driver.cycles((step % 4) as u32);
+    }
+
+    /// The one under grants.
+    pub(crate) fn granted(&self) -> &SoftPlc {
+        &self.driver.rig.plc
+    }
+}
