@@ -158,7 +158,7 @@ impl<'a> TaskTable<'a> {
             ("SDSP_INTERVALS", list(&|row| row.interval_ns)),
             ("SDSP_PRIORITIES", list(&|row| u64::from(row.priority))),
             ("SDSP_FIRSTS", list(&|row| row.first as u64)),
-            ("SDSP_FINALS", list(&|row| (row.first + row.count) as u64 - 1)),
+            ("SDSP_REARS", list(&|row| (row.first + row.count) as u64 - 1)),
             ("SDSP_BACKGROUND", self.background().to_string()),
         ]
     }
