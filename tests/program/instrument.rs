@@ -163,6 +163,7 @@ fn what_is_wrong_is_told() {
     write("none.st", "FUNCTION_BLOCK F END_FUNCTION_BLOCK\n");
     write("line.L5X", "<RSLogix5000Content/>");
     write("wrong.st", "PROGRAM P x := ; END_PROGRAM\n");
+    write("sdsp.st", "(*@sdsp file*)\nPROGRAM SDSP_Scheduler ; END_PROGRAM\n");
     let say = |words: &[&str]| {
         let said = instrumented(folder.path(), words);
         format!("{:?}\n{}{}", said.code, said.out, said.err)
@@ -176,6 +177,8 @@ fn what_is_wrong_is_told() {
         say(&["clock.st", "--diff", "--task", "a:1ms=P"]),
         say(&["clock.st"]),
         say(&["line.L5X", "--diff"]),
+        say(&["clock.st", "--diff", "--target", "l5x"]),
+        say(&["sdsp.st", "--diff"]),
         say(&["clock.st", "--diff", "--target", "scl"]),
         say(&["class.st", "--target", "codesys", "-o", "no"]),
     ];

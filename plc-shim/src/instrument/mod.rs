@@ -97,6 +97,9 @@ pub enum InstrumentError {
     /// There is nothing to run.
     #[error("there is no PROGRAM that a task could run")]
     NoPrograms,
+    /// There is only what the shim has made.
+    #[error("{0} is the shim's own: give the sources that it was made of, too")]
+    OnlyOwn(String),
     /// Two changes want the same part of a file.
     #[error("{file}: {conflict}")]
     Conflict {
@@ -170,6 +173,9 @@ impl File {
 /// Text or tasks are wrong; see [`InstrumentError`].
 pub fn instrument(inputs: &[Input], options: &Options) -> Result<Project, InstrumentError> {
     let plain = Plain::of(&port::read_by(options.target, inputs))?;
+    if let Some(own) = plain.only_own() {
+        return Err(InstrumentError::OnlyOwn(own.to_owned()));
+    }
     match port::ported(&plain, options) {
         Some(ported) => ported,
         None => Ok(attach(&plain, options)?.project),

@@ -93,6 +93,11 @@ impl Plain {
         }
     }
 
+    /// A file of the shim's own, if there is no other.
+    pub(super) fn only_own(&self) -> Option<&str> {
+        self.own.first().filter(|_| self.given.is_empty() && self.findings.is_empty()).map(|own| own.name.as_str())
+    }
+
     /// True for a project in PLCopen XML, which is one file.
     pub(super) fn is_xml(&self) -> bool {
         self.kinds.contains(&SourceKind::PlcOpen)

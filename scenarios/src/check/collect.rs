@@ -79,10 +79,7 @@ impl Files {
         // A missing file is told before its wrong name.
         std::fs::metadata(path).map_err(|source| unreadable(path, source))?;
         if path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("l5x")) {
-            let help = "its timers and motion instructions are the controller's own and have no form in IEC 61131-3; \
-                write the program in Structured Text, or let the controller take part as it is by a gateway";
-            let message = format!("{}: projects of Logix controllers are not read", path.display());
-            return Err(RunError::usage(message, Some(help.to_owned())));
+            return Err(logix(&path.display().to_string()));
         }
         let known: Vec<_> = EXTENSIONS.iter().map(|(extension, _)| format!(".{extension}")).collect();
         let help = format!("files with PLC sources end in {}", known.join(" "));
@@ -172,4 +169,11 @@ fn is_whole(path: &Path) -> bool {
 
 fn unreadable(path: &Path, source: std::io::Error) -> RunError {
     RunError::File { path: path.to_owned(), source }
+}
+
+/// Why neither files nor targets of Logix controllers are taken: `docs/decisions/007`.
+pub fn logix(what: &str) -> RunError {
+    let help = "its timers and motion instructions are the controller's own and have no form in IEC 61131-3; \
+        write the program in Structured Text, or let the controller take part as it is by a gateway";
+    RunError::usage(format!("{what}: projects of Logix controllers are not read or written"), Some(help.to_owned()))
 }

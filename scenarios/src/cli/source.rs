@@ -8,6 +8,7 @@ use onescan_plc_shim::{Dialect, Task};
 use onescan_server::time::TimeSpan;
 
 use super::value::FormatArg;
+use crate::check::collect::logix;
 use crate::check::{self, CheckConfig, CheckFormat, Warnings};
 use crate::instrument::{Destination, Diff, Direction, InstrumentConfig};
 use crate::run::error::{ExitCode, RunError};
@@ -136,15 +137,19 @@ pub enum TargetArg {
     Codesys,
     /// SCL as TIA Portal imports it
     Scl,
+    /// Refused with its reason
+    #[value(hide = true)]
+    L5x,
 }
 
-impl From<TargetArg> for Target {
-    fn from(arg: TargetArg) -> Self {
-        match arg {
-            TargetArg::Iec => Self::Iec,
-            TargetArg::Twincat => Self::TwinCat,
-            TargetArg::Codesys => Self::Codesys,
-            TargetArg::Scl => Self::Scl,
+impl TargetArg {
+    fn target(self) -> Result<Target, RunError> {
+        match self {
+            Self::Iec => Ok(Target::Iec),
+            Self::Twincat => Ok(Target::TwinCat),
+            Self::Codesys => Ok(Target::Codesys),
+            Self::Scl => Ok(Target::Scl),
+            Self::L5x => Err(logix("--target l5x")),
         }
     }
 }
@@ -162,7 +167,7 @@ pub fn instrument(args: InstrumentArgs) -> Result<ExitCode, RunError> {
     let config = InstrumentConfig {
         project: args.project,
         direction: if args.remove { Direction::Remove } else { Direction::Attach },
-        target: args.target.into(),
+        target: args.target.target()?,
         tasks: args.tasks,
         destination,
         diff: if args.diff { Diff::Shown } else { Diff::Hidden },
