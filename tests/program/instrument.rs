@@ -163,7 +163,7 @@ fn what_is_wrong_is_told() {
     write("none.st", "FUNCTION_BLOCK F END_FUNCTION_BLOCK\n");
     write("line.L5X", "<RSLogix5000Content/>");
     write("wrong.st", "PROGRAM P x := ; END_PROGRAM\n");
-    write("sdsp.st", "(*@sdsp file*)\nPROGRAM SDSP_Scheduler ; END_PROGRAM\n");
+    write("own.st", "(*@sdsp file*)\nPROGRAM SDSP_Scheduler ; END_PROGRAM\n");
     let say = |words: &[&str]| {
         let said = instrumented(folder.path(), words);
         format!("{:?}\n{}{}", said.code, said.out, said.err)
@@ -178,7 +178,7 @@ fn what_is_wrong_is_told() {
         say(&["clock.st"]),
         say(&["line.L5X", "--diff"]),
         say(&["clock.st", "--diff", "--target", "l5x"]),
-        say(&["sdsp.st", "--diff"]),
+        say(&["own.st", "--diff"]),
         say(&["clock.st", "--diff", "--target", "scl"]),
         say(&["class.st", "--target", "codesys", "-o", "no"]),
     ];
