@@ -6,8 +6,9 @@ use onescan_plc_shim::input::kind::SourceKind;
 use onescan_plc_shim::instrument::{InstrumentError, Options, Project, Target, instrument};
 use onescan_plc_shim::{Application, Input, SoftPlc, Task, TaskPlan};
 
-use super::corpus::{cases, input};
-use super::driver::{Driver, Tasks, original, own_plan, scan, write};
+use super::abreast::Abreast;
+use super::corpus::cases;
+use super::driver::{Tasks, original, own_plan};
 use super::random::{statements, two_programs};
 use crate::rig::{MS, task};
 
@@ -71,30 +72,18 @@ fn same_in(project: &Project, plc: &SoftPlc, wanted: &[(String, Vec<u8>)]) -> Ve
 fn assert_equal(name: &str, text: &str, tasks: &[Task], inputs: &[&str], project: &Project) {
     let shimmed = Application::from_sources([("sdsp.scl", written(project))]).unwrap_or_else(|found| panic!("{found}"));
     let own = project.tasks.clone().expect("tasks of its own");
-    let free = [vec![task("sdsp", 1, 0, &["SDSP_Scheduler"])], own.clone()].concat();
+    let free = TaskPlan::new([vec![task("sdsp", 1, 0, &["SDSP_Scheduler"])], own.clone()].concat());
     for form in [Tasks::Kept, Tasks::Moved] {
-        let mut plain = original(text, tasks);
-        let mut inert = SoftPlc::new(&shimmed, &TaskPlan::new(free.clone())).expect("the plan suits");
-        write(&mut inert, "SDSP.SDSP_Simulated", 0);
-        let mut driver = Driver::joined_in("SDSP.", &shimmed, &own_plan(&own, form));
+        let mut plcs = Abreast::new_in("SDSP.", original(text, tasks), &shimmed, &free, &own_plan(&own, form));
         for step in 1..120 {
             let now = step * 5 * MS;
-            for (index, path) in inputs.iter().enumerate() {
-                let value = input(index, step);
-                write(&mut plain, path, value);
-                write(&mut inert, &project.path(path), value);
-                driver.rig.set(&project.path(path), value);
-            }
-            scan(&mut plain, now);
-            scan(&mut inert, now);
-            driver.step(now);
-            driver.cycles((step % 4) as u32);
-            let wanted = outputs(&plain);
+            plcs.step_where(step, now, inputs, &|path| project.path(path));
+            let wanted = outputs(&plcs.plain);
             // Axes have no clock of the PLC's own to move by.
             if !text.contains("AXIS_REF") {
-                assert_eq!(wanted, same_in(project, &inert, &wanted), "{name}: not simulated, t_v = {now}");
+                assert_eq!(wanted, same_in(project, &plcs.inert, &wanted), "{name}: not simulated, t_v = {now}");
             }
-            assert_eq!(wanted, same_in(project, &driver.rig.plc, &wanted), "{name}: granted, {form:?}, t_v = {now}");
+            assert_eq!(wanted, same_in(project, plcs.granted(), &wanted), "{name}: granted, {form:?}, t_v = {now}");
         }
     }
 }
