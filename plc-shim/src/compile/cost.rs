@@ -50,9 +50,9 @@ impl Costs {
             let Some(own) = sizes.get(id) else { continue };
             let inside = own.calls.iter().filter_map(|callee| costs.units.get(callee));
             let inside: u32 = inside.filter(|cost| cost.inlined).map(|cost| cost.size).fold(0, u32::saturating_add);
-            // What may come back to itself is guarded at its beginning, which only a function has.
             let is_inside = |callee: PouId| costs.units.get(&callee).is_some_and(|cost| cost.inside);
             let stays_inside = pous.get(id).is_some_and(|pou| reach::stays_inside(pou, &is_inside));
+            // What may come back to itself is guarded at its beginning, which only a function has.
             let guarded = pous.get(id).is_none_or(|pou| pou.guard != Guard::None);
             let cost = costs.units.entry(*id).or_default();
             cost.inside = stays_inside;

@@ -119,24 +119,28 @@ impl<'s, 'p> Emitter<'s, 'p> {
         self.frames.last().map_or(0, |frame| frame.unit)
     }
 
+    fn mark(&mut self, kind: MarkKind, span: Span) {
+        self.marks.push((self.code.len(), Mark { span, kind, unit: self.unit() }));
+    }
+
     /// Says that a statement begins here.
     pub(super) fn mark_statement(&mut self, span: Span) {
-        self.marks.push((self.code.len(), Mark { span, kind: MarkKind::Statement, unit: self.unit() }));
+        self.mark(MarkKind::Statement, span);
     }
 
     /// Says what it means if the next instruction traps.
     pub(super) fn mark_fault(&mut self, fault: FaultKind, span: Span) {
-        self.marks.push((self.code.len(), Mark { span, kind: MarkKind::Fault(fault), unit: self.unit() }));
+        self.mark(MarkKind::Fault(fault), span);
     }
 
     /// Says what the next instruction calls.
     pub(super) fn mark_call(&mut self, callee: Callee, span: Span) {
-        self.marks.push((self.code.len(), Mark { span, kind: MarkKind::Call(callee), unit: self.unit() }));
+        self.mark(MarkKind::Call(callee), span);
     }
 
     /// Says that the next instruction is a branch that is taken as a rule: what lies behind it goes out of the way.
     pub(super) fn mark_likely(&mut self, span: Span) {
-        self.marks.push((self.code.len(), Mark { span, kind: MarkKind::Likely, unit: self.unit() }));
+        self.mark(MarkKind::Likely, span);
     }
 
     /// Stops the PLC if the value on the stack is not 0.

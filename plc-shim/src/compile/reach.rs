@@ -73,8 +73,8 @@ impl Reach<'_> {
     }
 
     fn instance(&self, call: &InstanceCall) -> bool {
-        self.target(&call.instance)
-            && matches!(call.instance.storage, Storage::Instance(_))
+        matches!(call.instance.storage, Storage::Instance(_))
+            && self.place(&call.instance)
             && call.dispatch == Dispatch::Direct
             && (self.is_known)(call.pou)
             && self.statements(&call.inputs)

@@ -11,7 +11,7 @@ use super::edits::Edits;
 use super::marks;
 use super::plcopen_unit as unit;
 use super::target::Sources;
-use super::tasks::TaskTable;
+use super::tasks::{TaskTable, duration};
 use super::template::{self, Controller, Number};
 use crate::input::plcopen_instances;
 use crate::input::xml::{self, Element};
@@ -290,14 +290,12 @@ fn alone(root: &Element, text: &str, globals: &str, edits: &mut Edits) -> Option
 
 /// The scheduler's task, its interval written as the others are.
 fn cycle(configuration: &Element, tasks: &TaskTable<'_>) -> String {
-    let ns = tasks.shortest_ns();
+    let ns = tasks.shortest_ns;
     let is_schema = |task: &&Element| task.attribute("interval").is_some_and(|found| found.value.starts_with("PT"));
     let interval = if all(configuration, "task").iter().any(is_schema) {
         format!("PT{}.{:09}S", ns / 1_000_000_000, ns % 1_000_000_000)
-    } else if ns.is_multiple_of(1_000_000) {
-        format!("T#{}ms", ns / 1_000_000)
     } else {
-        format!("T#{}.{:06}ms", ns / 1_000_000, ns % 1_000_000)
+        duration(ns)
     };
     format!(
         "<task name=\"SDSP_Cycle\" priority=\"0\" interval=\"{interval}\">\n<pouInstance name=\"SDSP\" \

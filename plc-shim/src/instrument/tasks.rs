@@ -19,8 +19,8 @@ const DEFAULT_NS: u64 = 10_000_000;
 pub(super) struct TaskTable<'a> {
     pub(super) rows: Vec<Row>,
     pub(super) programs: Vec<Entry<'a>>,
-    /// The shortest interval, of tasks without programs too: so fine the PLC's clock is to be.
-    shortest_ns: u64,
+    /// The interval of the scheduler's task: the shortest of all, of tasks without programs too.
+    pub(super) shortest_ns: u64,
     line: Line,
 }
 
@@ -97,11 +97,6 @@ impl<'a> TaskTable<'a> {
         })
     }
 
-    /// The interval of the scheduler's task.
-    pub(super) fn shortest_ns(&self) -> u64 {
-        self.shortest_ns
-    }
-
     /// The number of an instance that must be told it.
     pub(super) fn number_of_instance(&self, name: &str) -> Option<usize> {
         let at = self.programs.iter().position(|entry| entry.name == name)?;
@@ -167,6 +162,12 @@ impl<'a> TaskTable<'a> {
 /// The interval of the scheduler's task: the shortest of the others' own.
 pub(super) fn shortest_ns(intervals: impl Iterator<Item = u64>) -> u64 {
     intervals.filter(|interval| *interval > ALWAYS_NS).min().unwrap_or(DEFAULT_NS)
+}
+
+/// A duration as the standard writes it, in milliseconds.
+pub(super) fn duration(ns: u64) -> String {
+    let (whole, part) = (ns / 1_000_000, ns % 1_000_000);
+    if part == 0 { format!("T#{whole}ms") } else { format!("T#{whole}.{part:06}ms") }
 }
 
 fn check(tasks: &[Task]) -> Result<(), RunError> {

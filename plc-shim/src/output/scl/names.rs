@@ -143,7 +143,7 @@ impl<'a> Names<'a> {
     fn add_type(&mut self, named: &'a TypeDeclaration) {
         self.types.insert(named.name.key(), named);
         let TypeSpecKind::Enumeration(values, base) = &named.spec.kind else { return };
-        let base = base.as_ref().and_then(|base| ElementaryType::find(&base.text)).unwrap_or(ElementaryType::Int);
+        let base = base_of(base.as_ref());
         let mut next = 0;
         for value in values {
             let number = self.number(value).unwrap_or(next);
@@ -176,17 +176,17 @@ impl<'a> Names<'a> {
 
     /// A constant expression's value, if the text tells it.
     pub(super) fn integer(&self, expr: &Expr) -> Option<i128> {
-        self.integer_with(expr, &Constants::new())
+        integer(constant::value(expr, &self.constants)?)
     }
 
     /// The same in a unit that declares constants of its own.
     pub(super) fn integer_with(&self, expr: &Expr, own: &Constants<'_>) -> Option<i128> {
+        if own.is_empty() {
+            return self.integer(expr);
+        }
         let mut all: Constants<'_> = self.constants.clone();
         all.extend(own.iter().map(|(key, value)| (key.clone(), *value)));
-        match constant::value(expr, &all)? {
-            Constant::Integer(value) => Some(value),
-            Constant::Duration(_) => None,
-        }
+        integer(constant::value(expr, &all)?)
     }
 
     /// The value of an enumeration by its name; `of` is the enumeration, if it is named.
@@ -215,10 +215,7 @@ impl<'a> Names<'a> {
         if let Some(named) = self.types.get(&key) {
             return match &named.spec.kind {
                 TypeSpecKind::Struct(fields) => Some(Shape::Structure(fields)),
-                TypeSpecKind::Enumeration(_, base) => {
-                    let base = base.as_ref().and_then(|base| ElementaryType::find(&base.text));
-                    Some(Shape::Enumeration(base.unwrap_or(ElementaryType::Int)))
-                }
+                TypeSpecKind::Enumeration(_, base) => Some(Shape::Enumeration(base_of(base.as_ref()))),
                 // A checked project has no circles of aliases.
                 _ => self.shape(&named.spec),
             };
@@ -272,6 +269,18 @@ impl<'a> Names<'a> {
             _ => Some(GLOBALS),
         }
     }
+}
+
+fn integer(value: Constant) -> Option<i128> {
+    match value {
+        Constant::Integer(value) => Some(value),
+        Constant::Duration(_) => None,
+    }
+}
+
+/// What holds a value of an enumeration with this base, or without one.
+fn base_of(base: Option<&Ident>) -> ElementaryType {
+    base.and_then(|base| ElementaryType::find(&base.text)).unwrap_or(ElementaryType::Int)
 }
 
 /// Blocks and types that instrumenting puts others in the place of.

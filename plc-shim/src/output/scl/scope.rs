@@ -95,8 +95,8 @@ impl<'a> Scope<'a> {
         if let Some(pou) = names.units.get(&key) {
             return names.shape(pou.result.as_ref()?)?.elementary();
         }
-        if let Some((_, to)) = key.split_once("_TO_").or(key.split_once("TO_").filter(|(before, _)| before.is_empty()))
-        {
+        let to = key.split_once("_TO_").map(|(_, to)| to).or_else(|| key.strip_prefix("TO_"));
+        if let Some(to) = to {
             return ElementaryType::find(to);
         }
         let inputs = super::call::values(call);

@@ -16,6 +16,11 @@ pub(super) fn refused(span: Span, what: &str, help: &str) -> Diagnostic {
     Diagnostic::error(Code::UnsupportedFeature, span, message).with_help(help.to_owned())
 }
 
+/// Members that share bytes are none of SCL's.
+pub(super) fn refused_union(span: Span) -> Diagnostic {
+    refused(span, "unions in its types", "use parts of one bit string: `a.%X3`")
+}
+
 /// TIA Portal's spelling of an elementary type; nothing for one that it lacks or has in another form.
 pub(super) fn elementary(ty: ElementaryType) -> Option<&'static str> {
     use ElementaryType as E;
@@ -81,7 +86,8 @@ impl<'a> Writer<'_, 'a> {
                 self.refuse(spec.span, &what, "pass the variable as VAR_IN_OUT")
             }
             TypeSpecKind::Union(_) | TypeSpecKind::Overlapping(_) => {
-                self.refuse(spec.span, "unions in its types", "use parts of one bit string: `a.%X3`")
+                self.findings.push(refused_union(spec.span));
+                String::new()
             }
             TypeSpecKind::Instance(..) => {
                 self.refuse(spec.span, "arguments of FB_init", "assign the inputs in the first scan")

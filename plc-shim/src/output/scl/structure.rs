@@ -26,7 +26,7 @@ pub(super) fn structure<'a>(
         findings.push(refused(base.span, "structures that extend others", "declare a member of that structure"));
     }
     if matches!(named.spec.kind, TypeSpecKind::Union(_) | TypeSpecKind::Overlapping(_)) {
-        findings.push(refused(named.name.span, "unions in its types", "use parts of one bit string: `a.%X3`"));
+        findings.push(spec::refused_union(named.name.span));
     }
     let TypeSpecKind::Struct(fields) = &named.spec.kind else { return None };
     let mut edits = Edits::default();
