@@ -121,7 +121,7 @@ impl RunError {
     pub fn exit_code(&self) -> ExitCode {
         match self {
             Self::Formation(
-                FormationError::Missing { .. } | FormationError::Interrupted { .. } | FormationError::Remote(_),
+                FormationError::Missing { .. } | FormationError::Interrupted { .. } | FormationError::Connection(_),
             )
             | Self::ClientProcess { .. }
             | Self::Spawn { .. }
