@@ -1,11 +1,11 @@
 //! What operators do to a session, as data: each at a step boundary, in an order.
 
+use onescan_base::value::BadText;
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
 use crate::session::Control;
 use crate::signal::SignalName;
-use crate::signal::value::BadText;
 use crate::time::{StepCount, VirtualTime};
 
 /// What an operator does. Values are text as in a recording: `1`, `-3.5`; `TRUE` and `FALSE` too.

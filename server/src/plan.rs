@@ -177,7 +177,7 @@ fn rank_order(coupling: &Coupling<ClientName>, clients: &[ClientName]) -> Result
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::signal::ElementaryType;
+    use crate::signal::SignalType;
 
     fn client(name: &str) -> ClientName {
         ClientName::new(name).unwrap()
@@ -186,7 +186,7 @@ mod tests {
     fn signal(name: &str, writer: Option<&str>) -> SignalDecl {
         SignalDecl {
             name: SignalName::new(name).unwrap(),
-            ty: ElementaryType::Bool,
+            ty: SignalType::BOOL,
             writer: writer.map(client),
             unit: None,
         }

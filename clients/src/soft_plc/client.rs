@@ -190,7 +190,7 @@ impl Client for SoftPlcClient {
         for run in &self.inputs {
             run.give(inputs, memory);
         }
-        let scanned = self.plc.scan(onescan_plc_shim::VirtualTime::from_ns(t_v.as_nanos()));
+        let scanned = self.plc.scan(onescan_plc_shim::VirtualTime::from_nanos(t_v.as_nanos()));
         if let Some(tracing) = &self.tracing {
             tracing.note(&self.plc, t_v);
         }
@@ -200,7 +200,7 @@ impl Client for SoftPlcClient {
         Ok(if self.plc.wants_every_step() {
             Wake::NextPeriod
         } else {
-            Wake::At(VirtualTime::from_nanos(self.plc.next_due().as_ns()))
+            Wake::At(VirtualTime::from_nanos(self.plc.next_due().as_nanos()))
         })
     }
 

@@ -3,7 +3,8 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use super::elementary::ElementaryType;
+use onescan_base::ElementaryType;
+
 use super::pou::PouId;
 use super::text::TextShape;
 use crate::syntax::ast::ReferenceKind;

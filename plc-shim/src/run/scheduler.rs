@@ -4,7 +4,8 @@
 //! looked at when a scan begins and after each task; an edge starts a task at most once a scan, a
 //! later one waits for the next scan.
 
-use super::VirtualTime;
+use onescan_base::VirtualTime;
+
 use super::plan::TaskPlan;
 
 /// What is never due.
@@ -78,7 +79,7 @@ impl Scheduler {
 
     /// After a start at `now`, every task is due one interval later.
     pub(super) fn restart_at(&mut self, now: VirtualTime) {
-        self.tasks.iter_mut().for_each(|task| task.restart(now.as_ns()));
+        self.tasks.iter_mut().for_each(|task| task.restart(now.as_nanos()));
     }
 
     /// Begins a scan: edges may start tasks again.
@@ -89,7 +90,7 @@ impl Scheduler {
     /// Looks at the SINGLE inputs. While one is TRUE, its task's interval is suspended
     /// (2nd ed. 2.7.2).
     pub(super) fn look(&mut self, now: VirtualTime, memory: &[u8]) {
-        let now = now.as_ns();
+        let now = now.as_nanos();
         for task in &mut self.tasks {
             let Some(offset) = task.single else { continue };
             let level = memory.get(offset).is_some_and(|byte| *byte != 0);
@@ -106,7 +107,7 @@ impl Scheduler {
     /// Takes the next task that waits at `now`: by priority, then the one that waits longest,
     /// then the one declared first. A task that missed intervals runs once for all of them.
     pub(super) fn take_due(&mut self, now: VirtualTime) -> Option<usize> {
-        let now = now.as_ns();
+        let now = now.as_nanos();
         let waiting = self.tasks.iter().enumerate();
         let waiting = waiting.filter_map(|(index, task)| Some((task.priority, task.waits_since(now)?, index)));
         let (_, _, index) = waiting.min()?;
@@ -121,7 +122,7 @@ impl Scheduler {
 
     /// When the first task is due by its interval; the end of time if none has one.
     pub(super) fn next_due(&self) -> VirtualTime {
-        VirtualTime::from_ns(self.tasks.iter().map(|task| task.waiting.due_ns).min().unwrap_or(NEVER))
+        VirtualTime::from_nanos(self.tasks.iter().map(|task| task.waiting.due_ns).min().unwrap_or(NEVER))
     }
 
     /// Greatest common divisor of the intervals; 0 if there are none.
@@ -165,7 +166,7 @@ mod tests {
     }
 
     fn due(scheduler: &mut Scheduler, now: u64, memory: &[u8]) -> Vec<usize> {
-        let now = VirtualTime::from_ns(now);
+        let now = VirtualTime::from_nanos(now);
         scheduler.begin_scan();
         std::iter::from_fn(|| {
             scheduler.look(now, memory);
@@ -180,7 +181,7 @@ mod tests {
         assert_eq!(tasks.period_ns(), 5);
         assert!(due(&mut tasks, 9, &[]).is_empty());
         assert_eq!(due(&mut tasks, 10, &[]), [0, 2]);
-        assert_eq!(tasks.next_due(), VirtualTime::from_ns(15));
+        assert_eq!(tasks.next_due(), VirtualTime::from_nanos(15));
         assert_eq!(due(&mut tasks, 20, &[]), [1, 3, 0, 2]);
     }
 
@@ -188,7 +189,7 @@ mod tests {
     fn missed_intervals_run_once() {
         let mut tasks = scheduler(&[(10, 0)], &[None]);
         assert_eq!(due(&mut tasks, 35, &[]), [0]);
-        assert_eq!(tasks.next_due(), VirtualTime::from_ns(40));
+        assert_eq!(tasks.next_due(), VirtualTime::from_nanos(40));
     }
 
     #[test]
@@ -215,7 +216,7 @@ mod tests {
     #[test]
     fn an_edge_in_the_scan_of_its_task_waits_for_the_next() {
         let mut tasks = scheduler(&[(0, 0)], &[Some(0)]);
-        let now = VirtualTime::from_ns(1);
+        let now = VirtualTime::from_nanos(1);
         tasks.begin_scan();
         tasks.look(now, &[1]);
         assert_eq!(tasks.take_due(now), Some(0));

@@ -2,7 +2,8 @@
 
 use std::ops::Range;
 
-use super::VirtualTime;
+use onescan_base::VirtualTime;
+
 use super::fault::{self, PlcFault, WriteSite, explain};
 use super::force::Forces;
 use super::machine::{Machine, Occasion, Trapped};
@@ -159,7 +160,7 @@ impl SoftPlc {
 
     /// Gives a task its virtual time and its budget.
     fn begin_task(&mut self) {
-        let time = self.now.as_ns().to_le_bytes();
+        let time = self.now.as_nanos().to_le_bytes();
         copy_to(self.machine.memory_mut(), VIRTUAL_TIME_OFFSET as usize, &time);
         self.machine.refuel(self.fuel_per_task);
     }

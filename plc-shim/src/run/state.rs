@@ -12,9 +12,9 @@
 //!
 //! All numbers are little-endian.
 
+use onescan_base::VirtualTime;
 use thiserror::Error;
 
-use super::VirtualTime;
 use super::fault::{FaultSite, PlcFault};
 use super::force::Forces;
 use super::plan::TaskPlan;
@@ -79,7 +79,7 @@ impl<'m> State<'m> {
         let mut bytes = Vec::with_capacity(self.memory.len() + 256);
         bytes.extend_from_slice(&MAGIC);
         bytes.extend_from_slice(&fingerprint.to_le_bytes());
-        bytes.extend_from_slice(&self.now.as_ns().to_le_bytes());
+        bytes.extend_from_slice(&self.now.as_nanos().to_le_bytes());
         bytes.extend_from_slice(&(self.waiting.len() as u32).to_le_bytes());
         for Waiting { due_ns, edge_ns, level } in &self.waiting {
             bytes.extend_from_slice(&due_ns.to_le_bytes());
@@ -123,7 +123,7 @@ impl<'m> State<'m> {
 fn encode_fault(fault: &PlcFault, bytes: &mut Vec<u8>) {
     let kind = FaultKind::ALL.iter().position(|kind| *kind == fault.kind);
     bytes.push(kind.unwrap_or(FaultKind::ALL.len() - 1) as u8);
-    bytes.extend_from_slice(&fault.virtual_time.as_ns().to_le_bytes());
+    bytes.extend_from_slice(&fault.virtual_time.as_nanos().to_le_bytes());
     bytes.extend_from_slice(&(fault.callers.len() as u32).to_le_bytes());
     for site in std::iter::once(&fault.at).chain(&fault.callers) {
         bytes.extend_from_slice(&site.line.to_le_bytes());
@@ -165,7 +165,7 @@ impl<'m> Reader<'m> {
     }
 
     fn state(&mut self, application: &Application, tasks: usize, memory_size: usize) -> Option<State<'m>> {
-        let now = VirtualTime::from_ns(self.number()?);
+        let now = VirtualTime::from_nanos(self.number()?);
         if self.small_number()? as usize != tasks {
             return None;
         }
@@ -181,7 +181,7 @@ impl<'m> Reader<'m> {
 
     fn fault(&mut self) -> Option<PlcFault> {
         let kind = *FaultKind::ALL.get(self.byte()? as usize)?;
-        let virtual_time = VirtualTime::from_ns(self.number()?);
+        let virtual_time = VirtualTime::from_nanos(self.number()?);
         let count = self.small_number()?;
         let at = self.site()?;
         let callers = (0..count).map(|_| self.site()).collect::<Option<_>>()?;

@@ -42,7 +42,7 @@ impl Granted {
     fn cycle_until(&mut self, path: &str, value: u32) -> Result<(), Stop> {
         for _ in 0..1000 {
             self.own_ns += MS;
-            self.plc.scan(VirtualTime::from_ns(self.own_ns)).map_err(|fault| Stop::Fault(fault.kind))?;
+            self.plc.scan(VirtualTime::from_nanos(self.own_ns)).map_err(|fault| Stop::Fault(fault.kind))?;
             if self.number(path) == value {
                 return Ok(());
             }
@@ -158,7 +158,7 @@ impl Three {
     /// One scan of each.
     fn scan(&mut self) -> [Result<(), Stop>; 3] {
         self.now_ns += self.interval_ns;
-        let now = VirtualTime::from_ns(self.now_ns);
+        let now = VirtualTime::from_nanos(self.now_ns);
         let fault = |fault: onescan_plc_shim::PlcFault| Stop::Fault(fault.kind);
         [self.plain.scan(now).map_err(fault), self.inert.scan(now).map_err(fault), self.granted.step(self.now_ns)]
     }

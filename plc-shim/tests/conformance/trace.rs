@@ -68,7 +68,7 @@ impl Run {
             give(&mut self.plc, &self.prefix, row, scan)?;
         }
         self.now_ns += self.interval_ns;
-        let outcome = self.plc.scan(VirtualTime::from_ns(self.now_ns));
+        let outcome = self.plc.scan(VirtualTime::from_nanos(self.now_ns));
         let last = scan + 1 == case.scans;
         same_outcome(case.fault.as_deref().filter(|_| last), outcome)?;
         let wrong: Vec<_> = case.wanted.iter().filter_map(|row| self.difference(row, scan).transpose()).collect();

@@ -110,7 +110,7 @@ impl Bench {
 
     pub(crate) fn scan(&mut self) {
         self.now_ns += self.step_ns;
-        self.plc.scan(VirtualTime::from_ns(self.now_ns)).expect("no fault");
+        self.plc.scan(VirtualTime::from_nanos(self.now_ns)).expect("no fault");
     }
 
     pub(crate) fn scans(&mut self, count: usize) {

@@ -434,7 +434,7 @@ fn a_plan_of_ones_own_goes_before_the_configuration() {
     ));
     let plan = TaskPlan::new(vec![crate::rig::task("own", 5, 0, &["P2"])]);
     let mut plc = SoftPlc::new(&application, &plan).expect("P2 is an instance");
-    plc.scan(VirtualTime::from_ns(5 * MS)).expect("no fault");
+    plc.scan(VirtualTime::from_nanos(5 * MS)).expect("no fault");
     let read = |path: &str| plc.memory()[plc.variable(path).expect("there").offset as usize];
     assert_eq!((read("P1.c.n"), read("P2.c.n")), (0, 1));
     let plan = TaskPlan::new(vec![crate::rig::task("own", 5, 0, &["Pump"])]);

@@ -47,7 +47,7 @@ fn input(name: &str) -> Input {
 fn run(application: &Application, scans: u64) -> (Option<Coverage>, Vec<u8>) {
     let mut plc = SoftPlc::new(application, &TaskPlan::single(application, 1_000_000)).expect("it can run");
     for scan in 1..=scans {
-        plc.scan(VirtualTime::from_ns(scan * 1_000_000)).expect("no fault");
+        plc.scan(VirtualTime::from_nanos(scan * 1_000_000)).expect("no fault");
     }
     (plc.coverage(), plc.memory().to_vec())
 }

@@ -17,7 +17,7 @@ fn starts(text: &str, paths: &[&str]) -> String {
         let mut rig = Rig::with_plan(&application, &plan);
         for _ in 0..2 {
             rig.now_ns += 10_000_000;
-            rig.plc.scan(onescan_plc_shim::VirtualTime::from_ns(rig.now_ns)).expect("no fault");
+            rig.plc.scan(onescan_plc_shim::VirtualTime::from_nanos(rig.now_ns)).expect("no fault");
         }
         start(&mut rig.plc);
         paths.iter().zip(&mut rows).for_each(|(path, row)| row.push(rig.int(path)));

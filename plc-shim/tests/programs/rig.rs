@@ -80,7 +80,7 @@ impl Rig {
 
     pub(crate) fn scan(&mut self) -> Result<(), PlcFault> {
         self.now_ns += self.step_ns;
-        self.plc.scan(VirtualTime::from_ns(self.now_ns))
+        self.plc.scan(VirtualTime::from_nanos(self.now_ns))
     }
 
     pub(crate) fn variable(&self, path: &str) -> Variable {

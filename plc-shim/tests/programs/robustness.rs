@@ -29,7 +29,7 @@ fn run(text: &str) {
         return;
     };
     for scan in 1..4 {
-        if plc.scan(VirtualTime::from_ns(scan * 1_000_000)).is_err() {
+        if plc.scan(VirtualTime::from_nanos(scan * 1_000_000)).is_err() {
             return;
         }
     }

@@ -26,7 +26,7 @@ fn tasks_run_by_priority_and_see_virtual_time() {
     ]);
     let mut rig = Rig::with_plan(&application, &plan);
     assert_eq!(rig.plc.period_ns(), 10 * MS);
-    assert_eq!(rig.plc.next_due(), VirtualTime::from_ns(10 * MS));
+    assert_eq!(rig.plc.next_due(), VirtualTime::from_nanos(10 * MS));
     rig.scan().expect("no fault");
     assert_eq!(rig.int("order"), 2);
     rig.scan().expect("no fault");
@@ -47,10 +47,10 @@ fn a_warm_start_keeps_what_is_retained() {
     assert_eq!(values(&rig), [5, 6, 5, 5]);
     rig.plc.warm_start();
     assert_eq!(values(&rig), [0, 6, 5, 0]);
-    assert_eq!(rig.plc.next_due(), VirtualTime::from_ns(60 * MS));
+    assert_eq!(rig.plc.next_due(), VirtualTime::from_nanos(60 * MS));
     rig.plc.cold_start();
     assert_eq!(values(&rig), [0, 1, 0, 0]);
-    assert_eq!(rig.plc.next_due(), VirtualTime::from_ns(10 * MS));
+    assert_eq!(rig.plc.next_due(), VirtualTime::from_nanos(10 * MS));
 }
 
 #[test]

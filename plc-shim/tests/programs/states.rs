@@ -40,7 +40,7 @@ fn a_fault_is_part_of_the_state() {
     let mut other = Rig::new(text);
     other.plc.restore(&state).expect("its own state");
     assert_eq!(other.plc.fault(), Some(&fault));
-    assert_eq!(other.plc.scan(VirtualTime::from_ns(1)), Err(fault));
+    assert_eq!(other.plc.scan(VirtualTime::from_nanos(1)), Err(fault));
     other.plc.cold_start();
     assert_eq!(other.plc.fault(), None);
 }

@@ -148,7 +148,7 @@ fn one(
             ran.error = Some(format!("it is not done at t_v = {until}: its output `{DONE}` is still FALSE"));
             break;
         }
-        let scanned = plc.scan(VirtualTime::from_ns(now_ns));
+        let scanned = plc.scan(VirtualTime::from_nanos(now_ns));
         (ran.virtual_time_ns, ran.steps) = (now_ns, ran.steps + 1);
         note(&mut ran, &mut plc);
         if let Err(fault) = scanned {

@@ -239,13 +239,13 @@ mod tests {
     use crate::client::Wake;
     use crate::end::Violation;
     use crate::plan::Coupling;
-    use crate::signal::{ElementaryType, Port, SignalDecl};
+    use crate::signal::{Port, SignalDecl, SignalType};
     use crate::time::{StepCount, TimeSpan};
 
     fn formed() -> Session {
         let name = ClientName::new("plc").unwrap();
         let signal = SignalName::new("x").unwrap();
-        let ty = ElementaryType::Bool;
+        let ty = SignalType::BOOL;
         let step = TimeSpan::from_millis(10).unwrap();
         let decl = SignalDecl { name: signal.clone(), ty, writer: Some(name.clone()), unit: None };
         let mut session =

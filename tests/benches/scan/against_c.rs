@@ -49,7 +49,7 @@ fn run(plc: &mut SoftPlc, scans: u64) -> (f64, u64) {
     plc.cold_start();
     let started = Instant::now();
     for scan in 1..=scans {
-        plc.scan(VirtualTime::from_ns(scan * INTERVAL_NS)).expect("it runs");
+        plc.scan(VirtualTime::from_nanos(scan * INTERVAL_NS)).expect("it runs");
     }
     let time = started.elapsed().as_nanos() as f64;
     let bytes = plc.memory()[sum..].first_chunk().expect("a checksum is an ULINT");

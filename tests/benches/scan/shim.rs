@@ -76,7 +76,7 @@ impl Bench {
         memory[time..time + 8].copy_from_slice(&now.to_le_bytes());
         memory[count..count + 4].copy_from_slice(&(SESSION + number as u32).to_le_bytes());
         // A cycle has been used to join.
-        self.plc.scan(VirtualTime::from_ns(now + INTERVAL_NS)).expect("it runs");
+        self.plc.scan(VirtualTime::from_nanos(now + INTERVAL_NS)).expect("it runs");
     }
 
     /// A cold start; an instrumented PLC joins the session.
@@ -87,7 +87,7 @@ impl Bench {
                 let at = self.plc.variable(path).expect("it is there").offset as usize;
                 self.plc.memory_mut()[at..at + 4].copy_from_slice(&value.to_le_bytes());
             }
-            self.plc.scan(VirtualTime::from_ns(INTERVAL_NS)).expect("it joins");
+            self.plc.scan(VirtualTime::from_nanos(INTERVAL_NS)).expect("it joins");
         }
     }
 

@@ -158,7 +158,7 @@ impl Plc {
         let plc = &mut self.tasks[task];
         plc.cold_start();
         plc.memory_mut()[..memory.len()].copy_from_slice(&memory);
-        plc.scan(VirtualTime::from_ns(1_000_000)).expect("no fault");
+        plc.scan(VirtualTime::from_nanos(1_000_000)).expect("no fault");
         let size = memory.len();
         memory.copy_from_slice(&plc.memory()[..size]);
         memory

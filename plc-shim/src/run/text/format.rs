@@ -2,8 +2,9 @@
 
 use std::fmt::{self, Write};
 
+use onescan_base::elementary::Kind;
+
 use crate::ir::ElementaryType;
-use crate::ir::elementary::Kind;
 use crate::syntax::calendar::{DAY_NS, civil_from_days};
 
 /// Text of at most so many bytes, all of them ASCII.

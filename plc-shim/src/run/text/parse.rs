@@ -1,7 +1,8 @@
 //! Text to values: the longest beginning that is a value, blanks in front passed.
 
+use onescan_base::elementary::Kind;
+
 use crate::ir::ElementaryType;
-use crate::ir::elementary::Kind;
 use crate::syntax::calendar::{CalendarKind, parse_calendar};
 use crate::syntax::literal::parse_duration;
 

@@ -182,5 +182,5 @@ pub(crate) fn write(plc: &mut SoftPlc, path: &str, value: i64) {
 
 /// Scans at a time.
 pub(crate) fn scan(plc: &mut SoftPlc, at_ns: u64) {
-    plc.scan(VirtualTime::from_ns(at_ns)).expect("no fault");
+    plc.scan(VirtualTime::from_nanos(at_ns)).expect("no fault");
 }

@@ -49,7 +49,7 @@ END_PROGRAM";
     for (scan, go) in [(1, 0), (2, 0), (3, 1)] {
         let variable = plc.variable("P.go").expect("a variable");
         plc.memory_mut()[variable.offset as usize] = go;
-        plc.scan(VirtualTime::from_ns(scan * 10 * MS)).expect("no fault");
+        plc.scan(VirtualTime::from_nanos(scan * 10 * MS)).expect("no fault");
         if scan != 1 {
             let coverage = plc.coverage().expect("points are noted");
             writeln!(report, "after scan {scan}\n{coverage:#?}").expect("a text takes all");

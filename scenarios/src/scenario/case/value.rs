@@ -1,6 +1,6 @@
 //! TOML values as those of signals and of PLC variables.
 
-use onescan_server::signal::ElementaryType;
+use onescan_server::signal::SignalType;
 use onescan_server::time::TimeSpan;
 use toml::Value;
 
@@ -8,15 +8,15 @@ use toml::Value;
 ///
 /// # Errors
 /// What would be right, where the value is none of the type.
-pub fn bytes_of(ty: ElementaryType, value: &Value) -> Result<Vec<u8>, String> {
-    use ElementaryType as E;
+pub fn bytes_of(ty: SignalType, value: &Value) -> Result<Vec<u8>, String> {
+    use SignalType as E;
     match (ty, value) {
-        (E::Bool, Value::Boolean(value)) => Ok(vec![u8::from(*value)]),
-        (E::Real, Value::Float(value)) => Ok((*value as f32).to_le_bytes().to_vec()),
-        (E::Lreal, Value::Float(value)) => Ok(value.to_le_bytes().to_vec()),
-        (E::Real, Value::Integer(value)) => Ok((*value as f32).to_le_bytes().to_vec()),
-        (E::Lreal, Value::Integer(value)) => Ok((*value as f64).to_le_bytes().to_vec()),
-        (E::Time | E::Ltime, Value::String(text)) => duration_ns(text).map(|ns| ns.to_le_bytes().to_vec()),
+        (E::BOOL, Value::Boolean(value)) => Ok(vec![u8::from(*value)]),
+        (E::REAL, Value::Float(value)) => Ok((*value as f32).to_le_bytes().to_vec()),
+        (E::LREAL, Value::Float(value)) => Ok(value.to_le_bytes().to_vec()),
+        (E::REAL, Value::Integer(value)) => Ok((*value as f32).to_le_bytes().to_vec()),
+        (E::LREAL, Value::Integer(value)) => Ok((*value as f64).to_le_bytes().to_vec()),
+        (E::TIME | E::LTIME, Value::String(text)) => duration_ns(text).map(|ns| ns.to_le_bytes().to_vec()),
         (E::String(capacity), Value::String(text)) => characters(text, capacity),
         (E::Wstring(capacity), Value::String(text)) => {
             let units: Vec<u16> = text.encode_utf16().collect();
@@ -26,7 +26,7 @@ pub fn bytes_of(ty: ElementaryType, value: &Value) -> Result<Vec<u8>, String> {
             bytes.resize(ty.size(), 0);
             Ok(bytes)
         }
-        (E::Bool | E::Time | E::Ltime | E::String(_) | E::Wstring(_), _) => Err(wanted(ty)),
+        (E::BOOL | E::TIME | E::LTIME | E::String(_) | E::Wstring(_), _) => Err(wanted(ty)),
         (_, Value::Integer(value)) => {
             whole(ty, *value).ok_or_else(|| format!("a value of {ty}, which {value} is outside of"))
         }
@@ -35,12 +35,12 @@ pub fn bytes_of(ty: ElementaryType, value: &Value) -> Result<Vec<u8>, String> {
 }
 
 /// What may be written for a type.
-fn wanted(ty: ElementaryType) -> String {
-    use ElementaryType as E;
+fn wanted(ty: SignalType) -> String {
+    use SignalType as E;
     match ty {
-        E::Bool => "`true` or `false`".to_owned(),
-        E::Real | E::Lreal => "a number".to_owned(),
-        E::Time | E::Ltime => "a time as text, as in \"500ms\"".to_owned(),
+        E::BOOL => "`true` or `false`".to_owned(),
+        E::REAL | E::LREAL => "a number".to_owned(),
+        E::TIME | E::LTIME => "a time as text, as in \"500ms\"".to_owned(),
         E::String(_) | E::Wstring(_) => "a text".to_owned(),
         _ => format!("a whole number of {ty}"),
     }
@@ -52,8 +52,8 @@ fn duration_ns(text: &str) -> Result<i64, String> {
     if rest.starts_with('0') && rest.trim_start_matches(['0', '.']).chars().all(char::is_alphabetic) {
         return Ok(0);
     }
-    let span: TimeSpan = rest.parse().map_err(|_| wanted(ElementaryType::Time))?;
-    i64::try_from(span.as_nanos()).map(|ns| sign * ns).map_err(|_| wanted(ElementaryType::Time))
+    let span: TimeSpan = rest.parse().map_err(|_| wanted(SignalType::TIME))?;
+    i64::try_from(span.as_nanos()).map(|ns| sign * ns).map_err(|_| wanted(SignalType::TIME))
 }
 
 fn fitting(count: usize, capacity: u16) -> Result<u16, String> {
@@ -72,17 +72,17 @@ fn characters(text: &str, capacity: u16) -> Result<Vec<u8>, String> {
 }
 
 /// The bytes of a whole number, if the type has it. Dates are nanoseconds since 1970-01-01.
-fn whole(ty: ElementaryType, value: i64) -> Option<Vec<u8>> {
-    use ElementaryType as E;
+fn whole(ty: SignalType, value: i64) -> Option<Vec<u8>> {
+    use SignalType as E;
     let signed = |bits: u32| (-(1_i128 << (bits - 1))..1_i128 << (bits - 1)).contains(&i128::from(value));
     let unsigned = |bits: u32| (0..1_i128 << bits).contains(&i128::from(value));
     let size = ty.size();
     let fits = match ty {
-        E::Byte | E::Usint | E::Char | E::Word | E::Uint | E::Wchar | E::Dword | E::Udint | E::Lword | E::Ulint => {
+        E::BYTE | E::USINT | E::CHAR | E::WORD | E::UINT | E::WCHAR | E::DWORD | E::UDINT | E::LWORD | E::ULINT => {
             unsigned(8 * size as u32)
         }
-        E::Sint | E::Int | E::Dint | E::Lint => signed(8 * size as u32),
-        E::Date | E::Ldate | E::Tod | E::Ltod | E::Dt | E::Ldt => true,
+        E::SINT | E::INT | E::DINT | E::LINT => signed(8 * size as u32),
+        E::DATE | E::LDATE | E::TOD | E::LTOD | E::DT | E::LDT => true,
         _ => false,
     };
     fits.then(|| value.to_le_bytes()[..size].to_vec())
@@ -122,16 +122,16 @@ mod tests {
 
     #[test]
     fn values_fit_their_type() {
-        use ElementaryType as E;
+        use SignalType as E;
         let whole = |ty, value| bytes_of(ty, &Value::Integer(value));
-        assert_eq!(whole(E::Int, -2), Ok(vec![0xfe, 0xff]));
-        assert_eq!(whole(E::Word, 0xffff), Ok(vec![0xff, 0xff]));
-        assert!(whole(E::Usint, 256).unwrap_err().starts_with("a value of USINT"));
-        assert_eq!(whole(E::Lreal, 2), Ok(2.0_f64.to_le_bytes().to_vec()));
-        assert_eq!(bytes_of(E::Bool, &Value::Integer(1)), Err("`true` or `false`".to_owned()));
+        assert_eq!(whole(E::INT, -2), Ok(vec![0xfe, 0xff]));
+        assert_eq!(whole(E::WORD, 0xffff), Ok(vec![0xff, 0xff]));
+        assert!(whole(E::USINT, 256).unwrap_err().starts_with("a value of USINT"));
+        assert_eq!(whole(E::LREAL, 2), Ok(2.0_f64.to_le_bytes().to_vec()));
+        assert_eq!(bytes_of(E::BOOL, &Value::Integer(1)), Err("`true` or `false`".to_owned()));
         let text = |ty, text: &str| bytes_of(ty, &Value::String(text.to_owned()));
-        assert_eq!(text(E::Time, "-1.5ms"), Ok((-1_500_000_i64).to_le_bytes().to_vec()));
-        assert_eq!(text(E::Time, "0s"), Ok(vec![0; 8]));
+        assert_eq!(text(E::TIME, "-1.5ms"), Ok((-1_500_000_i64).to_le_bytes().to_vec()));
+        assert_eq!(text(E::TIME, "0s"), Ok(vec![0; 8]));
         assert_eq!(text(E::String(4), "ab"), Ok(vec![2, 0, b'a', b'b', 0, 0]));
         assert!(text(E::String(1), "ab").is_err());
         assert_eq!(text(E::Wstring(1), "ä"), Ok(vec![1, 0, 0xe4, 0]));
