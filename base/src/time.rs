@@ -73,24 +73,24 @@ impl VirtualTime {
     }
 
     /// The first instant after `now` on the grid that goes through this instant in steps of `span`; this instant
-    /// itself if it is later than `now`. [`VirtualTime::MAX`] past the end of representable time.
+    /// itself if it is later than `now`. `None` past the end of representable time.
     ///
     /// ```
     /// # use onescan_base::{TimeSpan, VirtualTime};
     /// let at = VirtualTime::from_nanos;
     /// let ten = TimeSpan::from_nanos(10).expect("not zero");
-    /// assert_eq!(at(5).next_after(at(4), ten), at(5));
-    /// assert_eq!(at(5).next_after(at(5), ten), at(15));
-    /// assert_eq!(at(5).next_after(at(36), ten), at(45));
+    /// assert_eq!(at(5).next_after(at(4), ten), Some(at(5)));
+    /// assert_eq!(at(5).next_after(at(5), ten), Some(at(15)));
+    /// assert_eq!(at(5).next_after(at(36), ten), Some(at(45)));
     /// ```
     #[must_use]
-    pub const fn next_after(self, now: Self, span: TimeSpan) -> Self {
+    pub const fn next_after(self, now: Self, span: TimeSpan) -> Option<Self> {
         if self.0 > now.0 {
-            return self;
+            return Some(self);
         }
-        let missed = (now.0 - self.0) / span.as_nanos();
-        // `missed + 1` does not overflow unless the span is 1 ns and the whole of time has passed.
-        Self(self.0.saturating_add(span.as_nanos().saturating_mul(missed.saturating_add(1))))
+        // The last instant on the grid that is not later than `now`.
+        let last = now.0 - (now.0 - self.0) % span.as_nanos();
+        Self(last).checked_add(span)
     }
 }
 
@@ -153,6 +153,24 @@ impl TimeSpan {
             Some(ns) => Some(Self(ns)),
             None => None,
         }
+    }
+
+    /// A span of `MS` milliseconds that is known when the program is built; 0 does not compile.
+    ///
+    /// ```
+    /// # use onescan_base::TimeSpan;
+    /// const CYCLE: TimeSpan = TimeSpan::millis::<10>();
+    /// assert_eq!(CYCLE.to_string(), "10 ms");
+    /// ```
+    #[must_use]
+    pub const fn millis<const MS: u64>() -> Self {
+        const { Self::from_millis(MS).expect("a span is not zero and fits 584 years") }
+    }
+
+    /// A span of `NS` nanoseconds that is known when the program is built; 0 does not compile.
+    #[must_use]
+    pub const fn nanos<const NS: u64>() -> Self {
+        const { Self::from_nanos(NS).expect("a span is not zero") }
     }
 
     /// A span of `us` microseconds, `None` for zero and beyond 584 years.
@@ -275,7 +293,7 @@ mod tests {
         fn the_next_instant_on_a_grid_is_later_and_within_one_span(due: u32, now: u32, span in 1u32..) {
             let (due, now) = (VirtualTime::from_nanos(due.into()), VirtualTime::from_nanos(now.into()));
             let span = TimeSpan::from_nanos(span.into()).expect("not zero");
-            let next = due.next_after(now, span);
+            let next = due.next_after(now, span).expect("far from the end of time");
             prop_assert!(next > now && next >= due);
             prop_assert!(next == due || next - now <= span.as_nanos());
             prop_assert_eq!((next - due) % span.as_nanos(), 0);

@@ -39,7 +39,7 @@ fn outputs(csv: &str, signals: &[(&str, SignalType)]) -> Vec<Vec<u8>> {
         let values: Vec<_> = line.split(',').collect();
         let mut bytes = Vec::new();
         for (column, ty) in &columns {
-            match ty {
+            match *ty {
                 SignalType::BOOL => bytes.push(u8::from(values[*column] == "1")),
                 _ => bytes.extend(values[*column].parse::<f64>().expect("a number").to_le_bytes()),
             }

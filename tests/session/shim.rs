@@ -8,7 +8,7 @@ use onescan::scenario::compose::Member;
 use onescan_clients::soft_plc::bind;
 use onescan_plc_shim::input::kind::SourceKind;
 use onescan_plc_shim::instrument::{Options, instrument};
-use onescan_plc_shim::{Application, Input, SoftPlc, Task, TaskPlan};
+use onescan_plc_shim::{Application, Input, SoftPlc, Task, TaskPlan, TimeSpan};
 use onescan_server::client::{Client, JoinRequest};
 use onescan_server::signal::SignalDecl;
 use onescan_tests::run::{in_process, run};
@@ -32,7 +32,7 @@ pub(crate) fn member(scenario: &Scenario, name: &str) -> Box<dyn Client> {
 fn gateway(plc_folder: &Path, signals: &[SignalDecl], request: JoinRequest) -> Granted {
     let task = |name: &str, interval_ms: u64, priority: u32, programs: &[&str]| Task {
         name: name.to_owned(),
-        interval_ns: interval_ms * MS,
+        interval: TimeSpan::from_millis(interval_ms),
         priority,
         programs: programs.iter().map(|program| (*program).to_owned()).collect(),
         ..Task::default()

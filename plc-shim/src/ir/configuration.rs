@@ -1,5 +1,7 @@
 //! Configurations: resources, tasks and what they run (2nd ed. 2.7).
 
+use onescan_base::TimeSpan;
+
 use super::expr::Storage;
 use super::pou::{Pou, PouId, Retention, Variable};
 use super::types::TypeId;
@@ -52,8 +54,8 @@ pub(crate) struct Task {
     pub(crate) name: String,
     /// Path of the BOOL whose rising edges trigger it.
     pub(crate) single: Option<String>,
-    /// 0 if it is not periodic.
-    pub(crate) interval_ns: u64,
+    /// Nothing if it is not periodic.
+    pub(crate) interval: Option<TimeSpan>,
     pub(crate) priority: u32,
     pub(crate) entries: Vec<usize>,
 }

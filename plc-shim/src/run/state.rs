@@ -12,7 +12,7 @@
 //!
 //! All numbers are little-endian.
 
-use onescan_base::VirtualTime;
+use onescan_base::{TimeSpan, VirtualTime};
 use thiserror::Error;
 
 use super::fault::{FaultSite, PlcFault};
@@ -38,6 +38,9 @@ pub enum RestoreError {
     Damaged,
 }
 
+/// How a saved state writes an instant that does not come.
+const NEVER_NS: u64 = u64::MAX;
+
 pub(super) struct State<'m> {
     pub(super) now: VirtualTime,
     pub(super) waiting: Vec<Waiting>,
@@ -59,7 +62,7 @@ pub(super) fn fingerprint(application: &Application, plan: &TaskPlan) -> u64 {
     add(&plan.fuel_per_task.to_le_bytes());
     for task in &plan.tasks {
         add(task.name.as_bytes());
-        add(&task.interval_ns.to_le_bytes());
+        add(&task.interval.map_or(0, TimeSpan::as_nanos).to_le_bytes());
         add(&task.priority.to_le_bytes());
         for name in task.programs.iter().chain(&task.single) {
             add(name.to_ascii_uppercase().as_bytes());
@@ -81,9 +84,10 @@ impl<'m> State<'m> {
         bytes.extend_from_slice(&fingerprint.to_le_bytes());
         bytes.extend_from_slice(&self.now.as_nanos().to_le_bytes());
         bytes.extend_from_slice(&(self.waiting.len() as u32).to_le_bytes());
-        for Waiting { due_ns, edge_ns, level } in &self.waiting {
-            bytes.extend_from_slice(&due_ns.to_le_bytes());
-            bytes.extend_from_slice(&edge_ns.to_le_bytes());
+        for Waiting { due, edge, level } in &self.waiting {
+            for instant in [due, edge] {
+                bytes.extend_from_slice(&instant.map_or(NEVER_NS, VirtualTime::as_nanos).to_le_bytes());
+            }
             bytes.push(u8::from(*level));
         }
         bytes.push(u8::from(self.fault.is_some()));
@@ -206,9 +210,10 @@ impl<'m> Reader<'m> {
     }
 
     fn waiting(&mut self) -> Option<Waiting> {
-        let (due_ns, edge_ns) = (self.number()?, self.number()?);
+        let instant = |ns: u64| (ns != NEVER_NS).then(|| VirtualTime::from_nanos(ns));
+        let (due, edge) = (instant(self.number()?), instant(self.number()?));
         let level = self.flag()?;
-        Some(Waiting { due_ns, edge_ns, level })
+        Some(Waiting { due, edge, level })
     }
 
     fn flag(&mut self) -> Option<bool> {

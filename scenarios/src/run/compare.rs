@@ -108,7 +108,7 @@ fn row(mode: Mode, runs: &[Run], lockstep: &Samples, types: &[SignalType]) -> Ro
     let (mut deviation, mut deviating) = (0.0, None);
     let (mut edges, mut lost, mut offsets) = (0, 0, Vec::new());
     for (index, ty) in types.iter().enumerate() {
-        let analog = matches!(ty, SignalType::REAL | SignalType::LREAL);
+        let analog = matches!(*ty, SignalType::REAL | SignalType::LREAL);
         for run in runs {
             if analog {
                 let found = distance(&lockstep.values[index], &run.samples.values[index]);

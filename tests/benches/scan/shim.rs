@@ -15,7 +15,7 @@ use std::time::Instant;
 
 use onescan_plc_shim::input::kind::SourceKind;
 use onescan_plc_shim::instrument::{Options, instrument};
-use onescan_plc_shim::{Application, Input, SoftPlc, Task, TaskPlan, VirtualTime};
+use onescan_plc_shim::{Application, Input, SoftPlc, Task, TaskPlan, TimeSpan, VirtualTime};
 
 const INTERVAL_NS: u64 = 10_000_000;
 const ROUNDS: usize = 40;
@@ -61,7 +61,8 @@ impl Bench {
         // As `onescan plc` has it in lockstep: scheduler and programs in one task.
         let scheduler = is_granted.then(|| SCHEDULER.to_owned());
         let programs = scheduler.into_iter().chain([main.clone()]).collect();
-        let task = Task { name: "main".to_owned(), interval_ns: INTERVAL_NS, programs, ..Task::default() };
+        let task =
+            Task { name: "main".to_owned(), interval: TimeSpan::from_nanos(INTERVAL_NS), programs, ..Task::default() };
         let plc = SoftPlc::new(&application, &TaskPlan::new(vec![task])).expect("it can run");
         let offset = |path: &str| plc.variable(path).expect("it is there").offset as usize;
         let inputs = if is_granted { ["SDSP_TV", "SDSP_Grant"] } else { ["time_input", "number_input"] };
