@@ -16,8 +16,6 @@ use onescan_tests::{at_ms, client};
 
 use crate::granted::Granted;
 
-const MS: u64 = 1_000_000;
-
 pub(crate) fn shear_folder() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenarios/shear")
 }

@@ -3,7 +3,7 @@
 use onescan_plc_shim::input::kind::SourceKind;
 use onescan_plc_shim::{Application, Input, TaskPlan, TimeSpan};
 
-use crate::rig::{MS, Rig, findings};
+use crate::rig::{Rig, findings};
 
 const PLANT: &str = "NAMESPACE Plant
   NAMESPACE Tools

@@ -3,7 +3,7 @@
 use onescan_plc_shim::input::kind::SourceKind;
 use onescan_plc_shim::{Application, Input, TaskPlan, TimeSpan, inspect};
 
-use crate::rig::{MS, Rig};
+use crate::rig::Rig;
 
 const TANK: &str = include_str!("../inputs/tank.TcPOU");
 const PUMP: &str = include_str!("../inputs/pump.xml");

@@ -5,7 +5,7 @@ use std::fmt::Write;
 use onescan_plc_shim::input::kind::SourceKind;
 use onescan_plc_shim::{Application, Input, TaskPlan, TimeSpan, inspect};
 
-use crate::rig::{MS, Rig};
+use crate::rig::Rig;
 
 /// A whole project around its units.
 pub(crate) fn project(pous: &str) -> String {

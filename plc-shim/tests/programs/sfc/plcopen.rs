@@ -5,7 +5,7 @@ use onescan_plc_shim::{Application, Input, TaskPlan, TimeSpan, inspect};
 
 use super::drawn::{Step, Transition, chart, condition};
 use crate::plcopen::{block, coil, contact, input, pou, project, rail};
-use crate::rig::{MS, Rig};
+use crate::rig::Rig;
 
 const MIXER: &str = include_str!("../../inputs/mixer.xml");
 
