@@ -62,6 +62,24 @@ impl SignalType {
         }
     }
 
+    /// The type of strings of up to `capacity` characters; nothing if a signal cannot have so few or so many.
+    ///
+    /// ```
+    /// # use onescan_base::SignalType;
+    /// assert_eq!(SignalType::string(12), Some(SignalType::String(12)));
+    /// assert_eq!(SignalType::string(0), None);
+    /// ```
+    #[must_use]
+    pub fn string(capacity: u16) -> Option<Self> {
+        (1..=STRING_CAPACITY_MAX).contains(&capacity).then_some(Self::String(capacity))
+    }
+
+    /// As [`SignalType::string`], of 16-bit characters.
+    #[must_use]
+    pub fn wstring(capacity: u16) -> Option<Self> {
+        (1..=STRING_CAPACITY_MAX).contains(&capacity).then_some(Self::Wstring(capacity))
+    }
+
     /// Natural alignment in bytes.
     pub const fn alignment(self) -> usize {
         match self {
@@ -110,11 +128,11 @@ impl FromStr for SignalType {
             if rest.is_empty() {
                 return Some(DEFAULT_STRING_CAPACITY);
             }
-            let length = rest.strip_prefix('[')?.strip_suffix(']')?.trim().parse().ok()?;
-            (1..=STRING_CAPACITY_MAX).contains(&length).then_some(length)
+            rest.strip_prefix('[')?.strip_suffix(']')?.trim().parse().ok()
         };
-        let string = capacity("STRING").map(Self::String).or_else(|| capacity("WSTRING").map(Self::Wstring));
-        string.ok_or_else(|| UnknownType(text.to_owned()))
+        let string = || capacity("STRING").and_then(Self::string);
+        let wstring = || capacity("WSTRING").and_then(Self::wstring);
+        string().or_else(wstring).ok_or_else(|| UnknownType(text.to_owned()))
     }
 }
 

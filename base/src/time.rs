@@ -115,10 +115,7 @@ impl Sub for VirtualTime {
 impl fmt::Display for VirtualTime {
     /// Seconds with as many decimals as the instant needs, three at least: `0.120 s`.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let (seconds, nanos) = (self.0 / 1_000_000_000, self.0 % 1_000_000_000);
-        let digits = format!("{nanos:09}");
-        let kept = digits.trim_end_matches('0').len().max(3);
-        write!(f, "{seconds}.{} s", &digits[..kept])
+        write!(f, "{} s", plain::seconds(self.0, 3))
     }
 }
 

@@ -238,6 +238,22 @@ impl SignalType {
         }
     }
 
+    /// The bytes of a whole number as a value of this type; nothing if the type has no whole numbers, or not this one.
+    /// Times and dates are nanoseconds.
+    ///
+    /// ```
+    /// use onescan_base::SignalType;
+    ///
+    /// assert_eq!(SignalType::INT.integer_bytes(-2), Some(vec![0xfe, 0xff]));
+    /// assert_eq!(SignalType::USINT.integer_bytes(256), None);
+    /// ```
+    #[must_use]
+    pub fn integer_bytes(self, value: i128) -> Option<Vec<u8>> {
+        let Self::Elementary(ty) = self else { return None };
+        let (low, high) = ty.range()?;
+        (low..=high).contains(&value).then(|| value.to_le_bytes()[..self.size()].to_vec())
+    }
+
     /// The bytes of a text as a value of this string type.
     ///
     /// # Errors

@@ -47,5 +47,5 @@ pub use coverage::Coverage;
 pub use diagnostic::{Code, Diagnostic, Diagnostics, Finding, Severity};
 pub use dialect::Dialect;
 pub use input::Input;
-pub use onescan_base::{ElementaryType, TimeSpan, VirtualTime};
+pub use onescan_base::{ElementaryType, SignalType, TimeSpan, VirtualTime};
 pub use run::{FaultSite, PlcFault, RestoreError, RunError, SoftPlc, Task, TaskPlan, Way, WayId, WriteSite};

@@ -1,11 +1,12 @@
 //! Joining: a client's wishes held against the session's plan.
 
+use onescan_base::nearest;
 use thiserror::Error;
 
 use crate::client::JoinRequest;
 use crate::image::{ImageLayout, PortMap};
 use crate::plan::{SessionPlan, hint};
-use crate::signal::{ClientName, Port, PortLayout, SignalId, SignalName, SignalType, nearest};
+use crate::signal::{ClientName, Port, PortLayout, SignalId, SignalName, SignalType};
 use crate::time::TimeSpan;
 
 /// A client that is in.

@@ -1,10 +1,11 @@
 //! What a session is before anybody joins: its step, coupling, signals and expected clients.
 
+use onescan_base::nearest;
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
 use crate::client::ClientId;
-use crate::signal::{ClientName, SignalDecl, SignalName, nearest};
+use crate::signal::{ClientName, SignalDecl, SignalName};
 use crate::time::TimeSpan;
 
 /// How the clients of a step see each other.

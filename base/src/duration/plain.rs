@@ -96,7 +96,35 @@ pub fn parse_signed(text: &str) -> Result<i64, DurationError> {
     if magnitude == "0" {
         return Ok(0);
     }
-    i64::try_from(parse(magnitude)?).map(|ns| sign * ns).map_err(|_| DurationError::Range(text.to_owned()))
+    i64::try_from(sign * i128::from(parse(magnitude)?)).map_err(|_| DurationError::Range(text.to_owned()))
+}
+
+/// `ns` nanoseconds as seconds without a unit, with as many decimals as the value needs and `decimals_min` at least.
+///
+/// ```
+/// use onescan_base::duration::plain;
+///
+/// assert_eq!(plain::seconds(1_500_000_000, 0).to_string(), "1.5");
+/// assert_eq!(plain::seconds(2_000_000_000, 0).to_string(), "2");
+/// assert_eq!(plain::seconds(120_000_000, 3).to_string(), "0.120");
+/// ```
+pub fn seconds(ns: u64, decimals_min: usize) -> impl fmt::Display {
+    Seconds { ns, decimals_min }
+}
+
+struct Seconds {
+    ns: u64,
+    decimals_min: usize,
+}
+
+impl fmt::Display for Seconds {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let (whole, nanos) = (self.ns / 1_000_000_000, self.ns % 1_000_000_000);
+        let digits = format!("{nanos:09}");
+        // There are no decimals beyond nanoseconds.
+        let kept = digits.trim_end_matches('0').len().max(self.decimals_min.min(digits.len()));
+        if kept == 0 { write!(f, "{whole}") } else { write!(f, "{whole}.{}", &digits[..kept]) }
+    }
 }
 
 /// Writes `ns` nanoseconds in the largest unit that leaves a whole number: `10 ms`.
@@ -147,6 +175,17 @@ mod tests {
     }
 
     proptest! {
+        #[test]
+        fn seconds_read_back(ns: u64, decimals_min in 0_usize..12) {
+            prop_assert_eq!(parse(&format!("{}s", seconds(ns, decimals_min))), Ok(ns));
+        }
+
+        #[test]
+        fn signed_seconds_read_back(ns: i64) {
+            let sign = if ns < 0 { "-" } else { "" };
+            prop_assert_eq!(parse_signed(&format!("{sign}{}s", seconds(ns.unsigned_abs(), 0))), Ok(ns));
+        }
+
         #[test]
         fn reading_never_panics(text in ".*") {
             // The result does not matter here: both are total.

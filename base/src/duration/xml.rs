@@ -6,6 +6,8 @@ use std::str::FromStr;
 
 use thiserror::Error;
 
+use super::plain;
+
 /// A duration in nanoseconds, in the text form of XML Schema.
 ///
 /// ```
@@ -39,11 +41,7 @@ impl XmlDuration {
 impl fmt::Display for XmlDuration {
     /// In seconds only: `PT90.5S`.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let (whole, part) = (self.0 / 1_000_000_000, format!("{:09}", self.0 % 1_000_000_000));
-        match part.trim_end_matches('0') {
-            "" => write!(f, "PT{whole}S"),
-            part => write!(f, "PT{whole}.{part}S"),
-        }
+        write!(f, "PT{}S", plain::seconds(self.0, 0))
     }
 }
 

@@ -29,6 +29,8 @@ mod view;
 
 use std::sync::Arc;
 
+use onescan_base::nearest;
+
 pub use saved::SessionState;
 use serde::{Deserialize, Serialize};
 pub use turn::Turn;
@@ -39,7 +41,7 @@ use crate::end::SessionEnd;
 use crate::image::{Image, ImageLayout};
 use crate::join::{JoinRefusal, Membership, admit};
 use crate::plan::SessionPlan;
-use crate::signal::{ClientName, SignalName, nearest};
+use crate::signal::{ClientName, SignalName};
 use crate::state::ServerState;
 use crate::time::VirtualTime;
 

@@ -1,8 +1,10 @@
 //! What operators ask of a session.
 
+use onescan_base::did_you_mean;
+
 use super::{Control, Mode, Session};
 use crate::operation::{Operation, OperationError};
-use crate::signal::{SignalId, SignalName, did_you_mean};
+use crate::signal::{SignalId, SignalName};
 
 impl Session {
     /// Asks for a stop, pause, single step or reset at the next step boundary.

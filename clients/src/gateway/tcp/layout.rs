@@ -5,7 +5,8 @@
 
 use std::collections::BTreeMap;
 
-use onescan_server::signal::{SignalType, did_you_mean};
+use onescan_base::did_you_mean;
+use onescan_server::signal::SignalType;
 use serde::Deserialize;
 
 use crate::gateway::byte_order::{ByteOrder, is_number};

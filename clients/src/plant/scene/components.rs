@@ -1,6 +1,7 @@
 //! Second pass over `[[component]]`: kind, parameters, bindings and wires, all by the kind's table.
 
-use onescan_server::signal::{SignalName, SignalType, nearest};
+use onescan_base::nearest;
+use onescan_server::signal::{SignalName, SignalType};
 use toml::{Spanned, Value};
 
 use super::arrays::listed;

@@ -1,6 +1,7 @@
 //! Second pass over `[[signal]]`: what happens to a signal between the plant and the session.
 
-use onescan_server::signal::{SignalType, nearest};
+use onescan_base::nearest;
+use onescan_server::signal::SignalType;
 use toml::Spanned;
 
 use super::error::{SceneFaultKind, Thing};

@@ -1,6 +1,7 @@
 //! Second pass over `[[failure]]`: what fails, how and when.
 
-use onescan_server::signal::{SignalType, nearest};
+use onescan_base::nearest;
+use onescan_server::signal::SignalType;
 use toml::Spanned;
 
 use super::error::{SceneFaultKind, Thing};

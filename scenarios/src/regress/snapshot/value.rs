@@ -1,5 +1,6 @@
 //! Values as text, one spelling for each, and back.
 
+use onescan_base::duration::plain;
 use onescan_server::signal::SignalType;
 
 use SignalType as E;
@@ -37,7 +38,7 @@ fn parse(ty: SignalType, text: &str) -> Option<Vec<u8>> {
         E::USINT | E::UINT | E::UDINT | E::ULINT => least(text.parse().ok()?),
         E::REAL => least(u64::from(text.parse::<f32>().ok()?.to_bits())),
         E::LREAL => least(text.parse::<f64>().ok()?.to_bits()),
-        E::TIME | E::LTIME => least(nanoseconds(text)? as u64),
+        E::TIME | E::LTIME => least(plain::parse_signed(text).ok()? as u64),
         E::CHAR | E::WCHAR => match units(text)?[..] {
             [unit] => least(u64::from(unit)),
             _ => None,
@@ -59,19 +60,7 @@ fn signed(bytes: &[u8]) -> i64 {
 
 /// Nanoseconds as seconds with all decimals they need.
 fn seconds(ns: i64) -> String {
-    let (sign, ns) = (if ns < 0 { "-" } else { "" }, ns.unsigned_abs());
-    let decimals = format!("{:09}", ns % 1_000_000_000);
-    let decimals = decimals.trim_end_matches('0');
-    let dot = if decimals.is_empty() { "" } else { "." };
-    format!("{sign}{}{dot}{decimals}s", ns / 1_000_000_000)
-}
-
-fn nanoseconds(text: &str) -> Option<i64> {
-    let number = text.strip_suffix('s')?;
-    let (sign, number) = number.strip_prefix('-').map_or((1, number), |rest| (-1, rest));
-    let (whole, decimals) = number.split_once('.').unwrap_or((number, ""));
-    let decimals: i128 = format!("{decimals:0<9}").parse().ok()?;
-    i64::try_from(sign * (whole.parse::<i128>().ok()?.checked_mul(1_000_000_000)? + decimals)).ok()
+    format!("{}{}s", if ns < 0 { "-" } else { "" }, plain::seconds(ns.unsigned_abs(), 0))
 }
 
 /// The characters in use of a string in an image.
