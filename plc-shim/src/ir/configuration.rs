@@ -5,6 +5,7 @@ use onescan_base::TimeSpan;
 use super::expr::Storage;
 use super::pou::{Pou, PouId, Retention, Variable};
 use super::types::TypeId;
+use crate::syntax::direct_address::Area;
 
 /// An instance of a program.
 #[derive(Debug, Clone)]
@@ -80,6 +81,8 @@ pub(crate) struct Target {
     pub(crate) ty: TypeId,
     /// The declaration that the last name on the way leads to; nothing for a program.
     pub(crate) variable: Option<Variable>,
+    /// The area of the open address, as in `AT %I*`, of the last name on the way that has one.
+    pub(crate) open: Option<Area>,
 }
 
 impl Target {

@@ -15,9 +15,9 @@ pub mod port;
 use serde::{Deserialize, Serialize};
 
 pub use name::{BadName, ClientName, SignalName};
-pub use onescan_base::{did_you_mean, nearest};
 pub use onescan_base::signal_type::{SignalType, UnknownType};
 pub use onescan_base::value::{BadText, BadValue};
+pub use onescan_base::{did_you_mean, nearest};
 pub use port::{Port, PortLayout, Slot, SlotError, SlotType};
 
 /// The index of a signal in its session: the rank of its name.
