@@ -7,13 +7,13 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use crate::interference::Interference;
-use crate::signal::{BadValue, ElementaryType, PortLayout, SignalDecl, SignalId};
+use crate::signal::{BadValue, PortLayout, SignalDecl, SignalId, SignalType};
 
 /// Where each signal lies in the image.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub struct ImageLayout {
     offsets: Vec<usize>,
-    types: Vec<ElementaryType>,
+    types: Vec<SignalType>,
     size: usize,
 }
 
@@ -54,7 +54,7 @@ impl ImageLayout {
     }
 
     /// The type of `signal`.
-    pub fn ty(&self, signal: SignalId) -> ElementaryType {
+    pub fn ty(&self, signal: SignalId) -> SignalType {
         self.types[signal.index()]
     }
 
@@ -77,7 +77,7 @@ struct Run {
 pub struct PortMap {
     runs: Vec<Run>,
     /// Signals whose bytes need a look once staged: image offset, type, and who it is.
-    to_canonicalise: Vec<(usize, ElementaryType, SignalId)>,
+    to_canonicalise: Vec<(usize, SignalType, SignalId)>,
     size: usize,
 }
 
@@ -213,8 +213,8 @@ mod tests {
     use crate::signal::{Port, SignalName};
     use proptest::prelude::*;
 
-    fn signals(types: &[ElementaryType]) -> Vec<SignalDecl> {
-        let decl = |(index, ty): (usize, &ElementaryType)| SignalDecl {
+    fn signals(types: &[SignalType]) -> Vec<SignalDecl> {
+        let decl = |(index, ty): (usize, &SignalType)| SignalDecl {
             name: SignalName::new(format!("s{index:03}")).unwrap(),
             ty: *ty,
             writer: None,
@@ -231,15 +231,15 @@ mod tests {
 
     #[test]
     fn wide_signals_come_first_and_nothing_is_padded() {
-        use ElementaryType::{Bool, Int, Lreal, Real};
-        let layout = ImageLayout::new(&signals(&[Bool, Lreal, Int, Real, Bool]));
+        use SignalType as T;
+        let layout = ImageLayout::new(&signals(&[T::BOOL, T::LREAL, T::INT, T::REAL, T::BOOL]));
         assert_eq!(layout.size(), 16);
         assert_eq!(layout.offsets, [14, 0, 12, 8, 15]);
     }
 
     #[test]
     fn staged_values_are_seen_after_the_commit_only() {
-        let signals = signals(&[ElementaryType::Int]);
+        let signals = signals(&[SignalType::INT]);
         let layout = ImageLayout::new(&signals);
         let map = map_of(&signals, &[0], &layout);
         let mut image = Image::new(Arc::new(layout.clone()));
@@ -254,7 +254,7 @@ mod tests {
 
     #[test]
     fn neighbours_are_copied_in_one_run() {
-        let signals = signals(&[ElementaryType::Dint; 75]);
+        let signals = signals(&[SignalType::DINT; 75]);
         let layout = ImageLayout::new(&signals);
         let map = map_of(&signals, &(0..75).collect::<Vec<_>>(), &layout);
         assert_eq!(map.runs, [Run { image: 0, port: 0, len: 300 }]);
@@ -262,7 +262,7 @@ mod tests {
 
     #[test]
     fn a_value_that_is_none_is_refused_with_its_signal() {
-        let signals = signals(&[ElementaryType::Bool, ElementaryType::Bool]);
+        let signals = signals(&[SignalType::BOOL, SignalType::BOOL]);
         let layout = ImageLayout::new(&signals);
         let map = map_of(&signals, &[0, 1], &layout);
         assert_eq!(Image::new(Arc::new(layout.clone())).stage(&map, &[1, 9]), Err((SignalId(1), BadValue::Bool(9))));
@@ -271,7 +271,7 @@ mod tests {
     proptest! {
         #[test]
         fn what_is_committed_is_gathered(order in Just((0..20_u32).collect::<Vec<_>>()).prop_shuffle(), seed: [u8; 20]) {
-            let types: Vec<_> = (0..20).map(|i| [ElementaryType::Byte, ElementaryType::Int, ElementaryType::Lint][i % 3]).collect();
+            let types: Vec<_> = (0..20).map(|i| [SignalType::BYTE, SignalType::INT, SignalType::LINT][i % 3]).collect();
             let signals = signals(&types);
             let layout = ImageLayout::new(&signals);
             let map = map_of(&signals, &order, &layout);

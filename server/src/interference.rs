@@ -7,11 +7,13 @@
 
 use std::collections::{BTreeMap, VecDeque};
 
+use onescan_base::ElementaryType;
+use onescan_base::elementary::Kind;
 use serde::{Deserialize, Serialize};
 
 use crate::image::ImageLayout;
 use crate::operation::SignalFault;
-use crate::signal::{ElementaryType, SignalId};
+use crate::signal::{SignalId, SignalType};
 use crate::time::TimeSpan;
 
 /// A fault at work.
@@ -70,13 +72,13 @@ impl Interference {
         &mut self,
         signal: SignalId,
         fault: &SignalFault,
-        ty: ElementaryType,
+        ty: SignalType,
         committed: &[u8],
         step: TimeSpan,
     ) -> bool {
         let disturbance = match fault {
             SignalFault::Stuck => Disturbance::Stuck(committed.to_vec()),
-            SignalFault::Inverted if ty == ElementaryType::Bool => Disturbance::Inverted,
+            SignalFault::Inverted if ty == SignalType::BOOL => Disturbance::Inverted,
             SignalFault::Inverted => return false,
             SignalFault::Offset { by } => match offset(ty, by) {
                 Some(bytes) => Disturbance::Offset(bytes),
@@ -134,7 +136,7 @@ impl Interference {
                     Disturbance::Late(values) => {
                         !values.is_empty() && values.iter().all(|bytes| bytes.len() == layout.range(*signal).len())
                     }
-                    Disturbance::Inverted => layout.ty(*signal) == ElementaryType::Bool,
+                    Disturbance::Inverted => layout.ty(*signal) == SignalType::BOOL,
                     Disturbance::Offset(_) => offset(layout.ty(*signal), "0").is_some(),
                 }
         };
@@ -145,7 +147,7 @@ impl Interference {
 /// Longest queue of a late signal, in steps.
 const LATE_STEPS_MAX: usize = 1_000_000;
 
-fn disturbed(fault: &mut Disturbance, ty: ElementaryType, bytes: &mut [u8], ends_step: bool) {
+fn disturbed(fault: &mut Disturbance, ty: SignalType, bytes: &mut [u8], ends_step: bool) {
     match fault {
         Disturbance::Stuck(kept) => bytes.copy_from_slice(kept),
         Disturbance::Inverted => bytes[0] ^= 1,
@@ -163,73 +165,49 @@ fn disturbed(fault: &mut Disturbance, ty: ElementaryType, bytes: &mut [u8], ends
     }
 }
 
-/// The sort of number a type is; nothing for a type that cannot be shifted.
-enum Number {
-    Real,
-    Lreal,
-    Signed(usize),
-    Unsigned(usize),
-}
-
-fn number(ty: ElementaryType) -> Option<Number> {
-    use ElementaryType as E;
-    Some(match ty {
-        E::Real => Number::Real,
-        E::Lreal => Number::Lreal,
-        E::Sint | E::Int | E::Dint | E::Lint => Number::Signed(ty.size()),
-        E::Usint | E::Uint | E::Udint | E::Ulint | E::Byte | E::Word | E::Dword | E::Lword => {
-            Number::Unsigned(ty.size())
-        }
-        _ => return None,
-    })
-}
-
-/// The bytes of an offset for a signal of type `ty`; nothing if there is no such offset.
-fn offset(ty: ElementaryType, by: &str) -> Option<[u8; 8]> {
-    match number(ty)? {
-        Number::Real | Number::Lreal => {
-            let by: f64 = by.parse().ok()?;
-            by.is_finite().then(|| by.to_le_bytes())
-        }
-        Number::Signed(_) | Number::Unsigned(_) => by.parse::<i64>().ok().map(i64::to_le_bytes),
+/// The elementary type of a signal that can be shifted: an integer, a bit string or a real.
+fn number(ty: SignalType) -> Option<ElementaryType> {
+    match ty {
+        SignalType::Elementary(ty) if ty.is_number() || ty.kind() == Kind::Bits => Some(ty),
+        _ => None,
     }
 }
 
+/// The bytes of an offset for a signal of type `ty`; nothing if there is no such offset.
+fn offset(ty: SignalType, by: &str) -> Option<[u8; 8]> {
+    if number(ty)?.is_real() {
+        let by: f64 = by.parse().ok()?;
+        return by.is_finite().then(|| by.to_le_bytes());
+    }
+    by.parse::<i64>().ok().map(i64::to_le_bytes)
+}
+
 /// Shifts a number in place. NaN stays as it is: its canonical form is part of the digest.
-fn shift(ty: ElementaryType, bytes: &mut [u8], by: [u8; 8]) {
-    match number(ty) {
-        Some(Number::Real) => {
-            if let Some(bytes) = bytes.first_chunk_mut::<4>() {
-                let value = f64::from(f32::from_le_bytes(*bytes)) + f64::from_le_bytes(by);
-                if !value.is_nan() {
-                    *bytes = (value as f32).to_le_bytes();
-                }
-            }
+fn shift(ty: SignalType, bytes: &mut [u8], by: [u8; 8]) {
+    let Some(elementary) = number(ty) else {
+        debug_assert!(false, "{ty} cannot be shifted, and `disturb` refuses it");
+        return;
+    };
+    if let Some((low, high)) = elementary.range() {
+        let size = bytes.len();
+        let negative = elementary.is_signed() && bytes[size - 1] & 0x80 != 0;
+        let mut wide = [if negative { 0xff } else { 0 }; 16];
+        wide[..size].copy_from_slice(bytes);
+        let value = (i128::from_le_bytes(wide) + i128::from(i64::from_le_bytes(by))).clamp(low, high);
+        bytes.copy_from_slice(&value.to_le_bytes()[..size]);
+        return;
+    }
+    let by = f64::from_le_bytes(by);
+    if let Ok(real) = <[u8; 4]>::try_from(&*bytes) {
+        let value = f64::from(f32::from_le_bytes(real)) + by;
+        if !value.is_nan() {
+            bytes.copy_from_slice(&(value as f32).to_le_bytes());
         }
-        Some(Number::Lreal) => {
-            if let Some(bytes) = bytes.first_chunk_mut::<8>() {
-                let value = f64::from_le_bytes(*bytes) + f64::from_le_bytes(by);
-                if !value.is_nan() {
-                    *bytes = value.to_le_bytes();
-                }
-            }
+    } else if let Ok(real) = <[u8; 8]>::try_from(&*bytes) {
+        let value = f64::from_le_bytes(real) + by;
+        if !value.is_nan() {
+            bytes.copy_from_slice(&value.to_le_bytes());
         }
-        Some(Number::Signed(size)) => {
-            let bits = 8 * size as u32;
-            let mut wide = [if bytes[size - 1] & 0x80 == 0 { 0 } else { 0xff }; 16];
-            wide[..size].copy_from_slice(bytes);
-            let (low, high) = (-(1_i128 << (bits - 1)), (1_i128 << (bits - 1)) - 1);
-            let value = (i128::from_le_bytes(wide) + i128::from(i64::from_le_bytes(by))).clamp(low, high);
-            bytes.copy_from_slice(&value.to_le_bytes()[..size]);
-        }
-        Some(Number::Unsigned(size)) => {
-            let mut wide = [0; 16];
-            wide[..size].copy_from_slice(bytes);
-            let high = (1_i128 << (8 * size as u32)) - 1;
-            let value = (i128::from_le_bytes(wide) + i128::from(i64::from_le_bytes(by))).clamp(0, high);
-            bytes.copy_from_slice(&value.to_le_bytes()[..size]);
-        }
-        None => debug_assert!(false, "a type that cannot be shifted was refused by `disturb`"),
     }
 }
 
@@ -237,7 +215,7 @@ fn shift(ty: ElementaryType, bytes: &mut [u8], by: [u8; 8]) {
 mod tests {
     use super::*;
 
-    fn shifted<const N: usize>(ty: ElementaryType, value: [u8; N], by: &str) -> [u8; N] {
+    fn shifted<const N: usize>(ty: SignalType, value: [u8; N], by: &str) -> [u8; N] {
         let mut bytes = value;
         shift(ty, &mut bytes, offset(ty, by).unwrap());
         bytes
@@ -245,16 +223,16 @@ mod tests {
 
     #[test]
     fn numbers_are_shifted_within_their_type() {
-        use ElementaryType as E;
-        assert_eq!(shifted(E::Int, (-5_i16).to_le_bytes(), "-10"), (-15_i16).to_le_bytes());
-        assert_eq!(shifted(E::Int, i16::MAX.to_le_bytes(), "1"), i16::MAX.to_le_bytes());
-        assert_eq!(shifted(E::Sint, (-128_i8).to_le_bytes(), "-1"), (-128_i8).to_le_bytes());
-        assert_eq!(shifted(E::Uint, 3_u16.to_le_bytes(), "-10"), 0_u16.to_le_bytes());
-        assert_eq!(shifted(E::Ulint, u64::MAX.to_le_bytes(), "1"), u64::MAX.to_le_bytes());
-        assert_eq!(shifted(E::Real, 1.5_f32.to_le_bytes(), "-0.5"), 1_f32.to_le_bytes());
-        assert_eq!(shifted(E::Lreal, f64::NAN.to_le_bytes(), "1"), f64::NAN.to_le_bytes());
-        assert_eq!(offset(E::Bool, "1"), None);
-        assert_eq!(offset(E::Int, "0.5"), None);
-        assert_eq!(offset(E::Lreal, "inf"), None);
+        use SignalType as S;
+        assert_eq!(shifted(S::INT, (-5_i16).to_le_bytes(), "-10"), (-15_i16).to_le_bytes());
+        assert_eq!(shifted(S::INT, i16::MAX.to_le_bytes(), "1"), i16::MAX.to_le_bytes());
+        assert_eq!(shifted(S::SINT, (-128_i8).to_le_bytes(), "-1"), (-128_i8).to_le_bytes());
+        assert_eq!(shifted(S::UINT, 3_u16.to_le_bytes(), "-10"), 0_u16.to_le_bytes());
+        assert_eq!(shifted(S::ULINT, u64::MAX.to_le_bytes(), "1"), u64::MAX.to_le_bytes());
+        assert_eq!(shifted(S::REAL, 1.5_f32.to_le_bytes(), "-0.5"), 1_f32.to_le_bytes());
+        assert_eq!(shifted(S::LREAL, f64::NAN.to_le_bytes(), "1"), f64::NAN.to_le_bytes());
+        assert_eq!(offset(S::BOOL, "1"), None);
+        assert_eq!(offset(S::INT, "0.5"), None);
+        assert_eq!(offset(S::LREAL, "inf"), None);
     }
 }

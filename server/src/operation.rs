@@ -7,13 +7,13 @@
 
 use std::fmt;
 
+use onescan_base::value::BadText;
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
 use crate::client::{ClientOperation, OperationRefused};
 use crate::session::Control;
-use crate::signal::value::BadText;
-use crate::signal::{ClientName, ElementaryType, SignalName};
+use crate::signal::{ClientName, SignalName, SignalType};
 use crate::time::{StepCount, TimeSpan, VirtualTime};
 
 /// An operation. Values are text as in a recording: `1`, `-3.5`; `TRUE` and `FALSE` too.
@@ -261,7 +261,7 @@ pub enum OperationError {
         /// The signal.
         signal: SignalName,
         /// Its type.
-        ty: ElementaryType,
+        ty: SignalType,
         /// The fault.
         fault: SignalFault,
     },

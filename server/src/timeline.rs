@@ -16,7 +16,7 @@ use thiserror::Error;
 
 use crate::operation::{Operation, OperationError};
 use crate::session::Session;
-use crate::signal::{ElementaryType, SignalId, SignalName};
+use crate::signal::{SignalId, SignalName, SignalType};
 use crate::time::{TimeSpan, VirtualTime};
 
 /// An operation and when it happens.
@@ -147,7 +147,7 @@ impl fmt::Display for When {
 /// A condition with its signals found and its values read.
 #[derive(Clone, Debug)]
 enum Bound {
-    Compare { signal: SignalId, ty: ElementaryType, relation: Relation, value: Vec<u8> },
+    Compare { signal: SignalId, ty: SignalType, relation: Relation, value: Vec<u8> },
     All(Vec<Bound>),
     Any(Vec<Bound>),
     Not(Box<Bound>),
@@ -384,26 +384,23 @@ fn holds(condition: &Bound, session: &Session) -> bool {
 }
 
 /// Two values of one type in their order. Texts are ordered by their characters.
-fn compared(ty: ElementaryType, left: &[u8], right: &[u8]) -> Option<Ordering> {
-    use ElementaryType as E;
-    let whole = |bytes: &[u8], signed: bool| {
-        let negative = signed && bytes.last().is_some_and(|byte| byte & 0x80 != 0);
+fn compared(ty: SignalType, left: &[u8], right: &[u8]) -> Option<Ordering> {
+    let SignalType::Elementary(elementary) = ty else {
+        // Behind two bytes of length; what is behind the text is zero in canonical form.
+        return Some(left.get(2..)?.cmp(right.get(2..)?));
+    };
+    if elementary.is_real() {
+        let real = |bytes: &[u8]| match bytes {
+            [a, b, c, d] => f64::from(f32::from_le_bytes([*a, *b, *c, *d])),
+            bytes => bytes.first_chunk().map_or(f64::NAN, |bytes| f64::from_le_bytes(*bytes)),
+        };
+        return real(left).partial_cmp(&real(right));
+    }
+    let whole = |bytes: &[u8]| {
+        let negative = elementary.is_signed() && bytes.last().is_some_and(|byte| byte & 0x80 != 0);
         let mut wide = [if negative { 0xff } else { 0 }; 16];
         wide[..bytes.len()].copy_from_slice(bytes);
         i128::from_le_bytes(wide)
     };
-    let real = |bytes: &[u8]| match bytes {
-        [a, b, c, d] => f64::from(f32::from_le_bytes([*a, *b, *c, *d])),
-        bytes => bytes.first_chunk().map_or(f64::NAN, |bytes| f64::from_le_bytes(*bytes)),
-    };
-    match ty {
-        E::Real | E::Lreal => real(left).partial_cmp(&real(right)),
-        // Behind two bytes of length; what is behind the text is zero in canonical form.
-        E::String(_) | E::Wstring(_) => Some(left.get(2..)?.cmp(right.get(2..)?)),
-        E::Bool | E::Byte | E::Word | E::Dword | E::Lword | E::Usint | E::Uint | E::Udint | E::Ulint => {
-            Some(whole(left, false).cmp(&whole(right, false)))
-        }
-        E::Char | E::Wchar => Some(whole(left, false).cmp(&whole(right, false))),
-        _ => Some(whole(left, true).cmp(&whole(right, true))),
-    }
+    Some(whole(left).cmp(&whole(right)))
 }

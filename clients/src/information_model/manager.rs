@@ -7,7 +7,7 @@ use std::sync::{Arc, Weak};
 use std::time::Duration;
 
 use async_trait::async_trait;
-use onescan_server::signal::ElementaryType;
+use onescan_server::signal::SignalType;
 use opcua::server::address_space::{AddressSpace, add_namespaces};
 use opcua::server::diagnostics::NamespaceMetadata;
 use opcua::server::node_manager::memory::InMemoryNodeManagerImpl;
@@ -125,7 +125,7 @@ pub fn status(refusal: Refusal) -> StatusCode {
 }
 
 /// The bytes of `given` as a signal of type `ty`.
-pub(super) fn packed(ty: ElementaryType, given: &Variant) -> Result<Vec<u8>, StatusCode> {
+pub(super) fn packed(ty: SignalType, given: &Variant) -> Result<Vec<u8>, StatusCode> {
     let given = match given {
         Variant::Variant(inner) => inner,
         plain => plain,
@@ -133,7 +133,7 @@ pub(super) fn packed(ty: ElementaryType, given: &Variant) -> Result<Vec<u8>, Sta
     let mut bytes = vec![0; ty.size()];
     if !value::from_variant(ty, given, &mut bytes) {
         let is_text =
-            matches!(given, Variant::String(_)) && matches!(ty, ElementaryType::String(_) | ElementaryType::Wstring(_));
+            matches!(given, Variant::String(_)) && matches!(ty, SignalType::String(_) | SignalType::Wstring(_));
         return Err(if is_text { StatusCode::BadOutOfRange } else { StatusCode::BadTypeMismatch });
     }
     ty.canonicalise(&mut bytes).map_err(|_| StatusCode::BadOutOfRange)?;

@@ -1,7 +1,7 @@
 //! All pending snapshots as one self-contained page.
 
 use onescan_plc_shim::Coverage;
-use onescan_server::signal::ElementaryType;
+use onescan_server::signal::SignalType;
 
 use super::{Waiting, chart, view};
 use crate::plot::{Mark, Panel, Plot, Shape, Trajectory};
@@ -40,7 +40,7 @@ fn plot(waiting: &Waiting) -> Plot {
         let (signal, unit, shape) = (any.name.clone(), any.unit.clone(), shape(any));
         let both = if old.is_some() { runs(&[was.clone(), is.clone()]) } else { runs(std::slice::from_ref(&is)) };
         panels.push(Panel { signal: signal.clone(), unit: unit.clone(), shape, runs: both });
-        if let (Some(was), Some(is), false) = (&was, &is, any.ty == ElementaryType::Bool) {
+        if let (Some(was), Some(is), false) = (&was, &is, any.ty == SignalType::BOOL) {
             let difference = chart::difference(was, is);
             let signal = format!("{signal}, new less old");
             panels.push(Panel { signal, unit, shape: Shape::Step, runs: vec![trajectory(waiting, &difference)] });

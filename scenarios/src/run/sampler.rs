@@ -6,7 +6,7 @@ use std::rc::Rc;
 use onescan_server::digest::TrajectoryDigest;
 use onescan_server::record::{Observer, RecordError};
 use onescan_server::session::Session;
-use onescan_server::signal::{ElementaryType, SignalId, SignalName};
+use onescan_server::signal::{SignalId, SignalName, SignalType};
 
 use super::config::{Mode, RunConfig};
 use super::report::RunReport;
@@ -147,9 +147,9 @@ fn marks(reports: &[RunReport]) -> Vec<Mark> {
 }
 
 /// Numbers with a fraction change between samples; everything else jumps.
-pub(super) fn shape(ty: ElementaryType) -> Shape {
+pub(super) fn shape(ty: SignalType) -> Shape {
     match ty {
-        ElementaryType::Real | ElementaryType::Lreal => Shape::Line,
+        SignalType::REAL | SignalType::LREAL => Shape::Line,
         _ => Shape::Step,
     }
 }

@@ -4,7 +4,7 @@ use onescan_clients::plant::component::kinds;
 use onescan_clients::plant::scene::model::{Drive, Scene, When, Wire};
 use onescan_clients::soft_plc::{BindError, bind};
 use onescan_plc_shim::Application;
-use onescan_server::signal::{ClientName, ElementaryType, SignalDecl, SignalName};
+use onescan_server::signal::{ClientName, SignalDecl, SignalName, SignalType};
 
 use crate::scenario::compose::Paths;
 
@@ -12,7 +12,7 @@ use crate::scenario::compose::Paths;
 #[derive(Clone, Debug)]
 pub(super) struct End {
     pub(super) signal: SignalName,
-    pub(super) ty: ElementaryType,
+    pub(super) ty: SignalType,
     /// Outputs and inputs of components, variables of the PLC.
     pub(super) places: Vec<String>,
 }

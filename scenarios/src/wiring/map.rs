@@ -1,6 +1,6 @@
 //! The map: every signal with its writer, its readers and what is wrong with it.
 
-use onescan_server::signal::{ClientName, ElementaryType, SignalName, nearest};
+use onescan_server::signal::{ClientName, SignalName, SignalType, nearest};
 use serde::Serialize;
 
 use super::ends::{End, Ends, of_plant, of_plc};
@@ -147,7 +147,7 @@ impl Map {
     fn check(
         &mut self,
         wired: &Wired,
-        (name, ty, writer): (&SignalName, ElementaryType, &ClientName),
+        (name, ty, writer): (&SignalName, SignalType, &ClientName),
         found: &[(ClientName, Option<Ends>)],
     ) {
         for (client, ends) in found {

@@ -1,10 +1,12 @@
 //! Operations on a running session, whoever asks for them: operators, a replay, the timeline.
 
+use onescan_base::did_you_mean;
+
 use super::Lockstep;
 use crate::client::{ClientId, ClientOperation};
 use crate::observer::RecordError;
 use crate::operation::{Author, Operation, OperationError, OperatorInput};
-use crate::signal::{ClientName, did_you_mean};
+use crate::signal::ClientName;
 use crate::wire::message::Status;
 
 impl Lockstep {

@@ -29,6 +29,8 @@ mod view;
 
 use std::sync::Arc;
 
+use onescan_base::nearest;
+
 pub use saved::SessionState;
 use serde::{Deserialize, Serialize};
 pub use turn::Turn;
@@ -39,7 +41,7 @@ use crate::end::SessionEnd;
 use crate::image::{Commit, Image, ImageLayout};
 use crate::join::{JoinRefusal, Membership, admit};
 use crate::plan::SessionPlan;
-use crate::signal::{ClientName, SignalName, nearest};
+use crate::signal::{ClientName, SignalName};
 use crate::state::ServerState;
 use crate::time::VirtualTime;
 
@@ -240,13 +242,13 @@ mod tests {
     use crate::client::Wake;
     use crate::end::Violation;
     use crate::plan::Coupling;
-    use crate::signal::{ElementaryType, Port, SignalDecl};
+    use crate::signal::{Port, SignalDecl, SignalType};
     use crate::time::{StepCount, TimeSpan};
 
     fn formed() -> Session {
         let name = ClientName::new("plc").unwrap();
         let signal = SignalName::new("x").unwrap();
-        let ty = ElementaryType::Bool;
+        let ty = SignalType::BOOL;
         let step = TimeSpan::from_millis(10).unwrap();
         let decl = SignalDecl { name: signal.clone(), ty, writer: Some(name.clone()), unit: None };
         let mut session =

@@ -1,9 +1,11 @@
 //! What is asked of a session from outside.
 
+use onescan_base::did_you_mean;
+
 use super::{Control, Mode, Session};
 use crate::client::OperationRefused;
 use crate::operation::{Operation, OperationError, SignalFault};
-use crate::signal::{SignalId, SignalName, did_you_mean};
+use crate::signal::{SignalId, SignalName};
 
 impl Session {
     /// Asks for a stop, pause, single step or reset at the next step boundary.

@@ -7,7 +7,7 @@ use crate::client::{ClientFault, ClientOperation, JoinRequest, OperationRefused}
 use crate::end::SessionEnd;
 use crate::operation::Operation;
 use crate::session::Control;
-use crate::signal::{ElementaryType, PortLayout, SignalDecl, SignalName};
+use crate::signal::{PortLayout, SignalDecl, SignalName, SignalType};
 use crate::state::ServerState;
 use crate::time::{StepCount, TimeSpan, VirtualTime};
 
@@ -120,7 +120,7 @@ pub struct PlacedSignal {
     pub name: SignalName,
     /// Its type.
     #[serde(rename = "type")]
-    pub ty: ElementaryType,
+    pub ty: SignalType,
     /// First byte.
     pub offset: u32,
     /// Bytes.

@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use onescan_server::signal::ElementaryType;
+use onescan_server::signal::SignalType;
 use onescan_server::time::{TimeSpan, VirtualTime};
 
 use super::markup::{escaped, facts};
@@ -153,7 +153,7 @@ fn statistics(steps: u64, step_ns: u64, end_ns: u64, digest: Option<&String>) ->
 
 /// The changes of all BOOLs.
 fn edges(snapshot: &Snapshot) -> impl Iterator<Item = Event> {
-    let bools = snapshot.signals.iter().filter(|track| track.ty == ElementaryType::Bool);
+    let bools = snapshot.signals.iter().filter(|track| track.ty == SignalType::BOOL);
     bools.flat_map(|track| {
         track.changes.iter().skip(1).map(|(since, bytes)| Event {
             at_ns: since.as_nanos(),

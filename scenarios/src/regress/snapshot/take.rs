@@ -6,7 +6,7 @@ use std::rc::Rc;
 use onescan_server::digest::TrajectoryDigest;
 use onescan_server::record::{Observer, RecordError};
 use onescan_server::session::Session;
-use onescan_server::signal::{ElementaryType, SignalId, SignalName, did_you_mean};
+use onescan_server::signal::{SignalId, SignalName, SignalType, did_you_mean};
 use onescan_server::time::{TimeSpan, VirtualTime};
 
 use super::{Sampled, Snapshot, Track};
@@ -128,7 +128,7 @@ impl Observer for Taker {
         let taken = |name: &SignalName| {
             let id = session.signal_id(name.as_str())?;
             let ty = session.layout().ty(id);
-            let is_real = matches!(ty, ElementaryType::Real | ElementaryType::Lreal);
+            let is_real = matches!(ty, SignalType::REAL | SignalType::LREAL);
             let sampled = is_real.then_some(Sampled { every: self.choice.every, digest: 0 });
             let unit = session.plan().signals().iter().find(|signal| signal.name == *name)?.unit.clone();
             let track = Track { name: name.to_string(), ty, unit, sampled, changes: Vec::new() };
