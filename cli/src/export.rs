@@ -40,5 +40,5 @@ pub fn export(config: &ExportConfig) -> Result<(), RunError> {
     let file = file::begin_whole(&config.output)?;
     let out = file.reopen().map_err(RecordingError::Output)?;
     recording.export(config.format, &config.signals, steps, out)?;
-    file::end_whole(file, &config.output)
+    Ok(file::end_whole(file, &config.output)?)
 }

@@ -59,7 +59,7 @@ pub fn run(config: &BrowseConfig, out: &mut dyn Write) -> Result<(), RunError> {
         Some((scenario, name)) => mapping(scenario, name, &config.url, &found),
         None => everything(&config.url, &found),
     };
-    write_whole(path, text.as_bytes())
+    Ok(write_whole(path, text.as_bytes())?)
 }
 
 /// The link that the scenario declares.

@@ -46,6 +46,6 @@ impl CoverageRequest {
             CoverageFormat::Lcov => coverage.to_lcov(),
             CoverageFormat::Cobertura => coverage.to_cobertura(),
         };
-        file::write_whole(&self.path, text.as_bytes())
+        Ok(file::write_whole(&self.path, text.as_bytes())?)
     }
 }

@@ -186,5 +186,5 @@ fn save(lockstep: &mut Lockstep, request: &SaveRequest) -> Result<(), RunError> 
         return Err(RunError::SaveTooLate(lockstep.session().t_v()));
     }
     let bytes = lockstep.checkpoint().and_then(|checkpoint| checkpoint.to_bytes()).map_err(RunError::Save)?;
-    file::write_whole(&request.path, &bytes)
+    Ok(file::write_whole(&request.path, &bytes)?)
 }

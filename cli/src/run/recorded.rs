@@ -67,7 +67,7 @@ impl Recorded {
         event::append(&self.folder.join(EVENTS), &events)?;
         let mut text = serde_json::to_vec_pretty(report).map_err(|e| RunError::Output(e.into()))?;
         text.push(b'\n');
-        file::write_whole(&self.folder.join("run.json"), &text)
+        Ok(file::write_whole(&self.folder.join("run.json"), &text)?)
     }
 }
 

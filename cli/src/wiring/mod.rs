@@ -58,5 +58,5 @@ pub fn write(config: &WiringConfig, out: &mut dyn Write) -> Result<bool, RunErro
 }
 
 fn draw(map: &Map, title: &str, path: &Path) -> Result<(), RunError> {
-    write_whole(path, drawing::svg(map, title).as_bytes())
+    Ok(write_whole(path, drawing::svg(map, title).as_bytes())?)
 }

@@ -79,7 +79,7 @@ impl Place {
 
     fn write(&self, path: &Path, snapshot: &Snapshot) -> Result<(), RunError> {
         file::create_folder(&self.scenario.join(FOLDER))?;
-        file::write_whole(path, snapshot.to_text().as_bytes())
+        Ok(file::write_whole(path, snapshot.to_text().as_bytes())?)
     }
 }
 
