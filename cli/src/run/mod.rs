@@ -45,8 +45,8 @@ use std::time::Instant;
 
 use onescan_report::file;
 use onescan_report::plot::Plot;
-use onescan_scenario::Scenario;
 use onescan_scenario::expect::{Trace, TraceEnd};
+use onescan_scenario::{Mode, Scenario};
 use onescan_server::lockstep::Lockstep;
 use onescan_server::record::Observer;
 
