@@ -41,7 +41,10 @@ mod output;
 pub mod run;
 pub mod syntax;
 
-pub use application::{Application, Program, Radix, UnknownVariable, Variable, VariableAccess, WriteError, inspect};
+pub use application::{
+    Application, BuildError, Builder, CodeDifference, ConstantError, Program, Radix, UnknownVariable, Variable,
+    VariableAccess, VariableDifference, WriteError, inspect,
+};
 pub use compile::fault::FaultKind;
 pub use coverage::Coverage;
 pub use diagnostic::{Code, Diagnostic, Diagnostics, Finding, Severity};
@@ -49,5 +52,6 @@ pub use dialect::Dialect;
 pub use input::Input;
 pub use ir::elementary::ElementaryType;
 pub use run::{
-    FaultSite, PlcFault, RestoreError, RunError, SoftPlc, Task, TaskPlan, VirtualTime, Way, WayId, WriteSite,
+    CodePolicy, FaultSite, PlanDifference, PlcFault, RestoreError, RunError, SoftPlc, Task, TaskPlan, VirtualTime, Way,
+    WayId, WriteSite,
 };

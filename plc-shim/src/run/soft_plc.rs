@@ -1,6 +1,7 @@
 //! The PLC itself.
 
 use std::ops::Range;
+use std::sync::OnceLock;
 
 use super::VirtualTime;
 use super::fault::{self, PlcFault, WriteSite, explain};
@@ -8,7 +9,7 @@ use super::force::Forces;
 use super::machine::{Machine, Occasion, Trapped};
 use super::plan::{Resolved, RunError, TaskPlan, resolve};
 use super::scheduler::Scheduler;
-use super::state::{self, RestoreError, State};
+use super::state::{CodePolicy, Decoder, Meaning, RestoreError, State};
 use super::trace::{Trace, Watched};
 use super::way::WayId;
 use crate::application::{Application, UnknownVariable, Variable};
@@ -25,8 +26,9 @@ pub struct SoftPlc {
     /// What each scan runs at its end.
     background: Vec<usize>,
     is_triggered: bool,
-    fuel_per_task: u64,
-    fingerprint: u64,
+    plan: TaskPlan,
+    /// Made when a state is saved or restored first.
+    meaning: OnceLock<Meaning>,
     /// Virtual time of the last scan.
     now: VirtualTime,
     fault: Option<PlcFault>,
@@ -55,8 +57,8 @@ impl SoftPlc {
             tasks,
             background,
             is_triggered: singles.iter().any(Option::is_some),
-            fuel_per_task: plan.fuel_per_task,
-            fingerprint: state::fingerprint(application, plan),
+            plan: plan.clone(),
+            meaning: OnceLock::new(),
             now: VirtualTime::default(),
             fault: None,
             forces: Forces::default(),
@@ -161,7 +163,7 @@ impl SoftPlc {
     fn begin_task(&mut self) {
         let time = self.now.as_ns().to_le_bytes();
         copy_to(self.machine.memory_mut(), VIRTUAL_TIME_OFFSET as usize, &time);
-        self.machine.refuel(self.fuel_per_task);
+        self.machine.refuel(self.plan.fuel_per_task);
     }
 
     fn run_task(&mut self, task: usize) -> Result<(), PlcFault> {
@@ -275,23 +277,33 @@ impl SoftPlc {
             forces: self.forces.clone(),
             memory: self.machine.memory(),
         };
-        state.encode(self.fingerprint)
+        state.encode(self.meaning())
     }
 
-    /// Takes a state back; the PLC goes on from there to the last bit. On an error nothing has
-    /// changed.
+    /// Takes the state of a PLC with the same sources and the same plan; plain, covered and traced builds take
+    /// each other's. The PLC goes on from there to the last bit. On an error nothing has changed.
     ///
     /// # Errors
-    /// The bytes are not a state of this application under this plan.
+    /// The bytes are not a state of this application under this plan; the error says in what they differ.
     pub fn restore(&mut self, bytes: &[u8]) -> Result<(), RestoreError> {
-        let (tasks, size) = (self.tasks.len(), self.machine.memory().len());
-        let state = State::decode(bytes, self.fingerprint, &self.application, tasks, size)?;
-        copy_to(self.machine.memory_mut(), 0, state.memory);
-        self.scheduler.set_waiting(&state.waiting);
-        self.now = state.now;
-        self.fault = state.fault;
-        self.forces = state.forces;
+        self.restore_with(bytes, CodePolicy::SameCode)
+    }
+
+    /// Like [`Self::restore`], but `policy` says whether the sources must be the same.
+    ///
+    /// # Errors
+    /// The bytes are not a state of a PLC with these variables and this plan, or of one that `policy` refuses.
+    pub fn restore_with(&mut self, bytes: &[u8], policy: CodePolicy) -> Result<(), RestoreError> {
+        let decoder = Decoder { application: &self.application, plan: &self.plan, meaning: self.meaning(), policy };
+        let State { now, waiting, fault, forces, memory } = decoder.decode(bytes)?;
+        copy_to(self.machine.memory_mut(), 0, &memory);
+        self.scheduler.set_waiting(&waiting);
+        (self.now, self.fault, self.forces) = (now, fault, forces);
         Ok(())
+    }
+
+    fn meaning(&self) -> &Meaning {
+        self.meaning.get_or_init(|| Meaning::new(&self.application, &self.plan))
     }
 }
 
