@@ -31,6 +31,10 @@ pub struct SoftPlc {
     meaning: OnceLock<Meaning>,
     /// Virtual time of the last scan.
     now: VirtualTime,
+    /// The latest virtual time that this PLC has scanned, whatever was restored since.
+    scanned_until: VirtualTime,
+    /// The latest saved state that was restored ahead of what the PLC had scanned itself; 0 if none was.
+    skipped_to: VirtualTime,
     fault: Option<PlcFault>,
     pub(super) forces: Forces,
 }
@@ -60,6 +64,8 @@ impl SoftPlc {
             plan: plan.clone(),
             meaning: OnceLock::new(),
             now: VirtualTime::default(),
+            scanned_until: VirtualTime::default(),
+            skipped_to: VirtualTime::default(),
             fault: None,
             forces: Forces::default(),
         };
@@ -143,6 +149,7 @@ impl SoftPlc {
             return Err(fault.clone());
         }
         self.now = now;
+        self.scanned_until = self.scanned_until.max(now);
         self.apply_forces();
         self.machine.begin_trace();
         self.scheduler.begin_scan();
@@ -210,6 +217,11 @@ impl SoftPlc {
         self.is_triggered || !self.background.is_empty()
     }
 
+    /// Virtual time of the last scan, or of the start before the first.
+    pub fn now(&self) -> VirtualTime {
+        self.now
+    }
+
     /// The fault that stopped the PLC.
     pub fn fault(&self) -> Option<&PlcFault> {
         self.fault.as_ref()
@@ -240,12 +252,13 @@ impl SoftPlc {
     }
 
     /// What has been executed since the PLC was made, whatever was started or restored meanwhile;
-    /// nothing unless the application was compiled for it.
+    /// nothing unless the application was compiled for it. If a state was restored that another PLC had saved
+    /// later in its run, the report says that it counts from there on.
     pub fn coverage(&self) -> Option<Coverage> {
         let points = self.application.points();
         let sources = self.application.sources();
         (!points.is_empty() && !self.application.is_traced())
-            .then(|| Coverage::new(sources, points, self.machine.notes()))
+            .then(|| Coverage::new(sources, points, self.machine.notes(), self.skipped_to.as_ns()))
     }
 
     /// Watches places in memory from here on, in place of those watched before. The application must
@@ -299,6 +312,9 @@ impl SoftPlc {
         copy_to(self.machine.memory_mut(), 0, &memory);
         self.scheduler.set_waiting(&waiting);
         (self.now, self.fault, self.forces) = (now, fault, forces);
+        if now > self.scanned_until {
+            (self.scanned_until, self.skipped_to) = (now, now);
+        }
         Ok(())
     }
 
