@@ -9,16 +9,23 @@ pub struct Link {
     pub target: String,
 }
 
-/// The lines outside of fenced code blocks, with their numbers.
+/// How many of the same mark begin a fence, and which; nothing for a line that is none.
+fn fence(line: &str) -> Option<(char, usize)> {
+    let line = line.trim_start();
+    let mark = line.chars().next().filter(|mark| ['`', '~'].contains(mark))?;
+    let count = line.chars().take_while(|each| *each == mark).count();
+    (count >= 3).then_some((mark, count))
+}
+
+/// The lines outside of fenced code blocks, with their numbers. A block ends with a fence of the same mark that is at
+/// least as long as the one that began it, so that blocks may show blocks.
 fn prose(text: &str) -> impl Iterator<Item = (usize, &str)> {
-    let mut fence: Option<&str> = None;
+    let mut open: Option<(char, usize)> = None;
     text.lines().enumerate().filter_map(move |(index, line)| {
-        let trimmed = line.trim_start();
-        let marker = ["```", "~~~"].into_iter().find(|marker| trimmed.starts_with(marker));
-        match (fence, marker) {
-            (None, Some(_)) => fence = marker,
-            (Some(open), Some(marker)) if open == marker => fence = None,
+        match (open, fence(line)) {
             (None, None) => return Some((index + 1, line)),
+            (None, begun) => open = begun,
+            (Some((mark, count)), Some((other, long))) if mark == other && long >= count => open = None,
             (Some(_), _) => {}
         }
         None
@@ -88,8 +95,9 @@ fn headings_become_anchors() {
 
 #[test]
 fn links_outside_of_code_are_found() {
-    let text = "[a](b.md#c) and ![d](e.svg \"title\"), `[x](y)`\n```\n[no](no.md)\n```\n[key]: https://example.org\n";
-    let targets: Vec<_> = links(text).into_iter().map(|link| (link.line, link.target)).collect();
-    let wanted = [(1, "b.md#c"), (1, "e.svg"), (5, "https://example.org")];
+    let block = "````\n```\n[no](no.md)\n```\n[no](no.md)\n````\n";
+    let text = format!("[a](b.md#c) and ![d](e.svg \"title\"), `[x](y)`\n{block}[key]: https://example.org\n");
+    let targets: Vec<_> = links(&text).into_iter().map(|link| (link.line, link.target)).collect();
+    let wanted = [(1, "b.md#c"), (1, "e.svg"), (8, "https://example.org")];
     assert_eq!(targets, wanted.map(|(line, target)| (line, target.to_owned())));
 }
