@@ -71,10 +71,8 @@ fn every_relative_link_leads_somewhere() {
 fn the_index_lists_every_document() {
     let docs = repository().join("docs");
     let index = std::fs::read_to_string(docs.join("README.md")).expect("docs/README.md");
-    let linked: BTreeSet<PathBuf> = links(&index)
-        .into_iter()
-        .filter_map(|link| Some(normal(&docs.join(link.target.split('#').next()?))))
-        .collect();
+    let linked: BTreeSet<PathBuf> =
+        links(&index).into_iter().filter_map(|link| Some(normal(&docs.join(link.target.split('#').next()?)))).collect();
     let missing: Vec<_> = markdown_files(&docs)
         .into_iter()
         .filter(|file| file.parent() == Some(&docs) && !file.ends_with("README.md") && !linked.contains(file))
