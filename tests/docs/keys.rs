@@ -1,15 +1,18 @@
-//! The manual of each file format names every key that its JSON schema has.
+//! The manual of each file format names every key that its JSON schema has: `docs/schemas/NAME.schema.json` and
+//! `docs/NAME.md`.
 
 use std::collections::BTreeSet;
+use std::path::PathBuf;
 
 use serde_json::Value;
 
+use crate::markdown::code;
 use crate::repository;
 
-/// Schemas and the documents that describe their keys, all in `docs`.
-const MANUALS: &[(&str, &[&str])] = &[("plant.schema.json", &["plant.md"])];
+/// Manuals that describe a part of another format.
+const FURTHER: &[(&str, &str)] = &[("scenario", "gateway.md")];
 
-/// Keys that a schema lists and that the manual describes as a group.
+/// Keys that a manual describes as a group: the parameters and signals of each component are in the library's pages.
 const GROUPED: &[&str] = &["component"];
 
 /// Adds the names of all properties in `schema`, except what lies below a grouped key.
@@ -35,24 +38,39 @@ fn gather(schema: &Value, found: &mut BTreeSet<String>) {
     }
 }
 
-/// The words of a document that stand in code spans.
-fn named(text: &str) -> BTreeSet<&str> {
-    let spans = text.lines().flat_map(|line| line.split('`').skip(1).step_by(2));
-    spans.flat_map(|span| span.split(|letter: char| !letter.is_alphanumeric() && letter != '_')).collect()
+/// The schemas and the names of their formats.
+fn schemas() -> Vec<(String, PathBuf)> {
+    let folder = repository().join("docs/schemas");
+    let entries = std::fs::read_dir(folder).expect("docs/schemas");
+    let schema = |path: PathBuf| {
+        let name = path.file_name()?.to_str()?.strip_suffix(".schema.json")?.to_owned();
+        Some((name, path))
+    };
+    let mut found: Vec<_> = entries.filter_map(|entry| schema(entry.expect("an entry").path())).collect();
+    found.sort();
+    found
 }
 
 #[test]
 fn the_manuals_name_every_key() {
     let docs = repository().join("docs");
-    for (schema, manuals) in MANUALS {
-        let schema_text = std::fs::read_to_string(docs.join("schemas").join(schema)).expect("a schema");
+    let schemas = schemas();
+    assert!(!schemas.is_empty(), "there are no schemas");
+    for (format, path) in schemas {
+        let schema = std::fs::read_to_string(&path).expect("a schema");
         let mut keys = BTreeSet::new();
-        gather(&serde_json::from_str(&schema_text).expect("JSON"), &mut keys);
-        assert!(!keys.is_empty(), "{schema} has no keys");
-        let read = |manual: &&str| std::fs::read_to_string(docs.join(manual)).expect("a manual");
-        let text: String = manuals.iter().map(read).collect();
-        let named = named(&text);
-        let missing: Vec<_> = keys.iter().filter(|key| !named.contains(key.as_str())).collect();
-        assert!(missing.is_empty(), "{manuals:?} lack these keys of {schema}: {missing:?}");
+        gather(&serde_json::from_str(&schema).expect("JSON"), &mut keys);
+        assert!(!keys.is_empty(), "{} has no keys", path.display());
+        let further = FURTHER.iter().filter(|(of, _)| *of == format).map(|(_, manual)| (*manual).to_owned());
+        let mut named = BTreeSet::new();
+        for manual in std::iter::once(format!("{format}.md")).chain(further) {
+            let text = std::fs::read_to_string(docs.join(&manual));
+            let text = text.unwrap_or_else(|error| panic!("docs/{manual} describes {}: {error}", path.display()));
+            let code = code(&text);
+            let words = code.split(|letter: char| !letter.is_alphanumeric() && letter != '_');
+            named.extend(words.map(str::to_owned));
+        }
+        let missing: Vec<_> = keys.iter().filter(|key| !named.contains(*key)).collect();
+        assert!(missing.is_empty(), "docs/{format}.md lacks these keys of {}: {missing:?}", path.display());
     }
 }

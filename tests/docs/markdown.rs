@@ -37,6 +37,23 @@ fn without_code(line: &str) -> String {
     line.split('`').enumerate().map(|(piece, text)| if piece % 2 == 0 { text } else { "_" }).collect()
 }
 
+/// What of a file is code: its code spans and its fenced blocks.
+pub fn code(text: &str) -> String {
+    let outside: BTreeMap<usize, &str> = prose(text).collect();
+    let mut found = String::new();
+    for (index, line) in text.lines().enumerate() {
+        match outside.get(&(index + 1)) {
+            Some(prose) => prose.split('`').skip(1).step_by(2).for_each(|span| {
+                found.push_str(span);
+                found.push(' ');
+            }),
+            None => found.push_str(line),
+        }
+        found.push('\n');
+    }
+    found
+}
+
 /// All links and pictures of a file, written as `[text](target)` or as `[key]: target`.
 pub fn links(text: &str) -> Vec<Link> {
     let mut found = Vec::new();
@@ -100,4 +117,12 @@ fn links_outside_of_code_are_found() {
     let targets: Vec<_> = links(&text).into_iter().map(|link| (link.line, link.target)).collect();
     let wanted = [(1, "b.md#c"), (1, "e.svg"), (8, "https://example.org")];
     assert_eq!(targets, wanted.map(|(line, target)| (line, target.to_owned())));
+}
+
+#[test]
+fn code_is_what_is_marked_as_such() {
+    assert_eq!(
+        code("a `b` c `d`\n```toml\ne = 1\n```\nf\n").split_whitespace().collect::<Vec<_>>().join(" "),
+        "b d ```toml e = 1 ```"
+    );
 }
