@@ -90,6 +90,9 @@ pub enum RunError {
         /// Why.
         source: CheckpointError,
     },
+    /// What the case does to the session cannot be done.
+    #[error("the case cannot be put on this session: {0}")]
+    Timeline(onescan_server::operation::OperationError),
     /// A PLC does not say what it has.
     #[error("{0}")]
     Browse(SettingsFault),
