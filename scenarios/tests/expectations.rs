@@ -1,6 +1,6 @@
 //! Signal temporal logic over traces: what formulas are worth, by hand and against a peer.
 
-use onescan::expect::{Expectation, FormulaError, KnownSignal, Outcome, Trace, TraceEnd, Verdict};
+use onescan_scenario::expect::{Expectation, FormulaError, KnownSignal, Outcome, Trace, TraceEnd, Verdict};
 use onescan_server::signal::SignalType;
 use onescan_server::time::VirtualTime;
 

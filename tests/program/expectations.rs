@@ -5,7 +5,7 @@ use std::io::Write as _;
 use std::path::Path;
 use std::process::{Command, Stdio};
 
-use onescan::expect::{Expectation, KnownSignal, Trace};
+use onescan_scenario::expect::{Expectation, KnownSignal, Trace};
 use onescan_server::signal::SignalType;
 use serde_json::json;
 

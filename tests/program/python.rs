@@ -3,9 +3,9 @@
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use onescan::scenario::Scenario;
-use onescan::scenario::compose::Member;
 use onescan_clients::replay::Replay;
+use onescan_scenario::Scenario;
+use onescan_scenario::compose::Member;
 use onescan_server::client::JoinRequest;
 use onescan_server::formation::Formation;
 use onescan_server::signal::SignalType;

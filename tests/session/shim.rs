@@ -3,12 +3,12 @@
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-use onescan::scenario::Scenario;
-use onescan::scenario::compose::Member;
 use onescan_clients::soft_plc::bind;
 use onescan_plc_shim::input::kind::SourceKind;
 use onescan_plc_shim::instrument::{Options, instrument};
 use onescan_plc_shim::{Application, Input, SoftPlc, Task, TaskPlan, TimeSpan};
+use onescan_scenario::Scenario;
+use onescan_scenario::compose::Member;
 use onescan_server::client::{Client, JoinRequest};
 use onescan_server::signal::SignalDecl;
 use onescan_tests::run::{in_process, run};
