@@ -6,11 +6,13 @@ use clap::Args as ClapArgs;
 use onescan_server::signal::SignalName;
 use onescan_server::time::VirtualTime;
 
+use super::error::CommandError;
 use super::value::{FormatArg, plane};
+use crate::error::ExitCode;
+use crate::format::Format;
+use crate::interrupt::Interrupt;
+use crate::run::RunConfig;
 use crate::run::compare::CompareConfig;
-use crate::run::error::{ExitCode, RunError};
-use crate::run::interrupt::Interrupt;
-use crate::run::{Format, RunConfig};
 
 /// Options of `compare`.
 #[derive(Debug, ClapArgs)]
@@ -37,8 +39,8 @@ pub struct CompareArgs {
 /// Sets lockstep beside the other ways.
 ///
 /// # Errors
-/// See [`RunError`].
-pub fn compare(args: CompareArgs) -> Result<ExitCode, RunError> {
+/// See [`CommandError`].
+pub fn compare(args: CompareArgs) -> Result<ExitCode, CommandError> {
     let interrupt = Interrupt::new();
     interrupt.on_signals();
     let run = RunConfig {

@@ -14,14 +14,16 @@ use onescan_server::signal::pattern::SignalPattern;
 use onescan_server::signal::{ClientName, SignalName};
 use onescan_server::time::{TimeSpan, VirtualTime};
 
+use super::error::CommandError;
 use super::opcua::AccessArgs;
 use super::value::{FormatArg, client_name, plane, signal_name};
+use crate::error::ExitCode;
+use crate::format::Format;
+use crate::interrupt::Interrupt;
 use crate::run::config::SaveRequest;
 use crate::run::coverage::{CoverageFormat, CoverageRequest};
-use crate::run::error::{ExitCode, RunError};
-use crate::run::interrupt::Interrupt;
 use crate::run::recorded::RecordRequest;
-use crate::run::{Format, RunConfig, Transport, execute};
+use crate::run::{RunConfig, Transport, execute};
 
 /// Options of `run`.
 #[derive(Debug, ClapArgs)]
@@ -210,15 +212,15 @@ impl From<CoverageArg> for CoverageFormat {
 /// Runs a scenario.
 ///
 /// # Errors
-/// See [`RunError`].
-pub fn run(args: RunArgs) -> Result<ExitCode, RunError> {
+/// See [`CommandError`].
+pub fn run(args: RunArgs) -> Result<ExitCode, CommandError> {
     let interrupt = Interrupt::new();
     interrupt.on_signals();
     let verdict = execute(&config(args)?, &interrupt, &mut std::io::stdout().lock())?;
     Ok(verdict.exit_code())
 }
 
-fn config(args: RunArgs) -> Result<RunConfig, RunError> {
+fn config(args: RunArgs) -> Result<RunConfig, CommandError> {
     let format = args.format.into();
     Ok(RunConfig {
         scenario: args.scenario,

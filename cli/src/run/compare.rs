@@ -3,17 +3,20 @@
 use std::io::Write;
 use std::path::PathBuf;
 
+use onescan_report::OutputError;
 use onescan_report::file;
 use onescan_report::plot::Plot;
 use onescan_scenario::{Mode, Scenario};
 use onescan_server::signal::{ElementaryType, SignalName};
 use serde::Serialize;
 
-use super::config::{Format, RunConfig};
+use super::config::RunConfig;
 use super::error::RunError;
-use super::interrupt::Interrupt;
 use super::one_run;
 use super::sampler::{Samples, panel};
+use crate::error::Usage;
+use crate::format::Format;
+use crate::interrupt::Interrupt;
 
 /// The ways, lockstep first: the others are held against it.
 const MODES: [Mode; 4] = [Mode::Lockstep, Mode::Freewheel, Mode::Halt, Mode::Follow];
@@ -80,12 +83,12 @@ pub fn compare(config: &CompareConfig, interrupt: &Interrupt, out: &mut dyn Writ
         for number in 1..=config.run.runs {
             let (report, samples) = one_run(&run, &scenario, number, interrupt, Vec::new())?;
             if let Some(error) = &report.error {
-                return Err(RunError::usage(format!("{}: {error}", mode.name()), None));
+                return Err(Usage::new(format!("{}: {error}", mode.name()), None).into());
             }
             let digest = report.digest.map_or_else(String::new, |digest| digest.to_string());
             runs.push(Run { digest, samples, steps_per_s: report.steps.0 as f64 / report.wall_time_s.max(1e-9) });
             if interrupt.is_raised() {
-                return Err(RunError::usage("stopped before there was anything to compare", None));
+                return Err(Usage::new("stopped before there was anything to compare", None).into());
             }
         }
         all.push(runs);
@@ -98,7 +101,7 @@ pub fn compare(config: &CompareConfig, interrupt: &Interrupt, out: &mut dyn Writ
         let picture = config.run.plane.as_ref().and_then(|_| plot.to_plane_svg()).unwrap_or_else(|| plot.to_svg());
         file::write_whole(path, picture.as_bytes())?;
     }
-    write(&rows, config.format, out).map_err(RunError::Output)?;
+    write(&rows, config.format, out).map_err(OutputError)?;
     Ok(rows)
 }
 

@@ -4,6 +4,7 @@ use std::net::SocketAddr;
 use std::path::PathBuf;
 use std::time::Duration;
 
+use crate::format::Format;
 use onescan_clients::opcua_server::Access;
 use onescan_scenario::file::ClientFile;
 use onescan_scenario::watch::WatchRequest;
@@ -16,6 +17,7 @@ use onescan_server::time::VirtualTime;
 use super::coverage::CoverageRequest;
 use super::error::RunError;
 use super::recorded::RecordRequest;
+use crate::error::Usage;
 
 /// How the server reaches the scenario's clients.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize)]
@@ -26,16 +28,6 @@ pub enum Transport {
     Inproc,
     /// A process and a TCP connection a client.
     Tcp,
-}
-
-/// For whom the output is.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Format {
-    /// People.
-    #[default]
-    Human,
-    /// Machines: one JSON object a run and line.
-    Json,
 }
 
 /// A checkpoint to be taken.
@@ -180,22 +172,22 @@ impl RunConfig {
             if !scenario.file().signals.contains_key(signal) {
                 let known = scenario.file().signals.keys().map(SignalName::as_str);
                 let help = did_you_mean(signal.as_str(), known);
-                return Err(RunError::usage(format!("the scenario has no signal `{signal}`"), help));
+                return Err(Usage::new(format!("the scenario has no signal `{signal}`"), help).into());
             }
         }
         if let Some(record) = &self.record {
             choose(&record.choice.signals, scenario.file().signals.keys())
-                .map_err(|unmatched| RunError::usage(format!("--record-signals: {unmatched}"), None))?;
+                .map_err(|unmatched| Usage::new(format!("--record-signals: {unmatched}"), None))?;
         }
         let step = scenario.file().step;
         if let Some(save) = self.save.as_ref().filter(|save| save.at >= self.end(scenario)) {
             let message = format!("--save-at {} is not before the end of the run at {}", save.at, self.end(scenario));
-            return Err(RunError::usage(message, Some(format!("the step is {step}"))));
+            return Err(Usage::new(message, Some(format!("the step is {step}"))).into());
         }
         let inside = [("--coverage", self.coverage.is_some()), ("--watch", !self.watch.is_empty())];
         if let Some((option, _)) = inside.iter().find(|(_, given)| *given && self.transport == Transport::Tcp) {
             let help = "what a client in another process does is not seen here".to_owned();
-            return Err(RunError::usage(format!("{option} means nothing with --transport tcp"), Some(help)));
+            return Err(Usage::new(format!("{option} means nothing with --transport tcp"), Some(help)).into());
         }
         self.check_opcua(scenario)?;
         match self.mode {
@@ -210,23 +202,23 @@ impl RunConfig {
             match scenario.file().clients.get(name).map(toml::Spanned::get_ref) {
                 None => {
                     let help = did_you_mean(name.as_str(), scenario.file().clients.keys().map(ClientName::as_str));
-                    return Err(RunError::usage(format!("the scenario has no client `{name}`"), help));
+                    return Err(Usage::new(format!("the scenario has no client `{name}`"), help).into());
                 }
                 Some(ClientFile::External { .. } | ClientFile::OpcUa { .. }) => {
                     let message = format!("--opcua-client {name}: it is a program of its own anyway");
-                    return Err(RunError::usage(message, None));
+                    return Err(Usage::new(message, None).into());
                 }
                 Some(_) => {}
             }
             if self.gateways.iter().any(|(gateway, _)| gateway == name) {
                 let message =
                     format!("`{name}` cannot be a real PLC (--gateway) and come over OPC UA (--opcua-client)");
-                return Err(RunError::usage(message, None));
+                return Err(Usage::new(message, None).into());
             }
         }
         if self.case.is_some() && !self.opcua_clients.is_empty() {
             let help = "what a case changes in a client does not reach a program that stands in for it".to_owned();
-            return Err(RunError::usage("--opcua-client means nothing with --case", Some(help)));
+            return Err(Usage::new("--opcua-client means nothing with --case", Some(help)).into());
         }
         Ok(())
     }
@@ -246,14 +238,14 @@ impl RunConfig {
         if let Some((option, _)) = options.iter().find(|(_, given)| *given) {
             let help = "free-wheeling clients run in real time in this process, each on its own clock".to_owned();
             let mode = self.mode.name();
-            return Err(RunError::usage(format!("{option} means nothing with --mode {mode}"), Some(help)));
+            return Err(Usage::new(format!("{option} means nothing with --mode {mode}"), Some(help)).into());
         }
         let external = |client: &toml::Spanned<ClientFile>| {
             matches!(client.get_ref(), ClientFile::External { .. } | ClientFile::OpcUa { .. })
         };
         match scenario.file().clients.iter().find(|(_, client)| external(client)) {
             Some((name, _)) => {
-                Err(RunError::usage(format!("the external client `{name}` can only take part in lockstep"), None))
+                Err(Usage::new(format!("the external client `{name}` can only take part in lockstep"), None).into())
             }
             None => Ok(()),
         }

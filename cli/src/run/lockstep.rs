@@ -17,11 +17,12 @@ use onescan_server::transport::tcp::Lobby;
 
 use super::config::{RunConfig, SaveRequest, Transport};
 use super::error::RunError;
-use super::interrupt::Interrupt;
 use super::processes::Processes;
 use super::progress::Progress;
 use super::seats::{Desk, Seats};
 use super::session_log::SessionLog;
+use crate::error::{ListenError, Unreadable};
+use crate::interrupt::Interrupt;
 
 /// What is said here is for the user, also without `--verbose`.
 const NOTICE: &str = "onescan::notice";
@@ -143,8 +144,7 @@ fn admit_remote(
 
 fn open_lobby(config: &RunConfig, scenario: &Scenario, interrupt: &Interrupt) -> Result<Lobby, RunError> {
     let address = config.listen.unwrap_or(SocketAddr::from((Ipv4Addr::LOCALHOST, 0)));
-    let lobby = Lobby::open(address, scenario.plan(), interrupt.mailbox())
-        .map_err(|source| RunError::Listen { address, source })?;
+    let lobby = Lobby::open(address, scenario.plan(), interrupt.mailbox()).map_err(ListenError::on(address))?;
     Ok(lobby)
 }
 
@@ -171,12 +171,12 @@ fn operator_inputs(path: &std::path::Path) -> Result<Vec<OperatorInput>, RunErro
     if path.is_dir() {
         return Ok(Recording::open(path)?.operator_inputs()?);
     }
-    let events = event::read(path).map_err(|source| RunError::File { path: path.to_owned(), source })?;
+    let events = event::read(path).map_err(Unreadable::at(path))?;
     Ok(event::operator_inputs(&events))
 }
 
 fn resume(lockstep: &mut Lockstep, path: &std::path::Path) -> Result<(), RunError> {
-    let bytes = std::fs::read(path).map_err(|source| RunError::File { path: path.to_owned(), source })?;
+    let bytes = std::fs::read(path).map_err(Unreadable::at(path))?;
     let wrong = |source| RunError::Resume { path: path.to_owned(), source };
     lockstep.resume(&Checkpoint::from_bytes(&bytes).map_err(wrong)?).map_err(wrong)
 }

@@ -9,13 +9,13 @@
 //! | [`lockstep`] | one run in lockstep |
 //! | [`processes`] | clients as processes of their own |
 //! | [`freewheel`] | one run without lockstep |
-//! | [`interrupt`] | Ctrl-C, at a step boundary |
 //! | [`progress`] | a bar on a terminal |
 //! | [`sampler`] | what a plot shows |
 //! | [`recorded`] | a run's recording |
 //! | [`rerun`] | a recorded run once more |
 //! | [`expectation`] | what a run had to show |
 //! | [`watch`] | what watched variables were |
+//! | [`page`] | all runs as a page |
 //! | [`report`] | what came of a run, for people and machines |
 //! | `seats` | clients that take part over OPC UA |
 //! | [`session_log`] | which client a session waited for |
@@ -26,8 +26,8 @@ pub mod coverage;
 pub mod error;
 pub mod expectation;
 mod freewheel;
-pub mod interrupt;
 mod lockstep;
+pub mod page;
 mod processes;
 mod progress;
 pub mod recorded;
@@ -43,6 +43,7 @@ use std::io::Write;
 use std::rc::Rc;
 use std::time::Instant;
 
+use onescan_report::OutputError;
 use onescan_report::file;
 use onescan_report::plot::Plot;
 use onescan_scenario::expect::{Trace, TraceEnd};
@@ -50,14 +51,13 @@ use onescan_scenario::{Mode, Scenario};
 use onescan_server::lockstep::Lockstep;
 use onescan_server::record::Observer;
 
-pub use config::{Format, RunConfig, Transport};
+pub use config::{RunConfig, Transport};
 pub use error::RunError;
-pub use report::{RunReport, Verdict};
+pub use report::{RunReport, RunStatus, Verdict};
 
-use crate::regress::page::of_runs;
-use crate::regress::ran::Event;
+use crate::interrupt::Interrupt;
 use expectation::Witness;
-use interrupt::Interrupt;
+use page::Event;
 use recorded::Recorded;
 use sampler::{Sampler, Samples};
 use session_log::SessionLog;
@@ -85,7 +85,7 @@ pub fn execute(config: &RunConfig, interrupt: &Interrupt, out: &mut dyn Write) -
     let mut samples = Vec::new();
     for number in 1..=config.runs {
         let (report, sampled) = one_run(config, &scenario, number, interrupt, Vec::new())?;
-        report.write(config.format, config.runs, out).map_err(RunError::Output)?;
+        report.write(config.format, config.runs, out).map_err(OutputError)?;
         reports.push(report);
         samples.push(sampled);
         if interrupt.is_raised() || reports.iter().any(RunReport::is_failed) {
@@ -100,19 +100,19 @@ pub fn execute(config: &RunConfig, interrupt: &Interrupt, out: &mut dyn Write) -
     }
     if let Some(path) = &config.html {
         let plot = sampler::plot(&scenario, config, &samples, &reports);
-        file::write_whole(path, page(&scenario, &reports, &plot).as_bytes())?;
+        file::write_whole(path, page_of(&scenario, &reports, &plot).as_bytes())?;
     }
     let verdict = Verdict::of(config, &reports);
-    verdict.write(config, &reports, out).map_err(RunError::Output)?;
+    verdict.write(config, &reports, out).map_err(OutputError)?;
     Ok(verdict)
 }
 
 /// The page about all runs.
-fn page(scenario: &Scenario, reports: &[RunReport], plot: &Plot) -> String {
+fn page_of(scenario: &Scenario, reports: &[RunReport], plot: &Plot) -> String {
     let events: Vec<Event> = scenario.case_events().into_iter().map(|(at_ns, text)| Event { at_ns, text }).collect();
     let coverage =
         scenario.coverage().map(|sink| sink.lock().unwrap_or_else(std::sync::PoisonError::into_inner).clone());
-    of_runs(reports, scenario.file().step.as_nanos(), &events, plot, &coverage.unwrap_or_default())
+    page::of_runs(reports, &events, plot, &coverage.unwrap_or_default()).to_html()
 }
 
 /// One run that others watch, and its plot; without signals unless the run has a plot.
@@ -166,7 +166,7 @@ fn one_run(
     let mut report = RunReport::new(config, scenario, number, &outcome, started.elapsed());
     report.latency = log.latencies();
     let mut trace = trace.replace(Trace::default());
-    trace.set_end(if report.status == "completed" { TraceEnd::Complete } else { TraceEnd::Cut });
+    trace.set_end(if report.status == RunStatus::Completed { TraceEnd::Complete } else { TraceEnd::Cut });
     report.expectations = expectation::judge(scenario, &trace);
     report.watched = WatchReport::take(config, scenario);
     if let Some(recorded) = &recorded {

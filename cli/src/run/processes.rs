@@ -9,6 +9,7 @@ use onescan_server::signal::ClientName;
 
 use super::config::RunConfig;
 use super::error::RunError;
+use crate::error::SpawnError;
 
 /// How long a process may take to leave once the session is over.
 const LEAVE_TIMEOUT: Duration = Duration::from_secs(5);
@@ -30,7 +31,7 @@ impl Processes {
         config: &RunConfig,
         server: SocketAddr,
     ) -> Result<(), RunError> {
-        let program = std::env::current_exe().map_err(|source| RunError::Spawn {
+        let program = std::env::current_exe().map_err(|source| SpawnError {
             client: name.to_string(),
             command: "onescan".to_owned(),
             source,
@@ -65,7 +66,7 @@ impl Processes {
         // Ctrl-C is for the server, which ends the session in order; clients leave when it does.
         #[cfg(unix)]
         std::os::unix::process::CommandExt::process_group(&mut command, 0);
-        let child = command.spawn().map_err(|source| RunError::Spawn {
+        let child = command.spawn().map_err(|source| SpawnError {
             client: name.to_string(),
             command: command.get_program().to_string_lossy().into_owned(),
             source,

@@ -2,7 +2,8 @@
 
 use std::path::{Component, Path, PathBuf};
 
-use onescan_report::file;
+use onescan_report::OutputError;
+use onescan_report::{FileError, file};
 use onescan_scenario::{Scenario, ScenarioError};
 use onescan_server::record::event::{self, Event, EventKind};
 use onescan_server::record::recorder::EVENTS;
@@ -65,7 +66,7 @@ impl Recorded {
         };
         let events: Vec<Event> = report.expectations.iter().filter_map(violated).collect();
         event::append(&self.folder.join(EVENTS), &events)?;
-        let mut text = serde_json::to_vec_pretty(report).map_err(|e| RunError::Output(e.into()))?;
+        let mut text = serde_json::to_vec_pretty(report).map_err(|e| OutputError(e.into()))?;
         text.push(b'\n');
         Ok(file::write_whole(&self.folder.join("run.json"), &text)?)
     }
@@ -74,7 +75,7 @@ impl Recorded {
 fn remove(path: &Path) -> Result<(), RunError> {
     match std::fs::remove_file(path) {
         Err(source) if source.kind() != std::io::ErrorKind::NotFound => {
-            Err(RunError::File { path: path.to_owned(), source })
+            Err(FileError { path: path.to_owned(), source }.into())
         }
         _ => Ok(()),
     }

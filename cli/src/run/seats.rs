@@ -13,8 +13,9 @@ use onescan_server::plan::SessionPlan;
 
 use super::config::RunConfig;
 use super::error::RunError;
-use super::interrupt::Interrupt;
 use super::processes::Processes;
+use crate::error::{ListenError, Usage};
+use crate::interrupt::Interrupt;
 
 /// What is said here is for the user, also without `--verbose`.
 const NOTICE: &str = "onescan::notice";
@@ -58,8 +59,8 @@ impl Seats {
         let board = Arc::new(Board::new(plan.clone(), &requests, interrupt.mailbox()));
         let address = config.opcua.unwrap_or(SocketAddr::from((Ipv4Addr::LOCALHOST, 0)));
         let service = serve(address, &board, &config.opcua_access).map_err(|error| match error {
-            ServeError::Io(source) => RunError::Listen { address, source },
-            ServeError::Setup(text) => RunError::usage(text, None),
+            ServeError::Io(source) => RunError::from(ListenError { address, source }),
+            ServeError::Setup(text) => Usage::new(text, None).into(),
         })?;
         if config.opcua.is_some() {
             tracing::info!(target: NOTICE, "serving the session at {}", service.url());
