@@ -25,7 +25,7 @@ use crate::error::Usage;
 
 use crate::format::Format;
 use crate::interrupt::Interrupt;
-use crate::run::recorded::RecordRequest;
+use crate::run::config::RecordRequest;
 use crate::run::{RunConfig, execute};
 
 /// What is searched.
@@ -148,11 +148,9 @@ impl Search<'_> {
     fn run(&self, folder: &Path) -> Result<(PathBuf, Option<Digest>), String> {
         let record = folder.join("record");
         let scenario = folder.join("tree").join(&self.repository.scenario);
-        let config = RunConfig {
-            until: self.config.until,
-            record: Some(RecordRequest { folder: record.clone(), ..RecordRequest::default() }),
-            ..RunConfig::headless(scenario, None)
-        };
+        let mut config = RunConfig::headless(scenario, None);
+        config.subject.until = self.config.until;
+        config.reports.record = Some(RecordRequest { folder: record.clone(), ..RecordRequest::default() });
         execute(&config, self.interrupt, &mut io::sink()).map_err(|error| error.to_string())?;
         let recording = onescan_server::recording::Recording::open(&record).map_err(|error| error.to_string())?;
         let last = recording.steps().map(|steps| recording.digest(*steps.end()));

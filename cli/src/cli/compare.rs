@@ -9,7 +9,6 @@ use onescan_server::time::VirtualTime;
 use super::error::CommandError;
 use super::value::{FormatArg, plane};
 use crate::error::ExitCode;
-use crate::format::Format;
 use crate::interrupt::Interrupt;
 use crate::run::RunConfig;
 use crate::run::compare::CompareConfig;
@@ -43,13 +42,10 @@ pub struct CompareArgs {
 pub fn compare(args: CompareArgs) -> Result<ExitCode, CommandError> {
     let interrupt = Interrupt::new();
     interrupt.on_signals();
-    let run = RunConfig {
-        until: args.until,
-        runs: args.runs,
-        plane: args.xy,
-        format: Format::Human,
-        ..RunConfig::headless(args.scenario, None)
-    };
+    let mut run = RunConfig::headless(args.scenario, None);
+    run.subject.until = args.until;
+    run.runs = args.runs;
+    run.picture.plane = args.xy;
     let config = CompareConfig { run, plot: args.plot, format: args.format.into() };
     crate::run::compare::compare(&config, &interrupt, &mut std::io::stdout().lock())?;
     Ok(ExitCode::Ok)

@@ -20,9 +20,10 @@ use super::value::{FormatArg, client_name, plane, signal_name};
 use crate::error::ExitCode;
 use crate::format::Format;
 use crate::interrupt::Interrupt;
-use crate::run::config::SaveRequest;
+use crate::run::config::{
+    Course, Doors, Drawing, Picture, Reach, RecordRequest, Reports, SaveRequest, Subject, Watch, WatchOn,
+};
 use crate::run::coverage::{CoverageFormat, CoverageRequest};
-use crate::run::recorded::RecordRequest;
 use crate::run::{RunConfig, Transport, execute};
 
 /// Options of `run`.
@@ -182,6 +183,15 @@ pub enum WatchOnArg {
     Change,
 }
 
+impl From<WatchOnArg> for WatchOn {
+    fn from(arg: WatchOnArg) -> Self {
+        match arg {
+            WatchOnArg::End => Self::End,
+            WatchOnArg::Change => Self::Change,
+        }
+    }
+}
+
 /// A form of trajectory that is recorded beside Parquet.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum RecordAlso {
@@ -222,42 +232,46 @@ pub fn run(args: RunArgs) -> Result<ExitCode, CommandError> {
 
 fn config(args: RunArgs) -> Result<RunConfig, CommandError> {
     let format = args.format.into();
+    let record = args.record.map(|folder| RecordRequest {
+        folder,
+        choice: Choice {
+            signals: args.record_signals,
+            csv: args.record_also.contains(&RecordAlso::Csv),
+            mcap: args.record_also.contains(&RecordAlso::Mcap),
+        },
+    });
     Ok(RunConfig {
-        scenario: args.scenario,
-        case: args.case,
-        until: args.until,
-        pace: args.pace,
+        subject: Subject { scenario: args.scenario, case: args.case, until: args.until },
         mode: args.mode.into(),
         runs: args.runs,
-        transport: args.transport.into(),
-        gateways: args.gateways,
-        record: args.record.map(|folder| RecordRequest {
-            folder,
-            choice: Choice {
-                signals: args.record_signals,
-                csv: args.record_also.contains(&RecordAlso::Csv),
-                mcap: args.record_also.contains(&RecordAlso::Mcap),
-            },
-        }),
-        replay_operator: args.replay_operator,
-        format,
-        plot: args.plot,
-        signals: args.signals,
-        plane: args.xy,
-        watch: args.watch,
-        watch_changes: args.watch_on == WatchOnArg::Change,
-        coverage: args.coverage.map(|path| CoverageRequest::new(path, args.coverage_format.map(Into::into))),
-        html: args.html,
-        listen: args.listen,
-        opcua: args.opcua,
-        opcua_clients: args.opcua_clients,
-        opcua_access: args.access.access()?,
-        join_timeout: Duration::from_nanos(args.join_timeout.as_nanos()),
-        reply_timeout: Duration::from_nanos(args.reply_timeout.as_nanos()),
-        save: args.save_at.zip(args.save).map(|(at, path)| SaveRequest { at, path }),
-        resume: args.resume,
-        latency: args.latency,
-        progress: format == Format::Human && std::io::stderr().is_terminal(),
+        reach: Reach {
+            transport: args.transport.into(),
+            gateways: args.gateways,
+            opcua_clients: args.opcua_clients,
+            join_timeout: Duration::from_nanos(args.join_timeout.as_nanos()),
+            reply_timeout: Duration::from_nanos(args.reply_timeout.as_nanos()),
+            latency: args.latency,
+        },
+        doors: Doors { listen: args.listen, opcua: args.opcua, access: args.access.access()? },
+        course: Course {
+            pace: args.pace,
+            resume: args.resume,
+            replay_operator: args.replay_operator,
+            save: args.save_at.zip(args.save).map(|(at, path)| SaveRequest { at, path }),
+        },
+        picture: Picture {
+            drawing: args.plot.map_or(Drawing::Nothing, Drawing::File),
+            signals: args.signals,
+            plane: args.xy,
+        },
+        watch: Watch { variables: args.watch, on: args.watch_on.into() },
+        reports: Reports {
+            format,
+            progress: format == Format::Human && std::io::stderr().is_terminal(),
+            record,
+            coverage: args.coverage.map(|path| CoverageRequest::new(path, args.coverage_format.map(Into::into))),
+            html: args.html,
+        },
     })
 }
 

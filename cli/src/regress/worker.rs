@@ -15,6 +15,7 @@ use super::TestError;
 use super::ran::{Ran, Worked};
 use super::{Selection, unit_test};
 use crate::interrupt::Interrupt;
+use crate::run::config::{Drawing, Picture};
 use crate::run::page::Event;
 use crate::run::{RunConfig, watched};
 use crate::snapshot::take::{Choice, Taker};
@@ -66,9 +67,7 @@ fn case(config: &WorkerConfig, folder: &Path) -> Result<Worked, TestError> {
     let taker = Taker::new(&scenario, choice.clone(), Rc::clone(&snapshot));
     let mut run = RunConfig::headless(folder.to_owned(), config.case.clone());
     if config.draw {
-        // The plot is not written but handed over.
-        run.plot = Some(PathBuf::new());
-        run.signals = choice.signals;
+        run.picture = Picture { drawing: Drawing::Kept, signals: choice.signals, plane: None };
     }
     let (report, plot) = watched(&run, &scenario, &Interrupt::new(), vec![Box::new(taker)])?;
     let mut ran = Ran::of(config.case.as_deref().unwrap_or(DEFAULT), &report, scenario.file().step.as_nanos());

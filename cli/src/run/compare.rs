@@ -10,7 +10,7 @@ use onescan_scenario::{Mode, Scenario};
 use onescan_server::signal::{ElementaryType, SignalName};
 use serde::Serialize;
 
-use super::config::RunConfig;
+use super::config::{Drawing, Picture, RunConfig};
 use super::error::RunError;
 use super::one_run;
 use super::sampler::{Samples, panel};
@@ -68,14 +68,13 @@ struct Run {
 /// # Errors
 /// As those of a run.
 pub fn compare(config: &CompareConfig, interrupt: &Interrupt, out: &mut dyn Write) -> Result<Vec<Row>, RunError> {
-    let scenario = Scenario::load(&config.run.scenario)?;
+    let scenario = Scenario::load(&config.run.subject.scenario)?;
     let names: Vec<SignalName> = scenario.file().signals.keys().cloned().collect();
     let mut all: Vec<Vec<Run>> = Vec::new();
     for mode in MODES {
         let run = RunConfig {
             mode,
-            signals: names.clone(),
-            plot: config.plot.clone().or(Some(PathBuf::new())),
+            picture: Picture { drawing: Drawing::Kept, signals: names.clone(), ..config.run.picture.clone() },
             ..config.run.clone()
         };
         run.check(&scenario)?;
@@ -97,8 +96,9 @@ pub fn compare(config: &CompareConfig, interrupt: &Interrupt, out: &mut dyn Writ
     let rows: Vec<Row> =
         MODES.iter().zip(&all).map(|(mode, runs)| row(*mode, runs, &all[0][0].samples, &types)).collect();
     if let Some(path) = &config.plot {
-        let plot = plot(&config.run, &scenario, &all);
-        let picture = config.run.plane.as_ref().and_then(|_| plot.to_plane_svg()).unwrap_or_else(|| plot.to_svg());
+        let plot = plot(&config.run.picture, &scenario, &all);
+        let picture =
+            config.run.picture.plane.as_ref().and_then(|_| plot.to_plane_svg()).unwrap_or_else(|| plot.to_svg());
         file::write_whole(path, picture.as_bytes())?;
     }
     write(&rows, config.format, out).map_err(OutputError)?;
@@ -159,10 +159,10 @@ fn edges_of(samples: &Samples, index: usize) -> Vec<u64> {
 }
 
 /// One run of each mode over each other.
-fn plot(config: &RunConfig, scenario: &Scenario, all: &[Vec<Run>]) -> Plot {
+fn plot(picture: &Picture, scenario: &Scenario, all: &[Vec<Run>]) -> Plot {
     let first = |runs: &'_ [Run]| runs.first().map(|run| run.samples.clone()).unwrap_or_default();
     let samples: Vec<Samples> = all.iter().map(|runs| first(runs)).collect();
-    let names = config.plane.as_ref().map_or_else(|| config.plotted(scenario), |plane| plane.to_vec());
+    let names = picture.plane.as_ref().map_or_else(|| picture.plotted(scenario), |plane| plane.to_vec());
     Plot {
         title: format!("{}: lockstep and the other ways", scenario.name()),
         runs: MODES.iter().map(|mode| mode.name().to_owned()).collect(),

@@ -66,11 +66,11 @@ fn spin(
     interrupt: &Interrupt,
     clients: Vec<Freewheeler>,
 ) -> Result<Trace, RunError> {
-    let end = config.end(scenario);
+    let end = config.subject.end(scenario);
     let done = AtomicBool::new(false);
     let started = Instant::now();
     std::thread::scope(|scope| {
-        if config.progress {
+        if config.reports.progress {
             let (label, done) = (format!("run {number}/{}", config.runs), &done);
             scope.spawn(move || {
                 let bar = Progress::new(end, label);

@@ -4,6 +4,7 @@
 //! |---|---|
 //! | [`compare`] | lockstep beside the other ways |
 //! | [`config`] | what is asked for |
+//! | `check` | options that contradict each other |
 //! | [`coverage`] | which statements and branches were executed |
 //! | [`error`] | why nothing came of it |
 //! | [`lockstep`] | one run in lockstep |
@@ -20,6 +21,7 @@
 //! | `seats` | clients that take part over OPC UA |
 //! | [`session_log`] | which client a session waited for |
 
+mod check;
 pub mod compare;
 pub mod config;
 pub mod coverage;
@@ -51,6 +53,7 @@ use onescan_scenario::{Mode, Scenario};
 use onescan_server::lockstep::Lockstep;
 use onescan_server::record::Observer;
 
+use config::{Drawing, WatchOn};
 pub use config::{RunConfig, Transport};
 pub use error::RunError;
 pub use report::{RunReport, RunStatus, Verdict};
@@ -69,41 +72,46 @@ use watch::WatchReport;
 /// See [`RunError`]. A failed client is no error here but a verdict: what there is of the run is
 /// recorded, plotted and reported.
 pub fn execute(config: &RunConfig, interrupt: &Interrupt, out: &mut dyn Write) -> Result<Verdict, RunError> {
-    let mut scenario = Scenario::load_case(&config.scenario, config.case.as_deref())?;
+    let mut scenario = Scenario::load_case(&config.subject.scenario, config.subject.case.as_deref())?;
     // A page says what was executed where that is seen.
-    if config.coverage.is_some() || (config.html.is_some() && config.transport == Transport::Inproc) {
+    if config.reports.coverage.is_some()
+        || (config.reports.html.is_some() && config.reach.transport == Transport::Inproc)
+    {
         scenario.cover();
     }
-    for (client, url) in &config.gateways {
+    for (client, url) in &config.reach.gateways {
         scenario.commission(client, url.clone())?;
     }
     config.check(&scenario)?;
-    if !config.watch.is_empty() {
-        scenario.watch(&config.watch, config.watch_changes)?;
+    if !config.watch.variables.is_empty() {
+        scenario.watch(&config.watch.variables, config.watch.on == WatchOn::Change)?;
     }
     let mut reports: Vec<RunReport> = Vec::new();
     let mut samples = Vec::new();
     for number in 1..=config.runs {
         let (report, sampled) = one_run(config, &scenario, number, interrupt, Vec::new())?;
-        report.write(config.format, config.runs, out).map_err(OutputError)?;
+        report.write(config.reports.format, config.runs, out).map_err(OutputError)?;
         reports.push(report);
         samples.push(sampled);
         if interrupt.is_raised() || reports.iter().any(RunReport::is_failed) {
             break;
         }
     }
-    if let (Some(request), Some(sink)) = (&config.coverage, scenario.coverage()) {
+    if let (Some(request), Some(sink)) = (&config.reports.coverage, scenario.coverage()) {
         request.write(sink)?;
     }
-    if let Some(path) = &config.plot {
-        file::write_whole(path, sampler::picture(&scenario, config, &samples, &reports).as_bytes())?;
+    if let Drawing::File(path) = &config.picture.drawing {
+        file::write_whole(
+            path,
+            sampler::picture(&scenario, config.mode, &config.picture, &samples, &reports).as_bytes(),
+        )?;
     }
-    if let Some(path) = &config.html {
-        let plot = sampler::plot(&scenario, config, &samples, &reports);
+    if let Some(path) = &config.reports.html {
+        let plot = sampler::plot(&scenario, config.mode, &config.picture, &samples, &reports);
         file::write_whole(path, page_of(&scenario, &reports, &plot).as_bytes())?;
     }
-    let verdict = Verdict::of(config, &reports);
-    verdict.write(config, &reports, out).map_err(OutputError)?;
+    let verdict = Verdict::of(config.mode, &reports);
+    verdict.write(config.reports.format, &reports, out).map_err(OutputError)?;
     Ok(verdict)
 }
 
@@ -126,7 +134,7 @@ pub(crate) fn watched(
     observers: Vec<Box<dyn Observer>>,
 ) -> Result<(RunReport, Plot), RunError> {
     let (report, samples) = one_run(config, scenario, 1, interrupt, observers)?;
-    let plot = sampler::plot(scenario, config, &[samples], std::slice::from_ref(&report));
+    let plot = sampler::plot(scenario, config.mode, &config.picture, &[samples], std::slice::from_ref(&report));
     Ok((report, plot))
 }
 
@@ -139,15 +147,19 @@ fn one_run(
     observers: Vec<Box<dyn Observer>>,
 ) -> Result<(RunReport, Samples), RunError> {
     let started = Instant::now();
-    let samples = Rc::new(RefCell::new(Samples::new(&config.sampled(scenario))));
+    let samples = Rc::new(RefCell::new(Samples::new(&config.picture.sampled(scenario))));
     let trace = Rc::new(RefCell::new(Trace::default()));
-    let recorded = config.record.as_ref().map(|request| Recorded::begin(request, config, scenario, number));
+    let recorded = config
+        .reports
+        .record
+        .as_ref()
+        .map(|request| Recorded::begin(request, &config.subject, config.mode, scenario, number));
     let (recorded, recorder) = recorded.transpose()?.unzip();
     let watch = |lockstep: &mut Lockstep| {
         for observer in observers {
             lockstep.observe(observer);
         }
-        if config.plot.is_some() || config.html.is_some() {
+        if config.is_drawn() {
             lockstep.observe(Box::new(Sampler::new(Rc::clone(&samples))));
         }
         let expected = scenario.expectations();
@@ -168,7 +180,7 @@ fn one_run(
     let mut trace = trace.replace(Trace::default());
     trace.set_end(if report.status == RunStatus::Completed { TraceEnd::Complete } else { TraceEnd::Cut });
     report.expectations = expectation::judge(scenario, &trace);
-    report.watched = WatchReport::take(config, scenario);
+    report.watched = WatchReport::take(&config.watch, scenario);
     if let Some(recorded) = &recorded {
         recorded.end(&report)?;
     }

@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 
 use onescan_server::signal::ClientName;
 
-use super::config::RunConfig;
+use super::config::Subject;
 use super::error::RunError;
 use crate::error::SpawnError;
 
@@ -24,11 +24,11 @@ pub(super) struct Processes {
 }
 
 impl Processes {
-    /// Starts this program as the client `name` of the run's scenario and case.
+    /// Starts this program as the client `name` of what is run.
     pub(super) fn start_client(
         &mut self,
         name: &ClientName,
-        config: &RunConfig,
+        subject: &Subject,
         server: SocketAddr,
     ) -> Result<(), RunError> {
         let program = std::env::current_exe().map_err(|source| SpawnError {
@@ -37,8 +37,8 @@ impl Processes {
             source,
         })?;
         let mut command = Command::new(program);
-        command.arg("join").arg(&config.scenario).arg(name.as_str()).arg("--server").arg(server.to_string());
-        if let Some(case) = &config.case {
+        command.arg("join").arg(&subject.scenario).arg(name.as_str()).arg("--server").arg(server.to_string());
+        if let Some(case) = &subject.case {
             command.arg("--case").arg(case);
         }
         self.start(name, command)

@@ -105,7 +105,7 @@ impl RunReport {
             case: scenario.case().map(|case| case.name.clone()),
             run,
             mode: config.mode,
-            transport: config.transport,
+            transport: config.reach.transport,
             status,
             digest: outcome.digest,
             steps: outcome.steps,
@@ -180,10 +180,10 @@ pub enum Verdict {
 }
 
 impl Verdict {
-    pub(super) fn of(config: &RunConfig, reports: &[RunReport]) -> Self {
+    pub(super) fn of(mode: Mode, reports: &[RunReport]) -> Self {
         if reports.iter().any(RunReport::is_failed) {
             Self::Failed
-        } else if config.mode == Mode::Lockstep && distinct_digests(&completed(reports)) > 1 {
+        } else if mode == Mode::Lockstep && distinct_digests(&completed(reports)) > 1 {
             Self::Unequal
         } else if reports.iter().any(RunReport::is_unmet) {
             Self::Unmet
@@ -202,8 +202,8 @@ impl Verdict {
     }
 
     /// The last line for people, where there is more than one run.
-    pub(super) fn write(self, config: &RunConfig, reports: &[RunReport], out: &mut dyn Write) -> std::io::Result<()> {
-        if config.format == Format::Json || reports.len() < 2 || self == Self::Failed {
+    pub(super) fn write(self, format: Format, reports: &[RunReport], out: &mut dyn Write) -> std::io::Result<()> {
+        if format == Format::Json || reports.len() < 2 || self == Self::Failed {
             return Ok(());
         }
         let runs = reports.len();

@@ -9,7 +9,7 @@ use onescan_server::record::{Observer, RecordError};
 use onescan_server::session::Session;
 use onescan_server::signal::{ElementaryType, SignalId, SignalName};
 
-use super::config::RunConfig;
+use super::config::Picture;
 use super::report::RunReport;
 
 /// Signals chosen by name, found anew in each session.
@@ -88,9 +88,15 @@ impl Observer for Sampler {
 }
 
 /// The picture of a plot: over time, or in the plane that was asked for.
-pub(super) fn picture(scenario: &Scenario, config: &RunConfig, runs: &[Samples], reports: &[RunReport]) -> String {
-    let plot = plot(scenario, config, runs, reports);
-    let Some(plane) = &config.plane else { return plot.to_svg() };
+pub(super) fn picture(
+    scenario: &Scenario,
+    mode: Mode,
+    picture: &Picture,
+    runs: &[Samples],
+    reports: &[RunReport],
+) -> String {
+    let plot = plot(scenario, mode, picture, runs, reports);
+    let Some(plane) = &picture.plane else { return plot.to_svg() };
     let panels = plane.iter().map(|name| panel(scenario, name, runs.iter())).collect();
     Plot { panels, ..plot }.to_plane_svg().unwrap_or_default()
 }
@@ -112,8 +118,14 @@ pub(super) fn panel<'r>(scenario: &Scenario, name: &SignalName, runs: impl Itera
 }
 
 /// The plot of several runs, laid over each other.
-pub(super) fn plot(scenario: &Scenario, config: &RunConfig, runs: &[Samples], reports: &[RunReport]) -> Plot {
-    let mode = match config.mode {
+pub(super) fn plot(
+    scenario: &Scenario,
+    mode: Mode,
+    picture: &Picture,
+    runs: &[Samples],
+    reports: &[RunReport],
+) -> Plot {
+    let mode = match mode {
         Mode::Lockstep => "lockstep",
         Mode::Freewheel => "free-wheeling",
         Mode::Halt => "held by a timer",
@@ -123,7 +135,7 @@ pub(super) fn plot(scenario: &Scenario, config: &RunConfig, runs: &[Samples], re
         1 => String::new(),
         n => format!(", {n} runs"),
     };
-    let panels = config.plotted(scenario).into_iter().map(|name| panel(scenario, &name, runs.iter()));
+    let panels = picture.plotted(scenario).into_iter().map(|name| panel(scenario, &name, runs.iter()));
     Plot {
         title: format!("{}: {mode}{count}", scenario.name()),
         runs: (1..=runs.len()).map(|number| format!("run {number}")).collect(),
