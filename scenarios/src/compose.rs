@@ -252,11 +252,10 @@ impl Scenario {
     /// A task can be due at the steps of the session only.
     fn fits_step(&self, name: &ClientName, plan: &TaskPlan) -> Result<(), ScenarioError> {
         let step = self.file().step;
-        let Some(wrong) = plan.tasks.iter().find(|task| !task.interval_ns.is_multiple_of(step.as_nanos())) else {
+        let mut intervals = plan.tasks.iter().filter_map(|task| Some((&task.name, task.interval?)));
+        let Some((task, span)) = intervals.find(|(_, interval)| !interval.is_multiple_of(step)) else {
             return Ok(());
         };
-        let (task, span) = (&wrong.name, onescan_server::time::TimeSpan::from_nanos(wrong.interval_ns));
-        let span = span.map(|span| span.to_string()).unwrap_or_default();
         let message =
             format!("task `{task}` has an interval of {span}, which is no multiple of the session's step {step}");
         Err(self.wrong_client(name, message, Some("change the interval, or make the step a divisor of it".to_owned())))
@@ -271,7 +270,7 @@ pub(crate) fn plan_of(tasks: &[TaskFile]) -> Option<TaskPlan> {
 fn task(file: &TaskFile) -> Task {
     Task {
         name: file.name.clone(),
-        interval_ns: file.interval.map_or(0, onescan_server::time::TimeSpan::as_nanos),
+        interval: file.interval,
         single: file.single.clone(),
         priority: file.priority,
         programs: file.programs.clone(),

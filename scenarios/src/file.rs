@@ -5,7 +5,7 @@ use std::str::FromStr;
 
 use onescan_clients::gateway::Settings;
 use onescan_plc_shim::Dialect;
-use onescan_server::signal::{ClientName, ElementaryType, SignalName};
+use onescan_server::signal::{ClientName, SignalName, SignalType};
 use onescan_server::time::{TimeSpan, VirtualTime};
 use serde::{Deserialize, Deserializer};
 use toml::Spanned;
@@ -67,7 +67,7 @@ pub enum CouplingFile {
 pub struct SignalFile {
     /// Its elementary type.
     #[serde(rename = "type")]
-    pub ty: ElementaryType,
+    pub ty: SignalType,
     /// The client that writes it.
     pub writer: ClientName,
     /// Its unit, for people.

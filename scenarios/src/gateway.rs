@@ -5,7 +5,7 @@ use onescan_clients::gateway::{Exchange, FreeGateway, Gateway, LinkFault, Settin
 use onescan_clients::soft_plc::{Bindings, SoftPlcClient};
 use onescan_plc_shim::input::kind::{FileKind, SourceKind};
 use onescan_plc_shim::instrument::{File, InstrumentError, Options, Project, Target, instrument};
-use onescan_plc_shim::{Application, Input, Task, TaskPlan};
+use onescan_plc_shim::{Application, Input, Task, TaskPlan, TimeSpan};
 use onescan_server::client::{Client, JoinRequest};
 use onescan_server::signal::{ClientName, Port, SignalName, did_you_mean};
 
@@ -226,10 +226,10 @@ fn input(file: &File) -> Option<Input> {
 /// Scheduler and programs in one task, in this order, in every cycle: when a program is due is the scheduler's
 /// business.
 fn in_one_task(plan: &TaskPlan) -> TaskPlan {
-    const CYCLE_NS: u64 = 1;
+    const CYCLE: TimeSpan = TimeSpan::nanos::<1>();
     let scheduler = std::iter::once("SDSP_Scheduler".to_owned());
     let programs = scheduler.chain(plan.tasks.iter().flat_map(|task| task.programs.iter().cloned())).collect();
-    TaskPlan::new(vec![Task { name: "cycle".to_owned(), interval_ns: CYCLE_NS, programs, ..Task::default() }])
+    TaskPlan::new(vec![Task { name: "cycle".to_owned(), interval: Some(CYCLE), programs, ..Task::default() }])
 }
 
 /// The instrumented sources of PLC `name`, compiled.

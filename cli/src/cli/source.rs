@@ -188,7 +188,7 @@ fn plc_task(text: &str) -> Result<Task, String> {
     let interval: TimeSpan = interval.parse().map_err(|error| format!("{interval}: {error}"))?;
     Ok(Task {
         name: name.to_owned(),
-        interval_ns: interval.as_nanos(),
+        interval: Some(interval),
         priority: priority.parse().map_err(|_| format!("`{priority}` is no priority: 0 comes first"))?,
         programs: programs.split(',').map(|program| program.trim().to_owned()).collect(),
         ..Task::default()

@@ -9,7 +9,7 @@ use std::ops::RangeInclusive;
 
 use onescan_server::recording::{Recording, RecordingError, Row, Rows};
 use onescan_server::signal::pattern::{SignalPattern, choose};
-use onescan_server::signal::{ClientName, ElementaryType, SignalName};
+use onescan_server::signal::{ClientName, SignalName, SignalType};
 use onescan_server::time::VirtualTime;
 
 use super::error::DiffError;
@@ -38,7 +38,7 @@ pub struct Difference {
     /// The signal.
     pub signal: SignalName,
     /// Its type.
-    pub ty: ElementaryType,
+    pub ty: SignalType,
     /// Who writes it.
     pub writer: Option<ClientName>,
     /// What it is in the first and in the second.
@@ -104,7 +104,7 @@ impl<'r> Comparison<'r> {
                 return Err(Usage::new(message, None).into());
             }
         }
-        let types = |recording: &Recording| -> Vec<(SignalName, ElementaryType)> {
+        let types = |recording: &Recording| -> Vec<(SignalName, SignalType)> {
             recording.header().signals.iter().map(|signal| (signal.name.clone(), signal.ty)).collect()
         };
         let (first, second) = (a.header(), b.header());
@@ -258,10 +258,10 @@ fn differences([a, b]: &[Rows; 2]) -> Vec<Difference> {
 }
 
 /// A value as an engineer reads it.
-fn shown(ty: ElementaryType, bytes: &[u8]) -> String {
+fn shown(ty: SignalType, bytes: &[u8]) -> String {
     match (ty, bytes) {
-        (ElementaryType::Bool, [0]) => "FALSE".to_owned(),
-        (ElementaryType::Bool, _) => "TRUE".to_owned(),
+        (SignalType::BOOL, [0]) => "FALSE".to_owned(),
+        (SignalType::BOOL, _) => "TRUE".to_owned(),
         _ => ty.to_text(bytes),
     }
 }

@@ -131,7 +131,7 @@ impl Exit for SettingsFault {
 impl Exit for FormationError {
     fn exit_code(&self) -> ExitCode {
         match self {
-            Self::Missing { .. } | Self::Interrupted { .. } | Self::Remote(_) => ExitCode::Fault,
+            Self::Missing { .. } | Self::Interrupted { .. } | Self::Connection(_) => ExitCode::Fault,
             Self::Refused(_) | Self::Unwritten(_) => ExitCode::WrongInput,
         }
     }

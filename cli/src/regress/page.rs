@@ -2,7 +2,7 @@
 
 use onescan_plc_shim::Coverage;
 use onescan_report::page::{Mood, Page, Section};
-use onescan_server::signal::ElementaryType;
+use onescan_server::signal::SignalType;
 use onescan_server::time::VirtualTime;
 
 use super::outcome::{Outcome, Report, Status};
@@ -62,7 +62,7 @@ fn shown(Shown { name, verdict, at_ns, values, margin }: &Shown) -> onescan_repo
 
 /// The changes of all BOOLs.
 fn edges(snapshot: &Snapshot) -> impl Iterator<Item = Event> {
-    let bools = snapshot.signals.iter().filter(|track| track.ty == ElementaryType::Bool);
+    let bools = snapshot.signals.iter().filter(|track| track.ty == SignalType::BOOL);
     bools.flat_map(|track| {
         track.changes.iter().skip(1).map(|(since, bytes)| Event {
             at_ns: since.as_nanos(),

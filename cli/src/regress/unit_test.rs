@@ -135,27 +135,28 @@ fn one(
     test: &Test,
     coverage: &mut Coverage,
 ) -> Result<Ran, TestError> {
-    let interval_ns = config.scan.map_or(10_000_000, TimeSpan::as_nanos);
+    let interval = config.scan.unwrap_or(TimeSpan::millis::<10>());
     let programs = vec![test.program()];
-    let plan = TaskPlan::new(vec![Task { name: "test".to_owned(), interval_ns, programs, ..Task::default() }]);
+    let plan =
+        TaskPlan::new(vec![Task { name: "test".to_owned(), interval: Some(interval), programs, ..Task::default() }]);
     let refused = |error: onescan_plc_shim::RunError| Usage::new(error.to_string(), None);
     let mut plc = SoftPlc::new(application, &plan).map_err(refused)?;
     let done = done_offset(application, test)?;
     let mut ran = Ran {
         tags: test.tags.clone(),
-        step_ns: interval_ns,
+        step_ns: interval.as_nanos(),
         place: Some(test.place.clone()),
         ..Ran::new(test.name.clone(), RunStatus::Completed)
     };
     loop {
-        let now_ns = ran.virtual_time_ns.saturating_add(interval_ns);
+        let now_ns = ran.virtual_time_ns.saturating_add(interval.as_nanos());
         if now_ns > config.until.as_nanos() {
             ran.status = RunStatus::Failed;
             let until = config.until;
             ran.error = Some(format!("it is not done at t_v = {until}: its output `{DONE}` is still FALSE"));
             break;
         }
-        let scanned = plc.scan(VirtualTime::from_ns(now_ns));
+        let scanned = plc.scan(VirtualTime::from_nanos(now_ns));
         (ran.virtual_time_ns, ran.steps) = (now_ns, ran.steps + 1);
         note(&mut ran, &mut plc);
         if let Err(fault) = scanned {

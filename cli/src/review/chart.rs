@@ -1,6 +1,6 @@
 //! A signal on a terminal: as it was, as it is, and by how much the two differ.
 
-use onescan_server::signal::ElementaryType;
+use onescan_server::signal::SignalType;
 use onescan_server::time::VirtualTime;
 
 use super::canvas::Canvas;
@@ -16,7 +16,7 @@ pub fn lines(old: Option<&Track>, new: Option<&Track>, end: VirtualTime, width: 
     let columns = width.saturating_sub(LABELS + 1).max(10);
     let Some(any) = new.or(old) else { return Vec::new() };
     match any.ty {
-        ElementaryType::Bool => levels(old, new, end, columns),
+        SignalType::BOOL => levels(old, new, end, columns),
         ty if ty.as_f64(&vec![0; ty.size()]).is_none() => Vec::new(),
         _ => curves(old, new, end, columns),
     }
@@ -80,7 +80,7 @@ pub fn difference(old: &Track, new: &Track) -> Track {
         let by = number(new, t_v)? - number(old, t_v)?;
         Some((t_v, by.to_le_bytes().to_vec()))
     });
-    Track { ty: ElementaryType::Lreal, changes: changes.collect(), ..new.clone() }
+    Track { ty: SignalType::LREAL, changes: changes.collect(), ..new.clone() }
 }
 
 fn curve_lines(name: &str, curve: &[Option<(f64, f64)>], (low, high): (f64, f64), columns: usize) -> Vec<String> {
@@ -158,9 +158,8 @@ fn levels(old: Option<&Track>, new: Option<&Track>, end: VirtualTime, columns: u
 mod tests {
     use super::*;
 
-    fn track(ty: ElementaryType, changes: &[(u64, f64)]) -> Track {
-        let bytes =
-            |value: f64| if ty == ElementaryType::Bool { vec![value as u8] } else { value.to_le_bytes().to_vec() };
+    fn track(ty: SignalType, changes: &[(u64, f64)]) -> Track {
+        let bytes = |value: f64| if ty == SignalType::BOOL { vec![value as u8] } else { value.to_le_bytes().to_vec() };
         let changes =
             changes.iter().map(|(ms, value)| (VirtualTime::from_nanos(ms * 1_000_000), bytes(*value))).collect();
         Track { name: "x".to_owned(), ty, unit: None, sampled: None, changes }
@@ -170,20 +169,20 @@ mod tests {
     fn a_curve_stands_beside_its_old_one() {
         let ramp: Vec<(u64, f64)> = (0..100).map(|ms| (ms, ms as f64 / 100.0)).collect();
         let bent: Vec<(u64, f64)> = ramp.iter().map(|(ms, value)| (*ms, value.min(0.5))).collect();
-        let (old, new) = (track(ElementaryType::Lreal, &ramp), track(ElementaryType::Lreal, &bent));
+        let (old, new) = (track(SignalType::LREAL, &ramp), track(SignalType::LREAL, &bent));
         insta::assert_snapshot!(lines(Some(&old), Some(&new), VirtualTime::from_nanos(100_000_000), 60).join("\n"));
     }
 
     #[test]
     fn a_pulse_is_seen_and_pointed_to() {
-        let old = track(ElementaryType::Bool, &[(0, 0.0), (50, 1.0)]);
-        let new = track(ElementaryType::Bool, &[(0, 0.0), (20, 1.0), (21, 0.0), (50, 1.0)]);
+        let old = track(SignalType::BOOL, &[(0, 0.0), (50, 1.0)]);
+        let new = track(SignalType::BOOL, &[(0, 0.0), (20, 1.0), (21, 0.0), (50, 1.0)]);
         insta::assert_snapshot!(lines(Some(&old), Some(&new), VirtualTime::from_nanos(100_000_000), 60).join("\n"));
     }
 
     #[test]
     fn no_line_is_too_wide() {
-        let wild = track(ElementaryType::Lreal, &[(0, -1e300), (1, 1e300), (2, f64::NAN), (3, 1e-300)]);
+        let wild = track(SignalType::LREAL, &[(0, -1e300), (1, 1e300), (2, f64::NAN), (3, 1e-300)]);
         let all = lines(Some(&wild), Some(&wild), VirtualTime::from_nanos(4_000_000), 80);
         assert!(all.iter().all(|line| line.chars().count() <= 80), "{all:#?}");
     }

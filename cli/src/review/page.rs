@@ -2,7 +2,7 @@
 
 use onescan_report::page::{Mood, Page, Section};
 use onescan_report::plot::{Mark, Panel, Plot, Shape, Trajectory};
-use onescan_server::signal::ElementaryType;
+use onescan_server::signal::SignalType;
 
 use super::{Waiting, chart, view};
 use crate::snapshot::{Difference, Track};
@@ -45,7 +45,7 @@ fn plot(waiting: &Waiting) -> Plot {
         let (signal, unit, shape) = (any.name.clone(), any.unit.clone(), shape(any));
         let both = if old.is_some() { runs(&[was.clone(), is.clone()]) } else { runs(std::slice::from_ref(&is)) };
         panels.push(Panel { signal: signal.clone(), unit: unit.clone(), shape, runs: both });
-        if let (Some(was), Some(is), false) = (&was, &is, any.ty == ElementaryType::Bool) {
+        if let (Some(was), Some(is), false) = (&was, &is, any.ty == SignalType::BOOL) {
             let difference = chart::difference(was, is);
             let signal = format!("{signal}, new less old");
             panels.push(Panel { signal, unit, shape: Shape::Step, runs: vec![trajectory(waiting, &difference)] });

@@ -7,7 +7,7 @@ use onescan_report::OutputError;
 use onescan_report::file;
 use onescan_report::plot::Plot;
 use onescan_scenario::{Mode, Scenario};
-use onescan_server::signal::{ElementaryType, SignalName};
+use onescan_server::signal::{SignalName, SignalType};
 use serde::Serialize;
 
 use super::config::{Drawing, Picture, RunConfig};
@@ -92,7 +92,7 @@ pub fn compare(config: &CompareConfig, interrupt: &Interrupt, out: &mut dyn Writ
         }
         all.push(runs);
     }
-    let types: Vec<ElementaryType> = scenario.file().signals.values().map(|signal| signal.get_ref().ty).collect();
+    let types: Vec<SignalType> = scenario.file().signals.values().map(|signal| signal.get_ref().ty).collect();
     let rows: Vec<Row> =
         MODES.iter().zip(&all).map(|(mode, runs)| row(*mode, runs, &all[0][0].samples, &types)).collect();
     if let Some(path) = &config.plot {
@@ -105,14 +105,14 @@ pub fn compare(config: &CompareConfig, interrupt: &Interrupt, out: &mut dyn Writ
     Ok(rows)
 }
 
-fn row(mode: Mode, runs: &[Run], lockstep: &Samples, types: &[ElementaryType]) -> Row {
+fn row(mode: Mode, runs: &[Run], lockstep: &Samples, types: &[SignalType]) -> Row {
     let mut digests: Vec<&str> = runs.iter().map(|run| run.digest.as_str()).collect();
     digests.sort_unstable();
     digests.dedup();
     let (mut deviation, mut deviating) = (0.0, None);
     let (mut edges, mut lost, mut offsets) = (0, 0, Vec::new());
     for (index, ty) in types.iter().enumerate() {
-        let analog = matches!(ty, ElementaryType::Real | ElementaryType::Lreal);
+        let analog = matches!(*ty, SignalType::REAL | SignalType::LREAL);
         for run in runs {
             if analog {
                 let found = distance(&lockstep.values[index], &run.samples.values[index]);
@@ -208,7 +208,7 @@ mod tests {
 
     #[test]
     fn what_free_wheeling_costs_is_counted() {
-        let types = [ElementaryType::Lreal, ElementaryType::Bool];
+        let types = [SignalType::LREAL, SignalType::BOOL];
         let lockstep = run("a", &[0.0, 1.0, 2.0, 4.0], &[0.0, 1.0, 0.0, 1.0]);
         let same =
             row(Mode::Lockstep, &[run("a", &[0.0, 1.0, 2.0, 4.0], &[0.0, 1.0, 0.0, 1.0])], &lockstep.samples, &types);

@@ -43,6 +43,7 @@ pub(super) fn run(
     lockstep.set_mailbox(interrupt.mailbox());
     watch(&mut lockstep);
     if let Some(desk) = &desk {
+        lockstep.set_published(desk.published());
         lockstep.observe(Box::new(desk.observer()));
     }
     if config.reports.progress {

@@ -175,7 +175,7 @@ fn tracks(expected: &Track, found: &Track, tolerance: Option<f64>) -> Option<Dif
 mod tests {
     use super::super::Sampled;
     use super::*;
-    use onescan_server::signal::ElementaryType;
+    use onescan_server::signal::SignalType;
     use onescan_server::time::TimeSpan;
 
     fn snapshot(values: &[f64], digest: u64) -> Snapshot {
@@ -184,7 +184,7 @@ mod tests {
         let changes = values.iter().enumerate().map(|(index, value)| (at(index), value.to_le_bytes().to_vec()));
         let track = Track {
             name: "x".to_owned(),
-            ty: ElementaryType::Lreal,
+            ty: SignalType::LREAL,
             unit: Some("m".to_owned()),
             sampled: Some(Sampled { every: step, digest }),
             changes: changes.collect(),

@@ -42,7 +42,7 @@ pub mod take;
 pub mod value;
 pub mod write;
 
-use onescan_server::signal::ElementaryType;
+use onescan_server::signal::SignalType;
 use onescan_server::time::{TimeSpan, VirtualTime};
 
 pub use compare::{Difference, compare};
@@ -75,7 +75,7 @@ pub struct Track {
     /// Its name.
     pub name: String,
     /// Its type.
-    pub ty: ElementaryType,
+    pub ty: SignalType,
     /// Its unit.
     pub unit: Option<String>,
     /// How far apart samples are, and the digest of all steps; nothing where every change is held.

@@ -157,7 +157,7 @@ impl<'t> Reader<'t> {
     }
 
     fn span(&self, text: &str) -> Read<TimeSpan> {
-        text.parse().or_else(|error: onescan_server::time::TimeParseError| self.wrong(error.to_string()))
+        text.parse().or_else(|error: onescan_server::time::DurationError| self.wrong(error.to_string()))
     }
 
     fn instant(&self, text: &str, decimals: usize) -> Read<VirtualTime> {
@@ -172,15 +172,15 @@ impl<'t> Reader<'t> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use onescan_server::signal::ElementaryType;
+    use onescan_server::signal::SignalType;
     use proptest::prelude::*;
 
     fn snapshot(step_us: u64, runs: &[Vec<(u64, i32)>]) -> Snapshot {
         let step = TimeSpan::from_nanos(step_us * 1_000).unwrap();
         let track = |(index, steps): (usize, &Vec<(u64, i32)>)| {
-            let ty = if index % 2 == 0 { ElementaryType::Dint } else { ElementaryType::Lreal };
+            let ty = if index % 2 == 0 { SignalType::DINT } else { SignalType::LREAL };
             let bytes = |value: i32| match ty {
-                ElementaryType::Lreal => (f64::from(value) / 7.0).to_le_bytes().to_vec(),
+                SignalType::LREAL => (f64::from(value) / 7.0).to_le_bytes().to_vec(),
                 _ => value.to_le_bytes().to_vec(),
             };
             let mut changes = vec![(VirtualTime::ZERO, bytes(0))];

@@ -5,9 +5,10 @@ use std::rc::Rc;
 
 use onescan_scenario::case::{Catalogue, DEFAULT};
 use onescan_scenario::{Scenario, ScenarioError};
+use onescan_server::digest::TrajectoryDigest;
 use onescan_server::record::{Observer, RecordError};
 use onescan_server::session::Session;
-use onescan_server::signal::{ElementaryType, SignalId, SignalName, did_you_mean};
+use onescan_server::signal::{SignalId, SignalName, SignalType, did_you_mean};
 use onescan_server::time::{TimeSpan, VirtualTime};
 
 use super::{Sampled, Snapshot, Track};
@@ -123,21 +124,21 @@ impl Taken {
 }
 
 impl Observer for Taker {
-    fn begin(&mut self, session: &Session) -> Result<(), RecordError> {
+    fn begin(&mut self, session: &Session, digest: &TrajectoryDigest) -> Result<(), RecordError> {
         let taken = |name: &SignalName| {
             let id = session.signal_id(name.as_str())?;
             let ty = session.layout().ty(id);
-            let is_real = matches!(ty, ElementaryType::Real | ElementaryType::Lreal);
+            let is_real = matches!(ty, SignalType::REAL | SignalType::LREAL);
             let sampled = is_real.then_some(Sampled { every: self.choice.every, digest: 0 });
             let unit = session.plan().signals().iter().find(|signal| signal.name == *name)?.unit.clone();
             let track = Track { name: name.to_string(), ty, unit, sampled, changes: Vec::new() };
             Some(Taken { id, track, hasher: blake3::Hasher::new() })
         };
         self.taken = self.choice.signals.iter().filter_map(taken).collect();
-        self.step(session)
+        self.step(session, digest)
     }
 
-    fn step(&mut self, session: &Session) -> Result<(), RecordError> {
+    fn step(&mut self, session: &Session, _digest: &TrajectoryDigest) -> Result<(), RecordError> {
         self.taken.iter_mut().for_each(|taken| taken.take(session));
         Ok(())
     }

@@ -1,19 +1,20 @@
 //! Values as text, one spelling for each, and back.
 
-use onescan_server::signal::ElementaryType;
+use onescan_base::duration::plain;
+use onescan_server::signal::SignalType;
 
-use ElementaryType as E;
+use SignalType as E;
 
 /// The text of a value.
-pub fn show(ty: ElementaryType, bytes: &[u8]) -> String {
+pub fn show(ty: SignalType, bytes: &[u8]) -> String {
     match ty {
-        E::Bool => if bytes == [0] { "FALSE" } else { "TRUE" }.to_owned(),
-        E::Byte | E::Word | E::Dword | E::Lword => format!("16#{:0width$X}", unsigned(bytes), width = 2 * bytes.len()),
-        E::Usint | E::Uint | E::Udint | E::Ulint => unsigned(bytes).to_string(),
-        E::Real => format!("{:?}", f32::from_bits(unsigned(bytes) as u32)),
-        E::Lreal => format!("{:?}", f64::from_bits(unsigned(bytes))),
-        E::Time | E::Ltime => seconds(signed(bytes)),
-        E::Char | E::Wchar => quoted(&[unsigned(bytes) as u16]),
+        E::BOOL => if bytes == [0] { "FALSE" } else { "TRUE" }.to_owned(),
+        E::BYTE | E::WORD | E::DWORD | E::LWORD => format!("16#{:0width$X}", unsigned(bytes), width = 2 * bytes.len()),
+        E::USINT | E::UINT | E::UDINT | E::ULINT => unsigned(bytes).to_string(),
+        E::REAL => format!("{:?}", f32::from_bits(unsigned(bytes) as u32)),
+        E::LREAL => format!("{:?}", f64::from_bits(unsigned(bytes))),
+        E::TIME | E::LTIME => seconds(signed(bytes)),
+        E::CHAR | E::WCHAR => quoted(&[unsigned(bytes) as u16]),
         E::String(_) => quoted(&used(bytes, 1)),
         E::Wstring(_) => quoted(&used(bytes, 2)),
         // Signed integers; dates as nanoseconds since 1970 or midnight.
@@ -22,23 +23,23 @@ pub fn show(ty: ElementaryType, bytes: &[u8]) -> String {
 }
 
 /// The bytes of a text that [`show`] gives; nothing for any other.
-pub fn read(ty: ElementaryType, text: &str) -> Option<Vec<u8>> {
+pub fn read(ty: SignalType, text: &str) -> Option<Vec<u8>> {
     let bytes = parse(ty, text)?;
     // One value has one spelling: whatever else might be read is not what was written.
     (show(ty, &bytes) == text).then_some(bytes)
 }
 
-fn parse(ty: ElementaryType, text: &str) -> Option<Vec<u8>> {
+fn parse(ty: SignalType, text: &str) -> Option<Vec<u8>> {
     let size = ty.size();
     let least = |value: u64| value.to_le_bytes().get(..size).map(<[u8]>::to_vec);
     match ty {
-        E::Bool => ["FALSE", "TRUE"].iter().position(|word| *word == text).map(|value| vec![value as u8]),
-        E::Byte | E::Word | E::Dword | E::Lword => least(u64::from_str_radix(text.strip_prefix("16#")?, 16).ok()?),
-        E::Usint | E::Uint | E::Udint | E::Ulint => least(text.parse().ok()?),
-        E::Real => least(u64::from(text.parse::<f32>().ok()?.to_bits())),
-        E::Lreal => least(text.parse::<f64>().ok()?.to_bits()),
-        E::Time | E::Ltime => least(nanoseconds(text)? as u64),
-        E::Char | E::Wchar => match units(text)?[..] {
+        E::BOOL => ["FALSE", "TRUE"].iter().position(|word| *word == text).map(|value| vec![value as u8]),
+        E::BYTE | E::WORD | E::DWORD | E::LWORD => least(u64::from_str_radix(text.strip_prefix("16#")?, 16).ok()?),
+        E::USINT | E::UINT | E::UDINT | E::ULINT => least(text.parse().ok()?),
+        E::REAL => least(u64::from(text.parse::<f32>().ok()?.to_bits())),
+        E::LREAL => least(text.parse::<f64>().ok()?.to_bits()),
+        E::TIME | E::LTIME => least(plain::parse_signed(text).ok()? as u64),
+        E::CHAR | E::WCHAR => match units(text)?[..] {
             [unit] => least(u64::from(unit)),
             _ => None,
         },
@@ -59,19 +60,7 @@ fn signed(bytes: &[u8]) -> i64 {
 
 /// Nanoseconds as seconds with all decimals they need.
 fn seconds(ns: i64) -> String {
-    let (sign, ns) = (if ns < 0 { "-" } else { "" }, ns.unsigned_abs());
-    let decimals = format!("{:09}", ns % 1_000_000_000);
-    let decimals = decimals.trim_end_matches('0');
-    let dot = if decimals.is_empty() { "" } else { "." };
-    format!("{sign}{}{dot}{decimals}s", ns / 1_000_000_000)
-}
-
-fn nanoseconds(text: &str) -> Option<i64> {
-    let number = text.strip_suffix('s')?;
-    let (sign, number) = number.strip_prefix('-').map_or((1, number), |rest| (-1, rest));
-    let (whole, decimals) = number.split_once('.').unwrap_or((number, ""));
-    let decimals: i128 = format!("{decimals:0<9}").parse().ok()?;
-    i64::try_from(sign * (whole.parse::<i128>().ok()?.checked_mul(1_000_000_000)? + decimals)).ok()
+    format!("{}{}s", if ns < 0 { "-" } else { "" }, plain::seconds(ns.unsigned_abs(), 0))
 }
 
 /// The characters in use of a string in an image.
@@ -132,20 +121,20 @@ mod tests {
 
     #[test]
     fn values_read_well() {
-        assert_eq!(show(E::Word, &[0xcd, 0xab]), "16#ABCD");
-        assert_eq!(show(E::Int, &(-3_i16).to_le_bytes()), "-3");
-        assert_eq!(show(E::Time, &(-1_500_000_000_i64).to_le_bytes()), "-1.5s");
-        assert_eq!(show(E::Lreal, &0.1_f64.to_le_bytes()), "0.1");
+        assert_eq!(show(E::WORD, &[0xcd, 0xab]), "16#ABCD");
+        assert_eq!(show(E::INT, &(-3_i16).to_le_bytes()), "-3");
+        assert_eq!(show(E::TIME, &(-1_500_000_000_i64).to_le_bytes()), "-1.5s");
+        assert_eq!(show(E::LREAL, &0.1_f64.to_le_bytes()), "0.1");
         assert_eq!(show(E::String(4), b"\x02\x00a\"\0\0"), "\"a\\{22}\"");
-        assert_eq!(read(E::Usint, "256"), None);
-        assert_eq!(read(E::Bool, "true"), None);
-        assert_eq!(read(E::Lreal, "0.10"), None);
+        assert_eq!(read(E::USINT, "256"), None);
+        assert_eq!(read(E::BOOL, "true"), None);
+        assert_eq!(read(E::LREAL, "0.10"), None);
     }
 
-    fn types() -> impl Strategy<Value = ElementaryType> {
+    fn types() -> impl Strategy<Value = SignalType> {
         let simple = "BOOL BYTE WORD DWORD LWORD SINT INT DINT LINT USINT UINT UDINT ULINT REAL LREAL TIME LTIME DATE TOD DT \
                       CHAR WCHAR STRING[7] WSTRING[5]";
-        let all: Vec<ElementaryType> = simple.split_whitespace().map(|name| name.parse().unwrap()).collect();
+        let all: Vec<SignalType> = simple.split_whitespace().map(|name| name.parse().unwrap()).collect();
         prop::sample::select(all)
     }
 
@@ -154,7 +143,7 @@ mod tests {
         fn what_is_shown_reads_back(ty in types(), seed in prop::collection::vec(any::<u8>(), 16)) {
             let mut bytes: Vec<u8> = seed.iter().copied().cycle().take(ty.size()).collect();
             match ty {
-                E::Bool => bytes[0] &= 1,
+                E::BOOL => bytes[0] &= 1,
                 E::String(_) | E::Wstring(_) => (bytes[0], bytes[1]) = (bytes[0] % 6, 0),
                 _ => {}
             }

@@ -2,6 +2,7 @@
 
 use std::fmt::Write as _;
 
+use onescan_base::duration::plain;
 use onescan_server::time::{TimeSpan, VirtualTime};
 
 use super::value::show;
@@ -55,7 +56,5 @@ pub(super) fn decimals(step: TimeSpan) -> usize {
 
 /// An instant in seconds with so many decimals, or more if it needs them.
 pub(super) fn instant(t_v: VirtualTime, decimals: usize) -> String {
-    let (whole, ns) = (t_v.as_nanos() / 1_000_000_000, format!("{:09}", t_v.as_nanos() % 1_000_000_000));
-    let kept = ns.trim_end_matches('0').len().max(decimals);
-    if kept == 0 { whole.to_string() } else { format!("{whole}.{}", &ns[..kept]) }
+    plain::seconds(t_v.as_nanos(), decimals).to_string()
 }

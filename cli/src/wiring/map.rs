@@ -3,7 +3,7 @@
 use onescan_scenario::compose::Compiled;
 use onescan_scenario::file::ClientFile;
 use onescan_scenario::{Scenario, ScenarioError};
-use onescan_server::signal::{ClientName, ElementaryType, SignalName, nearest};
+use onescan_server::signal::{ClientName, SignalName, SignalType, nearest};
 use serde::Serialize;
 
 use super::ends::{End, Ends, of_plant, of_plc};
@@ -147,7 +147,7 @@ impl Map {
     fn check(
         &mut self,
         wired: &Wired,
-        (name, ty, writer): (&SignalName, ElementaryType, &ClientName),
+        (name, ty, writer): (&SignalName, SignalType, &ClientName),
         found: &[(ClientName, Option<Ends>)],
     ) {
         for (client, ends) in found {

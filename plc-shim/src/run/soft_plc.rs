@@ -2,7 +2,8 @@
 
 use std::ops::Range;
 
-use super::VirtualTime;
+use onescan_base::{TimeSpan, VirtualTime};
+
 use super::fault::{self, PlcFault, WriteSite, explain};
 use super::force::Forces;
 use super::machine::{Machine, Occasion, Trapped};
@@ -159,7 +160,7 @@ impl SoftPlc {
 
     /// Gives a task its virtual time and its budget.
     fn begin_task(&mut self) {
-        let time = self.now.as_ns().to_le_bytes();
+        let time = self.now.as_nanos().to_le_bytes();
         copy_to(self.machine.memory_mut(), VIRTUAL_TIME_OFFSET as usize, &time);
         self.machine.refuel(self.fuel_per_task);
     }
@@ -191,15 +192,15 @@ impl SoftPlc {
         Ok(())
     }
 
-    /// When a task is due next by its interval; the end of time if none has one.
-    pub fn next_due(&self) -> VirtualTime {
+    /// When a task is due next by its interval; nothing if none has one.
+    pub fn next_due(&self) -> Option<VirtualTime> {
         self.scheduler.next_due()
     }
 
-    /// Greatest common divisor of the tasks' intervals in nanoseconds: every periodic task is due at
-    /// a multiple of it. 0 if there are none.
-    pub fn period_ns(&self) -> u64 {
-        self.scheduler.period_ns()
+    /// Greatest common divisor of the tasks' intervals: every periodic task is due at a multiple of it. Nothing if no
+    /// task is periodic.
+    pub fn period(&self) -> Option<TimeSpan> {
+        self.scheduler.period()
     }
 
     /// True if a scan may have something to do at any time: tasks wait for an edge, or programs have

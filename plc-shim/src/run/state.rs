@@ -12,9 +12,9 @@
 //!
 //! All numbers are little-endian.
 
+use onescan_base::{TimeSpan, VirtualTime};
 use thiserror::Error;
 
-use super::VirtualTime;
 use super::fault::{FaultSite, PlcFault};
 use super::force::Forces;
 use super::plan::TaskPlan;
@@ -38,6 +38,9 @@ pub enum RestoreError {
     Damaged,
 }
 
+/// How a saved state writes an instant that does not come.
+const NEVER_NS: u64 = u64::MAX;
+
 pub(super) struct State<'m> {
     pub(super) now: VirtualTime,
     pub(super) waiting: Vec<Waiting>,
@@ -59,7 +62,7 @@ pub(super) fn fingerprint(application: &Application, plan: &TaskPlan) -> u64 {
     add(&plan.fuel_per_task.to_le_bytes());
     for task in &plan.tasks {
         add(task.name.as_bytes());
-        add(&task.interval_ns.to_le_bytes());
+        add(&task.interval.map_or(0, TimeSpan::as_nanos).to_le_bytes());
         add(&task.priority.to_le_bytes());
         for name in task.programs.iter().chain(&task.single) {
             add(name.to_ascii_uppercase().as_bytes());
@@ -79,11 +82,12 @@ impl<'m> State<'m> {
         let mut bytes = Vec::with_capacity(self.memory.len() + 256);
         bytes.extend_from_slice(&MAGIC);
         bytes.extend_from_slice(&fingerprint.to_le_bytes());
-        bytes.extend_from_slice(&self.now.as_ns().to_le_bytes());
+        bytes.extend_from_slice(&self.now.as_nanos().to_le_bytes());
         bytes.extend_from_slice(&(self.waiting.len() as u32).to_le_bytes());
-        for Waiting { due_ns, edge_ns, level } in &self.waiting {
-            bytes.extend_from_slice(&due_ns.to_le_bytes());
-            bytes.extend_from_slice(&edge_ns.to_le_bytes());
+        for Waiting { due, edge, level } in &self.waiting {
+            for instant in [due, edge] {
+                bytes.extend_from_slice(&instant.map_or(NEVER_NS, VirtualTime::as_nanos).to_le_bytes());
+            }
             bytes.push(u8::from(*level));
         }
         bytes.push(u8::from(self.fault.is_some()));
@@ -123,7 +127,7 @@ impl<'m> State<'m> {
 fn encode_fault(fault: &PlcFault, bytes: &mut Vec<u8>) {
     let kind = FaultKind::ALL.iter().position(|kind| *kind == fault.kind);
     bytes.push(kind.unwrap_or(FaultKind::ALL.len() - 1) as u8);
-    bytes.extend_from_slice(&fault.virtual_time.as_ns().to_le_bytes());
+    bytes.extend_from_slice(&fault.virtual_time.as_nanos().to_le_bytes());
     bytes.extend_from_slice(&(fault.callers.len() as u32).to_le_bytes());
     for site in std::iter::once(&fault.at).chain(&fault.callers) {
         bytes.extend_from_slice(&site.line.to_le_bytes());
@@ -165,7 +169,7 @@ impl<'m> Reader<'m> {
     }
 
     fn state(&mut self, application: &Application, tasks: usize, memory_size: usize) -> Option<State<'m>> {
-        let now = VirtualTime::from_ns(self.number()?);
+        let now = VirtualTime::from_nanos(self.number()?);
         if self.small_number()? as usize != tasks {
             return None;
         }
@@ -181,7 +185,7 @@ impl<'m> Reader<'m> {
 
     fn fault(&mut self) -> Option<PlcFault> {
         let kind = *FaultKind::ALL.get(self.byte()? as usize)?;
-        let virtual_time = VirtualTime::from_ns(self.number()?);
+        let virtual_time = VirtualTime::from_nanos(self.number()?);
         let count = self.small_number()?;
         let at = self.site()?;
         let callers = (0..count).map(|_| self.site()).collect::<Option<_>>()?;
@@ -206,9 +210,10 @@ impl<'m> Reader<'m> {
     }
 
     fn waiting(&mut self) -> Option<Waiting> {
-        let (due_ns, edge_ns) = (self.number()?, self.number()?);
+        let instant = |ns: u64| (ns != NEVER_NS).then(|| VirtualTime::from_nanos(ns));
+        let (due, edge) = (instant(self.number()?), instant(self.number()?));
         let level = self.flag()?;
-        Some(Waiting { due_ns, edge_ns, level })
+        Some(Waiting { due, edge, level })
     }
 
     fn flag(&mut self) -> Option<bool> {

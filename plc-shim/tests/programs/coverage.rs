@@ -1,7 +1,7 @@
 //! Statement and branch coverage.
 
 use onescan_plc_shim::input::kind::SourceKind;
-use onescan_plc_shim::{Application, Coverage, Input, SoftPlc, TaskPlan, VirtualTime};
+use onescan_plc_shim::{Application, Coverage, Input, SoftPlc, TaskPlan, TimeSpan, VirtualTime};
 
 const PROGRAM: &str = "FUNCTION_BLOCK Unused
 VAR x : INT; END_VAR
@@ -45,9 +45,10 @@ fn input(name: &str) -> Input {
 
 /// After so many scans; and the PLC's memory.
 fn run(application: &Application, scans: u64) -> (Option<Coverage>, Vec<u8>) {
-    let mut plc = SoftPlc::new(application, &TaskPlan::single(application, 1_000_000)).expect("it can run");
+    let mut plc =
+        SoftPlc::new(application, &TaskPlan::single(application, TimeSpan::millis::<1>())).expect("it can run");
     for scan in 1..=scans {
-        plc.scan(VirtualTime::from_ns(scan * 1_000_000)).expect("no fault");
+        plc.scan(VirtualTime::from_nanos(scan * 1_000_000)).expect("no fault");
     }
     (plc.coverage(), plc.memory().to_vec())
 }

@@ -1,4 +1,4 @@
-use onescan_plc_shim::{RestoreError, SoftPlc, TaskPlan, VirtualTime};
+use onescan_plc_shim::{RestoreError, SoftPlc, TaskPlan, TimeSpan, VirtualTime};
 
 use crate::rig::{MS, Rig, application};
 
@@ -12,7 +12,7 @@ END_PROGRAM";
 #[test]
 fn a_restored_plc_goes_on_to_the_last_bit_from_every_scan() {
     let application = application(TEXT);
-    let plan = TaskPlan::single(&application, 10 * MS);
+    let plan = TaskPlan::single(&application, TimeSpan::millis::<10>());
     let mut whole = Rig::with_plan(&application, &plan);
     let mut states = vec![whole.plc.save()];
     for _ in 0..40 {
@@ -40,7 +40,7 @@ fn a_fault_is_part_of_the_state() {
     let mut other = Rig::new(text);
     other.plc.restore(&state).expect("its own state");
     assert_eq!(other.plc.fault(), Some(&fault));
-    assert_eq!(other.plc.scan(VirtualTime::from_ns(1)), Err(fault));
+    assert_eq!(other.plc.scan(VirtualTime::from_nanos(1)), Err(fault));
     other.plc.cold_start();
     assert_eq!(other.plc.fault(), None);
 }
@@ -59,7 +59,7 @@ fn damaged_states_are_refused_and_change_nothing() {
         assert_eq!(rig.plc.restore(bytes), Err(RestoreError::Damaged));
     }
     let other = application("PROGRAM P VAR x : INT; END_VAR x := 1; END_PROGRAM");
-    let mut other = SoftPlc::new(&other, &TaskPlan::single(&other, 10 * MS)).expect("a plan");
+    let mut other = SoftPlc::new(&other, &TaskPlan::single(&other, TimeSpan::millis::<10>())).expect("a plan");
     assert_eq!(other.restore(&state), Err(RestoreError::OtherApplication));
     assert_eq!(rig.plc.save(), state);
 }
