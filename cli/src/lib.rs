@@ -6,6 +6,7 @@
 //! |---|---|
 //! | [`cli`] | the command line |
 //! | [`review`] | snapshots looked at, accepted or rejected |
+//! | [`compare`] | lockstep beside the other ways of bringing plant and PLC together |
 //! | [`bisect`] | the commit since which a run is another |
 //! | [`diff`] | where two recordings or snapshots part, and why |
 //! | [`regress`] | all cases run, compared with reviewed snapshots, reported |
@@ -32,6 +33,7 @@ pub mod bisect;
 pub mod browse;
 pub mod check;
 pub mod cli;
+pub mod compare;
 pub mod diff;
 pub mod error;
 pub mod export;

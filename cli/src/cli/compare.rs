@@ -8,10 +8,10 @@ use onescan_server::time::VirtualTime;
 
 use super::error::CommandError;
 use super::value::{FormatArg, plane};
+use crate::compare::CompareConfig;
 use crate::error::ExitCode;
 use crate::interrupt::Interrupt;
 use crate::run::RunConfig;
-use crate::run::compare::CompareConfig;
 
 /// Options of `compare`.
 #[derive(Debug, ClapArgs)]
@@ -47,6 +47,6 @@ pub fn compare(args: CompareArgs) -> Result<ExitCode, CommandError> {
     run.runs = args.runs;
     run.picture.plane = args.xy;
     let config = CompareConfig { run, plot: args.plot, format: args.format.into() };
-    crate::run::compare::compare(&config, &interrupt, &mut std::io::stdout().lock())?;
+    crate::compare::compare(&config, &interrupt, &mut std::io::stdout().lock())?;
     Ok(ExitCode::Ok)
 }

@@ -12,7 +12,7 @@ use crate::error::Usage;
 
 impl RunConfig {
     /// Refuses options that contradict each other or the scenario, before anything has begun.
-    pub(super) fn check(&self, scenario: &Scenario) -> Result<(), RunError> {
+    pub(crate) fn check(&self, scenario: &Scenario) -> Result<(), RunError> {
         for signal in self.picture.signals.iter().chain(self.picture.plane.iter().flatten()) {
             if !scenario.file().signals.contains_key(signal) {
                 let known = scenario.file().signals.keys().map(SignalName::as_str);

@@ -2,7 +2,6 @@
 //!
 //! | module | subject |
 //! |---|---|
-//! | [`compare`] | lockstep beside the other ways |
 //! | [`config`] | what is asked for |
 //! | `check` | options that contradict each other |
 //! | [`coverage`] | which statements and branches were executed |
@@ -22,7 +21,6 @@
 //! | [`session_log`] | which client a session waited for |
 
 mod check;
-pub mod compare;
 pub mod config;
 pub mod coverage;
 pub mod error;
@@ -35,7 +33,7 @@ mod progress;
 pub mod recorded;
 pub mod report;
 pub mod rerun;
-mod sampler;
+pub(crate) mod sampler;
 mod seats;
 pub mod session_log;
 pub mod watch;
@@ -139,7 +137,10 @@ pub(crate) fn watched(
 }
 
 /// One run, and what a plot needs of it.
-fn one_run(
+///
+/// # Errors
+/// See [`RunError`].
+pub(crate) fn one_run(
     config: &RunConfig,
     scenario: &Scenario,
     number: u32,

@@ -41,11 +41,11 @@ impl Chosen {
 
 /// Chosen signals of one run.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Samples {
-    pub(super) names: Vec<SignalName>,
-    pub(super) t_ns: Vec<u64>,
+pub(crate) struct Samples {
+    pub(crate) names: Vec<SignalName>,
+    pub(crate) t_ns: Vec<u64>,
     /// A row a signal.
-    pub(super) values: Vec<Vec<f64>>,
+    pub(crate) values: Vec<Vec<f64>>,
 }
 
 impl Samples {
@@ -103,7 +103,7 @@ pub(super) fn picture(
 }
 
 /// A signal of several runs.
-pub(super) fn panel<'r>(scenario: &Scenario, name: &SignalName, runs: impl Iterator<Item = &'r Samples>) -> Panel {
+pub(crate) fn panel<'r>(scenario: &Scenario, name: &SignalName, runs: impl Iterator<Item = &'r Samples>) -> Panel {
     let signal = scenario.file().signals.get(name).map(toml::Spanned::get_ref);
     let trajectory = |run: &Samples| {
         let row = run.names.iter().position(|known| known == name);

@@ -10,13 +10,12 @@ use onescan_scenario::{Mode, Scenario};
 use onescan_server::signal::{SignalName, SignalType};
 use serde::Serialize;
 
-use super::config::{Drawing, Picture, RunConfig};
-use super::error::RunError;
-use super::one_run;
-use super::sampler::{Samples, panel};
 use crate::error::Usage;
 use crate::format::Format;
 use crate::interrupt::Interrupt;
+use crate::run::config::{Drawing, Picture};
+use crate::run::sampler::{Samples, panel};
+use crate::run::{RunConfig, RunError, one_run};
 
 /// The ways, lockstep first: the others are held against it.
 const MODES: [Mode; 4] = [Mode::Lockstep, Mode::Freewheel, Mode::Halt, Mode::Follow];
