@@ -8,7 +8,7 @@ use std::collections::BTreeMap;
 
 use onescan_base::nearest;
 use onescan_plc_shim::{Application, Variable};
-use onescan_server::signal::{ClientName, Port, SignalDecl, SignalName, SignalType};
+use onescan_server::signal::{ClientName, Port, SignalDecl, SignalName};
 use thiserror::Error;
 
 /// A signal and the places in the PLC's memory that hold it.

@@ -60,7 +60,6 @@ impl<'a> Checker<'a> {
                     span: each.name.span,
                     progress: Progress::Untouched,
                     variable: None,
-                    open: None,
                     home: Some(index),
                     seen_from: std::sync::Arc::default(),
                 };
@@ -87,7 +86,6 @@ impl<'a> Checker<'a> {
                 span,
                 progress: Progress::Untouched,
                 variable: None,
-                open: None,
                 home: None,
                 seen_from: std::sync::Arc::default(),
             };
