@@ -154,11 +154,7 @@ impl Machine {
             ("axes", self.setpoints.len(), memory.setpoints.len()),
             ("sensors", self.detected.len(), memory.detected.len()),
             ("components", self.parts.len(), memory.parts.len()),
-            (
-                "directions of signals",
-                self.channels.iter().flatten().count(),
-                memory.channels.iter().flatten().count(),
-            ),
+            ("directions of signals", self.channels.iter().flatten().count(), memory.channels.iter().flatten().count()),
         ];
         if let Some((what, own, saved)) = counts.into_iter().find(|(_, own, saved)| own != saved) {
             return Err(Misfit(format!("it has {saved} {what}, this plant has {own}")));

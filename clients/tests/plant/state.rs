@@ -214,7 +214,9 @@ fn a_refusal_says_what_differs() {
     let state = Bench::new(HEAP).plant.save().expect("a state");
     for (from, to) in cases {
         assert!(HEAP.contains(from), "{from}");
-        let other = HEAP.replacen(from, to, 1).replace("joint = \"hinge\"", if to.contains("pivot") { "joint = \"pivot\"" } else { "joint = \"hinge\"" });
+        let other = HEAP
+            .replacen(from, to, 1)
+            .replace("joint = \"hinge\"", if to.contains("pivot") { "joint = \"pivot\"" } else { "joint = \"hinge\"" });
         writeln!(told, "{}", Bench::new(&other).plant.restore(&state).expect_err("refused")).expect("a string grows");
     }
     let named = |name: &str| ClientName::new(name).expect("a name");

@@ -99,7 +99,9 @@ fn every_kind_goes_on_to_the_bit_from_a_saved_state() {
             }
             assert_eq!(one.len(), kind.outputs.len());
             if k == 99 {
-                second.restore(&first.save().expect("plain data")).unwrap_or_else(|error| panic!("{}: {error}", kind.name));
+                second
+                    .restore(&first.save().expect("plain data"))
+                    .unwrap_or_else(|error| panic!("{}: {error}", kind.name));
             }
             assert!(k < 99 || second.save() == first.save(), "{} {k}", kind.name);
         }

@@ -2,10 +2,11 @@
 
 use std::path::{Path, PathBuf};
 
-use onescan_report::file;
+use onescan_report::{FileError, file};
 
 use super::Snapshot;
-use crate::run::RunError;
+use super::error::StoreError;
+use crate::error::{Unreadable, Usage};
 
 /// The folder beside `scenario.toml`.
 pub const FOLDER: &str = "snapshots";
@@ -36,7 +37,7 @@ impl Place {
     ///
     /// # Errors
     /// It cannot be read, or is none.
-    pub fn read_reviewed(&self) -> Result<Option<Snapshot>, RunError> {
+    pub fn read_reviewed(&self) -> Result<Option<Snapshot>, StoreError> {
         read(&self.reviewed())
     }
 
@@ -44,7 +45,7 @@ impl Place {
     ///
     /// # Errors
     /// It cannot be read, or is none.
-    pub fn read_pending(&self) -> Result<Option<Snapshot>, RunError> {
+    pub fn read_pending(&self) -> Result<Option<Snapshot>, StoreError> {
         read(&self.pending())
     }
 
@@ -52,7 +53,7 @@ impl Place {
     ///
     /// # Errors
     /// The files cannot be written.
-    pub fn accept(&self, snapshot: &Snapshot) -> Result<(), RunError> {
+    pub fn accept(&self, snapshot: &Snapshot) -> Result<(), StoreError> {
         self.write(&self.reviewed(), snapshot)?;
         self.reject()
     }
@@ -61,7 +62,7 @@ impl Place {
     ///
     /// # Errors
     /// The file cannot be written.
-    pub fn keep(&self, snapshot: &Snapshot) -> Result<(), RunError> {
+    pub fn keep(&self, snapshot: &Snapshot) -> Result<(), StoreError> {
         self.write(&self.pending(), snapshot)
     }
 
@@ -69,15 +70,15 @@ impl Place {
     ///
     /// # Errors
     /// The file cannot be removed.
-    pub fn reject(&self) -> Result<(), RunError> {
+    pub fn reject(&self) -> Result<(), StoreError> {
         let path = self.pending();
         match std::fs::remove_file(&path) {
-            Err(source) if source.kind() != std::io::ErrorKind::NotFound => Err(RunError::File { path, source }),
+            Err(source) if source.kind() != std::io::ErrorKind::NotFound => Err(FileError { path, source }.into()),
             _ => Ok(()),
         }
     }
 
-    fn write(&self, path: &Path, snapshot: &Snapshot) -> Result<(), RunError> {
+    fn write(&self, path: &Path, snapshot: &Snapshot) -> Result<(), StoreError> {
         file::create_folder(&self.scenario.join(FOLDER))?;
         Ok(file::write_whole(path, snapshot.to_text().as_bytes())?)
     }
@@ -87,19 +88,19 @@ impl Place {
 ///
 /// # Errors
 /// It cannot be read, or is none.
-pub fn read(path: &Path) -> Result<Option<Snapshot>, RunError> {
+pub fn read(path: &Path) -> Result<Option<Snapshot>, StoreError> {
     let bytes = match std::fs::read(path) {
         Ok(bytes) => bytes,
         Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Ok(None),
-        Err(source) => return Err(RunError::File { path: path.to_owned(), source }),
+        Err(source) => return Err(Unreadable { path: path.to_owned(), source }.into()),
     };
     let help = || Some("take it back from version control, or delete it and run `onescan test` again".to_owned());
     let Ok(text) = String::from_utf8(bytes) else {
-        return Err(RunError::usage(format!("{} is no snapshot: it is not text", path.display()), help()));
+        return Err(Usage::new(format!("{} is no snapshot: it is not text", path.display()), help()).into());
     };
     match Snapshot::parse(&text) {
         Ok(snapshot) => Ok(Some(snapshot)),
-        Err(error) => Err(RunError::usage(format!("{}: {error}", path.display()), help())),
+        Err(error) => Err(Usage::new(format!("{}: {error}", path.display()), help()).into()),
     }
 }
 
@@ -107,7 +108,7 @@ pub fn read(path: &Path) -> Result<Option<Snapshot>, RunError> {
 ///
 /// # Errors
 /// The folder cannot be read.
-pub fn pending(scenario: &Path) -> Result<Vec<Place>, RunError> {
+pub fn pending(scenario: &Path) -> Result<Vec<Place>, StoreError> {
     named(scenario, PENDING)
 }
 
@@ -115,21 +116,21 @@ pub fn pending(scenario: &Path) -> Result<Vec<Place>, RunError> {
 ///
 /// # Errors
 /// The folder cannot be read.
-pub fn reviewed(scenario: &Path) -> Result<Vec<Place>, RunError> {
+pub fn reviewed(scenario: &Path) -> Result<Vec<Place>, StoreError> {
     named(scenario, REVIEWED)
 }
 
-fn named(scenario: &Path, ending: &str) -> Result<Vec<Place>, RunError> {
+fn named(scenario: &Path, ending: &str) -> Result<Vec<Place>, StoreError> {
     let folder = scenario.join(FOLDER);
-    let failed = |source| RunError::File { path: folder.clone(), source };
+    let failed = Unreadable::at(&folder);
     let entries = match std::fs::read_dir(&folder) {
         Ok(entries) => entries,
         Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Ok(Vec::new()),
-        Err(error) => return Err(failed(error)),
+        Err(error) => return Err(failed(error).into()),
     };
     let mut cases = Vec::new();
     for entry in entries {
-        let name = entry.map_err(failed)?.file_name().to_string_lossy().into_owned();
+        let name = entry.map_err(&failed)?.file_name().to_string_lossy().into_owned();
         cases.extend(name.strip_suffix(ending).map(str::to_owned));
     }
     cases.sort();

@@ -1,5 +1,7 @@
 //! `onescan export`: a recording's trajectory in another form.
 
+mod error;
+
 use std::path::PathBuf;
 
 use onescan_report::file;
@@ -7,7 +9,9 @@ use onescan_server::recording::{ExportFormat, Recording, RecordingError};
 use onescan_server::signal::pattern::SignalPattern;
 use onescan_server::time::VirtualTime;
 
-use crate::run::RunError;
+pub use error::ExportError;
+
+use crate::error::Usage;
 
 /// What is exported, and where to.
 #[derive(Clone, Debug)]
@@ -29,13 +33,13 @@ pub struct ExportConfig {
 /// # Errors
 /// A recording that cannot be read, a signal that it has not, times without a step, a file that
 /// cannot be written.
-pub fn export(config: &ExportConfig) -> Result<(), RunError> {
+pub fn export(config: &ExportConfig) -> Result<(), ExportError> {
     let recording = Recording::open(&config.recording)?;
     let [from, to] = config.times;
     let Some(steps) = recording.steps_between(from, to)? else {
         let span = if to == VirtualTime::MAX { format!("from {from} on") } else { format!("from {from} to {to}") };
         let message = format!("{} has no step {span}", recording.folder().display());
-        return Err(RunError::usage(message, None));
+        return Err(Usage::new(message, None).into());
     };
     let file = file::begin_whole(&config.output)?;
     let out = file.reopen().map_err(RecordingError::Output)?;

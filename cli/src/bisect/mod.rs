@@ -4,20 +4,29 @@
 //! repository into a folder of its own (`git archive`); the user's working tree is not touched. A
 //! commit whose scenario does not load or compile is skipped.
 
+mod error;
+
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
+use onescan_report::FileError;
+use onescan_report::OutputError;
 use onescan_report::file;
 use onescan_server::record::Digest;
 use onescan_server::time::VirtualTime;
 use serde_json::json;
 
+pub use error::BisectError;
+
 use crate::diff;
-use crate::run::error::{ExitCode, RunError};
-use crate::run::interrupt::Interrupt;
-use crate::run::recorded::RecordRequest;
-use crate::run::{Format, RunConfig, execute};
+use crate::error::ExitCode;
+use crate::error::Usage;
+
+use crate::format::Format;
+use crate::interrupt::Interrupt;
+use crate::run::config::RecordRequest;
+use crate::run::{RunConfig, execute};
 
 /// What is searched.
 #[derive(Clone, Debug)]
@@ -51,10 +60,10 @@ pub fn bisect(
     interrupt: &Interrupt,
     out: &mut dyn Write,
     progress: &mut dyn Write,
-) -> Result<ExitCode, RunError> {
+) -> Result<ExitCode, BisectError> {
     let repository = Repository::of(&config.scenario)?;
     let commits = repository.between(&config.good, &config.bad)?;
-    let folder = tempfile::tempdir().map_err(RunError::Output)?;
+    let folder = tempfile::tempdir().map_err(|source| FileError { path: std::env::temp_dir(), source })?;
     let mut search = Search { config, repository, folder, interrupt, progress };
     let good = search.ends(&commits[0])?;
     let bad = search.ends(&commits[commits.len() - 1])?;
@@ -63,7 +72,7 @@ pub fn bisect(
             Format::Human => writeln!(out, "{} and {} have the same digest", config.good, config.bad),
             Format::Json => writeln!(out, "{}", json!({ "found": false })),
         }
-        .map_err(RunError::Output)?;
+        .map_err(OutputError)?;
         return Ok(ExitCode::Ok);
     }
     let found = search.first_bad(&commits, good, bad)?;
@@ -89,16 +98,16 @@ struct Search<'c> {
 
 impl Search<'_> {
     /// A commit that must run.
-    fn ends(&mut self, commit: &str) -> Result<Tried, RunError> {
+    fn ends(&mut self, commit: &str) -> Result<Tried, BisectError> {
         let tried = self.try_commit(commit)?;
         match &tried.run {
             Ok(_) => Ok(tried),
-            Err(why) => Err(RunError::usage(format!("commit {} cannot be run: {why}", short(commit)), None)),
+            Err(why) => Err(Usage::new(format!("commit {} cannot be run: {why}", short(commit)), None).into()),
         }
     }
 
     /// Invariant: what is at `low` has the digest of the good commit, what is at `high` has not.
-    fn first_bad(&mut self, commits: &[String], good: Tried, bad: Tried) -> Result<Found, RunError> {
+    fn first_bad(&mut self, commits: &[String], good: Tried, bad: Tried) -> Result<Found, BisectError> {
         let wanted = good.digest();
         let (mut low, mut high) = (0, commits.len() - 1);
         let (mut before, mut first) = (good, bad);
@@ -119,9 +128,9 @@ impl Search<'_> {
         Ok(Found { before, first, skipped: between.map(|(_, tried)| tried).collect() })
     }
 
-    fn try_commit(&mut self, commit: &str) -> Result<Tried, RunError> {
+    fn try_commit(&mut self, commit: &str) -> Result<Tried, BisectError> {
         if self.interrupt.is_raised() {
-            return Err(RunError::usage("interrupted", None));
+            return Err(Usage::new("interrupted", None).into());
         }
         let folder = self.folder.path().join(commit);
         let run = self.repository.take_out(commit, &folder.join("tree"))?.and_then(|()| self.run(&folder));
@@ -131,7 +140,7 @@ impl Search<'_> {
             Err(why) => format!("skipped: {}", why.lines().next().unwrap_or_default()),
         };
         if self.config.format == Format::Human {
-            writeln!(self.progress, "{}  {said}", short(commit)).map_err(RunError::Output)?;
+            writeln!(self.progress, "{}  {said}", short(commit)).map_err(OutputError)?;
         }
         Ok(Tried { commit: commit.to_owned(), run })
     }
@@ -139,11 +148,9 @@ impl Search<'_> {
     fn run(&self, folder: &Path) -> Result<(PathBuf, Option<Digest>), String> {
         let record = folder.join("record");
         let scenario = folder.join("tree").join(&self.repository.scenario);
-        let config = RunConfig {
-            until: self.config.until,
-            record: Some(RecordRequest { folder: record.clone(), ..RecordRequest::default() }),
-            ..RunConfig::headless(scenario, None)
-        };
+        let mut config = RunConfig::headless(scenario, None);
+        config.subject.until = self.config.until;
+        config.reports.record = Some(RecordRequest { folder: record.clone(), ..RecordRequest::default() });
         execute(&config, self.interrupt, &mut io::sink()).map_err(|error| error.to_string())?;
         let recording = onescan_server::recording::Recording::open(&record).map_err(|error| error.to_string())?;
         let last = recording.steps().map(|steps| recording.digest(*steps.end()));
@@ -162,7 +169,7 @@ impl Tried {
 }
 
 impl Found {
-    fn write(&self, repository: &Repository, format: Format, out: &mut dyn Write) -> Result<(), RunError> {
+    fn write(&self, repository: &Repository, format: Format, out: &mut dyn Write) -> Result<(), BisectError> {
         let report = match (self.before.recording(), self.first.recording()) {
             (Some(before), Some(first)) => Some(diff::compare(before, first, VirtualTime::ZERO, &[])?),
             _ => None,
@@ -176,18 +183,17 @@ impl Found {
                     "found": true, "commit": commit, "author": author, "date": date, "subject": subject,
                     "before": self.before.commit, "skipped": skipped, "diff": report,
                 });
-                writeln!(out, "{all}").map_err(RunError::Output)
+                Ok(writeln!(out, "{all}").map_err(OutputError)?)
             }
             Format::Human => {
                 writeln!(out, "first to differ: {} {subject}\n  {author}, {date}", short(&commit))
-                    .map_err(RunError::Output)?;
+                    .map_err(OutputError)?;
                 if !self.skipped.is_empty() {
                     let names: Vec<&str> = self.skipped.iter().map(|tried| short(&tried.commit)).collect();
-                    writeln!(out, "  or one of those that cannot be run: {}", names.join(", "))
-                        .map_err(RunError::Output)?;
+                    writeln!(out, "  or one of those that cannot be run: {}", names.join(", ")).map_err(OutputError)?;
                 }
-                writeln!(out).map_err(RunError::Output)?;
-                report.map_or(Ok(()), |report| report.write_findings(out)).map_err(RunError::Output)
+                writeln!(out).map_err(OutputError)?;
+                Ok(report.map_or(Ok(()), |report| report.write_findings(out)).map_err(OutputError)?)
             }
         }
     }
@@ -205,7 +211,7 @@ struct Repository {
 }
 
 impl Repository {
-    fn of(scenario: &Path) -> Result<Self, RunError> {
+    fn of(scenario: &Path) -> Result<Self, BisectError> {
         let folder = if scenario.is_dir() { scenario } else { scenario.parent().unwrap_or(Path::new(".")) };
         let folder = if folder == Path::new("") { Path::new(".") } else { folder };
         let root = git(folder, &["rev-parse", "--show-toplevel"])?;
@@ -214,7 +220,7 @@ impl Repository {
     }
 
     /// The commits from `good` to `bad`, both included, by the first parent: the good one first.
-    fn between(&self, good: &str, bad: &str) -> Result<Vec<String>, RunError> {
+    fn between(&self, good: &str, bad: &str) -> Result<Vec<String>, BisectError> {
         let commit =
             |name: &str| git(&self.root, &["rev-parse", "--verify", "--end-of-options", &format!("{name}^{{commit}}")]);
         let (good, bad) = (commit(good)?.trim_end().to_owned(), commit(bad)?.trim_end().to_owned());
@@ -224,20 +230,20 @@ impl Repository {
         commits.extend(list.lines().map(str::to_owned));
         if commits.len() < 2 {
             let message = "there is no commit after the good one on the way to the bad one".to_owned();
-            return Err(RunError::usage(message, Some("name the older commit with `--good`".to_owned())));
+            return Err(Usage::new(message, Some("name the older commit with `--good`".to_owned())).into());
         }
         Ok(commits)
     }
 
     /// Hash, author, date and subject.
-    fn about(&self, commit: &str) -> Result<[String; 4], RunError> {
+    fn about(&self, commit: &str) -> Result<[String; 4], BisectError> {
         let text = git(&self.root, &["show", "--no-patch", "--format=%H%n%an <%ae>%n%aI%n%s", commit])?;
         let mut lines = text.lines().map(str::to_owned);
         Ok(std::array::from_fn(|_| lines.next().unwrap_or_default()))
     }
 
     /// Writes the files of a commit into `folder`. The inner error says why it has no scenario.
-    fn take_out(&self, commit: &str, folder: &Path) -> Result<Result<(), String>, RunError> {
+    fn take_out(&self, commit: &str, folder: &Path) -> Result<Result<(), String>, BisectError> {
         file::create_folder(folder)?;
         let archive = Command::new("git")
             .current_dir(&self.root)
@@ -255,12 +261,12 @@ impl Repository {
     }
 }
 
-fn spawn(program: &str, source: &io::Error) -> RunError {
-    RunError::usage(format!("cannot start `{program}`: {source}"), Some("bisect needs git and tar".to_owned()))
+fn spawn(program: &str, source: &io::Error) -> Usage {
+    Usage::new(format!("cannot start `{program}`: {source}"), Some("bisect needs git and tar".to_owned()))
 }
 
 /// What git says.
-fn git(folder: &Path, words: &[&str]) -> Result<String, RunError> {
+fn git(folder: &Path, words: &[&str]) -> Result<String, BisectError> {
     let output = Command::new("git").current_dir(folder).args(words).output();
     let output = output.map_err(|source| spawn("git", &source))?;
     if output.status.success() {
@@ -268,5 +274,5 @@ fn git(folder: &Path, words: &[&str]) -> Result<String, RunError> {
     }
     let said = String::from_utf8_lossy(&output.stderr);
     let line = said.lines().next().unwrap_or("it does not say why").trim_start_matches("fatal: ").to_owned();
-    Err(RunError::usage(format!("git: {line}"), None))
+    Err(Usage::new(format!("git: {line}"), None).into())
 }

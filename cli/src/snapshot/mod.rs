@@ -35,6 +35,7 @@
 //! **Invariants.** What is written reads back to the bit. No text makes reading panic.
 
 pub mod compare;
+mod error;
 pub mod read;
 pub mod store;
 pub mod take;
@@ -45,6 +46,7 @@ use onescan_server::signal::SignalType;
 use onescan_server::time::{TimeSpan, VirtualTime};
 
 pub use compare::{Difference, compare};
+pub use error::StoreError;
 pub use read::SnapshotError;
 
 /// The version of the format.

@@ -3,17 +3,19 @@
 use std::io::Write;
 use std::path::PathBuf;
 
+use onescan_report::OutputError;
 use onescan_report::file;
 use onescan_report::plot::Plot;
 use onescan_scenario::{Mode, Scenario};
 use onescan_server::signal::{SignalName, SignalType};
 use serde::Serialize;
 
-use super::config::{Format, RunConfig};
-use super::error::RunError;
-use super::interrupt::Interrupt;
-use super::one_run;
-use super::sampler::{Samples, panel};
+use crate::error::Usage;
+use crate::format::Format;
+use crate::interrupt::Interrupt;
+use crate::run::config::{Drawing, Picture};
+use crate::run::sampler::{Samples, panel};
+use crate::run::{RunConfig, RunError, one_run};
 
 /// The ways, lockstep first: the others are held against it.
 const MODES: [Mode; 4] = [Mode::Lockstep, Mode::Freewheel, Mode::Halt, Mode::Follow];
@@ -65,14 +67,13 @@ struct Run {
 /// # Errors
 /// As those of a run.
 pub fn compare(config: &CompareConfig, interrupt: &Interrupt, out: &mut dyn Write) -> Result<Vec<Row>, RunError> {
-    let scenario = Scenario::load(&config.run.scenario)?;
+    let scenario = Scenario::load(&config.run.subject.scenario)?;
     let names: Vec<SignalName> = scenario.file().signals.keys().cloned().collect();
     let mut all: Vec<Vec<Run>> = Vec::new();
     for mode in MODES {
         let run = RunConfig {
             mode,
-            signals: names.clone(),
-            plot: config.plot.clone().or(Some(PathBuf::new())),
+            picture: Picture { drawing: Drawing::Kept, signals: names.clone(), ..config.run.picture.clone() },
             ..config.run.clone()
         };
         run.check(&scenario)?;
@@ -80,12 +81,12 @@ pub fn compare(config: &CompareConfig, interrupt: &Interrupt, out: &mut dyn Writ
         for number in 1..=config.run.runs {
             let (report, samples) = one_run(&run, &scenario, number, interrupt, Vec::new())?;
             if let Some(error) = &report.error {
-                return Err(RunError::usage(format!("{}: {error}", mode.name()), None));
+                return Err(Usage::new(format!("{}: {error}", mode.name()), None).into());
             }
             let digest = report.digest.map_or_else(String::new, |digest| digest.to_string());
             runs.push(Run { digest, samples, steps_per_s: report.steps.0 as f64 / report.wall_time_s.max(1e-9) });
             if interrupt.is_raised() {
-                return Err(RunError::usage("stopped before there was anything to compare", None));
+                return Err(Usage::new("stopped before there was anything to compare", None).into());
             }
         }
         all.push(runs);
@@ -94,11 +95,12 @@ pub fn compare(config: &CompareConfig, interrupt: &Interrupt, out: &mut dyn Writ
     let rows: Vec<Row> =
         MODES.iter().zip(&all).map(|(mode, runs)| row(*mode, runs, &all[0][0].samples, &types)).collect();
     if let Some(path) = &config.plot {
-        let plot = plot(&config.run, &scenario, &all);
-        let picture = config.run.plane.as_ref().and_then(|_| plot.to_plane_svg()).unwrap_or_else(|| plot.to_svg());
+        let plot = plot(&config.run.picture, &scenario, &all);
+        let picture =
+            config.run.picture.plane.as_ref().and_then(|_| plot.to_plane_svg()).unwrap_or_else(|| plot.to_svg());
         file::write_whole(path, picture.as_bytes())?;
     }
-    write(&rows, config.format, out).map_err(RunError::Output)?;
+    write(&rows, config.format, out).map_err(OutputError)?;
     Ok(rows)
 }
 
@@ -156,10 +158,10 @@ fn edges_of(samples: &Samples, index: usize) -> Vec<u64> {
 }
 
 /// One run of each mode over each other.
-fn plot(config: &RunConfig, scenario: &Scenario, all: &[Vec<Run>]) -> Plot {
+fn plot(picture: &Picture, scenario: &Scenario, all: &[Vec<Run>]) -> Plot {
     let first = |runs: &'_ [Run]| runs.first().map(|run| run.samples.clone()).unwrap_or_default();
     let samples: Vec<Samples> = all.iter().map(|runs| first(runs)).collect();
-    let names = config.plane.as_ref().map_or_else(|| config.plotted(scenario), |plane| plane.to_vec());
+    let names = picture.plane.as_ref().map_or_else(|| picture.plotted(scenario), |plane| plane.to_vec());
     Plot {
         title: format!("{}: lockstep and the other ways", scenario.name()),
         runs: MODES.iter().map(|mode| mode.name().to_owned()).collect(),
