@@ -7,13 +7,11 @@ use wasm_encoder::{
     Function, FunctionSection, ImportSection, MemorySection, MemoryType, Module, TypeSection, ValType,
 };
 
-use super::budget::{self, BUDGET_EXPORT};
-use super::cost::Costs;
-use super::emitter::{Shared, value_type};
+use super::analyse::Program;
+use super::emit::{self, Made, Shared, value_type};
 use super::fault::{FaultTable, FunctionMarks};
-use super::function::Made;
 use super::points::{NOTES_MEMORY, Point, Points};
-use super::{dispatch, entry, function, host, text_host, trace};
+use super::{host, text_host, trace};
 use crate::check::Checked;
 use crate::ir::{Pou, PouId, TypeTable};
 use crate::syntax::FileId;
@@ -22,6 +20,9 @@ use crate::syntax::FileId;
 pub(crate) const MEMORY_EXPORT: &str = "memory";
 /// Name of the export of the memory that execution is noted in, of a module that notes it.
 pub(crate) const NOTES_EXPORT: &str = "notes";
+
+/// Name of the export of the global that holds the budget of instructions.
+pub(crate) const BUDGET_EXPORT: &str = "budget";
 
 const PAGE: u64 = 65_536;
 
@@ -66,30 +67,20 @@ pub(crate) fn compile(checked: &Checked, noted: Noted<'_>) -> Compiled {
     if traced {
         sections.add_trace_imports();
     }
-    let rows = dispatch::place_rows(&checked.rows, |parameters, results| sections.add_type(parameters, results));
-    let (costs, order) = Costs::new(&checked.pous);
+    let rows = emit::place_rows(&checked.rows, |parameters, results| sections.add_type(parameters, results));
     let points = match noted {
         Noted::Nothing => None,
         Noted::Traced(library) => Some(Points::traced(library)),
         Noted::AllBut(library) => Some(Points::new(library)),
     };
-    let mut shared = Shared {
-        points,
-        types: &checked.types,
-        pous: &checked.pous,
-        costs,
-        functions,
-        rows,
-        areas: checked.areas,
-        memory_size: checked.image.len() as u32,
-        data: Vec::new(),
-    };
-    let instances = entry::only_instances(checked);
+    let (program, order) = Program::new(&checked.types, &checked.pous, checked.areas, points.is_some());
+    let mut shared = Shared::new(program, functions, rows, checked.image.len() as u32, points);
+    let instances = emit::only_instances(checked);
     // Callees first: a call must know what it costs.
     let mut made: BTreeMap<PouId, Made> = BTreeMap::new();
     for id in order {
         if let Some(pou) = checked.pous.get(&id) {
-            made.insert(id, function::unit(&mut shared, id, pou, instances.get(&id).copied()));
+            made.insert(id, emit::unit(&mut shared, id, pou, instances.get(&id).copied()));
         }
     }
     let mut faults = FaultTable { first_function, functions: Vec::new() };
@@ -100,7 +91,7 @@ pub(crate) fn compile(checked: &Checked, noted: Noted<'_>) -> Compiled {
     }
     for (index, entry) in checked.entries.iter().enumerate() {
         for (part, unit) in entry.units.iter().enumerate() {
-            let (body, marks) = entry::function(&mut shared, unit, true);
+            let (body, marks) = emit::entry_function(&mut shared, unit, true);
             let at = sections.add_function(Vec::new(), Vec::new(), &body);
             sections.exports.export(&entry_export(index, part), ExportKind::Func, at);
             faults.functions.push(marks);
@@ -108,15 +99,15 @@ pub(crate) fn compile(checked: &Checked, noted: Noted<'_>) -> Compiled {
     }
     for (unit, export) in [(&checked.start, START_EXPORT), (&checked.end, END_EXPORT)] {
         if let Some(unit) = unit {
-            let (body, marks) = entry::function(&mut shared, unit, false);
+            let (body, marks) = emit::entry_function(&mut shared, unit, false);
             let at = sections.add_function(Vec::new(), Vec::new(), &body);
             sections.exports.export(export, ExportKind::Func, at);
             faults.functions.push(marks);
         }
     }
-    let points = shared.points.as_ref().map_or(0, Points::bytes);
+    let points = shared.points().map_or(0, Points::bytes);
     let wasm = sections.finish(checked, points, &shared, &hints(&faults));
-    Compiled { wasm, faults, points: shared.points.map(Points::into_list).unwrap_or_default() }
+    Compiled { wasm, faults, points: shared.into_points().map_or_else(Vec::new, Points::into_list) }
 }
 
 /// Which branches are taken as a rule.
@@ -207,16 +198,16 @@ impl Sections {
         }
         self.exports.export(BUDGET_EXPORT, ExportKind::Global, 0);
         let mut data = DataSection::new();
-        for bytes in &shared.data {
+        for bytes in shared.data() {
             data.passive(bytes.iter().copied());
         }
         let mut module = Module::new();
         module.section(&self.types).section(&self.imports).section(&self.functions);
         if checked.rows.is_empty() {
-            module.section(&memories).section(&budget::globals()).section(&self.exports);
+            module.section(&memories).section(&emit::globals()).section(&self.exports);
         } else {
-            let (table, elements) = dispatch::table(&checked.rows, shared);
-            module.section(&table).section(&memories).section(&budget::globals());
+            let (table, elements) = emit::table(&checked.rows, shared);
+            module.section(&table).section(&memories).section(&emit::globals());
             module.section(&self.exports).section(&elements);
         }
         module.section(&DataCountSection { count: data.len() });
