@@ -19,7 +19,7 @@ struct Step {
 }
 
 /// The steps of a loop's body.
-#[derive(Debug, Default)]
+#[derive(Debug, Clone, Default)]
 pub(crate) struct Steps {
     found: Vec<Step>,
     /// How many loops are open: in an inner one, a step may be taken any number of times.

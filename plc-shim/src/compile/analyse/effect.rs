@@ -11,7 +11,7 @@ use crate::ir::ElementaryType;
 const MAX_ACCESSES: usize = 512;
 
 /// Accesses of one loop's body.
-#[derive(Debug, Default)]
+#[derive(Debug, Clone, Default)]
 pub(crate) struct Effects {
     /// Loads of elementary places at known addresses, and how many of each.
     loads: Vec<(Address, ElementaryType, u32)>,
@@ -79,6 +79,11 @@ impl Effects {
         self.anything
             || self.stores.keys().any(|store| roots.overlap(stored(store), extent))
             || self.changes.iter().any(|change| roots.overlap(*change, extent))
+    }
+
+    /// True if all of memory may change.
+    pub(crate) fn changes_anything(&self) -> bool {
+        self.anything
     }
 
     /// What is worth a register through all turns of the loop, most used first: only stores to

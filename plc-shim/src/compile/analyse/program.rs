@@ -54,8 +54,8 @@ impl<'p> Program<'p> {
 
     /// The unit, if its body goes in the place of a call in `scope`. In a branch that leaves its unit nothing
     /// does: it is for the exception, and would only make the rest larger.
-    pub(crate) fn inlined(&self, pou: PouId, scope: &Scope<'_>, leaving: u32) -> Option<&'p Pou> {
-        let goes = leaving == 0 && self.costs.is_inlined(pou, scope.units());
+    pub(crate) fn inlined(&self, pou: PouId, scope: &Scope<'_>) -> Option<&'p Pou> {
+        let goes = !scope.is_leaving() && self.costs.is_inlined(pou, scope.units());
         goes.then(|| self.pou(pou)).flatten()
     }
 }

@@ -5,8 +5,10 @@ use std::collections::BTreeMap;
 
 use super::address::{Address, Extent, Register, Roots};
 use super::range::{Interval, Slot};
+use super::size::leaves;
 use crate::ir::{
-    Areas, Argument, ElementaryType, Expr, ExprKind, LocalId, Place, PouId, Step, Storage, TypeId, TypeTable, Value,
+    Areas, Argument, ElementaryType, Expr, ExprKind, LocalId, Place, PouId, Statement, Step, Storage, TypeId,
+    TypeTable, Value,
 };
 
 /// Register of the running instance's address.
@@ -42,11 +44,13 @@ pub(crate) struct Scope<'p> {
     roots: Roots,
     /// Control variables of the loops around, which their bodies do not change, with their ranges.
     counters: Vec<(Slot, Interval)>,
+    /// How many branches are around that leave their unit.
+    leaving: u32,
 }
 
 impl<'p> Scope<'p> {
     pub(crate) fn new(types: &'p TypeTable, areas: Areas) -> Self {
-        Self { types, areas, units: Vec::new(), roots: Roots::default(), counters: Vec::new() }
+        Self { types, areas, units: Vec::new(), roots: Roots::default(), counters: Vec::new(), leaving: 0 }
     }
 
     /// Names are from here on those of this unit.
@@ -132,6 +136,20 @@ impl<'p> Scope<'p> {
     /// Between what the control variable of a loop around lies, if it is one.
     pub(crate) fn counter(&self, slot: Slot) -> Option<Interval> {
         self.counters.iter().rev().find(|(known, _)| *known == slot).map(|(_, interval)| *interval)
+    }
+
+    /// A branch begins.
+    pub(crate) fn open_branch(&mut self, body: &[Statement]) {
+        self.leaving += u32::from(leaves(body));
+    }
+
+    pub(crate) fn close_branch(&mut self, body: &[Statement]) {
+        self.leaving -= u32::from(leaves(body));
+    }
+
+    /// True in a branch that leaves its unit: it is for the exception.
+    pub(crate) fn is_leaving(&self) -> bool {
+        self.leaving > 0
     }
 
     /// Where the variable begins; nothing if its address stands in memory or it has none.

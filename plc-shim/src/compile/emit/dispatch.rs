@@ -4,12 +4,11 @@
 use wasm_encoder::{ConstExpr, ElementSection, Elements, Instruction, MemArg, RefType, TableSection, TableType};
 
 use super::emitter::{Emitter, Shared, value_type};
+use super::inline::Call;
 use crate::check::CALL_DEPTH_OFFSET;
 use crate::compile::analyse::Address;
-use crate::compile::analyse::RunsOn;
-use crate::compile::fault::{Callee, FaultKind};
+use crate::compile::fault::FaultKind;
 use crate::ir::{Cast, Dispatch, Guard, Pou, PouId, Receiver, Row};
-use crate::syntax::Span;
 
 /// Deepest nesting of calls that come back to a unit that still runs.
 const MAX_CALL_DEPTH: i32 = 128;
@@ -74,17 +73,14 @@ impl Emitter<'_, '_> {
     }
 
     /// Calls what is known, or what the table has for the type of the instance at `address`.
-    pub(crate) fn call_on(
-        &mut self,
-        (address, on): (Address, RunsOn),
-        dispatch: Dispatch,
-        pou: PouId,
-        (callee, span): (Callee, Span),
-    ) {
+    pub(crate) fn call_on(&mut self, address: Address, dispatch: Dispatch, call: Call) {
         let Dispatch::Row(row) = dispatch else {
-            return self.call(pou, on, callee, span);
+            return self.call(call);
         };
-        let Some(RowPlace { start, first, signature }) = self.shared().row(row) else { return };
+        let Call { callee, span, .. } = call;
+        let Some(RowPlace { start, first, signature }) = self.shared().row(row) else {
+            return self.impossible(span);
+        };
         self.meter();
         self.put_budget_back();
         self.push_address(address);

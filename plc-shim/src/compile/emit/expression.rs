@@ -64,8 +64,12 @@ impl Emitter<'_, '_> {
                 Instruction::F32Const(Ieee32::new(value.to_bits()))
             }
             ValType::F64 => Instruction::F64Const(Ieee64::new(value.as_f64().to_bits())),
-            ValType::I64 => Instruction::I64Const(value.as_int().unwrap_or(0) as i64),
-            _ => Instruction::I32Const(value.as_int().unwrap_or(0) as i32),
+            // The checker gives integers no real constants.
+            held => match (value.as_int(), held) {
+                (Some(value), ValType::I64) => Instruction::I64Const(value as i64),
+                (Some(value), _) => Instruction::I32Const(value as i32),
+                (None, _) => Instruction::Unreachable,
+            },
         });
     }
 

@@ -10,9 +10,19 @@ use crate::compile::points::PointKind;
 use crate::ir::{Argument, Expr, ExprKind, FunctionCall, InstanceCall, LocalId, Place, Pou, PouId};
 use crate::syntax::Span;
 
+/// A call of a unit, and what it is to a reader of the source.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Call {
+    pub(crate) pou: PouId,
+    /// The instance that it may change.
+    pub(crate) on: RunsOn,
+    pub(crate) callee: Callee,
+    pub(crate) span: Span,
+}
+
 impl Emitter<'_, '_> {
     /// Calls a function of the module.
-    pub(crate) fn call(&mut self, pou: PouId, on: RunsOn, callee: Callee, span: Span) {
+    pub(crate) fn call(&mut self, Call { pou, on, callee, span }: Call) {
         let metered = self.program().costs().is_metered(pou);
         if metered {
             self.put_budget_back();
@@ -21,7 +31,7 @@ impl Emitter<'_, '_> {
         self.mark_call(callee, span);
         match self.shared().function(pou) {
             Some(index) => self.emit(Instruction::Call(index)),
-            None => self.emit(Instruction::Unreachable),
+            None => self.impossible(span),
         }
         self.charge(self.program().costs().of_call(pou));
         if metered {
@@ -65,8 +75,8 @@ impl Emitter<'_, '_> {
                 self.side_statements(&call.before);
                 self.push_address(instance);
                 self.push_arguments(&call.arguments);
-                let on = (instance, RunsOn::Anywhere);
-                self.call_on(on, receiver.dispatch, call.pou, (Callee::Function, span));
+                let method = Call { pou: call.pou, on: RunsOn::Anywhere, callee: Callee::Function, span };
+                self.call_on(instance, receiver.dispatch, method);
             }
             None => self.call_plain_function(call, span),
         }
@@ -82,7 +92,7 @@ impl Emitter<'_, '_> {
             self.inline_function(call, pou, span);
         } else {
             self.push_arguments(&call.arguments);
-            self.call(call.pou, RunsOn::Nothing, Callee::Function, span);
+            self.call(Call { pou: call.pou, on: RunsOn::Nothing, callee: Callee::Function, span });
         }
     }
 

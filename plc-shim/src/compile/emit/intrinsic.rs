@@ -9,18 +9,53 @@ use crate::compile::host;
 use crate::ir::{Binary, ElementaryType, Expr, ExprKind, Intrinsic, Value};
 use crate::syntax::Span;
 
+/// True if the function has so many operands; the checker gives it no others.
+fn takes(kind: Intrinsic, operands: usize) -> bool {
+    match kind {
+        Intrinsic::Abs
+        | Intrinsic::Sqrt
+        | Intrinsic::Ln
+        | Intrinsic::Log
+        | Intrinsic::Exp
+        | Intrinsic::Sin
+        | Intrinsic::Cos
+        | Intrinsic::Tan
+        | Intrinsic::Asin
+        | Intrinsic::Acos
+        | Intrinsic::Atan
+        | Intrinsic::Fraction
+        | Intrinsic::SwapBytes
+        | Intrinsic::Reinterpret => operands == 1,
+        Intrinsic::Atan2
+        | Intrinsic::Power
+        | Intrinsic::Max
+        | Intrinsic::Min
+        | Intrinsic::ShiftLeft
+        | Intrinsic::ShiftRight
+        | Intrinsic::RotateLeft
+        | Intrinsic::RotateRight
+        | Intrinsic::FloorRemainder
+        | Intrinsic::FloorMultiple => operands == 2,
+        Intrinsic::Select | Intrinsic::Memory(_) => operands == 3,
+        Intrinsic::Multiplex => operands >= 2,
+    }
+}
+
 impl Emitter<'_, '_> {
     pub(crate) fn intrinsic(&mut self, kind: Intrinsic, operands: &[Expr], whole: &Expr) {
         let ty = self.held_as(whole.ty);
+        if !takes(kind, operands.len()) {
+            return self.impossible(whole.span);
+        }
         match kind {
-            Intrinsic::Abs => self.absolute(operands, ty),
+            Intrinsic::Abs => self.absolute(operands, ty, whole.span),
             Intrinsic::Sqrt => {
                 self.all(operands);
                 let single = ty == ElementaryType::Real;
                 self.emit(if single { Instruction::F32Sqrt } else { Instruction::F64Sqrt });
             }
             Intrinsic::Max | Intrinsic::Min if self.scope().types().text(whole.ty).is_some() => {
-                self.text_extreme(operands, kind == Intrinsic::Max);
+                self.text_extreme(operands, kind == Intrinsic::Max, whole.span);
             }
             Intrinsic::Max | Intrinsic::Min => self.extreme(kind, operands, ty, whole.span),
             Intrinsic::Select => self.select(operands, ty),
@@ -43,7 +78,7 @@ impl Emitter<'_, '_> {
                 self.all(operands);
                 match host::index(kind, ty == ElementaryType::Real) {
                     Some(index) => self.emit(Instruction::Call(index)),
-                    None => self.emit(Instruction::Unreachable),
+                    None => self.impossible(whole.span),
                 }
             }
         }
@@ -80,7 +115,7 @@ impl Emitter<'_, '_> {
         }
     }
 
-    fn absolute(&mut self, operands: &[Expr], ty: ElementaryType) {
+    fn absolute(&mut self, operands: &[Expr], ty: ElementaryType, span: Span) {
         match value_type(ty) {
             ValType::F32 => {
                 self.all_settled(operands);
@@ -94,8 +129,6 @@ impl Emitter<'_, '_> {
             _ => {
                 let registers = self.in_registers(operands);
                 if let [value] = registers[..] {
-                    let span = operands.first().map(|operand| operand.span);
-                    let Some(span) = span else { return };
                     self.constant(ty, Value::Int(0));
                     self.get(value);
                     self.operation(Binary::Subtract, ty, span);

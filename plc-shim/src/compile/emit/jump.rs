@@ -11,7 +11,7 @@ use crate::syntax::Span;
 impl Emitter<'_, '_> {
     pub(crate) fn labelled(&mut self, inner: &Labelled, span: Span) {
         if inner.register.is_some() {
-            let survey = Survey::of_labelled(self.program(), self.scope(), self.leaving(), inner);
+            let survey = Survey::of_labelled(self.program(), self.scope(), inner);
             self.repeated(&survey, None, |emitter| emitter.parts(inner, span));
         } else {
             self.parts(inner, span);

@@ -13,7 +13,7 @@ const BYTE: MemArg = MemArg { offset: 0, align: 0, memory_index: 0 };
 impl Emitter<'_, '_> {
     /// Pushes what the function gives. All that it touches must lie in memory.
     pub(crate) fn memory_function(&mut self, function: MemoryFunction, operands: &[Expr], span: Span) {
-        let [first, second, count] = operands else { return };
+        let [first, second, count] = operands else { return self.impossible(span) };
         let registers = [(); 3].map(|()| self.scratch(ValType::I32));
         let [left, right, length] = registers;
         for (operand, register) in [(first, left), (second, right), (count, length)] {

@@ -17,7 +17,7 @@ pub(crate) const DONE: PointKind = PointKind::Outcome(1);
 
 impl Emitter<'_, '_> {
     pub(crate) fn while_statement(&mut self, condition: &Expr, body: &[Statement], span: Span) {
-        let survey = Survey::of_while(self.program(), self.scope(), self.leaving(), condition, body);
+        let survey = Survey::of_while(self.program(), self.scope(), condition, body);
         self.repeated(&survey, Some(condition), |emitter| {
             let exit = emitter.open_block();
             let done = emitter.open_block();
@@ -40,7 +40,7 @@ impl Emitter<'_, '_> {
     }
 
     pub(crate) fn repeat_statement(&mut self, body: &[Statement], until: &Expr, span: Span) {
-        let survey = Survey::of_repeat(self.program(), self.scope(), self.leaving(), body, until);
+        let survey = Survey::of_repeat(self.program(), self.scope(), body, until);
         self.repeated(&survey, None, |emitter| {
             let exit = emitter.open_block();
             let done = emitter.open_block();
@@ -87,12 +87,12 @@ impl Emitter<'_, '_> {
     /// The last value and the step are computed once, before the variable is set.
     pub(crate) fn for_statement(&mut self, inner: &ForStatement, span: Span) {
         let ty = self.held_as(inner.variable.ty);
-        let survey = Survey::of_body(self.program(), self.scope(), self.leaving(), &inner.body);
+        let survey = Survey::of_body(self.program(), self.scope(), &inner.body);
         if let Some(count) = Count::of(self.scope(), self.ranges(), inner, survey.effects()) {
             self.counted_loop(inner, &count, survey, span);
             return;
         }
-        let survey = Survey::of_for(self.program(), self.scope(), self.leaving(), inner);
+        let survey = Survey::of_for(self.program(), self.scope(), inner);
         let (last, step) = (self.register(inner.last), self.register(inner.step));
         self.widened(&inner.to, ty);
         self.set(last);

@@ -11,17 +11,25 @@ use crate::ir::elementary::Kind;
 use crate::ir::{Binary, CaseStatement, ElementaryType, Value};
 use crate::syntax::Span;
 
-/// Longest table of jumps.
+/// Longest table of jumps: 4 KB of machine code.
 const MAX_TABLE: i128 = 1024;
 
-/// A range of values and the arm that it selects.
-type Range = (i128, i128, usize);
+/// A range of values, both ends included, and where the arm begins that it selects.
+type Range = (i128, i128, Label);
 
-/// The ranges in ascending order, without what an earlier arm takes.
-fn disjoint(inner: &CaseStatement) -> Vec<Range> {
-    let mut taken: BTreeMap<i128, (i128, usize)> = BTreeMap::new();
-    for (arm, labels) in inner.arms.iter().enumerate() {
-        for (low, high) in &labels.labels {
+/// What a CASE selects by.
+#[derive(Debug, Clone, Copy)]
+struct Selector {
+    register: Register,
+    ty: ElementaryType,
+    span: Span,
+}
+
+/// The ranges in ascending order, without what an earlier arm takes. `begins` has where each arm begins.
+fn disjoint(inner: &CaseStatement, begins: &[Label]) -> Vec<Range> {
+    let mut taken: BTreeMap<i128, (i128, Label)> = BTreeMap::new();
+    for (begin, arm) in begins.iter().zip(&inner.arms) {
+        for (low, high) in &arm.labels {
             let mut from = *low;
             while from <= *high {
                 let before = taken.range(..=from).next_back().map(|(_, (end, _))| *end);
@@ -31,12 +39,12 @@ fn disjoint(inner: &CaseStatement) -> Vec<Range> {
                 }
                 let next = taken.range(from..).next().map(|(start, _)| *start);
                 let to = next.map_or(*high, |start| (*high).min(start - 1));
-                taken.insert(from, (to, arm));
+                taken.insert(from, (to, *begin));
                 from = to + 1;
             }
         }
     }
-    taken.into_iter().map(|(low, (high, arm))| (low, high, arm)).collect()
+    taken.into_iter().map(|(low, (high, begin))| (low, high, begin)).collect()
 }
 
 impl Emitter<'_, '_> {
@@ -50,7 +58,8 @@ impl Emitter<'_, '_> {
         let mut labels: Vec<Label> = inner.arms.iter().map(|_| self.open_block()).collect();
         // The innermost block is the first arm's.
         labels.reverse();
-        self.dispatch(&disjoint(inner), (register, ty, inner.selector.span), &labels, otherwise);
+        let selector = Selector { register, ty, span: inner.selector.span };
+        self.dispatch(&disjoint(inner, &labels), selector, otherwise);
         let mut ways = self.open_ways();
         for (outcome, arm) in (0..).zip(&inner.arms) {
             self.close();
@@ -68,38 +77,25 @@ impl Emitter<'_, '_> {
     }
 
     /// Jumps to the arm that the register's value selects.
-    fn dispatch(
-        &mut self,
-        ranges: &[Range],
-        selector: (Register, ElementaryType, Span),
-        labels: &[Label],
-        otherwise: Label,
-    ) {
+    fn dispatch(&mut self, ranges: &[Range], selector: Selector, otherwise: Label) {
         let (Some((first, _, _)), Some((_, last, _))) = (ranges.first(), ranges.last()) else {
             self.branch(otherwise);
             return;
         };
         let span = last - first + 1;
+        // A table pays from four ranges on, if it is not mostly holes.
         if ranges.len() > 3 && span <= MAX_TABLE && span <= 8 * ranges.len() as i128 {
-            self.table(ranges, selector, labels, otherwise);
+            self.table(*first, ranges, selector, otherwise);
         } else {
-            self.search(ranges, selector, labels, otherwise);
+            self.search(ranges, selector, otherwise);
         }
     }
 
-    fn table(
-        &mut self,
-        ranges: &[Range],
-        (register, ty, _): (Register, ElementaryType, Span),
-        labels: &[Label],
-        otherwise: Label,
-    ) {
-        let first = ranges.first().map_or(0, |(low, _, _)| *low);
+    fn table(&mut self, first: i128, ranges: &[Range], Selector { register, ty, .. }: Selector, otherwise: Label) {
         let mut targets = Vec::new();
-        for (low, high, arm) in ranges {
+        for (low, high, begin) in ranges {
             targets.resize((low - first) as usize, otherwise);
-            let label = labels.get(*arm).copied().unwrap_or(otherwise);
-            targets.resize((high - first + 1) as usize, label);
+            targets.resize((high - first + 1) as usize, *begin);
         }
         self.get(register);
         self.constant(ty, Value::Int(first));
@@ -119,32 +115,24 @@ impl Emitter<'_, '_> {
     }
 
     /// Halves the ranges until one is left.
-    fn search(
-        &mut self,
-        ranges: &[Range],
-        selector: (Register, ElementaryType, Span),
-        labels: &[Label],
-        otherwise: Label,
-    ) {
-        let (register, ty, span) = selector;
-        if let [(low, high, arm)] = ranges {
+    fn search(&mut self, ranges: &[Range], selector: Selector, otherwise: Label) {
+        let Selector { register, ty, span } = selector;
+        if let [(low, high, begin)] = ranges {
             self.within(register, ty, *low, *high);
-            if let Some(label) = labels.get(*arm) {
-                self.branch_if(*label);
-            }
+            self.branch_if(*begin);
             self.branch(otherwise);
             return;
         }
         let (left, right) = ranges.split_at(ranges.len() / 2);
-        let Some((middle, _, _)) = right.first() else { return };
+        let Some((middle, _, _)) = right.first() else { return self.impossible(span) };
         let next = self.open_block();
         self.get(register);
         self.constant(ty, Value::Int(*middle));
         self.operation(Binary::GreaterEqual, ty, span);
         self.branch_if(next);
-        self.search(left, selector, labels, otherwise);
+        self.search(left, selector, otherwise);
         self.close();
-        self.search(right, selector, labels, otherwise);
+        self.search(right, selector, otherwise);
     }
 
     /// Pushes whether the register lies in `low..=high`.

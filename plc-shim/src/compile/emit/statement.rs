@@ -5,6 +5,7 @@ use std::sync::Arc;
 use wasm_encoder::Instruction;
 
 use super::emitter::{Emitter, Label, LoopLabels};
+use super::inline::Call;
 use crate::compile::analyse::{Address, Choice, Extent, RunsOn, leaves, may_be_any_nan};
 use crate::compile::fault::Callee;
 use crate::compile::points::PointKind;
@@ -18,6 +19,7 @@ impl Emitter<'_, '_> {
             self.mark_statement(statement.span);
             self.cover(PointKind::Statement, statement.span);
             self.statement(statement);
+            self.require_foresight(statement.span);
             self.trace_end(statement);
         }
     }
@@ -103,8 +105,8 @@ impl Emitter<'_, '_> {
         } else {
             self.push_address(address);
             let size = self.size_of(call.instance.ty);
-            let on = (address, RunsOn::Instance(Extent::new(address, size)));
-            self.call_on(on, call.dispatch, call.pou, (callee, call.instance.span));
+            let on = RunsOn::Instance(Extent::new(address, size));
+            self.call_on(address, call.dispatch, Call { pou: call.pou, on, callee, span: call.instance.span });
         }
         self.side_statements(&call.outputs);
     }

@@ -6,6 +6,7 @@ use super::emitter::{Emitter, value_type};
 use crate::compile::text_host::TextImport;
 use crate::ir::text::{Edit, TextCall, TextFunction, TextShape};
 use crate::ir::{ElementaryType, Expr};
+use crate::syntax::Span;
 
 /// What a call of the host costs, in instructions.
 const CALL_COST: u64 = 20;
@@ -19,7 +20,7 @@ impl Emitter<'_, '_> {
     /// Pushes what the function gives: a number, or the address of its target.
     pub(crate) fn text_call(&mut self, call: &TextCall, whole: &Expr) {
         match call.function {
-            TextFunction::Length => self.text_length(&call.operands),
+            TextFunction::Length => self.text_length(&call.operands, whole.span),
             TextFunction::Compare => self.text_pair(&call.operands, TextImport::Compare),
             TextFunction::Find => self.text_pair(&call.operands, TextImport::Find),
             TextFunction::Edit(edit) => self.edit(edit, call),
@@ -47,8 +48,12 @@ impl Emitter<'_, '_> {
         self.changed(extent);
     }
 
-    fn shape_of(&self, expr: &Expr) -> TextShape {
-        self.scope().types().text(expr.ty).unwrap_or(TextShape { wide: false, capacity: 0 })
+    /// The shape of a string, which the checker has seen to be one.
+    fn shape_of(&mut self, expr: &Expr) -> TextShape {
+        self.scope().types().text(expr.ty).unwrap_or_else(|| {
+            self.impossible(expr.span);
+            TextShape { wide: false, capacity: 0 }
+        })
     }
 
     /// Pushes address and shape of each string.
@@ -66,8 +71,8 @@ impl Emitter<'_, '_> {
     }
 
     /// The count in use; never more than there is room for, whatever stands in memory.
-    fn text_length(&mut self, operands: &[Expr]) {
-        let Some(operand) = operands.first() else { return };
+    fn text_length(&mut self, operands: &[Expr], span: Span) {
+        let [operand] = operands else { return self.impossible(span) };
         let capacity = i32::from(self.shape_of(operand).capacity);
         let used = self.scratch(ValType::I32);
         self.expression(operand);
@@ -82,8 +87,7 @@ impl Emitter<'_, '_> {
     }
 
     fn edit(&mut self, edit: Edit, call: &TextCall) {
-        let number = Edit::ALL.iter().position(|known| *known == edit).unwrap_or(0);
-        self.emit(Instruction::I32Const(number as i32));
+        self.emit(Instruction::I32Const(edit as i32));
         let (strings, numbers) = call.operands.split_at(edit.strings().min(call.operands.len()));
         self.text_operands(strings);
         for _ in strings.len()..2 {
@@ -148,8 +152,8 @@ impl Emitter<'_, '_> {
     }
 
     /// The greater or lesser of two strings: the address of one of them (2nd ed. Table 27).
-    pub(crate) fn text_extreme(&mut self, operands: &[Expr], greatest: bool) {
-        let [left, right] = operands else { return };
+    pub(crate) fn text_extreme(&mut self, operands: &[Expr], greatest: bool, span: Span) {
+        let [left, right] = operands else { return self.impossible(span) };
         let (first, second) = (self.scratch(ValType::I32), self.scratch(ValType::I32));
         let (left_code, right_code) = (self.shape_of(left).code(), self.shape_of(right).code());
         self.expression(left);
@@ -168,5 +172,16 @@ impl Emitter<'_, '_> {
         self.emit(Instruction::Select);
         self.release(first);
         self.release(second);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_host_knows_each_form_by_its_number() {
+        let numbers = Edit::ALL.iter().map(|edit| *edit as usize);
+        assert!(numbers.eq(0..Edit::ALL.len()));
     }
 }

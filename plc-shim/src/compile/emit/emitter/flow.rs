@@ -2,9 +2,10 @@
 
 use super::Emitter;
 use crate::compile::analyse::{
-    Count, Driven, Effects, Extent, Known, Ranges, assigned, assume, driven, fits, interval, leaves,
+    Count, Driven, Effects, Extent, Known, Ranges, assigned, assume, driven, fits, interval,
 };
 use crate::ir::{Binary, Expr, Place, Statement};
+use crate::syntax::Span;
 
 /// What is known on a way that is emitted later.
 #[derive(Debug)]
@@ -59,9 +60,9 @@ impl Emitter<'_, '_> {
 
     /// What `emit` makes is a branch; one that leaves its unit is for the exception.
     pub(crate) fn in_branch(&mut self, body: &[Statement], emit: impl FnOnce(&mut Self)) {
-        self.leaving += u32::from(leaves(body));
+        self.scope.open_branch(body);
         emit(self);
-        self.leaving -= u32::from(leaves(body));
+        self.scope.close_branch(body);
     }
 
     /// Execution may come here from anywhere.
@@ -77,9 +78,29 @@ impl Emitter<'_, '_> {
     /// Memory there is changed by other means than an elementary store; anywhere if nothing is
     /// known of it.
     pub(crate) fn changed(&mut self, extent: Option<Extent>) {
+        self.expect_change(extent);
         match extent {
             Some(extent) => self.known.forget(extent, self.scope.roots()),
             None => self.known.forget_all(),
+        }
+    }
+
+    /// Memory changes there. The loops around must have been found to change it: what they were not, registers and ranges
+    /// are taken to hold through all turns.
+    pub(super) fn expect_change(&mut self, extent: Option<Extent>) {
+        let roots = self.scope.roots();
+        let expected = |effects: &Effects| match extent {
+            Some(extent) => effects.changes(extent, roots),
+            None => effects.changes_anything(),
+        };
+        self.unforeseen |= !self.foreseen.iter().all(expected);
+    }
+
+    /// Stops the PLC at `span` if the code before does what no analysis has found: wrong results would be worse.
+    pub(crate) fn require_foresight(&mut self, span: Span) {
+        debug_assert!(!self.unforeseen, "a loop changes what its survey has not found, before {span:?}");
+        if std::mem::take(&mut self.unforeseen) {
+            self.impossible(span);
         }
     }
 
@@ -120,10 +141,5 @@ impl Emitter<'_, '_> {
         self.scope.open_counter(count.slot(), count.range());
         emit(self);
         self.scope.close_counter();
-    }
-
-    /// How many branches are around that leave the unit.
-    pub(crate) fn leaving(&self) -> u32 {
-        self.leaving
     }
 }

@@ -28,6 +28,7 @@ impl Emitter<'_, '_> {
 
     /// Stores the value on the stack, which stands above its base, and remembers it.
     pub(crate) fn store_at(&mut self, address: Address, ty: ElementaryType) {
+        self.expect_change(Some(Extent::new(address, ty.size())));
         let pinned = self.pinned(address, ty);
         let entry = match pinned {
             None => self.cache(ty).map(|register| Entry { address, ty, register }),
@@ -114,7 +115,9 @@ impl Emitter<'_, '_> {
             self.pin(address, ty);
         }
         self.known.enter_loop(effects, self.scope.roots());
+        self.foreseen.push(effects.clone());
         emit(self);
+        self.foreseen.pop();
         // Behind the loop its registers still hold what is in memory.
         self.known = Known::default();
         for entry in self.pins.split_off(before) {

@@ -28,7 +28,7 @@ use self::code::Code;
 use self::frame::Frame;
 use self::registers::Registers;
 use super::dispatch::RowPlace;
-use crate::compile::analyse::{Address, Entry, Extent, Known, Program, Register, Scope};
+use crate::compile::analyse::{Address, Effects, Entry, Extent, Known, Program, Register, Scope};
 use crate::compile::fault::{FaultKind, Mark, Unit};
 use crate::compile::points::Points;
 use crate::ir::elementary::Kind;
@@ -128,8 +128,10 @@ pub(crate) struct Emitter<'s, 'p> {
     /// Values that a register has through all turns of the loops around: every store goes there
     /// too.
     pins: Vec<Entry>,
-    /// How many branches are around that leave the unit.
-    leaving: u32,
+    /// What the turns of the loops around were found to do, before they were made.
+    foreseen: Vec<Effects>,
+    /// True if the code does what was not.
+    unforeseen: bool,
     /// How many copies of [`Self::known`] are held for later.
     held: u32,
     /// Holds the budget inside of loops that pay for their turns.
@@ -151,7 +153,8 @@ impl<'s, 'p> Emitter<'s, 'p> {
             scope,
             known: Known::default(),
             pins: Vec::new(),
-            leaving: 0,
+            foreseen: Vec::new(),
+            unforeseen: false,
             held: 0,
             budget: None,
             metered: false,
@@ -208,7 +211,7 @@ impl<'s, 'p> Emitter<'s, 'p> {
 
     /// The unit, if its body goes in the place of a call.
     pub(crate) fn inlinable(&self, pou: PouId) -> Option<&'p Pou> {
-        self.program().inlined(pou, &self.scope, self.leaving)
+        self.program().inlined(pou, &self.scope)
     }
 
     /// The function's body, its marks by byte offset, and the units that they belong to.
