@@ -1,17 +1,17 @@
 //! A whole plant in motion: world, axes, sensors and components, one turn at a time.
 
 use onescan_server::client::ClientFault;
-use onescan_server::signal::{PortLayout, SlotError};
+use onescan_server::signal::PortLayout;
 use onescan_server::time::{TimeSpan, VirtualTime};
 use rapier3d::prelude::PhysicsWorld;
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
-use super::axis::{Axis, Measured};
+use super::axis::Axis;
 use super::channel::{Channels, ChannelsMemory, inner_ports};
 use super::component::declare::Value;
-use super::coordinate::Gauge;
-use super::part::{Moment, Part, PartMemory};
+use super::coordinate::{Gauge, Measured};
+use super::part::{Moment, Part, PartMemory, Unbuilt};
 use super::placement::Placement;
 use super::scene::Scene;
 use super::scene::failures::FoundMode;
@@ -60,8 +60,8 @@ impl Machine {
     /// Builds the machine of a scene, at rest in the scene's pose.
     ///
     /// # Errors
-    /// A signal of the scene that its ports do not have.
-    pub(super) fn build(scene: &Scene, period: TimeSpan, seed: u64) -> Result<Self, SlotError> {
+    /// None that a checked scene could cause.
+    pub(super) fn build(scene: &Scene, period: TimeSpan, seed: u64) -> Result<Self, Unbuilt> {
         let reads = PortLayout::new(inner_ports(&scene.reads, &scene.conditions));
         let writes = PortLayout::new(inner_ports(&scene.writes, &scene.conditions));
         let mut world = World::build(scene, period);
@@ -75,7 +75,7 @@ impl Machine {
             scene.sensors.iter().map(|sensor| Sensor::build(sensor, &world, &writes)).collect::<Result<Vec<_>, _>>()?;
         let mut parts = Vec::with_capacity(scene.components.len());
         for described in &scene.components {
-            parts.extend(Part::build(described, scene, seed, &mut world, [&reads, &writes])?);
+            parts.push(Part::build(described, scene, seed, &mut world, [&reads, &writes])?);
         }
         let channels = (!scene.conditions.is_empty()).then(|| Channels::pair(scene, seed));
         Ok(Self {
@@ -154,11 +154,7 @@ impl Machine {
             ("axes", self.setpoints.len(), memory.setpoints.len()),
             ("sensors", self.detected.len(), memory.detected.len()),
             ("components", self.parts.len(), memory.parts.len()),
-            (
-                "directions of signals",
-                self.channels.iter().flatten().count(),
-                memory.channels.iter().flatten().count(),
-            ),
+            ("directions of signals", self.channels.iter().flatten().count(), memory.channels.iter().flatten().count()),
         ];
         if let Some((what, own, saved)) = counts.into_iter().find(|(_, own, saved)| own != saved) {
             return Err(Misfit(format!("it has {saved} {what}, this plant has {own}")));

@@ -1,8 +1,12 @@
 //! The kinds of component, a file each. This table is all that knows them.
 
-use super::behaviour::{self, Component, Conflict, Runner, Running, Start};
+use super::behaviour::{self, Component, Conflict, Running};
 use super::declare::{ParameterSet, SignalSet, Value};
 use super::kind::{Kind, Setting};
+use crate::plant::coupling::Unbound;
+use crate::plant::scene::Scene;
+use crate::plant::scene::model::Bound;
+use crate::plant::world::World;
 
 /// A kind in the table.
 pub(crate) struct Entry {
@@ -10,18 +14,28 @@ pub(crate) struct Entry {
     pub(crate) kind: fn() -> Kind,
     /// A conflict between settings, one for each parameter.
     pub(crate) conflict: fn(&[Setting]) -> Option<Conflict>,
-    /// A component with these settings, one for each parameter.
-    pub(crate) start: fn(&[Setting], &Start) -> Box<dyn Running>,
+    /// A component with these settings, one for each parameter, a seed of its own and what it is
+    /// bound to, in a world that still stands in the scene's pose.
+    pub(crate) start: fn(&[Setting], u64, &Bound, &Scene, &mut World) -> Result<Box<dyn Running>, Unbound>,
     /// What its inputs hold where nothing is connected.
     pub(crate) unconnected: fn() -> Vec<Value>,
+    /// What holds for every kind, tried on this one.
+    #[cfg(test)]
+    pub(crate) laws: fn(),
 }
 
 fn conflict<C: Component>(settings: &[Setting]) -> Option<Conflict> {
     C::conflict(&C::Parameters::read(settings))
 }
 
-fn start<C: Component>(settings: &[Setting], start: &Start) -> Box<dyn Running> {
-    Box::new(Runner::new(C::new(C::Parameters::read(settings)), start))
+fn start<C: Component>(
+    settings: &[Setting],
+    seed: u64,
+    bound: &Bound,
+    scene: &Scene,
+    world: &mut World,
+) -> Result<Box<dyn Running>, Unbound> {
+    behaviour::run(C::new(C::Parameters::read(settings)), seed, bound, scene, world)
 }
 
 macro_rules! library {
@@ -35,6 +49,8 @@ macro_rules! library {
             conflict: conflict::<$module::$component>,
             start: start::<$module::$component>,
             unconnected: <$module::$component as Component>::Inputs::unconnected,
+            #[cfg(test)]
+            laws: super::tests::laws::<$module::$component>,
         } ),+ ];
     };
 }

@@ -21,10 +21,10 @@
 use serde::{Deserialize, Serialize};
 
 use crate::plant::component::behaviour::{Component, Conflict, Start, Turn};
-use crate::plant::component::coupling::{Coupling, Effect};
 use crate::plant::component::declare::{failures, own_types, parameters, signals};
 use crate::plant::component::dynamics::{Resistance, Travel, ramp, substeps};
 use crate::plant::component::profile::{Limits, Point, Profile};
+use crate::plant::coupling::{Coordinate, Move, Slides};
 
 /// Longest sub-step.
 const LONGEST_S: f64 = 0.25e-3;
@@ -179,7 +179,7 @@ impl ServoAxis {
     }
 
     /// What the inputs make of what it is doing.
-    fn decide(&self, state: &mut State, inputs: &Inputs, turn: &Turn) {
+    fn decide(&self, state: &mut State, inputs: &Inputs, turn: &Turn<Option<Coordinate>>) {
         let now = [inputs.execute, inputs.home, inputs.reset];
         let [execute, home, reset] = [0, 1, 2].map(|i| now[i] && !state.before[i]);
         state.before = now;
@@ -249,7 +249,7 @@ impl ServoAxis {
         }
     }
 
-    fn substep(&self, state: &mut State, turn: &Turn, dt_s: f64) {
+    fn substep(&self, state: &mut State, turn: &Turn<Option<Coordinate>>, dt_s: f64) {
         let p = &self.p;
         let held = !matches!(state.doing, Doing::Off | Doing::Error);
         let most = OVERSPEED * p.speed_m_s;
@@ -273,7 +273,7 @@ impl ServoAxis {
         self.set(state, dt_s);
     }
 
-    fn reference(&self, state: &State, turn: &Turn) -> bool {
+    fn reference(&self, state: &State, turn: &Turn<Option<Coordinate>>) -> bool {
         state.axis.position <= self.p.reference_m && !turn.failed.has(Failure::ReferenceDead)
     }
 }
@@ -289,8 +289,7 @@ impl Component for ServoAxis {
     ];
     const SOURCE: &'static str =
         "L. Biagiotti, C. Melchiorri, Trajectory Planning, 2008, 3.4; PLCopen Motion Control 2.0 (states)";
-    const COUPLING: Coupling = Coupling::Slides;
-    own_types!();
+    own_types!(moves Slides);
 
     fn new(p: Parameters) -> Self {
         Self { p, longest_s: LONGEST_S }
@@ -307,8 +306,8 @@ impl Component for ServoAxis {
         (!inside(p.reference_m)).then_some(Conflict { key: "reference_m", wanted: "a number from `lower_m` to `upper_m`" })
     }
 
-    fn initial(&self, start: &Start) -> State {
-        let position = start.joint.map_or(self.p.initial_m, |joint| joint.position);
+    fn initial(&self, start: &Start<Option<Coordinate>>) -> State {
+        let position = start.seen.map_or(self.p.initial_m, |joint| joint.position);
         State {
             doing: Doing::Off,
             set: Point { way: position, velocity: 0.0 },
@@ -323,8 +322,8 @@ impl Component for ServoAxis {
         }
     }
 
-    fn drive(&self, state: &mut State, inputs: &Inputs, turn: &Turn) {
-        state.axis.yield_to(turn.seen.joint, state.axis.velocity.abs() * turn.dt_s + 1e-4);
+    fn drive(&self, state: &mut State, inputs: &Inputs, turn: &Turn<Option<Coordinate>>) {
+        state.axis.yield_to(turn.seen, state.axis.velocity.abs() * turn.dt_s + 1e-4);
         state.from_m = state.axis.position;
         self.decide(state, inputs, turn);
         let (count, dt_s) = substeps(turn.dt_s, self.longest_s);
@@ -333,11 +332,11 @@ impl Component for ServoAxis {
         }
     }
 
-    fn effect(&self, state: &State) -> Effect {
-        Effect::Move { from: state.from_m, to: state.axis.position, effort_max: self.p.force_max_n }
+    fn effect(&self, state: &State) -> Move {
+        Move { from: state.from_m, to: state.axis.position, effort_max: self.p.force_max_n }
     }
 
-    fn sense(&self, state: &mut State, _: &Inputs, turn: &Turn) -> Outputs {
+    fn sense(&self, state: &mut State, _: &Inputs, turn: &Turn<Option<Coordinate>>) -> Outputs {
         let near = state.target_m.is_some_and(|target| (target - state.encoder_m).abs() <= self.p.window_m);
         Outputs {
             ready: !matches!(state.doing, Doing::Off | Doing::Error),
