@@ -1,6 +1,7 @@
 //! Second pass over `[[failure]]`: what fails, how and when.
 
-use onescan_server::signal::{ElementaryType, nearest};
+use onescan_base::nearest;
+use onescan_server::signal::SignalType;
 use thiserror::Error;
 use toml::Spanned;
 
@@ -130,7 +131,7 @@ fn when(table: &FailureTable, signals: &mut Signals, faults: &mut Faults<'_>) ->
         if let Some(time) = from.value.or(until.value) {
             faults.add(time.span(), SceneFaultKind::FailureTwice);
         }
-        return signals.read(signal, ElementaryType::Bool, faults).map(When::Signal);
+        return signals.read(signal, SignalType::BOOL, faults).map(When::Signal);
     }
     let from_s = faults.number(from, Allowed::NotNegative).unwrap_or(0.0);
     let until_s = faults.number(until, Allowed::NotNegative);
