@@ -181,9 +181,9 @@ impl Machine {
             Some(mut channels) => {
                 let zeros = vec![0; channels[0].inner().len()];
                 let begun = self.observe(scene, 0, &zeros, channels[1].inner_mut());
-                channels[1].give_at_once(outputs);
+                let sent = channels[1].give_at_once(outputs);
                 self.channels = Some(channels);
-                begun
+                begun.and(sent)
             }
         };
         self.dt_s = dt_s;
@@ -206,11 +206,12 @@ impl Machine {
             return self.inner_turn(scene, now_ns, inputs, outputs);
         };
         let [taken, given] = &mut channels;
-        taken.take(now_ns, inputs);
-        let turned = self.inner_turn(scene, now_ns, taken.inner(), given.inner_mut());
-        given.give(now_ns, outputs);
+        let turned = taken.take(now_ns, inputs);
+        let turned = turned.and_then(|()| self.inner_turn(scene, now_ns, taken.inner(), given.inner_mut()));
+        let sent = given.give(now_ns, outputs);
+        // back in any case: a state that is restored after a fault finds its channels
         self.channels = Some(channels);
-        turned
+        turned.and(sent)
     }
 
     fn inner_turn(&mut self, scene: &Scene, now_ns: u64, inputs: &[u8], outputs: &mut [u8]) -> Result<(), ClientFault> {

@@ -148,13 +148,25 @@ pub(crate) enum Doing {
     Error,
 }
 
+/// Ramps down to rest, and stands then.
+const STOPPING: Doing = Doing::Velocity { wanted_m_s: 0.0, homing: false };
+
+/// True if one way of jogging is asked for; both at once ask for none.
+fn jogs(inputs: &Inputs) -> bool {
+    inputs.jog_forward != inputs.jog_reverse
+}
+
 /// What it remembers.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct State {
     doing: Doing,
+    /// Where the drive wants the axis.
     set: Point,
+    /// Where the axis is.
     axis: Travel,
+    /// Where the axis was as the period began.
     from_m: f64,
+    /// What the drive knows of where the axis is.
     encoder_m: f64,
     /// Coordinate that the drive calls 0.
     zero_m: f64,
@@ -179,34 +191,59 @@ impl ServoAxis {
     }
 
     /// What the inputs make of what it is doing.
+    ///
+    /// Commands act on their rising edges, so that a held input starts nothing twice. Trips come before
+    /// all commands: a fault of the drive, or a set point that has left the encoder too far behind
+    /// while the drive holds the axis.
     fn decide(&self, state: &mut State, inputs: &Inputs, turn: &Turn<Option<Coordinate>>) {
         let now = [inputs.execute, inputs.home, inputs.reset];
         let [execute, home, reset] = [0, 1, 2].map(|i| now[i] && !state.before[i]);
         state.before = now;
+        let faulty = turn.failed.has(Failure::DriveFault);
         let following = (state.set.way - state.encoder_m).abs() > self.p.following_max_m;
         let held = !matches!(state.doing, Doing::Off | Doing::Error);
-        if turn.failed.has(Failure::DriveFault) || (held && following) {
+        if faulty || (held && following) {
             state.doing = Doing::Error;
         }
         state.doing = match state.doing {
-            Doing::Error if reset && !turn.failed.has(Failure::DriveFault) => Doing::Off,
+            // an error stays until it is reset, enabled or not, and no reset ends a fault that lasts
+            Doing::Error if reset && !faulty => Doing::Off,
             Doing::Error => Doing::Error,
+            // without `enable` whatever it does ends at once, and every command is lost
             _ if !inputs.enable => Doing::Off,
+            // enabling takes a period of its own: the set point starts from the encoder at rest
             Doing::Off => Doing::Standing,
-            Doing::Standing if execute => self.start(state, inputs),
-            Doing::Standing if home => Doing::Velocity { wanted_m_s: -self.p.homing_m_s, homing: true },
-            Doing::Standing if inputs.jog_forward != inputs.jog_reverse => self.jog(inputs),
-            Doing::Velocity { homing: true, .. } if self.reference(state, turn) => {
-                (state.homed, state.zero_m) = (true, self.p.reference_m);
-                Doing::Velocity { wanted_m_s: 0.0, homing: false }
-            }
-            Doing::Moving { .. } | Doing::Velocity { homing: true, .. } if inputs.halt => Doing::Velocity { wanted_m_s: 0.0, homing: false },
-            Doing::Velocity { homing: false, .. } if inputs.jog_forward != inputs.jog_reverse && !inputs.halt => {
-                self.jog(inputs)
-            }
-            Doing::Velocity { homing: false, .. } => Doing::Velocity { wanted_m_s: 0.0, homing: false },
-            other => other,
+            Doing::Standing => self.from_rest(state, inputs, [execute, home]),
+            Doing::Velocity { homing: true, .. } => self.home(state, inputs, turn),
+            Doing::Moving { .. } if inputs.halt => STOPPING,
+            // a move goes on to its target: a new `execute` waits for rest
+            moving @ Doing::Moving { .. } => moving,
+            Doing::Velocity { homing: false, .. } if jogs(inputs) && !inputs.halt => self.jog(inputs),
+            Doing::Velocity { homing: false, .. } => STOPPING,
         };
+    }
+
+    /// What starts at rest: of commands in one period a move comes before homing, homing before a jog.
+    fn from_rest(&self, state: &mut State, inputs: &Inputs, [execute, home]: [bool; 2]) -> Doing {
+        if execute {
+            self.start(state, inputs)
+        } else if home {
+            Doing::Velocity { wanted_m_s: -self.p.homing_m_s, homing: true }
+        } else if jogs(inputs) {
+            self.jog(inputs)
+        } else {
+            Doing::Standing
+        }
+    }
+
+    /// Homing goes on to the reference switch. The switch comes before `halt`: an axis that reaches it
+    /// in the period of the halt is homed, and stops all the same.
+    fn home(&self, state: &mut State, inputs: &Inputs, turn: &Turn<Option<Coordinate>>) -> Doing {
+        if self.reference(state, turn) {
+            (state.homed, state.zero_m) = (true, self.p.reference_m);
+            return STOPPING;
+        }
+        if inputs.halt { STOPPING } else { state.doing }
     }
 
     fn start(&self, state: &mut State, inputs: &Inputs) -> Doing {
