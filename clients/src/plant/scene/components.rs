@@ -110,13 +110,15 @@ pub(super) fn check(
     for one in &known {
         refuse_unknown_keys(one, faults);
         let to = placed.bind(one.kind.coupling, &one.keys, &bound, faults);
-        bound.push((text(&one.keys.name).to_owned(), to.clone().unwrap_or(Bound::Nothing)));
+        // of no meaning where a fault was found
+        let to = to.unwrap_or_default();
+        bound.push((text(&one.keys.name).to_owned(), to.clone()));
         let number = number_type(&one.keys, faults);
         components.push(Component {
             name: text(&one.keys.name).to_owned(),
             kind: one.entry.name,
             settings: settings(one, faults),
-            bound: to.unwrap_or(Bound::Nothing),
+            bound: to,
             inputs: inputs(one, (&known, &lost), number, signals, faults),
             outputs: outputs(one, number, signals, faults),
             number,

@@ -3,9 +3,9 @@
 use serde_json::{Map, Value, json};
 
 use super::VERSION;
-use crate::plant::component::coupling::BindingKey;
 use crate::plant::component::kind::{Form, Kind, Parameter, Setting, unit};
 use crate::plant::component::library::kinds;
+use crate::plant::coupling::{BindingKey, Names};
 
 const NUMBER: &str = "number";
 const TEXT: &str = "string";
@@ -212,11 +212,17 @@ fn component(kind: &Kind) -> Value {
     properties.insert("kind".to_owned(), json!({ "const": kind.name, "description": kind.summary }));
     properties.insert("signal_type".to_owned(), of("REAL|LREAL"));
     let mut required = vec!["name", "kind"];
-    for BindingKey { key, about, needed } in kind.coupling.keys() {
-        let ty = match *key {
-            "targets" => TEXTS,
-            "point_m" | "direction" => NUMBERS,
-            _ => TEXT,
+    for BindingKey { key, about, names, needed } in kind.coupling.keys() {
+        let ty = match names {
+            Names::Bodies { .. } => TEXTS,
+            Names::Point | Names::Direction => NUMBERS,
+            Names::DrivenJoint(_)
+            | Names::MeasuredJoint
+            | Names::Belt
+            | Names::Carrier
+            | Names::Body
+            | Names::TouchedBody
+            | Names::ShapeOfBody => TEXT,
         };
         properties.insert((*key).to_owned(), described(of(ty), about));
         required.extend(needed.then_some(*key));

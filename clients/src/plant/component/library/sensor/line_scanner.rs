@@ -10,8 +10,8 @@
 use serde::{Deserialize, Serialize};
 
 use crate::plant::component::behaviour::{Component, Start, Turn};
-use crate::plant::component::coupling::Coupling;
 use crate::plant::component::declare::{failures, own_types, parameters, signals};
+use crate::plant::coupling::{Targets, Touch};
 use crate::plant::random::Random;
 
 parameters! {
@@ -81,18 +81,17 @@ impl Component for LineScanner {
     const SUMMARY: &'static str = "line scanner or camera: counts what is in its field on a trigger";
     const FORMULA: &'static [&'static str] = &["answer after latency_s: count in [least, most]"];
     const SOURCE: &'static str = "closed form; errors are Bernoulli trials of the scenario's seed";
-    const COUPLING: Coupling = Coupling::Touch;
-    own_types!();
+    own_types!(sees Touch);
 
     fn new(p: Parameters) -> Self {
         Self { p }
     }
 
-    fn initial(&self, start: &Start) -> State {
+    fn initial(&self, start: &Start<Targets>) -> State {
         State { random: Some(Random::new(start.seed)), ..State::default() }
     }
 
-    fn sense(&self, state: &mut State, inputs: &Inputs, turn: &Turn) -> Outputs {
+    fn sense(&self, state: &mut State, inputs: &Inputs, turn: &Turn<Targets>) -> Outputs {
         let before = std::mem::replace(&mut state.triggered, inputs.trigger);
         let rising = inputs.trigger && !before;
         state.pending_s += turn.dt_s;

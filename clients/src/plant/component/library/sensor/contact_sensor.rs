@@ -10,8 +10,8 @@
 use serde::{Deserialize, Serialize};
 
 use crate::plant::component::behaviour::{Component, Start, Turn};
-use crate::plant::component::coupling::Coupling;
 use crate::plant::component::declare::{failures, own_types, parameters, signals};
+use crate::plant::coupling::{Contact, Targets};
 
 parameters! {
     /// Its parameters.
@@ -59,18 +59,17 @@ impl Component for ContactSensor {
     const SUMMARY: &'static str = "contact sensor: a body that others touch, as a level and as a pulse";
     const FORMULA: &'static [&'static str] = &["power = touched", "pulse = touched and not touched a scan ago"];
     const SOURCE: &'static str = "class Sensor of the filling machine (Sivtoft 2002, 4.2.3 and A6)";
-    const COUPLING: Coupling = Coupling::Contact;
-    own_types!();
+    own_types!(sees Contact);
 
     fn new(_: Parameters) -> Self {
         Self
     }
 
-    fn initial(&self, _: &Start) -> State {
+    fn initial(&self, _: &Start<Targets>) -> State {
         State::default()
     }
 
-    fn sense(&self, state: &mut State, _: &Inputs, turn: &Turn) -> Outputs {
+    fn sense(&self, state: &mut State, _: &Inputs, turn: &Turn<Targets>) -> Outputs {
         let touched = turn.seen.count > 0 || turn.failed.has(Failure::Stuck);
         let power = touched && !turn.failed.has(Failure::Dead);
         let before = std::mem::replace(&mut state.power, power);

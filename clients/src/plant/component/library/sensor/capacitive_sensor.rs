@@ -11,9 +11,9 @@
 use serde::{Deserialize, Serialize};
 
 use crate::plant::component::behaviour::{Component, Start, Turn};
-use crate::plant::component::coupling::Coupling;
 use crate::plant::component::dynamics::in_reach;
 use crate::plant::component::declare::{failures, own_types, parameters, signals};
+use crate::plant::coupling::{Hit, Ray};
 
 parameters! {
     /// A switch and its targets.
@@ -68,18 +68,17 @@ impl Component for CapacitiveSensor {
     const SUMMARY: &'static str = "capacitive proximity switch, which sees any material";
     const FORMULA: &'static [&'static str] = &["s = s_n (ε - 1)/(ε + 1)", "on at s, off at s (1 + h)"];
     const SOURCE: &'static str = "IEC 60947-5-2; J. D. Jackson, Classical Electrodynamics, 4.4";
-    const COUPLING: Coupling = Coupling::Ray;
-    own_types!();
+    own_types!(sees Ray);
 
     fn new(p: Parameters) -> Self {
         Self { p }
     }
 
-    fn initial(&self, _: &Start) -> State {
+    fn initial(&self, _: &Start<Hit>) -> State {
         State::default()
     }
 
-    fn sense(&self, state: &mut State, _: &Inputs, turn: &Turn) -> Outputs {
+    fn sense(&self, state: &mut State, _: &Inputs, turn: &Turn<Hit>) -> Outputs {
         let permittivity = self.p.permittivity_ratio;
         let on_m = self.p.rated_m * (permittivity - 1.0) / (permittivity + 1.0);
         let met = in_reach(turn.seen.hit_m, state.near, on_m, self.p.hysteresis_pct);
@@ -91,11 +90,10 @@ impl Component for CapacitiveSensor {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::plant::component::coupling::Seen;
     use crate::plant::component::tests::Rig;
 
     fn seen(rig: &mut Rig<CapacitiveSensor>, hit_m: f64) -> bool {
-        rig.seen = Seen { hit_m: Some(hit_m), ..Seen::default() };
+        rig.seen = Hit { hit_m: Some(hit_m) };
         rig.run(Inputs {}, 0.001, 1).detected
     }
 

@@ -13,9 +13,9 @@ use std::f64::consts::TAU;
 use serde::{Deserialize, Serialize};
 
 use crate::plant::component::behaviour::{Component, Start, Turn};
-use crate::plant::component::coupling::{Coupling, Effect};
 use crate::plant::component::declare::{failures, own_types, parameters, signals};
 use crate::plant::component::dynamics::{Travel, ramp, substeps};
+use crate::plant::coupling::{Coordinate, Move, Turns};
 
 parameters! {
     /// Its parameters.
@@ -97,24 +97,23 @@ impl Component for Spindle {
     const SUMMARY: &'static str = "spindle with a ramp, a load and a tool clamp";
     const FORMULA: &'static [&'static str] = &["J dω/dt = M - M_cut - d ω, |M| ≤ M_max"];
     const SOURCE: &'static str = "closed form";
-    const COUPLING: Coupling = Coupling::Turns;
-    own_types!();
+    own_types!(moves Turns);
 
     fn new(p: Parameters) -> Self {
         Self { p }
     }
 
-    fn initial(&self, start: &Start) -> State {
-        let position = start.joint.map_or(0.0, |joint| joint.position);
+    fn initial(&self, start: &Start<Option<Coordinate>>) -> State {
+        let position = start.seen.map_or(0.0, |joint| joint.position);
         State { shaft: Travel { position, velocity: 0.0 }, from_rad: position, clamp: 1.0, ..State::default() }
     }
 
-    fn drive(&self, state: &mut State, inputs: &Inputs, turn: &Turn) {
+    fn drive(&self, state: &mut State, inputs: &Inputs, turn: &Turn<Option<Coordinate>>) {
         let p = &self.p;
         let closing = inputs.clamp && !turn.failed.has(Failure::ClampOpen);
         let rate_1_s = if p.clamp_s > 0.0 { 1.0 / p.clamp_s } else { f64::MAX };
         state.clamp = ramp(state.clamp, f64::from(u8::from(closing)), rate_1_s, turn.dt_s);
-        state.shaft.yield_to(turn.seen.joint, state.shaft.velocity.abs() * turn.dt_s + 1e-3);
+        state.shaft.yield_to(turn.seen, state.shaft.velocity.abs() * turn.dt_s + 1e-3);
         state.from_rad = state.shaft.position;
         let fed = !turn.failed.has(Failure::DriveFault);
         let wanted = if inputs.run && state.clamp >= 1.0 { inputs.command_1_min } else { 0.0 };
@@ -132,12 +131,12 @@ impl Component for Spindle {
         }
     }
 
-    fn effect(&self, state: &State) -> Effect {
-        Effect::Move { from: state.from_rad, to: state.shaft.position, effort_max: self.p.torque_max_nm }
+    fn effect(&self, state: &State) -> Move {
+        Move { from: state.from_rad, to: state.shaft.position, effort_max: self.p.torque_max_nm }
     }
 
-    fn sense(&self, state: &mut State, inputs: &Inputs, turn: &Turn) -> Outputs {
-        let velocity = turn.seen.joint.map_or(state.shaft.velocity, |joint| joint.velocity);
+    fn sense(&self, state: &mut State, inputs: &Inputs, turn: &Turn<Option<Coordinate>>) -> Outputs {
+        let velocity = turn.seen.map_or(state.shaft.velocity, |joint| joint.velocity);
         let speed_1_min = velocity * 60.0 / TAU;
         let off = (speed_1_min - inputs.command_1_min).abs();
         Outputs {

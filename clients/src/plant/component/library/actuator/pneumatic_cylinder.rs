@@ -20,10 +20,10 @@ use std::f64::consts::FRAC_PI_4;
 use serde::{Deserialize, Serialize};
 
 use crate::plant::component::behaviour::{Component, Conflict, Start, Turn};
-use crate::plant::component::coupling::{Coupling, Effect};
 use crate::plant::component::declare::{choice, failures, own_types, parameters, signals};
 use crate::plant::component::dynamics::{OnDelay, Resistance, Travel, substeps};
 use crate::plant::component::fluid::{AIR_J_KG_K, ATMOSPHERE_PA, BAR_PA, ZERO_DEGC_K, air_kg_s, implicit_pa};
+use crate::plant::coupling::{Coordinate, Move, Slides};
 
 /// Longest sub-step.
 const LONGEST_S: f64 = 50e-6;
@@ -194,7 +194,7 @@ impl PneumaticCylinder {
         air_kg_s(conductance * CONDUCTANCE, self.p.critical_ratio, port_pa, chamber_pa)
     }
 
-    fn substep(&self, state: &mut State, ports: [Option<f64>; 2], turn: &Turn, dt_s: f64) {
+    fn substep(&self, state: &mut State, ports: [Option<f64>; 2], turn: &Turn<Option<Coordinate>>, dt_s: f64) {
         let p = &self.p;
         let (x, v) = (state.rod.position, state.rod.velocity);
         let (cap_left, rod_left) = (x, p.stroke_m - x);
@@ -234,8 +234,7 @@ impl Component for PneumaticCylinder {
         "m dv/dt = p_A A_A - p_B A_B - p_0 A_rod - F_load - d v - F_c sgn(v)",
     ];
     const SOURCE: &'static str = "ISO 6358-1:2013; P. Beater, Pneumatic Drives, 2007, ch. 3 and 5";
-    const COUPLING: Coupling = Coupling::Slides;
-    own_types!();
+    own_types!(moves Slides);
 
     fn new(p: Parameters) -> Self {
         let cap_m2 = FRAC_PI_4 * p.bore_m * p.bore_m;
@@ -248,8 +247,8 @@ impl Component for PneumaticCylinder {
         (p.rod_m >= p.bore_m).then_some(Conflict { key: "rod_m", wanted: "a number below `bore_m`" })
     }
 
-    fn initial(&self, start: &Start) -> State {
-        let position = start.joint.map_or(0.0, |joint| joint.position.clamp(0.0, self.p.stroke_m));
+    fn initial(&self, start: &Start<Option<Coordinate>>) -> State {
+        let position = start.seen.map_or(0.0, |joint| joint.position.clamp(0.0, self.p.stroke_m));
         State {
             spool: if matches!(self.p.valve, Valve::Spring | Valve::Impulse) { Spool::In } else { Spool::Rest },
             switching: OnDelay::default(),
@@ -260,7 +259,7 @@ impl Component for PneumaticCylinder {
         }
     }
 
-    fn drive(&self, state: &mut State, inputs: &Inputs, turn: &Turn) {
+    fn drive(&self, state: &mut State, inputs: &Inputs, turn: &Turn<Option<Coordinate>>) {
         let wanted = self.wanted(*inputs, state.spool);
         let stuck = turn.failed.has(Failure::ValveStuck);
         if state.switching.holds(wanted != state.spool && !stuck, self.p.valve_delay_s, turn.dt_s) {
@@ -269,7 +268,7 @@ impl Component for PneumaticCylinder {
         let lost = turn.failed.has(Failure::NoSupply);
         let supply_pa = ATMOSPHERE_PA + if lost { 0.0 } else { self.p.supply_bar * BAR_PA };
         let ports = self.ports(state.spool, supply_pa);
-        state.rod.yield_to(turn.seen.joint, state.rod.velocity.abs() * turn.dt_s + 1e-4);
+        state.rod.yield_to(turn.seen, state.rod.velocity.abs() * turn.dt_s + 1e-4);
         state.from_m = state.rod.position;
         let (count, dt_s) = substeps(turn.dt_s, self.longest_s);
         for _ in 0..count {
@@ -277,19 +276,19 @@ impl Component for PneumaticCylinder {
         }
     }
 
-    fn effect(&self, state: &State) -> Effect {
+    fn effect(&self, state: &State) -> Move {
         let greatest = (state.cap_pa * self.cap_m2).max(state.rod_pa * self.ring_m2);
-        Effect::Move { from: state.from_m, to: state.rod.position, effort_max: greatest }
+        Move { from: state.from_m, to: state.rod.position, effort_max: greatest }
     }
 
-    fn sense(&self, state: &mut State, _: &Inputs, turn: &Turn) -> Outputs {
-        let position_m = turn.seen.joint.map_or(state.rod.position, |joint| joint.position);
+    fn sense(&self, state: &mut State, _: &Inputs, turn: &Turn<Option<Coordinate>>) -> Outputs {
+        let position_m = turn.seen.map_or(state.rod.position, |joint| joint.position);
         let out = position_m >= self.p.stroke_m - self.p.switch_m;
         Outputs {
             extended: out && !turn.failed.has(Failure::ExtendedDead),
             retracted: position_m <= self.p.switch_m && !turn.failed.has(Failure::RetractedDead),
             position_m,
-            velocity_m_s: turn.seen.joint.map_or(state.rod.velocity, |joint| joint.velocity),
+            velocity_m_s: turn.seen.map_or(state.rod.velocity, |joint| joint.velocity),
             cap_bar: (state.cap_pa - ATMOSPHERE_PA) / BAR_PA,
             rod_bar: (state.rod_pa - ATMOSPHERE_PA) / BAR_PA,
         }

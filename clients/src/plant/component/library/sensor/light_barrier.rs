@@ -11,9 +11,9 @@
 use serde::{Deserialize, Serialize};
 
 use crate::plant::component::behaviour::{Component, Start, Turn};
-use crate::plant::component::coupling::Coupling;
 use crate::plant::component::declare::{failures, own_types, parameters, signals};
 use crate::plant::component::dynamics::OnDelay;
+use crate::plant::coupling::{Hit, Ray};
 
 parameters! {
     /// A sender and its receiver.
@@ -75,18 +75,17 @@ impl Component for LightBarrier {
     const FORMULA: &'static [&'static str] =
         &["dark while a target is within range_m of the beam, after on_s and off_s"];
     const SOURCE: &'static str = "IEC 60947-5-2";
-    const COUPLING: Coupling = Coupling::Ray;
-    own_types!();
+    own_types!(sees Ray);
 
     fn new(p: Parameters) -> Self {
         Self { p }
     }
 
-    fn initial(&self, _: &Start) -> State {
+    fn initial(&self, _: &Start<Hit>) -> State {
         State::default()
     }
 
-    fn sense(&self, state: &mut State, _: &Inputs, turn: &Turn) -> Outputs {
+    fn sense(&self, state: &mut State, _: &Inputs, turn: &Turn<Hit>) -> Outputs {
         let met = turn.seen.hit_m.is_some_and(|distance| distance <= self.p.range_m);
         let dark = (met || turn.failed.has(Failure::Dirty)) && !turn.failed.has(Failure::Dazzled);
         let delay_s = if dark { self.p.on_s } else { self.p.off_s };
@@ -103,25 +102,24 @@ impl Component for LightBarrier {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::plant::component::coupling::Seen;
     use crate::plant::component::tests::Rig;
 
     fn rig(p: Parameters) -> Rig<LightBarrier> {
         Rig::new(LightBarrier::new(p))
     }
 
-    fn at(hit_m: f64) -> Seen {
-        Seen { hit_m: Some(hit_m), ..Seen::default() }
+    fn at(hit_m: f64) -> Hit {
+        Hit { hit_m: Some(hit_m) }
     }
 
     #[test]
     fn it_is_dark_within_its_range_only() {
         let mut rig = rig(Parameters::default());
-        let mut seen = |seen: Seen| {
+        let mut seen = |seen: Hit| {
             rig.seen = seen;
             rig.run(Inputs {}, 0.01, 1)
         };
-        assert!(!seen(Seen::default()).detected);
+        assert!(!seen(Hit::default()).detected);
         assert!(seen(at(1.0)).detected && !seen(at(1.001)).detected);
         assert_eq!(seen(at(0.2)).count, 2);
     }
@@ -132,7 +130,7 @@ mod tests {
         rig.seen = at(0.5);
         assert!(!rig.run(Inputs {}, 0.01, 2).detected);
         assert!(rig.run(Inputs {}, 0.01, 1).detected);
-        rig.seen = Seen::default();
+        rig.seen = Hit::default();
         assert!(rig.run(Inputs {}, 0.01, 1).detected && !rig.run(Inputs {}, 0.01, 1).detected);
     }
 

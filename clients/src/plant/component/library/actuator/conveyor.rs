@@ -13,8 +13,8 @@
 use serde::{Deserialize, Serialize};
 
 use crate::plant::component::behaviour::{Component, Start, Turn};
-use crate::plant::component::coupling::{Coupling, Effect};
 use crate::plant::component::declare::{failures, own_types, parameters, signals};
+use crate::plant::coupling::{Belt, Run};
 use crate::plant::setpoint::{Bounds, Setpoint};
 
 parameters! {
@@ -79,8 +79,7 @@ impl Component for Conveyor {
     const SUMMARY: &'static str = "conveyor belt with a ramp, which carries what lies on it";
     const FORMULA: &'static [&'static str] = &["dv/dt = ±a until v = k v_N", "travel = ∫ v dt"];
     const SOURCE: &'static str = "closed form; speed levels: Sivtoft 2002, ch. 5";
-    const COUPLING: Coupling = Coupling::Belt;
-    own_types!();
+    own_types!(moves Belt);
 
     fn new(p: Parameters) -> Self {
         Self { p }
@@ -108,8 +107,8 @@ impl Component for Conveyor {
         state.mean_m_s = (state.belt.position - before.position) / turn.dt_s;
     }
 
-    fn effect(&self, state: &State) -> Effect {
-        Effect::Run { velocity_m_s: state.mean_m_s }
+    fn effect(&self, state: &State) -> Run {
+        Run { velocity_m_s: state.mean_m_s }
     }
 
     fn sense(&self, state: &mut State, _: &Inputs, _: &Turn) -> Outputs {

@@ -13,8 +13,8 @@ use std::f64::consts::TAU;
 use serde::{Deserialize, Serialize};
 
 use crate::plant::component::behaviour::{Component, Start, Turn};
-use crate::plant::component::coupling::{Coupling, Effect};
 use crate::plant::component::declare::{failures, own_types, parameters, signals};
+use crate::plant::coupling::{Coordinate, Move, Turns};
 use crate::plant::setpoint::{Bounds, Setpoint};
 
 parameters! {
@@ -97,22 +97,21 @@ impl Component for Turntable {
     const SUMMARY: &'static str = "turntable or wheel: runs on, or steps from station to station";
     const FORMULA: &'static [&'static str] = &["dω/dt = ±α until ω = k ω_N", "stations 2π/n apart"];
     const SOURCE: &'static str = "closed form; wheels of the filling machine (Sivtoft 2002, ch. 5)";
-    const COUPLING: Coupling = Coupling::Turns;
-    own_types!();
+    own_types!(moves Turns);
 
     fn new(p: Parameters) -> Self {
         Self { p }
     }
 
-    fn initial(&self, start: &Start) -> State {
-        let position = start.joint.map_or(0.0, |joint| joint.position);
+    fn initial(&self, start: &Start<Option<Coordinate>>) -> State {
+        let position = start.seen.map_or(0.0, |joint| joint.position);
         State { wheel: Setpoint { position, velocity: 0.0 }, from_rad: position, ..State::default() }
     }
 
-    fn drive(&self, state: &mut State, inputs: &Inputs, turn: &Turn) {
+    fn drive(&self, state: &mut State, inputs: &Inputs, turn: &Turn<Option<Coordinate>>) {
         let before = std::mem::replace(&mut state.stepped, inputs.step);
         let rising = inputs.step && !before;
-        if let Some(joint) = turn.seen.joint {
+        if let Some(joint) = turn.seen {
             let slack = self.p.speed_rad_s * turn.dt_s;
             state.wheel = state.wheel.near(joint.position, slack, || joint.velocity);
         }
@@ -138,13 +137,13 @@ impl Component for Turntable {
             state.target_rad.filter(|target| state.wheel.position != *target || state.wheel.velocity != 0.0);
     }
 
-    fn effect(&self, state: &State) -> Effect {
-        Effect::Move { from: state.from_rad, to: state.wheel.position, effort_max: self.p.torque_max_nm }
+    fn effect(&self, state: &State) -> Move {
+        Move { from: state.from_rad, to: state.wheel.position, effort_max: self.p.torque_max_nm }
     }
 
-    fn sense(&self, state: &mut State, _: &Inputs, turn: &Turn) -> Outputs {
-        let angle_rad = turn.seen.joint.map_or(state.wheel.position, |joint| joint.position);
-        let velocity_rad_s = turn.seen.joint.map_or(state.wheel.velocity, |joint| joint.velocity);
+    fn sense(&self, state: &mut State, _: &Inputs, turn: &Turn<Option<Coordinate>>) -> Outputs {
+        let angle_rad = turn.seen.map_or(state.wheel.position, |joint| joint.position);
+        let velocity_rad_s = turn.seen.map_or(state.wheel.velocity, |joint| joint.velocity);
         let nearest = (angle_rad / self.pitch_rad()).round();
         let off_rad = (angle_rad - nearest * self.pitch_rad()).abs();
         Outputs {

@@ -11,9 +11,9 @@
 use serde::{Deserialize, Serialize};
 
 use crate::plant::component::behaviour::{Component, Start, Turn};
-use crate::plant::component::coupling::Coupling;
 use crate::plant::component::dynamics::in_reach;
 use crate::plant::component::declare::{choice, failures, own_types, parameters, signals};
+use crate::plant::coupling::{Hit, Ray};
 
 choice! {
     /// What the targets are made of.
@@ -98,18 +98,17 @@ impl Component for InductiveSensor {
     const SUMMARY: &'static str = "inductive proximity switch, which sees metal";
     const FORMULA: &'static [&'static str] = &["s = s_n k(metal)", "on at s, off at s (1 + h)"];
     const SOURCE: &'static str = "IEC 60947-5-2";
-    const COUPLING: Coupling = Coupling::Ray;
-    own_types!();
+    own_types!(sees Ray);
 
     fn new(p: Parameters) -> Self {
         Self { p }
     }
 
-    fn initial(&self, _: &Start) -> State {
+    fn initial(&self, _: &Start<Hit>) -> State {
         State::default()
     }
 
-    fn sense(&self, state: &mut State, _: &Inputs, turn: &Turn) -> Outputs {
+    fn sense(&self, state: &mut State, _: &Inputs, turn: &Turn<Hit>) -> Outputs {
         let on_m = self.p.rated_m * self.p.metal.reduction();
         let met = in_reach(turn.seen.hit_m, state.near, on_m, self.p.hysteresis_pct);
         state.near = (met || turn.failed.has(Failure::Chips)) && !turn.failed.has(Failure::Blind);
@@ -120,11 +119,10 @@ impl Component for InductiveSensor {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::plant::component::coupling::Seen;
     use crate::plant::component::tests::Rig;
 
     fn seen(rig: &mut Rig<InductiveSensor>, hit_m: f64) -> bool {
-        rig.seen = Seen { hit_m: Some(hit_m), ..Seen::default() };
+        rig.seen = Hit { hit_m: Some(hit_m) };
         rig.run(Inputs {}, 0.001, 1).detected
     }
 

@@ -13,10 +13,10 @@ use std::f64::consts::FRAC_PI_4;
 use serde::{Deserialize, Serialize};
 
 use crate::plant::component::behaviour::{Component, Start, Turn};
-use crate::plant::component::coupling::{Coupling, Effect};
 use crate::plant::component::declare::{failures, own_types, parameters, signals};
 use crate::plant::component::dynamics::lag;
 use crate::plant::component::fluid::BAR_PA;
+use crate::plant::coupling::{Hold, Holds, Targets};
 
 parameters! {
     /// Its parameters.
@@ -90,20 +90,19 @@ impl Component for VacuumCup {
     const SUMMARY: &'static str = "vacuum cup with an ejector: holds a part while the vacuum suffices";
     const FORMULA: &'static [&'static str] = &["τ dp/dt = p_max - p", "F = A p ≥ S m g"];
     const SOURCE: &'static str = "closed form; safety factor 2 for horizontal cups is what manufacturers advise";
-    const COUPLING: Coupling = Coupling::Touch;
-    own_types!();
+    own_types!(moves Holds);
 
     fn new(p: Parameters) -> Self {
         Self { p }
     }
 
-    fn initial(&self, _: &Start) -> State {
+    fn initial(&self, _: &Start<Targets>) -> State {
         State::default()
     }
 
-    fn drive(&self, state: &mut State, inputs: &Inputs, turn: &Turn) {
+    fn drive(&self, state: &mut State, inputs: &Inputs, turn: &Turn<Targets>) {
         let p = &self.p;
-        let part = state.held.or(turn.seen.target);
+        let part = state.held.or(turn.seen.first);
         let tight = match (part.is_some(), turn.failed.has(Failure::Torn)) {
             (false, _) => OPEN_PART,
             (true, true) => 0.5,
@@ -117,11 +116,11 @@ impl Component for VacuumCup {
         state.held = if held { part } else { None };
     }
 
-    fn effect(&self, state: &State) -> Effect {
-        Effect::Hold(state.held)
+    fn effect(&self, state: &State) -> Hold {
+        Hold(state.held)
     }
 
-    fn sense(&self, state: &mut State, _: &Inputs, _: &Turn) -> Outputs {
+    fn sense(&self, state: &mut State, _: &Inputs, _: &Turn<Targets>) -> Outputs {
         Outputs {
             vacuum_bar: state.vacuum_bar,
             switch: state.vacuum_bar >= self.p.switch_bar,

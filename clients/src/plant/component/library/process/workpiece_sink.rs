@@ -11,8 +11,8 @@
 use serde::{Deserialize, Serialize};
 
 use crate::plant::component::behaviour::{Component, Start, Turn};
-use crate::plant::component::coupling::{Coupling, Effect};
 use crate::plant::component::declare::{failures, own_types, parameters, signals};
+use crate::plant::coupling::{Collect, Remove, Targets};
 
 parameters! {
     /// Its parameters.
@@ -60,28 +60,27 @@ impl Component for WorkpieceSink {
     const SUMMARY: &'static str = "sink of workpieces: what touches it leaves the world";
     const FORMULA: &'static [&'static str] = &["one target that touches it, each period"];
     const SOURCE: &'static str = "closed form";
-    const COUPLING: Coupling = Coupling::Collect;
-    own_types!();
+    own_types!(moves Collect);
 
     fn new(_: Parameters) -> Self {
         Self
     }
 
-    fn initial(&self, _: &Start) -> State {
+    fn initial(&self, _: &Start<Targets>) -> State {
         State::default()
     }
 
-    fn drive(&self, state: &mut State, inputs: &Inputs, turn: &Turn) {
+    fn drive(&self, state: &mut State, inputs: &Inputs, turn: &Turn<Targets>) {
         let open = inputs.enable && !turn.failed.has(Failure::Blocked);
-        state.taking = if open { turn.seen.target } else { None };
+        state.taking = if open { turn.seen.first } else { None };
         state.count = state.count.saturating_add(i32::from(state.taking.is_some()));
     }
 
-    fn effect(&self, state: &State) -> Effect {
-        state.taking.map_or(Effect::None, Effect::Remove)
+    fn effect(&self, state: &State) -> Remove {
+        Remove(state.taking)
     }
 
-    fn sense(&self, state: &mut State, _: &Inputs, _: &Turn) -> Outputs {
+    fn sense(&self, state: &mut State, _: &Inputs, _: &Turn<Targets>) -> Outputs {
         Outputs { count: state.count, taken: state.taking.is_some() }
     }
 }
@@ -97,7 +96,7 @@ mod tests {
         assert_eq!(rig.run(Inputs { enable: true }, 0.01, 3).count, 0);
         rig.seen = touched(2);
         assert_eq!(rig.run(Inputs { enable: true }, 0.01, 1).count, 1);
-        assert_eq!(rig.component.effect(&rig.state), Effect::Remove(0));
+        assert_eq!(rig.component.effect(&rig.state), Remove(Some(0)));
         assert!(!rig.run(Inputs { enable: false }, 0.01, 1).taken);
     }
 

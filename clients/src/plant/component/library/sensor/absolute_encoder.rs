@@ -10,8 +10,8 @@
 use serde::{Deserialize, Serialize};
 
 use crate::plant::component::behaviour::{Component, Start, Turn};
-use crate::plant::component::coupling::Coupling;
 use crate::plant::component::declare::{failures, own_types, parameters, signals};
+use crate::plant::coupling::{Coordinate, Measures};
 
 parameters! {
     /// Its parameters.
@@ -68,19 +68,18 @@ impl Component for AbsoluteEncoder {
     const SUMMARY: &'static str = "absolute encoder: position as a binary or a Gray number";
     const FORMULA: &'static [&'static str] = &["n = floor(2^b (x - x_0)/X) mod 2^b", "Gray: n xor (n >> 1)"];
     const SOURCE: &'static str = "F. Gray, US patent 2632058 (1953)";
-    const COUPLING: Coupling = Coupling::Measures;
-    own_types!();
+    own_types!(sees Measures);
 
     fn new(p: Parameters) -> Self {
         Self { p }
     }
 
-    fn initial(&self, _: &Start) -> State {
+    fn initial(&self, _: &Start<Coordinate>) -> State {
         State::default()
     }
 
-    fn sense(&self, state: &mut State, _: &Inputs, turn: &Turn) -> Outputs {
-        let position = turn.seen.joint.map_or(0.0, |joint| joint.position);
+    fn sense(&self, state: &mut State, _: &Inputs, turn: &Turn<Coordinate>) -> Outputs {
+        let position = turn.seen.position;
         let codes = 1_i64 << self.p.bits;
         let number = ((position - self.p.offset) / self.p.span * codes as f64).floor() as i64;
         let binary = number.rem_euclid(codes) as u32;
@@ -98,10 +97,9 @@ mod tests {
     use super::*;
     use crate::plant::component::tests::Rig;
 
-    use crate::plant::component::coupling::{Coordinate, Seen};
 
     fn at(rig: &mut Rig<AbsoluteEncoder>, position: f64) -> i32 {
-        rig.seen = Seen { joint: Some(Coordinate { position, velocity: 0.0 }), ..Seen::default() };
+        rig.seen = Coordinate { position, velocity: 0.0 };
         rig.run(Inputs {}, 0.001, 1).code
     }
 

@@ -10,9 +10,9 @@
 use serde::{Deserialize, Serialize};
 
 use crate::plant::component::behaviour::{Component, Start, Turn};
-use crate::plant::component::coupling::{Coupling, Effect};
 use crate::plant::component::declare::{failures, own_types, parameters, signals};
 use crate::plant::component::dynamics::ramp;
+use crate::plant::coupling::{Hold, Holds, Targets};
 
 parameters! {
     /// Its parameters.
@@ -71,18 +71,17 @@ impl Component for Gripper {
     const SUMMARY: &'static str = "parallel gripper: closes over its stroke and holds what it meets";
     const FORMULA: &'static [&'static str] = &["d way/dt = ±1/stroke_s", "holds from way = grip_pct on"];
     const SOURCE: &'static str = "closed form";
-    const COUPLING: Coupling = Coupling::Touch;
-    own_types!();
+    own_types!(moves Holds);
 
     fn new(p: Parameters) -> Self {
         Self { p }
     }
 
-    fn initial(&self, _: &Start) -> State {
+    fn initial(&self, _: &Start<Targets>) -> State {
         State::default()
     }
 
-    fn drive(&self, state: &mut State, inputs: &Inputs, turn: &Turn) {
+    fn drive(&self, state: &mut State, inputs: &Inputs, turn: &Turn<Targets>) {
         let grip = 0.01 * self.p.grip_pct;
         if turn.failed.has(Failure::Worn) {
             state.held = None;
@@ -96,16 +95,16 @@ impl Component for Gripper {
         if !inputs.close {
             state.held = None;
         } else if before < grip && state.way >= grip && !turn.failed.has(Failure::Worn) {
-            state.held = turn.seen.target;
+            state.held = turn.seen.first;
             state.way = if state.held.is_some() { grip } else { state.way };
         }
     }
 
-    fn effect(&self, state: &State) -> Effect {
-        Effect::Hold(state.held)
+    fn effect(&self, state: &State) -> Hold {
+        Hold(state.held)
     }
 
-    fn sense(&self, state: &mut State, _: &Inputs, _: &Turn) -> Outputs {
+    fn sense(&self, state: &mut State, _: &Inputs, _: &Turn<Targets>) -> Outputs {
         Outputs { opened: state.way <= 0.0, shut: state.way >= 1.0, holding: state.held.is_some() }
     }
 }

@@ -12,8 +12,8 @@
 use serde::{Deserialize, Serialize};
 
 use crate::plant::component::behaviour::{Component, Start, Turn};
-use crate::plant::component::coupling::{Coupling, Effect};
 use crate::plant::component::declare::{failures, own_types, parameters, signals};
+use crate::plant::coupling::{Place, Put, Targets};
 
 parameters! {
     /// Its parameters.
@@ -72,18 +72,17 @@ impl Component for WorkpieceSource {
     const SUMMARY: &'static str = "source of workpieces, in intervals or on demand";
     const FORMULA: &'static [&'static str] = &["one each interval_s, or on a rising release"];
     const SOURCE: &'static str = "closed form";
-    const COUPLING: Coupling = Coupling::Place;
-    own_types!();
+    own_types!(moves Place);
 
     fn new(p: Parameters) -> Self {
         Self { p }
     }
 
-    fn initial(&self, _: &Start) -> State {
+    fn initial(&self, _: &Start<Targets>) -> State {
         State::default()
     }
 
-    fn drive(&self, state: &mut State, inputs: &Inputs, turn: &Turn) {
+    fn drive(&self, state: &mut State, inputs: &Inputs, turn: &Turn<Targets>) {
         let before = std::mem::replace(&mut state.released, inputs.release);
         let asked = inputs.release && !before;
         // time runs while it is enabled; a rounding less than the interval is no reason to wait
@@ -93,18 +92,18 @@ impl Component for WorkpieceSource {
         let due = inputs.enable && since_s.is_none_or(|since_s| since_s >= interval_s * (1.0 - 1e-12));
         state.since_s = if inputs.enable { since_s.or(Some(0.0)) } else { None };
         state.placing = None;
-        if (due || asked) && !turn.failed.has(Failure::Empty) && turn.seen.target.is_some() {
-            state.placing = turn.seen.target;
+        if (due || asked) && !turn.failed.has(Failure::Empty) && turn.seen.first.is_some() {
+            state.placing = turn.seen.first;
             state.count = state.count.saturating_add(1);
             state.since_s = if due { Some(0.0) } else { state.since_s };
         }
     }
 
-    fn effect(&self, state: &State) -> Effect {
-        state.placing.map_or(Effect::None, Effect::Place)
+    fn effect(&self, state: &State) -> Put {
+        Put(state.placing)
     }
 
-    fn sense(&self, state: &mut State, _: &Inputs, turn: &Turn) -> Outputs {
+    fn sense(&self, state: &mut State, _: &Inputs, turn: &Turn<Targets>) -> Outputs {
         Outputs { count: state.count, waiting: turn.seen.count as i32 }
     }
 }

@@ -11,8 +11,8 @@
 use serde::{Deserialize, Serialize};
 
 use crate::plant::component::behaviour::{Component, Conflict, Start, Turn};
-use crate::plant::component::coupling::Coupling;
 use crate::plant::component::declare::{failures, own_types, parameters, signals};
+use crate::plant::coupling::{Coordinate, Measures};
 
 parameters! {
     /// A switch and its cam; positions in m, or in rad on a revolute joint.
@@ -86,8 +86,7 @@ impl Component for LimitSwitch {
     const FORMULA: &'static [&'static str] =
         &["operated in [from, to], released outside [from - d, to + d]", "bounces for bounce_s after a change"];
     const SOURCE: &'static str = "IEC 60947-5-1";
-    const COUPLING: Coupling = Coupling::Measures;
-    own_types!();
+    own_types!(sees Measures);
 
     fn new(p: Parameters) -> Self {
         Self { p }
@@ -97,14 +96,14 @@ impl Component for LimitSwitch {
         (p.from > p.to).then_some(Conflict { key: "to", wanted: "a number from `from` on" })
     }
 
-    fn initial(&self, start: &Start) -> State {
-        let position = start.joint.map_or(f64::NEG_INFINITY, |joint| joint.position);
+    fn initial(&self, start: &Start<Coordinate>) -> State {
+        let position = start.seen.position;
         State { operated: position >= self.p.from && position <= self.p.to, since_s: None }
     }
 
-    fn sense(&self, state: &mut State, _: &Inputs, turn: &Turn) -> Outputs {
+    fn sense(&self, state: &mut State, _: &Inputs, turn: &Turn<Coordinate>) -> Outputs {
         let margin = if state.operated { self.p.differential } else { 0.0 };
-        let position = turn.seen.joint.map_or(f64::NEG_INFINITY, |joint| joint.position);
+        let position = turn.seen.position;
         let inside = position >= self.p.from - margin && position <= self.p.to + margin;
         let operated = inside && !turn.failed.has(Failure::Bent);
         state.since_s = if operated == state.operated { state.since_s.map(|since| since + turn.dt_s) } else { Some(0.0) };
@@ -118,7 +117,6 @@ impl Component for LimitSwitch {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::plant::component::coupling::{Coordinate, Seen};
     use crate::plant::component::tests::Rig;
 
     fn rig(mut p: Parameters) -> Rig<LimitSwitch> {
@@ -127,7 +125,7 @@ mod tests {
     }
 
     fn at(rig: &mut Rig<LimitSwitch>, position: f64) -> bool {
-        rig.seen = Seen { joint: Some(Coordinate { position, velocity: 0.0 }), ..Seen::default() };
+        rig.seen = Coordinate { position, velocity: 0.0 };
         rig.run(Inputs {}, 0.001, 1).contact
     }
 

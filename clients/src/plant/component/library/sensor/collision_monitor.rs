@@ -10,8 +10,8 @@
 use serde::{Deserialize, Serialize};
 
 use crate::plant::component::behaviour::{Component, Start, Turn};
-use crate::plant::component::coupling::Coupling;
 use crate::plant::component::declare::{failures, own_types, parameters, signals};
+use crate::plant::coupling::Meet;
 
 parameters! {
     /// Its parameters.
@@ -58,19 +58,18 @@ impl Component for CollisionMonitor {
     const SUMMARY: &'static str = "collision monitor: counts contacts between bodies that should never meet";
     const FORMULA: &'static [&'static str] = &["collisions += max(0, touching - touching a scan ago)"];
     const SOURCE: &'static str = "closed form; crash of packages in the filling machine (Sivtoft 2002, 5.1)";
-    const COUPLING: Coupling = Coupling::Meet;
-    own_types!();
+    own_types!(sees Meet);
 
     fn new(_: Parameters) -> Self {
         Self
     }
 
-    fn initial(&self, _: &Start) -> State {
+    fn initial(&self, _: &Start<u32>) -> State {
         State::default()
     }
 
-    fn sense(&self, state: &mut State, _: &Inputs, turn: &Turn) -> Outputs {
-        let touching = if turn.failed.has(Failure::Blind) { 0 } else { turn.seen.count };
+    fn sense(&self, state: &mut State, _: &Inputs, turn: &Turn<u32>) -> Outputs {
+        let touching = if turn.failed.has(Failure::Blind) { 0 } else { turn.seen };
         let made = touching.saturating_sub(state.touching);
         state.touching = touching;
         state.collisions = state.collisions.saturating_add_unsigned(made);
@@ -81,7 +80,6 @@ impl Component for CollisionMonitor {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::plant::component::coupling::Seen;
     use crate::plant::component::tests::Rig;
 
     #[test]
@@ -90,7 +88,7 @@ mod tests {
         let counts: Vec<_> = [0, 1, 1, 2, 0, 1]
             .iter()
             .map(|count| {
-                rig.seen = Seen { count: *count, ..Seen::default() };
+                rig.seen = *count;
                 rig.run(Inputs {}, 0.01, 1).collisions
             })
             .collect();
@@ -100,7 +98,7 @@ mod tests {
     #[test]
     fn each_failure_has_its_effect() {
         let mut rig = Rig::new(CollisionMonitor::new(Parameters {})).failing(Failure::Blind);
-        rig.seen = Seen { count: 3, ..Seen::default() };
+        rig.seen = 3;
         assert_eq!(rig.run(Inputs {}, 0.01, 2), Outputs::default());
     }
 }

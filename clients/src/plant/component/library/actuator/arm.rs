@@ -10,8 +10,8 @@
 use serde::{Deserialize, Serialize};
 
 use crate::plant::component::behaviour::{Component, Start, Turn};
-use crate::plant::component::coupling::{Coupling, Effect};
 use crate::plant::component::declare::{failures, own_types, parameters, signals};
+use crate::plant::coupling::{Hold, Holds, Targets};
 
 parameters! {
     /// Its parameters.
@@ -60,30 +60,29 @@ impl Component for Arm {
     const SUMMARY: &'static str = "arm with reversed logic: false grips, true drops";
     const FORMULA: &'static [&'static str] = &["drop = false or hold: holds what touches it", "drop = true: lets go"];
     const SOURCE: &'static str = "class Arm of the filling machine (Sivtoft 2002, 4.2.3 and A5)";
-    const COUPLING: Coupling = Coupling::Touch;
-    own_types!();
+    own_types!(moves Holds);
 
     fn new(_: Parameters) -> Self {
         Self
     }
 
-    fn initial(&self, _: &Start) -> State {
+    fn initial(&self, _: &Start<Targets>) -> State {
         State::default()
     }
 
-    fn drive(&self, state: &mut State, inputs: &Inputs, turn: &Turn) {
+    fn drive(&self, state: &mut State, inputs: &Inputs, turn: &Turn<Targets>) {
         let drop = inputs.drop && !inputs.hold;
         state.held = match (drop && !turn.failed.has(Failure::Stuck), turn.failed.has(Failure::Weak)) {
             (true, _) | (_, true) => None,
-            (false, false) => state.held.or(turn.seen.target),
+            (false, false) => state.held.or(turn.seen.first),
         };
     }
 
-    fn effect(&self, state: &State) -> Effect {
-        Effect::Hold(state.held)
+    fn effect(&self, state: &State) -> Hold {
+        Hold(state.held)
     }
 
-    fn sense(&self, state: &mut State, _: &Inputs, _: &Turn) -> Outputs {
+    fn sense(&self, state: &mut State, _: &Inputs, _: &Turn<Targets>) -> Outputs {
         Outputs { holding: state.held.is_some() }
     }
 }
@@ -109,7 +108,7 @@ mod tests {
         assert!(!rig.run(DROP, 0.01, 1).holding && rig.run(GRIP, 0.01, 1).holding);
         rig.seen = touched(0);
         assert!(rig.run(GRIP, 0.01, 1).holding, "held, whether it touches or not");
-        assert_eq!(rig.component.effect(&rig.state), Effect::Hold(Some(0)));
+        assert_eq!(rig.component.effect(&rig.state), Hold(Some(0)));
         assert!(!rig.run(DROP, 0.01, 1).holding && !rig.run(GRIP, 0.01, 1).holding, "nothing there");
     }
 

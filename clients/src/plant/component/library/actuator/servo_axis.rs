@@ -21,10 +21,10 @@
 use serde::{Deserialize, Serialize};
 
 use crate::plant::component::behaviour::{Component, Conflict, Start, Turn};
-use crate::plant::component::coupling::{Coupling, Effect};
 use crate::plant::component::declare::{failures, own_types, parameters, signals};
 use crate::plant::component::dynamics::{Resistance, Travel, ramp, substeps};
 use crate::plant::component::profile::{Limits, Point, Profile};
+use crate::plant::coupling::{Coordinate, Move, Slides};
 
 /// Longest sub-step.
 const LONGEST_S: f64 = 0.25e-3;
@@ -148,13 +148,25 @@ pub(crate) enum Doing {
     Error,
 }
 
+/// Ramps down to rest, and stands then.
+const STOPPING: Doing = Doing::Velocity { wanted_m_s: 0.0, homing: false };
+
+/// True if one way of jogging is asked for; both at once ask for none.
+fn jogs(inputs: &Inputs) -> bool {
+    inputs.jog_forward != inputs.jog_reverse
+}
+
 /// What it remembers.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct State {
     doing: Doing,
+    /// Where the drive wants the axis.
     set: Point,
+    /// Where the axis is.
     axis: Travel,
+    /// Where the axis was as the period began.
     from_m: f64,
+    /// What the drive knows of where the axis is.
     encoder_m: f64,
     /// Coordinate that the drive calls 0.
     zero_m: f64,
@@ -179,34 +191,59 @@ impl ServoAxis {
     }
 
     /// What the inputs make of what it is doing.
-    fn decide(&self, state: &mut State, inputs: &Inputs, turn: &Turn) {
+    ///
+    /// Commands act on their rising edges, so that a held input starts nothing twice. Trips come before
+    /// all commands: a fault of the drive, or a set point that has left the encoder too far behind
+    /// while the drive holds the axis.
+    fn decide(&self, state: &mut State, inputs: &Inputs, turn: &Turn<Option<Coordinate>>) {
         let now = [inputs.execute, inputs.home, inputs.reset];
         let [execute, home, reset] = [0, 1, 2].map(|i| now[i] && !state.before[i]);
         state.before = now;
+        let faulty = turn.failed.has(Failure::DriveFault);
         let following = (state.set.way - state.encoder_m).abs() > self.p.following_max_m;
         let held = !matches!(state.doing, Doing::Off | Doing::Error);
-        if turn.failed.has(Failure::DriveFault) || (held && following) {
+        if faulty || (held && following) {
             state.doing = Doing::Error;
         }
         state.doing = match state.doing {
-            Doing::Error if reset && !turn.failed.has(Failure::DriveFault) => Doing::Off,
+            // an error stays until it is reset, enabled or not, and no reset ends a fault that lasts
+            Doing::Error if reset && !faulty => Doing::Off,
             Doing::Error => Doing::Error,
+            // without `enable` whatever it does ends at once, and every command is lost
             _ if !inputs.enable => Doing::Off,
+            // enabling takes a period of its own: the set point starts from the encoder at rest
             Doing::Off => Doing::Standing,
-            Doing::Standing if execute => self.start(state, inputs),
-            Doing::Standing if home => Doing::Velocity { wanted_m_s: -self.p.homing_m_s, homing: true },
-            Doing::Standing if inputs.jog_forward != inputs.jog_reverse => self.jog(inputs),
-            Doing::Velocity { homing: true, .. } if self.reference(state, turn) => {
-                (state.homed, state.zero_m) = (true, self.p.reference_m);
-                Doing::Velocity { wanted_m_s: 0.0, homing: false }
-            }
-            Doing::Moving { .. } | Doing::Velocity { homing: true, .. } if inputs.halt => Doing::Velocity { wanted_m_s: 0.0, homing: false },
-            Doing::Velocity { homing: false, .. } if inputs.jog_forward != inputs.jog_reverse && !inputs.halt => {
-                self.jog(inputs)
-            }
-            Doing::Velocity { homing: false, .. } => Doing::Velocity { wanted_m_s: 0.0, homing: false },
-            other => other,
+            Doing::Standing => self.from_rest(state, inputs, [execute, home]),
+            Doing::Velocity { homing: true, .. } => self.home(state, inputs, turn),
+            Doing::Moving { .. } if inputs.halt => STOPPING,
+            // a move goes on to its target: a new `execute` waits for rest
+            moving @ Doing::Moving { .. } => moving,
+            Doing::Velocity { homing: false, .. } if jogs(inputs) && !inputs.halt => self.jog(inputs),
+            Doing::Velocity { homing: false, .. } => STOPPING,
         };
+    }
+
+    /// What starts at rest: of commands in one period a move comes before homing, homing before a jog.
+    fn from_rest(&self, state: &mut State, inputs: &Inputs, [execute, home]: [bool; 2]) -> Doing {
+        if execute {
+            self.start(state, inputs)
+        } else if home {
+            Doing::Velocity { wanted_m_s: -self.p.homing_m_s, homing: true }
+        } else if jogs(inputs) {
+            self.jog(inputs)
+        } else {
+            Doing::Standing
+        }
+    }
+
+    /// Homing goes on to the reference switch. The switch comes before `halt`: an axis that reaches it
+    /// in the period of the halt is homed, and stops all the same.
+    fn home(&self, state: &mut State, inputs: &Inputs, turn: &Turn<Option<Coordinate>>) -> Doing {
+        if self.reference(state, turn) {
+            (state.homed, state.zero_m) = (true, self.p.reference_m);
+            return STOPPING;
+        }
+        if inputs.halt { STOPPING } else { state.doing }
     }
 
     fn start(&self, state: &mut State, inputs: &Inputs) -> Doing {
@@ -249,7 +286,7 @@ impl ServoAxis {
         }
     }
 
-    fn substep(&self, state: &mut State, turn: &Turn, dt_s: f64) {
+    fn substep(&self, state: &mut State, turn: &Turn<Option<Coordinate>>, dt_s: f64) {
         let p = &self.p;
         let held = !matches!(state.doing, Doing::Off | Doing::Error);
         let most = OVERSPEED * p.speed_m_s;
@@ -273,7 +310,7 @@ impl ServoAxis {
         self.set(state, dt_s);
     }
 
-    fn reference(&self, state: &State, turn: &Turn) -> bool {
+    fn reference(&self, state: &State, turn: &Turn<Option<Coordinate>>) -> bool {
         state.axis.position <= self.p.reference_m && !turn.failed.has(Failure::ReferenceDead)
     }
 }
@@ -289,8 +326,7 @@ impl Component for ServoAxis {
     ];
     const SOURCE: &'static str =
         "L. Biagiotti, C. Melchiorri, Trajectory Planning, 2008, 3.4; PLCopen Motion Control 2.0 (states)";
-    const COUPLING: Coupling = Coupling::Slides;
-    own_types!();
+    own_types!(moves Slides);
 
     fn new(p: Parameters) -> Self {
         Self { p, longest_s: LONGEST_S }
@@ -307,8 +343,8 @@ impl Component for ServoAxis {
         (!inside(p.reference_m)).then_some(Conflict { key: "reference_m", wanted: "a number from `lower_m` to `upper_m`" })
     }
 
-    fn initial(&self, start: &Start) -> State {
-        let position = start.joint.map_or(self.p.initial_m, |joint| joint.position);
+    fn initial(&self, start: &Start<Option<Coordinate>>) -> State {
+        let position = start.seen.map_or(self.p.initial_m, |joint| joint.position);
         State {
             doing: Doing::Off,
             set: Point { way: position, velocity: 0.0 },
@@ -323,8 +359,8 @@ impl Component for ServoAxis {
         }
     }
 
-    fn drive(&self, state: &mut State, inputs: &Inputs, turn: &Turn) {
-        state.axis.yield_to(turn.seen.joint, state.axis.velocity.abs() * turn.dt_s + 1e-4);
+    fn drive(&self, state: &mut State, inputs: &Inputs, turn: &Turn<Option<Coordinate>>) {
+        state.axis.yield_to(turn.seen, state.axis.velocity.abs() * turn.dt_s + 1e-4);
         state.from_m = state.axis.position;
         self.decide(state, inputs, turn);
         let (count, dt_s) = substeps(turn.dt_s, self.longest_s);
@@ -333,11 +369,11 @@ impl Component for ServoAxis {
         }
     }
 
-    fn effect(&self, state: &State) -> Effect {
-        Effect::Move { from: state.from_m, to: state.axis.position, effort_max: self.p.force_max_n }
+    fn effect(&self, state: &State) -> Move {
+        Move { from: state.from_m, to: state.axis.position, effort_max: self.p.force_max_n }
     }
 
-    fn sense(&self, state: &mut State, _: &Inputs, turn: &Turn) -> Outputs {
+    fn sense(&self, state: &mut State, _: &Inputs, turn: &Turn<Option<Coordinate>>) -> Outputs {
         let near = state.target_m.is_some_and(|target| (target - state.encoder_m).abs() <= self.p.window_m);
         Outputs {
             ready: !matches!(state.doing, Doing::Off | Doing::Error),

@@ -23,10 +23,10 @@ use std::f64::consts::FRAC_PI_4;
 use serde::{Deserialize, Serialize};
 
 use crate::plant::component::behaviour::{Component, Conflict, Start, Turn};
-use crate::plant::component::coupling::{Coupling, Effect};
 use crate::plant::component::declare::{choice, failures, own_types, parameters, signals};
 use crate::plant::component::dynamics::{Resistance, Travel, lag, substeps};
 use crate::plant::component::fluid::{BAR_PA, implicit_pa, oil_m3_s};
+use crate::plant::coupling::{Coordinate, Move, Slides};
 
 /// Longest sub-step.
 const LONGEST_S: f64 = 50e-6;
@@ -177,7 +177,7 @@ impl HydraulicCylinder {
         }
     }
 
-    fn substep(&self, state: &mut State, supply_pa: f64, turn: &Turn, dt_s: f64) {
+    fn substep(&self, state: &mut State, supply_pa: f64, turn: &Turn<Option<Coordinate>>, dt_s: f64) {
         let p = &self.p;
         let (x, v) = (state.rod.position, state.rod.velocity);
         let (dead_m3, bulk_pa) = (p.dead_cm3 * 1e-6, p.bulk_bar * BAR_PA);
@@ -218,8 +218,7 @@ impl Component for HydraulicCylinder {
         "fed forward: u = A v / (Q_N √(Δp/Δp_N))",
     ];
     const SOURCE: &'static str = "M. Jelali, A. Kroll, Hydraulic Servo-systems, 2003, ch. 4; Nyyssönen 2018, 3.1.4";
-    const COUPLING: Coupling = Coupling::Slides;
-    own_types!();
+    own_types!(moves Slides);
 
     fn new(p: Parameters) -> Self {
         let cap_m2 = FRAC_PI_4 * p.bore_m * p.bore_m;
@@ -235,8 +234,8 @@ impl Component for HydraulicCylinder {
         (p.initial_m > p.stroke_m).then_some(Conflict { key: "initial_m", wanted: "a number up to `stroke_m`" })
     }
 
-    fn initial(&self, start: &Start) -> State {
-        let position = start.joint.map_or(self.p.initial_m, |joint| joint.position.clamp(0.0, self.p.stroke_m));
+    fn initial(&self, start: &Start<Option<Coordinate>>) -> State {
+        let position = start.seen.map_or(self.p.initial_m, |joint| joint.position.clamp(0.0, self.p.stroke_m));
         // the pressures that hold the load, as oil that was locked in does
         let load_n = self.p.load_n;
         State {
@@ -248,10 +247,10 @@ impl Component for HydraulicCylinder {
         }
     }
 
-    fn drive(&self, state: &mut State, inputs: &Inputs, turn: &Turn) {
+    fn drive(&self, state: &mut State, inputs: &Inputs, turn: &Turn<Option<Coordinate>>) {
         let lost = turn.failed.has(Failure::NoSupply);
         let supply_pa = if lost { self.p.tank_bar } else { self.p.supply_bar } * BAR_PA;
-        state.rod.yield_to(turn.seen.joint, state.rod.velocity.abs() * turn.dt_s + 1e-4);
+        state.rod.yield_to(turn.seen, state.rod.velocity.abs() * turn.dt_s + 1e-4);
         state.from_m = state.rod.position;
         let (count, dt_s) = substeps(turn.dt_s, self.longest_s);
         for _ in 0..count {
@@ -267,16 +266,16 @@ impl Component for HydraulicCylinder {
         }
     }
 
-    fn effect(&self, state: &State) -> Effect {
+    fn effect(&self, state: &State) -> Move {
         let greatest = (state.cap_pa * self.cap_m2).max(state.rod_pa * self.ring_m2);
-        Effect::Move { from: state.from_m, to: state.rod.position, effort_max: greatest }
+        Move { from: state.from_m, to: state.rod.position, effort_max: greatest }
     }
 
-    fn sense(&self, state: &mut State, _: &Inputs, turn: &Turn) -> Outputs {
-        let position_m = turn.seen.joint.map_or(state.rod.position, |joint| joint.position);
+    fn sense(&self, state: &mut State, _: &Inputs, turn: &Turn<Option<Coordinate>>) -> Outputs {
+        let position_m = turn.seen.map_or(state.rod.position, |joint| joint.position);
         Outputs {
             position_m,
-            velocity_m_s: turn.seen.joint.map_or(state.rod.velocity, |joint| joint.velocity),
+            velocity_m_s: turn.seen.map_or(state.rod.velocity, |joint| joint.velocity),
             cap_bar: state.cap_pa / BAR_PA,
             rod_bar: state.rod_pa / BAR_PA,
             spool: state.spool,

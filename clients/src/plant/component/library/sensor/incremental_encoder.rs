@@ -11,8 +11,8 @@
 use serde::{Deserialize, Serialize};
 
 use crate::plant::component::behaviour::{Component, Start, Turn};
-use crate::plant::component::coupling::Coupling;
 use crate::plant::component::declare::{failures, own_types, parameters, signals};
+use crate::plant::coupling::{Coordinate, Measures};
 
 parameters! {
     /// Its parameters.
@@ -70,19 +70,18 @@ impl Component for IncrementalEncoder {
     const SUMMARY: &'static str = "incremental encoder: tracks A and B in quadrature, zero pulse, count";
     const FORMULA: &'static [&'static str] = &["n = floor(4 N x / X)", "A: n mod 4 in {1, 2}, B: n mod 4 in {2, 3}"];
     const SOURCE: &'static str = "IEC 61800-7-1, annex on encoder feedback";
-    const COUPLING: Coupling = Coupling::Measures;
-    own_types!();
+    own_types!(sees Measures);
 
     fn new(p: Parameters) -> Self {
         Self { p }
     }
 
-    fn initial(&self, start: &Start) -> State {
-        State { start: start.joint.map_or(0.0, |joint| joint.position), quarters: 0 }
+    fn initial(&self, start: &Start<Coordinate>) -> State {
+        State { start: start.seen.position, quarters: 0 }
     }
 
-    fn sense(&self, state: &mut State, _: &Inputs, turn: &Turn) -> Outputs {
-        let moved = turn.seen.joint.map_or(0.0, |joint| joint.position - state.start);
+    fn sense(&self, state: &mut State, _: &Inputs, turn: &Turn<Coordinate>) -> Outputs {
+        let moved = turn.seen.position - state.start;
         if !turn.failed.has(Failure::Slipping) {
             state.quarters = (4.0 * f64::from(self.p.lines) * moved / self.p.span).floor() as i64;
         }
@@ -102,10 +101,9 @@ mod tests {
     use super::*;
     use crate::plant::component::tests::Rig;
 
-    use crate::plant::component::coupling::{Coordinate, Seen};
 
     fn at(rig: &mut Rig<IncrementalEncoder>, position: f64) -> Outputs {
-        rig.seen = Seen { joint: Some(Coordinate { position, velocity: 0.0 }), ..Seen::default() };
+        rig.seen = Coordinate { position, velocity: 0.0 };
         rig.run(Inputs {}, 0.001, 1)
     }
 

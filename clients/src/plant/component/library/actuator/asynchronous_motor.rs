@@ -17,9 +17,9 @@ use std::f64::consts::TAU;
 use serde::{Deserialize, Serialize};
 
 use crate::plant::component::behaviour::{Component, Start, Turn};
-use crate::plant::component::coupling::{Coupling, Effect};
 use crate::plant::component::declare::{failures, own_types, parameters, signals};
 use crate::plant::component::dynamics::{Travel, ramp, substeps};
+use crate::plant::coupling::{Coordinate, Move, Turns};
 
 /// Longest sub-step.
 const LONGEST_S: f64 = 0.5e-3;
@@ -147,26 +147,25 @@ impl Component for AsynchronousMotor {
     const FORMULA: &'static [&'static str] =
         &["ω_s = 2π f / p", "s = (ω_s - ω) / ω_s,N", "M = 2 M_k / (s/s_k + s_k/s)", "J dω/dt = M - M_load - d ω"];
     const SOURCE: &'static str = "M. Kloss, Archiv für Elektrotechnik 5 (1916)";
-    const COUPLING: Coupling = Coupling::Turns;
-    own_types!();
+    own_types!(moves Turns);
 
     fn new(p: Parameters) -> Self {
         let rated_rad_s = TAU * p.frequency_hz / f64::from(p.pole_pairs);
         Self { p, rated_rad_s, longest_s: LONGEST_S }
     }
 
-    fn initial(&self, start: &Start) -> State {
-        let position = start.joint.map_or(0.0, |joint| joint.position);
+    fn initial(&self, start: &Start<Option<Coordinate>>) -> State {
+        let position = start.seen.map_or(0.0, |joint| joint.position);
         let shaft = Travel { position, velocity: 0.0 };
         State { frequency_hz: 0.0, torque_nm: 0.0, shaft, from_rad: position }
     }
 
-    fn drive(&self, state: &mut State, inputs: &Inputs, turn: &Turn) {
+    fn drive(&self, state: &mut State, inputs: &Inputs, turn: &Turn<Option<Coordinate>>) {
         let tripped = turn.failed.has(Failure::Tripped);
         let sign = if inputs.reverse { -1.0 } else { 1.0 };
         let wanted = if inputs.run && !tripped { sign * inputs.setpoint.clamp(0.0, 1.0) } else { 0.0 };
         let wanted_hz = wanted * self.p.frequency_hz;
-        state.shaft.yield_to(turn.seen.joint, state.shaft.velocity.abs() * turn.dt_s + 1e-3);
+        state.shaft.yield_to(turn.seen, state.shaft.velocity.abs() * turn.dt_s + 1e-3);
         state.from_rad = state.shaft.position;
         let (count, dt_s) = substeps(turn.dt_s, self.longest_s);
         for _ in 0..count {
@@ -190,12 +189,12 @@ impl Component for AsynchronousMotor {
         }
     }
 
-    fn effect(&self, state: &State) -> Effect {
-        Effect::Move { from: state.from_rad, to: state.shaft.position, effort_max: self.p.pull_out_nm }
+    fn effect(&self, state: &State) -> Move {
+        Move { from: state.from_rad, to: state.shaft.position, effort_max: self.p.pull_out_nm }
     }
 
-    fn sense(&self, state: &mut State, inputs: &Inputs, turn: &Turn) -> Outputs {
-        let velocity_rad_s = turn.seen.joint.map_or(state.shaft.velocity, |joint| joint.velocity);
+    fn sense(&self, state: &mut State, inputs: &Inputs, turn: &Turn<Option<Coordinate>>) -> Outputs {
+        let velocity_rad_s = turn.seen.map_or(state.shaft.velocity, |joint| joint.velocity);
         let wanted = inputs.setpoint.clamp(0.0, 1.0) * self.rated_rad_s;
         let near = (velocity_rad_s.abs() - wanted).abs() <= 0.01 * self.p.at_speed_pct * wanted;
         Outputs {
