@@ -173,7 +173,8 @@ impl Makeup {
     pub(crate) fn difference(&self, there: &Self) -> Option<CheckpointError> {
         let paths = self.settings.keys().chain(there.settings.keys());
         let setting = paths.filter(|path| self.settings.get(*path) != there.settings.get(*path)).min()?;
-        let value = |of: &Self| of.settings.get(setting).cloned().unwrap_or_else(|| "the scenario's own value".to_owned());
+        let value =
+            |of: &Self| of.settings.get(setting).cloned().unwrap_or_else(|| "the scenario's own value".to_owned());
         Some(CheckpointError::OtherSetting {
             theirs: there.name.clone(),
             ours: self.name.clone(),

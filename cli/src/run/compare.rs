@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use onescan_report::file;
 use onescan_report::plot::Plot;
 use onescan_scenario::{Mode, Scenario};
-use onescan_server::signal::{SignalType, SignalName};
+use onescan_server::signal::{SignalName, SignalType};
 use serde::Serialize;
 
 use super::config::{Format, RunConfig};

@@ -5,7 +5,7 @@ use onescan_clients::plant::scene::model::{Drive, Scene, When, Wire};
 use onescan_clients::soft_plc::{BindError, bind};
 use onescan_plc_shim::Application;
 use onescan_scenario::compose::Paths;
-use onescan_server::signal::{ClientName, SignalType, SignalDecl, SignalName};
+use onescan_server::signal::{ClientName, SignalDecl, SignalName, SignalType};
 
 /// A signal at a client: its type there, and what it is there.
 #[derive(Clone, Debug)]

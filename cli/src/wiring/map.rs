@@ -3,7 +3,7 @@
 use onescan_scenario::compose::Compiled;
 use onescan_scenario::file::ClientFile;
 use onescan_scenario::{Scenario, ScenarioError};
-use onescan_server::signal::{ClientName, SignalType, SignalName, nearest};
+use onescan_server::signal::{ClientName, SignalName, SignalType, nearest};
 use serde::Serialize;
 
 use super::ends::{End, Ends, of_plant, of_plc};

@@ -106,6 +106,7 @@
 //! |---|---|
 //! | `format` | the tables and keys of the file |
 //! | `faults` | gathering faults, finding their lines |
+//! | `placed` | a value with its place in the file |
 //! | `number`, `names` | what a number and a name must be |
 //! | `arrays` | one table for many things |
 //! | `robots` | the tables that a URDF file stands for |
@@ -131,19 +132,20 @@ mod meshes;
 pub mod model;
 mod names;
 mod number;
+mod placed;
 mod robots;
 pub mod schema;
 mod sensors;
 mod shapes;
 mod signals;
 
-use toml::Spanned;
+use placed::Placed;
 
 pub use error::{SceneError, SceneFault, SceneFaultKind, Thing};
 pub use failures::UnknownFailure;
 pub use model::Scene;
 
-use bindings::Placed;
+use bindings::Lookup;
 use faults::Faults;
 use format::SceneFile;
 use names::Names;
@@ -195,7 +197,7 @@ fn check(written: &SceneFile, faults: &mut Faults<'_>) -> Scene {
     let scene_joints = joints::check(&written.joint, &written.body, &bodies, faults);
     let axes = axes::check(written, &bodies, &joints, &mut signals, faults);
     let sensors = sensors::check(written, &bodies, &joints, &mut signals, faults);
-    let placed = Placed { file: written, bodies: &bodies, shapes: &shapes, joints: &joints, axes: &axes };
+    let placed = Lookup { file: written, bodies: &bodies, shapes: &shapes, joints: &joints, axes: &axes };
     let (mut components, lost) = components::check(&placed, &mut signals, faults);
     failures::check(&written.failure, (&mut components, &lost), &mut signals, faults);
     let conditions = conditions::check(&written.signal, &mut signals, faults);
@@ -220,6 +222,6 @@ fn check(written: &SceneFile, faults: &mut Faults<'_>) -> Scene {
 }
 
 /// The text of a spanned name.
-fn text(name: &Spanned<String>) -> &str {
+fn text(name: &Placed<String>) -> &str {
     name.get_ref()
 }
