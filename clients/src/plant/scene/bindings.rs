@@ -1,6 +1,6 @@
 //! What a component is bound to: the keys of its coupling, found in the scene.
 
-use toml::Spanned;
+use super::placed::Placed;
 
 use super::bodies::GROUND;
 use super::components::Keys;
@@ -14,7 +14,7 @@ use super::text;
 use crate::plant::coupling::{BindingKey, Coupling, Names as Named, Which};
 
 /// What of the scene has its place already.
-pub(super) struct Placed<'s> {
+pub(super) struct Lookup<'s> {
     pub(super) file: &'s SceneFile,
     pub(super) bodies: &'s Names,
     pub(super) shapes: &'s Names,
@@ -22,7 +22,7 @@ pub(super) struct Placed<'s> {
     pub(super) axes: &'s [Axis],
 }
 
-impl Placed<'_> {
+impl Lookup<'_> {
     /// What a component with these keys is bound to; none if a key is wrong. `others` were bound
     /// before.
     pub(super) fn bind(
@@ -140,7 +140,7 @@ impl Placed<'_> {
     fn alone(
         &self,
         driven: Driven,
-        name: &Spanned<String>,
+        name: &Placed<String>,
         others: &[(String, Bound)],
         faults: &mut Faults<'_>,
     ) -> Option<Driven> {
@@ -165,7 +165,7 @@ impl Placed<'_> {
             .or_else(|| component.map(|(name, _)| format!("component `{name}`")))
     }
 
-    fn joint(&self, name: &Spanned<String>, faults: &mut Faults<'_>) -> Option<(usize, JointKind)> {
+    fn joint(&self, name: &Placed<String>, faults: &mut Faults<'_>) -> Option<(usize, JointKind)> {
         let joint = self.joints.find(name, faults)?;
         Some((joint, *self.file.joint[joint].get_ref().kind.get_ref()))
     }
@@ -189,7 +189,7 @@ impl Placed<'_> {
         let name = text(&self.file.body[body].get_ref().name);
         let attached = self.file.shape.iter().any(|shape| text(&shape.get_ref().body) == name);
         if self.file.body[body].get_ref().shape.is_none() && !attached && keys.get("shape").is_none() {
-            let span = keys.get(key).map_or_else(|| keys.kind.span(), Spanned::span);
+            let span = keys.get(key).map_or_else(|| keys.kind.span(), Placed::span);
             faults.add(span, SceneFaultKind::Shapeless(name.to_owned()));
             return None;
         }
@@ -219,7 +219,7 @@ impl Placed<'_> {
         (0..self.file.body.len()).filter(|index| Some(*index) != but && self.is(*index, which)).collect()
     }
 
-    fn named_bodies(&self, names: &[Spanned<String>], which: Which, faults: &mut Faults<'_>) -> Vec<usize> {
+    fn named_bodies(&self, names: &[Placed<String>], which: Which, faults: &mut Faults<'_>) -> Vec<usize> {
         let mut found = Vec::new();
         for name in names {
             let Some(index) = self.bodies.find(name, faults) else { continue };
