@@ -90,7 +90,7 @@ impl Exit for RunError {
             Self::File(error) => error.exit_code(),
             Self::Output(error) => error.exit_code(),
             Self::ClientProcess { .. } | Self::Save(_) | Self::SaveTooLate(_) => ExitCode::Fault,
-            Self::Resume { .. } => ExitCode::WrongInput,
+            Self::Resume { .. } | Self::Timeline(_) => ExitCode::WrongInput,
         }
     }
 }

@@ -142,7 +142,6 @@ mod shapes;
 mod signals;
 
 use serde::Deserialize;
-use toml::Spanned;
 use toml::de::DeTable;
 use placed::Placed;
 
