@@ -22,6 +22,7 @@
 
 pub mod array;
 pub mod gateway;
+#[cfg(feature = "opcua")]
 pub mod information_model;
 pub mod opcua_server;
 pub mod operator;

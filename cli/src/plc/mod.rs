@@ -106,7 +106,7 @@ fn serve(
     if let Some(address) = config.opcua {
         let running = opcua::serve(address, controller, &config.access).map_err(|error| match error {
             ServeError::Io(source) => PlcError::from(ListenError { address, source }),
-            ServeError::Setup(text) => Usage::new(text, None).into(),
+            error => Usage::new(error.to_string(), None).into(),
         })?;
         urls.push(format!("opc.tcp://{}", running.address()));
         served = Some(running);

@@ -48,7 +48,7 @@ pub(super) fn run(
     watch(&mut lockstep);
     if let Some(desk) = &desk {
         lockstep.set_published(desk.published());
-        lockstep.observe(Box::new(desk.observer()));
+        lockstep.observe(desk.observer());
     }
     if config.reports.progress {
         let label = if config.runs == 1 { scenario.name().to_owned() } else { format!("run {number}/{}", config.runs) };
@@ -105,7 +105,6 @@ fn form(
     if let Some(desk) = &desk {
         for client in desk.clients(config.reach.reply_timeout) {
             let request = client.join();
-            let client: Box<dyn Client> = Box::new(client);
             let client = if config.reach.is_watched() { log.watch(client) } else { client };
             formation.join(client).map_err(|refusal| scenario.refused(&request, &refusal))?;
         }

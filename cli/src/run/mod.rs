@@ -34,6 +34,10 @@ pub mod recorded;
 pub mod report;
 pub mod rerun;
 pub(crate) mod sampler;
+#[cfg(feature = "opcua")]
+mod seats;
+#[cfg(not(feature = "opcua"))]
+#[path = "seats_absent.rs"]
 mod seats;
 pub mod session_log;
 pub mod watch;

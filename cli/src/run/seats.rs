@@ -7,8 +7,9 @@ use std::time::{Duration, Instant};
 
 use onescan_clients::information_model::{Board, BoardObserver, SeatedClient, Service, serve};
 use onescan_clients::opcua_server::ServeError;
-use onescan_server::client::JoinRequest;
+use onescan_server::client::{Client, JoinRequest};
 use onescan_server::formation::FormationError;
+use onescan_server::observer::Observer;
 use onescan_server::plan::SessionPlan;
 use onescan_server::published::Published;
 
@@ -61,7 +62,7 @@ impl Seats {
         let address = doors.opcua.unwrap_or(SocketAddr::from((Ipv4Addr::LOCALHOST, 0)));
         let service = serve(address, &board, &doors.access).map_err(|error| match error {
             ServeError::Io(source) => RunError::from(ListenError { address, source }),
-            ServeError::Setup(text) => Usage::new(text, None).into(),
+            error => Usage::new(error.to_string(), None).into(),
         })?;
         if doors.opcua.is_some() {
             tracing::info!(target: NOTICE, "serving the session at {}", service.url());
@@ -72,9 +73,9 @@ impl Seats {
 
 impl Desk {
     /// The clients as the session sees them.
-    pub(super) fn clients(&self, patience: Duration) -> impl Iterator<Item = SeatedClient> {
-        let client = move |(seat, expected): (usize, &Expected)| {
-            SeatedClient::new(Arc::clone(&self.board), seat, expected.request.clone(), patience)
+    pub(super) fn clients(&self, patience: Duration) -> impl Iterator<Item = Box<dyn Client>> {
+        let client = move |(seat, expected): (usize, &Expected)| -> Box<dyn Client> {
+            Box::new(SeatedClient::new(Arc::clone(&self.board), seat, expected.request.clone(), patience))
         };
         self.expected.iter().enumerate().map(client)
     }
@@ -85,8 +86,8 @@ impl Desk {
     }
 
     /// What tells subscribers of each step over OPC UA.
-    pub(super) fn observer(&self) -> BoardObserver {
-        BoardObserver::new(Arc::clone(&self.board))
+    pub(super) fn observer(&self) -> Box<dyn Observer> {
+        Box::new(BoardObserver::new(Arc::clone(&self.board)))
     }
 
     /// Starts those that have a command.

@@ -22,6 +22,10 @@ pub mod controller;
 pub mod cycle;
 pub(crate) mod listen;
 pub mod modbus;
+#[cfg(feature = "opcua")]
+pub mod opcua;
+#[cfg(not(feature = "opcua"))]
+#[path = "opcua_absent.rs"]
 pub mod opcua;
 pub mod tcp;
 pub mod wires;

@@ -1,44 +1,20 @@
 //! An OPC UA server: endpoints, users, certificates, and the thread that it runs on. What it serves is others' business.
 
 use std::net::SocketAddr;
-use std::path::PathBuf;
 use std::thread::JoinHandle;
 
 use opcua::crypto::SecurityPolicy;
 use opcua::server::node_manager::NodeManagerBuilder;
 use opcua::server::{ANONYMOUS_USER_TOKEN_ID, ServerBuilder, ServerHandle, ServerUserToken};
 use opcua::types::MessageSecurityMode;
-use thiserror::Error;
 use tokio::net::TcpListener;
 
+use super::{Access, ServeError};
 use crate::gateway::opcua::pki::Pki;
 use crate::station::listen::bind;
 
 /// Shortest publishing interval, and how often subscriptions are looked at.
 const SUBSCRIPTIONS_MS: u64 = 1;
-
-/// Who is let in.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct Access {
-    /// User and password; without them anybody is let in.
-    pub user: Option<(String, String)>,
-    /// The folder with the server's certificates and those of clients it trusts; with it there are no endpoints
-    /// without security.
-    pub pki: Option<PathBuf>,
-    /// Trust any client's certificate.
-    pub trust_clients: bool,
-}
-
-/// Why there is no server.
-#[derive(Debug, Error)]
-pub enum ServeError {
-    /// The address, or the folder for certificates.
-    #[error(transparent)]
-    Io(#[from] std::io::Error),
-    /// What the server is to be does not go together.
-    #[error("the OPC UA server cannot be set up: {0}")]
-    Setup(String),
-}
 
 /// A server that runs until this is dropped.
 pub struct Running {

@@ -1,0 +1,48 @@
+//! An OPC UA server: endpoints, users, certificates.
+//!
+//! | module | subject |
+//! |---|---|
+//! | `endpoints` | the server itself, with the feature `opcua` |
+//! | `absent` | what stands for it without that feature |
+
+#[cfg(not(feature = "opcua"))]
+mod absent;
+#[cfg(feature = "opcua")]
+mod endpoints;
+
+use std::path::PathBuf;
+
+use thiserror::Error;
+
+#[cfg(not(feature = "opcua"))]
+pub use absent::{ABSENT, Running};
+#[cfg(feature = "opcua")]
+pub use endpoints::Running;
+#[cfg(feature = "opcua")]
+pub(crate) use endpoints::*;
+
+/// Who is let in.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Access {
+    /// User and password; without them anybody is let in.
+    pub user: Option<(String, String)>,
+    /// The folder with the server's certificates and those of clients it trusts; with it there are no endpoints
+    /// without security.
+    pub pki: Option<PathBuf>,
+    /// Trust any client's certificate.
+    pub trust_clients: bool,
+}
+
+/// Why there is no server.
+#[derive(Debug, Error)]
+pub enum ServeError {
+    /// The address, or the folder for certificates.
+    #[error(transparent)]
+    Io(#[from] std::io::Error),
+    /// What the server is to be does not go together.
+    #[error("the OPC UA server cannot be set up: {0}")]
+    Setup(String),
+    /// The program was built without it.
+    #[error("{0}")]
+    Absent(&'static str),
+}
