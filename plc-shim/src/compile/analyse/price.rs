@@ -71,12 +71,12 @@ pub(super) fn binary(operator: Binary, ty: ElementaryType, by_constant: bool) ->
         // Zero and, of signed numbers, -1 are asked for.
         Binary::Divide if ty.is_real() => 8,
         Binary::Divide if ty.is_signed() => 17,
-        Binary::Divide => 1,
-        Binary::DivideAnyway if ty.is_real() => 1,
-        Binary::DivideAnyway => 26,
+        Binary::DivideAnyway if !ty.is_real() => 26,
         Binary::Modulo => 12,
         Binary::Add | Binary::Subtract | Binary::Multiply => 1 + wrap(ty),
-        Binary::And
+        Binary::Divide
+        | Binary::DivideAnyway
+        | Binary::And
         | Binary::Or
         | Binary::Xor
         | Binary::Equal
@@ -107,19 +107,20 @@ pub(super) fn conversion(from: ElementaryType, to: ElementaryType) -> u64 {
 /// Without its operands.
 pub(super) fn intrinsic(intrinsic: Intrinsic, operands: u64, ty: ElementaryType) -> u64 {
     match intrinsic {
-        Intrinsic::Abs if ty.is_real() || !ty.is_signed() => 1,
-        Intrinsic::Max | Intrinsic::Min if ty.is_real() => 1,
-        Intrinsic::Abs | Intrinsic::Max | Intrinsic::Min => 9,
+        Intrinsic::Abs if !ty.is_real() && ty.is_signed() => 9,
+        Intrinsic::Max | Intrinsic::Min if !ty.is_real() => 9,
         Intrinsic::Select => 7,
         Intrinsic::Multiplex => 8 + 8 * operands,
         Intrinsic::ShiftLeft | Intrinsic::ShiftRight => 12,
         Intrinsic::RotateLeft | Intrinsic::RotateRight => 24,
-        Intrinsic::Memory(_) => 30,
+        Intrinsic::Memory(_) | Intrinsic::SwapBytes => 30,
         Intrinsic::FloorRemainder | Intrinsic::FloorMultiple => 17,
-        Intrinsic::SwapBytes => 30,
         Intrinsic::Fraction => 4,
         Intrinsic::Reinterpret => 2,
-        Intrinsic::Sqrt
+        Intrinsic::Abs
+        | Intrinsic::Max
+        | Intrinsic::Min
+        | Intrinsic::Sqrt
         | Intrinsic::Ln
         | Intrinsic::Log
         | Intrinsic::Exp

@@ -127,12 +127,11 @@ impl Walk<'_, '_> {
     }
 
     pub(super) fn full_address(&mut self, place: &Place) {
-        match self.scope.fixed_address(place) {
-            Some(Address { base: Base::Memory, .. }) => self.charge(1),
-            _ => {
-                self.address(place);
-                self.charge(2);
-            }
+        if let Some(Address { base: Base::Memory, .. }) = self.scope.fixed_address(place) {
+            self.charge(1);
+        } else {
+            self.address(place);
+            self.charge(2);
         }
     }
 }

@@ -13,16 +13,13 @@ impl Walk<'_, '_> {
         self.scope.point(call.pointer, address);
         self.statements(&call.inputs);
         let inlined = self.program.inlined(call.pou, &self.scope);
-        match inlined.filter(|_| call.dispatch == Dispatch::Direct) {
-            Some(pou) => {
-                self.enter(call.pou, pou);
-                self.scope.point(INSTANCE, address);
-                self.body(pou);
-            }
-            None => {
-                let size = self.scope.types().size(call.instance.ty);
-                self.call(call.pou, call.dispatch, RunsOn::Instance(Extent::new(address, size)));
-            }
+        if let Some(pou) = inlined.filter(|_| call.dispatch == Dispatch::Direct) {
+            self.enter(call.pou, pou);
+            self.scope.point(INSTANCE, address);
+            self.body(pou);
+        } else {
+            let size = self.scope.types().size(call.instance.ty);
+            self.call(call.pou, call.dispatch, RunsOn::Instance(Extent::new(address, size)));
         }
         self.statements(&call.outputs);
     }
@@ -79,12 +76,11 @@ impl Walk<'_, '_> {
             self.call(call.pou, receiver.dispatch, RunsOn::Anywhere);
         } else {
             self.statements(&call.before);
-            match self.program.inlined(call.pou, &self.scope) {
-                Some(pou) => self.inline_function(call, pou),
-                None => {
-                    self.arguments(&call.arguments);
-                    self.call(call.pou, Dispatch::Direct, RunsOn::Nothing);
-                }
+            if let Some(pou) = self.program.inlined(call.pou, &self.scope) {
+                self.inline_function(call, pou);
+            } else {
+                self.arguments(&call.arguments);
+                self.call(call.pou, Dispatch::Direct, RunsOn::Nothing);
             }
         }
         if let Some(place) = &call.result {
