@@ -176,7 +176,7 @@ pub struct ExpectFile {
     pub about: Option<String>,
 }
 
-/// The OPC-like link between free-wheeling clients (seed 004 sec. II-C and III).
+/// The OPC-like link between free-wheeling clients (`[SDSP]` sec. II-C and III).
 #[derive(Clone, Debug, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct FreewheelFile {
@@ -189,7 +189,7 @@ pub struct FreewheelFile {
 }
 
 impl Default for FreewheelFile {
-    /// The update rate of seed 004 sec. III-C, and a gateway that moves a thousand items a second.
+    /// The update rate of `[SDSP]` sec. III-C, and a gateway that moves a thousand items a second.
     fn default() -> Self {
         const MILLISECOND: TimeSpan = TimeSpan::from_millis(1).expect("not zero");
         Self { update_rate: MILLISECOND, item_transfer: MILLISECOND }

@@ -9,9 +9,9 @@ pub enum Mode {
     Lockstep,
     /// Each on its own clock.
     Freewheel,
-    /// The same, the plant held to the PLC's cycle by a timer (seed 004 sec. III-B).
+    /// The same, the plant held to the PLC's cycle by a timer (`[SDSP]` sec. III-B).
     Halt,
-    /// The same, the plant following the PLC's clock (seed 002 Fig. 5).
+    /// The same, the plant following the PLC's clock (`[Vergnano]` Fig. 5).
     Follow,
 }
 

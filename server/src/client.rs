@@ -41,7 +41,7 @@ pub struct JoinRequest {
     pub writes: Vec<Port>,
 }
 
-/// When a client wants its next turn: the `t_delay` of seed 004 sec. IV.
+/// When a client wants its next turn: the `t_delay` of `[SDSP]` sec. IV.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Wake {
     /// One period after this turn.
@@ -59,7 +59,7 @@ pub trait Client: Send {
     fn join(&self) -> JoinRequest;
 
     /// Takes the initial state and writes the initial values of all outputs
-    /// (seed 004 `client.setup`). Called again for every reset; the state is then a new client's.
+    /// (`[SDSP]` `client.setup`). Called again for every reset; the state is then a new client's.
     ///
     /// # Errors
     /// The client cannot initialise.

@@ -1,7 +1,7 @@
 //! The barrier: server and client states, virtual time, delays. No values, no clock, no wire.
 //!
 //! A state is left only when `synchronize = AND(client_i.sync)` holds, with
-//! `client_i.sync = ready_i OR t_delay_i > t_v` (seed 004 sec. IV). `t_delay_i` is kept as the
+//! `client_i.sync = ready_i OR t_delay_i > t_v` (`[SDSP]` sec. IV). `t_delay_i` is kept as the
 //! virtual time of the client's next turn ([`Cycle::wake`]); a client takes part in a step if that
 //! time has come, and otherwise sleeps through it in its last state without losing synchrony.
 //!

@@ -12,10 +12,10 @@ use crate::time::TimeSpan;
 #[derive(Clone, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Coupling<C> {
-    /// All read the image committed by the step before (SDSP, seed 004).
+    /// All read the image committed by the step before (`[SDSP]`).
     #[default]
     Parallel,
-    /// They run in this order within a step; each sees what those before it wrote (OneScan, seed 003).
+    /// They run in this order within a step; each sees what those before it wrote (OneScan of `[Sivtoft]`).
     Sequential {
         /// Every client once.
         order: Vec<C>,

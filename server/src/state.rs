@@ -1,4 +1,4 @@
-//! The states of seed 004, Figs. 8 and 9.
+//! The states of `[SDSP]` Figs. 8 and 9.
 //!
 //! | server | clients | what happens |
 //! |---|---|---|
@@ -13,7 +13,7 @@ use std::fmt;
 
 use serde::{Deserialize, Serialize};
 
-/// The state of the server (seed 004 Fig. 8).
+/// The state of the server (`[SDSP]` Fig. 8).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum ServerState {
@@ -69,7 +69,7 @@ impl fmt::Display for ServerState {
     }
 }
 
-/// The state of a client (seed 004 Fig. 9).
+/// The state of a client (`[SDSP]` Fig. 9).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum ClientState {

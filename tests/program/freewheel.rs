@@ -1,4 +1,4 @@
-//! Without lockstep no two runs are equal, and the alignment check of seed 004 Figs. 5 and 6 fails.
+//! Without lockstep no two runs are equal, and the alignment check of `[SDSP]` Figs. 5 and 6 fails.
 
 use crate::typed::{digests, run_shear};
 

@@ -1,4 +1,4 @@
-//! The OPC-like link from one client's outputs to the others' inputs (seed 004 Fig. 1).
+//! The OPC-like link from one client's outputs to the others' inputs (`[SDSP]` Fig. 1).
 //!
 //! A link begins with the value of each item. At every update it compares each with what it last took, and queues those
 //! that changed: a change that is undone between two updates is never seen (*slow sampling*). The queue

@@ -1,5 +1,5 @@
 //! Free-wheeling: plant and PLC each on its own clock in real time, with an OPC-like link between
-//! them (seed 004 secs. II-C and III). It exists to *show* what lockstep removes: time delay, jitter,
+//! them (`[SDSP]` secs. II-C and III). It exists to *show* what lockstep removes: time delay, jitter,
 //! race conditions and slow sampling.
 //!
 //! | module | subject |

@@ -1,7 +1,7 @@
-//! The plant that follows a PLC's clock (seed: Vergnano, Pellicciari, Berselli 2012, Fig. 5).
+//! The plant that follows a PLC's clock (`[Vergnano]` Fig. 5).
 //!
 //! At every communication the PLC's clock is compared with the plant's; the plant then steps until it is where the
-//! PLC is expected to be at the next. The paper makes steps longer or shorter; a plant of rigid bodies has steps of
+//! PLC is expected to be at the next. `[Vergnano]` makes steps longer or shorter; a plant of rigid bodies has steps of
 //! one length, and makes more or fewer of them.
 
 /// Where a plant stands against a PLC's clock. Times are in ns of either's own clock.

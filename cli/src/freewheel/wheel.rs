@@ -17,9 +17,9 @@ pub enum Clock {
     Grid,
     /// A pause after each cycle, as a simulation tool's: a late cycle delays all after it.
     Pause,
-    /// Held to a PLC's cycle time by a timer of high resolution (seed 004 sec. III-B).
+    /// Held to a PLC's cycle time by a timer of high resolution (`[SDSP]` sec. III-B).
     Halt,
-    /// Following the PLC's clock, which is looked at so often (seed 002 Fig. 5).
+    /// Following the PLC's clock, which is looked at so often (`[Vergnano]` Fig. 5).
     Follow(TimeSpan),
 }
 

@@ -1,5 +1,5 @@
 //! A PLC that is not driven: its inputs written and its outputs read at a rate of the client's own, as an OPC client
-//! does (seed 004 secs. II-C and III). It exists to show what the handshake removes.
+//! does (`[SDSP]` secs. II-C and III). It exists to show what the handshake removes.
 
 use std::time::Duration;
 

@@ -1,6 +1,6 @@
 //! The handshake of one scan, one step: sans-IO.
 //!
-//! Seed: Carlsson et al. 2012, sec. V-A. The gateway writes inputs and `t_v`, then the number of the grant; it
+//! `[SDSP]` sec. V-A. The gateway writes inputs and `t_v`, then the number of the grant; it
 //! waits until the PLC names that number as done; it takes the outputs. The words are those of the shim
 //! (`plc-shim/iec/shim/globals.st`).
 //!

@@ -1,4 +1,4 @@
-//! A session as an OPC UA information model (seed 004 sec. VII): any program that has nothing but an OPC UA client
+//! A session as an OPC UA information model (`[SDSP]` sec. VII): any program that has nothing but an OPC UA client
 //! takes part in lockstep, or operates the session, through it. `docs/opcua.md` describes it for such programs.
 //!
 //! | module | subject |

@@ -116,7 +116,7 @@ impl Seat {
         }
     }
 
-    /// The state of seed 004 Fig. 9; `ready` and `read` are passed within a grant.
+    /// The state of `[SDSP]` Fig. 9; `ready` and `read` are passed within a grant.
     pub fn state(&self) -> ClientState {
         self.state
     }

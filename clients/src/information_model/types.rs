@@ -90,9 +90,9 @@ pub struct ObjectType {
 const SESSION_STATE: u32 = 3001;
 const CLIENT_STATE: u32 = 3003;
 
-/// States of a session (seed 004 Fig. 8), and its end.
+/// States of a session (`[SDSP]` Fig. 8), and its end.
 pub const SESSION_STATES: [&str; 7] = ["Start", "InitialWrite", "PreRead", "Read", "PreWrite", "Write", "Ended"];
-/// States of a client (seed 004 Fig. 9), and its end.
+/// States of a client (`[SDSP]` Fig. 9), and its end.
 pub const CLIENT_STATES: [&str; 7] = ["Start", "Setup", "Ready", "Read", "Run", "Write", "Ended"];
 
 const fn variable(number: u32, name: &'static str, data: Data, about: &'static str) -> VariableType {

@@ -1,4 +1,4 @@
-//! The sheet metal shear of `scenarios/shear` (seed 004 sec. III).
+//! The sheet metal shear of `scenarios/shear` (`[SDSP]` sec. III).
 
 use onescan_clients::plant::Plant;
 

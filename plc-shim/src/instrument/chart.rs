@@ -1,4 +1,4 @@
-//! Charts on virtual time (seed: Carlsson et al. 2012, sec. V-B): the execution signal, action control and
+//! Charts on virtual time (`[SDSP]` sec. V-B): the execution signal, action control and
 //! the elapsed time of steps.
 //!
 //! | in the chart | becomes |

@@ -1,4 +1,4 @@
-//! What reads the clock (seed: Carlsson et al. 2012, sec. V-C), as a table: what replaces it, or what
+//! What reads the clock (`[SDSP]` sec. V-C), as a table: what replaces it, or what
 //! is told of it.
 
 use super::target::Target;

@@ -1,4 +1,4 @@
-//! Execution controllers (seed: Carlsson et al. 2012, sec. V-B, Fig. 11): header and footer of every
+//! Execution controllers (`[SDSP]` sec. V-B, Fig. 11): header and footer of every
 //! scheduled program, the footer also before each RETURN.
 
 use super::edits::Edits;

@@ -1,4 +1,4 @@
-//! The shim, attached to a project: any program made to run in lockstep (seed: Carlsson et al. 2012,
+//! The shim, attached to a project: any program made to run in lockstep (`[SDSP]`
 //! sec. V).
 //!
 //! | module | subject |

@@ -1,4 +1,4 @@
-//! Charts that are drawn, in PLCopen XML, on virtual time (seed: Carlsson et al. 2012, sec. V-B). Nothing is
+//! Charts that are drawn, in PLCopen XML, on virtual time (`[SDSP]` sec. V-B). Nothing is
 //! drawn anew, nothing moves:
 //!
 //! | in the chart | becomes |

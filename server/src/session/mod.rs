@@ -125,7 +125,7 @@ impl Session {
     }
 
     /// The condition for a start beside those of the clients: `start = AND(start logic, client_i.start)`
-    /// (seed 004 sec. IV). True unless said otherwise; it means nothing once the session has begun.
+    /// (`[SDSP]` sec. IV). True unless said otherwise; it means nothing once the session has begun.
     pub fn set_start_logic(&mut self, start_logic: bool) {
         self.start_logic = start_logic;
     }

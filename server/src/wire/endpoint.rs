@@ -97,7 +97,7 @@ impl Endpoint {
         }
     }
 
-    /// The state of seed 004 Fig. 9. `ready` and `read` are passed while a grant is taken in, `write`
+    /// The state of `[SDSP]` Fig. 9. `ready` and `read` are passed while a grant is taken in, `write`
     /// holds until the next.
     pub fn state(&self) -> ClientState {
         self.state

@@ -1,4 +1,4 @@
-//! The shim's protocol between gateway and PLC (seed: Carlsson et al. 2012, sec. V): the scheduler POU and the
+//! The shim's protocol between gateway and PLC (`[SDSP]` sec. V): the scheduler POU and the
 //! execution controllers as they are emitted, run by the soft PLC, in every order of cycles and messages.
 //!
 //! Every message of the gateway may arrive late, twice, never, in any order. The PLC's tasks run in any

@@ -1,6 +1,6 @@
 //! Symbols of a TwinCAT PLC over ADS (Beckhoff: TC3 ADS introduction), over TCP and without a router of its own.
 //!
-//! Seed: the kiln-shell monitor of Sintrol 2009 talks to a TwinCAT soft PLC over ADS, without virtual time.
+//! `[Jacket]`, a kiln-shell monitor, talks to a TwinCAT soft PLC over ADS, without virtual time.
 //!
 //! | module | subject |
 //! |---|---|

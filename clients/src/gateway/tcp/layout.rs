@@ -1,7 +1,7 @@
 //! What lies where in a block, as an S7 data block of standard access has it: BOOLs fill bytes bit by bit,
 //! single bytes follow on the next byte, everything else and every structure on the next even byte.
 //!
-//! Seed: Nyyssönen 2018, Fig. 18: 16 control bits and seven REALs are 30 bytes an axis.
+//! `[Nyyssönen]` Fig. 18: 16 control bits and seven REALs are 30 bytes an axis.
 
 use std::collections::BTreeMap;
 

@@ -8,7 +8,7 @@ fn declaration(text: &str) -> Declaration {
     toml::from_str(text).unwrap()
 }
 
-/// Seed: Nyyssönen 2018, Fig. 18 (commands) and ch. 3.1.3 (feedback).
+/// `[Nyyssönen]` Fig. 18 (commands) and ch. 3.1.3 (feedback).
 const AXIS: &str = r#"
 to_plc = ["Sync: ToPlc", "Step_Feeder: AxisFeedback", "Linear_Loader: AxisFeedback"]
 from_plc = ["Step_Feeder: AxisCommand", "Linear_Loader: AxisCommand", "Sync: FromPlc"]

@@ -1,6 +1,6 @@
 //! Data blocks of declared layout over a raw TCP connection.
 //!
-//! Seed: Nyyssönen 2018, ch. 3.1 and Figs. 13, 17, 18: two blocks of fixed length, one a direction, without any
+//! `[Nyyssönen]` ch. 3.1 and Figs. 13, 17, 18: two blocks of fixed length, one a direction, without any
 //! header; what lies where is declared on both sides. The PLC sends its block when it gets one, and when it has changed.
 //!
 //! | module | subject |

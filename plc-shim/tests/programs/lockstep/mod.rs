@@ -1,4 +1,4 @@
-//! Instrumented programs (seed: Carlsson et al. 2012, sec. V): the same outputs at the same virtual times,
+//! Instrumented programs (`[SDSP]` sec. V): the same outputs at the same virtual times,
 //! whatever becomes of the grants.
 
 mod abreast;
