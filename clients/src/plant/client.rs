@@ -1,8 +1,11 @@
 //! The plant as a client of a session.
 
 use std::path::Path;
+use std::sync::Arc;
 
-use onescan_server::client::{Client, ClientFault, JoinRequest, StateError, Wake};
+use onescan_server::client::{
+    Client, ClientFault, ClientOperation, ClientView, JoinRequest, OperationRefused, Pose, StateError, Wake,
+};
 use onescan_server::signal::{ClientName, Port};
 use onescan_server::time::{TimeSpan, VirtualTime};
 
@@ -18,6 +21,8 @@ pub struct Plant {
     period: TimeSpan,
     seed: u64,
     scene: Scene,
+    /// The bodies' names, shared with every view of them.
+    names: Vec<Arc<str>>,
     /// An error only where the scene is not plain data, which no checked scene is.
     identity: Result<Identity, String>,
     machine: Option<Machine>,
@@ -47,7 +52,8 @@ impl Plant {
     /// The plant of a scene that was checked before.
     pub fn new(scene: Scene, name: ClientName, period: TimeSpan) -> Self {
         let identity = Identity::new(&scene, &name, period).map_err(|error| error.to_string());
-        Self { name, period, seed: 0, scene, identity, machine: None }
+        let names = scene.bodies.iter().map(|body| Arc::from(body.name.as_str())).collect();
+        Self { name, period, seed: 0, scene, names, identity, machine: None }
     }
 
     /// The plant with the scenario's seed, on which noise and jitter depend; 0 without.
@@ -144,6 +150,39 @@ impl Client for Plant {
 
     fn setup(&mut self, outputs: &mut [u8]) -> Result<(), ClientFault> {
         self.set_up(&[], outputs)
+    }
+
+    fn begin(&mut self, operations: &[ClientOperation], outputs: &mut [u8]) -> Result<(), ClientFault> {
+        let mut failing: Vec<(String, String)> = Vec::new();
+        for operation in operations {
+            match operation {
+                ClientOperation::Fail { component, mode } => failing.push((component.clone(), mode.clone())),
+                ClientOperation::Repair { component, mode } => {
+                    failing.retain(|failed| (&failed.0, &failed.1) != (component, mode));
+                }
+                variable => return Err(ClientFault::new(format!("{variable}: {}", OperationRefused::Unsupported))),
+            }
+        }
+        self.set_up(&failing, outputs)
+    }
+
+    fn operate(&mut self, operation: &ClientOperation) -> Result<(), OperationRefused> {
+        let done = match operation {
+            ClientOperation::Fail { component, mode } => self.fail(component, mode),
+            ClientOperation::Repair { component, mode } => self.repair(component, mode),
+            ClientOperation::WriteVariable { .. }
+            | ClientOperation::ForceVariable { .. }
+            | ClientOperation::ReleaseVariable { .. } => return Err(OperationRefused::Unsupported),
+        };
+        done.map_err(|refused| OperationRefused::Because(refused.to_string()))
+    }
+
+    fn show(&self, view: &mut ClientView) {
+        view.poses.extend(self.poses().zip(&self.names).map(|(pose, name)| Pose {
+            body: Arc::clone(name),
+            position_m: pose.position_m,
+            rotation_xyzw: pose.rotation_xyzw,
+        }));
     }
 
     fn turn(&mut self, t_v: VirtualTime, inputs: &[u8], outputs: &mut [u8]) -> Result<Wake, ClientFault> {
