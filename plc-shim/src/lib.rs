@@ -41,11 +41,16 @@ mod output;
 pub mod run;
 pub mod syntax;
 
-pub use application::{Application, Program, Radix, UnknownVariable, Variable, VariableAccess, WriteError, inspect};
+pub use application::{
+    Application, BuildError, Builder, CodeDifference, ConstantError, Program, Radix, UnknownVariable, Variable,
+    VariableAccess, VariableDifference, WriteError, inspect,
+};
 pub use compile::fault::FaultKind;
 pub use coverage::Coverage;
 pub use diagnostic::{Code, Diagnostic, Diagnostics, Finding, Severity};
 pub use dialect::Dialect;
 pub use input::Input;
 pub use onescan_base::{ElementaryType, SignalType, TimeSpan, VirtualTime};
-pub use run::{FaultSite, PlcFault, RestoreError, RunError, SoftPlc, Task, TaskPlan, Way, WayId, WriteSite};
+pub use run::{
+    CodePolicy, FaultSite, PlanDifference, PlcFault, RestoreError, RunError, SoftPlc, Task, TaskPlan, Way, WayId, WriteSite,
+};

@@ -3,12 +3,14 @@
 //! The layout follows from the signals alone: falling alignment, then name, no padding. Outputs are
 //! staged as they come and become visible together, at the commit.
 
-use std::collections::BTreeMap;
+use std::ops::Range;
+use std::sync::Arc;
 
+use crate::interference::Interference;
 use crate::signal::{BadValue, PortLayout, SignalDecl, SignalId, SignalType};
 
 /// Where each signal lies in the image.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub struct ImageLayout {
     offsets: Vec<usize>,
     types: Vec<SignalType>,
@@ -43,6 +45,12 @@ impl ImageLayout {
     /// The first byte of `signal` in an image.
     pub fn offset(&self, signal: SignalId) -> usize {
         self.offsets[signal.index()]
+    }
+
+    /// Where `signal` lies in an image.
+    pub fn range(&self, signal: SignalId) -> Range<usize> {
+        let offset = self.offsets[signal.index()];
+        offset..offset + self.types[signal.index()].size()
     }
 
     /// The type of `signal`.
@@ -102,16 +110,27 @@ impl PortMap {
 /// The values of a session: those committed, and those staged for the next commit.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub struct Image {
+    layout: Arc<ImageLayout>,
     committed: Vec<u8>,
+    /// What the writers last wrote, whether or not anything lies over it.
     staged: Vec<u8>,
-    /// What stands there whatever is staged, by its first byte.
-    forces: BTreeMap<usize, Vec<u8>>,
+    interference: Interference,
+}
+
+/// Which commit of its step a commit is. In sequential coupling a step has one for each client.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Commit {
+    /// Others follow in this step.
+    Within,
+    /// The last one.
+    EndsStep,
 }
 
 impl Image {
     /// All zero.
-    pub fn new(layout: &ImageLayout) -> Self {
-        Self { committed: vec![0; layout.size()], staged: vec![0; layout.size()], forces: BTreeMap::new() }
+    pub fn new(layout: Arc<ImageLayout>) -> Self {
+        let size = layout.size();
+        Self { layout, committed: vec![0; size], staged: vec![0; size], interference: Interference::default() }
     }
 
     /// The values that clients see.
@@ -119,7 +138,8 @@ impl Image {
         &self.committed
     }
 
-    /// The values that the next commit makes visible.
+    /// What the writers last wrote: the values that the next commit makes visible, unless a write, a
+    /// force or a fault lies over them.
     pub fn staged(&self) -> &[u8] {
         &self.staged
     }
@@ -131,10 +151,17 @@ impl Image {
         }
     }
 
+    /// Copies to the bytes of a port what its writer last wrote.
+    pub(crate) fn gather_staged(&self, map: &PortMap, port: &mut [u8]) {
+        for run in &map.runs {
+            port[run.port..run.port + run.len].copy_from_slice(&self.staged[run.image..run.image + run.len]);
+        }
+    }
+
     /// Stages the bytes of a port, in canonical form, for the next commit.
     ///
     /// # Errors
-    /// The first signal whose bytes are no value of its type. What is staged must not be committed
+    /// The first signal whose bytes are not a value of its type. What is staged must not be committed
     /// then; the session ends with it.
     pub fn stage(&mut self, map: &PortMap, port: &[u8]) -> Result<(), (SignalId, BadValue)> {
         for run in &map.runs {
@@ -147,46 +174,36 @@ impl Image {
     }
 
     /// Makes all staged values visible at once.
-    pub fn commit(&mut self) {
-        for (offset, bytes) in &self.forces {
-            self.staged[*offset..*offset + bytes.len()].copy_from_slice(bytes);
-        }
+    pub fn commit(&mut self, commit: Commit) {
         self.committed.copy_from_slice(&self.staged);
+        if !self.interference.is_empty() {
+            let Self { layout, committed, staged, interference } = self;
+            interference.apply(layout, staged, committed, commit == Commit::EndsStep);
+        }
     }
 
-    /// Makes a value visible now, until it is staged again; `bytes` has the signal's size.
-    pub(crate) fn write(&mut self, offset: usize, bytes: &[u8]) {
-        self.committed[offset..offset + bytes.len()].copy_from_slice(bytes);
-        self.staged[offset..offset + bytes.len()].copy_from_slice(bytes);
+    /// What lies over the staged values from the next commit on.
+    pub(crate) fn interference(&self) -> &Interference {
+        &self.interference
     }
 
-    /// Makes a value visible now and at every commit.
-    pub(crate) fn force(&mut self, offset: usize, bytes: Vec<u8>) {
-        self.write(offset, &bytes);
-        self.forces.insert(offset, bytes);
+    /// The same, to be changed.
+    pub(crate) fn interference_mut(&mut self) -> &mut Interference {
+        &mut self.interference
     }
 
-    /// Lets staged values become visible again; false if there was no force.
-    pub(crate) fn release(&mut self, offset: usize) -> bool {
-        self.forces.remove(&offset).is_some()
-    }
-
-    /// What is forced, by its first byte.
-    pub(crate) fn forces(&self) -> &BTreeMap<usize, Vec<u8>> {
-        &self.forces
-    }
-
-    /// Back to all zero; nothing is forced.
+    /// Back to all zero; nothing lies over it.
     pub fn clear(&mut self) {
-        self.forces.clear();
+        self.interference = Interference::default();
         self.committed.fill(0);
         self.staged.fill(0);
     }
 
-    /// Takes the values of `bytes` as committed; `bytes` has the image's size.
-    pub(crate) fn load(&mut self, bytes: &[u8]) {
-        self.committed.copy_from_slice(bytes);
-        self.staged.copy_from_slice(bytes);
+    /// Takes the values of a checkpoint, each of the image's size, and what lies over them.
+    pub(crate) fn load(&mut self, committed: &[u8], staged: &[u8], interference: Interference) {
+        self.committed.copy_from_slice(committed);
+        self.staged.copy_from_slice(staged);
+        self.interference = interference;
     }
 }
 
@@ -225,12 +242,12 @@ mod tests {
         let signals = signals(&[SignalType::INT]);
         let layout = ImageLayout::new(&signals);
         let map = map_of(&signals, &[0], &layout);
-        let mut image = Image::new(&layout);
+        let mut image = Image::new(Arc::new(layout.clone()));
         image.stage(&map, &7_i16.to_le_bytes()).unwrap();
         let mut port = [0xff; 2];
         image.gather(&map, &mut port);
         assert_eq!(port, [0, 0]);
-        image.commit();
+        image.commit(Commit::EndsStep);
         image.gather(&map, &mut port);
         assert_eq!(port, [7, 0]);
     }
@@ -248,7 +265,7 @@ mod tests {
         let signals = signals(&[SignalType::BOOL, SignalType::BOOL]);
         let layout = ImageLayout::new(&signals);
         let map = map_of(&signals, &[0, 1], &layout);
-        assert_eq!(Image::new(&layout).stage(&map, &[1, 9]), Err((SignalId(1), BadValue::Bool(9))));
+        assert_eq!(Image::new(Arc::new(layout.clone())).stage(&map, &[1, 9]), Err((SignalId(1), BadValue::Bool(9))));
     }
 
     proptest! {
@@ -259,9 +276,9 @@ mod tests {
             let layout = ImageLayout::new(&signals);
             let map = map_of(&signals, &order, &layout);
             let bytes: Vec<u8> = (0..map.size()).map(|i| seed[i % 20].wrapping_add(i as u8)).collect();
-            let mut image = Image::new(&layout);
+            let mut image = Image::new(Arc::new(layout.clone()));
             image.stage(&map, &bytes).unwrap();
-            image.commit();
+            image.commit(Commit::EndsStep);
             let mut back = vec![0; map.size()];
             image.gather(&map, &mut back);
             prop_assert_eq!(back, bytes);

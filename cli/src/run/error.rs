@@ -90,6 +90,9 @@ pub enum RunError {
         /// Why.
         source: CheckpointError,
     },
+    /// What the case does to the session cannot be done.
+    #[error("the case cannot be put on this session: {0}")]
+    Timeline(onescan_server::operation::OperationError),
     /// A PLC does not say what it has.
     #[error("{0}")]
     Browse(SettingsFault),
@@ -123,7 +126,7 @@ impl RunError {
     pub fn exit_code(&self) -> ExitCode {
         match self {
             Self::Formation(
-                FormationError::Missing { .. } | FormationError::Interrupted { .. } | FormationError::Remote(_),
+                FormationError::Missing { .. } | FormationError::Interrupted { .. } | FormationError::Connection(_),
             )
             | Self::ClientProcess { .. }
             | Self::Spawn { .. }

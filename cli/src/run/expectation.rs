@@ -6,6 +6,7 @@ use std::rc::Rc;
 
 use onescan_scenario::Scenario;
 use onescan_scenario::expect::{Trace, Verdict};
+use onescan_server::digest::TrajectoryDigest;
 use onescan_server::record::{Observer, RecordError};
 use onescan_server::session::Session;
 use onescan_server::signal::SignalName;
@@ -94,12 +95,12 @@ impl Witness {
 }
 
 impl Observer for Witness {
-    fn begin(&mut self, session: &Session) -> Result<(), RecordError> {
+    fn begin(&mut self, session: &Session, digest: &TrajectoryDigest) -> Result<(), RecordError> {
         self.trace.replace(Trace::new(self.chosen.find(session)));
-        self.step(session)
+        self.step(session, digest)
     }
 
-    fn step(&mut self, session: &Session) -> Result<(), RecordError> {
+    fn step(&mut self, session: &Session, _digest: &TrajectoryDigest) -> Result<(), RecordError> {
         self.trace.borrow_mut().push(session.t_v().as_nanos(), self.chosen.numbers(session));
         Ok(())
     }

@@ -13,6 +13,7 @@ use onescan_server::operation::OperatorInput;
 use onescan_server::record::event;
 use onescan_server::recording::Recording;
 use onescan_server::signal::ClientName;
+use onescan_server::timeline::Timeline;
 use onescan_server::transport::tcp::Lobby;
 
 use super::config::{RunConfig, SaveRequest, Transport};
@@ -40,8 +41,12 @@ pub(super) fn run(
     lockstep.set_until(Some(config.end(scenario)));
     lockstep.set_pace(config.pace);
     lockstep.set_mailbox(interrupt.mailbox());
+    lockstep.set_makeup(scenario.makeup());
+    let timeline = Timeline::new(scenario.timeline().to_vec(), lockstep.session()).map_err(RunError::Timeline)?;
+    lockstep.set_timeline(timeline);
     watch(&mut lockstep);
     if let Some(desk) = &desk {
+        lockstep.set_published(desk.published());
         lockstep.observe(Box::new(desk.observer()));
     }
     if config.progress {

@@ -4,6 +4,7 @@ use std::time::Duration;
 
 use super::session_log::SessionLog;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use onescan_server::digest::TrajectoryDigest;
 use onescan_server::record::{Observer, RecordError};
 use onescan_server::session::Session;
 use onescan_server::time::VirtualTime;
@@ -51,12 +52,12 @@ impl Progress {
 }
 
 impl Observer for Progress {
-    fn begin(&mut self, session: &Session) -> Result<(), RecordError> {
+    fn begin(&mut self, session: &Session, _digest: &TrajectoryDigest) -> Result<(), RecordError> {
         self.bar.set_position(session.t_v().as_nanos() / 1_000_000);
         Ok(())
     }
 
-    fn step(&mut self, session: &Session) -> Result<(), RecordError> {
+    fn step(&mut self, session: &Session, _digest: &TrajectoryDigest) -> Result<(), RecordError> {
         if session.cycle().steps().0.is_multiple_of(STRIDE) {
             self.bar.set_position(session.t_v().as_nanos() / 1_000_000);
         }

@@ -5,6 +5,7 @@ use std::rc::Rc;
 
 use onescan_report::plot::{Mark, Panel, Plot, Shape, Trajectory};
 use onescan_scenario::{Mode, Scenario};
+use onescan_server::digest::TrajectoryDigest;
 use onescan_server::record::{Observer, RecordError};
 use onescan_server::session::Session;
 use onescan_server::signal::{SignalId, SignalName, SignalType};
@@ -67,13 +68,13 @@ impl Sampler {
 }
 
 impl Observer for Sampler {
-    fn begin(&mut self, session: &Session) -> Result<(), RecordError> {
+    fn begin(&mut self, session: &Session, digest: &TrajectoryDigest) -> Result<(), RecordError> {
         self.chosen.find(session);
         self.samples.replace(Samples::new(&self.chosen.names));
-        self.step(session)
+        self.step(session, digest)
     }
 
-    fn step(&mut self, session: &Session) -> Result<(), RecordError> {
+    fn step(&mut self, session: &Session, _digest: &TrajectoryDigest) -> Result<(), RecordError> {
         let mut samples = self.samples.borrow_mut();
         samples.t_ns.push(session.t_v().as_nanos());
         for (row, number) in samples.values.iter_mut().zip(self.chosen.numbers(session)) {

@@ -10,6 +10,7 @@ use onescan_clients::opcua_server::ServeError;
 use onescan_server::client::JoinRequest;
 use onescan_server::formation::FormationError;
 use onescan_server::plan::SessionPlan;
+use onescan_server::published::Published;
 
 use super::config::RunConfig;
 use super::error::RunError;
@@ -77,7 +78,12 @@ impl Desk {
         self.expected.iter().enumerate().map(client)
     }
 
-    /// What shows each step over OPC UA.
+    /// Where the session is to publish its views.
+    pub(super) fn published(&self) -> Published {
+        self.board.published()
+    }
+
+    /// What tells subscribers of each step over OPC UA.
     pub(super) fn observer(&self) -> BoardObserver {
         BoardObserver::new(Arc::clone(&self.board))
     }

@@ -6,7 +6,9 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
 use hdrhistogram::Histogram;
-use onescan_server::client::{Client, ClientFault, JoinRequest, StateError, Wake};
+use onescan_server::client::{
+    Client, ClientFault, ClientOperation, ClientView, JoinRequest, OperationRefused, StateError, Wake,
+};
 use onescan_server::signal::ClientName;
 use onescan_server::time::VirtualTime;
 use serde::Serialize;
@@ -153,6 +155,18 @@ impl Client for Watched {
 
     fn setup(&mut self, outputs: &mut [u8]) -> Result<(), ClientFault> {
         self.client.setup(outputs)
+    }
+
+    fn begin(&mut self, operations: &[ClientOperation], outputs: &mut [u8]) -> Result<(), ClientFault> {
+        self.client.begin(operations, outputs)
+    }
+
+    fn operate(&mut self, operation: &ClientOperation) -> Result<(), OperationRefused> {
+        self.client.operate(operation)
+    }
+
+    fn show(&self, view: &mut ClientView) {
+        self.client.show(view);
     }
 
     fn turn(&mut self, t_v: VirtualTime, inputs: &[u8], outputs: &mut [u8]) -> Result<Wake, ClientFault> {

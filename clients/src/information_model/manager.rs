@@ -153,10 +153,10 @@ fn tell_subscribers(board: &Arc<Board>, nodes: Vec<(Item, NodeId)>, subscription
     board.set_notifier(Box::new(move |items| {
         let Some(board) = from.upgrade() else { return };
         let changed: Vec<(DataValue, &NodeId, AttributeId)> = {
-            let shared = board.lock();
+            let (shared, view) = (board.lock(), board.view());
             let value = |item: &Item| {
                 let id = ids.get(item)?;
-                Some((DataValue::new_now(of_item(&board, &shared, *item)?), id, AttributeId::Value))
+                Some((DataValue::new_now(of_item(&board, &view, &shared, *item)?), id, AttributeId::Value))
             };
             items.iter().filter_map(value).collect()
         };
@@ -186,9 +186,9 @@ impl InMemoryNodeManagerImpl for SessionNodes {
         timestamps: TimestampsToReturn,
     ) -> Vec<DataValue> {
         let space = space.read();
-        let shared = self.board.lock();
+        let (shared, view) = (self.board.lock(), self.board.view());
         let read = |node: &&ParsedReadValueId| match self.items.get(&node.node_id) {
-            Some(item) => match (space.validate_node_read(context, node), of_item(&self.board, &shared, *item)) {
+            Some(item) => match (space.validate_node_read(context, node), of_item(&self.board, &view, &shared, *item)) {
                 (Err(status), _) => DataValue { status: Some(status), ..DataValue::default() },
                 (Ok(_), Some(value)) if !node.index_range.has_range() => DataValue::new_now(value),
                 (Ok(_), _) => DataValue { status: Some(StatusCode::BadIndexRangeNoData), ..DataValue::default() },

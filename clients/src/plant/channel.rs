@@ -104,16 +104,17 @@ impl Channels {
         ChannelsMemory { channels, inner: self.inner.clone() }
     }
 
-    /// True if the memory is one of such channels, which then have it.
-    pub(super) fn restore(&mut self, memory: ChannelsMemory) -> bool {
-        let fits = memory.channels.len() == self.conditioned.len() && memory.inner.len() == self.inner.len();
-        if fits {
-            self.inner = memory.inner;
-            for (channel, memory) in self.conditioned.iter_mut().zip(memory.channels) {
-                channel.memory = memory;
-            }
+    /// True if the memory is one of such channels.
+    pub(super) fn fits(&self, memory: &ChannelsMemory) -> bool {
+        memory.channels.len() == self.conditioned.len() && memory.inner.len() == self.inner.len()
+    }
+
+    /// Takes a memory in that [`fits`](Self::fits).
+    pub(super) fn restore(&mut self, memory: ChannelsMemory) {
+        self.inner = memory.inner;
+        for (channel, memory) in self.conditioned.iter_mut().zip(memory.channels) {
+            channel.memory = memory;
         }
-        fits
     }
 
     /// Takes the session's bytes in.
@@ -326,7 +327,8 @@ mod tests {
                 second.give(k * 1_000_000, &mut outer[1]);
                 assert_eq!(outer[0], outer[1], "{k}");
             } else if k == 100 {
-                assert!(second.restore(first.memory()));
+                assert!(second.fits(&first.memory()));
+                second.restore(first.memory());
             }
         }
         assert_eq!(first.memory(), second.memory());

@@ -8,7 +8,7 @@
 //! | [`types`], [`subrange`], [`structure`], [`union`] | types as written to types |
 //! | [`variables`], [`storage`], [`instance_section`] | sections to placed variables, units' interfaces |
 //! | [`located`] | direct addresses to places |
-//! | [`initial`] | initial values to bytes |
+//! | [`initial`], [`overrides`] | initial values to bytes; those of constants set from outside |
 //! | [`start`], [`fb_init`], [`instance_arguments`] | what runs before the first scan |
 //! | [`constant`] | constant expressions to values |
 //! | [`convert`], [`enumeration`] | implicit conversions, constants in context |
@@ -74,6 +74,7 @@ mod names;
 mod namespace;
 mod open_array;
 mod operator;
+mod overrides;
 mod part;
 mod place;
 mod property;
@@ -116,6 +117,7 @@ use crate::syntax::{FileId, Span};
 
 pub(crate) use instance_section::Kept;
 pub(crate) use layout::{CALL_DEPTH_OFFSET, INIT_RETAINS_OFFSET, VIRTUAL_TIME_NAME, VIRTUAL_TIME_OFFSET};
+pub(crate) use overrides::Overrides;
 pub(crate) use standard_function::exists as is_standard_function;
 
 /// The checked program.
@@ -151,10 +153,14 @@ pub(crate) struct Checked {
 }
 
 /// Checks all units together. `library` tells the files of the standard function blocks, whose
-/// units are compiled only if they are used.
-pub(crate) fn check(units: &[(FileId, &CompilationUnit)], library: &BTreeSet<FileId>) -> (Checked, Vec<Diagnostic>) {
+/// units are compiled only if they are used. Constants named by `overrides` have the initial values that it gives.
+pub(crate) fn check(
+    units: &[(FileId, &CompilationUnit)],
+    library: &BTreeSet<FileId>,
+    overrides: &Overrides,
+) -> (Checked, Vec<Diagnostic>) {
     let stages = start::stages(units);
-    let mut checker = Checker::new(library, &stages);
+    let mut checker = Checker::new(library, &stages, overrides);
     checker.collect(units);
     checker.link_classes();
     checker.resolve_declarations();
@@ -205,6 +211,7 @@ const MAX_DEPTH: u32 = 64;
 struct Checker<'a> {
     library: &'a BTreeSet<FileId>,
     stages: &'a Stages,
+    overrides: &'a Overrides,
     /// What is done at a start outside of units.
     started: Vec<Started<'a>>,
     /// Where something was wrong already, and when.

@@ -8,6 +8,7 @@ use super::class::{Class, Membership, Role};
 use super::configuration::Configured;
 use super::layout::{INIT_RETAINS_NAME, INIT_RETAINS_OFFSET, Layout, VIRTUAL_TIME_NAME, VIRTUAL_TIME_OFFSET};
 use super::namespace::Home;
+use super::overrides::Overrides;
 use super::scope::Scope;
 use super::start::{Stages, Starts};
 use crate::diagnostic::{Code, Diagnostic};
@@ -87,10 +88,11 @@ pub(super) struct Enumerator {
 }
 
 impl<'a> Checker<'a> {
-    pub(super) fn new(library: &'a BTreeSet<FileId>, stages: &'a Stages) -> Self {
+    pub(super) fn new(library: &'a BTreeSet<FileId>, stages: &'a Stages, overrides: &'a Overrides) -> Self {
         Self {
             library,
             stages,
+            overrides,
             started: Vec::new(),
             faulty_starts: BTreeSet::new(),
             faulty_hooks: BTreeSet::new(),

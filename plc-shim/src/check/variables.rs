@@ -9,6 +9,7 @@ use super::instance::visibility;
 use super::layout::align_up;
 use super::located::Placement;
 use super::names::{Progress, TypedImage};
+use super::overrides::Overrides;
 use super::referred::referred;
 use super::scope::{Body, Scope};
 use super::start::{Start, Started, Starts};
@@ -63,6 +64,7 @@ impl<'a> Checker<'a> {
     fn place_global(&mut self, name: &Ident, ast: &'a ast::Variable, qualifiers: &[Qualifier]) -> Option<Variable> {
         let mut body = Body::outside(self);
         let declared = body.declared(ast, Need::Size)?;
+        let declared = body.set_from_outside(name, ast, declared)?;
         body.reject_open_array(declared.ty, name.span)?;
         if qualifiers.contains(&Qualifier::Constant) {
             body.require_constant(&declared.starts, OF_CONSTANTS);
@@ -208,6 +210,19 @@ impl<'a> Body<'_, 'a> {
             None => Some(declared),
         }
     }
+
+    /// What `declared` is for one of its names, which may be a constant set from outside.
+    pub(super) fn set_from_outside(
+        &mut self,
+        name: &Ident,
+        ast: &'a ast::Variable,
+        declared: TypedImage<'a>,
+    ) -> Option<TypedImage<'a>> {
+        let overrides: &'a Overrides = self.checker.overrides;
+        let Some(initial) = overrides.get(name) else { return Some(declared) };
+        let bare = self.resolve(&ast.spec, Need::Size)?;
+        self.with_initial(&bare, initial)
+    }
 }
 
 /// A unit's variables while they are declared.
@@ -305,7 +320,8 @@ impl<'c, 'a> Interface<'c, 'a> {
                 self.body.checker.report_duplicate(name, Some(first));
                 continue;
             }
-            let Some(declared) = &declared else {
+            let own = declared.clone().and_then(|declared| self.body.set_from_outside(name, ast, declared));
+            let Some(declared) = &own else {
                 self.declare_broken(name);
                 continue;
             };

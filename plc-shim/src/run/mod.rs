@@ -33,5 +33,5 @@ pub use asserts::{Asserts, FailedAssert};
 pub use fault::{FaultSite, PlcFault, WriteSite};
 pub use plan::{RunError, Task, TaskPlan};
 pub use soft_plc::SoftPlc;
-pub use state::RestoreError;
+pub use state::{CodePolicy, PlanDifference, RestoreError};
 pub use way::{Way, WayId};

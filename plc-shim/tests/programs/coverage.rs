@@ -118,3 +118,30 @@ END_IF;]]></ST>
         assert!(text.lines().any(|found| found == line), "{line} in {text}");
     }
 }
+
+#[test]
+fn a_resumed_run_is_counted_from_there_on() {
+    let application = Application::from_inputs_with_coverage([input("plc.st")]).expect("a sound program");
+    let new = || SoftPlc::new(&application, &TaskPlan::single(&application, 1_000_000)).expect("it can run");
+    let scan = |plc: &mut SoftPlc, number: u64| plc.scan(VirtualTime::from_nanos(number * 1_000_000)).expect("no fault");
+    let mut first = new();
+    (1..=4).for_each(|number| scan(&mut first, number));
+    let state = first.save();
+    let mut second = new();
+    second.restore(&state).expect("the same program");
+    (5..=9).for_each(|number| scan(&mut second, number));
+    let resumed = second.coverage().expect("it was asked for");
+    assert_eq!(resumed.counted_from_ns(), 4_000_000);
+    let text = resumed.to_lcov();
+    assert!(text.starts_with("TN:counted_from_4000000_ns\n"), "{text}");
+    assert!(text.contains("\nDA:24,0\n"), "executed before: {text}");
+    // Whoever has scanned all that came before has not missed anything.
+    first.restore(&state).expect("its own state");
+    scan(&mut first, 5);
+    let whole = first.coverage().expect("it was asked for");
+    assert_eq!(whole.counted_from_ns(), 0);
+    assert!(whole.to_lcov().starts_with("TN:\nSF:"));
+    let mut both = whole.clone();
+    both.merge(&resumed);
+    assert_eq!(both.counted_from_ns(), 4_000_000);
+}

@@ -21,7 +21,7 @@ pub use onescan_base::{did_you_mean, nearest};
 pub use port::{Port, PortLayout, Slot, SlotError, SlotType};
 
 /// The index of a signal in its session: the rank of its name.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 pub struct SignalId(pub(crate) u32);
 
 impl SignalId {

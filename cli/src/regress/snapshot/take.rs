@@ -5,6 +5,7 @@ use std::rc::Rc;
 
 use onescan_scenario::case::{Catalogue, DEFAULT};
 use onescan_scenario::{Scenario, ScenarioError};
+use onescan_server::digest::TrajectoryDigest;
 use onescan_server::record::{Observer, RecordError};
 use onescan_server::session::Session;
 use onescan_server::signal::{SignalId, SignalName, SignalType, did_you_mean};
@@ -123,7 +124,7 @@ impl Taken {
 }
 
 impl Observer for Taker {
-    fn begin(&mut self, session: &Session) -> Result<(), RecordError> {
+    fn begin(&mut self, session: &Session, digest: &TrajectoryDigest) -> Result<(), RecordError> {
         let taken = |name: &SignalName| {
             let id = session.signal_id(name.as_str())?;
             let ty = session.layout().ty(id);
@@ -134,10 +135,10 @@ impl Observer for Taker {
             Some(Taken { id, track, hasher: blake3::Hasher::new() })
         };
         self.taken = self.choice.signals.iter().filter_map(taken).collect();
-        self.step(session)
+        self.step(session, digest)
     }
 
-    fn step(&mut self, session: &Session) -> Result<(), RecordError> {
+    fn step(&mut self, session: &Session, _digest: &TrajectoryDigest) -> Result<(), RecordError> {
         self.taken.iter_mut().for_each(|taken| taken.take(session));
         Ok(())
     }

@@ -106,6 +106,7 @@
 //! |---|---|
 //! | `format` | the tables and keys of the file |
 //! | `faults` | gathering faults, finding their lines |
+//! | [`overrides`] | values in the place of the file's own |
 //! | `number`, `names` | what a number and a name must be |
 //! | `arrays` | one table for many things |
 //! | `robots` | the tables that a URDF file stands for |
@@ -123,7 +124,7 @@ mod component_model;
 mod components;
 mod conditions;
 pub mod error;
-mod failures;
+pub(super) mod failures;
 mod faults;
 mod format;
 mod joints;
@@ -131,16 +132,21 @@ mod meshes;
 pub mod model;
 mod names;
 mod number;
+pub mod overrides;
 mod robots;
 pub mod schema;
 mod sensors;
 mod shapes;
 mod signals;
 
+use serde::Deserialize;
 use toml::Spanned;
+use toml::de::DeTable;
 
 pub use error::{SceneError, SceneFault, SceneFaultKind, Thing};
+pub use failures::UnknownFailure;
 pub use model::Scene;
+pub use overrides::Override;
 
 use bindings::Placed;
 use faults::Faults;
@@ -164,8 +170,25 @@ impl Scene {
     /// # Errors
     /// [`SceneError::Faulty`] with every fault that was found.
     pub fn parse(text: &str, file: &str) -> Result<Self, SceneError> {
+        Self::parse_with(text, file, &[])
+    }
+
+    /// Reads a scene as [`Scene::parse`] does, with `overrides` in the place of the file's own values.
+    ///
+    /// # Errors
+    /// [`SceneError::Faulty`] with every fault that was found; those of an override say which.
+    pub fn parse_with(text: &str, file: &str, overrides: &[Override]) -> Result<Self, SceneError> {
         let mut faults = Faults::new(text, file);
-        match toml::from_str::<SceneFile>(text) {
+        let mut document = match DeTable::parse(text) {
+            Ok(document) => document,
+            Err(error) => return Err(faults.into_form_error(&error)),
+        };
+        overrides::apply(document.get_mut(), overrides, &mut faults);
+        if !faults.is_empty() {
+            // What an override was to change is not there: the rest would be checked without it.
+            return Err(faults.into_error());
+        }
+        match SceneFile::deserialize(toml::Deserializer::from(document)) {
             Ok(mut written) => {
                 arrays::expand(&mut written, &mut faults);
                 robots::expand(&mut written, &mut faults);
