@@ -128,7 +128,8 @@ impl Interference {
     /// True if it could lie over an image of this layout: what a checkpoint says is not believed.
     pub(crate) fn fits(&self, layout: &ImageLayout) -> bool {
         let known = |signal: &SignalId| signal.index() < layout.signals().len();
-        let sized = |(signal, bytes): (&SignalId, &Vec<u8>)| known(signal) && bytes.len() == layout.range(*signal).len();
+        let sized =
+            |(signal, bytes): (&SignalId, &Vec<u8>)| known(signal) && bytes.len() == layout.range(*signal).len();
         let fault = |(signal, fault): (&SignalId, &Disturbance)| {
             known(signal)
                 && match fault {

@@ -130,7 +130,9 @@ impl Network {
             let (sequence, t_v) = (state.session.cycle().steps(), state.session.t_v());
             match entered {
                 ServerState::Start => {}
-                ServerState::InitialWrite => state.pipes[i].to_client.push_back(json(&ServerMessage::Setup { operations: Vec::new() })),
+                ServerState::InitialWrite => {
+                    state.pipes[i].to_client.push_back(json(&ServerMessage::Setup { operations: Vec::new() }))
+                }
                 ServerState::PreRead | ServerState::Write => state.session.ready(id).expect("awaited"),
                 ServerState::Read => {
                     state.session.read(id, &mut state.pipes[i].inputs).expect("awaited");

@@ -188,11 +188,13 @@ impl InMemoryNodeManagerImpl for SessionNodes {
         let space = space.read();
         let (shared, view) = (self.board.lock(), self.board.view());
         let read = |node: &&ParsedReadValueId| match self.items.get(&node.node_id) {
-            Some(item) => match (space.validate_node_read(context, node), of_item(&self.board, &view, &shared, *item)) {
-                (Err(status), _) => DataValue { status: Some(status), ..DataValue::default() },
-                (Ok(_), Some(value)) if !node.index_range.has_range() => DataValue::new_now(value),
-                (Ok(_), _) => DataValue { status: Some(StatusCode::BadIndexRangeNoData), ..DataValue::default() },
-            },
+            Some(item) => {
+                match (space.validate_node_read(context, node), of_item(&self.board, &view, &shared, *item)) {
+                    (Err(status), _) => DataValue { status: Some(status), ..DataValue::default() },
+                    (Ok(_), Some(value)) if !node.index_range.has_range() => DataValue::new_now(value),
+                    (Ok(_), _) => DataValue { status: Some(StatusCode::BadIndexRangeNoData), ..DataValue::default() },
+                }
+            }
             None => space.read(context, node, max_age, timestamps),
         };
         nodes.iter().map(read).collect()

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use onescan_server::client::{
     Client, ClientFault, ClientOperation, ClientView, JoinRequest, OperationRefused, Pose, StateError, Wake,
 };
-use onescan_server::signal::{ClientName, Port, SlotError};
+use onescan_server::signal::{ClientName, Port};
 use onescan_server::time::{TimeSpan, VirtualTime};
 
 use super::failure::FailureRefused;
@@ -84,7 +84,8 @@ impl Plant {
         check_size("outputs", &self.scene.writes, outputs)?;
         let found = failing.iter().map(|(component, mode)| self.scene.find_failure(component, mode));
         let found = found.collect::<Result<Vec<_>, _>>().map_err(|unknown| ClientFault::new(unknown.to_string()))?;
-        let machine = Machine::build(&self.scene, self.period, self.seed).map_err(|error| unbound(&error))?;
+        let machine = Machine::build(&self.scene, self.period, self.seed)
+            .map_err(|unbuilt| ClientFault::new(unbuilt.to_string()))?;
         let machine = self.machine.insert(machine);
         for mode in found {
             machine.fail(mode);
@@ -213,9 +214,4 @@ impl Client for Plant {
         self.machine = Some(machine);
         Ok(())
     }
-}
-
-/// A signal that was lost between the scene and its ports.
-fn unbound(error: &SlotError) -> ClientFault {
-    ClientFault::new(error.to_string())
 }

@@ -64,8 +64,7 @@ pub(super) fn from_bytes(identity: &Identity, bytes: &[u8]) -> Result<Restored, 
     if blake3::hash(rest) != blake3::Hash::from_bytes(*digest) {
         return Err(corrupt("it is cut short or damaged"));
     }
-    let (whose, payload) =
-        postcard::take_from_bytes::<Identity>(rest).map_err(|error| corrupt(&error.to_string()))?;
+    let (whose, payload) = postcard::take_from_bytes::<Identity>(rest).map_err(|error| corrupt(&error.to_string()))?;
     if let Some(difference) = identity.difference(&whose) {
         return Err(corrupt(&difference));
     }

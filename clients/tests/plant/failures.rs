@@ -62,7 +62,8 @@ delay_s = 0.05
 jitter_s = 0.01
 "#;
 
-const MODES: &[(&str, &str)] = &[("conveyor", "slipping"), ("door", "no_supply"), ("eye", "dirty"), ("gauge", "frozen")];
+const MODES: &[(&str, &str)] =
+    &[("conveyor", "slipping"), ("door", "no_supply"), ("eye", "dirty"), ("gauge", "frozen")];
 
 fn command(bench: &mut Bench, turn: u64) {
     bench.command("Run", turn % 150 < 120);
@@ -141,7 +142,11 @@ fn a_state_goes_into_the_same_plant_whatever_has_failed() {
     let mut healthy = Bench::new(CELL);
     let _ = digest(&mut healthy, 100, |_, _| {});
     let state = healthy.plant.save().expect("a state");
-    let failing = |plant: &mut Plant, turn| if turn == 50 { plant.fail("door", "no_supply").expect("a mode") };
+    let failing = |plant: &mut Plant, turn| {
+        if turn == 50 {
+            plant.fail("door", "no_supply").expect("a mode")
+        }
+    };
     let mut failed = Bench::new(CELL);
     let _ = digest(&mut failed, 100, failing);
     let failed_state = failed.plant.save().expect("a state");

@@ -149,10 +149,7 @@ mod tests {
         assert_eq!(text, format!("d2:{}", "07".repeat(32)));
         assert_eq!(text.parse(), Ok(digest));
         let old = "07".repeat(32).parse::<Digest>().unwrap_err();
-        assert_eq!(
-            old.to_string(),
-            "a digest of version d1; this program makes d2, and the two cannot be compared"
-        );
+        assert_eq!(old.to_string(), "a digest of version d1; this program makes d2, and the two cannot be compared");
         assert!(matches!("d2:07".parse::<Digest>(), Err(DigestTextError::Form(_))));
         assert!(matches!("bananas".parse::<Digest>(), Err(DigestTextError::Form(_))));
     }

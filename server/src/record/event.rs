@@ -144,7 +144,10 @@ pub fn operator_inputs(events: &[Event]) -> Vec<OperatorInput> {
                 operation: operation.clone(),
             }),
             // What the timeline did comes along with the case; the rest changes nothing.
-            EventKind::Timeline { .. } | EventKind::Failed { .. } | EventKind::Ended { .. } | EventKind::Violated { .. } => {}
+            EventKind::Timeline { .. }
+            | EventKind::Failed { .. }
+            | EventKind::Ended { .. }
+            | EventKind::Violated { .. } => {}
         }
     }
     inputs

@@ -57,7 +57,8 @@ impl Session {
             }
             _ => {
                 if let Some((client, _)) = operation.for_client() {
-                    let refused = OperationError::Client { client: client.clone(), source: OperationRefused::Unsupported };
+                    let refused =
+                        OperationError::Client { client: client.clone(), source: OperationRefused::Unsupported };
                     return Err(refused);
                 }
             }

@@ -2,8 +2,8 @@
 
 use super::Session;
 use crate::client::{ClientId, Wake};
-use crate::image::Commit;
 use crate::end::{Failure, FailureCause, SessionEnd, Violation};
+use crate::image::Commit;
 use crate::state::ClientState;
 use crate::time::{StepCount, VirtualTime};
 

@@ -3,9 +3,9 @@
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
+use super::placed::Placed;
 use onescan_base::nearest;
 use onescan_server::client::SourcePlace;
-use toml::Spanned;
 
 use super::error::{SceneError, SceneFault, SceneFaultKind, Thing};
 use super::overrides::index_of;
@@ -72,7 +72,7 @@ impl<'t> Faults<'t> {
     pub(super) fn unknown<'n>(
         &mut self,
         thing: Thing,
-        name: &Spanned<String>,
+        name: &Placed<String>,
         candidates: impl IntoIterator<Item = &'n str>,
     ) {
         let hint = nearest(name.get_ref(), candidates).map(|near| format!("did you mean `{near}`?"));

@@ -107,6 +107,7 @@
 //! | `format` | the tables and keys of the file |
 //! | `faults` | gathering faults, finding their lines |
 //! | [`overrides`] | values in the place of the file's own |
+//! | `placed` | a value with its place in the file |
 //! | `number`, `names` | what a number and a name must be |
 //! | `arrays` | one table for many things |
 //! | `robots` | the tables that a URDF file stands for |
@@ -133,6 +134,7 @@ pub mod model;
 mod names;
 mod number;
 pub mod overrides;
+mod placed;
 mod robots;
 pub mod schema;
 mod sensors;
@@ -140,15 +142,15 @@ mod shapes;
 mod signals;
 
 use serde::Deserialize;
-use toml::Spanned;
 use toml::de::DeTable;
+use placed::Placed;
 
 pub use error::{SceneError, SceneFault, SceneFaultKind, Thing};
 pub use failures::UnknownFailure;
 pub use model::Scene;
 pub use overrides::Override;
 
-use bindings::Placed;
+use bindings::Lookup;
 use faults::Faults;
 use format::SceneFile;
 use names::Names;
@@ -217,7 +219,7 @@ fn check(written: &SceneFile, faults: &mut Faults<'_>) -> Scene {
     let scene_joints = joints::check(&written.joint, &written.body, &bodies, faults);
     let axes = axes::check(written, &bodies, &joints, &mut signals, faults);
     let sensors = sensors::check(written, &bodies, &joints, &mut signals, faults);
-    let placed = Placed { file: written, bodies: &bodies, shapes: &shapes, joints: &joints, axes: &axes };
+    let placed = Lookup { file: written, bodies: &bodies, shapes: &shapes, joints: &joints, axes: &axes };
     let (mut components, lost) = components::check(&placed, &mut signals, faults);
     failures::check(&written.failure, (&mut components, &lost), &mut signals, faults);
     let conditions = conditions::check(&written.signal, &mut signals, faults);
@@ -242,6 +244,6 @@ fn check(written: &SceneFile, faults: &mut Faults<'_>) -> Scene {
 }
 
 /// The text of a spanned name.
-fn text(name: &Spanned<String>) -> &str {
+fn text(name: &Placed<String>) -> &str {
     name.get_ref()
 }

@@ -137,7 +137,6 @@ impl Lobby {
     pub fn address(&self) -> SocketAddr {
         self.address
     }
-
 }
 
 impl Door for Lobby {
