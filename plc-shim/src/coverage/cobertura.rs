@@ -10,13 +10,15 @@ use super::{Coverage, FileCoverage, covered};
 
 impl Coverage {
     /// As a Cobertura report. It has no time of its making, so that equal runs give equal reports.
-    pub fn to_cobertura(&self) -> String {
+    ///
+    /// # Errors
+    /// The XML writer's own; it has no reason for one while it writes to memory.
+    pub fn to_cobertura(&self) -> io::Result<String> {
         let mut writer = Writer::new_with_indent(Vec::new(), b' ', 2);
-        // Writing to memory does not fail.
-        let _ = self.write(&mut writer);
-        let mut text = String::from_utf8(writer.into_inner()).unwrap_or_default();
+        self.write(&mut writer)?;
+        let mut text = String::from_utf8(writer.into_inner()).map_err(io::Error::other)?;
         text.push('\n');
-        text
+        Ok(text)
     }
 
     fn write(&self, writer: &mut Writer<Vec<u8>>) -> io::Result<()> {
