@@ -50,8 +50,8 @@ pub use coverage::Coverage;
 pub use diagnostic::{Code, Diagnostic, Diagnostics, Finding, Severity};
 pub use dialect::Dialect;
 pub use input::Input;
-pub use ir::elementary::ElementaryType;
+pub use onescan_base::{ElementaryType, SignalType, TimeSpan, VirtualTime};
 pub use run::{
-    CodePolicy, FaultSite, PlanDifference, PlcFault, RestoreError, RunError, SoftPlc, Task, TaskPlan, VirtualTime, Way,
-    WayId, WriteSite,
+    CodePolicy, FaultSite, PlanDifference, PlcFault, RestoreError, RunError, SoftPlc, Task, TaskPlan, Way, WayId,
+    WriteSite,
 };

@@ -74,7 +74,7 @@ impl SoftPlcClient {
         step: TimeSpan,
     ) -> Result<Self, RunError> {
         let plc = SoftPlc::new(application, plan)?;
-        let period = if plc.wants_every_step() { Some(step) } else { TimeSpan::from_nanos(plc.period_ns()) };
+        let period = if plc.wants_every_step() { Some(step) } else { plc.period() };
         let period = period.ok_or(RunError::NoTasks)?;
         let ports = |bound: &[Bound]| bound.iter().map(|bound| bound.port.clone()).collect();
         let request = JoinRequest { name, period, reads: ports(&bindings.inputs), writes: ports(&bindings.outputs) };
@@ -113,7 +113,7 @@ impl SoftPlcClient {
     pub fn restore_with(&mut self, state: &[u8], policy: CodePolicy) -> Result<(), RestoreError> {
         self.plc.restore_with(state, policy)?;
         // What was seen of a run that went further is of a future that may never come.
-        let now = VirtualTime::from_nanos(self.plc.now().as_ns());
+        let now = self.plc.now();
         if let Some(tracing) = &self.tracing {
             tracing.rewind(now);
         }
@@ -241,17 +241,17 @@ impl Client for SoftPlcClient {
         for run in &self.inputs {
             run.give(inputs, memory);
         }
-        let scanned = self.plc.scan(onescan_plc_shim::VirtualTime::from_ns(t_v.as_nanos()));
+        let scanned = self.plc.scan(t_v);
         if let Some(tracing) = &self.tracing {
             tracing.note(&self.plc, t_v);
         }
         self.look(t_v);
         scanned.map_err(|fault| client_fault(&fault))?;
         self.take_outputs(outputs);
-        Ok(if self.plc.wants_every_step() {
-            Wake::NextPeriod
-        } else {
-            Wake::At(VirtualTime::from_nanos(self.plc.next_due().as_ns()))
+        Ok(match self.plc.next_due() {
+            Some(due) if !self.plc.wants_every_step() => Wake::At(due),
+            // Without a task that may be due at any step nothing is due only past the end of time.
+            _ => Wake::NextPeriod,
         })
     }
 

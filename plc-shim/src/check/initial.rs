@@ -225,7 +225,7 @@ impl<'a> Body<'_, 'a> {
         let scope = self.checker.interface(pou, span)?;
         let fields = scope.variables.iter().filter_map(|variable| match variable.storage {
             Storage::Instance(offset) => {
-                Some(Field { name: variable.name.clone(), ty: variable.ty, offset, bit: None })
+                Some(Field { name: variable.name.clone(), ty: variable.ty, offset, bit: None, open: None })
             }
             _ => None,
         });

@@ -14,7 +14,7 @@ use crate::diagnostic::{Code, Diagnostic};
 use crate::ir::{ElementaryType, Field, Type, TypeId};
 use crate::syntax::Span;
 use crate::syntax::ast::{self, Ident};
-use crate::syntax::direct_address::{RelativeAddress, Width};
+use crate::syntax::direct_address::{DirectAddress, RelativeAddress, Width};
 
 /// Whether members with addresses may lie on the same bytes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -113,9 +113,17 @@ impl<'a> Body<'_, 'a> {
         resolved: &TypedImage<'a>,
         (sharing, span): (Sharing, Span),
     ) -> Option<()> {
+        let behind = align_up(making.image.len() as u32, self.checker.types.align(resolved.ty));
+        let open = member.address.as_ref().and_then(open_address);
         let (offset, bit) = match &member.address {
-            Some(address) => self.relative_place(address, resolved.ty)?,
-            None => (align_up(making.image.len() as u32, self.checker.types.align(resolved.ty)), None),
+            Some(address) => match open {
+                Some(open) => {
+                    self.checker.require_open_width(open, resolved.ty, address)?;
+                    (behind, None)
+                }
+                None => self.relative_place(address, resolved.ty)?,
+            },
+            None => (behind, None),
         };
         let end = offset as usize + resolved.image.len();
         if end > MEMORY_LIMIT as usize {
@@ -140,7 +148,13 @@ impl<'a> Body<'_, 'a> {
             }
             making.starts.extend(moved(&resolved.starts, offset));
         }
-        making.fields.push(Field { name: member.name.text.clone(), ty: resolved.ty, offset, bit });
+        making.fields.push(Field {
+            name: member.name.text.clone(),
+            ty: resolved.ty,
+            offset,
+            bit,
+            open: open.map(|open| open.area),
+        });
         Some(())
     }
 
@@ -174,6 +188,12 @@ impl<'a> Body<'_, 'a> {
         self.report(found.with_help("write STRUCT OVERLAP if members are to share bytes"));
         None
     }
+}
+
+/// `%I*`, `%QW*`: each structure has the member in itself, and `VAR_CONFIG` may give it a place (3rd ed. Table 11,
+/// feature 11).
+fn open_address(address: &Ident) -> Option<DirectAddress> {
+    DirectAddress::parse(&address.text).ok().filter(|_| address.text.ends_with('*'))
 }
 
 #[cfg(test)]

@@ -26,8 +26,8 @@ impl Coverage {
         writer.write_event(Event::DocType(BytesText::from_escaped(
             r#"coverage SYSTEM "http://cobertura.sourceforge.net/xml/coverage-04.dtd""#,
         )))?;
-        if self.counted_from_ns > 0 {
-            let note = format!(" A run was resumed: it is counted from {} ns on. ", self.counted_from_ns);
+        if let Some(from) = self.counted_from {
+            let note = format!(" A run was resumed: it is counted from {from} on. ");
             writer.write_event(Event::Comment(BytesText::new(&note)))?;
         }
         let ((lines, lines_hit), (branches, branches_hit)) = (self.lines(), self.branches());

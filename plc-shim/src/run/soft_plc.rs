@@ -3,7 +3,8 @@
 use std::ops::Range;
 use std::sync::OnceLock;
 
-use super::VirtualTime;
+use onescan_base::{TimeSpan, VirtualTime};
+
 use super::fault::{self, PlcFault, WriteSite, explain};
 use super::force::Forces;
 use super::machine::{Machine, Occasion, Trapped};
@@ -33,8 +34,8 @@ pub struct SoftPlc {
     now: VirtualTime,
     /// The latest virtual time that this PLC has scanned, whatever was restored since.
     scanned_until: VirtualTime,
-    /// The latest saved state that was restored ahead of what the PLC had scanned itself; 0 if none was.
-    skipped_to: VirtualTime,
+    /// The time of the latest state that was restored ahead of what the PLC had scanned itself.
+    skipped_to: Option<VirtualTime>,
     fault: Option<PlcFault>,
     pub(super) forces: Forces,
 }
@@ -65,7 +66,7 @@ impl SoftPlc {
             meaning: OnceLock::new(),
             now: VirtualTime::default(),
             scanned_until: VirtualTime::default(),
-            skipped_to: VirtualTime::default(),
+            skipped_to: None,
             fault: None,
             forces: Forces::default(),
         };
@@ -170,7 +171,7 @@ impl SoftPlc {
 
     /// Gives a task its virtual time and its budget.
     fn begin_task(&mut self) -> Result<(), Trapped> {
-        let time = self.now.as_ns().to_le_bytes();
+        let time = self.now.as_nanos().to_le_bytes();
         copy_to(self.machine.memory_mut(), VIRTUAL_TIME_OFFSET as usize, &time);
         self.machine.refuel(self.plan.fuel_per_task)
     }
@@ -202,15 +203,15 @@ impl SoftPlc {
         Ok(())
     }
 
-    /// When a task is due next by its interval; the end of time if none has one.
-    pub fn next_due(&self) -> VirtualTime {
+    /// When a task is due next by its interval; nothing if none has one.
+    pub fn next_due(&self) -> Option<VirtualTime> {
         self.scheduler.next_due()
     }
 
-    /// Greatest common divisor of the tasks' intervals in nanoseconds: every periodic task is due at
-    /// a multiple of it. 0 if there are none.
-    pub fn period_ns(&self) -> u64 {
-        self.scheduler.period_ns()
+    /// Greatest common divisor of the tasks' intervals: every periodic task is due at a multiple of it. Nothing if no
+    /// task is periodic.
+    pub fn period(&self) -> Option<TimeSpan> {
+        self.scheduler.period()
     }
 
     /// True if a scan may have something to do at any time: tasks wait for an edge, or programs have
@@ -260,7 +261,7 @@ impl SoftPlc {
         let points = self.application.points();
         let sources = self.application.sources();
         (!points.is_empty() && !self.application.is_traced())
-            .then(|| Coverage::new(sources, points, self.machine.notes(), self.skipped_to.as_ns()))
+            .then(|| Coverage::new(sources, points, self.machine.notes(), self.skipped_to))
     }
 
     /// Watches places in memory from here on, in place of those watched before. The application must
@@ -315,7 +316,7 @@ impl SoftPlc {
         self.scheduler.set_waiting(&waiting);
         (self.now, self.fault, self.forces) = (now, fault, forces);
         if now > self.scanned_until {
-            (self.scanned_until, self.skipped_to) = (now, now);
+            (self.scanned_until, self.skipped_to) = (now, Some(now));
         }
         Ok(())
     }

@@ -1,7 +1,7 @@
 //! Constants set from outside, in every form of source.
 
 use onescan_plc_shim::input::kind::SourceKind;
-use onescan_plc_shim::{Application, BuildError, Builder, Input, SoftPlc, TaskPlan, VirtualTime};
+use onescan_plc_shim::{Application, BuildError, Builder, Input, SoftPlc, TaskPlan, TimeSpan, VirtualTime};
 
 const TEXT: &str = "
 TYPE Colour : (Red, Green, Blue); END_TYPE
@@ -27,9 +27,10 @@ fn builder(text: &str) -> Builder {
 /// The values at `paths` after a scan.
 fn values(builder: Builder, paths: &[&str]) -> Vec<String> {
     let application = builder.build().unwrap_or_else(|error| panic!("{error}"));
-    let plan = TaskPlan::configured(&application).unwrap_or_else(|| TaskPlan::single(&application, 1_000_000));
+    let plan =
+        TaskPlan::configured(&application).unwrap_or_else(|| TaskPlan::single(&application, TimeSpan::millis::<1>()));
     let mut plc = SoftPlc::new(&application, &plan).expect("a plan");
-    plc.scan(VirtualTime::from_ns(1_000_000)).expect("no fault");
+    plc.scan(VirtualTime::from_nanos(1_000_000)).expect("no fault");
     paths.iter().map(|path| plc.read(path).unwrap_or_else(|error| panic!("{error}"))).collect()
 }
 
@@ -110,7 +111,8 @@ fn a_program_and_its_instances_have_the_same_constants() {
         assert_eq!(values(builder(text).constant(path, "6"), &paths), ["6", "6"], "{path}");
     }
     let application = builder(text).constant("every", "T#7ms").build().expect("a TIME");
-    assert_eq!(TaskPlan::configured(&application).expect("it has one").tasks[0].interval_ns, 7_000_000);
+    let plan = TaskPlan::configured(&application).expect("it has one");
+    assert_eq!(plan.tasks[0].interval.map(TimeSpan::as_nanos), Some(7_000_000));
     assert!(builder(text).constant("Left.side", "2").build().is_ok());
     let twice = builder(text).constant("one.k", "2").constant("two.k", "3").build().expect_err("one constant");
     assert_eq!(twice.to_string(), "the constant `Main.k` is set twice");

@@ -1,5 +1,7 @@
 use onescan_plc_shim::input::kind::SourceKind;
-use onescan_plc_shim::{Application, Builder, CodePolicy, Input, RestoreError, SoftPlc, TaskPlan, VirtualTime};
+use onescan_plc_shim::{
+    Application, Builder, CodePolicy, Input, RestoreError, SoftPlc, TaskPlan, TimeSpan, VirtualTime,
+};
 
 use crate::rig::{MS, Rig, application, task};
 
@@ -13,7 +15,7 @@ END_PROGRAM";
 #[test]
 fn a_restored_plc_goes_on_to_the_last_bit_from_every_scan() {
     let application = application(TEXT);
-    let plan = TaskPlan::single(&application, 10 * MS);
+    let plan = TaskPlan::single(&application, TimeSpan::millis::<10>());
     let mut whole = Rig::with_plan(&application, &plan);
     let mut states = vec![whole.plc.save()];
     for _ in 0..40 {
@@ -41,7 +43,7 @@ fn a_fault_is_part_of_the_state() {
     let mut other = Rig::new(text);
     other.plc.restore(&state).expect("its own state");
     assert_eq!(other.plc.fault(), Some(&fault));
-    assert_eq!(other.plc.scan(VirtualTime::from_ns(1)), Err(fault));
+    assert_eq!(other.plc.scan(VirtualTime::from_nanos(1)), Err(fault));
     other.plc.cold_start();
     assert_eq!(other.plc.fault(), None);
 }
@@ -82,14 +84,14 @@ fn built(builder: Builder) -> Application {
 
 /// A PLC with one task of 10 ms; a traced one watches something.
 fn plc(application: &Application) -> SoftPlc {
-    let mut plc = SoftPlc::new(application, &TaskPlan::single(application, 10 * MS)).expect("a plan");
+    let mut plc = SoftPlc::new(application, &TaskPlan::single(application, TimeSpan::millis::<10>())).expect("a plan");
     plc.watch([(64..68, None)]);
     plc
 }
 
 fn scan(plc: &mut SoftPlc, scans: std::ops::RangeInclusive<u64>) {
     for number in scans {
-        plc.scan(VirtualTime::from_ns(number * 10 * MS)).expect("no fault");
+        plc.scan(VirtualTime::from_nanos(number * 10 * MS)).expect("no fault");
     }
 }
 

@@ -2,8 +2,9 @@
 
 use std::fmt::Write;
 
+use onescan_base::elementary::Kind;
+
 use super::super::{Application, Variable};
-use crate::ir::elementary::Kind;
 use crate::ir::text::TextShape;
 use crate::ir::{ElementaryType, Storage, Type, TypeId};
 use crate::run::text::value_text;

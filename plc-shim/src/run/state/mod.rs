@@ -23,7 +23,8 @@ mod tasks;
 
 pub use self::error::RestoreError;
 pub use self::tasks::PlanDifference;
-use super::VirtualTime;
+use onescan_base::VirtualTime;
+
 use super::fault::{FaultSite, PlcFault};
 use super::force::Forces;
 use super::plan::TaskPlan;
@@ -35,6 +36,13 @@ use crate::application::identity::layout::Layout;
 use crate::application::identity::{Digest, VariableDifference, digest};
 use crate::check::VIRTUAL_TIME_OFFSET;
 use crate::compile::fault::FaultKind;
+
+/// How a saved state writes an instant that does not come.
+const NEVER_NS: u64 = u64::MAX;
+
+fn instant(ns: u64) -> Option<VirtualTime> {
+    (ns != NEVER_NS).then(|| VirtualTime::from_nanos(ns))
+}
 
 const MAGIC: [u8; 8] = *b"OSPLC\0\0\x04";
 
@@ -89,11 +97,12 @@ impl State<&[u8]> {
         writer.raw(&meaning.layout);
         writer.raw(&meaning.code);
         writer.raw(&meaning.tables);
-        writer.number(self.now.as_ns());
+        writer.number(self.now.as_nanos());
         writer.count(self.waiting.len());
-        for Waiting { due_ns, edge_ns, level } in &self.waiting {
-            writer.number(*due_ns);
-            writer.number(*edge_ns);
+        for Waiting { due, edge, level } in &self.waiting {
+            for instant in [due, edge] {
+                writer.number(instant.map_or(NEVER_NS, VirtualTime::as_nanos));
+            }
             writer.flag(*level);
         }
         writer.flag(self.fault.is_some());
@@ -113,7 +122,7 @@ impl State<&[u8]> {
 
 fn encode_fault(fault: &PlcFault, writer: &mut Writer) {
     writer.byte(fault.kind as u8);
-    writer.number(fault.virtual_time.as_ns());
+    writer.number(fault.virtual_time.as_nanos());
     writer.count(fault.callers.len());
     for site in std::iter::once(&fault.at).chain(&fault.callers) {
         writer.small_number(site.line);
@@ -179,10 +188,10 @@ impl Decoder<'_> {
     }
 
     fn progress(&self, reader: &mut Reader<'_>) -> Option<(VirtualTime, Vec<Waiting>, Option<PlcFault>)> {
-        let now = VirtualTime::from_ns(reader.number()?);
+        let now = VirtualTime::from_nanos(reader.number()?);
         let waiting = reader.list(|reader| {
-            let (due_ns, edge_ns) = (reader.number()?, reader.number()?);
-            Some(Waiting { due_ns, edge_ns, level: reader.flag()? })
+            let [due, edge] = [reader.number()?, reader.number()?].map(instant);
+            Some(Waiting { due, edge, level: reader.flag()? })
         })?;
         let fault = if reader.flag()? { Some(decode_fault(reader)?) } else { None };
         (waiting.len() == self.plan.tasks.len()).then_some((now, waiting, fault))
@@ -224,7 +233,7 @@ impl Decoder<'_> {
 fn decode_fault(reader: &mut Reader<'_>) -> Option<PlcFault> {
     let code = reader.byte()?;
     let kind = FaultKind::ALL.into_iter().find(|kind| *kind as u8 == code)?;
-    let virtual_time = VirtualTime::from_ns(reader.number()?);
+    let virtual_time = VirtualTime::from_nanos(reader.number()?);
     let count = reader.small_number()?;
     let at = decode_site(reader)?;
     let callers = (0..count).map(|_| decode_site(reader)).collect::<Option<_>>()?;

@@ -1,9 +1,9 @@
 //! The task plan as a part of a state's layout: the saved scheduler stands for tasks by their positions.
 
+use onescan_base::{ElementaryType, TimeSpan};
 use thiserror::Error;
 
 use crate::application::identity::bytes::{Reader, Writer};
-use crate::ir::ElementaryType;
 use crate::run::text::value_text;
 use crate::run::{Task, TaskPlan};
 
@@ -58,7 +58,7 @@ pub(super) fn folded(plan: &TaskPlan) -> TaskPlan {
     let fold = |names: &[String]| names.iter().map(|name| name.to_ascii_uppercase()).collect();
     let task = |task: &Task| Task {
         name: task.name.to_ascii_uppercase(),
-        interval_ns: task.interval_ns,
+        interval: task.interval,
         single: task.single.as_ref().map(|path| path.to_ascii_uppercase()),
         priority: task.priority,
         programs: fold(&task.programs),
@@ -73,9 +73,10 @@ pub(super) fn encode(plan: &TaskPlan) -> Vec<u8> {
     let mut writer = Writer::default();
     writer.number(*fuel_per_task);
     writer.count(tasks.len());
-    for Task { name, interval_ns, single, priority, programs } in tasks {
+    for Task { name, interval, single, priority, programs } in tasks {
         writer.text(name);
-        writer.number(*interval_ns);
+        // A span is never 0, so 0 stands for a task without an interval.
+        writer.number(interval.map_or(0, TimeSpan::as_nanos));
         writer.small_number(*priority);
         writer.flag(single.is_some());
         writer.text(single.as_deref().unwrap_or(""));
@@ -90,10 +91,11 @@ pub(super) fn decode(bytes: &[u8]) -> Option<TaskPlan> {
     let mut reader = Reader::new(bytes);
     let fuel_per_task = reader.number()?;
     let tasks = reader.list(|reader| {
-        let (name, interval_ns, priority) = (reader.text()?, reader.number()?, reader.small_number()?);
+        let (name, interval, priority) =
+            (reader.text()?, TimeSpan::from_nanos(reader.number()?), reader.small_number()?);
         let (has_trigger, trigger) = (reader.flag()?, reader.text()?);
         let single = has_trigger.then_some(trigger);
-        Some(Task { name, interval_ns, single, priority, programs: reader.texts()? })
+        Some(Task { name, interval, single, priority, programs: reader.texts()? })
     })?;
     let background = reader.texts()?;
     reader.is_at_end().then_some(TaskPlan { tasks, background, fuel_per_task })
@@ -131,11 +133,14 @@ fn task_difference(task: &Task, before: &Task) -> Option<PlanDifference> {
         Some(PlanDifference::Task { task, saved, wanted })
     };
     let trigger = |task: &Task| task.single.as_ref().map(|path| path.to_ascii_uppercase());
-    if task.interval_ns != before.interval_ns {
-        return match (before.interval_ns, task.interval_ns) {
-            (0, ns) => differs("no interval".to_owned(), format!("an interval of {}", duration(ns))),
-            (ns, 0) => differs(format!("an interval of {}", duration(ns)), "none".to_owned()),
-            (saved, wanted) => differs(format!("an interval of {}", duration(saved)), duration(wanted)),
+    if task.interval != before.interval {
+        let shown = |interval: TimeSpan| format!("an interval of {}", duration(interval));
+        return match (before.interval, task.interval) {
+            (Some(saved), Some(wanted)) => differs(shown(saved), duration(wanted)),
+            (saved, wanted) => {
+                let [saved, wanted] = [saved, wanted].map(|each| each.map_or("no interval".to_owned(), shown));
+                differs(saved, wanted)
+            }
         };
     }
     if task.priority != before.priority {
@@ -165,7 +170,7 @@ fn programs(names: &[String]) -> String {
 }
 
 /// `20ms`
-fn duration(ns: u64) -> String {
-    let text = value_text(ElementaryType::Time, ns.cast_signed());
+fn duration(span: TimeSpan) -> String {
+    let text = value_text(ElementaryType::Time, span.as_nanos().cast_signed());
     text.trim_start_matches("T#").to_owned()
 }

@@ -1,10 +1,11 @@
 //! Units, types and variable sections (2nd ed. 2.3 to 2.5).
 
+use onescan_base::ElementaryType;
+
 use super::cursor::Cursor;
 use super::object::ends_object;
 use crate::diagnostic::{Code, Diagnostic};
 use crate::dialect::Feature;
-use crate::ir::ElementaryType;
 use crate::syntax::ast::{
     Chart, CompilationUnit, Declaration, Edge, Ident, Member, Modifier, PouKind, Qualifier, Section, SectionKind,
     Statement, StatementKind, TypeDeclaration, TypeSpec, TypeSpecKind, Variable,
