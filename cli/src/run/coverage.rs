@@ -44,7 +44,7 @@ impl CoverageRequest {
     pub(crate) fn write_report(&self, coverage: &Coverage) -> Result<(), RunError> {
         let text = match self.format {
             CoverageFormat::Lcov => coverage.to_lcov(),
-            CoverageFormat::Cobertura => coverage.to_cobertura(),
+            CoverageFormat::Cobertura => coverage.to_cobertura().map_err(RunError::Output)?,
         };
         Ok(file::write_whole(&self.path, text.as_bytes())?)
     }

@@ -10,13 +10,15 @@ use super::{Coverage, FileCoverage, covered};
 
 impl Coverage {
     /// As a Cobertura report. It has no time of its making, so that equal runs give equal reports.
-    pub fn to_cobertura(&self) -> String {
+    ///
+    /// # Errors
+    /// The XML writer's own; it has no reason for one while it writes to memory.
+    pub fn to_cobertura(&self) -> io::Result<String> {
         let mut writer = Writer::new_with_indent(Vec::new(), b' ', 2);
-        // Writing to memory does not fail.
-        let _ = self.write(&mut writer);
-        let mut text = String::from_utf8(writer.into_inner()).unwrap_or_default();
+        self.write(&mut writer)?;
+        let mut text = String::from_utf8(writer.into_inner()).map_err(io::Error::other)?;
         text.push('\n');
-        text
+        Ok(text)
     }
 
     fn write(&self, writer: &mut Writer<Vec<u8>>) -> io::Result<()> {
@@ -24,8 +26,8 @@ impl Coverage {
         writer.write_event(Event::DocType(BytesText::from_escaped(
             r#"coverage SYSTEM "http://cobertura.sourceforge.net/xml/coverage-04.dtd""#,
         )))?;
-        if self.counted_from_ns > 0 {
-            let note = format!(" A run was resumed: it is counted from {} ns on. ", self.counted_from_ns);
+        if let Some(from) = self.counted_from {
+            let note = format!(" A run was resumed: it is counted from {from} on. ");
             writer.write_event(Event::Comment(BytesText::new(&note)))?;
         }
         let ((lines, lines_hit), (branches, branches_hit)) = (self.lines(), self.branches());

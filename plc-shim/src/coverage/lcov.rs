@@ -8,9 +8,9 @@ impl Coverage {
     /// As an lcov tracefile. Its test name says from when on a resumed run is counted, in nanoseconds.
     pub fn to_lcov(&self) -> String {
         // A test name has letters, digits and underscores.
-        let mut text = match self.counted_from_ns {
-            0 => "TN:\n".to_owned(),
-            from => format!("TN:counted_from_{from}_ns\n"),
+        let mut text = match self.counted_from {
+            None => "TN:\n".to_owned(),
+            Some(from) => format!("TN:counted_from_{}_ns\n", from.as_nanos()),
         };
         for (name, file) in &self.files {
             write_file(&mut text, name, file);

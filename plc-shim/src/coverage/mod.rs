@@ -15,6 +15,8 @@ mod rows;
 
 use std::collections::BTreeMap;
 
+use onescan_base::VirtualTime;
+
 use crate::compile::points::{Point, PointKind};
 use crate::syntax::SourceMap;
 
@@ -24,8 +26,8 @@ pub use rows::{Counted, Row};
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Coverage {
     files: BTreeMap<String, FileCoverage>,
-    /// Virtual time from which on all runs are counted, in nanoseconds; 0 if none was resumed.
-    counted_from_ns: u64,
+    /// From when on all runs are counted; nothing if none was resumed.
+    counted_from: Option<VirtualTime>,
 }
 
 /// Of one file; lines count from 1, as its author sees them.
@@ -39,9 +41,9 @@ struct FileCoverage {
 }
 
 impl Coverage {
-    /// What the bytes say of the points; nothing is known of the run up to `counted_from_ns`.
-    pub(crate) fn new(sources: &SourceMap, points: &[Point], seen: &[u8], counted_from_ns: u64) -> Self {
-        let mut found = Self { counted_from_ns, ..Self::default() };
+    /// What the bytes say of the points; nothing is known of the run up to `counted_from`.
+    pub(crate) fn new(sources: &SourceMap, points: &[Point], seen: &[u8], counted_from: Option<VirtualTime>) -> Self {
+        let mut found = Self { counted_from, ..Self::default() };
         for (point, seen) in points.iter().zip(seen) {
             let (file, place) = sources.locate(point.span);
             let file = found.files.entry(file.to_owned()).or_default();
@@ -61,7 +63,7 @@ impl Coverage {
 
     /// Adds what another run executed.
     pub fn merge(&mut self, other: &Self) {
-        self.counted_from_ns = self.counted_from_ns.max(other.counted_from_ns);
+        self.counted_from = self.counted_from.max(other.counted_from);
         for (name, theirs) in &other.files {
             let file = self.files.entry(name.clone()).or_default();
             for (unit, count) in &theirs.units {
@@ -79,10 +81,10 @@ impl Coverage {
         }
     }
 
-    /// Virtual time, in nanoseconds, from which on all of the runs are counted: what one of them executed before it
-    /// was resumed is not. 0 if every run is counted from its start.
-    pub fn counted_from_ns(&self) -> u64 {
-        self.counted_from_ns
+    /// From when on all of the runs are counted: what one of them executed before it was resumed is not. Nothing
+    /// if every run is counted from its start.
+    pub fn counted_from(&self) -> Option<VirtualTime> {
+        self.counted_from
     }
 
     /// Lines with statements, and how many of them were executed.

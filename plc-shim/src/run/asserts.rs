@@ -1,6 +1,7 @@
 //! What the asserts of a test program have found (`iec/test/assert.st`).
 
 use super::SoftPlc;
+use crate::application::Variable;
 use crate::check::asserts::place;
 use crate::syntax::source::LineColumn;
 
@@ -32,18 +33,22 @@ pub struct FailedAssert {
 impl SoftPlc {
     /// What asserts have found since this was last called; nothing in a program that has none.
     pub fn take_asserts(&mut self) -> Asserts {
-        let Some((made, failed)) = self.number("made").zip(self.number("failed")) else { return Asserts::default() };
-        let mut found = Asserts { made, ..Asserts::default() };
-        for index in 0..failed {
-            let site = self.number(&format!("sites[{index}]"));
-            match site.zip(self.text(&format!("texts[{index}]"))) {
-                Some((site, text)) => found.failed.push(self.failed(site, text)),
+        let [Some(made), Some(failed)] = ["made", "failed"].map(|counter| self.logged(counter)) else {
+            return Asserts::default();
+        };
+        let mut found = Asserts { made: number(self.bytes(&made)), ..Asserts::default() };
+        for index in 0..number(self.bytes(&failed)) {
+            let site = self.logged(&format!("sites[{index}]"));
+            match site.zip(self.logged(&format!("texts[{index}]"))) {
+                Some((site, text)) => {
+                    found.failed.push(self.failed(number(self.bytes(&site)), text_of(self.bytes(&text))))
+                }
+                // Counted, but beyond what the log has room for.
                 None => found.lost += 1,
             }
         }
-        for counter in ["made", "failed"] {
-            // Both are there, as they were read.
-            let _ = self.write(&format!("{LOG}.{counter}"), "0");
+        for counter in [made, failed] {
+            counter.store(&vec![0; counter.size as usize], self.memory_mut());
         }
         found
     }
@@ -53,18 +58,23 @@ impl SoftPlc {
         FailedAssert { text, file: file.to_owned(), at }
     }
 
-    fn number(&self, member: &str) -> Option<u64> {
-        let variable = self.variable(&format!("{LOG}.{member}")).ok()?;
-        let bytes = self.memory().get(variable.offset as usize..)?.get(..variable.size as usize)?;
-        Some(bytes.iter().rev().fold(0, |value, byte| value << 8 | u64::from(*byte)))
+    /// A member of the log.
+    fn logged(&self, member: &str) -> Option<Variable> {
+        self.variable(&format!("{LOG}.{member}")).ok()
     }
 
-    /// A STRING: its length in two bytes, then its characters.
-    fn text(&self, member: &str) -> Option<String> {
-        let variable = self.variable(&format!("{LOG}.{member}")).ok()?;
-        let bytes = self.memory().get(variable.offset as usize..)?.get(..variable.size as usize)?;
-        let (length, characters) = bytes.split_first_chunk::<2>()?;
-        let used = usize::from(u16::from_le_bytes(*length)).min(characters.len());
-        Some(characters[..used].iter().copied().map(char::from).collect())
+    fn bytes(&self, variable: &Variable) -> &[u8] {
+        let start = variable.offset as usize;
+        &self.memory()[start..start + variable.size as usize]
     }
+}
+
+fn number(bytes: &[u8]) -> u64 {
+    bytes.iter().rev().fold(0, |value, byte| value << 8 | u64::from(*byte))
+}
+
+/// A STRING: its length in two bytes, then its characters. The program may have written any length.
+fn text_of(bytes: &[u8]) -> String {
+    let (length, characters) = bytes.split_at(bytes.len().min(2));
+    characters.iter().take(number(length) as usize).copied().map(char::from).collect()
 }

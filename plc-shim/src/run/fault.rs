@@ -99,6 +99,7 @@ pub(super) fn explain(application: &Application, trapped: &Trapped, virtual_time
     let known: Vec<Frame<'_>> = frames.filter_map(|(index, offset)| Some((table.function(*index)?, *offset))).collect();
     let (kind, mark) = cause(trapped.trap, known.first().copied());
     let mut sites = sites(application, &active(&known, mark));
+    // Nothing is active in a fault of the host, which has no place in the source.
     let mut at = sites.pop().unwrap_or_default();
     place(application, mark.map(|mark| mark.span), &mut at);
     sites.reverse();

@@ -77,11 +77,6 @@ impl SoftPlc {
         Ok(self.forces.release(&variable))
     }
 
-    /// Gives all variables back to the program.
-    pub fn unforce_all(&mut self) {
-        self.forces.clear();
-    }
-
     /// The forced variables, the oldest first.
     pub fn forced(&self) -> impl ExactSizeIterator<Item = &Variable> {
         self.forces.iter().map(|force| &force.variable)

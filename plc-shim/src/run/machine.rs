@@ -19,7 +19,7 @@ pub(super) struct Machine {
     budget: Global,
     /// Where the program notes what it executes, if it was compiled for that.
     notes: Option<Memory>,
-    /// Bytes of `memory` in use: memory comes in pages.
+    /// Bytes of `memory` in use, never more than it has: memory comes in pages, and does not shrink.
     size: usize,
     /// The functions in a row of each thing that tasks can run.
     entries: Vec<Vec<TypedFunc<(), ()>>>,
@@ -46,6 +46,11 @@ pub(super) enum Occasion {
 pub(super) struct Trapped {
     pub(super) trap: Option<Trap>,
     pub(super) frames: Vec<(u32, Option<u32>)>,
+}
+
+impl Trapped {
+    /// What cannot happen has, outside of the program: an internal fault without a place in the source.
+    const NOWHERE: Self = Self { trap: None, frames: Vec::new() };
 }
 
 fn engine() -> Result<Engine, String> {
@@ -80,26 +85,26 @@ impl Machine {
         let budget = budget.ok_or_else(|| RunError::Module("the budget is missing".to_owned()))?;
         *store.data_mut() = HostState { memory: Some(memory), budget: Some(budget), trace: None };
         let size = application.initial_memory().len();
+        if memory.data_size(&store) < size {
+            return Err(RunError::Module("memory is smaller than the variables".to_owned()));
+        }
         let parts = application.entry_parts().enumerate();
         let entries = parts.map(|(index, count)| entry(&instance, &mut store, index, count));
         let entries: Vec<Vec<_>> = entries.collect::<Result<_, _>>()?;
         let functions = |task: &Vec<usize>| task.iter().filter_map(|at| entries.get(*at)).flatten().cloned().collect();
         let functions: Vec<Vec<_>> = tasks.iter().map(functions).collect();
         let rows = row::link(&mut store, &functions).map_err(|error| module_error(&error))?;
-        let start = instance.get_typed_func(&mut store, START_EXPORT).ok();
-        let end = instance.get_typed_func(&mut store, END_EXPORT).ok();
+        let start = optional(&instance, &mut store, START_EXPORT)?;
+        let end = optional(&instance, &mut store, END_EXPORT)?;
         Ok(Self { store, memory, notes, budget, size, entries, rows, start, end })
     }
 
     pub(super) fn memory(&self) -> &[u8] {
-        let all = self.memory.data(&self.store);
-        all.get(..self.size).unwrap_or(all)
+        &self.memory.data(&self.store)[..self.size]
     }
 
     pub(super) fn memory_mut(&mut self) -> &mut [u8] {
-        let all = self.memory.data_mut(&mut self.store);
-        let size = self.size.min(all.len());
-        &mut all[..size]
+        &mut self.memory.data_mut(&mut self.store)[..self.size]
     }
 
     /// A byte for each point of the program, not 0 once it was executed; none unless it was compiled for that.
@@ -108,11 +113,13 @@ impl Machine {
     }
 
     /// Gives the budget for the calls up to the next refill.
-    pub(super) fn refuel(&mut self, fuel: u64) {
+    ///
+    /// # Errors
+    /// The module's budget is not what it was compiled to be.
+    pub(super) fn refuel(&mut self, fuel: u64) -> Result<(), Trapped> {
+        // No PLC lives long enough to use up the rest.
         let budget = Val::I64(i64::try_from(fuel).unwrap_or(i64::MAX));
-        // Fails only if the global were of another type or could not be set.
-        let set = self.budget.set(&mut self.store, budget);
-        debug_assert!(set.is_ok(), "the module has a budget");
+        self.budget.set(&mut self.store, budget).map_err(|error| trapped(&error))
     }
 
     /// What statements are held against; nothing unless that was asked for.
@@ -168,14 +175,14 @@ impl Machine {
 
     /// Runs all of a task, without a halt between its parts.
     pub(super) fn run_row(&mut self, task: usize) -> Result<(), Trapped> {
-        let Some(Some(function)) = self.rows.get(task) else { return Ok(()) };
+        let row = self.rows.get(task).ok_or(Trapped::NOWHERE)?;
+        // A task need not have programs.
+        let Some(function) = row else { return Ok(()) };
         function.call(&mut self.store, ()).map_err(|error| trapped(&error))
     }
 
     pub(super) fn run(&mut self, entry: usize, part: usize) -> Result<(), Trapped> {
-        let Some(function) = self.entries.get(entry).and_then(|parts| parts.get(part)) else {
-            return Ok(());
-        };
+        let function = self.entries.get(entry).and_then(|parts| parts.get(part)).ok_or(Trapped::NOWHERE)?;
         function.call(&mut self.store, ()).map_err(|error| trapped(&error))
     }
 }
@@ -188,6 +195,16 @@ fn entry(
 ) -> Result<Vec<TypedFunc<(), ()>>, RunError> {
     let mut part = |part| instance.get_typed_func(&mut *store, &entry_export(index, part));
     (0..count).map(|at| part(at).map_err(|error| module_error(&error))).collect()
+}
+
+/// The function of this name; nothing if the module has none.
+fn optional(
+    instance: &Instance,
+    store: &mut Store<HostState>,
+    name: &str,
+) -> Result<Option<TypedFunc<(), ()>>, RunError> {
+    let function = instance.get_func(&mut *store, name);
+    function.map(|function| function.typed(&*store)).transpose().map_err(|error| module_error(&error))
 }
 
 fn linker(engine: &Engine) -> Result<Linker<HostState>, wasmtime::Error> {

@@ -34,8 +34,8 @@ pub struct SoftPlc {
     now: VirtualTime,
     /// The latest virtual time that this PLC has scanned, whatever was restored since.
     scanned_until: VirtualTime,
-    /// The latest saved state that was restored ahead of what the PLC had scanned itself; 0 if none was.
-    skipped_to: VirtualTime,
+    /// The time of the latest state that was restored ahead of what the PLC had scanned itself.
+    skipped_to: Option<VirtualTime>,
     fault: Option<PlcFault>,
     pub(super) forces: Forces,
 }
@@ -66,7 +66,7 @@ impl SoftPlc {
             meaning: OnceLock::new(),
             now: VirtualTime::default(),
             scanned_until: VirtualTime::default(),
-            skipped_to: VirtualTime::default(),
+            skipped_to: None,
             fault: None,
             forces: Forces::default(),
         };
@@ -101,9 +101,9 @@ impl SoftPlc {
     /// Lets instances do what they do before another start. A PLC that has stopped does nothing.
     fn end(&mut self) {
         if self.fault.is_none() && self.machine.has(Occasion::End) {
-            self.begin_task();
-            // It is left with all it has; a fault there is the past's.
-            self.machine.run_occasion(Occasion::End).ok();
+            let ended = self.begin_task().and_then(|()| self.machine.run_occasion(Occasion::End));
+            // A fault there stops what ends anyway; the start that follows takes all of it away.
+            drop(ended);
         }
     }
 
@@ -111,12 +111,14 @@ impl SoftPlc {
     fn initialise(&mut self, application: &Application, kept: fn(&Application) -> &[Range<u32>]) {
         let image = application.initial_memory();
         let memory = self.machine.memory_mut();
+        // Memory is as large as the image, and ranges are inside of it, in ascending order.
         let mut from = 0;
         for range in kept(application) {
-            copy_range(memory, image, from, range.start as usize);
+            let to = range.start as usize;
+            memory[from..to].copy_from_slice(&image[from..to]);
             from = range.end as usize;
         }
-        copy_range(memory, image, from, image.len());
+        memory[from..].copy_from_slice(&image[from..]);
     }
 
     /// `initial` tells that RETAIN variables have their initial values, too.
@@ -126,8 +128,8 @@ impl SoftPlc {
         self.fault = None;
         if self.machine.has(Occasion::Start) {
             copy_to(self.machine.memory_mut(), INIT_RETAINS_OFFSET as usize, &[u8::from(initial)]);
-            self.begin_task();
-            if let Err(trapped) = self.machine.run_occasion(Occasion::Start) {
+            let started = self.begin_task().and_then(|()| self.machine.run_occasion(Occasion::Start));
+            if let Err(trapped) = started {
                 self.fault = Some(explain(&self.application, &trapped, now));
             }
         }
@@ -156,22 +158,22 @@ impl SoftPlc {
         self.scheduler.begin_scan();
         self.scheduler.look(now, self.machine.memory());
         while let Some(task) = self.scheduler.take_due(now) {
-            self.begin_task();
+            self.begin_task().map_err(|trapped| self.stop(&trapped))?;
             self.run_task(task)?;
             self.scheduler.look(now, self.machine.memory());
         }
         for at in 0..self.background.len() {
-            self.begin_task();
+            self.begin_task().map_err(|trapped| self.stop(&trapped))?;
             self.run_entry(self.background[at])?;
         }
         Ok(())
     }
 
     /// Gives a task its virtual time and its budget.
-    fn begin_task(&mut self) {
+    fn begin_task(&mut self) -> Result<(), Trapped> {
         let time = self.now.as_nanos().to_le_bytes();
         copy_to(self.machine.memory_mut(), VIRTUAL_TIME_OFFSET as usize, &time);
-        self.machine.refuel(self.plan.fuel_per_task);
+        self.machine.refuel(self.plan.fuel_per_task)
     }
 
     fn run_task(&mut self, task: usize) -> Result<(), PlcFault> {
@@ -259,7 +261,7 @@ impl SoftPlc {
         let points = self.application.points();
         let sources = self.application.sources();
         (!points.is_empty() && !self.application.is_traced())
-            .then(|| Coverage::new(sources, points, self.machine.notes(), self.skipped_to.as_nanos()))
+            .then(|| Coverage::new(sources, points, self.machine.notes(), self.skipped_to))
     }
 
     /// Watches places in memory from here on, in place of those watched before. The application must
@@ -314,7 +316,7 @@ impl SoftPlc {
         self.scheduler.set_waiting(&waiting);
         (self.now, self.fault, self.forces) = (now, fault, forces);
         if now > self.scanned_until {
-            (self.scanned_until, self.skipped_to) = (now, now);
+            (self.scanned_until, self.skipped_to) = (now, Some(now));
         }
         Ok(())
     }
@@ -324,14 +326,8 @@ impl SoftPlc {
     }
 }
 
+/// `offset` and the bytes behind it are the PLC's own: memory is as large as the image, which is larger than the
+/// cells in front of the variables.
 fn copy_to(memory: &mut [u8], offset: usize, bytes: &[u8]) {
-    if let Some(target) = memory.get_mut(offset..offset + bytes.len()) {
-        target.copy_from_slice(bytes);
-    }
-}
-
-fn copy_range(memory: &mut [u8], image: &[u8], from: usize, to: usize) {
-    if let Some(source) = image.get(from..to) {
-        copy_to(memory, from, source);
-    }
+    memory[offset..offset + bytes.len()].copy_from_slice(bytes);
 }

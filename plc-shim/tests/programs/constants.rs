@@ -45,7 +45,7 @@ fn a_constant_takes_the_value_that_is_set() {
     assert_eq!(set("Axis.Home.back", "9", "Main.h"), "9");
     assert_eq!(set("Rest", "T#20ms", "Main.t"), "T#20ms");
     assert_eq!(set("Line.speed", "2.5", "Main.r"), "2.5");
-    assert_eq!(set("speed", "3", "Main.r"), "3");
+    assert_eq!(set("speed", "3", "Main.r"), "3.0");
     assert_eq!(set("Main.colour", "Blue", "Main.shown"), "Blue");
     assert_eq!(set("Main.name", "'yes'", "Main.text"), "'yes'");
     assert_eq!(set("Main.table", "[4, 5, 6]", "Main.table"), "[4, 5, 6]");
@@ -79,6 +79,15 @@ fn what_cannot_be_set_is_said() {
     }
     said.push(builder(TEXT).constant("Rest", "T#1s").constant("REST", "T#2s").build().expect_err("twice").to_string());
     insta::assert_snapshot!(said.join("\n"));
+}
+
+#[test]
+fn constants_are_told_from_variables() {
+    let is_constant = ["Main.a", "axis.home.BACK", "rest", "Main.v", "Main.axis.x", "none", ""];
+    assert_eq!(
+        is_constant.map(|path| builder(TEXT).has_constant(path)),
+        [true, true, true, false, false, false, false]
+    );
 }
 
 /// A wrong value is no finding of the sources, which may have findings of their own.

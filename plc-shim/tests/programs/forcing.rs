@@ -165,7 +165,9 @@ fn a_forced_value_stands_where_programs_begin_and_end() {
     rig.plc.unforce("a.x").expect_err("no such variable");
     rig.scan().expect("no fault");
     assert_eq!(["seen", "z"].map(|path| rig.int(path)), [0, 22]);
-    rig.plc.unforce_all();
+    for path in ["a.o", "y"] {
+        assert_eq!(rig.plc.unforce(path), Ok(true));
+    }
     rig.scan().expect("no fault");
     assert_eq!(["z", "y"].map(|path| rig.int(path)), [7, 50]);
 }
@@ -212,7 +214,7 @@ fn forces_are_part_of_the_state() {
         other.scan().expect("no fault");
         assert_eq!(rig.plc.save(), other.plc.save());
     }
-    other.plc.unforce_all();
+    assert_eq!(other.plc.unforce("y"), Ok(true));
     assert_ne!(rig.plc.save(), other.plc.save());
 }
 

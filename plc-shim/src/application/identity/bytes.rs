@@ -11,10 +11,6 @@ impl Writer {
         Self { bytes: Vec::with_capacity(bytes) }
     }
 
-    pub(crate) fn so_far(&self) -> &[u8] {
-        &self.bytes
-    }
-
     pub(crate) fn finish(self) -> Vec<u8> {
         self.bytes
     }

@@ -7,6 +7,7 @@ use std::collections::BTreeMap;
 use std::ops::Range;
 
 use super::bytes::{Reader, Writer};
+use super::{Digest, digest};
 use crate::check::Checked;
 use crate::ir::{self, PouId, Storage, Type, TypeId};
 use crate::syntax::ast::{Edge, SectionKind};
@@ -70,6 +71,20 @@ impl Layout {
             builder.variables(&pou.name, 0, pou.variables.iter().filter(of_all_calls));
         }
         builder.layout
+    }
+
+    /// Equal for layouts whose names differ in case alone.
+    pub(crate) fn digest(&self) -> Digest {
+        let fold = |members: &mut Vec<Member>| members.iter_mut().for_each(|member| member.name.make_ascii_uppercase());
+        let mut folded = self.clone();
+        fold(&mut folded.roots);
+        for shape in &mut folded.shapes {
+            shape.name.make_ascii_uppercase();
+            if let Parts::Members(members) = &mut shape.parts {
+                fold(members);
+            }
+        }
+        digest(&folded.encode())
     }
 
     pub(crate) fn encode(&self) -> Vec<u8> {

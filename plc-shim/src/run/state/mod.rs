@@ -62,7 +62,8 @@ pub enum CodePolicy {
 pub(super) struct Meaning {
     layout: Digest,
     code: Digest,
-    /// Layout, plan and code as bytes, each with its length in front.
+    /// Layout, plan and code as bytes, each with its length in front. Names are as they are written, for messages;
+    /// in the digests they have no case.
     tables: Vec<u8>,
 }
 
@@ -70,11 +71,13 @@ impl Meaning {
     pub(super) fn new(application: &Application, plan: &TaskPlan) -> Self {
         let (layout, code) = (application.layout(), application.code());
         let mut tables = Writer::default();
-        tables.block(&layout.encode());
-        tables.block(&tasks::encode(plan));
-        let layout = digest(tables.so_far());
-        tables.block(&code.encode());
-        Self { layout, code: code.digest(), tables: tables.finish() }
+        for table in [layout.encode(), tasks::encode(plan), code.encode()] {
+            tables.block(&table);
+        }
+        let mut meant = Writer::default();
+        meant.raw(&layout.digest());
+        meant.raw(&tasks::encode(&tasks::folded(plan)));
+        Self { layout: digest(&meant.finish()), code: code.digest(), tables: tables.finish() }
     }
 }
 

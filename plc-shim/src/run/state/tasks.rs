@@ -53,28 +53,37 @@ pub enum PlanDifference {
     },
 }
 
-/// The plan as bytes. Names are compared as the standard does, so case is no part of it.
+/// A plan with all names in capitals: equal for plans that mean the same, as names are compared without case.
+pub(super) fn folded(plan: &TaskPlan) -> TaskPlan {
+    let fold = |names: &[String]| names.iter().map(|name| name.to_ascii_uppercase()).collect();
+    let task = |task: &Task| Task {
+        name: task.name.to_ascii_uppercase(),
+        interval: task.interval,
+        single: task.single.as_ref().map(|path| path.to_ascii_uppercase()),
+        priority: task.priority,
+        programs: fold(&task.programs),
+    };
+    let (tasks, background) = (plan.tasks.iter().map(task).collect(), fold(&plan.background));
+    TaskPlan { tasks, background, fuel_per_task: plan.fuel_per_task }
+}
+
+/// The plan as bytes.
 pub(super) fn encode(plan: &TaskPlan) -> Vec<u8> {
     let TaskPlan { tasks, background, fuel_per_task } = plan;
     let mut writer = Writer::default();
     writer.number(*fuel_per_task);
     writer.count(tasks.len());
     for Task { name, interval, single, priority, programs } in tasks {
-        writer.text(&name.to_ascii_uppercase());
+        writer.text(name);
         // A span is never 0, so 0 stands for a task without an interval.
         writer.number(interval.map_or(0, TimeSpan::as_nanos));
         writer.small_number(*priority);
         writer.flag(single.is_some());
-        writer.text(&single.as_deref().unwrap_or_default().to_ascii_uppercase());
-        encode_names(programs, &mut writer);
+        writer.text(single.as_deref().unwrap_or(""));
+        writer.texts(programs.iter().map(String::as_str));
     }
-    encode_names(background, &mut writer);
+    writer.texts(background.iter().map(String::as_str));
     writer.finish()
-}
-
-fn encode_names(names: &[String], writer: &mut Writer) {
-    let keys: Vec<String> = names.iter().map(|name| name.to_ascii_uppercase()).collect();
-    writer.texts(keys.iter().map(String::as_str));
 }
 
 /// Nothing unless the bytes are a plan.
@@ -119,28 +128,31 @@ pub(super) fn difference(plan: &TaskPlan, saved: &TaskPlan) -> Option<PlanDiffer
 }
 
 fn task_difference(task: &Task, before: &Task) -> Option<PlanDifference> {
-    let differs = |what: &dyn Fn(&Task) -> String| {
-        let (saved, wanted) = (what(before), what(task));
-        Some(PlanDifference::Task { task: task.name.clone(), saved, wanted })
+    let differs = |saved: String, wanted: String| {
+        let task = task.name.clone();
+        Some(PlanDifference::Task { task, saved, wanted })
     };
     let trigger = |task: &Task| task.single.as_ref().map(|path| path.to_ascii_uppercase());
     if task.interval != before.interval {
-        return differs(&|task| match task.interval {
-            None => "no interval".to_owned(),
-            Some(interval) => format!("an interval of {}", duration(interval)),
-        });
+        let shown = |interval: TimeSpan| format!("an interval of {}", duration(interval));
+        return match (before.interval, task.interval) {
+            (Some(saved), Some(wanted)) => differs(shown(saved), duration(wanted)),
+            (saved, wanted) => {
+                let [saved, wanted] = [saved, wanted].map(|each| each.map_or("no interval".to_owned(), shown));
+                differs(saved, wanted)
+            }
+        };
     }
     if task.priority != before.priority {
-        return differs(&|task| format!("a priority of {}", task.priority));
+        return differs(format!("a priority of {}", before.priority), task.priority.to_string());
     }
     if trigger(task) != trigger(before) {
-        return differs(&|task| match &task.single {
-            Some(path) => format!("the trigger `{path}`"),
-            None => "no trigger".to_owned(),
-        });
+        let shown =
+            |task: &Task| task.single.as_ref().map_or("no trigger".to_owned(), |path| format!("the trigger `{path}`"));
+        return differs(shown(before), shown(task));
     }
     if !same_names(&task.programs, &before.programs) {
-        return differs(&|task| programs(&task.programs));
+        return differs(programs(&before.programs), programs(&task.programs));
     }
     None
 }

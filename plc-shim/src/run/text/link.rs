@@ -46,8 +46,9 @@ fn with_memory<T>(
 }
 
 fn pay(caller: &mut Caller<'_, HostState>, cost: u64) -> Result<(), Error> {
-    let Some(budget) = caller.data().budget else { return Ok(()) };
-    let left = budget.get(&mut *caller).i64().unwrap_or(0).saturating_sub(cost.cast_signed());
+    let budget = caller.data().budget.ok_or_else(|| Error::msg("the module has no budget"))?;
+    let left = budget.get(&mut *caller).i64().ok_or_else(|| Error::msg("the budget is no LINT"))?;
+    let left = left.saturating_sub(cost.cast_signed());
     budget.set(&mut *caller, Val::I64(left))?;
     if left < 0 { Err(Trap::OutOfFuel.into()) } else { Ok(()) }
 }
@@ -89,7 +90,8 @@ fn edit_strings(
     target: i32,
     target_code: i32,
 ) -> Result<i32, Error> {
-    let form = Edit::ALL.get(form.cast_unsigned() as usize).copied().unwrap_or(Edit::Fit);
+    let form = Edit::ALL.get(form.cast_unsigned() as usize).copied();
+    let form = form.ok_or_else(|| Error::msg("a function on strings that there is not"))?;
     with_memory(&mut caller, |memory| {
         let strings = [View::new(memory, a, a_code)?, View::new(memory, b, b_code)?];
         let made = Target::new(memory, target, target_code)?;
@@ -99,9 +101,9 @@ fn edit_strings(
     })
 }
 
-fn type_of(number: i32) -> ElementaryType {
+fn type_of(number: i32) -> Result<ElementaryType, Error> {
     let known = ElementaryType::ALL.get(number.cast_unsigned() as usize);
-    known.copied().unwrap_or(ElementaryType::Bool)
+    known.copied().ok_or_else(|| Error::msg("a number that stands for no elementary type"))
 }
 
 fn format_value(
@@ -111,9 +113,9 @@ fn format_value(
     target: i32,
     target_code: i32,
 ) -> Result<i32, Error> {
+    let ty = type_of(ty)?;
     with_memory(&mut caller, |memory| {
         let mut made = Target::new(memory, target, target_code)?;
-        let ty = type_of(ty);
         if ty.is_character() {
             made.push(memory, bits as u16);
         }
@@ -126,9 +128,9 @@ fn format_value(
 
 /// Characters beyond ASCII, and those beyond a line's length, belong to no value.
 fn parse_value(mut caller: Caller<'_, HostState>, ty: i32, a: i32, a_code: i32) -> Result<i64, Error> {
+    let ty = type_of(ty)?;
     with_memory(&mut caller, |memory| {
         let text = View::new(memory, a, a_code)?;
-        let ty = type_of(ty);
         if ty.is_character() {
             let first = if text.used == 0 { 0 } else { text.get(memory, 0) };
             // What a CHAR cannot be becomes `?`, as in a STRING.
