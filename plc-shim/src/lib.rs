@@ -52,5 +52,6 @@ pub use dialect::Dialect;
 pub use input::Input;
 pub use onescan_base::{ElementaryType, SignalType, TimeSpan, VirtualTime};
 pub use run::{
-    CodePolicy, FaultSite, PlanDifference, PlcFault, RestoreError, RunError, SoftPlc, Task, TaskPlan, Way, WayId, WriteSite,
+    CodePolicy, FaultSite, PlanDifference, PlcFault, RestoreError, RunError, SoftPlc, Task, TaskPlan, Way, WayId,
+    WriteSite,
 };

@@ -123,7 +123,8 @@ END_IF;]]></ST>
 fn a_resumed_run_is_counted_from_there_on() {
     let application = Application::from_inputs_with_coverage([input("plc.st")]).expect("a sound program");
     let new = || SoftPlc::new(&application, &TaskPlan::single(&application, 1_000_000)).expect("it can run");
-    let scan = |plc: &mut SoftPlc, number: u64| plc.scan(VirtualTime::from_nanos(number * 1_000_000)).expect("no fault");
+    let scan =
+        |plc: &mut SoftPlc, number: u64| plc.scan(VirtualTime::from_nanos(number * 1_000_000)).expect("no fault");
     let mut first = new();
     (1..=4).for_each(|number| scan(&mut first, number));
     let state = first.save();

@@ -1,5 +1,7 @@
 use onescan_plc_shim::input::kind::SourceKind;
-use onescan_plc_shim::{Application, Builder, CodePolicy, Input, RestoreError, SoftPlc, TaskPlan, TimeSpan, VirtualTime};
+use onescan_plc_shim::{
+    Application, Builder, CodePolicy, Input, RestoreError, SoftPlc, TaskPlan, TimeSpan, VirtualTime,
+};
 
 use crate::rig::{MS, Rig, application, task};
 

@@ -82,7 +82,8 @@ pub(super) fn decode(bytes: &[u8]) -> Option<TaskPlan> {
     let mut reader = Reader::new(bytes);
     let fuel_per_task = reader.number()?;
     let tasks = reader.list(|reader| {
-        let (name, interval, priority) = (reader.text()?, TimeSpan::from_nanos(reader.number()?), reader.small_number()?);
+        let (name, interval, priority) =
+            (reader.text()?, TimeSpan::from_nanos(reader.number()?), reader.small_number()?);
         let (has_trigger, trigger) = (reader.flag()?, reader.text()?);
         let single = has_trigger.then_some(trigger);
         Some(Task { name, interval, single, priority, programs: reader.texts()? })
