@@ -4,9 +4,7 @@ use std::io::{self, Write};
 use std::path::Path;
 
 use onescan_clients::plant::component::kinds;
-use onescan_clients::plant::scene::model::{
-    Body, BodyKind, Bound, Component, Mass, Moved, Scene, Sensing, Shape, Wire,
-};
+use onescan_clients::plant::scene::model::{Body, BodyKind, Component, Mass, Moved, Scene, Sensing, Shape, Wire};
 use onescan_report::OutputError;
 use onescan_scenario::compose::report;
 use onescan_scenario::file::ClientFile;
@@ -148,24 +146,12 @@ fn body(body: &Body) -> String {
 
 /// A component: what it is bound to, what of it is not preset, and its wires.
 fn one(component: &Component, scene: &Scene) -> String {
-    let bound = match &component.bound {
-        Bound::Nothing => String::new(),
-        Bound::Drives(joint) => format!(", drives joint {}", scene.joints[*joint].name),
-        Bound::Measures(joint) => format!(", measures joint {}", scene.joints[*joint].name),
-        Bound::Belt { body, .. } => format!(", belt {}", scene.bodies[*body].name),
-        Bound::Ray { targets, .. } => format!(", a ray at {} bodies", targets.len()),
-        Bound::Touch { body, shape, targets } => {
-            let name = shape.map_or(&scene.bodies[*body].name, |shape| &scene.shapes[shape].name);
-            format!(", {name} and {} others", targets.len())
-        }
-        Bound::Meet { targets } => format!(", {} bodies among each other", targets.len()),
-        Bound::Collect { body, targets } => {
-            format!(", body {} takes {} others", scene.bodies[*body].name, targets.len())
-        }
-        Bound::Place { body, targets } => format!(", {} bodies at {}", targets.len(), scene.bodies[*body].name),
-    };
-    let mut lines = vec![format!("{}: {}{bound}", component.name, component.kind)];
+    let mut lines = vec![format!("{}: {}", component.name, component.kind)];
     let Some(kind) = kinds().into_iter().find(|kind| kind.name == component.kind) else { return lines.concat() };
+    let bound = kind.coupling.in_words(&component.bound, scene);
+    if !bound.is_empty() {
+        lines[0] += &format!(", {bound}");
+    }
     for (parameter, setting) in kind.parameters.iter().zip(&component.settings) {
         if parameter.preset != *setting {
             lines.push(format!("{} = {setting}", parameter.key));

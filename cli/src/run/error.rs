@@ -68,6 +68,9 @@ pub enum RunError {
         /// Why.
         source: CheckpointError,
     },
+    /// What the case does to the session cannot be done.
+    #[error("the case cannot be put on this session: {0}")]
+    Timeline(onescan_server::operation::OperationError),
     /// The report cannot be written.
     #[error(transparent)]
     Output(#[from] OutputError),
@@ -87,7 +90,7 @@ impl Exit for RunError {
             Self::File(error) => error.exit_code(),
             Self::Output(error) => error.exit_code(),
             Self::ClientProcess { .. } | Self::Save(_) | Self::SaveTooLate(_) => ExitCode::Fault,
-            Self::Resume { .. } => ExitCode::WrongInput,
+            Self::Resume { .. } | Self::Timeline(_) => ExitCode::WrongInput,
         }
     }
 }

@@ -13,6 +13,7 @@ use onescan_server::operation::OperatorInput;
 use onescan_server::record::event;
 use onescan_server::recording::Recording;
 use onescan_server::signal::ClientName;
+use onescan_server::timeline::Timeline;
 use onescan_server::transport::tcp::Lobby;
 
 use super::config::{Doors, Reach, RunConfig, SaveRequest, Transport};
@@ -41,6 +42,9 @@ pub(super) fn run(
     lockstep.set_until(Some(config.subject.end(scenario)));
     lockstep.set_pace(config.course.pace);
     lockstep.set_mailbox(interrupt.mailbox());
+    lockstep.set_makeup(scenario.makeup());
+    let timeline = Timeline::new(scenario.timeline().to_vec(), lockstep.session()).map_err(RunError::Timeline)?;
+    lockstep.set_timeline(timeline);
     watch(&mut lockstep);
     if let Some(desk) = &desk {
         lockstep.set_published(desk.published());
