@@ -16,6 +16,14 @@ pub enum Mode {
 }
 
 impl Mode {
+    /// Every mode.
+    const ALL: [Self; 4] = [Self::Lockstep, Self::Freewheel, Self::Halt, Self::Follow];
+
+    /// The mode that is written so.
+    pub fn named(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|mode| mode.name() == name)
+    }
+
     /// As it is written on the command line.
     pub fn name(self) -> &'static str {
         match self {

@@ -12,7 +12,7 @@ use super::run::CoverageArg;
 use super::value::FormatArg;
 use crate::error::ExitCode;
 use crate::format::Format;
-use crate::regress::worker::WorkerConfig;
+use crate::regress::config::WorkerConfig;
 use crate::regress::{Policy, Selection, TestConfig};
 use crate::review::{Choice, ReviewConfig};
 use crate::run::coverage::CoverageRequest;

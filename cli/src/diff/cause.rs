@@ -7,8 +7,8 @@ use std::collections::BTreeSet;
 use std::sync::PoisonError;
 
 use onescan_clients::soft_plc::{Traced, Written};
-use onescan_scenario::Scenario;
 use onescan_scenario::file::ClientFile;
+use onescan_scenario::{Mode, Scenario};
 use onescan_server::recording::Recording;
 use onescan_server::signal::{ClientName, SignalName};
 use onescan_server::time::VirtualTime;
@@ -66,7 +66,7 @@ pub(super) fn causes(recordings: &[Recording; 2], differences: &[Difference], at
 /// Runs a recorded scenario again up to `at`. An error says in words why that cannot be.
 fn again(recording: &Recording, signals: &BTreeSet<SignalName>, at: VirtualTime) -> Result<Traced, String> {
     let header = recording.header();
-    if header.provenance.mode != "lockstep" {
+    if Mode::named(&header.provenance.mode) != Some(Mode::Lockstep) {
         return Err(format!("a run in mode {} cannot be repeated", header.provenance.mode));
     }
     let mut scenario = Scenario::load_case(&recording.scenario(), header.provenance.case.as_deref())

@@ -59,3 +59,26 @@ impl TestConfig {
         self.coverage.is_some() || self.html.is_some()
     }
 }
+
+/// What a process is to do.
+#[derive(Clone, Debug, Default)]
+pub struct WorkerConfig {
+    /// A scenario to run, and
+    pub scenario: Option<PathBuf>,
+    /// which case of it.
+    pub case: Option<String>,
+    /// Sources with test programs.
+    pub sources: Vec<PathBuf>,
+    /// Their cycle.
+    pub scan: Option<TimeSpan>,
+    /// When a test program that is not done has failed.
+    pub until: VirtualTime,
+    /// Their dialect.
+    pub dialect: Option<Dialect>,
+    /// Which of their tests; names are held against filters elsewhere.
+    pub selection: Selection,
+    /// Whether to note what is executed.
+    pub cover: bool,
+    /// Whether to draw trajectories.
+    pub draw: bool,
+}

@@ -1,11 +1,12 @@
 //! Why nothing was tested. What is wrong with a test is no error but an outcome.
 
+use onescan_plc_shim::Diagnostics;
 use onescan_report::{FileError, OutputError};
 use onescan_scenario::ScenarioError;
+use thiserror::Error;
 
-use super::unit_test::SourcesReport;
 use crate::check::CheckError;
-use crate::error::{SpawnError, Unreadable, Usage, sum_of_errors};
+use crate::error::{Exit, ExitCode, SpawnError, Unreadable, Usage, sum_of_errors};
 use crate::run::RunError;
 use crate::snapshot::StoreError;
 
@@ -38,5 +39,25 @@ sum_of_errors! {
         File(FileError),
         /// The report cannot be written.
         Output(OutputError),
+    }
+}
+
+/// Sources that do not compile.
+#[derive(Debug, Error)]
+#[error("the sources do not compile")]
+pub struct SourcesReport {
+    /// Errors and warnings.
+    pub findings: Diagnostics,
+}
+
+impl Exit for Box<SourcesReport> {
+    fn exit_code(&self) -> ExitCode {
+        ExitCode::WrongInput
+    }
+}
+
+impl miette::Diagnostic for SourcesReport {
+    fn related<'a>(&'a self) -> Option<Box<dyn Iterator<Item = &'a dyn miette::Diagnostic> + 'a>> {
+        miette::Diagnostic::related(&self.findings)
     }
 }

@@ -224,7 +224,7 @@ fn case(config: &TestConfig, unit: &CaseUnit, suite: &str, ran: &Ran) -> Result<
         let error = Some("its process gave no trajectory".to_owned());
         return Ok(Outcome { error, ..with(Status::Fault) });
     };
-    let violated = ran.expectations.iter().any(|shown| shown.is_violated());
+    let violated = ran.expectations.iter().any(Shown::is_violated);
     let mut judged = match unit.place.read_reviewed() {
         Ok(reviewed) => held_against(config, unit, reviewed.as_ref(), &taken, with)?,
         Err(error) => Outcome { error: Some(error.to_string()), ..with(Status::Wrong) },

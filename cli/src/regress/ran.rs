@@ -1,5 +1,6 @@
 //! What a process says of its unit, as JSON on its standard output.
 
+use onescan_plc_shim::Coverage;
 use onescan_plc_shim::coverage::{Counted, Row};
 use onescan_report::Verdict;
 use onescan_server::client::SourcePlace;
@@ -106,6 +107,11 @@ impl From<Row> for Covered {
 }
 
 impl Covered {
+    /// Coverage as it is handed over.
+    pub(super) fn all(coverage: &Coverage) -> Vec<Self> {
+        coverage.rows().into_iter().map(Self::from).collect()
+    }
+
     /// The row, of a file in `folder`.
     pub fn row(&self, folder: &str) -> Row {
         let Self(file, line, unit, outcome, count) = self;

@@ -8,20 +8,16 @@ use onescan_plc_shim::input::kind::SourceKind;
 use onescan_plc_shim::run::FailedAssert as Failed;
 use onescan_plc_shim::syntax::ast::{Declaration, PouKind};
 use onescan_plc_shim::syntax::{FileId, parse_in};
-use onescan_plc_shim::{
-    Application, Coverage, Diagnostics, ElementaryType, Input, PlcFault, SoftPlc, Task, TaskPlan, VirtualTime,
-};
+use onescan_plc_shim::{Application, Coverage, ElementaryType, Input, PlcFault, SoftPlc, Task, TaskPlan, VirtualTime};
 use onescan_server::client::SourcePlace;
 use onescan_server::time::TimeSpan;
-use thiserror::Error;
 
-use super::error::TestError;
-use super::ran::{FailedAssert, Ran, Worked};
+use super::config::WorkerConfig;
+use super::error::{SourcesReport, TestError};
+use super::ran::{Covered, FailedAssert, Ran, Worked};
 use super::test_tags;
-use super::worker::{WorkerConfig, rows};
 use crate::check::collect;
 use crate::error::Usage;
-use crate::error::{Exit, ExitCode};
 use crate::run::RunStatus;
 
 /// What the names of tests begin with.
@@ -30,26 +26,6 @@ pub const PREFIX: &str = "TEST_";
 const HARNESS: &str = "ONESCAN_RUN_";
 /// The output that says that a test has come to its end.
 const DONE: &str = "Done";
-
-/// Sources that do not compile.
-#[derive(Debug, Error)]
-#[error("the sources do not compile")]
-pub struct SourcesReport {
-    /// Errors and warnings.
-    pub findings: Diagnostics,
-}
-
-impl Exit for Box<SourcesReport> {
-    fn exit_code(&self) -> ExitCode {
-        ExitCode::WrongInput
-    }
-}
-
-impl miette::Diagnostic for SourcesReport {
-    fn related<'a>(&'a self) -> Option<Box<dyn Iterator<Item = &'a dyn miette::Diagnostic> + 'a>> {
-        miette::Diagnostic::related(&self.findings)
-    }
-}
 
 /// A test as it is declared.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -93,7 +69,7 @@ pub fn run(config: &WorkerConfig) -> Result<Worked, TestError> {
     for test in tests.iter().filter(|test| config.selection.has_tags(&test.tags)) {
         worked.tests.push(one(config, &application, test, &mut coverage)?);
     }
-    worked.coverage = rows(&coverage);
+    worked.coverage = Covered::all(&coverage);
     Ok(worked)
 }
 

@@ -2,46 +2,22 @@
 
 use std::cell::RefCell;
 use std::io::Write;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::rc::Rc;
 
-use onescan_plc_shim::{Coverage, Dialect};
 use onescan_report::OutputError;
 use onescan_scenario::Scenario;
 use onescan_scenario::case::{Catalogue, DEFAULT};
-use onescan_server::time::{TimeSpan, VirtualTime};
 
 use super::TestError;
-use super::ran::{Ran, Worked};
-use super::{Selection, unit_test};
+use super::config::WorkerConfig;
+use super::ran::{Covered, Ran, Worked};
+use super::unit_test;
 use crate::interrupt::Interrupt;
 use crate::run::config::{Drawing, Picture};
 use crate::run::page::Event;
 use crate::run::{RunConfig, watched};
 use crate::snapshot::take::{Choice, Taker};
-
-/// What a process is to do.
-#[derive(Clone, Debug, Default)]
-pub struct WorkerConfig {
-    /// A scenario to run, and
-    pub scenario: Option<PathBuf>,
-    /// which case of it.
-    pub case: Option<String>,
-    /// Sources with test programs.
-    pub sources: Vec<PathBuf>,
-    /// Their cycle.
-    pub scan: Option<TimeSpan>,
-    /// When a test program that is not done has failed.
-    pub until: VirtualTime,
-    /// Their dialect.
-    pub dialect: Option<Dialect>,
-    /// Which of their tests; names are held against filters elsewhere.
-    pub selection: Selection,
-    /// Whether to note what is executed.
-    pub cover: bool,
-    /// Whether to draw trajectories.
-    pub draw: bool,
-}
 
 /// Does the work and writes what came of it to `out`.
 ///
@@ -75,11 +51,6 @@ fn case(config: &WorkerConfig, folder: &Path) -> Result<Worked, TestError> {
     ran.picture = config.draw.then(|| plot.to_svg());
     ran.events = scenario.case_events().into_iter().map(|(at_ns, text)| Event { at_ns, text }).collect();
     let coverage =
-        scenario.coverage().map(|sink| rows(&sink.lock().unwrap_or_else(std::sync::PoisonError::into_inner)));
+        scenario.coverage().map(|sink| Covered::all(&sink.lock().unwrap_or_else(std::sync::PoisonError::into_inner)));
     Ok(Worked { tests: vec![ran], coverage: coverage.unwrap_or_default(), error: None })
-}
-
-/// Coverage as it is handed over.
-pub(super) fn rows(coverage: &Coverage) -> Vec<super::ran::Covered> {
-    coverage.rows().into_iter().map(Into::into).collect()
 }

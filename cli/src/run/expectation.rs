@@ -14,7 +14,7 @@ use onescan_server::signal::SignalName;
 use onescan_server::time::VirtualTime;
 use serde::Serialize;
 
-use super::sampler::Chosen;
+use super::chosen::Chosen;
 
 /// What came of one expectation. Its JSON form is a contract: fields are added, never changed.
 #[derive(Clone, Debug, PartialEq, Serialize)]

@@ -10,6 +10,7 @@
 //! | [`processes`] | clients as processes of their own |
 //! | [`freewheel`] | one run without lockstep |
 //! | [`progress`] | a bar on a terminal |
+//! | `chosen` | signals chosen by name, as numbers |
 //! | [`sampler`] | what a plot shows |
 //! | [`recorded`] | a run's recording |
 //! | [`rerun`] | a recorded run once more |
@@ -21,6 +22,7 @@
 //! | [`session_log`] | which client a session waited for |
 
 mod check;
+mod chosen;
 pub mod config;
 pub mod coverage;
 pub mod error;

@@ -8,36 +8,11 @@ use onescan_scenario::{Mode, Scenario};
 use onescan_server::digest::TrajectoryDigest;
 use onescan_server::record::{Observer, RecordError};
 use onescan_server::session::Session;
-use onescan_server::signal::{SignalId, SignalName, SignalType};
+use onescan_server::signal::{SignalName, SignalType};
 
+use super::chosen::Chosen;
 use super::config::Picture;
 use super::report::RunReport;
-
-/// Signals chosen by name, found anew in each session.
-pub(super) struct Chosen {
-    names: Vec<SignalName>,
-    signals: Vec<SignalId>,
-}
-
-impl Chosen {
-    pub(super) fn new(names: &[SignalName]) -> Self {
-        Self { names: names.to_vec(), signals: Vec::new() }
-    }
-
-    /// Finds the signals in a session that begins; tells how many there are.
-    pub(super) fn find(&mut self, session: &Session) -> usize {
-        self.signals = self.names.iter().filter_map(|name| session.signal_id(name.as_str())).collect();
-        self.signals.len()
-    }
-
-    /// What they are now, in their order; texts are no numbers.
-    pub(super) fn numbers(&self, session: &Session) -> impl Iterator<Item = f64> {
-        self.signals.iter().map(|signal| {
-            let bytes = session.layout().bytes(*signal, session.image());
-            session.layout().ty(*signal).as_f64(bytes).unwrap_or(f64::NAN)
-        })
-    }
-}
 
 /// Chosen signals of one run.
 #[derive(Clone, Debug, Default)]
@@ -70,7 +45,7 @@ impl Sampler {
 impl Observer for Sampler {
     fn begin(&mut self, session: &Session, digest: &TrajectoryDigest) -> Result<(), RecordError> {
         self.chosen.find(session);
-        self.samples.replace(Samples::new(&self.chosen.names));
+        self.samples.replace(Samples::new(self.chosen.names()));
         self.step(session, digest)
     }
 

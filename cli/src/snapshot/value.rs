@@ -18,7 +18,7 @@ pub fn show(ty: SignalType, bytes: &[u8]) -> String {
         E::String(_) => quoted(&used(bytes, 1)),
         E::Wstring(_) => quoted(&used(bytes, 2)),
         // Signed integers; dates as nanoseconds since 1970 or midnight.
-        _ => signed(bytes).to_string(),
+        E::Elementary(_) => signed(bytes).to_string(),
     }
 }
 
@@ -45,7 +45,7 @@ fn parse(ty: SignalType, text: &str) -> Option<Vec<u8>> {
         },
         E::String(_) => padded(units(text)?, 1, size),
         E::Wstring(_) => padded(units(text)?, 2, size),
-        _ => least(text.parse::<i64>().ok()? as u64),
+        E::Elementary(_) => least(text.parse::<i64>().ok()? as u64),
     }
 }
 
@@ -145,7 +145,7 @@ mod tests {
             match ty {
                 E::BOOL => bytes[0] &= 1,
                 E::String(_) | E::Wstring(_) => (bytes[0], bytes[1]) = (bytes[0] % 6, 0),
-                _ => {}
+                E::Elementary(_) => {}
             }
             prop_assume!(ty.canonicalise(&mut bytes).is_ok());
             prop_assert_eq!(read(ty, &show(ty, &bytes)), Some(bytes));
