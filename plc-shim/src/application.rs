@@ -1,7 +1,6 @@
 //! Program text to something that can run: parse, check, compile.
 
 mod front;
-mod inspect;
 mod leaves;
 pub(crate) mod library;
 mod namespace;
@@ -29,8 +28,8 @@ use crate::syntax::Span;
 use crate::syntax::{FileId, SourceMap};
 
 pub(crate) use front::Front;
-pub use inspect::inspect;
 pub(crate) use room::with_room;
+pub(crate) use value::text;
 pub use value::{Radix, WriteError};
 pub use variable::{Program, UnknownVariable, Variable, VariableAccess};
 

@@ -5,8 +5,8 @@ use std::sync::Arc;
 
 use miette::{LabeledSpan, NamedSource};
 
-use crate::syntax::source::LineColumn;
-use crate::syntax::{SourceMap, Span};
+use crate::source::LineColumn;
+use crate::source::{SourceMap, Span};
 
 macro_rules! codes {
     ($($variant:ident $text:literal $about:literal),* $(,)?) => {

@@ -4,6 +4,7 @@
 //! |---|---|---|
 //! | [`dialect`] | | what vendors do their own way, as a table |
 //! | [`input`] | files as they are found | program text, and the way back into the file |
+//! | [`source`] | names and texts | files, places in them |
 //! | [`syntax`] | text | tokens and a tree, without loss |
 //! | [`diagnostic`] | findings | messages with code, place and hint |
 //! | [`explain`] | codes | the page behind each |
@@ -39,15 +40,17 @@ mod ir;
 mod lint;
 mod output;
 pub mod run;
+pub mod source;
 pub mod syntax;
 
-pub use application::{Application, Program, Radix, UnknownVariable, Variable, VariableAccess, WriteError, inspect};
+pub use application::{Application, Program, Radix, UnknownVariable, Variable, VariableAccess, WriteError};
 pub use compile::fault::FaultKind;
 pub use coverage::Coverage;
 pub use diagnostic::{Code, Diagnostic, Diagnostics, Finding, Severity};
 pub use dialect::Dialect;
 pub use input::Input;
 pub use ir::elementary::ElementaryType;
+pub use lint::inspect;
 pub use run::{
     FaultSite, PlcFault, RestoreError, RunError, SoftPlc, Task, TaskPlan, VirtualTime, Way, WayId, WriteSite,
 };

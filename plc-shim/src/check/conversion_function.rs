@@ -129,7 +129,8 @@ impl Body<'_, '_> {
             self.report(found.with_help("convert to an integer type on the way"));
             return None;
         }
-        let rounding = if rounding == Rounding::NearestEven { self.checker.dialect(span).rounding() } else { rounding };
+        let rounding =
+            if rounding == Rounding::NearestEven { self.checker.dialect(span).ties().into() } else { rounding };
         let value = Expr { span, ..lower(expr, from, to, rounding) };
         Some(Operand::Typed(self.time_value(value)))
     }
@@ -137,7 +138,7 @@ impl Body<'_, '_> {
     /// A bit string as the number it is, from a real or to one.
     fn as_numbers_do(&self, expr: Expr, (from, to): (ElementaryType, ElementaryType), rounding: Rounding) -> Expr {
         let rounding =
-            if rounding == Rounding::NearestEven { self.checker.dialect(expr.span).rounding() } else { rounding };
+            if rounding == Rounding::NearestEven { self.checker.dialect(expr.span).ties().into() } else { rounding };
         let number = converted(expr, as_number(from), Rounding::NearestEven);
         let there = lower(number, as_number(from), as_number(to), rounding);
         converted(there, to, Rounding::NearestEven)

@@ -108,10 +108,10 @@ use self::names::{Enumerator, GlobalEntry, PouEntry, TypeEntry};
 use self::namespace::Home;
 use self::start::{Occasion, Stages, Started};
 use crate::diagnostic::Diagnostic;
+use crate::dialect::AddressUnit;
 use crate::dialect::Dialect;
 use crate::ir::{Areas, Configuration, Entry, Pou, PouId, Program, Row, TypeId, TypeTable, Variable};
 use crate::syntax::ast::CompilationUnit;
-use crate::syntax::direct_address::AddressUnit;
 use crate::syntax::{FileId, Span};
 
 pub(crate) use instance_section::Kept;

@@ -11,9 +11,9 @@ use super::namespace::Home;
 use super::scope::Scope;
 use super::start::{Stages, Starts};
 use crate::diagnostic::{Code, Diagnostic};
+use crate::dialect::AddressUnit;
 use crate::ir::{Areas, ElementaryType, PouId, Storage, TypeId, TypeTable, Variable, Visibility};
 use crate::syntax::ast::{self, Ident, PouKind, Qualifier, SectionKind, TypeDeclaration};
-use crate::syntax::direct_address::AddressUnit;
 use crate::syntax::{FileId, Span};
 
 /// How far something has been resolved.

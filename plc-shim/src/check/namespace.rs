@@ -9,10 +9,10 @@ use std::sync::Arc;
 use super::Checker;
 use super::scope::Body;
 use crate::diagnostic::{Code, Diagnostic, did_you_mean};
+use crate::dialect::AddressUnit;
 use crate::ir::PouId;
 use crate::syntax::Span;
 use crate::syntax::ast::{self, CompilationUnit, Declaration, Ident, Modifier, Namespace, NamespaceKind};
-use crate::syntax::direct_address::AddressUnit;
 
 /// Libraries of vendors that hold what the standard defines; their names may stand before it.
 const STANDARD_LIBRARIES: [&str; 4] = ["STANDARD", "TC2_STANDARD", "STANDARD64", "IEC61131_STANDARD"];

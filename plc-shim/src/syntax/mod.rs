@@ -2,8 +2,6 @@
 //!
 //! | module | in | out |
 //! |---|---|---|
-//! | [`source`] | names and texts | files, spans, lines and columns |
-//! | [`origin`] | parts of a file | program text, and the way back into the file |
 //! | [`token`] | | the kinds of token, keywords |
 //! | [`lexer`] | text | every token, blanks and comments too |
 //! | [`literal`], [`text_literal`], [`calendar`] | a literal's text | its value |
@@ -22,15 +20,13 @@ pub mod calendar;
 pub mod direct_address;
 pub mod lexer;
 pub mod literal;
-pub mod origin;
 pub mod parser;
 pub mod part;
 pub mod printer;
-pub mod source;
 pub mod text_literal;
 pub mod token;
 pub(crate) mod walk;
 
+pub use crate::source::{FileId, SourceFile, SourceMap, Span};
 pub use lexer::{tokenize, tokenize_in};
 pub use parser::{Parsed, parse, parse_in, parse_source};
-pub use source::{FileId, SourceFile, SourceMap, Span};

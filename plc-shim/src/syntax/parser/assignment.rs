@@ -1,9 +1,9 @@
 //! Assignments, calls, and what vendors write like them.
 
 use super::cursor::Cursor;
+use crate::ElementaryType;
 use crate::diagnostic::{Code, Diagnostic};
 use crate::dialect::Feature;
-use crate::ir::ElementaryType;
 use crate::syntax::ast::{BinaryOp, Expr, ExprKind, StatementKind, UpdateOp};
 use crate::syntax::token::{Keyword, Punctuation, TokenKind};
 

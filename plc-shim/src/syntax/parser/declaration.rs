@@ -2,9 +2,9 @@
 
 use super::cursor::Cursor;
 use super::object::ends_object;
+use crate::ElementaryType;
 use crate::diagnostic::{Code, Diagnostic};
 use crate::dialect::Feature;
-use crate::ir::ElementaryType;
 use crate::syntax::ast::{
     Chart, CompilationUnit, Declaration, Edge, Ident, Member, Modifier, PouKind, Qualifier, Section, SectionKind,
     Statement, StatementKind, TypeDeclaration, TypeSpec, TypeSpecKind, Variable,

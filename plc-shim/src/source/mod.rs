@@ -1,9 +1,15 @@
 //! Source files and places in them.
+//!
+//! | module | subject |
+//! |---|---|
+//! | [`origin`] | parts of a file: the way from program text back into the file |
+
+pub mod origin;
 
 use std::ops::Range;
 use std::sync::Arc;
 
-use super::origin::Origin;
+use self::origin::Origin;
 use crate::dialect::Dialect;
 
 /// Identifies a file within its [`SourceMap`].

@@ -1,10 +1,9 @@
 //! All that can be said about files without running them.
 
-use super::Front;
-use super::room::with_room;
+use super::lint;
+use crate::application::{Front, with_room};
 use crate::diagnostic::Diagnostics;
 use crate::input::Input;
-use crate::lint::lint;
 use crate::run::TaskPlan;
 
 /// Errors and warnings of files that belong together; `plan` tells which programs share a task.

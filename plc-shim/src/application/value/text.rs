@@ -8,17 +8,17 @@ use crate::syntax::calendar::{DAY_NS, civil_from_days};
 
 /// Text of at most so many bytes, all of them ASCII.
 #[derive(Debug, Clone)]
-pub(super) struct Line {
+pub(crate) struct Line {
     bytes: [u8; 64],
     used: usize,
 }
 
 impl Line {
-    pub(super) fn new() -> Self {
+    pub(crate) fn new() -> Self {
         Self { bytes: [0; 64], used: 0 }
     }
 
-    pub(super) fn push(&mut self, byte: u8) {
+    pub(crate) fn push(&mut self, byte: u8) {
         if let Some(target) = self.bytes.get_mut(self.used) {
             *target = byte;
             self.used += 1;
@@ -26,7 +26,7 @@ impl Line {
     }
 
     /// As many of the bytes as there is room for.
-    pub(super) fn append(&mut self, bytes: &[u8]) {
+    pub(crate) fn append(&mut self, bytes: &[u8]) {
         let count = bytes.len().min(self.bytes.len() - self.used);
         if let (Some(room), Some(bytes)) = (self.bytes.get_mut(self.used..self.used + count), bytes.get(..count)) {
             room.copy_from_slice(bytes);
@@ -34,7 +34,7 @@ impl Line {
         }
     }
 
-    pub(super) fn text(&self) -> &str {
+    pub(crate) fn text(&self) -> &str {
         self.bytes.get(..self.used).and_then(|bytes| std::str::from_utf8(bytes).ok()).unwrap_or("")
     }
 }
@@ -47,7 +47,7 @@ impl Write for Line {
 }
 
 /// The text of a value of type `ty`, given by its bits.
-pub(super) fn format(ty: ElementaryType, bits: i64) -> Line {
+pub(crate) fn format(ty: ElementaryType, bits: i64) -> Line {
     let mut line = Line::new();
     // Writing to a line never fails.
     let _ = match (ty.kind(), ty.size()) {
