@@ -1,14 +1,14 @@
 //! A project's CONFIGURATION (2nd ed. 2.7): its tasks are read, the scheduler is put into it.
 
-use super::constant::{self, Constant, Constants};
-use super::edits::Edits;
 use super::marks;
 use super::single;
 use super::tasks::{ALWAYS_NS, TaskTable, duration};
 use crate::diagnostic::{Code, Diagnostic};
 use crate::run::Task;
+use crate::source::edits::Edits;
 use crate::syntax::SourceFile;
 use crate::syntax::ast::{Configuration, Connection, Ident, Resource, TaskDeclaration};
+use crate::syntax::constant::{self, Constant, Constants};
 use crate::syntax::lexer::tokenize_in;
 
 /// The name of an instance of a program, as tasks have it.

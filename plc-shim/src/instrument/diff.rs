@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 use super::File;
-use super::edits::LineMap;
+use crate::source::edits::LineMap;
 
 /// Lines shown before and behind a change.
 const CONTEXT: usize = 3;

@@ -7,7 +7,6 @@
 use std::ops::Range;
 
 use super::controller;
-use super::edits::Edits;
 use super::marks;
 use super::plcopen_unit as unit;
 use super::target::Sources;
@@ -15,6 +14,7 @@ use super::tasks::{TaskTable, duration};
 use super::template::{self, Controller, Number};
 use crate::input::plcopen_instances;
 use crate::input::xml::{self, Element};
+use crate::source::edits::Edits;
 use crate::syntax::SourceFile;
 use crate::syntax::ast::{Pou, PouKind};
 

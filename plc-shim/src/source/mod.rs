@@ -2,8 +2,10 @@
 //!
 //! | module | subject |
 //! |---|---|
+//! | [`edits`] | changes of a text: all else stays byte for byte |
 //! | [`origin`] | parts of a file: the way from program text back into the file |
 
+pub mod edits;
 pub mod origin;
 
 use std::ops::Range;

@@ -10,6 +10,7 @@
 //! | [`ast`] | | the tree's nodes |
 //! | [`parser`] | tokens | a tree and a list of diagnostics |
 //! | [`printer`] | a tree | text that parses to the same tree |
+//! | `constant` | an expression of literals and constants | its value |
 //! | `walk` | a body | each of its statements and expressions |
 //!
 //! Invariants: the texts of a file's tokens concatenated are the file; parsing never fails, it
@@ -17,6 +18,7 @@
 
 pub mod ast;
 pub mod calendar;
+pub(crate) mod constant;
 pub mod direct_address;
 pub mod lexer;
 pub mod literal;

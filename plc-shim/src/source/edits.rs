@@ -43,7 +43,7 @@ impl Edits {
     }
 
     /// The same with lines that come from others of the original; lines count from 1.
-    pub(super) fn insert_moved(&mut self, at: u32, text: String, origins: Vec<Option<u32>>) {
+    pub(crate) fn insert_moved(&mut self, at: u32, text: String, origins: Vec<Option<u32>>) {
         self.edits.push(Edit { at: at..at, text, origins });
     }
 
