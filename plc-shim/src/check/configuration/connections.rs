@@ -1,8 +1,9 @@
 //! What runs with a program: its inputs before, its outputs after it (2nd ed. 2.7.1).
 
-use super::super::Checker;
-use super::super::convert::Operand;
-use super::super::scope::{Body, Scope};
+use crate::check::body::Body;
+use crate::check::declare::declarations::Checker;
+use crate::check::declare::scope::Scope;
+use crate::check::types::operand::Operand;
 use crate::diagnostic::{Code, Diagnostic};
 use crate::ir::{
     Dispatch, ElementaryType, Entry, Expr, ExprKind, Guard, InstanceCall, Place, Pou, PouId, Statement, StatementKind,
@@ -13,15 +14,15 @@ use crate::syntax::ast::{self, Connection, Ident, ProgramDeclaration, SectionKin
 
 /// The statements around an instance's call.
 #[derive(Default)]
-pub(super) struct Around {
-    pub(super) before: Side,
-    pub(super) after: Side,
+pub(in crate::check) struct Around {
+    pub(in crate::check) before: Side,
+    pub(in crate::check) after: Side,
 }
 
 /// Statements with the registers that they need.
 #[derive(Default)]
-pub(super) struct Side {
-    pub(super) statements: Vec<Statement>,
+pub(in crate::check) struct Side {
+    pub(in crate::check) statements: Vec<Statement>,
     scope: Scope,
 }
 
@@ -40,7 +41,7 @@ fn unit(name: &str, side: Side, span: Span) -> Pou {
 
 impl<'a> Checker<'a> {
     /// An entry for each program, then one for each function block with a task of its own.
-    pub(super) fn make_entries(&mut self) {
+    pub(in crate::check) fn make_entries(&mut self) {
         let declared: Vec<Option<(&'a ast::Resource, &'a ProgramDeclaration)>> =
             (0..self.programs.len()).map(|at| self.declaration_of(at)).collect();
         let mut blocks = Vec::new();
@@ -210,7 +211,7 @@ impl<'a> Checker<'a> {
     }
 
     /// The task alone runs such an instance (2nd ed. 2.7.2), so its program must not.
-    pub(super) fn report_double_calls(&mut self) {
+    pub(in crate::check) fn report_double_calls(&mut self) {
         for (program, offset, span) in self.configured.task_blocks.clone() {
             let Some(unit) = self.programs.get(program).and_then(|program| self.checked.get(&program.pou)) else {
                 continue;
@@ -225,12 +226,12 @@ impl<'a> Checker<'a> {
     }
 }
 
-pub(super) fn place(target: &Target, span: Span) -> Place {
+pub(in crate::check) fn place(target: &Target, span: Span) -> Place {
     let place = Place::whole(target.storage, target.ty, span);
     if target.inside == 0 { place } else { place.member(target.inside, target.ty) }
 }
 
-pub(super) fn loaded(target: &Target, span: Span) -> Expr {
+pub(in crate::check) fn loaded(target: &Target, span: Span) -> Expr {
     Expr { kind: ExprKind::Load(place(target, span)), ty: target.ty, span }
 }
 

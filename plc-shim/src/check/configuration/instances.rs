@@ -1,11 +1,11 @@
 //! `VAR_CONFIG` and `VAR_ACCESS` (2nd ed. 2.7.1, 2.4.3; Table 49 features 10 and 11).
 
-use super::super::Checker;
-use super::super::initial::plain;
-use super::super::names::TypedImage;
-use super::super::scope::Body;
-use super::super::start::Started;
-use super::super::types::Need;
+use super::connections;
+use crate::check::body::Body;
+use crate::check::declare::declarations::Checker;
+use crate::check::declare::demand::Need;
+use crate::check::declare::entry::TypedImage;
+use crate::check::declare::start::{Started, plain};
 use crate::diagnostic::{Code, Diagnostic};
 use crate::ir::{Access, Storage, Target};
 use crate::syntax::Span;
@@ -13,7 +13,7 @@ use crate::syntax::ast::{AccessDirection, AccessPath, InstanceValue, TypeSpec};
 
 impl<'a> Checker<'a> {
     /// Gives variables of single instances initial values of their own.
-    pub(super) fn instance_values(&mut self, values: &'a [InstanceValue]) {
+    pub(in crate::check) fn instance_values(&mut self, values: &'a [InstanceValue]) {
         for value in values {
             self.instance_value(value);
         }
@@ -44,7 +44,7 @@ impl<'a> Checker<'a> {
                 );
             }
             self.placed.push((target.inside, image));
-            let place = super::connections::place(&target, value.path.span);
+            let place = connections::place(&target, value.path.span);
             self.configured.values.push(Started { place, starts });
         }
         Some(())
@@ -54,21 +54,6 @@ impl<'a> Checker<'a> {
         let message = format!("`{}` {why}", target.path);
         self.report(Diagnostic::error(Code::NoInstanceValue, value.path.span, message));
         None
-    }
-
-    /// Initial bytes as far as they have been placed.
-    fn image_at(&self, offset: u32, size: u32) -> Vec<u8> {
-        let mut image = vec![0; size as usize];
-        for (start, bytes) in &self.placed {
-            let low = offset.max(*start);
-            let high = (offset + size).min(start + bytes.len() as u32);
-            if low < high {
-                let source = (low - start) as usize..(high - start) as usize;
-                let target = (low - offset) as usize..(high - offset) as usize;
-                image[target].copy_from_slice(&bytes[source]);
-            }
-        }
-        image
     }
 
     fn same_type(&mut self, target: &Target, spec: &'a TypeSpec, span: Span) -> Option<()> {
@@ -87,7 +72,7 @@ impl<'a> Checker<'a> {
     }
 
     /// Names for those outside.
-    pub(super) fn access_paths(&mut self, paths: &'a [AccessPath]) {
+    pub(in crate::check) fn access_paths(&mut self, paths: &'a [AccessPath]) {
         self.report_twins(&paths.iter().map(|access| &access.name).collect::<Vec<_>>());
         for access in paths {
             if let Some(found) = self.access_path(access) {

@@ -4,9 +4,9 @@
 //! Code is the same for all instances, so such a variable lies in its instance. What the machine gives
 //! is copied there before the program runs, what it wants is copied from there afterwards.
 
-use super::super::Checker;
-use super::super::scope::Body;
 use super::connections::{Around, loaded, place};
+use crate::check::body::Body;
+use crate::check::declare::declarations::Checker;
 use crate::diagnostic::{Code, Diagnostic};
 use crate::ir::{Expr, ExprKind, Place, Storage, Target};
 use crate::syntax::Span;
@@ -14,7 +14,7 @@ use crate::syntax::ast::Ident;
 use crate::syntax::direct_address::{Area, DirectAddress};
 
 /// A variable of an instance and its direct address.
-pub(super) struct InstanceLocation {
+pub(in crate::check) struct InstanceLocation {
     target: Target,
     area: Area,
     storage: Storage,
@@ -23,7 +23,7 @@ pub(super) struct InstanceLocation {
 
 impl Checker<'_> {
     /// Gives a variable of an instance its address.
-    pub(super) fn locate(&mut self, target: &Target, address: &Ident) -> Option<()> {
+    pub(in crate::check) fn locate(&mut self, target: &Target, address: &Ident) -> Option<()> {
         let open = target.variable.as_ref().and_then(|variable| variable.address.as_ref());
         let open = open.filter(|text| text.ends_with('*')).and_then(|text| DirectAddress::parse(text).ok());
         let Some(open) = open else {
@@ -49,7 +49,7 @@ impl Checker<'_> {
     }
 
     /// Copies between the addresses and the variables of a program's instance.
-    pub(super) fn copy_locations(&mut self, program: usize, around: &mut Around) {
+    pub(in crate::check) fn copy_locations(&mut self, program: usize, around: &mut Around) {
         let Some(program) = self.programs.get(program) else { return };
         let range = program.offset..program.offset + self.pou(program.pou).instance().0;
         let locations = std::mem::take(&mut self.configured.locations);

@@ -11,63 +11,47 @@
 //! | [`locations`] | direct addresses of single instances |
 //! | [`instances`] | `VAR_CONFIG` and `VAR_ACCESS` |
 
-mod connections;
-mod globals;
-mod instances;
-mod locations;
-mod path;
-mod programs;
-mod tasks;
+pub(in crate::check) mod connections;
+pub(in crate::check) mod globals;
+pub(in crate::check) mod instances;
+pub(in crate::check) mod locations;
+pub(in crate::check) mod occasion;
+pub(in crate::check) mod path;
+pub(in crate::check) mod programs;
+pub(in crate::check) mod tasks;
 
 use std::collections::BTreeMap;
 
-use self::globals::Alternatives;
 use self::locations::InstanceLocation;
-use super::Checker;
-use super::start::Started;
-use crate::diagnostic::{Code, Diagnostic};
+use crate::check::declare::declarations::Checker;
+use crate::check::declare::global::Alternatives;
+use crate::check::declare::start::Started;
 use crate::ir::{self, Entry, PouId};
 use crate::syntax::Span;
 use crate::syntax::ast::{self, Ident};
 
 /// What is known of the configuration so far.
 #[derive(Default)]
-pub(super) struct Configured<'a> {
-    pub(super) ast: Option<&'a ast::Configuration>,
+pub(in crate::check) struct Configured<'a> {
+    pub(in crate::check) ast: Option<&'a ast::Configuration>,
     /// Globals that several resources have under one name.
-    alternatives: BTreeMap<String, Alternatives>,
+    pub(in crate::check) alternatives: BTreeMap<String, Alternatives>,
     /// Where units use globals, if resources have some of their own.
-    uses: Vec<(PouId, String, Span)>,
-    resources: Vec<ir::Resource>,
-    pub(super) entries: Vec<Entry>,
-    access: Vec<ir::Access>,
-    locations: Vec<InstanceLocation>,
+    pub(in crate::check) uses: Vec<(PouId, String, Span)>,
+    pub(in crate::check) resources: Vec<ir::Resource>,
+    pub(in crate::check) entries: Vec<Entry>,
+    pub(in crate::check) access: Vec<ir::Access>,
+    pub(in crate::check) locations: Vec<InstanceLocation>,
     /// What a start does to single instances' values.
-    pub(super) values: Vec<Started<'a>>,
+    pub(in crate::check) values: Vec<Started<'a>>,
     /// Instances of function blocks with a task of their own: the program, the instance's offset in
     /// it, where that is said.
-    task_blocks: Vec<(usize, u32, Span)>,
+    pub(in crate::check) task_blocks: Vec<(usize, u32, Span)>,
 }
 
 impl<'a> Checker<'a> {
-    /// Takes the configuration's global variables among the others.
-    pub(super) fn collect_configuration(&mut self, ast: &'a ast::Configuration) {
-        if let Some(first) = self.configured.ast {
-            let message = format!("there is a configuration already, `{}`", first.name.text);
-            let found = Diagnostic::error(Code::SecondConfiguration, ast.name.span, message);
-            self.report(found.with_label(first.name.span, "first declared here"));
-            return;
-        }
-        self.configured.ast = Some(ast);
-        for section in &ast.sections {
-            self.collect_globals(section);
-        }
-        let names: Vec<&Ident> = ast.resources.iter().filter_map(|each| Some(&each.name.as_ref()?.0)).collect();
-        self.report_twins(&names);
-    }
-
     /// Makes instances, tasks and connections; before the bodies of units are checked.
-    pub(super) fn configure(&mut self) {
+    pub(in crate::check) fn configure(&mut self) {
         if let Some(ast) = self.configured.ast {
             for (index, resource) in ast.resources.iter().enumerate() {
                 let name = resource.name.as_ref().map(|(name, _)| name.text.clone());
@@ -87,13 +71,13 @@ impl<'a> Checker<'a> {
     }
 
     /// What can be said only when every unit's body is known.
-    pub(super) fn check_configuration(&mut self) {
+    pub(in crate::check) fn check_configuration(&mut self) {
         self.report_idle_programs();
         self.report_foreign_globals();
         self.report_double_calls();
     }
 
-    pub(super) fn take_configuration(&mut self) -> (Option<ir::Configuration>, Vec<Entry>) {
+    pub(in crate::check) fn take_configuration(&mut self) -> (Option<ir::Configuration>, Vec<Entry>) {
         for index in 0..self.configured.resources.len() {
             let globals = self.own_globals(index);
             self.configured.resources[index].globals = globals;
@@ -107,20 +91,8 @@ impl<'a> Checker<'a> {
         (made, configured.entries)
     }
 
-    /// Reports every name that occurs before in the list.
-    fn report_twins(&mut self, names: &[&Ident]) {
-        let mut first: BTreeMap<String, Span> = BTreeMap::new();
-        for name in names {
-            if let Some(before) = first.get(&name.key()).copied() {
-                self.report_duplicate(name, Some(before));
-            } else {
-                first.insert(name.key(), name.span);
-            }
-        }
-    }
-
     /// A resource's name as it begins a path; nothing for the only one without a name.
-    fn resource_name(&self, index: usize) -> Option<&'a Ident> {
+    pub(in crate::check) fn resource_name(&self, index: usize) -> Option<&'a Ident> {
         let resource = self.configured.ast?.resources.get(index)?;
         resource.name.as_ref().map(|(name, _)| name)
     }

@@ -1,7 +1,7 @@
 //! Paths as in `Line.P1.fb.x` to variables: names and constant indices, no code.
 
-use super::super::Checker;
-use super::super::scope::Body;
+use crate::check::body::Body;
+use crate::check::declare::declarations::Checker;
 use crate::diagnostic::{Code, Diagnostic, did_you_mean};
 use crate::ir::{Storage, Target, Type};
 use crate::syntax::Span;
@@ -40,7 +40,7 @@ fn pieces(expr: &Expr) -> Option<Vec<Piece<'_>>> {
 
 impl Checker<'_> {
     /// The variable at a path written in `resource`, or outside of resources.
-    pub(super) fn target(&mut self, expr: &Expr, resource: Option<usize>) -> Option<Target> {
+    pub(in crate::check) fn target(&mut self, expr: &Expr, resource: Option<usize>) -> Option<Target> {
         let Some(pieces) = pieces(expr) else {
             let message = "the path of a variable is wanted here";
             self.report(Diagnostic::error(Code::UnknownPath, expr.span, message));
@@ -51,7 +51,7 @@ impl Checker<'_> {
     }
 
     /// True for a path that begins with a name of the configuration's.
-    pub(super) fn is_configured_path(&self, expr: &Expr, resource: Option<usize>) -> bool {
+    pub(in crate::check) fn is_configured_path(&self, expr: &Expr, resource: Option<usize>) -> bool {
         let Some(Piece::Name(first)) = pieces(expr).and_then(|pieces| pieces.first().copied()) else {
             return false;
         };
@@ -134,7 +134,7 @@ impl Checker<'_> {
         Some(Ok(Target { path, storage, inside, ty: variable.ty, variable: Some(variable) }))
     }
 
-    pub(super) fn program_target(&mut self, index: usize) -> Target {
+    pub(in crate::check) fn program_target(&mut self, index: usize) -> Target {
         // Indices come from `program_named` and from walks over all programs.
         let program = self.programs[index].clone();
         let home = program.resource.and_then(|home| self.resource_name(home));
@@ -144,7 +144,7 @@ impl Checker<'_> {
     }
 
     /// The variable at a path inside of program `index`.
-    pub(super) fn target_in_program(&mut self, index: usize, expr: &Expr) -> Option<Target> {
+    pub(in crate::check) fn target_in_program(&mut self, index: usize, expr: &Expr) -> Option<Target> {
         let root = self.program_target(index);
         let Some(pieces) = pieces(expr) else {
             let message = "the path of a variable is wanted here";

@@ -2,14 +2,14 @@
 
 use std::collections::BTreeSet;
 
-use super::super::Checker;
+use crate::check::declare::declarations::Checker;
 use crate::diagnostic::{Code, Diagnostic, did_you_mean};
 use crate::ir::{PouId, Program, Retention};
 use crate::syntax::ast::{self, Ident, PouKind, ProgramDeclaration};
 
 impl<'a> Checker<'a> {
     /// Places the programs of a resource.
-    pub(super) fn place_instances(&mut self, resource: &'a ast::Resource, index: usize) {
+    pub(in crate::check) fn place_instances(&mut self, resource: &'a ast::Resource, index: usize) {
         let names: Vec<&Ident> = resource.programs.iter().map(|program| &program.name).collect();
         self.report_twins(&names);
         for declared in &resource.programs {
@@ -21,7 +21,7 @@ impl<'a> Checker<'a> {
     }
 
     /// Every other program has one instance, under its own name.
-    pub(super) fn place_other_programs(&mut self) {
+    pub(in crate::check) fn place_other_programs(&mut self) {
         for index in 0..self.pous.len() {
             let id = PouId(index as u32);
             let ast = self.pou(id).ast;
@@ -33,7 +33,7 @@ impl<'a> Checker<'a> {
     }
 
     /// What no resource declares never runs, unless another unit calls it, as vendors allow.
-    pub(super) fn report_idle_programs(&mut self) {
+    pub(in crate::check) fn report_idle_programs(&mut self) {
         let Some(ast) = self.configured.ast else { return };
         let declared: usize = ast.resources.iter().map(|resource| resource.programs.len()).sum();
         // A program may be the one that is meant by a wrong name.

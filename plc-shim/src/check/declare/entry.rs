@@ -1,0 +1,107 @@
+//! What is kept of a type, a unit, a global variable: its text, and what it has been resolved to.
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use super::class::Membership;
+use super::namespace::Home;
+use super::scope::Scope;
+use super::start::Starts;
+use crate::ir::{ElementaryType, Storage, TypeId, Variable, Visibility};
+use crate::syntax::ast::{self, Qualifier, SectionKind, TypeDeclaration};
+use crate::syntax::{FileId, Span};
+
+/// How far something has been resolved.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(in crate::check) enum Progress {
+    Untouched,
+    Running,
+    Done,
+}
+
+/// A type together with the initial bytes of its variables, and what a start adds to them: an alias
+/// may give its own.
+#[derive(Debug, Clone)]
+pub(in crate::check) struct TypedImage<'a> {
+    pub(in crate::check) ty: TypeId,
+    pub(in crate::check) image: Arc<[u8]>,
+    pub(in crate::check) starts: Starts<'a>,
+}
+
+pub(in crate::check) struct TypeEntry<'a> {
+    pub(in crate::check) ast: &'a TypeDeclaration,
+    pub(in crate::check) home: Arc<Home>,
+    pub(in crate::check) progress: Progress,
+    /// The type of a structure as soon as something refers to it.
+    pub(in crate::check) reserved: Option<TypeId>,
+    pub(in crate::check) resolved: Option<TypedImage<'a>>,
+}
+
+pub(in crate::check) struct PouEntry<'a> {
+    pub(in crate::check) ast: &'a ast::Pou,
+    pub(in crate::check) home: Arc<Home>,
+    /// Set for methods, properties and actions.
+    pub(in crate::check) membership: Option<Membership>,
+    pub(in crate::check) progress: Progress,
+    /// Set by `declare`.
+    pub(in crate::check) scope: Option<Arc<Scope>>,
+    pub(in crate::check) align: u32,
+    pub(in crate::check) image: Arc<[u8]>,
+    /// What a start does to the variables of an instance.
+    pub(in crate::check) starts: Starts<'a>,
+    /// What a call does to variables that do not outlive it: their names, and what.
+    pub(in crate::check) fleeting: Arc<[(String, Starts<'a>)]>,
+    /// Where `VAR_INST` of its methods lie in an instance, by where they are declared.
+    pub(in crate::check) kept: BTreeMap<(u32, u32), u32>,
+}
+
+impl PouEntry<'_> {
+    /// Size, alignment and initial bytes of an instance.
+    pub(in crate::check) fn instance(&self) -> (u32, u32, Arc<[u8]>) {
+        (self.image.len() as u32, self.align, self.image.clone())
+    }
+}
+
+pub(in crate::check) struct GlobalEntry<'a> {
+    /// Nothing for what the runtime provides.
+    pub(in crate::check) ast: Option<(&'a ast::Variable, &'a [Qualifier])>,
+    pub(in crate::check) name: String,
+    pub(in crate::check) seen_from: Arc<Home>,
+    pub(in crate::check) span: Span,
+    pub(in crate::check) progress: Progress,
+    pub(in crate::check) variable: Option<Variable>,
+    /// The resource that declares it.
+    pub(in crate::check) home: Option<usize>,
+}
+
+/// A value of an enumeration.
+#[derive(Debug, Clone, Copy)]
+pub(in crate::check) struct Enumerator {
+    pub(in crate::check) ty: TypeId,
+    pub(in crate::check) value: i128,
+}
+
+/// What the runtime provides.
+pub(in crate::check) fn provided(name: &str, ty: ElementaryType, offset: u32) -> GlobalEntry<'static> {
+    let span = Span::new(FileId(u32::MAX), 0, 0);
+    let variable = Variable {
+        name: name.to_owned(),
+        section: SectionKind::Global,
+        ty: ty.into(),
+        storage: Storage::Absolute(offset),
+        constant: None,
+        is_constant: true,
+        retention: None,
+        address: None,
+        span,
+        image: vec![0; ty.size() as usize].into(),
+        edge: None,
+        of_chart: false,
+        visibility: Visibility::Public,
+        owner: None,
+    };
+    let name = name.to_owned();
+    let (seen_from, home) = (Arc::default(), None);
+    let (progress, variable) = (Progress::Done, Some(variable));
+    GlobalEntry { ast: None, name, seen_from, span, progress, variable, home }
+}

@@ -1,0 +1,22 @@
+//! What a start adds to a variable's bytes, as its declaration says it.
+
+use crate::check::body::Body;
+use crate::check::declare::start::{Start, StartKind};
+use crate::diagnostic::{Code, Diagnostic};
+use crate::syntax::Span;
+
+impl<'a> Body<'_, 'a> {
+    /// What is done in one of the unit's own variables belongs to its text; all else to where it stands.
+    pub(in crate::check) fn start(&self, offset: u32, kind: StartKind<'a>, span: Span) -> Start<'a> {
+        let home = self.pou.is_none().then(|| self.checker.home.clone());
+        Start { offset, kind, span, home }
+    }
+
+    /// Reports a variable that may begin with a constant only.
+    pub(in crate::check) fn require_constant(&mut self, starts: &[Start<'a>], why: &str) {
+        if let Some(start) = starts.iter().find(|start| matches!(start.kind, StartKind::Value(..))) {
+            let message = format!("a constant is wanted here: {why}");
+            self.report(Diagnostic::error(Code::NotConstant, start.span, message));
+        }
+    }
+}
