@@ -10,8 +10,12 @@ pub(in crate::check) mod types;
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use self::declare::declarations::Checker;
+use self::body::unit::check_unit;
+use self::configuration::{Configured, Configurer};
+use self::declare::Declarations;
+use self::declare::query::Outcome;
 use self::declare::start::{self, Occasion};
+use self::resolve::Resolver;
 use crate::diagnostic::Diagnostic;
 use crate::dialect::AddressUnit;
 use crate::ir::{Areas, Configuration, Entry, Pou, PouId, Program, Row, TypeTable, Variable};
@@ -60,51 +64,47 @@ pub(crate) struct Checked {
 /// units are compiled only if they are used.
 pub(crate) fn check(units: &[(FileId, &CompilationUnit)], library: &BTreeSet<FileId>) -> (Checked, Vec<Diagnostic>) {
     let stages = start::stages(units);
-    let mut checker = Checker::new(library, &stages);
-    checker.collect(units);
-    checker.link_classes();
-    checker.resolve_declarations();
-    checker.check_inheritance();
-    checker.configure();
-    checker.enqueue_stages();
-    let (start, end) = (checker.occasion(Occasion::Start), checker.occasion(Occasion::End));
-    checker.check_bodies();
-    checker.report_recursion();
-    checker.guard_circles();
-    checker.place_areas();
-    checker.check_configuration();
-    let image = checker.memory_image();
-    let globals = checker.shared_globals();
-    let (configuration, entries) = checker.take_configuration();
-    let interfaces = checker
-        .pous
-        .iter()
-        .enumerate()
-        .filter_map(|(index, entry)| Some((PouId(index as u32), entry.scope.as_ref()?.variables.clone())));
-    let result = Checked {
-        interfaces: interfaces.collect(),
-        kept: checker.kept_by_methods(),
-        types: checker.types,
-        pous: checker.checked,
+    let mut declarations = Declarations::new(library, &stages, &Resolver);
+    declarations.collect(units);
+    declarations.link_classes();
+    declarations.resolve_declarations();
+    declarations.check_inheritance();
+    let mut configured = Configured::default();
+    let mut configurer = Configurer::new(&mut declarations, &mut configured);
+    configurer.configure();
+    declarations.enqueue_stages();
+    let mut configurer = Configurer::new(&mut declarations, &mut configured);
+    let (start, end) = (configurer.occasion(Occasion::Start), configurer.occasion(Occasion::End));
+    let mut pous = BTreeMap::new();
+    // Bodies name further units, which are queued.
+    while let Some(id) = declarations.next_unit() {
+        pous.extend(check_unit(&mut declarations, id).map(|unit| (id, unit)));
+    }
+    declarations.report_recursion();
+    declarations.guard_circles(&mut pous);
+    declarations.place_areas();
+    let mut configurer = Configurer::new(&mut declarations, &mut configured);
+    configurer.check(&pous);
+    let (configuration, entries) = configurer.finish();
+    let (image, globals) = (declarations.memory_image(), declarations.shared_globals());
+    let (interfaces, kept) = (declarations.interfaces(), declarations.kept_by_methods());
+    let Outcome { types, programs, rows, areas, address_unit, chart_parts, findings } = declarations.into_outcome();
+    let checked = Checked {
+        types,
+        pous,
+        interfaces,
+        kept,
         globals,
-        programs: checker.programs,
-        rows: checker.rows.into_list(),
-        areas: checker.areas,
-        address_unit: checker.address_unit,
+        programs,
+        rows,
+        areas,
+        address_unit,
         configuration,
         entries,
         start,
         end,
         image,
-        chart_parts: checker.chart_parts,
+        chart_parts,
     };
-    (result, checker.diagnostics)
-}
-
-impl<'a> Checker<'a> {
-    pub(in crate::check) fn check_bodies(&mut self) {
-        while let Some(id) = self.queue.pop() {
-            self.check_body(id);
-        }
-    }
+    (checked, findings)
 }

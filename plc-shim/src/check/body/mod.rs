@@ -14,43 +14,43 @@ pub(in crate::check) mod unit;
 use std::collections::BTreeMap;
 
 use self::statement::jump::Labels;
-use crate::check::declare::declarations::Checker;
+use crate::check::declare::Declarations;
 use crate::check::declare::scope::Scope;
 use crate::diagnostic::Diagnostic;
 use crate::ir::{ElementaryType, Place, PouId};
 
 /// Checks expressions and statements inside a scope.
 pub(in crate::check) struct Body<'c, 'a> {
-    pub(in crate::check) checker: &'c mut Checker<'a>,
-    pub(in crate::check) scope: Scope,
+    declarations: &'c mut Declarations<'a>,
+    scope: Scope,
     /// The unit; nothing for declarations outside of any.
-    pub(in crate::check) pou: Option<PouId>,
+    pou: Option<PouId>,
     /// The type that the place of the expression wants, for constants that no operand types.
-    pub(in crate::check) context: Option<ElementaryType>,
+    context: Option<ElementaryType>,
     /// Loops around the statement.
-    pub(in crate::check) loops: u32,
-    pub(in crate::check) result_assigned: bool,
+    loops: u32,
+    result_assigned: bool,
     /// Key of the transition whose network is being checked.
-    pub(in crate::check) network: Option<String>,
+    network: Option<String>,
     /// What jumps may lead to from here, the innermost last.
-    pub(in crate::check) labels: Vec<Labels>,
+    labels: Vec<Labels>,
     /// How many labels the unit has so far.
-    pub(in crate::check) label_count: u32,
+    label_count: u32,
     /// Values that elements of a network hand on.
-    pub(in crate::check) wires: BTreeMap<String, Place>,
+    wires: BTreeMap<String, Place>,
     /// How many wires lists of instructions have so far.
-    pub(in crate::check) instruction_wires: u32,
+    instruction_wires: u32,
 }
 
 impl<'c, 'a> Body<'c, 'a> {
     /// For declarations outside of any unit.
-    pub(in crate::check) fn outside(checker: &'c mut Checker<'a>) -> Self {
-        Self::new(checker, Scope::default(), None)
+    pub(in crate::check) fn outside(declarations: &'c mut Declarations<'a>) -> Self {
+        Self::new(declarations, Scope::default(), None)
     }
 
-    pub(in crate::check) fn new(checker: &'c mut Checker<'a>, scope: Scope, pou: Option<PouId>) -> Self {
+    pub(in crate::check) fn new(declarations: &'c mut Declarations<'a>, scope: Scope, pou: Option<PouId>) -> Self {
         Self {
-            checker,
+            declarations,
             scope,
             pou,
             context: None,
@@ -64,16 +64,42 @@ impl<'c, 'a> Body<'c, 'a> {
         }
     }
 
+    pub(in crate::check) fn declarations(&self) -> &Declarations<'a> {
+        self.declarations
+    }
+
+    pub(in crate::check) fn declarations_mut(&mut self) -> &mut Declarations<'a> {
+        self.declarations
+    }
+
+    pub(in crate::check) fn scope(&self) -> &Scope {
+        &self.scope
+    }
+
+    pub(in crate::check) fn scope_mut(&mut self) -> &mut Scope {
+        &mut self.scope
+    }
+
+    /// The names and registers, when all is checked.
+    pub(in crate::check) fn into_scope(self) -> Scope {
+        self.scope
+    }
+
+    /// The unit; nothing for declarations outside of any.
+    pub(in crate::check) fn unit(&self) -> Option<PouId> {
+        self.pou
+    }
+
     pub(in crate::check) fn report(&mut self, diagnostic: Diagnostic) {
-        self.checker.report(diagnostic);
+        self.declarations.report(diagnostic);
     }
 
     pub(in crate::check) fn type_name(&self, ty: impl Into<crate::ir::TypeId>) -> String {
-        self.checker.types.name(ty.into())
+        self.declarations.types().name(ty.into())
     }
 
     pub(in crate::check) fn elementary(&self, ty: crate::ir::TypeId) -> Option<ElementaryType> {
-        self.checker.types.elementary(ty)
+        self.declarations.types().elementary(ty)
     }
 }
 

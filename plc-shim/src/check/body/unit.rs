@@ -1,62 +1,53 @@
 //! The body of a unit, with what surrounds its statements (2nd ed. 2.4.3, 2.5).
 
 use super::Body;
-use super::call::enable::{boolean, is_control};
-use crate::check::declare::declarations::Checker;
+use super::call::enable::boolean;
+use crate::check::declare::Declarations;
+use crate::check::declare::hook::is_hook;
 use crate::check::declare::start::Occasion;
 use crate::check::types::build::{assign, load, not, operation};
 use crate::check::types::constant::decode;
 use crate::check::types::operand::constant;
+use crate::check::types::parameter::is_control;
 use crate::diagnostic::{Code, Diagnostic};
 use crate::ir::{
-    Binary, EdgeDetection, ElementaryType, Expr, ExprKind, Guard, LocalId, Place, Pou, PouId, Statement, StatementKind,
+    Binary, EdgeDetection, ElementaryType, Expr, ExprKind, LocalId, Place, Pou, PouId, Statement, StatementKind,
     Storage, Variable,
 };
 use crate::syntax::ast::{Edge, PouKind, SectionKind};
 
-impl Checker<'_> {
-    pub(in crate::check) fn check_body(&mut self, id: PouId) {
-        let home = self.pou(id).home.clone();
-        self.at_home(home, |checker| checker.check_body_at_home(id));
-    }
-
-    fn check_body_at_home(&mut self, id: PouId) {
-        let ast = self.pou(id).ast;
-        let Some(scope) = self.interface(id, ast.name.span) else {
-            return;
-        };
-        let mut body = Body::new(self, (*scope).clone(), Some(id));
-        let mut statements = body.prologue(ast.kind);
-        if let Some((owner, occasion)) = body.checker.stage_of(id) {
-            statements.extend(body.staged(owner, occasion));
-        } else {
-            statements.extend(body.chart(ast));
-            statements.extend(body.statements(&ast.body));
-        }
-        if body.scope.result.is_some() && !body.result_assigned && !Self::is_hook(&ast.name.text) {
-            let message = format!("function `{}` never assigns its result", ast.name.text);
-            body.report(Diagnostic::warning(Code::MissingResult, ast.name.span, message));
-        }
-        let scope = body.scope;
-        let pou = Pou {
-            name: self.display_name(id),
-            span: ast.name.span,
-            variables: scope.variables,
-            registers: scope.registers,
-            parameters: scope.parameters,
-            result: scope.result,
-            guard: if scope.has_memory { Guard::Once(0) } else { Guard::Depth },
-            body: statements,
-        };
-        self.checked.insert(id, pou);
-    }
+/// Checks the body of a unit; nothing if its declaration is wrong as a whole.
+pub(in crate::check) fn check_unit(declarations: &mut Declarations<'_>, id: PouId) -> Option<Pou> {
+    let home = declarations.pou(id).home.clone();
+    declarations.at_home(home, |declarations| {
+        let span = declarations.pou(id).ast.name.span;
+        let scope = declarations.interface(id, span)?;
+        Some(Body::new(declarations, (*scope).clone(), Some(id)).into_unit(id))
+    })
 }
 
 impl Body<'_, '_> {
+    fn into_unit(mut self, id: PouId) -> Pou {
+        let ast = self.declarations.pou(id).ast;
+        let mut statements = self.prologue(ast.kind);
+        if let Some((owner, occasion)) = self.declarations.stage_of(id) {
+            statements.extend(self.staged(owner, occasion));
+        } else {
+            statements.extend(self.chart(ast));
+            statements.extend(self.statements(&ast.body));
+        }
+        if self.scope.result().is_some() && !self.result_assigned && !is_hook(&ast.name.text) {
+            let message = format!("function `{}` never assigns its result", ast.name.text);
+            self.report(Diagnostic::warning(Code::MissingResult, ast.name.span, message));
+        }
+        let name = self.declarations.display_name(id);
+        self.scope.into_pou(name, ast.name.span, statements)
+    }
+
     /// Gives what does not outlive a call its initial value (2nd ed. 2.4.3, `VAR_TEMP`).
     fn prologue(&mut self, kind: PouKind) -> Vec<Statement> {
         let mut statements = Vec::new();
-        let variables = self.scope.variables.clone();
+        let variables = self.scope.variables().to_vec();
         let mut register = u32::from(kind != PouKind::Function);
         for variable in &variables {
             let parameter = matches!(variable.section, SectionKind::Input | SectionKind::InOut);
@@ -87,7 +78,7 @@ impl Body<'_, '_> {
 
     /// What makes an initial value that is no constant.
     fn computed(&mut self, variable: &Variable) -> Vec<Statement> {
-        let fleeting = self.pou.map(|id| self.checker.pou(id).fleeting.clone()).unwrap_or_default();
+        let fleeting = self.pou.map(|id| self.declarations.pou(id).fleeting.clone()).unwrap_or_default();
         let key = variable.name.to_ascii_uppercase();
         let Some((_, starts)) = fleeting.iter().find(|(name, _)| *name == key) else { return Vec::new() };
         let place = Place::whole(variable.storage, variable.ty, variable.span);

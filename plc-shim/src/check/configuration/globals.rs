@@ -1,20 +1,19 @@
 //! Which resource sees which global variable (2nd ed. 2.7.1).
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 
-use crate::check::declare::declarations::Checker;
+use super::Configurer;
 use crate::diagnostic::{Code, Diagnostic};
-use crate::ir::{ElementaryType, Place, PouId, Statement, StatementKind, Storage, TypeId};
+use crate::ir::{ElementaryType, Place, Statement, StatementKind, Storage, TypeId};
 use crate::syntax::Span;
 
-impl<'a> Checker<'a> {
+impl<'a> Configurer<'_, 'a> {
     /// Lets every name with several declarations stand for the resource's own.
     pub(in crate::check) fn select_globals(&mut self, resource: Option<usize>, span: Span) -> Vec<Statement> {
-        let names: Vec<(String, u32)> =
-            self.configured.alternatives.iter().map(|(key, each)| (key.clone(), each.cell)).collect();
+        let names = self.declarations.alternatives();
         let mut statements = Vec::new();
         for (name, cell) in names {
-            let own = self.key_in(&name, resource).and_then(|key| self.global(&key, None));
+            let own = self.declarations.key_in(&name, resource).and_then(|key| self.declarations.global(&key, None));
             if let Some(own) = own {
                 let pointer: TypeId = ElementaryType::Udint.into();
                 let cell = Place::whole(Storage::Absolute(cell), pointer, span);
@@ -27,12 +26,14 @@ impl<'a> Checker<'a> {
 
     /// Units that run in a resource use no global variable of another one.
     pub(in crate::check) fn report_foreign_globals(&mut self) {
-        let uses = std::mem::take(&mut self.configured.uses);
+        let uses = self.declarations.global_uses().to_vec();
         let mut found = BTreeMap::new();
-        for program in self.programs.clone() {
-            let reached = self.reached(program.pou);
+        for program in self.declarations.programs().to_vec() {
+            let reached = self.declarations.reached_from(program.pou);
             for (pou, key, span) in uses.iter().filter(|(pou, ..)| reached.contains(pou)) {
-                if self.key_in(key, program.resource).is_none() && self.globals.contains_key(key) {
+                if self.declarations.key_in(key, program.resource).is_none()
+                    && self.declarations.global_declared(key).is_some()
+                {
                     // One finding for a unit, where it uses the name first.
                     let first = found.entry((*pou, key.clone())).or_insert((*span, program.name.clone()));
                     first.0 = if span.start < first.0.start { *span } else { first.0 };
@@ -40,25 +41,10 @@ impl<'a> Checker<'a> {
             }
         }
         for ((_, key), (span, program)) in found {
-            let Some(entry) = self.globals.get(&key) else { continue };
-            let (name, declared) = (entry.name.clone(), entry.span);
+            let Some((name, declared)) = self.declarations.global_declared(&key) else { continue };
             let message = format!("`{name}` belongs to another resource than `{program}`, which runs this");
             let found = Diagnostic::error(Code::ForeignGlobal, span, message).with_label(declared, "declared here");
-            self.report(found.with_help("declare it in the configuration, outside of its resources"));
+            self.declarations.report(found.with_help("declare it in the configuration, outside of its resources"));
         }
-    }
-
-    /// A unit and all that it calls.
-    fn reached(&self, start: PouId) -> BTreeSet<PouId> {
-        let mut seen = BTreeSet::from([start]);
-        let mut open = vec![start];
-        while let Some(pou) = open.pop() {
-            for (callee, _) in self.calls.get(&pou).into_iter().flatten() {
-                if seen.insert(*callee) {
-                    open.push(*callee);
-                }
-            }
-        }
-        seen
     }
 }

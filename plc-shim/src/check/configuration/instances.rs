@@ -1,17 +1,16 @@
 //! `VAR_CONFIG` and `VAR_ACCESS` (2nd ed. 2.7.1, 2.4.3; Table 49 features 10 and 11).
 
-use super::connections;
-use crate::check::body::Body;
-use crate::check::declare::declarations::Checker;
+use super::{Configurer, connections};
 use crate::check::declare::demand::Need;
 use crate::check::declare::entry::TypedImage;
 use crate::check::declare::start::{Started, plain};
+use crate::check::resolve::Written;
 use crate::diagnostic::{Code, Diagnostic};
 use crate::ir::{Access, Storage, Target};
 use crate::syntax::Span;
 use crate::syntax::ast::{AccessDirection, AccessPath, InstanceValue, TypeSpec};
 
-impl<'a> Checker<'a> {
+impl<'a> Configurer<'_, 'a> {
     /// Gives variables of single instances initial values of their own.
     pub(in crate::check) fn instance_values(&mut self, values: &'a [InstanceValue]) {
         for value in values {
@@ -33,9 +32,9 @@ impl<'a> Checker<'a> {
         }
         if let Some(initial) = &value.initial {
             // What is not mentioned keeps the value that its own declaration gives.
-            let image = self.image_at(target.inside, self.types.size(target.ty));
-            let mut body = Body::outside(self);
-            let TypedImage { image, starts, .. } = body.with_initial(&plain(target.ty, image.into()), initial)?;
+            let image = self.declarations.image_at(target.inside, self.declarations.types().size(target.ty));
+            let mut written = Written::outside(self.declarations);
+            let TypedImage { image, starts, .. } = written.with_initial(&plain(target.ty, image.into()), initial)?;
             if !matches!(target.storage, Storage::Absolute(_)) {
                 return self.unsuitable_value(
                     &target,
@@ -43,7 +42,7 @@ impl<'a> Checker<'a> {
                     value,
                 );
             }
-            self.placed.push((target.inside, image));
+            self.declarations.place(target.inside, image);
             let place = connections::place(&target, value.path.span);
             self.configured.values.push(Started { place, starts });
         }
@@ -52,20 +51,21 @@ impl<'a> Checker<'a> {
 
     fn unsuitable_value<T>(&mut self, target: &Target, why: &str, value: &InstanceValue) -> Option<T> {
         let message = format!("`{}` {why}", target.path);
-        self.report(Diagnostic::error(Code::NoInstanceValue, value.path.span, message));
+        self.declarations.report(Diagnostic::error(Code::NoInstanceValue, value.path.span, message));
         None
     }
 
     fn same_type(&mut self, target: &Target, spec: &'a TypeSpec, span: Span) -> Option<()> {
-        let declared = Body::outside(self).resolve(spec, Need::Size)?;
+        let declared = Written::outside(self.declarations).resolve(spec, Need::Size)?;
         if declared.ty != target.ty {
-            let (wanted, found) = (self.types.name(target.ty), self.types.name(declared.ty));
+            let (wanted, found) =
+                (self.declarations.types().name(target.ty), self.declarations.types().name(declared.ty));
             let message = format!("`{}` is {wanted} where it is declared, {found} here", target.path);
             let mut report = Diagnostic::error(Code::TypeMismatch, span, message);
             if let Some(variable) = &target.variable {
                 report = report.with_label(variable.span, "declared here");
             }
-            self.report(report);
+            self.declarations.report(report);
             return None;
         }
         Some(())
@@ -73,7 +73,7 @@ impl<'a> Checker<'a> {
 
     /// Names for those outside.
     pub(in crate::check) fn access_paths(&mut self, paths: &'a [AccessPath]) {
-        self.report_twins(&paths.iter().map(|access| &access.name).collect::<Vec<_>>());
+        self.declarations.report_twins(&paths.iter().map(|access| &access.name).collect::<Vec<_>>());
         for access in paths {
             if let Some(found) = self.access_path(access) {
                 self.configured.access.push(found);
@@ -88,7 +88,7 @@ impl<'a> Checker<'a> {
         let writable = access.direction == AccessDirection::ReadWrite;
         if writable && constant {
             let message = format!("`{}` is a constant, which is READ_ONLY", target.path);
-            self.report(Diagnostic::error(Code::AssignToConstant, access.path.span, message));
+            self.declarations.report(Diagnostic::error(Code::AssignToConstant, access.path.span, message));
             return None;
         }
         Some(Access { name: access.name.text.clone(), target, writable })

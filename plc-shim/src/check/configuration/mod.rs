@@ -23,36 +23,40 @@ pub(in crate::check) mod tasks;
 use std::collections::BTreeMap;
 
 use self::locations::InstanceLocation;
-use crate::check::declare::declarations::Checker;
-use crate::check::declare::global::Alternatives;
+use crate::check::declare::Declarations;
 use crate::check::declare::start::Started;
-use crate::ir::{self, Entry, PouId};
+use crate::ir::{self, Entry, Pou, PouId};
 use crate::syntax::Span;
-use crate::syntax::ast::{self, Ident};
+use crate::syntax::ast::Ident;
 
 /// What is known of the configuration so far.
 #[derive(Default)]
 pub(in crate::check) struct Configured<'a> {
-    pub(in crate::check) ast: Option<&'a ast::Configuration>,
-    /// Globals that several resources have under one name.
-    pub(in crate::check) alternatives: BTreeMap<String, Alternatives>,
-    /// Where units use globals, if resources have some of their own.
-    pub(in crate::check) uses: Vec<(PouId, String, Span)>,
-    pub(in crate::check) resources: Vec<ir::Resource>,
-    pub(in crate::check) entries: Vec<Entry>,
-    pub(in crate::check) access: Vec<ir::Access>,
-    pub(in crate::check) locations: Vec<InstanceLocation>,
+    resources: Vec<ir::Resource>,
+    entries: Vec<Entry>,
+    access: Vec<ir::Access>,
+    locations: Vec<InstanceLocation>,
     /// What a start does to single instances' values.
-    pub(in crate::check) values: Vec<Started<'a>>,
+    values: Vec<Started<'a>>,
     /// Instances of function blocks with a task of their own: the program, the instance's offset in
     /// it, where that is said.
-    pub(in crate::check) task_blocks: Vec<(usize, u32, Span)>,
+    task_blocks: Vec<(usize, u32, Span)>,
 }
 
-impl<'a> Checker<'a> {
+/// Works out the configuration from the declarations: first what runs, and when bodies are checked the rest.
+pub(in crate::check) struct Configurer<'d, 'a> {
+    declarations: &'d mut Declarations<'a>,
+    configured: &'d mut Configured<'a>,
+}
+
+impl<'d, 'a> Configurer<'d, 'a> {
+    pub(in crate::check) fn new(declarations: &'d mut Declarations<'a>, configured: &'d mut Configured<'a>) -> Self {
+        Self { declarations, configured }
+    }
+
     /// Makes instances, tasks and connections; before the bodies of units are checked.
     pub(in crate::check) fn configure(&mut self) {
-        if let Some(ast) = self.configured.ast {
+        if let Some(ast) = self.declarations.configuration() {
             for (index, resource) in ast.resources.iter().enumerate() {
                 let name = resource.name.as_ref().map(|(name, _)| name.text.clone());
                 let tasks = self.tasks(resource, index);
@@ -62,7 +66,7 @@ impl<'a> Checker<'a> {
             }
         }
         self.place_other_programs();
-        if let Some(ast) = self.configured.ast {
+        if let Some(ast) = self.declarations.configuration() {
             self.resolve_single_inputs(ast);
             self.instance_values(&ast.instances);
             self.access_paths(&ast.access);
@@ -71,19 +75,19 @@ impl<'a> Checker<'a> {
     }
 
     /// What can be said only when every unit's body is known.
-    pub(in crate::check) fn check_configuration(&mut self) {
+    pub(in crate::check) fn check(&mut self, checked: &BTreeMap<PouId, Pou>) {
         self.report_idle_programs();
         self.report_foreign_globals();
-        self.report_double_calls();
+        self.report_double_calls(checked);
     }
 
-    pub(in crate::check) fn take_configuration(&mut self) -> (Option<ir::Configuration>, Vec<Entry>) {
+    pub(in crate::check) fn finish(&mut self) -> (Option<ir::Configuration>, Vec<Entry>) {
         for index in 0..self.configured.resources.len() {
-            let globals = self.own_globals(index);
+            let globals = self.declarations.own_globals(index);
             self.configured.resources[index].globals = globals;
         }
-        let configured = std::mem::take(&mut self.configured);
-        let made = configured.ast.map(|ast| ir::Configuration {
+        let configured = std::mem::take(self.configured);
+        let made = self.declarations.configuration().map(|ast| ir::Configuration {
             name: ast.name.text.clone(),
             resources: configured.resources,
             access: configured.access,
@@ -93,7 +97,7 @@ impl<'a> Checker<'a> {
 
     /// A resource's name as it begins a path; nothing for the only one without a name.
     pub(in crate::check) fn resource_name(&self, index: usize) -> Option<&'a Ident> {
-        let resource = self.configured.ast?.resources.get(index)?;
+        let resource = self.declarations.configuration()?.resources.get(index)?;
         resource.name.as_ref().map(|(name, _)| name)
     }
 }

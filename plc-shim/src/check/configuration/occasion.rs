@@ -1,36 +1,32 @@
 //! What the PLC does before the first scan after a start, and before another start.
 
+use super::Configurer;
 use crate::check::body::Body;
-use crate::check::declare::declarations::Checker;
 use crate::check::declare::start::{Occasion, Start, StartKind};
 use crate::ir::{ElementaryType, Guard, Place, Pou, Storage};
 
-impl Checker<'_> {
+impl Configurer<'_, '_> {
     /// What the PLC does at an occasion: global variables in the order of the text, then programs.
     pub(in crate::check) fn occasion(&mut self, occasion: Occasion) -> Option<Pou> {
-        let mut all = std::mem::take(&mut self.started);
-        all.sort_by_key(|each| (each.place.span.file, each.place.span.start));
-        let programs = self.programs.clone();
-        let mut body = Body::outside(self);
+        let globals = self.declarations.started();
+        let programs = self.declarations.programs().to_vec();
+        let mut body = Body::outside(self.declarations);
         let mut statements = Vec::new();
-        for each in &all {
+        for each in &globals {
             statements.extend(body.performed(&each.place, &each.starts, occasion));
         }
         for program in programs {
-            let span = body.checker.pou(program.pou).ast.name.span;
+            let span = body.declarations().pou(program.pou).ast.name.span;
             let place = Place::whole(Storage::Absolute(program.offset), ElementaryType::Byte.into(), span);
             let kind = StartKind::Instance(program.pou, &[]);
             let start = Start { offset: 0, kind, span, home: None };
             statements.extend(body.performed(&place, &[start], occasion));
         }
-        // What the configuration says goes before what declarations say.
-        let values = std::mem::take(&mut body.checker.configured.values);
-        for each in &values {
+        // What the configuration says takes precedence over what declarations say, so it comes last.
+        for each in &self.configured.values {
             statements.extend(body.performed(&each.place, &each.starts, occasion));
         }
-        body.checker.configured.values = values;
-        let registers = body.scope.registers;
-        self.started = all;
+        let registers = body.into_scope().into_registers();
         let span = statements.first()?.span;
         let name = match occasion {
             Occasion::Start => "PLC start",

@@ -2,7 +2,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::declarations::Checker;
+use super::Declarations;
 use super::start::Occasion;
 use crate::diagnostic::{Code, Diagnostic, did_you_mean};
 use crate::ir::PouId;
@@ -54,7 +54,7 @@ pub(in crate::check) struct Class {
     pub(in crate::check) type_id: Option<u32>,
 }
 
-impl Checker<'_> {
+impl Declarations<'_> {
     pub(in crate::check) fn class(&self, id: PouId) -> Option<&Class> {
         self.classes.get(&id)
     }
@@ -73,7 +73,7 @@ impl Checker<'_> {
         for index in 0..self.pous.len() {
             let id = PouId(index as u32);
             let home = self.pou(id).home.clone();
-            self.at_home(home, |checker| checker.link(id));
+            self.at_home(home, |declarations| declarations.link(id));
         }
         self.break_circles();
         let links: Vec<_> = self.classes.iter().filter_map(|(id, class)| Some((*id, class.base?))).collect();

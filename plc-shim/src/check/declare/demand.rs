@@ -2,16 +2,40 @@
 
 use std::sync::Arc;
 
-use super::declarations::{Checker, MAX_DEPTH};
-use super::entry::{Progress, TypedImage};
+use super::entry::{Declared, Progress, TypedImage};
 use super::layout::align_up;
 use super::scope::Scope;
-use crate::check::body::Body;
-use crate::check::resolve::interface::{Declared, Interface};
+use super::{Declarations, MAX_DEPTH};
 use crate::diagnostic::{Code, Diagnostic};
 use crate::ir::{PouId, TypeId, Variable};
 use crate::syntax::Span;
-use crate::syntax::ast::{Ident, TypeSpecKind};
+use crate::syntax::ast::{self, Ident, Qualifier, TypeSpecKind};
+
+/// Works out what a declaration means. That takes expressions, which stand above this room and need declarations in
+/// their turn; so the declarations are made with one, and ask it for what they do not know yet.
+pub(in crate::check) trait Resolve {
+    /// A type, with what its variables begin with.
+    fn type_declaration<'a>(
+        &self,
+        declarations: &mut Declarations<'a>,
+        ast: &'a ast::TypeDeclaration,
+    ) -> Option<TypedImage<'a>>;
+
+    /// The type that a name means where it stands; reports one that means none.
+    fn type_meant(&self, declarations: &mut Declarations<'_>, name: &Ident) -> Option<TypeId>;
+
+    /// A global variable in its place.
+    fn global_variable<'a>(
+        &self,
+        declarations: &mut Declarations<'a>,
+        name: &Ident,
+        ast: &'a ast::Variable,
+        qualifiers: &[Qualifier],
+    ) -> Option<Variable>;
+
+    /// The variables of a unit, and its instances.
+    fn unit<'a>(&self, declarations: &mut Declarations<'a>, id: PouId) -> Declared<'a>;
+}
 
 /// Whether the size of a type matters where it is used.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -22,7 +46,7 @@ pub(in crate::check) enum Need {
     Reference,
 }
 
-impl<'a> Checker<'a> {
+impl<'a> Declarations<'a> {
     /// A type of a `TYPE` block; `used` is where it is needed.
     pub(in crate::check) fn named_type(&mut self, key: &str, used: Option<Span>) -> Option<TypedImage<'a>> {
         let entry = self.type_names.get_mut(key)?;
@@ -35,14 +59,20 @@ impl<'a> Checker<'a> {
             }
             Progress::Untouched => entry.progress = Progress::Running,
         }
-        let resolve =
-            |checker: &mut Self| checker.deeper(ast.name.span, |checker| Body::outside(checker).declared_type(ast));
+        let resolve = |declarations: &mut Self| {
+            declarations.deeper(ast.name.span, |declarations| declarations.resolver.type_declaration(declarations, ast))
+        };
         let resolved = self.at_home(home, resolve);
         if let Some(entry) = self.type_names.get_mut(key) {
             entry.progress = Progress::Done;
             entry.resolved.clone_from(&resolved);
         }
         resolved
+    }
+
+    /// The type that a name means here; reports one that means none.
+    pub(in crate::check) fn type_meant(&mut self, name: &Ident) -> Option<TypeId> {
+        self.resolver.type_meant(self, name)
     }
 
     /// The type of a structure that may not be resolved yet; nothing for other types.
@@ -86,7 +116,7 @@ impl<'a> Checker<'a> {
     }
 }
 
-impl<'a> Checker<'a> {
+impl<'a> Declarations<'a> {
     /// A global variable, placed in memory; `used` is where it is needed.
     pub(in crate::check) fn global(&mut self, key: &str, used: Option<Span>) -> Option<Variable> {
         if self.globals.get(key)?.progress == Progress::Untouched
@@ -108,7 +138,11 @@ impl<'a> Checker<'a> {
         entry.progress = Progress::Running;
         let home = entry.seen_from.clone();
         let name = ast.names.iter().find(|name| name.span == span);
-        let place = |checker: &mut Self| checker.deeper(span, |checker| checker.place_global(name?, ast, qualifiers));
+        let place = |declarations: &mut Self| {
+            declarations.deeper(span, |declarations| {
+                declarations.resolver.global_variable(declarations, name?, ast, qualifiers)
+            })
+        };
         let variable = self.at_home(home, place);
         if let Some(entry) = self.globals.get_mut(key) {
             entry.progress = Progress::Done;
@@ -133,19 +167,8 @@ impl<'a> Checker<'a> {
             Progress::Untouched => self.pous[index].progress = Progress::Running,
         }
         let home = self.pou(id).home.clone();
-        let declared = self.at_home(home, |checker| {
-            checker.deeper(ast.name.span, |checker| {
-                let mut interface = Interface::new(checker, id);
-                interface.declare(ast);
-                Some(Declared {
-                    scope: interface.body.scope,
-                    align: interface.align,
-                    image: interface.image,
-                    starts: interface.starts,
-                    fleeting: interface.fleeting,
-                    kept: interface.kept,
-                })
-            })
+        let declared = self.at_home(home, |declarations| {
+            declarations.deeper(ast.name.span, |declarations| Some(declarations.resolver.unit(declarations, id)))
         });
         let Declared { scope, align, mut image, starts, fleeting, kept } = declared.unwrap_or_default();
         // At least a byte, as for structures.
@@ -173,7 +196,7 @@ impl<'a> Checker<'a> {
     }
 }
 
-impl<'a> Checker<'a> {
+impl<'a> Declarations<'a> {
     pub(in crate::check) fn resolve_declarations(&mut self) {
         let names: Vec<String> = self.type_names.keys().cloned().collect();
         for name in names {

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use super::class::Membership;
 use super::namespace::Home;
 use super::scope::Scope;
-use super::start::Starts;
+use super::start::{Start, Starts};
 use crate::ir::{ElementaryType, Storage, TypeId, Variable, Visibility};
 use crate::syntax::ast::{self, Qualifier, SectionKind, TypeDeclaration};
 use crate::syntax::{FileId, Span};
@@ -104,4 +104,15 @@ pub(in crate::check) fn provided(name: &str, ty: ElementaryType, offset: u32) ->
     let (seen_from, home) = (Arc::default(), None);
     let (progress, variable) = (Progress::Done, Some(variable));
     GlobalEntry { ast: None, name, seen_from, span, progress, variable, home }
+}
+
+/// A unit's variables as they have been declared.
+#[derive(Default)]
+pub(in crate::check) struct Declared<'a> {
+    pub(in crate::check) scope: Scope,
+    pub(in crate::check) align: u32,
+    pub(in crate::check) image: Vec<u8>,
+    pub(in crate::check) starts: Vec<Start<'a>>,
+    pub(in crate::check) fleeting: Vec<(String, Starts<'a>)>,
+    pub(in crate::check) kept: BTreeMap<(u32, u32), u32>,
 }

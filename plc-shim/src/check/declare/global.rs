@@ -6,7 +6,7 @@
 
 use std::collections::BTreeMap;
 
-use super::declarations::Checker;
+use super::Declarations;
 use super::entry::{GlobalEntry, Progress};
 use super::layout::INIT_RETAINS_NAME;
 use crate::diagnostic::{Code, Diagnostic};
@@ -15,26 +15,26 @@ use crate::syntax::Span;
 use crate::syntax::ast::{self, Ident};
 
 /// A name that several resources, or a resource and the configuration, declare.
-pub(in crate::check) struct Alternatives {
+pub(super) struct Alternatives {
     /// Where the address of the running resource's variable stands.
-    pub(in crate::check) cell: u32,
+    cell: u32,
     /// The key of each resource's variable.
-    pub(in crate::check) by_resource: BTreeMap<usize, String>,
+    by_resource: BTreeMap<usize, String>,
     /// The key of the variable of all other resources.
-    pub(in crate::check) shared: Option<String>,
+    shared: Option<String>,
 }
 
 /// One declared name of a section.
 struct Declared<'a> {
-    pub(in crate::check) name: &'a Ident,
-    pub(in crate::check) ast: &'a ast::Variable,
-    pub(in crate::check) section: &'a ast::Section,
+    name: &'a Ident,
+    ast: &'a ast::Variable,
+    section: &'a ast::Section,
 }
 
-impl<'a> Checker<'a> {
+impl<'a> Declarations<'a> {
     /// Takes the resources' global variables among the others; all of those are known.
     pub(in crate::check) fn collect_resource_globals(&mut self) {
-        let Some(ast) = self.configured.ast else { return };
+        let Some(ast) = self.configuration else { return };
         let mut homes: BTreeMap<String, Vec<usize>> = BTreeMap::new();
         let mut found = Vec::new();
         for (index, resource) in ast.resources.iter().enumerate() {
@@ -69,7 +69,7 @@ impl<'a> Checker<'a> {
 
     /// Makes `key` stand for several variables, and gives the key of this resource's own.
     fn add_alternative(&mut self, resource: usize, key: &str, span: Span) -> Option<String> {
-        if !self.configured.alternatives.contains_key(key) {
+        if !self.alternatives.contains_key(key) {
             let cell = self.allocate(ElementaryType::Udint.size(), ElementaryType::Udint.size(), span)?;
             let shared = self.globals.remove(key).map(|entry| {
                 // No identifier has a dot, so no other variable has the key.
@@ -78,7 +78,7 @@ impl<'a> Checker<'a> {
                 shared
             });
             let alternatives = Alternatives { cell, by_resource: BTreeMap::new(), shared };
-            self.configured.alternatives.insert(key.to_owned(), alternatives);
+            self.alternatives.insert(key.to_owned(), alternatives);
             let entry = GlobalEntry {
                 ast: None,
                 name: key.to_owned(),
@@ -91,13 +91,13 @@ impl<'a> Checker<'a> {
             self.globals.insert(key.to_owned(), entry);
         }
         let own = format!("{resource}.{key}");
-        self.configured.alternatives.get_mut(key)?.by_resource.insert(resource, own.clone());
+        self.alternatives.get_mut(key)?.by_resource.insert(resource, own.clone());
         Some(own)
     }
 
     /// What a name with several declarations stands for inside of units.
     pub(in crate::check) fn alternative_global(&mut self, key: &str, used: Option<Span>) -> Option<Variable> {
-        let alternatives = self.configured.alternatives.get(key)?;
+        let alternatives = self.alternatives.get(key)?;
         let cell = alternatives.cell;
         let keys: Vec<String> = alternatives.by_resource.values().chain(&alternatives.shared).cloned().collect();
         let variables: Vec<Variable> = keys.iter().map(|key| self.global(key, used)).collect::<Option<_>>()?;
@@ -121,7 +121,7 @@ impl<'a> Checker<'a> {
 
     /// The key under which `resource`, or what is outside of resources, finds a global variable.
     pub(in crate::check) fn key_in(&self, key: &str, resource: Option<usize>) -> Option<String> {
-        if let Some(alternatives) = self.configured.alternatives.get(key) {
+        if let Some(alternatives) = self.alternatives.get(key) {
             let own = resource.and_then(|index| alternatives.by_resource.get(&index));
             return own.or(alternatives.shared.as_ref()).cloned();
         }
@@ -132,9 +132,35 @@ impl<'a> Checker<'a> {
 
     /// Notes that a unit uses a global variable by its name.
     pub(in crate::check) fn note_global_use(&mut self, pou: Option<PouId>, key: &str, span: Span) {
-        if let (Some(pou), true) = (pou, self.configured.ast.is_some()) {
-            self.configured.uses.push((pou, key.to_owned(), span));
+        if let (Some(pou), true) = (pou, self.configuration.is_some()) {
+            self.global_uses.push((pou, key.to_owned(), span));
         }
+    }
+
+    /// The names with several declarations, and where the address of the running resource's own stands.
+    pub(in crate::check) fn alternatives(&self) -> Vec<(String, u32)> {
+        self.alternatives.iter().map(|(key, each)| (key.clone(), each.cell)).collect()
+    }
+
+    /// Where units use global variables by their names; nothing without a configuration.
+    pub(in crate::check) fn global_uses(&self) -> &[(PouId, String, Span)] {
+        &self.global_uses
+    }
+
+    /// The name of a global variable as written, and where it is declared.
+    pub(in crate::check) fn global_declared(&self, key: &str) -> Option<(&str, Span)> {
+        self.globals.get(key).map(|entry| (entry.name.as_str(), entry.span))
+    }
+
+    /// The resource that declares a global variable, if one does.
+    pub(in crate::check) fn resource_of_global(&self, key: &str) -> Option<usize> {
+        self.globals.get(key)?.home
+    }
+
+    /// The names of the global variables that `resource`, or what is outside of resources, sees.
+    pub(in crate::check) fn global_names_in(&self, resource: Option<usize>) -> impl Iterator<Item = &str> {
+        let seen = self.globals.values().filter(move |each| each.home.is_none() || each.home == resource);
+        seen.map(|each| each.name.as_str())
     }
 
     /// The global variables that belong to no resource.
@@ -159,16 +185,16 @@ fn declared(section: &ast::Section) -> impl Iterator<Item = Declared<'_>> {
     section.variables.iter().flat_map(move |ast: &ast::Variable| ast.names.iter().map(each(ast)))
 }
 
-impl<'a> Checker<'a> {
+impl<'a> Declarations<'a> {
     /// Takes the configuration's global variables among the others.
     pub(in crate::check) fn collect_configuration(&mut self, ast: &'a ast::Configuration) {
-        if let Some(first) = self.configured.ast {
+        if let Some(first) = self.configuration {
             let message = format!("there is a configuration already, `{}`", first.name.text);
             let found = Diagnostic::error(Code::SecondConfiguration, ast.name.span, message);
             self.report(found.with_label(first.name.span, "first declared here"));
             return;
         }
-        self.configured.ast = Some(ast);
+        self.configuration = Some(ast);
         for section in &ast.sections {
             self.collect_globals(section);
         }

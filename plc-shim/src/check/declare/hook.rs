@@ -1,7 +1,7 @@
 //! The methods that run without a call: `FB_init`, `FB_reinit`, `FB_exit` (CODESYS, TwinCAT), and their inputs.
 
+use super::Declarations;
 use super::class::Role;
-use super::declarations::Checker;
 use super::scope::Scope;
 use super::start::Occasion;
 use crate::diagnostic::{Code, Diagnostic};
@@ -24,7 +24,12 @@ pub(in crate::check) const HOOKS: [Hook; 3] = [
 /// Inputs of `FB_init` that the runtime gives.
 pub(in crate::check) const INIT_INPUTS: usize = HOOKS[0].inputs.len();
 
-impl Checker<'_> {
+/// True for a method that runs without a call.
+pub(in crate::check) fn is_hook(name: &str) -> bool {
+    HOOKS.iter().any(|hook| hook.name.eq_ignore_ascii_case(name))
+}
+
+impl Declarations<'_> {
     /// The methods of a unit and its bases that run at an occasion; those of the bases first.
     pub(in crate::check) fn hooks(&self, pou: PouId, occasion: Occasion) -> Vec<PouId> {
         let name = match occasion {
@@ -44,11 +49,6 @@ impl Checker<'_> {
 
     pub(in crate::check) fn has_hook(&self, pou: PouId, occasion: Occasion) -> bool {
         !self.hooks(pou, occasion).is_empty()
-    }
-
-    /// True for a method that runs without a call.
-    pub(in crate::check) fn is_hook(name: &str) -> bool {
-        HOOKS.iter().any(|hook| hook.name.eq_ignore_ascii_case(name))
     }
 
     /// The runtime gives these methods their inputs, so they must be there.

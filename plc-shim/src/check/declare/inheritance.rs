@@ -1,12 +1,13 @@
 //! What a derived unit must and must not do (3rd ed. 6.6.5.6 to 6.6.7).
 
+use super::Declarations;
 use super::class::Role;
-use super::declarations::Checker;
+use super::hook::is_hook;
 use crate::diagnostic::{Code, Diagnostic};
 use crate::ir::{PouId, Variable};
 use crate::syntax::ast::{Modifier, PouKind, SectionKind};
 
-impl Checker<'_> {
+impl Declarations<'_> {
     pub(in crate::check) fn check_inheritance(&mut self) {
         let ids: Vec<PouId> = self.classes.keys().copied().collect();
         for id in ids {
@@ -40,7 +41,7 @@ impl Checker<'_> {
             }
             let key = (role, name);
             let above = self.ancestors(id).into_iter();
-            if Self::is_hook(&key.1) {
+            if is_hook(&key.1) {
                 continue;
             }
             let above: Vec<PouId> = above.filter_map(|each| self.class(each)?.members.get(&key).copied()).collect();
@@ -67,11 +68,14 @@ impl Checker<'_> {
         };
         let parameter =
             |each: &&Variable| matches!(each.section, SectionKind::Input | SectionKind::InOut | SectionKind::Output);
-        let result = |place: &Option<crate::ir::Place>| place.as_ref().map(|place| place.ty);
+        let result = |place: Option<&crate::ir::Place>| place.map(|place| place.ty);
         let shape = |each: &Variable| (each.section, each.ty, each.name.to_ascii_uppercase());
-        let same =
-            own.variables.iter().filter(parameter).map(shape).eq(above.variables.iter().filter(parameter).map(shape));
-        if same && result(&own.result) == result(&above.result) {
+        let same = own.variables().iter().filter(parameter).map(shape).eq(above
+            .variables()
+            .iter()
+            .filter(parameter)
+            .map(shape));
+        if same && result(own.result()) == result(above.result()) {
             return;
         }
         let name = &self.pou(member).ast.name;

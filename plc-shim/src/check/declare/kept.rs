@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use super::declarations::Checker;
+use super::Declarations;
 use crate::ir::{PouId, Variable};
 use crate::syntax::Span;
 use crate::syntax::ast::SectionKind;
@@ -15,7 +15,7 @@ pub(crate) struct Kept {
     pub(crate) variables: Vec<Variable>,
 }
 
-impl Checker<'_> {
+impl Declarations<'_> {
     /// What methods keep, by the unit whose instances they keep it in, those of its bases included.
     pub(in crate::check) fn kept_by_methods(&self) -> BTreeMap<PouId, Vec<Kept>> {
         let kept = self.classes.keys().map(|id| (*id, self.kept_in(*id)));
@@ -29,7 +29,7 @@ impl Checker<'_> {
                 let pou = self.pou(*method);
                 let (name, hidden) =
                     (&pou.ast.name.text, |kept: &Kept| kept.method.eq_ignore_ascii_case(&pou.ast.name.text));
-                let variables = pou.scope.iter().flat_map(|scope| &scope.variables);
+                let variables = pou.scope.iter().flat_map(|scope| scope.variables());
                 let own: Vec<_> = variables.filter(|each| each.section == SectionKind::Instance).cloned().collect();
                 if !own.is_empty() && !found.iter().any(hidden) {
                     found.push(Kept { method: name.clone(), variables: own });

@@ -9,9 +9,10 @@
 //! | 64 | global variables, programs, frames |
 //! | behind them | the areas of direct addresses, `%I`, `%Q`, `%M`, as far as they are used |
 
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use super::declarations::Checker;
+use super::Declarations;
 use crate::diagnostic::{Code, Diagnostic};
 use crate::ir::{Place, Storage, TypeId};
 use crate::syntax::Span;
@@ -40,22 +41,22 @@ const IMAGE_LIMIT: u64 = 4 * MEMORY_LIMIT as u64;
 
 const FIRST_OFFSET: u32 = 64;
 
-/// Hands out offsets, each aligned to what lies there.
+/// What has been handed out of the memory, each block aligned to what lies there, and what it begins with.
 #[derive(Debug)]
-pub(in crate::check) struct Layout {
+pub(super) struct Memory {
+    /// The first offset that is free.
     next: u32,
     /// Bytes of initial images made so far.
     images: u64,
+    /// Offsets of string literals by type and bytes.
+    literals: BTreeMap<(TypeId, Arc<[u8]>), u32>,
+    /// Initial bytes of what has been placed: what comes later covers what came before.
+    placed: Vec<(u32, Arc<[u8]>)>,
 }
 
-impl Layout {
-    pub(in crate::check) fn new() -> Self {
-        Self { next: FIRST_OFFSET, images: 0 }
-    }
-
-    /// Bytes in use.
-    pub(in crate::check) fn size(&self) -> u32 {
-        self.next
+impl Default for Memory {
+    fn default() -> Self {
+        Self { next: FIRST_OFFSET, images: 0, literals: BTreeMap::new(), placed: Vec::new() }
     }
 }
 
@@ -64,17 +65,22 @@ pub(in crate::check) fn align_up(offset: u32, align: u32) -> u32 {
     offset.next_multiple_of(align.max(1))
 }
 
-impl Checker<'_> {
+impl Declarations<'_> {
     /// Puts the areas of direct addresses behind all else: their sizes are known last.
     pub(in crate::check) fn place_areas(&mut self) {
-        self.layout.next = self.areas.place(self.layout.next);
+        self.memory.next = self.areas.place(self.memory.next);
+    }
+
+    /// Gives a block its initial bytes.
+    pub(in crate::check) fn place(&mut self, offset: u32, bytes: Arc<[u8]>) {
+        self.memory.placed.push((offset, bytes));
     }
 
     /// Offset of a new block of memory; reports at `span` if there is no more.
     pub(in crate::check) fn allocate(&mut self, size: u32, align: u32, span: Span) -> Option<u32> {
-        let offset = align_up(self.layout.next, align);
+        let offset = align_up(self.memory.next, align);
         if let Some(end) = offset.checked_add(size).filter(|end| *end <= MEMORY_LIMIT) {
-            self.layout.next = end;
+            self.memory.next = end;
             Some(offset)
         } else {
             self.report_too_large(span);
@@ -84,8 +90,8 @@ impl Checker<'_> {
 
     /// Accounts for an image before it is made; reports at `span` if it is one too many.
     pub(in crate::check) fn charge_image(&mut self, size: u64, span: Span) -> Option<()> {
-        self.layout.images = self.layout.images.saturating_add(size);
-        if self.layout.images > IMAGE_LIMIT {
+        self.memory.images = self.memory.images.saturating_add(size);
+        if self.memory.images > IMAGE_LIMIT {
             self.report_too_large(span);
             return None;
         }
@@ -98,26 +104,26 @@ impl Checker<'_> {
     }
 }
 
-impl Checker<'_> {
+impl Declarations<'_> {
     /// Where bytes lie that never change; equal ones lie there once.
     pub(in crate::check) fn constant_bytes(&mut self, ty: TypeId, bytes: Arc<[u8]>, span: Span) -> Option<Place> {
         let key = (ty, bytes.clone());
-        if let Some(offset) = self.literals.get(&key) {
+        if let Some(offset) = self.memory.literals.get(&key) {
             return Some(Place::whole(Storage::Absolute(*offset), ty, span));
         }
         let (size, align) = (self.types.size(ty), self.types.align(ty));
         let offset = self.allocate(size, align, span)?;
-        self.placed.push((offset, bytes));
-        self.literals.insert(key, offset);
+        self.place(offset, bytes);
+        self.memory.literals.insert(key, offset);
         Some(Place::whole(Storage::Absolute(offset), ty, span))
     }
 }
 
-impl<'a> Checker<'a> {
+impl<'a> Declarations<'a> {
     /// Initial bytes as far as they have been placed.
     pub(in crate::check) fn image_at(&self, offset: u32, size: u32) -> Vec<u8> {
         let mut image = vec![0; size as usize];
-        for (start, bytes) in &self.placed {
+        for (start, bytes) in &self.memory.placed {
             let low = offset.max(*start);
             let high = (offset + size).min(start + bytes.len() as u32);
             if low < high {
@@ -130,10 +136,10 @@ impl<'a> Checker<'a> {
     }
 }
 
-impl<'a> Checker<'a> {
+impl<'a> Declarations<'a> {
     pub(in crate::check) fn memory_image(&self) -> Vec<u8> {
-        let mut image = vec![0; self.layout.size() as usize];
-        for (offset, bytes) in &self.placed {
+        let mut image = vec![0; self.memory.next as usize];
+        for (offset, bytes) in &self.memory.placed {
             let start = *offset as usize;
             if let Some(target) = image.get_mut(start..start + bytes.len()) {
                 target.copy_from_slice(bytes);

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::declarations::Checker;
+use super::Declarations;
 use super::entry::TypedImage;
 use crate::diagnostic::{Code, Diagnostic};
 use crate::ir::{ElementaryType, Location, Storage, Type, TypeId};
@@ -28,7 +28,7 @@ pub(in crate::check) enum Placement {
     At(Storage),
 }
 
-impl Checker<'_> {
+impl Declarations<'_> {
     pub(in crate::check) fn invalid_address<T>(&mut self, text: &str, error: AddressError, span: Span) -> Option<T> {
         let message = format!("`{text}` is no direct address: {error}");
         self.report(Diagnostic::error(Code::InvalidAddress, span, message));

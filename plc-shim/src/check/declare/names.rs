@@ -3,8 +3,8 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
+use super::Declarations;
 use super::class::{Class, Membership, Role};
-use super::declarations::Checker;
 use super::entry::{GlobalEntry, PouEntry, Progress, TypeEntry};
 use super::start::Starts;
 use crate::check::standard;
@@ -13,7 +13,7 @@ use crate::ir::{ElementaryType, PouId};
 use crate::syntax::Span;
 use crate::syntax::ast::{self, Ident, PouKind, TypeDeclaration};
 
-impl<'a> Checker<'a> {
+impl<'a> Declarations<'a> {
     pub(in crate::check) fn collect_pou(&mut self, ast: &'a ast::Pou) {
         // The library comes last: what it finds taken, the user has named like the standard.
         if self.library.contains(&ast.name.span.file)

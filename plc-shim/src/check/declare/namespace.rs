@@ -6,7 +6,7 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use super::declarations::Checker;
+use super::Declarations;
 use crate::diagnostic::{Code, Diagnostic, did_you_mean};
 use crate::dialect::AddressUnit;
 use crate::ir::PouId;
@@ -71,7 +71,7 @@ pub(in crate::check) fn joined(namespace: &str, key: &str) -> String {
     if namespace.is_empty() { key.to_owned() } else { format!("{namespace}.{key}") }
 }
 
-impl<'a> Checker<'a> {
+impl<'a> Declarations<'a> {
     pub(in crate::check) fn collect(&mut self, units: &[(crate::syntax::FileId, &'a CompilationUnit)]) {
         // Who looks from outside sees the addresses as the first file has them.
         self.address_unit = units.first().map_or_else(AddressUnit::default, |(_, unit)| unit.dialect.address_unit());
@@ -201,5 +201,23 @@ impl<'a> Checker<'a> {
             let message = format!("`{}` is INTERNAL to its namespace", self.pou(id).ast.name.text);
             self.report(Diagnostic::error(Code::AccessDenied, used, message));
         }
+    }
+
+    /// True if `key` names a namespace, or something in one.
+    pub(in crate::check) fn is_in_namespace(&self, key: &str) -> bool {
+        let known = |key: &str| {
+            let mut around = self.home.namespace.as_str();
+            loop {
+                if self.namespaces.contains_key(&joined(around, key)) {
+                    return true;
+                }
+                if around.is_empty() {
+                    return self.home.using.iter().any(|each| self.namespaces.contains_key(&joined(each, key)));
+                }
+                around = around.rsplit_once('.').map_or("", |(outer, _)| outer);
+            }
+        };
+        let library = key.split_once('.').is_some_and(|(first, _)| STANDARD_LIBRARIES.contains(&first));
+        library || key.match_indices('.').any(|(at, _)| known(&key[..at])) || known(key)
     }
 }

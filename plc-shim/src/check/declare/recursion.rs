@@ -2,15 +2,15 @@
 
 use std::collections::BTreeSet;
 
-use super::declarations::Checker;
+use super::Declarations;
 use crate::diagnostic::{Code, Diagnostic};
 use crate::ir::PouId;
 
-impl Checker<'_> {
+impl Declarations<'_> {
     /// Reports each call that closes a circle. Walks the calls depth first, with its own stack.
     pub(in crate::check) fn report_recursion(&mut self) {
         let mut done = BTreeSet::new();
-        for root in self.queued.clone() {
+        for root in self.queued() {
             self.walk(root, &mut done);
         }
     }
@@ -20,7 +20,7 @@ impl Checker<'_> {
         let mut on_path = BTreeSet::from([root]);
         while let Some((caller, next)) = path.last_mut() {
             let caller = *caller;
-            let call = self.calls.get(&caller).and_then(|calls| calls.get(*next)).copied();
+            let call = self.calls_of(caller).get(*next).copied();
             *next += 1;
             match call {
                 None => {

@@ -8,8 +8,8 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
+use super::Declarations;
 use super::class::{Membership, Role};
-use super::declarations::Checker;
 use super::entry::TypedImage;
 use super::namespace::Home;
 use crate::ir::{Place, PouId, TypeId};
@@ -104,12 +104,13 @@ fn stage(owner: &ast::Pou, name: &str) -> ast::Pou {
 }
 
 /// A variable outside of units, and what is done to it.
+#[derive(Debug, Clone)]
 pub(in crate::check) struct Started<'a> {
     pub(in crate::check) place: Place,
     pub(in crate::check) starts: Starts<'a>,
 }
 
-impl Checker<'_> {
+impl Declarations<'_> {
     /// Adds the units of a unit's occasions.
     pub(in crate::check) fn collect_stages(&mut self, owner: PouId) {
         let Some(stages) = self.stages.get(&place_of(&self.pou(owner).ast.name)) else { return };

@@ -1,7 +1,7 @@
 //! What vendors call the inputs of the standard's function blocks (CODESYS: library Standard; TwinCAT:
 //! `Tc2_Standard`): `RESET` of a counter is `R` of the standard (2nd ed. Tables 34 and 36).
 
-use super::declarations::Checker;
+use super::Declarations;
 use super::scope::Scope;
 use crate::dialect::Feature;
 use crate::ir::{PouId, Variable};
@@ -24,16 +24,14 @@ fn names_of(block: &str) -> impl Iterator<Item = &'static (&'static str, &'stati
     NAMES.iter().filter(move |(unit, ..)| unit.eq_ignore_ascii_case(block))
 }
 
-impl Checker<'_> {
+impl Declarations<'_> {
     /// Lets vendors' names of a library's block find its variables, too.
     pub(in crate::check) fn add_vendor_names(&self, id: PouId, scope: &mut Scope) {
         if !self.is_library(id) {
             return;
         }
         for (_, vendor, standard) in names_of(&self.pou(id).ast.name.text) {
-            if let Some(index) = scope.by_name.get(*standard).copied() {
-                scope.by_name.insert((*vendor).to_owned(), index);
-            }
+            scope.add_alias(vendor, standard);
         }
     }
 

@@ -1,6 +1,6 @@
 //! Who sees what of a unit (3rd ed. 6.6.5.5 to 6.6.5.10).
 
-use super::declarations::Checker;
+use super::Declarations;
 use crate::ir::{PouId, Visibility};
 use crate::syntax::ast::{Modifier, Qualifier, SectionKind};
 
@@ -31,7 +31,7 @@ pub(in crate::check) fn method_visibility(modifiers: &[Modifier]) -> Visibility 
     said.unwrap_or(Visibility::Public)
 }
 
-impl Checker<'_> {
+impl Declarations<'_> {
     /// The name of a unit, that of a method with its class.
     pub(in crate::check) fn display_name(&self, id: PouId) -> String {
         let name = &self.pou(id).ast.name.text;

@@ -70,14 +70,14 @@ impl<'a> Interface<'_, 'a> {
     fn report_shared(&mut self, action: &Ident, first: Span) {
         let message = format!("another chart of this unit controls `{}`, too", action.text);
         let found = Diagnostic::error(Code::SharedAction, action.span, message).with_label(first, "there");
-        self.body.report(found.with_help("an action is controlled by the steps of one chart: use a second action"));
+        self.report(found.with_help("an action is controlled by the steps of one chart: use a second action"));
     }
 
     /// An initial step is active before the first scan (2nd ed. 2.6.5).
     fn declare_step(&mut self, step: &ChartStep) {
         let Some(mut declared) = self.library_type(STEP_TYPE, step.name.span) else { return };
         if step.is_initial
-            && let Type::Struct { fields, .. } = self.body.checker.types.get(declared.ty)
+            && let Type::Struct { fields, .. } = self.declarations().types().get(declared.ty)
             && let Some(flag) = fields.iter().find(|field| field.name == "X")
         {
             let mut image = declared.image.to_vec();
@@ -89,29 +89,29 @@ impl<'a> Interface<'_, 'a> {
 
     fn declare_control(&mut self, action: &Ident) {
         let key = control_key(&action.key());
-        if self.body.scope.own(&key).is_some() {
+        if self.scope().own(&key).is_some() {
             return;
         }
         let Some(declared) = self.library_type(CONTROL_TYPE, action.span) else { return };
-        let unit = self.body.pou;
-        let has_body = unit.is_some_and(|id| self.body.checker.find_member(id, Role::Method, &action.text).is_some());
-        if let Some(variable) = self.body.scope.own(&action.key()).filter(|_| has_body) {
+        let unit = self.unit();
+        let has_body = unit.is_some_and(|id| self.declarations().find_member(id, Role::Method, &action.text).is_some());
+        if let Some(variable) = self.scope().own(&action.key()).filter(|_| has_body) {
             let first = variable.span;
-            self.body.checker.report_duplicate(action, Some(first));
+            self.declarations_mut().report_duplicate(action, Some(first));
         }
         let name = if has_body { action.text.clone() } else { format!("SFC_{}", action.text) };
         self.keep_state(&key, &name, action.span, &declared);
     }
 
     fn library_type(&mut self, name: &str, span: Span) -> Option<TypedImage<'a>> {
-        self.body.type_by_name(&Ident { text: name.to_owned(), span }, Need::Size)
+        self.written().type_by_name(&Ident { text: name.to_owned(), span }, Need::Size)
     }
 
     /// Steps and transitions have names among those of variables.
     fn declare_of_chart(&mut self, key: &str, name: &str, span: Span, declared: &TypedImage<'a>) {
-        match self.body.scope.own(key).map(|first| first.span) {
+        match self.scope().own(key).map(|first| first.span) {
             Some(first) => {
-                self.body.checker.report_duplicate(&Ident { text: name.to_owned(), span }, Some(first));
+                self.declarations_mut().report_duplicate(&Ident { text: name.to_owned(), span }, Some(first));
             }
             None => self.keep_state(key, name, span, declared),
         }
@@ -132,11 +132,10 @@ impl<'a> Interface<'_, 'a> {
             span,
             image: declared.image.clone(),
             visibility: Visibility::Protected,
-            owner: self.body.pou,
+            owner: self.unit(),
             edge: None,
             of_chart: true,
         };
-        self.body.scope.by_name.insert(key.to_owned(), self.body.scope.variables.len());
-        self.body.scope.variables.push(variable);
+        self.scope_mut().add(key.to_owned(), variable);
     }
 }

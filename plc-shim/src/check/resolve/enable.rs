@@ -1,12 +1,12 @@
 //! EN and ENO as a unit declares them (2nd ed. 2.5.1.2).
 
-use crate::check::body::Body;
-use crate::check::body::call::enable::{EN, ENO, is_control};
+use super::Written;
+use crate::check::types::parameter::{EN, ENO, is_control};
 use crate::diagnostic::{Code, Diagnostic};
 use crate::ir::{ElementaryType, Variable};
 use crate::syntax::ast::SectionKind;
 
-impl Body<'_, '_> {
+impl Written<'_, '_> {
     /// EN is a BOOL input and ENO a BOOL output; no other variable of a unit may bear the names.
     pub(in crate::check) fn check_control(&mut self, variable: &Variable) {
         let named = [EN, ENO].into_iter().any(|name| variable.name.eq_ignore_ascii_case(name));

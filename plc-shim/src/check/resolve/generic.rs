@@ -1,13 +1,14 @@
 //! Inputs of generic types (CODESYS, TwinCAT): what their unit sees of them.
 
-use crate::check::body::{Body, Meant};
+use super::Written;
+use crate::check::body::Meant;
 use crate::check::declare::entry::TypedImage;
 use crate::check::types::generic::Generic;
 use crate::diagnostic::{Code, Diagnostic};
 use crate::ir::{Type, TypeId};
 use crate::syntax::ast::{self, Ident, PouKind, SectionKind, TypeSpecKind};
 
-impl<'a> Body<'_, 'a> {
+impl<'a> Written<'_, 'a> {
     /// The type of a generic input; nothing if it is declared with another.
     pub(in crate::check) fn generic_input(
         &mut self,
@@ -16,7 +17,7 @@ impl<'a> Body<'_, 'a> {
         spec: &'a ast::TypeSpec,
     ) -> Meant<TypedImage<'a>> {
         let TypeSpecKind::Name(name) = &spec.kind else { return None };
-        let generic = Generic::find(&name.key()).filter(|_| self.checker.type_key(&name.key()).is_none())?;
+        let generic = Generic::find(&name.key()).filter(|_| self.declarations().type_key(&name.key()).is_none())?;
         let suitable = matches!(unit, PouKind::Function | PouKind::Method | PouKind::FunctionBlock);
         if section != SectionKind::Input || !suitable {
             self.reject_generic(name);
@@ -34,15 +35,15 @@ impl<'a> Body<'_, 'a> {
 
     /// What the unit sees: `__SYSTEM.AnyType` under the name of the generic type.
     fn generic_type(&mut self, generic: Generic) -> Option<TypeId> {
-        if let Some((found, _)) = self.checker.generics.iter().find(|(_, known)| **known == generic) {
-            return Some(*found);
+        if let Some(found) = self.declarations().seen_of_generic(generic) {
+            return Some(found);
         }
-        let seen = self.checker.named_type("__SYSTEM.ANYTYPE", None)?.ty;
-        let Type::Struct { fields, .. } = self.checker.types.get(seen).clone() else { return None };
-        let image = self.checker.types.image(seen).clone();
-        let ty = self.checker.types.structure(generic.name().to_owned());
-        self.checker.types.complete_structure(ty, fields, image);
-        self.checker.generics.insert(ty, generic);
+        let seen = self.declarations_mut().named_type("__SYSTEM.ANYTYPE", None)?.ty;
+        let Type::Struct { fields, .. } = self.declarations().types().get(seen).clone() else { return None };
+        let image = self.declarations().types().image(seen).clone();
+        let ty = self.declarations_mut().types_mut().structure(generic.name().to_owned());
+        self.declarations_mut().types_mut().complete_structure(ty, fields, image);
+        self.declarations_mut().add_generic(ty, generic);
         Some(ty)
     }
 }

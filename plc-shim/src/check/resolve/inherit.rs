@@ -14,15 +14,16 @@ use crate::syntax::ast::{self, Ident, PouKind, SectionKind};
 impl<'a> Interface<'_, 'a> {
     /// Takes over the variables of the base, or of the instance that a method works on.
     pub(in crate::check) fn inherit(&mut self) {
-        let Some(id) = self.body.pou else { return };
-        if let Some(Membership { owner, .. }) = self.body.checker.pou(id).membership {
-            let span = self.body.checker.pou(id).ast.name.span;
-            let scope = self.body.checker.interface(owner, span);
-            self.body.scope.outer = scope.map(|scope| Arc::new(seen_by_methods(&scope, owner)));
+        let Some(id) = self.unit() else { return };
+        if let Some(Membership { owner, .. }) = self.declarations().pou(id).membership {
+            let span = self.declarations().pou(id).ast.name.span;
+            let scope = self.declarations_mut().interface(owner, span);
+            let seen = scope.map(|scope| Arc::new(seen_by_methods(&scope, owner)));
+            self.scope_mut().set_outer(seen);
             return;
         }
-        let type_id = self.body.checker.class(id).and_then(|class| class.type_id);
-        match self.body.checker.base_of(id) {
+        let type_id = self.declarations().class(id).and_then(|class| class.type_id);
+        match self.declarations().base_of(id) {
             Some(base) => self.inherit_from(base),
             None => self.image = type_id.map_or(Vec::new(), |_| vec![0; POINTER.size() as usize]),
         }
@@ -34,17 +35,16 @@ impl<'a> Interface<'_, 'a> {
 
     fn inherit_from(&mut self, base: PouId) {
         let span = self
-            .body
-            .pou
-            .map_or(self.body.checker.pou(base).ast.name.span, |id| self.body.checker.pou(id).ast.name.span);
-        let Some(scope) = self.body.checker.interface(base, span) else { return };
-        let (_, align, image) = self.body.checker.pou(base).instance();
-        if self.body.checker.charge_image(image.len() as u64, span).is_none() {
+            .unit()
+            .map_or(self.declarations().pou(base).ast.name.span, |id| self.declarations().pou(id).ast.name.span);
+        let Some(scope) = self.declarations_mut().interface(base, span) else { return };
+        let (_, align, image) = self.declarations().pou(base).instance();
+        if self.declarations_mut().charge_image(image.len() as u64, span).is_none() {
             return;
         }
         (self.align, self.image) = (align, image.to_vec());
         let keys = scope.keys();
-        for (index, variable) in scope.variables.iter().enumerate() {
+        for (index, variable) in scope.variables().iter().enumerate() {
             if !matches!(variable.storage, Storage::Instance(_) | Storage::InstancePointer(_)) {
                 continue;
             }
@@ -53,28 +53,29 @@ impl<'a> Interface<'_, 'a> {
             if let Some(edge) = variable.edge {
                 let image = Arc::from([0]);
                 let memory = plain(ElementaryType::Bool.into(), image);
-                let seen = self.body.scope.register(ElementaryType::Bool);
+                let seen = self.scope_mut().register(ElementaryType::Bool);
                 let memory = self.in_instance(&memory, span).map_or(edge.memory, Storage::Instance);
                 variable.edge = Some(EdgeDetection { edge: edge.edge, memory, seen });
             }
             // What is PRIVATE to the base is there, and its name is free.
-            if variable.visibility != Visibility::Private {
+            if variable.visibility == Visibility::Private {
+                self.scope_mut().add_hidden(variable);
+            } else {
                 let key = keys.get(&index).map_or_else(|| variable.name.to_ascii_uppercase(), |key| (*key).to_owned());
-                self.body.scope.by_name.insert(key, self.body.scope.variables.len());
+                self.scope_mut().add(key, variable);
             }
-            self.body.scope.variables.push(variable);
         }
     }
 
     /// The first parameter of a method is the address of its instance.
     pub(in crate::check) fn declare_this(&mut self) {
         if self.kind != PouKind::Function {
-            self.body.scope.register(POINTER);
+            self.scope_mut().register(POINTER);
         }
     }
 
     fn role(&self) -> Option<Role> {
-        Some(self.body.checker.pou(self.body.pou?).membership?.role)
+        Some(self.declarations().pou(self.unit()?).membership?.role)
     }
 
     pub(in crate::check) fn is_setter(&self) -> bool {
@@ -84,17 +85,17 @@ impl<'a> Interface<'_, 'a> {
     /// The value that is given to a property, under the property's name.
     pub(in crate::check) fn declare_new_value(&mut self, ast: &'a ast::Pou) {
         let Some(spec) = ast.result.as_ref().filter(|_| self.is_setter()) else { return };
-        let Some(declared) = self.body.resolve(spec, Need::Size) else { return };
+        let Some(declared) = self.written().resolve(spec, Need::Size) else { return };
         let Some(storage) = self.parameter(&declared, &ast.name) else { return };
         let shape = ast::Variable { names: Vec::new(), address: None, spec: spec.clone(), edge: None, initial: None };
         let kind = SectionKind::Input;
-        let variable = self.body.checker.variable(&ast.name, &shape, kind, &[], &declared, storage);
+        let variable = self.declarations().variable(&ast.name, &shape, kind, &[], &declared, storage);
         self.add(&ast.name, variable);
     }
 
     /// Where a variable of the name is declared in this unit.
     pub(in crate::check) fn declared_before(&self, name: &Ident) -> Option<Span> {
-        self.body.scope.own(&name.key()).map(|first| first.span)
+        self.scope().own(&name.key()).map(|first| first.span)
     }
 }
 
@@ -102,7 +103,7 @@ impl<'a> Interface<'_, 'a> {
 fn seen_by_methods(scope: &Scope, owner: PouId) -> Scope {
     let mut seen = Scope::default();
     let keys = scope.keys();
-    for (index, variable) in scope.variables.iter().enumerate() {
+    for (index, variable) in scope.variables().iter().enumerate() {
         let lasting = match variable.storage {
             Storage::Instance(_) | Storage::InstancePointer(_) => true,
             Storage::Register(_) | Storage::RegisterPointer(_) => false,
@@ -111,13 +112,12 @@ fn seen_by_methods(scope: &Scope, owner: PouId) -> Scope {
         let hidden = variable.visibility == Visibility::Private && variable.owner != Some(owner);
         if lasting && !hidden {
             let key = keys.get(&index).map_or_else(|| variable.name.to_ascii_uppercase(), |key| (*key).to_owned());
-            seen.by_name.insert(key, seen.variables.len());
-            seen.variables.push(Variable { edge: None, ..variable.clone() });
+            seen.add(key, Variable { edge: None, ..variable.clone() });
         }
     }
     // Names whose declaration is wrong stay known.
-    for key in scope.by_name.keys().filter(|key| scope.is_broken(key)) {
-        seen.by_name.insert(key.clone(), usize::MAX);
+    for key in scope.broken() {
+        seen.add_broken(key.to_owned());
     }
     seen
 }

@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use crate::check::body::Body;
+use super::Written;
 use crate::check::body::expression::dtl;
 use crate::check::declare::class::Role;
 use crate::check::declare::entry::TypedImage;
@@ -29,14 +29,14 @@ struct Spot {
     pub(in crate::check) bit: Option<u8>,
 }
 
-impl<'a> Body<'_, 'a> {
+impl<'a> Written<'_, 'a> {
     /// What a variable of the type with an initial value begins with.
     pub(in crate::check) fn with_initial(
         &mut self,
         declared: &TypedImage<'a>,
         initial: &'a Initialiser,
     ) -> Option<TypedImage<'a>> {
-        self.checker.charge_image(declared.image.len() as u64, initial.span)?;
+        self.declarations_mut().charge_image(declared.image.len() as u64, initial.span)?;
         let mut making = Making { image: declared.image.to_vec(), starts: declared.starts.to_vec() };
         self.fill(Spot { ty: declared.ty, offset: 0, bit: None }, initial, &mut making)?;
         Some(TypedImage { ty: declared.ty, image: making.image.into(), starts: making.starts.into() })
@@ -44,27 +44,27 @@ impl<'a> Body<'_, 'a> {
 
     fn range(&self, spot: Spot) -> Range<usize> {
         let start = spot.offset as usize;
-        start..start + self.checker.types.size(spot.ty) as usize
+        start..start + self.declarations().types().size(spot.ty) as usize
     }
 
     fn fill(&mut self, spot: Spot, initial: &'a Initialiser, making: &mut Making<'a>) -> Option<()> {
-        let shape = self.checker.types.get(spot.ty).clone();
+        let shape = self.declarations().types().get(spot.ty).clone();
         match (&initial.kind, shape) {
             (InitialiserKind::Value(expr), Type::Text(_)) if !self.is_constant_text(expr) => {
                 self.begins_with(spot, expr, making);
                 Some(())
             }
-            (InitialiserKind::Value(expr), _) if self.elementary(spot.ty).is_some() => {
+            (InitialiserKind::Value(expr), _) if self.body.elementary(spot.ty).is_some() => {
                 self.fill_elementary(spot, expr, making)
             }
             (InitialiserKind::Value(expr), Type::Text(shape)) => {
-                let bytes = self.text_image(shape, expr)?;
+                let bytes = self.body.text_image(shape, expr)?;
                 let range = self.range(spot);
                 making.image.get_mut(range)?.iter_mut().zip(bytes).for_each(|(target, source)| *target = source);
                 Some(())
             }
             (InitialiserKind::Value(expr), Type::Struct { .. }) if dtl::is_literal(expr) => {
-                let bytes = self.dtl_bytes(expr, spot.ty)?;
+                let bytes = self.body.dtl_bytes(expr, spot.ty)?;
                 let range = self.range(spot);
                 making.image.get_mut(range)?.copy_from_slice(&bytes);
                 Some(())
@@ -84,7 +84,7 @@ impl<'a> Body<'_, 'a> {
                 self.fill_instance(spot, pou, members, (initial.span, making))
             }
             _ => {
-                let message = format!("this does not initialise {}", self.type_name(spot.ty));
+                let message = format!("this does not initialise {}", self.body.type_name(spot.ty));
                 self.report(Diagnostic::error(Code::InvalidInitialiser, initial.span, message));
                 None
             }
@@ -96,8 +96,10 @@ impl<'a> Body<'_, 'a> {
     }
 
     fn fill_elementary(&mut self, spot: Spot, expr: &'a Expr, making: &mut Making<'a>) -> Option<()> {
-        let typed = self.expression_for(expr, spot.ty)?;
-        if matches!(fold(&self.checker.types, &typed), Err(NoValue::NotConstant(_))) && self.may_be_computed(&typed) {
+        let typed = self.body.expression_for(expr, spot.ty)?;
+        if matches!(fold(&self.declarations().types(), &typed), Err(NoValue::NotConstant(_)))
+            && self.may_be_computed(&typed)
+        {
             if spot.bit.is_some() {
                 let message = "a member that is one bit of a byte begins with a constant";
                 self.report(Diagnostic::error(Code::InvalidInitialiser, expr.span, message));
@@ -106,7 +108,7 @@ impl<'a> Body<'_, 'a> {
             self.begins_with(spot, expr, making);
             return Some(());
         }
-        let value = self.value_of(&typed)?;
+        let value = self.body.value_of(&typed)?;
         let range = self.range(spot);
         if let Some(bit) = spot.bit {
             let byte = making.image.get_mut(range.start)?;
@@ -120,17 +122,17 @@ impl<'a> Body<'_, 'a> {
     /// A reference may begin with `REF` of any variable (3rd ed. 6.4.4.10.2).
     fn may_be_computed(&self, value: &ir::Expr) -> bool {
         let refers = matches!(
-            self.checker.types.get(value.ty),
+            self.declarations().types().get(value.ty),
             Type::Reference { kind: ReferenceKind::RefTo | ReferenceKind::Pointer, .. } | Type::Interface { .. }
         );
-        refers || self.checker.dialect(value.span).has(Feature::ComputedInitialValues)
+        refers || self.declarations().dialect(value.span).has(Feature::ComputedInitialValues)
     }
 
     /// True for what [`Self::text_image`] takes or reports.
     fn is_constant_text(&mut self, expr: &Expr) -> bool {
-        let computed = self.checker.dialect(expr.span).has(Feature::ComputedInitialValues);
+        let computed = self.declarations().dialect(expr.span).has(Feature::ComputedInitialValues);
         let literal = matches!(expr.kind, ExprKind::Literal(_));
-        !computed || literal || self.constant_text(expr).is_some()
+        !computed || literal || self.body.constant_text(expr).is_some()
     }
 
     fn fill_array(
@@ -140,11 +142,11 @@ impl<'a> Body<'_, 'a> {
         elements: &'a [Initialiser],
         making: &mut Making<'a>,
     ) -> Option<()> {
-        let size = self.checker.types.size(element.ty);
+        let size = self.declarations().types().size(element.ty);
         let mut next: u64 = 0;
         for initial in elements {
             let (times, value) = match &initial.kind {
-                InitialiserKind::Repeat(times, value) => (self.constant_integer(times)?, value.as_deref()),
+                InitialiserKind::Repeat(times, value) => (self.body.constant_integer(times)?, value.as_deref()),
                 _ => (1, Some(initial)),
             };
             let times = u64::try_from(times).unwrap_or(u64::MAX);
@@ -176,7 +178,7 @@ impl<'a> Body<'_, 'a> {
         }
         let mut number: u64 = 0;
         for (bounds, index) in dimensions.iter().zip(&element.indices) {
-            let value = self.constant_integer(index)?;
+            let value = self.body.constant_integer(index)?;
             let Some(value) = i64::try_from(value).ok().filter(|value| (bounds.low..=bounds.high).contains(value))
             else {
                 let message = format!("index {value} is outside of {}..{}", bounds.low, bounds.high);
@@ -185,7 +187,7 @@ impl<'a> Body<'_, 'a> {
             };
             number = number * bounds.count() + (value - bounds.low) as u64;
         }
-        let offset = first.offset + number as u32 * self.checker.types.size(first.ty);
+        let offset = first.offset + number as u32 * self.declarations().types().size(first.ty);
         self.fill(Spot { offset, ..first }, &element.value, making)
     }
 
@@ -193,7 +195,7 @@ impl<'a> Body<'_, 'a> {
     fn fill_alike(&mut self, first: Spot, times: u32, value: &'a Initialiser, making: &mut Making<'a>) -> Option<()> {
         let known = making.starts.len();
         self.fill(first, value, making)?;
-        let (range, size) = (self.range(first), self.checker.types.size(first.ty));
+        let (range, size) = (self.range(first), self.declarations().types().size(first.ty));
         let (from, end) = (range.start, range.start + size as usize * times as usize);
         let row = making.image.get_mut(from..end)?;
         if let Some((first, others)) = row.split_at_mut_checked(size as usize) {
@@ -222,18 +224,18 @@ impl<'a> Body<'_, 'a> {
         members: &'a [StructureInit],
         (span, making): (Span, &mut Making<'a>),
     ) -> Option<()> {
-        let scope = self.checker.interface(pou, span)?;
-        let fields = scope.variables.iter().filter_map(|variable| match variable.storage {
+        let scope = self.declarations_mut().interface(pou, span)?;
+        let fields = scope.variables().iter().filter_map(|variable| match variable.storage {
             Storage::Instance(offset) => {
                 Some(Field { name: variable.name.clone(), ty: variable.ty, offset, bit: None })
             }
             _ => None,
         });
         let fields: Vec<Field> = fields.collect();
-        let overwritten = self.checker.has_hook(pou, Occasion::Start);
+        let overwritten = self.declarations().has_hook(pou, Occasion::Start);
         for member in members {
             let is_field = fields.iter().any(|field| field.name.eq_ignore_ascii_case(&member.name.text));
-            let setter = self.checker.find_member(pou, Role::Setter, &member.name.text);
+            let setter = self.declarations().find_member(pou, Role::Setter, &member.name.text);
             if let (false, Some(_), InitialiserKind::Value(value)) = (is_field, setter, &member.value.kind) {
                 let kind = StartKind::Property(pou, &member.name, value);
                 making.starts.push(self.start(spot.offset, kind, member.name.span));
@@ -269,7 +271,7 @@ impl<'a> Body<'_, 'a> {
         let name = &member.name.text;
         let field = fields.iter().find(|field| field.name.eq_ignore_ascii_case(name));
         let Some(field) = field else {
-            let message = format!("{} has no member `{name}`", self.type_name(spot.ty));
+            let message = format!("{} has no member `{name}`", self.body.type_name(spot.ty));
             let help = did_you_mean(name, fields.iter().map(|field| field.name.as_str()));
             let found = Diagnostic::error(Code::UnknownMember, member.name.span, message);
             self.report(found.with_optional_help(help));

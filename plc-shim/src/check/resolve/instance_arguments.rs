@@ -1,7 +1,7 @@
 //! Instances that are declared with arguments for their `FB_init`: `fb : FB(a := 1)`,
 //! `fbs : ARRAY [1..2] OF FB[(a := 1), (a := 2)]` (CODESYS, TwinCAT).
 
-use crate::check::body::Body;
+use super::Written;
 use crate::check::declare::demand::Need;
 use crate::check::declare::entry::TypedImage;
 use crate::check::declare::start::{Given, Occasion, StartKind, Starts};
@@ -10,7 +10,7 @@ use crate::ir::{PouId, Type, TypeId};
 use crate::syntax::Span;
 use crate::syntax::ast::{Argument, Ident, InitArguments, TypeSpec, TypeSpecKind};
 
-impl<'a> Body<'_, 'a> {
+impl<'a> Written<'_, 'a> {
     pub(in crate::check) fn instance_with_arguments(
         &mut self,
         name: &Ident,
@@ -60,7 +60,7 @@ impl<'a> Body<'_, 'a> {
             self.report(Diagnostic::error(Code::InvalidInitialiser, span, message));
             return None;
         }
-        let (pou, size) = (self.block_of(element, span)?, self.checker.types.size(element));
+        let (pou, size) = (self.block_of(element, span)?, self.declarations().types().size(element));
         self.check_taken(pou, lists.first().map_or(&[], Vec::as_slice), span);
         let starts = lists.iter().zip(0_u32..).map(|(arguments, index)| {
             let at = arguments.first().map_or(span, argument_span);
@@ -70,10 +70,10 @@ impl<'a> Body<'_, 'a> {
     }
 
     fn block_of(&mut self, ty: TypeId, span: Span) -> Option<PouId> {
-        if let Type::FunctionBlock { pou, .. } = self.checker.types.get(ty) {
+        if let Type::FunctionBlock { pou, .. } = self.declarations().types().get(ty) {
             return Some(*pou);
         }
-        let message = format!("arguments are for instances of function blocks, this is {}", self.type_name(ty));
+        let message = format!("arguments are for instances of function blocks, this is {}", self.body.type_name(ty));
         self.report(Diagnostic::error(Code::NotCallable, span, message));
         None
     }
@@ -86,11 +86,11 @@ fn argument_span(argument: &Argument) -> Span {
     }
 }
 
-impl<'a> Body<'_, 'a> {
+impl<'a> Written<'_, 'a> {
     /// Reports arguments of an instance whose block has no `FB_init`.
     pub(in crate::check) fn check_taken(&mut self, pou: PouId, given: Given<'a>, span: Span) {
-        if !given.is_empty() && !self.checker.has_hook(pou, Occasion::Start) {
-            let name = &self.checker.pou(pou).ast.name.text;
+        if !given.is_empty() && !self.declarations().has_hook(pou, Occasion::Start) {
+            let name = &self.declarations().pou(pou).ast.name.text;
             let message = format!("`{name}` has no FB_init that takes arguments");
             let help = format!("inputs begin with values as in `: {name} := (..)`");
             self.report(Diagnostic::error(Code::TooManyArguments, span, message).with_help(help));

@@ -2,12 +2,12 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::global::{OF_CONSTANTS, OF_LOCATED};
+use super::Written;
 use super::referred::referred;
-use crate::check::body::Body;
-use crate::check::declare::declarations::Checker;
+use super::start::{OF_CONSTANTS, OF_LOCATED};
+use crate::check::declare::Declarations;
 use crate::check::declare::demand::Need;
-use crate::check::declare::entry::TypedImage;
+use crate::check::declare::entry::{Declared, TypedImage};
 use crate::check::declare::located::Placement;
 use crate::check::declare::scope::Scope;
 use crate::check::declare::start::{Start, Starts, moved};
@@ -18,20 +18,9 @@ use crate::syntax::ast::{self, Ident, PouKind, Qualifier, Section, SectionKind};
 /// Pointers are offsets in memory.
 pub(in crate::check) const POINTER: ElementaryType = ElementaryType::Udint;
 
-/// A unit's variables as they have been declared.
-#[derive(Default)]
-pub(in crate::check) struct Declared<'a> {
-    pub(in crate::check) scope: Scope,
-    pub(in crate::check) align: u32,
-    pub(in crate::check) image: Vec<u8>,
-    pub(in crate::check) starts: Vec<Start<'a>>,
-    pub(in crate::check) fleeting: Vec<(String, Starts<'a>)>,
-    pub(in crate::check) kept: BTreeMap<(u32, u32), u32>,
-}
-
 const OF_INPUTS: &str = "an input that is not given has its value from before the program runs";
 
-impl<'a> Body<'_, 'a> {
+impl<'a> Written<'_, 'a> {
     /// Type and initial bytes of a declaration.
     pub(in crate::check) fn declared(&mut self, ast: &'a ast::Variable, need: Need) -> Option<TypedImage<'a>> {
         let declared = self.resolve(&ast.spec, need)?;
@@ -42,30 +31,67 @@ impl<'a> Body<'_, 'a> {
     }
 }
 
+/// The variables of a unit, and what its instances begin with.
+pub(super) fn declared<'a>(declarations: &mut Declarations<'a>, id: PouId) -> Declared<'a> {
+    let ast = declarations.pou(id).ast;
+    let mut interface = Interface::new(declarations, id);
+    interface.declare(ast);
+    let Interface { written, align, image, starts, fleeting, kept, .. } = interface;
+    Declared { scope: written.body.into_scope(), align, image, starts, fleeting, kept }
+}
+
 /// A unit's variables while they are declared.
 pub(in crate::check) struct Interface<'c, 'a> {
-    pub(in crate::check) body: Body<'c, 'a>,
-    pub(in crate::check) kind: PouKind,
-    pub(in crate::check) align: u32,
+    written: Written<'c, 'a>,
+    pub(super) kind: PouKind,
+    pub(super) align: u32,
     /// Initial bytes of an instance so far.
-    pub(in crate::check) image: Vec<u8>,
+    pub(super) image: Vec<u8>,
     /// What a start does to an instance so far.
-    pub(in crate::check) starts: Vec<Start<'a>>,
+    pub(super) starts: Vec<Start<'a>>,
     /// What a call does to variables that do not outlive it.
-    pub(in crate::check) fleeting: Vec<(String, Starts<'a>)>,
+    pub(super) fleeting: Vec<(String, Starts<'a>)>,
     /// Where `VAR_INST` of its methods lie in an instance.
-    pub(in crate::check) kept: BTreeMap<(u32, u32), u32>,
+    pub(super) kept: BTreeMap<(u32, u32), u32>,
     /// Variables whose address the body takes.
-    pub(in crate::check) referred: BTreeSet<String>,
+    pub(super) referred: BTreeSet<String>,
 }
 
 impl<'c, 'a> Interface<'c, 'a> {
-    pub(in crate::check) fn new(checker: &'c mut Checker<'a>, id: PouId) -> Self {
-        let ast = checker.pou(id).ast;
+    pub(super) fn written(&mut self) -> &mut Written<'c, 'a> {
+        &mut self.written
+    }
+
+    pub(super) fn declarations(&self) -> &Declarations<'a> {
+        self.written.declarations()
+    }
+
+    pub(super) fn declarations_mut(&mut self) -> &mut Declarations<'a> {
+        self.written.declarations_mut()
+    }
+
+    pub(super) fn scope(&self) -> &Scope {
+        self.written.body.scope()
+    }
+
+    pub(super) fn scope_mut(&mut self) -> &mut Scope {
+        self.written.body.scope_mut()
+    }
+
+    pub(super) fn unit(&self) -> Option<PouId> {
+        self.written.body.unit()
+    }
+
+    pub(super) fn report(&mut self, diagnostic: Diagnostic) {
+        self.written.report(diagnostic);
+    }
+
+    pub(in crate::check) fn new(declarations: &'c mut Declarations<'a>, id: PouId) -> Self {
+        let ast = declarations.pou(id).ast;
         let (kind, referred) = (ast.kind, referred(ast));
-        let body = Body::new(checker, Scope::default(), Some(id));
+        let written = Written::of_unit(declarations, id);
         let (starts, fleeting, kept) = (Vec::new(), Vec::new(), BTreeMap::new());
-        Self { body, kind, align: 1, image: Vec::new(), starts, fleeting, kept, referred }
+        Self { written, kind, align: 1, image: Vec::new(), starts, fleeting, kept, referred }
     }
 
     pub(in crate::check) fn declare(&mut self, ast: &'a ast::Pou) {
@@ -75,14 +101,14 @@ impl<'c, 'a> Interface<'c, 'a> {
             self.declare_sections(ast, |kind| matches!(kind, SectionKind::Input | SectionKind::InOut));
             self.declare_new_value(ast);
             self.declare_sections(ast, |kind| kind == SectionKind::Output);
-            self.body.scope.parameters = self.body.scope.registers.len() as u32;
+            self.scope_mut().end_parameters();
             self.declare_result(ast);
             let of_callers = [SectionKind::Input, SectionKind::InOut, SectionKind::Output];
             self.declare_sections(ast, |kind| !of_callers.contains(&kind));
         } else {
             // The first parameter is the instance's address.
-            self.body.scope.register(POINTER);
-            self.body.scope.parameters = 1;
+            self.scope_mut().register(POINTER);
+            self.scope_mut().end_parameters();
             self.inherit();
             self.declare_sections(ast, |_| true);
             self.declare_charts(ast);
@@ -101,21 +127,21 @@ impl<'c, 'a> Interface<'c, 'a> {
     fn declare_result(&mut self, ast: &'a ast::Pou) {
         let Some(spec) = ast.result.as_ref().filter(|_| !self.is_setter()) else { return };
         if let Some(parameter) = self.declared_before(&ast.name) {
-            self.body.checker.report_duplicate(&ast.name, Some(parameter));
+            self.declarations_mut().report_duplicate(&ast.name, Some(parameter));
             return;
         }
-        let Some(declared) = self.body.resolve(spec, Need::Size) else {
+        let Some(declared) = self.written.resolve(spec, Need::Size) else {
             return;
         };
         let Some(storage) = self.temporary(&declared, &ast.name) else {
             return;
         };
         let span = ast.name.span;
-        self.body.reject_open_array(declared.ty, spec.span);
-        self.body.scope.result = Some(Place::whole(storage, declared.ty, span));
+        self.written.body.reject_open_array(declared.ty, spec.span);
+        self.scope_mut().set_result(Place::whole(storage, declared.ty, span));
         let shape = ast::Variable { names: Vec::new(), address: None, spec: spec.clone(), edge: None, initial: None };
         let kind = SectionKind::Temp;
-        let variable = self.body.checker.variable(&ast.name, &shape, kind, &[], &declared, storage);
+        let variable = self.declarations().variable(&ast.name, &shape, kind, &[], &declared, storage);
         self.add(&ast.name, variable);
     }
 
@@ -123,18 +149,18 @@ impl<'c, 'a> Interface<'c, 'a> {
         if section.kind == SectionKind::Global {
             let message = "VAR_GLOBAL stands outside of units";
             let span = section.span;
-            self.body.report(Diagnostic::error(Code::WrongSection, span, message));
+            self.report(Diagnostic::error(Code::WrongSection, span, message));
             return;
         }
         let need = if section.kind == SectionKind::InOut { Need::Reference } else { Need::Size };
         // Every name has the same type; an error in it is told once.
-        let declared = match self.body.generic_input(self.kind, section.kind, &ast.spec) {
+        let declared = match self.written.generic_input(self.kind, section.kind, &ast.spec) {
             Some(generic) => generic,
-            None => self.body.declared(ast, need),
+            None => self.written.declared(ast, need),
         };
         for name in &ast.names {
             if let Some(first) = self.declared_before(name) {
-                self.body.checker.report_duplicate(name, Some(first));
+                self.declarations_mut().report_duplicate(name, Some(first));
                 continue;
             }
             let Some(declared) = &declared else {
@@ -151,12 +177,11 @@ impl<'c, 'a> Interface<'c, 'a> {
             };
             self.note_starts(section, name, declared, storage);
             let (kind, qualifiers) = (section.kind, &section.qualifiers);
-            let checker = &self.body.checker;
-            let mut variable = checker.variable(name, ast, kind, qualifiers, declared, storage);
+            let mut variable = self.declarations().variable(name, ast, kind, qualifiers, declared, storage);
             if let Some(edge) = ast.edge {
                 variable.edge = self.edge_detection(edge, &variable);
             }
-            self.body.check_control(&variable);
+            self.written.check_control(&variable);
             self.add(name, variable);
         }
     }
@@ -167,34 +192,33 @@ impl<'c, 'a> Interface<'c, 'a> {
             return;
         }
         if section.qualifiers.contains(&Qualifier::Constant) {
-            self.body.require_constant(&declared.starts, OF_CONSTANTS);
+            self.written.require_constant(&declared.starts, OF_CONSTANTS);
         }
         if self.kind.keeps_nothing() && section.kind == SectionKind::Input {
             // An instance is always given, and begins as the one that is.
-            if self.body.is_instance_type(declared.ty) {
+            if self.written.body.is_instance_type(declared.ty) {
                 return;
             }
-            return self.body.require_constant(&declared.starts, OF_INPUTS);
+            return self.written.require_constant(&declared.starts, OF_INPUTS);
         }
         match storage {
             // Its unit starts it.
             Storage::Instance(_) if section.kind == SectionKind::Instance => {}
             Storage::Instance(offset) => self.starts.extend(moved(&declared.starts, offset)),
-            Storage::Located(_) => self.body.require_constant(&declared.starts, OF_LOCATED),
-            _ if section.kind == SectionKind::Static => self.body.checker.begin(storage, declared, name.span),
+            Storage::Located(_) => self.written.require_constant(&declared.starts, OF_LOCATED),
+            _ if section.kind == SectionKind::Static => self.declarations_mut().begin(storage, declared, name.span),
             _ => self.fleeting.push((name.key(), declared.starts.clone())),
         }
     }
 
     /// A name whose type is wrong is known all the same, so that its uses are not reported.
     fn declare_broken(&mut self, name: &Ident) {
-        self.body.scope.by_name.insert(name.key(), usize::MAX);
+        self.scope_mut().add_broken(name.key());
     }
 
     pub(in crate::check) fn add(&mut self, name: &Ident, variable: Variable) {
-        let variable = Variable { owner: self.body.pou, ..variable };
-        self.body.scope.by_name.insert(name.key(), self.body.scope.variables.len());
-        self.body.scope.variables.push(variable);
+        let variable = Variable { owner: self.unit(), ..variable };
+        self.scope_mut().add(name.key(), variable);
     }
 
     fn declared_storage(
@@ -205,8 +229,9 @@ impl<'c, 'a> Interface<'c, 'a> {
         name: &Ident,
     ) -> Option<Storage> {
         if let Some(address) = &ast.address {
-            self.body.checker.may_be_located(self.kind, section.kind, address)?;
-            if let Placement::At(located) = self.body.checker.located(ast, declared)? {
+            let kind = self.kind;
+            self.declarations_mut().may_be_located(kind, section.kind, address)?;
+            if let Placement::At(located) = self.declarations_mut().located(ast, declared)? {
                 return Some(located);
             }
         }
@@ -215,12 +240,13 @@ impl<'c, 'a> Interface<'c, 'a> {
 
     /// `VAR_EXTERNAL` names a global variable of the same type (2nd ed. 2.4.3).
     fn declare_external(&mut self, name: &Ident, ty: TypeId, section: &Section) {
-        let key = self.body.checker.global_key(&name.key());
+        let key = self.declarations().global_key(&name.key());
         let known = key.is_some();
         if let Some(key) = &key {
-            self.body.checker.note_global_use(self.body.pou, key, name.span);
+            let unit = self.unit();
+            self.declarations_mut().note_global_use(unit, key, name.span);
         }
-        let global = key.and_then(|key| self.body.checker.global(&key, Some(name.span)));
+        let global = key.and_then(|key| self.declarations_mut().global(&key, Some(name.span)));
         let Some(mut variable) = global else {
             if !known {
                 self.report_missing_global(name);
@@ -229,11 +255,11 @@ impl<'c, 'a> Interface<'c, 'a> {
             return;
         };
         if variable.ty != ty {
-            let types = &self.body.checker.types;
+            let types = &self.declarations().types();
             let (wanted, found) = (types.name(variable.ty), types.name(ty));
             let message = format!("`{}` is {wanted} in VAR_GLOBAL, {found} here", name.text);
             let found = Diagnostic::error(Code::ExternalWithoutGlobal, name.span, message);
-            self.body.report(found.with_label(variable.span, "declared here"));
+            self.report(found.with_label(variable.span, "declared here"));
         }
         variable.is_constant |= section.qualifiers.contains(&Qualifier::Constant);
         variable.section = SectionKind::External;
@@ -241,10 +267,9 @@ impl<'c, 'a> Interface<'c, 'a> {
     }
 
     fn report_missing_global(&mut self, name: &Ident) {
-        let globals = &self.body.checker.globals;
-        let help = did_you_mean(&name.text, globals.values().map(|entry| entry.name.as_str()));
+        let help = did_you_mean(&name.text, self.declarations().global_names());
         let message = format!("no VAR_GLOBAL declares `{}`", name.text);
         let found = Diagnostic::error(Code::ExternalWithoutGlobal, name.span, message);
-        self.body.report(found.with_optional_help(help));
+        self.report(found.with_optional_help(help));
     }
 }

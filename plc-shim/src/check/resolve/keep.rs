@@ -11,18 +11,18 @@ use crate::syntax::ast::{self, Ident, PouKind, Section, SectionKind};
 impl<'a> Interface<'_, 'a> {
     /// Makes room for what the unit's methods keep. What is wrong with it, the methods report.
     pub(in crate::check) fn keep_for_methods(&mut self, ast: &'a ast::Pou) {
-        let known = self.body.checker.diagnostics.len();
+        let known = self.declarations().mark();
         let sections = ast.object.members.iter().flat_map(|member| &member.pou.sections);
         for section in sections.filter(|section| section.kind == SectionKind::Instance) {
             for variable in &section.variables {
                 self.keep(variable);
             }
         }
-        self.body.checker.diagnostics.truncate(known);
+        self.declarations_mut().forget_since(known);
     }
 
     fn keep(&mut self, variable: &'a ast::Variable) -> Option<()> {
-        let declared = self.body.declared(variable, Need::Size)?;
+        let declared = self.written().declared(variable, Need::Size)?;
         for name in &variable.names {
             let offset = self.in_instance(&declared, name.span)?;
             self.starts.extend(moved(&declared.starts, offset));
@@ -36,15 +36,15 @@ impl<'a> Interface<'_, 'a> {
         if self.kind != PouKind::Method {
             let message = "VAR_INST is for methods";
             let found = Diagnostic::error(Code::WrongSection, section.span, message);
-            self.body.report(found.with_help("VAR of a function block is kept"));
+            self.report(found.with_help("VAR of a function block is kept"));
             return None;
         }
-        let owner = self.body.checker.owner_of(self.body.pou?);
-        let offset = self.body.checker.pou(owner).kept.get(&place_of(name.span)).copied();
+        let owner = self.declarations().owner_of(self.unit()?);
+        let offset = self.declarations().pou(owner).kept.get(&place_of(name.span)).copied();
         if offset.is_none() {
             // Its declaration was found wrong, or memory ran out.
             let message = format!("`{}` cannot be kept in an instance", name.text);
-            self.body.report(Diagnostic::error(Code::WrongSection, name.span, message));
+            self.report(Diagnostic::error(Code::WrongSection, name.span, message));
         }
         offset.map(Storage::Instance)
     }

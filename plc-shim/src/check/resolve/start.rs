@@ -1,14 +1,19 @@
 //! What a start adds to a variable's bytes, as its declaration says it.
 
-use crate::check::body::Body;
+use super::Written;
 use crate::check::declare::start::{Start, StartKind};
 use crate::diagnostic::{Code, Diagnostic};
 use crate::syntax::Span;
 
-impl<'a> Body<'_, 'a> {
+/// Why a constant may begin with nothing else.
+pub(super) const OF_CONSTANTS: &str = "a CONSTANT is one before the program runs";
+/// Why a variable with a direct address may not.
+pub(super) const OF_LOCATED: &str = "a variable with a direct address begins with its bytes";
+
+impl<'a> Written<'_, 'a> {
     /// What is done in one of the unit's own variables belongs to its text; all else to where it stands.
     pub(in crate::check) fn start(&self, offset: u32, kind: StartKind<'a>, span: Span) -> Start<'a> {
-        let home = self.pou.is_none().then(|| self.checker.home.clone());
+        let home = self.body.unit().is_none().then(|| self.declarations().home().clone());
         Start { offset, kind, span, home }
     }
 

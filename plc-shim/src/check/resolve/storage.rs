@@ -23,20 +23,22 @@ impl Interface<'_, '_> {
     ) -> Option<Storage> {
         let span = name.span;
         if !takes_open_arrays(self.kind, section.kind) {
-            self.body.reject_open_array(declared.ty, span)?;
-        } else if matches!(section.kind, SectionKind::Input | SectionKind::Output) && self.body.is_open(declared.ty) {
-            return Some(Storage::RegisterPointer(self.body.scope.register(POINTER)));
+            self.written().body.reject_open_array(declared.ty, span)?;
+        } else if matches!(section.kind, SectionKind::Input | SectionKind::Output)
+            && self.written().body.is_open(declared.ty)
+        {
+            return Some(Storage::RegisterPointer(self.scope_mut().register(POINTER)));
         }
         match (self.kind, section.kind) {
             (_, SectionKind::Instance) => self.kept_storage(section, name),
             (kind, SectionKind::Input) if kind.keeps_nothing() => Some(self.parameter(declared, name)?),
             (PouKind::Method, SectionKind::InOut | SectionKind::Output) | (PouKind::Function, SectionKind::InOut) => {
-                Some(Storage::RegisterPointer(self.body.scope.register(POINTER)))
+                Some(Storage::RegisterPointer(self.scope_mut().register(POINTER)))
             }
             // The caller reads outputs after the call, so they outlive it.
             (PouKind::Function, SectionKind::Output) | (_, SectionKind::Static) => self.frame(declared, span),
             (kind, section) if kind.keeps_nothing() || section == SectionKind::Temp => {
-                if !self.body.checker.dialect(span).has(Feature::FleetingInstances) {
+                if !self.declarations().dialect(span).has(Feature::FleetingInstances) {
                     self.reject_instance(declared.ty, span)?;
                 }
                 self.temporary(declared, name)
@@ -44,7 +46,7 @@ impl Interface<'_, '_> {
             // Nobody calls a program, so nobody could give the variable.
             (PouKind::Program, SectionKind::InOut) => {
                 let message = "a program has no VAR_IN_OUT";
-                self.body.report(Diagnostic::error(Code::WrongSection, span, message));
+                self.report(Diagnostic::error(Code::WrongSection, span, message));
                 None
             }
             (_, SectionKind::InOut) => {
@@ -63,21 +65,21 @@ impl Interface<'_, '_> {
         let suitable = variable.section == SectionKind::Input && !self.kind.keeps_nothing();
         if !suitable || variable.ty != bool_type {
             let message = "R_EDGE and F_EDGE are for BOOL inputs of function blocks and programs";
-            self.body.report(Diagnostic::error(Code::WrongSection, variable.span, message));
+            self.report(Diagnostic::error(Code::WrongSection, variable.span, message));
             return None;
         }
         let image = Arc::from([0]);
         let memory = Storage::Instance(self.in_instance(&plain(bool_type, image), variable.span)?);
-        let seen = self.body.scope.register(ElementaryType::Bool);
+        let seen = self.scope_mut().register(ElementaryType::Bool);
         Some(EdgeDetection { edge, memory, seen })
     }
 
     /// Functions keep nothing between calls (2nd ed. 2.5.1), instances do.
     fn reject_instance(&mut self, ty: TypeId, span: Span) -> Option<()> {
-        if matches!(self.body.checker.types.get(ty), crate::ir::Type::FunctionBlock { .. }) {
+        if matches!(self.declarations().types().get(ty), crate::ir::Type::FunctionBlock { .. }) {
             let message = "a function or VAR_TEMP section keeps nothing, so it has no instances";
             let found = Diagnostic::error(Code::WrongSection, span, message);
-            self.body.report(found.with_help("declare it in VAR or pass it by VAR_IN_OUT"));
+            self.report(found.with_help("declare it in VAR or pass it by VAR_IN_OUT"));
             return None;
         }
         Some(())
@@ -85,41 +87,41 @@ impl Interface<'_, '_> {
 
     /// A value comes in a register, an aggregate's address too; the callee copies that.
     pub(in crate::check) fn parameter(&mut self, declared: &TypedImage<'_>, name: &Ident) -> Option<Storage> {
-        if let Some(ty) = self.body.elementary(declared.ty) {
-            let register = self.body.scope.register(ty);
+        if let Some(ty) = self.written().body.elementary(declared.ty) {
+            let register = self.scope_mut().register(ty);
             let referred = self.referred.contains(&name.key());
             return if referred { self.frame(declared, name.span) } else { Some(Storage::Register(register)) };
         }
-        self.body.scope.register(POINTER);
+        self.scope_mut().register(POINTER);
         self.frame(declared, name.span)
     }
 
     pub(in crate::check) fn temporary(&mut self, declared: &TypedImage<'_>, name: &Ident) -> Option<Storage> {
-        match self.body.elementary(declared.ty) {
-            Some(ty) if !self.referred.contains(&name.key()) => Some(Storage::Register(self.body.scope.register(ty))),
+        match self.written().body.elementary(declared.ty) {
+            Some(ty) if !self.referred.contains(&name.key()) => Some(Storage::Register(self.scope_mut().register(ty))),
             _ => self.frame(declared, name.span),
         }
     }
 
     /// Fixed memory: no unit is active twice (2nd ed. 2.5, no recursion).
     pub(in crate::check) fn frame(&mut self, declared: &TypedImage<'_>, span: Span) -> Option<Storage> {
-        self.body.scope.has_memory = true;
-        let types = &self.body.checker.types;
+        self.scope_mut().keep_memory();
+        let types = &self.declarations().types();
         let (size, align) = (types.size(declared.ty), types.align(declared.ty));
-        let offset = self.body.checker.allocate(size, align, span)?;
-        self.body.checker.placed.push((offset, declared.image.clone()));
+        let offset = self.declarations_mut().allocate(size, align, span)?;
+        self.declarations_mut().place(offset, declared.image.clone());
         Some(Storage::Absolute(offset))
     }
 
     pub(in crate::check) fn in_instance(&mut self, declared: &TypedImage<'_>, span: Span) -> Option<u32> {
-        let align = self.body.checker.types.align(declared.ty);
+        let align = self.declarations().types().align(declared.ty);
         let offset = align_up(self.image.len() as u32, align);
         if offset as usize + declared.image.len() > MEMORY_LIMIT as usize {
-            self.body.checker.report_too_large(span);
+            self.declarations_mut().report_too_large(span);
             return None;
         }
         let size = declared.image.len() as u64;
-        self.body.checker.charge_image(size, span)?;
+        self.declarations_mut().charge_image(size, span)?;
         self.align = self.align.max(align);
         self.image.resize(offset as usize, 0);
         self.image.extend_from_slice(&declared.image);

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::ops::Range;
 use std::sync::Arc;
 
-use crate::check::body::Body;
+use super::Written;
 use crate::check::declare::demand::Need;
 use crate::check::declare::entry::TypedImage;
 use crate::check::declare::layout::{MEMORY_LIMIT, align_up};
@@ -53,7 +53,7 @@ impl Taken {
     }
 }
 
-impl<'a> Body<'_, 'a> {
+impl<'a> Written<'_, 'a> {
     pub(in crate::check) fn structure(
         &mut self,
         name: &str,
@@ -64,11 +64,11 @@ impl<'a> Body<'_, 'a> {
         let mut making = self.extended(extends)?;
         for member in members {
             if making.fields.iter().any(|other| other.name.eq_ignore_ascii_case(&member.name.text)) {
-                self.checker.report_duplicate(&member.name, None);
+                self.declarations_mut().report_duplicate(&member.name, None);
                 continue;
             }
             let mut resolved = self.resolve(&member.spec, Need::Size)?;
-            self.reject_open_array(resolved.ty, member.spec.span)?;
+            self.body.reject_open_array(resolved.ty, member.spec.span)?;
             if let Some(initial) = &member.initial {
                 resolved = self.with_initial(&resolved, initial)?;
             }
@@ -77,11 +77,11 @@ impl<'a> Body<'_, 'a> {
         // What has no members takes a byte, so that no array has more elements than bytes.
         let Making { fields, mut image, starts, .. } = making;
         image.resize(image.len().max(1), 0);
-        let align = fields.iter().map(|field| self.checker.types.align(field.ty)).max();
+        let align = fields.iter().map(|field| self.declarations().types().align(field.ty)).max();
         image.resize(align_up(image.len() as u32, align.unwrap_or(1)) as usize, 0);
         let image: Arc<[u8]> = image.into();
-        let ty = reserved.unwrap_or_else(|| self.checker.types.structure(name.to_owned()));
-        self.checker.types.complete_structure(ty, fields, image.clone());
+        let ty = reserved.unwrap_or_else(|| self.declarations_mut().types_mut().structure(name.to_owned()));
+        self.declarations_mut().types_mut().complete_structure(ty, fields, image.clone());
         Some(TypedImage { ty, image, starts: starts.into() })
     }
 
@@ -90,7 +90,7 @@ impl<'a> Body<'_, 'a> {
         let (mut fields, mut image, mut starts) = (Vec::new(), Vec::new(), Vec::new());
         if let Some(name) = base {
             let resolved = self.type_by_name(name, Need::Size)?;
-            let Type::Struct { fields: inherited, .. } = self.checker.types.get(resolved.ty) else {
+            let Type::Struct { fields: inherited, .. } = self.declarations().types().get(resolved.ty) else {
                 let message = format!("`{}` is not a structure", name.text);
                 self.report(Diagnostic::error(Code::WrongBase, name.span, message));
                 return None;
@@ -114,11 +114,11 @@ impl<'a> Body<'_, 'a> {
     ) -> Option<()> {
         let (offset, bit) = match &member.address {
             Some(address) => self.relative_place(address, resolved.ty)?,
-            None => (align_up(making.image.len() as u32, self.checker.types.align(resolved.ty)), None),
+            None => (align_up(making.image.len() as u32, self.declarations().types().align(resolved.ty)), None),
         };
         let end = offset as usize + resolved.image.len();
         if end > MEMORY_LIMIT as usize {
-            self.checker.report_too_large(span);
+            self.declarations_mut().report_too_large(span);
             return None;
         }
         let begin = 8 * u64::from(offset) + bit.map_or(0, u64::from);
@@ -128,7 +128,7 @@ impl<'a> Body<'_, 'a> {
             return self.report_shared(member);
         }
         making.taken.add(bits);
-        self.checker.charge_image(end.saturating_sub(making.image.len()) as u64, span)?;
+        self.declarations_mut().charge_image(end.saturating_sub(making.image.len()) as u64, span)?;
         making.image.resize(making.image.len().max(end), 0);
         // Of members that share bytes the first begins with its type's value, the others with their own only.
         if !shares || member.initial.is_some() {
@@ -146,19 +146,19 @@ impl<'a> Body<'_, 'a> {
     /// Byte and bit of `%B4` or `%X3.0`. `%B` is for members of every type, as the standard's examples
     /// have it; the wider ones are for types of their width.
     fn relative_place(&mut self, address: &Ident, ty: TypeId) -> Option<(u32, Option<u8>)> {
-        let unit = self.checker.dialect(address.span).address_unit();
+        let unit = self.declarations().dialect(address.span).address_unit();
         let found = match RelativeAddress::parse(&address.text, unit) {
             Ok(found) => found,
-            Err(error) => return self.checker.invalid_address(&address.text, error, address.span),
+            Err(error) => return self.declarations_mut().invalid_address(&address.text, error, address.span),
         };
-        let is_bool = self.elementary(ty) == Some(ElementaryType::Bool);
+        let is_bool = self.body.elementary(ty) == Some(ElementaryType::Bool);
         let suitable = match found.width {
             Width::Byte => true,
             Width::Bit => is_bool,
-            width => self.elementary(ty).is_none_or(|ty| ty.size() == width.bytes()),
+            width => self.body.elementary(ty).is_none_or(|ty| ty.size() == width.bytes()),
         };
         if !suitable {
-            let message = format!("`{}` does not suit a member of type {}", address.text, self.type_name(ty));
+            let message = format!("`{}` does not suit a member of type {}", address.text, self.body.type_name(ty));
             let found = Diagnostic::error(Code::UnsuitableAddress, address.span, message);
             self.report(found.with_help("write %B and the member's first byte; a BOOL may have a bit, as in %X3.0"));
             return None;

@@ -1,16 +1,16 @@
 //! Subrange types (2nd ed. 2.3.3.1 Table 12, feature 3).
 
-use crate::check::body::Body;
+use super::Written;
 use crate::check::declare::entry::TypedImage;
 use crate::diagnostic::{Code, Diagnostic};
 use crate::ir::ElementaryType;
 use crate::syntax::ast::{Ident, Subrange};
 
-impl<'a> Body<'_, 'a> {
+impl<'a> Written<'_, 'a> {
     /// The type that `INT (0..100)` names.
     pub(in crate::check) fn subrange(&mut self, name: &Ident, ast: &'a Subrange) -> Option<TypedImage<'a>> {
         let base = self.integer_base(name)?;
-        let (low, high) = (self.constant_integer(&ast.low)?, self.constant_integer(&ast.high)?);
+        let (low, high) = (self.body.constant_integer(&ast.low)?, self.body.constant_integer(&ast.high)?);
         let fits = |value| base.wrap(value) == value;
         if low > high || !fits(low) || !fits(high) {
             let message = format!("bounds {low}..{high} are reversed or do not fit {base}");
@@ -18,7 +18,7 @@ impl<'a> Body<'_, 'a> {
             self.report(Diagnostic::error(Code::InvalidRange, span, message));
             return None;
         }
-        let ty = self.checker.types.subrange(base, low, high);
+        let ty = self.declarations_mut().types_mut().subrange(base, low, high);
         Some(self.whole(ty))
     }
 

@@ -1,12 +1,12 @@
 //! The type that `STRING[n]` names (2nd ed. 2.4.3.1).
 
-use crate::check::body::Body;
+use super::Written;
 use crate::diagnostic::{Code, Diagnostic};
 use crate::ir::TypeId;
 use crate::ir::text::{MAX_CAPACITY, TextShape};
 use crate::syntax::{Span, ast};
 
-impl<'a> Body<'_, 'a> {
+impl<'a> Written<'_, 'a> {
     /// The type that `STRING[n]` names.
     pub(in crate::check) fn text_type(
         &mut self,
@@ -15,9 +15,9 @@ impl<'a> Body<'_, 'a> {
         span: Span,
     ) -> Option<TypeId> {
         let capacity = match length {
-            None => self.checker.dialect(span).string_length(),
+            None => self.declarations().dialect(span).string_length(),
             Some(expr) => {
-                let length = self.constant_integer(expr)?;
+                let length = self.body.constant_integer(expr)?;
                 let fits = u16::try_from(length).ok().filter(|length| (1..=MAX_CAPACITY).contains(length));
                 let Some(capacity) = fits else {
                     let message = format!("a string's length is 1 to {MAX_CAPACITY}, not {length}");
@@ -27,6 +27,6 @@ impl<'a> Body<'_, 'a> {
                 capacity
             }
         };
-        Some(self.checker.types.string(TextShape { wide, capacity }))
+        Some(self.declarations_mut().types_mut().string(TextShape { wide, capacity }))
     }
 }

@@ -2,14 +2,14 @@
 
 use std::sync::Arc;
 
-use crate::check::body::Body;
+use super::Written;
 use crate::check::declare::demand::Need;
 use crate::check::declare::entry::TypedImage;
 use crate::check::declare::layout::align_up;
 use crate::ir::{Field, TypeId};
 use crate::syntax::{Span, ast};
 
-impl<'a> Body<'_, 'a> {
+impl<'a> Written<'_, 'a> {
     /// Every member begins where the union does. It begins with the first member's value, then with those
     /// that are given, the last one above the others.
     pub(in crate::check) fn union(
@@ -24,11 +24,11 @@ impl<'a> Body<'_, 'a> {
         let mut starts = Vec::new();
         for field in ast {
             if fields.iter().any(|other| other.name.eq_ignore_ascii_case(&field.name.text)) {
-                self.checker.report_duplicate(&field.name, None);
+                self.declarations_mut().report_duplicate(&field.name, None);
                 continue;
             }
             let mut resolved = self.resolve(&field.spec, Need::Size)?;
-            self.reject_open_array(resolved.ty, field.spec.span)?;
+            self.body.reject_open_array(resolved.ty, field.spec.span)?;
             if let Some(initial) = &field.initial {
                 resolved = self.with_initial(&resolved, initial)?;
             }
@@ -40,15 +40,15 @@ impl<'a> Body<'_, 'a> {
             images.push((counts, resolved.image));
         }
         let size = images.iter().map(|(_, image)| image.len()).max().unwrap_or(0).max(1) as u32;
-        let align = fields.iter().map(|field| self.checker.types.align(field.ty)).max().unwrap_or(1);
-        self.checker.charge_image(u64::from(size), span)?;
+        let align = fields.iter().map(|field| self.declarations().types().align(field.ty)).max().unwrap_or(1);
+        self.declarations_mut().charge_image(u64::from(size), span)?;
         let mut image = vec![0; align_up(size, align) as usize];
         for (_, bytes) in images.iter().filter(|(counts, _)| *counts) {
             image.iter_mut().zip(bytes.iter()).for_each(|(target, source)| *target = *source);
         }
         let image: Arc<[u8]> = image.into();
-        let ty = reserved.unwrap_or_else(|| self.checker.types.structure(name.to_owned()));
-        self.checker.types.complete_structure(ty, fields, image.clone());
+        let ty = reserved.unwrap_or_else(|| self.declarations_mut().types_mut().structure(name.to_owned()));
+        self.declarations_mut().types_mut().complete_structure(ty, fields, image.clone());
         Some(TypedImage { ty, image, starts: starts.into() })
     }
 }

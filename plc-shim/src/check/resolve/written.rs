@@ -2,8 +2,8 @@
 
 use std::sync::Arc;
 
+use super::Written;
 use super::structure::Sharing;
-use crate::check::body::Body;
 use crate::check::declare::demand::Need;
 use crate::check::declare::entry::{Enumerator, TypedImage};
 use crate::check::declare::layout::MEMORY_LIMIT;
@@ -27,20 +27,20 @@ fn of_pointer_width(key: &str) -> Option<ElementaryType> {
     })
 }
 
-impl<'a> Body<'_, 'a> {
+impl<'a> Written<'_, 'a> {
     pub(in crate::check) fn declared_type(&mut self, ast: &'a ast::TypeDeclaration) -> Option<TypedImage<'a>> {
         let name = &ast.name.text;
         let mut resolved = match &ast.spec.kind {
             TypeSpecKind::Struct(fields) => {
-                let ty = self.checker.own_reserved(&ast.name);
+                let ty = self.declarations_mut().own_reserved(&ast.name);
                 self.structure(name, (ty, ast.extends.as_ref()), (fields, Sharing::Refused), ast.name.span)
             }
             TypeSpecKind::Overlapping(fields) => {
-                let ty = self.checker.own_reserved(&ast.name);
+                let ty = self.declarations_mut().own_reserved(&ast.name);
                 self.structure(name, (ty, ast.extends.as_ref()), (fields, Sharing::Allowed), ast.name.span)
             }
             TypeSpecKind::Union(fields) => {
-                let ty = self.checker.own_reserved(&ast.name);
+                let ty = self.declarations_mut().own_reserved(&ast.name);
                 self.union(name, ty, fields, ast.name.span)
             }
             TypeSpecKind::Enumeration(values, base) => self.enumeration(name, values, base.as_ref()),
@@ -67,15 +67,16 @@ impl<'a> Body<'_, 'a> {
             TypeSpecKind::Reference(kind, target) => self.reference_type(*kind, target),
             TypeSpecKind::OpenArray(dimensions, element) => {
                 let element = self.resolve(element, Need::Size)?.ty;
-                self.reject_open_array(element, spec.span)?;
-                let ty = self.checker.types.open_array(*dimensions, element);
+                self.body.reject_open_array(element, spec.span)?;
+                let ty = self.declarations_mut().types_mut().open_array(*dimensions, element);
                 Some(self.whole(ty))
             }
             TypeSpecKind::Union(fields) => self.union("UNION", None, fields, spec.span),
             TypeSpecKind::Enumeration(values, base) => self.enumeration("enumeration", values, base.as_ref()),
             TypeSpecKind::String(name, length) => {
                 let ty = self.text_type(name.key() == "WSTRING", length.as_deref(), spec.span)?;
-                self.checker.charge_image(u64::from(self.checker.types.size(ty)), spec.span)?;
+                let size = u64::from(self.declarations().types().size(ty));
+                self.declarations_mut().charge_image(size, spec.span)?;
                 Some(self.whole(ty))
             }
             TypeSpecKind::Subrange(name, range) => self.subrange(name, range),
@@ -83,28 +84,22 @@ impl<'a> Body<'_, 'a> {
         }
     }
 
-    pub(in crate::check) fn unsupported<T>(&mut self, what: &str, span: Span) -> Option<T> {
-        let message = format!("{what} is not supported yet");
-        self.report(Diagnostic::error(Code::UnsupportedFeature, span, message));
-        None
-    }
-
     pub(in crate::check) fn whole(&self, ty: TypeId) -> TypedImage<'a> {
-        plain(ty, self.checker.types.image(ty).clone())
+        plain(ty, self.declarations().types().image(ty).clone())
     }
 
     /// A reference's target need not be known yet: structures refer to one another, and to themselves.
     fn reference_type(&mut self, kind: ast::ReferenceKind, target: &'a TypeSpec) -> Option<TypedImage<'a>> {
         let reserved = match &target.kind {
-            TypeSpecKind::Name(name) => self.checker.reserved(&name.key()),
+            TypeSpecKind::Name(name) => self.declarations_mut().reserved(&name.key()),
             _ => None,
         };
         let target_ty = match reserved {
             Some(ty) => ty,
             None => self.resolve(target, Need::Reference)?.ty,
         };
-        self.reject_open_array(target_ty, target.span)?;
-        let ty = self.checker.types.reference(Some(kind), target_ty);
+        self.body.reject_open_array(target_ty, target.span)?;
+        let ty = self.declarations_mut().types_mut().reference(Some(kind), target_ty);
         Some(self.whole(ty))
     }
 
@@ -113,8 +108,8 @@ impl<'a> Body<'_, 'a> {
         if let Some(found) = ElementaryType::find(&key) {
             return Some(self.whole(found.into()));
         }
-        if let Some(key) = self.checker.type_key(&key) {
-            return self.checker.named_type(&key, Some(name.span));
+        if let Some(key) = self.declarations().type_key(&key) {
+            return self.declarations_mut().named_type(&key, Some(name.span));
         }
         if let Some(found) = of_pointer_width(&key) {
             return Some(self.whole(found.into()));
@@ -123,21 +118,21 @@ impl<'a> Body<'_, 'a> {
         if key == "BIT" {
             return Some(self.whole(ElementaryType::Bool.into()));
         }
-        if let Some(id) = self.checker.pou_named(&key) {
-            self.checker.check_internal(id, name.span);
-            let ast = self.checker.pou(id).ast;
+        if let Some(id) = self.declarations().pou_named(&key) {
+            self.declarations_mut().check_internal(id, name.span);
+            let ast = self.declarations().pou(id).ast;
             if ast.kind == PouKind::Interface {
-                let ty = self.checker.types.interface(&ast.name.text, id);
+                let ty = self.declarations_mut().types_mut().interface(&ast.name.text, id);
                 return Some(self.whole(ty));
             }
             if ast.kind.has_instances() {
-                let ty = self.checker.types.block(&ast.name.text, id);
+                let ty = self.declarations_mut().types_mut().block(&ast.name.text, id);
                 if need == Need::Reference {
                     return Some(self.whole(ty));
                 }
-                self.checker.check_instance(id, name.span);
-                self.checker.declare(id, Some(name.span))?;
-                let begins = self.checker.instance_starts(id);
+                self.declarations_mut().check_instance(id, name.span);
+                self.declarations_mut().declare(id, Some(name.span))?;
+                let begins = self.declarations().instance_starts(id);
                 let start = begins.then(|| self.start(0, StartKind::Instance(id, &[]), name.span));
                 return Some(TypedImage { starts: start.into_iter().collect(), ..self.whole(ty) });
             }
@@ -154,11 +149,10 @@ impl<'a> Body<'_, 'a> {
             return self.reject_generic(name);
         }
         let elementary = ElementaryType::ALL.iter().map(|ty| ty.name());
-        let derived = self.checker.type_names.values().map(|entry| entry.ast.name.text.as_str());
-        let blocks = self.checker.pous.iter().filter(|pou| pou.ast.kind.has_instances());
-        let blocks = blocks.map(|pou| pou.ast.name.text.as_str());
+        let derived = self.declarations().type_names();
+        let blocks = self.declarations().unit_names(PouKind::has_instances);
         let help = did_you_mean(&name.text, elementary.chain(derived).chain(blocks));
-        let help = self.checker.elsewhere(name).or(help);
+        let help = self.declarations().elsewhere(name).or(help);
         let message = format!("type `{}` is not declared", name.text);
         let found = Diagnostic::error(Code::UnknownType, name.span, message);
         self.report(found.with_optional_help(help));
@@ -167,19 +161,19 @@ impl<'a> Body<'_, 'a> {
     fn array(&mut self, dimensions: &'a [ast::Dimension], element: &'a TypeSpec, span: Span) -> Option<TypedImage<'a>> {
         let bounds: Vec<_> = dimensions.iter().map(|each| self.dimension(each)).collect();
         let (element, lists) = self.element_type(element)?;
-        self.reject_open_array(element.ty, span)?;
+        self.body.reject_open_array(element.ty, span)?;
         let bounds: Vec<Dimension> = bounds.into_iter().collect::<Option<_>>()?;
-        let size = self.checker.types.size(element.ty);
+        let size = self.declarations().types().size(element.ty);
         let total = bounds.iter().try_fold(u64::from(size), |total, each| {
             total.checked_mul(each.count()).filter(|size| *size <= u64::from(MEMORY_LIMIT))
         });
         let Some(total) = total else {
-            self.checker.report_too_large(span);
+            self.declarations_mut().report_too_large(span);
             return None;
         };
-        self.checker.charge_image(total, span)?;
+        self.declarations_mut().charge_image(total, span)?;
         let count = total / u64::from(size.max(1));
-        let ty = self.checker.types.array(bounds, element.ty, total as u32);
+        let ty = self.declarations_mut().types_mut().array(bounds, element.ty, total as u32);
         let starts = match lists {
             Some(lists) => self.listed_starts(element.ty, lists, count, span)?,
             None if element.starts.is_empty() => element.starts,
@@ -192,8 +186,8 @@ impl<'a> Body<'_, 'a> {
     }
 
     fn dimension(&mut self, ast: &'a ast::Dimension) -> Option<Dimension> {
-        let low = self.constant_integer(&ast.low);
-        let high = self.constant_integer(&ast.high);
+        let low = self.body.constant_integer(&ast.low);
+        let high = self.body.constant_integer(&ast.high);
         let (low, high) = (low?, high?);
         let span = ast.low.span.to(ast.high.span);
         match (i32::try_from(low), i32::try_from(high)) {
@@ -213,11 +207,11 @@ impl<'a> Body<'_, 'a> {
         let mut next = 0;
         for each in ast {
             if values.iter().any(|(other, _)| other.eq_ignore_ascii_case(&each.name.text)) {
-                self.checker.report_duplicate(&each.name, None);
+                self.declarations_mut().report_duplicate(&each.name, None);
                 continue;
             }
             if let Some(expr) = &each.value {
-                next = self.constant_integer(expr)?;
+                next = self.body.constant_integer(expr)?;
             }
             if base.wrap(next) != next {
                 let message = format!("{next} does not fit an enumeration ({base})");
@@ -227,12 +221,11 @@ impl<'a> Body<'_, 'a> {
             values.push((each.name.text.clone(), next));
             next += 1;
         }
-        let ty = self.checker.types.enumeration(name.to_owned(), base, values.clone());
+        let ty = self.declarations_mut().types_mut().enumeration(name.to_owned(), base, values.clone());
         // Values of vendors' system are known by their type only: projects have values of the same names.
-        let known = if self.checker.home.namespace == SYSTEM { Vec::new() } else { values };
+        let known = if self.declarations().home().namespace == SYSTEM { Vec::new() } else { values };
         for (name, value) in known {
-            let known = self.checker.enumerators.entry(name.to_ascii_uppercase()).or_default();
-            known.push(Enumerator { ty, value });
+            self.declarations_mut().add_enumerator(&name, Enumerator { ty, value });
         }
         Some(self.whole(ty))
     }

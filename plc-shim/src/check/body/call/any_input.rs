@@ -21,7 +21,7 @@ impl<'a> Body<'_, 'a> {
     ) -> Option<Argument> {
         let variable = self.place(expr)?.place;
         let span = expr.span;
-        if self.checker.generics.contains_key(&variable.ty) && (generic == Generic::Any || variable.ty == parameter.ty)
+        if self.declarations.generic(variable.ty).is_some() && (generic == Generic::Any || variable.ty == parameter.ty)
         {
             return Some(Argument::Value(Expr { kind: ExprKind::Load(variable), ty: parameter.ty, span }));
         }
@@ -31,10 +31,10 @@ impl<'a> Body<'_, 'a> {
             self.report(Diagnostic::error(Code::InvalidArgument, span, message));
             return None;
         };
-        let size = self.checker.types.size(variable.ty);
+        let size = self.declarations.types().size(variable.ty);
         let memory = self.through_memory(variable, passing)?;
         let given = self.temporary(parameter.ty, span)?;
-        let Type::Struct { fields, .. } = self.checker.types.get(parameter.ty).clone() else { return None };
+        let Type::Struct { fields, .. } = self.declarations.types().get(parameter.ty).clone() else { return None };
         let udint = |value, ty| Expr { ty, ..constant(Value::Int(value), ElementaryType::Udint, span) };
         for field in fields {
             let member = given.clone().member(field.offset, field.ty);
@@ -50,7 +50,7 @@ impl<'a> Body<'_, 'a> {
 
     /// The class of a type, if variables of it are taken.
     fn class_taken(&self, generic: Generic, ty: TypeId) -> Option<i128> {
-        let (class, kind) = match self.checker.types.get(ty) {
+        let (class, kind) = match self.declarations.types().get(ty) {
             Type::Elementary(elementary) => (class_of(*elementary), Some(elementary.kind())),
             Type::Subrange { base, .. } => (24, Some(base.kind())),
             Type::Enumeration { base, .. } => (25, Some(base.kind())),
@@ -64,7 +64,7 @@ impl<'a> Body<'_, 'a> {
         };
         let taken = match (generic, kind) {
             (Generic::Any, _) => true,
-            (Generic::AnyString, _) => matches!(self.checker.types.get(ty), Type::Text(_)),
+            (Generic::AnyString, _) => matches!(self.declarations.types().get(ty), Type::Text(_)),
             (_, Some(kind)) => generic.takes(kind),
             (_, None) => false,
         };
@@ -72,6 +72,6 @@ impl<'a> Body<'_, 'a> {
     }
 
     pub(in crate::check) fn is_generic(&self, ty: TypeId) -> bool {
-        self.checker.generics.contains_key(&ty)
+        self.declarations.generic(ty).is_some()
     }
 }

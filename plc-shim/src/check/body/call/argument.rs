@@ -23,7 +23,7 @@ impl Body<'_, '_> {
                 Some(Argument::Value(Expr { ty: parameter.ty, ..value }))
             }
             None if named && parameter.section == SectionKind::Input && has_default => {
-                let place = self.checker.constant_bytes(parameter.ty, parameter.image.clone(), span)?;
+                let place = self.declarations.constant_bytes(parameter.ty, parameter.image.clone(), span)?;
                 let kind = ExprKind::Load(place);
                 Some(Argument::Value(Expr { kind, ty: parameter.ty, span }))
             }
@@ -32,7 +32,7 @@ impl Body<'_, '_> {
     }
 
     pub(in crate::check) fn is_instance_type(&self, ty: TypeId) -> bool {
-        matches!(self.checker.types.get(ty), Type::FunctionBlock { .. })
+        matches!(self.declarations.types().get(ty), Type::FunctionBlock { .. })
     }
 
     pub(in crate::check) fn missing_argument<T>(&mut self, name: &str, span: Span) -> Option<T> {
@@ -47,16 +47,17 @@ impl Body<'_, '_> {
         expr: &ast::Expr,
         passing: &mut Passing,
     ) -> Option<Argument> {
-        if matches!(self.checker.types.get(parameter.ty), Type::OpenArray { .. }) {
+        if matches!(self.declarations.types().get(parameter.ty), Type::OpenArray { .. }) {
             return self.described(parameter, expr, &mut passing.before).map(Argument::Reference);
         }
-        if let Some(generic) = self.checker.generics.get(&parameter.ty) {
-            return self.generic_argument(*generic, parameter, expr, passing);
+        if let Some(generic) = self.declarations.generic(parameter.ty) {
+            return self.generic_argument(generic, parameter, expr, passing);
         }
         if parameter.section == SectionKind::InOut {
             return self.reference(parameter, expr, passing).map(Argument::Reference);
         }
-        if matches!(self.checker.types.get(parameter.ty), Type::Reference { kind: ReferenceKind::Reference, .. }) {
+        if matches!(self.declarations.types().get(parameter.ty), Type::Reference { kind: ReferenceKind::Reference, .. })
+        {
             return self.referring_argument(parameter.ty, expr, passing).map(Argument::Value);
         }
         self.expression_for(expr, parameter.ty).map(Argument::Value)
@@ -100,10 +101,10 @@ impl Body<'_, '_> {
 
     /// Memory of the calling unit for one value.
     pub(in crate::check) fn temporary(&mut self, ty: TypeId, span: Span) -> Option<Place> {
-        let types = &self.checker.types;
+        let types = &self.declarations.types();
         let (size, align) = (types.size(ty), types.align(ty));
-        let offset = self.checker.allocate(size, align, span)?;
-        self.scope.has_memory = true;
+        let offset = self.declarations.allocate(size, align, span)?;
+        self.scope.keep_memory();
         Some(Place::whole(Storage::Absolute(offset), ty, span))
     }
 }

@@ -45,7 +45,7 @@ impl Body<'_, '_> {
             let found = self.type_name(expr.ty);
             return self.mismatch("an elementary value", &found, expr.span);
         };
-        if is_mixed(from, to) && self.checker.dialect(span).has(Feature::BitArithmetic) {
+        if is_mixed(from, to) && self.declarations.dialect(span).has(Feature::BitArithmetic) {
             return Some(Operand::Typed(self.as_numbers_do(expr, (from, to), rounding)));
         }
         if from != to && !is_allowed(from, to, rounding) {
@@ -55,15 +55,18 @@ impl Body<'_, '_> {
             return None;
         }
         let rounding =
-            if rounding == Rounding::NearestEven { self.checker.dialect(span).ties().into() } else { rounding };
+            if rounding == Rounding::NearestEven { self.declarations.dialect(span).ties().into() } else { rounding };
         let value = Expr { span, ..lower(expr, from, to, rounding) };
         Some(Operand::Typed(self.time_value(value)))
     }
 
     /// A bit string as the number it is, from a real or to one.
     fn as_numbers_do(&self, expr: Expr, (from, to): (ElementaryType, ElementaryType), rounding: Rounding) -> Expr {
-        let rounding =
-            if rounding == Rounding::NearestEven { self.checker.dialect(expr.span).ties().into() } else { rounding };
+        let rounding = if rounding == Rounding::NearestEven {
+            self.declarations.dialect(expr.span).ties().into()
+        } else {
+            rounding
+        };
         let number = converted(expr, as_number(from), Rounding::NearestEven);
         let there = lower(number, as_number(from), as_number(to), rounding);
         converted(there, to, Rounding::NearestEven)

@@ -18,18 +18,13 @@ use crate::check::body::Body;
 use crate::check::declare::scope::Scope;
 use crate::check::types::constant::decode;
 use crate::check::types::operand::{Operand, constant};
+use crate::check::types::parameter::{EN, ENO, is_control};
 use crate::ir::{
     ElementaryType, Expr, ExprKind, IfBranch, InstanceCall, Place, Statement, StatementKind, Storage, TypeId,
     TypeTable, Unary, Value, Variable,
 };
 use crate::syntax::Span;
-use crate::syntax::ast::{self, Argument, Call, SectionKind};
-
-/// The input that decides whether a call is carried out.
-pub(in crate::check) const EN: &str = "EN";
-
-/// The output that says whether it was.
-pub(in crate::check) const ENO: &str = "ENO";
+use crate::syntax::ast::{self, Argument, Call};
 
 /// What a call says about its execution.
 pub(in crate::check) struct Enabling<'e> {
@@ -67,15 +62,6 @@ pub(in crate::check) fn is_controlled(call: &Call) -> bool {
         Argument::Output { name, .. } => name.key() == ENO,
         Argument::Positional(_) => false,
     })
-}
-
-/// True for what its unit declares as EN or ENO.
-pub(in crate::check) fn is_control(variable: &Variable) -> bool {
-    match variable.section {
-        SectionKind::Input => variable.name.eq_ignore_ascii_case(EN),
-        SectionKind::Output => variable.name.eq_ignore_ascii_case(ENO),
-        _ => false,
-    }
 }
 
 pub(in crate::check) fn boolean(value: bool, span: Span) -> Expr {
@@ -135,7 +121,7 @@ impl Body<'_, '_> {
         let ast::ExprKind::Name(name) = &call.callee.kind else {
             return false;
         };
-        let scope = self.function_named(name).and_then(|id| self.checker.interface(id, span));
+        let scope = self.function_named(name).and_then(|id| self.declarations.interface(id, span));
         scope.is_some_and(|scope| scope.find(ENO).is_some())
     }
 
@@ -184,7 +170,7 @@ impl Body<'_, '_> {
     ) -> Option<Vec<Statement>> {
         let mut statements = Vec::new();
         if let Some(place) = result {
-            let image = self.checker.types.image(place.ty).clone();
+            let image = self.declarations.types().image(place.ty).clone();
             let kind = match self.elementary(place.ty) {
                 Some(ty) => {
                     let value = constant(decode(ty, &image), ty, span);

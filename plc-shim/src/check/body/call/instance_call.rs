@@ -2,11 +2,11 @@
 
 use std::sync::Arc;
 
-use super::Matched;
 use super::argument::Passing;
-use super::enable::{self, ENO};
+use super::{Matched, enable};
 use crate::check::body::Body;
 use crate::check::declare::scope::Scope;
+use crate::check::types::parameter::ENO;
 use crate::diagnostic::{Code, Diagnostic};
 use crate::ir::{Argument, ElementaryType, InstanceCall, Place, Statement, StatementKind, Storage, Type, Variable};
 use crate::syntax::Span;
@@ -26,13 +26,13 @@ impl Body<'_, '_> {
         call: &Call,
         span: Span,
     ) -> Option<StatementKind> {
-        let Type::FunctionBlock { name, pou } = self.checker.types.get(instance.ty).clone() else {
+        let Type::FunctionBlock { name, pou } = self.declarations.types().get(instance.ty).clone() else {
             let message = format!("this is {}, which cannot be called", self.type_name(instance.ty));
             self.report(Diagnostic::error(Code::NotCallable, call.callee.span, message));
             return None;
         };
         let dispatch = self.body_dispatch(&instance, pou, call, span)?;
-        let scope = self.checker.interface(pou, span)?;
+        let scope = self.declarations.interface(pou, span)?;
         let split = enable::split(call, scope.find(ENO).is_some());
         let (enabling, rest) = split.map_or((None, None), |(enabling, rest)| (Some(enabling), Some(rest)));
         let matched = self.matched(&scope, &name, rest.as_ref().unwrap_or(call))?;

@@ -47,7 +47,7 @@ impl Body<'_, '_> {
         let udint = ElementaryType::Udint;
         let operand = self.within(Some(udint), |body| body.expression(expr))?;
         match operand {
-            Operand::Typed(typed) => match *self.checker.types.get(typed.ty) {
+            Operand::Typed(typed) => match *self.declarations.types().get(typed.ty) {
                 Type::Elementary(ty) if ty.is_integer() || ty.is_bits() && ty != ElementaryType::Bool => {
                     Some(operand::converted(typed, udint, Rounding::NearestEven))
                 }

@@ -12,7 +12,6 @@ pub(in crate::check) mod standard_function;
 use std::collections::BTreeMap;
 
 use self::argument::Passing;
-use self::enable::EN;
 use super::Body;
 use crate::check::asserts;
 use crate::check::declare::scope::Scope;
@@ -20,6 +19,7 @@ use crate::check::standard::place::PlaceFunction;
 use crate::check::standard::query::Query;
 use crate::check::standard::{self, form, memory};
 use crate::check::types::operand::Operand;
+use crate::check::types::parameter::{self, EN};
 use crate::diagnostic::{Code, Diagnostic, did_you_mean};
 use crate::ir::{
     Argument, ElementaryType, Expr, ExprKind, FunctionCall, Intrinsic, MemoryFunction, Place, PouId, Statement,
@@ -93,22 +93,22 @@ impl Body<'_, '_> {
     /// True for a variable of the unit, and for an instance among those that its methods see. Of these
     /// the others leave their names to functions.
     fn is_callable_variable(&self, key: &str) -> bool {
-        let outer = || self.scope.outer.as_ref()?.find(key).map(|variable| variable.ty);
-        let is_block = |ty| matches!(self.checker.types.get(ty), Type::FunctionBlock { .. });
-        self.scope.by_name.contains_key(key) || outer().is_some_and(is_block)
+        let outer = || self.scope.outer()?.find(key).map(|variable| variable.ty);
+        let is_block = |ty| matches!(self.declarations.types().get(ty), Type::FunctionBlock { .. });
+        self.scope.own_name(key) || outer().is_some_and(is_block)
     }
 
     /// Inside a function its own name is its result, and a call of it recursion.
     pub(in crate::check) fn is_own_result(&self, name: &Ident) -> bool {
         self.pou.is_some_and(|id| {
-            let own = self.checker.pou(id).ast;
+            let own = self.declarations.pou(id).ast;
             own.kind.keeps_nothing() && own.name.key() == name.key()
         })
     }
 
     pub(in crate::check) fn function_named(&self, name: &Ident) -> Option<PouId> {
-        let id = self.checker.pou_named(&name.key())?;
-        (self.checker.pou(id).ast.kind == PouKind::Function).then_some(id)
+        let id = self.declarations.pou_named(&name.key())?;
+        (self.declarations.pou(id).ast.kind == PouKind::Function).then_some(id)
     }
 
     /// True for what is called as a statement.
@@ -127,7 +127,7 @@ impl Body<'_, '_> {
         let found = self.type_name(place.ty);
         let message = format!("this is {found}, not a function");
         let mut report = Diagnostic::error(Code::NotCallable, span, message);
-        if matches!(self.checker.types.get(place.ty), Type::FunctionBlock { .. }) {
+        if matches!(self.declarations.types().get(place.ty), Type::FunctionBlock { .. }) {
             report = report.with_help("call the instance as a statement, then read its outputs");
         }
         self.report(report);
@@ -135,8 +135,8 @@ impl Body<'_, '_> {
     }
 
     fn report_unknown_function<T>(&mut self, name: &Ident) -> Option<T> {
-        if let Some(id) = self.checker.pou_named(&name.key()) {
-            let what = match self.checker.pou(id).ast.kind {
+        if let Some(id) = self.declarations.pou_named(&name.key()) {
+            let what = match self.declarations.pou(id).ast.kind {
                 PouKind::Program => "a program",
                 PouKind::Class => "a class",
                 PouKind::Interface => "an interface",
@@ -148,13 +148,12 @@ impl Body<'_, '_> {
             self.report(found.with_help(help));
             return None;
         }
-        let functions = self.checker.pous.iter().filter(|pou| pou.ast.kind == PouKind::Function);
-        let functions = functions.map(|pou| pou.ast.name.text.as_str());
-        let variables = self.scope.variables.iter().map(|variable| variable.name.as_str());
+        let functions = self.declarations.unit_names(|kind| kind == PouKind::Function);
+        let variables = self.scope.variables().iter().map(|variable| variable.name.as_str());
         let standard: Vec<&str> = form::names().collect();
         let known = functions.chain(variables).chain(standard.iter().copied());
         let help = did_you_mean(&name.text, known);
-        let help = self.checker.elsewhere(name).or(help);
+        let help = self.declarations.elsewhere(name).or(help);
         let message = format!("there is no function or instance `{}`", name.text);
         let found = Diagnostic::error(Code::UnknownFunction, name.span, message);
         self.report(found.with_optional_help(help));
@@ -176,7 +175,7 @@ impl Body<'_, '_> {
             }
             ast::ExprKind::Name(name) if self.is_this(name) => false,
             ast::ExprKind::Name(name) => {
-                !self.is_local(name) && self.checker.global_key(&name.key()).is_none() || self.is_own_result(name)
+                !self.is_local(name) && self.declarations.global_key(&name.key()).is_none() || self.is_own_result(name)
             }
             _ => false,
         };
@@ -200,9 +199,9 @@ impl Body<'_, '_> {
     }
 
     fn has_effects(&self, id: PouId) -> bool {
-        self.checker.pou(id).scope.as_ref().is_some_and(|scope| {
+        self.declarations.pou(id).scope.as_ref().is_some_and(|scope| {
             let effect = |section| matches!(section, SectionKind::Output | SectionKind::InOut | SectionKind::External);
-            scope.result.is_none() || scope.variables.iter().any(|each| effect(each.section))
+            scope.result().is_none() || scope.variables().iter().any(|each| effect(each.section))
         })
     }
 
@@ -260,10 +259,10 @@ impl Body<'_, '_> {
         name: &Ident,
         accepts: impl Fn(&Variable) -> bool,
     ) -> Option<Variable> {
-        let known = |variable: &&Variable| accepts(variable) && self.checker.is_called_so(variable, name);
+        let known = |variable: &&Variable| accepts(variable) && self.declarations.is_called_so(variable, name);
         let found = scope.own(&name.key()).filter(known);
         if found.is_none() && !scope.is_broken(&name.key()) {
-            let names = scope.variables.iter().filter(|variable| accepts(variable));
+            let names = scope.variables().iter().filter(|variable| accepts(variable));
             let help = did_you_mean(&name.text, names.map(|variable| variable.name.as_str()));
             let message = format!("`{callee}` has no such parameter `{}`", name.text);
             let found = Diagnostic::error(Code::UnknownArgument, name.span, message);
@@ -273,15 +272,12 @@ impl Body<'_, '_> {
     }
 
     pub(in crate::check) fn note_call(&mut self, callee: PouId, span: Span) {
-        if let Some(caller) = self.pou {
-            self.checker.calls.entry(caller).or_default().push((callee, span));
-        }
-        self.checker.enqueue(callee);
+        self.declarations.note_call(self.pou, callee, span);
     }
 
     fn function_call(&mut self, id: PouId, name: &Ident, call: &Call, span: Span) -> Option<Expr> {
         self.note_call(id, span);
-        let scope = self.checker.interface(id, span)?;
+        let scope = self.declarations.interface(id, span)?;
         let matched = self.matched(&scope, &name.text, call)?;
         let named = call.arguments.iter().any(|each| !matches!(each, ast::Argument::Positional(_)));
         let mut passing = Passing::default();
@@ -291,9 +287,9 @@ impl Body<'_, '_> {
             let given = matched.inputs.get(&parameter.name.to_ascii_uppercase()).copied();
             let argument = match given {
                 // The call is carried out, or the function would not read it.
-                _ if enable::is_control(parameter) => Some(Argument::Value(enable::boolean(true, span))),
+                _ if parameter::is_control(parameter) => Some(Argument::Value(enable::boolean(true, span))),
                 Some(expr) => self.argument(parameter, expr, &mut passing),
-                None if self.checker.is_library(id) && asserts::is_site(parameter) => Some(asserts::site(span)),
+                None if self.declarations.is_library(id) && asserts::is_site(parameter) => Some(asserts::site(span)),
                 None => self.default_argument(parameter, named, span),
             };
             sound &= argument.is_some();
@@ -312,12 +308,12 @@ impl Body<'_, '_> {
             return None;
         }
         // A function without a result (3rd ed. 6.6.2.2) can only be called as a statement.
-        let ty = scope.result.as_ref().map_or(TypeTable::nothing(), |result| result.ty);
-        let aggregate = scope.result.is_some() && self.elementary(ty).is_none();
+        let ty = scope.result().map_or(TypeTable::nothing(), |result| result.ty);
+        let aggregate = scope.result().is_some() && self.elementary(ty).is_none();
         let kept = if aggregate { Some(self.temporary(ty, span)?) } else { None };
         let (before, outputs) = (passing.before, after);
         let call = FunctionCall { pou: id, before, arguments, receiver: None, outputs, result: kept };
-        let ty = self.checker.types.of_value(ty);
+        let ty = self.declarations.types().of_value(ty);
         Some(Expr { kind: ExprKind::Call(Box::new(call)), ty, span })
     }
 
@@ -330,7 +326,7 @@ impl Body<'_, '_> {
         let mut sound = true;
         // An array without bounds is the target itself.
         let copied =
-            |wanted: &&Wanted<'_>| !matches!(self.checker.types.get(wanted.variable.ty), Type::OpenArray { .. });
+            |wanted: &&Wanted<'_>| !matches!(self.declarations.types().get(wanted.variable.ty), Type::OpenArray { .. });
         let wanted: Vec<_> = wanted.iter().filter(copied).collect();
         for Wanted { variable, negated, target } in wanted {
             let target_place = match self.new_wire(target) {
@@ -342,7 +338,7 @@ impl Body<'_, '_> {
                 continue;
             };
             let place = place_of(variable, target.span);
-            let (ty, span) = (self.checker.types.of_value(place.ty), target.span);
+            let (ty, span) = (self.declarations.types().of_value(place.ty), target.span);
             let mut value = Expr { kind: ExprKind::Load(place), ty, span };
             if *negated {
                 if ty != ElementaryType::Bool.into() {

@@ -214,7 +214,7 @@ impl Body<'_, '_> {
             Operand::Typed(expr) => Some(expr.ty),
             _ => None,
         });
-        let enumeration = typed.filter(|ty| matches!(self.checker.types.get(*ty), Type::Enumeration { .. }));
+        let enumeration = typed.filter(|ty| matches!(self.declarations.types().get(*ty), Type::Enumeration { .. }));
         let context = self.context.filter(|ty| operands.iter().all(|operand| Self::adapts(operand, *ty)));
         let ty = if let Some(ty) = enumeration.or(context.map(TypeId::from)) {
             ty
@@ -243,7 +243,7 @@ impl Body<'_, '_> {
     fn selected_values(&mut self, operands: Vec<Operand>, span: Span) -> Option<(Vec<Expr>, TypeId)> {
         let aggregate = operands.iter().find_map(|operand| match operand {
             Operand::Typed(expr) => Some(expr.ty)
-                .filter(|ty| matches!(self.checker.types.get(*ty), Type::Struct { .. } | Type::Array { .. })),
+                .filter(|ty| matches!(self.declarations.types().get(*ty), Type::Struct { .. } | Type::Array { .. })),
             _ => None,
         });
         let Some(ty) = aggregate else {

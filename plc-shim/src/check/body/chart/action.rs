@@ -54,7 +54,7 @@ impl Body<'_, '_> {
     }
 
     fn control_call(&mut self, control: &Place, quiet: Span) -> Option<Statement> {
-        let Type::FunctionBlock { pou, .. } = self.checker.types.get(control.ty) else { return None };
+        let Type::FunctionBlock { pou, .. } = self.declarations.types().get(control.ty) else { return None };
         let pou: PouId = *pou;
         self.note_call(pou, quiet);
         let pointer = self.scope.register(ElementaryType::Udint);
@@ -80,7 +80,7 @@ impl Body<'_, '_> {
     fn action_call(&mut self, action: &Action, member: PouId) -> Option<Statement> {
         let span = match action.uses.as_slice() {
             [only] => only.span,
-            _ => self.checker.pou(member).ast.name.span,
+            _ => self.declarations.pou(member).ast.name.span,
         };
         let class = self.own_class()?;
         let object = self.this_object(class, span);

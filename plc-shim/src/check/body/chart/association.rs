@@ -66,8 +66,8 @@ impl Body<'_, '_> {
     fn action(&mut self, association: &Association) -> Option<(Runs, Place)> {
         let name = &association.action;
         let class = self.own_class()?;
-        let member = self.checker.find_member(class, Role::Method, &name.text);
-        let runs = match member.filter(|id| self.checker.pou(*id).ast.kind == PouKind::Action) {
+        let member = self.declarations.find_member(class, Role::Method, &name.text);
+        let runs = match member.filter(|id| self.declarations.pou(*id).ast.kind == PouKind::Action) {
             Some(id) => Runs::Statements(id),
             None => Runs::Variable(self.boolean_action(association)?),
         };
@@ -78,10 +78,10 @@ impl Body<'_, '_> {
     /// A variable of type BOOL that the chart may write (2nd ed. 2.6.4.1).
     fn boolean_action(&mut self, association: &Association) -> Option<Place> {
         let name = &association.action;
-        if !self.scope.declares(&name.key()) && self.checker.global_key(&name.key()).is_none() {
+        if !self.scope.declares(&name.key()) && self.declarations.global_key(&name.key()).is_none() {
             let class = self.own_class()?;
-            let members = self.checker.member_names(class);
-            let variables = self.scope.variables.iter().filter(|each| each.ty == ElementaryType::Bool.into());
+            let members = self.declarations.member_names(class);
+            let variables = self.scope.variables().iter().filter(|each| each.ty == ElementaryType::Bool.into());
             let names = variables.filter(|each| !each.of_chart).map(|each| each.name.as_str());
             let help = did_you_mean(&name.text, names.chain(members.iter().map(String::as_str)));
             let message = format!("there is no action and no BOOL variable `{}`", name.text);

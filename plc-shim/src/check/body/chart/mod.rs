@@ -46,7 +46,7 @@ impl Body<'_, '_> {
     pub(in crate::check) fn chart(&mut self, ast: &ast::Pou) -> Vec<Statement> {
         let Some(first) = ast.chart.span() else { return Vec::new() };
         let owner = if ast.kind == PouKind::Action { self.own_class() } else { None };
-        if !keeps_charts(owner.map_or(ast.kind, |owner| self.checker.pou(owner).ast.kind)) {
+        if !keeps_charts(owner.map_or(ast.kind, |owner| self.declarations.pou(owner).ast.kind)) {
             let message = "a chart is the body of a PROGRAM or FUNCTION_BLOCK, or of an action of one: nothing else \
                            keeps its steps";
             self.report(Diagnostic::error(Code::MisplacedChart, first, message));
@@ -73,8 +73,8 @@ impl Body<'_, '_> {
 
     /// What a fault says of where it is; an action is a unit with a name of its own.
     fn name_parts(&mut self, ast: &ast::Pou) {
-        let parts = &mut self.checker.chart_parts;
-        parts.extend(ast.chart.steps.iter().map(|step| (step.span, format!("step `{}`", step.name.text))));
+        let steps = ast.chart.steps.iter().map(|step| (step.span, format!("step `{}`", step.name.text)));
+        self.declarations.note_chart_parts(steps);
         for transition in &ast.chart.transitions {
             let list =
                 |steps: &[ast::Ident]| steps.iter().map(|step| step.text.as_str()).collect::<Vec<_>>().join(", ");
@@ -82,13 +82,13 @@ impl Body<'_, '_> {
                 Some(name) => format!("transition `{}`", name.text),
                 None => format!("transition from {} to {}", list(&transition.from), list(&transition.to)),
             };
-            parts.push((transition.span, named));
+            self.declarations.note_chart_parts([(transition.span, named)]);
         }
     }
 
     /// A place in the library, where nothing is covered or reported.
     fn quiet(&self) -> Option<Span> {
-        self.checker.type_names.get(STEP_TYPE).map(|entry| entry.ast.name.span)
+        self.declarations.type_span(STEP_TYPE)
     }
 
     /// A variable of the chart's own.
@@ -99,13 +99,13 @@ impl Body<'_, '_> {
 
     /// A member of a step or an action control.
     fn chart_member(&self, of: &Place, name: &str) -> Option<Place> {
-        let (offset, ty) = match self.checker.types.get(of.ty) {
+        let (offset, ty) = match self.declarations.types().get(of.ty) {
             Type::Struct { fields, .. } => {
                 let field = fields.iter().find(|field| field.name == name)?;
                 (field.offset, field.ty)
             }
             Type::FunctionBlock { pou, .. } => {
-                let scope = self.checker.pou(*pou).scope.as_ref()?;
+                let scope = self.declarations.pou(*pou).scope.as_ref()?;
                 let variable = scope.own(&name.to_ascii_uppercase())?;
                 let crate::ir::Storage::Instance(offset) = variable.storage else { return None };
                 (offset, variable.ty)

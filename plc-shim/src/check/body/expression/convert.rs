@@ -20,16 +20,16 @@ impl Body<'_, '_> {
         if let Some(shape) = self.shape(target) {
             return self.coerce_text(operand, shape);
         }
-        if let Type::Interface { pou, .. } = *self.checker.types.get(target) {
+        if let Type::Interface { pou, .. } = *self.declarations.types().get(target) {
             return self.coerce_interface(operand, pou, target);
         }
-        if matches!(self.checker.types.get(target), Type::OpenArray { .. }) {
+        if matches!(self.declarations.types().get(target), Type::OpenArray { .. }) {
             return self.reject_whole_array(operand.span());
         }
-        if reference::target_of(&self.checker.types, target).is_some() {
+        if reference::target_of(&self.declarations.types(), target).is_some() {
             return self.coerce_reference(operand, target);
         }
-        if let Type::Subrange { base, low, high } = *self.checker.types.get(target) {
+        if let Type::Subrange { base, low, high } = *self.declarations.types().get(target) {
             let expr = self.coerce(operand, base.into())?;
             return self.limited(expr, target, low, high);
         }
@@ -37,7 +37,7 @@ impl Body<'_, '_> {
             Ok(value) => return value,
             Err(operand) => operand,
         };
-        let wanted = match self.checker.types.get(target) {
+        let wanted = match self.declarations.types().get(target) {
             Type::Elementary(ty) => Some(*ty),
             _ => None,
         };
@@ -71,7 +71,7 @@ impl Body<'_, '_> {
         if let Some(number) = self.address_as_number(&expr, wanted) {
             return Some(number);
         }
-        let found = if let Type::Elementary(found) = self.checker.types.get(expr.ty) {
+        let found = if let Type::Elementary(found) = self.declarations.types().get(expr.ty) {
             *found
         } else {
             let found = self.type_name(expr.ty);

@@ -21,7 +21,7 @@ fn joined(operator: Binary, left: Expr, right: Expr) -> Expr {
 impl Body<'_, '_> {
     /// A TIME as the dialect counts it: whole milliseconds that wrap. Everything else as it is.
     pub(in crate::check) fn time_value(&self, expr: Expr) -> Expr {
-        let counter = counter(self.checker.dialect(expr.span).time());
+        let counter = counter(self.declarations.dialect(expr.span).time());
         let Some(counter) = counter.filter(|_| expr.ty == E::Time.into()) else { return expr };
         let unit = |span| constant(Value::Int(MS), E::Lint, span);
         let span = expr.span;
@@ -33,7 +33,7 @@ impl Body<'_, '_> {
 
     /// Reports a TIME that the dialect cannot count.
     pub(in crate::check) fn check_duration(&mut self, ty: E, ns: i64, span: Span) -> Option<()> {
-        let dialect = self.checker.dialect(span);
+        let dialect = self.declarations.dialect(span);
         let Some(counter) = counter(dialect.time()).filter(|_| ty == E::Time) else { return Some(()) };
         let ns = i128::from(ns);
         if ns % MS == 0 && counter.wrap(ns / MS) == ns / MS {
@@ -47,7 +47,7 @@ impl Body<'_, '_> {
 
     /// A division, by what the dialect does if the divisor is 0.
     pub(in crate::check) fn division(&self, operator: Binary, span: Span) -> Binary {
-        match (operator, self.checker.dialect(span).division_by_zero()) {
+        match (operator, self.declarations.dialect(span).division_by_zero()) {
             (Binary::Divide, DivisionByZero::Continue) => Binary::DivideAnyway,
             _ => operator,
         }
@@ -55,13 +55,13 @@ impl Body<'_, '_> {
 
     /// True if operators for numbers take `ty`, and those for bit strings too.
     pub(in crate::check) fn bits_are_numbers(&self, ty: E, span: Span) -> bool {
-        let has = self.checker.dialect(span).has(Feature::BitArithmetic);
+        let has = self.declarations.dialect(span).has(Feature::BitArithmetic);
         has && (ty.kind() == Kind::Bits || ty.is_integer())
     }
 
     /// The type of an integer that is shifted as its bits are.
     pub(in crate::check) fn shifted_integer(&self, expr: &Expr) -> Option<E> {
-        let has = self.checker.dialect(expr.span).has(Feature::IntegerShifts);
+        let has = self.declarations.dialect(expr.span).has(Feature::IntegerShifts);
         self.plain_elementary(expr).filter(|ty| has && ty.is_integer())
     }
 
@@ -86,7 +86,7 @@ impl Body<'_, '_> {
         if found.widens_to(wanted) {
             return true;
         }
-        let dialect = self.checker.dialect(span);
+        let dialect = self.declarations.dialect(span);
         let (from, to) =
             if dialect.has(Feature::BitArithmetic) { (as_number(found), as_number(wanted)) } else { (found, wanted) };
         let sign = dialect.has(Feature::SignChange) && from.is_integer() && to.is_integer();
@@ -100,7 +100,7 @@ impl Body<'_, '_> {
         if from.widens_to(to) || found == E::Bool {
             return;
         }
-        if let Ok(value) = fold(&self.checker.types, expr)
+        if let Ok(value) = fold(&self.declarations.types(), expr)
             && keeps(value, to)
         {
             return;
@@ -114,7 +114,7 @@ impl Body<'_, '_> {
     /// The smallest type that both widen to.
     pub(in crate::check) fn common(&self, left: E, right: E, span: Span) -> Option<E> {
         let numbers = || {
-            let has = self.checker.dialect(span).has(Feature::BitArithmetic);
+            let has = self.declarations.dialect(span).has(Feature::BitArithmetic);
             has.then(|| as_number(left).common(as_number(right))).flatten()
         };
         left.common(right).or_else(numbers)
@@ -142,7 +142,7 @@ impl Body<'_, '_> {
 
     /// `TIME()` and `LTIME()`: virtual time since the start.
     pub(in crate::check) fn clock_function(&mut self, name: &Ident, call: &Call, span: Span) -> Option<Operand> {
-        let dialect = self.checker.dialect(span);
+        let dialect = self.declarations.dialect(span);
         if !dialect.has(Feature::ClockFunctions) {
             let (about, homes) = (Feature::ClockFunctions.about(), Feature::ClockFunctions.homes());
             let found = Diagnostic::error(Code::WrongDialect, span, format!("{about} is not part of {dialect}"));
@@ -178,14 +178,14 @@ impl Body<'_, '_> {
     /// What `x.TON(..)` calls in SCL: the instance `x` of TON, `TON_TIME` and the like.
     pub(in crate::check) fn instance_of<'e>(&mut self, callee: &'e ast::Expr) -> &'e ast::Expr {
         let ast::ExprKind::Member(base, name) = &callee.kind else { return callee };
-        if self.checker.dialect(callee.span) != Dialect::SiemensScl {
+        if self.declarations.dialect(callee.span) != Dialect::SiemensScl {
             return callee;
         }
-        let before = self.checker.diagnostics.len();
+        let before = self.declarations.mark();
         let place = self.place(base);
         // Were the base wrong, the callee as a whole would be reported.
-        self.checker.diagnostics.truncate(before);
-        let ty = place.map(|located| self.checker.types.get(located.place.ty).clone());
+        self.declarations.forget_since(before);
+        let ty = place.map(|located| self.declarations.types().get(located.place.ty).clone());
         match ty {
             Some(Type::FunctionBlock { name: block, .. }) => {
                 let block = block.to_ascii_uppercase();

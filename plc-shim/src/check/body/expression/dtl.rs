@@ -41,7 +41,7 @@ impl Body<'_, '_> {
     pub(in crate::check) fn dtl_literal(&mut self, ns: i64, span: Span) -> Option<Operand> {
         let ty = self.dtl_type(span)?;
         let bytes = self.dtl_parts(ns, span)?;
-        let place = self.checker.constant_bytes(ty, bytes.into(), span)?;
+        let place = self.declarations.constant_bytes(ty, bytes.into(), span)?;
         Some(Operand::Typed(Expr { kind: ExprKind::Load(place), ty, span }))
     }
 
@@ -65,13 +65,12 @@ impl Body<'_, '_> {
 
     /// The library's type, unless the project has one of its own.
     fn dtl_type(&mut self, span: Span) -> Option<TypeId> {
-        let file = self.checker.type_names.get("DTL").map(|entry| entry.ast.name.span.file);
-        if file.is_none_or(|file| !self.checker.library.contains(&file)) {
+        if !self.declarations.is_library_type("DTL") {
             let message = "the type DTL is declared by the project, which leaves its literals without meaning";
             self.report(Diagnostic::error(Code::InvalidLiteral, span, message));
             return None;
         }
-        self.checker.named_type("DTL", None).map(|found| found.ty)
+        self.declarations.named_type("DTL", None).map(|found| found.ty)
     }
 }
 

@@ -8,8 +8,8 @@ use crate::syntax::Span;
 
 impl Body<'_, '_> {
     fn base_of_enumeration(&self, ty: TypeId, span: Span) -> Option<ElementaryType> {
-        match self.checker.types.get(ty) {
-            Type::Enumeration { base, .. } if self.checker.dialect(span).has(Feature::EnumerationsAsIntegers) => {
+        match self.declarations.types().get(ty) {
+            Type::Enumeration { base, .. } if self.declarations.dialect(span).has(Feature::EnumerationsAsIntegers) => {
                 Some(*base)
             }
             _ => None,

@@ -89,22 +89,22 @@ impl Body<'_, '_> {
             };
             return Some(Operand::Typed(self.coerce(operand, ty.into())?));
         }
-        let Some(key) = self.checker.type_key(&prefix.to_ascii_uppercase()) else {
-            let names = self.checker.type_names.values().map(|entry| entry.ast.name.text.as_str());
+        let Some(key) = self.declarations.type_key(&prefix.to_ascii_uppercase()) else {
+            let names = self.declarations.type_names();
             let help = did_you_mean(prefix, names);
             let message = format!("type `{prefix}` is not declared");
             let found = Diagnostic::error(Code::UnknownType, span, message);
             self.report(found.with_optional_help(help));
             return None;
         };
-        let ty = self.checker.named_type(&key, Some(span))?.ty;
+        let ty = self.declarations.named_type(&key, Some(span))?.ty;
         let operand = match value {
             TypedValue::Name(name) | TypedValue::Text(name) => return self.enumerator_of(ty, name, span),
             TypedValue::Integer(value) => Operand::Integer { value: *value, span },
             TypedValue::Real(value) => Operand::Real { value: *value, span },
         };
         let typed = self.coerce(operand, ty)?;
-        Some(Operand::Typed(Expr { ty: self.checker.types.of_value(ty), ..typed }))
+        Some(Operand::Typed(Expr { ty: self.declarations.types().of_value(ty), ..typed }))
     }
 
     pub(in crate::check) fn malformed_literal(&mut self, prefix: &str, value: &str, span: Span) -> Option<Operand> {
@@ -115,7 +115,7 @@ impl Body<'_, '_> {
 
     /// The value `name` of the enumeration `ty`.
     pub(in crate::check) fn enumerator_of(&mut self, ty: TypeId, name: &str, span: Span) -> Option<Operand> {
-        let values = match self.checker.types.get(ty) {
+        let values = match self.declarations.types().get(ty) {
             crate::ir::Type::Enumeration { values, .. } => values.clone(),
             _ => Vec::new(),
         };

@@ -87,7 +87,7 @@ impl Body<'_, '_> {
 
     /// The elementary type, enumerations left out: they know assignment and comparison only.
     pub(in crate::check) fn plain_elementary(&self, expr: &Expr) -> Option<ElementaryType> {
-        match self.checker.types.get(expr.ty) {
+        match self.declarations.types().get(expr.ty) {
             crate::ir::Type::Elementary(ty) => Some(*ty),
             _ => None,
         }

@@ -12,7 +12,7 @@ use crate::syntax::Span;
 
 impl Body<'_, '_> {
     pub(in crate::check) fn is_interface(&self, operand: &Operand) -> bool {
-        matches!(operand, Operand::Typed(expr) if matches!(self.checker.types.get(expr.ty), Type::Interface { .. }))
+        matches!(operand, Operand::Typed(expr) if matches!(self.declarations.types().get(expr.ty), Type::Interface { .. }))
     }
 
     /// The operand as a reference to what implements `interface`.
@@ -28,9 +28,11 @@ impl Body<'_, '_> {
             Operand::Integer { value: 0, span } => {
                 Some(Expr { kind: ExprKind::Constant(Value::Int(0)), ty: target, span })
             }
-            Operand::Typed(expr) => match *self.checker.types.get(expr.ty) {
+            Operand::Typed(expr) => match *self.declarations.types().get(expr.ty) {
                 // The value of an instance is its address.
-                Type::FunctionBlock { pou, .. } | Type::Interface { pou, .. } if self.checker.is_a(pou, interface) => {
+                Type::FunctionBlock { pou, .. } | Type::Interface { pou, .. }
+                    if self.declarations.is_a(pou, interface) =>
+                {
                     Some(Expr { ty: target, ..expr })
                 }
                 Type::FunctionBlock { .. } => {
@@ -83,13 +85,13 @@ impl Body<'_, '_> {
         value: Operand,
         span: Span,
     ) -> Option<Statement> {
-        let Type::Interface { pou: wanted, .. } = *self.checker.types.get(target.ty) else {
+        let Type::Interface { pou: wanted, .. } = *self.declarations.types().get(target.ty) else {
             let found = self.type_name(target.ty);
             return self.mismatch("an interface", &found, target.span);
         };
         if let Operand::Typed(expr) = &value
-            && let Type::FunctionBlock { pou, .. } = self.checker.types.get(expr.ty)
-            && self.checker.class(*pou).is_none_or(|class| class.type_id.is_none())
+            && let Type::FunctionBlock { pou, .. } = self.declarations.types().get(expr.ty)
+            && self.declarations.class(*pou).is_none_or(|class| class.type_id.is_none())
         {
             // An instance without a number implements nothing.
             let found = self.type_name(expr.ty);
@@ -97,7 +99,7 @@ impl Body<'_, '_> {
         }
         let reference = self.reference_value(value)?;
         let pointer = self.scope.register(ElementaryType::Udint);
-        let cast = Cast { reference, pointer, types: self.checker.type_ranges(wanted) };
+        let cast = Cast { reference, pointer, types: self.declarations.type_ranges(wanted) };
         let value = Expr { kind: ExprKind::Cast(Box::new(cast)), ty: target.ty, span };
         Some(Statement { kind: StatementKind::Assign(target, value), span })
     }
@@ -109,7 +111,7 @@ impl Body<'_, '_> {
             Operand::Integer { value: 0, span } => {
                 Some(Expr { kind: ExprKind::Constant(Value::Int(0)), ty: address, span })
             }
-            Operand::Typed(expr) => match self.checker.types.get(expr.ty) {
+            Operand::Typed(expr) => match self.declarations.types().get(expr.ty) {
                 Type::Interface { .. } | Type::FunctionBlock { .. } | Type::Null => Some(Expr { ty: address, ..expr }),
                 _ => {
                     let found = self.type_name(expr.ty);

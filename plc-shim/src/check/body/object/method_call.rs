@@ -1,11 +1,12 @@
 //! Calls of methods and actions (3rd ed. 6.6.5.4 and 6.6.5.5).
 
 use crate::check::body::call::argument::Passing;
-use crate::check::body::call::enable::{self, ENO};
+use crate::check::body::call::enable;
 use crate::check::body::{Body, Meant};
 use crate::check::declare::class::Role;
 use crate::check::declare::scope::Scope;
 use crate::check::types::operand::Operand;
+use crate::check::types::parameter::{self, ENO};
 use crate::diagnostic::{Code, Diagnostic};
 use crate::ir::{
     Argument, Dispatch, ElementaryType, Expr, ExprKind, FunctionCall, Place, PouId, Receiver, Storage, Type, TypeTable,
@@ -46,11 +47,11 @@ impl Body<'_, '_> {
                     return None;
                 }
                 let class = self.own_class()?;
-                self.checker.find_member(class, Role::Method, &name.text)?;
+                self.declarations.find_member(class, Role::Method, &name.text)?;
                 (self.this_object(class, name.span), name)
             }
             ast::ExprKind::Member(base, name) => {
-                if !self.is_super(base) && !self.checker.has_method_named(&name.key()) {
+                if !self.is_super(base) && !self.declarations.has_method_named(&name.key()) {
                     return None;
                 }
                 match self.object(base)? {
@@ -60,7 +61,7 @@ impl Body<'_, '_> {
             }
             _ => return None,
         };
-        let Some(method) = self.checker.find_member(object.class, Role::Method, &name.text) else {
+        let Some(method) = self.declarations.find_member(object.class, Role::Method, &name.text) else {
             // A variable of the name may be an instance to call.
             return (object.known == Known::Super).then(|| self.unknown_method(object.class, name));
         };
@@ -69,7 +70,7 @@ impl Body<'_, '_> {
 
     fn called(&mut self, object: Object, method: PouId, name: &Ident, call: &Call, span: Span) -> Option<Expr> {
         self.check_method_access(method, name.span)?;
-        let scope = self.checker.interface(method, span)?;
+        let scope = self.declarations.interface(method, span)?;
         let make = |body: &mut Self, call: &Call| {
             let (arguments, passing) = body.method_arguments(&scope, &name.text, call, span)?;
             body.on_object(object, Role::Method, method, arguments, passing, span)
@@ -77,14 +78,14 @@ impl Body<'_, '_> {
         if !enable::is_controlled(call) {
             return make(self, call);
         }
-        let own = scope.own(ENO).is_some_and(enable::is_control);
+        let own = scope.own(ENO).is_some_and(parameter::is_control);
         self.controlled(call, own, span, |body, rest| make(body, rest).map(Operand::Typed))
     }
 
     fn unknown_method<T>(&mut self, class: PouId, name: &Ident) -> Option<T> {
-        let names = self.checker.member_names(class);
+        let names = self.declarations.member_names(class);
         let help = crate::diagnostic::did_you_mean(&name.text, names.iter().map(String::as_str));
-        let message = format!("{} has no method `{}`", self.checker.pou(class).ast.name.text, name.text);
+        let message = format!("{} has no method `{}`", self.declarations.pou(class).ast.name.text, name.text);
         let found = Diagnostic::error(Code::UnknownMember, name.span, message);
         self.report(found.with_optional_help(help));
         None
@@ -99,14 +100,15 @@ impl Body<'_, '_> {
     /// The instance that an expression stands for; nothing at all if it stands for something else.
     pub(in crate::check) fn object(&mut self, expr: &ast::Expr) -> Meant<Object> {
         if self.is_super(expr) {
-            let base = self.own_class().and_then(|class| self.checker.base_of(class));
+            let base = self.own_class().and_then(|class| self.declarations.base_of(class));
             let Some(class) = base else { return Some(self.no_object("SUPER", expr.span)) };
             let object = self.this_object(class, expr.span);
             return Some(Some(Object { known: Known::Super, ..object }));
         }
         if let ast::ExprKind::Name(name) = &expr.kind {
             if self.is_this(name) {
-                let class = self.own_class().filter(|class| self.checker.pou(*class).ast.kind != PouKind::Function);
+                let class =
+                    self.own_class().filter(|class| self.declarations.pou(*class).ast.kind != PouKind::Function);
                 let Some(class) = class else { return Some(self.no_object("THIS", name.span)) };
                 return Some(Some(self.this_object(class, name.span)));
             }
@@ -117,12 +119,12 @@ impl Body<'_, '_> {
                 return Some(Some(program));
             }
         }
-        if self.qualified_name(expr).is_some_and(|name| self.checker.global_key(&name.key()).is_none()) {
+        if self.qualified_name(expr).is_some_and(|name| self.declarations.global_key(&name.key()).is_none()) {
             return None;
         }
         let Some(operand) = self.expression(expr) else { return Some(None) };
         let Operand::Typed(address) = operand else { return None };
-        let (class, known) = match (self.checker.types.get(address.ty), &address.kind) {
+        let (class, known) = match (self.declarations.types().get(address.ty), &address.kind) {
             (Type::Interface { pou, .. }, _) => (*pou, Known::Interface),
             (Type::FunctionBlock { pou, .. }, ExprKind::Load(place)) => match place.storage {
                 Storage::InstancePointer(_) | Storage::RegisterPointer(_) if place.steps.is_empty() => {
@@ -138,11 +140,11 @@ impl Body<'_, '_> {
     /// A program has one instance, under its own name.
     fn program_object(&mut self, name: &Ident) -> Option<Object> {
         let key = name.key();
-        if self.scope.declares(&key) || self.checker.global_key(&key).is_some() {
+        if self.scope.declares(&key) || self.declarations.global_key(&key).is_some() {
             return None;
         }
-        let class = self.checker.pou_named(&key)?;
-        let offset = self.checker.programs.iter().find(|program| program.pou == class)?.offset;
+        let class = self.declarations.pou_named(&key)?;
+        let offset = self.declarations.programs().iter().find(|program| program.pou == class)?.offset;
         let (kind, ty) = (ExprKind::Constant(Value::Int(i128::from(offset))), ElementaryType::Udint.into());
         Some(Object { address: Expr { kind, ty, span: name.span }, class, known: Known::Exactly })
     }
@@ -161,7 +163,7 @@ impl Body<'_, '_> {
             let given = matched.inputs.get(&parameter.name.to_ascii_uppercase()).copied();
             let argument = match given {
                 // The call is carried out, or the method would not read it.
-                _ if enable::is_control(parameter) => Some(Argument::Value(enable::boolean(true, span))),
+                _ if parameter::is_control(parameter) => Some(Argument::Value(enable::boolean(true, span))),
                 Some(expr) => self.argument(parameter, expr, &mut passing),
                 None => self.default_argument(parameter, named, span),
             };
@@ -202,18 +204,18 @@ impl Body<'_, '_> {
         passing: Passing,
         span: Span,
     ) -> Option<Expr> {
-        let scope = self.checker.interface(method, span)?;
-        let name = self.checker.pou(method).ast.name.text.clone();
+        let scope = self.declarations.interface(method, span)?;
+        let name = self.declarations.pou(method).ast.name.text.clone();
         let (pou, dispatch) = self.dispatch(object.class, object.known, role, &name, method, span)?;
-        let ty = scope.result.as_ref().map_or(TypeTable::nothing(), |result| result.ty);
-        let aggregate = scope.result.is_some() && self.elementary(ty).is_none();
+        let ty = scope.result().map_or(TypeTable::nothing(), |result| result.ty);
+        let aggregate = scope.result().is_some() && self.elementary(ty).is_none();
         let result = if aggregate { Some(self.temporary(ty, span)?) } else { None };
         let pointer = self.scope.register(ElementaryType::Udint);
         let may_be_null = object.known == Known::Interface;
         let receiver = Some(Receiver { instance: object.address, pointer, may_be_null, dispatch });
         let Passing { before, after: outputs } = passing;
         let call = FunctionCall { pou, before, arguments, receiver, outputs, result };
-        let ty = self.checker.types.of_value(ty);
+        let ty = self.declarations.types().of_value(ty);
         Some(Expr { kind: ExprKind::Call(Box::new(call)), ty, span })
     }
 
@@ -228,15 +230,15 @@ impl Body<'_, '_> {
         span: Span,
     ) -> Option<(PouId, Dispatch)> {
         if matches!(known, Known::Exactly | Known::Super) {
-            if self.checker.is_prototype(method) {
-                let message = format!("`{}` is ABSTRACT and has no statements", self.checker.display_name(method));
+            if self.declarations.is_prototype(method) {
+                let message = format!("`{}` is ABSTRACT and has no statements", self.declarations.display_name(method));
                 self.report(Diagnostic::error(Code::AbstractInstance, span, message));
                 return None;
             }
             self.note_call(method, span);
             return Some((method, Dispatch::Direct));
         }
-        let targets = self.checker.targets(class, role, name);
+        let targets = self.declarations.targets(class, role, name);
         let first = targets.first().map(|(_, target)| *target);
         let only = first.filter(|first| targets.iter().all(|(_, target)| target == first));
         if let Some(only) = only.filter(|_| known == Known::This) {
@@ -248,16 +250,13 @@ impl Body<'_, '_> {
             // Nothing implements the interface: it refers to nothing.
             (None, _) => Some((method, Dispatch::Direct)),
             (_, Some(only)) => Some((only, Dispatch::Direct)),
-            _ => Some((method, Dispatch::Row(self.checker.row(class, role, name, method)?))),
+            _ => Some((method, Dispatch::Row(self.declarations.row(class, role, name, method)?))),
         }
     }
 
     fn note_dynamic(&mut self, targets: impl Iterator<Item = PouId>) {
         for target in targets {
-            if let Some(caller) = self.pou {
-                self.checker.dynamic_calls.entry(caller).or_default().insert(target);
-            }
-            self.checker.enqueue(target);
+            self.declarations.note_dynamic_call(self.pou, target);
         }
     }
 
@@ -269,18 +268,18 @@ impl Body<'_, '_> {
         call: &Call,
         span: Span,
     ) -> Option<Dispatch> {
-        if self.checker.pou(pou).ast.kind == PouKind::Class {
+        if self.declarations.pou(pou).ast.kind == PouKind::Class {
             let message = "a class has no statements of its own; call one of its methods";
             self.report(Diagnostic::error(Code::NotCallable, call.callee.span, message));
             return None;
         }
         let by_reference = matches!(place.storage, Storage::InstancePointer(_) | Storage::RegisterPointer(_));
-        let targets = self.checker.targets(pou, Role::Body, "");
+        let targets = self.declarations.targets(pou, Role::Body, "");
         if !by_reference || !place.steps.is_empty() || targets.iter().all(|(_, target)| *target == pou) {
             self.note_call(pou, span);
             return Some(Dispatch::Direct);
         }
         self.note_dynamic(targets.iter().map(|(_, target)| *target));
-        self.checker.row(pou, Role::Body, "", pou).map(Dispatch::Row)
+        self.declarations.row(pou, Role::Body, "", pou).map(Dispatch::Row)
     }
 }

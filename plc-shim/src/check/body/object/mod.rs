@@ -18,8 +18,8 @@ use crate::syntax::ast::{self, Ident, PouKind};
 impl Body<'_, '_> {
     /// The unit whose instance runs; nothing in functions.
     pub(in crate::check) fn own_class(&self) -> Option<PouId> {
-        let id = self.checker.owner_of(self.pou?);
-        (self.checker.pou(id).ast.kind != PouKind::Function).then_some(id)
+        let id = self.declarations.owner_of(self.pou?);
+        (self.declarations.pou(id).ast.kind != PouKind::Function).then_some(id)
     }
 
     pub(in crate::check) fn is_this(&self, name: &Ident) -> bool {
@@ -35,7 +35,7 @@ impl Body<'_, '_> {
         if !self.is_this(name) {
             return None;
         }
-        let class = self.own_class().filter(|class| self.checker.pou(*class).ast.kind.has_instances());
+        let class = self.own_class().filter(|class| self.declarations.pou(*class).ast.kind.has_instances());
         let Some(class) = class else {
             return Some(self.no_object("THIS", name.span));
         };
@@ -45,8 +45,8 @@ impl Body<'_, '_> {
 
     /// The running instance, seen as one of `class`.
     pub(in crate::check) fn this(&mut self, class: PouId, span: Span) -> Place {
-        let ast = self.checker.pou(class).ast;
-        let ty = self.checker.types.block(&ast.name.text, class);
+        let ast = self.declarations.pou(class).ast;
+        let ty = self.declarations.types_mut().block(&ast.name.text, class);
         Place::whole(Storage::Instance(0), ty, span)
     }
 
@@ -64,7 +64,7 @@ impl Body<'_, '_> {
         if !self.is_super(&call.callee) {
             return None;
         }
-        let base = self.own_class().and_then(|class| self.checker.base_of(class));
+        let base = self.own_class().and_then(|class| self.declarations.base_of(class));
         let Some(base) = base else {
             return Some(self.no_object("SUPER", call.callee.span));
         };
@@ -78,15 +78,15 @@ impl Body<'_, '_> {
     }
 
     pub(in crate::check) fn may_see(&self, variable: &Variable) -> bool {
-        variable.owner.is_some_and(|owner| self.checker.sees(self.pou, variable.visibility, owner))
+        variable.owner.is_some_and(|owner| self.declarations.sees(self.pou, variable.visibility, owner))
     }
 
     /// Reports a method that may not be called from here.
     pub(in crate::check) fn check_method_access(&mut self, method: PouId, span: Span) -> Option<()> {
-        let entry = self.checker.pou(method);
+        let entry = self.declarations.pou(method);
         let Some(Membership { owner, .. }) = entry.membership else { return Some(()) };
         let visibility = method_visibility(&entry.ast.object.modifiers);
-        if self.checker.sees(self.pou, visibility, owner) {
+        if self.declarations.sees(self.pou, visibility, owner) {
             return Some(());
         }
         let word = match visibility {
@@ -95,7 +95,7 @@ impl Body<'_, '_> {
             Visibility::Internal | Visibility::Public => "INTERNAL",
         };
         let declared = entry.ast.name.span;
-        let message = format!("`{}` is {word}", self.checker.display_name(method));
+        let message = format!("`{}` is {word}", self.declarations.display_name(method));
         let found = Diagnostic::error(Code::AccessDenied, span, message);
         self.report(found.with_label(declared, "declared here"));
         None
@@ -121,7 +121,7 @@ impl Body<'_, '_> {
     /// What is wrong with naming a method or property like a variable.
     pub(in crate::check) fn not_a_variable<T>(&mut self, class: PouId, name: &Ident) -> Meant<T> {
         let roles = [Role::Method, Role::Getter, Role::Setter];
-        let role = roles.into_iter().find(|role| self.checker.find_member(class, *role, &name.text).is_some())?;
+        let role = roles.into_iter().find(|role| self.declarations.find_member(class, *role, &name.text).is_some())?;
         let (code, message) = match role {
             Role::Method | Role::Body | Role::Start | Role::End => {
                 (Code::NotAVariable, format!("`{0}` is a method: call it as `{0}()`", name.text))
@@ -135,9 +135,9 @@ impl Body<'_, '_> {
 
     /// True if an instance of one type can stand for one of the other.
     pub(in crate::check) fn derives(&self, found: TypeId, wanted: TypeId) -> bool {
-        match (self.checker.types.get(found), self.checker.types.get(wanted)) {
+        match (self.declarations.types().get(found), self.declarations.types().get(wanted)) {
             (Type::FunctionBlock { pou: found, .. }, Type::FunctionBlock { pou: wanted, .. }) => {
-                self.checker.is_a(*found, *wanted)
+                self.declarations.is_a(*found, *wanted)
             }
             _ => false,
         }

@@ -27,7 +27,7 @@ impl Body<'_, '_> {
 
     fn own_property_object(&mut self, name: &Ident) -> Option<Object> {
         let key = name.key();
-        if !self.checker.property_names.contains(&key) || self.scope.declares(&key) {
+        if !self.declarations.has_property_named(&key) || self.scope.declares(&key) {
             return None;
         }
         let class = self.own_class()?;
@@ -36,7 +36,7 @@ impl Body<'_, '_> {
     }
 
     fn property_object(&mut self, base: &ast::Expr, name: &Ident) -> Meant<Object> {
-        if !self.checker.property_names.contains(&name.key()) {
+        if !self.declarations.has_property_named(&name.key()) {
             return None;
         }
         let Some(object) = self.object(base)? else { return Some(None) };
@@ -46,12 +46,12 @@ impl Body<'_, '_> {
 
     /// Something if the unit has a property of the name.
     fn property_of_class(&self, class: crate::ir::PouId, name: &Ident) -> Option<()> {
-        let has = |role| self.checker.find_member(class, role, &name.text).is_some();
+        let has = |role| self.declarations.find_member(class, role, &name.text).is_some();
         (has(Role::Getter) || has(Role::Setter)).then_some(())
     }
 
     fn value(&mut self, object: Object, name: &Ident) -> Option<Operand> {
-        let Some(getter) = self.checker.find_member(object.class, Role::Getter, &name.text) else {
+        let Some(getter) = self.declarations.find_member(object.class, Role::Getter, &name.text) else {
             return self.lacks(name, "GET");
         };
         let read = self
@@ -88,11 +88,11 @@ impl Body<'_, '_> {
         value: &ast::Expr,
         span: Span,
     ) -> Option<Statement> {
-        let Some(setter) = self.checker.find_member(object.class, Role::Setter, &name.text) else {
+        let Some(setter) = self.declarations.find_member(object.class, Role::Setter, &name.text) else {
             return self.lacks(name, "SET");
         };
         self.check_method_access(setter, name.span)?;
-        let scope = self.checker.interface(setter, span)?;
+        let scope = self.declarations.interface(setter, span)?;
         let ty = scope.inputs().next()?.ty;
         let arguments = vec![Argument::Value(self.expression_for(value, ty)?)];
         let call = self.on_object(object, Role::Setter, setter, arguments, Passing::default(), span)?;

@@ -34,7 +34,7 @@ impl Body<'_, '_> {
 
     /// The pointer becomes the address of what the interface refers to.
     fn pointed_at(&mut self, target: Place, from: &ast::Expr, span: Span) -> Option<Statement> {
-        if !matches!(self.checker.types.get(target.ty), Type::Reference { kind: ReferenceKind::Pointer, .. }) {
+        if !matches!(self.declarations.types().get(target.ty), Type::Reference { kind: ReferenceKind::Pointer, .. }) {
             let found = self.type_name(target.ty);
             return self.mismatch("a pointer", &found, target.span);
         }

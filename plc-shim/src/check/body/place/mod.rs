@@ -80,18 +80,18 @@ impl Body<'_, '_> {
             }
             ast::ExprKind::Index(base, indices) => {
                 let base = self.base_place(base)?;
-                if let (Type::Text(_), [index]) = (self.checker.types.get(base.place.ty), &indices[..]) {
+                if let (Type::Text(_), [index]) = (self.declarations.types().get(base.place.ty), &indices[..]) {
                     return self.character(base, index, expr.span);
                 }
                 let located = self.element(base, indices, expr.span)?;
                 let place = self.through_reference(located).place;
-                let ty = self.checker.types.of_value(place.ty);
+                let ty = self.declarations.types().of_value(place.ty);
                 return Some(Operand::Typed(Expr { kind: ExprKind::Load(place), ty, span: expr.span }));
             }
             _ => {}
         }
         let place = self.place(expr)?.place;
-        let ty = self.checker.types.of_value(place.ty);
+        let ty = self.declarations.types().of_value(place.ty);
         Some(Operand::Typed(Expr { kind: ExprKind::Load(place), ty, span: expr.span }))
     }
 
@@ -102,10 +102,10 @@ impl Body<'_, '_> {
             return None;
         };
         let key = name.key();
-        let hidden = self.scope.declares(&key) || self.checker.global_key(&key).is_some();
-        let key = self.checker.type_key(&key).filter(|_| !hidden)?;
-        let ty = self.checker.named_type(&key, Some(name.span))?.ty;
-        matches!(self.checker.types.get(ty), Type::Enumeration { .. }).then_some(ty)
+        let hidden = self.scope.declares(&key) || self.declarations.global_key(&key).is_some();
+        let key = self.declarations.type_key(&key).filter(|_| !hidden)?;
+        let ty = self.declarations.named_type(&key, Some(name.span))?.ty;
+        matches!(self.declarations.types().get(ty), Type::Enumeration { .. }).then_some(ty)
     }
 
     /// The place that an expression stands for; of a `REFERENCE TO` what it refers to.
@@ -173,7 +173,7 @@ impl Body<'_, '_> {
         }
         match self.variable_named(name) {
             Some(Ok(variable)) => {
-                let open = open_array::access(&self.checker.types, &variable);
+                let open = open_array::access(&self.declarations.types(), &variable);
                 let access = match variable.section {
                     _ if open.is_some() => Access::Constant,
                     _ if variable.is_constant => Access::Constant,
@@ -212,9 +212,9 @@ impl Body<'_, '_> {
             return Some(Ok(control.clone()));
         }
         // Vendors make global variables visible everywhere; the standard wants VAR_EXTERNAL.
-        if let Some(key) = self.checker.global_key(&key) {
-            self.checker.note_global_use(self.pou, &key, name.span);
-            return Some(self.checker.global(&key, Some(name.span)).ok_or(()));
+        if let Some(key) = self.declarations.global_key(&key) {
+            self.declarations.note_global_use(self.pou, &key, name.span);
+            return Some(self.declarations.global(&key, Some(name.span)).ok_or(()));
         }
         None
     }
@@ -226,14 +226,18 @@ impl Body<'_, '_> {
                 return Some(match variable.constant {
                     Some(value) => {
                         let kind = ExprKind::Constant(value);
-                        Meaning::Value(Expr { kind, ty: self.checker.types.of_value(variable.ty), span: name.span })
+                        Meaning::Value(Expr {
+                            kind,
+                            ty: self.declarations.types().of_value(variable.ty),
+                            span: name.span,
+                        })
                     }
                     None => Meaning::Variable,
                 });
             }
             None => {}
         }
-        let found = self.checker.enumerators.get(&name.key()).map_or(&[][..], Vec::as_slice);
+        let found = self.declarations.enumerators(&name.key());
         match found {
             [only] => Some(Meaning::Value(enumeration_value(only.ty, only.value, name.span))),
             [] if name.key() == "NULL" => Some(Meaning::Value(Self::null(name.span))),
@@ -250,10 +254,10 @@ impl Body<'_, '_> {
     }
 
     fn report_unknown<T>(&mut self, name: &Ident) -> Option<T> {
-        let own = self.scope.variables.iter().map(|variable| variable.name.as_str());
-        let globals = self.checker.globals.values().map(|entry| entry.name.as_str());
+        let own = self.scope.variables().iter().map(|variable| variable.name.as_str());
+        let globals = self.declarations.global_names();
         let help = did_you_mean(&name.text, own.chain(globals));
-        let help = self.checker.elsewhere(name).or(help);
+        let help = self.declarations.elsewhere(name).or(help);
         let message = format!("`{}` is not declared", name.text);
         let found = Diagnostic::error(Code::UnknownName, name.span, message);
         self.report(found.with_optional_help(help));
@@ -261,7 +265,7 @@ impl Body<'_, '_> {
     }
 
     fn member(&mut self, base: Located, name: &Ident, span: Span) -> Option<Located> {
-        match self.checker.types.get(base.place.ty).clone() {
+        match self.declarations.types().get(base.place.ty).clone() {
             Type::Struct { fields, .. } => {
                 let field = fields.iter().find(|field| field.name.eq_ignore_ascii_case(&name.text));
                 let Some(field) = field else {
@@ -276,7 +280,7 @@ impl Body<'_, '_> {
             Type::Elementary(_) if self.is_constant(name) => self.named_bit(base, name, span),
             Type::Interface { name: interface, pou } => {
                 let message = format!("{interface} has no method or property `{}`", name.text);
-                let known = self.checker.member_names(pou);
+                let known = self.declarations.member_names(pou);
                 let help = did_you_mean(&name.text, known.iter().map(String::as_str));
                 let found = Diagnostic::error(Code::UnknownMember, name.span, message);
                 self.report(found.with_optional_help(help));
@@ -300,18 +304,18 @@ impl Body<'_, '_> {
 
     /// Inputs and outputs of an instance can be reached from outside (2nd ed. 2.5.2.1).
     fn instance_member(&mut self, base: Located, pou: crate::ir::PouId, name: &Ident, span: Span) -> Option<Located> {
-        let scope = self.checker.interface(pou, span)?;
+        let scope = self.declarations.interface(pou, span)?;
         if scope.is_broken(&name.key()) {
             return None;
         }
-        let found = scope.find(&name.key()).filter(|variable| self.checker.is_called_so(variable, name));
+        let found = scope.find(&name.key()).filter(|variable| self.declarations.is_called_so(variable, name));
         let Some(variable) = found else {
             if let Some(found) = self.not_a_variable(pou, name) {
                 return found;
             }
             let open = |variable: &&Variable| matches!(variable.section, SectionKind::Input | SectionKind::Output);
-            let names = scope.variables.iter().filter(open).map(|variable| variable.name.as_str());
-            let members = self.checker.member_names(pou);
+            let names = scope.variables().iter().filter(open).map(|variable| variable.name.as_str());
+            let members = self.declarations.member_names(pou);
             let names: Vec<_> = names.chain(members.iter().map(String::as_str)).collect();
             return self.report_unknown_member(base.place.ty, name, &names);
         };
@@ -322,7 +326,7 @@ impl Body<'_, '_> {
             SectionKind::Input => Access::ReadWrite,
             SectionKind::Output => Access::InstanceOutput,
             SectionKind::Local if self.may_see(variable) => Access::ReadWrite,
-            SectionKind::Local if self.checker.dialect(span).has(Feature::InstanceInternals) => Access::ReadWrite,
+            SectionKind::Local if self.declarations.dialect(span).has(Feature::InstanceInternals) => Access::ReadWrite,
             _ => {
                 let ty = self.type_name(base.place.ty);
                 let message = format!("`{}` is internal to {ty}", name.text);
@@ -340,18 +344,18 @@ impl Body<'_, '_> {
 
     fn element(&mut self, base: Located, indices: &[ast::Expr], span: Span) -> Option<Located> {
         if let (Type::Reference { kind: ReferenceKind::Pointer, target }, [index]) =
-            (self.checker.types.get(base.place.ty), indices)
+            (self.declarations.types().get(base.place.ty), indices)
         {
             let target = *target;
             return self.pointed_element(base, target, index, span);
         }
-        if matches!(self.checker.types.get(base.place.ty), Type::OpenArray { .. }) {
+        if matches!(self.declarations.types().get(base.place.ty), Type::OpenArray { .. }) {
             return self.open_element(base, indices, span);
         }
-        if let (Type::Text(_), [index]) = (self.checker.types.get(base.place.ty), indices) {
+        if let (Type::Text(_), [index]) = (self.declarations.types().get(base.place.ty), indices) {
             return self.character_place(base, index, span)?;
         }
-        let Type::Array { dimensions, element } = self.checker.types.get(base.place.ty).clone() else {
+        let Type::Array { dimensions, element } = self.declarations.types().get(base.place.ty).clone() else {
             let message = format!("{} is not an array", self.type_name(base.place.ty));
             self.report(Diagnostic::error(Code::NotIndexable, span, message));
             return None;
@@ -363,7 +367,7 @@ impl Body<'_, '_> {
             return None;
         }
         let mut place = base.place;
-        let mut stride = self.checker.types.size(element);
+        let mut stride = self.declarations.types().size(element);
         let mut steps = Vec::new();
         // The last index runs fastest, as in the standard's own initial values (2.4.3.2).
         for (dimension, index) in dimensions.iter().zip(indices).rev() {
@@ -387,7 +391,7 @@ impl Body<'_, '_> {
             return self.mismatch("an integer", &found, index.span);
         }
         let Dimension { low, high } = bounds;
-        if let Ok(value) = constant::fold(&self.checker.types, &index) {
+        if let Ok(value) = constant::fold(&self.declarations.types(), &index) {
             let value = value.as_int().unwrap_or(0);
             if !(i128::from(low)..=i128::from(high)).contains(&value) {
                 let message = format!("index {value} is outside of {low}..{high}");

@@ -26,7 +26,9 @@ impl Body<'_, '_> {
         indices: &[ast::Expr],
         span: Span,
     ) -> Option<Located> {
-        let Type::OpenArray { dimensions, element } = *self.checker.types.get(base.place.ty) else { return None };
+        let Type::OpenArray { dimensions, element } = *self.declarations.types().get(base.place.ty) else {
+            return None;
+        };
         if dimensions as usize != indices.len() {
             let message = format!("the array has {dimensions} dimensions, there are {} indices", indices.len());
             self.report(Diagnostic::error(Code::WrongDimensions, span, message));
@@ -38,7 +40,7 @@ impl Body<'_, '_> {
         let udint = ElementaryType::Udint.into();
         let begin = Expr { kind: ExprKind::Load(description.clone().member(0, udint)), ty: udint, span };
         let mut place = Self::led_to(begin, element, span).place;
-        let stride = self.checker.types.size(element);
+        let stride = self.declarations.types().size(element);
         place.steps.push(Step::Open { description: Box::new(description), indices, stride });
         Some(Located { place, access: base.access })
     }
@@ -67,10 +69,11 @@ impl Body<'_, '_> {
             return Some(place);
         }
         let suits = |body: &Self| {
-            let Type::OpenArray { dimensions: wanted, element: each } = body.checker.types.get(parameter.ty) else {
+            let Type::OpenArray { dimensions: wanted, element: each } = body.declarations.types().get(parameter.ty)
+            else {
                 return None;
             };
-            match body.checker.types.get(place.ty) {
+            match body.declarations.types().get(place.ty) {
                 Type::Array { dimensions, element } if dimensions.len() == *wanted as usize && element == each => {
                     Some(dimensions.clone())
                 }
@@ -107,7 +110,7 @@ impl Body<'_, '_> {
     }
 
     pub(in crate::check) fn is_open(&self, ty: TypeId) -> bool {
-        matches!(self.checker.types.get(ty), Type::OpenArray { .. })
+        matches!(self.declarations.types().get(ty), Type::OpenArray { .. })
     }
 
     /// The bounds never change, so they stand in memory from the start.
@@ -126,7 +129,7 @@ impl Body<'_, '_> {
             image.extend_from_slice(&(*high as i32).to_le_bytes());
         }
         if let crate::ir::Storage::Absolute(offset) = place.storage {
-            self.checker.placed.push((offset, image.into()));
+            self.declarations.place(offset, image.into());
         }
         let udint = ElementaryType::Udint.into();
         let address = Expr { kind: ExprKind::Address(array), ty: udint, span };
@@ -145,7 +148,7 @@ impl Body<'_, '_> {
     ) -> Option<Operand> {
         let place = self.place(array)?.place;
         let upper = function == PlaceFunction::UpperBound;
-        let count = match self.checker.types.get(place.ty) {
+        let count = match self.declarations.types().get(place.ty) {
             Type::Array { dimensions, .. } => dimensions.len(),
             Type::OpenArray { dimensions, .. } => *dimensions as usize,
             _ => {
@@ -161,7 +164,7 @@ impl Body<'_, '_> {
             return None;
         };
         let dint: TypeId = ElementaryType::Dint.into();
-        let kind = match self.checker.types.get(place.ty) {
+        let kind = match self.declarations.types().get(place.ty) {
             Type::Array { dimensions, .. } => {
                 let bounds = dimensions.get(index)?;
                 ExprKind::Constant(Value::Int(i128::from(if upper { bounds.high } else { bounds.low })))

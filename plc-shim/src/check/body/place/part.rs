@@ -35,7 +35,7 @@ impl Body<'_, '_> {
 
     /// `plain` is true without a `%`: so written, integers have bits too.
     fn part_at(&mut self, base: Located, width: Width, number: u64, plain: bool, span: Span) -> Option<Located> {
-        let ty = match self.checker.types.get(base.place.ty) {
+        let ty = match self.declarations.types().get(base.place.ty) {
             Type::Elementary(ty) => Some(*ty),
             _ => None,
         };

@@ -2,12 +2,11 @@
 
 use crate::check::body::Body;
 use crate::check::body::place::{Access, Located};
-use crate::check::declare::demand::Need;
 use crate::check::standard::place::PlaceFunction;
 use crate::check::types::operand::{Operand, constant};
 use crate::check::types::reference;
 use crate::diagnostic::{Code, Diagnostic};
-use crate::ir::{Binary, ElementaryType, Expr, ExprKind, Place, Type, TypeId, Value};
+use crate::ir::{Binary, ElementaryType, Expr, ExprKind, Place, Type, Value};
 use crate::syntax::Span;
 use crate::syntax::ast::{self, Argument, Call, Ident, PouKind, ReferenceKind, SectionKind};
 use crate::syntax::walk::root;
@@ -52,14 +51,14 @@ impl Body<'_, '_> {
 
     fn reference_to(&mut self, argument: &ast::Expr, span: Span) -> Option<Operand> {
         let place = self.referable(argument)?;
-        let ty = self.checker.types.reference(Some(ReferenceKind::RefTo), place.ty);
+        let ty = self.declarations.types_mut().reference(Some(ReferenceKind::RefTo), place.ty);
         Some(Operand::Typed(Expr { kind: ExprKind::Address(place), ty, span }))
     }
 
     fn address_of(&mut self, argument: &ast::Expr, span: Span) -> Option<Operand> {
         let place = self.place(argument)?.place;
         self.require_address(&place, argument.span)?;
-        let ty = self.checker.types.reference(None, place.ty);
+        let ty = self.declarations.types_mut().reference(None, place.ty);
         Some(Operand::Typed(Expr { kind: ExprKind::Address(place), ty, span }))
     }
 
@@ -86,7 +85,7 @@ impl Body<'_, '_> {
     }
 
     pub(in crate::check) fn require_address(&mut self, place: &Place, span: Span) -> Option<()> {
-        if place.has_address() && !matches!(self.checker.types.get(place.ty), Type::OpenArray { .. }) {
+        if place.has_address() && !matches!(self.declarations.types().get(place.ty), Type::OpenArray { .. }) {
             return Some(());
         }
         let message = "a bit has no address of its own";
@@ -97,7 +96,7 @@ impl Body<'_, '_> {
     /// 3rd ed. 6.4.4.10.2: `VAR_TEMP` and the variables of functions.
     fn is_temporary(&self, expr: &ast::Expr) -> bool {
         let Some(variable) = root(expr).and_then(|name| self.scope.find(&name.key())) else { return false };
-        let function = self.pou.is_some_and(|id| self.checker.pou(id).ast.kind == PouKind::Function);
+        let function = self.pou.is_some_and(|id| self.declarations.pou(id).ast.kind == PouKind::Function);
         match variable.section {
             SectionKind::Temp => true,
             SectionKind::External | SectionKind::Global | SectionKind::InOut => false,
@@ -109,34 +108,31 @@ impl Body<'_, '_> {
     fn size_of(&mut self, argument: &ast::Expr, span: Span) -> Option<Operand> {
         let ty = match &argument.kind {
             ast::ExprKind::Name(name) if self.variable_named(name).is_none() && self.names_type(name) => {
-                self.size_named(name)?
+                self.declarations.type_meant(name)?
             }
             _ => self.place(argument)?.place.ty,
         };
-        if matches!(self.checker.types.get(ty), Type::OpenArray { .. }) {
-            return self.unsupported("SIZEOF of ARRAY [*]", span);
+        if matches!(self.declarations.types().get(ty), Type::OpenArray { .. }) {
+            let message = "SIZEOF of ARRAY [*] is not supported yet";
+            self.report(Diagnostic::error(Code::UnsupportedFeature, span, message));
+            return None;
         }
-        Some(Operand::Integer { value: i128::from(self.checker.types.size(ty)), span })
+        Some(Operand::Integer { value: i128::from(self.declarations.types().size(ty)), span })
     }
 
     fn names_type(&self, name: &Ident) -> bool {
         let key = name.key();
         ElementaryType::find(&key).is_some()
-            || self.checker.type_names.contains_key(&key)
+            || self.declarations.has_type(&key)
             || self
-                .checker
-                .pou_names
-                .get(&key)
-                .is_some_and(|id| self.checker.pou(*id).ast.kind == PouKind::FunctionBlock)
-    }
-
-    fn size_named(&mut self, name: &Ident) -> Option<TypeId> {
-        self.type_by_name(name, Need::Size).map(|found| found.ty)
+                .declarations
+                .unit_of_key(&key)
+                .is_some_and(|id| self.declarations.pou(id).ast.kind == PouKind::FunctionBlock)
     }
 
     fn is_valid_reference(&mut self, argument: &ast::Expr, span: Span) -> Option<Operand> {
         let place = self.declared_place(argument)?.place;
-        if reference::target_of(&self.checker.types, place.ty).is_none() {
+        if reference::target_of(&self.declarations.types(), place.ty).is_none() {
             let message = format!("a reference is wanted, this is {}", self.type_name(place.ty));
             self.report(Diagnostic::error(Code::NotAReference, argument.span, message));
             return None;

@@ -41,7 +41,7 @@ impl Body<'_, '_> {
         let operand = self.within(None, |body| body.expression(inner))?;
         let found = self.describe(&operand);
         let reference = match operand {
-            Operand::Typed(expr) => target_of(&self.checker.types, expr.ty).map(|(_, target)| (expr, target)),
+            Operand::Typed(expr) => target_of(&self.declarations.types(), expr.ty).map(|(_, target)| (expr, target)),
             _ => None,
         };
         let Some((expr, target)) = reference else {
@@ -54,7 +54,7 @@ impl Body<'_, '_> {
 
     /// A use of a `REFERENCE TO` stands for what it refers to.
     pub(in crate::check) fn through_reference(&self, located: Located) -> Located {
-        match self.checker.types.get(located.place.ty) {
+        match self.declarations.types().get(located.place.ty) {
             Type::Reference { kind: ReferenceKind::Reference, target } => {
                 let (target, span) = (*target, located.place.span);
                 let ty = located.place.ty;
@@ -67,11 +67,11 @@ impl Body<'_, '_> {
     /// What a function's `REFERENCE TO` refers to.
     pub(in crate::check) fn referred_result(&self, result: Operand) -> Operand {
         match result {
-            Operand::Typed(expr) => match self.checker.types.get(expr.ty) {
+            Operand::Typed(expr) => match self.declarations.types().get(expr.ty) {
                 Type::Reference { kind: ReferenceKind::Reference, target } => {
                     let (span, target) = (expr.span, *target);
                     let place = Self::led_to(expr, target, span).place;
-                    let ty = self.checker.types.of_value(target);
+                    let ty = self.declarations.types().of_value(target);
                     Operand::Typed(Expr { kind: ExprKind::Load(place), ty, span })
                 }
                 _ => Operand::Typed(expr),
@@ -88,7 +88,7 @@ impl Body<'_, '_> {
             return Some(Located { place, access: Access::ReadWrite });
         }
         let ty = value.ty;
-        if self.elementary(ty).is_some() && !matches!(self.checker.types.get(ty), Type::Interface { .. }) {
+        if self.elementary(ty).is_some() && !matches!(self.declarations.types().get(ty), Type::Interface { .. }) {
             let message = format!("{} has no members", self.type_name(ty));
             self.report(Diagnostic::error(Code::NotAStructure, span, message));
             return None;
@@ -112,7 +112,8 @@ impl Body<'_, '_> {
         }
         let ty = base.place.ty;
         let pointer = Expr { kind: ExprKind::Load(base.place), ty, span };
-        let size = constant(Value::Int(i128::from(self.checker.types.size(target))), ElementaryType::Udint, span);
+        let size =
+            constant(Value::Int(i128::from(self.declarations.types().size(target))), ElementaryType::Udint, span);
         let index = converted(index, ElementaryType::Udint, Rounding::NearestEven);
         let further = joined(Binary::Multiply, index, size, ElementaryType::Udint.into(), span);
         Some(Self::led_to(joined(Binary::Add, pointer, further, ty, span), target, span))
@@ -121,13 +122,13 @@ impl Body<'_, '_> {
     /// The operand as a reference of type `wanted`.
     pub(in crate::check) fn coerce_reference(&mut self, operand: Operand, wanted: TypeId) -> Option<Expr> {
         let null: TypeId = TypeTable::null();
-        let (kind, target) = target_of(&self.checker.types, wanted)?;
+        let (kind, target) = target_of(&self.declarations.types(), wanted)?;
         match (operand, kind) {
             (Operand::Typed(expr), _) if expr.ty == wanted || expr.ty == null => Some(Expr { ty: wanted, ..expr }),
             (Operand::Integer { value, span }, ReferenceKind::Pointer) if u32::try_from(value).is_ok() => {
                 Some(Expr { ty: wanted, ..constant(Value::Int(value), ElementaryType::Udint, span) })
             }
-            (Operand::Typed(expr), ReferenceKind::Pointer) => match *self.checker.types.get(expr.ty) {
+            (Operand::Typed(expr), ReferenceKind::Pointer) => match *self.declarations.types().get(expr.ty) {
                 Type::Address { .. } => Some(Expr { ty: wanted, ..expr }),
                 Type::Reference { kind: ReferenceKind::Pointer, target: other } if self.derives(other, target) => {
                     Some(Expr { ty: wanted, ..expr })
@@ -152,7 +153,7 @@ impl Body<'_, '_> {
 
     /// True for `THIS`, which is a pointer with vendors.
     fn is_this_instance(&self, expr: &Expr) -> bool {
-        let own = self.own_class().and_then(|class| self.checker.types.known_block(class));
+        let own = self.own_class().and_then(|class| self.declarations.types().known_block(class));
         let is_this = |place: &Place| place.storage == Storage::Instance(0) && place.steps.is_empty();
         own == Some(expr.ty) && matches!(&expr.kind, ExprKind::Load(place) if is_this(place))
     }
@@ -164,7 +165,7 @@ impl Body<'_, '_> {
 
     /// An address as a number: vendors assign pointers to DWORD and the like.
     pub(in crate::check) fn address_as_number(&self, expr: &Expr, wanted: ElementaryType) -> Option<Expr> {
-        let pointer = match self.checker.types.get(expr.ty) {
+        let pointer = match self.declarations.types().get(expr.ty) {
             Type::Address { .. } => true,
             Type::Reference { kind, .. } => *kind == ReferenceKind::Pointer,
             _ => false,
@@ -176,7 +177,7 @@ impl Body<'_, '_> {
     }
 
     pub(in crate::check) fn is_reference(&self, operand: &Operand) -> bool {
-        let types = &self.checker.types;
+        let types = &self.declarations.types();
         matches!(operand, Operand::Typed(expr)
             if target_of(types, expr.ty).is_some() || matches!(types.get(expr.ty), Type::Null))
     }
@@ -191,7 +192,7 @@ impl Body<'_, '_> {
     ) -> Option<Operand> {
         let pointer = |body: &Self, operand: &Operand| match operand {
             Operand::Typed(expr) => {
-                let found = target_of(&body.checker.types, expr.ty);
+                let found = target_of(&body.declarations.types(), expr.ty);
                 found.filter(|(kind, _)| *kind == ReferenceKind::Pointer).map(|_| expr.ty)
             }
             _ => None,
@@ -216,7 +217,7 @@ impl Body<'_, '_> {
 
     fn comparable(&mut self, left: Operand, right: Operand, span: Span) -> Option<(Expr, Expr)> {
         let loose = |body: &Self, operand: &Operand| match operand {
-            Operand::Typed(expr) => match body.checker.types.get(expr.ty) {
+            Operand::Typed(expr) => match body.declarations.types().get(expr.ty) {
                 Type::Reference { kind, .. } => *kind == ReferenceKind::Pointer,
                 Type::Elementary(ty) => holds_address(*ty),
                 Type::Address { .. } | Type::Null => true,
@@ -269,7 +270,7 @@ impl Body<'_, '_> {
     /// `a REF= b`
     pub(in crate::check) fn refer(&mut self, target: &ast::Expr, value: &ast::Expr, span: Span) -> Option<Statement> {
         let place = self.declared_place(target)?.place;
-        let Type::Reference { kind: ReferenceKind::Reference, .. } = self.checker.types.get(place.ty) else {
+        let Type::Reference { kind: ReferenceKind::Reference, .. } = self.declarations.types().get(place.ty) else {
             let message = format!("`REF=` is for REFERENCE TO, this is {}", self.type_name(place.ty));
             self.report(Diagnostic::error(Code::NotAReference, target.span, message));
             return None;
@@ -284,7 +285,7 @@ impl Body<'_, '_> {
     /// A reference of type `wanted`, a `REFERENCE TO`, to the variable `value`; NULL and 0 take it back.
     /// Vendors let it refer to what does not outlive the call.
     pub(in crate::check) fn referring(&mut self, wanted: TypeId, value: &ast::Expr) -> Option<Expr> {
-        let (_, target) = target_of(&self.checker.types, wanted)?;
+        let (_, target) = target_of(&self.declarations.types(), wanted)?;
         let is_null = match &value.kind {
             ast::ExprKind::Literal(ast::Literal::Integer(0)) => true,
             ast::ExprKind::Name(name) => name.key() == "NULL" && self.variable_named(name).is_none(),
@@ -311,10 +312,10 @@ impl Body<'_, '_> {
     pub(in crate::check) fn attempt(&mut self, target: &ast::Expr, value: &ast::Expr, span: Span) -> Option<Statement> {
         let place = self.target(target)?;
         let operand = self.within(None, |body| body.expression(value))?;
-        if matches!(self.checker.types.get(place.ty), Type::Interface { .. }) {
+        if matches!(self.declarations.types().get(place.ty), Type::Interface { .. }) {
             return self.attempt_interface(place, operand, span);
         }
-        let kind = target_of(&self.checker.types, place.ty).map(|(kind, _)| kind);
+        let kind = target_of(&self.declarations.types(), place.ty).map(|(kind, _)| kind);
         if kind.is_none() || !self.is_reference(&operand) {
             let wrong = if kind.is_none() { target.span } else { value.span };
             let message = "`?=` assigns references";

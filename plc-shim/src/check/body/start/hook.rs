@@ -26,7 +26,7 @@ type Named = (Ident, ast::Expr);
 impl<'a> Body<'_, 'a> {
     /// The calls of `FB_init` on the instance at a place.
     pub(in crate::check) fn init_calls(&mut self, place: &Place, pou: PouId, given: Given<'a>) -> Vec<Statement> {
-        let hooks = self.checker.hooks(pou, Occasion::Start);
+        let hooks = self.declarations.hooks(pou, Occasion::Start);
         let Some(last) = hooks.last() else { return Vec::new() };
         let Some(named) = self.named(*last, given, place.span) else { return Vec::new() };
         if hooks.iter().any(|hook| self.passes_all(*hook, *last, place.span).is_none()) {
@@ -38,16 +38,16 @@ impl<'a> Body<'_, 'a> {
 
     /// Reports an `FB_init` that lacks an input of the base's, which would be given nothing.
     fn passes_all(&mut self, base: PouId, last: PouId, span: Span) -> Option<()> {
-        let (wanted, own) = (self.checker.interface(base, span)?, self.checker.interface(last, span)?);
+        let (wanted, own) = (self.declarations.interface(base, span)?, self.declarations.interface(last, span)?);
         let lacks = |input: &&Variable| own.own(&input.name.to_ascii_uppercase()).is_none();
         let mut missing =
             wanted.inputs().skip(INIT_INPUTS).filter(|input| !self.has_default(base, input)).filter(lacks);
         let Some(first) = missing.next() else { return Some(()) };
-        let (name, unit) = (self.checker.pou(last).ast.name.clone(), self.checker.display_name(base));
+        let (name, unit) = (self.declarations.pou(last).ast.name.clone(), self.declarations.display_name(base));
         let message = format!("`{}` lacks `{}`, which `{unit}` wants", name.text, first.name);
         let found = Diagnostic::error(Code::HookInputs, name.span, message).with_label(first.span, "declared here");
         // Told once, however many instances there are.
-        if self.checker.faulty_hooks.insert(last) {
+        if self.declarations.is_first_hook_fault(last) {
             self.report(found.with_help("what a declaration gives goes to the input of this name in every FB_init"));
         }
         None
@@ -55,7 +55,7 @@ impl<'a> Body<'_, 'a> {
 
     /// True for an input with an initial value of its own.
     fn has_default(&self, init: PouId, input: &Variable) -> bool {
-        let sections = &self.checker.pou(init).ast.sections;
+        let sections = &self.declarations.pou(init).ast.sections;
         let mut variables =
             sections.iter().flat_map(|section| &section.variables).filter(|variable| variable.initial.is_some());
         variables.any(|each| each.names.iter().any(|name| name.text.eq_ignore_ascii_case(&input.name)))
@@ -63,7 +63,7 @@ impl<'a> Body<'_, 'a> {
 
     /// The calls of `FB_exit` on the instance at a place, that of the base last.
     pub(in crate::check) fn exit_calls(&mut self, place: &Place, pou: PouId) -> Vec<Statement> {
-        let hooks = self.checker.hooks(pou, Occasion::End);
+        let hooks = self.declarations.hooks(pou, Occasion::End);
         let copies = [Argument::Input(ident(HOOKS[2].inputs[0], place.span), truth(false, place.span))];
         let calls = hooks.into_iter().rev().map(|hook| self.hook_call(place, pou, hook, copies.to_vec()));
         calls.collect::<Option<Vec<_>>>().unwrap_or_default()
@@ -71,7 +71,7 @@ impl<'a> Body<'_, 'a> {
 
     /// The arguments with the names of what they are for.
     fn named(&mut self, init: PouId, given: Given<'a>, span: Span) -> Option<Vec<Named>> {
-        let scope = self.checker.interface(init, span)?;
+        let scope = self.declarations.interface(init, span)?;
         let mut own = scope.positional().skip(INIT_INPUTS);
         let mut named = Vec::new();
         for argument in given {
@@ -80,7 +80,7 @@ impl<'a> Body<'_, 'a> {
                 Argument::Positional(value) => {
                     let Some(input) = own.next() else {
                         let wanted = scope.positional().count().saturating_sub(INIT_INPUTS);
-                        let message = format!("`{}` takes {wanted} arguments", self.checker.display_name(init));
+                        let message = format!("`{}` takes {wanted} arguments", self.declarations.display_name(init));
                         self.report(Diagnostic::error(Code::TooManyArguments, value.span, message));
                         return None;
                     };
@@ -105,7 +105,7 @@ impl<'a> Body<'_, 'a> {
         named: &[Named],
         is_last: bool,
     ) -> Option<Statement> {
-        let scope = self.checker.interface(init, place.span)?;
+        let scope = self.declarations.interface(init, place.span)?;
         if !suits(&HOOKS[0], &scope) {
             return None;
         }
@@ -130,7 +130,7 @@ impl<'a> Body<'_, 'a> {
         let wanted = |input: &&Variable| !is_given(input) && !self.has_default(init, input);
         let mut missing = scope.inputs().skip(INIT_INPUTS).filter(wanted);
         let Some(first) = missing.next() else { return Some(()) };
-        let (block, unit) = (&self.checker.pou(pou).ast.name.text, self.checker.display_name(init));
+        let (block, unit) = (&self.declarations.pou(pou).ast.name.text, self.declarations.display_name(init));
         let message = format!("`{unit}` wants `{}`", first.name);
         let found = Diagnostic::error(Code::MissingArgument, span, message).with_label(first.span, "declared here");
         let help = format!("declare the instance as `: {block}({} := ..)`", first.name);
@@ -140,8 +140,8 @@ impl<'a> Body<'_, 'a> {
 
     fn hook_call(&mut self, place: &Place, pou: PouId, hook: PouId, arguments: Vec<Argument>) -> Option<Statement> {
         let span = place.span;
-        let scope = self.checker.interface(hook, span)?;
-        let unit = self.checker.display_name(hook);
+        let scope = self.declarations.interface(hook, span)?;
+        let unit = self.declarations.display_name(hook);
         let callee = ast::Expr { kind: ast::ExprKind::Name(ident(&unit, span)), span, height: 1 };
         let call = Call { callee: Box::new(callee), arguments };
         let (arguments, passing) = self.method_arguments(&scope, &unit, &call, span)?;
@@ -152,7 +152,7 @@ impl<'a> Body<'_, 'a> {
 
     /// Runs what a unit's variables do at an occasion, on the instance at a place.
     pub(in crate::check) fn stage_call(&mut self, place: &Place, stage: PouId, span: Span) -> Option<Statement> {
-        let owner = self.checker.owner_of(stage);
+        let owner = self.declarations.owner_of(stage);
         let called =
             self.on_object(instance_at(place, owner), Role::Method, stage, Vec::new(), Passing::default(), span)?;
         Some(Statement { kind: StatementKind::Evaluate(called), span })

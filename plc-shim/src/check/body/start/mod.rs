@@ -6,7 +6,6 @@ use std::sync::Arc;
 
 use super::Body;
 use crate::check::declare::namespace::Home;
-use crate::check::declare::scope::Scope;
 use crate::check::declare::start::{Given, Occasion, Start, StartKind};
 use crate::check::types::constant;
 use crate::check::types::operand::constant;
@@ -18,14 +17,14 @@ use crate::syntax::Span;
 impl<'a> Body<'_, 'a> {
     /// What a unit's occasion does: what its base does, then its own variables in their order.
     pub(in crate::check) fn staged(&mut self, owner: PouId, occasion: Occasion) -> Vec<Statement> {
-        let span = self.checker.pou(owner).ast.name.span;
+        let span = self.declarations.pou(owner).ast.name.span;
         let mut statements = Vec::new();
-        let base = self.checker.base_of(owner).and_then(|base| self.checker.stage(base, occasion));
+        let base = self.declarations.base_of(owner).and_then(|base| self.declarations.stage(base, occasion));
         if let Some(base) = base {
             let instance = self.this(owner, span);
             statements.extend(self.stage_call(&instance, base, span));
         }
-        let starts = self.checker.pou(owner).starts.clone();
+        let starts = self.declarations.pou(owner).starts.clone();
         let this = Place::whole(Storage::Instance(0), ElementaryType::Byte.into(), span);
         statements.extend(self.performed(&this, &starts, occasion));
         statements
@@ -40,30 +39,26 @@ impl<'a> Body<'_, 'a> {
     ) -> Vec<Statement> {
         let mut statements = Vec::new();
         for start in starts {
-            let known = self.checker.diagnostics.len();
+            let known = self.declarations.mark();
             let done = match &start.home {
                 Some(home) => self.seen_from(home.clone(), |body| body.perform(base, start, occasion)),
                 None => self.perform(base, start, occasion),
             };
             statements.extend(done);
             // What is wrong with a type's text is told once, however often it is used.
-            if self.checker.diagnostics.len() > known
-                && !self.checker.faulty_starts.insert(key_of(start.span, occasion))
-            {
-                self.checker.diagnostics.truncate(known);
+            if self.declarations.has_found_since(known) && !self.declarations.is_first_fault(start.span, occasion) {
+                self.declarations.forget_since(known);
             }
         }
         statements
     }
 
     fn seen_from<T>(&mut self, home: Arc<Home>, make: impl FnOnce(&mut Self) -> T) -> T {
-        let registers = std::mem::take(&mut self.scope.registers);
-        let outer = std::mem::replace(&mut self.scope, Scope { registers, ..Scope::default() });
-        let kept = std::mem::replace(&mut self.checker.home, home);
+        let named = self.scope.without_names();
+        let kept = self.declarations.replace_home(home);
         let made = make(self);
-        self.checker.home = kept;
-        let registers = std::mem::take(&mut self.scope.registers);
-        self.scope = Scope { registers, has_memory: outer.has_memory || self.scope.has_memory, ..outer };
+        self.declarations.replace_home(kept);
+        self.scope.with_names_of(named);
         made
     }
 
@@ -76,7 +71,7 @@ impl<'a> Body<'_, 'a> {
                 self.instance_performed(&place, *pou, given, occasion)
             }
             StartKind::Each { count, stride, starts } => {
-                if !starts.iter().any(|start| self.checker.acts(start, occasion)) {
+                if !starts.iter().any(|start| self.declarations.acts(start, occasion)) {
                     return Vec::new();
                 }
                 let place = at(ElementaryType::Byte.into());
@@ -84,10 +79,10 @@ impl<'a> Body<'_, 'a> {
             }
             _ if occasion == Occasion::End => Vec::new(),
             StartKind::Value(ty, expr) => {
-                let known = self.checker.diagnostics.len();
+                let known = self.declarations.mark();
                 let value = self.expression_for(expr, *ty);
                 // Whatever there is to say has been said where it is declared.
-                self.checker.diagnostics.truncate(known);
+                self.declarations.forget_since(known);
                 value.map(|value| self.assignment(at(*ty), value, span)).into_iter().collect()
             }
             StartKind::Bytes(ty, bytes) => vec![self.given_bytes(at(*ty), bytes)],
@@ -99,8 +94,8 @@ impl<'a> Body<'_, 'a> {
     }
 
     fn instance_type(&mut self, pou: PouId) -> TypeId {
-        let name = &self.checker.pou(pou).ast.name.text;
-        self.checker.types.block(name, pou)
+        let name = &self.declarations.pou(pou).ast.name.text;
+        self.declarations.types_mut().block(name, pou)
     }
 
     fn instance_performed(
@@ -111,7 +106,7 @@ impl<'a> Body<'_, 'a> {
         occasion: Occasion,
     ) -> Vec<Statement> {
         let mut statements = Vec::new();
-        let inner = self.checker.stage(pou, occasion);
+        let inner = self.declarations.stage(pou, occasion);
         match occasion {
             Occasion::Start => {
                 statements.extend(inner.and_then(|stage| self.stage_call(place, stage, place.span)));
@@ -160,10 +155,6 @@ impl<'a> Body<'_, 'a> {
         };
         Statement { kind, span }
     }
-}
-
-fn key_of(span: Span, occasion: Occasion) -> (u32, u32, Occasion) {
-    (span.file.0, span.start, occasion)
 }
 
 /// The value at an offset inside of another.

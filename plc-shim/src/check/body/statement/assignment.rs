@@ -35,7 +35,7 @@ impl Body<'_, '_> {
             UpdateOp::Divide => BinaryOp::Divide,
         };
         let place = self.target(target)?;
-        let ty = self.checker.types.of_value(place.ty);
+        let ty = self.declarations.types().of_value(place.ty);
         let before = Expr { kind: ExprKind::Load(place.clone()), ty, span: target.span };
         let context = self.elementary(ty);
         let value = self.within(context, |body| body.expression(value))?;

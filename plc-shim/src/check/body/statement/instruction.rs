@@ -337,8 +337,8 @@ impl Body<'_, '_> {
     fn has_no_result(&mut self, call: &Call) -> bool {
         let ExprKind::Name(name) = &call.callee.kind else { return false };
         let id = self.function_named(name);
-        let scope = id.and_then(|id| self.checker.interface(id, name.span));
-        scope.is_some_and(|scope| scope.result.is_none())
+        let scope = id.and_then(|id| self.declarations.interface(id, name.span));
+        scope.is_some_and(|scope| scope.result().is_none())
     }
 
     /// An operator of Table 54: the same as `CAL` with this one input.
@@ -354,10 +354,10 @@ impl Body<'_, '_> {
         if !matches!(expr.kind, ExprKind::Name(_) | ExprKind::Member(..) | ExprKind::Index(..)) {
             return false;
         }
-        let known = self.checker.diagnostics.len();
+        let known = self.declarations.mark();
         let found = self.place(expr);
-        self.checker.diagnostics.truncate(known);
-        found.is_some_and(|found| matches!(self.checker.types.get(found.place.ty), Type::FunctionBlock { .. }))
+        self.declarations.forget_since(known);
+        found.is_some_and(|found| matches!(self.declarations.types().get(found.place.ty), Type::FunctionBlock { .. }))
     }
 }
 

@@ -116,7 +116,7 @@ impl Body<'_, '_> {
         let context = target.as_ref().and_then(|target| self.elementary(target.ty));
         let value = self.within(context, |body| body.expression(value));
         let (target, value) = (target?, value?);
-        if matches!(self.checker.types.get(target.ty), Type::FunctionBlock { .. }) {
+        if matches!(self.declarations.types().get(target.ty), Type::FunctionBlock { .. }) {
             let message = "instances are not assigned to one another";
             self.report(Diagnostic::error(Code::NotAssignable, span, message));
             return None;
@@ -161,7 +161,7 @@ impl Body<'_, '_> {
                 self.report(Diagnostic::warning(Code::AssignToInput, expr.span, message));
             }
         }
-        let result = self.scope.result.as_ref().map(|result| result.storage);
+        let result = self.scope.result().map(|result| result.storage);
         self.result_assigned |= result == Some(located.place.storage);
         Some(located.place)
     }
@@ -261,7 +261,7 @@ impl Body<'_, '_> {
     }
 
     fn control_variable(&mut self, place: Place) -> Option<(Place, ElementaryType)> {
-        match self.checker.types.get(place.ty) {
+        match self.declarations.types().get(place.ty) {
             Type::Elementary(ty) | Type::Subrange { base: ty, .. } if ty.is_integer() => {
                 let ty = *ty;
                 Some((place, ty))

@@ -32,7 +32,7 @@ impl Body<'_, '_> {
     pub(in crate::check) fn first_value(&mut self, name: &Ident, value: &ast::Expr, span: Span) -> Option<Statement> {
         let value = self.within(None, |body| body.expression(value));
         let value = value.and_then(|value| self.settle(value))?;
-        let ty = self.checker.types.of_value(value.ty);
+        let ty = self.declarations.types().of_value(value.ty);
         if ty == TypeTable::nothing() {
             return self.mismatch("a value", "a call without result", span);
         }

@@ -29,7 +29,7 @@ struct Indexed {
 
 impl Body<'_, '_> {
     fn ends_with_zero(&self, span: Span) -> bool {
-        self.checker.dialect(span).has(Feature::CharactersAsBytes)
+        self.declarations.dialect(span).has(Feature::CharactersAsBytes)
     }
 
     /// How many characters may be read: with vendors the 0 at the end too.
@@ -97,11 +97,12 @@ impl Body<'_, '_> {
         if !self.ends_with_zero(span) {
             return None;
         }
-        let known = self.checker.diagnostics.len();
-        let text = self.base_place(base).filter(|base| matches!(self.checker.types.get(base.place.ty), Type::Text(_)));
+        let known = self.declarations.mark();
+        let text =
+            self.base_place(base).filter(|base| matches!(self.declarations.types().get(base.place.ty), Type::Text(_)));
         let Some(text) = text else {
             // Whatever is wrong is reported on the usual way.
-            self.checker.diagnostics.truncate(known);
+            self.declarations.forget_since(known);
             return None;
         };
         Some(self.assign_character(text, (target, index), value, span))

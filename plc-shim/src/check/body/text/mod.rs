@@ -53,7 +53,7 @@ impl<'a> Body<'_, 'a> {
 impl Body<'_, '_> {
     /// The shape of an expression's type.
     pub(in crate::check) fn shape(&self, ty: TypeId) -> Option<TextShape> {
-        self.checker.types.text(ty)
+        self.declarations.types().text(ty)
     }
 
     pub(in crate::check) fn is_text(&self, operand: &Operand) -> bool {
@@ -71,8 +71,8 @@ impl Body<'_, '_> {
     }
 
     fn stored_text(&mut self, shape: TextShape, text: &Text, span: Span) -> Option<Expr> {
-        let ty = self.checker.types.string(shape);
-        let place = self.checker.constant_bytes(ty, shape.encode(&text.units).into(), span)?;
+        let ty = self.declarations.types_mut().string(shape);
+        let place = self.declarations.constant_bytes(ty, shape.encode(&text.units).into(), span)?;
         Some(Expr { kind: ExprKind::Load(place), ty, span })
     }
 
@@ -151,7 +151,7 @@ impl Body<'_, '_> {
         shape: TextShape,
         span: Span,
     ) -> Option<Expr> {
-        let ty = self.checker.types.string(shape);
+        let ty = self.declarations.types_mut().string(shape);
         let target = Some(self.temporary(ty, span)?);
         let call = TextCall { function, operands, target };
         Some(Expr { kind: ExprKind::Text(Box::new(call)), ty, span })
@@ -218,7 +218,7 @@ impl Body<'_, '_> {
             }
         }
         let shape = widest?;
-        let ty = self.checker.types.string(shape);
+        let ty = self.declarations.types_mut().string(shape);
         let all = operands.into_iter().map(|operand| self.coerce_text(operand, shape));
         Some((all.collect::<Option<_>>()?, ty))
     }
