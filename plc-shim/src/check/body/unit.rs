@@ -18,9 +18,9 @@ use crate::syntax::ast::{Edge, PouKind, SectionKind};
 
 /// Checks the body of a unit; nothing if its declaration is wrong as a whole.
 pub(in crate::check) fn check_unit(declarations: &mut Declarations<'_>, id: PouId) -> Option<Pou> {
-    let home = declarations.pou(id).home.clone();
+    let home = declarations.pou(id).home().clone();
     declarations.at_home(home, |declarations| {
-        let span = declarations.pou(id).ast.name.span;
+        let span = declarations.pou(id).ast().name.span;
         let scope = declarations.interface(id, span)?;
         Some(Body::new(declarations, (*scope).clone(), Some(id)).into_unit(id))
     })
@@ -28,7 +28,7 @@ pub(in crate::check) fn check_unit(declarations: &mut Declarations<'_>, id: PouI
 
 impl Body<'_, '_> {
     fn into_unit(mut self, id: PouId) -> Pou {
-        let ast = self.declarations.pou(id).ast;
+        let ast = self.declarations.pou(id).ast();
         let mut statements = self.prologue(ast.kind);
         if let Some((owner, occasion)) = self.declarations.stage_of(id) {
             statements.extend(self.staged(owner, occasion));
@@ -78,7 +78,7 @@ impl Body<'_, '_> {
 
     /// What makes an initial value that is no constant.
     fn computed(&mut self, variable: &Variable) -> Vec<Statement> {
-        let fleeting = self.pou.map(|id| self.declarations.pou(id).fleeting.clone()).unwrap_or_default();
+        let fleeting = self.pou.map(|id| self.declarations.pou(id).fleeting().clone()).unwrap_or_default();
         let key = variable.name.to_ascii_uppercase();
         let Some((_, starts)) = fleeting.iter().find(|(name, _)| *name == key) else { return Vec::new() };
         let place = Place::whole(variable.storage, variable.ty, variable.span);

@@ -50,7 +50,7 @@ impl<'a> Configurer<'_, 'a> {
         for (at, declared) in declared.into_iter().enumerate() {
             let program = self.declarations.programs()[at].clone();
             let span =
-                declared.map_or(self.declarations.pou(program.pou).ast.name.span, |(_, declared)| declared.name.span);
+                declared.map_or(self.declarations.pou(program.pou).ast().name.span, |(_, declared)| declared.name.span);
             let mut around = Around::default();
             around.before.statements = self.select_globals(program.resource, span);
             self.copy_locations(at, &mut around);

@@ -3,7 +3,7 @@
 use super::{Configurer, connections};
 use crate::check::declare::demand::Need;
 use crate::check::declare::entry::TypedImage;
-use crate::check::declare::start::{Started, plain};
+use crate::check::declare::start::Started;
 use crate::check::resolve::Written;
 use crate::diagnostic::{Code, Diagnostic};
 use crate::ir::{Access, Storage, Target};
@@ -34,7 +34,8 @@ impl<'a> Configurer<'_, 'a> {
             // What is not mentioned keeps the value that its own declaration gives.
             let image = self.declarations.image_at(target.inside, self.declarations.types().size(target.ty));
             let mut written = Written::outside(self.declarations);
-            let TypedImage { image, starts, .. } = written.with_initial(&plain(target.ty, image.into()), initial)?;
+            let TypedImage { image, starts, .. } =
+                written.with_initial(&TypedImage::plain(target.ty, image.into()), initial)?;
             if !matches!(target.storage, Storage::Absolute(_)) {
                 return self.unsuitable_value(
                     &target,

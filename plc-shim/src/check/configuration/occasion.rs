@@ -16,7 +16,7 @@ impl Configurer<'_, '_> {
             statements.extend(body.performed(&each.place, &each.starts, occasion));
         }
         for program in programs {
-            let span = body.declarations().pou(program.pou).ast.name.span;
+            let span = body.declarations().pou(program.pou).ast().name.span;
             let place = Place::whole(Storage::Absolute(program.offset), ElementaryType::Byte.into(), span);
             let kind = StartKind::Instance(program.pou, &[]);
             let start = Start { offset: 0, kind, span, home: None };

@@ -21,7 +21,7 @@ impl<'a> Configurer<'_, 'a> {
     /// Every other program has one instance, under its own name.
     pub(in crate::check) fn place_other_programs(&mut self) {
         for id in self.declarations.unit_ids() {
-            let ast = self.declarations.pou(id).ast;
+            let ast = self.declarations.pou(id).ast();
             if ast.kind != PouKind::Program || self.declarations.programs().iter().any(|program| program.pou == id) {
                 continue;
             }
@@ -42,7 +42,7 @@ impl<'a> Configurer<'_, 'a> {
             if program.resource.is_some() || called.contains(&program.pou) {
                 continue;
             }
-            let span = self.declarations.pou(program.pou).ast.name.span;
+            let span = self.declarations.pou(program.pou).ast().name.span;
             let name = program.name;
             let message = format!("program `{name}` has no instance in the configuration, so it never runs");
             let help = format!("write `PROGRAM {name} WITH .. : {name};` in one of its resources");
@@ -54,7 +54,7 @@ impl<'a> Configurer<'_, 'a> {
         let (size, align, image) = self.declarations.pou(pou).instance();
         if let Some(offset) = self.declarations.allocate(size, align, name.span) {
             // The type of the program's instances, for paths that lead through them.
-            let unit = &self.declarations.pou(pou).ast.name.text;
+            let unit = &self.declarations.pou(pou).ast().name.text;
             let ty = self.declarations.types_mut().block(unit, pou);
             self.declarations.types_mut().complete_block(ty, align, image.clone());
             self.declarations.place(offset, image);
@@ -65,7 +65,7 @@ impl<'a> Configurer<'_, 'a> {
     fn program_type(&mut self, name: &Ident) -> Option<PouId> {
         let found = self.declarations.unit_of_key(&name.key());
         if let Some(pou) = found
-            && self.declarations.pou(pou).ast.kind == PouKind::Program
+            && self.declarations.pou(pou).ast().kind == PouKind::Program
         {
             return Some(pou);
         }

@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use super::class::Membership;
+use super::kept::place_of;
 use super::namespace::Home;
 use super::scope::Scope;
 use super::start::{Start, Starts};
@@ -26,6 +27,13 @@ pub(in crate::check) struct TypedImage<'a> {
     pub(in crate::check) ty: TypeId,
     pub(in crate::check) image: Arc<[u8]>,
     pub(in crate::check) starts: Starts<'a>,
+}
+
+impl TypedImage<'_> {
+    /// An initial value that bytes alone make.
+    pub(in crate::check) fn plain(ty: TypeId, image: Arc<[u8]>) -> Self {
+        Self { ty, image, starts: Arc::default() }
+    }
 }
 
 pub(in crate::check) struct TypeEntry<'a> {
@@ -55,7 +63,41 @@ pub(in crate::check) struct PouEntry<'a> {
     pub(in crate::check) kept: BTreeMap<(u32, u32), u32>,
 }
 
-impl PouEntry<'_> {
+impl<'a> PouEntry<'a> {
+    pub(in crate::check) fn ast(&self) -> &'a ast::Pou {
+        self.ast
+    }
+
+    /// From where names are seen in it.
+    pub(in crate::check) fn home(&self) -> &Arc<Home> {
+        &self.home
+    }
+
+    /// What it is a method, property or action of.
+    pub(in crate::check) fn membership(&self) -> Option<Membership> {
+        self.membership
+    }
+
+    /// Its variables, if it has been declared.
+    pub(in crate::check) fn scope(&self) -> Option<&Arc<Scope>> {
+        self.scope.as_ref()
+    }
+
+    /// What a start does to the variables of an instance.
+    pub(in crate::check) fn starts(&self) -> &Starts<'a> {
+        &self.starts
+    }
+
+    /// What a call does to variables that do not outlive it: their names, and what.
+    pub(in crate::check) fn fleeting(&self) -> &Arc<[(String, Starts<'a>)]> {
+        &self.fleeting
+    }
+
+    /// Where a `VAR_INST` of its methods lies in an instance; nothing if its declaration is wrong.
+    pub(in crate::check) fn kept(&self, declared: Span) -> Option<u32> {
+        self.kept.get(&place_of(declared)).copied()
+    }
+
     /// Size, alignment and initial bytes of an instance.
     pub(in crate::check) fn instance(&self) -> (u32, u32, Arc<[u8]>) {
         (self.image.len() as u32, self.align, self.image.clone())

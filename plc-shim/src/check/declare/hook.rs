@@ -8,21 +8,27 @@ use crate::diagnostic::{Code, Diagnostic};
 use crate::ir::{ElementaryType, PouId, TypeId};
 
 /// A method that runs without a call, and the BOOL inputs that it begins with.
-pub(in crate::check) struct Hook {
-    pub(in crate::check) name: &'static str,
-    pub(in crate::check) inputs: &'static [&'static str],
+struct Hook {
+    name: &'static str,
+    inputs: &'static [&'static str],
     /// True if more inputs may follow.
-    pub(in crate::check) open: bool,
+    open: bool,
 }
 
-pub(in crate::check) const HOOKS: [Hook; 3] = [
-    Hook { name: "FB_INIT", inputs: &["bInitRetains", "bInCopyCode"], open: true },
-    Hook { name: "FB_REINIT", inputs: &[], open: false },
-    Hook { name: "FB_EXIT", inputs: &["bInCopyCode"], open: false },
-];
+/// Inputs of `FB_init` that the runtime gives: whether RETAIN variables are initialised, and whether an online change
+/// copies the instance, which never happens here.
+pub(in crate::check) const INIT_INPUTS: [&str; 2] = ["bInitRetains", "bInCopyCode"];
 
-/// Inputs of `FB_init` that the runtime gives.
-pub(in crate::check) const INIT_INPUTS: usize = HOOKS[0].inputs.len();
+/// Inputs of `FB_exit` that the runtime gives.
+pub(in crate::check) const EXIT_INPUTS: [&str; 1] = ["bInCopyCode"];
+
+const INIT: Hook = Hook { name: "FB_INIT", inputs: &INIT_INPUTS, open: true };
+
+const HOOKS: [Hook; 3] = [
+    INIT,
+    Hook { name: "FB_REINIT", inputs: &[], open: false },
+    Hook { name: "FB_EXIT", inputs: &EXIT_INPUTS, open: false },
+];
 
 /// True for a method that runs without a call.
 pub(in crate::check) fn is_hook(name: &str) -> bool {
@@ -72,7 +78,12 @@ impl Declarations<'_> {
     }
 }
 
-pub(in crate::check) fn suits(hook: &Hook, scope: &Scope) -> bool {
+/// True for the variables of an `FB_init` that the runtime can run.
+pub(in crate::check) fn suits_init(scope: &Scope) -> bool {
+    suits(&INIT, scope)
+}
+
+fn suits(hook: &Hook, scope: &Scope) -> bool {
     let bool_type: TypeId = ElementaryType::Bool.into();
     let mut inputs = scope.inputs();
     let begins = hook.inputs.iter().all(|wanted| {

@@ -10,7 +10,6 @@ use std::sync::Arc;
 
 use super::Declarations;
 use super::class::{Membership, Role};
-use super::entry::TypedImage;
 use super::namespace::Home;
 use crate::ir::{Place, PouId, TypeId};
 use crate::syntax::Span;
@@ -177,11 +176,6 @@ impl Declarations<'_> {
 /// The starts of a list, so many bytes further.
 pub(in crate::check) fn moved<'a>(starts: &[Start<'a>], offset: u32) -> impl Iterator<Item = Start<'a>> {
     starts.iter().map(move |start| Start { offset: start.offset + offset, ..start.clone() })
-}
-
-/// An initial value that bytes alone make.
-pub(in crate::check) fn plain<'a>(ty: TypeId, image: Arc<[u8]>) -> TypedImage<'a> {
-    TypedImage { ty, image, starts: Arc::default() }
 }
 
 /// What a declaration gives to the `FB_init` of its instance.

@@ -5,8 +5,8 @@ use std::sync::Arc;
 use super::interface::{Interface, POINTER};
 use crate::check::declare::class::{Membership, Role};
 use crate::check::declare::demand::Need;
+use crate::check::declare::entry::TypedImage;
 use crate::check::declare::scope::Scope;
-use crate::check::declare::start::plain;
 use crate::ir::{EdgeDetection, ElementaryType, PouId, Storage, Variable, Visibility};
 use crate::syntax::Span;
 use crate::syntax::ast::{self, Ident, PouKind, SectionKind};
@@ -15,8 +15,8 @@ impl<'a> Interface<'_, 'a> {
     /// Takes over the variables of the base, or of the instance that a method works on.
     pub(in crate::check) fn inherit(&mut self) {
         let Some(id) = self.unit() else { return };
-        if let Some(Membership { owner, .. }) = self.declarations().pou(id).membership {
-            let span = self.declarations().pou(id).ast.name.span;
+        if let Some(Membership { owner, .. }) = self.declarations().pou(id).membership() {
+            let span = self.declarations().pou(id).ast().name.span;
             let scope = self.declarations_mut().interface(owner, span);
             let seen = scope.map(|scope| Arc::new(seen_by_methods(&scope, owner)));
             self.scope_mut().set_outer(seen);
@@ -36,7 +36,7 @@ impl<'a> Interface<'_, 'a> {
     fn inherit_from(&mut self, base: PouId) {
         let span = self
             .unit()
-            .map_or(self.declarations().pou(base).ast.name.span, |id| self.declarations().pou(id).ast.name.span);
+            .map_or(self.declarations().pou(base).ast().name.span, |id| self.declarations().pou(id).ast().name.span);
         let Some(scope) = self.declarations_mut().interface(base, span) else { return };
         let (_, align, image) = self.declarations().pou(base).instance();
         if self.declarations_mut().charge_image(image.len() as u64, span).is_none() {
@@ -52,7 +52,7 @@ impl<'a> Interface<'_, 'a> {
             // Each level has its own trigger, so that `SUPER()` sees the edge too.
             if let Some(edge) = variable.edge {
                 let image = Arc::from([0]);
-                let memory = plain(ElementaryType::Bool.into(), image);
+                let memory = TypedImage::plain(ElementaryType::Bool.into(), image);
                 let seen = self.scope_mut().register(ElementaryType::Bool);
                 let memory = self.in_instance(&memory, span).map_or(edge.memory, Storage::Instance);
                 variable.edge = Some(EdgeDetection { edge: edge.edge, memory, seen });
@@ -75,7 +75,7 @@ impl<'a> Interface<'_, 'a> {
     }
 
     fn role(&self) -> Option<Role> {
-        Some(self.declarations().pou(self.unit()?).membership?.role)
+        Some(self.declarations().pou(self.unit()?).membership()?.role)
     }
 
     pub(in crate::check) fn is_setter(&self) -> bool {

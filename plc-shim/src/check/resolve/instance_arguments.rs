@@ -90,7 +90,7 @@ impl<'a> Written<'_, 'a> {
     /// Reports arguments of an instance whose block has no `FB_init`.
     pub(in crate::check) fn check_taken(&mut self, pou: PouId, given: Given<'a>, span: Span) {
         if !given.is_empty() && !self.declarations().has_hook(pou, Occasion::Start) {
-            let name = &self.declarations().pou(pou).ast.name.text;
+            let name = &self.declarations().pou(pou).ast().name.text;
             let message = format!("`{name}` has no FB_init that takes arguments");
             let help = format!("inputs begin with values as in `: {name} := (..)`");
             self.report(Diagnostic::error(Code::TooManyArguments, span, message).with_help(help));

@@ -33,7 +33,7 @@ impl<'a> Written<'_, 'a> {
 
 /// The variables of a unit, and what its instances begin with.
 pub(super) fn declared<'a>(declarations: &mut Declarations<'a>, id: PouId) -> Declared<'a> {
-    let ast = declarations.pou(id).ast;
+    let ast = declarations.pou(id).ast();
     let mut interface = Interface::new(declarations, id);
     interface.declare(ast);
     let Interface { written, align, image, starts, fleeting, kept, .. } = interface;
@@ -87,7 +87,7 @@ impl<'c, 'a> Interface<'c, 'a> {
     }
 
     pub(in crate::check) fn new(declarations: &'c mut Declarations<'a>, id: PouId) -> Self {
-        let ast = declarations.pou(id).ast;
+        let ast = declarations.pou(id).ast();
         let (kind, referred) = (ast.kind, referred(ast));
         let written = Written::of_unit(declarations, id);
         let (starts, fleeting, kept) = (Vec::new(), Vec::new(), BTreeMap::new());

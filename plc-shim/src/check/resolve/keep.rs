@@ -40,7 +40,7 @@ impl<'a> Interface<'_, 'a> {
             return None;
         }
         let owner = self.declarations().owner_of(self.unit()?);
-        let offset = self.declarations().pou(owner).kept.get(&place_of(name.span)).copied();
+        let offset = self.declarations().pou(owner).kept(name.span);
         if offset.is_none() {
             // Its declaration was found wrong, or memory ran out.
             let message = format!("`{}` cannot be kept in an instance", name.text);

@@ -5,7 +5,6 @@ use std::sync::Arc;
 use super::interface::{Interface, POINTER};
 use crate::check::declare::entry::TypedImage;
 use crate::check::declare::layout::{MEMORY_LIMIT, align_up};
-use crate::check::declare::start::plain;
 use crate::check::types::parameter::takes_open_arrays;
 use crate::diagnostic::{Code, Diagnostic};
 use crate::dialect::Feature;
@@ -52,7 +51,7 @@ impl Interface<'_, '_> {
             (_, SectionKind::InOut) => {
                 let pointer: TypeId = POINTER.into();
                 let image = vec![0; POINTER.size() as usize].into();
-                let offset = self.in_instance(&plain(pointer, image), span)?;
+                let offset = self.in_instance(&TypedImage::plain(pointer, image), span)?;
                 Some(Storage::InstancePointer(offset))
             }
             _ => Some(Storage::Instance(self.in_instance(declared, span)?)),
@@ -69,7 +68,7 @@ impl Interface<'_, '_> {
             return None;
         }
         let image = Arc::from([0]);
-        let memory = Storage::Instance(self.in_instance(&plain(bool_type, image), variable.span)?);
+        let memory = Storage::Instance(self.in_instance(&TypedImage::plain(bool_type, image), variable.span)?);
         let seen = self.scope_mut().register(ElementaryType::Bool);
         Some(EdgeDetection { edge, memory, seen })
     }

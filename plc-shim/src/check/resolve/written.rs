@@ -7,7 +7,7 @@ use super::structure::Sharing;
 use crate::check::declare::demand::Need;
 use crate::check::declare::entry::{Enumerator, TypedImage};
 use crate::check::declare::layout::MEMORY_LIMIT;
-use crate::check::declare::start::{StartKind, plain};
+use crate::check::declare::start::StartKind;
 use crate::check::types::generic::Generic;
 use crate::diagnostic::{Code, Diagnostic, did_you_mean};
 use crate::ir::{Dimension, ElementaryType, TypeId};
@@ -85,7 +85,7 @@ impl<'a> Written<'_, 'a> {
     }
 
     pub(in crate::check) fn whole(&self, ty: TypeId) -> TypedImage<'a> {
-        plain(ty, self.declarations().types().image(ty).clone())
+        TypedImage::plain(ty, self.declarations().types().image(ty).clone())
     }
 
     /// A reference's target need not be known yet: structures refer to one another, and to themselves.
@@ -120,7 +120,7 @@ impl<'a> Written<'_, 'a> {
         }
         if let Some(id) = self.declarations().pou_named(&key) {
             self.declarations_mut().check_internal(id, name.span);
-            let ast = self.declarations().pou(id).ast;
+            let ast = self.declarations().pou(id).ast();
             if ast.kind == PouKind::Interface {
                 let ty = self.declarations_mut().types_mut().interface(&ast.name.text, id);
                 return Some(self.whole(ty));

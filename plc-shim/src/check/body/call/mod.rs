@@ -101,14 +101,14 @@ impl Body<'_, '_> {
     /// Inside a function its own name is its result, and a call of it recursion.
     pub(in crate::check) fn is_own_result(&self, name: &Ident) -> bool {
         self.pou.is_some_and(|id| {
-            let own = self.declarations.pou(id).ast;
+            let own = self.declarations.pou(id).ast();
             own.kind.keeps_nothing() && own.name.key() == name.key()
         })
     }
 
     pub(in crate::check) fn function_named(&self, name: &Ident) -> Option<PouId> {
         let id = self.declarations.pou_named(&name.key())?;
-        (self.declarations.pou(id).ast.kind == PouKind::Function).then_some(id)
+        (self.declarations.pou(id).ast().kind == PouKind::Function).then_some(id)
     }
 
     /// True for what is called as a statement.
@@ -136,7 +136,7 @@ impl Body<'_, '_> {
 
     fn report_unknown_function<T>(&mut self, name: &Ident) -> Option<T> {
         if let Some(id) = self.declarations.pou_named(&name.key()) {
-            let what = match self.declarations.pou(id).ast.kind {
+            let what = match self.declarations.pou(id).ast().kind {
                 PouKind::Program => "a program",
                 PouKind::Class => "a class",
                 PouKind::Interface => "an interface",
@@ -199,7 +199,7 @@ impl Body<'_, '_> {
     }
 
     fn has_effects(&self, id: PouId) -> bool {
-        self.declarations.pou(id).scope.as_ref().is_some_and(|scope| {
+        self.declarations.pou(id).scope().is_some_and(|scope| {
             let effect = |section| matches!(section, SectionKind::Output | SectionKind::InOut | SectionKind::External);
             scope.result().is_none() || scope.variables().iter().any(|each| effect(each.section))
         })

@@ -80,7 +80,7 @@ impl Body<'_, '_> {
     fn action_call(&mut self, action: &Action, member: PouId) -> Option<Statement> {
         let span = match action.uses.as_slice() {
             [only] => only.span,
-            _ => self.declarations.pou(member).ast.name.span,
+            _ => self.declarations.pou(member).ast().name.span,
         };
         let class = self.own_class()?;
         let object = self.this_object(class, span);

@@ -67,7 +67,7 @@ impl Body<'_, '_> {
         let name = &association.action;
         let class = self.own_class()?;
         let member = self.declarations.find_member(class, Role::Method, &name.text);
-        let runs = match member.filter(|id| self.declarations.pou(*id).ast.kind == PouKind::Action) {
+        let runs = match member.filter(|id| self.declarations.pou(*id).ast().kind == PouKind::Action) {
             Some(id) => Runs::Statements(id),
             None => Runs::Variable(self.boolean_action(association)?),
         };

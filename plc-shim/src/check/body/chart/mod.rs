@@ -46,7 +46,7 @@ impl Body<'_, '_> {
     pub(in crate::check) fn chart(&mut self, ast: &ast::Pou) -> Vec<Statement> {
         let Some(first) = ast.chart.span() else { return Vec::new() };
         let owner = if ast.kind == PouKind::Action { self.own_class() } else { None };
-        if !keeps_charts(owner.map_or(ast.kind, |owner| self.declarations.pou(owner).ast.kind)) {
+        if !keeps_charts(owner.map_or(ast.kind, |owner| self.declarations.pou(owner).ast().kind)) {
             let message = "a chart is the body of a PROGRAM or FUNCTION_BLOCK, or of an action of one: nothing else \
                            keeps its steps";
             self.report(Diagnostic::error(Code::MisplacedChart, first, message));
@@ -105,7 +105,7 @@ impl Body<'_, '_> {
                 (field.offset, field.ty)
             }
             Type::FunctionBlock { pou, .. } => {
-                let scope = self.declarations.pou(*pou).scope.as_ref()?;
+                let scope = self.declarations.pou(*pou).scope()?;
                 let variable = scope.own(&name.to_ascii_uppercase())?;
                 let crate::ir::Storage::Instance(offset) = variable.storage else { return None };
                 (offset, variable.ty)

@@ -85,7 +85,7 @@ impl Body<'_, '_> {
     fn unknown_method<T>(&mut self, class: PouId, name: &Ident) -> Option<T> {
         let names = self.declarations.member_names(class);
         let help = crate::diagnostic::did_you_mean(&name.text, names.iter().map(String::as_str));
-        let message = format!("{} has no method `{}`", self.declarations.pou(class).ast.name.text, name.text);
+        let message = format!("{} has no method `{}`", self.declarations.pou(class).ast().name.text, name.text);
         let found = Diagnostic::error(Code::UnknownMember, name.span, message);
         self.report(found.with_optional_help(help));
         None
@@ -108,7 +108,7 @@ impl Body<'_, '_> {
         if let ast::ExprKind::Name(name) = &expr.kind {
             if self.is_this(name) {
                 let class =
-                    self.own_class().filter(|class| self.declarations.pou(*class).ast.kind != PouKind::Function);
+                    self.own_class().filter(|class| self.declarations.pou(*class).ast().kind != PouKind::Function);
                 let Some(class) = class else { return Some(self.no_object("THIS", name.span)) };
                 return Some(Some(self.this_object(class, name.span)));
             }
@@ -205,7 +205,7 @@ impl Body<'_, '_> {
         span: Span,
     ) -> Option<Expr> {
         let scope = self.declarations.interface(method, span)?;
-        let name = self.declarations.pou(method).ast.name.text.clone();
+        let name = self.declarations.pou(method).ast().name.text.clone();
         let (pou, dispatch) = self.dispatch(object.class, object.known, role, &name, method, span)?;
         let ty = scope.result().map_or(TypeTable::nothing(), |result| result.ty);
         let aggregate = scope.result().is_some() && self.elementary(ty).is_none();
@@ -268,7 +268,7 @@ impl Body<'_, '_> {
         call: &Call,
         span: Span,
     ) -> Option<Dispatch> {
-        if self.declarations.pou(pou).ast.kind == PouKind::Class {
+        if self.declarations.pou(pou).ast().kind == PouKind::Class {
             let message = "a class has no statements of its own; call one of its methods";
             self.report(Diagnostic::error(Code::NotCallable, call.callee.span, message));
             return None;

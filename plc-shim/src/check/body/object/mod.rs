@@ -19,7 +19,7 @@ impl Body<'_, '_> {
     /// The unit whose instance runs; nothing in functions.
     pub(in crate::check) fn own_class(&self) -> Option<PouId> {
         let id = self.declarations.owner_of(self.pou?);
-        (self.declarations.pou(id).ast.kind != PouKind::Function).then_some(id)
+        (self.declarations.pou(id).ast().kind != PouKind::Function).then_some(id)
     }
 
     pub(in crate::check) fn is_this(&self, name: &Ident) -> bool {
@@ -35,7 +35,7 @@ impl Body<'_, '_> {
         if !self.is_this(name) {
             return None;
         }
-        let class = self.own_class().filter(|class| self.declarations.pou(*class).ast.kind.has_instances());
+        let class = self.own_class().filter(|class| self.declarations.pou(*class).ast().kind.has_instances());
         let Some(class) = class else {
             return Some(self.no_object("THIS", name.span));
         };
@@ -45,7 +45,7 @@ impl Body<'_, '_> {
 
     /// The running instance, seen as one of `class`.
     pub(in crate::check) fn this(&mut self, class: PouId, span: Span) -> Place {
-        let ast = self.declarations.pou(class).ast;
+        let ast = self.declarations.pou(class).ast();
         let ty = self.declarations.types_mut().block(&ast.name.text, class);
         Place::whole(Storage::Instance(0), ty, span)
     }
@@ -84,8 +84,8 @@ impl Body<'_, '_> {
     /// Reports a method that may not be called from here.
     pub(in crate::check) fn check_method_access(&mut self, method: PouId, span: Span) -> Option<()> {
         let entry = self.declarations.pou(method);
-        let Some(Membership { owner, .. }) = entry.membership else { return Some(()) };
-        let visibility = method_visibility(&entry.ast.object.modifiers);
+        let Some(Membership { owner, .. }) = entry.membership() else { return Some(()) };
+        let visibility = method_visibility(&entry.ast().object.modifiers);
         if self.declarations.sees(self.pou, visibility, owner) {
             return Some(());
         }
@@ -94,7 +94,7 @@ impl Body<'_, '_> {
             Visibility::Protected => "PROTECTED",
             Visibility::Internal | Visibility::Public => "INTERNAL",
         };
-        let declared = entry.ast.name.span;
+        let declared = entry.ast().name.span;
         let message = format!("`{}` is {word}", self.declarations.display_name(method));
         let found = Diagnostic::error(Code::AccessDenied, span, message);
         self.report(found.with_label(declared, "declared here"));

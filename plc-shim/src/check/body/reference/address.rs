@@ -96,7 +96,7 @@ impl Body<'_, '_> {
     /// 3rd ed. 6.4.4.10.2: `VAR_TEMP` and the variables of functions.
     fn is_temporary(&self, expr: &ast::Expr) -> bool {
         let Some(variable) = root(expr).and_then(|name| self.scope.find(&name.key())) else { return false };
-        let function = self.pou.is_some_and(|id| self.declarations.pou(id).ast.kind == PouKind::Function);
+        let function = self.pou.is_some_and(|id| self.declarations.pou(id).ast().kind == PouKind::Function);
         match variable.section {
             SectionKind::Temp => true,
             SectionKind::External | SectionKind::Global | SectionKind::InOut => false,
@@ -127,7 +127,7 @@ impl Body<'_, '_> {
             || self
                 .declarations
                 .unit_of_key(&key)
-                .is_some_and(|id| self.declarations.pou(id).ast.kind == PouKind::FunctionBlock)
+                .is_some_and(|id| self.declarations.pou(id).ast().kind == PouKind::FunctionBlock)
     }
 
     fn is_valid_reference(&mut self, argument: &ast::Expr, span: Span) -> Option<Operand> {

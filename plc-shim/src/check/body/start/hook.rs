@@ -11,7 +11,7 @@ use crate::check::body::Body;
 use crate::check::body::call::argument::Passing;
 use crate::check::body::object::method_call::{Known, Object};
 use crate::check::declare::class::Role;
-use crate::check::declare::hook::{HOOKS, INIT_INPUTS, suits};
+use crate::check::declare::hook::{EXIT_INPUTS, INIT_INPUTS, suits_init};
 use crate::check::declare::layout::INIT_RETAINS_NAME;
 use crate::check::declare::scope::Scope;
 use crate::check::declare::start::{Given, Occasion};
@@ -41,9 +41,9 @@ impl<'a> Body<'_, 'a> {
         let (wanted, own) = (self.declarations.interface(base, span)?, self.declarations.interface(last, span)?);
         let lacks = |input: &&Variable| own.own(&input.name.to_ascii_uppercase()).is_none();
         let mut missing =
-            wanted.inputs().skip(INIT_INPUTS).filter(|input| !self.has_default(base, input)).filter(lacks);
+            wanted.inputs().skip(INIT_INPUTS.len()).filter(|input| !self.has_default(base, input)).filter(lacks);
         let Some(first) = missing.next() else { return Some(()) };
-        let (name, unit) = (self.declarations.pou(last).ast.name.clone(), self.declarations.display_name(base));
+        let (name, unit) = (self.declarations.pou(last).ast().name.clone(), self.declarations.display_name(base));
         let message = format!("`{}` lacks `{}`, which `{unit}` wants", name.text, first.name);
         let found = Diagnostic::error(Code::HookInputs, name.span, message).with_label(first.span, "declared here");
         // Told once, however many instances there are.
@@ -55,7 +55,7 @@ impl<'a> Body<'_, 'a> {
 
     /// True for an input with an initial value of its own.
     fn has_default(&self, init: PouId, input: &Variable) -> bool {
-        let sections = &self.declarations.pou(init).ast.sections;
+        let sections = &self.declarations.pou(init).ast().sections;
         let mut variables =
             sections.iter().flat_map(|section| &section.variables).filter(|variable| variable.initial.is_some());
         variables.any(|each| each.names.iter().any(|name| name.text.eq_ignore_ascii_case(&input.name)))
@@ -64,7 +64,7 @@ impl<'a> Body<'_, 'a> {
     /// The calls of `FB_exit` on the instance at a place, that of the base last.
     pub(in crate::check) fn exit_calls(&mut self, place: &Place, pou: PouId) -> Vec<Statement> {
         let hooks = self.declarations.hooks(pou, Occasion::End);
-        let copies = [Argument::Input(ident(HOOKS[2].inputs[0], place.span), truth(false, place.span))];
+        let copies = [Argument::Input(ident(EXIT_INPUTS[0], place.span), truth(false, place.span))];
         let calls = hooks.into_iter().rev().map(|hook| self.hook_call(place, pou, hook, copies.to_vec()));
         calls.collect::<Option<Vec<_>>>().unwrap_or_default()
     }
@@ -72,14 +72,14 @@ impl<'a> Body<'_, 'a> {
     /// The arguments with the names of what they are for.
     fn named(&mut self, init: PouId, given: Given<'a>, span: Span) -> Option<Vec<Named>> {
         let scope = self.declarations.interface(init, span)?;
-        let mut own = scope.positional().skip(INIT_INPUTS);
+        let mut own = scope.positional().skip(INIT_INPUTS.len());
         let mut named = Vec::new();
         for argument in given {
             let (name, value) = match argument {
                 Argument::Input(name, value) => (name.clone(), value),
                 Argument::Positional(value) => {
                     let Some(input) = own.next() else {
-                        let wanted = scope.positional().count().saturating_sub(INIT_INPUTS);
+                        let wanted = scope.positional().count().saturating_sub(INIT_INPUTS.len());
                         let message = format!("`{}` takes {wanted} arguments", self.declarations.display_name(init));
                         self.report(Diagnostic::error(Code::TooManyArguments, value.span, message));
                         return None;
@@ -106,12 +106,12 @@ impl<'a> Body<'_, 'a> {
         is_last: bool,
     ) -> Option<Statement> {
         let scope = self.declarations.interface(init, place.span)?;
-        if !suits(&HOOKS[0], &scope) {
+        if !suits_init(&scope) {
             return None;
         }
         self.all_given(&scope, pou, init, named, place.span)?;
         let span = place.span;
-        let [retains, copies] = [HOOKS[0].inputs[0], HOOKS[0].inputs[1]].map(|name| ident(name, span));
+        let [retains, copies] = INIT_INPUTS.map(|name| ident(name, span));
         let name = ast::ExprKind::Name(ident(INIT_RETAINS_NAME, span));
         let retained = ast::Expr { kind: name, span, height: 1 };
         let mut arguments = vec![Argument::Input(retains, retained), Argument::Input(copies, truth(false, span))];
@@ -128,9 +128,9 @@ impl<'a> Body<'_, 'a> {
         }
         let is_given = |input: &&Variable| named.iter().any(|(name, _)| name.text.eq_ignore_ascii_case(&input.name));
         let wanted = |input: &&Variable| !is_given(input) && !self.has_default(init, input);
-        let mut missing = scope.inputs().skip(INIT_INPUTS).filter(wanted);
+        let mut missing = scope.inputs().skip(INIT_INPUTS.len()).filter(wanted);
         let Some(first) = missing.next() else { return Some(()) };
-        let (block, unit) = (&self.declarations.pou(pou).ast.name.text, self.declarations.display_name(init));
+        let (block, unit) = (&self.declarations.pou(pou).ast().name.text, self.declarations.display_name(init));
         let message = format!("`{unit}` wants `{}`", first.name);
         let found = Diagnostic::error(Code::MissingArgument, span, message).with_label(first.span, "declared here");
         let help = format!("declare the instance as `: {block}({} := ..)`", first.name);

@@ -17,14 +17,14 @@ use crate::syntax::Span;
 impl<'a> Body<'_, 'a> {
     /// What a unit's occasion does: what its base does, then its own variables in their order.
     pub(in crate::check) fn staged(&mut self, owner: PouId, occasion: Occasion) -> Vec<Statement> {
-        let span = self.declarations.pou(owner).ast.name.span;
+        let span = self.declarations.pou(owner).ast().name.span;
         let mut statements = Vec::new();
         let base = self.declarations.base_of(owner).and_then(|base| self.declarations.stage(base, occasion));
         if let Some(base) = base {
             let instance = self.this(owner, span);
             statements.extend(self.stage_call(&instance, base, span));
         }
-        let starts = self.declarations.pou(owner).starts.clone();
+        let starts = self.declarations.pou(owner).starts().clone();
         let this = Place::whole(Storage::Instance(0), ElementaryType::Byte.into(), span);
         statements.extend(self.performed(&this, &starts, occasion));
         statements
@@ -94,7 +94,7 @@ impl<'a> Body<'_, 'a> {
     }
 
     fn instance_type(&mut self, pou: PouId) -> TypeId {
-        let name = &self.declarations.pou(pou).ast.name.text;
+        let name = &self.declarations.pou(pou).ast().name.text;
         self.declarations.types_mut().block(name, pou)
     }
 
