@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::fmt;
 use std::path::PathBuf;
 
-use crate::source::{Named, Place, Sources};
+use crate::source::{Field, Named, Place, Sources};
 
 /// The room of what stands in the folder's own file.
 const ENTRANCE: &str = "mod";
@@ -17,7 +17,7 @@ pub struct Arrow {
     from: String,
     to: String,
     path: String,
-    /// True if it leads to a module below the room's own one.
+    /// True if it leads to a module that only the room itself may enter.
     past_interface: bool,
 }
 
@@ -31,11 +31,15 @@ impl fmt::Display for Arrow {
 /// The rooms of a folder.
 pub struct Rooms {
     arrows: Vec<Arrow>,
+    /// Fields that more than their room sees.
+    open: Vec<Field>,
 }
 
 impl Rooms {
     pub fn new(sources: &Sources) -> Self {
-        Self { arrows: sources.named.iter().filter_map(|named| arrow(sources, named)).collect() }
+        let arrows = sources.named.iter().filter_map(|named| arrow(sources, named)).collect();
+        let open = sources.fields.iter().filter(|field| is_open(sources, field)).cloned().collect();
+        Self { arrows, open }
     }
 
     /// The circles of rooms, each in alphabetical order.
@@ -66,6 +70,11 @@ impl Rooms {
         inside.filter(|arrow| seen.insert((&arrow.from, &arrow.to, &arrow.file))).collect()
     }
 
+    /// Fields of structures, except of `records`, that more than their room sees.
+    pub fn open_fields(&self, records: &[&str]) -> Vec<&Field> {
+        self.open.iter().filter(|field| !records.contains(&field.structure.as_str())).collect()
+    }
+
     pub fn past_interfaces(&self) -> Vec<&Arrow> {
         self.arrows.iter().filter(|arrow| arrow.past_interface).collect()
     }
@@ -92,8 +101,21 @@ fn arrow(sources: &Sources, named: &Named) -> Option<Arrow> {
     if from == to {
         return None;
     }
-    let past_interface = module_of(sources, &absolute(sources, &named.from, &named.to)?).len() > 1;
+    let entered = absolute(sources, &named.from, &named.to)?;
+    let entered = module_of(sources, &entered);
+    // A room may show modules whose names say what their items mean; what lies below these is its own.
+    let past_interface = entered.len() > 2 || entered.len() == 2 && sources.private.contains(entered);
     Some(Arrow { file: named.file.clone(), line: named.line, from, to, path: named.to.join("::"), past_interface })
+}
+
+/// True if a field in a room is seen outside of the room.
+fn is_open(sources: &Sources, field: &Field) -> bool {
+    if field.of.is_empty() {
+        return false;
+    }
+    // `pub` and `pub(crate)` lead out of every room; a path into the folder leads into one if it is not empty.
+    let seen = absolute(sources, &field.of, &field.sight).unwrap_or_default();
+    field.sight.first().is_none_or(|first| first == "crate" && field.sight.len() == 1) || seen.is_empty()
 }
 
 /// The path from the folder on; nothing for what lies outside of it.

@@ -18,11 +18,27 @@ pub struct Named {
     pub to: Vec<String>,
 }
 
+/// A field of a structure that more than its own module sees.
+#[derive(Debug, Clone)]
+pub struct Field {
+    pub file: PathBuf,
+    pub line: usize,
+    /// The module that declares it.
+    pub of: Place,
+    pub structure: String,
+    pub name: String,
+    /// What stands between the parentheses of `pub`; nothing for a plain one.
+    pub sight: Vec<String>,
+}
+
 /// All modules below a folder.
 pub struct Sources {
     /// Modules from the crate's root to the folder: what `crate::` must begin with to lead into it.
     pub above: Place,
     pub modules: BTreeSet<Place>,
+    /// Those of them that only the module around them sees.
+    pub private: BTreeSet<Place>,
+    pub fields: Vec<Field>,
     pub named: Vec<Named>,
     /// What modules import, by the name that it has there: re-exports lead further.
     pub imports: BTreeMap<(Place, String), Vec<String>>,
@@ -38,6 +54,8 @@ impl Sources {
         let mut read = Self {
             above: above[src + 1..].to_vec(),
             modules: BTreeSet::new(),
+            private: BTreeSet::new(),
+            fields: Vec::new(),
             named: Vec::new(),
             imports: BTreeMap::new(),
         };
@@ -122,6 +140,12 @@ impl Reader<'_> {
                 }
                 Token::Word(word) if word == "mod" && self.word(1).is_some() => {
                     let name = self.word(1).unwrap_or_default();
+                    // What is seen has `pub`, or the parenthesis behind it, in front.
+                    let before = self.at.checked_sub(1).and_then(|at| self.tokens.get(at));
+                    if !before.is_some_and(|(token, _)| token.is_word("pub") || token.is_mark(')')) {
+                        let place = self.place.iter().chain([&name]).cloned().collect();
+                        self.sources.private.insert(place);
+                    }
                     if self.is_mark(2, '{') {
                         self.around.push(depth);
                         self.place.push(name);
@@ -136,6 +160,7 @@ impl Reader<'_> {
                     self.at += 1;
                     self.tree(&[]);
                 }
+                Token::Word(word) if word == "struct" => self.structure(),
                 Token::Word(_) => self.path(),
                 _ => self.at += 1,
             }
@@ -206,6 +231,49 @@ impl Reader<'_> {
         }
         self.sources.imports.insert((self.place.clone(), name), segments.clone());
         self.add(segments, line);
+    }
+
+    /// Notes the fields of a structure that others see; their types are read as any text.
+    fn structure(&mut self) {
+        let structure = self.word(1).unwrap_or_default();
+        self.at += 2;
+        let mut ahead = 0;
+        while self.peek(ahead).is_some() && !self.is_mark(ahead, '{') {
+            // A tuple, or nothing inside.
+            if self.is_mark(ahead, ';') || self.is_mark(ahead, '(') {
+                return;
+            }
+            ahead += 1;
+        }
+        let mut depth = 0;
+        while let Some(token) = self.peek(ahead).cloned() {
+            match token {
+                Token::Mark('{' | '(' | '[') => depth += 1,
+                Token::Mark('}' | ')' | ']') => depth -= 1,
+                Token::Word(word) if word == "pub" && depth == 1 => self.field(&structure, ahead + 1),
+                _ => {}
+            }
+            if depth == 0 {
+                return;
+            }
+            ahead += 1;
+        }
+    }
+
+    /// A field whose `pub` ends before `ahead`.
+    fn field(&mut self, structure: &str, mut ahead: usize) {
+        let mut sight = Vec::new();
+        if self.is_mark(ahead, '(') {
+            while self.peek(ahead).is_some() && !self.is_mark(ahead, ')') {
+                sight.extend(self.word(ahead).filter(|word| word != "in"));
+                ahead += 1;
+            }
+            ahead += 1;
+        }
+        let line = self.tokens.get(self.at + ahead).map_or(0, |(_, line)| *line);
+        let (of, name) = (self.place.clone(), self.word(ahead).unwrap_or_default());
+        let (file, structure) = (self.file.to_owned(), structure.to_owned());
+        self.sources.fields.push(Field { file, line, of, structure, name, sight });
     }
 
     /// A path in the text; a word alone is none.

@@ -1,20 +1,18 @@
 //! Names, types, constants and calls: from syntax trees to the checked program.
 
 pub(crate) mod asserts;
-pub(in crate::check) mod body;
-pub(in crate::check) mod configuration;
-pub(in crate::check) mod declare;
-pub(in crate::check) mod resolve;
-pub(in crate::check) mod standard;
-pub(in crate::check) mod types;
+mod body;
+mod configuration;
+mod declare;
+mod resolve;
+mod standard;
+mod types;
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use self::body::unit::check_unit;
+use self::body::check_unit;
 use self::configuration::{Configured, Configurer};
-use self::declare::Declarations;
-use self::declare::query::Outcome;
-use self::declare::start::{self, Occasion};
+use self::declare::{Declarations, Occasion, Outcome, stages};
 use self::resolve::Resolver;
 use crate::diagnostic::Diagnostic;
 use crate::dialect::AddressUnit;
@@ -22,10 +20,7 @@ use crate::ir::{Areas, Configuration, Entry, Pou, PouId, Program, Row, TypeTable
 use crate::syntax::ast::CompilationUnit;
 use crate::syntax::{FileId, Span};
 
-pub(crate) use self::declare::kept::Kept;
-pub(crate) use self::declare::layout::{
-    CALL_DEPTH_OFFSET, INIT_RETAINS_OFFSET, VIRTUAL_TIME_NAME, VIRTUAL_TIME_OFFSET,
-};
+pub(crate) use self::declare::{CALL_DEPTH_OFFSET, INIT_RETAINS_OFFSET, Kept, VIRTUAL_TIME_NAME, VIRTUAL_TIME_OFFSET};
 pub(crate) use self::standard::exists as is_standard_function;
 
 /// The checked program.
@@ -63,7 +58,7 @@ pub(crate) struct Checked {
 /// Checks all units together. `library` tells the files of the standard function blocks, whose
 /// units are compiled only if they are used.
 pub(crate) fn check(units: &[(FileId, &CompilationUnit)], library: &BTreeSet<FileId>) -> (Checked, Vec<Diagnostic>) {
-    let stages = start::stages(units);
+    let stages = stages(units);
     let mut declarations = Declarations::new(library, &stages, &Resolver);
     declarations.collect(units);
     declarations.link_classes();

@@ -1,26 +1,28 @@
 //! Expressions and statements inside of a scope, and the bodies of units.
 
-pub(in crate::check) mod call;
-pub(in crate::check) mod chart;
-pub(in crate::check) mod expression;
-pub(in crate::check) mod object;
-pub(in crate::check) mod place;
-pub(in crate::check) mod reference;
-pub(in crate::check) mod start;
-pub(in crate::check) mod statement;
-pub(in crate::check) mod text;
-pub(in crate::check) mod unit;
+mod call;
+mod chart;
+mod expression;
+mod object;
+mod place;
+mod reference;
+mod start;
+mod statement;
+mod text;
+mod unit;
 
 use std::collections::BTreeMap;
 
 use self::statement::jump::Labels;
-use crate::check::declare::Declarations;
-use crate::check::declare::scope::Scope;
+use crate::check::declare::{Declarations, Scope};
 use crate::diagnostic::Diagnostic;
 use crate::ir::{ElementaryType, Place, PouId};
 
+pub(super) use self::expression::dtl::is_literal as is_dtl_literal;
+pub(super) use self::unit::check_unit;
+
 /// Checks expressions and statements inside a scope.
-pub(in crate::check) struct Body<'c, 'a> {
+pub(super) struct Body<'c, 'a> {
     declarations: &'c mut Declarations<'a>,
     scope: Scope,
     /// The unit; nothing for declarations outside of any.
@@ -44,11 +46,11 @@ pub(in crate::check) struct Body<'c, 'a> {
 
 impl<'c, 'a> Body<'c, 'a> {
     /// For declarations outside of any unit.
-    pub(in crate::check) fn outside(declarations: &'c mut Declarations<'a>) -> Self {
+    pub(super) fn outside(declarations: &'c mut Declarations<'a>) -> Self {
         Self::new(declarations, Scope::default(), None)
     }
 
-    pub(in crate::check) fn new(declarations: &'c mut Declarations<'a>, scope: Scope, pou: Option<PouId>) -> Self {
+    pub(super) fn new(declarations: &'c mut Declarations<'a>, scope: Scope, pou: Option<PouId>) -> Self {
         Self {
             declarations,
             scope,
@@ -64,44 +66,44 @@ impl<'c, 'a> Body<'c, 'a> {
         }
     }
 
-    pub(in crate::check) fn declarations(&self) -> &Declarations<'a> {
+    pub(super) fn declarations(&self) -> &Declarations<'a> {
         self.declarations
     }
 
-    pub(in crate::check) fn declarations_mut(&mut self) -> &mut Declarations<'a> {
+    pub(super) fn declarations_mut(&mut self) -> &mut Declarations<'a> {
         self.declarations
     }
 
-    pub(in crate::check) fn scope(&self) -> &Scope {
+    pub(super) fn scope(&self) -> &Scope {
         &self.scope
     }
 
-    pub(in crate::check) fn scope_mut(&mut self) -> &mut Scope {
+    pub(super) fn scope_mut(&mut self) -> &mut Scope {
         &mut self.scope
     }
 
     /// The names and registers, when all is checked.
-    pub(in crate::check) fn into_scope(self) -> Scope {
+    pub(super) fn into_scope(self) -> Scope {
         self.scope
     }
 
     /// The unit; nothing for declarations outside of any.
-    pub(in crate::check) fn unit(&self) -> Option<PouId> {
+    pub(super) fn unit(&self) -> Option<PouId> {
         self.pou
     }
 
-    pub(in crate::check) fn report(&mut self, diagnostic: Diagnostic) {
+    pub(super) fn report(&mut self, diagnostic: Diagnostic) {
         self.declarations.report(diagnostic);
     }
 
-    pub(in crate::check) fn type_name(&self, ty: impl Into<crate::ir::TypeId>) -> String {
+    pub(super) fn type_name(&self, ty: impl Into<crate::ir::TypeId>) -> String {
         self.declarations.types().name(ty.into())
     }
 
-    pub(in crate::check) fn elementary(&self, ty: crate::ir::TypeId) -> Option<ElementaryType> {
+    pub(super) fn elementary(&self, ty: crate::ir::TypeId) -> Option<ElementaryType> {
         self.declarations.types().elementary(ty)
     }
 }
 
 /// What something written means: nothing if it is not of the kind asked for, else what it is, if it is right.
-pub(in crate::check) type Meant<T> = Option<Option<T>>;
+pub(super) type Meant<T> = Option<Option<T>>;

@@ -2,9 +2,7 @@
 
 use super::Body;
 use super::call::enable::boolean;
-use crate::check::declare::Declarations;
-use crate::check::declare::hook::is_hook;
-use crate::check::declare::start::Occasion;
+use crate::check::declare::{Declarations, Occasion, is_hook};
 use crate::check::types::build::{assign, load, not, operation};
 use crate::check::types::constant::decode;
 use crate::check::types::operand::constant;
@@ -115,7 +113,7 @@ fn copied_parameter(variable: &Variable, elementary: bool, register: LocalId) ->
 
 impl Body<'_, '_> {
     /// Looks for the edge once in every call of the unit.
-    pub(in crate::check) fn detected(variable: &Variable, detection: EdgeDetection) -> [Statement; 2] {
+    fn detected(variable: &Variable, detection: EdgeDetection) -> [Statement; 2] {
         let place = |storage| Place::whole(storage, ElementaryType::Bool.into(), variable.span);
         let level = match detection.edge {
             Edge::Rising => load(&place(variable.storage)),
@@ -129,7 +127,7 @@ impl Body<'_, '_> {
 
 impl Body<'_, '_> {
     /// ENO is TRUE when the unit begins.
-    pub(in crate::check) fn outcome_begins(variable: &Variable) -> Option<Statement> {
+    fn outcome_begins(variable: &Variable) -> Option<Statement> {
         let outcome = is_control(variable) && variable.section == SectionKind::Output;
         let (ty, span) = (variable.ty, variable.span);
         let kind = StatementKind::Assign(Place::whole(variable.storage, ty, span), boolean(true, span));

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use super::Configurer;
 use crate::check::body::Body;
-use crate::check::declare::scope::Scope;
+use crate::check::declare::Scope;
 use crate::check::types::operand::Operand;
 use crate::diagnostic::{Code, Diagnostic};
 use crate::ir::{
@@ -16,15 +16,15 @@ use crate::syntax::ast::{self, Connection, Ident, ProgramDeclaration, SectionKin
 
 /// The statements around an instance's call.
 #[derive(Default)]
-pub(in crate::check) struct Around {
-    pub(in crate::check) before: Side,
-    pub(in crate::check) after: Side,
+pub(super) struct Around {
+    pub(super) before: Side,
+    pub(super) after: Side,
 }
 
 /// Statements with the registers that they need.
 #[derive(Default)]
-pub(in crate::check) struct Side {
-    pub(in crate::check) statements: Vec<Statement>,
+pub(super) struct Side {
+    pub(super) statements: Vec<Statement>,
     scope: Scope,
 }
 
@@ -43,7 +43,7 @@ fn unit(name: &str, side: Side, span: Span) -> Pou {
 
 impl<'a> Configurer<'_, 'a> {
     /// An entry for each program, then one for each function block with a task of its own.
-    pub(in crate::check) fn make_entries(&mut self) {
+    pub(super) fn make_entries(&mut self) {
         let declared: Vec<Option<(&'a ast::Resource, &'a ProgramDeclaration)>> =
             (0..self.declarations.programs().len()).map(|at| self.declaration_of(at)).collect();
         let mut blocks = Vec::new();
@@ -216,7 +216,7 @@ impl<'a> Configurer<'_, 'a> {
     }
 
     /// The task alone runs such an instance (2nd ed. 2.7.2), so its program must not.
-    pub(in crate::check) fn report_double_calls(&mut self, checked: &BTreeMap<PouId, Pou>) {
+    pub(super) fn report_double_calls(&mut self, checked: &BTreeMap<PouId, Pou>) {
         for (program, offset, span) in self.configured.task_blocks.clone() {
             let Some(unit) = self.declarations.programs().get(program).and_then(|program| checked.get(&program.pou))
             else {
@@ -237,7 +237,7 @@ pub(in crate::check) fn place(target: &Target, span: Span) -> Place {
     if target.inside == 0 { place } else { place.member(target.inside, target.ty) }
 }
 
-pub(in crate::check) fn loaded(target: &Target, span: Span) -> Expr {
+pub(super) fn loaded(target: &Target, span: Span) -> Expr {
     Expr { kind: ExprKind::Load(place(target, span)), ty: target.ty, span }
 }
 

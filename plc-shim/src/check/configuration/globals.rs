@@ -9,7 +9,7 @@ use crate::syntax::Span;
 
 impl<'a> Configurer<'_, 'a> {
     /// Lets every name with several declarations stand for the resource's own.
-    pub(in crate::check) fn select_globals(&mut self, resource: Option<usize>, span: Span) -> Vec<Statement> {
+    pub(super) fn select_globals(&mut self, resource: Option<usize>, span: Span) -> Vec<Statement> {
         let names = self.declarations.alternatives();
         let mut statements = Vec::new();
         for (name, cell) in names {
@@ -25,7 +25,7 @@ impl<'a> Configurer<'_, 'a> {
     }
 
     /// Units that run in a resource use no global variable of another one.
-    pub(in crate::check) fn report_foreign_globals(&mut self) {
+    pub(super) fn report_foreign_globals(&mut self) {
         let uses = self.declarations.global_uses().to_vec();
         let mut found = BTreeMap::new();
         for program in self.declarations.programs().to_vec() {

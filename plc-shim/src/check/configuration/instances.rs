@@ -1,9 +1,7 @@
 //! `VAR_CONFIG` and `VAR_ACCESS` (2nd ed. 2.7.1, 2.4.3; Table 49 features 10 and 11).
 
 use super::{Configurer, connections};
-use crate::check::declare::demand::Need;
-use crate::check::declare::entry::TypedImage;
-use crate::check::declare::start::Started;
+use crate::check::declare::{Need, Started, TypedImage};
 use crate::check::resolve::Written;
 use crate::diagnostic::{Code, Diagnostic};
 use crate::ir::{Access, Storage, Target};
@@ -12,7 +10,7 @@ use crate::syntax::ast::{AccessDirection, AccessPath, InstanceValue, TypeSpec};
 
 impl<'a> Configurer<'_, 'a> {
     /// Gives variables of single instances initial values of their own.
-    pub(in crate::check) fn instance_values(&mut self, values: &'a [InstanceValue]) {
+    pub(super) fn instance_values(&mut self, values: &'a [InstanceValue]) {
         for value in values {
             self.instance_value(value);
         }
@@ -73,7 +71,7 @@ impl<'a> Configurer<'_, 'a> {
     }
 
     /// Names for those outside.
-    pub(in crate::check) fn access_paths(&mut self, paths: &'a [AccessPath]) {
+    pub(super) fn access_paths(&mut self, paths: &'a [AccessPath]) {
         self.declarations.report_twins(&paths.iter().map(|access| &access.name).collect::<Vec<_>>());
         for access in paths {
             if let Some(found) = self.access_path(access) {

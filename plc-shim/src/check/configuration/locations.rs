@@ -14,7 +14,7 @@ use crate::syntax::ast::Ident;
 use crate::syntax::direct_address::{Area, DirectAddress};
 
 /// A variable of an instance and its direct address.
-pub(in crate::check) struct InstanceLocation {
+pub(super) struct InstanceLocation {
     target: Target,
     area: Area,
     storage: Storage,
@@ -23,7 +23,7 @@ pub(in crate::check) struct InstanceLocation {
 
 impl Configurer<'_, '_> {
     /// Gives a variable of an instance its address.
-    pub(in crate::check) fn locate(&mut self, target: &Target, address: &Ident) -> Option<()> {
+    pub(super) fn locate(&mut self, target: &Target, address: &Ident) -> Option<()> {
         let open = target.variable.as_ref().and_then(|variable| variable.address.as_ref());
         let open = open.filter(|text| text.ends_with('*')).and_then(|text| DirectAddress::parse(text).ok());
         let Some(open) = open else {
@@ -34,7 +34,7 @@ impl Configurer<'_, '_> {
                 .report(declared.into_iter().fold(found, |found, span| found.with_label(span, "declared here")));
             return None;
         };
-        let storage = Body::outside(self.declarations).direct_place(&address.text, address.span)?.place.storage;
+        let storage = Body::outside(self.declarations).direct_place(&address.text, address.span)?.into_place().storage;
         let wanted = DirectAddress::parse(&address.text).ok()?;
         if wanted.area != open.area {
             let message = format!("`{}` is declared in another area", target.path);
@@ -50,7 +50,7 @@ impl Configurer<'_, '_> {
     }
 
     /// Copies between the addresses and the variables of a program's instance.
-    pub(in crate::check) fn copy_locations(&mut self, program: usize, around: &mut Around) {
+    pub(super) fn copy_locations(&mut self, program: usize, around: &mut Around) {
         let Some(program) = self.declarations.programs().get(program) else { return };
         let range = program.offset..program.offset + self.declarations.pou(program.pou).instance().0;
         let locations = std::mem::take(&mut self.configured.locations);

@@ -11,27 +11,26 @@
 //! | [`locations`] | direct addresses of single instances |
 //! | [`instances`] | `VAR_CONFIG` and `VAR_ACCESS` |
 
-pub(in crate::check) mod connections;
-pub(in crate::check) mod globals;
-pub(in crate::check) mod instances;
-pub(in crate::check) mod locations;
-pub(in crate::check) mod occasion;
-pub(in crate::check) mod path;
-pub(in crate::check) mod programs;
-pub(in crate::check) mod tasks;
+mod connections;
+mod globals;
+mod instances;
+mod locations;
+mod occasion;
+mod path;
+mod programs;
+mod tasks;
 
 use std::collections::BTreeMap;
 
 use self::locations::InstanceLocation;
-use crate::check::declare::Declarations;
-use crate::check::declare::start::Started;
+use crate::check::declare::{Declarations, Started};
 use crate::ir::{self, Entry, Pou, PouId};
 use crate::syntax::Span;
 use crate::syntax::ast::Ident;
 
 /// What is known of the configuration so far.
 #[derive(Default)]
-pub(in crate::check) struct Configured<'a> {
+pub(super) struct Configured<'a> {
     resources: Vec<ir::Resource>,
     entries: Vec<Entry>,
     access: Vec<ir::Access>,
@@ -44,18 +43,18 @@ pub(in crate::check) struct Configured<'a> {
 }
 
 /// Works out the configuration from the declarations: first what runs, and when bodies are checked the rest.
-pub(in crate::check) struct Configurer<'d, 'a> {
+pub(super) struct Configurer<'d, 'a> {
     declarations: &'d mut Declarations<'a>,
     configured: &'d mut Configured<'a>,
 }
 
 impl<'d, 'a> Configurer<'d, 'a> {
-    pub(in crate::check) fn new(declarations: &'d mut Declarations<'a>, configured: &'d mut Configured<'a>) -> Self {
+    pub(super) fn new(declarations: &'d mut Declarations<'a>, configured: &'d mut Configured<'a>) -> Self {
         Self { declarations, configured }
     }
 
     /// Makes instances, tasks and connections; before the bodies of units are checked.
-    pub(in crate::check) fn configure(&mut self) {
+    pub(super) fn configure(&mut self) {
         if let Some(ast) = self.declarations.configuration() {
             for (index, resource) in ast.resources.iter().enumerate() {
                 let name = resource.name.as_ref().map(|(name, _)| name.text.clone());
@@ -75,13 +74,13 @@ impl<'d, 'a> Configurer<'d, 'a> {
     }
 
     /// What can be said only when every unit's body is known.
-    pub(in crate::check) fn check(&mut self, checked: &BTreeMap<PouId, Pou>) {
+    pub(super) fn check(&mut self, checked: &BTreeMap<PouId, Pou>) {
         self.report_idle_programs();
         self.report_foreign_globals();
         self.report_double_calls(checked);
     }
 
-    pub(in crate::check) fn finish(&mut self) -> (Option<ir::Configuration>, Vec<Entry>) {
+    pub(super) fn finish(&mut self) -> (Option<ir::Configuration>, Vec<Entry>) {
         for index in 0..self.configured.resources.len() {
             let globals = self.declarations.own_globals(index);
             self.configured.resources[index].globals = globals;
@@ -96,7 +95,7 @@ impl<'d, 'a> Configurer<'d, 'a> {
     }
 
     /// A resource's name as it begins a path; nothing for the only one without a name.
-    pub(in crate::check) fn resource_name(&self, index: usize) -> Option<&'a Ident> {
+    fn resource_name(&self, index: usize) -> Option<&'a Ident> {
         let resource = self.declarations.configuration()?.resources.get(index)?;
         resource.name.as_ref().map(|(name, _)| name)
     }

@@ -2,7 +2,7 @@
 
 use super::Configurer;
 use crate::check::body::Body;
-use crate::check::declare::start::{Occasion, Start, StartKind};
+use crate::check::declare::{Occasion, Start, StartKind};
 use crate::ir::{ElementaryType, Guard, Place, Pou, Storage};
 
 impl Configurer<'_, '_> {

@@ -51,7 +51,7 @@ impl Configurer<'_, '_> {
     }
 
     /// True for a path that begins with a name of the configuration's.
-    pub(in crate::check) fn is_configured_path(&self, expr: &Expr, resource: Option<usize>) -> bool {
+    pub(super) fn is_configured_path(&self, expr: &Expr, resource: Option<usize>) -> bool {
         let Some(Piece::Name(first)) = pieces(expr).and_then(|pieces| pieces.first().copied()) else {
             return false;
         };
@@ -138,7 +138,7 @@ impl Configurer<'_, '_> {
         Some(Ok(Target { path, storage, inside, ty: variable.ty, variable: Some(variable) }))
     }
 
-    pub(in crate::check) fn program_target(&mut self, index: usize) -> Target {
+    pub(super) fn program_target(&mut self, index: usize) -> Target {
         // Indices come from `program_named` and from walks over all programs.
         let program = self.declarations.programs()[index].clone();
         let home = program.resource.and_then(|home| self.resource_name(home));
@@ -148,7 +148,7 @@ impl Configurer<'_, '_> {
     }
 
     /// The variable at a path inside of program `index`.
-    pub(in crate::check) fn target_in_program(&mut self, index: usize, expr: &Expr) -> Option<Target> {
+    pub(super) fn target_in_program(&mut self, index: usize, expr: &Expr) -> Option<Target> {
         let root = self.program_target(index);
         let Some(pieces) = pieces(expr) else {
             let message = "the path of a variable is wanted here";

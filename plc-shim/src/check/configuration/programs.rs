@@ -7,7 +7,7 @@ use crate::syntax::ast::{self, Ident, PouKind, ProgramDeclaration};
 
 impl<'a> Configurer<'_, 'a> {
     /// Places the programs of a resource.
-    pub(in crate::check) fn place_instances(&mut self, resource: &'a ast::Resource, index: usize) {
+    pub(super) fn place_instances(&mut self, resource: &'a ast::Resource, index: usize) {
         let names: Vec<&Ident> = resource.programs.iter().map(|program| &program.name).collect();
         self.declarations.report_twins(&names);
         for declared in &resource.programs {
@@ -19,7 +19,7 @@ impl<'a> Configurer<'_, 'a> {
     }
 
     /// Every other program has one instance, under its own name.
-    pub(in crate::check) fn place_other_programs(&mut self) {
+    pub(super) fn place_other_programs(&mut self) {
         for id in self.declarations.unit_ids() {
             let ast = self.declarations.pou(id).ast();
             if ast.kind != PouKind::Program || self.declarations.programs().iter().any(|program| program.pou == id) {
@@ -30,7 +30,7 @@ impl<'a> Configurer<'_, 'a> {
     }
 
     /// What no resource declares never runs, unless another unit calls it, as vendors allow.
-    pub(in crate::check) fn report_idle_programs(&mut self) {
+    pub(super) fn report_idle_programs(&mut self) {
         let Some(ast) = self.declarations.configuration() else { return };
         let declared: usize = ast.resources.iter().map(|resource| resource.programs.len()).sum();
         // A program may be the one that is meant by a wrong name.

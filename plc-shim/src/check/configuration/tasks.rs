@@ -11,7 +11,7 @@ const INPUTS: [&str; 3] = ["SINGLE", "INTERVAL", "PRIORITY"];
 
 impl<'a> Configurer<'_, 'a> {
     /// The tasks of a resource, each in its place, wrong or not.
-    pub(in crate::check) fn tasks(&mut self, resource: &'a ast::Resource, index: usize) -> Vec<Task> {
+    pub(super) fn tasks(&mut self, resource: &'a ast::Resource, index: usize) -> Vec<Task> {
         let names: Vec<&Ident> = resource.tasks.iter().map(|task| &task.name).collect();
         self.declarations.report_twins(&names);
         resource.tasks.iter().map(|task| self.task(task, index)).collect()
@@ -77,7 +77,7 @@ impl<'a> Configurer<'_, 'a> {
     }
 
     /// The variables that trigger tasks, when all programs have been placed.
-    pub(in crate::check) fn resolve_single_inputs(&mut self, ast: &'a ast::Configuration) {
+    pub(super) fn resolve_single_inputs(&mut self, ast: &'a ast::Configuration) {
         for (index, resource) in ast.resources.iter().enumerate() {
             for (at, task) in resource.tasks.iter().enumerate() {
                 let single = task.inputs.iter().find(|(name, _)| name.key() == "SINGLE");
@@ -100,7 +100,7 @@ impl<'a> Configurer<'_, 'a> {
     }
 
     /// Position of the task of this name in its resource.
-    pub(in crate::check) fn task_named(&mut self, resource: &'a ast::Resource, name: &Ident) -> Option<usize> {
+    pub(super) fn task_named(&mut self, resource: &'a ast::Resource, name: &Ident) -> Option<usize> {
         let found = resource.tasks.iter().position(|task| task.name.text.eq_ignore_ascii_case(&name.text));
         if found.is_none() {
             let help = did_you_mean(&name.text, resource.tasks.iter().map(|task| task.name.text.as_str()));

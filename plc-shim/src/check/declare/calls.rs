@@ -160,7 +160,7 @@ impl<'a> Declarations<'a> {
     }
 
     /// The calls of a unit, in the order in which they have been found.
-    pub(in crate::check) fn calls_of(&self, caller: PouId) -> &[(PouId, Span)] {
+    pub(super) fn calls_of(&self, caller: PouId) -> &[(PouId, Span)] {
         self.calls.known.get(&caller).map_or(&[], Vec::as_slice)
     }
 

@@ -157,7 +157,7 @@ impl Declarations<'_> {
     }
 
     /// All bases and interfaces of a unit, itself left out unless it extends itself.
-    pub(in crate::check) fn ancestors(&self, id: PouId) -> BTreeSet<PouId> {
+    pub(super) fn ancestors(&self, id: PouId) -> BTreeSet<PouId> {
         let mut found = BTreeSet::new();
         let mut open = vec![id];
         while let Some(class) = open.pop().and_then(|next| self.class(next)) {
@@ -199,7 +199,7 @@ impl Declarations<'_> {
     }
 
     /// A unit and all that is derived from it, each behind its base.
-    pub(in crate::check) fn family(&self, root: PouId) -> Vec<PouId> {
+    fn family(&self, root: PouId) -> Vec<PouId> {
         let mut found = Vec::new();
         let mut open = vec![root];
         while let Some(id) = open.pop() {
@@ -212,7 +212,7 @@ impl Declarations<'_> {
     }
 
     /// All units with instances that can stand where a `kind` is wanted.
-    pub(in crate::check) fn variants(&self, id: PouId) -> Vec<PouId> {
+    pub(super) fn variants(&self, id: PouId) -> Vec<PouId> {
         if self.pou(id).ast.kind != PouKind::Interface {
             return self.family(id);
         }
@@ -261,7 +261,7 @@ impl Declarations<'_> {
         members.map(|member| self.pou(*member).ast.name.text.clone()).collect()
     }
 
-    pub(in crate::check) fn is_abstract(&self, id: PouId) -> bool {
+    pub(super) fn is_abstract(&self, id: PouId) -> bool {
         self.pou(id).ast.object.modifiers.contains(&Modifier::Abstract)
     }
 

@@ -99,11 +99,7 @@ impl<'a> Declarations<'a> {
     }
 
     /// Runs `resolve` one level deeper; what needs too many others in a row is reported.
-    pub(in crate::check) fn deeper<T>(
-        &mut self,
-        span: Span,
-        resolve: impl FnOnce(&mut Self) -> Option<T>,
-    ) -> Option<T> {
+    fn deeper<T>(&mut self, span: Span, resolve: impl FnOnce(&mut Self) -> Option<T>) -> Option<T> {
         if self.depth == MAX_DEPTH {
             let message = format!("more than {MAX_DEPTH} declarations need each other in a row");
             self.report(Diagnostic::error(Code::NestingTooDeep, span, message));

@@ -14,7 +14,7 @@ use crate::syntax::{FileId, Span};
 
 /// How far something has been resolved.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(in crate::check) enum Progress {
+pub(super) enum Progress {
     Untouched,
     Running,
     Done,
@@ -36,31 +36,31 @@ impl TypedImage<'_> {
     }
 }
 
-pub(in crate::check) struct TypeEntry<'a> {
-    pub(in crate::check) ast: &'a TypeDeclaration,
-    pub(in crate::check) home: Arc<Home>,
-    pub(in crate::check) progress: Progress,
+pub(super) struct TypeEntry<'a> {
+    pub(super) ast: &'a TypeDeclaration,
+    pub(super) home: Arc<Home>,
+    pub(super) progress: Progress,
     /// The type of a structure as soon as something refers to it.
-    pub(in crate::check) reserved: Option<TypeId>,
-    pub(in crate::check) resolved: Option<TypedImage<'a>>,
+    pub(super) reserved: Option<TypeId>,
+    pub(super) resolved: Option<TypedImage<'a>>,
 }
 
 pub(in crate::check) struct PouEntry<'a> {
-    pub(in crate::check) ast: &'a ast::Pou,
-    pub(in crate::check) home: Arc<Home>,
+    pub(super) ast: &'a ast::Pou,
+    pub(super) home: Arc<Home>,
     /// Set for methods, properties and actions.
-    pub(in crate::check) membership: Option<Membership>,
-    pub(in crate::check) progress: Progress,
+    pub(super) membership: Option<Membership>,
+    pub(super) progress: Progress,
     /// Set by `declare`.
-    pub(in crate::check) scope: Option<Arc<Scope>>,
-    pub(in crate::check) align: u32,
-    pub(in crate::check) image: Arc<[u8]>,
+    pub(super) scope: Option<Arc<Scope>>,
+    pub(super) align: u32,
+    pub(super) image: Arc<[u8]>,
     /// What a start does to the variables of an instance.
-    pub(in crate::check) starts: Starts<'a>,
+    pub(super) starts: Starts<'a>,
     /// What a call does to variables that do not outlive it: their names, and what.
-    pub(in crate::check) fleeting: Arc<[(String, Starts<'a>)]>,
+    pub(super) fleeting: Arc<[(String, Starts<'a>)]>,
     /// Where `VAR_INST` of its methods lie in an instance, by where they are declared.
-    pub(in crate::check) kept: BTreeMap<(u32, u32), u32>,
+    pub(super) kept: BTreeMap<(u32, u32), u32>,
 }
 
 impl<'a> PouEntry<'a> {
@@ -104,16 +104,16 @@ impl<'a> PouEntry<'a> {
     }
 }
 
-pub(in crate::check) struct GlobalEntry<'a> {
+pub(super) struct GlobalEntry<'a> {
     /// Nothing for what the runtime provides.
-    pub(in crate::check) ast: Option<(&'a ast::Variable, &'a [Qualifier])>,
-    pub(in crate::check) name: String,
-    pub(in crate::check) seen_from: Arc<Home>,
-    pub(in crate::check) span: Span,
-    pub(in crate::check) progress: Progress,
-    pub(in crate::check) variable: Option<Variable>,
+    pub(super) ast: Option<(&'a ast::Variable, &'a [Qualifier])>,
+    pub(super) name: String,
+    pub(super) seen_from: Arc<Home>,
+    pub(super) span: Span,
+    pub(super) progress: Progress,
+    pub(super) variable: Option<Variable>,
     /// The resource that declares it.
-    pub(in crate::check) home: Option<usize>,
+    pub(super) home: Option<usize>,
 }
 
 /// A value of an enumeration.
@@ -124,7 +124,7 @@ pub(in crate::check) struct Enumerator {
 }
 
 /// What the runtime provides.
-pub(in crate::check) fn provided(name: &str, ty: ElementaryType, offset: u32) -> GlobalEntry<'static> {
+pub(super) fn provided(name: &str, ty: ElementaryType, offset: u32) -> GlobalEntry<'static> {
     let span = Span::new(FileId(u32::MAX), 0, 0);
     let variable = Variable {
         name: name.to_owned(),

@@ -33,7 +33,7 @@ struct Declared<'a> {
 
 impl<'a> Declarations<'a> {
     /// Takes the resources' global variables among the others; all of those are known.
-    pub(in crate::check) fn collect_resource_globals(&mut self) {
+    pub(super) fn collect_resource_globals(&mut self) {
         let Some(ast) = self.configuration else { return };
         let mut homes: BTreeMap<String, Vec<usize>> = BTreeMap::new();
         let mut found = Vec::new();
@@ -96,7 +96,7 @@ impl<'a> Declarations<'a> {
     }
 
     /// What a name with several declarations stands for inside of units.
-    pub(in crate::check) fn alternative_global(&mut self, key: &str, used: Option<Span>) -> Option<Variable> {
+    pub(super) fn alternative_global(&mut self, key: &str, used: Option<Span>) -> Option<Variable> {
         let alternatives = self.alternatives.get(key)?;
         let cell = alternatives.cell;
         let keys: Vec<String> = alternatives.by_resource.values().chain(&alternatives.shared).cloned().collect();
@@ -187,7 +187,7 @@ fn declared(section: &ast::Section) -> impl Iterator<Item = Declared<'_>> {
 
 impl<'a> Declarations<'a> {
     /// Takes the configuration's global variables among the others.
-    pub(in crate::check) fn collect_configuration(&mut self, ast: &'a ast::Configuration) {
+    pub(super) fn collect_configuration(&mut self, ast: &'a ast::Configuration) {
         if let Some(first) = self.configuration {
             let message = format!("there is a configuration already, `{}`", first.name.text);
             let found = Diagnostic::error(Code::SecondConfiguration, ast.name.span, message);

@@ -58,7 +58,7 @@ impl Declarations<'_> {
     }
 
     /// The runtime gives these methods their inputs, so they must be there.
-    pub(in crate::check) fn check_hooks(&mut self, id: PouId) {
+    pub(super) fn check_hooks(&mut self, id: PouId) {
         for hook in &HOOKS {
             let key = (Role::Method, hook.name.to_owned());
             let Some(method) = self.class(id).and_then(|class| class.members.get(&key)).copied() else { continue };

@@ -12,11 +12,11 @@ use crate::syntax::direct_address::{AREA_LIMIT, AddressError, DirectAddress, Wid
 
 /// Initial bytes of a located variable.
 #[derive(Debug)]
-pub(in crate::check) struct Initial {
-    pub(in crate::check) location: Location,
-    pub(in crate::check) image: Arc<[u8]>,
+pub(super) struct Initial {
+    location: Location,
+    image: Arc<[u8]>,
     /// True for a value of the variable's own, which goes before those of types.
-    pub(in crate::check) explicit: bool,
+    explicit: bool,
 }
 
 /// Where a declaration puts its variable.
@@ -121,7 +121,7 @@ impl Declarations<'_> {
 
     /// Writes the initial values of what is located. Where several overlap, a value of a variable's own
     /// goes before that of a type, and what is declared later before what is earlier.
-    pub(in crate::check) fn initialise_located(&self, image: &mut [u8]) {
+    pub(super) fn initialise_located(&self, image: &mut [u8]) {
         for explicit in [false, true] {
             for initial in self.located.iter().filter(|initial| initial.explicit == explicit) {
                 let start = self.areas.offset(initial.location) as usize;

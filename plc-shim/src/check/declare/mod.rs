@@ -3,51 +3,64 @@
 //! [`Declarations`] is the whole interface. Nothing here knows an expression: what takes one to resolve is left to the
 //! [`Resolve`] that the declarations are made with.
 
-pub(in crate::check) mod calls;
-pub(in crate::check) mod chart;
-pub(in crate::check) mod class;
-pub(in crate::check) mod demand;
-pub(in crate::check) mod entry;
-pub(in crate::check) mod findings;
-pub(in crate::check) mod global;
-pub(in crate::check) mod hook;
-pub(in crate::check) mod inheritance;
-pub(in crate::check) mod kept;
-pub(in crate::check) mod layout;
-pub(in crate::check) mod located;
-pub(in crate::check) mod names;
-pub(in crate::check) mod namespace;
-pub(in crate::check) mod query;
-pub(in crate::check) mod recursion;
-pub(in crate::check) mod scope;
-pub(in crate::check) mod start;
-pub(in crate::check) mod variable;
-pub(in crate::check) mod vendor_parameter;
-pub(in crate::check) mod visibility;
+mod calls;
+pub(super) mod chart;
+mod class;
+mod demand;
+mod entry;
+mod findings;
+mod global;
+mod hook;
+mod inheritance;
+mod kept;
+mod layout;
+mod located;
+mod names;
+mod namespace;
+mod query;
+mod recursion;
+mod scope;
+mod start;
+mod variable;
+mod vendor_parameter;
+mod visibility;
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 use self::calls::Calls;
 use self::class::Class;
-use self::demand::Resolve;
-use self::entry::{Enumerator, GlobalEntry, PouEntry, TypeEntry, provided};
+use self::entry::{GlobalEntry, PouEntry, TypeEntry, provided};
 use self::findings::Findings;
 use self::global::Alternatives;
-use self::layout::{INIT_RETAINS_NAME, INIT_RETAINS_OFFSET, Memory, VIRTUAL_TIME_NAME, VIRTUAL_TIME_OFFSET};
+use self::layout::Memory;
 use self::located::Initial;
-use self::namespace::Home;
-use self::start::{Stages, Started};
+use self::start::Stages;
 use crate::check::types::generic::Generic;
 use crate::dialect::{AddressUnit, Dialect};
 use crate::ir::{Areas, ElementaryType, PouId, Program, TypeId, TypeTable};
 use crate::syntax::{FileId, Span, ast};
 
+pub(super) use self::class::{Membership, Role};
+pub(super) use self::demand::{Need, Resolve};
+pub(super) use self::entry::{Declared, Enumerator, TypedImage};
+pub(super) use self::hook::{EXIT_INPUTS, INIT_INPUTS, is_hook, suits_init};
+pub(crate) use self::kept::Kept;
+pub(super) use self::kept::place_of;
+pub(crate) use self::layout::{CALL_DEPTH_OFFSET, INIT_RETAINS_OFFSET, VIRTUAL_TIME_NAME, VIRTUAL_TIME_OFFSET};
+pub(super) use self::layout::{INIT_RETAINS_NAME, MEMORY_LIMIT, align_up};
+pub(super) use self::located::Placement;
+pub(super) use self::namespace::Home;
+pub(super) use self::query::Outcome;
+pub(super) use self::scope::Scope;
+pub(super) use self::start::{Given, Occasion, Start, StartKind, Started, Starts, moved, stages};
+pub(super) use self::visibility::method_visibility;
+
 /// Greatest number of types, constants or instances that need each other in a row.
 const MAX_DEPTH: u32 = 64;
 
 /// What is known so far.
-pub(in crate::check) struct Declarations<'a> {
+pub(super) struct Declarations<'a> {
     resolver: &'static dyn Resolve,
     library: &'a BTreeSet<FileId>,
     stages: &'a Stages,
@@ -90,22 +103,18 @@ pub(in crate::check) struct Declarations<'a> {
 }
 
 impl<'a> Declarations<'a> {
-    pub(in crate::check) fn is_library(&self, id: PouId) -> bool {
+    pub(super) fn is_library(&self, id: PouId) -> bool {
         self.library.contains(&self.pou(id).ast.name.span.file)
     }
 
-    pub(in crate::check) fn pou(&self, id: PouId) -> &PouEntry<'a> {
+    pub(super) fn pou(&self, id: PouId) -> &PouEntry<'a> {
         // Ids are made by `collect` only, one for each entry.
         &self.pous[id.0 as usize]
     }
 }
 
 impl<'a> Declarations<'a> {
-    pub(in crate::check) fn new(
-        library: &'a BTreeSet<FileId>,
-        stages: &'a Stages,
-        resolver: &'static dyn Resolve,
-    ) -> Self {
+    pub(super) fn new(library: &'a BTreeSet<FileId>, stages: &'a Stages, resolver: &'static dyn Resolve) -> Self {
         Self {
             resolver,
             library,
@@ -146,7 +155,7 @@ impl<'a> Declarations<'a> {
 
 impl Declarations<'_> {
     /// The dialect of the text at `span`.
-    pub(in crate::check) fn dialect(&self, span: Span) -> Dialect {
+    pub(super) fn dialect(&self, span: Span) -> Dialect {
         self.dialects.get(&span.file).copied().unwrap_or_default()
     }
 }

@@ -14,7 +14,7 @@ use crate::syntax::Span;
 use crate::syntax::ast::{self, Ident, PouKind, TypeDeclaration};
 
 impl<'a> Declarations<'a> {
-    pub(in crate::check) fn collect_pou(&mut self, ast: &'a ast::Pou) {
+    pub(super) fn collect_pou(&mut self, ast: &'a ast::Pou) {
         // The library comes last: what it finds taken, the user has named like the standard.
         if self.library.contains(&ast.name.span.file)
             && let Some(user) = self.declared_at(&ast.name)
@@ -50,7 +50,7 @@ impl<'a> Declarations<'a> {
         }
     }
 
-    pub(in crate::check) fn add_pou(&mut self, ast: &'a ast::Pou, membership: Option<Membership>) -> PouId {
+    pub(super) fn add_pou(&mut self, ast: &'a ast::Pou, membership: Option<Membership>) -> PouId {
         let id = PouId(self.pous.len() as u32);
         let (home, progress) = (self.home.with(&ast.object.using), Progress::Untouched);
         let image = Arc::from([]);
@@ -70,7 +70,7 @@ impl<'a> Declarations<'a> {
         id
     }
 
-    pub(in crate::check) fn collect_type(&mut self, ast: &'a TypeDeclaration) {
+    pub(super) fn collect_type(&mut self, ast: &'a TypeDeclaration) {
         // The library comes last. What it declares of vendors many projects declare for themselves.
         if self.library.contains(&ast.name.span.file) && self.declared_at(&ast.name).is_some() {
             return;
@@ -82,7 +82,7 @@ impl<'a> Declarations<'a> {
         }
     }
 
-    pub(in crate::check) fn collect_globals(&mut self, section: &'a ast::Section) {
+    pub(super) fn collect_globals(&mut self, section: &'a ast::Section) {
         for variable in &section.variables {
             for name in &variable.names {
                 let key = self.home.key(name);

@@ -14,8 +14,7 @@ use crate::syntax::Span;
 use crate::syntax::ast::{CompilationUnit, Declaration, Ident, Modifier, Namespace, NamespaceKind};
 
 /// Libraries of vendors that hold what the standard defines; their names may stand before it.
-pub(in crate::check) const STANDARD_LIBRARIES: [&str; 4] =
-    ["STANDARD", "TC2_STANDARD", "STANDARD64", "IEC61131_STANDARD"];
+const STANDARD_LIBRARIES: [&str; 4] = ["STANDARD", "TC2_STANDARD", "STANDARD64", "IEC61131_STANDARD"];
 
 /// Where something is declared, and so what it sees.
 #[derive(Debug, Default, PartialEq, Eq)]
@@ -25,7 +24,7 @@ pub(in crate::check) struct Home {
     /// Its name as written.
     pub(in crate::check) shown: String,
     /// Keys of the namespaces whose names are seen as well.
-    pub(in crate::check) using: Vec<String>,
+    pub(super) using: Vec<String>,
     /// True inside of `NAMESPACE INTERNAL`.
     pub(in crate::check) internal: bool,
     /// True inside of a list of global variables whose names are known without it.
@@ -188,7 +187,7 @@ impl<'a> Declarations<'a> {
     }
 
     /// True if `home` is the namespace of what runs now, or inside of it (3rd ed. 6.9.3).
-    pub(in crate::check) fn is_inside(&self, home: &Home) -> bool {
+    pub(super) fn is_inside(&self, home: &Home) -> bool {
         let (here, there) = (&self.home.namespace, &home.namespace);
         here == there || here.strip_prefix(there.as_str()).is_some_and(|rest| there.is_empty() || rest.starts_with('.'))
     }

@@ -104,7 +104,7 @@ impl Scope {
     }
 
     /// Lets another name find a variable, too.
-    pub(in crate::check) fn add_alias(&mut self, key: &str, known: &str) {
+    pub(super) fn add_alias(&mut self, key: &str, known: &str) {
         if let Some(index) = self.by_name.get(known).copied() {
             self.by_name.insert(key.to_owned(), index);
         }
@@ -144,7 +144,7 @@ impl Scope {
     }
 
     /// The types of the registers that a caller fills.
-    pub(in crate::check) fn parameter_types(&self) -> &[ElementaryType] {
+    pub(super) fn parameter_types(&self) -> &[ElementaryType] {
         self.registers.get(..self.parameters as usize).unwrap_or_default()
     }
 

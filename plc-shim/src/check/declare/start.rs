@@ -65,7 +65,7 @@ pub(in crate::check) enum StartKind<'a> {
 }
 
 /// The units that make starts and ends: they have no text. By where their owners' names stand.
-pub(in crate::check) type Stages = BTreeMap<(u32, u32), [ast::Pou; 2]>;
+pub(super) type Stages = BTreeMap<(u32, u32), [ast::Pou; 2]>;
 
 /// A unit for each occasion of each unit that has variables.
 pub(in crate::check) fn stages(units: &[(crate::syntax::FileId, &CompilationUnit)]) -> Stages {
@@ -111,7 +111,7 @@ pub(in crate::check) struct Started<'a> {
 
 impl Declarations<'_> {
     /// Adds the units of a unit's occasions.
-    pub(in crate::check) fn collect_stages(&mut self, owner: PouId) {
+    pub(super) fn collect_stages(&mut self, owner: PouId) {
         let Some(stages) = self.stages.get(&place_of(&self.pou(owner).ast.name)) else { return };
         for (occasion, stage) in Occasion::ALL.into_iter().zip(stages) {
             let id = self.add_pou(stage, Some(Membership { owner, role: occasion.role() }));

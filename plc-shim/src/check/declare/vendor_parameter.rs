@@ -26,7 +26,7 @@ fn names_of(block: &str) -> impl Iterator<Item = &'static (&'static str, &'stati
 
 impl Declarations<'_> {
     /// Lets vendors' names of a library's block find its variables, too.
-    pub(in crate::check) fn add_vendor_names(&self, id: PouId, scope: &mut Scope) {
+    pub(super) fn add_vendor_names(&self, id: PouId, scope: &mut Scope) {
         if !self.is_library(id) {
             return;
         }

@@ -16,9 +16,7 @@ use std::sync::Arc;
 
 use super::interface::Interface;
 use crate::check::declare::chart::{CONTROL_TYPE, STEP_TYPE, begun_key, control_key, keeps_charts};
-use crate::check::declare::class::Role;
-use crate::check::declare::demand::Need;
-use crate::check::declare::entry::TypedImage;
+use crate::check::declare::{Need, Role, TypedImage};
 use crate::diagnostic::{Code, Diagnostic};
 use crate::ir::{ElementaryType, Storage, Type, TypeId, Variable, Visibility};
 use crate::syntax::Span;
@@ -26,7 +24,7 @@ use crate::syntax::ast::{self, Association, ChartStep, Ident, MemberKind, PouKin
 
 impl<'a> Interface<'_, 'a> {
     /// Declares what a unit's charts need: its own, and those of its actions.
-    pub(in crate::check) fn declare_charts(&mut self, ast: &ast::Pou) {
+    pub(super) fn declare_charts(&mut self, ast: &ast::Pou) {
         if !keeps_charts(ast.kind) {
             return;
         }

@@ -8,7 +8,7 @@ use crate::syntax::ast::SectionKind;
 
 impl Written<'_, '_> {
     /// EN is a BOOL input and ENO a BOOL output; no other variable of a unit may bear the names.
-    pub(in crate::check) fn check_control(&mut self, variable: &Variable) {
+    pub(super) fn check_control(&mut self, variable: &Variable) {
         let named = [EN, ENO].into_iter().any(|name| variable.name.eq_ignore_ascii_case(name));
         let shown = matches!(variable.section, SectionKind::Input | SectionKind::Output | SectionKind::InOut);
         if named && shown && !(is_control(variable) && variable.ty == ElementaryType::Bool.into()) {

@@ -2,7 +2,7 @@
 
 use super::Written;
 use crate::check::body::Meant;
-use crate::check::declare::entry::TypedImage;
+use crate::check::declare::TypedImage;
 use crate::check::types::generic::Generic;
 use crate::diagnostic::{Code, Diagnostic};
 use crate::ir::{Type, TypeId};
@@ -10,7 +10,7 @@ use crate::syntax::ast::{self, Ident, PouKind, SectionKind, TypeSpecKind};
 
 impl<'a> Written<'_, 'a> {
     /// The type of a generic input; nothing if it is declared with another.
-    pub(in crate::check) fn generic_input(
+    pub(super) fn generic_input(
         &mut self,
         unit: PouKind,
         section: SectionKind,
@@ -28,7 +28,7 @@ impl<'a> Written<'_, 'a> {
     }
 
     /// Reports a generic type where no argument could say which type is meant.
-    pub(in crate::check) fn reject_generic(&mut self, name: &Ident) {
+    pub(super) fn reject_generic(&mut self, name: &Ident) {
         let message = format!("{} is for VAR_INPUT of functions, methods and function blocks", name.key());
         self.report(Diagnostic::error(Code::WrongSection, name.span, message));
     }

@@ -2,8 +2,7 @@
 
 use super::Written;
 use super::start::{OF_CONSTANTS, OF_LOCATED};
-use crate::check::declare::demand::Need;
-use crate::check::declare::located::Placement;
+use crate::check::declare::{Need, Placement};
 use crate::ir::{Storage, Variable};
 use crate::syntax::ast::{self, Ident, Qualifier, SectionKind};
 

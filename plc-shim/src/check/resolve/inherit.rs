@@ -3,17 +3,14 @@
 use std::sync::Arc;
 
 use super::interface::{Interface, POINTER};
-use crate::check::declare::class::{Membership, Role};
-use crate::check::declare::demand::Need;
-use crate::check::declare::entry::TypedImage;
-use crate::check::declare::scope::Scope;
+use crate::check::declare::{Membership, Need, Role, Scope, TypedImage};
 use crate::ir::{EdgeDetection, ElementaryType, PouId, Storage, Variable, Visibility};
 use crate::syntax::Span;
 use crate::syntax::ast::{self, Ident, PouKind, SectionKind};
 
 impl<'a> Interface<'_, 'a> {
     /// Takes over the variables of the base, or of the instance that a method works on.
-    pub(in crate::check) fn inherit(&mut self) {
+    pub(super) fn inherit(&mut self) {
         let Some(id) = self.unit() else { return };
         if let Some(Membership { owner, .. }) = self.declarations().pou(id).membership() {
             let span = self.declarations().pou(id).ast().name.span;
@@ -68,7 +65,7 @@ impl<'a> Interface<'_, 'a> {
     }
 
     /// The first parameter of a method is the address of its instance.
-    pub(in crate::check) fn declare_this(&mut self) {
+    pub(super) fn declare_this(&mut self) {
         if self.kind != PouKind::Function {
             self.scope_mut().register(POINTER);
         }
@@ -78,12 +75,12 @@ impl<'a> Interface<'_, 'a> {
         Some(self.declarations().pou(self.unit()?).membership()?.role)
     }
 
-    pub(in crate::check) fn is_setter(&self) -> bool {
+    pub(super) fn is_setter(&self) -> bool {
         self.role() == Some(Role::Setter)
     }
 
     /// The value that is given to a property, under the property's name.
-    pub(in crate::check) fn declare_new_value(&mut self, ast: &'a ast::Pou) {
+    pub(super) fn declare_new_value(&mut self, ast: &'a ast::Pou) {
         let Some(spec) = ast.result.as_ref().filter(|_| self.is_setter()) else { return };
         let Some(declared) = self.written().resolve(spec, Need::Size) else { return };
         let Some(storage) = self.parameter(&declared, &ast.name) else { return };
@@ -94,7 +91,7 @@ impl<'a> Interface<'_, 'a> {
     }
 
     /// Where a variable of the name is declared in this unit.
-    pub(in crate::check) fn declared_before(&self, name: &Ident) -> Option<Span> {
+    pub(super) fn declared_before(&self, name: &Ident) -> Option<Span> {
         self.scope().own(&name.key()).map(|first| first.span)
     }
 }

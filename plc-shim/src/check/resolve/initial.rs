@@ -3,10 +3,8 @@
 use std::ops::Range;
 
 use super::Written;
-use crate::check::body::expression::dtl;
-use crate::check::declare::class::Role;
-use crate::check::declare::entry::TypedImage;
-use crate::check::declare::start::{Occasion, Start, StartKind};
+use crate::check::body::is_dtl_literal;
+use crate::check::declare::{Occasion, Role, Start, StartKind, TypedImage};
 use crate::check::types::constant::{NoValue, fold};
 use crate::diagnostic::{Code, Diagnostic, did_you_mean};
 use crate::dialect::Feature;
@@ -16,17 +14,17 @@ use crate::syntax::ast::{ElementInit, Expr, ExprKind, Initialiser, InitialiserKi
 
 /// A variable's initial value while it is made.
 struct Making<'a> {
-    pub(in crate::check) image: Vec<u8>,
-    pub(in crate::check) starts: Vec<Start<'a>>,
+    image: Vec<u8>,
+    starts: Vec<Start<'a>>,
 }
 
 /// A value inside of the variable: its type, and bytes from the variable's beginning.
 #[derive(Clone, Copy)]
 struct Spot {
-    pub(in crate::check) ty: TypeId,
-    pub(in crate::check) offset: u32,
+    ty: TypeId,
+    offset: u32,
     /// Of a BOOL that is one bit of its byte, which.
-    pub(in crate::check) bit: Option<u8>,
+    bit: Option<u8>,
 }
 
 impl<'a> Written<'_, 'a> {
@@ -63,7 +61,7 @@ impl<'a> Written<'_, 'a> {
                 making.image.get_mut(range)?.iter_mut().zip(bytes).for_each(|(target, source)| *target = source);
                 Some(())
             }
-            (InitialiserKind::Value(expr), Type::Struct { .. }) if dtl::is_literal(expr) => {
+            (InitialiserKind::Value(expr), Type::Struct { .. }) if is_dtl_literal(expr) => {
                 let bytes = self.body.dtl_bytes(expr, spot.ty)?;
                 let range = self.range(spot);
                 making.image.get_mut(range)?.copy_from_slice(&bytes);

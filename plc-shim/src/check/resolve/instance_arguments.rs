@@ -2,16 +2,14 @@
 //! `fbs : ARRAY [1..2] OF FB[(a := 1), (a := 2)]` (CODESYS, TwinCAT).
 
 use super::Written;
-use crate::check::declare::demand::Need;
-use crate::check::declare::entry::TypedImage;
-use crate::check::declare::start::{Given, Occasion, StartKind, Starts};
+use crate::check::declare::{Given, Need, Occasion, StartKind, Starts, TypedImage};
 use crate::diagnostic::{Code, Diagnostic};
 use crate::ir::{PouId, Type, TypeId};
 use crate::syntax::Span;
 use crate::syntax::ast::{Argument, Ident, InitArguments, TypeSpec, TypeSpecKind};
 
 impl<'a> Written<'_, 'a> {
-    pub(in crate::check) fn instance_with_arguments(
+    pub(super) fn instance_with_arguments(
         &mut self,
         name: &Ident,
         arguments: &'a InitArguments,
@@ -35,10 +33,7 @@ impl<'a> Written<'_, 'a> {
     }
 
     /// The type of an array's elements, and the arguments of each.
-    pub(in crate::check) fn element_type(
-        &mut self,
-        spec: &'a TypeSpec,
-    ) -> Option<(TypedImage<'a>, Option<&'a [Vec<Argument>]>)> {
+    pub(super) fn element_type(&mut self, spec: &'a TypeSpec) -> Option<(TypedImage<'a>, Option<&'a [Vec<Argument>]>)> {
         if let TypeSpecKind::Instance(name, InitArguments::Listed(lists)) = &spec.kind {
             let resolved = self.type_by_name(name, Need::Size)?;
             self.block_of(resolved.ty, name.span)?;
@@ -48,7 +43,7 @@ impl<'a> Written<'_, 'a> {
     }
 
     /// What a start does to an array of instances with arguments of their own.
-    pub(in crate::check) fn listed_starts(
+    pub(super) fn listed_starts(
         &mut self,
         element: TypeId,
         lists: &'a [Vec<Argument>],
@@ -88,7 +83,7 @@ fn argument_span(argument: &Argument) -> Span {
 
 impl<'a> Written<'_, 'a> {
     /// Reports arguments of an instance whose block has no `FB_init`.
-    pub(in crate::check) fn check_taken(&mut self, pou: PouId, given: Given<'a>, span: Span) {
+    fn check_taken(&mut self, pou: PouId, given: Given<'a>, span: Span) {
         if !given.is_empty() && !self.declarations().has_hook(pou, Occasion::Start) {
             let name = &self.declarations().pou(pou).ast().name.text;
             let message = format!("`{name}` has no FB_init that takes arguments");

@@ -5,18 +5,13 @@ use std::collections::{BTreeMap, BTreeSet};
 use super::Written;
 use super::referred::referred;
 use super::start::{OF_CONSTANTS, OF_LOCATED};
-use crate::check::declare::Declarations;
-use crate::check::declare::demand::Need;
-use crate::check::declare::entry::{Declared, TypedImage};
-use crate::check::declare::located::Placement;
-use crate::check::declare::scope::Scope;
-use crate::check::declare::start::{Start, Starts, moved};
+use crate::check::declare::{Declarations, Declared, Need, Placement, Scope, Start, Starts, TypedImage, moved};
 use crate::diagnostic::{Code, Diagnostic, did_you_mean};
 use crate::ir::{ElementaryType, Place, PouId, Storage, TypeId, Variable};
 use crate::syntax::ast::{self, Ident, PouKind, Qualifier, Section, SectionKind};
 
 /// Pointers are offsets in memory.
-pub(in crate::check) const POINTER: ElementaryType = ElementaryType::Udint;
+pub(super) const POINTER: ElementaryType = ElementaryType::Udint;
 
 const OF_INPUTS: &str = "an input that is not given has its value from before the program runs";
 

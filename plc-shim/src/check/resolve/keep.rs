@@ -1,16 +1,14 @@
 //! `VAR_INST` of methods: variables that their instance keeps (CODESYS, TwinCAT).
 
 use super::interface::Interface;
-use crate::check::declare::demand::Need;
-use crate::check::declare::kept::place_of;
-use crate::check::declare::start::moved;
+use crate::check::declare::{Need, moved, place_of};
 use crate::diagnostic::{Code, Diagnostic};
 use crate::ir::Storage;
 use crate::syntax::ast::{self, Ident, PouKind, Section, SectionKind};
 
 impl<'a> Interface<'_, 'a> {
     /// Makes room for what the unit's methods keep. What is wrong with it, the methods report.
-    pub(in crate::check) fn keep_for_methods(&mut self, ast: &'a ast::Pou) {
+    pub(super) fn keep_for_methods(&mut self, ast: &'a ast::Pou) {
         let known = self.declarations().mark();
         let sections = ast.object.members.iter().flat_map(|member| &member.pou.sections);
         for section in sections.filter(|section| section.kind == SectionKind::Instance) {
@@ -32,7 +30,7 @@ impl<'a> Interface<'_, 'a> {
     }
 
     /// Where a variable of a method's `VAR_INST` lies.
-    pub(in crate::check) fn kept_storage(&mut self, section: &Section, name: &Ident) -> Option<Storage> {
+    pub(super) fn kept_storage(&mut self, section: &Section, name: &Ident) -> Option<Storage> {
         if self.kind != PouKind::Method {
             let message = "VAR_INST is for methods";
             let found = Diagnostic::error(Code::WrongSection, section.span, message);

@@ -14,35 +14,32 @@
 //! | [`inherit`], [`keep`], [`chart`] | what a unit has from its base, for its methods, for its charts |
 //! | [`enable`], [`referred`] | EN and ENO, variables whose addresses are taken |
 
-pub(in crate::check) mod chart;
-pub(in crate::check) mod enable;
-pub(in crate::check) mod generic;
-pub(in crate::check) mod global;
-pub(in crate::check) mod inherit;
-pub(in crate::check) mod initial;
-pub(in crate::check) mod instance_arguments;
-pub(in crate::check) mod interface;
-pub(in crate::check) mod keep;
-pub(in crate::check) mod referred;
-pub(in crate::check) mod start;
-pub(in crate::check) mod storage;
-pub(in crate::check) mod structure;
-pub(in crate::check) mod subrange;
-pub(in crate::check) mod text;
-pub(in crate::check) mod union;
-pub(in crate::check) mod written;
+mod chart;
+mod enable;
+mod generic;
+mod global;
+mod inherit;
+mod initial;
+mod instance_arguments;
+mod interface;
+mod keep;
+mod referred;
+mod start;
+mod storage;
+mod structure;
+mod subrange;
+mod text;
+mod union;
+mod written;
 
 use crate::check::body::Body;
-use crate::check::declare::Declarations;
-use crate::check::declare::demand::{Need, Resolve};
-use crate::check::declare::entry::{Declared, TypedImage};
-use crate::check::declare::scope::Scope;
+use crate::check::declare::{Declarations, Declared, Need, Resolve, Scope, TypedImage};
 use crate::diagnostic::Diagnostic;
 use crate::ir::{PouId, TypeId, Variable};
 use crate::syntax::ast::{self, Ident, Qualifier};
 
 /// Resolves declarations by their text.
-pub(in crate::check) struct Resolver;
+pub(super) struct Resolver;
 
 impl Resolve for Resolver {
     fn type_declaration<'a>(
@@ -73,13 +70,13 @@ impl Resolve for Resolver {
 }
 
 /// What is written in a declaration, with the names that its expressions see.
-pub(in crate::check) struct Written<'c, 'a> {
+pub(super) struct Written<'c, 'a> {
     body: Body<'c, 'a>,
 }
 
 impl<'c, 'a> Written<'c, 'a> {
     /// For declarations outside of any unit.
-    pub(in crate::check) fn outside(declarations: &'c mut Declarations<'a>) -> Self {
+    pub(super) fn outside(declarations: &'c mut Declarations<'a>) -> Self {
         Self { body: Body::outside(declarations) }
     }
 

@@ -1,7 +1,7 @@
 //! What a start adds to a variable's bytes, as its declaration says it.
 
 use super::Written;
-use crate::check::declare::start::{Start, StartKind};
+use crate::check::declare::{Start, StartKind};
 use crate::diagnostic::{Code, Diagnostic};
 use crate::syntax::Span;
 
@@ -18,7 +18,7 @@ impl<'a> Written<'_, 'a> {
     }
 
     /// Reports a variable that may begin with a constant only.
-    pub(in crate::check) fn require_constant(&mut self, starts: &[Start<'a>], why: &str) {
+    pub(super) fn require_constant(&mut self, starts: &[Start<'a>], why: &str) {
         if let Some(start) = starts.iter().find(|start| matches!(start.kind, StartKind::Value(..))) {
             let message = format!("a constant is wanted here: {why}");
             self.report(Diagnostic::error(Code::NotConstant, start.span, message));

@@ -3,8 +3,7 @@
 use std::sync::Arc;
 
 use super::interface::{Interface, POINTER};
-use crate::check::declare::entry::TypedImage;
-use crate::check::declare::layout::{MEMORY_LIMIT, align_up};
+use crate::check::declare::{MEMORY_LIMIT, TypedImage, align_up};
 use crate::check::types::parameter::takes_open_arrays;
 use crate::diagnostic::{Code, Diagnostic};
 use crate::dialect::Feature;
@@ -59,7 +58,7 @@ impl Interface<'_, '_> {
     }
 
     /// The trigger of an input with `R_EDGE` or `F_EDGE`.
-    pub(in crate::check) fn edge_detection(&mut self, edge: ast::Edge, variable: &Variable) -> Option<EdgeDetection> {
+    pub(super) fn edge_detection(&mut self, edge: ast::Edge, variable: &Variable) -> Option<EdgeDetection> {
         let bool_type: TypeId = ElementaryType::Bool.into();
         let suitable = variable.section == SectionKind::Input && !self.kind.keeps_nothing();
         if !suitable || variable.ty != bool_type {
@@ -103,7 +102,7 @@ impl Interface<'_, '_> {
     }
 
     /// Fixed memory: no unit is active twice (2nd ed. 2.5, no recursion).
-    pub(in crate::check) fn frame(&mut self, declared: &TypedImage<'_>, span: Span) -> Option<Storage> {
+    fn frame(&mut self, declared: &TypedImage<'_>, span: Span) -> Option<Storage> {
         self.scope_mut().keep_memory();
         let types = &self.declarations().types();
         let (size, align) = (types.size(declared.ty), types.align(declared.ty));
@@ -112,7 +111,7 @@ impl Interface<'_, '_> {
         Some(Storage::Absolute(offset))
     }
 
-    pub(in crate::check) fn in_instance(&mut self, declared: &TypedImage<'_>, span: Span) -> Option<u32> {
+    pub(super) fn in_instance(&mut self, declared: &TypedImage<'_>, span: Span) -> Option<u32> {
         let align = self.declarations().types().align(declared.ty);
         let offset = align_up(self.image.len() as u32, align);
         if offset as usize + declared.image.len() > MEMORY_LIMIT as usize {

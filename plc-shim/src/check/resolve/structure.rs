@@ -5,10 +5,7 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use super::Written;
-use crate::check::declare::demand::Need;
-use crate::check::declare::entry::TypedImage;
-use crate::check::declare::layout::{MEMORY_LIMIT, align_up};
-use crate::check::declare::start::{Start, moved};
+use crate::check::declare::{MEMORY_LIMIT, Need, Start, TypedImage, align_up, moved};
 use crate::diagnostic::{Code, Diagnostic};
 use crate::ir::{ElementaryType, Field, Type, TypeId};
 use crate::syntax::Span;
@@ -17,7 +14,7 @@ use crate::syntax::direct_address::{RelativeAddress, Width};
 
 /// Whether members with addresses may lie on the same bytes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(in crate::check) enum Sharing {
+pub(super) enum Sharing {
     Refused,
     /// `OVERLAP`
     Allowed,

@@ -1,14 +1,14 @@
 //! Subrange types (2nd ed. 2.3.3.1 Table 12, feature 3).
 
 use super::Written;
-use crate::check::declare::entry::TypedImage;
+use crate::check::declare::TypedImage;
 use crate::diagnostic::{Code, Diagnostic};
 use crate::ir::ElementaryType;
 use crate::syntax::ast::{Ident, Subrange};
 
 impl<'a> Written<'_, 'a> {
     /// The type that `INT (0..100)` names.
-    pub(in crate::check) fn subrange(&mut self, name: &Ident, ast: &'a Subrange) -> Option<TypedImage<'a>> {
+    pub(super) fn subrange(&mut self, name: &Ident, ast: &'a Subrange) -> Option<TypedImage<'a>> {
         let base = self.integer_base(name)?;
         let (low, high) = (self.body.constant_integer(&ast.low)?, self.body.constant_integer(&ast.high)?);
         let fits = |value| base.wrap(value) == value;
@@ -23,7 +23,7 @@ impl<'a> Written<'_, 'a> {
     }
 
     /// An integer type that a subrange or enumeration is made of.
-    pub(in crate::check) fn integer_base(&mut self, name: &Ident) -> Option<ElementaryType> {
+    pub(super) fn integer_base(&mut self, name: &Ident) -> Option<ElementaryType> {
         let found = ElementaryType::find(&name.text);
         let suitable = found.filter(|ty| ty.is_integer() || ty.is_bits() && *ty != ElementaryType::Bool);
         if suitable.is_none() {

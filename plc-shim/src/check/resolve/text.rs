@@ -8,12 +8,7 @@ use crate::syntax::{Span, ast};
 
 impl<'a> Written<'_, 'a> {
     /// The type that `STRING[n]` names.
-    pub(in crate::check) fn text_type(
-        &mut self,
-        wide: bool,
-        length: Option<&'a ast::Expr>,
-        span: Span,
-    ) -> Option<TypeId> {
+    pub(super) fn text_type(&mut self, wide: bool, length: Option<&'a ast::Expr>, span: Span) -> Option<TypeId> {
         let capacity = match length {
             None => self.declarations().dialect(span).string_length(),
             Some(expr) => {

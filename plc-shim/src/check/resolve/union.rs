@@ -3,16 +3,14 @@
 use std::sync::Arc;
 
 use super::Written;
-use crate::check::declare::demand::Need;
-use crate::check::declare::entry::TypedImage;
-use crate::check::declare::layout::align_up;
+use crate::check::declare::{Need, TypedImage, align_up};
 use crate::ir::{Field, TypeId};
 use crate::syntax::{Span, ast};
 
 impl<'a> Written<'_, 'a> {
     /// Every member begins where the union does. It begins with the first member's value, then with those
     /// that are given, the last one above the others.
-    pub(in crate::check) fn union(
+    pub(super) fn union(
         &mut self,
         name: &str,
         reserved: Option<TypeId>,

@@ -4,10 +4,7 @@ use std::sync::Arc;
 
 use super::Written;
 use super::structure::Sharing;
-use crate::check::declare::demand::Need;
-use crate::check::declare::entry::{Enumerator, TypedImage};
-use crate::check::declare::layout::MEMORY_LIMIT;
-use crate::check::declare::start::StartKind;
+use crate::check::declare::{Enumerator, MEMORY_LIMIT, Need, StartKind, TypedImage};
 use crate::check::types::generic::Generic;
 use crate::diagnostic::{Code, Diagnostic, did_you_mean};
 use crate::ir::{Dimension, ElementaryType, TypeId};
@@ -28,7 +25,7 @@ fn of_pointer_width(key: &str) -> Option<ElementaryType> {
 }
 
 impl<'a> Written<'_, 'a> {
-    pub(in crate::check) fn declared_type(&mut self, ast: &'a ast::TypeDeclaration) -> Option<TypedImage<'a>> {
+    pub(super) fn declared_type(&mut self, ast: &'a ast::TypeDeclaration) -> Option<TypedImage<'a>> {
         let name = &ast.name.text;
         let mut resolved = match &ast.spec.kind {
             TypeSpecKind::Struct(fields) => {
@@ -103,7 +100,7 @@ impl<'a> Written<'_, 'a> {
         Some(self.whole(ty))
     }
 
-    pub(in crate::check) fn type_by_name(&mut self, name: &Ident, need: Need) -> Option<TypedImage<'a>> {
+    pub(super) fn type_by_name(&mut self, name: &Ident, need: Need) -> Option<TypedImage<'a>> {
         let key = name.key();
         if let Some(found) = ElementaryType::find(&key) {
             return Some(self.whole(found.into()));

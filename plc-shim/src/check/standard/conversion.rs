@@ -60,7 +60,7 @@ const WHOLE: [(&str, Rounding); 4] = [
 ];
 
 /// True for conversions that a user's own unit of the same name goes before.
-pub(in crate::check) fn is_of_vendors(key: &str) -> bool {
+pub(super) fn is_of_vendors(key: &str) -> bool {
     let between = |from| find(key).is_some_and(|found| !is_defined(from, found.to));
     ["ROUND", "CEIL", "FLOOR", "ANY_TO_"].into_iter().any(|name| key.starts_with(name))
         || find(key).and_then(|found| found.from).is_some_and(between)

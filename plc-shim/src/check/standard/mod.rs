@@ -8,15 +8,15 @@
 //! | [`memory`], [`place`], [`query`] | functions on addresses, places and instances |
 //! | [`vendor`] | functions of vendors' controllers that have no equal here |
 
-pub(in crate::check) mod conversion;
-pub(in crate::check) mod form;
-pub(in crate::check) mod memory;
-pub(in crate::check) mod place;
-pub(in crate::check) mod query;
-pub(in crate::check) mod text;
-pub(in crate::check) mod text_conversion;
-pub(in crate::check) mod timed;
-pub(in crate::check) mod vendor;
+pub(super) mod conversion;
+pub(super) mod form;
+pub(super) mod memory;
+pub(super) mod place;
+pub(super) mod query;
+pub(super) mod text;
+pub(super) mod text_conversion;
+pub(super) mod timed;
+pub(super) mod vendor;
 
 /// True if there is a function of this name, in capitals.
 pub(crate) fn exists(key: &str) -> bool {

@@ -24,7 +24,7 @@ pub(in crate::check) const FUNCTIONS: [(&str, TextForm); 9] = [
 ];
 
 /// The standard's name of a parameter that CODESYS and TwinCAT name their own way; else the name.
-pub(in crate::check) fn of_vendors(name: &str) -> &str {
+pub(super) fn of_vendors(name: &str) -> &str {
     match name {
         "STR" => "IN",
         "STR1" => "IN1",

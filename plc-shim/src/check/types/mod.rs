@@ -10,11 +10,11 @@
 //! | [`generic`] | the types that a generic input takes |
 //! | [`parameter`], [`width`] | parameters that take arrays of any bounds, the types of direct addresses |
 
-pub(in crate::check) mod build;
-pub(in crate::check) mod constant;
-pub(in crate::check) mod generic;
-pub(in crate::check) mod number;
-pub(in crate::check) mod operand;
-pub(in crate::check) mod parameter;
-pub(in crate::check) mod reference;
-pub(in crate::check) mod width;
+pub(super) mod build;
+pub(super) mod constant;
+pub(super) mod generic;
+pub(super) mod number;
+pub(super) mod operand;
+pub(super) mod parameter;
+pub(super) mod reference;
+pub(super) mod width;

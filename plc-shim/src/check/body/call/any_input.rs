@@ -12,7 +12,7 @@ use crate::syntax::ast::{self, ReferenceKind};
 
 impl<'a> Body<'_, 'a> {
     /// What an input of a generic type is given: class, address and size of a variable.
-    pub(in crate::check) fn generic_argument(
+    pub(super) fn generic_argument(
         &mut self,
         generic: Generic,
         parameter: &Variable,
@@ -71,7 +71,7 @@ impl<'a> Body<'_, 'a> {
         taken.then_some(class)
     }
 
-    pub(in crate::check) fn is_generic(&self, ty: TypeId) -> bool {
+    pub(super) fn is_generic(&self, ty: TypeId) -> bool {
         self.declarations.generic(ty).is_some()
     }
 }

@@ -9,7 +9,7 @@ use crate::syntax::Span;
 use crate::syntax::ast::{self, ReferenceKind, SectionKind};
 
 impl Body<'_, '_> {
-    pub(in crate::check) fn default_argument(
+    pub(in crate::check::body) fn default_argument(
         &mut self,
         parameter: &Variable,
         named: bool,
@@ -35,13 +35,13 @@ impl Body<'_, '_> {
         matches!(self.declarations.types().get(ty), Type::FunctionBlock { .. })
     }
 
-    pub(in crate::check) fn missing_argument<T>(&mut self, name: &str, span: Span) -> Option<T> {
+    pub(in crate::check::body) fn missing_argument<T>(&mut self, name: &str, span: Span) -> Option<T> {
         let message = format!("parameter `{name}` is missing");
         self.report(Diagnostic::error(Code::MissingArgument, span, message));
         None
     }
 
-    pub(in crate::check) fn argument(
+    pub(in crate::check::body) fn argument(
         &mut self,
         parameter: &Variable,
         expr: &ast::Expr,
@@ -76,7 +76,7 @@ impl Body<'_, '_> {
     }
 
     /// The place, or memory that holds its value during the call if it has no address.
-    pub(in crate::check) fn through_memory(&mut self, place: Place, passing: &mut Passing) -> Option<Place> {
+    pub(super) fn through_memory(&mut self, place: Place, passing: &mut Passing) -> Option<Place> {
         if place.has_address() {
             return Some(place);
         }
@@ -111,9 +111,9 @@ impl Body<'_, '_> {
 
 /// What surrounds a call: copies into memory, and back.
 #[derive(Default)]
-pub(in crate::check) struct Passing {
-    pub(in crate::check) before: Vec<Statement>,
-    pub(in crate::check) after: Vec<Statement>,
+pub(in crate::check::body) struct Passing {
+    pub(in crate::check::body) before: Vec<Statement>,
+    pub(in crate::check::body) after: Vec<Statement>,
 }
 
 fn copy(target: &Place, source: &Place) -> Statement {

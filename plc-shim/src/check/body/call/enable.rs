@@ -15,7 +15,7 @@
 //! standard function tells errors, see [`super::enable_error`].
 
 use crate::check::body::Body;
-use crate::check::declare::scope::Scope;
+use crate::check::declare::Scope;
 use crate::check::types::constant::decode;
 use crate::check::types::operand::{Operand, constant};
 use crate::check::types::parameter::{EN, ENO, is_control};
@@ -27,15 +27,15 @@ use crate::syntax::Span;
 use crate::syntax::ast::{self, Argument, Call};
 
 /// What a call says about its execution.
-pub(in crate::check) struct Enabling<'e> {
-    pub(in crate::check) enable: Option<&'e ast::Expr>,
+pub(super) struct Enabling<'e> {
+    pub(in crate::check::body) enable: Option<&'e ast::Expr>,
     /// Where ENO goes, and whether negated.
-    pub(in crate::check) outcome: Option<(&'e ast::Expr, bool)>,
-    pub(in crate::check) span: Span,
+    pub(in crate::check::body) outcome: Option<(&'e ast::Expr, bool)>,
+    pub(in crate::check::body) span: Span,
 }
 
 /// The call without EN and, unless the unit itself has it, ENO; nothing if neither is there.
-pub(in crate::check) fn split(call: &Call, declares_outcome: bool) -> Option<(Enabling<'_>, Call)> {
+pub(super) fn split(call: &Call, declares_outcome: bool) -> Option<(Enabling<'_>, Call)> {
     let mut enabling = Enabling { enable: None, outcome: None, span: call.callee.span };
     let mut rest = Vec::new();
     for argument in &call.arguments {
@@ -56,7 +56,7 @@ pub(in crate::check) fn split(call: &Call, declares_outcome: bool) -> Option<(En
 }
 
 /// True if EN or ENO is an argument of the call.
-pub(in crate::check) fn is_controlled(call: &Call) -> bool {
+pub(in crate::check::body) fn is_controlled(call: &Call) -> bool {
     call.arguments.iter().any(|argument| match argument {
         Argument::Input(name, _) => name.key() == EN,
         Argument::Output { name, .. } => name.key() == ENO,
@@ -64,7 +64,7 @@ pub(in crate::check) fn is_controlled(call: &Call) -> bool {
     })
 }
 
-pub(in crate::check) fn boolean(value: bool, span: Span) -> Expr {
+pub(in crate::check::body) fn boolean(value: bool, span: Span) -> Expr {
     constant(Value::Bool(value), ElementaryType::Bool, span)
 }
 
@@ -80,7 +80,7 @@ fn decide(condition: Expr, body: Vec<Statement>, otherwise: Vec<Statement>) -> S
 
 impl Body<'_, '_> {
     /// A call of a function with EN or ENO.
-    pub(in crate::check) fn controlled_call(&mut self, call: &Call, span: Span) -> Option<Operand> {
+    pub(super) fn controlled_call(&mut self, call: &Call, span: Span) -> Option<Operand> {
         let own = self.declares_outcome(call, span);
         self.controlled(call, own, span, |body, rest| body.plain_call(rest, span)).map(Operand::Typed)
     }
@@ -201,7 +201,7 @@ impl Body<'_, '_> {
     }
 
     /// An instance's call, which EN may keep from being carried out.
-    pub(in crate::check) fn controlled_instance(
+    pub(super) fn controlled_instance(
         &mut self,
         scope: &Scope,
         call: InstanceCall,

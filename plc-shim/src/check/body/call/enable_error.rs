@@ -19,12 +19,12 @@ use crate::syntax::Span;
 
 /// A call of a standard function with what tells its errors.
 pub(in crate::check) struct Guard {
-    pub(in crate::check) before: Vec<Statement>,
+    pub(in crate::check::body) before: Vec<Statement>,
     /// Must hold for the call to be carried out.
-    pub(in crate::check) sound: Option<Expr>,
-    pub(in crate::check) called: Expr,
+    pub(in crate::check::body) sound: Option<Expr>,
+    pub(in crate::check::body) called: Expr,
     /// Holds afterwards if there was no error.
-    pub(in crate::check) after: Option<Expr>,
+    pub(in crate::check::body) after: Option<Expr>,
 }
 
 fn comparison(operator: Binary, left: Expr, right: Expr) -> Expr {
@@ -47,7 +47,7 @@ fn zero(ty: ElementaryType) -> Value {
 
 impl Body<'_, '_> {
     /// How errors of `called` show, whose value goes to `result`.
-    pub(in crate::check) fn error_guard(&mut self, called: Expr, result: Option<&Place>) -> Guard {
+    pub(super) fn error_guard(&mut self, called: Expr, result: Option<&Place>) -> Guard {
         let (ty, span) = (called.ty, called.span);
         match called.kind {
             ExprKind::Binary(Binary::Divide, left, right) => {

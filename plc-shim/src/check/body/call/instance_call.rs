@@ -5,7 +5,7 @@ use std::sync::Arc;
 use super::argument::Passing;
 use super::{Matched, enable};
 use crate::check::body::Body;
-use crate::check::declare::scope::Scope;
+use crate::check::declare::Scope;
 use crate::check::types::parameter::ENO;
 use crate::diagnostic::{Code, Diagnostic};
 use crate::ir::{Argument, ElementaryType, InstanceCall, Place, Statement, StatementKind, Storage, Type, Variable};
@@ -13,14 +13,14 @@ use crate::syntax::Span;
 use crate::syntax::ast::{Call, SectionKind};
 
 impl Body<'_, '_> {
-    pub(in crate::check) fn instance_call(&mut self, call: &Call, span: Span) -> Option<StatementKind> {
+    pub(super) fn instance_call(&mut self, call: &Call, span: Span) -> Option<StatementKind> {
         let callee = self.instance_of(&call.callee);
         let instance = self.place(callee)?.place;
         self.instance_call_at(instance, call, span)
     }
 
     /// Calls the statements of a function block on the instance at a place.
-    pub(in crate::check) fn instance_call_at(
+    pub(in crate::check::body) fn instance_call_at(
         &mut self,
         instance: Place,
         call: &Call,

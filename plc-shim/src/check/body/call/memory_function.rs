@@ -9,7 +9,7 @@ use crate::syntax::Span;
 use crate::syntax::ast::{Argument, Call, Ident};
 
 impl Body<'_, '_> {
-    pub(in crate::check) fn memory_call(&mut self, name: &Ident, call: &Call, span: Span) -> Option<Operand> {
+    pub(super) fn memory_call(&mut self, name: &Ident, call: &Call, span: Span) -> Option<Operand> {
         let key = name.key();
         let (_, function, parameters) = FUNCTIONS.iter().find(|(known, ..)| *known == key)?;
         let mut operands: [Option<Expr>; 3] = [None, None, None];

@@ -1,20 +1,20 @@
 //! Calls of functions and instances (2nd ed. 2.5.1.1, 2.5.2.1).
 
-pub(in crate::check) mod any_input;
-pub(in crate::check) mod argument;
-pub(in crate::check) mod conversion_function;
-pub(in crate::check) mod enable;
-pub(in crate::check) mod enable_error;
-pub(in crate::check) mod instance_call;
-pub(in crate::check) mod memory_function;
-pub(in crate::check) mod standard_function;
+pub(super) mod any_input;
+pub(super) mod argument;
+pub(super) mod conversion_function;
+pub(super) mod enable;
+pub(super) mod enable_error;
+pub(super) mod instance_call;
+pub(super) mod memory_function;
+pub(super) mod standard_function;
 
 use std::collections::BTreeMap;
 
 use self::argument::Passing;
 use super::Body;
 use crate::check::asserts;
-use crate::check::declare::scope::Scope;
+use crate::check::declare::Scope;
 use crate::check::standard::place::PlaceFunction;
 use crate::check::standard::query::Query;
 use crate::check::standard::{self, form, memory};
@@ -30,20 +30,20 @@ use crate::syntax::ast::{self, Call, Ident, PouKind, SectionKind};
 
 /// The arguments of a call by the parameter they belong to.
 #[derive(Default)]
-pub(in crate::check) struct Matched<'e> {
-    pub(in crate::check) inputs: BTreeMap<String, &'e ast::Expr>,
-    pub(in crate::check) outputs: Vec<Wanted<'e>>,
+pub(super) struct Matched<'e> {
+    pub(in crate::check::body) inputs: BTreeMap<String, &'e ast::Expr>,
+    pub(in crate::check::body) outputs: Vec<Wanted<'e>>,
 }
 
 /// An output that the caller wants.
-pub(in crate::check) struct Wanted<'e> {
-    pub(in crate::check) variable: Variable,
-    pub(in crate::check) negated: bool,
-    pub(in crate::check) target: &'e ast::Expr,
+pub(super) struct Wanted<'e> {
+    pub(in crate::check::body) variable: Variable,
+    pub(super) negated: bool,
+    pub(in crate::check::body) target: &'e ast::Expr,
 }
 
 impl Body<'_, '_> {
-    pub(in crate::check) fn call_expression(&mut self, call: &Call, span: Span) -> Option<Operand> {
+    pub(super) fn call_expression(&mut self, call: &Call, span: Span) -> Option<Operand> {
         if let Some(called) = self.method_call(call, span) {
             return called.map(Operand::Typed);
         }
@@ -54,7 +54,7 @@ impl Body<'_, '_> {
     }
 
     /// A call without EN and ENO, unless its function declares them.
-    pub(in crate::check) fn plain_call(&mut self, call: &Call, span: Span) -> Option<Operand> {
+    fn plain_call(&mut self, call: &Call, span: Span) -> Option<Operand> {
         let qualified = self.qualified_name(&call.callee);
         let ((ast::ExprKind::Name(name), _) | (_, Some(name))) = (&call.callee.kind, &qualified) else {
             return self.not_a_function(call, span);
@@ -99,14 +99,14 @@ impl Body<'_, '_> {
     }
 
     /// Inside a function its own name is its result, and a call of it recursion.
-    pub(in crate::check) fn is_own_result(&self, name: &Ident) -> bool {
+    pub(super) fn is_own_result(&self, name: &Ident) -> bool {
         self.pou.is_some_and(|id| {
             let own = self.declarations.pou(id).ast();
             own.kind.keeps_nothing() && own.name.key() == name.key()
         })
     }
 
-    pub(in crate::check) fn function_named(&self, name: &Ident) -> Option<PouId> {
+    pub(super) fn function_named(&self, name: &Ident) -> Option<PouId> {
         let id = self.declarations.pou_named(&name.key())?;
         (self.declarations.pou(id).ast().kind == PouKind::Function).then_some(id)
     }
@@ -160,7 +160,7 @@ impl Body<'_, '_> {
         None
     }
 
-    pub(in crate::check) fn call_statement(&mut self, call: &Call, span: Span) -> Option<StatementKind> {
+    pub(super) fn call_statement(&mut self, call: &Call, span: Span) -> Option<StatementKind> {
         if let Some(called) = self.super_call(call, span) {
             return called;
         }
@@ -205,7 +205,7 @@ impl Body<'_, '_> {
         })
     }
 
-    pub(in crate::check) fn matched<'e>(&mut self, scope: &Scope, callee: &str, call: &'e Call) -> Option<Matched<'e>> {
+    pub(super) fn matched<'e>(&mut self, scope: &Scope, callee: &str, call: &'e Call) -> Option<Matched<'e>> {
         let mut matched = Matched::default();
         let mut sound = true;
         for (index, argument) in call.arguments.iter().enumerate() {
@@ -317,7 +317,7 @@ impl Body<'_, '_> {
         Some(Expr { kind: ExprKind::Call(Box::new(call)), ty, span })
     }
 
-    pub(in crate::check) fn outputs(
+    pub(super) fn outputs(
         &mut self,
         wanted: &[Wanted<'_>],
         place_of: impl Fn(&Variable, Span) -> Place,

@@ -12,12 +12,7 @@ use crate::syntax::ast::{Argument, BinaryOp, Ident};
 
 impl Body<'_, '_> {
     /// A call of the standard function `name`, which exists.
-    pub(in crate::check) fn standard_call(
-        &mut self,
-        name: &Ident,
-        arguments: &[Argument],
-        span: Span,
-    ) -> Option<Operand> {
+    pub(super) fn standard_call(&mut self, name: &Ident, arguments: &[Argument], span: Span) -> Option<Operand> {
         let key = name.key();
         if let Some((form, ty)) = form::find(&key) {
             let comparison = matches!(form, Form::Comparison(_) | Form::Pair(BinaryOp::NotEqual));
@@ -285,7 +280,7 @@ impl Body<'_, '_> {
         Some(Self::intrinsic(Intrinsic::Multiplex, all, ty, span))
     }
 
-    pub(in crate::check) fn integer_as_lint(&mut self, operand: Operand) -> Option<Expr> {
+    pub(in crate::check::body) fn integer_as_lint(&mut self, operand: Operand) -> Option<Expr> {
         let expr = self.settle(operand)?;
         let expr = self.as_index(expr);
         if !self.plain_elementary(&expr).is_some_and(ElementaryType::is_integer) {

@@ -3,7 +3,7 @@
 use super::association::{Action, Runs};
 use crate::check::body::Body;
 use crate::check::body::call::argument::Passing;
-use crate::check::declare::class::Role;
+use crate::check::declare::Role;
 use crate::check::types::build::{assign, joined, load, not, operation, when};
 use crate::ir::{Binary, Dispatch, ElementaryType, Expr, InstanceCall, Place, PouId, Statement, StatementKind, Type};
 use crate::syntax::Span;
@@ -11,7 +11,7 @@ use crate::syntax::ast::{ActionQualifier, Chart};
 
 impl Body<'_, '_> {
     /// All controls, then what they let run.
-    pub(in crate::check) fn action_control(&mut self, chart: &Chart, actions: &[Action]) -> Vec<Statement> {
+    pub(super) fn action_control(&mut self, chart: &Chart, actions: &[Action]) -> Vec<Statement> {
         let Some(quiet) = self.quiet() else { return Vec::new() };
         let mut statements = Vec::new();
         for action in actions {

@@ -1,8 +1,8 @@
 //! The actions that steps name, with qualifier, time and indicators (2nd ed. 2.6.4, 3rd ed. 6.7.4).
 
 use crate::check::body::Body;
+use crate::check::declare::Role;
 use crate::check::declare::chart::control_key;
-use crate::check::declare::class::Role;
 use crate::diagnostic::{Code, Diagnostic, did_you_mean};
 use crate::ir::{ElementaryType, Expr, Place, PouId};
 use crate::syntax::Span;
@@ -10,16 +10,16 @@ use crate::syntax::ast::{self, ActionQualifier, Association, Chart, PouKind};
 
 /// An action and the steps that control it.
 pub(in crate::check) struct Action {
-    pub(in crate::check) name: String,
-    pub(in crate::check) runs: Runs,
+    pub(in crate::check::body) name: String,
+    pub(in crate::check::body) runs: Runs,
     /// The instance of its action control.
-    pub(in crate::check) control: Place,
-    pub(in crate::check) uses: Vec<Use>,
+    pub(in crate::check::body) control: Place,
+    pub(in crate::check::body) uses: Vec<Use>,
 }
 
 /// What an action does.
 #[derive(Clone)]
-pub(in crate::check) enum Runs {
+pub(super) enum Runs {
     /// Statements.
     Statements(PouId),
     /// It sets a Boolean variable.
@@ -27,17 +27,17 @@ pub(in crate::check) enum Runs {
 }
 
 /// One association.
-pub(in crate::check) struct Use {
+pub(super) struct Use {
     /// The step's number.
-    pub(in crate::check) step: usize,
-    pub(in crate::check) qualifier: ActionQualifier,
-    pub(in crate::check) time: Option<Expr>,
-    pub(in crate::check) span: Span,
+    pub(in crate::check::body) step: usize,
+    pub(in crate::check::body) qualifier: ActionQualifier,
+    pub(in crate::check::body) time: Option<Expr>,
+    pub(in crate::check::body) span: Span,
 }
 
 impl Body<'_, '_> {
     /// All actions in the order in which the steps name them first.
-    pub(in crate::check) fn controlled_actions(&mut self, chart: &Chart) -> Vec<Action> {
+    pub(super) fn controlled_actions(&mut self, chart: &Chart) -> Vec<Action> {
         let mut actions: Vec<Action> = Vec::new();
         let mut unknown: Vec<String> = Vec::new();
         for (step, association) in

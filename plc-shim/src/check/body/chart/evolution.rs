@@ -2,8 +2,8 @@
 
 use super::net::Net;
 use crate::check::body::Body;
+use crate::check::declare::VIRTUAL_TIME_OFFSET;
 use crate::check::declare::chart::begun_key;
-use crate::check::declare::layout::VIRTUAL_TIME_OFFSET;
 use crate::check::types::build::{assign, joined, load, operation, truth, when};
 use crate::ir::{Binary, ElementaryType, Expr, IfBranch, Place, Statement, StatementKind, Storage, Value};
 use crate::syntax::Span;
@@ -28,7 +28,7 @@ struct Test<'t> {
 }
 
 impl Body<'_, '_> {
-    pub(in crate::check) fn evolution(&mut self, pou: &Pou, net: &Net) -> Vec<Statement> {
+    pub(super) fn evolution(&mut self, pou: &Pou, net: &Net) -> Vec<Statement> {
         let chart = &pou.chart;
         let Some(quiet) = self.quiet() else { return Vec::new() };
         let states: Vec<Option<StepState>> = chart.steps.iter().map(|step| self.step_state(step, quiet)).collect();
@@ -109,7 +109,7 @@ impl Body<'_, '_> {
     }
 
     /// True for the transition whose network is being checked.
-    pub(in crate::check) fn is_own_network(&self, key: &str) -> bool {
+    pub(in crate::check::body) fn is_own_network(&self, key: &str) -> bool {
         self.network.as_deref() == Some(key)
     }
 

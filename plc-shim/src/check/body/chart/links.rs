@@ -8,15 +8,15 @@ use crate::diagnostic::{Code, Diagnostic, did_you_mean};
 use crate::syntax::ast::{Chart, Ident};
 
 /// Which transition leads from where to where.
-pub(in crate::check) struct Links {
+pub(super) struct Links {
     /// Steps and transitions have the numbers of their order.
-    pub(in crate::check) net: Net,
+    pub(super) net: Net,
     /// False if a transition names a step in vain.
-    pub(in crate::check) are_whole: bool,
+    pub(super) are_whole: bool,
 }
 
 impl Body<'_, '_> {
-    pub(in crate::check) fn links(&mut self, chart: &Chart) -> Links {
+    pub(super) fn links(&mut self, chart: &Chart) -> Links {
         let mut numbers = BTreeMap::new();
         for (number, step) in chart.steps.iter().enumerate() {
             numbers.entry(step.name.key()).or_insert(number);

@@ -27,12 +27,12 @@
 //! its control or called by its name, its final scan included, and stands still in between: its steps keep what they
 //! are, and `T` of an active one counts from its activation all the same. An action has one chart that controls it.
 
-pub(in crate::check) mod action;
-pub(in crate::check) mod association;
-pub(in crate::check) mod evolution;
-pub(in crate::check) mod links;
-pub(in crate::check) mod net;
-pub(in crate::check) mod soundness;
+pub(super) mod action;
+pub(super) mod association;
+pub(super) mod evolution;
+pub(super) mod links;
+pub(super) mod net;
+pub(super) mod soundness;
 
 use super::Body;
 use crate::check::declare::chart::{STEP_TYPE, keeps_charts};

@@ -7,21 +7,21 @@
 use std::collections::{BTreeSet, VecDeque};
 
 /// Most situations of one network that are looked at.
-pub(in crate::check) const MAX_SITUATIONS: usize = 100_000;
+pub(super) const MAX_SITUATIONS: usize = 100_000;
 
 /// Steps and transitions by number.
 #[derive(Debug, Default)]
-pub(in crate::check) struct Net {
-    pub(in crate::check) steps: usize,
-    pub(in crate::check) initial: Vec<usize>,
-    pub(in crate::check) transitions: Vec<Arcs>,
+pub(super) struct Net {
+    pub(in crate::check::body) steps: usize,
+    pub(in crate::check::body) initial: Vec<usize>,
+    pub(in crate::check::body) transitions: Vec<Arcs>,
 }
 
 /// The steps before and behind a transition.
 #[derive(Debug, Default, Clone)]
-pub(in crate::check) struct Arcs {
-    pub(in crate::check) from: Vec<usize>,
-    pub(in crate::check) to: Vec<usize>,
+pub(super) struct Arcs {
+    pub(in crate::check::body) from: Vec<usize>,
+    pub(in crate::check::body) to: Vec<usize>,
 }
 
 /// The active steps, a bit each.
@@ -29,19 +29,19 @@ type Marking = Vec<u64>;
 
 /// What was found in all situations.
 #[derive(Debug, Default)]
-pub(in crate::check) struct Explored {
+pub(super) struct Explored {
     /// Steps that are active in some situation.
-    pub(in crate::check) reached: BTreeSet<usize>,
+    pub(in crate::check::body) reached: BTreeSet<usize>,
     /// Transitions that are enabled in some situation.
-    pub(in crate::check) enabled: BTreeSet<usize>,
+    pub(super) enabled: BTreeSet<usize>,
     /// The first transition that activates a step that is active, and that step.
-    pub(in crate::check) unsafe_at: Option<(usize, usize)>,
+    pub(super) unsafe_at: Option<(usize, usize)>,
     /// The first situation from which no transition leads on.
-    pub(in crate::check) dead: Option<Vec<usize>>,
+    pub(super) dead: Option<Vec<usize>>,
     /// Pairs of `watched` steps that are active together.
-    pub(in crate::check) together: BTreeSet<(usize, usize)>,
+    pub(super) together: BTreeSet<(usize, usize)>,
     /// There are more situations than are looked at.
-    pub(in crate::check) is_cut_off: bool,
+    pub(super) is_cut_off: bool,
 }
 
 fn holds(marking: &Marking, step: usize) -> bool {
@@ -61,7 +61,7 @@ fn active(marking: &Marking) -> impl Iterator<Item = usize> + '_ {
 
 impl Net {
     /// The number of the network that each step belongs to: what is joined by transitions is one.
-    pub(in crate::check) fn networks(&self) -> Vec<usize> {
+    pub(super) fn networks(&self) -> Vec<usize> {
         let mut of: Vec<usize> = (0..self.steps).collect();
         let mut changed = true;
         while changed {
@@ -81,7 +81,7 @@ impl Net {
     }
 
     /// Every situation that follows from the initial one. `watched` steps are looked at in pairs.
-    pub(in crate::check) fn explore(&self, watched: &BTreeSet<usize>) -> Explored {
+    pub(super) fn explore(&self, watched: &BTreeSet<usize>) -> Explored {
         let mut found = Explored::default();
         let mut start = vec![0; self.steps.div_ceil(64)];
         self.initial.iter().for_each(|step| set(&mut start, *step, true));

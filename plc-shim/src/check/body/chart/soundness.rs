@@ -9,7 +9,7 @@ use crate::diagnostic::{Code, Diagnostic};
 use crate::syntax::ast::{Chart, ChartStep, Transition};
 
 impl Body<'_, '_> {
-    pub(in crate::check) fn check_soundness(&mut self, chart: &Chart, net: &Net, actions: &[Action]) {
+    pub(super) fn check_soundness(&mut self, chart: &Chart, net: &Net, actions: &[Action]) {
         let networks = net.networks();
         if !self.check_initial_steps(chart, &networks) {
             return;

@@ -9,12 +9,12 @@ use crate::syntax::Span;
 use crate::syntax::calendar::DAY_NS;
 
 /// The remainder of `value` by a day, never negative.
-pub(in crate::check) fn within_day(value: Expr) -> Expr {
+pub(in crate::check::body) fn within_day(value: Expr) -> Expr {
     day_part(Intrinsic::FloorRemainder, value)
 }
 
 /// Midnight before or at `value`.
-pub(in crate::check) fn day_start(value: Expr) -> Expr {
+pub(in crate::check::body) fn day_start(value: Expr) -> Expr {
     day_part(Intrinsic::FloorMultiple, value)
 }
 
@@ -33,7 +33,7 @@ impl Body<'_, '_> {
         matches!(operand, Operand::Typed(expr) if self.plain_elementary(expr).is_some_and(E::is_calendar))
     }
 
-    pub(in crate::check) fn timed_function(
+    pub(in crate::check::body) fn timed_function(
         &mut self,
         function: TimedFunction,
         left: Operand,
@@ -49,7 +49,7 @@ impl Body<'_, '_> {
     }
 
     /// `+` and `-` where a date or time of day takes part.
-    pub(in crate::check) fn calendar_operation(
+    pub(super) fn calendar_operation(
         &mut self,
         operator: Binary,
         left: Operand,

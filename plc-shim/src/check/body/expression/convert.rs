@@ -9,7 +9,7 @@ use crate::ir::{ElementaryType, Expr, Rounding, Type, TypeId, Value};
 use crate::syntax::Span;
 
 impl Body<'_, '_> {
-    pub(in crate::check) fn mismatch<T>(&mut self, wanted: &str, found: &str, span: Span) -> Option<T> {
+    pub(in crate::check::body) fn mismatch<T>(&mut self, wanted: &str, found: &str, span: Span) -> Option<T> {
         let message = format!("{wanted} is wanted, this is {found}");
         self.report(Diagnostic::error(Code::TypeMismatch, span, message));
         None
@@ -57,7 +57,7 @@ impl Body<'_, '_> {
         }
     }
 
-    pub(in crate::check) fn describe(&self, operand: &Operand) -> String {
+    pub(in crate::check::body) fn describe(&self, operand: &Operand) -> String {
         match operand {
             Operand::Typed(expr) => self.type_name(expr.ty),
             Operand::Integer { .. } => "an integer".to_owned(),
@@ -133,7 +133,7 @@ impl Body<'_, '_> {
 
     /// The operand with the type it has on its own: integers DINT or, if they need it, LINT or
     /// ULINT; reals LREAL.
-    pub(in crate::check) fn settle(&mut self, operand: Operand) -> Option<Expr> {
+    pub(in crate::check::body) fn settle(&mut self, operand: Operand) -> Option<Expr> {
         match operand {
             Operand::Typed(expr) => Some(expr),
             Operand::Text { text, span } => self.settled_text(&text, span),
@@ -147,7 +147,7 @@ impl Body<'_, '_> {
     }
 
     /// True if a constant without type can be one of `ty`.
-    pub(in crate::check) fn adapts(operand: &Operand, ty: ElementaryType) -> bool {
+    pub(in crate::check::body) fn adapts(operand: &Operand, ty: ElementaryType) -> bool {
         match operand {
             Operand::Typed(_) => false,
             Operand::Text { text, .. } => Self::as_character(text, ty).is_some(),
@@ -161,7 +161,7 @@ impl Body<'_, '_> {
     }
 
     /// An expression that must be of elementary type `ty`.
-    pub(in crate::check) fn expression_of(
+    pub(in crate::check::body) fn expression_of(
         &mut self,
         expr: &crate::syntax::ast::Expr,
         ty: ElementaryType,
@@ -177,7 +177,7 @@ impl Body<'_, '_> {
     }
 
     /// Runs `check` where the place wants `context`.
-    pub(in crate::check) fn within<T>(
+    pub(in crate::check::body) fn within<T>(
         &mut self,
         context: Option<ElementaryType>,
         check: impl FnOnce(&mut Self) -> T,

@@ -1,7 +1,7 @@
 //! What dialects do their own way. A place in the text tells its file, and the file its dialect.
 
 use crate::check::body::Body;
-use crate::check::declare::layout::VIRTUAL_TIME_OFFSET;
+use crate::check::declare::VIRTUAL_TIME_OFFSET;
 use crate::check::standard::vendor::VENDOR_FUNCTIONS;
 use crate::check::types::constant::fold;
 use crate::check::types::number::{MS, as_number, counter, keeps};
@@ -20,7 +20,7 @@ fn joined(operator: Binary, left: Expr, right: Expr) -> Expr {
 
 impl Body<'_, '_> {
     /// A TIME as the dialect counts it: whole milliseconds that wrap. Everything else as it is.
-    pub(in crate::check) fn time_value(&self, expr: Expr) -> Expr {
+    pub(in crate::check::body) fn time_value(&self, expr: Expr) -> Expr {
         let counter = counter(self.declarations.dialect(expr.span).time());
         let Some(counter) = counter.filter(|_| expr.ty == E::Time.into()) else { return expr };
         let unit = |span| constant(Value::Int(MS), E::Lint, span);
@@ -32,7 +32,7 @@ impl Body<'_, '_> {
     }
 
     /// Reports a TIME that the dialect cannot count.
-    pub(in crate::check) fn check_duration(&mut self, ty: E, ns: i64, span: Span) -> Option<()> {
+    pub(super) fn check_duration(&mut self, ty: E, ns: i64, span: Span) -> Option<()> {
         let dialect = self.declarations.dialect(span);
         let Some(counter) = counter(dialect.time()).filter(|_| ty == E::Time) else { return Some(()) };
         let ns = i128::from(ns);
@@ -46,7 +46,7 @@ impl Body<'_, '_> {
     }
 
     /// A division, by what the dialect does if the divisor is 0.
-    pub(in crate::check) fn division(&self, operator: Binary, span: Span) -> Binary {
+    pub(super) fn division(&self, operator: Binary, span: Span) -> Binary {
         match (operator, self.declarations.dialect(span).division_by_zero()) {
             (Binary::Divide, DivisionByZero::Continue) => Binary::DivideAnyway,
             _ => operator,
@@ -54,19 +54,19 @@ impl Body<'_, '_> {
     }
 
     /// True if operators for numbers take `ty`, and those for bit strings too.
-    pub(in crate::check) fn bits_are_numbers(&self, ty: E, span: Span) -> bool {
+    pub(super) fn bits_are_numbers(&self, ty: E, span: Span) -> bool {
         let has = self.declarations.dialect(span).has(Feature::BitArithmetic);
         has && (ty.kind() == Kind::Bits || ty.is_integer())
     }
 
     /// The type of an integer that is shifted as its bits are.
-    pub(in crate::check) fn shifted_integer(&self, expr: &Expr) -> Option<E> {
+    pub(in crate::check::body) fn shifted_integer(&self, expr: &Expr) -> Option<E> {
         let has = self.declarations.dialect(expr.span).has(Feature::IntegerShifts);
         self.plain_elementary(expr).filter(|ty| has && ty.is_integer())
     }
 
     /// A value that counts or selects, where bit strings and enumerations are numbers; all else as it is.
-    pub(in crate::check) fn as_index(&self, expr: Expr) -> Expr {
+    pub(in crate::check::body) fn as_index(&self, expr: Expr) -> Expr {
         let expr = self.as_number(expr);
         match self.plain_elementary(&expr) {
             Some(ty) if as_number(ty) != ty && self.bits_are_numbers(ty, expr.span) => {
@@ -77,12 +77,12 @@ impl Body<'_, '_> {
     }
 
     /// True if `ty` has bits to invert.
-    pub(in crate::check) fn has_bits(&self, ty: E, span: Span) -> bool {
+    pub(super) fn has_bits(&self, ty: E, span: Span) -> bool {
         ty.is_bits() || self.bits_are_numbers(ty, span)
     }
 
     /// True if a value becomes one of `wanted` without a conversion function.
-    pub(in crate::check) fn widens(&self, found: E, wanted: E, span: Span) -> bool {
+    pub(super) fn widens(&self, found: E, wanted: E, span: Span) -> bool {
         if found.widens_to(wanted) {
             return true;
         }
@@ -95,7 +95,7 @@ impl Body<'_, '_> {
     }
 
     /// Warns of a value that may not be the same one of type `wanted`, which the dialect allows.
-    pub(in crate::check) fn warn_of_loss(&mut self, expr: &Expr, found: E, wanted: E) {
+    pub(super) fn warn_of_loss(&mut self, expr: &Expr, found: E, wanted: E) {
         let (from, to) = (as_number(found), as_number(wanted));
         if from.widens_to(to) || found == E::Bool {
             return;
@@ -112,7 +112,7 @@ impl Body<'_, '_> {
     }
 
     /// The smallest type that both widen to.
-    pub(in crate::check) fn common(&self, left: E, right: E, span: Span) -> Option<E> {
+    pub(super) fn common(&self, left: E, right: E, span: Span) -> Option<E> {
         let numbers = || {
             let has = self.declarations.dialect(span).has(Feature::BitArithmetic);
             has.then(|| as_number(left).common(as_number(right))).flatten()
@@ -121,7 +121,7 @@ impl Body<'_, '_> {
     }
 
     /// `AND_THEN`, `OR_ELSE`: the right operand is evaluated only if the left one does not tell.
-    pub(in crate::check) fn short_circuit(
+    pub(super) fn short_circuit(
         &mut self,
         operator: BinaryOp,
         left: &ast::Expr,
@@ -136,12 +136,12 @@ impl Body<'_, '_> {
     }
 
     /// True for `TIME` and `LTIME`, called as functions.
-    pub(in crate::check) fn is_clock(name: &Ident) -> bool {
+    pub(in crate::check::body) fn is_clock(name: &Ident) -> bool {
         matches!(name.key().as_str(), "TIME" | "LTIME")
     }
 
     /// `TIME()` and `LTIME()`: virtual time since the start.
-    pub(in crate::check) fn clock_function(&mut self, name: &Ident, call: &Call, span: Span) -> Option<Operand> {
+    pub(in crate::check::body) fn clock_function(&mut self, name: &Ident, call: &Call, span: Span) -> Option<Operand> {
         let dialect = self.declarations.dialect(span);
         if !dialect.has(Feature::ClockFunctions) {
             let (about, homes) = (Feature::ClockFunctions.about(), Feature::ClockFunctions.homes());
@@ -166,7 +166,7 @@ impl Body<'_, '_> {
     }
 
     /// Reports a function of a vendor's controllers; true if it is one.
-    pub(in crate::check) fn report_vendor_function(&mut self, name: &Ident) -> bool {
+    pub(in crate::check::body) fn report_vendor_function(&mut self, name: &Ident) -> bool {
         let key = name.key();
         let known = VENDOR_FUNCTIONS.iter().find(|(begin, ..)| key.starts_with(begin));
         let Some((_, code, help)) = known else { return false };
@@ -176,7 +176,7 @@ impl Body<'_, '_> {
     }
 
     /// What `x.TON(..)` calls in SCL: the instance `x` of TON, `TON_TIME` and the like.
-    pub(in crate::check) fn instance_of<'e>(&mut self, callee: &'e ast::Expr) -> &'e ast::Expr {
+    pub(in crate::check::body) fn instance_of<'e>(&mut self, callee: &'e ast::Expr) -> &'e ast::Expr {
         let ast::ExprKind::Member(base, name) = &callee.kind else { return callee };
         if self.declarations.dialect(callee.span) != Dialect::SiemensScl {
             return callee;

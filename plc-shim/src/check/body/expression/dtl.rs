@@ -38,7 +38,7 @@ fn parts(ns: i64) -> [u8; SIZE] {
 
 impl Body<'_, '_> {
     /// The value of a literal.
-    pub(in crate::check) fn dtl_literal(&mut self, ns: i64, span: Span) -> Option<Operand> {
+    pub(super) fn dtl_literal(&mut self, ns: i64, span: Span) -> Option<Operand> {
         let ty = self.dtl_type(span)?;
         let bytes = self.dtl_parts(ns, span)?;
         let place = self.declarations.constant_bytes(ty, bytes.into(), span)?;

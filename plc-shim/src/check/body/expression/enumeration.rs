@@ -25,7 +25,7 @@ impl Body<'_, '_> {
     }
 
     /// Operands of one enumeration are compared as they are; else enumerations are their numbers.
-    pub(in crate::check) fn as_numbers(&self, left: Operand, right: Operand, compared: bool) -> (Operand, Operand) {
+    pub(super) fn as_numbers(&self, left: Operand, right: Operand, compared: bool) -> (Operand, Operand) {
         let alike = matches!((&left, &right), (Operand::Typed(left), Operand::Typed(right)) if left.ty == right.ty);
         if alike && compared {
             return (left, right);
@@ -38,7 +38,7 @@ impl Body<'_, '_> {
     }
 
     /// The operand as a value of the enumeration `target`, where the dialect has that.
-    pub(in crate::check) fn enumerated(&mut self, operand: Operand, target: TypeId) -> Result<Option<Expr>, Operand> {
+    pub(super) fn enumerated(&mut self, operand: Operand, target: TypeId) -> Result<Option<Expr>, Operand> {
         let Some(base) = self.base_of_enumeration(target, operand.span()) else { return Err(operand) };
         match operand {
             Operand::Typed(expr) if expr.ty == target => Ok(Some(expr)),

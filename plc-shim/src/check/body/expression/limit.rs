@@ -8,7 +8,7 @@ use crate::ir::{Expr, ExprKind, TypeId};
 impl Body<'_, '_> {
     /// A value that a place of the subrange `target` takes: a constant is checked here, all others
     /// when they are assigned.
-    pub(in crate::check) fn limited(&mut self, expr: Expr, target: TypeId, low: i128, high: i128) -> Option<Expr> {
+    pub(super) fn limited(&mut self, expr: Expr, target: TypeId, low: i128, high: i128) -> Option<Expr> {
         let span = expr.span;
         if let Ok(value) = constant::fold(&self.declarations.types(), &expr) {
             let value = value.as_int().unwrap_or(low);

@@ -1,13 +1,13 @@
 //! Expressions (2nd ed. 3.3.1).
 
-pub(in crate::check) mod calendar;
-pub(in crate::check) mod constant;
-pub(in crate::check) mod convert;
-pub(in crate::check) mod dialect;
-pub(in crate::check) mod dtl;
-pub(in crate::check) mod enumeration;
-pub(in crate::check) mod limit;
-pub(in crate::check) mod operator;
+pub(super) mod calendar;
+pub(super) mod constant;
+pub(super) mod convert;
+pub(super) mod dialect;
+pub(super) mod dtl;
+pub(super) mod enumeration;
+pub(super) mod limit;
+pub(super) mod operator;
 
 use super::Body;
 use crate::check::types::operand::{Operand, constant};
@@ -19,7 +19,7 @@ use crate::syntax::calendar::CalendarKind;
 
 impl Body<'_, '_> {
     /// The meaning of an expression, or nothing after a report.
-    pub(in crate::check) fn expression(&mut self, expr: &ast::Expr) -> Option<Operand> {
+    pub(super) fn expression(&mut self, expr: &ast::Expr) -> Option<Operand> {
         match &expr.kind {
             ast::ExprKind::Literal(literal) => self.literal(literal, expr.span),
             ast::ExprKind::Paren(inner) => Some(self.expression(inner)?.with_span(expr.span)),
@@ -107,14 +107,14 @@ impl Body<'_, '_> {
         Some(Operand::Typed(Expr { ty: self.declarations.types().of_value(ty), ..typed }))
     }
 
-    pub(in crate::check) fn malformed_literal(&mut self, prefix: &str, value: &str, span: Span) -> Option<Operand> {
+    pub(super) fn malformed_literal(&mut self, prefix: &str, value: &str, span: Span) -> Option<Operand> {
         let message = format!("`{value}` is no value of {}", prefix.to_ascii_uppercase());
         self.report(Diagnostic::error(Code::InvalidLiteral, span, message));
         None
     }
 
     /// The value `name` of the enumeration `ty`.
-    pub(in crate::check) fn enumerator_of(&mut self, ty: TypeId, name: &str, span: Span) -> Option<Operand> {
+    pub(super) fn enumerator_of(&mut self, ty: TypeId, name: &str, span: Span) -> Option<Operand> {
         let values = match self.declarations.types().get(ty) {
             crate::ir::Type::Enumeration { values, .. } => values.clone(),
             _ => Vec::new(),
@@ -141,6 +141,6 @@ fn calendar_type(kind: CalendarKind, long: bool) -> ElementaryType {
     }
 }
 
-pub(in crate::check) fn enumeration_value(ty: TypeId, value: i128, span: Span) -> Expr {
+pub(super) fn enumeration_value(ty: TypeId, value: i128, span: Span) -> Expr {
     Expr { kind: ExprKind::Constant(Value::Int(value)), ty, span }
 }

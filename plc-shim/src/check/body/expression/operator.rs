@@ -10,9 +10,9 @@ use crate::syntax::ast::{BinaryOp, UnaryOp};
 
 /// Two operands of one elementary type.
 pub(in crate::check) struct Pair {
-    pub(in crate::check) left: Expr,
-    pub(in crate::check) right: Expr,
-    pub(in crate::check) ty: ElementaryType,
+    pub(in crate::check::body) left: Expr,
+    pub(in crate::check::body) right: Expr,
+    pub(in crate::check::body) ty: ElementaryType,
 }
 
 fn resolved(operator: BinaryOp) -> Option<Binary> {
@@ -86,7 +86,7 @@ impl Body<'_, '_> {
     }
 
     /// The elementary type, enumerations left out: they know assignment and comparison only.
-    pub(in crate::check) fn plain_elementary(&self, expr: &Expr) -> Option<ElementaryType> {
+    pub(in crate::check::body) fn plain_elementary(&self, expr: &Expr) -> Option<ElementaryType> {
         match self.declarations.types().get(expr.ty) {
             crate::ir::Type::Elementary(ty) => Some(*ty),
             _ => None,
@@ -177,7 +177,12 @@ impl Body<'_, '_> {
         folded.ok()
     }
 
-    pub(in crate::check) fn invalid_operands<T>(&mut self, left: &Operand, right: &Operand, span: Span) -> Option<T> {
+    pub(in crate::check::body) fn invalid_operands<T>(
+        &mut self,
+        left: &Operand,
+        right: &Operand,
+        span: Span,
+    ) -> Option<T> {
         let (left, right) = (self.describe(left), self.describe(right));
         let message = format!("this operator does not join {left} and {right}");
         self.report(Diagnostic::error(Code::InvalidOperand, span, message));
@@ -217,7 +222,7 @@ impl Body<'_, '_> {
     }
 
     /// Both operands in the smallest type that holds both.
-    pub(in crate::check) fn unify(
+    pub(in crate::check::body) fn unify(
         &mut self,
         _operator: Binary,
         left: Operand,
@@ -316,7 +321,7 @@ impl Body<'_, '_> {
     }
 
     /// 2nd ed. Table 24: the base is a real number, and so is the result.
-    pub(in crate::check) fn power(&mut self, base: Operand, exponent: Operand, span: Span) -> Option<Operand> {
+    pub(in crate::check::body) fn power(&mut self, base: Operand, exponent: Operand, span: Span) -> Option<Operand> {
         let single = self.own_type(&base) == Some(ElementaryType::Real);
         let ty = if single { ElementaryType::Real } else { ElementaryType::Lreal };
         let base = self.coerce(base, ty.into())?;

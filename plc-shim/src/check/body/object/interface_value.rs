@@ -11,12 +11,12 @@ use crate::ir::{
 use crate::syntax::Span;
 
 impl Body<'_, '_> {
-    pub(in crate::check) fn is_interface(&self, operand: &Operand) -> bool {
+    pub(in crate::check::body) fn is_interface(&self, operand: &Operand) -> bool {
         matches!(operand, Operand::Typed(expr) if matches!(self.declarations.types().get(expr.ty), Type::Interface { .. }))
     }
 
     /// The operand as a reference to what implements `interface`.
-    pub(in crate::check) fn coerce_interface(
+    pub(in crate::check::body) fn coerce_interface(
         &mut self,
         operand: Operand,
         interface: PouId,
@@ -61,7 +61,7 @@ impl Body<'_, '_> {
     }
 
     /// `=` and `<>` tell whether two references refer to the same instance.
-    pub(in crate::check) fn interface_comparison(
+    pub(in crate::check::body) fn interface_comparison(
         &mut self,
         operator: Binary,
         left: Operand,
@@ -79,7 +79,7 @@ impl Body<'_, '_> {
     }
 
     /// `target ?= value`: NULL unless what the value refers to implements the target's interface.
-    pub(in crate::check) fn attempt_interface(
+    pub(in crate::check::body) fn attempt_interface(
         &mut self,
         target: Place,
         value: Operand,
@@ -105,7 +105,7 @@ impl Body<'_, '_> {
     }
 
     /// The address that an operand stands for.
-    pub(in crate::check) fn reference_value(&mut self, operand: Operand) -> Option<Expr> {
+    pub(super) fn reference_value(&mut self, operand: Operand) -> Option<Expr> {
         let address = ElementaryType::Udint.into();
         match operand {
             Operand::Integer { value: 0, span } => {

@@ -3,8 +3,7 @@
 use crate::check::body::call::argument::Passing;
 use crate::check::body::call::enable;
 use crate::check::body::{Body, Meant};
-use crate::check::declare::class::Role;
-use crate::check::declare::scope::Scope;
+use crate::check::declare::{Role, Scope};
 use crate::check::types::operand::Operand;
 use crate::check::types::parameter::{self, ENO};
 use crate::diagnostic::{Code, Diagnostic};
@@ -17,7 +16,7 @@ use crate::syntax::ast::{self, Call, Ident, PouKind};
 
 /// How much is known of the instance that a method is called on.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(in crate::check) enum Known {
+pub(in crate::check::body) enum Known {
     /// Its type: it is a variable.
     Exactly,
     /// It is the running instance, which may be of a derived type.
@@ -33,14 +32,14 @@ pub(in crate::check) enum Known {
 /// The instance that a method is called on.
 pub(in crate::check) struct Object {
     /// Yields its address.
-    pub(in crate::check) address: Expr,
-    pub(in crate::check) class: PouId,
-    pub(in crate::check) known: Known,
+    pub(in crate::check::body) address: Expr,
+    pub(in crate::check::body) class: PouId,
+    pub(in crate::check::body) known: Known,
 }
 
 impl Body<'_, '_> {
     /// The call, if it is one of a method; nothing inside if it is wrong.
-    pub(in crate::check) fn method_call(&mut self, call: &Call, span: Span) -> Meant<Expr> {
+    pub(in crate::check::body) fn method_call(&mut self, call: &Call, span: Span) -> Meant<Expr> {
         let (object, name) = match &call.callee.kind {
             ast::ExprKind::Name(name) => {
                 if self.scope.declares(&name.key()) && !self.is_own_result(name) {
@@ -91,7 +90,7 @@ impl Body<'_, '_> {
         None
     }
 
-    pub(in crate::check) fn this_object(&mut self, class: PouId, span: Span) -> Object {
+    pub(in crate::check::body) fn this_object(&mut self, class: PouId, span: Span) -> Object {
         let place = self.this(class, span);
         let address = Expr { ty: place.ty, kind: ExprKind::Load(place), span };
         Object { address, class, known: Known::This }
@@ -149,7 +148,7 @@ impl Body<'_, '_> {
         Some(Object { address: Expr { kind, ty, span: name.span }, class, known: Known::Exactly })
     }
 
-    pub(in crate::check) fn method_arguments(
+    pub(in crate::check::body) fn method_arguments(
         &mut self,
         scope: &Scope,
         name: &str,
@@ -195,7 +194,7 @@ impl Body<'_, '_> {
     }
 
     /// The call of a member whose arguments are known.
-    pub(in crate::check) fn on_object(
+    pub(in crate::check::body) fn on_object(
         &mut self,
         object: Object,
         role: Role,
@@ -261,7 +260,7 @@ impl Body<'_, '_> {
     }
 
     /// How the statements of a function block are called on an instance at a place.
-    pub(in crate::check) fn body_dispatch(
+    pub(in crate::check::body) fn body_dispatch(
         &mut self,
         place: &Place,
         pou: PouId,

@@ -1,15 +1,14 @@
 //! The instance that a unit works on: `THIS`, `SUPER`, inherited variables, who sees what
 //! (3rd ed. 6.6.5.5 to 6.6.5.10).
 
-pub(in crate::check) mod interface_value;
-pub(in crate::check) mod method_call;
-pub(in crate::check) mod property;
-pub(in crate::check) mod query;
+pub(super) mod interface_value;
+pub(super) mod method_call;
+pub(super) mod property;
+pub(super) mod query;
 
 use super::place::{Access, Located};
 use super::{Body, Meant};
-use crate::check::declare::class::{Membership, Role};
-use crate::check::declare::visibility::method_visibility;
+use crate::check::declare::{Membership, Role, method_visibility};
 use crate::diagnostic::{Code, Diagnostic};
 use crate::ir::{Place, PouId, StatementKind, Storage, Type, TypeId, Variable, Visibility};
 use crate::syntax::Span;
@@ -17,21 +16,21 @@ use crate::syntax::ast::{self, Ident, PouKind};
 
 impl Body<'_, '_> {
     /// The unit whose instance runs; nothing in functions.
-    pub(in crate::check) fn own_class(&self) -> Option<PouId> {
+    pub(super) fn own_class(&self) -> Option<PouId> {
         let id = self.declarations.owner_of(self.pou?);
         (self.declarations.pou(id).ast().kind != PouKind::Function).then_some(id)
     }
 
-    pub(in crate::check) fn is_this(&self, name: &Ident) -> bool {
+    pub(super) fn is_this(&self, name: &Ident) -> bool {
         name.key() == "THIS" && !self.scope.declares("THIS")
     }
 
-    pub(in crate::check) fn is_super(&self, expr: &ast::Expr) -> bool {
+    fn is_super(&self, expr: &ast::Expr) -> bool {
         matches!(&expr.kind, ast::ExprKind::Name(name) if name.key() == "SUPER" && !self.scope.declares("SUPER"))
     }
 
     /// `THIS`, if the name is that.
-    pub(in crate::check) fn this_place(&mut self, name: &Ident) -> Meant<Located> {
+    pub(super) fn this_place(&mut self, name: &Ident) -> Meant<Located> {
         if !self.is_this(name) {
             return None;
         }
@@ -50,7 +49,7 @@ impl Body<'_, '_> {
         Place::whole(Storage::Instance(0), ty, span)
     }
 
-    pub(in crate::check) fn no_object<T>(&mut self, word: &str, span: Span) -> Option<T> {
+    fn no_object<T>(&mut self, word: &str, span: Span) -> Option<T> {
         let message = match word {
             "THIS" => "THIS is used where no instance runs".to_owned(),
             _ => format!("{word} is used in what extends nothing"),
@@ -60,7 +59,7 @@ impl Body<'_, '_> {
     }
 
     /// `SUPER()`, the statements of the base on the running instance.
-    pub(in crate::check) fn super_call(&mut self, call: &ast::Call, span: Span) -> Meant<StatementKind> {
+    pub(super) fn super_call(&mut self, call: &ast::Call, span: Span) -> Meant<StatementKind> {
         if !self.is_super(&call.callee) {
             return None;
         }
@@ -73,16 +72,16 @@ impl Body<'_, '_> {
     }
 
     /// True where the variables of `pou` are one's own, whatever instance they are of.
-    pub(in crate::check) fn is_own_instance(&self, pou: PouId) -> bool {
+    pub(super) fn is_own_instance(&self, pou: PouId) -> bool {
         self.own_class() == Some(pou)
     }
 
-    pub(in crate::check) fn may_see(&self, variable: &Variable) -> bool {
+    pub(super) fn may_see(&self, variable: &Variable) -> bool {
         variable.owner.is_some_and(|owner| self.declarations.sees(self.pou, variable.visibility, owner))
     }
 
     /// Reports a method that may not be called from here.
-    pub(in crate::check) fn check_method_access(&mut self, method: PouId, span: Span) -> Option<()> {
+    fn check_method_access(&mut self, method: PouId, span: Span) -> Option<()> {
         let entry = self.declarations.pou(method);
         let Some(Membership { owner, .. }) = entry.membership() else { return Some(()) };
         let visibility = method_visibility(&entry.ast().object.modifiers);
@@ -102,12 +101,7 @@ impl Body<'_, '_> {
     }
 
     /// A `VAR_IN_OUT` of the running instance, as in `THIS.x`.
-    pub(in crate::check) fn reference_in_this(
-        &mut self,
-        base: &Located,
-        variable: &Variable,
-        span: Span,
-    ) -> Option<Located> {
+    pub(super) fn reference_in_this(&mut self, base: &Located, variable: &Variable, span: Span) -> Option<Located> {
         let is_this = base.place.storage == Storage::Instance(0) && base.place.steps.is_empty();
         if is_this && matches!(variable.storage, Storage::InstancePointer(_)) {
             let place = Place::whole(variable.storage, variable.ty, span);
@@ -119,7 +113,7 @@ impl Body<'_, '_> {
     }
 
     /// What is wrong with naming a method or property like a variable.
-    pub(in crate::check) fn not_a_variable<T>(&mut self, class: PouId, name: &Ident) -> Meant<T> {
+    pub(super) fn not_a_variable<T>(&mut self, class: PouId, name: &Ident) -> Meant<T> {
         let roles = [Role::Method, Role::Getter, Role::Setter];
         let role = roles.into_iter().find(|role| self.declarations.find_member(class, *role, &name.text).is_some())?;
         let (code, message) = match role {
@@ -134,7 +128,7 @@ impl Body<'_, '_> {
     }
 
     /// True if an instance of one type can stand for one of the other.
-    pub(in crate::check) fn derives(&self, found: TypeId, wanted: TypeId) -> bool {
+    pub(super) fn derives(&self, found: TypeId, wanted: TypeId) -> bool {
         match (self.declarations.types().get(found), self.declarations.types().get(wanted)) {
             (Type::FunctionBlock { pou: found, .. }, Type::FunctionBlock { pou: wanted, .. }) => {
                 self.declarations.is_a(*found, *wanted)

@@ -3,7 +3,7 @@
 use super::method_call::Object;
 use crate::check::body::call::argument::Passing;
 use crate::check::body::{Body, Meant};
-use crate::check::declare::class::Role;
+use crate::check::declare::Role;
 use crate::check::types::operand::Operand;
 use crate::diagnostic::{Code, Diagnostic};
 use crate::ir::{Argument, Statement, StatementKind};
@@ -12,13 +12,13 @@ use crate::syntax::ast::{self, Ident};
 
 impl Body<'_, '_> {
     /// The value of a property of the running instance; nothing if the name is none.
-    pub(in crate::check) fn own_property(&mut self, name: &Ident) -> Meant<Operand> {
+    pub(in crate::check::body) fn own_property(&mut self, name: &Ident) -> Meant<Operand> {
         let object = self.own_property_object(name)?;
         Some(self.value(object, name))
     }
 
     /// The value of a property of another instance.
-    pub(in crate::check) fn property_of(&mut self, base: &ast::Expr, name: &Ident) -> Meant<Operand> {
+    pub(in crate::check::body) fn property_of(&mut self, base: &ast::Expr, name: &Ident) -> Meant<Operand> {
         match self.property_object(base, name)? {
             Some(object) => Some(self.value(object, name)),
             None => Some(None),
@@ -67,7 +67,7 @@ impl Body<'_, '_> {
     }
 
     /// An assignment whose target is a property.
-    pub(in crate::check) fn property_assignment(
+    pub(in crate::check::body) fn property_assignment(
         &mut self,
         target: &ast::Expr,
         value: &ast::Expr,
@@ -81,7 +81,7 @@ impl Body<'_, '_> {
         Some(object.and_then(|object| self.set(object, name, value, span)))
     }
 
-    pub(in crate::check) fn set(
+    pub(in crate::check::body) fn set(
         &mut self,
         object: Object,
         name: &Ident,

@@ -1,9 +1,9 @@
 //! Names, members and indices to places (2nd ed. 2.4.1.2).
 
-pub(in crate::check) mod direct;
-pub(in crate::check) mod namespace;
-pub(in crate::check) mod open_array;
-pub(in crate::check) mod part;
+pub(super) mod direct;
+pub(super) mod namespace;
+pub(super) mod open_array;
+pub(super) mod part;
 
 use super::Body;
 use super::expression::enumeration_value;
@@ -40,8 +40,14 @@ pub(in crate::check) enum Access {
 
 /// A place and who may write to it.
 pub(in crate::check) struct Located {
-    pub(in crate::check) place: Place,
-    pub(in crate::check) access: Access,
+    pub(in crate::check::body) place: Place,
+    pub(in crate::check::body) access: Access,
+}
+
+impl Located {
+    pub(in crate::check) fn into_place(self) -> Place {
+        self.place
+    }
 }
 
 /// What a name stands for.
@@ -115,7 +121,7 @@ impl Body<'_, '_> {
     }
 
     /// The same, the reference itself if it is one.
-    pub(in crate::check) fn declared_place(&mut self, expr: &ast::Expr) -> Option<Located> {
+    pub(super) fn declared_place(&mut self, expr: &ast::Expr) -> Option<Located> {
         match &expr.kind {
             ast::ExprKind::Name(name) => self.named_place(name),
             ast::ExprKind::Member(base, name) => {
@@ -146,7 +152,7 @@ impl Body<'_, '_> {
     }
 
     /// The place that has the part: a variable, or what a property or a call gives.
-    pub(in crate::check) fn base_place(&mut self, base: &ast::Expr) -> Option<Located> {
+    pub(super) fn base_place(&mut self, base: &ast::Expr) -> Option<Located> {
         let value = match &base.kind {
             ast::ExprKind::Name(name) => self.own_property(name),
             ast::ExprKind::Member(object, name) => self.property_of(object, name),
@@ -198,7 +204,7 @@ impl Body<'_, '_> {
     }
 
     /// The variable of this name; an error is one that has been reported.
-    pub(in crate::check) fn variable_named(&mut self, name: &Ident) -> Option<Result<Variable, ()>> {
+    pub(super) fn variable_named(&mut self, name: &Ident) -> Option<Result<Variable, ()>> {
         let key = name.key();
         let local = !name.is_quoted() || self.is_own_result(name);
         if local && self.scope.is_broken(&key) {
@@ -382,7 +388,7 @@ impl Body<'_, '_> {
         Some(Located { place, access: base.access })
     }
 
-    pub(in crate::check) fn index_step(&mut self, bounds: Dimension, index: &ast::Expr, stride: u32) -> Option<Step> {
+    pub(super) fn index_step(&mut self, bounds: Dimension, index: &ast::Expr, stride: u32) -> Option<Step> {
         let operand = self.within(None, |body| body.expression(index))?;
         let index = self.settle(operand)?;
         let index = self.as_index(index);
@@ -405,6 +411,6 @@ impl Body<'_, '_> {
 }
 
 /// True for what the machine writes before a scan.
-pub(in crate::check) fn is_machine_input(storage: Storage) -> bool {
+fn is_machine_input(storage: Storage) -> bool {
     matches!(storage, Storage::Located(Location { area: Area::Input, .. }))
 }

@@ -20,12 +20,7 @@ use crate::syntax::ast::{self, SectionKind};
 
 impl Body<'_, '_> {
     /// The element of an array that comes with its bounds.
-    pub(in crate::check) fn open_element(
-        &mut self,
-        base: Located,
-        indices: &[ast::Expr],
-        span: Span,
-    ) -> Option<Located> {
+    pub(super) fn open_element(&mut self, base: Located, indices: &[ast::Expr], span: Span) -> Option<Located> {
         let Type::OpenArray { dimensions, element } = *self.declarations.types().get(base.place.ty) else {
             return None;
         };
@@ -57,7 +52,7 @@ impl Body<'_, '_> {
     }
 
     /// The description of the array that is given for a parameter without bounds; `before` makes it.
-    pub(in crate::check) fn described(
+    pub(in crate::check::body) fn described(
         &mut self,
         parameter: &Variable,
         expr: &ast::Expr,
@@ -91,7 +86,7 @@ impl Body<'_, '_> {
 
     /// The array that an output of a call is given, which the unit writes to. It must be given: without it
     /// the output has no bounds.
-    pub(in crate::check) fn open_output(
+    pub(in crate::check::body) fn open_output(
         &mut self,
         output: &Variable,
         matched: &Matched<'_>,
@@ -139,7 +134,7 @@ impl Body<'_, '_> {
     }
 
     /// `LOWER_BOUND(a, 1)`, `UPPER_BOUND(a, 1)`: a constant unless the array comes with its bounds.
-    pub(in crate::check) fn bound(
+    pub(in crate::check::body) fn bound(
         &mut self,
         function: PlaceFunction,
         array: &ast::Expr,
@@ -175,7 +170,7 @@ impl Body<'_, '_> {
     }
 
     /// Reports an array that would be copied without knowing how much.
-    pub(in crate::check) fn reject_whole_array<T>(&mut self, span: Span) -> Option<T> {
+    pub(in crate::check::body) fn reject_whole_array<T>(&mut self, span: Span) -> Option<T> {
         let message = "an array without bounds is not copied as a whole";
         let found = Diagnostic::error(Code::OpenArray, span, message);
         self.report(found.with_help("copy its elements, from LOWER_BOUND to UPPER_BOUND"));

@@ -27,7 +27,7 @@ impl Body<'_, '_> {
     }
 
     /// `a.Ready`, where `Ready` is a constant.
-    pub(in crate::check) fn named_bit(&mut self, base: Located, name: &Ident, span: Span) -> Option<Located> {
+    pub(super) fn named_bit(&mut self, base: Located, name: &Ident, span: Span) -> Option<Located> {
         let expr = ast::Expr { kind: ast::ExprKind::Name(name.clone()), span: name.span, height: 1 };
         let number = self.constant_integer(&expr)?;
         self.part_at(base, Width::Bit, u64::try_from(number).unwrap_or(u64::MAX), true, span)

@@ -19,7 +19,7 @@ fn positional(argument: &Argument) -> Option<&ast::Expr> {
 }
 
 impl Body<'_, '_> {
-    pub(in crate::check) fn place_call(
+    pub(in crate::check::body) fn place_call(
         &mut self,
         function: PlaceFunction,
         name: &Ident,
@@ -75,7 +75,7 @@ impl Body<'_, '_> {
         Some(located.place)
     }
 
-    pub(in crate::check) fn reject_constant(&mut self, located: &Located, span: Span) -> Option<()> {
+    pub(super) fn reject_constant(&mut self, located: &Located, span: Span) -> Option<()> {
         if located.access != Access::Constant {
             return Some(());
         }
@@ -84,7 +84,7 @@ impl Body<'_, '_> {
         None
     }
 
-    pub(in crate::check) fn require_address(&mut self, place: &Place, span: Span) -> Option<()> {
+    pub(super) fn require_address(&mut self, place: &Place, span: Span) -> Option<()> {
         if place.has_address() && !matches!(self.declarations.types().get(place.ty), Type::OpenArray { .. }) {
             return Some(());
         }

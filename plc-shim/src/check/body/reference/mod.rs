@@ -1,6 +1,6 @@
 //! References and pointers (3rd ed. 6.4.4.10; `POINTER TO` and `REFERENCE TO` of vendors).
 
-pub(in crate::check) mod address;
+pub(super) mod address;
 
 use super::Body;
 use super::place::{Access, Located};
@@ -25,19 +25,19 @@ fn joined(operator: Binary, left: Expr, right: Expr, ty: TypeId, span: Span) -> 
 
 impl Body<'_, '_> {
     /// NULL.
-    pub(in crate::check) fn null(span: Span) -> Expr {
+    pub(super) fn null(span: Span) -> Expr {
         Expr { kind: ExprKind::Constant(Value::Int(0)), ty: TypeTable::null(), span }
     }
 
     /// What an address leads to.
-    pub(in crate::check) fn led_to(address: Expr, target: TypeId, span: Span) -> Located {
+    pub(super) fn led_to(address: Expr, target: TypeId, span: Span) -> Located {
         let step = Step::Pointer { address: Box::new(address), target };
         let place = Place { steps: vec![step], ..Place::whole(Storage::Referred, target, span) };
         Located { place, access: Access::ReadWrite }
     }
 
     /// `a^`
-    pub(in crate::check) fn dereferenced(&mut self, inner: &ast::Expr, span: Span) -> Option<Located> {
+    pub(super) fn dereferenced(&mut self, inner: &ast::Expr, span: Span) -> Option<Located> {
         let operand = self.within(None, |body| body.expression(inner))?;
         let found = self.describe(&operand);
         let reference = match operand {
@@ -53,7 +53,7 @@ impl Body<'_, '_> {
     }
 
     /// A use of a `REFERENCE TO` stands for what it refers to.
-    pub(in crate::check) fn through_reference(&self, located: Located) -> Located {
+    pub(super) fn through_reference(&self, located: Located) -> Located {
         match self.declarations.types().get(located.place.ty) {
             Type::Reference { kind: ReferenceKind::Reference, target } => {
                 let (target, span) = (*target, located.place.span);
@@ -65,7 +65,7 @@ impl Body<'_, '_> {
     }
 
     /// What a function's `REFERENCE TO` refers to.
-    pub(in crate::check) fn referred_result(&self, result: Operand) -> Operand {
+    pub(super) fn referred_result(&self, result: Operand) -> Operand {
         match result {
             Operand::Typed(expr) => match self.declarations.types().get(expr.ty) {
                 Type::Reference { kind: ReferenceKind::Reference, target } => {
@@ -81,7 +81,7 @@ impl Body<'_, '_> {
     }
 
     /// The place of a value of several parts, which lies in memory until the next call.
-    pub(in crate::check) fn place_of_value(&mut self, value: Operand, span: Span) -> Option<Located> {
+    pub(super) fn place_of_value(&mut self, value: Operand, span: Span) -> Option<Located> {
         let value = self.referred_result(value);
         let value = self.settle(value)?;
         if let ExprKind::Load(place) = value.kind {
@@ -97,7 +97,7 @@ impl Body<'_, '_> {
     }
 
     /// `p[i]` of vendors: so many targets further. The bounds are those of memory.
-    pub(in crate::check) fn pointed_element(
+    pub(super) fn pointed_element(
         &mut self,
         base: Located,
         target: TypeId,
@@ -120,7 +120,7 @@ impl Body<'_, '_> {
     }
 
     /// The operand as a reference of type `wanted`.
-    pub(in crate::check) fn coerce_reference(&mut self, operand: Operand, wanted: TypeId) -> Option<Expr> {
+    pub(super) fn coerce_reference(&mut self, operand: Operand, wanted: TypeId) -> Option<Expr> {
         let null: TypeId = TypeTable::null();
         let (kind, target) = target_of(&self.declarations.types(), wanted)?;
         match (operand, kind) {
@@ -164,7 +164,7 @@ impl Body<'_, '_> {
     }
 
     /// An address as a number: vendors assign pointers to DWORD and the like.
-    pub(in crate::check) fn address_as_number(&self, expr: &Expr, wanted: ElementaryType) -> Option<Expr> {
+    pub(super) fn address_as_number(&self, expr: &Expr, wanted: ElementaryType) -> Option<Expr> {
         let pointer = match self.declarations.types().get(expr.ty) {
             Type::Address { .. } => true,
             Type::Reference { kind, .. } => *kind == ReferenceKind::Pointer,
@@ -176,14 +176,14 @@ impl Body<'_, '_> {
         })
     }
 
-    pub(in crate::check) fn is_reference(&self, operand: &Operand) -> bool {
+    pub(super) fn is_reference(&self, operand: &Operand) -> bool {
         let types = &self.declarations.types();
         matches!(operand, Operand::Typed(expr)
             if target_of(types, expr.ty).is_some() || matches!(types.get(expr.ty), Type::Null))
     }
 
     /// Comparison (3rd ed. 6.4.4.10.5), and sums of vendors' pointers.
-    pub(in crate::check) fn reference_operation(
+    pub(super) fn reference_operation(
         &mut self,
         operator: Binary,
         left: Operand,
@@ -268,7 +268,7 @@ impl Body<'_, '_> {
 
 impl Body<'_, '_> {
     /// `a REF= b`
-    pub(in crate::check) fn refer(&mut self, target: &ast::Expr, value: &ast::Expr, span: Span) -> Option<Statement> {
+    pub(super) fn refer(&mut self, target: &ast::Expr, value: &ast::Expr, span: Span) -> Option<Statement> {
         let place = self.declared_place(target)?.place;
         let Type::Reference { kind: ReferenceKind::Reference, .. } = self.declarations.types().get(place.ty) else {
             let message = format!("`REF=` is for REFERENCE TO, this is {}", self.type_name(place.ty));
@@ -284,7 +284,7 @@ impl Body<'_, '_> {
 
     /// A reference of type `wanted`, a `REFERENCE TO`, to the variable `value`; NULL and 0 take it back.
     /// Vendors let it refer to what does not outlive the call.
-    pub(in crate::check) fn referring(&mut self, wanted: TypeId, value: &ast::Expr) -> Option<Expr> {
+    pub(super) fn referring(&mut self, wanted: TypeId, value: &ast::Expr) -> Option<Expr> {
         let (_, target) = target_of(&self.declarations.types(), wanted)?;
         let is_null = match &value.kind {
             ast::ExprKind::Literal(ast::Literal::Integer(0)) => true,
@@ -309,7 +309,7 @@ impl Body<'_, '_> {
     }
 
     /// `a ?= b` (3rd ed. 6.6.6.7): NULL unless `b` refers to what `a` may refer to.
-    pub(in crate::check) fn attempt(&mut self, target: &ast::Expr, value: &ast::Expr, span: Span) -> Option<Statement> {
+    pub(super) fn attempt(&mut self, target: &ast::Expr, value: &ast::Expr, span: Span) -> Option<Statement> {
         let place = self.target(target)?;
         let operand = self.within(None, |body| body.expression(value))?;
         if matches!(self.declarations.types().get(place.ty), Type::Interface { .. }) {

@@ -10,11 +10,7 @@ use std::sync::Arc;
 use crate::check::body::Body;
 use crate::check::body::call::argument::Passing;
 use crate::check::body::object::method_call::{Known, Object};
-use crate::check::declare::class::Role;
-use crate::check::declare::hook::{EXIT_INPUTS, INIT_INPUTS, suits_init};
-use crate::check::declare::layout::INIT_RETAINS_NAME;
-use crate::check::declare::scope::Scope;
-use crate::check::declare::start::{Given, Occasion};
+use crate::check::declare::{EXIT_INPUTS, Given, INIT_INPUTS, INIT_RETAINS_NAME, Occasion, Role, Scope, suits_init};
 use crate::diagnostic::{Code, Diagnostic};
 use crate::ir::{Expr, ExprKind, Place, PouId, Statement, StatementKind, Variable};
 use crate::syntax::Span;
@@ -25,7 +21,7 @@ type Named = (Ident, ast::Expr);
 
 impl<'a> Body<'_, 'a> {
     /// The calls of `FB_init` on the instance at a place.
-    pub(in crate::check) fn init_calls(&mut self, place: &Place, pou: PouId, given: Given<'a>) -> Vec<Statement> {
+    pub(super) fn init_calls(&mut self, place: &Place, pou: PouId, given: Given<'a>) -> Vec<Statement> {
         let hooks = self.declarations.hooks(pou, Occasion::Start);
         let Some(last) = hooks.last() else { return Vec::new() };
         let Some(named) = self.named(*last, given, place.span) else { return Vec::new() };
@@ -62,7 +58,7 @@ impl<'a> Body<'_, 'a> {
     }
 
     /// The calls of `FB_exit` on the instance at a place, that of the base last.
-    pub(in crate::check) fn exit_calls(&mut self, place: &Place, pou: PouId) -> Vec<Statement> {
+    pub(super) fn exit_calls(&mut self, place: &Place, pou: PouId) -> Vec<Statement> {
         let hooks = self.declarations.hooks(pou, Occasion::End);
         let copies = [Argument::Input(ident(EXIT_INPUTS[0], place.span), truth(false, place.span))];
         let calls = hooks.into_iter().rev().map(|hook| self.hook_call(place, pou, hook, copies.to_vec()));
@@ -151,7 +147,7 @@ impl<'a> Body<'_, 'a> {
     }
 
     /// Runs what a unit's variables do at an occasion, on the instance at a place.
-    pub(in crate::check) fn stage_call(&mut self, place: &Place, stage: PouId, span: Span) -> Option<Statement> {
+    pub(super) fn stage_call(&mut self, place: &Place, stage: PouId, span: Span) -> Option<Statement> {
         let owner = self.declarations.owner_of(stage);
         let called =
             self.on_object(instance_at(place, owner), Role::Method, stage, Vec::new(), Passing::default(), span)?;
@@ -159,7 +155,7 @@ impl<'a> Body<'_, 'a> {
     }
 
     /// Sets a property to the value that the declaration of its instance gives.
-    pub(in crate::check) fn property_begins(
+    pub(super) fn property_begins(
         &mut self,
         place: &Place,
         pou: PouId,

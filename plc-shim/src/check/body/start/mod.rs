@@ -1,12 +1,11 @@
 //! What a unit's variables do before the first scan and before another start, as statements.
 
-pub(in crate::check) mod hook;
+pub(super) mod hook;
 
 use std::sync::Arc;
 
 use super::Body;
-use crate::check::declare::namespace::Home;
-use crate::check::declare::start::{Given, Occasion, Start, StartKind};
+use crate::check::declare::{Given, Home, Occasion, Start, StartKind};
 use crate::check::types::constant;
 use crate::check::types::operand::constant;
 use crate::ir::{
@@ -16,7 +15,7 @@ use crate::syntax::Span;
 
 impl<'a> Body<'_, 'a> {
     /// What a unit's occasion does: what its base does, then its own variables in their order.
-    pub(in crate::check) fn staged(&mut self, owner: PouId, occasion: Occasion) -> Vec<Statement> {
+    pub(super) fn staged(&mut self, owner: PouId, occasion: Occasion) -> Vec<Statement> {
         let span = self.declarations.pou(owner).ast().name.span;
         let mut statements = Vec::new();
         let base = self.declarations.base_of(owner).and_then(|base| self.declarations.stage(base, occasion));

@@ -9,7 +9,7 @@ use crate::syntax::ast::{self, BinaryOp, UpdateOp};
 
 impl Body<'_, '_> {
     /// `a := b := c` is `b := c; a := b`.
-    pub(in crate::check) fn chained(&mut self, targets: &[ast::Expr], value: &ast::Expr, span: Span) -> Vec<Statement> {
+    pub(super) fn chained(&mut self, targets: &[ast::Expr], value: &ast::Expr, span: Span) -> Vec<Statement> {
         let mut source = value;
         let mut checked = Vec::new();
         for target in targets.iter().rev() {
@@ -20,7 +20,7 @@ impl Body<'_, '_> {
     }
 
     /// `a += b` is `a := a + b`; `a S= b` is `IF b THEN a := TRUE; END_IF`.
-    pub(in crate::check) fn update(
+    pub(super) fn update(
         &mut self,
         operator: UpdateOp,
         target: &ast::Expr,

@@ -22,7 +22,7 @@ use crate::syntax::ast::{
 /// Greatest height to which the current result grows.
 const MAX_HEIGHT: u16 = 100;
 
-pub(in crate::check) fn is_list(list: &[Statement]) -> bool {
+pub(super) fn is_list(list: &[Statement]) -> bool {
     list.iter().any(|statement| matches!(statement.kind, StatementKind::Instruction(_)))
 }
 
@@ -93,7 +93,7 @@ impl Lowering {
 
 impl Body<'_, '_> {
     /// The statements that a list of instructions stands for.
-    pub(in crate::check) fn instructions(&mut self, list: &[Statement]) -> Vec<Statement> {
+    pub(super) fn instructions(&mut self, list: &[Statement]) -> Vec<Statement> {
         let mut state = Lowering::default();
         let handed = handed_over(list);
         for (at, statement) in list.iter().enumerate() {

@@ -11,7 +11,7 @@ use crate::syntax::ast::{self, Ident};
 
 /// The labels of one list of statements.
 #[derive(Debug)]
-pub(in crate::check) struct Labels {
+pub(in crate::check::body) struct Labels {
     /// Names as keys in the order of the list.
     known: Vec<(String, LabelId)>,
     /// How many of them have been passed.
@@ -28,12 +28,12 @@ fn label(statement: &ast::Statement) -> Option<&Ident> {
     }
 }
 
-pub(in crate::check) fn has_labels(list: &[ast::Statement]) -> bool {
+pub(super) fn has_labels(list: &[ast::Statement]) -> bool {
     list.iter().any(|statement| label(statement).is_some())
 }
 
 impl Body<'_, '_> {
-    pub(in crate::check) fn labelled(&mut self, list: &[ast::Statement]) -> Vec<Statement> {
+    pub(super) fn labelled(&mut self, list: &[ast::Statement]) -> Vec<Statement> {
         let mut labels: Vec<(String, LabelId)> = Vec::new();
         for name in list.iter().filter_map(label) {
             if labels.iter().any(|(key, _)| *key == name.key()) {
@@ -60,7 +60,7 @@ impl Body<'_, '_> {
         vec![Statement { kind: StatementKind::Labelled(Box::new(labelled)), span }]
     }
 
-    pub(in crate::check) fn jump(&mut self, name: &Ident) -> Option<StatementKind> {
+    pub(in crate::check::body) fn jump(&mut self, name: &Ident) -> Option<StatementKind> {
         let key = name.key();
         for level in (0..self.labels.len()).rev() {
             let Some(labels) = self.labels.get(level) else { continue };

@@ -1,9 +1,9 @@
 //! Statements (2nd ed. 3.3.2).
 
-pub(in crate::check) mod assignment;
-pub(in crate::check) mod instruction;
-pub(in crate::check) mod jump;
-pub(in crate::check) mod wire;
+pub(super) mod assignment;
+pub(super) mod instruction;
+pub(super) mod jump;
+pub(super) mod wire;
 
 use std::collections::BTreeMap;
 
@@ -27,12 +27,12 @@ impl Body<'_, '_> {
     }
 
     /// The same of statements alone.
-    pub(in crate::check) fn lowered(&mut self, list: &[ast::Statement]) -> Vec<Statement> {
+    fn lowered(&mut self, list: &[ast::Statement]) -> Vec<Statement> {
         if jump::has_labels(list) { self.labelled(list) } else { self.unlabelled(list) }
     }
 
     /// Statements that no jump leads into.
-    pub(in crate::check) fn unlabelled(&mut self, list: &[ast::Statement]) -> Vec<Statement> {
+    fn unlabelled(&mut self, list: &[ast::Statement]) -> Vec<Statement> {
         let mut checked = Vec::new();
         for statement in list {
             if let ast::StatementKind::Chain(targets, value) = &statement.kind {

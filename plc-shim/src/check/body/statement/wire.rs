@@ -8,13 +8,13 @@ use crate::ir::{Place, Statement, TypeId, TypeTable};
 use crate::syntax::Span;
 use crate::syntax::ast::{self, Ident};
 
-pub(in crate::check) fn is_wire(name: &Ident) -> bool {
+pub(in crate::check::body) fn is_wire(name: &Ident) -> bool {
     name.text.starts_with('`')
 }
 
 impl Body<'_, '_> {
     /// The name of a wire that has no value yet.
-    pub(in crate::check) fn new_wire<'e>(&self, target: &'e ast::Expr) -> Option<&'e Ident> {
+    pub(in crate::check::body) fn new_wire<'e>(&self, target: &'e ast::Expr) -> Option<&'e Ident> {
         match &target.kind {
             ast::ExprKind::Name(name) if is_wire(name) && !self.wires.contains_key(&name.text) => Some(name),
             _ => None,
@@ -22,14 +22,14 @@ impl Body<'_, '_> {
     }
 
     /// The wire from now on, for values of `ty`.
-    pub(in crate::check) fn wire(&mut self, name: &Ident, ty: TypeId, span: Span) -> Option<Place> {
+    pub(in crate::check::body) fn wire(&mut self, name: &Ident, ty: TypeId, span: Span) -> Option<Place> {
         let place = self.kept(ty, span)?;
         self.wires.insert(name.text.clone(), place.clone());
         Some(place)
     }
 
     /// Gives a wire its first value.
-    pub(in crate::check) fn first_value(&mut self, name: &Ident, value: &ast::Expr, span: Span) -> Option<Statement> {
+    pub(super) fn first_value(&mut self, name: &Ident, value: &ast::Expr, span: Span) -> Option<Statement> {
         let value = self.within(None, |body| body.expression(value));
         let value = value.and_then(|value| self.settle(value))?;
         let ty = self.declarations.types().of_value(value.ty);

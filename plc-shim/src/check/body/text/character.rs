@@ -47,7 +47,12 @@ impl Body<'_, '_> {
     }
 
     /// The place of a character; nothing inside if the index is wrong.
-    pub(in crate::check) fn character_place(&mut self, text: Located, index: &ast::Expr, span: Span) -> Meant<Located> {
+    pub(in crate::check::body) fn character_place(
+        &mut self,
+        text: Located,
+        index: &ast::Expr,
+        span: Span,
+    ) -> Meant<Located> {
         let shape = self.shape(text.place.ty)?;
         let low = i64::from(!self.ends_with_zero(span));
         let bounds = Dimension { low, high: low + i64::from(shape.capacity) - 1 };
@@ -63,7 +68,12 @@ impl Body<'_, '_> {
     }
 
     /// The value of a character; 0 behind the last one, so that a full string ends with 0 too.
-    pub(in crate::check) fn character(&mut self, text: Located, index: &ast::Expr, span: Span) -> Option<Operand> {
+    pub(in crate::check::body) fn character(
+        &mut self,
+        text: Located,
+        index: &ast::Expr,
+        span: Span,
+    ) -> Option<Operand> {
         let shape = self.shape(text.place.ty)?;
         let Indexed { text, position, before } = self.indexed(text.place, self.readable(shape, span), index, span)?;
         let behind = compared(Binary::GreaterEqual, load(&position), count_of(&text));
@@ -86,7 +96,7 @@ impl Body<'_, '_> {
     }
 
     /// `s[i] := value` where a 0 ends a string; nothing at all if the target is no character of one.
-    pub(in crate::check) fn character_assignment(
+    pub(in crate::check::body) fn character_assignment(
         &mut self,
         target: &ast::Expr,
         value: &ast::Expr,

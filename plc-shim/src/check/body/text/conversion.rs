@@ -49,7 +49,7 @@ impl Body<'_, '_> {
     }
 
     /// The value that a text stands for.
-    pub(in crate::check) fn parsed(&mut self, text: Expr, to: ElementaryType, span: Span) -> Option<Operand> {
+    pub(in crate::check::body) fn parsed(&mut self, text: Expr, to: ElementaryType, span: Span) -> Option<Operand> {
         if self.shape(text.ty).is_none() {
             let found = self.type_name(text.ty);
             return self.mismatch("a string", &found, text.span);

@@ -16,7 +16,7 @@ use crate::ir::{ElementaryType, Expr, Rounding};
 use crate::syntax::Span;
 
 impl Body<'_, '_> {
-    pub(in crate::check) fn text_function(
+    pub(in crate::check::body) fn text_function(
         &mut self,
         form: TextForm,
         operands: Vec<Operand>,

@@ -1,8 +1,8 @@
 //! Character strings: literals, lengths, assignment, comparison (2nd ed. 2.2.2, 2.4.3.2, Table 28).
 
-pub(in crate::check) mod character;
-pub(in crate::check) mod conversion;
-pub(in crate::check) mod function;
+pub(super) mod character;
+pub(super) mod conversion;
+pub(super) mod function;
 
 use super::Body;
 use crate::check::types::operand::{Operand, constant};
@@ -33,7 +33,7 @@ impl<'a> Body<'_, 'a> {
     }
 
     /// `STRING#'...'`
-    pub(in crate::check) fn typed_text(&mut self, prefix: &str, text: &str, span: Span) -> Option<Operand> {
+    pub(super) fn typed_text(&mut self, prefix: &str, text: &str, span: Span) -> Option<Operand> {
         let literal = self.text_literal(text, span)?;
         if let Some(ty) = ElementaryType::find(prefix).filter(|ty| ty.is_character()) {
             return Some(Operand::Typed(self.coerce(literal, ty.into())?));
@@ -56,7 +56,7 @@ impl Body<'_, '_> {
         self.declarations.types().text(ty)
     }
 
-    pub(in crate::check) fn is_text(&self, operand: &Operand) -> bool {
+    pub(super) fn is_text(&self, operand: &Operand) -> bool {
         match operand {
             Operand::Text { .. } => true,
             Operand::Typed(expr) => self.shape(expr.ty).is_some(),
@@ -65,7 +65,7 @@ impl Body<'_, '_> {
     }
 
     /// A literal as a string of its own length.
-    pub(in crate::check) fn settled_text(&mut self, text: &Text, span: Span) -> Option<Expr> {
+    pub(super) fn settled_text(&mut self, text: &Text, span: Span) -> Option<Expr> {
         let shape = TextShape { wide: text.wide, capacity: text.units.len() as u16 };
         self.stored_text(shape, text, span)
     }
@@ -77,12 +77,12 @@ impl Body<'_, '_> {
     }
 
     /// The one character of a literal, as one of `ty` (3rd ed. 6.3.3).
-    pub(in crate::check) fn as_character(text: &Text, ty: ElementaryType) -> Option<u16> {
+    pub(super) fn as_character(text: &Text, ty: ElementaryType) -> Option<u16> {
         let fits = ty.is_character() && text.wide == (ty == ElementaryType::Wchar);
         text.units.first().copied().filter(|_| fits && text.units.len() == 1)
     }
 
-    pub(in crate::check) fn literal_character(&mut self, text: &Text, ty: ElementaryType, span: Span) -> Option<Expr> {
+    pub(super) fn literal_character(&mut self, text: &Text, ty: ElementaryType, span: Span) -> Option<Expr> {
         if let Some(unit) = Self::as_character(text, ty) {
             return Some(constant(Value::Int(i128::from(unit)), ty, span));
         }
@@ -93,7 +93,7 @@ impl Body<'_, '_> {
     }
 
     /// The operand as a string of `shape`; what does not fit is cut off (2nd ed. 2.4.3.2).
-    pub(in crate::check) fn coerce_text(&mut self, operand: Operand, shape: TextShape) -> Option<Expr> {
+    pub(super) fn coerce_text(&mut self, operand: Operand, shape: TextShape) -> Option<Expr> {
         match operand {
             Operand::Text { text, span } if text.wide == shape.wide => {
                 self.warn_if_cut(&text, shape, span);
@@ -125,7 +125,7 @@ impl Body<'_, '_> {
     }
 
     /// A string in another shape, which may differ in width too.
-    pub(in crate::check) fn fitted(&mut self, expr: Expr, shape: TextShape) -> Option<Expr> {
+    fn fitted(&mut self, expr: Expr, shape: TextShape) -> Option<Expr> {
         if self.shape(expr.ty) == Some(shape) {
             return Some(expr);
         }
@@ -134,23 +134,11 @@ impl Body<'_, '_> {
     }
 
     /// A string made by a function.
-    pub(in crate::check) fn text_edit(
-        &mut self,
-        edit: Edit,
-        operands: Vec<Expr>,
-        shape: TextShape,
-        span: Span,
-    ) -> Option<Expr> {
+    fn text_edit(&mut self, edit: Edit, operands: Vec<Expr>, shape: TextShape, span: Span) -> Option<Expr> {
         self.made_text(TextFunction::Edit(edit), operands, shape, span)
     }
 
-    pub(in crate::check) fn made_text(
-        &mut self,
-        function: TextFunction,
-        operands: Vec<Expr>,
-        shape: TextShape,
-        span: Span,
-    ) -> Option<Expr> {
+    fn made_text(&mut self, function: TextFunction, operands: Vec<Expr>, shape: TextShape, span: Span) -> Option<Expr> {
         let ty = self.declarations.types_mut().string(shape);
         let target = Some(self.temporary(ty, span)?);
         let call = TextCall { function, operands, target };
@@ -158,18 +146,13 @@ impl Body<'_, '_> {
     }
 
     /// A number that a function gives of strings.
-    pub(in crate::check) fn text_number(
-        function: TextFunction,
-        operands: Vec<Expr>,
-        ty: ElementaryType,
-        span: Span,
-    ) -> Expr {
+    fn text_number(function: TextFunction, operands: Vec<Expr>, ty: ElementaryType, span: Span) -> Expr {
         let call = TextCall { function, operands, target: None };
         Expr { kind: ExprKind::Text(Box::new(call)), ty: ty.into(), span }
     }
 
     /// Strings are ordered character by character, from the left (2nd ed. Table 28).
-    pub(in crate::check) fn text_comparison(
+    pub(super) fn text_comparison(
         &mut self,
         operator: Binary,
         left: Operand,
@@ -197,7 +180,7 @@ impl Body<'_, '_> {
     }
 
     /// All operands as strings that hold the longest.
-    pub(in crate::check) fn unify_texts(&mut self, operands: Vec<Operand>, span: Span) -> Option<(Vec<Expr>, TypeId)> {
+    pub(super) fn unify_texts(&mut self, operands: Vec<Operand>, span: Span) -> Option<(Vec<Expr>, TypeId)> {
         let mut widest: Option<TextShape> = None;
         for operand in &operands {
             let shape = match operand {
