@@ -101,7 +101,7 @@ impl Client for Forced {
 mod tests {
     use super::*;
     use crate::replay::Replay;
-    use onescan_server::signal::{ClientName, ElementaryType, Port};
+    use onescan_server::signal::{ClientName, Port, SignalType};
     use onescan_server::time::TimeSpan;
 
     fn at(ms: u64) -> VirtualTime {
@@ -109,7 +109,7 @@ mod tests {
     }
 
     fn forced() -> Forced {
-        let port = |name: &str| Port { name: SignalName::new(name).unwrap(), ty: ElementaryType::Usint };
+        let port = |name: &str| Port { name: SignalName::new(name).unwrap(), ty: SignalType::USINT };
         let period = TimeSpan::from_millis(1).unwrap();
         let name = ClientName::new("r").unwrap();
         let request = JoinRequest { name, period, reads: vec![], writes: vec![port("x"), port("y")] };

@@ -63,11 +63,11 @@ impl Client for Replay {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use onescan_server::signal::{ClientName, ElementaryType, Port, SignalName};
+    use onescan_server::signal::{ClientName, Port, SignalName, SignalType};
     use onescan_server::time::TimeSpan;
 
     fn replay() -> Replay {
-        let writes = vec![Port { name: SignalName::new("x").unwrap(), ty: ElementaryType::Usint }];
+        let writes = vec![Port { name: SignalName::new("x").unwrap(), ty: SignalType::USINT }];
         let period = TimeSpan::from_millis(1).unwrap();
         let request = JoinRequest { name: ClientName::new("r").unwrap(), period, reads: vec![], writes };
         Replay::new(request, vec![vec![1], vec![2], vec![3]])

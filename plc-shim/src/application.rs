@@ -1,6 +1,9 @@
 //! Program text to something that can run: parse, check, compile.
 
+mod builder;
+mod constant;
 mod front;
+pub(crate) mod identity;
 mod leaves;
 pub(crate) mod library;
 mod namespace;
@@ -27,7 +30,13 @@ use crate::ir::{Configuration, Retention};
 use crate::syntax::Span;
 use crate::syntax::{FileId, SourceMap};
 
+pub use builder::{BuildError, Builder};
+pub use constant::ConstantError;
+use constant::{Constants, Setting};
 pub(crate) use front::Front;
+use identity::code::Code;
+use identity::layout::Layout;
+pub use identity::{CodeDifference, VariableDifference};
 pub(crate) use room::with_room;
 pub(crate) use value::text;
 pub use value::{Radix, WriteError};
@@ -39,17 +48,33 @@ pub struct Application {
     inner: Arc<Inner>,
 }
 
+/// What the program says of its execution while it runs; what it computes does not depend on it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+enum Purpose {
+    #[default]
+    Run,
+    Coverage,
+    Trace,
+}
+
 #[derive(Debug)]
 struct Inner {
     sources: SourceMap,
+    /// The files of the standard library.
+    library: BTreeSet<FileId>,
+    /// Constants whose values are not those of the sources.
+    constants: Vec<Setting>,
     checked: Checked,
     wasm: Vec<u8>,
     faults: FaultTable,
     points: Vec<Point>,
-    is_traced: bool,
+    purpose: Purpose,
     retained: Vec<Range<u32>>,
     persistent: Vec<Range<u32>>,
     warnings: Diagnostics,
+    /// Both made when a state is saved or restored first.
+    layout: OnceLock<Layout>,
+    code: OnceLock<Code>,
     /// Machine code, made when the first PLC runs.
     module: OnceLock<Result<wasmtime::Module, String>>,
 }
@@ -73,47 +98,80 @@ impl Application {
     /// # Errors
     /// All that is wrong with them, and the warnings too.
     pub fn from_inputs(inputs: impl IntoIterator<Item = Input>) -> Result<Self, Diagnostics> {
-        Self::made(inputs.into_iter().collect(), |_| Noted::Nothing)
+        Self::without_constants(Self::builder().inputs(inputs))
     }
 
     /// Like [`Self::from_inputs`], to be run with [`SoftPlc::coverage`](crate::SoftPlc::coverage).
-    /// It computes the same; its saved states are its own.
+    /// It computes the same, and takes saved states of the other builds.
     ///
     /// # Errors
     /// All that is wrong with the files, and the warnings too.
     pub fn from_inputs_with_coverage(inputs: impl IntoIterator<Item = Input>) -> Result<Self, Diagnostics> {
-        Self::made(inputs.into_iter().collect(), |library| Noted::AllBut(library))
+        Self::without_constants(Self::builder().inputs(inputs).covered())
     }
 
     /// Like [`Self::from_inputs`], to be run with [`SoftPlc::watch`](crate::SoftPlc::watch). It
-    /// computes the same, slowly; its saved states are its own.
+    /// computes the same, slowly, and takes saved states of the other builds.
     ///
     /// # Errors
     /// All that is wrong with the files, and the warnings too.
     pub fn from_inputs_traced(inputs: impl IntoIterator<Item = Input>) -> Result<Self, Diagnostics> {
-        Self::made(inputs.into_iter().collect(), |library| Noted::Traced(library))
+        Self::without_constants(Self::builder().inputs(inputs).traced())
     }
 
-    fn made(inputs: Vec<Input>, noted: fn(&BTreeSet<FileId>) -> Noted<'_>) -> Result<Self, Diagnostics> {
+    /// Begins an application whose constants can be set, or that tells what it executes.
+    pub fn builder() -> Builder {
+        Builder::default()
+    }
+
+    fn without_constants(Builder { inputs, purpose, .. }: Builder) -> Result<Self, Diagnostics> {
+        with_room(|| Self::compiled(Front::new(inputs), &Constants::default(), purpose))
+    }
+
+    fn built(Builder { inputs, constants, purpose }: Builder) -> Result<Self, BuildError> {
         with_room(|| {
-            let Front { sources, checked, findings, library, .. } = Front::new(inputs);
-            let findings = Diagnostics::new(findings, &sources);
-            if findings.has_errors() {
-                Err(findings)
-            } else {
-                Ok(Self::compiled(sources, checked, findings, noted(&library)))
+            let (front, constants) = Front::with_constants(inputs, &constants)?;
+            match constants.wrong_value(&front.findings, &front.sources) {
+                Some(error) => Err(error.into()),
+                None => Ok(Self::compiled(front, &constants, purpose)?),
             }
         })
     }
 
-    fn compiled(sources: SourceMap, checked: Checked, warnings: Diagnostics, noted: Noted<'_>) -> Self {
-        let is_traced = matches!(noted, Noted::Traced(_));
+    fn compiled(front: Front, constants: &Constants, purpose: Purpose) -> Result<Self, Diagnostics> {
+        let Front { sources, checked, findings, library, .. } = front;
+        let warnings = Diagnostics::new(findings, &sources);
+        if warnings.has_errors() {
+            return Err(warnings);
+        }
+        let noted = match purpose {
+            Purpose::Run => Noted::Nothing,
+            Purpose::Coverage => Noted::AllBut(&library),
+            Purpose::Trace => Noted::Traced(&library),
+        };
         let Compiled { wasm, faults, points } = compile(&checked, noted);
         let retained = retain::ranges(&checked, Retention::Retain);
         let persistent = retain::ranges(&checked, Retention::Persistent);
-        let module = OnceLock::new();
-        let inner = Inner { sources, checked, wasm, faults, points, is_traced, retained, persistent, warnings, module };
-        Self { inner: Arc::new(inner) }
+        let constants = constants.settings.clone();
+        let (layout, code, module) = (OnceLock::new(), OnceLock::new(), OnceLock::new());
+        Ok(Self {
+            inner: Arc::new(Inner {
+                sources,
+                library,
+                constants,
+                checked,
+                wasm,
+                faults,
+                points,
+                purpose,
+                retained,
+                persistent,
+                warnings,
+                layout,
+                code,
+                module,
+            }),
+        })
     }
 
     /// What is questionable in the text.
@@ -153,7 +211,24 @@ impl Application {
 
     /// True if its statements tell when they run.
     pub(crate) fn is_traced(&self) -> bool {
-        self.inner.is_traced
+        self.inner.purpose == Purpose::Trace
+    }
+
+    /// Which variables there are, of which types, and where they lie.
+    pub(crate) fn layout(&self) -> &Layout {
+        self.inner.layout.get_or_init(|| Layout::new(&self.inner.checked, self.entry_names()))
+    }
+
+    /// What it was compiled from.
+    pub(crate) fn code(&self) -> &Code {
+        let Inner { code, sources, library, constants, .. } = &*self.inner;
+        code.get_or_init(|| {
+            // The values of constants are no files of the project.
+            let is_value = |file| constants.iter().any(|constant| constant.file == file);
+            let is_library = |file| (!is_value(file)).then(|| library.contains(&file));
+            let constants = constants.iter().map(|Setting { path, literal, .. }| (path.clone(), literal.clone()));
+            Code::new(sources, is_library, constants.collect())
+        })
     }
 
     pub(crate) fn faults(&self) -> &FaultTable {

@@ -5,8 +5,10 @@ use std::sync::Arc;
 
 use miette::{LabeledSpan, NamedSource};
 
-use crate::source::LineColumn;
-use crate::source::{SourceMap, Span};
+// Hints are a part of diagnostics, so the rooms that report something find them here.
+pub(crate) use onescan_base::did_you_mean;
+
+use crate::source::{LineColumn, SourceMap, Span};
 
 macro_rules! codes {
     ($($variant:ident $text:literal $about:literal),* $(,)?) => {
@@ -236,22 +238,6 @@ impl Diagnostic {
     }
 }
 
-/// "did you mean `x`?" for the candidate nearest to `name`, if one is near enough to be a slip.
-pub fn did_you_mean<'a>(name: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<String> {
-    let wanted = name.to_lowercase();
-    // A name of one or two letters is near to every other.
-    let length = wanted.chars().count();
-    let limit = if length < 3 { 0 } else { length / 3 };
-    let distance = |text: &str| strsim::damerau_levenshtein(&wanted, &text.to_lowercase());
-    candidates
-        .into_iter()
-        .filter(|text| text.len().abs_diff(name.len()) <= limit)
-        .map(|text| (distance(text), text))
-        .filter(|(distance, _)| *distance <= limit)
-        .min()
-        .map(|(_, text)| format!("did you mean `{text}`?"))
-}
-
 /// Findings together with the text they point into.
 ///
 /// As a [`miette::Diagnostic`] every finding is a related diagnostic with its own source.
@@ -448,12 +434,5 @@ mod tests {
         texts.sort_unstable();
         texts.dedup();
         assert_eq!(texts.len(), Code::ALL.len());
-    }
-
-    #[test]
-    fn a_slip_is_recognised_and_a_stranger_is_not() {
-        let names = ["Sensor_1", "Sensor_2", "Drive"];
-        assert_eq!(did_you_mean("sensr_1", names).as_deref(), Some("did you mean `Sensor_1`?"));
-        assert_eq!(did_you_mean("Pump", names), None);
     }
 }

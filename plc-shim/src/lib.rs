@@ -43,14 +43,18 @@ pub mod run;
 pub mod source;
 pub mod syntax;
 
-pub use application::{Application, Program, Radix, UnknownVariable, Variable, VariableAccess, WriteError};
+pub use application::{
+    Application, BuildError, Builder, CodeDifference, ConstantError, Program, Radix, UnknownVariable, Variable,
+    VariableAccess, VariableDifference, WriteError,
+};
 pub use compile::fault::FaultKind;
 pub use coverage::Coverage;
 pub use diagnostic::{Code, Diagnostic, Diagnostics, Finding, Severity};
 pub use dialect::Dialect;
 pub use input::Input;
-pub use ir::elementary::ElementaryType;
 pub use lint::inspect;
+pub use onescan_base::{ElementaryType, SignalType, TimeSpan, VirtualTime};
 pub use run::{
-    FaultSite, PlcFault, RestoreError, RunError, SoftPlc, Task, TaskPlan, VirtualTime, Way, WayId, WriteSite,
+    CodePolicy, FaultSite, PlanDifference, PlcFault, RestoreError, RunError, SoftPlc, Task, TaskPlan, Way, WayId,
+    WriteSite,
 };

@@ -1,44 +1,38 @@
-//! The `onescan` program: loads a scenario, composes server, plant and PLC, runs them, reports.
+//! Scenarios: a folder that says everything about a session, read and checked.
 //!
 //! Modules in the order in which data flows through them:
 //!
 //! | module | subject |
 //! |---|---|
-//! | [`cli`] | the command line |
-//! | [`scenario`] | a scenario's files, read and checked |
-//! | [`run`] | runs of a scenario: in lockstep or not, recorded, reported |
-//! | [`regress`] | all cases run, compared with reviewed snapshots, reported |
-//! | [`review`] | snapshots looked at, accepted or rejected |
-//! | [`export`], [`diff`], [`bisect`] | recordings in other forms; where two part and why; since which commit |
-//! | [`new`] | scenarios to begin with |
-//! | [`check`] | PLC sources checked without being run |
-//! | [`instrument`] | PLC projects made to run in lockstep, and back |
-//! | [`wiring`] | signals between clients, told and drawn |
-//! | [`plant`] | scenes and components, told without a session |
-//! | [`freewheel`] | running without lockstep, to show what it is good for |
+//! | [`file`] | `scenario.toml` as it is written |
+//! | [`load`] | `scenario.toml` read and checked |
+//! | `arrays` | signals written as arrays and patterns |
+//! | [`expectations`] | what it expects of every run |
+//! | [`case`] | one scenario, tried in many ways |
+//! | [`compose`] | a scenario's plan and its clients |
+//! | [`gateway`] | its real PLCs |
+//! | [`watch`] | variables of its soft PLCs that a run looks at |
+//! | `refusal` | a client that its session does not let in |
 //! | [`expect`] | what a run must show: signal temporal logic |
-//! | [`browse`] | what a real PLC has |
-//! | [`plc`] | a soft PLC as a process of its own |
-//! | [`plot`] | trajectories as SVG |
+//! | [`mode`] | in lockstep or not |
+//! | [`error`] | what can be wrong with it, and where |
 //!
-//! Invariants. This is the only crate that reads scenario files, starts processes and prints. What
-//! a session computes is decided in the crates below; nothing here can change a digest.
+//! Invariants. This is the only crate that reads scenario files. It starts no process, runs no session
+//! and prints nothing.
 
-pub mod bisect;
-pub mod browse;
-pub mod check;
-pub mod cli;
-pub mod diff;
+mod arrays;
+pub mod case;
+pub mod compose;
+pub mod error;
 pub mod expect;
-pub mod export;
-pub mod freewheel;
-pub mod instrument;
-pub mod new;
-pub mod plant;
-pub mod plc;
-pub mod plot;
-pub mod regress;
-pub mod review;
-pub mod run;
-pub mod scenario;
-pub mod wiring;
+pub mod expectations;
+pub mod file;
+pub mod gateway;
+pub mod load;
+pub mod mode;
+mod refusal;
+pub mod watch;
+
+pub use error::ScenarioError;
+pub use load::Scenario;
+pub use mode::Mode;

@@ -1,20 +1,20 @@
 //! Signal temporal logic over traces: what formulas are worth, by hand and against a peer.
 
-use onescan::expect::{Expectation, FormulaError, KnownSignal, Outcome, Trace, TraceEnd, Verdict};
-use onescan_server::signal::ElementaryType;
+use onescan_scenario::expect::{Expectation, FormulaError, KnownSignal, Outcome, Trace, TraceEnd, Verdict};
+use onescan_server::signal::SignalType;
 use onescan_server::time::VirtualTime;
 
 fn known() -> Vec<KnownSignal> {
     let signal =
         |name: &str, ty, unit: Option<&str>| KnownSignal { name: name.to_owned(), ty, unit: unit.map(str::to_owned) };
     vec![
-        signal("closed", ElementaryType::Bool, None),
-        signal("done", ElementaryType::Bool, None),
-        signal("pressure", ElementaryType::Real, Some("bar")),
-        signal("position", ElementaryType::Lreal, Some("m")),
-        signal("count", ElementaryType::Dint, Some("pcs")),
-        signal("elapsed", ElementaryType::Time, None),
-        signal("name", ElementaryType::String(80), None),
+        signal("closed", SignalType::BOOL, None),
+        signal("done", SignalType::BOOL, None),
+        signal("pressure", SignalType::REAL, Some("bar")),
+        signal("position", SignalType::LREAL, Some("m")),
+        signal("count", SignalType::DINT, Some("pcs")),
+        signal("elapsed", SignalType::TIME, None),
+        signal("name", SignalType::String(80), None),
     ]
 }
 

@@ -12,26 +12,26 @@ use onescan_server::formation::Formation;
 use onescan_server::lockstep::Lockstep;
 use onescan_server::plan::{Coupling, SessionPlan};
 use onescan_server::record::{Choice, Provenance, Recorder};
-use onescan_server::signal::{ClientName, ElementaryType, Port, SignalDecl, SignalName};
+use onescan_server::signal::{ClientName, Port, SignalDecl, SignalName, SignalType};
 use onescan_server::time::{TimeSpan, VirtualTime};
 
 /// How many signals of a type a client writes, and every how many of them changes in a step.
 #[derive(Clone, Copy)]
 struct Group {
-    ty: ElementaryType,
+    ty: SignalType,
     count: usize,
     every: usize,
 }
 
 /// The I/O of a machine: mostly BOOLs that stand still, some counters, axes that move.
 const MACHINE: [Group; 3] = [
-    Group { ty: ElementaryType::Bool, count: 400, every: 100 },
-    Group { ty: ElementaryType::Int, count: 75, every: 10 },
-    Group { ty: ElementaryType::Lreal, count: 25, every: 1 },
+    Group { ty: SignalType::BOOL, count: 400, every: 100 },
+    Group { ty: SignalType::INT, count: 75, every: 10 },
+    Group { ty: SignalType::LREAL, count: 25, every: 1 },
 ];
 
 /// The worst case: nothing but real numbers, all of which change in every step.
-const WORST: [Group; 1] = [Group { ty: ElementaryType::Lreal, count: 500, every: 1 }];
+const WORST: [Group; 1] = [Group { ty: SignalType::LREAL, count: 500, every: 1 }];
 
 /// Writes half of the signals and reads the other half.
 struct Half {
@@ -59,8 +59,8 @@ impl Client for Half {
                 self.state = self.state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
                 let place = &mut outputs[offset + index * size..offset + (index + 1) * size];
                 match group.ty {
-                    ElementaryType::Bool => place[0] ^= 1,
-                    ElementaryType::Int => place.copy_from_slice(&(step as u16).to_le_bytes()),
+                    SignalType::BOOL => place[0] ^= 1,
+                    SignalType::INT => place.copy_from_slice(&(step as u16).to_le_bytes()),
                     // A position with noise: 20 bits of it change.
                     _ => place.copy_from_slice(&(step as f64 * 1e-3 + (self.state >> 44) as f64 * 1e-9).to_le_bytes()),
                 }
@@ -77,7 +77,7 @@ fn session(groups: &[Group]) -> Lockstep {
     let ports = |name: &ClientName| -> Vec<Port> {
         let of = |group: &Group| (0..group.count).map(|index| (group.ty, index)).collect::<Vec<_>>();
         let all = groups.iter().flat_map(of);
-        let name_of = |ty: ElementaryType, index: usize| SignalName::new(format!("{name}.{ty}.{index:03}"));
+        let name_of = |ty: SignalType, index: usize| SignalName::new(format!("{name}.{ty}.{index:03}"));
         all.map(|(ty, index)| Port { name: name_of(ty, index).expect("a name"), ty }).collect()
     };
     let both = names.each_ref().map(ports);

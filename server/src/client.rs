@@ -73,6 +73,33 @@ pub trait Client: Send {
     /// The client cannot go on; the session ends for all.
     fn turn(&mut self, t_v: VirtualTime, inputs: &[u8], outputs: &mut [u8]) -> Result<Wake, ClientFault>;
 
+    /// As [`setup`](Self::setup), with `operations` in force from the initial values on.
+    ///
+    /// # Errors
+    /// The client cannot initialise, or cannot do one of the operations.
+    fn begin(&mut self, operations: &[ClientOperation], outputs: &mut [u8]) -> Result<(), ClientFault> {
+        match operations {
+            [] => self.setup(outputs),
+            [first, ..] => Err(ClientFault::new(format!("{first}: {}", OperationRefused::Unsupported))),
+        }
+    }
+
+    /// Does what is asked for at a step boundary; it acts from the next turn on and belongs to the
+    /// client's state.
+    ///
+    /// # Errors
+    /// The client cannot do it; nothing has changed then.
+    fn operate(&mut self, operation: &ClientOperation) -> Result<(), OperationRefused> {
+        let _ = operation;
+        Err(OperationRefused::Unsupported)
+    }
+
+    /// Adds to `view` what can be seen of the client beside its signals. Called between two turns,
+    /// only when somebody looks.
+    fn show(&self, view: &mut ClientView) {
+        let _ = view;
+    }
+
     /// The complete state as bytes, taken between two turns.
     ///
     /// # Errors
@@ -89,6 +116,94 @@ pub trait Client: Send {
         let _ = state;
         Err(StateError::Unsupported)
     }
+}
+
+/// What is done to one client from outside, at a step boundary.
+#[derive(Clone, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(tag = "action", rename_all = "kebab-case", deny_unknown_fields)]
+pub enum ClientOperation {
+    /// A component of a plant fails.
+    Fail {
+        /// The component.
+        component: String,
+        /// How: one of the modes of failure of its kind.
+        mode: String,
+    },
+    /// A failure ends.
+    Repair {
+        /// The component.
+        component: String,
+        /// The mode of failure.
+        mode: String,
+    },
+    /// A variable of a PLC takes a value, until the program writes it.
+    WriteVariable {
+        /// Its path, as `Main.limit`.
+        variable: String,
+        /// A literal of its type.
+        value: String,
+    },
+    /// A variable of a PLC is held at a value, whatever the program writes.
+    ForceVariable {
+        /// Its path.
+        variable: String,
+        /// A literal of its type.
+        value: String,
+    },
+    /// A forced variable follows the program again.
+    ReleaseVariable {
+        /// Its path.
+        variable: String,
+    },
+}
+
+impl fmt::Display for ClientOperation {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Fail { component, mode } => write!(f, "`{component}` fails: {mode}"),
+            Self::Repair { component, mode } => write!(f, "`{component}` is repaired: {mode}"),
+            Self::WriteVariable { variable, value } => write!(f, "`{variable}` is set to {value}"),
+            Self::ForceVariable { variable, value } => write!(f, "`{variable}` is forced to {value}"),
+            Self::ReleaseVariable { variable } => write!(f, "`{variable}` is released"),
+        }
+    }
+}
+
+/// Why a client does not do what it is asked for.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, Error)]
+#[serde(rename_all = "kebab-case")]
+pub enum OperationRefused {
+    /// It has nothing of that kind: a plant has no variables, a PLC no components.
+    #[error("this client does not take such an operation")]
+    Unsupported,
+    /// It has, but not this: the reason, with a hint where there is one.
+    #[error("{0}")]
+    Because(String),
+}
+
+/// What can be seen of clients beside their signals.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct ClientView {
+    /// Where the bodies of plants are.
+    pub poses: Vec<Pose>,
+}
+
+impl ClientView {
+    /// Forgets what was seen; the memory is kept for the next look.
+    pub fn clear(&mut self) {
+        self.poses.clear();
+    }
+}
+
+/// Where a body is: its origin, m, and its orientation, a unit quaternion with the scalar last.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Pose {
+    /// The body.
+    pub body: std::sync::Arc<str>,
+    /// Its origin in world coordinates, m.
+    pub position_m: [f64; 3],
+    /// Its orientation.
+    pub rotation_xyzw: [f64; 4],
 }
 
 /// A place in a source file that a client runs, counted from 1.

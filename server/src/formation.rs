@@ -4,18 +4,18 @@ use std::time::Duration;
 
 use thiserror::Error;
 
+use crate::carrier::{Applicant, Carrier, Door, InProcess};
 use crate::client::{Client, ClientId};
 use crate::join::JoinRefusal;
-use crate::lockstep::{Link, Lockstep};
+use crate::lockstep::Lockstep;
 use crate::plan::SessionPlan;
 use crate::session::Session;
-use crate::transport::tcp::{Applicant, Lobby, RemoteError, Remotes};
+use crate::signal::PortLayout;
 
 /// A session in state `start`, and how its clients are reached.
 pub struct Formation {
     session: Session,
-    links: Vec<Option<Link>>,
-    remotes: Option<Remotes>,
+    carriers: Vec<Option<Box<dyn Carrier>>>,
 }
 
 /// Why a session cannot begin.
@@ -41,20 +41,20 @@ pub enum FormationError {
     /// A signal that nobody writes.
     #[error("signal {0} has no writer: no client that joined writes it")]
     Unwritten(String),
-    /// The transport cannot be set up.
-    #[error(transparent)]
-    Remote(#[from] RemoteError),
+    /// A connection that cannot be used.
+    #[error("cannot set up the TCP transport: {0}")]
+    Connection(#[from] std::io::Error),
 }
 
-/// Called while the server waits: the missing clients' names. False calls the wait off.
+/// Called while the server waits, with the missing clients' names. False calls the wait off.
 pub type WhileWaiting<'a> = &'a mut dyn FnMut(&str) -> bool;
 
 impl Formation {
     /// Nobody has joined.
     pub fn new(plan: SessionPlan) -> Self {
         let session = Session::new(plan);
-        let links = session.clients().map(|_| None).collect();
-        Self { session, links, remotes: None }
+        let carriers = session.clients().map(|_| None).collect();
+        Self { session, carriers }
     }
 
     /// A client of this process joins.
@@ -63,29 +63,30 @@ impl Formation {
     /// The session's plan has no place for it.
     pub fn join(&mut self, client: Box<dyn Client>) -> Result<ClientId, JoinRefusal> {
         let id = self.session.join(&client.join())?;
-        self.links[id.index()] = Some(Link::Local(client));
+        self.carriers[id.index()] = Some(Box::new(InProcess::new(client)));
         Ok(id)
     }
 
-    /// Lets clients in through `lobby` until nobody is missing. Applicants that do not fit are told
-    /// why and sent away; the wait goes on.
+    /// Lets clients in through `door` until nobody is missing. Applicants that do not fit are told why
+    /// and sent away; the wait goes on.
     ///
     /// # Errors
     /// Somebody is still missing after `patience`.
     pub fn admit_from(
         &mut self,
-        lobby: &Lobby,
+        door: &dyn Door,
         patience: Duration,
         reply_timeout: Duration,
         while_waiting: WhileWaiting<'_>,
     ) -> Result<(), FormationError> {
+        // How often `while_waiting` is asked, so that Ctrl-C is heard at once.
         const LOOK_UP: Duration = Duration::from_millis(50);
         let mut waited = Duration::ZERO;
         while self.session.missing_clients().next().is_some() {
             if !while_waiting(&self.missing()) {
                 return Err(FormationError::Interrupted { missing: self.missing() });
             }
-            if let Some(applicant) = lobby.next_applicant(LOOK_UP) {
+            if let Some(applicant) = door.next_applicant(LOOK_UP) {
                 self.admit(applicant, reply_timeout)?;
             } else {
                 waited += LOOK_UP;
@@ -97,21 +98,18 @@ impl Formation {
         Ok(())
     }
 
-    fn admit(&mut self, applicant: Applicant, reply_timeout: Duration) -> Result<(), FormationError> {
-        let remotes = match &mut self.remotes {
-            Some(remotes) => remotes,
-            empty => empty.insert(Remotes::new(self.session.clients().len(), reply_timeout)),
-        };
-        let (peer, name) = (applicant.peer(), applicant.request().name.clone());
+    fn admit(&mut self, applicant: Box<dyn Applicant>, reply_timeout: Duration) -> Result<(), FormationError> {
+        let (origin, name) = (applicant.origin(), applicant.request().name.clone());
         match self.session.join(applicant.request()) {
             Ok(id) => {
-                tracing::info!(client = %name, %peer, "joined");
-                remotes.admit(id, applicant)?;
-                self.links[id.index()] = Some(Link::Remote);
+                tracing::info!(client = %name, %origin, "joined");
+                let inputs = PortLayout::new(applicant.request().reads.clone());
+                let outputs = PortLayout::new(applicant.request().writes.clone());
+                self.carriers[id.index()] = Some(applicant.admit(&inputs, &outputs, reply_timeout)?);
             }
             Err(refusal) => {
-                tracing::warn!(client = %name, %peer, %refusal, "refused");
-                Remotes::refuse(applicant, &refusal.to_string());
+                tracing::warn!(client = %name, %origin, %refusal, "refused");
+                applicant.refuse(&refusal.to_string());
             }
         }
         Ok(())
@@ -134,7 +132,6 @@ impl Formation {
         if !unwritten.is_empty() {
             return Err(FormationError::Unwritten(unwritten.join(", ")));
         }
-        let links = self.links.into_iter().flatten().collect();
-        Ok(Lockstep::new(self.session, links, self.remotes))
+        Ok(Lockstep::new(self.session, self.carriers.into_iter().flatten().collect()))
     }
 }

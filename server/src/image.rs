@@ -3,15 +3,17 @@
 //! The layout follows from the signals alone: falling alignment, then name, no padding. Outputs are
 //! staged as they come and become visible together, at the commit.
 
-use std::collections::BTreeMap;
+use std::ops::Range;
+use std::sync::Arc;
 
-use crate::signal::{BadValue, ElementaryType, PortLayout, SignalDecl, SignalId};
+use crate::interference::Interference;
+use crate::signal::{BadValue, PortLayout, SignalDecl, SignalId, SignalType};
 
 /// Where each signal lies in the image.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub struct ImageLayout {
     offsets: Vec<usize>,
-    types: Vec<ElementaryType>,
+    types: Vec<SignalType>,
     size: usize,
 }
 
@@ -45,8 +47,14 @@ impl ImageLayout {
         self.offsets[signal.index()]
     }
 
+    /// Where `signal` lies in an image.
+    pub fn range(&self, signal: SignalId) -> Range<usize> {
+        let offset = self.offsets[signal.index()];
+        offset..offset + self.types[signal.index()].size()
+    }
+
     /// The type of `signal`.
-    pub fn ty(&self, signal: SignalId) -> ElementaryType {
+    pub fn ty(&self, signal: SignalId) -> SignalType {
         self.types[signal.index()]
     }
 
@@ -69,7 +77,7 @@ struct Run {
 pub struct PortMap {
     runs: Vec<Run>,
     /// Signals whose bytes need a look once staged: image offset, type, and who it is.
-    to_canonicalise: Vec<(usize, ElementaryType, SignalId)>,
+    to_canonicalise: Vec<(usize, SignalType, SignalId)>,
     size: usize,
 }
 
@@ -102,16 +110,27 @@ impl PortMap {
 /// The values of a session: those committed, and those staged for the next commit.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub struct Image {
+    layout: Arc<ImageLayout>,
     committed: Vec<u8>,
+    /// What the writers last wrote, whether or not anything lies over it.
     staged: Vec<u8>,
-    /// What stands there whatever is staged, by its first byte.
-    forces: BTreeMap<usize, Vec<u8>>,
+    interference: Interference,
+}
+
+/// Which commit of its step a commit is. In sequential coupling a step has one for each client.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Commit {
+    /// Others follow in this step.
+    Within,
+    /// The last one.
+    EndsStep,
 }
 
 impl Image {
     /// All zero.
-    pub fn new(layout: &ImageLayout) -> Self {
-        Self { committed: vec![0; layout.size()], staged: vec![0; layout.size()], forces: BTreeMap::new() }
+    pub fn new(layout: Arc<ImageLayout>) -> Self {
+        let size = layout.size();
+        Self { layout, committed: vec![0; size], staged: vec![0; size], interference: Interference::default() }
     }
 
     /// The values that clients see.
@@ -119,7 +138,8 @@ impl Image {
         &self.committed
     }
 
-    /// The values that the next commit makes visible.
+    /// What the writers last wrote: the values that the next commit makes visible, unless a write, a
+    /// force or a fault lies over them.
     pub fn staged(&self) -> &[u8] {
         &self.staged
     }
@@ -131,10 +151,17 @@ impl Image {
         }
     }
 
+    /// Copies to the bytes of a port what its writer last wrote.
+    pub(crate) fn gather_staged(&self, map: &PortMap, port: &mut [u8]) {
+        for run in &map.runs {
+            port[run.port..run.port + run.len].copy_from_slice(&self.staged[run.image..run.image + run.len]);
+        }
+    }
+
     /// Stages the bytes of a port, in canonical form, for the next commit.
     ///
     /// # Errors
-    /// The first signal whose bytes are no value of its type. What is staged must not be committed
+    /// The first signal whose bytes are not a value of its type. What is staged must not be committed
     /// then; the session ends with it.
     pub fn stage(&mut self, map: &PortMap, port: &[u8]) -> Result<(), (SignalId, BadValue)> {
         for run in &map.runs {
@@ -147,46 +174,36 @@ impl Image {
     }
 
     /// Makes all staged values visible at once.
-    pub fn commit(&mut self) {
-        for (offset, bytes) in &self.forces {
-            self.staged[*offset..*offset + bytes.len()].copy_from_slice(bytes);
-        }
+    pub fn commit(&mut self, commit: Commit) {
         self.committed.copy_from_slice(&self.staged);
+        if !self.interference.is_empty() {
+            let Self { layout, committed, staged, interference } = self;
+            interference.apply(layout, staged, committed, commit == Commit::EndsStep);
+        }
     }
 
-    /// Makes a value visible now, until it is staged again; `bytes` has the signal's size.
-    pub(crate) fn write(&mut self, offset: usize, bytes: &[u8]) {
-        self.committed[offset..offset + bytes.len()].copy_from_slice(bytes);
-        self.staged[offset..offset + bytes.len()].copy_from_slice(bytes);
+    /// What lies over the staged values from the next commit on.
+    pub(crate) fn interference(&self) -> &Interference {
+        &self.interference
     }
 
-    /// Makes a value visible now and at every commit.
-    pub(crate) fn force(&mut self, offset: usize, bytes: Vec<u8>) {
-        self.write(offset, &bytes);
-        self.forces.insert(offset, bytes);
+    /// The same, to be changed.
+    pub(crate) fn interference_mut(&mut self) -> &mut Interference {
+        &mut self.interference
     }
 
-    /// Lets staged values become visible again; false if there was no force.
-    pub(crate) fn release(&mut self, offset: usize) -> bool {
-        self.forces.remove(&offset).is_some()
-    }
-
-    /// What is forced, by its first byte.
-    pub(crate) fn forces(&self) -> &BTreeMap<usize, Vec<u8>> {
-        &self.forces
-    }
-
-    /// Back to all zero; nothing is forced.
+    /// Back to all zero; nothing lies over it.
     pub fn clear(&mut self) {
-        self.forces.clear();
+        self.interference = Interference::default();
         self.committed.fill(0);
         self.staged.fill(0);
     }
 
-    /// Takes the values of `bytes` as committed; `bytes` has the image's size.
-    pub(crate) fn load(&mut self, bytes: &[u8]) {
-        self.committed.copy_from_slice(bytes);
-        self.staged.copy_from_slice(bytes);
+    /// Takes the values of a checkpoint, each of the image's size, and what lies over them.
+    pub(crate) fn load(&mut self, committed: &[u8], staged: &[u8], interference: Interference) {
+        self.committed.copy_from_slice(committed);
+        self.staged.copy_from_slice(staged);
+        self.interference = interference;
     }
 }
 
@@ -196,8 +213,8 @@ mod tests {
     use crate::signal::{Port, SignalName};
     use proptest::prelude::*;
 
-    fn signals(types: &[ElementaryType]) -> Vec<SignalDecl> {
-        let decl = |(index, ty): (usize, &ElementaryType)| SignalDecl {
+    fn signals(types: &[SignalType]) -> Vec<SignalDecl> {
+        let decl = |(index, ty): (usize, &SignalType)| SignalDecl {
             name: SignalName::new(format!("s{index:03}")).unwrap(),
             ty: *ty,
             writer: None,
@@ -214,30 +231,30 @@ mod tests {
 
     #[test]
     fn wide_signals_come_first_and_nothing_is_padded() {
-        use ElementaryType::{Bool, Int, Lreal, Real};
-        let layout = ImageLayout::new(&signals(&[Bool, Lreal, Int, Real, Bool]));
+        use SignalType as T;
+        let layout = ImageLayout::new(&signals(&[T::BOOL, T::LREAL, T::INT, T::REAL, T::BOOL]));
         assert_eq!(layout.size(), 16);
         assert_eq!(layout.offsets, [14, 0, 12, 8, 15]);
     }
 
     #[test]
     fn staged_values_are_seen_after_the_commit_only() {
-        let signals = signals(&[ElementaryType::Int]);
+        let signals = signals(&[SignalType::INT]);
         let layout = ImageLayout::new(&signals);
         let map = map_of(&signals, &[0], &layout);
-        let mut image = Image::new(&layout);
+        let mut image = Image::new(Arc::new(layout.clone()));
         image.stage(&map, &7_i16.to_le_bytes()).unwrap();
         let mut port = [0xff; 2];
         image.gather(&map, &mut port);
         assert_eq!(port, [0, 0]);
-        image.commit();
+        image.commit(Commit::EndsStep);
         image.gather(&map, &mut port);
         assert_eq!(port, [7, 0]);
     }
 
     #[test]
     fn neighbours_are_copied_in_one_run() {
-        let signals = signals(&[ElementaryType::Dint; 75]);
+        let signals = signals(&[SignalType::DINT; 75]);
         let layout = ImageLayout::new(&signals);
         let map = map_of(&signals, &(0..75).collect::<Vec<_>>(), &layout);
         assert_eq!(map.runs, [Run { image: 0, port: 0, len: 300 }]);
@@ -245,23 +262,23 @@ mod tests {
 
     #[test]
     fn a_value_that_is_none_is_refused_with_its_signal() {
-        let signals = signals(&[ElementaryType::Bool, ElementaryType::Bool]);
+        let signals = signals(&[SignalType::BOOL, SignalType::BOOL]);
         let layout = ImageLayout::new(&signals);
         let map = map_of(&signals, &[0, 1], &layout);
-        assert_eq!(Image::new(&layout).stage(&map, &[1, 9]), Err((SignalId(1), BadValue::Bool(9))));
+        assert_eq!(Image::new(Arc::new(layout.clone())).stage(&map, &[1, 9]), Err((SignalId(1), BadValue::Bool(9))));
     }
 
     proptest! {
         #[test]
         fn what_is_committed_is_gathered(order in Just((0..20_u32).collect::<Vec<_>>()).prop_shuffle(), seed: [u8; 20]) {
-            let types: Vec<_> = (0..20).map(|i| [ElementaryType::Byte, ElementaryType::Int, ElementaryType::Lint][i % 3]).collect();
+            let types: Vec<_> = (0..20).map(|i| [SignalType::BYTE, SignalType::INT, SignalType::LINT][i % 3]).collect();
             let signals = signals(&types);
             let layout = ImageLayout::new(&signals);
             let map = map_of(&signals, &order, &layout);
             let bytes: Vec<u8> = (0..map.size()).map(|i| seed[i % 20].wrapping_add(i as u8)).collect();
-            let mut image = Image::new(&layout);
+            let mut image = Image::new(Arc::new(layout.clone()));
             image.stage(&map, &bytes).unwrap();
-            image.commit();
+            image.commit(Commit::EndsStep);
             let mut back = vec![0; map.size()];
             image.gather(&map, &mut back);
             prop_assert_eq!(back, bytes);

@@ -1,11 +1,12 @@
 //! Joining: a client's wishes held against the session's plan.
 
+use onescan_base::nearest;
 use thiserror::Error;
 
 use crate::client::JoinRequest;
 use crate::image::{ImageLayout, PortMap};
 use crate::plan::{SessionPlan, hint};
-use crate::signal::{ClientName, ElementaryType, Port, PortLayout, SignalId, SignalName, nearest};
+use crate::signal::{ClientName, Port, PortLayout, SignalId, SignalName, SignalType};
 use crate::time::TimeSpan;
 
 /// A client that is in.
@@ -68,9 +69,9 @@ pub enum JoinRefusal {
         /// The signal.
         signal: SignalName,
         /// The client's type.
-        claimed: ElementaryType,
+        claimed: SignalType,
         /// The session's type.
-        declared: ElementaryType,
+        declared: SignalType,
     },
     /// A signal has exactly one writer.
     #[error("client `{client}` would be a second writer of signal `{signal}`, which `{writer}` writes")]

@@ -9,43 +9,54 @@
 //! | [`signal`] | typed values with one writer, and the ports through which clients see them |
 //! | [`client`] | the interface of everything that takes part |
 //! | [`plan`] | a session before anybody joins |
-//! | [`join`] | who may join, and why not |
+//! | [`operation`] | what is done to a session from outside, as data |
+//! | `interference` | what lies over the writers' values: writes, forces, faults of signals |
 //! | [`image`] | all values in one byte layout; staged, then committed |
-//! | [`state`] | the states of seed 004, Figs. 8 and 9 |
+//! | [`join`] | who may join, and why not |
+//! | [`state`] | the states of \[SDSP\], Figs. 8 and 9 |
 //! | [`cycle`] | the barrier: states, virtual time, delays |
 //! | [`end`] | how a session ends |
 //! | [`session`] | all of these as one machine |
-//! | [`formation`] | clients come together |
-//! | [`lockstep`] | the driver of a running session |
+//! | [`digest`] | the hash of a run |
+//! | [`timeline`] | operations that a session brings along, by time or by condition |
+//! | [`observer`], [`published`] | who watches: on the session's thread, and beside it |
 //! | [`mailbox`], [`pacing`] | what operators ask for; how fast virtual time may run |
-//! | [`wire`] | the protocol of clients outside this process |
-//! | [`transport`] | how its frames travel: TCP |
-//! | [`operation`] | what operators do, as data |
-//! | [`record`] | the digest, recordings |
-//! | [`recording`] | a recording read back |
+//! | [`carrier`] | how a client is reached |
 //! | [`checkpoint`] | a session as a value |
+//! | [`lockstep`] | the driver of a running session |
+//! | [`formation`] | clients come together |
+//! | [`wire`] | the protocol of clients outside this process |
+//! | [`transport`] | a carrier of its frames: TCP |
+//! | [`record`] | recordings |
+//! | [`recording`] | a recording read back |
 //!
 //! Invariants. Up to [`session`] the crate is *sans-IO*: no clock, no thread, no socket, no random
 //! number, no iteration in hash order, and after the start nothing is allocated by a step. Nothing
 //! here knows what a PLC or a plant is, nor how a scenario is written.
 
+pub mod carrier;
 pub mod checkpoint;
 pub mod client;
 pub mod cycle;
+pub mod digest;
 pub mod end;
 pub mod formation;
 pub mod image;
+mod interference;
 pub mod join;
 pub mod lockstep;
 pub mod mailbox;
+pub mod observer;
 pub mod operation;
 pub mod pacing;
 pub mod plan;
+pub mod published;
 pub mod record;
 pub mod recording;
 pub mod session;
 pub mod signal;
 pub mod state;
 pub mod time;
+pub mod timeline;
 pub mod transport;
 pub mod wire;

@@ -1,15 +1,23 @@
-//! What operators do to a session, as data: each at a step boundary, in an order.
+//! Operations: what happens to a session from outside, as data, each at a step boundary.
+//!
+//! An operator, a case and a campaign do the same things by the same operations. An operation taken at
+//! a boundary acts on the step that begins there: clients are asked before their turns, and values of
+//! signals change with the commit that ends the step, like the outputs of any client. So a force at
+//! 1.2 s is seen in the image of 1.2 s, whoever asked for it.
 
+use std::fmt;
+
+use onescan_base::value::BadText;
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
+use crate::client::{ClientOperation, OperationRefused};
 use crate::session::Control;
-use crate::signal::SignalName;
-use crate::signal::value::BadText;
-use crate::time::{StepCount, VirtualTime};
+use crate::signal::{ClientName, SignalName, SignalType};
+use crate::time::{StepCount, TimeSpan, VirtualTime};
 
-/// What an operator does. Values are text as in a recording: `1`, `-3.5`; `TRUE` and `FALSE` too.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+/// An operation. Values are text as in a recording: `1`, `-3.5`; `TRUE` and `FALSE` too.
+#[derive(Clone, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(tag = "action", rename_all = "kebab-case")]
 pub enum Operation {
     /// Ends the session for all.
@@ -20,7 +28,7 @@ pub enum Operation {
     Resume,
     /// Runs exactly one step, then holds.
     Step,
-    /// Begins anew at `t_v = 0`; forces are released.
+    /// Restarts at `t_v = 0`; forces are released.
     Reset,
     /// Gives a signal a value until its writer writes it again.
     Write {
@@ -41,10 +49,86 @@ pub enum Operation {
         /// The signal.
         signal: SignalName,
     },
+    /// Puts a fault on the way of a signal from its writer to its readers.
+    Disturb {
+        /// The signal.
+        signal: SignalName,
+        /// The fault.
+        fault: SignalFault,
+    },
+    /// Ends the fault on the way of a signal.
+    Mend {
+        /// The signal.
+        signal: SignalName,
+    },
+    /// A component of a plant fails.
+    Fail {
+        /// The plant.
+        client: ClientName,
+        /// The component.
+        component: String,
+        /// How: one of the modes of failure of its kind.
+        mode: String,
+    },
+    /// A failure ends.
+    Repair {
+        /// The plant.
+        client: ClientName,
+        /// The component.
+        component: String,
+        /// The mode of failure.
+        mode: String,
+    },
+    /// A variable of a PLC takes a value, until the program writes it.
+    WriteVariable {
+        /// The PLC.
+        client: ClientName,
+        /// The variable's path, as `Main.limit`.
+        variable: String,
+        /// A literal of its type.
+        value: String,
+    },
+    /// A variable of a PLC is held at a value, whatever the program writes.
+    ForceVariable {
+        /// The PLC.
+        client: ClientName,
+        /// The variable's path.
+        variable: String,
+        /// A literal of its type.
+        value: String,
+    },
+    /// A forced variable follows the program again.
+    ReleaseVariable {
+        /// The PLC.
+        client: ClientName,
+        /// The variable's path.
+        variable: String,
+    },
+}
+
+/// What can be wrong with a signal between its writer and its readers.
+#[derive(Clone, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(tag = "kind", rename_all = "kebab-case")]
+pub enum SignalFault {
+    /// It keeps the value that it has when the fault begins.
+    Stuck,
+    /// A BOOL arrives negated.
+    Inverted,
+    /// A number arrives shifted. An integer saturates at the bounds of its type.
+    Offset {
+        /// By how much, a number in the signal's own unit as text, as `-0.05`.
+        by: String,
+    },
+    /// Values arrive late, in their order; until the first arrives the signal keeps its value.
+    Late {
+        /// By how much, rounded up to whole steps.
+        #[serde(rename = "by_ns")]
+        by: TimeSpan,
+    },
 }
 
 impl Operation {
-    /// What of it steers the session; a write, a force and a release do not.
+    /// The part of it that steers the session; nothing for what changes values or clients.
     pub fn control(&self) -> Option<Control> {
         match self {
             Self::Stop => Some(Control::Stop),
@@ -52,8 +136,37 @@ impl Operation {
             Self::Resume => Some(Control::Resume),
             Self::Step => Some(Control::Step),
             Self::Reset => Some(Control::Reset),
-            Self::Write { .. } | Self::Force { .. } | Self::Release { .. } => None,
+            _ => None,
         }
+    }
+
+    /// The client it is for and what that client is asked, if it is for one.
+    pub fn for_client(&self) -> Option<(&ClientName, ClientOperation)> {
+        use ClientOperation as C;
+        Some(match self.clone() {
+            Self::Fail { component, mode, .. } => (self.client()?, C::Fail { component, mode }),
+            Self::Repair { component, mode, .. } => (self.client()?, C::Repair { component, mode }),
+            Self::WriteVariable { variable, value, .. } => (self.client()?, C::WriteVariable { variable, value }),
+            Self::ForceVariable { variable, value, .. } => (self.client()?, C::ForceVariable { variable, value }),
+            Self::ReleaseVariable { variable, .. } => (self.client()?, C::ReleaseVariable { variable }),
+            _ => return None,
+        })
+    }
+
+    fn client(&self) -> Option<&ClientName> {
+        match self {
+            Self::Fail { client, .. }
+            | Self::Repair { client, .. }
+            | Self::WriteVariable { client, .. }
+            | Self::ForceVariable { client, .. }
+            | Self::ReleaseVariable { client, .. } => Some(client),
+            _ => None,
+        }
+    }
+
+    /// True if it can change what the session computes; the others only change when.
+    pub fn is_lasting(&self) -> bool {
+        !matches!(self, Self::Pause | Self::Resume | Self::Step)
     }
 }
 
@@ -69,10 +182,40 @@ impl From<Control> for Operation {
     }
 }
 
-impl Operation {
-    /// True if it can change what the session computes; the others only change when.
-    pub fn is_lasting(&self) -> bool {
-        !matches!(self, Self::Pause | Self::Resume | Self::Step)
+impl fmt::Display for Operation {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if let Some((client, operation)) = self.for_client() {
+            return write!(f, "{operation} (client `{client}`)");
+        }
+        match self {
+            Self::Write { signal, value } => write!(f, "`{signal}` is set to {value}"),
+            Self::Force { signal, value } => write!(f, "`{signal}` is forced to {value}"),
+            Self::Release { signal } => write!(f, "`{signal}` is released"),
+            Self::Disturb { signal, fault } => write!(f, "`{signal}` is disturbed: {fault}"),
+            Self::Mend { signal } => write!(f, "`{signal}` is mended"),
+            Self::Stop => f.write_str("stop"),
+            Self::Pause => f.write_str("pause"),
+            Self::Resume => f.write_str("resume"),
+            Self::Step => f.write_str("step"),
+            Self::Reset => f.write_str("reset"),
+            // Told above.
+            Self::Fail { .. }
+            | Self::Repair { .. }
+            | Self::WriteVariable { .. }
+            | Self::ForceVariable { .. }
+            | Self::ReleaseVariable { .. } => Ok(()),
+        }
+    }
+}
+
+impl fmt::Display for SignalFault {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Stuck => f.write_str("stuck"),
+            Self::Inverted => f.write_str("inverted"),
+            Self::Offset { by } => write!(f, "offset by {by}"),
+            Self::Late { by } => write!(f, "late by {by}"),
+        }
     }
 }
 
@@ -87,6 +230,14 @@ pub enum OperationError {
         /// The one that may have been meant.
         nearest: Option<String>,
     },
+    /// No such client.
+    #[error("the session has no client `{client}`{}", nearest.as_ref().map(|n| format!("; {n}")).unwrap_or_default())]
+    UnknownClient {
+        /// The name.
+        client: ClientName,
+        /// The one that may have been meant.
+        nearest: Option<String>,
+    },
     /// No such value.
     #[error("signal `{signal}`: {source}")]
     Value {
@@ -98,12 +249,47 @@ pub enum OperationError {
     /// Nothing to release.
     #[error("signal `{0}` is not forced")]
     NotForced(SignalName),
+    /// A write that a force would hide.
+    #[error("signal `{0}` is forced; release it, or force it to another value")]
+    Forced(SignalName),
+    /// Nothing to mend.
+    #[error("signal `{0}` is not disturbed")]
+    NotDisturbed(SignalName),
+    /// A fault that this type of signal cannot have.
+    #[error("signal `{signal}` is {ty}, which cannot be {fault}")]
+    FaultType {
+        /// The signal.
+        signal: SignalName,
+        /// Its type.
+        ty: SignalType,
+        /// The fault.
+        fault: SignalFault,
+    },
+    /// The client cannot.
+    #[error("client `{client}`: {source}")]
+    Client {
+        /// Who.
+        client: ClientName,
+        /// Why.
+        source: OperationRefused,
+    },
+}
+
+/// Who asked for an operation.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Author {
+    /// A person, or a program that stands for one: it is replayed by `--replay-operator`.
+    #[default]
+    Operator,
+    /// The session's timeline, which a case brings along by itself.
+    Timeline,
 }
 
 /// An operation and the boundary at which it was taken: after `step`, before the next.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct OperatorInput {
-    /// How often the session had begun anew before it.
+    /// How often the session had restarted before it.
     #[serde(default)]
     pub resets: u64,
     /// The last step committed before it.
@@ -111,6 +297,9 @@ pub struct OperatorInput {
     /// Its virtual time.
     #[serde(rename = "t_v_ns")]
     pub t_v: VirtualTime,
+    /// Who asked for it.
+    #[serde(skip)]
+    pub author: Author,
     /// What was done.
     #[serde(flatten)]
     pub operation: Operation,

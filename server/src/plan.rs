@@ -1,10 +1,11 @@
 //! What a session is before anybody joins: its step, coupling, signals and expected clients.
 
+use onescan_base::nearest;
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
 use crate::client::ClientId;
-use crate::signal::{ClientName, SignalDecl, SignalName, nearest};
+use crate::signal::{ClientName, SignalDecl, SignalName};
 use crate::time::TimeSpan;
 
 /// How the clients of a step see each other.
@@ -177,7 +178,7 @@ fn rank_order(coupling: &Coupling<ClientName>, clients: &[ClientName]) -> Result
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::signal::ElementaryType;
+    use crate::signal::SignalType;
 
     fn client(name: &str) -> ClientName {
         ClientName::new(name).unwrap()
@@ -186,7 +187,7 @@ mod tests {
     fn signal(name: &str, writer: Option<&str>) -> SignalDecl {
         SignalDecl {
             name: SignalName::new(name).unwrap(),
-            ty: ElementaryType::Bool,
+            ty: SignalType::BOOL,
             writer: writer.map(client),
             unit: None,
         }

@@ -230,7 +230,7 @@ impl Recording {
                     each(Row {
                         step: StepCount(step),
                         t_v: VirtualTime::from_nanos(block.t_v_ns[row]),
-                        digest: Digest(block.digests[row]),
+                        digest: Digest::from_bytes(block.digests[row]),
                         image: block.image(row).to_vec(),
                     })?;
                 }

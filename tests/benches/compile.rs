@@ -6,7 +6,7 @@ use std::fmt::Write;
 use std::time::Instant;
 
 use onescan_plc_shim::syntax::{FileId, parse};
-use onescan_plc_shim::{Application, SoftPlc, TaskPlan};
+use onescan_plc_shim::{Application, SoftPlc, TaskPlan, TimeSpan};
 
 /// Function blocks of some hundred lines each, every one called by the program.
 fn program(lines: usize) -> String {
@@ -50,6 +50,6 @@ fn main() {
     let started = Instant::now();
     let application = Application::from_sources([("large.st", text)]).unwrap_or_else(|found| panic!("{found}"));
     println!("parse, check, WebAssembly {:>8.2} s", started.elapsed().as_secs_f64());
-    SoftPlc::new(&application, &TaskPlan::single(&application, 1_000_000)).expect("it can run");
+    SoftPlc::new(&application, &TaskPlan::single(&application, TimeSpan::millis::<1>())).expect("it can run");
     println!("and machine code          {:>8.2} s", started.elapsed().as_secs_f64());
 }

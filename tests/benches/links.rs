@@ -9,8 +9,6 @@ use std::path::Path;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use onescan::run::Mode;
-use onescan::scenario::Scenario;
 use onescan_clients::gateway::exchange::Direction;
 use onescan_clients::gateway::modbus::RegisterMap;
 use onescan_clients::gateway::tcp::Layouts;
@@ -18,6 +16,7 @@ use onescan_clients::gateway::{Exchange, Gateway, Link, Patience, Settings};
 use onescan_clients::opcua_server::Access;
 use onescan_clients::station::{Clockwork, Controller, Wires, ads, modbus, opcua, tcp};
 use onescan_plc_shim::SoftPlc;
+use onescan_scenario::{Mode, Scenario};
 use onescan_server::client::{Client, JoinRequest};
 use onescan_server::time::VirtualTime;
 use onescan_tests::bench::Ledger;

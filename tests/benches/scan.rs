@@ -7,8 +7,8 @@ use std::path::Path;
 use std::time::Instant;
 
 use criterion::{Criterion, Throughput};
-use onescan::scenario::Scenario;
-use onescan::scenario::compose::Member;
+use onescan_scenario::Scenario;
+use onescan_scenario::compose::Member;
 use onescan_server::client::Client;
 use onescan_server::signal::PortLayout;
 use onescan_server::time::VirtualTime;

@@ -2,8 +2,8 @@
 
 use std::path::Path;
 
-use onescan::scenario::Scenario;
-use onescan::scenario::compose::Member;
+use onescan_scenario::Scenario;
+use onescan_scenario::compose::Member;
 use onescan_server::checkpoint::Checkpoint;
 use onescan_server::formation::Formation;
 use onescan_server::lockstep::{Lockstep, Reached};

@@ -5,8 +5,8 @@ use std::io::Write as _;
 use std::path::Path;
 use std::process::{Command, Stdio};
 
-use onescan::expect::{Expectation, KnownSignal, Trace};
-use onescan_server::signal::ElementaryType;
+use onescan_scenario::expect::{Expectation, KnownSignal, Trace};
+use onescan_server::signal::SignalType;
 use serde_json::json;
 
 use crate::typed::{copied_shear, edit, run_shear, typed};
@@ -92,7 +92,7 @@ fn ask(cases: &str) -> Vec<f64> {
 #[test]
 fn margins_are_those_of_rtamt() {
     let mut numbers = Numbers(61131);
-    let signal = |name: &str| KnownSignal { name: name.to_owned(), ty: ElementaryType::Lreal, unit: None };
+    let signal = |name: &str| KnownSignal { name: name.to_owned(), ty: SignalType::LREAL, unit: None };
     let (mut cases, mut ours) = (String::new(), Vec::new());
     for _ in 0..400 {
         // The peer does not take a single sample.

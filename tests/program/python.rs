@@ -3,12 +3,12 @@
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use onescan::scenario::Scenario;
-use onescan::scenario::compose::Member;
 use onescan_clients::replay::Replay;
+use onescan_scenario::Scenario;
+use onescan_scenario::compose::Member;
 use onescan_server::client::JoinRequest;
 use onescan_server::formation::Formation;
-use onescan_server::signal::ElementaryType;
+use onescan_server::signal::SignalType;
 use onescan_tests::run::run;
 use onescan_tests::{at_ms, client, port, span_ms};
 use serde_json::Value;
@@ -28,7 +28,7 @@ fn the_package_passes_its_own_tests() {
 }
 
 /// The plant's outputs of each turn, the initial ones first, from the CSV of a run.
-fn outputs(csv: &str, signals: &[(&str, ElementaryType)]) -> Vec<Vec<u8>> {
+fn outputs(csv: &str, signals: &[(&str, SignalType)]) -> Vec<Vec<u8>> {
     let mut lines = csv.lines();
     let head: Vec<_> = lines.next().expect("a head").split(',').collect();
     let columns: Vec<_> = signals
@@ -39,8 +39,8 @@ fn outputs(csv: &str, signals: &[(&str, ElementaryType)]) -> Vec<Vec<u8>> {
         let values: Vec<_> = line.split(',').collect();
         let mut bytes = Vec::new();
         for (column, ty) in &columns {
-            match ty {
-                ElementaryType::Bool => bytes.push(u8::from(values[*column] == "1")),
+            match *ty {
+                SignalType::BOOL => bytes.push(u8::from(values[*column] == "1")),
                 _ => bytes.extend(values[*column].parse::<f64>().expect("a number").to_le_bytes()),
             }
         }
@@ -69,10 +69,10 @@ fn a_plant_in_python_is_as_good_as_its_recording() {
     assert_eq!(digests[0], digests[1], "Python, too, gives the same bits again");
 
     let signals = [
-        ("Sensor_1", ElementaryType::Bool),
-        ("Sensor_2", ElementaryType::Bool),
-        ("Position_1", ElementaryType::Lreal),
-        ("Position_2", ElementaryType::Lreal),
+        ("Sensor_1", SignalType::BOOL),
+        ("Sensor_2", SignalType::BOOL),
+        ("Position_1", SignalType::LREAL),
+        ("Position_2", SignalType::LREAL),
     ];
     let csv = std::fs::read_to_string(shear.path().join("record/run-1/trajectory.csv")).unwrap();
     let writes = signals.iter().map(|(name, ty)| port(name, *ty)).collect();

@@ -130,7 +130,9 @@ impl Network {
             let (sequence, t_v) = (state.session.cycle().steps(), state.session.t_v());
             match entered {
                 ServerState::Start => {}
-                ServerState::InitialWrite => state.pipes[i].to_client.push_back(json(&ServerMessage::Setup {})),
+                ServerState::InitialWrite => {
+                    state.pipes[i].to_client.push_back(json(&ServerMessage::Setup { operations: Vec::new() }))
+                }
                 ServerState::PreRead | ServerState::Write => state.session.ready(id).expect("awaited"),
                 ServerState::Read => {
                     state.session.read(id, &mut state.pipes[i].inputs).expect("awaited");
@@ -161,7 +163,7 @@ fn client_receives(state: &mut NetworkState, i: usize, delay: u64) {
     let Some(bytes) = pipe.to_client.pop_front() else { return };
     let answer = |sequence, t_v, wake, outputs: &[u8]| encoded(FrameRef::Turn { sequence, t_v, wake, outputs });
     match pipe.endpoint.receive(decoded(&bytes)) {
-        Ok(Duty::Setup) => {
+        Ok(Duty::Setup(_)) => {
             let zero = VirtualTime::ZERO;
             pipe.to_server.push_back(answer(StepCount(0), zero, Wake::NextPeriod, &stamp_bytes(zero)));
         }

@@ -6,7 +6,7 @@ use onescan_server::client::JoinRequest;
 use onescan_server::end::SessionEnd;
 use onescan_server::plan::Coupling;
 use onescan_server::session::Session;
-use onescan_server::signal::{ClientName, ElementaryType};
+use onescan_server::signal::{ClientName, SignalType};
 use onescan_server::state::{ClientState, ServerState};
 use onescan_server::time::{TimeSpan, VirtualTime};
 use onescan_tests::{client, plan, port};
@@ -20,15 +20,12 @@ pub(crate) const DELAYS: std::ops::RangeInclusive<u64> = 0..=5;
 pub(crate) fn formed(clients: usize, coupling: &Coupling<ClientName>) -> Session {
     let names: Vec<String> = (0..clients).map(|i| format!("c{i}")).collect();
     let stamps: Vec<String> = names.iter().flat_map(|name| [format!("{name}.a"), format!("{name}.b")]).collect();
-    let signals: Vec<_> = stamps
-        .iter()
-        .enumerate()
-        .map(|(i, stamp)| (stamp.as_str(), ElementaryType::Lint, names[i / 2].as_str()))
-        .collect();
+    let signals: Vec<_> =
+        stamps.iter().enumerate().map(|(i, stamp)| (stamp.as_str(), SignalType::LINT, names[i / 2].as_str())).collect();
     let clients: Vec<&str> = names.iter().map(String::as_str).collect();
     let mut session = Session::new(plan(STEP, coupling, &signals, &clients));
     for (i, name) in names.iter().enumerate() {
-        let ports = |range: &[String]| range.iter().map(|stamp| port(stamp, ElementaryType::Lint)).collect();
+        let ports = |range: &[String]| range.iter().map(|stamp| port(stamp, SignalType::LINT)).collect();
         let writes = ports(&stamps[2 * i..2 * i + 2]);
         let request = JoinRequest { name: client(name), period: STEP, reads: ports(&stamps), writes };
         session.join(&request).expect("the plan has a place");

@@ -65,8 +65,11 @@ fn a_damaged_or_foreign_checkpoint_is_refused() {
     }
     assert_eq!(Checkpoint::from_bytes(b"PNG").unwrap_err(), CheckpointError::Foreign);
 
-    let ulint = onescan_server::signal::ElementaryType::Ulint;
+    let ulint = onescan_server::signal::SignalType::ULINT;
     let other = plan(span_ms(10), &Coupling::Parallel, &[("alpha.out", ulint, "alpha")], &["alpha"]);
     let mut other = in_process(other, boxed([Mixer::new(RING[0].0, span_ms(10), &[])]));
-    assert_eq!(other.resume(&checkpoint).unwrap_err(), CheckpointError::OtherSession);
+    assert_eq!(
+        other.resume(&checkpoint).unwrap_err().to_string(),
+        "the checkpoint belongs to another session: it has a client `beta`, which this session does not have"
+    );
 }

@@ -39,7 +39,7 @@ impl Granted {
 
     fn cycle(&mut self) {
         self.own_ns += MS;
-        self.plc.scan(onescan_plc_shim::VirtualTime::from_ns(self.own_ns)).expect("no fault");
+        self.plc.scan(onescan_plc_shim::VirtualTime::from_nanos(self.own_ns)).expect("no fault");
     }
 
     fn grant(&mut self, t_v: VirtualTime) {

@@ -4,19 +4,18 @@ use onescan_server::client::JoinRequest;
 use onescan_server::formation::{Formation, FormationError};
 use onescan_server::plan::Coupling;
 use onescan_server::session::Session;
-use onescan_server::signal::ElementaryType::{Bool, Int, Lreal};
-use onescan_server::signal::{ElementaryType, Port};
+use onescan_server::signal::{Port, SignalType as T};
 use onescan_tests::run::boxed;
 use onescan_tests::toy::{Mixer, ring_plan};
 use onescan_tests::{client, plan, port, span_ms};
 
 fn session() -> Session {
-    let signals = [("Sensor_1", Bool, "plant"), ("Position_1", Lreal, "plant"), ("Drive_1", Lreal, "plc")];
+    let signals = [("Sensor_1", T::BOOL, "plant"), ("Position_1", T::LREAL, "plant"), ("Drive_1", T::LREAL, "plc")];
     Session::new(plan(span_ms(10), &Coupling::Parallel, &signals, &["plant", "plc"]))
 }
 
-fn refusal(name: &str, period_ms: u64, reads: &[(&str, ElementaryType)], writes: &[(&str, ElementaryType)]) -> String {
-    let ports = |ports: &[(&str, ElementaryType)]| -> Vec<Port> { ports.iter().map(|(n, t)| port(n, *t)).collect() };
+fn refusal(name: &str, period_ms: u64, reads: &[(&str, T)], writes: &[(&str, T)]) -> String {
+    let ports = |ports: &[(&str, T)]| -> Vec<Port> { ports.iter().map(|(n, t)| port(n, *t)).collect() };
     let (reads, writes) = (ports(reads), ports(writes));
     let request = JoinRequest { name: client(name), period: span_ms(period_ms), reads, writes };
     session().join(&request).map_or_else(|refusal| refusal.to_string(), |_| String::new())
@@ -27,11 +26,11 @@ fn every_refusal_says_what_is_wrong() {
     let cases = [
         refusal("plnat", 10, &[], &[]),
         refusal("plant", 15, &[], &[]),
-        refusal("plc", 10, &[("Senosr_1", Bool)], &[]),
-        refusal("plc", 10, &[("Sensor_1", Int)], &[]),
-        refusal("plc", 10, &[], &[("Sensor_1", Bool)]),
-        refusal("plc", 10, &[("Sensor_1", Bool), ("Sensor_1", Bool)], &[]),
-        refusal("plant", 20, &[("Drive_1", Lreal)], &[("Sensor_1", Bool), ("Position_1", Lreal)]),
+        refusal("plc", 10, &[("Senosr_1", T::BOOL)], &[]),
+        refusal("plc", 10, &[("Sensor_1", T::INT)], &[]),
+        refusal("plc", 10, &[], &[("Sensor_1", T::BOOL)]),
+        refusal("plc", 10, &[("Sensor_1", T::BOOL), ("Sensor_1", T::BOOL)], &[]),
+        refusal("plant", 20, &[("Drive_1", T::LREAL)], &[("Sensor_1", T::BOOL), ("Position_1", T::LREAL)]),
     ];
     insta::assert_snapshot!(cases.join("\n"));
 }

@@ -3,20 +3,18 @@
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-use onescan::scenario::Scenario;
-use onescan::scenario::compose::Member;
 use onescan_clients::soft_plc::bind;
 use onescan_plc_shim::input::kind::SourceKind;
 use onescan_plc_shim::instrument::{Options, instrument};
-use onescan_plc_shim::{Application, Input, SoftPlc, Task, TaskPlan};
+use onescan_plc_shim::{Application, Input, SoftPlc, Task, TaskPlan, TimeSpan};
+use onescan_scenario::Scenario;
+use onescan_scenario::compose::Member;
 use onescan_server::client::{Client, JoinRequest};
 use onescan_server::signal::SignalDecl;
 use onescan_tests::run::{in_process, run};
 use onescan_tests::{at_ms, client};
 
 use crate::granted::Granted;
-
-const MS: u64 = 1_000_000;
 
 pub(crate) fn shear_folder() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenarios/shear")
@@ -32,7 +30,7 @@ pub(crate) fn member(scenario: &Scenario, name: &str) -> Box<dyn Client> {
 fn gateway(plc_folder: &Path, signals: &[SignalDecl], request: JoinRequest) -> Granted {
     let task = |name: &str, interval_ms: u64, priority: u32, programs: &[&str]| Task {
         name: name.to_owned(),
-        interval_ns: interval_ms * MS,
+        interval: TimeSpan::from_millis(interval_ms),
         priority,
         programs: programs.iter().map(|program| (*program).to_owned()).collect(),
         ..Task::default()

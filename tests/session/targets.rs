@@ -3,11 +3,10 @@
 
 use std::path::{Path, PathBuf};
 
-use onescan::run::Mode;
-use onescan::scenario::{Scenario, ScenarioError};
 use onescan_plc_shim::input::kind::{FileKind, SourceKind};
 use onescan_plc_shim::instrument::{File, InstrumentError, Options, Project, Target, instrument, remove};
 use onescan_plc_shim::{Input, Severity, SoftPlc};
+use onescan_scenario::{Mode, Scenario, ScenarioError};
 use onescan_server::client::Client;
 use onescan_tests::run::{in_process, run};
 use onescan_tests::{at_ms, client};

@@ -7,7 +7,7 @@ use std::time::Duration;
 
 use onescan_server::client::{Client, ClientFault, JoinRequest, Wake};
 use onescan_server::plan::{Coupling, SessionPlan};
-use onescan_server::signal::ElementaryType;
+use onescan_server::signal::SignalType;
 use onescan_server::time::VirtualTime;
 
 use crate::{client, plan, port, span_ms};
@@ -43,9 +43,9 @@ pub fn two_carriers(bytes: usize) -> (SessionPlan, [Carrier; 2]) {
     let declared: Vec<_> = names
         .iter()
         .zip(&signals)
-        .flat_map(|(name, signals)| signals.iter().map(|s| (s.as_str(), ElementaryType::Dword, *name)))
+        .flat_map(|(name, signals)| signals.iter().map(|s| (s.as_str(), SignalType::DWORD, *name)))
         .collect();
-    let ports = |of: usize| signals[of].iter().map(|s| port(s, ElementaryType::Dword)).collect::<Vec<_>>();
+    let ports = |of: usize| signals[of].iter().map(|s| port(s, SignalType::DWORD)).collect::<Vec<_>>();
     let carrier = |own: usize| Carrier {
         request: JoinRequest {
             name: client(names[own]),

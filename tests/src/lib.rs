@@ -5,7 +5,7 @@ pub mod run;
 pub mod toy;
 
 use onescan_server::plan::{Coupling, SessionPlan};
-use onescan_server::signal::{ClientName, ElementaryType, Port, SignalDecl, SignalName};
+use onescan_server::signal::{ClientName, Port, SignalDecl, SignalName, SignalType};
 use onescan_server::time::{TimeSpan, VirtualTime};
 
 /// `ms` milliseconds as a span.
@@ -24,7 +24,7 @@ pub fn client(name: &str) -> ClientName {
 }
 
 /// A port of this signal.
-pub fn port(name: &str, ty: ElementaryType) -> Port {
+pub fn port(name: &str, ty: SignalType) -> Port {
     Port { name: SignalName::new(name).expect("a test knows its names"), ty }
 }
 
@@ -32,7 +32,7 @@ pub fn port(name: &str, ty: ElementaryType) -> Port {
 pub fn plan(
     step: TimeSpan,
     coupling: &Coupling<ClientName>,
-    signals: &[(&str, ElementaryType, &str)],
+    signals: &[(&str, SignalType, &str)],
     clients: &[&str],
 ) -> SessionPlan {
     let signals = signals

@@ -2,7 +2,7 @@
 
 use onescan_server::client::{Client, ClientFault, JoinRequest, StateError, Wake};
 use onescan_server::plan::{Coupling, SessionPlan};
-use onescan_server::signal::{ClientName, ElementaryType, PortLayout, Slot};
+use onescan_server::signal::{ClientName, PortLayout, SignalType, Slot};
 use onescan_server::time::{TimeSpan, VirtualTime};
 
 use crate::{client, plan, port};
@@ -20,8 +20,8 @@ pub struct Mixer {
 impl Mixer {
     /// A client `name` that reads the outputs of `reads` and writes its own, `<name>.out`.
     pub fn new(name: &str, period: TimeSpan, reads: &[&str]) -> Self {
-        let reads = reads.iter().map(|other| port(&format!("{other}.out"), ElementaryType::Ulint)).collect();
-        let writes = vec![port(&format!("{name}.out"), ElementaryType::Ulint)];
+        let reads = reads.iter().map(|other| port(&format!("{other}.out"), SignalType::ULINT)).collect();
+        let writes = vec![port(&format!("{name}.out"), SignalType::ULINT)];
         let request = JoinRequest { name: client(name), period, reads, writes };
         let layout = PortLayout::new(request.reads.clone());
         let inputs = request.reads.iter().map(|port| layout.slot(port.name.as_str()).expect("own port")).collect();
@@ -73,7 +73,7 @@ pub const RING: [(&str, u64); 3] = [("alpha", 10), ("beta", 20), ("gamma", 30)];
 pub fn ring_plan(coupling: &Coupling<ClientName>) -> SessionPlan {
     let names: Vec<String> = RING.iter().map(|(name, _)| format!("{name}.out")).collect();
     let signals: Vec<_> =
-        RING.iter().zip(&names).map(|((writer, _), name)| (name.as_str(), ElementaryType::Ulint, *writer)).collect();
+        RING.iter().zip(&names).map(|((writer, _), name)| (name.as_str(), SignalType::ULINT, *writer)).collect();
     plan(crate::span_ms(10), coupling, &signals, &RING.map(|(name, _)| name))
 }
 

@@ -1,6 +1,6 @@
 //! The order of a value's bytes on a link. Packed bytes are little-endian; most PLCs are not.
 
-use onescan_server::signal::ElementaryType;
+use onescan_server::signal::SignalType;
 use serde::Deserialize;
 
 /// Which byte of a number comes first.
@@ -25,6 +25,6 @@ impl ByteOrder {
 }
 
 /// True for the types that are one number of whole bytes: all but BOOL and texts.
-pub fn is_number(ty: ElementaryType) -> bool {
-    !matches!(ty, ElementaryType::Bool | ElementaryType::String(_) | ElementaryType::Wstring(_))
+pub fn is_number(ty: SignalType) -> bool {
+    !matches!(ty, SignalType::BOOL | SignalType::String(_) | SignalType::Wstring(_))
 }

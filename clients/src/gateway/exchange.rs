@@ -6,7 +6,7 @@
 
 use std::collections::BTreeMap;
 
-use onescan_server::signal::{ElementaryType, Port};
+use onescan_server::signal::{Port, SignalType};
 use onescan_server::time::VirtualTime;
 
 use super::handshake::{Answer, Order, Report};
@@ -26,7 +26,7 @@ pub struct Point {
     /// The signal, or the synchronisation word.
     pub name: String,
     /// Its type on both sides.
-    pub ty: ElementaryType,
+    pub ty: SignalType,
     /// Where the scenario says that it is in the PLC; a link knows a place for it if absent.
     pub address: Option<String>,
     /// Its first byte in the packed bytes of its direction.
@@ -41,26 +41,23 @@ impl Point {
 }
 
 /// The words that the gateway writes, in this order, the grant last.
-pub const WORDS_TO_PLC: [(&str, ElementaryType); 4] = [
-    ("SDSP_Session", ElementaryType::Udint),
-    ("SDSP_Limit", ElementaryType::Udint),
-    ("SDSP_TV", ElementaryType::Lint),
-    ("SDSP_Grant", ElementaryType::Udint),
+pub const WORDS_TO_PLC: [(&str, SignalType); 4] = [
+    ("SDSP_Session", SignalType::UDINT),
+    ("SDSP_Limit", SignalType::UDINT),
+    ("SDSP_TV", SignalType::LINT),
+    ("SDSP_Grant", SignalType::UDINT),
 ];
 
 /// The words that the gateway reads.
-pub const WORDS_FROM_PLC: [(&str, ElementaryType); 3] = [
-    ("SDSP_Joined", ElementaryType::Udint),
-    ("SDSP_Done", ElementaryType::Udint),
-    ("SDSP_Answer", ElementaryType::Int),
-];
+pub const WORDS_FROM_PLC: [(&str, SignalType); 3] =
+    [("SDSP_Joined", SignalType::UDINT), ("SDSP_Done", SignalType::UDINT), ("SDSP_Answer", SignalType::INT)];
 
 /// A number that the gateway writes to have the PLC started cold: one more than `PLC_Boots`.
-pub const START: (&str, ElementaryType) = ("PLC_Start", ElementaryType::Udint);
+pub const START: (&str, SignalType) = ("PLC_Start", SignalType::UDINT);
 /// How often the PLC was started.
-pub const BOOTS: (&str, ElementaryType) = ("PLC_Boots", ElementaryType::Udint);
+pub const BOOTS: (&str, SignalType) = ("PLC_Boots", SignalType::UDINT);
 /// TRUE in RUN, FALSE in STOP.
-pub const RUNNING: (&str, ElementaryType) = ("PLC_Running", ElementaryType::Bool);
+pub const RUNNING: (&str, SignalType) = ("PLC_Running", SignalType::BOOL);
 
 /// True for the name of a synchronisation word or of a word about the PLC itself.
 pub fn is_word(name: &str) -> bool {
@@ -93,7 +90,7 @@ pub struct Exchange {
 impl Exchange {
     /// The points of a PLC that reads `inputs` and writes `outputs`; `addresses` by signal or word.
     pub fn new(inputs: &[Port], outputs: &[Port], system: SystemWords, addresses: &BTreeMap<String, String>) -> Self {
-        let words = |words: &[(&str, ElementaryType)]| -> Vec<(String, ElementaryType)> {
+        let words = |words: &[(&str, SignalType)]| -> Vec<(String, SignalType)> {
             words.iter().map(|(name, ty)| ((*name).to_owned(), *ty)).collect()
         };
         let signals = |ports: &[Port]| ports.iter().map(|port| (port.name.to_string(), port.ty)).collect::<Vec<_>>();
@@ -194,9 +191,9 @@ impl Exchange {
     }
 }
 
-fn points(named: Vec<(String, ElementaryType)>, addresses: &BTreeMap<String, String>) -> Vec<Point> {
+fn points(named: Vec<(String, SignalType)>, addresses: &BTreeMap<String, String>) -> Vec<Point> {
     let mut offset = 0;
-    let point = |(name, ty): (String, ElementaryType)| {
+    let point = |(name, ty): (String, SignalType)| {
         let at = offset;
         offset += ty.size();
         Point { address: addresses.get(&name).cloned(), name, ty, offset: at }
@@ -215,8 +212,8 @@ mod tests {
         let port = |name: &str, ty| Port { name: SignalName::new(name).unwrap(), ty };
         for system in [SystemWords::Absent, SystemWords::Present] {
             let exchange = Exchange::new(
-                &[port("a", ElementaryType::Bool), port("b", ElementaryType::Lreal)],
-                &[port("c", ElementaryType::Int)],
+                &[port("a", SignalType::BOOL), port("b", SignalType::LREAL)],
+                &[port("c", SignalType::INT)],
                 system,
                 &BTreeMap::new(),
             );

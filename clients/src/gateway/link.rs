@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use onescan_server::signal::ElementaryType;
+use onescan_server::signal::SignalType;
 
 use super::fault::LinkFault;
 
@@ -39,7 +39,7 @@ pub struct Found {
     /// How a map writes it.
     pub address: String,
     /// Its type, if a signal can have it.
-    pub ty: Option<ElementaryType>,
+    pub ty: Option<SignalType>,
     /// True if a client may write it.
     pub is_writable: bool,
 }

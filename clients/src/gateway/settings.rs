@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::time::Duration;
 
-use onescan_server::signal::did_you_mean;
+use onescan_base::did_you_mean;
 use onescan_server::time::TimeSpan;
 use serde::Deserialize;
 use thiserror::Error;

@@ -1,6 +1,8 @@
-//! The session as all see it: its driver writes here, OPC UA clients read here and answer.
+//! The session as OPC UA clients see it: its steps as they are published, and the seats in which clients are
+//! granted turns and answer.
 //!
-//! One lock over all of it, held for moments: what is read in one request is of one moment.
+//! The seats are under one lock, held for moments; the view of a step is never changed. So what is read in one
+//! request is of one moment, and no reader holds the session up.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, OnceLock, PoisonError};
@@ -10,10 +12,10 @@ use onescan_server::client::JoinRequest;
 use onescan_server::image::ImageLayout;
 use onescan_server::mailbox::Mailbox;
 use onescan_server::plan::SessionPlan;
-use onescan_server::record::Digest;
+use onescan_server::published::{Follower, Published, SessionView};
 use onescan_server::signal::PortLayout;
 use onescan_server::state::ServerState;
-use onescan_server::time::{StepCount, VirtualTime};
+use onescan_server::time::VirtualTime;
 use thiserror::Error;
 use tokio::sync::Notify;
 
@@ -29,29 +31,14 @@ type Notifier = Box<dyn Fn(&[Item]) + Send + Sync>;
 /// How often somebody who waits looks whether the other is still there.
 const GLANCE: Duration = Duration::from_millis(50);
 
-/// What the session says of itself.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct View {
-    /// Its state.
-    pub state: ServerState,
-    /// Virtual time of the last committed step.
-    pub t_v: VirtualTime,
-    /// Steps committed.
-    pub steps: StepCount,
-    /// True while virtual time is held.
-    pub is_held: bool,
-    /// Hash over all steps so far.
-    pub digest: Option<Digest>,
-    /// How it ended, in words.
-    pub end: Option<String>,
-    /// All signals as of the last committed step.
-    pub image: Vec<u8>,
-}
-
 /// What is under the lock.
 pub struct Shared {
-    /// The session.
-    pub view: View,
+    /// The state of the session between two published views, while a client holds a grant.
+    pub phase: Option<ServerState>,
+    /// Whether virtual time is held: true from the moment an operator asks for it.
+    pub is_held: bool,
+    /// How the session ended, in words.
+    pub end: Option<String>,
     /// The clients' places.
     pub seats: Vec<Seat>,
     /// Whether the holder of each is no more.
@@ -67,6 +54,9 @@ pub struct Board {
     plan: SessionPlan,
     layout: ImageLayout,
     mailbox: Mailbox,
+    /// The session's steps, as its driver publishes them.
+    published: Published,
+    follower: Follower,
     shared: Mutex<Shared>,
     /// An answer has come, or somebody has started.
     answered: Condvar,
@@ -105,17 +95,11 @@ impl Board {
             let layout = |ports: &[_]| PortLayout::new(ports.to_vec());
             Seat::new(client.name.clone(), client.period, layout(&client.reads), layout(&client.writes))
         };
-        let view = View {
-            state: ServerState::Start,
-            t_v: VirtualTime::ZERO,
-            steps: StepCount(0),
-            is_held: false,
-            digest: None,
-            end: None,
-            image: vec![0; layout.size()],
-        };
+        let published = Published::new(layout.size());
         let shared = Shared {
-            view,
+            phase: None,
+            is_held: false,
+            end: None,
             seats: clients.iter().map(seat).collect(),
             gone: vec![None; clients.len()],
             operators: BTreeMap::new(),
@@ -125,6 +109,8 @@ impl Board {
             plan,
             layout,
             mailbox,
+            follower: published.follow(),
+            published,
             shared: Mutex::new(shared),
             answered: Condvar::new(),
             granted: Notify::new(),
@@ -147,7 +133,17 @@ impl Board {
         &self.mailbox
     }
 
-    /// A look at all of it. A thread that panicked under the lock has left whole values.
+    /// Where the session's driver is to publish its views.
+    pub fn published(&self) -> Published {
+        self.published.clone()
+    }
+
+    /// The session as of its last step.
+    pub fn view(&self) -> Arc<SessionView> {
+        self.follower.latest()
+    }
+
+    /// A look at all that is under the lock. A thread that panicked under the lock has left whole values.
     pub fn lock(&self) -> MutexGuard<'_, Shared> {
         self.shared.lock().unwrap_or_else(PoisonError::into_inner)
     }
@@ -183,21 +179,31 @@ impl Board {
         }
     }
 
-    /// Changes what the session says of itself.
-    pub fn show(&self, change: impl FnOnce(&mut View)) {
+    /// A step is committed and its view published: tells subscribers.
+    pub fn step(&self) {
+        self.announce(|shared| shared.phase = None);
+    }
+
+    /// An operator holds virtual time, or lets it run again.
+    pub fn hold(&self, is_held: bool) {
+        self.announce(|shared| shared.is_held = is_held);
+    }
+
+    /// Changes something and tells subscribers of the session and of its signals.
+    fn announce(&self, change: impl FnOnce(&mut Shared)) {
         let signals = self.layout.signals().map(|signal| Item::Signal(signal.index()));
         let items: Vec<Item> = if self.lock().watched.is_empty() {
             Vec::new()
         } else {
             super::instance::session_items().into_iter().chain(signals).collect()
         };
-        self.publish(&items, |shared| change(&mut shared.view));
+        self.publish(&items, change);
     }
 
     /// Asks the client of `seat` for its initial state.
     pub fn begin(&self, seat: usize) {
         self.publish(&Item::grant(seat), |shared| {
-            shared.view.state = ServerState::InitialWrite;
+            shared.phase = Some(ServerState::InitialWrite);
             shared.seats[seat].begin();
         });
         self.granted.notify_waiters();
@@ -206,7 +212,7 @@ impl Board {
     /// Grants the client of `seat` a turn.
     pub fn grant(&self, seat: usize, t_v: VirtualTime, inputs: &[u8]) {
         self.publish(&Item::grant(seat), |shared| {
-            shared.view.state = ServerState::PreWrite;
+            shared.phase = Some(ServerState::PreWrite);
             shared.seats[seat].grant(t_v, inputs);
         });
         self.granted.notify_waiters();
@@ -308,7 +314,7 @@ impl Board {
         let mut items: Vec<Item> = super::instance::session_items();
         items.extend((0..seats).flat_map(Item::grant));
         self.publish(&items, |shared| {
-            shared.view.end.get_or_insert_with(|| text.to_owned());
+            shared.end.get_or_insert_with(|| text.to_owned());
             shared.seats.iter_mut().for_each(Seat::end);
         });
         self.granted.notify_waiters();

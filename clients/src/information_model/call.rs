@@ -27,8 +27,8 @@ pub(super) async fn operate(board: &Board, method: u32, arguments: &[Variant]) -
         Err(status) => return status,
     };
     let (has_begun, has_ended) = {
-        let view = &board.lock().view;
-        (view.state != ServerState::Start, view.end.is_some())
+        let (view, shared) = (board.view(), board.lock());
+        (shared.phase.unwrap_or(view.state) != ServerState::Start, shared.end.is_some())
     };
     if has_ended {
         return StatusCode::BadInvalidState;

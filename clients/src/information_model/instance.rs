@@ -3,7 +3,7 @@
 //! Node ids are paths, the same in every run: `Session/State`, `Session/Signals/Strokes`, `Clients/plant/Grant`,
 //! `Clients/plant/Inputs/Actuator_1_Up`.
 
-use onescan_server::signal::ElementaryType;
+use onescan_server::signal::SignalType;
 
 use super::board::Board;
 use super::node::core::{BASE_DATA_VARIABLE_TYPE, OBJECTS};
@@ -168,7 +168,7 @@ fn object(id: &Id, name: &str, parent: &Id, of: u32, about: &str) -> Instance {
     Instance { node: Node { id, space, name, about, parent, relation, kind, rule: None }, item: None }
 }
 
-fn variable(path: &str, name: &str, folder: &str, ty: ElementaryType, is_writable: bool) -> Node {
+fn variable(path: &str, name: &str, folder: &str, ty: SignalType, is_writable: bool) -> Node {
     let data_type = Id::Core(value::data_type(ty) as u32);
     Node {
         id: Id::Instance(path.to_owned()),

@@ -7,7 +7,7 @@ use std::sync::{Arc, Weak};
 use std::time::Duration;
 
 use async_trait::async_trait;
-use onescan_server::signal::ElementaryType;
+use onescan_server::signal::SignalType;
 use opcua::server::address_space::{AddressSpace, add_namespaces};
 use opcua::server::diagnostics::NamespaceMetadata;
 use opcua::server::node_manager::memory::InMemoryNodeManagerImpl;
@@ -125,7 +125,7 @@ pub fn status(refusal: Refusal) -> StatusCode {
 }
 
 /// The bytes of `given` as a signal of type `ty`.
-pub(super) fn packed(ty: ElementaryType, given: &Variant) -> Result<Vec<u8>, StatusCode> {
+pub(super) fn packed(ty: SignalType, given: &Variant) -> Result<Vec<u8>, StatusCode> {
     let given = match given {
         Variant::Variant(inner) => inner,
         plain => plain,
@@ -133,7 +133,7 @@ pub(super) fn packed(ty: ElementaryType, given: &Variant) -> Result<Vec<u8>, Sta
     let mut bytes = vec![0; ty.size()];
     if !value::from_variant(ty, given, &mut bytes) {
         let is_text =
-            matches!(given, Variant::String(_)) && matches!(ty, ElementaryType::String(_) | ElementaryType::Wstring(_));
+            matches!(given, Variant::String(_)) && matches!(ty, SignalType::String(_) | SignalType::Wstring(_));
         return Err(if is_text { StatusCode::BadOutOfRange } else { StatusCode::BadTypeMismatch });
     }
     ty.canonicalise(&mut bytes).map_err(|_| StatusCode::BadOutOfRange)?;
@@ -153,10 +153,10 @@ fn tell_subscribers(board: &Arc<Board>, nodes: Vec<(Item, NodeId)>, subscription
     board.set_notifier(Box::new(move |items| {
         let Some(board) = from.upgrade() else { return };
         let changed: Vec<(DataValue, &NodeId, AttributeId)> = {
-            let shared = board.lock();
+            let (shared, view) = (board.lock(), board.view());
             let value = |item: &Item| {
                 let id = ids.get(item)?;
-                Some((DataValue::new_now(of_item(&board, &shared, *item)?), id, AttributeId::Value))
+                Some((DataValue::new_now(of_item(&board, &view, &shared, *item)?), id, AttributeId::Value))
             };
             items.iter().filter_map(value).collect()
         };
@@ -186,13 +186,15 @@ impl InMemoryNodeManagerImpl for SessionNodes {
         timestamps: TimestampsToReturn,
     ) -> Vec<DataValue> {
         let space = space.read();
-        let shared = self.board.lock();
+        let (shared, view) = (self.board.lock(), self.board.view());
         let read = |node: &&ParsedReadValueId| match self.items.get(&node.node_id) {
-            Some(item) => match (space.validate_node_read(context, node), of_item(&self.board, &shared, *item)) {
-                (Err(status), _) => DataValue { status: Some(status), ..DataValue::default() },
-                (Ok(_), Some(value)) if !node.index_range.has_range() => DataValue::new_now(value),
-                (Ok(_), _) => DataValue { status: Some(StatusCode::BadIndexRangeNoData), ..DataValue::default() },
-            },
+            Some(item) => {
+                match (space.validate_node_read(context, node), of_item(&self.board, &view, &shared, *item)) {
+                    (Err(status), _) => DataValue { status: Some(status), ..DataValue::default() },
+                    (Ok(_), Some(value)) if !node.index_range.has_range() => DataValue::new_now(value),
+                    (Ok(_), _) => DataValue { status: Some(StatusCode::BadIndexRangeNoData), ..DataValue::default() },
+                }
+            }
             None => space.read(context, node, max_age, timestamps),
         };
         nodes.iter().map(read).collect()

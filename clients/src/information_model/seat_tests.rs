@@ -1,6 +1,6 @@
 //! What a client may write when.
 
-use onescan_server::signal::{ClientName, ElementaryType, Port, PortLayout, SignalName};
+use onescan_server::signal::{ClientName, Port, PortLayout, SignalName, SignalType};
 
 use super::*;
 
@@ -8,7 +8,7 @@ const ME: Holder = Holder(1);
 const OTHER: Holder = Holder(2);
 
 fn seat() -> Seat {
-    let port = |name: &str| Port { name: SignalName::new(name).unwrap(), ty: ElementaryType::Int };
+    let port = |name: &str| Port { name: SignalName::new(name).unwrap(), ty: SignalType::INT };
     let layout = |names: &[&str]| PortLayout::new(names.iter().map(|name| port(name)).collect());
     let period = TimeSpan::from_millis(10).unwrap();
     Seat::new(ClientName::new("plant").unwrap(), period, layout(&["in"]), layout(&["a", "b"]))

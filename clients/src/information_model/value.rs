@@ -1,11 +1,12 @@
 //! What items hold, as Variants.
 
+use onescan_server::published::SessionView;
 use onescan_server::signal::PortLayout;
 use onescan_server::state::{ClientState, ServerState};
 use onescan_server::time::VirtualTime;
 use opcua::types::{UAString, Variant};
 
-use super::board::{Board, Shared, View};
+use super::board::{Board, Shared};
 use super::instance::{Item, number};
 use super::seat::Seat;
 use crate::gateway::opcua::value::to_variant;
@@ -14,12 +15,12 @@ use crate::gateway::opcua::value::to_variant;
 const ENDED: i32 = 6;
 
 /// The value of `item`; nothing for a method.
-pub(super) fn of_item(board: &Board, shared: &Shared, item: Item) -> Option<Variant> {
+pub(super) fn of_item(board: &Board, view: &SessionView, shared: &Shared, item: Item) -> Option<Variant> {
     match item {
-        Item::Session(number) => of_session(board, &shared.view, number),
+        Item::Session(number) => of_session(board, view, shared, number),
         Item::Signal(index) => {
             let signal = board.layout().signals().nth(index)?;
-            Some(to_variant(board.layout().ty(signal), board.layout().bytes(signal, &shared.view.image)))
+            Some(to_variant(board.layout().ty(signal), board.layout().bytes(signal, &view.image)))
         }
         Item::Seat(seat, number) => of_seat(shared.seats.get(seat)?, number),
         Item::Input(seat, index) => shared.seats.get(seat).and_then(|seat| at(&seat.inputs, seat.given(), index)),
@@ -40,16 +41,16 @@ pub(super) fn all(layout: &PortLayout, bytes: &[u8]) -> Vec<Variant> {
     layout.iter().map(value).collect()
 }
 
-fn of_session(board: &Board, view: &View, of: u32) -> Option<Variant> {
+fn of_session(board: &Board, view: &SessionView, shared: &Shared, of: u32) -> Option<Variant> {
     Some(match of {
-        number::SESSION_STATE if view.end.is_some() => Variant::Int32(ENDED),
-        number::SESSION_STATE => Variant::Int32(of_state(view.state)),
+        number::SESSION_STATE if shared.end.is_some() => Variant::Int32(ENDED),
+        number::SESSION_STATE => Variant::Int32(of_state(shared.phase.unwrap_or(view.state))),
         number::VIRTUAL_TIME => ns(view.t_v),
         number::TIME_STEP => Variant::Int64(board.plan().step().as_nanos() as i64),
         number::STEP_COUNT => Variant::UInt64(view.steps.0),
-        number::HELD => Variant::Boolean(view.is_held),
+        number::HELD => Variant::Boolean(shared.is_held || view.is_held),
         number::DIGEST => Variant::from(view.digest.map(|digest| digest.to_string()).unwrap_or_default()),
-        number::END => Variant::from(view.end.clone().unwrap_or_default()),
+        number::END => Variant::from(shared.end.clone().unwrap_or_default()),
         _ => return None,
     })
 }

@@ -7,7 +7,7 @@
 
 use std::collections::VecDeque;
 
-use onescan_server::signal::{ElementaryType, Port};
+use onescan_server::signal::{Port, SignalType};
 use serde::{Deserialize, Serialize};
 
 use super::random::{Random, seed_for};
@@ -26,8 +26,8 @@ pub(super) fn inner_ports(outer: &[Port], conditions: &[Condition]) -> Vec<Port>
 /// One signal on its way.
 struct Channel {
     condition: Condition,
-    outer: (usize, ElementaryType),
-    inner: (usize, ElementaryType),
+    outer: (usize, SignalType),
+    inner: (usize, SignalType),
     memory: ChannelMemory,
 }
 
@@ -104,16 +104,17 @@ impl Channels {
         ChannelsMemory { channels, inner: self.inner.clone() }
     }
 
-    /// True if the memory is one of such channels, which then have it.
-    pub(super) fn restore(&mut self, memory: ChannelsMemory) -> bool {
-        let fits = memory.channels.len() == self.conditioned.len() && memory.inner.len() == self.inner.len();
-        if fits {
-            self.inner = memory.inner;
-            for (channel, memory) in self.conditioned.iter_mut().zip(memory.channels) {
-                channel.memory = memory;
-            }
+    /// True if the memory is one of such channels.
+    pub(super) fn fits(&self, memory: &ChannelsMemory) -> bool {
+        memory.channels.len() == self.conditioned.len() && memory.inner.len() == self.inner.len()
+    }
+
+    /// Takes a memory in that [`fits`](Self::fits).
+    pub(super) fn restore(&mut self, memory: ChannelsMemory) {
+        self.inner = memory.inner;
+        for (channel, memory) in self.conditioned.iter_mut().zip(memory.channels) {
+            channel.memory = memory;
         }
-        fits
     }
 
     /// Takes the session's bytes in.
@@ -205,18 +206,18 @@ impl Condition {
 }
 
 /// Writes a number as a value of a type: whole numbers are rounded and limited to their range.
-fn write(ty: ElementaryType, bytes: &mut [u8], value: f64) {
-    use ElementaryType as T;
+fn write(ty: SignalType, bytes: &mut [u8], value: f64) {
+    use SignalType as T;
     let whole = value.round();
     match ty {
-        T::Bool => bytes[0] = u8::from(value != 0.0),
-        T::Sint => bytes[..1].copy_from_slice(&(whole as i8).to_le_bytes()),
-        T::Usint | T::Byte => bytes[..1].copy_from_slice(&(whole as u8).to_le_bytes()),
-        T::Int => bytes[..2].copy_from_slice(&(whole as i16).to_le_bytes()),
-        T::Uint | T::Word => bytes[..2].copy_from_slice(&(whole as u16).to_le_bytes()),
-        T::Dint => bytes[..4].copy_from_slice(&(whole as i32).to_le_bytes()),
-        T::Udint | T::Dword => bytes[..4].copy_from_slice(&(whole as u32).to_le_bytes()),
-        T::Real => bytes[..4].copy_from_slice(&(value as f32).to_le_bytes()),
+        T::BOOL => bytes[0] = u8::from(value != 0.0),
+        T::SINT => bytes[..1].copy_from_slice(&(whole as i8).to_le_bytes()),
+        T::USINT | T::BYTE => bytes[..1].copy_from_slice(&(whole as u8).to_le_bytes()),
+        T::INT => bytes[..2].copy_from_slice(&(whole as i16).to_le_bytes()),
+        T::UINT | T::WORD => bytes[..2].copy_from_slice(&(whole as u16).to_le_bytes()),
+        T::DINT => bytes[..4].copy_from_slice(&(whole as i32).to_le_bytes()),
+        T::UDINT | T::DWORD => bytes[..4].copy_from_slice(&(whole as u32).to_le_bytes()),
+        T::REAL => bytes[..4].copy_from_slice(&(value as f32).to_le_bytes()),
         // the scene's check lets no other type through
         _ => bytes[..8].copy_from_slice(&value.to_le_bytes()),
     }
@@ -230,7 +231,7 @@ mod tests {
     use super::*;
 
     /// A signal to which nothing happens.
-    fn plain(inner: ElementaryType) -> Condition {
+    fn plain(inner: SignalType) -> Condition {
         Condition {
             signal: SignalName::new("x").expect("a name"),
             inner,
@@ -246,12 +247,12 @@ mod tests {
 
     /// What arrives of a ramp of 1 in each of so many milliseconds.
     fn ramp(condition: &Condition, count: u64) -> Vec<f64> {
-        let ports = [Port { name: condition.signal.clone(), ty: ElementaryType::Lreal }];
+        let ports = [Port { name: condition.signal.clone(), ty: SignalType::LREAL }];
         let mut channels = Channels::new(&ports, std::slice::from_ref(condition), 1);
         let mut outer = [0; 8];
         (1..=count)
             .map(|k| {
-                write(ElementaryType::Lreal, channels.inner_mut(), k as f64);
+                write(SignalType::LREAL, channels.inner_mut(), k as f64);
                 channels.give(k * 1_000_000, &mut outer);
                 f64::from_le_bytes(outer)
             })
@@ -260,22 +261,22 @@ mod tests {
 
     #[test]
     fn a_delay_is_whole_and_keeps_every_value() {
-        let late = Condition { delay_ns: 3_000_000, ..plain(ElementaryType::Lreal) };
+        let late = Condition { delay_ns: 3_000_000, ..plain(SignalType::LREAL) };
         assert_eq!(ramp(&late, 6), [0.0, 0.0, 0.0, 1.0, 2.0, 3.0]);
-        assert_eq!(ramp(&plain(ElementaryType::Lreal), 2), [1.0, 2.0]);
+        assert_eq!(ramp(&plain(SignalType::LREAL), 2), [1.0, 2.0]);
     }
 
     #[test]
     fn samples_and_quanta_make_steps() {
-        let sampled = Condition { sample_ns: 4_000_000, ..plain(ElementaryType::Lreal) };
+        let sampled = Condition { sample_ns: 4_000_000, ..plain(SignalType::LREAL) };
         assert_eq!(ramp(&sampled, 9), [1.0, 1.0, 1.0, 4.0, 4.0, 4.0, 4.0, 8.0, 8.0]);
-        let coarse = Condition { quantum: 2.5, ..plain(ElementaryType::Lreal) };
+        let coarse = Condition { quantum: 2.5, ..plain(SignalType::LREAL) };
         assert_eq!(ramp(&coarse, 4), [0.0, 2.5, 2.5, 5.0]);
     }
 
     #[test]
     fn jitter_is_within_its_bound_and_never_turns_the_order() {
-        let shaky = Condition { delay_ns: 2_000_000, jitter_ns: 5_000_000, ..plain(ElementaryType::Lreal) };
+        let shaky = Condition { delay_ns: 2_000_000, jitter_ns: 5_000_000, ..plain(SignalType::LREAL) };
         let arrived = ramp(&shaky, 500);
         assert!(arrived.windows(2).all(|pair| pair[0] <= pair[1]));
         let ages: Vec<_> = arrived.iter().enumerate().skip(10).map(|(k, value)| (k + 1) as f64 - value).collect();
@@ -285,7 +286,7 @@ mod tests {
 
     #[test]
     fn noise_has_its_mean_and_its_deviation() {
-        let noisy = Condition { noise_mean: 3.0, noise_sigma: 0.5, ..plain(ElementaryType::Lreal) };
+        let noisy = Condition { noise_mean: 3.0, noise_sigma: 0.5, ..plain(SignalType::LREAL) };
         let count = 10_000;
         let noise: Vec<_> = ramp(&noisy, count).iter().zip(1..).map(|(seen, k)| seen - f64::from(k)).collect();
         let mean = noise.iter().sum::<f64>() / count as f64;
@@ -296,13 +297,11 @@ mod tests {
 
     #[test]
     fn raw_values_are_scaled_limited_and_scaled_back() {
-        let scaled = Condition {
-            scale: Some(Range { range: [0.0, 10.0], raw: [0.0, 27_648.0] }),
-            ..plain(ElementaryType::Lreal)
-        };
+        let scaled =
+            Condition { scale: Some(Range { range: [0.0, 10.0], raw: [0.0, 27_648.0] }), ..plain(SignalType::LREAL) };
         assert_eq!([-1.0, 0.0, 5.0, 12.0].map(|value| scaled.scaled(value)), [0.0, 0.0, 13_824.0, 27_648.0]);
         assert_eq!(scaled.scaled_back(13_824.0), 5.0);
-        let ports = [Port { name: scaled.signal.clone(), ty: ElementaryType::Int }];
+        let ports = [Port { name: scaled.signal.clone(), ty: SignalType::INT }];
         let mut channels = Channels::new(&ports, &[scaled], 1);
         channels.take(1_000_000, &6_912_i16.to_le_bytes());
         assert_eq!(channels.inner(), 2.5_f64.to_le_bytes());
@@ -315,20 +314,21 @@ mod tests {
             jitter_ns: 3_000_000,
             noise_sigma: 1.0,
             sample_ns: 2_000_000,
-            ..plain(ElementaryType::Lreal)
+            ..plain(SignalType::LREAL)
         };
-        let ports = [Port { name: all.signal.clone(), ty: ElementaryType::Lreal }];
+        let ports = [Port { name: all.signal.clone(), ty: SignalType::LREAL }];
         let new = |seed: u64| Channels::new(&ports, std::slice::from_ref(&all), seed);
         let (mut first, mut second, mut outer) = (new(1), new(2), [[0; 8]; 2]);
         for k in 1..200 {
-            write(ElementaryType::Lreal, first.inner_mut(), k as f64);
+            write(SignalType::LREAL, first.inner_mut(), k as f64);
             first.give(k * 1_000_000, &mut outer[0]);
             if k > 100 {
-                write(ElementaryType::Lreal, second.inner_mut(), k as f64);
+                write(SignalType::LREAL, second.inner_mut(), k as f64);
                 second.give(k * 1_000_000, &mut outer[1]);
                 assert_eq!(outer[0], outer[1], "{k}");
             } else if k == 100 {
-                assert!(second.restore(first.memory()));
+                assert!(second.fits(&first.memory()));
+                second.restore(first.memory());
             }
         }
         assert_eq!(first.memory(), second.memory());

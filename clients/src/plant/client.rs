@@ -6,9 +6,11 @@ use onescan_server::client::{Client, ClientFault, JoinRequest, StateError, Wake}
 use onescan_server::signal::{ClientName, Port, SlotError};
 use onescan_server::time::{TimeSpan, VirtualTime};
 
-use super::machine::Machine;
+use super::failure::FailureRefused;
+use super::identity::Identity;
+use super::machine::{Machine, Misfit};
 use super::scene::{Scene, SceneError};
-use super::state;
+use super::state::{self, Restored};
 
 /// A simulated machine that takes part in a session.
 pub struct Plant {
@@ -16,7 +18,8 @@ pub struct Plant {
     period: TimeSpan,
     seed: u64,
     scene: Scene,
-    identity: blake3::Hash,
+    /// An error only where the scene is not plain data, which no checked scene is.
+    identity: Result<Identity, String>,
     machine: Option<Machine>,
 }
 
@@ -43,7 +46,7 @@ impl Plant {
 
     /// The plant of a scene that was checked before.
     pub fn new(scene: Scene, name: ClientName, period: TimeSpan) -> Self {
-        let identity = identity(&scene, &name, period, 0);
+        let identity = Identity::new(&scene, &name, period).map_err(|error| error.to_string());
         Self { name, period, seed: 0, scene, identity, machine: None }
     }
 
@@ -51,7 +54,9 @@ impl Plant {
     #[must_use]
     pub fn seeded(mut self, seed: u64) -> Self {
         self.seed = seed;
-        self.identity = identity(&self.scene, &self.name, self.period, seed);
+        if let Ok(identity) = &mut self.identity {
+            identity.seed(seed);
+        }
         self
     }
 
@@ -60,38 +65,61 @@ impl Plant {
         &self.scene
     }
 
-    /// Where the bodies are, in the scene's order; nothing before the set-up.
-    pub fn poses(&self) -> impl Iterator<Item = BodyPose<'_>> {
-        let machine = self.machine.iter();
-        machine.flat_map(|machine| {
-            self.scene.bodies.iter().enumerate().map(|(index, body)| {
-                let pose = machine.world.body(machine.world.handle(Some(index))).position();
-                BodyPose {
-                    name: &body.name,
-                    position_m: pose.translation.to_array(),
-                    rotation_xyzw: pose.rotation.to_array(),
-                }
-            })
-        })
+    /// The machine at work; none before the set-up.
+    pub(super) fn machine(&self) -> Option<&Machine> {
+        self.machine.as_ref()
+    }
+
+    /// Sets the plant up, with these components failing from `t_v = 0` on, each by one mode.
+    ///
+    /// # Errors
+    /// Outputs of the wrong size, a component or mode that the scene does not have.
+    pub fn set_up(&mut self, failing: &[(String, String)], outputs: &mut [u8]) -> Result<(), ClientFault> {
+        check_size("outputs", &self.scene.writes, outputs)?;
+        let found = failing.iter().map(|(component, mode)| self.scene.find_failure(component, mode));
+        let found = found.collect::<Result<Vec<_>, _>>().map_err(|unknown| ClientFault::new(unknown.to_string()))?;
+        let machine = Machine::build(&self.scene, self.period, self.seed).map_err(|error| unbound(&error))?;
+        let machine = self.machine.insert(machine);
+        for mode in found {
+            machine.fail(mode);
+        }
+        machine.begin(&self.scene, outputs)
+    }
+
+    /// Makes a component fail by `mode` from the next half turn on, until it is repaired. A mode
+    /// that is on stays on.
+    ///
+    /// # Errors
+    /// A component or mode that the scene does not have; a plant before its set-up.
+    pub fn fail(&mut self, component: &str, mode: &str) -> Result<(), FailureRefused> {
+        let found = self.scene.find_failure(component, mode)?;
+        let machine = self.machine.as_mut().ok_or_else(|| before_set_up(component))?;
+        machine.fail(found);
+        Ok(())
+    }
+
+    /// Ends what [`fail`](Self::fail) or [`set_up`](Self::set_up) has begun, from the next half turn
+    /// on. A `[[failure]]` of the scene by the same mode goes on.
+    ///
+    /// # Errors
+    /// A component or mode that the scene does not have or that nobody has made fail; a plant before
+    /// its set-up.
+    pub fn repair(&mut self, component: &str, mode: &str) -> Result<(), FailureRefused> {
+        let found = self.scene.find_failure(component, mode)?;
+        let machine = self.machine.as_mut().ok_or_else(|| before_set_up(component))?;
+        if machine.repair(found) {
+            return Ok(());
+        }
+        Err(FailureRefused::NotFailed { component: component.to_owned(), mode: mode.to_owned() })
+    }
+
+    fn identity(&self) -> Result<&Identity, StateError> {
+        self.identity.as_ref().map_err(|error| StateError::Corrupt(format!("the scene has no identity: {error}")))
     }
 }
 
-/// Where a body is, for recordings and pictures.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct BodyPose<'p> {
-    /// The body.
-    pub name: &'p str,
-    /// Its origin.
-    pub position_m: [f64; 3],
-    /// Its orientation, a unit quaternion with the scalar last.
-    pub rotation_xyzw: [f64; 4],
-}
-
-/// A digest of all that a plant's state depends on.
-fn identity(scene: &Scene, name: &ClientName, period: TimeSpan, seed: u64) -> blake3::Hash {
-    // plain data of known length always has bytes
-    let bytes = postcard::to_stdvec(&(scene, name, period, seed)).unwrap_or_default();
-    blake3::hash(&bytes)
+fn before_set_up(component: &str) -> FailureRefused {
+    FailureRefused::BeforeSetUp { component: component.to_owned() }
 }
 
 /// Refuses a port of the wrong size, in which no slot could be trusted.
@@ -114,9 +142,7 @@ impl Client for Plant {
     }
 
     fn setup(&mut self, outputs: &mut [u8]) -> Result<(), ClientFault> {
-        check_size("outputs", &self.scene.writes, outputs)?;
-        let machine = Machine::build(&self.scene, self.period, self.seed).map_err(|error| unbound(&error))?;
-        self.machine.insert(machine).begin(&self.scene, outputs)
+        self.set_up(&[], outputs)
     }
 
     fn turn(&mut self, t_v: VirtualTime, inputs: &[u8], outputs: &mut [u8]) -> Result<Wake, ClientFault> {
@@ -130,17 +156,21 @@ impl Client for Plant {
     fn save(&self) -> Result<Vec<u8>, StateError> {
         let machine =
             self.machine.as_ref().ok_or_else(|| StateError::Corrupt("there is no state before the set-up".into()))?;
-        state::to_bytes(self.identity, &machine.world.physics, &machine.memory())
+        let memory = machine.memory().map_err(|error| StateError::Corrupt(error.to_string()))?;
+        state::to_bytes(self.identity()?, &machine.world.physics, &memory)
     }
 
     fn restore(&mut self, bytes: &[u8]) -> Result<(), StateError> {
-        let restored = state::from_bytes(self.identity, bytes)?;
+        let Restored { physics, memory } = state::from_bytes(self.identity()?, bytes)?;
+        let misfit = |misfit: Misfit| StateError::Corrupt(misfit.to_string());
+        // A machine is its scene's handles and wiring, which never change, and its state, all of
+        // which is replaced: one that has run is as good as a new one.
+        if let Some(machine) = &mut self.machine {
+            return machine.restore(&self.scene, physics, memory).map_err(misfit);
+        }
         let mut machine = Machine::build(&self.scene, self.period, self.seed)
             .map_err(|error| StateError::Corrupt(error.to_string()))?;
-        if !machine.restore(restored.memory) {
-            return Err(StateError::Corrupt("it has other joints, axes, sensors or components".to_owned()));
-        }
-        machine.world.physics = restored.physics;
+        machine.restore(&self.scene, physics, memory).map_err(misfit)?;
         self.machine = Some(machine);
         Ok(())
     }

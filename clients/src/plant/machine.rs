@@ -3,14 +3,18 @@
 use onescan_server::client::ClientFault;
 use onescan_server::signal::{PortLayout, SlotError};
 use onescan_server::time::{TimeSpan, VirtualTime};
+use rapier3d::prelude::PhysicsWorld;
 use serde::{Deserialize, Serialize};
+use thiserror::Error;
 
 use super::axis::{Axis, Measured};
 use super::channel::{Channels, ChannelsMemory, inner_ports};
 use super::component::declare::Value;
 use super::coordinate::Gauge;
 use super::part::{Moment, Part, PartMemory};
+use super::placement::Placement;
 use super::scene::Scene;
+use super::scene::failures::FoundMode;
 use super::sensor::Sensor;
 use super::setpoint::Setpoint;
 use super::world::World;
@@ -29,6 +33,11 @@ pub(super) struct Memory {
     /// What is on its way to the plant, and from it.
     channels: Option<[ChannelsMemory; 2]>,
 }
+
+/// Why a state does not fit in a machine, in words that follow "it" or name a part.
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
+#[error("{0}")]
+pub(super) struct Misfit(pub(super) String);
 
 /// A plant in motion.
 pub(super) struct Machine {
@@ -85,30 +94,50 @@ impl Machine {
     }
 
     /// What the machine remembers.
-    pub(super) fn memory(&self) -> Memory {
-        Memory {
+    ///
+    /// # Errors
+    /// A component's state that does not go into bytes, which none is.
+    pub(super) fn memory(&self) -> Result<Memory, postcard::Error> {
+        Ok(Memory {
             positions: self.positions.clone(),
             setpoints: self.setpoints.clone(),
             detected: self.detected.clone(),
-            parts: self.parts.iter().map(Part::memory).collect(),
+            parts: self.parts.iter().map(Part::memory).collect::<Result<_, _>>()?,
             channels: self.channels.as_ref().map(|channels| channels.each_ref().map(Channels::memory)),
-        }
+        })
     }
 
-    /// True if the memory is one of such a machine, which then has it; else it is of no use any more.
-    pub(super) fn restore(&mut self, memory: Memory) -> bool {
-        let fits = self.positions.len() == memory.positions.len()
-            && self.setpoints.len() == memory.setpoints.len()
-            && self.detected.len() == memory.detected.len()
-            && self.parts.len() == memory.parts.len()
-            && self.channels.is_some() == memory.channels.is_some();
-        if !fits {
-            return false;
+    /// Where the bodies are, in the scene's order.
+    pub(super) fn placements(&self) -> impl Iterator<Item = Placement> {
+        self.world.bodies().map(|body| {
+            let pose = body.position();
+            Placement { position_m: pose.translation.to_array(), rotation_xyzw: pose.rotation.to_array() }
+        })
+    }
+
+    /// Switches a mode of a component on.
+    pub(super) fn fail(&mut self, FoundMode { component, mode }: FoundMode) {
+        self.parts[component].fail(mode);
+    }
+
+    /// Switches off what [`fail`](Self::fail) has switched on; false if it has not.
+    pub(super) fn repair(&mut self, FoundMode { component, mode }: FoundMode) -> bool {
+        self.parts[component].repair(mode)
+    }
+
+    /// Takes a state in; it must fit in every part before any part takes its own.
+    ///
+    /// # Errors
+    /// A state of another machine, which changes nothing.
+    pub(super) fn restore(&mut self, scene: &Scene, physics: PhysicsWorld, memory: Memory) -> Result<(), Misfit> {
+        self.check(scene, &physics, &memory)?;
+        self.world.physics = physics;
+        for ((part, described), memory) in self.parts.iter_mut().zip(&scene.components).zip(memory.parts) {
+            part.restore(memory, &described.name)?;
         }
-        let mut parts = self.parts.iter_mut().zip(memory.parts);
-        let parts_fit = parts.all(|(part, memory)| part.restore(memory));
-        let mut channels = self.channels.iter_mut().flatten().zip(memory.channels.into_iter().flatten());
-        let channels_fit = channels.all(|(one, memory)| one.restore(memory));
+        for (channels, memory) in self.channels.iter_mut().flatten().zip(memory.channels.into_iter().flatten()) {
+            channels.restore(memory);
+        }
         self.positions = memory.positions;
         self.setpoints = memory.setpoints;
         self.detected = memory.detected;
@@ -116,7 +145,29 @@ impl Machine {
             given.clear();
             given.extend_from_slice(part.given());
         }
-        parts_fit && channels_fit
+        Ok(())
+    }
+
+    fn check(&self, scene: &Scene, physics: &PhysicsWorld, memory: &Memory) -> Result<(), Misfit> {
+        let counts = [
+            ("joints", self.positions.len(), memory.positions.len()),
+            ("axes", self.setpoints.len(), memory.setpoints.len()),
+            ("sensors", self.detected.len(), memory.detected.len()),
+            ("components", self.parts.len(), memory.parts.len()),
+            ("directions of signals", self.channels.iter().flatten().count(), memory.channels.iter().flatten().count()),
+        ];
+        if let Some((what, own, saved)) = counts.into_iter().find(|(_, own, saved)| own != saved) {
+            return Err(Misfit(format!("it has {saved} {what}, this plant has {own}")));
+        }
+        self.world.check(physics)?;
+        for ((part, described), memory) in self.parts.iter().zip(&scene.components).zip(&memory.parts) {
+            part.check(memory, &described.name)?;
+        }
+        let mut channels = self.channels.iter().flatten().zip(memory.channels.iter().flatten());
+        if channels.all(|(one, memory)| one.fits(memory)) {
+            return Ok(());
+        }
+        Err(Misfit("its signals between plant and session are others".to_owned()))
     }
 
     /// The signals as they are at the set-up.

@@ -20,7 +20,10 @@
 //! | `machine` | all of these, one turn at a time |
 //! | `random` | random numbers from the scenario's seed |
 //! | `channel` | what happens to signals between the plant and the PLC |
+//! | `failure` | why a failure or a repair of a running plant is refused |
+//! | `identity` | whose state it is: what a plant is made of, and what differs from another |
 //! | `state` | the plant's state as bytes |
+//! | `placement` | where the bodies are, for recordings and pictures |
 //! | `client` | the plant as a client of a session |
 //!
 //! # A turn
@@ -39,9 +42,12 @@ mod client;
 mod command;
 pub mod component;
 mod coordinate;
+mod failure;
+mod identity;
 mod machine;
 pub mod mesh;
 mod part;
+mod placement;
 mod pose;
 mod random;
 pub mod scene;
@@ -51,5 +57,7 @@ mod state;
 pub mod urdf;
 mod world;
 
-pub use client::{BodyPose, Plant};
-pub use scene::{Scene, SceneError, SceneFault, SceneFaultKind};
+pub use client::Plant;
+pub use failure::FailureRefused;
+pub use placement::{BodyPose, Placement};
+pub use scene::{Scene, SceneError, SceneFault, SceneFaultKind, UnknownFailure};

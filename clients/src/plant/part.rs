@@ -13,6 +13,7 @@ use super::component::coupling::{Coordinate, Effect, Seen};
 use super::component::declare::{Failed, Value};
 use super::component::kind::Values;
 use super::component::library::entry;
+use super::machine::Misfit;
 use super::random::seed_for;
 use super::scene::Scene;
 use super::scene::model::{self, Bound, When, Wire};
@@ -99,6 +100,8 @@ pub(super) struct Part {
     /// Outputs of the last turn.
     given: Vec<Value>,
     held: Option<Held>,
+    /// What has been made to fail while the plant runs, beside what the switches say.
+    failed: Failed,
 }
 
 /// A body that a part holds fast.
@@ -114,6 +117,7 @@ pub(super) struct PartMemory {
     state: Vec<u8>,
     given: Vec<Value>,
     held: Option<Held>,
+    failed: Failed,
 }
 
 /// What surrounds a part in a half turn.
@@ -179,6 +183,7 @@ impl Part {
             taken: (entry.unconnected)(),
             given: kind.outputs.iter().map(|output| Value::zero(output.values)).collect(),
             held: None,
+            failed: Failed::default(),
         }))
     }
 
@@ -229,17 +234,45 @@ impl Part {
         &self.given
     }
 
-    pub(super) fn memory(&self) -> PartMemory {
-        PartMemory { state: self.running.save(), given: self.given.clone(), held: self.held }
+    /// Switches a mode on from the next half turn on, by its place among those of the kind.
+    pub(super) fn fail(&mut self, mode: usize) {
+        self.failed = self.failed.with(mode);
     }
 
-    /// True if the memory is one of such a part, which then has it.
-    pub(super) fn restore(&mut self, memory: PartMemory) -> bool {
-        let fits = memory.given.len() == self.given.len() && self.running.restore(&memory.state);
-        if fits {
-            (self.given, self.held) = (memory.given, memory.held);
+    /// Switches off what [`fail`](Self::fail) has switched on; false if it has not.
+    pub(super) fn repair(&mut self, mode: usize) -> bool {
+        let repaired = self.failed.without(mode);
+        std::mem::replace(&mut self.failed, repaired) != repaired
+    }
+
+    /// # Errors
+    /// A state that does not go into bytes, which no kind has: each is plain data.
+    pub(super) fn memory(&self) -> Result<PartMemory, postcard::Error> {
+        let Self { given, held, failed, .. } = self;
+        Ok(PartMemory { state: self.running.save()?, given: given.clone(), held: *held, failed: *failed })
+    }
+
+    /// Checks that a memory is one of such a part; `name` is the part in the refusal.
+    ///
+    /// # Errors
+    /// A memory of another part.
+    pub(super) fn check(&self, memory: &PartMemory, name: &str) -> Result<(), Misfit> {
+        let foreign = |why: &str| Misfit(format!("component `{name}`: {why}"));
+        if !self.given.iter().map(Value::values).eq(memory.given.iter().map(Value::values)) {
+            return Err(foreign("its outputs are others"));
         }
-        fits
+        self.running.check(&memory.state).map_err(|error| foreign(&error.to_string()))
+    }
+
+    /// Takes a memory in; `name` is the part in the refusal.
+    ///
+    /// # Errors
+    /// A memory that [`check`](Self::check) refuses.
+    pub(super) fn restore(&mut self, memory: PartMemory, name: &str) -> Result<(), Misfit> {
+        let taken = self.running.restore(&memory.state);
+        taken.map_err(|error| Misfit(format!("component `{name}`: {error}")))?;
+        (self.given, self.held, self.failed) = (memory.given, memory.held, memory.failed);
+        Ok(())
     }
 
     fn take(
@@ -270,7 +303,7 @@ impl Part {
     }
 
     fn turn(&self, moment: &Moment<'_>, world: &World) -> Turn {
-        let mut failed = Failed::default();
+        let mut failed = self.failed;
         for (mode, switch) in &self.switches {
             let on = match switch {
                 Switch::Signal(slot) => slot.get(moment.inputs),

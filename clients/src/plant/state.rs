@@ -4,22 +4,23 @@
 //! |---|---|
 //! | 8 | `onescanP` |
 //! | 4 | version of this form, little-endian |
-//! | 32 | digest of the plant's identity: scene, period and name |
-//! | 32 | digest of the payload |
-//! | rest | payload: the engine's sets and the plant's own memory |
+//! | 32 | digest of all that follows |
+//! | rest | the plant's identity, then the engine's sets and the plant's own memory |
 //!
-//! The payload is read only after both digests agree, so that it cannot be anything but a state that
-//! this plant saved.
+//! Nothing is read before the digest agrees, and the engine's sets only after the identity does, so
+//! that they cannot be anything but what this plant saved.
 
 use onescan_server::client::StateError;
 use rapier3d::prelude::PhysicsWorld;
 use serde::{Deserialize, Serialize};
 
+use super::identity::Identity;
 use super::machine::Memory;
 
 const MAGIC: [u8; 8] = *b"onescanP";
-const VERSION: u32 = 2;
+const VERSION: u32 = 3;
 const DIGEST_BYTES: usize = blake3::OUT_LEN;
+const HEADER_BYTES: usize = MAGIC.len() + size_of::<u32>() + DIGEST_BYTES;
 
 #[derive(Serialize)]
 struct Saved<'s> {
@@ -35,19 +36,20 @@ pub(super) struct Restored {
 }
 
 /// A state as bytes.
-pub(super) fn to_bytes(identity: blake3::Hash, physics: &PhysicsWorld, memory: &Memory) -> Result<Vec<u8>, StateError> {
-    let payload = postcard::to_stdvec(&Saved { physics, memory }).map_err(|error| corrupt(&error.to_string()))?;
-    let mut bytes = Vec::with_capacity(MAGIC.len() + 4 + 2 * DIGEST_BYTES + payload.len());
-    bytes.extend_from_slice(&MAGIC);
-    bytes.extend_from_slice(&VERSION.to_le_bytes());
-    bytes.extend_from_slice(identity.as_bytes());
-    bytes.extend_from_slice(blake3::hash(&payload).as_bytes());
-    bytes.extend_from_slice(&payload);
+pub(super) fn to_bytes(identity: &Identity, physics: &PhysicsWorld, memory: &Memory) -> Result<Vec<u8>, StateError> {
+    let unsaved = |error: postcard::Error| corrupt(&format!("the plant cannot be saved: {error}"));
+    let mut bytes = vec![0; HEADER_BYTES];
+    bytes = postcard::to_extend(identity, bytes).map_err(unsaved)?;
+    bytes = postcard::to_extend(&Saved { physics, memory }, bytes).map_err(unsaved)?;
+    let digest = blake3::hash(&bytes[HEADER_BYTES..]);
+    bytes[..MAGIC.len()].copy_from_slice(&MAGIC);
+    bytes[MAGIC.len()..HEADER_BYTES - DIGEST_BYTES].copy_from_slice(&VERSION.to_le_bytes());
+    bytes[HEADER_BYTES - DIGEST_BYTES..HEADER_BYTES].copy_from_slice(digest.as_bytes());
     Ok(bytes)
 }
 
 /// The state in bytes that [`to_bytes`] gave to a plant of this identity.
-pub(super) fn from_bytes(identity: blake3::Hash, bytes: &[u8]) -> Result<Restored, StateError> {
+pub(super) fn from_bytes(identity: &Identity, bytes: &[u8]) -> Result<Restored, StateError> {
     let short = || corrupt("it is cut short");
     let (magic, rest) = bytes.split_first_chunk::<8>().ok_or_else(short)?;
     if *magic != MAGIC {
@@ -58,13 +60,13 @@ pub(super) fn from_bytes(identity: blake3::Hash, bytes: &[u8]) -> Result<Restore
     if version != VERSION {
         return Err(corrupt(&format!("its form has version {version}, this program reads {VERSION}")));
     }
-    let (whose, rest) = rest.split_first_chunk::<DIGEST_BYTES>().ok_or_else(short)?;
-    if blake3::Hash::from_bytes(*whose) != identity {
-        return Err(corrupt("it belongs to a plant with another scene, period or name"));
-    }
-    let (digest, payload) = rest.split_first_chunk::<DIGEST_BYTES>().ok_or_else(short)?;
-    if blake3::hash(payload) != blake3::Hash::from_bytes(*digest) {
+    let (digest, rest) = rest.split_first_chunk::<DIGEST_BYTES>().ok_or_else(short)?;
+    if blake3::hash(rest) != blake3::Hash::from_bytes(*digest) {
         return Err(corrupt("it is cut short or damaged"));
+    }
+    let (whose, payload) = postcard::take_from_bytes::<Identity>(rest).map_err(|error| corrupt(&error.to_string()))?;
+    if let Some(difference) = identity.difference(&whose) {
+        return Err(corrupt(&difference));
     }
     postcard::from_bytes(payload).map_err(|error| corrupt(&error.to_string()))
 }

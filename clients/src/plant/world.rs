@@ -7,6 +7,7 @@ use onescan_server::time::TimeSpan;
 use rapier3d::glamx::{DMat3, DQuat};
 use rapier3d::prelude::*;
 
+use super::machine::Misfit;
 use super::pose;
 use super::scene::model::{Attached, Body, BodyKind, Collisions, Joint, JointKind, Mass, Scene, Shape};
 
@@ -112,6 +113,28 @@ impl World {
     /// The body of an index in the scene, the ground for none.
     pub(super) fn handle(&self, index: Option<usize>) -> RigidBodyHandle {
         index.map_or(self.ground, |index| self.bodies[index])
+    }
+
+    /// The bodies of the scene, in its order.
+    pub(super) fn bodies(&self) -> impl Iterator<Item = &RigidBody> {
+        self.bodies.iter().map(|handle| self.body(*handle))
+    }
+
+    /// Checks that an engine's state has every body, shape and joint that this world knows by handle.
+    ///
+    /// Handles follow from the order of insertion, which is the scene's, so a state that the same
+    /// scene's plant saved has them at the same places.
+    ///
+    /// # Errors
+    /// A state of another world.
+    pub(super) fn check(&self, physics: &PhysicsWorld) -> Result<(), Misfit> {
+        let bodies = self.bodies.iter().chain([&self.ground]).all(|handle| physics.bodies.contains(*handle));
+        let shapes = self.shapes.iter().all(|handle| physics.colliders.contains(*handle));
+        let joints = self.joints.iter().all(|handle| physics.impulse_joints.contains(*handle));
+        if bodies && shapes && joints {
+            return Ok(());
+        }
+        Err(Misfit("it lacks a body, a shape or a joint of this plant".to_owned()))
     }
 
     /// A body by its handle.

@@ -6,8 +6,9 @@
 
 use std::collections::BTreeMap;
 
+use onescan_base::nearest;
 use onescan_plc_shim::{Application, Variable};
-use onescan_server::signal::{ClientName, ElementaryType, Port, SignalDecl, SignalName, nearest};
+use onescan_server::signal::{ClientName, Port, SignalDecl, SignalName};
 use thiserror::Error;
 
 /// A signal and the places in the PLC's memory that hold it.
@@ -133,7 +134,7 @@ fn inputs_named(application: &Application, signal: &SignalName) -> Vec<Variable>
 }
 
 fn checked_place(signal: &SignalDecl, variable: &Variable) -> Result<Place, BindError> {
-    if session_type(variable) == Some(signal.ty) {
+    if variable.signal_type == Some(signal.ty) {
         return Ok(Place { offset: variable.offset as usize, bit: variable.bit });
     }
     Err(BindError {
@@ -146,12 +147,6 @@ fn checked_place(signal: &SignalDecl, variable: &Variable) -> Result<Place, Bind
     })
 }
 
-/// The variable's type in the session's words. Both sides name types as the standard does and hold
-/// their values in the same bytes; a string's type is its name with its length.
-fn session_type(variable: &Variable) -> Option<ElementaryType> {
-    variable.ty.map_or(variable.type_name.as_str(), |ty| ty.name()).parse().ok()
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -162,7 +157,7 @@ mod tests {
         PROGRAM B VAR_INPUT start : BOOL; END_VAR VAR_OUTPUT Lamp : BOOL; Text : STRING[12]; END_VAR
         Lamp := start; END_PROGRAM";
 
-    fn bound(signals: &[(&str, ElementaryType, &str)], paths: &[(&str, &str)]) -> Result<Bindings, BindError> {
+    fn bound(signals: &[(&str, SignalType, &str)], paths: &[(&str, &str)]) -> Result<Bindings, BindError> {
         let application = Application::from_sources([("a.st", SOURCE)]).unwrap();
         let name = |text: &str| SignalName::new(text).unwrap();
         let client = |text: &str| ClientName::new(text).unwrap();
@@ -176,54 +171,50 @@ mod tests {
 
     #[test]
     fn an_input_goes_to_every_program_that_reads_it() {
-        let bindings = bound(&[("Start", ElementaryType::Bool, "plant")], &[]).unwrap();
+        let bindings = bound(&[("Start", SignalType::BOOL, "plant")], &[]).unwrap();
         assert_eq!(bindings.inputs[0].places.len(), 2);
     }
 
     #[test]
     fn any_variable_can_be_bound_by_its_path() {
-        let bindings = bound(&[("Count", ElementaryType::Int, "plc")], &[("Count", "A.n")]).unwrap();
+        let bindings = bound(&[("Count", SignalType::INT, "plc")], &[("Count", "A.n")]).unwrap();
         assert_eq!(bindings.outputs.len(), 1);
-        assert_eq!(bound(&[("Other", ElementaryType::Int, "plant")], &[]).unwrap(), Bindings::default());
+        assert_eq!(bound(&[("Other", SignalType::INT, "plant")], &[]).unwrap(), Bindings::default());
     }
 
     #[test]
     fn a_signal_that_is_read_goes_to_several_variables() {
         let several = [("Go", "A.Start B.start")];
-        assert_eq!(bound(&[("Go", ElementaryType::Bool, "plant")], &several).unwrap().inputs[0].places.len(), 2);
-        let error = bound(&[("Go", ElementaryType::Bool, "plc")], &several).unwrap_err();
+        assert_eq!(bound(&[("Go", SignalType::BOOL, "plant")], &several).unwrap().inputs[0].places.len(), 2);
+        let error = bound(&[("Go", SignalType::BOOL, "plc")], &several).unwrap_err();
         assert_eq!(error.to_string(), "signal `Go` is written by the PLC and bound to 2 of its variables");
     }
 
     #[test]
     fn a_signal_can_be_bound_to_a_direct_address() {
-        let bindings = bound(&[("Valve", ElementaryType::Bool, "plc")], &[("Valve", "%QX0.3")]).unwrap();
+        let bindings = bound(&[("Valve", SignalType::BOOL, "plc")], &[("Valve", "%QX0.3")]).unwrap();
         assert_eq!(bindings.outputs[0].places[0].bit, Some(3));
-        let named = bound(&[("Valve", ElementaryType::Bool, "plc")], &[("Valve", "A.valve")]).unwrap();
+        let named = bound(&[("Valve", SignalType::BOOL, "plc")], &[("Valve", "A.valve")]).unwrap();
         assert_eq!(named.outputs[0].places, bindings.outputs[0].places);
-        let error = bound(&[("Valve", ElementaryType::Bool, "plc")], &[("Valve", "%QX7.3")]).unwrap_err();
+        let error = bound(&[("Valve", SignalType::BOOL, "plc")], &[("Valve", "%QX7.3")]).unwrap_err();
         assert_eq!(error.to_string(), "signal `Valve` is bound to `%QX7.3`, which the PLC has not");
     }
 
     #[test]
-    fn every_elementary_type_of_the_plc_is_one_of_the_session() {
-        for ty in onescan_plc_shim::ElementaryType::ALL {
-            let parsed: ElementaryType = ty.name().parse().unwrap();
-            assert_eq!(parsed.size(), ty.size() as usize, "{}", ty.name());
-        }
-        assert_eq!(bound(&[("Text", ElementaryType::String(12), "plc")], &[]).unwrap().outputs.len(), 1);
-        let error = bound(&[("Text", ElementaryType::String(80), "plc")], &[]).unwrap_err();
+    fn a_string_is_bound_with_its_length() {
+        assert_eq!(bound(&[("Text", SignalType::String(12), "plc")], &[]).unwrap().outputs.len(), 1);
+        let error = bound(&[("Text", SignalType::String(80), "plc")], &[]).unwrap_err();
         assert_eq!(error.to_string(), "signal `Text` is STRING[80], but `B.Text` is STRING[12]");
     }
 
     #[test]
     fn what_cannot_be_bound_is_told() {
-        let error = bound(&[("Lmap", ElementaryType::Bool, "plc")], &[]).unwrap_err();
+        let error = bound(&[("Lmap", SignalType::BOOL, "plc")], &[]).unwrap_err();
         assert!(error.message.ends_with("no program has a VAR_OUTPUT of that name"));
         assert!(error.help.unwrap().starts_with("did you mean `Lamp`?"));
-        let error = bound(&[("Level", ElementaryType::Real, "plc")], &[]).unwrap_err();
+        let error = bound(&[("Level", SignalType::REAL, "plc")], &[]).unwrap_err();
         assert_eq!(error.to_string(), "signal `Level` is REAL, but `A.Level` is LREAL");
-        let error = bound(&[("Level", ElementaryType::Lreal, "plc")], &[("Level", "A.Levle")]).unwrap_err();
+        let error = bound(&[("Level", SignalType::LREAL, "plc")], &[("Level", "A.Levle")]).unwrap_err();
         assert_eq!(error.to_string(), "signal `Level` is bound to `A.Levle`, which the PLC has not");
     }
 }

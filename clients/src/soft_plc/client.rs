@@ -1,11 +1,14 @@
 //! The soft PLC as a client of a session.
 
 use std::collections::BTreeSet;
-use std::sync::{Arc, Mutex};
+use std::ops::Range;
+use std::sync::{Arc, Mutex, PoisonError};
 
-use onescan_plc_shim::{Application, Coverage, PlcFault, RunError, SoftPlc, TaskPlan, UnknownVariable, WriteError};
+use onescan_plc_shim::{
+    Application, CodePolicy, Coverage, PlcFault, RestoreError, RunError, SoftPlc, TaskPlan, UnknownVariable, WriteError,
+};
 use onescan_server::client::{Client, ClientFault, JoinRequest, SourcePlace, StateError, Wake};
-use onescan_server::signal::{ClientName, SignalName};
+use onescan_server::signal::{ClientName, Port, SignalName};
 use onescan_server::time::{TimeSpan, VirtualTime};
 
 use super::bind::{Bindings, Bound, Place};
@@ -44,6 +47,8 @@ pub struct SoftPlcClient {
     plc: SoftPlc,
     inputs: Vec<Run>,
     outputs: Vec<Run>,
+    /// Whose states [`Client::restore`] takes.
+    code_policy: CodePolicy,
     /// Variables that begin with other values than the program says: path and literal.
     presets: Vec<(String, String)>,
     /// Where what was executed goes when the client's part is over.
@@ -69,7 +74,7 @@ impl SoftPlcClient {
         step: TimeSpan,
     ) -> Result<Self, RunError> {
         let plc = SoftPlc::new(application, plan)?;
-        let period = if plc.wants_every_step() { Some(step) } else { TimeSpan::from_nanos(plc.period_ns()) };
+        let period = if plc.wants_every_step() { Some(step) } else { plc.period() };
         let period = period.ok_or(RunError::NoTasks)?;
         let ports = |bound: &[Bound]| bound.iter().map(|bound| bound.port.clone()).collect();
         let request = JoinRequest { name, period, reads: ports(&bindings.inputs), writes: ports(&bindings.outputs) };
@@ -78,6 +83,7 @@ impl SoftPlcClient {
             plc,
             inputs: runs(&bindings.inputs),
             outputs: runs(&bindings.outputs),
+            code_policy: CodePolicy::default(),
             presets: Vec::new(),
             coverage: None,
             tracing: None,
@@ -92,6 +98,29 @@ impl SoftPlcClient {
     pub fn preset(&mut self, path: &str, value: &str) -> Result<(), WriteError> {
         self.plc.write(path, value)?;
         self.presets.push((path.to_owned(), value.to_owned()));
+        Ok(())
+    }
+
+    /// Says whose states [`Client::restore`] takes from here on: at first those of the same sources alone.
+    pub fn accept_states_of(&mut self, policy: CodePolicy) {
+        self.code_policy = policy;
+    }
+
+    /// Takes a saved state as [`Client::restore`] does, and says why if it cannot.
+    ///
+    /// # Errors
+    /// See [`SoftPlc::restore_with`]. Nothing has changed then.
+    pub fn restore_with(&mut self, state: &[u8], policy: CodePolicy) -> Result<(), RestoreError> {
+        self.plc.restore_with(state, policy)?;
+        // What was seen of a run that went further is of a future that may never come.
+        let now = self.plc.now();
+        if let Some(tracing) = &self.tracing {
+            tracing.rewind(now);
+        }
+        if let Some(watcher) = &mut self.watcher {
+            watcher.rewind(now);
+            watcher.look(&self.plc, now);
+        }
         Ok(())
     }
 
@@ -138,6 +167,28 @@ impl SoftPlcClient {
         &self.plc
     }
 
+    pub(super) fn plc_mut(&mut self) -> &mut SoftPlc {
+        &mut self.plc
+    }
+
+    /// The signal that writes into a part of memory, or into the bit of a byte, before every scan.
+    pub(super) fn input_at(&self, range: Range<usize>, bit: Option<u8>) -> Option<SignalName> {
+        let reaches = |run: &&Run| {
+            let Place { offset, bit: own } = run.memory;
+            let shares_bytes = offset < range.end && range.start < offset + run.len;
+            shares_bytes && (own.is_none() || bit.is_none() || own == bit)
+        };
+        let found = self.inputs.iter().find(reaches)?;
+        // Ports lie behind one another, so that a place in them tells the signal.
+        let mut end = 0;
+        let mut signals = self.request.reads.iter();
+        let holds = |port: &&Port| {
+            end += port.ty.size();
+            found.port < end
+        };
+        signals.find(holds).map(|port| port.name.clone())
+    }
+
     fn take_outputs(&self, outputs: &mut [u8]) {
         let memory = self.plc.memory();
         for run in &self.outputs {
@@ -160,9 +211,9 @@ fn runs(bound: &[Bound]) -> Vec<Run> {
 
 impl Drop for SoftPlcClient {
     fn drop(&mut self) {
-        let executed = self.coverage.as_ref().zip(self.plc.coverage());
-        if let Some((Ok(mut sink), coverage)) = executed.map(|(sink, coverage)| (sink.lock(), coverage)) {
-            sink.merge(&coverage);
+        if let Some((sink, coverage)) = self.coverage.as_ref().zip(self.plc.coverage()) {
+            // Merging only adds: whoever panicked while it held the lock left counts that are true.
+            sink.lock().unwrap_or_else(PoisonError::into_inner).merge(&coverage);
         }
     }
 }
@@ -190,17 +241,17 @@ impl Client for SoftPlcClient {
         for run in &self.inputs {
             run.give(inputs, memory);
         }
-        let scanned = self.plc.scan(onescan_plc_shim::VirtualTime::from_ns(t_v.as_nanos()));
+        let scanned = self.plc.scan(t_v);
         if let Some(tracing) = &self.tracing {
             tracing.note(&self.plc, t_v);
         }
         self.look(t_v);
         scanned.map_err(|fault| client_fault(&fault))?;
         self.take_outputs(outputs);
-        Ok(if self.plc.wants_every_step() {
-            Wake::NextPeriod
-        } else {
-            Wake::At(VirtualTime::from_nanos(self.plc.next_due().as_ns()))
+        Ok(match self.plc.next_due() {
+            Some(due) if !self.plc.wants_every_step() => Wake::At(due),
+            // Without a task that may be due at any step nothing is due only past the end of time.
+            _ => Wake::NextPeriod,
         })
     }
 
@@ -209,7 +260,7 @@ impl Client for SoftPlcClient {
     }
 
     fn restore(&mut self, state: &[u8]) -> Result<(), StateError> {
-        self.plc.restore(state).map_err(|error| StateError::Corrupt(error.to_string()))
+        self.restore_with(state, self.code_policy).map_err(|error| StateError::Corrupt(error.to_string()))
     }
 }
 

@@ -5,13 +5,16 @@
 //! | [`bind`] | which signal is which variable of the PLC |
 //! | `client` | inputs in, scan, outputs out |
 //! | [`trace`] | which statements wrote its outputs, which ways decisions went |
+//! | `variables` | variables written and forced by path |
 //! | [`watch`] | variables that somebody looks at |
 
 pub mod bind;
 mod client;
 pub mod trace;
+mod variables;
 pub mod watch;
 
 pub use bind::{BindError, Bindings, Bound, bind};
 pub use client::{CoverageSink, SoftPlcClient};
 pub use trace::{TraceSink, Traced, Ways, Written};
+pub use variables::VariableError;

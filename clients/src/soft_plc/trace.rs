@@ -46,9 +46,20 @@ impl Ways {
         self.kept += scan.len() + 1;
         if self.kept > WAYS_MAX {
             self.cut_off = Some(t_v);
+            self.kept -= scan.len() + 1;
         } else {
             self.scans.push((t_v, scan));
         }
+    }
+}
+
+impl Ways {
+    /// Forgets the scans after `t_v`.
+    fn rewind(&mut self, t_v: VirtualTime) {
+        let known = self.scans.partition_point(|(since, _)| *since <= t_v);
+        let forgotten = self.scans.drain(known..).map(|(_, scan)| scan.len() + 1).sum();
+        self.kept = self.kept.saturating_sub(forgotten);
+        self.cut_off = self.cut_off.filter(|cut_off| *cut_off <= t_v);
     }
 }
 
@@ -94,6 +105,15 @@ impl Tracing {
         let mut sink = self.sink.lock().unwrap_or_else(PoisonError::into_inner);
         sink.writers.retain(|signal, _| !self.watched.contains(signal));
         sink.ways.insert(self.client.clone(), Ways { known: self.known.clone(), ..Ways::default() });
+    }
+
+    /// The PLC goes on from a state saved at `t_v`: what it did later is not done yet.
+    pub(super) fn rewind(&self, t_v: VirtualTime) {
+        let mut sink = self.sink.lock().unwrap_or_else(PoisonError::into_inner);
+        sink.writers.retain(|signal, written| written.t_v <= t_v || !self.watched.contains(signal));
+        if let Some(ways) = sink.ways.get_mut(&self.client) {
+            ways.rewind(t_v);
+        }
     }
 
     /// A scan is over.

@@ -1,6 +1,6 @@
 //! Variables of the PLC that somebody looks at: their values after every turn.
 
-use std::sync::{Arc, Mutex};
+use std::sync::{Arc, Mutex, PoisonError};
 
 use onescan_plc_shim::{Application, Radix, SoftPlc, UnknownVariable, Variable};
 use onescan_server::time::VirtualTime;
@@ -38,6 +38,11 @@ impl Sightings {
     /// Most changes that are kept of a run.
     pub const LIMIT: usize = 100_000;
 
+    /// The value that a variable had last.
+    fn last(&self, watch: usize) -> Option<&str> {
+        self.list.iter().rfind(|each| each.watch == watch).map(|each| each.value.as_str())
+    }
+
     fn add(&mut self, sighting: Sighting, changes: bool) {
         if changes && self.list.len() == Self::LIMIT {
             self.left_out += 1;
@@ -58,6 +63,8 @@ struct Watched {
     variable: Variable,
     radix: Radix,
     last: Option<Vec<u8>>,
+    /// True until it is looked at after a state was restored, which may have the value that was seen last.
+    is_rewound: bool,
 }
 
 /// The watched variables of one PLC.
@@ -77,23 +84,36 @@ impl Watcher {
     ) -> Result<Self, UnknownVariable> {
         let watched = watches.iter().map(|(number, watch)| {
             let variable = application.variable(&watch.path)?;
-            Ok(Watched { number: *number, variable, radix: watch.radix, last: None })
+            Ok(Watched { number: *number, variable, radix: watch.radix, last: None, is_rewound: false })
         });
         Ok(Self { watched: watched.collect::<Result<_, _>>()?, changes, sink })
     }
 
+    /// The PLC goes on from a state saved at `t_v`: forgets what was seen later.
+    pub(super) fn rewind(&mut self, t_v: VirtualTime) {
+        for watched in &mut self.watched {
+            (watched.last, watched.is_rewound) = (None, true);
+        }
+        let own = |sighting: &Sighting| self.watched.iter().any(|watched| watched.number == sighting.watch);
+        let mut sink = self.sink.lock().unwrap_or_else(PoisonError::into_inner);
+        sink.list.retain(|sighting| sighting.since <= t_v || !own(sighting));
+    }
+
     /// Looks at the values as they are at `t_v`.
     pub(super) fn look(&mut self, plc: &SoftPlc, t_v: VirtualTime) {
-        for Watched { number, variable, radix, last } in &mut self.watched {
+        for Watched { number, variable, radix, last, is_rewound } in &mut self.watched {
             let bytes = variable.bytes(plc.memory());
             if last.as_deref() == Some(bytes.as_slice()) {
                 continue;
             }
             let value = plc.application().value_text_in(variable, plc.memory(), *radix);
             *last = Some(bytes);
-            if let Ok(mut sink) = self.sink.lock() {
-                sink.add(Sighting { watch: *number, since: t_v, value }, self.changes);
+            // Whoever panicked while it held the lock left whole entries.
+            let mut sink = self.sink.lock().unwrap_or_else(PoisonError::into_inner);
+            if std::mem::take(is_rewound) && sink.last(*number) == Some(value.as_str()) {
+                continue;
             }
+            sink.add(Sighting { watch: *number, since: t_v, value }, self.changes);
         }
     }
 }

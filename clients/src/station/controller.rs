@@ -106,7 +106,7 @@ impl Controller {
         if state.is_running {
             state.own_ns = state.own_ns.saturating_add(span_ns);
             state.cycles += 1;
-            let now = VirtualTime::from_ns(state.own_ns);
+            let now = VirtualTime::from_nanos(state.own_ns);
             if let Err(fault) = state.plc.scan(now) {
                 let text = format!("PLC fault: {} in {}{}", fault.kind, fault.at, fault.way());
                 tracing::warn!("{text}; the PLC is in STOP");

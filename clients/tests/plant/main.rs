@@ -4,6 +4,7 @@ mod arrays;
 mod belt;
 mod bench;
 mod components;
+mod failures;
 mod faults;
 mod handling;
 mod meshes;

@@ -1,7 +1,11 @@
 //! A plant's state is a value: saved, restored, repeated, to the bit.
 
+use std::fmt::Write as _;
+
 use onescan_clients::plant::Plant;
 use onescan_server::client::{Client, StateError};
+use onescan_server::signal::ClientName;
+use onescan_server::time::TimeSpan;
 
 use crate::bench::{Bench, PERIOD};
 use crate::shear::SHEAR;
@@ -166,6 +170,62 @@ fn a_state_of_another_plant_is_refused() {
     let state = Bench::new(HEAP).plant.save().expect("a state");
     let error = Bench::new(SHEAR).plant.restore(&state).expect_err("refused");
     assert!(error.to_string().contains("another scene"), "{error}");
+}
+
+/// Restores every state of a run, in an order that goes back and forth, into one plant that runs and
+/// into a new one; both are then the same, and stay so.
+#[test]
+fn a_running_plant_takes_a_state_as_a_new_one_does() {
+    for scene in [SHEAR, HEAP] {
+        let trace = run(&mut Bench::new(scene), 120);
+        let mut running = Bench::new(scene);
+        run(&mut running, 90);
+        for k in (0..120).map(|k| (k * 37) % 120) {
+            let mut new = Bench::new(scene);
+            for bench in [&mut running, &mut new] {
+                bench.plant.restore(&trace[k].1).expect("a state");
+                bench.outputs.clone_from(&trace[k].0);
+            }
+            for later in k..(k + 8).min(120) {
+                command(&mut running, later);
+                command(&mut new, later);
+                running.turn();
+                new.turn();
+                assert!(running.outputs == trace[later + 1].0 && new.outputs == trace[later + 1].0, "{k} {later}");
+            }
+            assert!(running.plant.save() == new.plant.save(), "{k}");
+        }
+    }
+}
+
+/// The same scene with something else in it, and what a refusal says of it.
+#[test]
+fn a_refusal_says_what_differs() {
+    let cases = [
+        ("speed_rad_s = 1.0", "speed_rad_s = 1.5"),
+        ("size_m = [2.0, 2.0, 0.1]", "size_m = [2.0, 2.0, 0.2]"),
+        ("mass_kg = 50.0", "mass_kg = 51"),
+        ("name = \"hinge\"", "name = \"pivot\""),
+        ("version = 1", "version = 1\nsubsteps = 4"),
+        ("range_m = 2.0", "range_m = 2.5\ntargets = [\"a\"]"),
+        ("[[sensor]]", "[[component]]\nname = \"line\"\nkind = \"conveyor\"\n[[sensor]]"),
+    ];
+    let mut told = String::new();
+    let state = Bench::new(HEAP).plant.save().expect("a state");
+    for (from, to) in cases {
+        assert!(HEAP.contains(from), "{from}");
+        let other = HEAP
+            .replacen(from, to, 1)
+            .replace("joint = \"hinge\"", if to.contains("pivot") { "joint = \"pivot\"" } else { "joint = \"hinge\"" });
+        writeln!(told, "{}", Bench::new(&other).plant.restore(&state).expect_err("refused")).expect("a string grows");
+    }
+    let named = |name: &str| ClientName::new(name).expect("a name");
+    let span = |ms| TimeSpan::from_millis(ms).expect("not zero");
+    let plant = |name: &str, ms| Plant::parse(HEAP, "scene.toml", named(name), span(ms)).expect("a scene");
+    for mut other in [plant("other", 10), plant("plant", 20), plant("plant", 10).seeded(7)] {
+        writeln!(told, "{}", other.restore(&state).expect_err("refused")).expect("a string grows");
+    }
+    insta::assert_snapshot!(told);
 }
 
 #[test]

@@ -2,6 +2,7 @@
 
 use std::collections::BTreeSet;
 
+use super::constant::{ConstantError, Constants};
 use super::library;
 use crate::check::{Checked, check};
 use crate::diagnostic::{Diagnostic, Severity};
@@ -22,6 +23,34 @@ pub(crate) struct Front {
 
 impl Front {
     pub(crate) fn new(inputs: impl IntoIterator<Item = Input>) -> Self {
+        Parsed::new(inputs).checked(&Constants::default())
+    }
+
+    /// Beside it the constants, which have other initial values: path and literal each.
+    pub(crate) fn with_constants(
+        inputs: impl IntoIterator<Item = Input>,
+        constants: &[(String, String)],
+    ) -> Result<(Self, Constants), ConstantError> {
+        let mut parsed = Parsed::new(inputs);
+        let constants = Constants::new(constants, &parsed.units, &mut parsed.sources)?;
+        Ok((parsed.checked(&constants), constants))
+    }
+
+    pub(crate) fn has_errors(&self) -> bool {
+        self.findings.iter().any(|found| found.severity == Severity::Error)
+    }
+}
+
+/// Files as trees, with what is wrong with their text.
+struct Parsed {
+    sources: SourceMap,
+    units: Vec<(FileId, CompilationUnit)>,
+    library: BTreeSet<FileId>,
+    findings: Vec<Diagnostic>,
+}
+
+impl Parsed {
+    fn new(inputs: impl IntoIterator<Item = Input>) -> Self {
         let mut sources = SourceMap::default();
         let mut findings = Vec::new();
         let mut library = BTreeSet::new();
@@ -39,14 +68,15 @@ impl Front {
             units.push((id, parsed.unit));
         }
         join_configurations(&mut units);
-        let trees: Vec<_> = units.iter().map(|(id, unit)| (*id, unit)).collect();
-        let (checked, found) = check(&trees, &library);
-        findings.extend(found);
-        Self { sources, units, library, checked, findings }
+        Self { sources, units, library, findings }
     }
 
-    pub(crate) fn has_errors(&self) -> bool {
-        self.findings.iter().any(|found| found.severity == Severity::Error)
+    fn checked(self, constants: &Constants) -> Front {
+        let Self { sources, units, library, mut findings } = self;
+        let trees: Vec<_> = units.iter().chain(&constants.units).map(|(id, unit)| (*id, unit)).collect();
+        let (checked, found) = check(&trees, &library, &constants.overrides);
+        findings.extend(constants.findings.iter().cloned().chain(found));
+        Front { sources, units, library, checked, findings }
     }
 }
 

@@ -1,11 +1,12 @@
 //! Programs and variables by name, for those outside.
 
+use onescan_base::SignalType;
 use thiserror::Error;
 
 use super::Application;
 use crate::check::{Checked, Kept};
 use crate::diagnostic::did_you_mean;
-use crate::ir::{self, ElementaryType, Location, Storage, Type, TypeId};
+use crate::ir::{self, ElementaryType, Location, Storage, Type, TypeId, TypeTable};
 use crate::syntax::ast::SectionKind;
 use crate::syntax::direct_address::DirectAddress;
 
@@ -25,6 +26,8 @@ pub struct Variable {
     /// length stands in `type_name` (`STRING[80]`). A value of an
     /// enumeration or subrange is one of its base type.
     pub ty: Option<ElementaryType>,
+    /// Its type as a session has it: also of strings, with their length. Nothing for what no signal can be.
+    pub signal_type: Option<SignalType>,
     /// The name of its type.
     pub type_name: String,
     /// The direct address it is located at (`AT`), as written.
@@ -231,11 +234,21 @@ impl Application {
             size: types.size(spot.ty),
             bit: spot.bit,
             ty: types.elementary(spot.ty),
+            signal_type: signal_type(types, spot.ty),
             type_name: types.name(spot.ty),
             address: spot.address,
             access: spot.access,
             type_id: spot.ty,
         }
+    }
+}
+
+/// Both sides hold a value in the same bytes, so the type is all that they must agree on.
+fn signal_type(types: &TypeTable, ty: TypeId) -> Option<SignalType> {
+    match types.get(ty) {
+        Type::Text(shape) if shape.wide => SignalType::wstring(shape.capacity),
+        Type::Text(shape) => SignalType::string(shape.capacity),
+        _ => types.elementary(ty).map(SignalType::from),
     }
 }
 

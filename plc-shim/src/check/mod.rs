@@ -1,4 +1,19 @@
 //! Names, types, constants and calls: from syntax trees to the checked program.
+//!
+//! | room | subject | asks |
+//! |---|---|---|
+//! | [`types`] | rules on types and values: constants, operands, what converts to what | |
+//! | [`standard`] | standard functions and those of vendors, by what their names say | |
+//! | [`asserts`] | where asserts stand | |
+//! | [`declare`] | what the files declare: names, namespaces, classes, scopes, memory, who calls whom | `types`, `standard` |
+//! | [`body`] | expressions and statements inside of a scope, the bodies of units | `declare` and what it asks |
+//! | [`resolve`] | declarations as written to types, initial values, placed variables | `body` and what it asks |
+//! | [`configuration`] | resources, tasks, instances of programs, what a start does | all of them |
+//!
+//! A unit, type or global variable is resolved when it is first needed; what is being resolved
+//! and needed again contains itself. Bodies need declarations, and declarations constant expressions: so
+//! `declare` has a trait, [`Resolve`](declare::Resolve), for what takes an expression, and `resolve`, which stands
+//! above bodies, implements it. A test of the workspace (`house`) reads these arrows from the sources.
 
 pub(crate) mod asserts;
 mod body;
@@ -20,7 +35,9 @@ use crate::ir::{Areas, Configuration, Entry, Pou, PouId, Program, Row, TypeTable
 use crate::syntax::ast::CompilationUnit;
 use crate::syntax::{FileId, Span};
 
-pub(crate) use self::declare::{CALL_DEPTH_OFFSET, INIT_RETAINS_OFFSET, Kept, VIRTUAL_TIME_NAME, VIRTUAL_TIME_OFFSET};
+pub(crate) use self::declare::{
+    CALL_DEPTH_OFFSET, INIT_RETAINS_OFFSET, Kept, Overrides, VIRTUAL_TIME_NAME, VIRTUAL_TIME_OFFSET,
+};
 pub(crate) use self::standard::exists as is_standard_function;
 
 /// The checked program.
@@ -56,10 +73,14 @@ pub(crate) struct Checked {
 }
 
 /// Checks all units together. `library` tells the files of the standard function blocks, whose
-/// units are compiled only if they are used.
-pub(crate) fn check(units: &[(FileId, &CompilationUnit)], library: &BTreeSet<FileId>) -> (Checked, Vec<Diagnostic>) {
+/// units are compiled only if they are used. Constants named by `overrides` have the initial values that it gives.
+pub(crate) fn check(
+    units: &[(FileId, &CompilationUnit)],
+    library: &BTreeSet<FileId>,
+    overrides: &Overrides,
+) -> (Checked, Vec<Diagnostic>) {
     let stages = stages(units);
-    let mut declarations = Declarations::new(library, &stages, &Resolver);
+    let mut declarations = Declarations::new(library, &stages, overrides, &Resolver);
     declarations.collect(units);
     declarations.link_classes();
     declarations.resolve_declarations();

@@ -66,4 +66,6 @@ pub(crate) mod text_host;
 pub(crate) mod trace;
 
 pub(crate) use budget::BUDGET_EXPORT;
-pub(crate) use module::{Compiled, END_EXPORT, MEMORY_EXPORT, Noted, START_EXPORT, compile, entry_export};
+pub(crate) use module::{
+    Compiled, END_EXPORT, MEMORY_EXPORT, NOTES_EXPORT, Noted, START_EXPORT, compile, entry_export,
+};

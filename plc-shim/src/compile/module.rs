@@ -12,14 +12,16 @@ use super::cost::Costs;
 use super::emitter::{Shared, value_type};
 use super::fault::{FaultTable, FunctionMarks};
 use super::function::Made;
-use super::points::{Point, Points};
+use super::points::{NOTES_MEMORY, Point, Points};
 use super::{dispatch, entry, function, host, text_host, trace};
 use crate::check::Checked;
 use crate::ir::{Pou, PouId, TypeTable};
 use crate::syntax::FileId;
 
-/// Name of the exported memory.
+/// Name of the export of the PLC's memory.
 pub(crate) const MEMORY_EXPORT: &str = "memory";
+/// Name of the export of the memory that execution is noted in, of a module that notes it.
+pub(crate) const NOTES_EXPORT: &str = "notes";
 
 const PAGE: u64 = 65_536;
 
@@ -69,7 +71,7 @@ pub(crate) fn compile(checked: &Checked, noted: Noted<'_>) -> Compiled {
     let points = match noted {
         Noted::Nothing => None,
         Noted::Traced(library) => Some(Points::traced(library)),
-        Noted::AllBut(library) => Some(Points::new(checked.image.len() as u32, library)),
+        Noted::AllBut(library) => Some(Points::new(library)),
     };
     let mut shared = Shared {
         points,
@@ -130,6 +132,12 @@ fn hints(faults: &FaultTable) -> BranchHints {
     hints
 }
 
+/// A memory of a fixed size that has room for so many bytes.
+fn memory_of(bytes: usize) -> MemoryType {
+    let pages = (bytes as u64).div_ceil(PAGE);
+    MemoryType { minimum: pages, maximum: Some(pages), memory64: false, shared: false, page_size_log2: None }
+}
+
 fn signature(pou: &Pou, types: &TypeTable) -> (Vec<ValType>, Vec<ValType>) {
     let parameters = pou.registers.iter().take(pou.parameters as usize);
     let parameters = parameters.map(|ty| value_type(*ty)).collect();
@@ -188,18 +196,15 @@ impl Sections {
         self.imports.len() + self.functions.len() - 1
     }
 
-    /// `noted` bytes for what is noted while the program runs lie behind those of the program.
+    /// `noted` bytes, for what is noted while the program runs, lie in a memory of their own.
     fn finish(mut self, checked: &Checked, noted: usize, shared: &Shared<'_>, hints: &BranchHints) -> Vec<u8> {
-        let pages = ((checked.image.len() + noted) as u64).div_ceil(PAGE);
         let mut memories = MemorySection::new();
-        memories.memory(MemoryType {
-            minimum: pages,
-            maximum: Some(pages),
-            memory64: false,
-            shared: false,
-            page_size_log2: None,
-        });
+        memories.memory(memory_of(checked.image.len()));
         self.exports.export(MEMORY_EXPORT, ExportKind::Memory, 0);
+        if noted > 0 {
+            memories.memory(memory_of(noted));
+            self.exports.export(NOTES_EXPORT, ExportKind::Memory, NOTES_MEMORY);
+        }
         self.exports.export(BUDGET_EXPORT, ExportKind::Global, 0);
         let mut data = DataSection::new();
         for bytes in &shared.data {

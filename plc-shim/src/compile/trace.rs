@@ -38,33 +38,39 @@ fn index(import: usize) -> u32 {
 impl Emitter<'_, '_> {
     /// Tells that a point's statement begins.
     pub(super) fn trace_begin(&mut self, point: u32) {
-        self.emit(Instruction::I32Const(point as i32));
-        self.emit(Instruction::Call(index(0)));
+        self.free_of_charge(|emitter| {
+            emitter.emit(Instruction::I32Const(point as i32));
+            emitter.emit(Instruction::Call(index(0)));
+        });
     }
 
     /// Tells that a statement goes a way.
     pub(super) fn trace_choice(&mut self, statement: u32, outcome: u32) {
-        self.emit(Instruction::I32Const(statement as i32));
-        self.emit(Instruction::I32Const(outcome as i32));
-        self.emit(Instruction::Call(index(2)));
+        self.free_of_charge(|emitter| {
+            emitter.emit(Instruction::I32Const(statement as i32));
+            emitter.emit(Instruction::I32Const(outcome as i32));
+            emitter.emit(Instruction::Call(index(2)));
+        });
     }
 
     /// Tells that a statement ends, if the program is traced.
     pub(super) fn trace_end(&mut self, statement: &Statement) {
         let Some(point) = self.traced_point(statement.span) else { return };
-        self.emit(Instruction::I32Const(point as i32));
         let written = match &statement.kind {
             StatementKind::Assign(target, _) | StatementKind::Copy(target, _) => self.extent(target),
             _ => None,
         };
-        if let Some(Extent { base, start, end }) = written {
-            self.push_address(Address { base, offset: start });
-            self.emit(Instruction::I32Const((end - start) as i32));
-        } else {
-            self.emit(Instruction::I32Const(0));
-            self.emit(Instruction::I32Const(0));
-        }
-        self.emit(Instruction::Call(index(1)));
+        self.free_of_charge(|emitter| {
+            emitter.emit(Instruction::I32Const(point as i32));
+            if let Some(Extent { base, start, end }) = written {
+                emitter.push_address(Address { base, offset: start });
+                emitter.emit(Instruction::I32Const((end - start) as i32));
+            } else {
+                emitter.emit(Instruction::I32Const(0));
+                emitter.emit(Instruction::I32Const(0));
+            }
+            emitter.emit(Instruction::Call(index(1)));
+        });
     }
 
     fn traced_point(&mut self, span: Span) -> Option<u32> {

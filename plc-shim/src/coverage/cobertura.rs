@@ -24,6 +24,10 @@ impl Coverage {
         writer.write_event(Event::DocType(BytesText::from_escaped(
             r#"coverage SYSTEM "http://cobertura.sourceforge.net/xml/coverage-04.dtd""#,
         )))?;
+        if self.counted_from_ns > 0 {
+            let note = format!(" A run was resumed: it is counted from {} ns on. ", self.counted_from_ns);
+            writer.write_event(Event::Comment(BytesText::new(&note)))?;
+        }
         let ((lines, lines_hit), (branches, branches_hit)) = (self.lines(), self.branches());
         let numbers = [
             ("line-rate", rate(lines, lines_hit)),

@@ -6,7 +6,8 @@
 //! | [`cobertura`] | as a Cobertura report |
 //! | [`rows`] | as plain rows, to be carried elsewhere |
 //!
-//! Counts are of runs: a line with 2 was executed in two of the runs that were merged.
+//! Counts are of runs: a line with 2 was executed in two of the runs that were merged. A run that was resumed
+//! from a saved state counts from there on; reports say so, because what ran before looks as if it never had.
 
 mod cobertura;
 mod lcov;
@@ -23,6 +24,8 @@ pub use rows::{Counted, Row};
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Coverage {
     files: BTreeMap<String, FileCoverage>,
+    /// Virtual time from which on all runs are counted, in nanoseconds; 0 if none was resumed.
+    counted_from_ns: u64,
 }
 
 /// Of one file; lines count from 1, as its author sees them.
@@ -36,9 +39,9 @@ struct FileCoverage {
 }
 
 impl Coverage {
-    /// What the bytes say of the points.
-    pub(crate) fn new(sources: &SourceMap, points: &[Point], seen: &[u8]) -> Self {
-        let mut found = Self::default();
+    /// What the bytes say of the points; nothing is known of the run up to `counted_from_ns`.
+    pub(crate) fn new(sources: &SourceMap, points: &[Point], seen: &[u8], counted_from_ns: u64) -> Self {
+        let mut found = Self { counted_from_ns, ..Self::default() };
         for (point, seen) in points.iter().zip(seen) {
             let (file, place) = sources.locate(point.span);
             let file = found.files.entry(file.to_owned()).or_default();
@@ -58,6 +61,7 @@ impl Coverage {
 
     /// Adds what another run executed.
     pub fn merge(&mut self, other: &Self) {
+        self.counted_from_ns = self.counted_from_ns.max(other.counted_from_ns);
         for (name, theirs) in &other.files {
             let file = self.files.entry(name.clone()).or_default();
             for (unit, count) in &theirs.units {
@@ -73,6 +77,12 @@ impl Coverage {
                 }
             }
         }
+    }
+
+    /// Virtual time, in nanoseconds, from which on all of the runs are counted: what one of them executed before it
+    /// was resumed is not. 0 if every run is counted from its start.
+    pub fn counted_from_ns(&self) -> u64 {
+        self.counted_from_ns
     }
 
     /// Lines with statements, and how many of them were executed.

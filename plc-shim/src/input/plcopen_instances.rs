@@ -1,5 +1,7 @@
 //! PLCopen XML: configurations, resources, tasks and instances of programs (TC6 2.01, `instances`).
 
+use onescan_base::duration::XmlDuration;
+
 use super::plcopen::Writer;
 use super::xml::{Attribute, Element};
 
@@ -133,29 +135,7 @@ fn plain(name: &str) -> String {
 
 /// A duration as XML Schema writes it, `PT0.02S`, as the standard does; anything else as it is.
 fn duration(text: &str) -> String {
-    nanoseconds(text).map_or_else(|| text.to_owned(), |ns| format!("T#{ns}ns"))
-}
-
-fn nanoseconds(text: &str) -> Option<u64> {
-    let mut rest = text.strip_prefix("PT")?;
-    let mut total: u64 = 0;
-    while !rest.is_empty() {
-        let end = rest.find(|one: char| one.is_ascii_alphabetic())?;
-        let (number, unit) = rest.split_at(end);
-        let seconds = match unit.chars().next()? {
-            'H' => 3600,
-            'M' => 60,
-            'S' => 1,
-            _ => return None,
-        };
-        let (whole, fraction) = number.split_once('.').unwrap_or((number, ""));
-        let digits = format!("{fraction:0<9}");
-        let fraction: u64 = digits.get(..9)?.parse().ok()?;
-        let ns = whole.parse::<u64>().ok()?.checked_mul(1_000_000_000)?.checked_add(fraction)?;
-        total = total.checked_add(ns.checked_mul(seconds)?)?;
-        rest = unit.get(1..)?;
-    }
-    Some(total)
+    text.parse().map_or_else(|_| text.to_owned(), |duration: XmlDuration| format!("T#{}ns", duration.nanos()))
 }
 
 #[cfg(test)]

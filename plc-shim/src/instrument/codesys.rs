@@ -2,7 +2,7 @@
 
 use super::plain::Plain;
 use super::target::Source;
-use super::tasks::shortest_ns;
+use super::tasks::shortest;
 use super::{Attached, File, InstrumentError, marks};
 use crate::diagnostic::{Code, Diagnostic, Diagnostics};
 use crate::output::plcopen::configuration::Cycle;
@@ -50,17 +50,17 @@ fn with_shim(file: &File, plain: &Plain) -> Option<SourceFile> {
 
 /// The tasks of the application: the scheduler's comes first, the others keep their order behind it.
 fn cycles(tasks: &[Task]) -> Vec<Cycle> {
-    let shortest_ns = shortest_ns(tasks.iter().map(|task| task.interval_ns));
+    let shortest = shortest(tasks);
     let own = Cycle {
         name: "SDSP_Cycle".to_owned(),
-        interval_ns: shortest_ns,
+        interval: shortest,
         priority: 0,
         programs: vec!["SDSP_Scheduler".to_owned()],
     };
     let cycle = |task: &Task| Cycle {
         name: task.name.clone(),
         // It is the scheduler that sees the edge of a task with SINGLE: the PLC is to come by whenever it may run.
-        interval_ns: if task.single.is_some() { shortest_ns } else { task.interval_ns },
+        interval: task.interval.filter(|_| task.single.is_none()).unwrap_or(shortest),
         priority: task.priority.saturating_add(1),
         programs: task.programs.clone(),
     };

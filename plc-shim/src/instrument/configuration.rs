@@ -1,8 +1,10 @@
 //! A project's CONFIGURATION (2nd ed. 2.7): its tasks are read, the scheduler is put into it.
 
+use onescan_base::TimeSpan;
+
 use super::marks;
 use super::single;
-use super::tasks::{ALWAYS_NS, TaskTable, duration};
+use super::tasks::{self, ALWAYS, TaskTable};
 use crate::diagnostic::{Code, Diagnostic};
 use crate::run::Task;
 use crate::source::edits::Edits;
@@ -56,7 +58,7 @@ pub(super) fn tasks(configuration: &Configuration, constants: &Constants<'_>) ->
     if !background.is_empty() {
         let priority = tasks.iter().map(|task| task.priority).max().unwrap_or(0).saturating_add(1);
         let name = "background".to_owned();
-        tasks.push(Task { name, interval_ns: ALWAYS_NS, priority, programs: background, ..Task::default() });
+        tasks.push(Task { name, interval: Some(ALWAYS), priority, programs: background, ..Task::default() });
     }
     Ok(tasks)
 }
@@ -66,7 +68,8 @@ fn task(declared: &TaskDeclaration, constants: &Constants<'_>) -> Result<Task, D
     for (input, given) in &declared.inputs {
         match (input.key().as_str(), constant::value(given, constants)) {
             ("INTERVAL", Some(Constant::Duration(ns))) => {
-                task.interval_ns = u64::try_from(ns).map_err(|_| unsupported(input, "INTERVAL below 0"))?;
+                let ns = u64::try_from(ns).map_err(|_| unsupported(input, "INTERVAL below 0"))?;
+                task.interval = TimeSpan::from_nanos(ns);
             }
             ("PRIORITY", Some(Constant::Integer(rank))) => {
                 task.priority = u32::try_from(rank).map_err(|_| unsupported(input, "PRIORITY below 0"))?;
@@ -77,7 +80,7 @@ fn task(declared: &TaskDeclaration, constants: &Constants<'_>) -> Result<Task, D
         }
     }
     let is_triggered = declared.inputs.iter().any(|(input, _)| input.key() == "SINGLE");
-    if task.interval_ns == 0 && !is_triggered {
+    if task.interval.is_none() && !is_triggered {
         return Err(unsupported(&declared.name, "a task without INTERVAL and SINGLE"));
     }
     Ok(task)
@@ -105,8 +108,8 @@ pub(super) fn attach(
         return;
     };
     let Some(program) = resource.programs.first() else { return };
-    let duration = duration(tasks.shortest_ns);
-    let cycle = format!("    TASK SDSP_Cycle (INTERVAL := {duration}, PRIORITY := 0);");
+    let interval = tasks::literal(tasks.shortest);
+    let cycle = format!("    TASK SDSP_Cycle (INTERVAL := {interval}, PRIORITY := 0);");
     let told = single::connections(configuration, resource, file);
     let run = format!("    PROGRAM SDSP WITH SDSP_Cycle : SDSP_Scheduler{told};");
     let before_program = marks::line_start(text, program.span.start);

@@ -3,6 +3,8 @@
 use std::path::Path;
 use std::sync::Arc;
 
+use onescan_base::TimeSpan;
+
 use super::chart_plan::Plan as ChartPlan;
 use super::marks::{self, Original};
 use super::motion_use::Motion;
@@ -165,7 +167,12 @@ impl Plain {
             return Ok(scl::tasks(&scheduled));
         }
         let programs = scheduled.iter().map(|program| program.name.text.clone()).collect();
-        Ok(vec![Task { name: "main".to_owned(), interval_ns: 10_000_000, programs, ..Task::default() }])
+        Ok(vec![Task {
+            name: "main".to_owned(),
+            interval: Some(TimeSpan::millis::<10>()),
+            programs,
+            ..Task::default()
+        }])
     }
 
     /// Refuses tasks of a configuration that start at edges.

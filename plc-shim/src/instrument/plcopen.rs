@@ -6,11 +6,13 @@
 
 use std::ops::Range;
 
+use onescan_base::duration::XmlDuration;
+
 use super::controller;
 use super::marks;
 use super::plcopen_unit as unit;
 use super::target::Sources;
-use super::tasks::{TaskTable, duration};
+use super::tasks::{TaskTable, literal};
 use super::template::{self, Controller, Number};
 use crate::input::plcopen_instances;
 use crate::input::xml::{self, Element};
@@ -290,12 +292,11 @@ fn alone(root: &Element, text: &str, globals: &str, edits: &mut Edits) -> Option
 
 /// The scheduler's task, its interval written as the others are.
 fn cycle(configuration: &Element, tasks: &TaskTable<'_>) -> String {
-    let ns = tasks.shortest_ns;
     let is_schema = |task: &&Element| task.attribute("interval").is_some_and(|found| found.value.starts_with("PT"));
     let interval = if all(configuration, "task").iter().any(is_schema) {
-        format!("PT{}.{:09}S", ns / 1_000_000_000, ns % 1_000_000_000)
+        XmlDuration::from_nanos(tasks.shortest.as_nanos()).to_string()
     } else {
-        duration(ns)
+        literal(tasks.shortest)
     };
     format!(
         "<task name=\"SDSP_Cycle\" priority=\"0\" interval=\"{interval}\">\n<pouInstance name=\"SDSP\" \

@@ -10,6 +10,8 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use onescan_base::TimeSpan;
+
 use super::clock::{self, Form};
 use super::marks;
 use super::survey::Survey;
@@ -179,8 +181,8 @@ fn begins_declaration(token: &Token) -> bool {
 
 /// Intervals that STEP 7 gives to OB30 to OB38, ms; the later ones have the higher priority.
 const CYCLIC_MS: [u64; 9] = [5000, 2000, 1000, 500, 200, 100, 50, 20, 10];
-/// The interval of program cycles, ms.
-const CYCLE_MS: u64 = 10;
+/// The interval of program cycles.
+const CYCLE: TimeSpan = TimeSpan::millis::<10>();
 
 /// The tasks of a project of organization blocks: cyclic interrupts that bear their number, each with the interval and
 /// the rank that STEP 7 gives it, and behind them all others as one program cycle.
@@ -195,7 +197,7 @@ pub(super) fn tasks(programs: &[&Pou]) -> Vec<Task> {
             Some((rank, ms)) => {
                 let priority = (CYCLIC_MS.len() - 1 - rank) as u32;
                 tasks.push(Task {
-                    interval_ns: ms * 1_000_000,
+                    interval: TimeSpan::from_millis(*ms),
                     priority,
                     programs: vec![name.clone()],
                     name,
@@ -207,7 +209,7 @@ pub(super) fn tasks(programs: &[&Pou]) -> Vec<Task> {
     }
     if !cycle.is_empty() {
         let (name, priority) = ("OB1".to_owned(), CYCLIC_MS.len() as u32);
-        tasks.push(Task { name, interval_ns: CYCLE_MS * 1_000_000, priority, programs: cycle, ..Task::default() });
+        tasks.push(Task { name, interval: Some(CYCLE), priority, programs: cycle, ..Task::default() });
     }
     tasks
 }

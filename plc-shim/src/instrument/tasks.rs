@@ -2,6 +2,9 @@
 
 use std::collections::BTreeSet;
 
+use onescan_base::TimeSpan;
+use onescan_base::duration::IecDuration;
+
 use super::single::{self, Single};
 use super::template::{self, Number};
 use crate::diagnostic::did_you_mean;
@@ -9,18 +12,18 @@ use crate::run::{RunError, Task};
 use crate::syntax::ast::Pou;
 
 /// What is due at every grant has this interval.
-pub(super) const ALWAYS_NS: u64 = 1;
+pub(super) const ALWAYS: TimeSpan = TimeSpan::nanos::<1>();
 /// Interval of the scheduler where no task has one.
-const DEFAULT_NS: u64 = 10_000_000;
+const DEFAULT: TimeSpan = TimeSpan::millis::<10>();
 
 /// Tasks in the order in which they come when all are due, and their programs, numbered from 1 in the
 /// same order.
-#[derive(Debug, Default)]
+#[derive(Debug)]
 pub(super) struct TaskTable<'a> {
     pub(super) rows: Vec<Row>,
     pub(super) programs: Vec<Entry<'a>>,
     /// The interval of the scheduler's task: the shortest of all, of tasks without programs too.
-    pub(super) shortest_ns: u64,
+    pub(super) shortest: TimeSpan,
     line: Line,
 }
 
@@ -45,8 +48,7 @@ pub(super) struct Entry<'a> {
 /// One task.
 #[derive(Debug, PartialEq, Eq)]
 pub(super) struct Row {
-    /// 0 if it has none.
-    pub(super) interval_ns: u64,
+    pub(super) interval: Option<TimeSpan>,
     pub(super) priority: u32,
     /// What starts it at its edges.
     pub(super) single: Option<Single>,
@@ -54,6 +56,13 @@ pub(super) struct Row {
     pub(super) first: usize,
     /// How many programs it has.
     pub(super) count: usize,
+}
+
+impl Default for TaskTable<'_> {
+    /// No tasks: files without programs are written as they are.
+    fn default() -> Self {
+        Self { rows: Vec::new(), programs: Vec::new(), shortest: DEFAULT, line: Line::default() }
+    }
 }
 
 impl<'a> TaskTable<'a> {
@@ -65,8 +74,8 @@ impl<'a> TaskTable<'a> {
         check(tasks)?;
         let mut order: Vec<&Task> = tasks.iter().collect();
         order.sort_by_key(|task| task.priority);
-        let shortest_ns = shortest_ns(tasks.iter().map(|task| task.interval_ns));
-        let mut table = Self { shortest_ns, line, ..Self::default() };
+        let shortest = shortest(tasks);
+        let mut table = Self { shortest, line, ..Self::default() };
         for task in order {
             let first = table.programs.len() + 1;
             for name in &task.programs {
@@ -80,8 +89,8 @@ impl<'a> TaskTable<'a> {
             // One that runs nothing would have no last program.
             if count > 0 {
                 let single = task.single.as_deref().map(Single::of);
-                let (interval_ns, priority) = (task.interval_ns, task.priority);
-                table.rows.push(Row { interval_ns, priority, single, first, count });
+                let (interval, priority) = (task.interval, task.priority);
+                table.rows.push(Row { interval, priority, single, first, count });
             }
         }
         if table.rows.is_empty() { Err(RunError::NoTasks) } else { Ok(table) }
@@ -137,7 +146,7 @@ impl<'a> TaskTable<'a> {
 
     /// Number of the row that stands for programs without a task; 0 if there are none.
     fn background(&self) -> usize {
-        self.rows.iter().position(|row| row.interval_ns == ALWAYS_NS).map_or(0, |at| at + 1)
+        self.rows.iter().position(|row| row.interval == Some(ALWAYS)).map_or(0, |at| at + 1)
     }
 
     /// What the scheduler's names stand for.
@@ -150,7 +159,7 @@ impl<'a> TaskTable<'a> {
             ("SDSP_PROGRAMS", self.programs.len().to_string()),
             ("SDSP_LINE", self.line_type()),
             ("SDSP_TASKS", self.rows.len().to_string()),
-            ("SDSP_INTERVALS", list(&|row| row.interval_ns)),
+            ("SDSP_INTERVALS", list(&|row| row.interval.map_or(0, TimeSpan::as_nanos))),
             ("SDSP_PRIORITIES", list(&|row| u64::from(row.priority))),
             ("SDSP_FIRSTS", list(&|row| row.first as u64)),
             ("SDSP_REARS", list(&|row| (row.first + row.count) as u64 - 1)),
@@ -160,14 +169,16 @@ impl<'a> TaskTable<'a> {
 }
 
 /// The interval of the scheduler's task: the shortest of the others' own.
-pub(super) fn shortest_ns(intervals: impl Iterator<Item = u64>) -> u64 {
-    intervals.filter(|interval| *interval > ALWAYS_NS).min().unwrap_or(DEFAULT_NS)
+pub(super) fn shortest(tasks: &[Task]) -> TimeSpan {
+    let intervals = tasks.iter().filter_map(|task| task.interval);
+    intervals.filter(|interval| *interval > ALWAYS).min().unwrap_or(DEFAULT)
 }
 
-/// A duration as the standard writes it, in milliseconds.
-pub(super) fn duration(ns: u64) -> String {
-    let (whole, part) = (ns / 1_000_000, ns % 1_000_000);
-    if part == 0 { format!("T#{whole}ms") } else { format!("T#{whole}.{part:06}ms") }
+/// An interval as a literal of the standard, in milliseconds.
+pub(super) fn literal(interval: TimeSpan) -> String {
+    // A longer interval than a TIME can be is never due in any PLC.
+    let ns = i64::try_from(interval.as_nanos()).unwrap_or(i64::MAX);
+    format!("T#{}", IecDuration::from_nanos(ns).in_millis())
 }
 
 fn check(tasks: &[Task]) -> Result<(), RunError> {
@@ -179,8 +190,8 @@ fn check(tasks: &[Task]) -> Result<(), RunError> {
         if !names.insert(task.name.to_ascii_uppercase()) {
             return Err(RunError::DuplicateTask(task.name.clone()));
         }
-        if task.interval_ns == 0 && task.single.is_none() {
-            return Err(RunError::ZeroInterval(task.name.clone()));
+        if task.interval.is_none() && task.single.is_none() {
+            return Err(RunError::NeverDue(task.name.clone()));
         }
     }
     Ok(())

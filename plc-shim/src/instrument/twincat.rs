@@ -57,7 +57,8 @@ fn object(kind: &str, name: &str, parts: &str) -> String {
 pub(super) fn first_task<'a>(parts: &[&'a Configuration], constants: &Constants<'_>) -> Option<&'a Configuration> {
     let rank = |part: &&&Configuration| {
         let tasks = configuration::tasks(part, constants).unwrap_or_default();
-        tasks.iter().map(|task| (task.priority, task.interval_ns)).min().unwrap_or((u32::MAX, u64::MAX))
+        // A part without tasks comes last.
+        (tasks.is_empty(), tasks.iter().map(|task| (task.priority, task.interval)).min())
     };
     parts.iter().min_by_key(rank).copied()
 }

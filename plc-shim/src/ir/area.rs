@@ -45,6 +45,12 @@ impl Areas {
         self.bases[location.area as usize] + location.offset
     }
 
+    /// What of memory an area takes.
+    pub(crate) fn range(&self, area: Area) -> std::ops::Range<u32> {
+        let base = self.bases[area as usize];
+        base..base + self.sizes[area as usize]
+    }
+
     /// True if `size` bytes at `location` are in use.
     pub(crate) fn has(&self, location: Location, size: u32) -> bool {
         location.offset.checked_add(size).is_some_and(|end| end <= self.sizes[location.area as usize])

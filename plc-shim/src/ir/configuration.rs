@@ -1,8 +1,11 @@
 //! Configurations: resources, tasks and what they run (2nd ed. 2.7).
 
+use onescan_base::TimeSpan;
+
 use super::expr::Storage;
 use super::pou::{Pou, PouId, Retention, Variable};
 use super::types::TypeId;
+use crate::syntax::direct_address::Area;
 
 /// An instance of a program.
 #[derive(Debug, Clone)]
@@ -52,8 +55,8 @@ pub(crate) struct Task {
     pub(crate) name: String,
     /// Path of the BOOL whose rising edges trigger it.
     pub(crate) single: Option<String>,
-    /// 0 if it is not periodic.
-    pub(crate) interval_ns: u64,
+    /// Nothing if it is not periodic.
+    pub(crate) interval: Option<TimeSpan>,
     pub(crate) priority: u32,
     pub(crate) entries: Vec<usize>,
 }
@@ -78,6 +81,8 @@ pub(crate) struct Target {
     pub(crate) ty: TypeId,
     /// The declaration that the last name on the way leads to; nothing for a program.
     pub(crate) variable: Option<Variable>,
+    /// The area of the open address, as in `AT %I*`, of the last name on the way that has one.
+    pub(crate) open: Option<Area>,
 }
 
 impl Target {

@@ -1,7 +1,8 @@
 //! Typed expressions and the places that hold values.
 
+use onescan_base::ElementaryType;
+
 use super::area::Location;
-use super::elementary::ElementaryType;
 use super::pou::PouId;
 use super::statement::Statement;
 use super::text::TextCall;

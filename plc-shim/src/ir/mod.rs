@@ -4,7 +4,6 @@
 
 pub(crate) mod area;
 pub(crate) mod configuration;
-pub(crate) mod elementary;
 pub(crate) mod expr;
 pub(crate) mod pou;
 pub(crate) mod statement;
@@ -12,9 +11,11 @@ pub(crate) mod text;
 pub(crate) mod types;
 pub(crate) mod value;
 
+/// The types of the ground floor, which are the program's own elementary types.
+pub(crate) use onescan_base::elementary::{self, ElementaryType};
+
 pub(crate) use area::{Areas, Location};
 pub(crate) use configuration::{Access, Configuration, Entry, Program, Resource, Target, Task};
-pub(crate) use elementary::ElementaryType;
 pub(crate) use expr::{
     Argument, Binary, Cast, Dispatch, Expr, ExprKind, FunctionCall, Intrinsic, LocalId, MemoryFunction, Part, Place,
     Receiver, Rounding, Row, Step, Storage, Unary,

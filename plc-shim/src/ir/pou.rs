@@ -1,6 +1,7 @@
 //! Program organisation units and their variables.
 
-use super::elementary::ElementaryType;
+use onescan_base::ElementaryType;
+
 use super::expr::{LocalId, Place, Storage};
 use super::statement::Statement;
 use super::types::TypeId;

@@ -4,7 +4,8 @@
 //! may hold, zero behind the last: one byte for a character of STRING (ISO 8859-1), two for one
 //! of WSTRING (UTF-16).
 
-use super::elementary::ElementaryType;
+use onescan_base::ElementaryType;
+
 use super::expr::{Expr, Place};
 
 /// Most characters of a string, so that every position is an INT.

@@ -3,10 +3,12 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use super::elementary::ElementaryType;
+use onescan_base::ElementaryType;
+
 use super::pou::PouId;
 use super::text::TextShape;
 use crate::syntax::ast::ReferenceKind;
+use crate::syntax::direct_address::Area;
 
 /// Identifies a type within its [`TypeTable`]; equal ids are equal types.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -96,6 +98,8 @@ pub(crate) struct Field {
     pub(crate) offset: u32,
     /// Of a BOOL that is one bit of its byte, which.
     pub(crate) bit: Option<u8>,
+    /// The area of an open address, as in `AT %I*`, which `VAR_CONFIG` may complete.
+    pub(crate) open: Option<Area>,
 }
 
 #[derive(Debug, Clone)]

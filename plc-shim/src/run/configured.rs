@@ -16,7 +16,7 @@ impl TaskPlan {
         for resource in &configuration.resources {
             plan.tasks.extend(resource.tasks.iter().map(|task| Task {
                 name: task.name.clone(),
-                interval_ns: task.interval_ns,
+                interval: task.interval,
                 single: task.single.clone(),
                 priority: task.priority,
                 programs: names(&task.entries),

@@ -2,9 +2,9 @@
 
 use std::fmt;
 
+use onescan_base::VirtualTime;
 use wasmtime::Trap;
 
-use super::VirtualTime;
 use super::machine::Trapped;
 use super::trace::Writer;
 use super::way::WayId;

@@ -6,7 +6,7 @@
 //! writes itself. Starts leave forces as they are; they are part of the saved state.
 
 use super::SoftPlc;
-use crate::application::{Application, UnknownVariable, Variable, WriteError};
+use crate::application::{UnknownVariable, Variable, WriteError};
 
 /// A variable that keeps a value.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -53,12 +53,6 @@ impl Forces {
     pub(super) fn clear(&mut self) {
         self.list.clear();
     }
-
-    /// Takes a force out of a saved state; nothing if the application has no such variable.
-    pub(super) fn restore(&mut self, application: &Application, path: &str, bytes: &[u8]) -> Option<()> {
-        let variable = application.variable(path).ok()?;
-        (variable.size as usize == bytes.len()).then(|| self.hold(variable, bytes.to_vec()))
-    }
 }
 
 impl SoftPlc {
@@ -93,7 +87,7 @@ impl SoftPlc {
         self.forces.iter().map(|force| &force.variable)
     }
 
-    /// The value at `path` as a literal; see [`Application::value_text`].
+    /// The value at `path` as a literal; see [`Application::value_text`](crate::Application::value_text).
     ///
     /// # Errors
     /// There is no such variable.
@@ -102,7 +96,7 @@ impl SoftPlc {
         Ok(self.application().value_text(&variable, self.memory()))
     }
 
-    /// Writes a value once, given as a literal; see [`Application::value_bytes`]. A forced variable
+    /// Writes a value once, given as a literal; see [`Application::value_bytes`](crate::Application::value_bytes). A forced variable
     /// keeps its forced value.
     ///
     /// # Errors

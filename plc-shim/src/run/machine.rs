@@ -10,14 +10,16 @@ use super::row;
 use super::text::link::{HostState, link};
 use super::trace::{self, Trace};
 use crate::application::Application;
-use crate::compile::{BUDGET_EXPORT, END_EXPORT, MEMORY_EXPORT, START_EXPORT, entry_export, host};
+use crate::compile::{BUDGET_EXPORT, END_EXPORT, MEMORY_EXPORT, NOTES_EXPORT, START_EXPORT, entry_export, host};
 
 /// One instance of the module.
 pub(super) struct Machine {
     store: Store<HostState>,
     memory: Memory,
     budget: Global,
-    /// Bytes in use; behind them the program notes what it executes, if that is asked for.
+    /// Where the program notes what it executes, if it was compiled for that.
+    notes: Option<Memory>,
+    /// Bytes of `memory` in use: memory comes in pages.
     size: usize,
     /// The functions in a row of each thing that tasks can run.
     entries: Vec<Vec<TypedFunc<(), ()>>>,
@@ -73,6 +75,7 @@ impl Machine {
         let instance = instance.map_err(|error| module_error(&error))?;
         let memory = instance.get_memory(&mut store, MEMORY_EXPORT);
         let memory = memory.ok_or_else(|| RunError::Module("memory is missing".to_owned()))?;
+        let notes = instance.get_memory(&mut store, NOTES_EXPORT);
         let budget = instance.get_global(&mut store, BUDGET_EXPORT);
         let budget = budget.ok_or_else(|| RunError::Module("the budget is missing".to_owned()))?;
         *store.data_mut() = HostState { memory: Some(memory), budget: Some(budget), trace: None };
@@ -85,7 +88,7 @@ impl Machine {
         let rows = row::link(&mut store, &functions).map_err(|error| module_error(&error))?;
         let start = instance.get_typed_func(&mut store, START_EXPORT).ok();
         let end = instance.get_typed_func(&mut store, END_EXPORT).ok();
-        Ok(Self { store, memory, budget, size, entries, rows, start, end })
+        Ok(Self { store, memory, notes, budget, size, entries, rows, start, end })
     }
 
     pub(super) fn memory(&self) -> &[u8] {
@@ -99,9 +102,9 @@ impl Machine {
         &mut all[..size]
     }
 
-    /// The bytes behind those in use, which the program may set and nobody else reads.
+    /// A byte for each point of the program, not 0 once it was executed; none unless it was compiled for that.
     pub(super) fn notes(&self) -> &[u8] {
-        self.memory.data(&self.store).get(self.size..).unwrap_or(&[])
+        self.notes.map_or(&[], |notes| notes.data(&self.store))
     }
 
     /// Gives the budget for the calls up to the next refill.

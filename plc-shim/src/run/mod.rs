@@ -33,30 +33,5 @@ pub use asserts::{Asserts, FailedAssert};
 pub use fault::{FaultSite, PlcFault, WriteSite};
 pub use plan::{RunError, Task, TaskPlan};
 pub use soft_plc::SoftPlc;
-pub use state::RestoreError;
+pub use state::{CodePolicy, PlanDifference, RestoreError};
 pub use way::{Way, WayId};
-
-/// Virtual time: nanoseconds since the session's start.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Default)]
-pub struct VirtualTime(u64);
-
-impl VirtualTime {
-    /// The time so many nanoseconds after the start.
-    pub const fn from_ns(ns: u64) -> Self {
-        Self(ns)
-    }
-
-    /// Nanoseconds since the start.
-    pub const fn as_ns(self) -> u64 {
-        self.0
-    }
-}
-
-/// Seconds, with as many decimals as are needed, three at least.
-impl std::fmt::Display for VirtualTime {
-    fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        let decimals = format!("{:09}", self.0 % 1_000_000_000);
-        let (first, rest) = decimals.split_at(3);
-        write!(formatter, "{}.{first}{} s", self.0 / 1_000_000_000, rest.trim_end_matches('0'))
-    }
-}

@@ -2,6 +2,7 @@
 
 use std::collections::BTreeSet;
 
+use onescan_base::TimeSpan;
 use thiserror::Error;
 
 use crate::application::Application;
@@ -13,8 +14,8 @@ use crate::ir::ElementaryType;
 pub struct Task {
     /// Its name.
     pub name: String,
-    /// Time between two executions, in nanoseconds; 0 if it is not periodic.
-    pub interval_ns: u64,
+    /// Time between two executions; nothing if it is not periodic.
+    pub interval: Option<TimeSpan>,
     /// Path of a BOOL whose rising edges start it. While that is TRUE, the interval is suspended.
     pub single: Option<String>,
     /// Its rank among tasks that are due together; 0 comes first.
@@ -46,9 +47,9 @@ impl TaskPlan {
     }
 
     /// One task that runs all programs of the application in their order.
-    pub fn single(application: &Application, interval_ns: u64) -> Self {
+    pub fn single(application: &Application, interval: TimeSpan) -> Self {
         let programs = application.programs().map(|program| program.name).collect();
-        Self::new(vec![Task { name: "main".to_owned(), interval_ns, programs, ..Task::default() }])
+        Self::new(vec![Task { name: "main".to_owned(), interval: Some(interval), programs, ..Task::default() }])
     }
 }
 
@@ -61,9 +62,9 @@ pub enum RunError {
     /// Two tasks share a name.
     #[error("there are two tasks `{0}`")]
     DuplicateTask(String),
-    /// A task would be due all the time.
-    #[error("task `{0}` has an interval of 0 and no trigger")]
-    ZeroInterval(String),
+    /// Nothing makes a task due.
+    #[error("task `{0}` has neither an interval nor a trigger")]
+    NeverDue(String),
     /// A program that the application lacks.
     #[error("task `{task}` runs program `{program}`, which is not declared{}", suffix(.help.as_ref()))]
     UnknownProgram {
@@ -125,8 +126,8 @@ pub(super) fn resolve(plan: &TaskPlan, application: &Application) -> Result<Reso
         if !names.insert(task.name.to_ascii_uppercase()) {
             return Err(RunError::DuplicateTask(task.name.clone()));
         }
-        if task.interval_ns == 0 && task.single.is_none() {
-            return Err(RunError::ZeroInterval(task.name.clone()));
+        if task.interval.is_none() && task.single.is_none() {
+            return Err(RunError::NeverDue(task.name.clone()));
         }
         resolved.tasks.push(entries(application, &task.name, &task.programs, &mut running)?);
         resolved.singles.push(trigger(application, task)?);

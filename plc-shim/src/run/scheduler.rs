@@ -4,26 +4,24 @@
 //! looked at when a scan begins and after each task; an edge starts a task at most once a scan, a
 //! later one waits for the next scan.
 
-use super::VirtualTime;
+use onescan_base::{TimeSpan, VirtualTime};
+
 use super::plan::TaskPlan;
 
-/// What is never due.
-const NEVER: u64 = u64::MAX;
-
 /// A task while it waits, as it is saved.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub(super) struct Waiting {
-    /// When it is due by its interval.
-    pub(super) due_ns: u64,
+    /// When it is due by its interval; nothing if it has none, or if that is past the end of time.
+    pub(super) due: Option<VirtualTime>,
     /// Since when an edge of its SINGLE input waits.
-    pub(super) edge_ns: u64,
+    pub(super) edge: Option<VirtualTime>,
     /// What its SINGLE input was when it was last looked at.
     pub(super) level: bool,
 }
 
 #[derive(Debug, Clone)]
 struct Entry {
-    interval_ns: u64,
+    interval: Option<TimeSpan>,
     priority: u32,
     /// Offset of the BOOL that triggers it.
     single: Option<usize>,
@@ -33,24 +31,23 @@ struct Entry {
 }
 
 impl Entry {
-    fn restart(&mut self, now: u64) {
-        let due_ns = if self.interval_ns == 0 { NEVER } else { now.saturating_add(self.interval_ns) };
-        self.waiting = Waiting { due_ns, edge_ns: NEVER, level: false };
+    fn restart(&mut self, now: VirtualTime) {
+        let due = self.interval.and_then(|interval| now.checked_add(interval));
+        self.waiting = Waiting { due, edge: None, level: false };
         self.has_run = false;
     }
 
     /// Since when it waits; nothing if it does not.
-    fn waits_since(&self, now: u64) -> Option<u64> {
-        let edge = if self.has_run { NEVER } else { self.waiting.edge_ns };
-        Some(self.waiting.due_ns.min(edge)).filter(|since| *since <= now && *since != NEVER)
+    fn waits_since(&self, now: VirtualTime) -> Option<VirtualTime> {
+        let edge = self.waiting.edge.filter(|_| !self.has_run);
+        let reasons = self.waiting.due.into_iter().chain(edge);
+        reasons.min().filter(|since| *since <= now)
     }
 
     /// The first time after `now` at which it is due by its interval.
-    fn advance(&mut self, now: u64) {
-        if self.waiting.due_ns <= now && self.interval_ns > 0 {
-            let missed = (now - self.waiting.due_ns) / self.interval_ns;
-            let ahead = self.interval_ns.saturating_mul(missed + 1);
-            self.waiting.due_ns = self.waiting.due_ns.saturating_add(ahead);
+    fn advance(&mut self, now: VirtualTime) {
+        if let (Some(due), Some(interval)) = (self.waiting.due, self.interval) {
+            self.waiting.due = due.next_after(now, interval);
         }
     }
 }
@@ -65,20 +62,20 @@ impl Scheduler {
     /// `singles` gives the offset of each task's SINGLE input.
     pub(super) fn new(plan: &TaskPlan, singles: &[Option<usize>]) -> Self {
         let entry = |(task, single): (&super::Task, &Option<usize>)| Entry {
-            interval_ns: task.interval_ns,
+            interval: task.interval,
             priority: task.priority,
             single: *single,
-            waiting: Waiting { due_ns: NEVER, edge_ns: NEVER, level: false },
+            waiting: Waiting::default(),
             has_run: false,
         };
         let mut scheduler = Self { tasks: plan.tasks.iter().zip(singles).map(entry).collect() };
-        scheduler.restart_at(VirtualTime::default());
+        scheduler.restart_at(VirtualTime::ZERO);
         scheduler
     }
 
     /// After a start at `now`, every task is due one interval later.
     pub(super) fn restart_at(&mut self, now: VirtualTime) {
-        self.tasks.iter_mut().for_each(|task| task.restart(now.as_ns()));
+        self.tasks.iter_mut().for_each(|task| task.restart(now));
     }
 
     /// Begins a scan: edges may start tasks again.
@@ -89,12 +86,12 @@ impl Scheduler {
     /// Looks at the SINGLE inputs. While one is TRUE, its task's interval is suspended
     /// (2nd ed. 2.7.2).
     pub(super) fn look(&mut self, now: VirtualTime, memory: &[u8]) {
-        let now = now.as_ns();
         for task in &mut self.tasks {
             let Some(offset) = task.single else { continue };
             let level = memory.get(offset).is_some_and(|byte| *byte != 0);
             if level && !task.waiting.level {
-                task.waiting.edge_ns = task.waiting.edge_ns.min(now);
+                // An edge that waits already keeps its place in the order.
+                task.waiting.edge = Some(task.waiting.edge.map_or(now, |edge| edge.min(now)));
             }
             task.waiting.level = level;
             if level {
@@ -106,33 +103,26 @@ impl Scheduler {
     /// Takes the next task that waits at `now`: by priority, then the one that waits longest,
     /// then the one declared first. A task that missed intervals runs once for all of them.
     pub(super) fn take_due(&mut self, now: VirtualTime) -> Option<usize> {
-        let now = now.as_ns();
         let waiting = self.tasks.iter().enumerate();
         let waiting = waiting.filter_map(|(index, task)| Some((task.priority, task.waits_since(now)?, index)));
         let (_, _, index) = waiting.min()?;
         let task = self.tasks.get_mut(index)?;
         task.advance(now);
-        if task.waiting.edge_ns != NEVER && !task.has_run {
-            task.waiting.edge_ns = NEVER;
+        if task.waiting.edge.is_some() && !task.has_run {
+            task.waiting.edge = None;
             task.has_run = true;
         }
         Some(index)
     }
 
-    /// When the first task is due by its interval; the end of time if none has one.
-    pub(super) fn next_due(&self) -> VirtualTime {
-        VirtualTime::from_ns(self.tasks.iter().map(|task| task.waiting.due_ns).min().unwrap_or(NEVER))
+    /// When the first task is due by its interval; nothing if none has one.
+    pub(super) fn next_due(&self) -> Option<VirtualTime> {
+        self.tasks.iter().filter_map(|task| task.waiting.due).min()
     }
 
-    /// Greatest common divisor of the intervals; 0 if there are none.
-    pub(super) fn period_ns(&self) -> u64 {
-        let divisor = |mut a: u64, mut b: u64| {
-            while b != 0 {
-                (a, b) = (b, a % b);
-            }
-            a
-        };
-        self.tasks.iter().fold(0, |period, task| divisor(period, task.interval_ns))
+    /// The greatest span that divides all intervals; nothing if there are none.
+    pub(super) fn period(&self) -> Option<TimeSpan> {
+        self.tasks.iter().filter_map(|task| task.interval).reduce(TimeSpan::common_divisor)
     }
 
     /// How each task waits.
@@ -156,7 +146,7 @@ mod tests {
     fn scheduler(tasks: &[(u64, u32)], singles: &[Option<usize>]) -> Scheduler {
         let task = |(index, (interval_ns, priority)): (usize, &(u64, u32))| Task {
             name: index.to_string(),
-            interval_ns: *interval_ns,
+            interval: TimeSpan::from_nanos(*interval_ns),
             single: None,
             priority: *priority,
             programs: Vec::new(),
@@ -165,7 +155,7 @@ mod tests {
     }
 
     fn due(scheduler: &mut Scheduler, now: u64, memory: &[u8]) -> Vec<usize> {
-        let now = VirtualTime::from_ns(now);
+        let now = VirtualTime::from_nanos(now);
         scheduler.begin_scan();
         std::iter::from_fn(|| {
             scheduler.look(now, memory);
@@ -177,10 +167,10 @@ mod tests {
     #[test]
     fn iec2_2_7_2_priority_then_waiting_then_declaration() {
         let mut tasks = scheduler(&[(10, 2), (20, 1), (10, 2), (15, 2)], &[None; 4]);
-        assert_eq!(tasks.period_ns(), 5);
+        assert_eq!(tasks.period(), TimeSpan::from_nanos(5));
         assert!(due(&mut tasks, 9, &[]).is_empty());
         assert_eq!(due(&mut tasks, 10, &[]), [0, 2]);
-        assert_eq!(tasks.next_due(), VirtualTime::from_ns(15));
+        assert_eq!(tasks.next_due(), Some(VirtualTime::from_nanos(15)));
         assert_eq!(due(&mut tasks, 20, &[]), [1, 3, 0, 2]);
     }
 
@@ -188,7 +178,7 @@ mod tests {
     fn missed_intervals_run_once() {
         let mut tasks = scheduler(&[(10, 0)], &[None]);
         assert_eq!(due(&mut tasks, 35, &[]), [0]);
-        assert_eq!(tasks.next_due(), VirtualTime::from_ns(40));
+        assert_eq!(tasks.next_due(), Some(VirtualTime::from_nanos(40)));
     }
 
     #[test]
@@ -199,7 +189,7 @@ mod tests {
         assert!(due(&mut tasks, 7, &[1]).is_empty());
         assert_eq!(due(&mut tasks, 10, &[0]), [1]);
         assert_eq!(due(&mut tasks, 20, &[1]), [1, 0]);
-        assert_eq!(tasks.period_ns(), 10);
+        assert_eq!(tasks.period(), TimeSpan::from_nanos(10));
     }
 
     #[test]
@@ -215,7 +205,7 @@ mod tests {
     #[test]
     fn an_edge_in_the_scan_of_its_task_waits_for_the_next() {
         let mut tasks = scheduler(&[(0, 0)], &[Some(0)]);
-        let now = VirtualTime::from_ns(1);
+        let now = VirtualTime::from_nanos(1);
         tasks.begin_scan();
         tasks.look(now, &[1]);
         assert_eq!(tasks.take_due(now), Some(0));

@@ -1,14 +1,16 @@
 //! The PLC itself.
 
 use std::ops::Range;
+use std::sync::OnceLock;
 
-use super::VirtualTime;
+use onescan_base::{TimeSpan, VirtualTime};
+
 use super::fault::{self, PlcFault, WriteSite, explain};
 use super::force::Forces;
 use super::machine::{Machine, Occasion, Trapped};
 use super::plan::{Resolved, RunError, TaskPlan, resolve};
 use super::scheduler::Scheduler;
-use super::state::{self, RestoreError, State};
+use super::state::{CodePolicy, Decoder, Meaning, RestoreError, State};
 use super::trace::{Trace, Watched};
 use super::way::WayId;
 use crate::application::{Application, UnknownVariable, Variable};
@@ -25,10 +27,15 @@ pub struct SoftPlc {
     /// What each scan runs at its end.
     background: Vec<usize>,
     is_triggered: bool,
-    fuel_per_task: u64,
-    fingerprint: u64,
+    plan: TaskPlan,
+    /// Made when a state is saved or restored first.
+    meaning: OnceLock<Meaning>,
     /// Virtual time of the last scan.
     now: VirtualTime,
+    /// The latest virtual time that this PLC has scanned, whatever was restored since.
+    scanned_until: VirtualTime,
+    /// The latest saved state that was restored ahead of what the PLC had scanned itself; 0 if none was.
+    skipped_to: VirtualTime,
     fault: Option<PlcFault>,
     pub(super) forces: Forces,
 }
@@ -55,9 +62,11 @@ impl SoftPlc {
             tasks,
             background,
             is_triggered: singles.iter().any(Option::is_some),
-            fuel_per_task: plan.fuel_per_task,
-            fingerprint: state::fingerprint(application, plan),
+            plan: plan.clone(),
+            meaning: OnceLock::new(),
             now: VirtualTime::default(),
+            scanned_until: VirtualTime::default(),
+            skipped_to: VirtualTime::default(),
             fault: None,
             forces: Forces::default(),
         };
@@ -141,6 +150,7 @@ impl SoftPlc {
             return Err(fault.clone());
         }
         self.now = now;
+        self.scanned_until = self.scanned_until.max(now);
         self.apply_forces();
         self.machine.begin_trace();
         self.scheduler.begin_scan();
@@ -159,9 +169,9 @@ impl SoftPlc {
 
     /// Gives a task its virtual time and its budget.
     fn begin_task(&mut self) {
-        let time = self.now.as_ns().to_le_bytes();
+        let time = self.now.as_nanos().to_le_bytes();
         copy_to(self.machine.memory_mut(), VIRTUAL_TIME_OFFSET as usize, &time);
-        self.machine.refuel(self.fuel_per_task);
+        self.machine.refuel(self.plan.fuel_per_task);
     }
 
     fn run_task(&mut self, task: usize) -> Result<(), PlcFault> {
@@ -191,21 +201,26 @@ impl SoftPlc {
         Ok(())
     }
 
-    /// When a task is due next by its interval; the end of time if none has one.
-    pub fn next_due(&self) -> VirtualTime {
+    /// When a task is due next by its interval; nothing if none has one.
+    pub fn next_due(&self) -> Option<VirtualTime> {
         self.scheduler.next_due()
     }
 
-    /// Greatest common divisor of the tasks' intervals in nanoseconds: every periodic task is due at
-    /// a multiple of it. 0 if there are none.
-    pub fn period_ns(&self) -> u64 {
-        self.scheduler.period_ns()
+    /// Greatest common divisor of the tasks' intervals: every periodic task is due at a multiple of it. Nothing if no
+    /// task is periodic.
+    pub fn period(&self) -> Option<TimeSpan> {
+        self.scheduler.period()
     }
 
     /// True if a scan may have something to do at any time: tasks wait for an edge, or programs have
     /// no task.
     pub fn wants_every_step(&self) -> bool {
         self.is_triggered || !self.background.is_empty()
+    }
+
+    /// Virtual time of the last scan, or of the start before the first.
+    pub fn now(&self) -> VirtualTime {
+        self.now
     }
 
     /// The fault that stopped the PLC.
@@ -238,12 +253,13 @@ impl SoftPlc {
     }
 
     /// What has been executed since the PLC was made, whatever was started or restored meanwhile;
-    /// nothing unless the application was compiled for it.
+    /// nothing unless the application was compiled for it. If a state was restored that another PLC had saved
+    /// later in its run, the report says that it counts from there on.
     pub fn coverage(&self) -> Option<Coverage> {
         let points = self.application.points();
         let sources = self.application.sources();
         (!points.is_empty() && !self.application.is_traced())
-            .then(|| Coverage::new(sources, points, self.machine.notes()))
+            .then(|| Coverage::new(sources, points, self.machine.notes(), self.skipped_to.as_nanos()))
     }
 
     /// Watches places in memory from here on, in place of those watched before. The application must
@@ -275,23 +291,36 @@ impl SoftPlc {
             forces: self.forces.clone(),
             memory: self.machine.memory(),
         };
-        state.encode(self.fingerprint)
+        state.encode(self.meaning())
     }
 
-    /// Takes a state back; the PLC goes on from there to the last bit. On an error nothing has
-    /// changed.
+    /// Takes the state of a PLC with the same sources and the same plan; plain, covered and traced builds take
+    /// each other's. The PLC goes on from there to the last bit. On an error nothing has changed.
     ///
     /// # Errors
-    /// The bytes are not a state of this application under this plan.
+    /// The bytes are not a state of this application under this plan; the error says in what they differ.
     pub fn restore(&mut self, bytes: &[u8]) -> Result<(), RestoreError> {
-        let (tasks, size) = (self.tasks.len(), self.machine.memory().len());
-        let state = State::decode(bytes, self.fingerprint, &self.application, tasks, size)?;
-        copy_to(self.machine.memory_mut(), 0, state.memory);
-        self.scheduler.set_waiting(&state.waiting);
-        self.now = state.now;
-        self.fault = state.fault;
-        self.forces = state.forces;
+        self.restore_with(bytes, CodePolicy::SameCode)
+    }
+
+    /// Like [`Self::restore`], but `policy` says whether the sources must be the same.
+    ///
+    /// # Errors
+    /// The bytes are not a state of a PLC with these variables and this plan, or of one that `policy` refuses.
+    pub fn restore_with(&mut self, bytes: &[u8], policy: CodePolicy) -> Result<(), RestoreError> {
+        let decoder = Decoder { application: &self.application, plan: &self.plan, meaning: self.meaning(), policy };
+        let State { now, waiting, fault, forces, memory } = decoder.decode(bytes)?;
+        copy_to(self.machine.memory_mut(), 0, &memory);
+        self.scheduler.set_waiting(&waiting);
+        (self.now, self.fault, self.forces) = (now, fault, forces);
+        if now > self.scanned_until {
+            (self.scanned_until, self.skipped_to) = (now, now);
+        }
         Ok(())
+    }
+
+    fn meaning(&self) -> &Meaning {
+        self.meaning.get_or_init(|| Meaning::new(&self.application, &self.plan))
     }
 }
 

@@ -18,7 +18,7 @@ mod statement;
 mod type_spec;
 
 use self::cursor::Cursor;
-use super::ast::{CompilationUnit, Expr};
+use super::ast::{CompilationUnit, Expr, Initialiser};
 use super::lexer::{tokenize, tokenize_in};
 use super::token::{Token, TokenKind};
 use crate::diagnostic::{Code, Diagnostic};
@@ -66,6 +66,18 @@ fn parse_text(dialect: Dialect, file: FileId, text: &str, origin: Option<&Origin
     let unit = CompilationUnit { dialect, ..cursor.compilation_unit() };
     let diagnostics = cursor.into_diagnostics();
     Parsed { tokens, unit, diagnostics }
+}
+
+/// The initial value that `text`, the text of `file`, is on its own, and what is wrong with it.
+pub(crate) fn parse_initialiser(dialect: Dialect, file: FileId, text: &str) -> (Initialiser, Vec<Diagnostic>) {
+    let tokens = tokenize_in(dialect, text);
+    let mut cursor = Cursor::new(dialect, file, text, &tokens);
+    report_lexical_errors(&mut cursor, &tokens);
+    let initialiser = cursor.initialiser();
+    if cursor.peek().is_some() {
+        cursor.unexpected("the end of the value");
+    }
+    (initialiser, cursor.into_diagnostics())
 }
 
 /// The expression that `text` is, if it is one without errors.

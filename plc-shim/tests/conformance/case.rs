@@ -1,7 +1,6 @@
 //! The trace that a program is to have, as its comment says it.
 
-use std::time::Duration;
-
+use onescan_plc_shim::TimeSpan;
 use onescan_plc_shim::dialect::Dialect;
 
 use super::cell;
@@ -10,7 +9,7 @@ use super::cell;
 #[derive(Debug, Default)]
 pub(crate) struct Case {
     pub(crate) scans: usize,
-    pub(crate) interval: Duration,
+    interval: Option<TimeSpan>,
     pub(crate) dialect: Option<Dialect>,
     pub(crate) restarts: Vec<String>,
     pub(crate) given: Vec<Row>,
@@ -52,7 +51,7 @@ impl Case {
     pub(crate) fn parse(text: &str) -> Result<Self, String> {
         let (_, block) = text.split_once("(* TRACE").ok_or("there is no `(* TRACE` comment")?;
         let (block, _) = block.split_once("*)").ok_or("the trace has no end")?;
-        let mut case = Self { interval: Duration::from_millis(10), ..Self::default() };
+        let mut case = Self::default();
         for line in block.lines().map(str::trim).filter(|line| !line.is_empty()) {
             case.line(line).map_err(|why| format!("{why}: `{line}`"))?;
         }
@@ -80,12 +79,18 @@ impl Case {
         Ok(())
     }
 
+    /// Interval of the only task, unless a configuration says otherwise.
+    pub(crate) fn interval(&self) -> TimeSpan {
+        self.interval.unwrap_or(TimeSpan::millis::<10>())
+    }
+
     fn setting(&mut self, word: &str, value: &str) -> Result<(), String> {
         match word {
             "scans" => self.scans = value.parse().map_err(|_| "this is no number")?,
             "interval" => {
                 let ns = cell::duration_ns(value).ok_or("this is no duration")?;
-                self.interval = Duration::from_nanos(u64::try_from(ns).map_err(|_| "this is no interval")?);
+                let interval = u64::try_from(ns).ok().and_then(TimeSpan::from_nanos);
+                self.interval = Some(interval.ok_or("this is no interval")?);
             }
             "dialect" => self.dialect = Some(Dialect::find(value).ok_or("this is no dialect")?),
             "restart" => self.restarts = value.split_whitespace().map(str::to_owned).collect(),
@@ -124,7 +129,7 @@ mod tests {
     #[test]
     fn a_trace_is_read() {
         let case = Case::parse("(* TRACE\n a := .#. \n s = 'x y' - ''\n n = 5\n interval: 20ms\n*)").expect("a trace");
-        assert_eq!((case.scans, case.interval), (3, Duration::from_millis(20)));
+        assert_eq!((case.scans, case.interval()), (3, TimeSpan::millis::<20>()));
         assert_eq!(case.given[0].given(1), Some("#"));
         assert_eq!(
             (0..3).map(|scan| case.wanted[0].wanted(scan)).collect::<Vec<_>>(),

@@ -6,7 +6,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use onescan_plc_shim::input::kind::SourceKind;
 use onescan_plc_shim::instrument::{Options, Project, Target, instrument};
-use onescan_plc_shim::{Application, Dialect, FaultKind, Input, SoftPlc, Task, TaskPlan, VirtualTime};
+use onescan_plc_shim::{Application, Dialect, FaultKind, Input, SoftPlc, Task, TaskPlan, TimeSpan, VirtualTime};
 
 use super::case::Case;
 use super::trace;
@@ -42,7 +42,7 @@ impl Granted {
     fn cycle_until(&mut self, path: &str, value: u32) -> Result<(), Stop> {
         for _ in 0..1000 {
             self.own_ns += MS;
-            self.plc.scan(VirtualTime::from_ns(self.own_ns)).map_err(|fault| Stop::Fault(fault.kind))?;
+            self.plc.scan(VirtualTime::from_nanos(self.own_ns)).map_err(|fault| Stop::Fault(fault.kind))?;
             if self.number(path) == value {
                 return Ok(());
             }
@@ -78,7 +78,7 @@ enum Stop {
 }
 
 fn task(name: &str, interval_ns: u64, priority: u32, programs: Vec<String>) -> Task {
-    Task { name: name.to_owned(), interval_ns, priority, programs, ..Task::default() }
+    Task { name: name.to_owned(), interval: TimeSpan::from_nanos(interval_ns), priority, programs, ..Task::default() }
 }
 
 /// The three, with the name of the first program.
@@ -111,7 +111,7 @@ impl Three {
         let plain = Application::from_inputs([input.clone()]);
         let plain = plain.map_err(|found| format!("does not compile: {}", first_error(&found)))?;
         let configured = TaskPlan::configured(&plain);
-        let single = || TaskPlan::single(&plain, case.interval.as_nanos() as u64);
+        let single = || TaskPlan::single(&plain, case.interval());
         let plan = configured.clone().unwrap_or_else(single);
         let tasks = configured.is_none().then(|| plan.tasks.clone());
         let project = instrument(&[input], &Options { tasks, target });
@@ -135,7 +135,15 @@ impl Three {
         let moved = project.tasks.is_some().then_some(project);
         let block = if moved.is_some() { "SDSP." } else { "" };
         let granted = Granted { plc: own, block, own_ns: 0, session: 0, grant: 0 };
-        Ok(Self { prefix, moved, interval_ns: plc.period_ns(), plain: plc, inert: free, granted, now_ns: 0 })
+        Ok(Self {
+            prefix,
+            moved,
+            interval_ns: plc.period().map_or(0, TimeSpan::as_nanos),
+            plain: plc,
+            inert: free,
+            granted,
+            now_ns: 0,
+        })
     }
 
     fn begin(&mut self) {
@@ -158,7 +166,7 @@ impl Three {
     /// One scan of each.
     fn scan(&mut self) -> [Result<(), Stop>; 3] {
         self.now_ns += self.interval_ns;
-        let now = VirtualTime::from_ns(self.now_ns);
+        let now = VirtualTime::from_nanos(self.now_ns);
         let fault = |fault: onescan_plc_shim::PlcFault| Stop::Fault(fault.kind);
         [self.plain.scan(now).map_err(fault), self.inert.scan(now).map_err(fault), self.granted.step(self.now_ns)]
     }

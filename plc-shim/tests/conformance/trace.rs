@@ -1,7 +1,7 @@
 //! A case run from its text to its last scan.
 
 use onescan_plc_shim::input::kind::SourceKind;
-use onescan_plc_shim::{Application, Input, PlcFault, SoftPlc, TaskPlan, Variable, VirtualTime};
+use onescan_plc_shim::{Application, Input, PlcFault, SoftPlc, TaskPlan, TimeSpan, Variable, VirtualTime};
 
 use super::case::{Case, Row};
 use super::cell;
@@ -20,10 +20,10 @@ pub(crate) fn run(case: &Case, text: &str) -> Result<(), String> {
     if case.findings.is_some() {
         same_findings(case, application.warnings())?;
     }
-    let single = || TaskPlan::single(&application, case.interval.as_nanos() as u64);
+    let single = || TaskPlan::single(&application, case.interval());
     let plan = TaskPlan::configured(&application).unwrap_or_else(single);
     let plc = SoftPlc::new(&application, &plan).map_err(|error| error.to_string())?;
-    let interval_ns = plc.period_ns();
+    let interval_ns = plc.period().map_or(0, TimeSpan::as_nanos);
     let first = application.programs().next().map(|program| program.name);
     let mut run = Run { plc, prefix: first.unwrap_or_default(), now_ns: 0, interval_ns };
     for scan in 0..case.scans {
@@ -68,7 +68,7 @@ impl Run {
             give(&mut self.plc, &self.prefix, row, scan)?;
         }
         self.now_ns += self.interval_ns;
-        let outcome = self.plc.scan(VirtualTime::from_ns(self.now_ns));
+        let outcome = self.plc.scan(VirtualTime::from_nanos(self.now_ns));
         let last = scan + 1 == case.scans;
         same_outcome(case.fault.as_deref().filter(|_| last), outcome)?;
         let wrong: Vec<_> = case.wanted.iter().filter_map(|row| self.difference(row, scan).transpose()).collect();

@@ -1,6 +1,6 @@
 //! Two axes and every motion block, with variables by name.
 
-use onescan_plc_shim::{Application, ElementaryType, SoftPlc, TaskPlan, VirtualTime};
+use onescan_plc_shim::{Application, ElementaryType, SoftPlc, TaskPlan, TimeSpan, VirtualTime};
 
 const MS: u64 = 1_000_000;
 
@@ -93,7 +93,7 @@ fn application() -> &'static Application {
 impl Bench {
     /// Nothing has power yet.
     pub(crate) fn cold() -> Self {
-        let plan = TaskPlan::single(application(), MS);
+        let plan = TaskPlan::single(application(), TimeSpan::millis::<1>());
         Self { plc: SoftPlc::new(application(), &plan).expect("the plan suits"), now_ns: 0, step_ns: 10 * MS }
     }
 
@@ -110,7 +110,7 @@ impl Bench {
 
     pub(crate) fn scan(&mut self) {
         self.now_ns += self.step_ns;
-        self.plc.scan(VirtualTime::from_ns(self.now_ns)).expect("no fault");
+        self.plc.scan(VirtualTime::from_nanos(self.now_ns)).expect("no fault");
     }
 
     pub(crate) fn scans(&mut self, count: usize) {

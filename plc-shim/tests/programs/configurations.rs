@@ -3,9 +3,9 @@
 use std::fmt::Write;
 
 use onescan_plc_shim::input::kind::SourceKind;
-use onescan_plc_shim::{Application, Input, SoftPlc, TaskPlan, VirtualTime};
+use onescan_plc_shim::{Application, Dialect, Input, SoftPlc, TaskPlan, VirtualTime};
 
-use crate::rig::{MS, Rig, application, findings};
+use crate::rig::{MS, Rig, application, application_in, findings};
 
 fn configured(text: &str) -> Rig {
     let application = application(text);
@@ -278,6 +278,47 @@ END_CONFIGURATION"
 }
 
 #[test]
+fn iec3_table_11_members_at_open_addresses_are_completed_by_var_config() {
+    let text = "TYPE Drive : STRUCT ready AT %I* : BOOL; speed AT %QW* : INT; own : INT; END_STRUCT END_TYPE
+        FUNCTION_BLOCK Axis VAR d : Drive; END_VAR
+            IF d.ready THEN d.speed := d.speed + 1; END_IF
+        END_FUNCTION_BLOCK
+        PROGRAM P VAR axes : ARRAY [1..2] OF Axis; spare : Drive := (speed := 7); END_VAR axes[1](); axes[2](); END_PROGRAM
+        PROGRAM Area VAR a AT %IX0.0 : BOOL; b AT %IX0.1 : BOOL; out AT %QW2 : INT; END_VAR ; END_PROGRAM
+        CONFIGURATION c
+            TASK t (INTERVAL := T#10ms);
+            PROGRAM area WITH t : Area; PROGRAM P1 WITH t : P;
+            VAR_CONFIG
+                P1.axes[1].d.ready AT %IX0.0 : BOOL; P1.axes[2].d.ready AT %IX0.1 : BOOL;
+                P1.axes[2].d.speed AT %QW2 : INT;
+            END_VAR
+        END_CONFIGURATION";
+    for dialect in [Dialect::Iec3, Dialect::Codesys, Dialect::TwinCat] {
+        let application = application_in(dialect, text);
+        let plan = TaskPlan::configured(&application).expect("it has tasks");
+        let mut rig = Rig::with_plan(&application, &plan);
+        rig.plc.write("area.b", "TRUE").expect("a BOOL");
+        rig.scan().expect("no fault");
+        rig.scan().expect("no fault");
+        let read = |path| rig.plc.read(path).expect(path);
+        // What VAR_CONFIG does not place lies in its instance.
+        assert_eq!(
+            ["P1.axes[1].d.speed", "P1.axes[2].d.speed", "P1.axes[2].d.ready", "P1.spare.speed", "area.out"].map(read),
+            ["0", "2", "TRUE", "7", "2"],
+            "{dialect}"
+        );
+    }
+    insta::assert_snapshot!(findings(
+        "TYPE Drive : STRUCT ready AT %I* : BOOL; own : BOOL; END_STRUCT END_TYPE
+PROGRAM P VAR d : Drive; END_VAR ; END_PROGRAM
+CONFIGURATION c
+    PROGRAM P1 : P;
+    VAR_CONFIG P1.d.ready AT %QX0.0 : BOOL; P1.d.own AT %IX0.0 : BOOL; END_VAR
+END_CONFIGURATION"
+    ));
+}
+
+#[test]
 fn iec2_2_7_1_table_49_var_access_names_variables() {
     let rig = configured(&format!(
         "{PUMPS} CONFIGURATION c
@@ -434,7 +475,7 @@ fn a_plan_of_ones_own_goes_before_the_configuration() {
     ));
     let plan = TaskPlan::new(vec![crate::rig::task("own", 5, 0, &["P2"])]);
     let mut plc = SoftPlc::new(&application, &plan).expect("P2 is an instance");
-    plc.scan(VirtualTime::from_ns(5 * MS)).expect("no fault");
+    plc.scan(VirtualTime::from_nanos(5 * MS)).expect("no fault");
     let read = |path: &str| plc.memory()[plc.variable(path).expect("there").offset as usize];
     assert_eq!((read("P1.c.n"), read("P2.c.n")), (0, 1));
     let plan = TaskPlan::new(vec![crate::rig::task("own", 5, 0, &["Pump"])]);

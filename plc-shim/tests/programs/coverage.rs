@@ -1,7 +1,7 @@
 //! Statement and branch coverage.
 
 use onescan_plc_shim::input::kind::SourceKind;
-use onescan_plc_shim::{Application, Coverage, Input, SoftPlc, TaskPlan, VirtualTime};
+use onescan_plc_shim::{Application, Coverage, Input, SoftPlc, TaskPlan, TimeSpan, VirtualTime};
 
 const PROGRAM: &str = "FUNCTION_BLOCK Unused
 VAR x : INT; END_VAR
@@ -45,9 +45,10 @@ fn input(name: &str) -> Input {
 
 /// After so many scans; and the PLC's memory.
 fn run(application: &Application, scans: u64) -> (Option<Coverage>, Vec<u8>) {
-    let mut plc = SoftPlc::new(application, &TaskPlan::single(application, 1_000_000)).expect("it can run");
+    let mut plc =
+        SoftPlc::new(application, &TaskPlan::single(application, TimeSpan::millis::<1>())).expect("it can run");
     for scan in 1..=scans {
-        plc.scan(VirtualTime::from_ns(scan * 1_000_000)).expect("no fault");
+        plc.scan(VirtualTime::from_nanos(scan * 1_000_000)).expect("no fault");
     }
     (plc.coverage(), plc.memory().to_vec())
 }
@@ -116,4 +117,32 @@ END_IF;]]></ST>
     for line in ["SF:P.TcPOU", "FN:4,P", "DA:7,1", "DA:8,1", "DA:9,0", "BRDA:8,0,0,0", "BRDA:8,0,1,1"] {
         assert!(text.lines().any(|found| found == line), "{line} in {text}");
     }
+}
+
+#[test]
+fn a_resumed_run_is_counted_from_there_on() {
+    let application = Application::from_inputs_with_coverage([input("plc.st")]).expect("a sound program");
+    let new = || SoftPlc::new(&application, &TaskPlan::single(&application, 1_000_000)).expect("it can run");
+    let scan =
+        |plc: &mut SoftPlc, number: u64| plc.scan(VirtualTime::from_nanos(number * 1_000_000)).expect("no fault");
+    let mut first = new();
+    (1..=4).for_each(|number| scan(&mut first, number));
+    let state = first.save();
+    let mut second = new();
+    second.restore(&state).expect("the same program");
+    (5..=9).for_each(|number| scan(&mut second, number));
+    let resumed = second.coverage().expect("it was asked for");
+    assert_eq!(resumed.counted_from_ns(), 4_000_000);
+    let text = resumed.to_lcov();
+    assert!(text.starts_with("TN:counted_from_4000000_ns\n"), "{text}");
+    assert!(text.contains("\nDA:24,0\n"), "executed before: {text}");
+    // Whoever has scanned all that came before has not missed anything.
+    first.restore(&state).expect("its own state");
+    scan(&mut first, 5);
+    let whole = first.coverage().expect("it was asked for");
+    assert_eq!(whole.counted_from_ns(), 0);
+    assert!(whole.to_lcov().starts_with("TN:\nSF:"));
+    let mut both = whole.clone();
+    both.merge(&resumed);
+    assert_eq!(both.counted_from_ns(), 4_000_000);
 }

@@ -244,7 +244,7 @@ fn iec2_2_7_1_table_49_read_only_access_is_kept() {
     assert_eq!(plc.force("Level", "5").expect_err("read only").to_string(), "`Level` is READ_ONLY");
     plc.write("Set", "5").expect("it may be written");
     assert_eq!(plc.read("Level").as_deref(), Ok("5"));
-    plc.scan(VirtualTime::from_ns(MS)).expect("no fault");
+    plc.scan(VirtualTime::from_nanos(MS)).expect("no fault");
 }
 
 #[test]

@@ -4,6 +4,7 @@ mod any_inputs;
 mod bit_strings;
 mod characters;
 mod configurations;
+mod constants;
 mod conversions;
 mod coverage;
 mod dates;

@@ -1,9 +1,9 @@
 //! Methods, properties, actions and interfaces in the files of vendors.
 
 use onescan_plc_shim::input::kind::SourceKind;
-use onescan_plc_shim::{Application, Input, TaskPlan, inspect};
+use onescan_plc_shim::{Application, Input, TaskPlan, TimeSpan, inspect};
 
-use crate::rig::{MS, Rig};
+use crate::rig::Rig;
 
 const TANK: &str = include_str!("../inputs/tank.TcPOU");
 const PUMP: &str = include_str!("../inputs/pump.xml");
@@ -19,7 +19,7 @@ fn rig(inputs: impl IntoIterator<Item = Input>) -> Rig {
         Ok(application) => application,
         Err(found) => panic!("{found}"),
     };
-    let plan = TaskPlan::single(&application, 10 * MS);
+    let plan = TaskPlan::single(&application, TimeSpan::millis::<10>());
     let mut rig = Rig::with_plan(&application, &plan);
     rig.scan().expect("no fault");
     rig

@@ -3,9 +3,9 @@
 use std::fmt::Write;
 
 use onescan_plc_shim::input::kind::SourceKind;
-use onescan_plc_shim::{Application, Input, TaskPlan, inspect};
+use onescan_plc_shim::{Application, Input, TaskPlan, TimeSpan, inspect};
 
-use crate::rig::{MS, Rig};
+use crate::rig::Rig;
 
 /// A whole project around its units.
 pub(crate) fn project(pous: &str) -> String {
@@ -164,6 +164,6 @@ pub(crate) fn rig(text: &str) -> Rig {
         Ok(application) => application,
         Err(diagnostics) => panic!("{diagnostics}\n{}", made_of(text)),
     };
-    let plan = TaskPlan::single(&application, 10 * MS);
+    let plan = TaskPlan::single(&application, TimeSpan::millis::<10>());
     Rig::with_plan(&application, &plan)
 }

@@ -103,7 +103,7 @@ fn wrong_addresses_of_members_are_told() {
         "a AT %X0.3 : INT;",
         "a AT %W0 : DINT;",
         "a AT %IX0.0 : BOOL;",
-        "a AT %Q* : BOOL;",
+        "a AT %QW* : BOOL;",
         "a AT %B2000000 : BOOL;",
         "a AT %X0.8 : BOOL;",
         "b AT %B4 : INT; a : INT; c AT %B6 : INT;",

@@ -2,14 +2,15 @@
 
 use std::fmt::Write;
 
-use onescan_plc_shim::{SoftPlc, TaskPlan};
+use onescan_plc_shim::{SoftPlc, TaskPlan, TimeSpan};
 
 use crate::rig::{Rig, application};
 
 /// After two scans, the values after a warm start, a cold start and a reset.
 fn starts(text: &str, paths: &[&str]) -> String {
     let application = application(text);
-    let plan = TaskPlan::configured(&application).unwrap_or_else(|| TaskPlan::single(&application, 10_000_000));
+    let plan =
+        TaskPlan::configured(&application).unwrap_or_else(|| TaskPlan::single(&application, TimeSpan::millis::<10>()));
     let mut table = String::new();
     let mut rows: Vec<Vec<i64>> = vec![Vec::new(); paths.len()];
     let starts: [fn(&mut SoftPlc); 3] = [SoftPlc::warm_start, SoftPlc::cold_start, SoftPlc::reset];
@@ -17,7 +18,7 @@ fn starts(text: &str, paths: &[&str]) -> String {
         let mut rig = Rig::with_plan(&application, &plan);
         for _ in 0..2 {
             rig.now_ns += 10_000_000;
-            rig.plc.scan(onescan_plc_shim::VirtualTime::from_ns(rig.now_ns)).expect("no fault");
+            rig.plc.scan(onescan_plc_shim::VirtualTime::from_nanos(rig.now_ns)).expect("no fault");
         }
         start(&mut rig.plc);
         paths.iter().zip(&mut rows).for_each(|(path, row)| row.push(rig.int(path)));

@@ -2,8 +2,8 @@
 
 use onescan_plc_shim::input::kind::SourceKind;
 use onescan_plc_shim::{
-    Application, Diagnostics, Dialect, ElementaryType, Input, PlcFault, SoftPlc, Task, TaskPlan, Variable, VirtualTime,
-    inspect,
+    Application, Diagnostics, Dialect, ElementaryType, Input, PlcFault, SoftPlc, Task, TaskPlan, TimeSpan, Variable,
+    VirtualTime, inspect,
 };
 
 pub(crate) const MS: u64 = 1_000_000;
@@ -33,7 +33,7 @@ pub(crate) fn findings(text: &str) -> String {
 pub(crate) fn task(name: &str, interval_ms: u64, priority: u32, programs: &[&str]) -> Task {
     Task {
         name: name.to_owned(),
-        interval_ns: interval_ms * MS,
+        interval: TimeSpan::from_millis(interval_ms),
         priority,
         single: None,
         programs: programs.iter().map(|name| (*name).to_owned()).collect(),
@@ -61,26 +61,26 @@ impl Rig {
     /// All programs in one task of 10 ms, of a file read as `dialect`.
     pub(crate) fn in_dialect(dialect: Dialect, text: &str) -> Self {
         let application = application_in(dialect, text);
-        let plan = TaskPlan::single(&application, 10 * MS);
+        let plan = TaskPlan::single(&application, TimeSpan::millis::<10>());
         Self::with_plan(&application, &plan)
     }
 
     /// All programs in one task of 10 ms.
     pub(crate) fn new(text: &str) -> Self {
         let application = application(text);
-        let plan = TaskPlan::single(&application, 10 * MS);
+        let plan = TaskPlan::single(&application, TimeSpan::millis::<10>());
         Self::with_plan(&application, &plan)
     }
 
     pub(crate) fn with_plan(application: &Application, plan: &TaskPlan) -> Self {
         let plc = SoftPlc::new(application, plan).expect("the plan suits the application");
-        let step_ns = plc.period_ns();
+        let step_ns = plc.period().map_or(0, TimeSpan::as_nanos);
         Self { plc, step_ns, now_ns: 0 }
     }
 
     pub(crate) fn scan(&mut self) -> Result<(), PlcFault> {
         self.now_ns += self.step_ns;
-        self.plc.scan(VirtualTime::from_ns(self.now_ns))
+        self.plc.scan(VirtualTime::from_nanos(self.now_ns))
     }
 
     pub(crate) fn variable(&self, path: &str) -> Variable {

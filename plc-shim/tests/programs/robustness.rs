@@ -1,6 +1,6 @@
 //! Nothing that is written in a program makes the compiler or the PLC panic.
 
-use onescan_plc_shim::{Application, SoftPlc, TaskPlan, VirtualTime};
+use onescan_plc_shim::{Application, SoftPlc, TaskPlan, TimeSpan, VirtualTime};
 use proptest::prelude::*;
 
 const PROGRAM: &str =
@@ -23,13 +23,13 @@ fn run(text: &str) {
     let Ok(application) = Application::from_sources([("mutated.st", text)]) else {
         return;
     };
-    let mut plan = TaskPlan::single(&application, 1_000_000);
+    let mut plan = TaskPlan::single(&application, TimeSpan::millis::<1>());
     plan.fuel_per_task = 100_000;
     let Ok(mut plc) = SoftPlc::new(&application, &plan) else {
         return;
     };
     for scan in 1..4 {
-        if plc.scan(VirtualTime::from_ns(scan * 1_000_000)).is_err() {
+        if plc.scan(VirtualTime::from_nanos(scan * 1_000_000)).is_err() {
             return;
         }
     }

@@ -1,4 +1,4 @@
-use onescan_plc_shim::{RunError, SoftPlc, TaskPlan, VirtualTime};
+use onescan_plc_shim::{RunError, SoftPlc, TaskPlan, TimeSpan, VirtualTime};
 
 use crate::rig::{MS, Rig, application, task};
 
@@ -25,8 +25,8 @@ fn tasks_run_by_priority_and_see_virtual_time() {
         task("urgent", 20, 1, &["Urgent"]),
     ]);
     let mut rig = Rig::with_plan(&application, &plan);
-    assert_eq!(rig.plc.period_ns(), 10 * MS);
-    assert_eq!(rig.plc.next_due(), VirtualTime::from_ns(10 * MS));
+    assert_eq!(rig.plc.period(), TimeSpan::from_millis(10));
+    assert_eq!(rig.plc.next_due(), Some(VirtualTime::from_nanos(10 * MS)));
     rig.scan().expect("no fault");
     assert_eq!(rig.int("order"), 2);
     rig.scan().expect("no fault");
@@ -47,10 +47,10 @@ fn a_warm_start_keeps_what_is_retained() {
     assert_eq!(values(&rig), [5, 6, 5, 5]);
     rig.plc.warm_start();
     assert_eq!(values(&rig), [0, 6, 5, 0]);
-    assert_eq!(rig.plc.next_due(), VirtualTime::from_ns(60 * MS));
+    assert_eq!(rig.plc.next_due(), Some(VirtualTime::from_nanos(60 * MS)));
     rig.plc.cold_start();
     assert_eq!(values(&rig), [0, 1, 0, 0]);
-    assert_eq!(rig.plc.next_due(), VirtualTime::from_ns(10 * MS));
+    assert_eq!(rig.plc.next_due(), Some(VirtualTime::from_nanos(10 * MS)));
 }
 
 #[test]
@@ -65,7 +65,7 @@ fn wrong_plans_are_refused() {
         refused(vec![task("a", 1, 0, &["Fsat"])]),
         @"task `a` runs program `Fsat`, which is not declared (did you mean `Fast`?)"
     );
-    insta::assert_snapshot!(refused(vec![task("a", 0, 0, &[])]), @"task `a` has an interval of 0 and no trigger");
+    insta::assert_snapshot!(refused(vec![task("a", 0, 0, &[])]), @"task `a` has neither an interval nor a trigger");
     insta::assert_snapshot!(
         refused(vec![task("a", 1, 0, &[]), task("A", 1, 0, &[])]),
         @"there are two tasks `A`"

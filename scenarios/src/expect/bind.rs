@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use onescan_server::signal::{ElementaryType, did_you_mean};
+use onescan_server::signal::{SignalType, did_you_mean};
 
 use super::error::{FormulaError, FormulaErrorKind};
 use super::formula::{Arithmetic, Formula, Term, TermKind};
@@ -17,7 +17,7 @@ pub struct KnownSignal {
     /// Its name.
     pub name: String,
     /// Its type.
-    pub ty: ElementaryType,
+    pub ty: SignalType,
     /// The unit of its values.
     pub unit: Option<String>,
 }
@@ -65,8 +65,8 @@ enum Measure {
 
 impl Measure {
     fn of_signal(signal: &KnownSignal) -> Self {
-        use ElementaryType as E;
-        let time = matches!(signal.ty, E::Time | E::Ltime | E::Tod | E::Ltod);
+        use SignalType as E;
+        let time = matches!(signal.ty, E::TIME | E::LTIME | E::TOD | E::LTOD);
         match &signal.unit {
             _ if time => Unit::find("s").map_or(Self::Derived, Self::Unit),
             Some(name) => Unit::find(name).map_or_else(|| Self::Named(name.clone()), Self::Unit),
@@ -132,7 +132,7 @@ impl<'a> Binder<'a> {
             let kind = FormulaErrorKind::UnknownSignal(written.name.clone());
             return Err(FormulaError::new(kind, written.place.clone()).with_help(help));
         };
-        if matches!(signal.ty, ElementaryType::String(_) | ElementaryType::Wstring(_)) {
+        if matches!(signal.ty, SignalType::String(_) | SignalType::Wstring(_)) {
             let kind = FormulaErrorKind::Text(signal.name.clone(), signal.ty.to_string());
             return Err(FormulaError::new(kind, written.place.clone()));
         }
@@ -152,7 +152,7 @@ impl<'a> Binder<'a> {
 
     fn bool_signal(&mut self, written: &Written) -> Bound<usize> {
         match self.signal(written)? {
-            (column, signal) if signal.ty == ElementaryType::Bool => Ok(column),
+            (column, signal) if signal.ty == SignalType::BOOL => Ok(column),
             (_, signal) => {
                 let kind = FormulaErrorKind::NotABool(signal.name.clone());
                 Err(FormulaError::new(kind, written.place.clone()))
@@ -165,7 +165,7 @@ impl<'a> Binder<'a> {
         let (kind, measure) = match term.kind {
             TermKind::Number(value, unit) => (TermKind::Number(value, None), self.literal_measure(unit, &place)?),
             TermKind::Signal(written) => match self.signal(&written)? {
-                (_, signal) if signal.ty == ElementaryType::Bool => {
+                (_, signal) if signal.ty == SignalType::BOOL => {
                     let kind = FormulaErrorKind::NotANumber(signal.name.clone());
                     let help = "write the BOOL alone, or `iff` between two of them".to_owned();
                     return Err(FormulaError::new(kind, written.place.clone()).with_help(Some(help)));

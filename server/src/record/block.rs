@@ -6,7 +6,7 @@
 use std::borrow::Cow;
 use std::ops::RangeInclusive;
 
-use super::Digest;
+use crate::digest::TrajectoryDigest;
 use crate::session::Session;
 
 /// Bytes of images in a block at most, but for a single image that is larger.
@@ -25,6 +25,7 @@ const PART_NS: u64 = 10_000_000_000;
 pub(crate) struct Block {
     pub(crate) first_step: u64,
     pub(crate) t_v_ns: Vec<u64>,
+    /// The digest after each row; on the way to the encoder they are not there yet.
     pub(crate) digests: Vec<[u8; 32]>,
     /// The images of all rows.
     pub(super) images: Vec<u8>,
@@ -44,14 +45,24 @@ impl Block {
     }
 
     /// Takes the step that was just committed.
-    pub(super) fn push(&mut self, session: &Session, digest: Digest) {
+    pub(super) fn push(&mut self, session: &Session) {
         if self.t_v_ns.is_empty() {
             self.first_step = session.cycle().steps().0;
             self.width = session.image().len();
         }
         self.t_v_ns.push(session.t_v().as_nanos());
-        self.digests.push(digest.0);
         self.images.extend_from_slice(session.image());
+    }
+
+    /// Computes the digests of all rows but the first `known`, of which `digest` is the last. A value
+    /// for every step costs more than the step, so the encoder's thread computes it.
+    pub(super) fn digest(&mut self, digest: &mut TrajectoryDigest, known: usize) {
+        for row in 0..self.rows() {
+            if row >= known {
+                digest.step(&self.images[row * self.width..(row + 1) * self.width]);
+            }
+            self.digests.push(*digest.value_each_step().as_bytes());
+        }
     }
 
     /// Room for so many rows of `width` bytes.

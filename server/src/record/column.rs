@@ -2,7 +2,7 @@
 
 use crate::session::Session;
 use crate::signal::pattern::{SignalPattern, Unmatched, choose};
-use crate::signal::{ClientName, ElementaryType, SignalName};
+use crate::signal::{ClientName, SignalName, SignalType};
 
 /// A signal that is recorded.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -10,7 +10,7 @@ pub struct Column {
     /// Its name.
     pub name: SignalName,
     /// Its type.
-    pub ty: ElementaryType,
+    pub ty: SignalType,
     /// Its unit.
     pub unit: Option<String>,
     /// Who writes it.

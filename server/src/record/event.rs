@@ -6,9 +6,9 @@ use std::path::Path;
 
 use serde::{Deserialize, Serialize};
 
-use super::RecordError;
 use crate::end::{Failure, SessionEnd};
-use crate::operation::{Operation, OperatorInput};
+use crate::observer::RecordError;
+use crate::operation::{Author, Operation, OperatorInput};
 use crate::time::{StepCount, VirtualTime};
 
 /// An event, and the step boundary that it belongs to.
@@ -28,10 +28,16 @@ pub struct Event {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "event", rename_all = "kebab-case")]
 pub enum EventKind {
-    /// The session began, or began anew after a reset.
+    /// The session began, or restarted after a reset.
     Began,
     /// An operator did something.
     Operator {
+        /// What.
+        #[serde(flatten)]
+        operation: Operation,
+    },
+    /// The session's own timeline did something: a case's force or failure.
+    Timeline {
         /// What.
         #[serde(flatten)]
         operation: Operation,
@@ -134,9 +140,14 @@ pub fn operator_inputs(events: &[Event]) -> Vec<OperatorInput> {
                 resets: began.saturating_sub(1),
                 step: *step,
                 t_v: *t_v,
+                author: Author::Operator,
                 operation: operation.clone(),
             }),
-            _ => {}
+            // What the timeline did comes along with the case; the rest changes nothing.
+            EventKind::Timeline { .. }
+            | EventKind::Failed { .. }
+            | EventKind::Ended { .. }
+            | EventKind::Violated { .. } => {}
         }
     }
     inputs

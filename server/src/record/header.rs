@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 use super::column::Column;
 use crate::plan::Coupling;
 use crate::session::Session;
-use crate::signal::{ClientName, ElementaryType, SignalName};
+use crate::signal::{ClientName, SignalName, SignalType};
 use crate::time::{StepCount, TimeSpan, VirtualTime};
 
 /// The version of the layout of recordings.
@@ -57,7 +57,7 @@ pub struct HeaderSignal {
     pub name: SignalName,
     /// Its type.
     #[serde(rename = "type")]
-    pub ty: ElementaryType,
+    pub ty: SignalType,
     /// Its unit.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub unit: Option<String>,

@@ -24,8 +24,9 @@ use super::header::{Header, Provenance};
 use super::mcap::McapSink;
 use super::parquet::ParquetSink;
 use super::sink::{Encoder, Shape, Sink, failed};
-use super::{Digest, Observer, RecordError};
-use crate::operation::OperatorInput;
+use crate::digest::TrajectoryDigest;
+use crate::observer::{Observer, RecordError};
+use crate::operation::{Author, OperatorInput};
 use crate::session::Session;
 use crate::signal::pattern::SignalPattern;
 use crate::time::{StepCount, VirtualTime};
@@ -58,7 +59,6 @@ pub struct Recorder {
     events: Option<EventLog>,
     block: Block,
     schedule: Schedule,
-    digest: Option<Digest>,
     /// The last step that was seen.
     last: (StepCount, VirtualTime),
 }
@@ -74,12 +74,11 @@ impl Recorder {
             events: None,
             block: Block::default(),
             schedule: Schedule::new(1, 1),
-            digest: None,
             last: (StepCount::default(), VirtualTime::ZERO),
         }
     }
 
-    fn start(&mut self, session: &Session) -> std::io::Result<()> {
+    fn start(&mut self, session: &Session, digest: &TrajectoryDigest) -> std::io::Result<()> {
         let columns = columns(session, &self.choice.signals).map_err(std::io::Error::other)?;
         let header = Header::new(session, &self.provenance, &columns);
         let mut text = serde_json::to_vec_pretty(&header)?;
@@ -89,7 +88,7 @@ impl Recorder {
         self.block = Block::default();
         let rows = self.schedule.block_rows() as usize;
         self.block.reserve(rows, session.image().len());
-        self.encoder = Some(Encoder::start(self.sinks(columns)?)?);
+        self.encoder = Some(Encoder::start(self.sinks(columns)?, digest.clone())?);
         Ok(())
     }
 
@@ -107,8 +106,8 @@ impl Recorder {
     }
 
     fn row(&mut self, session: &Session) -> Result<(), RecordError> {
-        let (Some(digest), Some(encoder)) = (self.digest, &self.encoder) else { return Ok(()) };
-        self.block.push(session, digest);
+        let Some(encoder) = &self.encoder else { return Ok(()) };
+        self.block.push(session);
         self.last = (session.cycle().steps(), session.t_v());
         let (block, part) = self.schedule.row();
         if !block {
@@ -124,7 +123,7 @@ impl Recorder {
         }
     }
 
-    /// Waits for the thread, and tells why it ended if it did so early.
+    /// Waits for the thread, and reports why it ended if it did so early.
     fn finish(&mut self) -> Result<(), RecordError> {
         let block = std::mem::take(&mut self.block);
         let last = (block.rows() > 0).then_some(block);
@@ -136,30 +135,30 @@ impl Recorder {
 }
 
 impl Observer for Recorder {
-    fn digested(&mut self, digest: Digest) {
-        self.digest = Some(digest);
-    }
-
-    fn begin(&mut self, session: &Session) -> Result<(), RecordError> {
-        // After a reset the trajectory begins anew; what happened before is still told.
+    fn begin(&mut self, session: &Session, digest: &TrajectoryDigest) -> Result<(), RecordError> {
+        // After a reset the trajectory restarts; the log of events goes on.
         self.finish()?;
         if self.events.is_none() {
             self.events = Some(EventLog::create(&self.folder.join(EVENTS))?);
         }
-        self.start(session).map_err(failed(&self.folder))?;
+        self.start(session, digest).map_err(failed(&self.folder))?;
         if let Some(events) = &mut self.events {
             events.push(&Event { step: session.cycle().steps(), t_v: session.t_v(), what: EventKind::Began })?;
         }
         self.row(session)
     }
 
-    fn step(&mut self, session: &Session) -> Result<(), RecordError> {
+    fn step(&mut self, session: &Session, _digest: &TrajectoryDigest) -> Result<(), RecordError> {
         self.row(session)
     }
 
     fn operated(&mut self, input: &OperatorInput) -> Result<(), RecordError> {
         let Some(events) = &mut self.events else { return Ok(()) };
-        let what = EventKind::Operator { operation: input.operation.clone() };
+        let operation = input.operation.clone();
+        let what = match input.author {
+            Author::Operator => EventKind::Operator { operation },
+            Author::Timeline => EventKind::Timeline { operation },
+        };
         events.push(&Event { step: input.step, t_v: input.t_v, what })
     }
 

@@ -9,9 +9,10 @@ use std::sync::Arc;
 use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
 use std::thread::JoinHandle;
 
-use super::RecordError;
 use super::block::Block;
 use super::column::Column;
+use crate::digest::TrajectoryDigest;
+use crate::observer::RecordError;
 
 /// One that fills, one that waits, one that is encoded.
 const BLOCKS: usize = 3;
@@ -40,19 +41,23 @@ pub(super) struct Encoder {
 }
 
 impl Encoder {
-    pub(super) fn start(mut sinks: Vec<Box<dyn Sink>>) -> io::Result<Self> {
+    /// Starts the thread. `digest` is that of the first row, which the session has taken in already.
+    pub(super) fn start(mut sinks: Vec<Box<dyn Sink>>, mut digest: TrajectoryDigest) -> io::Result<Self> {
         let (filled, to_encode) = sync_channel::<Block>(BLOCKS);
         let (back, emptied) = sync_channel::<Block>(BLOCKS);
         for _ in 1..BLOCKS {
-            // The channel has room for all of them.
-            let _ = back.send(Block::default());
+            // The channel has room for all of them, and its receiver is here.
+            back.send(Block::default()).map_err(io::Error::other)?;
         }
         let encode = move || {
+            let mut known = 1;
             for mut block in &to_encode {
+                block.digest(&mut digest, std::mem::take(&mut known));
                 sinks.iter_mut().try_for_each(|sink| sink.block(&block))?;
                 block.clear();
-                // A session that ends does not want it back.
-                let _ = back.send(block);
+                if back.send(block).is_err() {
+                    // A session that ends does not want it back; what it sent before is still encoded.
+                }
             }
             sinks.iter_mut().try_for_each(|sink| sink.end())
         };
@@ -70,8 +75,9 @@ impl Encoder {
     /// Waits until everything is written.
     pub(super) fn finish(self, last: Option<Block>) -> io::Result<()> {
         if let Some(block) = last {
-            // If it is not taken the thread has failed, which it tells below.
-            let _ = self.filled.send(block);
+            if self.filled.send(block).is_err() {
+                // The thread has failed, which its own result reports below.
+            }
         }
         drop(self.filled);
         self.thread.join().unwrap_or_else(|_| Err(io::Error::other("the recorder's thread ended early")))

@@ -29,6 +29,8 @@ mod view;
 
 use std::sync::Arc;
 
+use onescan_base::nearest;
+
 pub use saved::SessionState;
 use serde::{Deserialize, Serialize};
 pub use turn::Turn;
@@ -36,10 +38,10 @@ pub use turn::Turn;
 use crate::client::{ClientId, JoinRequest};
 use crate::cycle::Cycle;
 use crate::end::SessionEnd;
-use crate::image::{Image, ImageLayout};
+use crate::image::{Commit, Image, ImageLayout};
 use crate::join::{JoinRefusal, Membership, admit};
 use crate::plan::SessionPlan;
-use crate::signal::{ClientName, SignalName, nearest};
+use crate::signal::{ClientName, SignalName};
 use crate::state::ServerState;
 use crate::time::VirtualTime;
 
@@ -100,13 +102,13 @@ pub struct Session {
 impl Session {
     /// A session in `start` with nobody in.
     pub fn new(plan: SessionPlan) -> Self {
-        let layout = ImageLayout::new(plan.signals());
+        let layout = Arc::new(ImageLayout::new(plan.signals()));
         Self {
             members: vec![None; plan.clients().len()],
             writers: Arc::new(vec![None; plan.signals().len()]),
             cycle: Cycle::new(plan.step(), plan.coupling().clone(), plan.clients().len()),
-            image: Image::new(&layout),
-            layout: Arc::new(layout),
+            image: Image::new(Arc::clone(&layout)),
+            layout,
             plan: Arc::new(plan),
             mode: Mode::Running,
             start_logic: true,
@@ -195,7 +197,8 @@ impl Session {
             None => self.finish(SessionEnd::Completed { t_v: self.cycle.t_v() }),
             Some(entered) => {
                 if left == ServerState::PreWrite {
-                    self.image.commit();
+                    let commit = if self.cycle.ends_step() { Commit::EndsStep } else { Commit::Within };
+                    self.image.commit(commit);
                 }
                 Progress::Entered(entered)
             }
@@ -239,13 +242,13 @@ mod tests {
     use crate::client::Wake;
     use crate::end::Violation;
     use crate::plan::Coupling;
-    use crate::signal::{ElementaryType, Port, SignalDecl};
+    use crate::signal::{Port, SignalDecl, SignalType};
     use crate::time::{StepCount, TimeSpan};
 
     fn formed() -> Session {
         let name = ClientName::new("plc").unwrap();
         let signal = SignalName::new("x").unwrap();
-        let ty = ElementaryType::Bool;
+        let ty = SignalType::BOOL;
         let step = TimeSpan::from_millis(10).unwrap();
         let decl = SignalDecl { name: signal.clone(), ty, writer: Some(name.clone()), unit: None };
         let mut session =

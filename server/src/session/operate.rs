@@ -1,8 +1,11 @@
-//! What operators ask of a session.
+//! What is asked of a session from outside.
+
+use onescan_base::did_you_mean;
 
 use super::{Control, Mode, Session};
-use crate::operation::{Operation, OperationError};
-use crate::signal::{SignalId, SignalName, did_you_mean};
+use crate::client::OperationRefused;
+use crate::operation::{Operation, OperationError, SignalFault};
+use crate::signal::{SignalId, SignalName};
 
 impl Session {
     /// Asks for a stop, pause, single step or reset at the next step boundary.
@@ -16,32 +19,61 @@ impl Session {
         }
     }
 
-    /// Does what an operator asks for, at a step boundary.
+    /// Takes an operation on signals or on the session itself, at a step boundary. Values change with
+    /// the commit that ends the next step.
     ///
     /// # Errors
-    /// A signal that there is not, a value that it cannot have; nothing has changed then.
+    /// An unknown signal, a value that it cannot have, an operation for a client, which the session
+    /// does not reach; nothing has changed then.
     pub fn operate(&mut self, operation: &Operation) -> Result<(), OperationError> {
+        if let Some(control) = operation.control() {
+            self.control(control);
+            return Ok(());
+        }
         match operation {
             Operation::Write { signal, value } => {
-                let (offset, bytes) = self.valued(signal, value)?;
-                self.image.write(offset, &bytes);
+                let (id, bytes) = self.valued(signal, value)?;
+                if self.image.interference().is_forced(id) {
+                    return Err(OperationError::Forced(signal.clone()));
+                }
+                self.image.interference_mut().write(id, bytes);
             }
             Operation::Force { signal, value } => {
-                let (offset, bytes) = self.valued(signal, value)?;
-                self.image.force(offset, bytes);
+                let (id, bytes) = self.valued(signal, value)?;
+                self.image.interference_mut().force(id, bytes);
             }
             Operation::Release { signal } => {
-                if !self.image.release(self.layout.offset(self.known(signal)?)) {
+                let id = self.known(signal)?;
+                if !self.image.interference_mut().release(id) {
                     return Err(OperationError::NotForced(signal.clone()));
                 }
             }
-            Operation::Stop | Operation::Pause | Operation::Resume | Operation::Step | Operation::Reset => {
-                if let Some(control) = operation.control() {
-                    self.control(control);
+            Operation::Disturb { signal, fault } => self.disturb(signal, fault)?,
+            Operation::Mend { signal } => {
+                let id = self.known(signal)?;
+                if !self.image.interference_mut().mend(id) {
+                    return Err(OperationError::NotDisturbed(signal.clone()));
+                }
+            }
+            _ => {
+                if let Some((client, _)) = operation.for_client() {
+                    let refused =
+                        OperationError::Client { client: client.clone(), source: OperationRefused::Unsupported };
+                    return Err(refused);
                 }
             }
         }
         Ok(())
+    }
+
+    fn disturb(&mut self, signal: &SignalName, fault: &SignalFault) -> Result<(), OperationError> {
+        let id = self.known(signal)?;
+        let (ty, step) = (self.layout.ty(id), self.plan.step());
+        let committed = self.layout.bytes(id, self.image.committed()).to_vec();
+        if self.image.interference_mut().disturb(id, fault, ty, &committed, step) {
+            return Ok(());
+        }
+        Err(OperationError::FaultType { signal: signal.clone(), ty, fault: fault.clone() })
     }
 
     fn known(&self, signal: &SignalName) -> Result<SignalId, OperationError> {
@@ -51,11 +83,11 @@ impl Session {
         })
     }
 
-    /// Where a signal lies, and the bytes of a value.
-    fn valued(&self, signal: &SignalName, value: &str) -> Result<(usize, Vec<u8>), OperationError> {
+    /// A signal, and the bytes of a value.
+    pub(crate) fn valued(&self, signal: &SignalName, value: &str) -> Result<(SignalId, Vec<u8>), OperationError> {
         let id = self.known(signal)?;
         let bytes = self.layout.ty(id).parse_text(value);
         let bytes = bytes.map_err(|source| OperationError::Value { signal: signal.clone(), source })?;
-        Ok((self.layout.offset(id), bytes))
+        Ok((id, bytes))
     }
 }

@@ -1,11 +1,9 @@
 //! The session's own part of a checkpoint.
 
-use std::collections::BTreeMap;
-
 use serde::{Deserialize, Serialize};
 
 use super::Session;
-use crate::signal::SignalId;
+use crate::interference::Interference;
 use crate::state::ServerState;
 use crate::time::{StepCount, VirtualTime};
 
@@ -16,13 +14,20 @@ pub struct SessionState {
     t_v: VirtualTime,
     wakes: Vec<VirtualTime>,
     image: Vec<u8>,
-    forces: BTreeMap<u64, Vec<u8>>,
+    /// What the writers last wrote, which a force or a fault may hide in `image`.
+    staged: Vec<u8>,
+    interference: Interference,
 }
 
 impl SessionState {
     /// Virtual time of the checkpoint.
     pub fn t_v(&self) -> VirtualTime {
         self.t_v
+    }
+
+    /// Steps committed at the checkpoint.
+    pub fn steps(&self) -> StepCount {
+        self.steps
     }
 }
 
@@ -34,7 +39,8 @@ impl Session {
             t_v: self.cycle.t_v(),
             wakes: self.clients().map(|client| self.cycle.wake(client)).collect(),
             image: self.image.committed().to_vec(),
-            forces: self.image.forces().iter().map(|(offset, bytes)| (*offset as u64, bytes.clone())).collect(),
+            staged: self.image.staged().to_vec(),
+            interference: self.image.interference().clone(),
         })
     }
 
@@ -43,24 +49,16 @@ impl Session {
     pub fn restore(&mut self, state: &SessionState) -> bool {
         let fits = state.wakes.len() == self.members.len()
             && state.image.len() == self.layout.size()
-            && state.forces.iter().all(|(offset, bytes)| self.is_signal(*offset, bytes.len()))
+            && state.staged.len() == self.layout.size()
+            && state.interference.fits(&self.layout)
             && state.t_v.is_multiple_of(self.plan.step())
             && state.wakes.iter().all(|wake| wake.is_multiple_of(self.plan.step()) && *wake > state.t_v)
             && self.cycle.server() == ServerState::Start
             && self.members.iter().all(Option::is_some);
         if fits {
             self.cycle.resume_at(state.steps, state.t_v, &state.wakes);
-            self.image.load(&state.image);
-            for (offset, bytes) in &state.forces {
-                self.image.force(*offset as usize, bytes.clone());
-            }
+            self.image.load(&state.image, &state.staged, state.interference.clone());
         }
         fits
-    }
-
-    /// True if a signal lies there.
-    fn is_signal(&self, offset: u64, size: usize) -> bool {
-        let here = |id: SignalId| (self.layout.offset(id) as u64, self.layout.ty(id).size()) == (offset, size);
-        self.layout.signals().any(here)
     }
 }

@@ -3,6 +3,7 @@
 use super::Session;
 use crate::client::{ClientId, Wake};
 use crate::end::{Failure, FailureCause, SessionEnd, Violation};
+use crate::image::Commit;
 use crate::state::ClientState;
 use crate::time::{StepCount, VirtualTime};
 
@@ -32,7 +33,7 @@ impl Session {
         self.cycle.sleep_until(client, period.map_or(VirtualTime::ZERO, |period| VirtualTime::ZERO + period));
         self.cycle.signal_ready(client);
         if self.cycle.is_synchronised() {
-            self.image.commit();
+            self.image.commit(Commit::EndsStep);
         }
         Ok(())
     }

@@ -72,10 +72,10 @@ impl Session {
         self.mode == Mode::Held && self.cycle.is_at_boundary()
     }
 
-    /// Copies the client's own outputs back from the image, as its last turn left them.
+    /// Copies the client's own outputs back, as its last turn left them, whatever lies over them.
     pub(crate) fn read_back(&self, client: ClientId, outputs: &mut [u8]) {
         if let Some(member) = &self.members[client.index()] {
-            self.image.gather(&member.outputs, outputs);
+            self.image.gather_staged(&member.outputs, outputs);
         }
     }
 

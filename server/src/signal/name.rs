@@ -76,23 +76,6 @@ name! {
     ClientName
 }
 
-/// The candidate nearest to `wanted`, if any is near enough to have been meant.
-pub fn nearest<'a>(wanted: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
-    candidates
-        .into_iter()
-        .map(|candidate| {
-            (strsim::normalized_damerau_levenshtein(&wanted.to_lowercase(), &candidate.to_lowercase()), candidate)
-        })
-        .filter(|(score, _)| *score >= 0.6)
-        .max_by(|(a, name_a), (b, name_b)| a.total_cmp(b).then(name_b.cmp(name_a)))
-        .map(|(_, candidate)| candidate)
-}
-
-/// The nearest of `candidates` as a hint, if any is near enough to have been meant.
-pub fn did_you_mean<'a>(wanted: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<String> {
-    nearest(wanted, candidates).map(|name| format!("did you mean `{name}`?"))
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -105,13 +88,5 @@ mod tests {
             assert!(SignalName::new(bad).is_err(), "{bad}");
         }
         assert!(SignalName::new("x".repeat(129)).is_err());
-    }
-
-    #[test]
-    fn the_nearest_name_is_found() {
-        let names = ["Sensor_1", "Sensor_2", "Position_1"];
-        assert_eq!(nearest("Senosr_1", names), Some("Sensor_1"));
-        assert_eq!(nearest("sensor_2", names), Some("Sensor_2"));
-        assert_eq!(nearest("conveyor", names), None);
     }
 }

@@ -4,9 +4,10 @@
 use std::fmt;
 use std::str::FromStr;
 
+use onescan_base::did_you_mean;
 use thiserror::Error;
 
-use super::{SignalName, did_you_mean};
+use super::SignalName;
 
 /// A name, or what many names have in common: `Position_*`, `axis[?].torque`.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]

@@ -5,11 +5,12 @@
 
 use std::marker::PhantomData;
 
+use onescan_base::value::{CANONICAL_NAN_F32, CANONICAL_NAN_F64};
+use onescan_base::{SignalType, nearest};
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
-use super::elementary::{CANONICAL_NAN_F32, CANONICAL_NAN_F64, ElementaryType};
-use super::name::{SignalName, nearest};
+use super::name::SignalName;
 
 /// One signal of a port.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -19,7 +20,7 @@ pub struct Port {
     pub name: SignalName,
     /// The type that the client takes it for.
     #[serde(rename = "type")]
-    pub ty: ElementaryType,
+    pub ty: SignalType,
 }
 
 /// Where each signal of a port lies: packed, in the port's own order.
@@ -94,7 +95,7 @@ pub enum SlotError {
         /// The signal.
         name: String,
         /// Its type.
-        ty: ElementaryType,
+        ty: SignalType,
         /// The type asked for.
         wanted: &'static str,
     },
@@ -138,7 +139,7 @@ pub trait SlotType: Copy {
     /// The IEC types in words, for errors.
     const IEC: &'static str;
     /// True for the IEC types this one can stand for.
-    fn accepts(ty: ElementaryType) -> bool;
+    fn accepts(ty: SignalType) -> bool;
     /// Reads a value from the start of `bytes`.
     fn get(bytes: &[u8]) -> Self;
     /// Writes the value to the start of `bytes`.
@@ -148,8 +149,8 @@ pub trait SlotType: Copy {
 impl SlotType for bool {
     const IEC: &'static str = "BOOL";
 
-    fn accepts(ty: ElementaryType) -> bool {
-        ty == ElementaryType::Bool
+    fn accepts(ty: SignalType) -> bool {
+        ty == SignalType::BOOL
     }
 
     fn get(bytes: &[u8]) -> Self {
@@ -166,8 +167,8 @@ macro_rules! number_slot {
         impl SlotType for $rust {
             const IEC: &'static str = $iec;
 
-            fn accepts(ty: ElementaryType) -> bool {
-                matches!(ty, $(ElementaryType::$ty)|+)
+            fn accepts(ty: SignalType) -> bool {
+                matches!(ty, $(SignalType::$ty)|+)
             }
 
             fn get(bytes: &[u8]) -> Self {
@@ -184,16 +185,16 @@ macro_rules! number_slot {
     };
 }
 
-number_slot!(i8, "SINT", Sint, |v| v);
-number_slot!(u8, "BYTE or USINT", Byte | Usint | Char, |v| v);
-number_slot!(i16, "INT", Int, |v| v);
-number_slot!(u16, "WORD or UINT", Word | Uint | Wchar, |v| v);
-number_slot!(i32, "DINT", Dint, |v| v);
-number_slot!(u32, "DWORD or UDINT", Dword | Udint, |v| v);
-number_slot!(i64, "LINT or TIME", Lint | Time | Ltime | Date | Ldate | Tod | Ltod | Dt | Ldt, |v| v);
-number_slot!(u64, "LWORD or ULINT", Lword | Ulint, |v| v);
-number_slot!(f32, "REAL", Real, |v| if v.is_nan() { CANONICAL_NAN_F32 } else { v });
-number_slot!(f64, "LREAL", Lreal, |v| if v.is_nan() { CANONICAL_NAN_F64 } else { v });
+number_slot!(i8, "SINT", SINT, |v| v);
+number_slot!(u8, "BYTE or USINT", BYTE | USINT | CHAR, |v| v);
+number_slot!(i16, "INT", INT, |v| v);
+number_slot!(u16, "WORD or UINT", WORD | UINT | WCHAR, |v| v);
+number_slot!(i32, "DINT", DINT, |v| v);
+number_slot!(u32, "DWORD or UDINT", DWORD | UDINT, |v| v);
+number_slot!(i64, "LINT or TIME", LINT | TIME | LTIME | DATE | LDATE | TOD | LTOD | DT | LDT, |v| v);
+number_slot!(u64, "LWORD or ULINT", LWORD | ULINT, |v| v);
+number_slot!(f32, "REAL", REAL, |v| if v.is_nan() { CANONICAL_NAN_F32 } else { v });
+number_slot!(f64, "LREAL", LREAL, |v| if v.is_nan() { CANONICAL_NAN_F64 } else { v });
 
 #[cfg(test)]
 mod tests {
@@ -202,9 +203,9 @@ mod tests {
     fn layout() -> PortLayout {
         let port = |name: &str, ty| Port { name: SignalName::new(name).unwrap(), ty };
         PortLayout::new(vec![
-            port("on", ElementaryType::Bool),
-            port("position", ElementaryType::Lreal),
-            port("count", ElementaryType::Int),
+            port("on", SignalType::BOOL),
+            port("position", SignalType::LREAL),
+            port("count", SignalType::INT),
         ])
     }
 

@@ -6,6 +6,7 @@ use thiserror::Error;
 
 use super::frame::Frame;
 use super::message::ServerMessage;
+use crate::client::ClientOperation;
 use crate::end::SessionEnd;
 use crate::state::ClientState;
 use crate::time::{StepCount, VirtualTime};
@@ -13,8 +14,10 @@ use crate::time::{StepCount, VirtualTime};
 /// What a client has to do next.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Duty {
-    /// Initialise and answer with a turn of sequence 0.
-    Setup,
+    /// Initialise, with these operations in force, and answer with a turn of sequence 0.
+    Setup(Vec<ClientOperation>),
+    /// Do this and answer `operated`.
+    Operate(ClientOperation),
     /// Run a turn on these inputs.
     Turn {
         /// To be given back.
@@ -140,17 +143,19 @@ impl Endpoint {
                 self.ended = true;
                 Ok(Duty::Leave(end))
             }
-            ServerMessage::Setup {} if between_turns => {
+            ServerMessage::Setup { operations } if between_turns => {
                 self.state = ClientState::Setup;
                 (self.sequence, self.t_v) = (StepCount(0), VirtualTime::ZERO);
-                Ok(Duty::Setup)
+                Ok(Duty::Setup(operations))
             }
+            ServerMessage::Operate(operation) if self.state == ClientState::Write => Ok(Duty::Operate(operation)),
             ServerMessage::Save {} if self.state == ClientState::Write => Ok(Duty::Save),
             ServerMessage::Restore { t_v, steps } if self.state == ClientState::Start => {
                 self.restoring = Some((steps, t_v));
                 Ok(Duty::Nothing)
             }
-            ServerMessage::Setup {} => Err(self.out_of_place("setup")),
+            ServerMessage::Setup { .. } => Err(self.out_of_place("setup")),
+            ServerMessage::Operate(_) => Err(self.out_of_place("an operation")),
             ServerMessage::Save {} => Err(self.out_of_place("save")),
             ServerMessage::Restore { .. } => Err(self.out_of_place("restore")),
             ServerMessage::Welcome { .. }
@@ -204,7 +209,8 @@ mod tests {
 
     fn set_up() -> Endpoint {
         let mut endpoint = Endpoint::new(0);
-        assert_eq!(endpoint.receive_message(ServerMessage::Setup {}), Ok(Duty::Setup));
+        let setup = ServerMessage::Setup { operations: Vec::new() };
+        assert_eq!(endpoint.receive_message(setup), Ok(Duty::Setup(Vec::new())));
         endpoint.answered();
         endpoint
     }
@@ -230,7 +236,7 @@ mod tests {
         let mut endpoint = set_up();
         endpoint.receive(grant(5, 50)).unwrap();
         endpoint.answered();
-        endpoint.receive_message(ServerMessage::Setup {}).unwrap();
+        endpoint.receive_message(ServerMessage::Setup { operations: Vec::new() }).unwrap();
         endpoint.answered();
         assert!(endpoint.receive(grant(1, 10)).is_ok());
     }

@@ -3,11 +3,11 @@
 use serde::{Deserialize, Serialize};
 
 use super::VersionRange;
-use crate::client::{ClientFault, JoinRequest};
+use crate::client::{ClientFault, ClientOperation, JoinRequest, OperationRefused};
 use crate::end::SessionEnd;
 use crate::operation::Operation;
 use crate::session::Control;
-use crate::signal::{ElementaryType, PortLayout, SignalDecl, SignalName};
+use crate::signal::{PortLayout, SignalDecl, SignalName, SignalType};
 use crate::state::ServerState;
 use crate::time::{StepCount, TimeSpan, VirtualTime};
 
@@ -40,6 +40,12 @@ pub enum ClientMessage {
     Fault(ClientFault),
     /// The state is taken back.
     Restored {},
+    /// Answer to `operate` of the server.
+    Operated {
+        /// Why it was not done; left out if it was.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        refused: Option<OperationRefused>,
+    },
     /// An operator's wish.
     Control(Control),
     /// An operator writes, forces or releases a signal, or wishes as with `control`.
@@ -83,7 +89,13 @@ pub enum ServerMessage {
         message: String,
     },
     /// Take the initial state; answer with a turn of sequence 0.
-    Setup {},
+    Setup {
+        /// What is in force from the initial values on; left out if nothing is.
+        #[serde(default, skip_serializing_if = "Vec::is_empty")]
+        operations: Vec<ClientOperation>,
+    },
+    /// Do this between two turns; answer with `operated`.
+    Operate(ClientOperation),
     /// Hand out the state; answer with a state frame.
     Save {},
     /// Take back the state in the frame that follows; answer with `restored`.
@@ -108,7 +120,7 @@ pub struct PlacedSignal {
     pub name: SignalName,
     /// Its type.
     #[serde(rename = "type")]
-    pub ty: ElementaryType,
+    pub ty: SignalType,
     /// First byte.
     pub offset: u32,
     /// Bytes.

@@ -16,7 +16,7 @@ mod timers;
 use std::time::Instant;
 
 use native::Native;
-use onescan_plc_shim::{Application, SoftPlc, TaskPlan, VirtualTime};
+use onescan_plc_shim::{Application, SoftPlc, TaskPlan, TimeSpan, VirtualTime};
 
 const INTERVAL_NS: u64 = 10_000_000;
 const ROUNDS: usize = 40;
@@ -49,7 +49,7 @@ fn run(plc: &mut SoftPlc, scans: u64) -> (f64, u64) {
     plc.cold_start();
     let started = Instant::now();
     for scan in 1..=scans {
-        plc.scan(VirtualTime::from_ns(scan * INTERVAL_NS)).expect("it runs");
+        plc.scan(VirtualTime::from_nanos(scan * INTERVAL_NS)).expect("it runs");
     }
     let time = started.elapsed().as_nanos() as f64;
     let bytes = plc.memory()[sum..].first_chunk().expect("a checksum is an ULINT");
@@ -66,7 +66,7 @@ fn median(mut ratios: Vec<f64>) -> f64 {
 fn compare(case: &Case) -> [f64; 2] {
     let application = Application::from_sources([(format!("{}.st", case.name), case.st.as_str())]);
     let application = application.unwrap_or_else(|found| panic!("{}: {found}", case.name));
-    let plan = TaskPlan::single(&application, INTERVAL_NS);
+    let plan = TaskPlan::single(&application, TimeSpan::from_nanos(INTERVAL_NS).expect("not zero"));
     let mut plc = SoftPlc::new(&application, &plan).expect("it can run");
     let native = Native::compile(case.name, &case.c);
     let (trial, _) = run(&mut plc, 100);

@@ -15,7 +15,7 @@ use std::time::Instant;
 
 use onescan_plc_shim::input::kind::SourceKind;
 use onescan_plc_shim::instrument::{Options, instrument};
-use onescan_plc_shim::{Application, Input, SoftPlc, Task, TaskPlan, VirtualTime};
+use onescan_plc_shim::{Application, Input, SoftPlc, Task, TaskPlan, TimeSpan, VirtualTime};
 
 const INTERVAL_NS: u64 = 10_000_000;
 const ROUNDS: usize = 40;
@@ -61,7 +61,8 @@ impl Bench {
         // As `onescan plc` has it in lockstep: scheduler and programs in one task.
         let scheduler = is_granted.then(|| SCHEDULER.to_owned());
         let programs = scheduler.into_iter().chain([main.clone()]).collect();
-        let task = Task { name: "main".to_owned(), interval_ns: INTERVAL_NS, programs, ..Task::default() };
+        let task =
+            Task { name: "main".to_owned(), interval: TimeSpan::from_nanos(INTERVAL_NS), programs, ..Task::default() };
         let plc = SoftPlc::new(&application, &TaskPlan::new(vec![task])).expect("it can run");
         let offset = |path: &str| plc.variable(path).expect("it is there").offset as usize;
         let inputs = if is_granted { ["SDSP_TV", "SDSP_Grant"] } else { ["time_input", "number_input"] };
@@ -76,7 +77,7 @@ impl Bench {
         memory[time..time + 8].copy_from_slice(&now.to_le_bytes());
         memory[count..count + 4].copy_from_slice(&(SESSION + number as u32).to_le_bytes());
         // A cycle has been used to join.
-        self.plc.scan(VirtualTime::from_ns(now + INTERVAL_NS)).expect("it runs");
+        self.plc.scan(VirtualTime::from_nanos(now + INTERVAL_NS)).expect("it runs");
     }
 
     /// A cold start; an instrumented PLC joins the session.
@@ -87,7 +88,7 @@ impl Bench {
                 let at = self.plc.variable(path).expect("it is there").offset as usize;
                 self.plc.memory_mut()[at..at + 4].copy_from_slice(&value.to_le_bytes());
             }
-            self.plc.scan(VirtualTime::from_ns(INTERVAL_NS)).expect("it joins");
+            self.plc.scan(VirtualTime::from_nanos(INTERVAL_NS)).expect("it joins");
         }
     }
 

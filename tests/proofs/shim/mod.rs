@@ -39,7 +39,7 @@ mod undisturbed;
 
 use std::sync::Mutex;
 
-use onescan_plc_shim::Task;
+use onescan_plc_shim::{Task, TimeSpan};
 use stateright::{Checker, Model, Property};
 
 use self::gateway::{Gateway, Message, Progress, Verdict};
@@ -58,7 +58,7 @@ const SESSIONS: [u32; 4] = [100, 200, 300, 400];
 
 fn task(name: &str, ms: u64, priority: u32, program: &str) -> Task {
     let programs = vec![program.to_owned()];
-    Task { name: name.to_owned(), interval_ns: ms * 1_000_000, priority, programs, ..Task::default() }
+    Task { name: name.to_owned(), interval: TimeSpan::from_millis(ms), priority, programs, ..Task::default() }
 }
 
 fn project() -> Project {

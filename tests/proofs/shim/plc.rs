@@ -5,7 +5,7 @@ use std::ops::Range;
 
 use onescan_plc_shim::input::kind::SourceKind;
 use onescan_plc_shim::instrument::{Options, instrument};
-use onescan_plc_shim::{Application, Input, SoftPlc, Task, TaskPlan, VirtualTime};
+use onescan_plc_shim::{Application, Input, SoftPlc, Task, TaskPlan, TimeSpan, VirtualTime};
 
 use super::gateway::Message;
 
@@ -81,7 +81,8 @@ impl Plc {
         let application = Application::from_sources(files).expect("it compiles");
         let tasks = std::iter::once(&"SDSP_Scheduler").chain(project.programs).map(|program| {
             let programs = vec![(*program).to_owned()];
-            let only = Task { name: "only".to_owned(), interval_ns: 1_000_000, programs, ..Task::default() };
+            let only =
+                Task { name: "only".to_owned(), interval: Some(TimeSpan::millis::<1>()), programs, ..Task::default() };
             SoftPlc::new(&application, &TaskPlan::new(vec![only])).expect("it runs")
         });
         let tasks = tasks.collect();
@@ -158,7 +159,7 @@ impl Plc {
         let plc = &mut self.tasks[task];
         plc.cold_start();
         plc.memory_mut()[..memory.len()].copy_from_slice(&memory);
-        plc.scan(VirtualTime::from_ns(1_000_000)).expect("no fault");
+        plc.scan(VirtualTime::from_nanos(1_000_000)).expect("no fault");
         let size = memory.len();
         memory.copy_from_slice(&plc.memory()[..size]);
         memory

@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use onescan_server::signal::did_you_mean;
+use onescan_base::did_you_mean;
 
 use super::command::{self, SUM_MAX, state_name};
 use super::connection::{Connection, Refusal, numbers, told};

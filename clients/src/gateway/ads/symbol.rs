@@ -1,6 +1,6 @@
 //! Entries of a device's table of symbols (Beckhoff: `AdsSymbolEntry`), and the types in them.
 
-use onescan_server::signal::ElementaryType as T;
+use onescan_server::signal::SignalType as T;
 
 use super::frame::Bytes;
 
@@ -86,16 +86,16 @@ impl Form {
     /// Number of the base type (Beckhoff: `ADSDATATYPEID`).
     pub fn base(self) -> u32 {
         match self.ty {
-            T::Bool => 33,
-            T::Sint => 16,
-            T::Byte | T::Usint | T::Char => 17,
-            T::Int => 2,
-            T::Word | T::Uint | T::Wchar => 18,
-            T::Dint => 3,
-            T::Dword | T::Udint => 19,
-            T::Lint => 20,
-            T::Real => 4,
-            T::Lreal => 5,
+            T::BOOL => 33,
+            T::SINT => 16,
+            T::BYTE | T::USINT | T::CHAR => 17,
+            T::INT => 2,
+            T::WORD | T::UINT | T::WCHAR => 18,
+            T::DINT => 3,
+            T::DWORD | T::UDINT => 19,
+            T::LINT => 20,
+            T::REAL => 4,
+            T::LREAL => 5,
             T::String(_) => 30,
             T::Wstring(_) => 31,
             // LWORD and ULINT; and durations and dates, which TwinCAT counts in ns without a sign.
@@ -125,7 +125,7 @@ impl Form {
         let width = match self.ty {
             T::String(_) => 1,
             T::Wstring(_) => 2,
-            T::Bool => {
+            T::BOOL => {
                 packed[0] = bytes[0];
                 return bytes[0] <= 1;
             }
@@ -146,7 +146,7 @@ impl Form {
 
 /// One type of each base.
 const NUMBERS: [T; 11] =
-    [T::Bool, T::Sint, T::Usint, T::Int, T::Uint, T::Dint, T::Udint, T::Lint, T::Ulint, T::Real, T::Lreal];
+    [T::BOOL, T::SINT, T::USINT, T::INT, T::UINT, T::DINT, T::UDINT, T::LINT, T::ULINT, T::REAL, T::LREAL];
 
 /// The elementary type that a symbol can be bound to.
 pub fn elementary(symbol: &Symbol) -> Option<T> {
@@ -175,12 +175,12 @@ mod tests {
 
     #[test]
     fn types_fit_by_name_or_base() {
-        assert!(Form::of(T::Int).fits(&symbol("INT", 2, 2)));
-        assert!(Form::of(T::Int).fits(&symbol("E_State", 2, 2)), "an enumeration");
-        assert!(Form::of(T::Ltime).fits(&symbol("LTIME", 21, 8)));
-        assert!(!Form::of(T::Time).fits(&symbol("TIME", 19, 4)), "TIME of TwinCAT has 32 bits and counts ms");
-        assert!(!Form::of(T::Int).fits(&symbol("DINT", 3, 4)));
-        assert!(!Form::of(T::Dint).fits(&symbol("REAL", 4, 4)));
+        assert!(Form::of(T::INT).fits(&symbol("INT", 2, 2)));
+        assert!(Form::of(T::INT).fits(&symbol("E_State", 2, 2)), "an enumeration");
+        assert!(Form::of(T::LTIME).fits(&symbol("LTIME", 21, 8)));
+        assert!(!Form::of(T::TIME).fits(&symbol("TIME", 19, 4)), "TIME of TwinCAT has 32 bits and counts ms");
+        assert!(!Form::of(T::INT).fits(&symbol("DINT", 3, 4)));
+        assert!(!Form::of(T::DINT).fits(&symbol("REAL", 4, 4)));
         assert!(Form::of(T::String(5)).fits(&symbol("STRING(5)", 30, 6)));
     }
 
@@ -194,7 +194,7 @@ mod tests {
         assert!(form.take(&bytes, &mut back));
         assert_eq!(back, packed);
         assert!(!Form::of(T::String(2)).take(b"abc", &mut [0; 4]), "no zero");
-        assert!(!Form::of(T::Bool).take(&[2], &mut [0]));
+        assert!(!Form::of(T::BOOL).take(&[2], &mut [0]));
     }
 
     proptest! {

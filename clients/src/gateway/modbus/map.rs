@@ -6,7 +6,7 @@
 
 use std::fmt;
 
-use onescan_server::signal::ElementaryType;
+use onescan_server::signal::SignalType;
 use serde::Deserialize;
 
 use crate::gateway::byte_order::{ByteOrder, is_number};
@@ -195,7 +195,7 @@ fn entry(point: &Point, direction: Direction, next: u16) -> Result<Entry, Mappin
             address
         }
     };
-    let is_bool = ty == ElementaryType::Bool;
+    let is_bool = ty == SignalType::BOOL;
     if !is_bool && !is_number(ty) {
         return fault(format!("`{name}` is {ty}: texts do not travel in registers"), "take it out of the session");
     }

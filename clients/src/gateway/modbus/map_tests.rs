@@ -7,18 +7,18 @@ use super::*;
 use crate::gateway::exchange::SystemWords;
 use crate::gateway::modbus::registers;
 
-const TYPES: [ElementaryType; 7] = [
-    ElementaryType::Bool,
-    ElementaryType::Byte,
-    ElementaryType::Int,
-    ElementaryType::Dint,
-    ElementaryType::Real,
-    ElementaryType::Lreal,
-    ElementaryType::Bool,
+const TYPES: [SignalType; 7] = [
+    SignalType::BOOL,
+    SignalType::BYTE,
+    SignalType::INT,
+    SignalType::DINT,
+    SignalType::REAL,
+    SignalType::LREAL,
+    SignalType::BOOL,
 ];
 
-fn exchange(ports: &[(&str, ElementaryType)], addresses: &[(&str, &str)]) -> Exchange {
-    let port = |(name, ty): &(&str, ElementaryType)| Port { name: SignalName::new(*name).unwrap(), ty: *ty };
+fn exchange(ports: &[(&str, SignalType)], addresses: &[(&str, &str)]) -> Exchange {
+    let port = |(name, ty): &(&str, SignalType)| Port { name: SignalName::new(*name).unwrap(), ty: *ty };
     let ports: Vec<Port> = ports.iter().map(port).collect();
     let addresses: BTreeMap<_, _> = addresses.iter().map(|(a, b)| ((*a).to_owned(), (*b).to_owned())).collect();
     Exchange::new(&ports, &[], SystemWords::Absent, &addresses)
@@ -26,22 +26,22 @@ fn exchange(ports: &[(&str, ElementaryType)], addresses: &[(&str, &str)]) -> Exc
 
 #[test]
 fn what_is_wrong_with_a_map_is_told() {
-    use ElementaryType::{Bool, Real, String};
+    use SignalType as T;
     let told = |ty, address: &str| {
         let exchange = exchange(&[("a", ty), ("b", ty)], &[("a", address), ("b", "hr:50")]);
         RegisterMap::new(&Options::default(), &exchange).map_or_else(|f| f.to_string(), |_| "fine".to_owned())
     };
     let all = [
-        told(Real, "hr:100"),
-        told(Real, "hr:49"),
-        told(Real, "coil:1"),
-        told(Real, "hr:1.3"),
-        told(Real, "ir:1"),
-        told(Real, "hr:65535"),
-        told(Real, "4x100"),
-        told(Bool, "hr:8.3"),
-        told(Bool, "hr:8.16"),
-        told(String(4), "hr:20"),
+        told(T::REAL, "hr:100"),
+        told(T::REAL, "hr:49"),
+        told(T::REAL, "coil:1"),
+        told(T::REAL, "hr:1.3"),
+        told(T::REAL, "ir:1"),
+        told(T::REAL, "hr:65535"),
+        told(T::REAL, "4x100"),
+        told(T::BOOL, "hr:8.3"),
+        told(T::BOOL, "hr:8.16"),
+        told(T::String(4), "hr:20"),
     ];
     insta::assert_snapshot!(all.join("\n"));
 }
@@ -49,7 +49,7 @@ fn what_is_wrong_with_a_map_is_told() {
 #[test]
 fn neighbours_share_a_request_and_the_grant_is_in_the_last() {
     let named: Vec<String> = (0..100).map(|i| format!("s{i}")).collect();
-    let ports: Vec<_> = named.iter().map(|name| (name.as_str(), ElementaryType::Real)).collect();
+    let ports: Vec<_> = named.iter().map(|name| (name.as_str(), SignalType::REAL)).collect();
     let map = RegisterMap::new(&Options::default(), &exchange(&ports, &[("s3", "coil:9")])).unwrap_err();
     assert!(map.to_string().contains("does not fit into the bit coil:9"));
     let map = RegisterMap::new(&Options::default(), &exchange(&ports, &[("s3", "hr:5000")])).unwrap();
@@ -74,7 +74,7 @@ proptest! {
         for point in exchange.to_plc() {
             for _ in 0..point.ty.size() {
                 state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
-                packed.push(if point.ty == ElementaryType::Bool { (state >> 60) as u8 & 1 } else { (state >> 33) as u8 });
+                packed.push(if point.ty == SignalType::BOOL { (state >> 60) as u8 & 1 } else { (state >> 33) as u8 });
             }
         }
         let mut back = vec![0; packed.len()];

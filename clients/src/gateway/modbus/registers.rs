@@ -1,7 +1,7 @@
 //! Values in registers: within a register the high byte comes first (sec. 4.2); which word of a long value comes
 //! first, each maker decides.
 
-use onescan_server::signal::ElementaryType;
+use onescan_server::signal::SignalType;
 
 use super::map::{Entry, Span};
 use crate::gateway::byte_order::ByteOrder;
@@ -10,7 +10,7 @@ use crate::gateway::byte_order::ByteOrder;
 pub fn put(entry: &Entry, packed: &[u8], order: ByteOrder, span: &Span, words: &mut [u16]) {
     let Some(words) = within(entry, *span, words.len()).and_then(|range| words.get_mut(range)) else { return };
     let value = &packed[entry.point.range()];
-    if let (ElementaryType::Bool, Some(word)) = (entry.point.ty, words.first_mut()) {
+    if let (SignalType::BOOL, Some(word)) = (entry.point.ty, words.first_mut()) {
         let mask = 1 << entry.address.bit.unwrap_or(0);
         let rest = if entry.address.bit.is_some() { *word & !mask } else { 0 };
         *word = rest | if value[0] != 0 { mask } else { 0 };
@@ -29,7 +29,7 @@ pub fn put(entry: &Entry, packed: &[u8], order: ByteOrder, span: &Span, words: &
 pub fn take(entry: &Entry, words: &[u16], order: ByteOrder, span: &Span, packed: &mut [u8]) {
     let Some(words) = within(entry, *span, words.len()).and_then(|range| words.get(range)) else { return };
     let value = &mut packed[entry.point.range()];
-    if let (ElementaryType::Bool, Some(word)) = (entry.point.ty, words.first()) {
+    if let (SignalType::BOOL, Some(word)) = (entry.point.ty, words.first()) {
         value[0] = u8::from(entry.address.bit.map_or(*word != 0, |bit| word >> bit & 1 != 0));
         return;
     }

@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use onescan_server::signal::did_you_mean;
+use onescan_base::did_you_mean;
 use opcua::types::{AttributeId, DataValue, NodeId, ReadValueId, StatusCode, TimestampsToReturn, Variant, WriteValue};
 use tokio::runtime::Runtime;
 

@@ -1,41 +1,41 @@
 //! Packed values as Variants (IEC 62541-6 5.1.9), in the types that PLCopen's information model gives to those of
 //! IEC 61131-3; durations and dates as Int64, in ns.
 
-use onescan_server::signal::ElementaryType as T;
+use onescan_server::signal::SignalType as T;
 use opcua::types::{DataTypeId, UAString, Variant};
 
 /// The built-in type of `ty`.
 pub fn data_type(ty: T) -> DataTypeId {
     match ty {
-        T::Bool => DataTypeId::Boolean,
-        T::Sint => DataTypeId::SByte,
-        T::Byte | T::Usint | T::Char => DataTypeId::Byte,
-        T::Int => DataTypeId::Int16,
-        T::Word | T::Uint | T::Wchar => DataTypeId::UInt16,
-        T::Dint => DataTypeId::Int32,
-        T::Dword | T::Udint => DataTypeId::UInt32,
-        T::Lword | T::Ulint => DataTypeId::UInt64,
-        T::Real => DataTypeId::Float,
-        T::Lreal => DataTypeId::Double,
+        T::BOOL => DataTypeId::Boolean,
+        T::SINT => DataTypeId::SByte,
+        T::BYTE | T::USINT | T::CHAR => DataTypeId::Byte,
+        T::INT => DataTypeId::Int16,
+        T::WORD | T::UINT | T::WCHAR => DataTypeId::UInt16,
+        T::DINT => DataTypeId::Int32,
+        T::DWORD | T::UDINT => DataTypeId::UInt32,
+        T::LWORD | T::ULINT => DataTypeId::UInt64,
+        T::REAL => DataTypeId::Float,
+        T::LREAL => DataTypeId::Double,
         T::String(_) | T::Wstring(_) => DataTypeId::String,
-        T::Lint | T::Time | T::Ltime | T::Date | T::Ldate | T::Tod | T::Ltod | T::Dt | T::Ldt => DataTypeId::Int64,
+        T::LINT | T::TIME | T::LTIME | T::DATE | T::LDATE | T::TOD | T::LTOD | T::DT | T::LDT => DataTypeId::Int64,
     }
 }
 
 /// The elementary type that a Variant's type is read as.
 pub fn elementary(value: &Variant) -> Option<T> {
     Some(match value {
-        Variant::Boolean(_) => T::Bool,
-        Variant::SByte(_) => T::Sint,
-        Variant::Byte(_) => T::Usint,
-        Variant::Int16(_) => T::Int,
-        Variant::UInt16(_) => T::Uint,
-        Variant::Int32(_) => T::Dint,
-        Variant::UInt32(_) => T::Udint,
-        Variant::Int64(_) => T::Lint,
-        Variant::UInt64(_) => T::Ulint,
-        Variant::Float(_) => T::Real,
-        Variant::Double(_) => T::Lreal,
+        Variant::Boolean(_) => T::BOOL,
+        Variant::SByte(_) => T::SINT,
+        Variant::Byte(_) => T::USINT,
+        Variant::Int16(_) => T::INT,
+        Variant::UInt16(_) => T::UINT,
+        Variant::Int32(_) => T::DINT,
+        Variant::UInt32(_) => T::UDINT,
+        Variant::Int64(_) => T::LINT,
+        Variant::UInt64(_) => T::ULINT,
+        Variant::Float(_) => T::REAL,
+        Variant::Double(_) => T::LREAL,
         Variant::String(_) => T::String(80),
         _ => return None,
     })
@@ -115,10 +115,10 @@ mod tests {
 
     #[test]
     fn every_type_comes_back() {
-        let types = [T::Bool, T::Byte, T::Word, T::Dword, T::Lword, T::Sint, T::Int, T::Dint, T::Lint, T::Usint];
-        let more = [T::Uint, T::Udint, T::Ulint, T::Real, T::Lreal, T::Time, T::Dt, T::Char, T::Wchar];
+        let types = [T::BOOL, T::BYTE, T::WORD, T::DWORD, T::LWORD, T::SINT, T::INT, T::DINT, T::LINT, T::USINT];
+        let more = [T::UINT, T::UDINT, T::ULINT, T::REAL, T::LREAL, T::TIME, T::DT, T::CHAR, T::WCHAR];
         for ty in types.into_iter().chain(more) {
-            let packed: Vec<u8> = (0..ty.size()).map(|k| if ty == T::Bool { 1 } else { 0x41 + k as u8 }).collect();
+            let packed: Vec<u8> = (0..ty.size()).map(|k| if ty == T::BOOL { 1 } else { 0x41 + k as u8 }).collect();
             let mut back = vec![0; packed.len()];
             assert!(from_variant(ty, &to_variant(ty, &packed), &mut back), "{ty}");
             assert_eq!(back, packed, "{ty}");

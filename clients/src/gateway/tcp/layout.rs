@@ -5,7 +5,8 @@
 
 use std::collections::BTreeMap;
 
-use onescan_server::signal::{ElementaryType, did_you_mean};
+use onescan_base::did_you_mean;
+use onescan_server::signal::SignalType;
 use serde::Deserialize;
 
 use crate::gateway::byte_order::{ByteOrder, is_number};
@@ -37,7 +38,7 @@ pub struct Declaration {
 struct Place {
     byte: usize,
     bit: u8,
-    ty: ElementaryType,
+    ty: SignalType,
 }
 
 /// A value in packed bytes and in a block.
@@ -108,7 +109,7 @@ impl Layout {
     pub fn encode(&self, packed: &[u8], block: &mut [u8]) {
         for Move { packed: range, place } in &self.moves {
             let value = &packed[range.clone()];
-            if place.ty == ElementaryType::Bool {
+            if place.ty == SignalType::BOOL {
                 let mask = 1 << place.bit;
                 block[place.byte] = block[place.byte] & !mask | if value[0] != 0 { mask } else { 0 };
             } else {
@@ -121,7 +122,7 @@ impl Layout {
     pub fn decode(&self, block: &[u8], packed: &mut [u8]) {
         for Move { packed: range, place } in &self.moves {
             let value = &mut packed[range.clone()];
-            if place.ty == ElementaryType::Bool {
+            if place.ty == SignalType::BOOL {
                 value[0] = block[place.byte] >> place.bit & 1;
             } else {
                 let len = value.len();
@@ -136,7 +137,7 @@ fn place_of(point: &Point, places: &BTreeMap<String, Place>, size: usize, block:
     let place = match (places.get(address), offset(address)) {
         (Some(place), _) => *place,
         (None, Some((byte, bit))) => {
-            let is_bool = point.ty == ElementaryType::Bool;
+            let is_bool = point.ty == SignalType::BOOL;
             if byte + if is_bool { 1 } else { point.ty.size() } > size || (bit.is_some() != is_bool) {
                 let message =
                     format!("`{address}` is no place for {} `{}` in a block of {size} bytes", point.ty, point.name);
@@ -192,7 +193,7 @@ impl Ruler<'_> {
         if let Some(fields) = self.structures.get(ty) {
             return self.structure(path, ty, fields, depth);
         }
-        let Ok(elementary) = ty.parse::<ElementaryType>() else {
+        let Ok(elementary) = ty.parse::<SignalType>() else {
             let help = did_you_mean(ty, self.structures.keys().map(String::as_str));
             let message = format!("field `{path}` is of type `{ty}`, which is neither elementary nor a structure");
             return Err(MappingFault::new(path, message).with_help(help));
@@ -218,8 +219,8 @@ impl Ruler<'_> {
         Ok(())
     }
 
-    fn place(&mut self, path: &str, ty: ElementaryType) -> Result<Place, MappingFault> {
-        let place = if ty == ElementaryType::Bool {
+    fn place(&mut self, path: &str, ty: SignalType) -> Result<Place, MappingFault> {
+        let place = if ty == SignalType::BOOL {
             if self.bits == 0 || self.bits == 8 {
                 self.at += 1;
                 self.bits = 0;

@@ -25,14 +25,12 @@ FromPlc = ["Joined: UDINT", "Done: UDINT", "Answer: INT"]
 
 fn axis_exchange() -> Exchange {
     let port = |name: &str, ty| Port { name: SignalName::new(name).unwrap(), ty };
-    let inputs = [
-        port("Step_Feeder.InPosition", ElementaryType::Bool),
-        port("Linear_Loader.ActualPosition", ElementaryType::Real),
-    ];
+    let inputs =
+        [port("Step_Feeder.InPosition", SignalType::BOOL), port("Linear_Loader.ActualPosition", SignalType::REAL)];
     let outputs = [
-        port("Step_Feeder.Enable", ElementaryType::Bool),
-        port("Step_Feeder.TargetPosition", ElementaryType::Real),
-        port("Linear_Loader.Execute", ElementaryType::Bool),
+        port("Step_Feeder.Enable", SignalType::BOOL),
+        port("Step_Feeder.TargetPosition", SignalType::REAL),
+        port("Linear_Loader.Execute", SignalType::BOOL),
     ];
     let words = ["Session", "Limit", "TV", "Grant", "Joined", "Done", "Answer"];
     let addresses = words.iter().map(|word| (format!("SDSP_{word}"), format!("Sync.{word}"))).collect();
@@ -81,13 +79,13 @@ fn what_is_wrong_with_a_layout_is_told() {
 
 #[test]
 fn points_may_lie_at_offsets() {
-    let port = Port { name: SignalName::new("Valve").unwrap(), ty: ElementaryType::Bool };
+    let port = Port { name: SignalName::new("Valve").unwrap(), ty: SignalType::BOOL };
     let at = |address: &str| {
         let addresses = [("Valve".to_owned(), address.to_owned())].into();
         let exchange = Exchange::new(std::slice::from_ref(&port), &[], SystemWords::Absent, &addresses);
         Layouts::new(&Declaration::default(), &exchange).map(|layouts| layouts.to_plc.moves[0].place)
     };
-    assert_eq!(at("0.3").unwrap(), Place { byte: 0, bit: 3, ty: ElementaryType::Bool });
+    assert_eq!(at("0.3").unwrap(), Place { byte: 0, bit: 3, ty: SignalType::BOOL });
     assert!(at("900.0").is_err() && at("4").is_err());
 }
 
@@ -95,8 +93,8 @@ proptest! {
     /// Whatever types lie beside each other: no two share a bit, and values come back as they were.
     #[test]
     fn values_come_back(types in prop::collection::vec(0..6_usize, 0..40), seed in any::<u64>()) {
-        const TYPES: [ElementaryType; 6] = [ElementaryType::Bool, ElementaryType::Byte, ElementaryType::Int,
-            ElementaryType::Real, ElementaryType::Lreal, ElementaryType::Bool];
+        const TYPES: [SignalType; 6] = [SignalType::BOOL, SignalType::BYTE, SignalType::INT,
+            SignalType::REAL, SignalType::LREAL, SignalType::BOOL];
         let port = |(i, ty): (usize, &usize)| Port { name: SignalName::new(format!("s{i}")).unwrap(), ty: TYPES[*ty] };
         let ports: Vec<Port> = types.iter().enumerate().map(port).collect();
         let exchange = Exchange::new(&ports, &[], SystemWords::Present, &BTreeMap::new());
@@ -106,7 +104,7 @@ proptest! {
         for point in exchange.to_plc() {
             for _ in 0..point.ty.size() {
                 state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
-                packed.push(if point.ty == ElementaryType::Bool { (state >> 60) as u8 & 1 } else { (state >> 33) as u8 });
+                packed.push(if point.ty == SignalType::BOOL { (state >> 60) as u8 & 1 } else { (state >> 33) as u8 });
             }
         }
         let mut block = vec![0; layouts.to_plc.size()];

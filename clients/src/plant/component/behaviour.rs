@@ -91,9 +91,11 @@ pub(crate) trait Running: Send {
     fn effect(&self) -> Effect;
     fn sense(&mut self, inputs: &[Value], turn: &Turn, outputs: &mut Vec<Value>);
     /// The state as bytes.
-    fn save(&self) -> Vec<u8>;
-    /// True if the bytes were a state, which the component then has.
-    fn restore(&mut self, bytes: &[u8]) -> bool;
+    fn save(&self) -> postcard::Result<Vec<u8>>;
+    /// Checks that bytes are a state of such a component.
+    fn check(&self, bytes: &[u8]) -> postcard::Result<()>;
+    /// Takes the state in that [`check`](Self::check) accepts.
+    fn restore(&mut self, bytes: &[u8]) -> postcard::Result<()>;
 }
 
 /// A component with its state.
@@ -122,13 +124,17 @@ impl<C: Component> Running for Runner<C> {
         self.component.sense(&mut self.state, &C::Inputs::read(inputs), turn).write(outputs);
     }
 
-    fn save(&self) -> Vec<u8> {
-        // plain data of known length always has bytes
-        postcard::to_stdvec(&self.state).unwrap_or_default()
+    fn save(&self) -> postcard::Result<Vec<u8>> {
+        postcard::to_stdvec(&self.state)
     }
 
-    fn restore(&mut self, bytes: &[u8]) -> bool {
-        postcard::from_bytes(bytes).map(|state| self.state = state).is_ok()
+    fn check(&self, bytes: &[u8]) -> postcard::Result<()> {
+        postcard::from_bytes::<C::State>(bytes).map(|_| ())
+    }
+
+    fn restore(&mut self, bytes: &[u8]) -> postcard::Result<()> {
+        self.state = postcard::from_bytes(bytes)?;
+        Ok(())
     }
 }
 

@@ -147,6 +147,15 @@ impl Value {
             Values::Whole => Self::Whole(0),
         }
     }
+
+    /// What values a signal takes that holds this one.
+    pub(crate) const fn values(&self) -> Values {
+        match self {
+            Self::Bool(_) => Values::Bool,
+            Self::Number(_) => Values::Number,
+            Self::Whole(_) => Values::Whole,
+        }
+    }
 }
 
 /// The type of a signal.
@@ -282,8 +291,8 @@ macro_rules! own_types {
 }
 pub(crate) use own_types;
 
-/// The failure modes that are on.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+/// The failure modes that are on, a bit each.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub(crate) struct Failed(pub(crate) u32);
 
 impl Failed {
@@ -296,5 +305,11 @@ impl Failed {
     #[must_use]
     pub(crate) const fn with(self, index: usize) -> Self {
         Self(self.0 | (1 << index))
+    }
+
+    /// These modes less one, by its place in the table.
+    #[must_use]
+    pub(crate) const fn without(self, index: usize) -> Self {
+        Self(self.0 & !(1 << index))
     }
 }

@@ -1,6 +1,6 @@
 //! Second pass over `[[axis]]`: which joint, commanded how, how fast and how strong.
 
-use onescan_server::signal::{ElementaryType, SignalName};
+use onescan_server::signal::{SignalName, SignalType};
 use toml::Spanned;
 
 use super::error::{SceneFaultKind, Thing};
@@ -101,8 +101,8 @@ fn runnable(
 
 fn axis(written: &AxisTable, moved: Moved, unit: Unit, signals: &mut Signals, faults: &mut Faults<'_>) -> Option<Axis> {
     let number = match written.signal_type {
-        NumberType::Real => ElementaryType::Real,
-        NumberType::Lreal => ElementaryType::Lreal,
+        NumberType::Real => SignalType::REAL,
+        NumberType::Lreal => SignalType::LREAL,
     };
     let drive = drive(written, number, signals, faults);
     let limits = limits(written, unit, faults);
@@ -150,7 +150,7 @@ fn limits(written: &AxisTable, unit: Unit, faults: &mut Faults<'_>) -> Option<(f
 }
 
 /// The commands that a drive of this kind has; those of another kind are faults.
-fn drive(written: &AxisTable, number: ElementaryType, signals: &mut Signals, faults: &mut Faults<'_>) -> Option<Drive> {
+fn drive(written: &AxisTable, number: SignalType, signals: &mut Signals, faults: &mut Faults<'_>) -> Option<Drive> {
     let kind = *written.drive.get_ref();
     let named = match kind {
         DriveKind::Bidirectional => "bidirectional",
@@ -158,7 +158,7 @@ fn drive(written: &AxisTable, number: ElementaryType, signals: &mut Signals, fau
         DriveKind::Position => "position",
     };
     let whose = format!("{named} axis `{}`", text(&written.name));
-    let mut command = |key: &'static str, value: Option<&Spanned<String>>, ty: Option<ElementaryType>| {
+    let mut command = |key: &'static str, value: Option<&Spanned<String>>, ty: Option<SignalType>| {
         match (value, ty) {
             (Some(name), Some(ty)) => return signals.read(name, ty, faults),
             (Some(name), None) => {
@@ -172,7 +172,7 @@ fn drive(written: &AxisTable, number: ElementaryType, signals: &mut Signals, fau
         None::<SignalName>
     };
     let by_number = kind != DriveKind::Bidirectional;
-    let bool_type = (!by_number).then_some(ElementaryType::Bool);
+    let bool_type = (!by_number).then_some(SignalType::BOOL);
     let forward = command("forward_signal", written.forward_signal.as_ref(), bool_type);
     let reverse = command("reverse_signal", written.reverse_signal.as_ref(), bool_type);
     let number = command("command_signal", written.command_signal.as_ref(), by_number.then_some(number));

@@ -1,6 +1,6 @@
 //! Checked components, failures and conditions of signals: plain data, part of [`super::model`].
 
-use onescan_server::signal::{ElementaryType, SignalName};
+use onescan_server::signal::{SignalName, SignalType};
 use serde::Serialize;
 
 use super::format::NumberType;
@@ -133,7 +133,7 @@ pub struct Condition {
     /// The signal.
     pub signal: SignalName,
     /// Its type inside of the plant; the session's is that of its port.
-    pub inner: ElementaryType,
+    pub inner: SignalType,
     /// What part of it is which raw value; as it is if none.
     pub scale: Option<Range>,
     /// Later by so much, ns.

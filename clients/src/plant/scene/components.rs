@@ -1,6 +1,7 @@
 //! Second pass over `[[component]]`: kind, parameters, bindings and wires, all by the kind's table.
 
-use onescan_server::signal::{ElementaryType, SignalName, nearest};
+use onescan_base::nearest;
+use onescan_server::signal::{SignalName, SignalType};
 use toml::{Spanned, Value};
 
 use super::arrays::listed;
@@ -205,12 +206,12 @@ fn number_type(keys: &Keys<'_>, faults: &mut Faults<'_>) -> NumberType {
 }
 
 /// The type of a signal of these values.
-fn elementary(values: Values, number: NumberType) -> ElementaryType {
+fn elementary(values: Values, number: NumberType) -> SignalType {
     match (values, number) {
-        (Values::Bool, _) => ElementaryType::Bool,
-        (Values::Whole, _) => ElementaryType::Dint,
-        (Values::Number, NumberType::Real) => ElementaryType::Real,
-        (Values::Number, NumberType::Lreal) => ElementaryType::Lreal,
+        (Values::Bool, _) => SignalType::BOOL,
+        (Values::Whole, _) => SignalType::DINT,
+        (Values::Number, NumberType::Real) => SignalType::REAL,
+        (Values::Number, NumberType::Lreal) => SignalType::LREAL,
     }
 }
 

@@ -1,6 +1,7 @@
 //! Second pass over `[[signal]]`: what happens to a signal between the plant and the session.
 
-use onescan_server::signal::{ElementaryType, nearest};
+use onescan_base::nearest;
+use onescan_server::signal::SignalType;
 use toml::Spanned;
 
 use super::error::{SceneFaultKind, Thing};
@@ -28,7 +29,7 @@ fn condition(table: &SignalTable, signals: &mut Signals, faults: &mut Faults<'_>
         faults.add_hinted(name.span(), SceneFaultKind::ForeignSignal(text(name).to_owned()), hint);
         return None;
     };
-    if port.ty == ElementaryType::Bool {
+    if port.ty == SignalType::BOOL {
         refuse_number_keys(table, faults);
     }
     if let Some(ty) = ty(table, faults) {
@@ -75,11 +76,11 @@ fn refuse_number_keys(table: &SignalTable, faults: &mut Faults<'_>) {
 }
 
 /// The type in the session, a number's.
-fn ty(table: &SignalTable, faults: &mut Faults<'_>) -> Option<ElementaryType> {
-    use ElementaryType as T;
+fn ty(table: &SignalTable, faults: &mut Faults<'_>) -> Option<SignalType> {
+    use SignalType as T;
     let written = table.ty.as_ref()?;
     let numbers =
-        [T::Sint, T::Int, T::Dint, T::Usint, T::Uint, T::Udint, T::Byte, T::Word, T::Dword, T::Real, T::Lreal];
+        [T::SINT, T::INT, T::DINT, T::USINT, T::UINT, T::UDINT, T::BYTE, T::WORD, T::DWORD, T::REAL, T::LREAL];
     let found = written.get_ref().parse().ok().filter(|ty| numbers.contains(ty));
     if found.is_none() {
         let wanted = "SINT, INT, DINT, USINT, UINT, UDINT, BYTE, WORD, DWORD, REAL or LREAL";

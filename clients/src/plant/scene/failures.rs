@@ -1,16 +1,99 @@
 //! Second pass over `[[failure]]`: what fails, how and when.
 
-use onescan_server::signal::{ElementaryType, nearest};
+use onescan_base::nearest;
+use onescan_server::signal::SignalType;
+use thiserror::Error;
 use toml::Spanned;
 
 use super::error::{SceneFaultKind, Thing};
 use super::faults::Faults;
 use super::format::FailureTable;
-use super::model::{Between, Component, FailureSwitch, When};
+use super::model::{Between, Component, FailureSwitch, Scene, When};
 use super::number::{Allowed, Entry};
 use super::signals::Signals;
 use super::text;
+use crate::plant::component::kind::Failure;
 use crate::plant::component::library::entry;
+
+/// A failure that a scene does not have.
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
+pub enum UnknownFailure {
+    /// The scene does not have the component.
+    #[error("no component `{component}` in this scene{}", in_brackets(.hint.as_deref()))]
+    Component {
+        /// The name that was looked for.
+        component: String,
+        /// The nearest name, as a question, if one is near.
+        hint: Option<String>,
+    },
+    /// The component does not fail in this way.
+    #[error("component `{component}` has no failure mode `{mode}` ({hint})")]
+    Mode {
+        /// The component.
+        component: String,
+        /// The mode that was looked for.
+        mode: String,
+        /// The nearest mode, as a question, or all modes that there are.
+        hint: String,
+    },
+}
+
+/// A hint as it follows a message.
+fn in_brackets(hint: Option<&str>) -> String {
+    hint.map_or_else(String::new, |hint| format!(" ({hint})"))
+}
+
+/// A mode of a component: the component's index in the scene, the mode's among those of its kind.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(in crate::plant) struct FoundMode {
+    pub(in crate::plant) component: usize,
+    pub(in crate::plant) mode: usize,
+}
+
+impl Scene {
+    /// Checks that a component of the scene fails in this way, so that a failure can be refused
+    /// before a plant runs.
+    ///
+    /// # Errors
+    /// An unknown component or mode, in the words that a wrong `[[failure]]` gets.
+    pub fn check_failure(&self, component: &str, mode: &str) -> Result<(), UnknownFailure> {
+        self.find_failure(component, mode).map(|_| ())
+    }
+
+    /// The mode of a component that these names mean.
+    pub(in crate::plant) fn find_failure(&self, component: &str, mode: &str) -> Result<FoundMode, UnknownFailure> {
+        find(&self.components, component, mode)
+    }
+}
+
+fn find(components: &[Component], component: &str, mode: &str) -> Result<FoundMode, UnknownFailure> {
+    let Some(at) = components.iter().position(|known| known.name == component) else {
+        let near = nearest(component, components.iter().map(|known| known.name.as_str()));
+        return Err(UnknownFailure::Component { component: component.to_owned(), hint: near.map(did_you_mean) });
+    };
+    // a checked component is of a kind in the library; one that is not fails in no way
+    let modes = entry(components[at].kind).map_or_else(Vec::new, |entry| (entry.kind)().failures);
+    match modes.iter().position(|known| known.mode == mode) {
+        Some(mode) => Ok(FoundMode { component: at, mode }),
+        None => Err(UnknownFailure::Mode {
+            component: component.to_owned(),
+            mode: mode.to_owned(),
+            hint: mode_hint(&modes, mode),
+        }),
+    }
+}
+
+fn mode_hint(modes: &[Failure], wrong: &str) -> String {
+    let listed = || {
+        let listed: Vec<_> = modes.iter().map(|known| format!("`{}`", known.mode)).collect();
+        format!("it may be {}", listed.join(", "))
+    };
+    nearest(wrong, modes.iter().map(|known| known.mode)).map_or_else(listed, did_you_mean)
+}
+
+fn did_you_mean(near: &str) -> String {
+    format!("did you mean `{near}`?")
+}
 
 pub(super) fn check(
     tables: &[Spanned<FailureTable>],
@@ -20,29 +103,23 @@ pub(super) fn check(
 ) {
     for table in tables.iter().map(Spanned::get_ref) {
         let when = when(table, signals, faults);
-        let name = &table.component;
-        if lost.iter().any(|lost| lost == text(name)) {
+        if lost.iter().any(|lost| lost == text(&table.component)) {
             continue;
         }
-        let Some(index) = components.iter().position(|component| component.name == text(name)) else {
-            faults.unknown(Thing::Component, name, components.iter().map(|component| component.name.as_str()));
-            continue;
-        };
-        let modes = entry(components[index].kind).map(|entry| (entry.kind)().failures).unwrap_or_default();
-        let mode = modes.iter().position(|mode| mode.mode == text(&table.mode));
-        if let (Some(mode), Some(when)) = (mode, when.clone()) {
-            components[index].failures.push(FailureSwitch { mode, when });
-        }
-        if mode.is_none() {
-            let listed: Vec<_> = modes.iter().map(|mode| format!("`{}`", mode.mode)).collect();
-            let hint = nearest(text(&table.mode), modes.iter().map(|mode| mode.mode))
-                .map_or_else(|| format!("it may be {}", listed.join(", ")), |near| format!("did you mean `{near}`?"));
-            let kind = SceneFaultKind::ComponentPart {
-                component: text(name).to_owned(),
-                what: "failure mode",
-                name: text(&table.mode).to_owned(),
-            };
-            faults.add_hinted(table.mode.span(), kind, Some(hint));
+        match find(components, text(&table.component), text(&table.mode)) {
+            Ok(FoundMode { component, mode }) => {
+                if let Some(when) = when {
+                    components[component].failures.push(FailureSwitch { mode, when });
+                }
+            }
+            Err(UnknownFailure::Component { component, hint }) => {
+                let kind = SceneFaultKind::Unknown { thing: Thing::Component, name: component };
+                faults.add_hinted(table.component.span(), kind, hint);
+            }
+            Err(UnknownFailure::Mode { component, mode, hint }) => {
+                let kind = SceneFaultKind::ComponentPart { component, what: "failure mode", name: mode };
+                faults.add_hinted(table.mode.span(), kind, Some(hint));
+            }
         }
     }
 }
@@ -54,7 +131,7 @@ fn when(table: &FailureTable, signals: &mut Signals, faults: &mut Faults<'_>) ->
         if let Some(time) = from.value.or(until.value) {
             faults.add(time.span(), SceneFaultKind::FailureTwice);
         }
-        return signals.read(signal, ElementaryType::Bool, faults).map(When::Signal);
+        return signals.read(signal, SignalType::BOOL, faults).map(When::Signal);
     }
     let from_s = faults.number(from, Allowed::NotNegative).unwrap_or(0.0);
     let until_s = faults.number(until, Allowed::NotNegative);

@@ -3,8 +3,8 @@
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
+use onescan_base::nearest;
 use onescan_server::client::SourcePlace;
-use onescan_server::signal::nearest;
 use toml::Spanned;
 
 use super::error::{SceneError, SceneFault, SceneFaultKind, Thing};

@@ -123,7 +123,7 @@ mod component_model;
 mod components;
 mod conditions;
 pub mod error;
-mod failures;
+pub(super) mod failures;
 mod faults;
 mod format;
 mod joints;
@@ -140,6 +140,7 @@ mod signals;
 use toml::Spanned;
 
 pub use error::{SceneError, SceneFault, SceneFaultKind, Thing};
+pub use failures::UnknownFailure;
 pub use model::Scene;
 
 use bindings::Placed;

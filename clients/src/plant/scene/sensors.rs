@@ -1,6 +1,6 @@
 //! Second pass over `[[sensor]]`: what each detects and where it says so.
 
-use onescan_server::signal::ElementaryType;
+use onescan_server::signal::SignalType;
 use toml::Spanned;
 
 use super::arrays::listed;
@@ -27,7 +27,7 @@ pub(super) fn check(
     let mut sensors = Vec::new();
     for table in tables {
         let sensor = table.get_ref();
-        let signal = signals.write(&sensor.signal, ElementaryType::Bool, faults);
+        let signal = signals.write(&sensor.signal, SignalType::BOOL, faults);
         refuse_foreign(sensor, faults);
         let sensing = match sensor.kind.get_ref() {
             SensorKind::EndPosition => end_position(sensor, &written.joint, joints, faults),

@@ -1,6 +1,6 @@
 //! The signals of a scene: each written once, each read as one type.
 
-use onescan_server::signal::{ElementaryType, Port, SignalName};
+use onescan_server::signal::{Port, SignalName, SignalType};
 use toml::Spanned;
 
 use super::error::{SceneFaultKind, Thing};
@@ -25,7 +25,7 @@ impl Signals {
     }
 
     /// Gives a signal another type in the session than the plant has for it.
-    pub(super) fn retype(&mut self, name: &SignalName, ty: ElementaryType) {
+    pub(super) fn retype(&mut self, name: &SignalName, ty: SignalType) {
         let ports = self.reads.iter_mut().map(|(port, _)| port).chain(&mut self.writes);
         for port in ports.filter(|port| port.name == *name) {
             port.ty = ty;
@@ -41,7 +41,7 @@ impl Signals {
     pub(super) fn read(
         &mut self,
         name: &Spanned<String>,
-        ty: ElementaryType,
+        ty: SignalType,
         faults: &mut Faults<'_>,
     ) -> Option<SignalName> {
         let signal = signal_name(name, faults)?;
@@ -57,7 +57,7 @@ impl Signals {
     pub(super) fn write(
         &mut self,
         name: &Spanned<String>,
-        ty: ElementaryType,
+        ty: SignalType,
         faults: &mut Faults<'_>,
     ) -> Option<SignalName> {
         let signal = signal_name(name, faults)?;

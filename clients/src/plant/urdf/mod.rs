@@ -9,9 +9,9 @@
 
 mod xml;
 
+use onescan_base::nearest;
 use thiserror::Error;
 
-use onescan_server::signal::nearest;
 use xml::Element;
 
 /// What is wrong with a URDF file, and where.

@@ -1,8 +1,9 @@
 //! Whole numbers in a base of the reader's choice.
 
+use onescan_base::elementary::Kind;
+
 use super::super::{Application, Variable};
 use crate::ir::ElementaryType;
-use crate::ir::elementary::Kind;
 
 /// How whole numbers are shown.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]

@@ -1,8 +1,9 @@
 //! Literals to bytes (2nd ed. 2.2).
 
+use onescan_base::elementary::Kind;
+
 use super::super::{Application, Variable};
 use super::WriteError;
-use crate::ir::elementary::Kind;
 use crate::ir::text::TextShape;
 use crate::ir::{ElementaryType, Type, Value};
 use crate::syntax::ast::{Expr, ExprKind, Literal, TypedValue, UnaryOp};

@@ -2,9 +2,10 @@
 
 use std::fmt::Write;
 
+use onescan_base::elementary::Kind;
+
 use super::super::{Application, Variable};
 use super::text::format;
-use crate::ir::elementary::Kind;
 use crate::ir::text::TextShape;
 use crate::ir::{ElementaryType, Storage, Type, TypeId};
 

@@ -2,8 +2,10 @@
 
 use std::fmt::{self, Write};
 
+use onescan_base::duration::IecDuration;
+use onescan_base::elementary::Kind;
+
 use crate::ir::ElementaryType;
-use crate::ir::elementary::Kind;
 use crate::syntax::calendar::{DAY_NS, civil_from_days};
 
 /// Text of at most so many bytes, all of them ASCII.
@@ -57,7 +59,7 @@ pub(crate) fn format(ty: ElementaryType, bits: i64) -> Line {
             let value = f64::from_bits(bits.cast_unsigned());
             real(&mut line, value, value)
         }
-        (Kind::Duration, _) => duration(&mut line, if ty == ElementaryType::Ltime { "LT#" } else { "T#" }, bits),
+        (Kind::Duration, _) => write!(line, "{}#{}", ty.literal_prefix(), IecDuration::from_nanos(bits)),
         (Kind::Date | Kind::TimeOfDay | Kind::DateTime, _) => calendar(&mut line, ty, bits),
         // A character is its own text.
         (Kind::Character, _) => Ok(()),
@@ -112,41 +114,10 @@ fn real<T: fmt::Display + fmt::LowerExp>(line: &mut Line, value: T, number: f64)
     write!(line, "{mantissa}{point}E{sign}{exponent}")
 }
 
-const UNITS: [(u64, &str); 7] = [
-    (86_400_000_000_000, "d"),
-    (3_600_000_000_000, "h"),
-    (60_000_000_000, "m"),
-    (1_000_000_000, "s"),
-    (1_000_000, "ms"),
-    (1_000, "us"),
-    (1, "ns"),
-];
-
-/// `T#1h30m`: every unit that is not 0, the greatest first (2nd ed. 2.2.3.1).
-fn duration(line: &mut Line, prefix: &str, ns: i64) -> fmt::Result {
-    line.write_str(prefix)?;
-    if ns == 0 {
-        return line.write_str("0s");
-    }
-    if ns < 0 {
-        line.write_str("-")?;
-    }
-    let mut rest = ns.unsigned_abs();
-    for (unit, name) in UNITS {
-        if rest >= unit {
-            write!(line, "{}{name}", rest / unit)?;
-            rest %= unit;
-        }
-    }
-    Ok(())
-}
-
 /// `D#1984-06-25`, `TOD#15:36:55.36`, `DT#1984-06-25-15:36:55.36` (2nd ed. Table 8).
 fn calendar(line: &mut Line, ty: ElementaryType, ns: i64) -> fmt::Result {
     let (days, ns) = (ns.div_euclid(DAY_NS), ns.rem_euclid(DAY_NS));
-    let short = if ty == ElementaryType::Date { "D" } else { ty.name() };
-    let prefix = if ty == ElementaryType::Ldate { "LD" } else { short };
-    write!(line, "{prefix}#")?;
+    write!(line, "{}#", ty.literal_prefix())?;
     if ty.kind() != Kind::TimeOfDay {
         let (year, month, day) = civil_from_days(days);
         write!(line, "{year:04}-{month:02}-{day:02}")?;

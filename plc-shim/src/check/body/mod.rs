@@ -1,4 +1,20 @@
 //! Expressions and statements inside of a scope, and the bodies of units.
+//!
+//! [`Body`] is the room's own structure: each module adds what it checks as methods, and calls those of the others.
+//! From outside a body is asked for the value of an expression; [`check_unit`] checks a whole one.
+//!
+//! | module | subject |
+//! |---|---|
+//! | [`unit`] | the body of a unit, and what surrounds its statements |
+//! | [`statement`] | statements, assignments, jumps, wires, lists of instructions |
+//! | [`expression`] | literals, operators, conversions in context, constants |
+//! | [`place`] | names, members, indices, direct addresses to places |
+//! | [`call`] | functions, function blocks, arguments, EN and ENO |
+//! | [`object`] | `THIS`, methods, properties, interfaces |
+//! | [`reference`] | references and pointers |
+//! | [`text`] | character strings |
+//! | [`chart`] | Sequential Function Charts |
+//! | [`start`] | what runs before the first scan |
 
 mod call;
 mod chart;

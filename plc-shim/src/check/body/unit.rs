@@ -76,6 +76,7 @@ impl Body<'_, '_> {
 
     /// What makes an initial value that is no constant.
     fn computed(&mut self, variable: &Variable) -> Vec<Statement> {
+        // Outside of units nothing is declared for one call.
         let fleeting = self.pou.map(|id| self.declarations.pou(id).fleeting().clone()).unwrap_or_default();
         let key = variable.name.to_ascii_uppercase();
         let Some((_, starts)) = fleeting.iter().find(|(name, _)| *name == key) else { return Vec::new() };

@@ -263,6 +263,7 @@ fn call_of(statements: &[Statement], offset: u32) -> Option<Span> {
                 open.extend(inner.first.iter().chain(inner.parts.iter().flat_map(|(_, part)| part)));
             }
             StatementKind::While(_, body) | StatementKind::Repeat(body, _) => open.extend(body),
+            // The others have no statements inside.
             _ => {}
         }
     }

@@ -24,9 +24,7 @@ pub(super) struct InstanceLocation {
 impl Configurer<'_, '_> {
     /// Gives a variable of an instance its address.
     pub(super) fn locate(&mut self, target: &Target, address: &Ident) -> Option<()> {
-        let open = target.variable.as_ref().and_then(|variable| variable.address.as_ref());
-        let open = open.filter(|text| text.ends_with('*')).and_then(|text| DirectAddress::parse(text).ok());
-        let Some(open) = open else {
+        let Some(open) = target.open else {
             let message = format!("`{}` is not declared with an open address, as in AT %I*", target.path);
             let found = Diagnostic::error(Code::UnsuitableAddress, address.span, message);
             let declared = target.variable.as_ref().map(|variable| variable.span);
@@ -36,7 +34,7 @@ impl Configurer<'_, '_> {
         };
         let storage = Body::outside(self.declarations).direct_place(&address.text, address.span)?.into_place().storage;
         let wanted = DirectAddress::parse(&address.text).ok()?;
-        if wanted.area != open.area {
+        if wanted.area != open {
             let message = format!("`{}` is declared in another area", target.path);
             self.declarations.report(Diagnostic::error(Code::UnsuitableAddress, address.span, message));
             return None;

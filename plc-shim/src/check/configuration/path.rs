@@ -3,9 +3,10 @@
 use super::Configurer;
 use crate::check::body::Body;
 use crate::diagnostic::{Code, Diagnostic, did_you_mean};
-use crate::ir::{Storage, Target, Type};
+use crate::ir::{Storage, Target, Type, Variable};
 use crate::syntax::Span;
 use crate::syntax::ast::{Expr, ExprKind, Ident};
+use crate::syntax::direct_address::{Area, DirectAddress};
 
 /// One piece of a path.
 #[derive(Clone, Copy)]
@@ -135,7 +136,8 @@ impl Configurer<'_, '_> {
         };
         let home = home.and_then(|home| self.resource_name(home)).map(|home| format!("{}.", home.text));
         let path = format!("{}{}", home.unwrap_or_default(), variable.name);
-        Some(Ok(Target { path, storage, inside, ty: variable.ty, variable: Some(variable) }))
+        let open = open_area(&variable);
+        Some(Ok(Target { path, storage, inside, ty: variable.ty, variable: Some(variable), open }))
     }
 
     pub(super) fn program_target(&mut self, index: usize) -> Target {
@@ -144,7 +146,7 @@ impl Configurer<'_, '_> {
         let home = program.resource.and_then(|home| self.resource_name(home));
         let path = home.map_or_else(|| program.name.clone(), |home| format!("{}.{}", home.text, program.name));
         let ty = self.declarations.types_mut().block(&program.name, program.pou);
-        Target { path, storage: Storage::Absolute(0), inside: program.offset, ty, variable: None }
+        Target { path, storage: Storage::Absolute(0), inside: program.offset, ty, variable: None, open: None }
     }
 
     /// The variable at a path inside of program `index`.
@@ -179,7 +181,8 @@ impl Configurer<'_, '_> {
                     return None;
                 }
                 let path = format!("{}.{}", at.path, field.name);
-                Some(Target { path, inside: at.inside + field.offset, ty: field.ty, ..at })
+                let open = field.open.or(at.open);
+                Some(Target { path, inside: at.inside + field.offset, ty: field.ty, open, ..at })
             }
             Type::FunctionBlock { pou, .. } => {
                 let scope = self.declarations.interface(pou, name.span)?;
@@ -199,7 +202,8 @@ impl Configurer<'_, '_> {
                     }
                 };
                 let path = format!("{}.{}", at.path, variable.name);
-                Some(Target { path, storage, inside, ty: variable.ty, variable: Some(variable.clone()) })
+                let (ty, open) = (variable.ty, open_area(variable));
+                Some(Target { path, storage, inside, ty, variable: Some(variable.clone()), open })
             }
             _ => self.no_member(&at, name, &[]),
         }
@@ -238,4 +242,10 @@ impl Configurer<'_, '_> {
         let path = format!("{}[{}]", at.path, list.join(","));
         Some(Target { path, inside, ty: element, ..at })
     }
+}
+
+/// The area of a variable that is declared `AT %I*` and the like.
+fn open_area(variable: &Variable) -> Option<Area> {
+    let address = variable.address.as_ref().filter(|text| text.ends_with('*'))?;
+    DirectAddress::parse(address).ok().map(|address| address.area)
 }

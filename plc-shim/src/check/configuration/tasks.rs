@@ -1,5 +1,7 @@
 //! Tasks and their inputs (2nd ed. 2.7.2, Table 50; 3rd ed. Table 63).
 
+use onescan_base::TimeSpan;
+
 use super::Configurer;
 use crate::check::body::Body;
 use crate::diagnostic::{Code, Diagnostic, did_you_mean};
@@ -22,7 +24,7 @@ impl<'a> Configurer<'_, 'a> {
         let mut task = Task {
             name: format!("{}{}", home.unwrap_or_default(), ast.name.text),
             single: None,
-            interval_ns: 0,
+            interval: None,
             priority: 0,
             entries: Vec::new(),
         };
@@ -34,7 +36,7 @@ impl<'a> Configurer<'_, 'a> {
                 continue;
             }
             match name.key().as_str() {
-                "INTERVAL" => task.interval_ns = self.interval(value).unwrap_or(0),
+                "INTERVAL" => task.interval = self.interval(value),
                 "PRIORITY" => task.priority = self.priority(value).unwrap_or(0),
                 // Its variable may be one of a program that is not there yet.
                 "SINGLE" => {}
@@ -47,18 +49,19 @@ impl<'a> Configurer<'_, 'a> {
             }
         }
         let is_triggered = ast.inputs.iter().any(|(name, _)| name.key() == "SINGLE");
-        if task.interval_ns == 0 && !is_triggered && self.declarations.mark() == known {
+        if task.interval.is_none() && !is_triggered && self.declarations.mark() == known {
             let message = format!("task `{}` has neither SINGLE nor an INTERVAL, so it never runs", ast.name.text);
             self.declarations.report(Diagnostic::error(Code::TaskNeverRuns, ast.name.span, message));
         }
         task
     }
 
-    fn interval(&mut self, value: &Expr) -> Option<u64> {
+    /// Nothing for an interval of 0, which is as good as none.
+    fn interval(&mut self, value: &Expr) -> Option<TimeSpan> {
         let time = Body::outside(self.declarations).constant_of_type(value, ElementaryType::Time.into());
         let ns = time.and_then(Value::as_int)?;
         if let Ok(ns) = u64::try_from(ns) {
-            return Some(ns);
+            return TimeSpan::from_nanos(ns);
         }
         self.unsuitable(value, "an interval is not negative")
     }

@@ -166,6 +166,7 @@ impl<'a> Declarations<'a> {
         let declared = self.at_home(home, |declarations| {
             declarations.deeper(ast.name.span, |declarations| Some(declarations.resolver.unit(declarations, id)))
         });
+        // Declarations that need too many others have been reported; such a unit has no variables.
         let Declared { scope, align, mut image, starts, fleeting, kept } = declared.unwrap_or_default();
         // At least a byte, as for structures.
         image.resize(align_up(image.len().max(1) as u32, align) as usize, 0);

@@ -26,7 +26,7 @@ pub(crate) const CALL_DEPTH_OFFSET: u32 = 16;
 /// Offset of what `FB_init` has as `bInitRetains`.
 pub(crate) const INIT_RETAINS_OFFSET: u32 = 24;
 
-/// Its name.
+/// Name of the global variable that lies there.
 pub(crate) const INIT_RETAINS_NAME: &str = "ONESCAN_INIT_RETAINS";
 
 /// Name of the global variable that holds virtual time.
@@ -141,6 +141,8 @@ impl<'a> Declarations<'a> {
         let mut image = vec![0; self.memory.next as usize];
         for (offset, bytes) in &self.memory.placed {
             let start = *offset as usize;
+            // Only what `allocate` has handed out is placed, so it lies inside of the image.
+            debug_assert!(start + bytes.len() <= image.len(), "bytes placed at {start} lie outside of the memory");
             if let Some(target) = image.get_mut(start..start + bytes.len()) {
                 target.copy_from_slice(bytes);
             }

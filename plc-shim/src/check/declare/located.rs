@@ -56,10 +56,11 @@ impl Declarations<'_> {
     pub(in crate::check) fn located(&mut self, ast: &ast::Variable, declared: &TypedImage<'_>) -> Option<Placement> {
         let Some(name) = &ast.address else { return Some(Placement::Free) };
         let (address, location) = self.direct_address(&name.text, name.span)?;
-        if !name.text.ends_with('*') || address.width != Width::Bit {
-            self.require_width(address.width, declared.ty, name)?;
-        }
-        let Some(location) = location else { return Some(Placement::Free) };
+        let Some(location) = location else {
+            self.require_open_width(address, declared.ty, name)?;
+            return Some(Placement::Free);
+        };
+        self.require_width(address.width, declared.ty, name)?;
         let size = self.types.size(declared.ty);
         if location.offset + size > AREA_LIMIT {
             return self.invalid_address(&name.text, AddressError::TooLarge, name.span);
@@ -94,6 +95,16 @@ impl Declarations<'_> {
             return None;
         }
         Some(())
+    }
+
+    /// An open address without a letter for its width, `%I*`, suits every type.
+    pub(in crate::check) fn require_open_width(
+        &mut self,
+        open: DirectAddress,
+        ty: TypeId,
+        address: &Ident,
+    ) -> Option<()> {
+        if open.width == Width::Bit { Some(()) } else { self.require_width(open.width, ty, address) }
     }
 
     /// An elementary variable is as wide as its address says; others begin at a byte.
@@ -131,6 +142,7 @@ impl Declarations<'_> {
                     (_, target, bytes) if explicit || bytes.iter().any(|byte| *byte != 0) => {
                         target.copy_from_slice(bytes);
                     }
+                    // Zeros that a type gives leave what other variables give to the same bytes.
                     _ => {}
                 }
             }

@@ -17,6 +17,7 @@ mod layout;
 mod located;
 mod names;
 mod namespace;
+mod overrides;
 mod query;
 mod recursion;
 mod scope;
@@ -51,6 +52,7 @@ pub(crate) use self::layout::{CALL_DEPTH_OFFSET, INIT_RETAINS_OFFSET, VIRTUAL_TI
 pub(super) use self::layout::{INIT_RETAINS_NAME, MEMORY_LIMIT, align_up};
 pub(super) use self::located::Placement;
 pub(super) use self::namespace::Home;
+pub(crate) use self::overrides::Overrides;
 pub(super) use self::query::Outcome;
 pub(super) use self::scope::Scope;
 pub(super) use self::start::{Given, Occasion, Start, StartKind, Started, Starts, moved, stages};
@@ -64,6 +66,7 @@ pub(super) struct Declarations<'a> {
     resolver: &'static dyn Resolve,
     library: &'a BTreeSet<FileId>,
     stages: &'a Stages,
+    overrides: &'a Overrides,
     /// What is done at a start outside of units.
     started: Vec<Started<'a>>,
     dialects: BTreeMap<FileId, Dialect>,
@@ -114,11 +117,17 @@ impl<'a> Declarations<'a> {
 }
 
 impl<'a> Declarations<'a> {
-    pub(super) fn new(library: &'a BTreeSet<FileId>, stages: &'a Stages, resolver: &'static dyn Resolve) -> Self {
+    pub(super) fn new(
+        library: &'a BTreeSet<FileId>,
+        stages: &'a Stages,
+        overrides: &'a Overrides,
+        resolver: &'static dyn Resolve,
+    ) -> Self {
         Self {
             resolver,
             library,
             stages,
+            overrides,
             started: Vec::new(),
             dialects: BTreeMap::new(),
             types: TypeTable::new(),
@@ -156,6 +165,7 @@ impl<'a> Declarations<'a> {
 impl Declarations<'_> {
     /// The dialect of the text at `span`.
     pub(super) fn dialect(&self, span: Span) -> Dialect {
+        // What the runtime provides stands in no file.
         self.dialects.get(&span.file).copied().unwrap_or_default()
     }
 }

@@ -145,6 +145,7 @@ impl Scope {
 
     /// The types of the registers that a caller fills.
     pub(super) fn parameter_types(&self) -> &[ElementaryType] {
+        debug_assert!(self.parameters as usize <= self.registers.len(), "parameters are the first registers");
         self.registers.get(..self.parameters as usize).unwrap_or_default()
     }
 

@@ -78,6 +78,7 @@ pub(in crate::check) fn stages(units: &[(crate::syntax::FileId, &CompilationUnit
                     stages.insert(place_of(&pou.name), [stage(pou, "start"), stage(pou, "end")]);
                 }
                 Declaration::Namespace(namespace) => open.push(&namespace.declarations),
+                // The others declare no unit that keeps variables.
                 _ => {}
             }
         }

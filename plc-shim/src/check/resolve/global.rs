@@ -14,6 +14,7 @@ impl<'a> Written<'_, 'a> {
         qualifiers: &[Qualifier],
     ) -> Option<Variable> {
         let declared = self.declared(ast, Need::Size)?;
+        let declared = self.set_from_outside(name, ast, declared)?;
         self.body.reject_open_array(declared.ty, name.span)?;
         if qualifiers.contains(&Qualifier::Constant) {
             self.require_constant(&declared.starts, OF_CONSTANTS);

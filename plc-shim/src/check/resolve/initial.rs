@@ -225,7 +225,7 @@ impl<'a> Written<'_, 'a> {
         let scope = self.declarations_mut().interface(pou, span)?;
         let fields = scope.variables().iter().filter_map(|variable| match variable.storage {
             Storage::Instance(offset) => {
-                Some(Field { name: variable.name.clone(), ty: variable.ty, offset, bit: None })
+                Some(Field { name: variable.name.clone(), ty: variable.ty, offset, bit: None, open: None })
             }
             _ => None,
         });

@@ -24,6 +24,18 @@ impl<'a> Written<'_, 'a> {
             None => Some(declared),
         }
     }
+
+    /// What `declared` is for one of its names, which may be a constant set from outside.
+    pub(super) fn set_from_outside(
+        &mut self,
+        name: &Ident,
+        ast: &'a ast::Variable,
+        declared: TypedImage<'a>,
+    ) -> Option<TypedImage<'a>> {
+        let Some(initial) = self.declarations().set_from_outside(name) else { return Some(declared) };
+        let bare = self.resolve(&ast.spec, Need::Size)?;
+        self.with_initial(&bare, initial)
+    }
 }
 
 /// The variables of a unit, and what its instances begin with.
@@ -158,7 +170,8 @@ impl<'c, 'a> Interface<'c, 'a> {
                 self.declarations_mut().report_duplicate(name, Some(first));
                 continue;
             }
-            let Some(declared) = &declared else {
+            let own = declared.clone().and_then(|declared| self.written.set_from_outside(name, ast, declared));
+            let Some(declared) = &own else {
                 self.declare_broken(name);
                 continue;
             };

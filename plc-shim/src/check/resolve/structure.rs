@@ -10,7 +10,7 @@ use crate::diagnostic::{Code, Diagnostic};
 use crate::ir::{ElementaryType, Field, Type, TypeId};
 use crate::syntax::Span;
 use crate::syntax::ast::{self, Ident};
-use crate::syntax::direct_address::{RelativeAddress, Width};
+use crate::syntax::direct_address::{DirectAddress, RelativeAddress, Width};
 
 /// Whether members with addresses may lie on the same bytes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -51,7 +51,7 @@ impl Taken {
 }
 
 impl<'a> Written<'_, 'a> {
-    pub(in crate::check) fn structure(
+    pub(super) fn structure(
         &mut self,
         name: &str,
         (reserved, extends): (Option<TypeId>, Option<&Ident>),
@@ -109,9 +109,17 @@ impl<'a> Written<'_, 'a> {
         resolved: &TypedImage<'a>,
         (sharing, span): (Sharing, Span),
     ) -> Option<()> {
+        let behind = align_up(making.image.len() as u32, self.declarations().types().align(resolved.ty));
+        let open = member.address.as_ref().and_then(open_address);
         let (offset, bit) = match &member.address {
-            Some(address) => self.relative_place(address, resolved.ty)?,
-            None => (align_up(making.image.len() as u32, self.declarations().types().align(resolved.ty)), None),
+            Some(address) => match open {
+                Some(open) => {
+                    self.declarations_mut().require_open_width(open, resolved.ty, address)?;
+                    (behind, None)
+                }
+                None => self.relative_place(address, resolved.ty)?,
+            },
+            None => (behind, None),
         };
         let end = offset as usize + resolved.image.len();
         if end > MEMORY_LIMIT as usize {
@@ -136,7 +144,13 @@ impl<'a> Written<'_, 'a> {
             }
             making.starts.extend(moved(&resolved.starts, offset));
         }
-        making.fields.push(Field { name: member.name.text.clone(), ty: resolved.ty, offset, bit });
+        making.fields.push(Field {
+            name: member.name.text.clone(),
+            ty: resolved.ty,
+            offset,
+            bit,
+            open: open.map(|open| open.area),
+        });
         Some(())
     }
 
@@ -170,6 +184,12 @@ impl<'a> Written<'_, 'a> {
         self.report(found.with_help("write STRUCT OVERLAP if members are to share bytes"));
         None
     }
+}
+
+/// `%I*`, `%QW*`: each structure has the member in itself, and `VAR_CONFIG` may give it a place (3rd ed. Table 11,
+/// feature 11).
+fn open_address(address: &Ident) -> Option<DirectAddress> {
+    DirectAddress::parse(&address.text).ok().filter(|_| address.text.ends_with('*'))
 }
 
 #[cfg(test)]

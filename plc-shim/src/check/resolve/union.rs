@@ -30,7 +30,7 @@ impl<'a> Written<'_, 'a> {
             if let Some(initial) = &field.initial {
                 resolved = self.with_initial(&resolved, initial)?;
             }
-            fields.push(Field { name: field.name.text.clone(), ty: resolved.ty, offset: 0, bit: None });
+            fields.push(Field { name: field.name.text.clone(), ty: resolved.ty, offset: 0, bit: None, open: None });
             let counts = field.initial.is_some() || images.is_empty();
             if counts {
                 starts.extend(resolved.starts.iter().cloned());

@@ -2,6 +2,9 @@
 
 use std::collections::BTreeSet;
 
+use onescan_base::TimeSpan;
+use onescan_base::duration::XmlDuration;
+
 use super::super::page::Page;
 use super::super::{Refused, Written};
 use super::markup::{data, escaped};
@@ -18,20 +21,10 @@ const RESOURCE: &str = "Application";
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) struct Cycle {
     pub(crate) name: String,
-    pub(crate) interval_ns: u64,
+    pub(crate) interval: TimeSpan,
     /// 0 comes first.
     pub(crate) priority: u32,
     pub(crate) programs: Vec<String>,
-}
-
-/// An interval as XML Schema writes it.
-pub(crate) fn duration(ns: u64) -> String {
-    let (whole, part) = (ns / 1_000_000_000, ns % 1_000_000_000);
-    let part = format!("{part:09}");
-    match part.trim_end_matches('0') {
-        "" => format!("PT{whole}S"),
-        part => format!("PT{whole}.{part}S"),
-    }
 }
 
 /// The tasks of the application, as an addition to the project.
@@ -41,7 +34,7 @@ pub(super) fn application(cycles: &[Cycle]) -> String {
         format!(
             "<task name=\"{}\" interval=\"{}\" priority=\"{}\">\n{}</task>\n",
             escaped(&cycle.name),
-            duration(cycle.interval_ns),
+            XmlDuration::from_nanos(cycle.interval.as_nanos()),
             cycle.priority,
             cycle.programs.iter().map(call).collect::<String>()
         )
@@ -132,15 +125,4 @@ fn instance_value(value: &InstanceValue, page: &Page<'_>) -> Written {
     let (ty, initial) = (types::type_of(&value.spec, page)?, initial(value.initial.as_ref(), page)?);
     let address = address.unwrap_or_default();
     Ok(format!("<configVariable instancePathAndName=\"{path}\"{address}><type>{ty}</type>{initial}</configVariable>\n"))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn intervals_are_those_of_xml_schema() {
-        let written = [0, 10_000_000, 1_500_000_000, 1].map(duration);
-        assert_eq!(written, ["PT0S", "PT0.01S", "PT1.5S", "PT0.000000001S"]);
-    }
 }

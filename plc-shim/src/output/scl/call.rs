@@ -1,11 +1,12 @@
 //! Calls: inputs by their names, functions with all of them, standard functions as SCL has them.
 
+use onescan_base::elementary::Kind;
+
 use super::body::Body;
 use super::names::{Shape, member};
 use super::scope::Scope;
 use super::standard::{self, Function};
 use crate::ir::ElementaryType;
-use crate::ir::elementary::Kind;
 use crate::syntax::ast::{Argument, Call, Expr, ExprKind, Ident, InitialiserKind, Pou, PouKind, SectionKind, Variable};
 use crate::syntax::token::{Punctuation, TokenKind};
 

@@ -81,15 +81,11 @@ pub(crate) fn block_of_task(task: &str) -> String {
 /// An organization block that calls a task's programs in their order.
 pub(super) fn task(task: &Task) -> String {
     let calls: String = task.programs.iter().map(|program| format!("    {}();\n", quoted(program))).collect();
-    let interval = interval(task.interval_ns);
+    let interval = task.interval.map_or_else(|| "cycle".to_owned(), |interval| interval.to_string());
     format!(
         "// Task {}: every {interval}, which is set in the block's properties.\nORGANIZATION_BLOCK {}\n{HEAD}BEGIN\n\
          {calls}END_ORGANIZATION_BLOCK\n",
         task.name,
         quoted(&block_of_task(&task.name)),
     )
-}
-
-fn interval(ns: u64) -> String {
-    if ns.is_multiple_of(1_000_000) { format!("{} ms", ns / 1_000_000) } else { format!("{ns} ns") }
 }

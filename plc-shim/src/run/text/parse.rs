@@ -1,9 +1,10 @@
 //! Text to values: the longest beginning that is a value, blanks in front passed.
 
+use onescan_base::duration::IecDuration;
+use onescan_base::elementary::Kind;
+
 use crate::ir::ElementaryType;
-use crate::ir::elementary::Kind;
 use crate::syntax::calendar::{CalendarKind, parse_calendar};
-use crate::syntax::literal::parse_duration;
 
 /// The bits of the value of type `ty` that `text` begins with; 0 if there is none.
 pub(super) fn parse(ty: ElementaryType, text: &str) -> i64 {
@@ -82,7 +83,7 @@ fn number(text: &str) -> &str {
 
 /// `T#1h30m` or `1h30m`.
 fn duration(text: &str) -> i64 {
-    parse_duration(after_prefix(text, &["LTIME", "TIME", "LT", "T"])).unwrap_or(0)
+    after_prefix(text, &["LTIME", "TIME", "LT", "T"]).parse().map_or(0, IecDuration::nanos)
 }
 
 /// What follows one of the prefixes and its `#`; all if there is none. Blanks behind are cut off.

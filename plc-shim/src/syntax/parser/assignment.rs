@@ -1,7 +1,8 @@
 //! Assignments, calls, and what vendors write like them.
 
+use onescan_base::ElementaryType;
+
 use super::cursor::Cursor;
-use crate::ElementaryType;
 use crate::diagnostic::{Code, Diagnostic};
 use crate::dialect::Feature;
 use crate::syntax::ast::{BinaryOp, Expr, ExprKind, StatementKind, UpdateOp};

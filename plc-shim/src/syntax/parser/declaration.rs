@@ -1,8 +1,9 @@
 //! Units, types and variable sections (2nd ed. 2.3 to 2.5).
 
+use onescan_base::ElementaryType;
+
 use super::cursor::Cursor;
 use super::object::ends_object;
-use crate::ElementaryType;
 use crate::diagnostic::{Code, Diagnostic};
 use crate::dialect::Feature;
 use crate::syntax::ast::{

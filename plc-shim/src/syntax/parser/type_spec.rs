@@ -1,7 +1,8 @@
 //! Types as written (2nd ed. 2.3.3).
 
+use onescan_base::ElementaryType;
+
 use super::cursor::Cursor;
-use crate::ElementaryType;
 use crate::dialect::Feature;
 use crate::syntax::ast::{
     Dimension, EnumValue, Expr, Field, Ident, InitArguments, ReferenceKind, Subrange, TypeSpec, TypeSpecKind,

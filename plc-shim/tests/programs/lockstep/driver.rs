@@ -2,7 +2,7 @@
 
 use onescan_plc_shim::input::kind::SourceKind;
 use onescan_plc_shim::instrument::{Options, instrument};
-use onescan_plc_shim::{Application, Input, SoftPlc, Task, TaskPlan, VirtualTime};
+use onescan_plc_shim::{Application, Input, SoftPlc, Task, TaskPlan, TimeSpan, VirtualTime};
 
 use crate::rig::{MS, Rig, task};
 
@@ -34,8 +34,8 @@ pub(crate) fn own_plan(tasks: &[Task], form: Tasks) -> TaskPlan {
     let mut plan = vec![task("sdsp", 1, 0, &["SDSP_Scheduler"])];
     match form {
         Tasks::Kept => plan.extend(tasks.iter().map(|each| {
-            let interval_ns = if each.interval_ns == 0 { MS } else { each.interval_ns };
-            Task { priority: each.priority + 1, single: None, interval_ns, ..each.clone() }
+            let interval = each.interval.or(TimeSpan::from_nanos(MS));
+            Task { priority: each.priority + 1, single: None, interval, ..each.clone() }
         })),
         Tasks::Moved => {
             let mut order: Vec<&Task> = tasks.iter().collect();
@@ -182,5 +182,5 @@ pub(crate) fn write(plc: &mut SoftPlc, path: &str, value: i64) {
 
 /// Scans at a time.
 pub(crate) fn scan(plc: &mut SoftPlc, at_ns: u64) {
-    plc.scan(VirtualTime::from_ns(at_ns)).expect("no fault");
+    plc.scan(VirtualTime::from_nanos(at_ns)).expect("no fault");
 }

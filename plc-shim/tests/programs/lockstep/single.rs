@@ -189,5 +189,5 @@ fn what_no_edge_can_start_is_refused() {
     insta::assert_snapshot!(refused(EDGES, Target::TwinCat, on("a")), @"task `t` is triggered by `a`: tasks of TwinCAT are cyclic");
     let mut none = edges();
     none[0].single = None;
-    insta::assert_snapshot!(refused(EDGES, Target::Iec, Some(none)), @"task `on_b` has an interval of 0 and no trigger");
+    insta::assert_snapshot!(refused(EDGES, Target::Iec, Some(none)), @"task `on_b` has neither an interval nor a trigger");
 }

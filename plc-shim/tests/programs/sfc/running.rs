@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 
 use onescan_plc_shim::input::kind::SourceKind;
-use onescan_plc_shim::{Application, Input, SoftPlc, TaskPlan, VirtualTime};
+use onescan_plc_shim::{Application, Input, SoftPlc, TaskPlan, TimeSpan, VirtualTime};
 
 use crate::rig::{MS, Rig};
 
@@ -44,12 +44,13 @@ VAR go : BOOL; n : INT; END_VAR
 END_PROGRAM";
     let input = Input::from_text("test.st", SourceKind::Text, text);
     let application = Application::from_inputs_with_coverage([input]).expect("a sound program");
-    let mut plc = SoftPlc::new(&application, &TaskPlan::single(&application, 10 * MS)).expect("a plan");
+    let mut plc =
+        SoftPlc::new(&application, &TaskPlan::single(&application, TimeSpan::millis::<10>())).expect("a plan");
     let mut report = String::new();
     for (scan, go) in [(1, 0), (2, 0), (3, 1)] {
         let variable = plc.variable("P.go").expect("a variable");
         plc.memory_mut()[variable.offset as usize] = go;
-        plc.scan(VirtualTime::from_ns(scan * 10 * MS)).expect("no fault");
+        plc.scan(VirtualTime::from_nanos(scan * 10 * MS)).expect("no fault");
         if scan != 1 {
             let coverage = plc.coverage().expect("points are noted");
             writeln!(report, "after scan {scan}\n{coverage:#?}").expect("a text takes all");

@@ -4,7 +4,7 @@
 //! It has one message with one field a signal; both are short enough to be written by hand.
 
 use super::super::column::Column;
-use crate::signal::ElementaryType as T;
+use crate::signal::SignalType as T;
 
 /// Wire types of protobuf.
 const VARINT: u32 = 0;
@@ -48,13 +48,13 @@ enum Form {
 impl Form {
     fn of(ty: T) -> Self {
         match ty {
-            T::Bool => Self::Bool,
-            T::Byte | T::Word | T::Dword | T::Usint | T::Uint | T::Udint => Self::Unsigned32,
-            T::Lword | T::Ulint => Self::Unsigned64,
-            T::Sint | T::Int | T::Dint => Self::Signed32,
-            T::Real => Self::Float,
-            T::Lreal => Self::Double,
-            T::Char | T::Wchar | T::String(_) | T::Wstring(_) => Self::Text,
+            T::BOOL => Self::Bool,
+            T::BYTE | T::WORD | T::DWORD | T::USINT | T::UINT | T::UDINT => Self::Unsigned32,
+            T::LWORD | T::ULINT => Self::Unsigned64,
+            T::SINT | T::INT | T::DINT => Self::Signed32,
+            T::REAL => Self::Float,
+            T::LREAL => Self::Double,
+            T::CHAR | T::WCHAR | T::String(_) | T::Wstring(_) => Self::Text,
             _ => Self::Signed64,
         }
     }

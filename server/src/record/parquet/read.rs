@@ -13,7 +13,7 @@ use super::super::block::Block;
 use super::super::column::Column;
 use super::FIRST_STEP;
 use super::schema::{DIGEST_BYTES, LEADING};
-use crate::signal::ElementaryType as T;
+use crate::signal::SignalType as T;
 
 /// A part: which steps it holds.
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -18,7 +18,7 @@ use parquet::errors::Result;
 use parquet::schema::types::{PrimitiveTypeBuilder, Type, TypePtr};
 
 use super::super::column::Column;
-use crate::signal::ElementaryType as T;
+use crate::signal::SignalType as T;
 
 /// Columns before those of signals: their names, and how many there are.
 pub(crate) const LEADING: [&str; 3] = ["step", "t_v_ns", "digest"];
@@ -43,14 +43,14 @@ pub(crate) enum Held {
 impl Held {
     pub(crate) fn of(ty: T) -> Self {
         match ty {
-            T::Bool => Self::Bit,
-            T::Sint | T::Int => Self::Word { bytes: ty.size(), signed: true },
-            T::Byte | T::Usint | T::Char | T::Word | T::Uint | T::Wchar => {
+            T::BOOL => Self::Bit,
+            T::SINT | T::INT => Self::Word { bytes: ty.size(), signed: true },
+            T::BYTE | T::USINT | T::CHAR | T::WORD | T::UINT | T::WCHAR => {
                 Self::Word { bytes: ty.size(), signed: false }
             }
-            T::Dint | T::Dword | T::Udint => Self::Same(Physical::INT32),
-            T::Real => Self::Same(Physical::FLOAT),
-            T::Lreal => Self::Same(Physical::DOUBLE),
+            T::DINT | T::DWORD | T::UDINT => Self::Same(Physical::INT32),
+            T::REAL => Self::Same(Physical::FLOAT),
+            T::LREAL => Self::Same(Physical::DOUBLE),
             T::String(_) | T::Wstring(_) => Self::Text,
             _ => Self::Same(Physical::INT64),
         }
@@ -69,18 +69,18 @@ impl Held {
 fn logical(ty: T) -> Option<LogicalType> {
     let integer = |bit_width, is_signed| Some(LogicalType::integer(bit_width, is_signed));
     match ty {
-        T::Sint => integer(8, true),
-        T::Int => integer(16, true),
-        T::Dint => integer(32, true),
-        T::Lint => integer(64, true),
-        T::Usint | T::Byte | T::Char => integer(8, false),
-        T::Uint | T::Word | T::Wchar => integer(16, false),
-        T::Udint | T::Dword => integer(32, false),
-        T::Ulint | T::Lword => integer(64, false),
-        T::Date | T::Ldate | T::Dt | T::Ldt => Some(LogicalType::timestamp(false, TimeUnit::NANOS)),
-        T::Tod | T::Ltod => Some(LogicalType::time(false, TimeUnit::NANOS)),
+        T::SINT => integer(8, true),
+        T::INT => integer(16, true),
+        T::DINT => integer(32, true),
+        T::LINT => integer(64, true),
+        T::USINT | T::BYTE | T::CHAR => integer(8, false),
+        T::UINT | T::WORD | T::WCHAR => integer(16, false),
+        T::UDINT | T::DWORD => integer(32, false),
+        T::ULINT | T::LWORD => integer(64, false),
+        T::DATE | T::LDATE | T::DT | T::LDT => Some(LogicalType::timestamp(false, TimeUnit::NANOS)),
+        T::TOD | T::LTOD => Some(LogicalType::time(false, TimeUnit::NANOS)),
         T::String(_) | T::Wstring(_) => Some(LogicalType::String),
-        T::Bool | T::Real | T::Lreal | T::Time | T::Ltime => None,
+        T::BOOL | T::REAL | T::LREAL | T::TIME | T::LTIME => None,
     }
 }
 

@@ -14,12 +14,16 @@ use tokio::sync::{Notify, Semaphore, oneshot};
 use tokio_util::codec::Framed;
 use tokio_util::task::TaskTracker;
 
+use super::remote::Remote;
+use super::stream::FrameStream;
 use super::{AGENT, FAREWELL_TIMEOUT, HANDSHAKE_TIMEOUT, ReceiveError};
+use crate::carrier::{Applicant, Carrier, Door};
 use crate::client::JoinRequest;
 use crate::mailbox::{Mailbox, Request};
 use crate::operation::Operation;
 use crate::plan::SessionPlan;
-use crate::wire::message::Role;
+use crate::signal::PortLayout;
+use crate::wire::message::{Role, placed};
 use crate::wire::{
     ClientMessage, FRAME_BYTES_MAX, Frame, FrameCodec, FrameError, FrameRef, HANDSHAKE_FRAME_BYTES_MAX, ServerMessage,
     VERSIONS,
@@ -33,29 +37,59 @@ type Connection = Framed<TcpStream, FrameCodec>;
 /// How long an operator may be silent.
 const OPERATOR_PATIENCE: Duration = Duration::from_hours(24);
 
-/// Somebody who wants to join and waits for the answer.
-pub struct Applicant {
+/// A client that wants to join and waits for the answer.
+struct Guest {
     request: JoinRequest,
     peer: SocketAddr,
-    pub(super) stream: std::net::TcpStream,
+    stream: std::net::TcpStream,
 }
 
-impl Applicant {
-    /// What it wants.
-    pub fn request(&self) -> &JoinRequest {
+impl Applicant for Guest {
+    fn request(&self) -> &JoinRequest {
         &self.request
     }
 
-    /// From where.
-    pub fn peer(&self) -> SocketAddr {
-        self.peer
+    fn origin(&self) -> String {
+        self.peer.to_string()
+    }
+
+    fn admit(
+        self: Box<Self>,
+        inputs: &PortLayout,
+        outputs: &PortLayout,
+        reply_timeout: Duration,
+    ) -> std::io::Result<Box<dyn Carrier>> {
+        let joined = ServerMessage::Joined {
+            input_bytes: inputs.size() as u32,
+            inputs: placed(inputs),
+            output_bytes: outputs.size() as u32,
+            outputs: placed(outputs),
+        };
+        let connection = FrameStream::new(self.stream, FRAME_BYTES_MAX, reply_timeout)?;
+        let mut remote = Remote::new(connection, reply_timeout);
+        // A peer that is gone already shows at the set-up.
+        remote.send_message(&joined);
+        Ok(Box::new(remote))
+    }
+
+    fn refuse(self: Box<Self>, why: &str) {
+        let refused = ServerMessage::Refused { message: why.to_owned() };
+        let sent = FrameStream::new(self.stream, FRAME_BYTES_MAX, HANDSHAKE_TIMEOUT).map(|mut connection| {
+            let sent = connection.send_message(&refused);
+            connection.farewell();
+            sent
+        });
+        if !matches!(sent, Ok(Ok(()))) {
+            // A client that is gone needs no reason.
+            tracing::debug!(peer = %self.peer, "was gone before it heard that it is refused");
+        }
     }
 }
 
 /// A listener with a thread of its own; closed when dropped.
 pub struct Lobby {
     address: SocketAddr,
-    applicants: Mutex<Receiver<Applicant>>,
+    applicants: Mutex<Receiver<Guest>>,
     close: Arc<Notify>,
     thread: Option<std::thread::JoinHandle<()>>,
 }
@@ -63,7 +97,7 @@ pub struct Lobby {
 /// What every greeting needs.
 struct Host {
     welcome: ServerMessage,
-    applicants: Sender<Applicant>,
+    applicants: Sender<Guest>,
     mailbox: Mailbox,
     seats: Semaphore,
     /// Operators that wait for an answer.
@@ -103,10 +137,12 @@ impl Lobby {
     pub fn address(&self) -> SocketAddr {
         self.address
     }
+}
 
-    /// The next applicant, if one comes within `patience`.
-    pub fn next_applicant(&self, patience: Duration) -> Option<Applicant> {
-        self.applicants.lock().unwrap_or_else(PoisonError::into_inner).recv_timeout(patience).ok()
+impl Door for Lobby {
+    fn next_applicant(&self, patience: Duration) -> Option<Box<dyn Applicant>> {
+        let waiting = self.applicants.lock().unwrap_or_else(PoisonError::into_inner);
+        waiting.recv_timeout(patience).ok().map(|guest| Box::new(guest) as Box<dyn Applicant>)
     }
 }
 
@@ -200,7 +236,7 @@ async fn take_application(mut connection: Connection, peer: SocketAddr, host: &H
     }
     let stream = parts.io.into_std().map_err(FrameError::from)?;
     // If the session no longer takes anybody the stream is closed by this.
-    let _ = host.applicants.send(Applicant { request, peer, stream });
+    let _ = host.applicants.send(Guest { request, peer, stream });
     Ok(())
 }
 

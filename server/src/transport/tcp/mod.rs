@@ -4,7 +4,7 @@
 //! |---|---|
 //! | [`lobby`] | the listener: handshakes, applicants, operators; a thread of its own, asynchronous |
 //! | `stream` | frames over a blocking socket |
-//! | [`remotes`] | the joined clients, seen from the session's thread |
+//! | `remote` | a joined client, seen from the session's thread |
 //! | [`participant`] | the client's side: join and take part |
 //! | [`operator`] | the operator's side: one wish, one answer |
 //!
@@ -15,15 +15,14 @@
 pub mod lobby;
 pub mod operator;
 pub mod participant;
-pub mod remotes;
+mod remote;
 mod stream;
 
 use std::time::Duration;
 
 use thiserror::Error;
 
-pub use lobby::{Applicant, Lobby};
-pub use remotes::{RemoteError, Remotes};
+pub use lobby::Lobby;
 
 use crate::wire::FrameError;
 

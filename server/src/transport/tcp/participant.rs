@@ -132,9 +132,9 @@ fn do_duty(
 ) -> Result<Result<(), ClientFault>, FrameError> {
     let done = match duty {
         Duty::Leave(_) | Duty::Nothing => Ok(()),
-        Duty::Setup => {
+        Duty::Setup(operations) => {
             outputs.fill(0);
-            match client.setup(outputs) {
+            match client.begin(&operations, outputs) {
                 Ok(()) => {
                     let (sequence, wake) = (StepCount(0), Wake::NextPeriod);
                     connection.send(FrameRef::Turn { sequence, t_v, wake, outputs })?;
@@ -150,6 +150,11 @@ fn do_duty(
             }
             Err(fault) => Err(fault),
         },
+        Duty::Operate(operation) => {
+            let refused = client.operate(&operation).err();
+            connection.send_message(&ClientMessage::Operated { refused })?;
+            Ok(())
+        }
         Duty::Save => {
             match client.save() {
                 Ok(state) => connection.send(FrameRef::State(&state))?,

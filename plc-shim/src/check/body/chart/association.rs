@@ -10,11 +10,11 @@ use crate::syntax::ast::{self, ActionQualifier, Association, Chart, PouKind};
 
 /// An action and the steps that control it.
 pub(in crate::check) struct Action {
-    pub(in crate::check::body) name: String,
-    pub(in crate::check::body) runs: Runs,
+    pub(super) name: String,
+    pub(super) runs: Runs,
     /// The instance of its action control.
     pub(in crate::check::body) control: Place,
-    pub(in crate::check::body) uses: Vec<Use>,
+    pub(super) uses: Vec<Use>,
 }
 
 /// What an action does.
@@ -32,7 +32,7 @@ pub(super) struct Use {
     pub(in crate::check::body) step: usize,
     pub(in crate::check::body) qualifier: ActionQualifier,
     pub(in crate::check::body) time: Option<Expr>,
-    pub(in crate::check::body) span: Span,
+    pub(super) span: Span,
 }
 
 impl Body<'_, '_> {

@@ -94,6 +94,7 @@ impl Body<'_, '_> {
                 let ty = self.declarations.types().of_value(place.ty);
                 return Some(Operand::Typed(Expr { kind: ExprKind::Load(place), ty, span: expr.span }));
             }
+            // All else is loaded from its place.
             _ => {}
         }
         let place = self.place(expr)?.place;

@@ -29,6 +29,7 @@ impl<'a> Body<'_, 'a> {
             return Vec::new();
         }
         let calls = hooks.iter().map(|hook| self.init_call(place, pou, *hook, &named, hook == last));
+        // A call that is wrong has been reported.
         calls.collect::<Option<Vec<_>>>().unwrap_or_default()
     }
 

@@ -185,6 +185,7 @@ impl Body<'_, '_> {
         for branch in &inner.branches {
             let labels = ty.map(|ty| self.case_labels(&branch.labels, ty, &mut known));
             let body = self.statements(&branch.body);
+            // Labels that are wrong have been reported; without any the arm is never taken.
             arms.push(CaseArm { labels: labels.unwrap_or_default(), body });
         }
         let otherwise = self.statements(&inner.otherwise);

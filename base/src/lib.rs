@@ -1,0 +1,25 @@
+//! The ground floor of onescan: what both the session (`onescan-server`) and the PLC (`onescan-plc-shim`) stand on.
+//!
+//! | module | subject |
+//! |---|---|
+//! | [`time`] | virtual time, integer nanoseconds |
+//! | [`duration`] | the text forms of durations: `10 ms`, `T#1s500ms`, `PT0.02S` |
+//! | [`elementary`] | the elementary types of IEC 61131-3: names, sizes, ranges, conversions |
+//! | [`signal_type`] | the types that a signal can have: the elementary types, and strings with a length |
+//! | [`value`] | values of these types: their bytes, and the text that recordings hold |
+//! | [`nearest`] | the name that was probably meant |
+//!
+//! Invariants: plain data and pure functions. No clock, no file, no random number, no iteration in hash order, and
+//! no dependency except serde, thiserror and strsim.
+
+pub mod duration;
+pub mod elementary;
+pub mod nearest;
+pub mod signal_type;
+pub mod time;
+pub mod value;
+
+pub use elementary::ElementaryType;
+pub use nearest::{did_you_mean, nearest};
+pub use signal_type::SignalType;
+pub use time::{TimeSpan, VirtualTime};

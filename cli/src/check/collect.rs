@@ -1,0 +1,179 @@
+//! Which files are meant by what was typed, and what is in them.
+
+use std::collections::BTreeSet;
+use std::path::{Path, PathBuf};
+
+use onescan_plc_shim::input::kind::{EXTENSIONS, FileKind};
+use onescan_plc_shim::input::project;
+use onescan_plc_shim::instrument;
+use onescan_plc_shim::{Code, Dialect, Input, TaskPlan};
+use onescan_scenario::Scenario;
+use onescan_scenario::load::FILE_NAME;
+
+use crate::run::RunError;
+
+/// Files that are checked together.
+pub struct Program {
+    /// The files.
+    pub inputs: Vec<Input>,
+    /// Which programs run in which task, where that is known.
+    pub plan: Option<TaskPlan>,
+}
+
+/// The programs behind `paths`: each soft PLC of a scenario, and all other files as one. A dialect that is
+/// chosen goes before those of scenarios and files.
+///
+/// # Errors
+/// A file is not there, cannot be read, or is of no kind that is read.
+pub fn programs(paths: &[PathBuf], dialect: Option<Dialect>) -> Result<Vec<Program>, RunError> {
+    let mut programs = Vec::new();
+    let mut files = Files { dialect, ..Files::default() };
+    for path in paths {
+        if path.is_dir() && !path.join(FILE_NAME).is_file() {
+            files.folder(path)?;
+        } else if path.is_dir() || path.file_name().is_some_and(|name| name == FILE_NAME) {
+            programs.extend(scenario(path, dialect)?);
+        } else {
+            files.named(path)?;
+        }
+    }
+    if !files.inputs.is_empty() {
+        programs.push(Program { inputs: files.inputs, plan: None });
+    }
+    if programs.is_empty() {
+        let known: Vec<_> = EXTENSIONS.iter().map(|(extension, _)| format!(".{extension}")).collect();
+        let help = format!("files with PLC sources end in {}", known.join(" "));
+        return Err(RunError::usage("there are no PLC sources here", Some(help)));
+    }
+    Ok(programs)
+}
+
+fn scenario(path: &Path, chosen: Option<Dialect>) -> Result<Vec<Program>, RunError> {
+    let scenario = Scenario::load(path)?;
+    let mut programs = Vec::new();
+    for (sources, dialect, plan) in scenario.plcs() {
+        let mut files = Files { dialect: chosen.or(dialect), ..Files::default() };
+        for source in sources {
+            files.named(&scenario.folder().join(source))?;
+        }
+        programs.push(Program { inputs: files.inputs, plan });
+    }
+    Ok(programs)
+}
+
+/// Files, each once.
+#[derive(Default)]
+struct Files {
+    /// The dialect of all of them, if not that which each file's name tells.
+    dialect: Option<Dialect>,
+    inputs: Vec<Input>,
+    seen: BTreeSet<PathBuf>,
+}
+
+impl Files {
+    /// A file that was named: it must be one that is read.
+    fn named(&mut self, path: &Path) -> Result<(), RunError> {
+        if let Some(kind) = FileKind::of(path) {
+            return self.file(path, kind);
+        }
+        // A missing file is told before its wrong name.
+        std::fs::metadata(path).map_err(|source| unreadable(path, source))?;
+        if path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("l5x")) {
+            return Err(logix(&path.display().to_string()));
+        }
+        let known: Vec<_> = EXTENSIONS.iter().map(|(extension, _)| format!(".{extension}")).collect();
+        let help = format!("files with PLC sources end in {}", known.join(" "));
+        Err(RunError::usage(format!("{} is of no kind that is read", path.display()), Some(help)))
+    }
+
+    fn file(&mut self, path: &Path, kind: FileKind) -> Result<(), RunError> {
+        let bytes = std::fs::read(path).map_err(|source| unreadable(path, source))?;
+        // The same file by two names is still one.
+        let identity = path.canonicalize().unwrap_or_else(|_| path.to_owned());
+        if !self.seen.insert(identity) {
+            return Ok(());
+        }
+        match kind {
+            FileKind::Source(kind) => {
+                // A file of the folder `.` is named as if the folder had not been.
+                let name = path.strip_prefix(".").unwrap_or(path).display().to_string();
+                let input = Input::read(&name, kind, &bytes);
+                self.inputs.push(match self.dialect {
+                    Some(dialect) => input.in_dialect(dialect),
+                    None => input,
+                });
+                Ok(())
+            }
+            FileKind::Project => self.project(path, &bytes),
+        }
+    }
+
+    /// The files of a TwinCAT project; objects without program text, as tasks are, are passed over.
+    fn project(&mut self, path: &Path, bytes: &[u8]) -> Result<(), RunError> {
+        let name = path.display().to_string();
+        let folder = path.parent().unwrap_or(Path::new(""));
+        match project::files(bytes) {
+            Ok(files) => {
+                let files = files.iter().map(|file| folder.join(file));
+                for file in files {
+                    if let Some(kind @ FileKind::Source(_)) = FileKind::of(&file) {
+                        self.file(&file, kind)?;
+                    }
+                }
+            }
+            Err(error) => self.inputs.push(Input::unreadable(&name, Code::MalformedXml, error.to_string())),
+        }
+        Ok(())
+    }
+
+    /// All sources in a folder and below it. Where a project is, it says which files are meant.
+    fn folder(&mut self, path: &Path) -> Result<(), RunError> {
+        let mut entries = Vec::new();
+        for entry in std::fs::read_dir(path).map_err(|source| unreadable(path, source))? {
+            entries.push(entry.map_err(|source| unreadable(path, source))?.path());
+        }
+        entries.sort();
+        let is_project = |file: &&PathBuf| FileKind::of(file) == Some(FileKind::Project);
+        if let Some(project) = entries.iter().find(is_project) {
+            return self.file(project, FileKind::Project);
+        }
+        let is_source = |file: &PathBuf| matches!(FileKind::of(file), Some(FileKind::Source(_))) && !is_other_xml(file);
+        let sources = entries.iter().filter(|file| is_source(file)).count();
+        for entry in entries {
+            // A link to a folder may lead in a circle.
+            if entry.is_dir() && !entry.is_symlink() {
+                self.folder(&entry)?;
+            } else if let Some(kind) = FileKind::of(&entry).filter(|_| entry.is_file())
+                && !is_other_xml(&entry)
+                // What was made of the sources beside it is the same program once more.
+                && !(sources > 1 && is_whole(&entry))
+            {
+                self.file(&entry, kind)?;
+            }
+        }
+        Ok(())
+    }
+}
+
+/// True for XML that is not PLCopen's: folders hold much of it.
+fn is_other_xml(path: &Path) -> bool {
+    let is_xml = path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("xml"));
+    is_xml && !std::fs::read(path).is_ok_and(|bytes| bytes.windows(11).any(|part| part == b"plcopen.org"))
+}
+
+/// True for a project with its shim that `instrument` wrote as one file.
+fn is_whole(path: &Path) -> bool {
+    let is_own = path.file_stem().is_some_and(|stem| stem.eq_ignore_ascii_case("sdsp"));
+    is_own && std::fs::read(path).is_ok_and(|bytes| instrument::is_whole(&String::from_utf8_lossy(&bytes)))
+}
+
+fn unreadable(path: &Path, source: std::io::Error) -> RunError {
+    RunError::File { path: path.to_owned(), source }
+}
+
+/// Why neither files nor targets of Logix controllers are taken: `docs/decisions/007`.
+pub fn logix(what: &str) -> RunError {
+    let help = "its timers and motion instructions are the controller's own and have no form in IEC 61131-3; \
+        write the program in Structured Text, or let the controller take part as it is by a gateway";
+    RunError::usage(format!("{what}: projects of Logix controllers are not read or written"), Some(help.to_owned()))
+}

@@ -1,0 +1,146 @@
+//! With a session that another process serves: `onescan join` and `control`.
+
+use std::io::Write;
+use std::net::SocketAddr;
+use std::path::PathBuf;
+use std::time::Duration;
+
+use clap::{Args as ClapArgs, ValueEnum};
+use onescan_scenario::Scenario;
+use onescan_scenario::compose::Member;
+use onescan_server::operation::Operation;
+use onescan_server::signal::{ClientName, SignalName};
+use onescan_server::transport::tcp::operator::operate;
+use onescan_server::transport::tcp::participant::take_part;
+
+use super::value::{FormatArg, client_name, signal_name};
+use crate::run::Format;
+use crate::run::error::{ExitCode, RunError};
+
+/// How long an operator waits for the next step boundary.
+const OPERATOR_PATIENCE: Duration = Duration::from_secs(30);
+
+/// Options of `join`.
+#[derive(Debug, ClapArgs)]
+pub struct JoinArgs {
+    /// The scenario: a folder with a `scenario.toml`
+    pub scenario: PathBuf,
+    /// The client to be
+    #[arg(value_parser = client_name)]
+    pub client: ClientName,
+    /// The server's address
+    #[arg(long, value_name = "ADDRESS:PORT")]
+    pub server: SocketAddr,
+    /// The case that the server runs [default: the scenario as it is]
+    #[arg(long, value_name = "NAME")]
+    pub case: Option<String>,
+}
+
+/// Takes part in a session.
+///
+/// # Errors
+/// See [`RunError`].
+pub fn join(args: &JoinArgs) -> Result<ExitCode, RunError> {
+    let scenario = Scenario::load_case(&args.scenario, args.case.as_deref())?;
+    let mut client = match scenario.member(&args.client)? {
+        Member::Plant(client) | Member::Plc(client) | Member::Gateway(client) => client,
+        Member::External(_) => {
+            let message = format!("client `{}` is external: its own program joins", args.client);
+            return Err(RunError::usage(message, None));
+        }
+        Member::Seated { .. } => {
+            let message = format!("client `{}` takes part over OPC UA: its own program does", args.client);
+            return Err(RunError::usage(message, None));
+        }
+    };
+    let end = take_part(client.as_mut(), args.server)?;
+    tracing::info!(%end, "left");
+    Ok(ExitCode::Ok)
+}
+
+/// Options of `control`.
+#[derive(Debug, ClapArgs)]
+pub struct ControlArgs {
+    /// The server's address
+    pub server: SocketAddr,
+    /// What to ask for
+    #[arg(value_enum, default_value_t)]
+    pub wish: WishArg,
+    /// The signal to write, force or release
+    #[arg(required_if_eq_any([("wish", "write"), ("wish", "force"), ("wish", "release")]), value_parser = signal_name)]
+    pub signal: Option<SignalName>,
+    /// Its value, as in `TRUE`, `-3` or `1.5`
+    #[arg(required_if_eq_any([("wish", "write"), ("wish", "force")]), allow_hyphen_values = true)]
+    pub value: Option<String>,
+    /// For people, or a JSON object for machines
+    #[arg(long, value_enum, default_value_t)]
+    pub format: FormatArg,
+}
+
+/// What an operator may ask for.
+#[derive(Clone, Copy, Debug, Default, ValueEnum)]
+pub enum WishArg {
+    /// How it is
+    #[default]
+    Status,
+    /// Hold virtual time at the next step boundary
+    Pause,
+    /// Let it run again
+    Resume,
+    /// Run exactly one step, then hold
+    Step,
+    /// Begin anew at virtual time 0
+    Reset,
+    /// End the session
+    Stop,
+    /// Give a signal a value until its writer writes it again
+    Write,
+    /// Hold a signal at a value, whatever its writer writes
+    Force,
+    /// Let a forced signal's writer write it again
+    Release,
+}
+
+impl ControlArgs {
+    /// What is asked, for the server; `None` asks only for the status.
+    ///
+    /// # Errors
+    /// A signal or a value where none belongs.
+    pub fn operation(&self) -> Result<Option<Operation>, String> {
+        let (signal, value) = (self.signal.clone(), self.value.clone());
+        Ok(Some(match (self.wish, signal, value) {
+            (WishArg::Write, Some(signal), Some(value)) => Operation::Write { signal, value },
+            (WishArg::Force, Some(signal), Some(value)) => Operation::Force { signal, value },
+            (WishArg::Release, Some(signal), None) => Operation::Release { signal },
+            (WishArg::Release, Some(_), Some(value)) => return Err(format!("`{value}` means nothing with `release`")),
+            (_, Some(signal), _) => return Err(format!("`{signal}` means nothing here")),
+            (WishArg::Pause, ..) => Operation::Pause,
+            (WishArg::Resume, ..) => Operation::Resume,
+            (WishArg::Step, ..) => Operation::Step,
+            (WishArg::Reset, ..) => Operation::Reset,
+            (WishArg::Stop, ..) => Operation::Stop,
+            (WishArg::Status | WishArg::Write | WishArg::Force | WishArg::Release, ..) => return Ok(None),
+        }))
+    }
+}
+
+/// Asks a session.
+///
+/// # Errors
+/// See [`RunError`].
+pub fn control(args: &ControlArgs) -> Result<ExitCode, RunError> {
+    let operation = args.operation().map_err(|message| RunError::usage(message, None))?;
+    let status = operate(args.server, operation, OPERATOR_PATIENCE)?;
+    let mut out = std::io::stdout().lock();
+    let written = match Format::from(args.format) {
+        Format::Json => {
+            serde_json::to_writer(&mut out, &status).map_err(std::io::Error::from).and_then(|()| writeln!(out))
+        }
+        Format::Human => {
+            let held = if status.held { "held" } else { "running" };
+            writeln!(out, "{held} in state {} after step {}, t_v = {}", status.state, status.steps, status.t_v)
+        }
+    };
+    written.map_err(RunError::Output)?;
+    Ok(ExitCode::Ok)
+}

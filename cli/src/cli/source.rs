@@ -1,0 +1,194 @@
+//! With PLC sources: `onescan check`, `explain` and `instrument`.
+
+use std::path::PathBuf;
+
+use clap::{Args as ClapArgs, ValueEnum};
+use onescan_plc_shim::instrument::Target;
+use onescan_plc_shim::{Dialect, Task};
+use onescan_server::time::TimeSpan;
+
+use super::value::FormatArg;
+use crate::check::collect::logix;
+use crate::check::{self, CheckConfig, CheckFormat, Warnings};
+use crate::instrument::{Destination, Diff, Direction, InstrumentConfig};
+use crate::run::error::{ExitCode, RunError};
+
+/// Options of `check`.
+#[derive(Debug, ClapArgs)]
+pub struct CheckArgs {
+    /// Source files (`.st .iec .exp .scl .TcPOU .TcDUT .TcGVL .TcIO .plcproj .xml`), folders with such
+    /// files, or scenarios; files and folders are checked together, as one program
+    #[arg(required = true, value_name = "FILE|FOLDER|SCENARIO")]
+    pub paths: Vec<PathBuf>,
+    /// Read all files in this dialect: iec2, iec3, codesys, twincat or siemens-scl [default: what a file's
+    /// name or PLCopen XML tells, as in `.scl`, else iec3]
+    #[arg(long, value_name = "NAME")]
+    pub dialect: Option<Dialect>,
+    /// `human`; `json`: an object a finding with `code`, `severity`, `file`, `line`, `column`,
+    /// `end_line`, `end_column`, `message`, `help`; `sarif`: a SARIF 2.1.0 log
+    #[arg(long, value_enum, default_value_t)]
+    pub format: CheckFormatArg,
+    /// Fail with exit code 1 if there are warnings
+    #[arg(long)]
+    pub deny_warnings: bool,
+}
+
+/// See [`CheckFormat`].
+#[derive(Clone, Copy, Debug, Default, ValueEnum)]
+pub enum CheckFormatArg {
+    /// For people
+    #[default]
+    Human,
+    /// For machines
+    Json,
+    /// For code hosts and editors
+    Sarif,
+}
+
+impl From<CheckFormatArg> for CheckFormat {
+    fn from(arg: CheckFormatArg) -> Self {
+        match arg {
+            CheckFormatArg::Human => Self::Human,
+            CheckFormatArg::Json => Self::Json,
+            CheckFormatArg::Sarif => Self::Sarif,
+        }
+    }
+}
+
+/// Checks sources.
+///
+/// # Errors
+/// See [`RunError`].
+pub fn check(args: CheckArgs) -> Result<ExitCode, RunError> {
+    let warnings = if args.deny_warnings { Warnings::Denied } else { Warnings::Allowed };
+    let config = CheckConfig { paths: args.paths, dialect: args.dialect, format: args.format.into(), warnings };
+    check::check(&config, &mut std::io::stdout().lock())
+}
+
+/// Options of `explain`.
+#[derive(Debug, ClapArgs)]
+pub struct ExplainArgs {
+    /// The code, as in `N0101`
+    #[arg(required_unless_present = "list")]
+    pub code: Option<String>,
+    /// Name every code
+    #[arg(long, conflicts_with = "code")]
+    pub list: bool,
+}
+
+/// Explains a code.
+///
+/// # Errors
+/// See [`RunError`].
+pub fn explain(args: &ExplainArgs) -> Result<ExitCode, RunError> {
+    let mut out = std::io::stdout().lock();
+    match &args.code {
+        Some(code) => check::explain::page(code, &mut out)?,
+        None => check::explain::list(&mut out).map_err(RunError::Output)?,
+    }
+    Ok(ExitCode::Ok)
+}
+
+/// Options of `instrument`.
+#[derive(Debug, ClapArgs)]
+#[expect(clippy::struct_excessive_bools, reason = "each is a flag that is typed or not")]
+#[command(group = clap::ArgGroup::new("result").required(true).multiple(true).args(["output", "in_place", "diff"]))]
+pub struct InstrumentArgs {
+    /// A folder, a source file, a TwinCAT project or a scenario
+    pub project: PathBuf,
+    /// For whom the shim's own sources are written: `iec`: program text of the standard, or
+    /// PLCopen XML if the project is, `twincat`: TwinCAT 3 objects, `codesys`: PLCopen XML for CODESYS, `scl`:
+    /// external sources for TIA Portal; to the last two a project in program text is put as a whole
+    #[arg(long, value_enum, default_value_t)]
+    pub target: TargetArg,
+    /// A task and its programs, as in `fast:10ms:0=Main,Alarms`; may be given several times [default: the
+    /// scenario's tasks, or one of 10 ms with all programs]
+    #[arg(long = "task", value_name = "NAME:INTERVAL:PRIORITY=PROGRAM,...", value_parser = plc_task)]
+    pub tasks: Vec<Task>,
+    /// Write the result into this folder
+    #[arg(short, long, value_name = "DIR", conflicts_with = "in_place")]
+    pub output: Option<PathBuf>,
+    /// Change the project's own files
+    #[arg(long)]
+    pub in_place: bool,
+    /// Show the changes as a unified diff
+    #[arg(long)]
+    pub diff: bool,
+    /// Take the shim off: every file as it was, byte for byte
+    #[arg(long)]
+    pub remove: bool,
+    /// Write nothing and fail with exit code 1 if a source of time cannot be replaced
+    #[arg(long)]
+    pub deny_warnings: bool,
+    /// For people, or one JSON object for machines: `files` with `file`, `change`, `lines`, and `findings`
+    #[arg(long, value_enum, default_value_t)]
+    pub format: FormatArg,
+}
+
+/// See [`Target`].
+#[derive(Clone, Copy, Debug, Default, ValueEnum)]
+pub enum TargetArg {
+    /// Program text of the standard
+    #[default]
+    Iec,
+    /// TwinCAT 3 objects
+    Twincat,
+    /// PLCopen XML as CODESYS imports it
+    Codesys,
+    /// SCL as TIA Portal imports it
+    Scl,
+    /// Refused with its reason
+    #[value(hide = true)]
+    L5x,
+}
+
+impl TargetArg {
+    fn target(self) -> Result<Target, RunError> {
+        match self {
+            Self::Iec => Ok(Target::Iec),
+            Self::Twincat => Ok(Target::TwinCat),
+            Self::Codesys => Ok(Target::Codesys),
+            Self::Scl => Ok(Target::Scl),
+            Self::L5x => Err(logix("--target l5x")),
+        }
+    }
+}
+
+/// Attaches the shim, or takes it off.
+///
+/// # Errors
+/// See [`RunError`].
+pub fn instrument(args: InstrumentArgs) -> Result<ExitCode, RunError> {
+    let destination = match args.output {
+        Some(folder) => Destination::Folder(folder),
+        None if args.in_place => Destination::InPlace,
+        None => Destination::Nowhere,
+    };
+    let config = InstrumentConfig {
+        project: args.project,
+        direction: if args.remove { Direction::Remove } else { Direction::Attach },
+        target: args.target.target()?,
+        tasks: args.tasks,
+        destination,
+        diff: if args.diff { Diff::Shown } else { Diff::Hidden },
+        format: args.format.into(),
+        warnings: if args.deny_warnings { Warnings::Denied } else { Warnings::Allowed },
+    };
+    crate::instrument::instrument(&config, &mut std::io::stdout().lock(), &mut std::io::stderr().lock())
+}
+
+fn plc_task(text: &str) -> Result<Task, String> {
+    let wanted = || "write `NAME:INTERVAL:PRIORITY=PROGRAM,PROGRAM`, as in `fast:10ms:0=Main,Alarms`".to_owned();
+    let (head, programs) = text.split_once('=').ok_or_else(wanted)?;
+    let [name, interval, priority] = head.split(':').collect::<Vec<_>>()[..] else {
+        return Err(wanted());
+    };
+    let interval: TimeSpan = interval.parse().map_err(|error| format!("{interval}: {error}"))?;
+    Ok(Task {
+        name: name.to_owned(),
+        interval: Some(interval),
+        priority: priority.parse().map_err(|_| format!("`{priority}` is no priority: 0 comes first"))?,
+        programs: programs.split(',').map(|program| program.trim().to_owned()).collect(),
+        ..Task::default()
+    })
+}

@@ -1,0 +1,93 @@
+//! Who wrote what differs.
+//!
+//! The recorded scenarios are run again up to the first difference, with statements that tell what
+//! they write and which way they go. A re-run whose digest is not that of the recording says nothing, and is not believed.
+
+use std::collections::BTreeSet;
+use std::sync::PoisonError;
+
+use onescan_clients::soft_plc::{Traced, Written};
+use onescan_scenario::Scenario;
+use onescan_scenario::file::ClientFile;
+use onescan_server::recording::Recording;
+use onescan_server::signal::{ClientName, SignalName};
+use onescan_server::time::VirtualTime;
+
+use super::first::Difference;
+use super::parting::{Parting, parting};
+use crate::run::rerun::{Rerun, rerun};
+
+/// Who wrote one signal.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Cause {
+    /// The signal.
+    pub signal: SignalName,
+    /// Its writer.
+    pub client: Option<ClientName>,
+    /// The statement that wrote it last, in each run; nothing where none did, or where the writer is
+    /// no soft PLC.
+    pub written: [Option<Written>; 2],
+}
+
+/// What is known of the causes.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Causes {
+    /// One for each signal that differs.
+    pub signals: Vec<Cause>,
+    /// Where the PLCs that wrote them first went another way, if they did.
+    pub partings: Vec<Parting>,
+    /// Why statements are not known, for each run of which they are not.
+    pub unknown: [Option<String>; 2],
+}
+
+/// Finds who wrote `differences` at `at`.
+pub(super) fn causes(recordings: &[Recording; 2], differences: &[Difference], at: VirtualTime) -> Causes {
+    let signals: BTreeSet<SignalName> = differences.iter().map(|difference| difference.signal.clone()).collect();
+    let mut unknown = [None, None];
+    let mut traced: [Traced; 2] = Default::default();
+    for (index, recording) in recordings.iter().enumerate() {
+        match again(recording, &signals, at) {
+            Ok(found) => traced[index] = found,
+            Err(why) => unknown[index] = Some(why),
+        }
+    }
+    let cause = |difference: &Difference| Cause {
+        signal: difference.signal.clone(),
+        client: difference.writer.clone(),
+        written: traced.each_ref().map(|traced| traced.writers.get(&difference.signal).cloned()),
+    };
+    let writers: BTreeSet<&ClientName> = differences.iter().filter_map(|one| one.writer.as_ref()).collect();
+    let [a, b] = &traced;
+    let parted = writers.into_iter().filter_map(|client| parting(client, a.ways.get(client)?, b.ways.get(client)?));
+    let partings = parted.collect();
+    Causes { signals: differences.iter().map(cause).collect(), partings, unknown }
+}
+
+/// Runs a recorded scenario again up to `at`. An error says in words why that cannot be.
+fn again(recording: &Recording, signals: &BTreeSet<SignalName>, at: VirtualTime) -> Result<Traced, String> {
+    let header = recording.header();
+    if header.provenance.mode != "lockstep" {
+        return Err(format!("a run in mode {} cannot be repeated", header.provenance.mode));
+    }
+    let mut scenario = Scenario::load_case(&recording.scenario(), header.provenance.case.as_deref())
+        .map_err(|error| error.to_string())?;
+    let plc_writes = header.signals.iter().any(|signal| {
+        let writer = signal.writer.as_ref().and_then(|writer| scenario.file().clients.get(writer));
+        signals.contains(&signal.name) && matches!(writer.map(toml::Spanned::get_ref), Some(ClientFile::SoftPlc { .. }))
+    });
+    if !plc_writes {
+        return Ok(Traced::default());
+    }
+    if header.first_step.0 != 0 {
+        return Err("the run went on from a checkpoint".to_owned());
+    }
+    let sink = scenario.trace(signals.clone());
+    let inputs = recording.operator_inputs().map_err(|error| error.to_string())?;
+    let Rerun { steps, digest } = rerun(&scenario, at, inputs).map_err(|error| error.to_string())?;
+    let recorded = recording.digest(steps.0).map_err(|error| error.to_string())?;
+    if digest != Some(recorded) {
+        return Err(format!("run again, the scenario has another digest at step {steps}"));
+    }
+    let found = sink.lock().unwrap_or_else(PoisonError::into_inner).clone();
+    Ok(found)
+}

@@ -1,0 +1,115 @@
+//! PLC projects made to run in lockstep, and back.
+//!
+//! | module | subject |
+//! |---|---|
+//! | [`project`] | which files are meant, and where the result goes |
+//! | [`report`] | what was changed, for people and machines |
+
+pub mod project;
+pub mod report;
+
+use std::io::Write;
+use std::path::PathBuf;
+
+use onescan_plc_shim::instrument::{self, InstrumentError, Options, Target};
+use onescan_plc_shim::{Diagnostics, Task, TaskPlan};
+use onescan_report::file::write_all_whole;
+
+use crate::check::Warnings;
+use crate::run::error::ExitCode;
+use crate::run::{Format, RunError};
+
+/// What is asked for.
+#[derive(Clone, Debug)]
+pub struct InstrumentConfig {
+    /// A folder, a file or a scenario.
+    pub project: PathBuf,
+    /// Whether the shim is put on or taken off.
+    pub direction: Direction,
+    /// For whom the shim's own sources are written.
+    pub target: Target,
+    /// The tasks, if they are not those of a scenario.
+    pub tasks: Vec<Task>,
+    /// Where the result goes.
+    pub destination: Destination,
+    /// Whether the changes are shown.
+    pub diff: Diff,
+    /// For whom the report is.
+    pub format: Format,
+    /// Whether what cannot be replaced makes it fail.
+    pub warnings: Warnings,
+}
+
+/// Whether the shim is put on or taken off.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Direction {
+    /// On.
+    Attach,
+    /// Off.
+    Remove,
+}
+
+/// Where the result goes.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Destination {
+    /// Nowhere: it is only shown.
+    Nowhere,
+    /// Into the project's own files.
+    InPlace,
+    /// Into this folder, under the project's names.
+    Folder(PathBuf),
+}
+
+/// Whether the changes are shown.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Diff {
+    /// As a unified diff.
+    Shown,
+    /// Not at all.
+    Hidden,
+}
+
+/// Instruments a project, or takes the shim off; writes what was done to `out` and findings to `err`.
+///
+/// # Errors
+/// A file cannot be read or written, or the tasks are wrong. What is wrong with the sources is no error
+/// here but an exit code.
+pub fn instrument(config: &InstrumentConfig, out: &mut dyn Write, err: &mut dyn Write) -> Result<ExitCode, RunError> {
+    let program = project::program(&config.project)?;
+    let project = match config.direction {
+        Direction::Remove => instrument::remove(&program.inputs),
+        Direction::Attach => {
+            let tasks = tasks(config, program.plan);
+            instrument::instrument(&program.inputs, &Options { target: config.target, tasks })
+        }
+    };
+    let project = match project {
+        Ok(project) => project,
+        Err(InstrumentError::Text(findings)) => {
+            report::findings(&findings, program.inputs.len(), config.format, out)?;
+            return Ok(ExitCode::WrongInput);
+        }
+        Err(error) => return Err(RunError::usage(error.to_string(), None)),
+    };
+    if !project.warnings.is_empty() && config.warnings == Warnings::Denied {
+        report::findings(&project.warnings, program.inputs.len(), config.format, out)?;
+        return Ok(ExitCode::Unmet);
+    }
+    let writes = project::writes(config, &project)?;
+    write_all_whole(&writes)?;
+    report::write(config, &project, out)?;
+    tell(&project.warnings, program.inputs.len(), config, err)?;
+    Ok(ExitCode::Ok)
+}
+
+fn tasks(config: &InstrumentConfig, plan: Option<TaskPlan>) -> Option<Vec<Task>> {
+    if config.tasks.is_empty() { plan.map(|plan| plan.tasks) } else { Some(config.tasks.clone()) }
+}
+
+/// Findings for people go where they do not mix with the result; for machines they are in it.
+fn tell(warnings: &Diagnostics, files: usize, config: &InstrumentConfig, err: &mut dyn Write) -> Result<(), RunError> {
+    if warnings.is_empty() || config.format == Format::Json {
+        return Ok(());
+    }
+    report::findings(warnings, files, Format::Human, err)
+}

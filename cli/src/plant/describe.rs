@@ -1,0 +1,187 @@
+//! A scene as a tree: what hangs on what, what moves it, what senses it, and every signal.
+
+use std::io::{self, Write};
+use std::path::Path;
+
+use onescan_clients::plant::component::kinds;
+use onescan_clients::plant::scene::model::{
+    Body, BodyKind, Bound, Component, Mass, Moved, Scene, Sensing, Shape, Wire,
+};
+use onescan_scenario::compose::report;
+use onescan_scenario::file::ClientFile;
+use onescan_scenario::{Scenario, ScenarioError};
+
+use crate::run::{Format, RunError};
+
+/// Reads the scene of a file, or those of a scenario's plants, and writes what it is made of.
+///
+/// # Errors
+/// A file that cannot be read or is not a scene, a scenario without one; those of `out`.
+pub fn write(path: &Path, format: Format, out: &mut dyn Write) -> Result<(), RunError> {
+    if !path.is_dir() {
+        return one_scene(path, format, out);
+    }
+    let scenario = Scenario::load(path)?;
+    let scenes = scenario.file().clients.values().filter_map(|client| match client.get_ref() {
+        ClientFile::Plant { scene, .. } => Some(scenario.folder().join(scene)),
+        _ => None,
+    });
+    let scenes: Vec<_> = scenes.collect();
+    for scene in &scenes {
+        if scenes.len() > 1 && format == Format::Human {
+            writeln!(out, "{}", scene.display()).map_err(RunError::Output)?;
+        }
+        one_scene(scene, format, out)?;
+    }
+    if scenes.is_empty() {
+        return Err(RunError::usage(format!("no client of {} has a scene", path.display()), None));
+    }
+    Ok(())
+}
+
+fn one_scene(path: &Path, format: Format, out: &mut dyn Write) -> Result<(), RunError> {
+    let file = path.display().to_string();
+    let text = std::fs::read_to_string(path).map_err(|source| {
+        let help = Some("give a scene, as `my-cell/plant.toml`, or the folder of its scenario".to_owned());
+        RunError::Scenario(ScenarioError::Unreadable { path: path.to_owned(), source, help })
+    })?;
+    let scene =
+        Scene::parse(&text, &file).map_err(|error| ScenarioError::from(Box::new(report(&error, &file, &text))))?;
+    match format {
+        Format::Json => {
+            serde_json::to_writer_pretty(&mut *out, &scene).map_err(io::Error::from).map_err(RunError::Output)?;
+            writeln!(out).map_err(RunError::Output)
+        }
+        Format::Human => tree(&scene, out).map_err(RunError::Output),
+    }
+}
+
+fn tree(scene: &Scene, out: &mut dyn Write) -> io::Result<()> {
+    writeln!(out, "bodies and joints")?;
+    writeln!(out, "  ground")?;
+    hanging(scene, None, 2, out)?;
+    let free = |index: &usize| !scene.joints.iter().any(|joint| joint.child == *index);
+    for index in (0..scene.bodies.len()).filter(free) {
+        writeln!(out, "  {}", body(&scene.bodies[index]))?;
+        hanging(scene, Some(index), 2, out)?;
+    }
+    section(
+        out,
+        "axes",
+        scene.axes.iter().map(|axis| {
+            let moved = match axis.moved {
+                Moved::Joint(joint) => format!("joint {}", scene.joints[joint].name),
+                Moved::Belt { body, .. } => format!("belt {}", scene.bodies[body].name),
+            };
+            format!("{}: {moved}", axis.name)
+        }),
+    )?;
+    section(
+        out,
+        "sensors",
+        scene.sensors.iter().map(|sensor| {
+            let what = match &sensor.sensing {
+                Sensing::EndPosition { joint, .. } => format!("end position of joint {}", scene.joints[*joint].name),
+                Sensing::Proximity { targets, .. } => format!("proximity of {} bodies", targets.len()),
+            };
+            format!("{}: {what} -> {}", sensor.name, sensor.signal)
+        }),
+    )?;
+    section(out, "components", scene.components.iter().map(|component| one(component, scene)))?;
+    section(out, "reads", scene.reads.iter().map(|port| format!("{} : {}", port.name, port.ty)))?;
+    section(out, "writes", scene.writes.iter().map(|port| format!("{} : {}", port.name, port.ty)))
+}
+
+fn section(out: &mut dyn Write, title: &str, lines: impl Iterator<Item = String>) -> io::Result<()> {
+    for (index, line) in lines.enumerate() {
+        if index == 0 {
+            writeln!(out, "{title}")?;
+        }
+        writeln!(out, "  {line}")?;
+    }
+    Ok(())
+}
+
+/// The joints whose parent a body is, each with its child; a loop is shown where it closes.
+fn hanging(scene: &Scene, parent: Option<usize>, depth: usize, out: &mut dyn Write) -> io::Result<()> {
+    for (index, joint) in scene.joints.iter().enumerate().filter(|(_, joint)| joint.parent == parent) {
+        let child = &scene.bodies[joint.child];
+        let kind = format!("{:?}", joint.kind).to_lowercase();
+        let first = scene.joints.iter().position(|other| other.child == joint.child) == Some(index);
+        let shown = if first { body(child) } else { format!("{} (above or below)", child.name) };
+        writeln!(out, "{:width$}{} ({kind}): {shown}", "", joint.name, width = 2 * depth)?;
+        // a tree of joints is no deeper than there are bodies
+        if first && depth <= scene.bodies.len() + 1 {
+            hanging(scene, Some(joint.child), depth + 1, out)?;
+        }
+    }
+    Ok(())
+}
+
+fn body(body: &Body) -> String {
+    let kind = match body.kind {
+        BodyKind::Fixed => "fixed",
+        BodyKind::Dynamic => "dynamic",
+        BodyKind::Kinematic => "kinematic",
+    };
+    let shape = match &body.shape {
+        None => String::new(),
+        Some(Shape::Box { size_m: [x, y, z] }) => format!(", box {x} x {y} x {z} m"),
+        Some(Shape::Sphere { radius_m }) => format!(", sphere of radius {radius_m} m"),
+        Some(Shape::Cylinder { radius_m, length_m }) => format!(", cylinder of radius {radius_m} m, {length_m} m long"),
+        Some(Shape::Capsule { radius_m, length_m }) => format!(", capsule of radius {radius_m} m, {length_m} m long"),
+        Some(Shape::Hull { file, corners_m }) => format!(", hull of {file} with {} corners", corners_m.len()),
+        Some(Shape::Surface { file, triangles, .. }) => {
+            format!(", surface of {file} with {} triangles", triangles.len())
+        }
+    };
+    let mass = match (body.kind, body.mass) {
+        (BodyKind::Dynamic, Mass::Total { kg } | Mass::Stated { kg, .. }) => format!(", {kg} kg"),
+        (BodyKind::Dynamic, Mass::Density { kg_m3 }) => format!(", {kg_m3} kg/m³"),
+        _ => String::new(),
+    };
+    format!("{}: {kind}{shape}{mass}", body.name)
+}
+
+/// A component: what it is bound to, what of it is not preset, and its wires.
+fn one(component: &Component, scene: &Scene) -> String {
+    let bound = match &component.bound {
+        Bound::Nothing => String::new(),
+        Bound::Drives(joint) => format!(", drives joint {}", scene.joints[*joint].name),
+        Bound::Measures(joint) => format!(", measures joint {}", scene.joints[*joint].name),
+        Bound::Belt { body, .. } => format!(", belt {}", scene.bodies[*body].name),
+        Bound::Ray { targets, .. } => format!(", a ray at {} bodies", targets.len()),
+        Bound::Touch { body, shape, targets } => {
+            let name = shape.map_or(&scene.bodies[*body].name, |shape| &scene.shapes[shape].name);
+            format!(", {name} and {} others", targets.len())
+        }
+        Bound::Meet { targets } => format!(", {} bodies among each other", targets.len()),
+        Bound::Collect { body, targets } => {
+            format!(", body {} takes {} others", scene.bodies[*body].name, targets.len())
+        }
+        Bound::Place { body, targets } => format!(", {} bodies at {}", targets.len(), scene.bodies[*body].name),
+    };
+    let mut lines = vec![format!("{}: {}{bound}", component.name, component.kind)];
+    let Some(kind) = kinds().into_iter().find(|kind| kind.name == component.kind) else { return lines.concat() };
+    for (parameter, setting) in kind.parameters.iter().zip(&component.settings) {
+        if parameter.preset != *setting {
+            lines.push(format!("{} = {setting}", parameter.key));
+        }
+    }
+    for (input, wire) in kind.inputs.iter().zip(&component.inputs) {
+        match wire {
+            Wire::Open => {}
+            Wire::Signal(name) => lines.push(format!("{} <- {name}", input.key)),
+            Wire::Output { component, output } => {
+                let from = &scene.components[*component];
+                let key = kinds().into_iter().find(|kind| kind.name == from.kind).map(|kind| kind.outputs[*output].key);
+                lines.push(format!("{} <- {}.{}", input.key, from.name, key.unwrap_or_default()));
+            }
+        }
+    }
+    for (output, name) in kind.outputs.iter().zip(&component.outputs) {
+        lines.extend(name.as_ref().map(|name| format!("{} -> {name}", output.key)));
+    }
+    lines.extend(component.failures.iter().map(|failure| format!("may fail: {}", kind.failures[failure.mode].mode)));
+    lines.join("\n    ")
+}

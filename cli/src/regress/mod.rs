@@ -1,0 +1,99 @@
+//! `onescan test`: all scenarios and cases run and held against what was reviewed; ST test programs run.
+//!
+//! Modules in the order in which data flows through them:
+//!
+//! | module | subject |
+//! |---|---|
+//! | [`config`] | what is asked for |
+//! | [`discover`] | which scenarios and sources are meant |
+//! | [`selection`] | which tests are meant, by name and tag |
+//! | [`plan`] | units of work, filtered |
+//! | [`pool`] | units in processes of their own, several at a time |
+//! | [`worker`] | one unit, in such a process |
+//! | [`unit_test`], `test_tags` | test programs in ST, each in a fresh PLC |
+//! | [`ran`] | what a process says of its unit |
+//! | [`snapshot`] | trajectories as text, compared |
+//! | [`outcome`] | passed, changed, failed: what came of each test |
+//! | [`summary`] | for people and as JSON |
+//! | [`junit`], [`sarif`], [`page`] | reports for others |
+//! | [`coverage`] | what all tests executed together |
+//!
+//! **Invariants.** The order of tests, and all that is said of them, depends on their names alone, not on
+//! who was done first. `--check` writes nothing beside a scenario.
+
+pub mod config;
+pub mod coverage;
+pub mod discover;
+pub mod junit;
+pub mod outcome;
+pub mod page;
+pub mod plan;
+pub mod pool;
+pub mod ran;
+pub mod sarif;
+pub mod selection;
+pub mod snapshot;
+pub mod summary;
+mod test_tags;
+pub mod unit_test;
+pub mod worker;
+
+use std::io::Write;
+
+use onescan_report::file;
+
+pub use config::{Policy, TestConfig};
+pub use selection::Selection;
+
+use crate::run::error::ExitCode;
+use crate::run::{Format, RunError};
+use outcome::Outcome;
+
+/// Runs all tests that `config` asks for, and writes what came of them to `out`.
+///
+/// # Errors
+/// There is nothing to test, or a report cannot be written. What is wrong with a test is no error here
+/// but an outcome.
+pub fn test(config: &TestConfig, out: &mut dyn Write) -> Result<ExitCode, RunError> {
+    let started = std::time::Instant::now();
+    let units = plan::units(config)?;
+    let worked = pool::work(config, &units)?;
+    let mut outcomes: Vec<Outcome> = Vec::new();
+    for (unit, worked) in units.iter().zip(&worked) {
+        outcomes.extend(outcome::judge(config, unit, worked)?);
+    }
+    if outcomes.is_empty() {
+        return Err(plan::none_chosen("none of the tests"));
+    }
+    let orphans = plan::orphans(config, &units)?;
+    let executed = coverage::merged(&units, &worked);
+    let coverage = config.coverage.is_some().then(|| [executed.lines(), executed.branches()]);
+    let report = outcome::Report { outcomes, orphans, coverage, wall_time: started.elapsed() };
+    write_reports(config, &report, &executed)?;
+    match config.format {
+        Format::Human => summary::write_human(config, &report, out),
+        Format::Json => summary::write_json(&report, out),
+    }
+    .map_err(RunError::Output)?;
+    Ok(report.exit_code())
+}
+
+fn write_reports(
+    config: &TestConfig,
+    report: &outcome::Report,
+    coverage: &onescan_plc_shim::Coverage,
+) -> Result<(), RunError> {
+    if let Some(request) = &config.coverage {
+        request.write_report(coverage)?;
+    }
+    if let Some(path) = &config.junit {
+        file::write_whole(path, junit::text(report).as_bytes())?;
+    }
+    if let Some(path) = &config.sarif {
+        file::write_whole(path, sarif::text(report).as_bytes())?;
+    }
+    if let Some(path) = &config.html {
+        file::write_whole(path, page::of_tests(report, coverage).as_bytes())?;
+    }
+    Ok(())
+}

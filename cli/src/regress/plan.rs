@@ -1,0 +1,152 @@
+//! Units of work: each is one process.
+
+use std::path::{Path, PathBuf};
+
+use onescan_scenario::Scenario;
+use onescan_scenario::case::Catalogue;
+
+use super::config::TestConfig;
+use super::discover::Found;
+use super::snapshot::store::{Place, reviewed};
+use super::snapshot::take::Choice;
+use crate::run::RunError;
+
+/// What one process does.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Unit {
+    /// One case of a scenario.
+    Case(CaseUnit),
+    /// A scenario that cannot be read, with why.
+    Unreadable {
+        /// Its folder.
+        scenario: PathBuf,
+        /// The error, drawn.
+        error: String,
+    },
+    /// All test programs of these sources.
+    Sources(Vec<PathBuf>),
+}
+
+/// One case of a scenario.
+#[derive(Clone, Debug, PartialEq)]
+pub struct CaseUnit {
+    /// The scenario's folder and the case.
+    pub place: Place,
+    /// What to choose it by.
+    pub tags: Vec<String>,
+    /// What its snapshot holds, and how exactly.
+    pub choice: Choice,
+    /// True for a case of `cases.toml`, false for the scenario as it is.
+    pub is_named: bool,
+}
+
+impl Unit {
+    /// What it is called in reports: the scenario's folder, or the sources.
+    pub fn suite(&self) -> String {
+        match self {
+            Self::Case(CaseUnit { place: Place { scenario, .. }, .. }) | Self::Unreadable { scenario, .. } => {
+                suite_of(scenario)
+            }
+            Self::Sources(paths) => {
+                let [first, ..] = &paths[..] else { return String::new() };
+                let common = first.parent().filter(|_| paths.len() > 1);
+                common.map_or_else(|| shown(first), shown)
+            }
+        }
+    }
+}
+
+/// A scenario's folder in reports: as it was typed, or its own name where that is `.`.
+pub fn suite_of(scenario: &Path) -> String {
+    let typed = shown(scenario);
+    let own = || std::path::absolute(scenario).ok()?.file_name().map(|name| name.to_string_lossy().into_owned());
+    if typed == "." { own().unwrap_or(typed) } else { typed }
+}
+
+/// A folder as it was typed, without a `./` before it.
+pub fn shown(path: &Path) -> String {
+    let stripped = path.strip_prefix(".").unwrap_or(path);
+    let text = stripped.to_string_lossy().replace('\\', "/");
+    if text.is_empty() { ".".to_owned() } else { text }
+}
+
+/// The units that `config` asks for.
+///
+/// # Errors
+/// Nothing is asked for that is there.
+pub fn units(config: &TestConfig) -> Result<Vec<Unit>, RunError> {
+    let found = Found::behind(&config.paths)?;
+    let mut units = Vec::new();
+    let mut left_out = 0;
+    for scenario in &found.scenarios {
+        match cases(scenario) {
+            Ok(cases) => {
+                let all = cases.len();
+                let chosen: Vec<_> = cases.into_iter().filter(|case| is_chosen(config, case)).collect();
+                left_out += all - chosen.len();
+                units.extend(chosen.into_iter().map(Unit::Case));
+            }
+            Err(error) => {
+                let error = format!("{:?}", miette::Report::new(error));
+                units.push(Unit::Unreadable { scenario: scenario.clone(), error });
+            }
+        }
+    }
+    // The names of test programs are known once they are compiled.
+    if !found.sources.is_empty() {
+        units.push(Unit::Sources(found.sources));
+    }
+    match (units.is_empty(), left_out) {
+        (false, _) => Ok(units),
+        (true, 0) => {
+            let help = "a scenario is a folder with a `scenario.toml`; test programs are in PLC sources".to_owned();
+            Err(RunError::usage("there is nothing to test here", Some(help)))
+        }
+        (true, _) => Err(none_chosen(&format!("none of {left_out} cases"))),
+    }
+}
+
+fn cases(folder: &Path) -> Result<Vec<CaseUnit>, RunError> {
+    let scenario = Scenario::load(folder)?;
+    let catalogue = Catalogue::load(folder)?;
+    let mut units = Vec::new();
+    for case in catalogue.cases() {
+        // What is wrong with a case is told before anything runs.
+        let choice = Choice::of(&scenario.clone().with_case(&catalogue, case)?, &catalogue)?;
+        let place = Place { scenario: folder.to_owned(), case: case.name.clone() };
+        units.push(CaseUnit { place, tags: case.tags.clone(), choice, is_named: case.entry.is_some() });
+    }
+    Ok(units)
+}
+
+fn is_chosen(config: &TestConfig, case: &CaseUnit) -> bool {
+    config.selection.has_name(&suite_of(&case.place.scenario), &case.place.case)
+        && config.selection.has_tags(&case.tags)
+}
+
+/// The error of a selection that leaves nothing.
+pub(super) fn none_chosen(of: &str) -> RunError {
+    let help = "see `--filter`, `--tag` and `--skip-tag`".to_owned();
+    RunError::usage(format!("{of} is chosen"), Some(help))
+}
+
+/// Reviewed snapshots of the scenarios tested that belong to no case any more.
+///
+/// # Errors
+/// A folder cannot be read.
+pub fn orphans(config: &TestConfig, units: &[Unit]) -> Result<Vec<PathBuf>, RunError> {
+    // What was left out is not known here.
+    if !config.selection.is_all() {
+        return Ok(Vec::new());
+    }
+    let places: Vec<&Place> =
+        units.iter().filter_map(|unit| if let Unit::Case(unit) = unit { Some(&unit.place) } else { None }).collect();
+    let mut scenarios: Vec<&Path> = places.iter().map(|place| place.scenario.as_path()).collect();
+    scenarios.dedup();
+    let mut orphans = Vec::new();
+    for scenario in scenarios {
+        let unclaimed = reviewed(scenario)?.into_iter().filter(|place| !places.contains(&place));
+        orphans.extend(unclaimed.map(|place| place.reviewed()));
+    }
+    Ok(orphans)
+}

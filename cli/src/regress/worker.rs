@@ -1,0 +1,83 @@
+//! One unit of work, in a process of its own.
+
+use std::cell::RefCell;
+use std::io::Write;
+use std::path::{Path, PathBuf};
+use std::rc::Rc;
+
+use onescan_plc_shim::{Coverage, Dialect};
+use onescan_scenario::Scenario;
+use onescan_scenario::case::{Catalogue, DEFAULT};
+use onescan_server::time::{TimeSpan, VirtualTime};
+
+use super::ran::{Event, Ran, Worked};
+use super::snapshot::take::{Choice, Taker};
+use super::{Selection, unit_test};
+use crate::run::interrupt::Interrupt;
+use crate::run::{RunConfig, RunError, watched};
+
+/// What a process is to do.
+#[derive(Clone, Debug, Default)]
+pub struct WorkerConfig {
+    /// A scenario to run, and
+    pub scenario: Option<PathBuf>,
+    /// which case of it.
+    pub case: Option<String>,
+    /// Sources with test programs.
+    pub sources: Vec<PathBuf>,
+    /// Their cycle.
+    pub scan: Option<TimeSpan>,
+    /// When a test program that is not done has failed.
+    pub until: VirtualTime,
+    /// Their dialect.
+    pub dialect: Option<Dialect>,
+    /// Which of their tests; names are held against filters elsewhere.
+    pub selection: Selection,
+    /// Whether to note what is executed.
+    pub cover: bool,
+    /// Whether to draw trajectories.
+    pub draw: bool,
+}
+
+/// Does the work and writes what came of it to `out`.
+///
+/// # Errors
+/// The input is wrong.
+pub fn work(config: &WorkerConfig, out: &mut dyn Write) -> Result<(), RunError> {
+    let worked = match &config.scenario {
+        Some(scenario) => case(config, scenario)?,
+        None => unit_test::run(config)?,
+    };
+    serde_json::to_writer(&mut *out, &worked).map_err(|error| RunError::Output(error.into()))?;
+    out.flush().map_err(RunError::Output)
+}
+
+fn case(config: &WorkerConfig, folder: &Path) -> Result<Worked, RunError> {
+    let mut scenario = Scenario::load_case(folder, config.case.as_deref())?;
+    if config.cover {
+        scenario.cover();
+    }
+    let catalogue = Catalogue::load(scenario.folder())?;
+    let choice = Choice::of(&scenario, &catalogue)?;
+    let snapshot = Rc::new(RefCell::new(None));
+    let taker = Taker::new(&scenario, choice.clone(), Rc::clone(&snapshot));
+    let mut run = RunConfig::headless(folder.to_owned(), config.case.clone());
+    if config.draw {
+        // The plot is not written but handed over.
+        run.plot = Some(PathBuf::new());
+        run.signals = choice.signals;
+    }
+    let (report, plot) = watched(&run, &scenario, &Interrupt::new(), vec![Box::new(taker)])?;
+    let mut ran = Ran::of(config.case.as_deref().unwrap_or(DEFAULT), &report, scenario.file().step.as_nanos());
+    ran.snapshot = snapshot.borrow().as_ref().map(super::snapshot::Snapshot::to_text);
+    ran.picture = config.draw.then(|| plot.to_svg());
+    ran.events = scenario.case_events().into_iter().map(|(at_ns, text)| Event { at_ns, text }).collect();
+    let coverage =
+        scenario.coverage().map(|sink| rows(&sink.lock().unwrap_or_else(std::sync::PoisonError::into_inner)));
+    Ok(Worked { tests: vec![ran], coverage: coverage.unwrap_or_default(), error: None })
+}
+
+/// Coverage as it is handed over.
+pub(super) fn rows(coverage: &Coverage) -> Vec<super::ran::Covered> {
+    coverage.rows().into_iter().map(Into::into).collect()
+}

@@ -1,0 +1,189 @@
+//! `onescan review`: snapshots that are new or have changed, looked at, accepted or rejected.
+//!
+//! | module | subject |
+//! |---|---|
+//! | [`canvas`] | curves in braille dots |
+//! | [`chart`] | a signal on a terminal: old, new, difference |
+//! | [`view`] | a pending snapshot on a terminal |
+//! | [`page`] | all of them as a page |
+
+pub mod canvas;
+pub mod chart;
+pub mod page;
+pub mod view;
+
+use std::io::{IsTerminal, Write};
+use std::path::PathBuf;
+
+use console::{Key, Term};
+use onescan_report::file;
+use onescan_scenario::Scenario;
+use onescan_scenario::case::Catalogue;
+
+use crate::regress::discover::Found;
+use crate::regress::plan::suite_of;
+use crate::regress::snapshot::store::{Place, pending};
+use crate::regress::snapshot::take;
+use crate::regress::snapshot::{Difference, Snapshot, compare};
+use crate::run::RunError;
+use crate::run::error::ExitCode;
+
+/// Columns of a terminal that does not say how wide it is.
+const WIDTH: usize = 80;
+
+/// What becomes of the snapshots.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Choice {
+    /// The user says so, one by one.
+    #[default]
+    Ask,
+    /// All are accepted.
+    AcceptAll,
+    /// All are rejected.
+    RejectAll,
+    /// None is; they are named.
+    List,
+}
+
+/// All options of a review.
+#[derive(Clone, Debug)]
+pub struct ReviewConfig {
+    /// Scenarios and folders with scenarios.
+    pub paths: Vec<PathBuf>,
+    /// What becomes of the snapshots.
+    pub choice: Choice,
+    /// A page to write.
+    pub html: Option<PathBuf>,
+}
+
+/// A snapshot that waits for a review.
+#[derive(Clone, Debug)]
+pub struct Waiting {
+    /// Whose it is.
+    pub place: Place,
+    /// The reviewed one, if there is one.
+    pub old: Option<Snapshot>,
+    /// The pending one.
+    pub new: Snapshot,
+    /// Where the two differ.
+    pub differences: Vec<Difference>,
+}
+
+impl Waiting {
+    /// Its name, as tests are named.
+    pub fn name(&self) -> String {
+        format!("{}: {}", suite_of(&self.place.scenario), self.place.case)
+    }
+
+    /// `new` or `changed`.
+    pub fn status(&self) -> &'static str {
+        if self.old.is_some() { "changed" } else { "new" }
+    }
+}
+
+/// Shows all pending snapshots and does with them what is wanted.
+///
+/// # Errors
+/// A snapshot cannot be read or written.
+pub fn review(config: &ReviewConfig, out: &mut dyn Write) -> Result<ExitCode, RunError> {
+    let waiting = waiting(config)?;
+    if let Some(path) = &config.html {
+        file::write_whole(path, page::of(&waiting).as_bytes())?;
+    }
+    if waiting.is_empty() {
+        writeln!(out, "no snapshot waits for a review").map_err(RunError::Output)?;
+        return Ok(ExitCode::Ok);
+    }
+    let term = Term::stdout();
+    let on_terminal = std::io::stdout().is_terminal();
+    let colours = on_terminal && std::env::var_os("NO_COLOR").is_none();
+    for (index, one) in waiting.iter().enumerate() {
+        let what = match config.choice {
+            Choice::AcceptAll => Decision::Accept,
+            Choice::RejectAll => Decision::Reject,
+            // Who has a page looks at that.
+            Choice::List => Decision::Skip,
+            Choice::Ask => {
+                let width = if on_terminal { usize::from(term.size().1) } else { WIDTH };
+                out.write_all(view::text(one, width, colours).as_bytes()).map_err(RunError::Output)?;
+                if on_terminal && std::io::stdin().is_terminal() {
+                    ask(&term, index + 1, waiting.len(), out).map_err(RunError::Output)?
+                } else {
+                    Decision::Skip
+                }
+            }
+        };
+        match what {
+            Decision::Accept => one.place.accept(&one.new)?,
+            Decision::Reject => one.place.reject()?,
+            Decision::Skip => {}
+            Decision::Quit => break,
+        }
+        tell(config, one, what, out).map_err(RunError::Output)?;
+    }
+    if config.choice == Choice::Ask && !(on_terminal && std::io::stdin().is_terminal()) {
+        let how = "on a terminal, or with --accept-all or --reject-all";
+        writeln!(out, "{} waiting: decide {how}", waiting.len()).map_err(RunError::Output)?;
+    }
+    Ok(ExitCode::Ok)
+}
+
+/// What the user says to one snapshot.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Decision {
+    Accept,
+    Reject,
+    Skip,
+    Quit,
+}
+
+fn tell(config: &ReviewConfig, one: &Waiting, what: Decision, out: &mut dyn Write) -> std::io::Result<()> {
+    match (config.choice, what) {
+        (Choice::List, _) => writeln!(out, "{} {}", one.status(), one.name()),
+        (_, Decision::Accept) => writeln!(out, "accepted {}", one.name()),
+        (_, Decision::Reject) => writeln!(out, "rejected {}", one.name()),
+        (_, Decision::Skip | Decision::Quit) => Ok(()),
+    }
+}
+
+/// Waits for a key that means something.
+fn ask(term: &Term, number: usize, of: usize, out: &mut dyn Write) -> std::io::Result<Decision> {
+    write!(out, "[{number}/{of}]  a accept   r reject   s skip   q quit ")?;
+    out.flush()?;
+    let decision = loop {
+        match term.read_key()? {
+            Key::Char('a' | 'A' | 'y') => break Decision::Accept,
+            Key::Char('r' | 'R' | 'n') => break Decision::Reject,
+            Key::Char('s' | 'S') => break Decision::Skip,
+            Key::Char('q' | 'Q') | Key::Escape | Key::CtrlC => break Decision::Quit,
+            _ => {}
+        }
+    };
+    writeln!(out)?;
+    Ok(decision)
+}
+
+/// Everything that waits, in the order of scenarios and cases.
+fn waiting(config: &ReviewConfig) -> Result<Vec<Waiting>, RunError> {
+    let mut all = Vec::new();
+    for folder in &Found::behind(&config.paths)?.scenarios {
+        for place in pending(folder)? {
+            let Some(new) = place.read_pending()? else { continue };
+            let old = place.read_reviewed()?;
+            let tolerances = tolerances(&place);
+            let differences = old.as_ref().map(|old| compare(old, &new, &tolerances)).unwrap_or_default();
+            all.push(Waiting { place, old, new, differences });
+        }
+    }
+    Ok(all)
+}
+
+/// The tolerances of a case. A scenario that is wrong by now has none: its snapshots can be looked at all the same.
+fn tolerances(place: &Place) -> std::collections::BTreeMap<String, f64> {
+    let choice = || {
+        let scenario = Scenario::load(&place.scenario).ok()?;
+        let catalogue = Catalogue::load(&place.scenario).ok()?;
+        take::Choice::of(&scenario, &catalogue).ok()
+    };
+    choice().map(|choice| choice.tolerances).unwrap_or_default()
+}

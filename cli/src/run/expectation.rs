@@ -1,0 +1,111 @@
+//! Expectations of a run: the signals they need, and what came of them.
+
+use std::cell::RefCell;
+use std::io::Write;
+use std::rc::Rc;
+
+use onescan_scenario::Scenario;
+use onescan_scenario::expect::{Trace, Verdict};
+use onescan_server::digest::TrajectoryDigest;
+use onescan_server::record::{Observer, RecordError};
+use onescan_server::session::Session;
+use onescan_server::signal::SignalName;
+use onescan_server::time::VirtualTime;
+use serde::Serialize;
+
+use super::sampler::Chosen;
+
+/// What came of one expectation. Its JSON form is a contract: fields are added, never changed.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct ExpectationReport {
+    /// Its name.
+    pub name: String,
+    /// `met`, `open` or `violated`.
+    pub verdict: &'static str,
+    /// When it was first violated.
+    #[serde(rename = "at_ns", skip_serializing_if = "Option::is_none")]
+    pub at: Option<VirtualTime>,
+    /// What its signals were then.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub values: Vec<SignalValue>,
+    /// By how much it was met, negative if it was not; absent where it is infinite, as for BOOLs.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub margin: Option<f64>,
+}
+
+/// A signal's value as a number; BOOLs are 0 or 1.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct SignalValue {
+    /// Its name.
+    pub signal: String,
+    /// What it was.
+    pub value: f64,
+}
+
+impl ExpectationReport {
+    /// True if the run did not show it.
+    pub fn is_violated(&self) -> bool {
+        self.verdict == "violated"
+    }
+
+    pub(super) fn write(&self, out: &mut dyn Write) -> std::io::Result<()> {
+        write!(out, "  expectation `{}` ", self.name)?;
+        match self.at {
+            Some(at) => write!(out, "violated at {at}")?,
+            None if self.verdict == "open" => write!(out, "open at the end of the run")?,
+            None => write!(out, "met")?,
+        }
+        for (index, SignalValue { signal, value }) in self.values.iter().enumerate() {
+            write!(out, "{} {signal} = {value}", if index == 0 { ":" } else { "," })?;
+        }
+        match self.margin {
+            Some(margin) => writeln!(out, " (margin {margin:.3e})"),
+            None => writeln!(out),
+        }
+    }
+}
+
+/// What all expectations say to a trace.
+pub(super) fn judge(scenario: &Scenario, trace: &Trace) -> Vec<ExpectationReport> {
+    let report = |(name, expectation): &(String, onescan_scenario::expect::Expectation)| {
+        let outcome = expectation.judge(trace);
+        let margin = outcome.margin.greatest;
+        let exact = margin.is_finite() && margin == outcome.margin.least;
+        let (verdict, at, values) = match outcome.verdict {
+            Verdict::Met => ("met", None, Vec::new()),
+            Verdict::Open => ("open", None, Vec::new()),
+            Verdict::Violated { at, values } => ("violated", Some(at), values),
+        };
+        let values = values.into_iter().map(|(signal, value)| SignalValue { signal, value }).collect();
+        ExpectationReport { name: name.clone(), verdict, at, values, margin: exact.then_some(margin) }
+    };
+    scenario.expectations().named.iter().map(report).collect()
+}
+
+/// Takes the samples that expectations are judged by.
+pub(super) struct Witness {
+    trace: Rc<RefCell<Trace>>,
+    chosen: Chosen,
+}
+
+impl Witness {
+    pub(super) fn new(trace: Rc<RefCell<Trace>>, names: &[SignalName]) -> Self {
+        Self { trace, chosen: Chosen::new(names) }
+    }
+}
+
+impl Observer for Witness {
+    fn begin(&mut self, session: &Session, digest: &TrajectoryDigest) -> Result<(), RecordError> {
+        self.trace.replace(Trace::new(self.chosen.find(session)));
+        self.step(session, digest)
+    }
+
+    fn step(&mut self, session: &Session, _digest: &TrajectoryDigest) -> Result<(), RecordError> {
+        self.trace.borrow_mut().push(session.t_v().as_nanos(), self.chosen.numbers(session));
+        Ok(())
+    }
+
+    fn end(&mut self, _session: &Session) -> Result<(), RecordError> {
+        Ok(())
+    }
+}

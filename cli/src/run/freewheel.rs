@@ -1,0 +1,88 @@
+//! One run without lockstep: in real time, then replayed so that it is digested and recorded like
+//! any other.
+
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::{Duration, Instant};
+
+use onescan_scenario::compose::Member;
+use onescan_scenario::{Mode, Scenario};
+use onescan_server::end::SessionEnd;
+use onescan_server::lockstep::{Lockstep, Outcome};
+
+use super::config::RunConfig;
+use super::error::RunError;
+use super::interrupt::Interrupt;
+use super::progress::Progress;
+use crate::freewheel::run::{Clock, Freewheeler, Trace};
+
+/// Runs the scenario once; `watch` adds observers to the replay.
+pub(super) fn run(
+    config: &RunConfig,
+    scenario: &Scenario,
+    number: u32,
+    interrupt: &Interrupt,
+    watch: impl FnOnce(&mut Lockstep),
+) -> Result<Outcome, RunError> {
+    let mut clients = Vec::new();
+    for name in scenario.plan().clients() {
+        if let Some(client) = scenario.free_gateway(name) {
+            clients.push(Freewheeler { client: client?, clock: Clock::Grid });
+            continue;
+        }
+        match scenario.member(name)? {
+            Member::Plant(client) => clients.push(Freewheeler { client, clock: plant_clock(config.mode, scenario) }),
+            Member::Plc(client) => clients.push(Freewheeler { client, clock: Clock::Grid }),
+            Member::Gateway(_) | Member::External(_) | Member::Seated { .. } => {
+                return Err(RunError::usage(format!("client `{name}` can only take part in lockstep"), None));
+            }
+        }
+    }
+    let Trace { mut replay, reached, failed } = spin(config, scenario, number, interrupt, clients)?;
+    replay.set_until(Some(reached));
+    watch(&mut replay);
+    let outcome = replay.run()?;
+    Ok(match failed {
+        Some(end) => Outcome { end, ..outcome },
+        None if interrupt.is_raised() => Outcome { end: SessionEnd::Stopped { t_v: outcome.t_v }, ..outcome },
+        None => outcome,
+    })
+}
+
+/// How a plant keeps its cycle.
+fn plant_clock(mode: Mode, scenario: &Scenario) -> Clock {
+    match mode {
+        Mode::Halt => Clock::Halt,
+        Mode::Follow => Clock::Follow(scenario.file().freewheel.update_rate),
+        Mode::Lockstep | Mode::Freewheel => Clock::Pause,
+    }
+}
+
+/// Lets the clients run, with a bar beside them that follows the wall clock.
+fn spin(
+    config: &RunConfig,
+    scenario: &Scenario,
+    number: u32,
+    interrupt: &Interrupt,
+    clients: Vec<Freewheeler>,
+) -> Result<Trace, RunError> {
+    let end = config.end(scenario);
+    let done = AtomicBool::new(false);
+    let started = Instant::now();
+    std::thread::scope(|scope| {
+        if config.progress {
+            let (label, done) = (format!("run {number}/{}", config.runs), &done);
+            scope.spawn(move || {
+                let bar = Progress::new(end, label);
+                while !done.load(Ordering::Relaxed) {
+                    bar.show(started.elapsed());
+                    std::thread::sleep(Duration::from_millis(100));
+                }
+                bar.clear();
+            });
+        }
+        let stop = interrupt.flag();
+        let trace = crate::freewheel::run::run(scenario.plan(), clients, &scenario.file().freewheel, end, stop);
+        done.store(true, Ordering::Relaxed);
+        Ok(trace?)
+    })
+}

@@ -1,0 +1,151 @@
+//! A run's recording: the scenario's own files beside what the server records.
+
+use std::path::{Component, Path, PathBuf};
+
+use onescan_report::file;
+use onescan_scenario::{Scenario, ScenarioError};
+use onescan_server::record::event::{self, Event, EventKind};
+use onescan_server::record::recorder::EVENTS;
+use onescan_server::record::{Choice, Provenance, Recorder, SourceFile};
+use onescan_server::time::VirtualTime;
+
+use super::config::RunConfig;
+use super::error::RunError;
+use super::report::RunReport;
+
+/// Name of the folder with the scenario's files.
+const SCENARIO: &str = "scenario";
+
+/// What is to be recorded, and where.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct RecordRequest {
+    /// The folder of all runs.
+    pub folder: PathBuf,
+    /// Signals and forms.
+    pub choice: Choice,
+}
+
+/// The recording of one run.
+pub(super) struct Recorded {
+    folder: PathBuf,
+}
+
+impl Recorded {
+    /// Makes the folder of run `number` with the scenario's files in it, and a recorder for the rest.
+    pub(super) fn begin(
+        request: &RecordRequest,
+        config: &RunConfig,
+        scenario: &Scenario,
+        number: u32,
+    ) -> Result<(Self, Recorder), RunError> {
+        let folder = file::create_folder(&request.folder.join(format!("run-{number}")))?;
+        // What an earlier run left here would be taken for this one's.
+        remove(&folder.join("run.json"))?;
+        let (own_folder, files) = copy_scenario(scenario, &folder.join(SCENARIO))?;
+        let provenance = Provenance {
+            onescan: env!("CARGO_PKG_VERSION").to_owned(),
+            scenario: scenario.name().to_owned(),
+            folder: own_folder,
+            case: config.case.clone(),
+            mode: config.mode.name().to_owned(),
+            until: config.end(scenario),
+            seed: scenario.seed(),
+            files,
+        };
+        let recorder = Recorder::new(&folder, provenance, request.choice.clone());
+        Ok((Self { folder }, recorder))
+    }
+
+    /// Adds what came of the run.
+    pub(super) fn end(&self, report: &RunReport) -> Result<(), RunError> {
+        let violated = |expectation: &super::expectation::ExpectationReport| {
+            let t_v: VirtualTime = expectation.at?;
+            let what = EventKind::Violated { expectation: expectation.name.clone() };
+            Some(Event { step: report.step_at(t_v), t_v, what })
+        };
+        let events: Vec<Event> = report.expectations.iter().filter_map(violated).collect();
+        event::append(&self.folder.join(EVENTS), &events)?;
+        let mut text = serde_json::to_vec_pretty(report).map_err(|e| RunError::Output(e.into()))?;
+        text.push(b'\n');
+        Ok(file::write_whole(&self.folder.join("run.json"), &text)?)
+    }
+}
+
+fn remove(path: &Path) -> Result<(), RunError> {
+    match std::fs::remove_file(path) {
+        Err(source) if source.kind() != std::io::ErrorKind::NotFound => {
+            Err(RunError::File { path: path.to_owned(), source })
+        }
+        _ => Ok(()),
+    }
+}
+
+/// Copies the scenario's files so that it can be run from the copy. Says where its own folder is
+/// among them, and all files with their hashes.
+fn copy_scenario(scenario: &Scenario, target: &Path) -> Result<(String, Vec<SourceFile>), RunError> {
+    let files: Vec<PathBuf> = scenario.files();
+    let own_folder = own_folder(scenario.folder(), &files);
+    let mut copied = Vec::new();
+    for file in files {
+        let path = scenario.folder().join(&file);
+        let bytes = std::fs::read(&path).map_err(|source| ScenarioError::Unreadable { path, source, help: None })?;
+        match within(&own_folder, &file) {
+            Some(place) => {
+                let to = target.join(&place);
+                if let Some(parent) = to.parent() {
+                    file::create_folder(parent)?;
+                }
+                file::write_whole(&to, &bytes)?;
+                copied.push(SourceFile::new(with_slashes(&place), &bytes));
+            }
+            None => copied.push(SourceFile::new(file.display().to_string(), &bytes)),
+        }
+    }
+    copied.sort_by(|a, b| a.path.cmp(&b.path));
+    Ok((with_slashes(&own_folder), copied))
+}
+
+/// The scenario's folder below the topmost that its files lead to by `..`.
+fn own_folder(folder: &Path, files: &[PathBuf]) -> PathBuf {
+    let up = |file: &PathBuf| file.components().take_while(|part| *part == Component::ParentDir).count();
+    let levels = files.iter().map(up).max().unwrap_or(0);
+    let absolute = std::path::absolute(folder).unwrap_or_else(|_| folder.to_owned());
+    let names: Vec<_> = absolute.components().filter(|part| matches!(part, Component::Normal(_))).collect();
+    names[names.len().saturating_sub(levels)..].iter().collect()
+}
+
+/// Where `file` is, as seen from above `folder`; nothing if it is not below.
+fn within(folder: &Path, file: &Path) -> Option<PathBuf> {
+    let mut place = folder.to_owned();
+    for part in file.components() {
+        match part {
+            Component::Normal(name) => place.push(name),
+            Component::CurDir => {}
+            Component::ParentDir if place.pop() => {}
+            _ => return None,
+        }
+    }
+    Some(place)
+}
+
+fn with_slashes(path: &Path) -> String {
+    let parts: Vec<_> = path.components().map(|part| part.as_os_str().to_string_lossy()).collect();
+    parts.join("/")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn files_above_the_scenario_keep_their_place_to_it() {
+        let files = ["scenario.toml", "../lib/a.st", "plc/b.st"].map(PathBuf::from);
+        let folder = own_folder(Path::new("/x/cell/shear"), &files);
+        assert_eq!(folder, Path::new("shear"));
+        let places: Vec<_> = files.iter().map(|file| within(&folder, file).map(|place| with_slashes(&place))).collect();
+        let expected = ["shear/scenario.toml", "lib/a.st", "shear/plc/b.st"].map(|place| Some(place.to_owned()));
+        assert_eq!(places, expected);
+        assert_eq!(own_folder(Path::new("/x/shear"), &files[..1]), Path::new(""));
+        assert_eq!(within(Path::new("shear"), Path::new("/etc/hosts")), None);
+    }
+}

@@ -1,0 +1,155 @@
+//! Chosen signals of every step as numbers, and the plot of several runs.
+
+use std::cell::RefCell;
+use std::rc::Rc;
+
+use onescan_report::plot::{Mark, Panel, Plot, Shape, Trajectory};
+use onescan_scenario::{Mode, Scenario};
+use onescan_server::digest::TrajectoryDigest;
+use onescan_server::record::{Observer, RecordError};
+use onescan_server::session::Session;
+use onescan_server::signal::{SignalId, SignalName, SignalType};
+
+use super::config::RunConfig;
+use super::report::RunReport;
+
+/// Signals chosen by name, found anew in each session.
+pub(super) struct Chosen {
+    names: Vec<SignalName>,
+    signals: Vec<SignalId>,
+}
+
+impl Chosen {
+    pub(super) fn new(names: &[SignalName]) -> Self {
+        Self { names: names.to_vec(), signals: Vec::new() }
+    }
+
+    /// Finds the signals in a session that begins; tells how many there are.
+    pub(super) fn find(&mut self, session: &Session) -> usize {
+        self.signals = self.names.iter().filter_map(|name| session.signal_id(name.as_str())).collect();
+        self.signals.len()
+    }
+
+    /// What they are now, in their order; texts are no numbers.
+    pub(super) fn numbers(&self, session: &Session) -> impl Iterator<Item = f64> {
+        self.signals.iter().map(|signal| {
+            let bytes = session.layout().bytes(*signal, session.image());
+            session.layout().ty(*signal).as_f64(bytes).unwrap_or(f64::NAN)
+        })
+    }
+}
+
+/// Chosen signals of one run.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Samples {
+    pub(super) names: Vec<SignalName>,
+    pub(super) t_ns: Vec<u64>,
+    /// A row a signal.
+    pub(super) values: Vec<Vec<f64>>,
+}
+
+impl Samples {
+    pub(super) fn new(names: &[SignalName]) -> Self {
+        Self { names: names.to_vec(), t_ns: Vec::new(), values: vec![Vec::new(); names.len()] }
+    }
+}
+
+/// Takes a sample of a session at every step.
+pub(super) struct Sampler {
+    samples: Rc<RefCell<Samples>>,
+    chosen: Chosen,
+}
+
+impl Sampler {
+    pub(super) fn new(samples: Rc<RefCell<Samples>>) -> Self {
+        let chosen = Chosen::new(&samples.borrow().names);
+        Self { samples, chosen }
+    }
+}
+
+impl Observer for Sampler {
+    fn begin(&mut self, session: &Session, digest: &TrajectoryDigest) -> Result<(), RecordError> {
+        self.chosen.find(session);
+        self.samples.replace(Samples::new(&self.chosen.names));
+        self.step(session, digest)
+    }
+
+    fn step(&mut self, session: &Session, _digest: &TrajectoryDigest) -> Result<(), RecordError> {
+        let mut samples = self.samples.borrow_mut();
+        samples.t_ns.push(session.t_v().as_nanos());
+        for (row, number) in samples.values.iter_mut().zip(self.chosen.numbers(session)) {
+            row.push(number);
+        }
+        Ok(())
+    }
+
+    fn end(&mut self, _session: &Session) -> Result<(), RecordError> {
+        Ok(())
+    }
+}
+
+/// The picture of a plot: over time, or in the plane that was asked for.
+pub(super) fn picture(scenario: &Scenario, config: &RunConfig, runs: &[Samples], reports: &[RunReport]) -> String {
+    let plot = plot(scenario, config, runs, reports);
+    let Some(plane) = &config.plane else { return plot.to_svg() };
+    let panels = plane.iter().map(|name| panel(scenario, name, runs.iter())).collect();
+    Plot { panels, ..plot }.to_plane_svg().unwrap_or_default()
+}
+
+/// A signal of several runs.
+pub(super) fn panel<'r>(scenario: &Scenario, name: &SignalName, runs: impl Iterator<Item = &'r Samples>) -> Panel {
+    let signal = scenario.file().signals.get(name).map(toml::Spanned::get_ref);
+    let trajectory = |run: &Samples| {
+        let row = run.names.iter().position(|known| known == name);
+        let values = row.and_then(|row| run.values.get(row).cloned()).unwrap_or_default();
+        Trajectory { t_ns: run.t_ns.clone(), values }
+    };
+    Panel {
+        shape: signal.map_or(Shape::Line, |signal| shape(signal.ty)),
+        unit: signal.and_then(|signal| signal.unit.clone()),
+        signal: name.to_string(),
+        runs: runs.map(trajectory).collect(),
+    }
+}
+
+/// The plot of several runs, laid over each other.
+pub(super) fn plot(scenario: &Scenario, config: &RunConfig, runs: &[Samples], reports: &[RunReport]) -> Plot {
+    let mode = match config.mode {
+        Mode::Lockstep => "lockstep",
+        Mode::Freewheel => "free-wheeling",
+        Mode::Halt => "held by a timer",
+        Mode::Follow => "following the PLC's clock",
+    };
+    let count = match runs.len() {
+        1 => String::new(),
+        n => format!(", {n} runs"),
+    };
+    let panels = config.plotted(scenario).into_iter().map(|name| panel(scenario, &name, runs.iter()));
+    Plot {
+        title: format!("{}: {mode}{count}", scenario.name()),
+        runs: (1..=runs.len()).map(|number| format!("run {number}")).collect(),
+        panels: panels.collect(),
+        marks: marks(reports),
+    }
+}
+
+/// Where runs first went against an expectation; once for those that did so at one time.
+fn marks(reports: &[RunReport]) -> Vec<Mark> {
+    let mut marks: Vec<Mark> = Vec::new();
+    for expectation in reports.iter().flat_map(|report| &report.expectations) {
+        let Some(at) = expectation.at else { continue };
+        let mark = Mark { t_ns: at.as_nanos(), label: format!("`{}` violated", expectation.name) };
+        if !marks.contains(&mark) {
+            marks.push(mark);
+        }
+    }
+    marks
+}
+
+/// Numbers with a fraction change between samples; everything else jumps.
+pub(super) fn shape(ty: SignalType) -> Shape {
+    match ty {
+        SignalType::REAL | SignalType::LREAL => Shape::Line,
+        _ => Shape::Step,
+    }
+}

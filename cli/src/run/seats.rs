@@ -1,0 +1,129 @@
+//! Clients that take part over OPC UA, and the server of the session's information model.
+
+use std::net::{Ipv4Addr, SocketAddr};
+use std::path::Path;
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+use onescan_clients::information_model::{Board, BoardObserver, SeatedClient, Service, serve};
+use onescan_clients::opcua_server::ServeError;
+use onescan_server::client::JoinRequest;
+use onescan_server::formation::FormationError;
+use onescan_server::plan::SessionPlan;
+use onescan_server::published::Published;
+
+use super::config::RunConfig;
+use super::error::RunError;
+use super::interrupt::Interrupt;
+use super::processes::Processes;
+
+/// What is said here is for the user, also without `--verbose`.
+const NOTICE: &str = "onescan::notice";
+
+/// A client that is to come over OPC UA, with the command that starts it; empty if somebody else does.
+struct Expected {
+    request: JoinRequest,
+    command: Vec<String>,
+}
+
+/// The clients that are to come, before the server is there.
+#[derive(Default)]
+pub(super) struct Seats {
+    expected: Vec<Expected>,
+}
+
+/// The session over OPC UA.
+pub(super) struct Desk {
+    board: Arc<Board>,
+    service: Service,
+    expected: Vec<Expected>,
+}
+
+impl Seats {
+    /// A place for one more.
+    pub(super) fn add(&mut self, request: JoinRequest, command: Vec<String>) {
+        self.expected.push(Expected { request, command });
+    }
+
+    /// Serves the session, if anybody is to come or `--opcua` asks for it.
+    pub(super) fn open(
+        self,
+        config: &RunConfig,
+        plan: &SessionPlan,
+        interrupt: &Interrupt,
+    ) -> Result<Option<Desk>, RunError> {
+        if self.expected.is_empty() && config.opcua.is_none() {
+            return Ok(None);
+        }
+        let requests: Vec<JoinRequest> = self.expected.iter().map(|expected| expected.request.clone()).collect();
+        let board = Arc::new(Board::new(plan.clone(), &requests, interrupt.mailbox()));
+        let address = config.opcua.unwrap_or(SocketAddr::from((Ipv4Addr::LOCALHOST, 0)));
+        let service = serve(address, &board, &config.opcua_access).map_err(|error| match error {
+            ServeError::Io(source) => RunError::Listen { address, source },
+            ServeError::Setup(text) => RunError::usage(text, None),
+        })?;
+        if config.opcua.is_some() {
+            tracing::info!(target: NOTICE, "serving the session at {}", service.url());
+        }
+        Ok(Some(Desk { board, service, expected: self.expected }))
+    }
+}
+
+impl Desk {
+    /// The clients as the session sees them.
+    pub(super) fn clients(&self, patience: Duration) -> impl Iterator<Item = SeatedClient> {
+        let client = move |(seat, expected): (usize, &Expected)| {
+            SeatedClient::new(Arc::clone(&self.board), seat, expected.request.clone(), patience)
+        };
+        self.expected.iter().enumerate().map(client)
+    }
+
+    /// Where the session is to publish its views.
+    pub(super) fn published(&self) -> Published {
+        self.board.published()
+    }
+
+    /// What tells subscribers of each step over OPC UA.
+    pub(super) fn observer(&self) -> BoardObserver {
+        BoardObserver::new(Arc::clone(&self.board))
+    }
+
+    /// Starts those that have a command.
+    pub(super) fn start(&self, folder: &Path, processes: &mut Processes) -> Result<(), RunError> {
+        let url = self.service.url();
+        for Expected { request, command } in &self.expected {
+            processes.start_command(&request.name, command, folder, &url)?;
+            if command.is_empty() {
+                tracing::info!(target: NOTICE, "waiting at {url} for client `{}`", request.name);
+            }
+        }
+        Ok(())
+    }
+
+    /// Waits until all have started.
+    pub(super) fn wait(
+        &self,
+        config: &RunConfig,
+        interrupt: &Interrupt,
+        processes: &mut Processes,
+    ) -> Result<(), RunError> {
+        const LOOK_UP: Duration = Duration::from_millis(50);
+        let deadline = Instant::now() + config.join_timeout;
+        loop {
+            let missing = self.board.missing().join(", ");
+            if missing.is_empty() {
+                return Ok(());
+            }
+            if let Some(ended) = processes.first_ended() {
+                return Err(ended);
+            }
+            if interrupt.is_raised() {
+                return Err(FormationError::Interrupted { missing }.into());
+            }
+            if Instant::now() > deadline {
+                return Err(FormationError::Missing { missing, patience: config.join_timeout }.into());
+            }
+            self.board.wait_for_start(LOOK_UP);
+        }
+    }
+}

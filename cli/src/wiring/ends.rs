@@ -1,0 +1,97 @@
+//! Where signals begin and end inside of a client: at components of a scene, at variables of a PLC.
+
+use onescan_clients::plant::component::kinds;
+use onescan_clients::plant::scene::model::{Drive, Scene, When, Wire};
+use onescan_clients::soft_plc::{BindError, bind};
+use onescan_plc_shim::Application;
+use onescan_scenario::compose::Paths;
+use onescan_server::signal::{ClientName, SignalDecl, SignalName, SignalType};
+
+/// A signal at a client: its type there, and what it is there.
+#[derive(Clone, Debug)]
+pub(super) struct End {
+    pub(super) signal: SignalName,
+    pub(super) ty: SignalType,
+    /// Outputs and inputs of components, variables of the PLC.
+    pub(super) places: Vec<String>,
+}
+
+/// What a client reads and writes.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Ends {
+    pub(super) reads: Vec<End>,
+    pub(super) writes: Vec<End>,
+    /// Signals that cannot be bound, each with the reason.
+    pub(super) unbound: Vec<BindError>,
+}
+
+/// The ends of a plant.
+pub(super) fn of_plant(scene: &Scene) -> Ends {
+    let places = places_of(scene);
+    let end = |port: &onescan_server::signal::Port| End {
+        signal: port.name.clone(),
+        ty: port.ty,
+        places: places.iter().filter(|(name, _)| *name == port.name).map(|(_, place)| place.clone()).collect(),
+    };
+    Ends {
+        reads: scene.reads.iter().map(end).collect(),
+        writes: scene.writes.iter().map(end).collect(),
+        unbound: Vec::new(),
+    }
+}
+
+/// Every place of a scene that a signal has, in the scene's order.
+fn places_of(scene: &Scene) -> Vec<(SignalName, String)> {
+    let mut places = Vec::new();
+    for axis in &scene.axes {
+        let mut at = |signal: &SignalName, what: &str| places.push((signal.clone(), format!("{}.{what}", axis.name)));
+        match &axis.drive {
+            Drive::Bidirectional { forward, reverse } => {
+                at(forward, "forward");
+                at(reverse, "reverse");
+            }
+            Drive::Velocity { command } | Drive::Position { command } => at(command, "command"),
+        }
+        axis.position.iter().for_each(|signal| at(signal, "position"));
+        axis.velocity.iter().for_each(|signal| at(signal, "velocity"));
+    }
+    places.extend(scene.sensors.iter().map(|sensor| (sensor.signal.clone(), sensor.name.clone())));
+    let kinds = kinds();
+    for component in &scene.components {
+        let Some(kind) = kinds.iter().find(|kind| kind.name == component.kind) else { continue };
+        for (input, wire) in kind.inputs.iter().zip(&component.inputs) {
+            if let Wire::Signal(signal) = wire {
+                places.push((signal.clone(), format!("{}.{}", component.name, input.key)));
+            }
+        }
+        for (output, signal) in kind.outputs.iter().zip(&component.outputs) {
+            places.extend(signal.iter().map(|signal| (signal.clone(), format!("{}.{}", component.name, output.key))));
+        }
+        for failure in &component.failures {
+            if let (When::Signal(signal), Some(mode)) = (&failure.when, kind.failures.get(failure.mode)) {
+                places.push((signal.clone(), format!("{} fails: {}", component.name, mode.mode)));
+            }
+        }
+    }
+    places
+}
+
+/// The ends of a soft PLC, each signal by itself, so that one that is wrong hides no other.
+pub(super) fn of_plc(application: &Application, plc: &ClientName, declared: &[SignalDecl], paths: &Paths) -> Ends {
+    let mut ends = Ends::default();
+    for signal in declared {
+        match bind(application, plc, std::slice::from_ref(signal), paths) {
+            Ok(bound) => {
+                let end = |bound: onescan_clients::soft_plc::Bound| End {
+                    signal: bound.port.name,
+                    ty: bound.port.ty,
+                    places: bound.variables,
+                };
+                ends.reads.extend(bound.inputs.into_iter().map(end));
+                ends.writes.extend(bound.outputs.into_iter().map(end));
+            }
+            Err(error) => ends.unbound.push(error),
+        }
+    }
+    ends
+}

@@ -1,0 +1,280 @@
+//! `cases.toml` read: all cases of a scenario, those of matrices one by one.
+
+use std::collections::BTreeSet;
+use std::ops::Range;
+use std::path::{Path, PathBuf};
+
+use toml::de::{DeTable, DeValue};
+use toml::{Spanned, Value};
+
+use super::file::{CaseFile, CasesFile, SnapshotFile, VERSION};
+use super::matrix::{Axis, COMBINATIONS_MAX, combinations};
+use super::{Case, DEFAULT, FILE_NAME, Setting};
+use crate::arrays;
+use crate::error::{ScenarioError, wrong};
+
+/// All cases of a scenario.
+#[derive(Clone, Debug, Default)]
+pub struct Catalogue {
+    path: PathBuf,
+    text: String,
+    file: CasesFile,
+    cases: Vec<Case>,
+}
+
+impl Catalogue {
+    /// The cases of the scenario in `folder`.
+    ///
+    /// # Errors
+    /// `cases.toml` cannot be read or is wrong, each with its place.
+    pub fn load(folder: &Path) -> Result<Self, ScenarioError> {
+        let path = folder.join(FILE_NAME);
+        match std::fs::read_to_string(&path) {
+            Ok(text) => Self::parse(path, text),
+            Err(error) if error.kind() == std::io::ErrorKind::NotFound => {
+                Ok(Self { path, cases: vec![default_case()], ..Self::default() })
+            }
+            Err(source) => Err(ScenarioError::Unreadable { path, source, help: None }),
+        }
+    }
+
+    fn parse(path: PathBuf, text: String) -> Result<Self, ScenarioError> {
+        let mut this = Self { path, text, ..Self::default() };
+        let form = |e: toml::de::Error| this.wrong(e.message().trim().to_owned(), e.span(), None);
+        let mut file: CasesFile = toml::from_str(&this.text).map_err(form)?;
+        this.expand(&mut file)?;
+        if file.version != VERSION {
+            let message = format!("version {} of the format of cases is not known", file.version);
+            return Err(this.wrong(message, None, Some(format!("write `version = {VERSION}`"))));
+        }
+        let places = Places::of(&this.text);
+        let mut seen = BTreeSet::new();
+        let mut cases = Vec::new();
+        for (index, entry) in file.cases.iter().enumerate() {
+            for case in this.expanded(index, entry, &places)? {
+                // Snapshots are files, whose names some systems compare without case.
+                if !seen.insert(case.name.to_lowercase()) {
+                    let message = format!("two cases are called `{}`", case.name);
+                    return Err(this.wrong(message, Some(entry.get_ref().name.span()), None));
+                }
+                cases.push(case);
+            }
+        }
+        if cases.is_empty() {
+            cases.push(default_case());
+        }
+        (this.file, this.cases) = (file, cases);
+        Ok(this)
+    }
+
+    /// Expands the arrays among the signals of snapshots.
+    fn expand(&self, file: &mut CasesFile) -> Result<(), ScenarioError> {
+        let mut all = Vec::new();
+        for signal in &file.snapshot.signals {
+            let names = arrays::names(signal.get_ref().as_str(), signal.span());
+            let names = names.map_err(|found| self.wrong(found.message, found.place, found.help))?;
+            all.extend(names.into_iter().map(|name| Spanned::new(signal.span(), name)));
+        }
+        file.snapshot.signals = all;
+        Ok(())
+    }
+
+    /// The cases of one entry.
+    fn expanded(
+        &self,
+        index: usize,
+        entry: &Spanned<CaseFile>,
+        places: &Places<'_>,
+    ) -> Result<Vec<Case>, ScenarioError> {
+        let file = entry.get_ref();
+        let name = file.name.get_ref();
+        let allowed = |letter: char| letter.is_ascii_alphanumeric() || "-_.".contains(letter);
+        if name.is_empty() || name.starts_with('.') || !name.chars().all(allowed) {
+            let help = "letters, digits, `-`, `_` and `.`: its snapshot is a file of that name".to_owned();
+            return Err(self.wrong(format!("`{name}` is no name of a case"), Some(file.name.span()), Some(help)));
+        }
+        let axes = self.axes(places.leaves(index, "matrix"))?;
+        let Some(combinations) = combinations(&axes) else {
+            let message = format!("the matrix of `{name}` has more than {COMBINATIONS_MAX} combinations");
+            return Err(self.wrong(message, Some(file.name.span()), None));
+        };
+        let own: Vec<Setting> = places.leaves(index, "set");
+        let case = |(suffix, more): (String, Vec<Setting>)| {
+            let mut case = Case {
+                name: format!("{name}{suffix}"),
+                about: file.about.clone(),
+                tags: file.tags.clone(),
+                seed: file.seed,
+                until: file.until,
+                settings: Vec::new(),
+                entry: Some(index),
+            };
+            for setting in own.iter().cloned().chain(more) {
+                self.put(&mut case, setting)?;
+            }
+            Ok(case)
+        };
+        combinations.into_iter().map(case).collect()
+    }
+
+    /// Sets a value; the seed is the session's own.
+    fn put(&self, case: &mut Case, setting: Setting) -> Result<(), ScenarioError> {
+        if setting.path == "seed" {
+            let seed = setting.value.as_integer().and_then(|seed| u64::try_from(seed).ok());
+            let wanted = || self.wrong("a seed is a whole number from 0".to_owned(), Some(setting.place.clone()), None);
+            case.seed = Some(seed.ok_or_else(wanted)?);
+            return Ok(());
+        }
+        if !setting.path.contains('.') {
+            let message = format!("`{}` names nothing that can be set", setting.path);
+            let help = "write the client first: `plant.ram.speed_m_s`, `plc.Main.limit`; or `seed`".to_owned();
+            return Err(self.wrong(message, Some(setting.place), Some(help)));
+        }
+        case.settings.retain(|other| other.path != setting.path);
+        case.settings.push(setting);
+        Ok(())
+    }
+
+    fn axes(&self, lists: Vec<Setting>) -> Result<Vec<Axis>, ScenarioError> {
+        let axis = |Setting { path, value, place }: Setting| match value {
+            Value::Array(values) if !values.is_empty() => Ok(Axis { path, values, place }),
+            _ => {
+                let message = format!("`{path}` of a matrix is a list of values");
+                Err(self.wrong(message, Some(place), Some("as in `seed = [1, 2, 3]`".to_owned())))
+            }
+        };
+        lists.into_iter().map(axis).collect()
+    }
+
+    /// All cases, in the order of the file.
+    pub fn cases(&self) -> &[Case] {
+        &self.cases
+    }
+
+    /// What snapshots hold.
+    pub fn snapshot(&self) -> &SnapshotFile {
+        &self.file.snapshot
+    }
+
+    /// The case of this name.
+    pub fn find(&self, name: &str) -> Option<&Case> {
+        self.cases.iter().find(|case| case.name == name)
+    }
+
+    /// The entry of a case as it is written.
+    pub(super) fn entry(&self, case: &Case) -> Option<&CaseFile> {
+        self.file.cases.get(case.entry?).map(Spanned::get_ref)
+    }
+
+    /// The file's name and text.
+    pub(super) fn source(&self) -> (String, String) {
+        (self.path.display().to_string(), self.text.clone())
+    }
+
+    /// An error at a place of the file.
+    pub fn wrong(&self, message: String, place: Option<Range<usize>>, help: Option<String>) -> ScenarioError {
+        wrong(&self.path, &self.text, message, place, help)
+    }
+}
+
+fn default_case() -> Case {
+    Case { name: DEFAULT.to_owned(), ..Case::default() }
+}
+
+/// The tables of the file with the places of all their values, which serde does not give for tables
+/// of any shape.
+struct Places<'t> {
+    root: Option<Spanned<DeTable<'t>>>,
+}
+
+impl<'t> Places<'t> {
+    fn of(text: &'t str) -> Self {
+        Self { root: DeTable::parse(text).ok() }
+    }
+
+    /// Every value below the table `key` of a case, by its path, in the order of the file.
+    fn leaves(&self, case: usize, key: &str) -> Vec<Setting> {
+        let cases = self.root.as_ref().and_then(|root| root.get_ref().get("case"));
+        let table = cases.and_then(|cases| cases.get_ref().as_array()?.get(case)?.get_ref().as_table()?.get(key));
+        let mut found = Vec::new();
+        if let Some(table) = table.and_then(|table| table.get_ref().as_table()) {
+            gather(table, "", &mut found);
+        }
+        found.sort_by_key(|setting| setting.place.start);
+        found
+    }
+}
+
+/// The parser bounds how deep tables lie in each other.
+fn gather(table: &DeTable<'_>, path: &str, found: &mut Vec<Setting>) {
+    for (key, value) in table {
+        let dot = if path.is_empty() { "" } else { "." };
+        let path = format!("{path}{dot}{}", key.get_ref());
+        match value.get_ref() {
+            DeValue::Table(inner) => gather(inner, &path, found),
+            leaf => {
+                let place = key.span().start..value.span().end.max(key.span().end);
+                found.extend(plain(leaf).map(|value| Setting { path, value, place }));
+            }
+        }
+    }
+}
+
+/// The value without its place; none for a number that TOML has no room for.
+fn plain(value: &DeValue<'_>) -> Option<Value> {
+    Some(match value {
+        DeValue::String(text) => Value::String(text.to_string()),
+        DeValue::Boolean(flag) => Value::Boolean(*flag),
+        DeValue::Datetime(time) => Value::Datetime(*time),
+        DeValue::Integer(whole) => Value::Integer(i64::from_str_radix(whole.as_str(), whole.radix()).ok()?),
+        DeValue::Float(number) => Value::Float(number.as_str().parse().ok()?),
+        DeValue::Array(values) => {
+            Value::Array(values.iter().map(|value| plain(value.get_ref())).collect::<Option<_>>()?)
+        }
+        DeValue::Table(table) => Value::Table(
+            table
+                .iter()
+                .map(|(key, value)| Some((key.get_ref().to_string(), plain(value.get_ref())?)))
+                .collect::<Option<_>>()?,
+        ),
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn parsed(text: &str) -> Result<Vec<Case>, String> {
+        let parsed = Catalogue::parse(PathBuf::from("cases.toml"), format!("version = 1\n{text}"));
+        parsed.map(|catalogue| catalogue.cases).map_err(|error| error.to_string())
+    }
+
+    #[test]
+    fn a_matrix_makes_cases() {
+        let cases = parsed(
+            "[[case]]\nname = \"wear\"\nset.plc.Main.limit = 3\n\
+             [case.matrix]\nseed = [1, 2]\n\"plant.ram.speed_m_s\" = [0.25]\n",
+        );
+        let cases = cases.unwrap();
+        assert_eq!(cases.len(), 2);
+        assert_eq!(cases[1].name, "wear,seed=2,speed_m_s=0.25");
+        assert_eq!(cases[1].seed, Some(2));
+        let paths: Vec<_> = cases[1].settings.iter().map(|setting| setting.path.as_str()).collect();
+        assert_eq!(paths, ["plc.Main.limit", "plant.ram.speed_m_s"]);
+    }
+
+    #[test]
+    fn without_cases_there_is_one() {
+        assert_eq!(parsed("").unwrap(), [default_case()]);
+    }
+
+    #[test]
+    fn wrong_cases_are_told() {
+        let two = "[[case]]\nname = \"a\"\n[[case]]\nname = \"A\"\n";
+        assert_eq!(parsed(two).unwrap_err(), "two cases are called `A`");
+        assert_eq!(parsed("[[case]]\nname = \"a/b\"\n").unwrap_err(), "`a/b` is no name of a case");
+        let matrix = "[[case]]\nname = \"a\"\nmatrix.seed = 3\n";
+        assert_eq!(parsed(matrix).unwrap_err(), "`seed` of a matrix is a list of values");
+        assert_eq!(parsed("[[case]]\nname = \"a\"\nset.x = 3\n").unwrap_err(), "`x` names nothing that can be set");
+    }
+}

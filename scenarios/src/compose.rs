@@ -1,0 +1,303 @@
+//! A scenario's clients: its files read, checked and made to run.
+
+use std::collections::BTreeMap;
+use std::path::PathBuf;
+
+use miette::{NamedSource, SourceSpan};
+use onescan_clients::operator::Operator;
+use onescan_clients::plant::{Plant, Scene, SceneError, SceneFault};
+use onescan_clients::soft_plc::{Bindings, SoftPlcClient, bind};
+use onescan_plc_shim::input::kind::{FileKind, SourceKind};
+use onescan_plc_shim::{Application, Dialect, Input, Task, TaskPlan};
+use onescan_server::client::{Client, JoinRequest};
+use onescan_server::signal::{ClientName, Port, SignalName, did_you_mean};
+
+use super::arrays;
+use super::case::value::bytes_of;
+use super::error::{PlcReport, ScenarioError, SceneReport};
+use super::file::{ClientFile, TaskFile};
+use super::load::Scenario;
+
+/// A client of a scenario.
+pub enum Member {
+    /// A plant in this process, or an operator.
+    Plant(Box<dyn Client>),
+    /// A soft PLC in this process.
+    Plc(Box<dyn Client>),
+    /// A real PLC, connected, of which this process takes care.
+    Gateway(Box<dyn Client>),
+    /// A program of its own, with the command that starts it; empty if somebody else does.
+    External(Vec<String>),
+    /// The same over OPC UA: what it reads and writes, and the command.
+    Seated {
+        /// What it reads and writes, and how often.
+        request: JoinRequest,
+        /// The command; empty if somebody else starts it.
+        command: Vec<String>,
+    },
+}
+
+/// The variables of signals, as `bind` names them.
+pub type Paths = BTreeMap<SignalName, Vec<String>>;
+
+/// A soft PLC's sources, compiled, and what its `bind` says.
+pub struct Compiled {
+    /// The program.
+    pub application: Application,
+    /// What `bind` says, patterns written out.
+    pub paths: Paths,
+}
+
+impl Scenario {
+    /// The client `name`, ready to join.
+    ///
+    /// # Errors
+    /// No such client, or its files are wrong.
+    pub fn member(&self, name: &ClientName) -> Result<Member, ScenarioError> {
+        let Some(entry) = self.file().clients.get(name) else {
+            let help = did_you_mean(name.as_str(), self.file().clients.keys().map(ClientName::as_str));
+            return Err(self.wrong_client(name, format!("the scenario has no client `{name}`"), help));
+        };
+        match entry.get_ref() {
+            ClientFile::Plant { scene, period } => {
+                let scene = self.scene_in_case(name, scene)?;
+                let plant = Plant::new(scene, name.clone(), period.unwrap_or(self.file().step));
+                Ok(Member::Plant(self.forced(Box::new(plant.seeded(self.seed())))))
+            }
+            ClientFile::Gateway { .. } => self.gateway(name).map(Member::Gateway),
+            ClientFile::SoftPlc { .. } if self.gateways.contains_key(name) => self.gateway(name).map(Member::Gateway),
+            ClientFile::SoftPlc { sources, dialect, tasks, bind, .. } => {
+                let compiled = self.compiled(name, sources, *dialect, bind)?;
+                let plc = self.soft_plc(name, &compiled, tasks)?;
+                Ok(Member::Plc(self.forced(Box::new(plc))))
+            }
+            ClientFile::Operator { initial } => Ok(Member::Plant(self.forced(Box::new(self.operator(name, initial)?)))),
+            ClientFile::External { command } => Ok(Member::External(command.clone())),
+            ClientFile::OpcUa { command, .. } => {
+                Ok(Member::Seated { request: self.request(name)?, command: command.clone() })
+            }
+        }
+    }
+
+    /// The sources of each soft PLC, their dialect, and the tasks that the scenario gives it.
+    pub fn plcs(&self) -> impl Iterator<Item = (&[String], Option<Dialect>, Option<TaskPlan>)> {
+        self.file().clients.values().filter_map(|client| match client.get_ref() {
+            ClientFile::SoftPlc { sources, dialect, tasks, .. } => Some((sources.as_slice(), *dialect, plan_of(tasks))),
+            _ => None,
+        })
+    }
+
+    /// The sources of PLC `name`.
+    pub(crate) fn inputs(
+        &self,
+        name: &ClientName,
+        sources: &[String],
+        dialect: Option<Dialect>,
+    ) -> Result<Vec<Input>, ScenarioError> {
+        sources.iter().map(|source| self.source(name, source, dialect)).collect()
+    }
+
+    /// A source of PLC `name`, in whatever form and encoding it is; one of an unknown kind is text.
+    fn source(&self, name: &ClientName, source: &str, dialect: Option<Dialect>) -> Result<Input, ScenarioError> {
+        let path = self.folder().join(source);
+        let kind = match FileKind::of(&path) {
+            Some(FileKind::Source(kind)) => kind,
+            Some(FileKind::Project) => {
+                let help = "name its files, or run `onescan check` on it to see them".to_owned();
+                return Err(self.wrong_client(name, format!("`{source}` is a project, not a source"), Some(help)));
+            }
+            None => SourceKind::Text,
+        };
+        let bytes = std::fs::read(&path).map_err(|source| ScenarioError::Unreadable { path, source, help: None })?;
+        let input = Input::read(source, kind, &bytes);
+        Ok(match dialect {
+            Some(dialect) => input.in_dialect(dialect),
+            None => input,
+        })
+    }
+
+    /// The scene of a plant.
+    ///
+    /// # Errors
+    /// A file that cannot be read or is no scene.
+    pub fn scene_of(&self, file: &str) -> Result<Scene, ScenarioError> {
+        let path = self.folder().join(file);
+        let text = read(&path)?;
+        let named = path.display().to_string();
+        let scene = Scene::parse(&text, &named).map_err(|error| Box::new(report(&error, &named, &text)))?;
+        Ok(scene)
+    }
+
+    /// The scene of plant `name` as the case wants it.
+    fn scene_in_case(&self, name: &ClientName, file: &str) -> Result<Scene, ScenarioError> {
+        // What is wrong with the scene itself is told first.
+        let plain = self.scene_of(file)?;
+        let path = self.folder().join(file);
+        let (text, named) = (read(&path)?, path.display().to_string());
+        let wanted = self.scene_text(name, &named, text.clone())?;
+        Ok(if wanted == text { plain } else { Scene::parse(&wanted, &named).unwrap_or(plain) })
+    }
+
+    /// The sources of soft PLC `name`, compiled, and what its `bind` says.
+    ///
+    /// # Errors
+    /// Sources that cannot be read or do not compile; a `bind` that is wrong in itself.
+    pub fn compiled(
+        &self,
+        name: &ClientName,
+        sources: &[String],
+        dialect: Option<Dialect>,
+        bind: &BTreeMap<String, String>,
+    ) -> Result<Compiled, ScenarioError> {
+        let plain = self.inputs(name, sources, dialect)?;
+        let inputs: Vec<Input> = plain.iter().cloned().map(|input| self.with_constants(name, input)).collect();
+        let compiled = match (self.writers(), self.coverage()) {
+            (Some(_), _) => Application::from_inputs_traced(inputs),
+            (None, Some(_)) => Application::from_inputs_with_coverage(inputs),
+            (None, None) => Application::from_inputs(inputs),
+        };
+        let application = compiled.map_err(|findings| match self.wrong_constant(name, &plain) {
+            Some(error) => error,
+            None => Box::new(PlcReport { client: name.clone(), findings }).into(),
+        })?;
+        for warning in application.warnings().iter() {
+            tracing::warn!(code = %warning.code, "{}", warning.message);
+        }
+        let paths = self.paths(name, bind)?;
+        Ok(Compiled { application, paths })
+    }
+
+    fn soft_plc(
+        &self,
+        name: &ClientName,
+        Compiled { application, paths }: &Compiled,
+        tasks: &[TaskFile],
+    ) -> Result<SoftPlcClient, ScenarioError> {
+        let bindings = self.bindings(name, application, paths)?;
+        let plan = self.task_plan(name, application, tasks)?;
+        self.fits_step(name, &plan)?;
+        let mut client = SoftPlcClient::new(name.clone(), application, &plan, &bindings, self.file().step)
+            .map_err(|error| self.wrong_client(name, error.to_string(), None))?;
+        self.preset(&mut client, name)?;
+        if let Some(sink) = self.coverage() {
+            client.cover(sink.clone());
+        }
+        if let Some((signals, sink)) = self.writers() {
+            client.trace(signals, sink.clone());
+        }
+        if let Some(watched) = &self.watched {
+            let (watches, changes, sink) = watched.of(name);
+            let watched = client.watch(&watches, changes, sink);
+            watched.map_err(|unknown| self.wrong_option(format!("--watch: {unknown}"), None))?;
+        }
+        Ok(client)
+    }
+
+    /// The tasks of PLC `name`: the scenario's, or those of its own CONFIGURATION.
+    pub(crate) fn task_plan(
+        &self,
+        name: &ClientName,
+        application: &Application,
+        tasks: &[TaskFile],
+    ) -> Result<TaskPlan, ScenarioError> {
+        plan_of(tasks).or_else(|| TaskPlan::configured(application)).ok_or_else(|| {
+            let help = "give it `tasks`, or declare a CONFIGURATION in its sources".to_owned();
+            self.wrong_client(name, format!("nothing says when the programs of `{name}` run"), Some(help))
+        })
+    }
+
+    /// The variables of signals, as `bind` names them.
+    pub(crate) fn paths(&self, name: &ClientName, bind: &BTreeMap<String, String>) -> Result<Paths, ScenarioError> {
+        let declared: Vec<_> = self.file().signals.keys().collect();
+        arrays::bound(bind, &declared).map_err(|found| self.wrong_client(name, found.message, found.help))
+    }
+
+    /// Which signal is which variable of the PLC.
+    pub(crate) fn bindings(
+        &self,
+        name: &ClientName,
+        application: &Application,
+        paths: &Paths,
+    ) -> Result<Bindings, ScenarioError> {
+        bind(application, name, self.plan().signals(), paths)
+            .map_err(|error| self.wrong_signal(&error.signal, error.message, error.help))
+    }
+
+    /// The operator of the signals whose writer it is.
+    fn operator(
+        &self,
+        name: &ClientName,
+        initial: &std::collections::BTreeMap<SignalName, toml::Value>,
+    ) -> Result<Operator, ScenarioError> {
+        let own: Vec<_> = self.plan().signals().iter().filter(|signal| signal.writer.as_ref() == Some(name)).collect();
+        if let Some(unknown) = initial.keys().find(|wanted| own.iter().all(|signal| signal.name != **wanted)) {
+            let help = did_you_mean(unknown.as_str(), own.iter().map(|signal| signal.name.as_str()));
+            return Err(self.wrong_client(name, format!("`{name}` writes no signal `{unknown}`"), help));
+        }
+        let mut signals = Vec::new();
+        for signal in own {
+            let port = Port { name: signal.name.clone(), ty: signal.ty };
+            let bytes = match initial.get(&signal.name) {
+                None => vec![0; signal.ty.size()],
+                Some(value) => bytes_of(signal.ty, value).map_err(|wanted| {
+                    let message = format!("`{}` begins with {value}, which is not {wanted}", signal.name);
+                    self.wrong_client(name, message, None)
+                })?,
+            };
+            signals.push((port, bytes));
+        }
+        Ok(Operator::new(name.clone(), self.file().step, signals))
+    }
+
+    /// A task can be due at the steps of the session only.
+    fn fits_step(&self, name: &ClientName, plan: &TaskPlan) -> Result<(), ScenarioError> {
+        let step = self.file().step;
+        let mut intervals = plan.tasks.iter().filter_map(|task| Some((&task.name, task.interval?)));
+        let Some((task, span)) = intervals.find(|(_, interval)| !interval.is_multiple_of(step)) else {
+            return Ok(());
+        };
+        let message =
+            format!("task `{task}` has an interval of {span}, which is no multiple of the session's step {step}");
+        Err(self.wrong_client(name, message, Some("change the interval, or make the step a divisor of it".to_owned())))
+    }
+}
+
+/// The tasks of a scenario; nothing if it has none, so that the PLC's own configuration counts.
+pub(crate) fn plan_of(tasks: &[TaskFile]) -> Option<TaskPlan> {
+    (!tasks.is_empty()).then(|| TaskPlan::new(tasks.iter().map(task).collect()))
+}
+
+fn task(file: &TaskFile) -> Task {
+    Task {
+        name: file.name.clone(),
+        interval: file.interval,
+        single: file.single.clone(),
+        priority: file.priority,
+        programs: file.programs.clone(),
+    }
+}
+
+fn read(path: &PathBuf) -> Result<String, ScenarioError> {
+    std::fs::read_to_string(path).map_err(|source| ScenarioError::Unreadable { path: path.clone(), source, help: None })
+}
+
+/// A scene's faults, the first in front.
+pub fn report(error: &SceneError, file: &str, text: &str) -> SceneReport {
+    let one = |fault: &SceneFault| SceneReport {
+        message: fault.kind.to_string(),
+        file: NamedSource::new(file, text.to_owned()),
+        place: Some(SourceSpan::from(fault.span.clone())),
+        help: fault.hint.clone(),
+        others: Vec::new(),
+    };
+    match error.faults() {
+        [] => SceneReport {
+            message: error.to_string(),
+            file: NamedSource::new(file, text.to_owned()),
+            place: None,
+            help: None,
+            others: Vec::new(),
+        },
+        [first, others @ ..] => SceneReport { others: others.iter().map(one).collect(), ..one(first) },
+    }
+}

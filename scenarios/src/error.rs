@@ -1,0 +1,125 @@
+//! What can be wrong with a scenario: one error, with file and line where there is one.
+
+use std::ops::Range;
+use std::path::{Path, PathBuf};
+
+use miette::{Diagnostic, NamedSource, SourceSpan};
+use onescan_clients::gateway::LinkFault;
+use onescan_plc_shim::Diagnostics;
+use onescan_server::signal::ClientName;
+use thiserror::Error;
+
+/// Why a scenario is none.
+#[derive(Debug, Error, Diagnostic)]
+pub enum ScenarioError {
+    /// A file that cannot be read.
+    #[error("cannot read {}: {source}", path.display())]
+    #[diagnostic(code(scenario::unreadable))]
+    Unreadable {
+        /// The file.
+        path: PathBuf,
+        /// Why.
+        source: std::io::Error,
+        /// What to do.
+        #[help]
+        help: Option<String>,
+    },
+    /// A place in `scenario.toml` that is wrong.
+    #[error("{message}")]
+    #[diagnostic(code(scenario::wrong))]
+    Wrong {
+        /// What is wrong.
+        message: String,
+        /// The file.
+        #[source_code]
+        file: NamedSource<String>,
+        /// The place.
+        #[label("here")]
+        place: Option<SourceSpan>,
+        /// What to do.
+        #[help]
+        help: Option<String>,
+    },
+    /// A case that the scenario has not.
+    #[error("scenario `{scenario}` has no case `{case}`")]
+    #[diagnostic(code(scenario::unknown_case))]
+    UnknownCase {
+        /// The scenario.
+        scenario: String,
+        /// The case as it was asked for.
+        case: String,
+        /// What to do.
+        #[help]
+        help: String,
+    },
+    /// The scene of a plant is wrong.
+    #[error(transparent)]
+    #[diagnostic(transparent)]
+    Scene(#[from] Box<SceneReport>),
+    /// The sources of a soft PLC are wrong.
+    #[error(transparent)]
+    #[diagnostic(transparent)]
+    Plc(#[from] Box<PlcReport>),
+    /// The link to a real PLC does not come about.
+    #[error("client `{client}`: {fault}")]
+    #[diagnostic(code(gateway::link))]
+    Link {
+        /// The client that speaks for it.
+        client: ClientName,
+        /// Why.
+        fault: LinkFault,
+    },
+}
+
+/// An error at a place of a file.
+pub(crate) fn wrong(
+    path: &Path,
+    text: &str,
+    message: String,
+    place: Option<Range<usize>>,
+    help: Option<String>,
+) -> ScenarioError {
+    ScenarioError::Wrong {
+        message,
+        file: NamedSource::new(path.display().to_string(), text.to_owned()),
+        place: place.map(SourceSpan::from),
+        help,
+    }
+}
+
+/// What was found in a PLC's sources, each with its place.
+#[derive(Debug, Error)]
+#[error("the sources of client `{client}` do not compile")]
+pub struct PlcReport {
+    /// The PLC.
+    pub client: ClientName,
+    /// Errors and warnings.
+    pub findings: Diagnostics,
+}
+
+impl Diagnostic for PlcReport {
+    fn related<'a>(&'a self) -> Option<Box<dyn Iterator<Item = &'a dyn Diagnostic> + 'a>> {
+        self.findings.related()
+    }
+}
+
+/// A scene's faults with the places they are at.
+#[derive(Debug, Error, Diagnostic)]
+#[error("{message}")]
+#[diagnostic(code(scene::wrong))]
+pub struct SceneReport {
+    /// The first fault, in words.
+    pub message: String,
+    /// The scene file.
+    #[source_code]
+    pub file: NamedSource<String>,
+    /// Its place.
+    #[label("here")]
+    pub place: Option<SourceSpan>,
+    /// What to do.
+    #[help]
+    pub help: Option<String>,
+    /// The other faults.
+    #[related]
+    pub others: Vec<SceneReport>,
+}

@@ -1,0 +1,72 @@
+//! What a scenario expects of every run, bound to its signals.
+
+use std::ops::Range;
+
+use onescan_server::signal::SignalName;
+use toml::Spanned;
+
+use super::file::{ExpectFile, ScenarioFile};
+use crate::expect::{Expectation, KnownSignal};
+
+/// All expectations of a scenario.
+#[derive(Clone, Debug, Default)]
+pub struct Expectations {
+    /// Each with its name.
+    pub named: Vec<(String, Expectation)>,
+    /// The signals they are judged by, in the order of the columns of their trace.
+    pub signals: Vec<SignalName>,
+}
+
+/// What is wrong with an expectation, where in the file, and what to do.
+pub(crate) struct Wrong {
+    pub(crate) message: String,
+    pub(crate) place: Range<usize>,
+    pub(crate) help: Option<String>,
+}
+
+impl Expectations {
+    pub(crate) fn bind(file: &ScenarioFile, text: &str) -> Result<Self, Wrong> {
+        let mut all = Self::default();
+        all.add(file, &file.expect, text)?;
+        Ok(all)
+    }
+
+    /// Adds expectations on signals of `file` that stand in `text`.
+    pub(crate) fn add(&mut self, file: &ScenarioFile, entries: &[ExpectFile], text: &str) -> Result<(), Wrong> {
+        let known: Vec<KnownSignal> = file
+            .signals
+            .iter()
+            .map(|(name, signal)| {
+                let signal = signal.get_ref();
+                KnownSignal { name: name.to_string(), ty: signal.ty, unit: signal.unit.clone() }
+            })
+            .collect();
+        let mut columns: Vec<String> = self.signals.iter().map(ToString::to_string).collect();
+        for ExpectFile { name, formula, .. } in entries {
+            if self.named.iter().any(|(other, _)| other == name.get_ref()) {
+                let message = format!("two expectations are called `{}`", name.get_ref());
+                return Err(Wrong { message, place: name.span(), help: None });
+            }
+            let expectation = Expectation::parse(formula.get_ref(), &known, &mut columns).map_err(|error| Wrong {
+                message: error.to_string(),
+                place: place_within(formula, text, &error.place),
+                help: error.help,
+            })?;
+            self.named.push((name.get_ref().clone(), expectation));
+        }
+        // Columns are names of the file's own signals.
+        self.signals = columns.iter().filter_map(|column| SignalName::new(column.as_str()).ok()).collect();
+        Ok(())
+    }
+}
+
+/// The bytes of the file that hold `part` of a formula; all of the formula if it is written with
+/// escapes.
+fn place_within(formula: &Spanned<String>, text: &str, part: &Range<usize>) -> Range<usize> {
+    let whole = formula.span();
+    let offset = text.get(whole.clone()).and_then(|written| written.find(formula.get_ref().as_str()));
+    match offset {
+        Some(offset) => whole.start + offset + part.start..whole.start + offset + part.end,
+        None => whole,
+    }
+}

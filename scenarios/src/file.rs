@@ -1,0 +1,224 @@
+//! `scenario.toml` as it is written. Times are text with a unit, as in `"10ms"`.
+
+use std::collections::BTreeMap;
+use std::str::FromStr;
+
+use onescan_clients::gateway::Settings;
+use onescan_plc_shim::Dialect;
+use onescan_server::signal::{ClientName, SignalName, SignalType};
+use onescan_server::time::{TimeSpan, VirtualTime};
+use serde::{Deserialize, Deserializer};
+use toml::Spanned;
+
+/// The only version of the format so far.
+pub const VERSION: u32 = 1;
+
+/// The whole file.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ScenarioFile {
+    /// Version of the format.
+    pub version: u32,
+    /// What the scenario is about, in one line.
+    #[serde(default)]
+    pub title: String,
+    /// The step of virtual time.
+    #[serde(deserialize_with = "from_text")]
+    pub step: TimeSpan,
+    /// Virtual time at which a run is complete, unless the command line says otherwise.
+    #[serde(deserialize_with = "from_text")]
+    pub until: VirtualTime,
+    /// What noise, jitter and other chance begin with.
+    #[serde(default)]
+    pub seed: u64,
+    /// How clients see each other within a step.
+    #[serde(default)]
+    pub coupling: CouplingFile,
+    /// The session's signals by name.
+    #[serde(default)]
+    pub signals: BTreeMap<SignalName, Spanned<SignalFile>>,
+    /// The session's clients by name.
+    pub clients: BTreeMap<ClientName, Spanned<ClientFile>>,
+    /// What every run must show.
+    #[serde(default)]
+    pub expect: Vec<ExpectFile>,
+    /// How the signals travel when nothing is synchronised.
+    #[serde(default)]
+    pub freewheel: FreewheelFile,
+    /// What a plot shows.
+    #[serde(default)]
+    pub plot: PlotFile,
+}
+
+/// `"parallel"` or `{ sequential = ["plc", "plant"] }`.
+#[derive(Clone, Debug, Default, Deserialize)]
+#[serde(rename_all = "kebab-case", deny_unknown_fields)]
+pub enum CouplingFile {
+    /// SDSP.
+    #[default]
+    Parallel,
+    /// OneScan, in this order.
+    Sequential(Vec<ClientName>),
+}
+
+/// One signal.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct SignalFile {
+    /// Its elementary type.
+    #[serde(rename = "type")]
+    pub ty: SignalType,
+    /// The client that writes it.
+    pub writer: ClientName,
+    /// Its unit, for people.
+    pub unit: Option<String>,
+    /// What it means, for people.
+    pub about: Option<String>,
+}
+
+/// One client.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(tag = "kind", rename_all = "kebab-case", deny_unknown_fields)]
+pub enum ClientFile {
+    /// A scene of rigid bodies.
+    Plant {
+        /// The scene file, relative to the scenario's folder.
+        scene: String,
+        /// Virtual time of one turn; the session's step if absent.
+        #[serde(default, deserialize_with = "from_optional_text")]
+        period: Option<TimeSpan>,
+    },
+    /// The embedded soft PLC.
+    SoftPlc {
+        /// Source files, relative to the scenario's folder.
+        sources: Vec<String>,
+        /// The dialect of all of them, if not that which each file's name tells.
+        #[serde(default, deserialize_with = "from_optional_text")]
+        dialect: Option<Dialect>,
+        /// Its tasks, in place of those of its own CONFIGURATION.
+        #[serde(default)]
+        tasks: Vec<TaskFile>,
+        /// Signals whose PLC variable is not found by the signal's name, with the variable's path: by
+        /// name, as arrays (`"arm[0..2].x" = "P.arm[0..2].x"`) or as patterns (`"SW_*" = "P.*"`).
+        #[serde(default)]
+        bind: BTreeMap<String, String>,
+        /// The real PLC that runs the same sources, instrumented (see `run --gateway`).
+        #[serde(default)]
+        gateway: Option<Settings>,
+    },
+    /// A real PLC, of which only the link is known.
+    Gateway {
+        /// Virtual time of one turn; the session's step if absent.
+        #[serde(default, deserialize_with = "from_optional_text")]
+        period: Option<TimeSpan>,
+        /// The signals that it reads.
+        #[serde(default)]
+        reads: Vec<SignalName>,
+        /// Its link.
+        gateway: Settings,
+    },
+    /// Switches and set points that neither plant nor PLC writes; a case says what it does.
+    Operator {
+        /// Values of its signals at the start; 0, FALSE or empty if absent.
+        #[serde(default)]
+        initial: BTreeMap<SignalName, toml::Value>,
+    },
+    /// A program of its own that takes part over OPC UA, in the session's information model (`docs/opcua.md`).
+    OpcUa {
+        /// Virtual time of one turn; the session's step if absent.
+        #[serde(default, deserialize_with = "from_optional_text")]
+        period: Option<TimeSpan>,
+        /// The signals that it reads. It writes those whose writer it is.
+        #[serde(default)]
+        reads: Vec<SignalName>,
+        /// The program to start, with its arguments; `{server}` stands for the server's endpoint.
+        /// Without it the server waits for somebody to start it.
+        #[serde(default)]
+        command: Vec<String>,
+    },
+    /// A program of its own that joins over TCP.
+    External {
+        /// The program to start, with its arguments; `{server}` stands for the server's address.
+        /// Without it the server waits for somebody to start it.
+        #[serde(default)]
+        command: Vec<String>,
+    },
+}
+
+/// One task of a soft PLC (IEC 61131-3 2.7.2).
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct TaskFile {
+    /// Its name.
+    pub name: String,
+    /// Its cycle time.
+    #[serde(default, deserialize_with = "from_optional_text")]
+    pub interval: Option<TimeSpan>,
+    /// Path of a BOOL of the PLC whose rising edges start it.
+    #[serde(default)]
+    pub single: Option<String>,
+    /// Its priority; 0 is the highest.
+    #[serde(default)]
+    pub priority: u32,
+    /// The programs it runs, in this order; with a CONFIGURATION, their instances.
+    pub programs: Vec<String>,
+}
+
+/// Something that every run must show (see [`crate::expect`]).
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ExpectFile {
+    /// Its name, for reports.
+    pub name: Spanned<String>,
+    /// Signal temporal logic over the scenario's signals.
+    pub formula: Spanned<String>,
+    /// What it means, for people.
+    pub about: Option<String>,
+}
+
+/// The OPC-like link between free-wheeling clients (seed 004 sec. II-C and III).
+#[derive(Clone, Debug, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct FreewheelFile {
+    /// How often the link looks for changes: the update rate of the OPC client group.
+    #[serde(deserialize_with = "from_text")]
+    pub update_rate: TimeSpan,
+    /// How long the link needs for one item: items that change together arrive one after the other.
+    #[serde(deserialize_with = "from_text")]
+    pub item_transfer: TimeSpan,
+}
+
+impl Default for FreewheelFile {
+    /// The update rate of seed 004 sec. III-C, and a gateway that moves a thousand items a second.
+    fn default() -> Self {
+        const MILLISECOND: TimeSpan = TimeSpan::from_millis(1).expect("not zero");
+        Self { update_rate: MILLISECOND, item_transfer: MILLISECOND }
+    }
+}
+
+/// What a plot shows.
+#[derive(Clone, Debug, Default, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct PlotFile {
+    /// The signals, a panel each, from top to bottom; all if empty.
+    #[serde(default)]
+    pub signals: Vec<Spanned<SignalName>>,
+}
+
+pub(crate) fn from_text<'de, D, T>(deserializer: D) -> Result<T, D::Error>
+where
+    D: Deserializer<'de>,
+    T: FromStr,
+    T::Err: std::fmt::Display,
+{
+    String::deserialize(deserializer)?.parse().map_err(serde::de::Error::custom)
+}
+
+pub(crate) fn from_optional_text<'de, D, T>(deserializer: D) -> Result<Option<T>, D::Error>
+where
+    D: Deserializer<'de>,
+    T: FromStr,
+    T::Err: std::fmt::Display,
+{
+    from_text(deserializer).map(Some)
+}

@@ -1,0 +1,283 @@
+//! `scenario.toml` read and checked.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::ops::Range;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use onescan_clients::soft_plc::{CoverageSink, TraceSink};
+use onescan_server::plan::{Coupling, PlanError, SessionPlan};
+use onescan_server::signal::{ClientName, SignalDecl, SignalName, did_you_mean};
+use onescan_server::time::{TimeSpan, VirtualTime};
+
+use super::arrays;
+use super::case::{self, Applied, Catalogue};
+use super::error::{ScenarioError, wrong};
+use super::expectations::Expectations;
+use super::file::{ClientFile, CouplingFile, ScenarioFile, VERSION};
+use super::watch::Watched;
+
+/// The file that makes a folder a scenario.
+pub const FILE_NAME: &str = "scenario.toml";
+
+/// A scenario, checked as far as that is possible without its plant and its PLC.
+#[derive(Clone, Debug)]
+pub struct Scenario {
+    name: String,
+    folder: PathBuf,
+    path: PathBuf,
+    text: String,
+    file: ScenarioFile,
+    plan: SessionPlan,
+    expectations: Expectations,
+    /// The case that is tried; nothing for the scenario as it is.
+    applied: Option<Arc<Applied>>,
+    /// Where soft PLCs give what they executed, if that is asked for.
+    coverage: Option<CoverageSink>,
+    /// Where soft PLCs tell which statements wrote these signals, if that is asked for.
+    writers: Option<(BTreeSet<SignalName>, TraceSink)>,
+    /// The soft PLCs that a real one stands in for, with its URL where the file's does not count.
+    pub(crate) gateways: BTreeMap<ClientName, Option<String>>,
+    /// What soft PLCs look at, if that is asked for.
+    pub(crate) watched: Option<Watched>,
+}
+
+impl Scenario {
+    /// The scenario in `path`, a folder or its `scenario.toml`.
+    ///
+    /// # Errors
+    /// See [`ScenarioError`].
+    pub fn load(path: &Path) -> Result<Self, ScenarioError> {
+        let path = if path.is_dir() { path.join(FILE_NAME) } else { path.to_owned() };
+        let text = std::fs::read_to_string(&path).map_err(|source| ScenarioError::Unreadable {
+            path: path.clone(),
+            help: (source.kind() == std::io::ErrorKind::NotFound)
+                .then(|| format!("a scenario is a folder with a `{FILE_NAME}`; give the folder")),
+            source,
+        })?;
+        let folder = path.parent().map(Path::to_owned).unwrap_or_default();
+        Self::parse(text, path, folder)
+    }
+
+    fn parse(text: String, path: PathBuf, folder: PathBuf) -> Result<Self, ScenarioError> {
+        let wrong = |message: String, place: Option<Range<usize>>, help| wrong(&path, &text, message, place, help);
+        let mut file: ScenarioFile =
+            toml::from_str(&text).map_err(|e| wrong(e.message().trim().to_owned(), e.span(), None))?;
+        if file.version != VERSION {
+            let message = format!("version {} of the scenario format is not known", file.version);
+            return Err(wrong(message, place_of(&text, "version"), Some(format!("write `version = {VERSION}`"))));
+        }
+        arrays::expand(&mut file).map_err(|found| wrong(found.message, found.place, found.help))?;
+        let plan = plan_of(&file).map_err(|error| {
+            let place = place_of_plan_error(&error, &file, &text);
+            wrong(error.to_string(), place, None)
+        })?;
+        for signal in &file.plot.signals {
+            if !file.signals.contains_key(signal.get_ref()) {
+                let message = format!("the plot shows a signal `{}` that is not declared", signal.get_ref());
+                let help = did_you_mean(signal.get_ref().as_str(), file.signals.keys().map(SignalName::as_str));
+                return Err(wrong(message, Some(signal.span()), help));
+            }
+        }
+        let expectations =
+            Expectations::bind(&file, &text).map_err(|found| wrong(found.message, Some(found.place), found.help))?;
+        let name = name_of(&path);
+        Ok(Self {
+            name,
+            folder,
+            path,
+            text,
+            file,
+            plan,
+            expectations,
+            applied: None,
+            coverage: None,
+            writers: None,
+            gateways: BTreeMap::new(),
+            watched: None,
+        })
+    }
+
+    /// The scenario in `path` as the case called `name` wants it; as it is without a name.
+    ///
+    /// # Errors
+    /// See [`ScenarioError`].
+    pub fn load_case(path: &Path, name: Option<&str>) -> Result<Self, ScenarioError> {
+        let scenario = Self::load(path)?;
+        let Some(name) = name else { return Ok(scenario) };
+        let catalogue = Catalogue::load(scenario.folder())?;
+        if let Some(case) = catalogue.find(name) {
+            return scenario.with_case(&catalogue, case);
+        }
+        let names = || catalogue.cases().iter().map(|case| case.name.as_str());
+        let all = || format!("its cases are {}", names().collect::<Vec<_>>().join(", "));
+        let help = did_you_mean(name, names()).unwrap_or_else(all);
+        Err(ScenarioError::UnknownCase { scenario: scenario.name, case: name.to_owned(), help })
+    }
+
+    /// The case that is tried.
+    pub fn case(&self) -> Option<&case::Case> {
+        self.applied().map(|applied| &applied.case)
+    }
+
+    pub(crate) fn applied(&self) -> Option<&Applied> {
+        self.applied.as_deref()
+    }
+
+    pub(crate) fn put_on(&mut self, applied: Applied) {
+        self.applied = Some(Arc::new(applied));
+    }
+
+    pub(crate) fn set_expectations(&mut self, expectations: Expectations) {
+        self.expectations = expectations;
+    }
+
+    /// When a run is complete.
+    pub fn until(&self) -> VirtualTime {
+        self.case().and_then(|case| case.until).unwrap_or(self.file.until)
+    }
+
+    /// What chance begins with.
+    pub fn seed(&self) -> u64 {
+        self.case().and_then(|case| case.seed).unwrap_or(self.file.seed)
+    }
+
+    /// Lets soft PLCs note what they execute.
+    pub fn cover(&mut self) {
+        self.coverage.get_or_insert_default();
+    }
+
+    /// Lets soft PLCs tell which statements write `signals`; gives where they do.
+    pub fn trace(&mut self, signals: BTreeSet<SignalName>) -> TraceSink {
+        let sink = TraceSink::default();
+        self.writers = Some((signals, sink.clone()));
+        sink
+    }
+
+    /// The signals whose writers are asked for, and where they are told.
+    pub fn writers(&self) -> Option<&(BTreeSet<SignalName>, TraceSink)> {
+        self.writers.as_ref()
+    }
+
+    /// What soft PLCs have executed, if they note it; complete once they are gone.
+    pub fn coverage(&self) -> Option<&CoverageSink> {
+        self.coverage.as_ref()
+    }
+
+    /// The folder's name, or the file's if that is not the folder's only one.
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// The folder, to which all other files are relative.
+    pub fn folder(&self) -> &Path {
+        &self.folder
+    }
+
+    /// The files that the scenario is made of, itself first, as it names them: relative to its folder.
+    pub fn files(&self) -> Vec<PathBuf> {
+        let mut files = vec![self.path.file_name().map_or_else(|| FILE_NAME.into(), PathBuf::from)];
+        for client in self.file.clients.values() {
+            match client.get_ref() {
+                ClientFile::Plant { scene, .. } => files.push(scene.into()),
+                ClientFile::SoftPlc { sources, .. } => files.extend(sources.iter().map(PathBuf::from)),
+                ClientFile::Operator { .. }
+                | ClientFile::Gateway { .. }
+                | ClientFile::OpcUa { .. }
+                | ClientFile::External { .. } => {}
+            }
+        }
+        files.extend(self.applied().and(Some(case::FILE_NAME.into())));
+        files.dedup();
+        files
+    }
+
+    /// The file as it is written.
+    pub fn file(&self) -> &ScenarioFile {
+        &self.file
+    }
+
+    /// The plan of its sessions.
+    pub fn plan(&self) -> &SessionPlan {
+        &self.plan
+    }
+
+    /// What every run must show.
+    pub fn expectations(&self) -> &Expectations {
+        &self.expectations
+    }
+
+    /// An error at the entry of client `name`.
+    pub fn wrong_client(&self, name: &ClientName, message: String, help: Option<String>) -> ScenarioError {
+        let place = self.file.clients.get(name).map(toml::Spanned::span);
+        wrong(&self.path, &self.text, message, place, help)
+    }
+
+    /// An error of an option, which has no place in the file.
+    pub(crate) fn wrong_option(&self, message: String, help: Option<String>) -> ScenarioError {
+        wrong(&self.path, &self.text, message, None, help)
+    }
+
+    /// An error at the entry of signal `name`.
+    pub(crate) fn wrong_signal(&self, name: &SignalName, message: String, help: Option<String>) -> ScenarioError {
+        let place = self.file.signals.get(name).map(toml::Spanned::span);
+        wrong(&self.path, &self.text, message, place, help)
+    }
+}
+
+/// The name of the folder of a `scenario.toml`; any other file has its own.
+fn name_of(path: &Path) -> String {
+    let named = if path.file_name().is_some_and(|name| name == FILE_NAME) {
+        std::path::absolute(path).ok().and_then(|path| Some(path.parent()?.file_name()?.to_owned()))
+    } else {
+        path.file_stem().map(ToOwned::to_owned)
+    };
+    named.map_or_else(|| "scenario".to_owned(), |name| name.to_string_lossy().into_owned())
+}
+
+/// The line that begins with `key`.
+fn place_of(text: &str, key: &str) -> Option<Range<usize>> {
+    let mut start = 0;
+    for line in text.split_inclusive('\n') {
+        if line.trim_start().starts_with(key) {
+            return Some(start..start + line.trim_end().len());
+        }
+        start += line.len();
+    }
+    None
+}
+
+fn plan_of(file: &ScenarioFile) -> Result<SessionPlan, PlanError> {
+    let coupling = match &file.coupling {
+        CouplingFile::Parallel => Coupling::Parallel,
+        CouplingFile::Sequential(order) => Coupling::Sequential { order: order.clone() },
+    };
+    let signals = file.signals.iter().map(|(name, signal)| {
+        let signal = signal.get_ref();
+        SignalDecl { name: name.clone(), ty: signal.ty, writer: Some(signal.writer.clone()), unit: signal.unit.clone() }
+    });
+    SessionPlan::new(file.step, &coupling, signals.collect(), file.clients.keys().cloned().collect())
+}
+
+fn place_of_plan_error(error: &PlanError, file: &ScenarioFile, text: &str) -> Option<Range<usize>> {
+    match error {
+        PlanError::NoClients => place_of(text, "[clients"),
+        PlanError::DoubleClient(name) => file.clients.get(name).map(toml::Spanned::span),
+        PlanError::DoubleSignal(name) | PlanError::CaseTwins(_, name) => {
+            file.signals.get(name).map(toml::Spanned::span)
+        }
+        PlanError::UnknownWriter { signal, .. } => file.signals.get(signal).map(toml::Spanned::span),
+        PlanError::Order(_) => place_of(text, "coupling"),
+    }
+}
+
+/// The period of the client `name` as far as the scenario says it.
+pub fn period_of(client: &ClientFile, step: TimeSpan) -> Option<TimeSpan> {
+    match client {
+        ClientFile::Plant { period, .. } | ClientFile::Gateway { period, .. } | ClientFile::OpcUa { period, .. } => {
+            Some(period.unwrap_or(step))
+        }
+        ClientFile::Operator { .. } => Some(step),
+        ClientFile::SoftPlc { .. } | ClientFile::External { .. } => None,
+    }
+}

@@ -1,0 +1,384 @@
+//! The driver: takes a formed session and its clients through the cycle, step by step.
+//!
+//! | module | subject |
+//! |---|---|
+//! | this file | the loop: what each state of the cycle asks for |
+//! | `operate` | operations of operators, replays and the timeline |
+//! | `restore` | checkpoints taken and taken up |
+//! | `show` | observers and published views |
+//!
+//! All control flow of a running session is here; clients, image and carriers only do as told. A step
+//! of clients in this process is plain function calls, without a channel or an allocation.
+
+mod operate;
+mod restore;
+mod show;
+
+use std::collections::VecDeque;
+use std::time::Duration;
+
+use crate::carrier::{Answer, Carrier, Grant};
+use crate::checkpoint::Makeup;
+use crate::client::{ClientId, ClientOperation};
+use crate::digest::{Digest, TrajectoryDigest};
+use crate::end::{FailureCause, SessionEnd, Violation};
+use crate::mailbox::Mailbox;
+use crate::observer::{Observer, RecordError};
+use crate::operation::{Operation, OperatorInput};
+use crate::pacing::{Pace, Pacer};
+use crate::published::Published;
+use crate::session::{Control, Progress, Session, Turn};
+use crate::state::ServerState;
+use crate::time::{StepCount, VirtualTime};
+use crate::timeline::Timeline;
+
+use show::Shown;
+
+/// How long the driver sleeps at a time while virtual time is held, wall clock. A wish wakes it.
+const HOLD: Duration = Duration::from_millis(100);
+
+/// One client as its driver sees it: the way to it, and the bytes that go to and fro.
+struct Berth {
+    id: ClientId,
+    carrier: Box<dyn Carrier>,
+    inputs: Vec<u8>,
+    outputs: Vec<u8>,
+}
+
+/// A session that runs.
+pub struct Lockstep {
+    session: Session,
+    berths: Vec<Berth>,
+    /// The berths in the order in which orders are given: those elsewhere first, so that they run
+    /// beside those of this process.
+    order: Vec<usize>,
+    digest: Option<TrajectoryDigest>,
+    observers: Vec<Box<dyn Observer>>,
+    mailbox: Mailbox,
+    pacer: Pacer,
+    /// Observers have yet to be shown the image of a checkpoint that was taken up.
+    begin_observers: bool,
+    closed: bool,
+    /// How often the session has restarted.
+    resets: u64,
+    /// Inputs of operators that are yet to be replayed.
+    replayed: VecDeque<OperatorInput>,
+    timeline: Timeline,
+    makeup: Makeup,
+    /// What the timeline did to the initial values, until observers can be told.
+    at_start: Vec<Operation>,
+    shown: Shown,
+}
+
+/// What came of a session.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Outcome {
+    /// How it ended.
+    pub end: SessionEnd,
+    /// Steps committed.
+    pub steps: StepCount,
+    /// Virtual time of the last committed step.
+    pub t_v: VirtualTime,
+    /// The digest over all of them; `None` if not even the initial values were committed.
+    pub digest: Option<Digest>,
+}
+
+/// Why [`Lockstep::run_to`] came back.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Reached {
+    /// At the boundary asked for; the session goes on when it is run again.
+    Boundary,
+    /// The session is over.
+    End,
+}
+
+impl Lockstep {
+    /// A session whose clients have all joined, in the order of their ids.
+    pub(crate) fn new(session: Session, carriers: Vec<Box<dyn Carrier>>) -> Self {
+        let berth = |(id, carrier)| {
+            let member = session.member(id);
+            let (inputs, outputs) = member.map_or((0, 0), |member| (member.inputs.size(), member.outputs.size()));
+            Berth { id, carrier, inputs: vec![0; inputs], outputs: vec![0; outputs] }
+        };
+        let berths: Vec<Berth> = session.clients().zip(carriers).map(berth).collect();
+        let mut order: Vec<usize> = (0..berths.len()).collect();
+        // A stable sort: among themselves clients stay in the order of their names.
+        order.sort_by_key(|index| !berths[*index].carrier.runs_elsewhere());
+        let shown = Shown::new(session.image().len());
+        Self {
+            session,
+            berths,
+            order,
+            digest: None,
+            observers: Vec::new(),
+            mailbox: Mailbox::new(),
+            pacer: Pacer::new(Pace::Max),
+            begin_observers: false,
+            closed: false,
+            resets: 0,
+            replayed: VecDeque::new(),
+            timeline: Timeline::default(),
+            makeup: Makeup::default(),
+            at_start: Vec::new(),
+            shown,
+        }
+    }
+
+    /// Adds a watcher, before the session runs.
+    pub fn observe(&mut self, observer: Box<dyn Observer>) {
+        self.observers.push(observer);
+    }
+
+    /// Where the session publishes its views. Views are made only while somebody wants them.
+    pub fn published(&self) -> Published {
+        self.shown.published()
+    }
+
+    /// Publishes views there instead, for readers that were there before the session.
+    pub fn set_published(&mut self, published: Published) {
+        self.shown.set_published(published);
+    }
+
+    /// Holds the session to a pace.
+    pub fn set_pace(&mut self, pace: Pace) {
+        self.pacer = Pacer::new(pace);
+    }
+
+    /// Takes wishes from `mailbox`.
+    pub fn set_mailbox(&mut self, mailbox: Mailbox) {
+        self.mailbox = mailbox;
+    }
+
+    /// Brings operations along that happen by themselves, before the session runs or is resumed.
+    pub fn set_timeline(&mut self, timeline: Timeline) {
+        self.timeline = timeline;
+    }
+
+    /// Repeats what operators once did, each input at its boundary.
+    pub fn replay(&mut self, inputs: Vec<OperatorInput>) {
+        self.replayed = inputs.into();
+    }
+
+    /// Ends the session as completed at `until`.
+    pub fn set_until(&mut self, until: Option<VirtualTime>) {
+        self.session.set_until(until);
+    }
+
+    /// The session.
+    pub fn session(&self) -> &Session {
+        &self.session
+    }
+
+    /// The digest of all steps so far.
+    pub fn digest(&self) -> Option<Digest> {
+        self.digest.as_ref().map(TrajectoryDigest::value)
+    }
+
+    /// Runs until the session is over, and closes it for all.
+    ///
+    /// # Errors
+    /// A recording cannot be written.
+    pub fn run(&mut self) -> Result<Outcome, RecordError> {
+        while self.run_to(VirtualTime::MAX)? == Reached::Boundary {}
+        Ok(self.outcome())
+    }
+
+    /// What came of it so far; a session that goes on counts as stopped where it is.
+    pub fn outcome(&self) -> Outcome {
+        let end = self.session.end().cloned().unwrap_or(SessionEnd::Stopped { t_v: self.session.t_v() });
+        let (steps, t_v) = self.committed();
+        Outcome { end, steps, t_v, digest: self.digest() }
+    }
+
+    /// Number and time of the last step whose outputs are in the image.
+    fn committed(&self) -> (StepCount, VirtualTime) {
+        let cycle = self.session.cycle();
+        let under_way = matches!(cycle.server(), ServerState::Read | ServerState::PreWrite)
+            || (cycle.server() == ServerState::Write && !cycle.ends_step());
+        if under_way && cycle.steps().0 > 0 {
+            (StepCount(cycle.steps().0 - 1), cycle.t_v().saturating_sub(cycle.step()))
+        } else {
+            (cycle.steps(), cycle.t_v())
+        }
+    }
+
+    /// Runs to the first boundary at or after `t_v`, or to the end.
+    ///
+    /// # Errors
+    /// A recording cannot be written; the session is closed for all then.
+    pub fn run_to(&mut self, t_v: VirtualTime) -> Result<Reached, RecordError> {
+        let reached = self.cycle_to(t_v);
+        match &reached {
+            Ok(Reached::Boundary) => return reached,
+            Ok(Reached::End) => {}
+            Err(_) => self.session.control(Control::Stop),
+        }
+        self.close(reached)
+    }
+
+    /// The loop of a session. Everything that can happen between two states is decided here.
+    fn cycle_to(&mut self, t_v: VirtualTime) -> Result<Reached, RecordError> {
+        if std::mem::take(&mut self.begin_observers) {
+            self.tell_beginning()?;
+        }
+        loop {
+            if self.session.cycle().is_at_boundary() {
+                if self.digest.is_some() && self.session.t_v() >= t_v {
+                    return Ok(Reached::Boundary);
+                }
+                self.take_wishes()?;
+            }
+            match self.session.advance() {
+                Progress::Entered(state) => self.serve(state)?,
+                Progress::Held => self.hold(),
+                Progress::Ended => return Ok(Reached::End),
+                // Every awaited client was served, so this is an error of this file: said as such, and
+                // not waited for.
+                Progress::Waiting => {
+                    debug_assert!(false, "a client was not served in state {}", self.session.cycle().server());
+                    self.session.control(Control::Stop);
+                    tracing::error!(state = %self.session.cycle().server(), "a client was not served");
+                    return Ok(Reached::End);
+                }
+            }
+        }
+    }
+
+    /// Does for all awaited clients what the state asks for.
+    fn serve(&mut self, state: ServerState) -> Result<(), RecordError> {
+        match state {
+            ServerState::Start => {}
+            ServerState::InitialWrite => {
+                let operations = self.operations_at_start();
+                self.set_up(&operations);
+                self.begin()?;
+            }
+            ServerState::PreRead => {
+                if self.session.cycle().pass() == 0 {
+                    self.take_timeline()?;
+                    self.pacer.hold_until(self.session.t_v() + self.session.step());
+                }
+                self.acknowledge();
+            }
+            ServerState::Read => self.read(),
+            ServerState::PreWrite => self.take_turns(),
+            ServerState::Write => {
+                self.acknowledge();
+                if self.session.cycle().ends_step() {
+                    self.end_step()?;
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Nothing to do for a client in `ready` or `write`: it is ready at once.
+    fn acknowledge(&mut self) {
+        for berth in &self.berths {
+            if self.session.cycle().is_awaited(berth.id) && self.session.ready(berth.id).is_err() {
+                // The violation has ended the session; the next advance reports it.
+                return;
+            }
+        }
+    }
+
+    fn read(&mut self) {
+        for berth in &mut self.berths {
+            if self.session.cycle().is_due(berth.id) && self.session.read(berth.id, &mut berth.inputs).is_err() {
+                // As in `acknowledge`.
+                return;
+            }
+        }
+    }
+
+    /// Asks every client for its initial values, with its operations in force from there.
+    fn set_up(&mut self, operations: &[(ClientId, ClientOperation)]) {
+        self.pacer.rebase();
+        for index in &self.order {
+            let berth = &mut self.berths[*index];
+            let own: Vec<_> = operations.iter().filter(|(id, _)| *id == berth.id).map(|(_, own)| own.clone()).collect();
+            berth.carrier.set_up(&own, &mut berth.outputs);
+        }
+        for berth in &mut self.berths {
+            let answered = berth.carrier.collect(&mut berth.outputs);
+            match answered {
+                // A violation has ended the session, which is looked at below.
+                Ok(Answer { sequence: StepCount(0), .. }) => drop(self.session.initialise(berth.id, &berth.outputs)),
+                Ok(Answer { sequence: got, .. }) => {
+                    let violation = Violation::WrongStep { got, expected: StepCount(0) };
+                    self.session.fail(berth.id, FailureCause::Violation(violation));
+                }
+                Err(cause) => self.session.fail(berth.id, cause),
+            }
+            if self.session.end().is_some() {
+                return;
+            }
+        }
+    }
+
+    /// Grants go out first, so that clients elsewhere run beside those of this process; outputs are
+    /// staged and failures reported in the order of names, whoever was done first.
+    fn take_turns(&mut self) {
+        let (sequence, t_v) = (self.session.cycle().steps(), self.session.t_v());
+        for index in &self.order {
+            let berth = &mut self.berths[*index];
+            if self.session.cycle().is_due(berth.id) {
+                berth.carrier.grant(Grant { sequence, t_v, inputs: &berth.inputs }, &mut berth.outputs);
+            }
+        }
+        for berth in &mut self.berths {
+            if !self.session.cycle().is_due(berth.id) {
+                continue;
+            }
+            match berth.carrier.collect(&mut berth.outputs) {
+                Ok(Answer { sequence, t_v, wake }) => {
+                    let turn = Turn { sequence, t_v, wake, outputs: &berth.outputs };
+                    if self.session.submit(berth.id, &turn).is_err() {
+                        // As in `acknowledge`.
+                        return;
+                    }
+                }
+                Err(cause) => return self.session.fail(berth.id, cause),
+            }
+        }
+    }
+
+    fn end_step(&mut self) -> Result<(), RecordError> {
+        if let Some(digest) = &mut self.digest {
+            digest.step(self.session.image());
+        }
+        self.tell_step()
+    }
+
+    /// Virtual time is held: waits for a wish, and for a client that leaves meanwhile.
+    fn hold(&mut self) {
+        self.publish();
+        self.mailbox.wait(HOLD);
+        self.pacer.rebase();
+        for berth in &mut self.berths {
+            if let Some(cause) = berth.carrier.find_lost() {
+                return self.session.fail(berth.id, cause);
+            }
+        }
+    }
+
+    /// Tells everybody that the session is over, and ends the recordings, whatever came before.
+    fn close(&mut self, reached: Result<Reached, RecordError>) -> Result<Reached, RecordError> {
+        if self.closed {
+            return reached;
+        }
+        self.closed = true;
+        let t_v = self.session.t_v();
+        let end = self.session.end().cloned().unwrap_or(SessionEnd::Stopped { t_v });
+        // All are told before anybody is waited for.
+        self.berths.iter_mut().for_each(|berth| berth.carrier.end(&end));
+        self.berths.iter_mut().for_each(|berth| berth.carrier.farewell());
+        self.publish_end(&end);
+        let mut result = reached;
+        for observer in &mut self.observers {
+            let ended = observer.end(&self.session);
+            result = result.and_then(|reached| ended.map(|()| reached));
+        }
+        result
+    }
+}

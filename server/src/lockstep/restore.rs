@@ -1,0 +1,65 @@
+//! A running session as a value, and back.
+
+use super::Lockstep;
+use crate::checkpoint::{Checkpoint, CheckpointError, Makeup, PlanSummary};
+
+impl Lockstep {
+    /// Says what the session is made of, for checkpoints that are taken of it and by it.
+    pub fn set_makeup(&mut self, makeup: Makeup) {
+        self.makeup = makeup;
+    }
+
+    /// Takes a checkpoint at the boundary at which the session is.
+    ///
+    /// # Errors
+    /// Not at a boundary, or a client cannot save.
+    pub fn checkpoint(&mut self) -> Result<Checkpoint, CheckpointError> {
+        let session = self.session.save().ok_or(CheckpointError::NotNow)?;
+        let digest = self.digest.clone().ok_or(CheckpointError::NotNow)?;
+        let names = self.session.plan().clients().to_vec();
+        let mut clients = Vec::with_capacity(names.len());
+        for (berth, client) in self.berths.iter_mut().zip(names) {
+            match berth.carrier.save() {
+                Ok(state) => clients.push((client, state)),
+                Err(source) => return Err(CheckpointError::Client { client, source }),
+            }
+        }
+        let plan = PlanSummary::of(self.session.plan());
+        let (makeup, timeline) = (self.makeup.clone(), self.timeline.save());
+        Ok(Checkpoint { plan, makeup, session, timeline, digest, clients })
+    }
+
+    /// Takes up a checkpoint before the session runs. Observers begin at its image.
+    ///
+    /// The session may have another timeline than that of the checkpoint, if both agree on what has
+    /// happened until then: that is how a case forks from the run of another.
+    ///
+    /// # Errors
+    /// It belongs to another session, set otherwise or with another past, or a client cannot take its
+    /// state back; the session must not be run then.
+    pub fn resume(&mut self, checkpoint: &Checkpoint) -> Result<(), CheckpointError> {
+        let plan = PlanSummary::of(self.session.plan());
+        if let Some(difference) = checkpoint.plan.difference(&plan) {
+            return Err(CheckpointError::OtherSession(difference));
+        }
+        if let Some(difference) = self.makeup.difference(&checkpoint.makeup) {
+            return Err(difference);
+        }
+        let (theirs, ours) = (checkpoint.makeup.name.clone(), self.makeup.name.clone());
+        let other = |source| CheckpointError::OtherTimeline { theirs, ours, source };
+        self.timeline.restore(&checkpoint.timeline, checkpoint.t_v()).map_err(other)?;
+        let same_clients = checkpoint.clients.iter().map(|(name, _)| name).eq(self.session.plan().clients());
+        if !same_clients || !self.session.restore(&checkpoint.session) {
+            return Err(CheckpointError::OtherSession("its state does not fit its own plan".to_owned()));
+        }
+        let (steps, t_v) = (self.session.cycle().steps(), self.session.t_v());
+        for (berth, (client, state)) in self.berths.iter_mut().zip(&checkpoint.clients) {
+            let restored = berth.carrier.restore(steps, t_v, state);
+            restored.map_err(|source| CheckpointError::Client { client: client.clone(), source })?;
+            self.session.read_back(berth.id, &mut berth.outputs);
+        }
+        self.digest = Some(checkpoint.digest.clone());
+        self.begin_observers = true;
+        Ok(())
+    }
+}

@@ -1,0 +1,49 @@
+//! What watches a session without a trace: it sees committed images and can change nothing.
+
+use thiserror::Error;
+
+use crate::digest::TrajectoryDigest;
+use crate::operation::OperatorInput;
+use crate::session::Session;
+
+/// Watches a session at its step boundaries, on the session's thread.
+///
+/// The digest is given as it grows: an observer that needs its value asks for it.
+pub trait Observer {
+    /// A session starts, restarts after a reset or goes on from a checkpoint: what was seen before
+    /// does not count. The image holds the initial values, or those of the checkpoint.
+    ///
+    /// # Errors
+    /// What was to be written could not be.
+    fn begin(&mut self, session: &Session, digest: &TrajectoryDigest) -> Result<(), RecordError>;
+
+    /// A step is committed.
+    ///
+    /// # Errors
+    /// What was to be written could not be.
+    fn step(&mut self, session: &Session, digest: &TrajectoryDigest) -> Result<(), RecordError>;
+
+    /// An operation has been taken, at a step boundary.
+    ///
+    /// # Errors
+    /// What was to be written could not be.
+    fn operated(&mut self, _input: &OperatorInput) -> Result<(), RecordError> {
+        Ok(())
+    }
+
+    /// The session is over; called exactly once, also after a failure.
+    ///
+    /// # Errors
+    /// What was to be written could not be.
+    fn end(&mut self, session: &Session) -> Result<(), RecordError>;
+}
+
+/// A recording that cannot be written.
+#[derive(Debug, Error)]
+#[error("cannot write {path}: {source}")]
+pub struct RecordError {
+    /// The file.
+    pub path: String,
+    /// Why.
+    pub source: std::io::Error,
+}
