@@ -7,7 +7,7 @@ use crate::diagnostic::{Code, Diagnostic};
 use crate::ir::{ElementaryType, Place, Statement, StatementKind, Storage, TypeId};
 use crate::syntax::Span;
 
-impl<'a> Configurer<'_, 'a> {
+impl Configurer<'_, '_> {
     /// Lets every name with several declarations stand for the resource's own.
     pub(super) fn select_globals(&mut self, resource: Option<usize>, span: Span) -> Vec<Statement> {
         let names = self.declarations.alternatives();

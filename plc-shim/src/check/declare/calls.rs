@@ -130,7 +130,7 @@ fn reached(start: PouId, graph: &Graph) -> BTreeSet<PouId> {
     found
 }
 
-impl<'a> Declarations<'a> {
+impl Declarations<'_> {
     /// Has the unit's body checked, once.
     pub(in crate::check) fn enqueue(&mut self, id: PouId) {
         if self.calls.queued.insert(id) {

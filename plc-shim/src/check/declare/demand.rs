@@ -112,7 +112,7 @@ impl<'a> Declarations<'a> {
     }
 }
 
-impl<'a> Declarations<'a> {
+impl Declarations<'_> {
     /// A global variable, placed in memory; `used` is where it is needed.
     pub(in crate::check) fn global(&mut self, key: &str, used: Option<Span>) -> Option<Variable> {
         if self.globals.get(key)?.progress == Progress::Untouched
@@ -193,7 +193,7 @@ impl<'a> Declarations<'a> {
     }
 }
 
-impl<'a> Declarations<'a> {
+impl Declarations<'_> {
     pub(in crate::check) fn resolve_declarations(&mut self) {
         let names: Vec<String> = self.type_names.keys().cloned().collect();
         for name in names {

@@ -119,7 +119,7 @@ impl Declarations<'_> {
     }
 }
 
-impl<'a> Declarations<'a> {
+impl Declarations<'_> {
     /// Initial bytes as far as they have been placed.
     pub(in crate::check) fn image_at(&self, offset: u32, size: u32) -> Vec<u8> {
         let mut image = vec![0; size as usize];
@@ -136,7 +136,7 @@ impl<'a> Declarations<'a> {
     }
 }
 
-impl<'a> Declarations<'a> {
+impl Declarations<'_> {
     pub(in crate::check) fn memory_image(&self) -> Vec<u8> {
         let mut image = vec![0; self.memory.next as usize];
         for (offset, bytes) in &self.memory.placed {

@@ -263,7 +263,7 @@ impl<'c, 'a> Interface<'c, 'a> {
             return;
         };
         if variable.ty != ty {
-            let types = &self.declarations().types();
+            let types = self.declarations().types();
             let (wanted, found) = (types.name(variable.ty), types.name(ty));
             let message = format!("`{}` is {wanted} in VAR_GLOBAL, {found} here", name.text);
             let found = Diagnostic::error(Code::ExternalWithoutGlobal, name.span, message);

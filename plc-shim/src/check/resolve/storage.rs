@@ -104,7 +104,7 @@ impl Interface<'_, '_> {
     /// Fixed memory: no unit is active twice (2nd ed. 2.5, no recursion).
     fn frame(&mut self, declared: &TypedImage<'_>, span: Span) -> Option<Storage> {
         self.scope_mut().keep_memory();
-        let types = &self.declarations().types();
+        let types = self.declarations().types();
         let (size, align) = (types.size(declared.ty), types.align(declared.ty));
         let offset = self.declarations_mut().allocate(size, align, span)?;
         self.declarations_mut().place(offset, declared.image.clone());

@@ -10,7 +10,7 @@ use crate::diagnostic::{Code, Diagnostic};
 use crate::ir::{Argument, ElementaryType, Expr, ExprKind, Place, Type, TypeId, Value, Variable};
 use crate::syntax::ast::{self, ReferenceKind};
 
-impl<'a> Body<'_, 'a> {
+impl Body<'_, '_> {
     /// What an input of a generic type is given: class, address and size of a variable.
     pub(super) fn generic_argument(
         &mut self,

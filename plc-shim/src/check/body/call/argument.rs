@@ -101,7 +101,7 @@ impl Body<'_, '_> {
 
     /// Memory of the calling unit for one value.
     pub(in crate::check) fn temporary(&mut self, ty: TypeId, span: Span) -> Option<Place> {
-        let types = &self.declarations.types();
+        let types = self.declarations.types();
         let (size, align) = (types.size(ty), types.align(ty));
         let offset = self.declarations.allocate(size, align, span)?;
         self.scope.keep_memory();

@@ -33,7 +33,7 @@ impl Body<'_, '_> {
 
     /// The value of an expression that must be constant.
     pub(in crate::check) fn value_of(&mut self, expr: &Expr) -> Option<Value> {
-        match fold(&self.declarations.types(), expr) {
+        match fold(self.declarations.types(), expr) {
             Ok(value) => Some(value),
             Err(NoValue::NotConstant(span)) => {
                 let message = "a constant is wanted here";

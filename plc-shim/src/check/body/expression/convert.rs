@@ -26,7 +26,7 @@ impl Body<'_, '_> {
         if matches!(self.declarations.types().get(target), Type::OpenArray { .. }) {
             return self.reject_whole_array(operand.span());
         }
-        if reference::target_of(&self.declarations.types(), target).is_some() {
+        if reference::target_of(self.declarations.types(), target).is_some() {
             return self.coerce_reference(operand, target);
         }
         if let Type::Subrange { base, low, high } = *self.declarations.types().get(target) {

@@ -100,7 +100,7 @@ impl Body<'_, '_> {
         if from.widens_to(to) || found == E::Bool {
             return;
         }
-        if let Ok(value) = fold(&self.declarations.types(), expr)
+        if let Ok(value) = fold(self.declarations.types(), expr)
             && keeps(value, to)
         {
             return;

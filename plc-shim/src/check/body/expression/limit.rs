@@ -10,7 +10,7 @@ impl Body<'_, '_> {
     /// when they are assigned.
     pub(super) fn limited(&mut self, expr: Expr, target: TypeId, low: i128, high: i128) -> Option<Expr> {
         let span = expr.span;
-        if let Ok(value) = constant::fold(&self.declarations.types(), &expr) {
+        if let Ok(value) = constant::fold(self.declarations.types(), &expr) {
             let value = value.as_int().unwrap_or(low);
             if !(low..=high).contains(&value) {
                 let message = format!("{value} is outside of {}", self.type_name(target));

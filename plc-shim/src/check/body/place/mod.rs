@@ -180,7 +180,7 @@ impl Body<'_, '_> {
         }
         match self.variable_named(name) {
             Some(Ok(variable)) => {
-                let open = open_array::access(&self.declarations.types(), &variable);
+                let open = open_array::access(self.declarations.types(), &variable);
                 let access = match variable.section {
                     _ if open.is_some() => Access::Constant,
                     _ if variable.is_constant => Access::Constant,
@@ -398,7 +398,7 @@ impl Body<'_, '_> {
             return self.mismatch("an integer", &found, index.span);
         }
         let Dimension { low, high } = bounds;
-        if let Ok(value) = constant::fold(&self.declarations.types(), &index) {
+        if let Ok(value) = constant::fold(self.declarations.types(), &index) {
             let value = value.as_int().unwrap_or(0);
             if !(i128::from(low)..=i128::from(high)).contains(&value) {
                 let message = format!("index {value} is outside of {low}..{high}");

@@ -132,7 +132,7 @@ impl Body<'_, '_> {
 
     fn is_valid_reference(&mut self, argument: &ast::Expr, span: Span) -> Option<Operand> {
         let place = self.declared_place(argument)?.place;
-        if reference::target_of(&self.declarations.types(), place.ty).is_none() {
+        if reference::target_of(self.declarations.types(), place.ty).is_none() {
             let message = format!("a reference is wanted, this is {}", self.type_name(place.ty));
             self.report(Diagnostic::error(Code::NotAReference, argument.span, message));
             return None;

@@ -41,7 +41,7 @@ impl Body<'_, '_> {
         let operand = self.within(None, |body| body.expression(inner))?;
         let found = self.describe(&operand);
         let reference = match operand {
-            Operand::Typed(expr) => target_of(&self.declarations.types(), expr.ty).map(|(_, target)| (expr, target)),
+            Operand::Typed(expr) => target_of(self.declarations.types(), expr.ty).map(|(_, target)| (expr, target)),
             _ => None,
         };
         let Some((expr, target)) = reference else {
@@ -122,7 +122,7 @@ impl Body<'_, '_> {
     /// The operand as a reference of type `wanted`.
     pub(super) fn coerce_reference(&mut self, operand: Operand, wanted: TypeId) -> Option<Expr> {
         let null: TypeId = TypeTable::null();
-        let (kind, target) = target_of(&self.declarations.types(), wanted)?;
+        let (kind, target) = target_of(self.declarations.types(), wanted)?;
         match (operand, kind) {
             (Operand::Typed(expr), _) if expr.ty == wanted || expr.ty == null => Some(Expr { ty: wanted, ..expr }),
             (Operand::Integer { value, span }, ReferenceKind::Pointer) if u32::try_from(value).is_ok() => {
@@ -177,7 +177,7 @@ impl Body<'_, '_> {
     }
 
     pub(super) fn is_reference(&self, operand: &Operand) -> bool {
-        let types = &self.declarations.types();
+        let types = self.declarations.types();
         matches!(operand, Operand::Typed(expr)
             if target_of(types, expr.ty).is_some() || matches!(types.get(expr.ty), Type::Null))
     }
@@ -192,7 +192,7 @@ impl Body<'_, '_> {
     ) -> Option<Operand> {
         let pointer = |body: &Self, operand: &Operand| match operand {
             Operand::Typed(expr) => {
-                let found = target_of(&body.declarations.types(), expr.ty);
+                let found = target_of(body.declarations.types(), expr.ty);
                 found.filter(|(kind, _)| *kind == ReferenceKind::Pointer).map(|_| expr.ty)
             }
             _ => None,
@@ -285,7 +285,7 @@ impl Body<'_, '_> {
     /// A reference of type `wanted`, a `REFERENCE TO`, to the variable `value`; NULL and 0 take it back.
     /// Vendors let it refer to what does not outlive the call.
     pub(super) fn referring(&mut self, wanted: TypeId, value: &ast::Expr) -> Option<Expr> {
-        let (_, target) = target_of(&self.declarations.types(), wanted)?;
+        let (_, target) = target_of(self.declarations.types(), wanted)?;
         let is_null = match &value.kind {
             ast::ExprKind::Literal(ast::Literal::Integer(0)) => true,
             ast::ExprKind::Name(name) => name.key() == "NULL" && self.variable_named(name).is_none(),
@@ -315,7 +315,7 @@ impl Body<'_, '_> {
         if matches!(self.declarations.types().get(place.ty), Type::Interface { .. }) {
             return self.attempt_interface(place, operand, span);
         }
-        let kind = target_of(&self.declarations.types(), place.ty).map(|(kind, _)| kind);
+        let kind = target_of(self.declarations.types(), place.ty).map(|(kind, _)| kind);
         if kind.is_none() || !self.is_reference(&operand) {
             let wrong = if kind.is_none() { target.span } else { value.span };
             let message = "`?=` assigns references";

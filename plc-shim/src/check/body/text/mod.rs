@@ -12,7 +12,7 @@ use crate::ir::{Binary, ElementaryType, Expr, ExprKind, TypeId, Value};
 use crate::syntax::text_literal::{Text, parse_text};
 use crate::syntax::{Span, ast};
 
-impl<'a> Body<'_, 'a> {
+impl Body<'_, '_> {
     /// A literal that has no length yet.
     pub(in crate::check) fn text_literal(&mut self, text: &str, span: Span) -> Option<Operand> {
         // A literal without an end has been reported by the parser.
