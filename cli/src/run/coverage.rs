@@ -49,3 +49,9 @@ impl CoverageRequest {
         Ok(file::write_whole(&self.path, text.as_bytes())?)
     }
 }
+
+/// How much of something was executed, in words.
+pub(crate) fn share((all, some): (usize, usize)) -> String {
+    let percent = (100 * some).checked_div(all);
+    percent.map_or_else(|| "none".to_owned(), |percent| format!("{percent}% ({some} of {all})"))
+}

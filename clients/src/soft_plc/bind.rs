@@ -149,6 +149,8 @@ fn checked_place(signal: &SignalDecl, variable: &Variable) -> Result<Place, Bind
 
 #[cfg(test)]
 mod tests {
+    use onescan_base::SignalType;
+
     use super::*;
 
     const SOURCE: &str = "

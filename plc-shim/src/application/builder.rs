@@ -1,6 +1,8 @@
 //! What an application is compiled from, and for what.
 
 use super::constant::ConstantError;
+use super::front::Front;
+use super::room::with_room;
 use super::{Application, Purpose};
 use crate::diagnostic::Diagnostics;
 use crate::input::Input;
@@ -56,6 +58,12 @@ impl Builder {
     pub fn constant(mut self, path: impl Into<String>, literal: impl Into<String>) -> Self {
         self.constants.push((path.into(), literal.into()));
         self
+    }
+
+    /// True if [`Self::constant`] finds the path in the files, so that it is not a variable, which
+    /// [`SoftPlc::write`](crate::SoftPlc::write) sets. Reads the files each time.
+    pub fn has_constant(&self, path: &str) -> bool {
+        with_room(|| Front::has_constant(self.inputs.iter().cloned(), path))
     }
 
     /// Compiles for [`SoftPlc::coverage`](crate::SoftPlc::coverage). What the program computes stays the same.

@@ -124,6 +124,11 @@ impl Constants {
     }
 }
 
+/// True if a path is that of a constant, or of several.
+pub(super) fn is_declared(units: &[(FileId, CompilationUnit)], path: &str) -> bool {
+    matches!(find(&Collector::of(units).found, path), Ok(_) | Err(ConstantError::Ambiguous { .. }))
+}
+
 /// A variable that a path may mean.
 #[derive(Debug)]
 struct Declared {

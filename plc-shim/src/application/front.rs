@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use super::constant::{ConstantError, Constants};
+use super::constant::{ConstantError, Constants, is_declared};
 use super::library;
 use crate::check::{Checked, check};
 use crate::diagnostic::{Diagnostic, Severity};
@@ -34,6 +34,11 @@ impl Front {
         let mut parsed = Parsed::new(inputs);
         let constants = Constants::new(constants, &parsed.units, &mut parsed.sources)?;
         Ok((parsed.checked(&constants), constants))
+    }
+
+    /// True if a path is that of a constant, whether or not the files are right.
+    pub(super) fn has_constant(inputs: impl IntoIterator<Item = Input>, path: &str) -> bool {
+        is_declared(&Parsed::new(inputs).units, path)
     }
 
     pub(crate) fn has_errors(&self) -> bool {
