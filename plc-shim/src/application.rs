@@ -4,7 +4,6 @@ mod builder;
 mod constant;
 mod front;
 pub(crate) mod identity;
-mod inspect;
 mod leaves;
 pub(crate) mod library;
 mod namespace;
@@ -38,8 +37,8 @@ pub(crate) use front::Front;
 use identity::code::Code;
 use identity::layout::Layout;
 pub use identity::{CodeDifference, VariableDifference};
-pub use inspect::inspect;
 pub(crate) use room::with_room;
+pub(crate) use value::text;
 pub use value::{Radix, WriteError};
 pub use variable::{Program, UnknownVariable, Variable, VariableAccess};
 

@@ -8,8 +8,7 @@ use miette::{LabeledSpan, NamedSource};
 // Hints are a part of diagnostics, so the rooms that report something find them here.
 pub(crate) use onescan_base::did_you_mean;
 
-use crate::syntax::source::LineColumn;
-use crate::syntax::{SourceMap, Span};
+use crate::source::{LineColumn, SourceMap, Span};
 
 macro_rules! codes {
     ($($variant:ident $text:literal $about:literal),* $(,)?) => {

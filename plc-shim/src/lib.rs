@@ -4,6 +4,7 @@
 //! |---|---|---|
 //! | [`dialect`] | | what vendors do their own way, as a table |
 //! | [`input`] | files as they are found | program text, and the way back into the file |
+//! | [`source`] | names and texts | files, places in them |
 //! | [`syntax`] | text | tokens and a tree, without loss |
 //! | [`diagnostic`] | findings | messages with code, place and hint |
 //! | [`explain`] | codes | the page behind each |
@@ -39,17 +40,19 @@ mod ir;
 mod lint;
 mod output;
 pub mod run;
+pub mod source;
 pub mod syntax;
 
 pub use application::{
     Application, BuildError, Builder, CodeDifference, ConstantError, Program, Radix, UnknownVariable, Variable,
-    VariableAccess, VariableDifference, WriteError, inspect,
+    VariableAccess, VariableDifference, WriteError,
 };
 pub use compile::fault::FaultKind;
 pub use coverage::Coverage;
 pub use diagnostic::{Code, Diagnostic, Diagnostics, Finding, Severity};
 pub use dialect::Dialect;
 pub use input::Input;
+pub use lint::inspect;
 pub use onescan_base::{ElementaryType, SignalType, TimeSpan, VirtualTime};
 pub use run::{
     CodePolicy, FaultSite, PlanDifference, PlcFault, RestoreError, RunError, SoftPlc, Task, TaskPlan, Way, WayId,

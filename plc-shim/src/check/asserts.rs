@@ -7,12 +7,12 @@ use crate::syntax::{FileId, Span};
 const SITE: &str = "SITE";
 
 /// True for the input of an assert that says where its call stands.
-pub(super) fn is_site(parameter: &Variable) -> bool {
+pub(in crate::check) fn is_site(parameter: &Variable) -> bool {
     parameter.name == SITE
 }
 
 /// The place of a call as a ULINT: its file above, its first byte below.
-pub(super) fn site(span: Span) -> Argument {
+pub(in crate::check) fn site(span: Span) -> Argument {
     let ty = ElementaryType::Ulint;
     let value = u64::from(span.file.0) << 32 | u64::from(span.start);
     Argument::Value(Expr { kind: ExprKind::Constant(Value::Int(i128::from(value))), ty: ty.into(), span })

@@ -12,8 +12,6 @@ pub mod table;
 use std::path::Path;
 
 use self::table::{BEHAVIOURS, FEATURES};
-use crate::ir::Rounding;
-use crate::syntax::direct_address::AddressUnit;
 
 /// A dialect of the language.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -83,11 +81,8 @@ impl Dialect {
     }
 
     /// Where a real halfway between two integers goes.
-    pub(crate) fn rounding(self) -> Rounding {
-        match self.behaviour().ties {
-            Ties::Even => Rounding::NearestEven,
-            Ties::Away => Rounding::NearestAway,
-        }
+    pub fn ties(self) -> Ties {
+        self.behaviour().ties
     }
 
     /// What the number of a direct address wider than a bit counts.
@@ -131,6 +126,16 @@ pub enum TimeRange {
     Unsigned32,
     /// Signed 32 bit milliseconds.
     Signed32,
+}
+
+/// What the number of an address wider than a bit counts. The standard leaves it open.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum AddressUnit {
+    /// Units of its own width: `%MW1` is bytes 2 and 3, as in CODESYS.
+    #[default]
+    Element,
+    /// Bytes: `%MW1` is bytes 1 and 2, as in TwinCAT and with Siemens.
+    Byte,
 }
 
 /// Where a real halfway between two integers goes.

@@ -1,8 +1,7 @@
 //! The dialects as data.
 
 use super::Dialect::{self, Codesys, Iec2, Iec3, SiemensScl, TwinCat};
-use super::{Behaviour, DivisionByZero, Feature, Ties, TimeRange};
-use crate::syntax::direct_address::AddressUnit;
+use super::{AddressUnit, Behaviour, DivisionByZero, Feature, Ties, TimeRange};
 
 /// Who has a construct, and where that is written.
 #[derive(Debug, Clone, Copy)]

@@ -35,7 +35,7 @@ use self::kind::SourceKind;
 use self::xml::XmlError;
 use crate::diagnostic::{Code, Diagnostic};
 use crate::dialect::Dialect;
-use crate::syntax::origin::Extract;
+use crate::source::origin::Extract;
 use crate::syntax::{FileId, SourceFile, SourceMap, Span};
 
 /// Greatest size of a file in bytes.

@@ -8,8 +8,8 @@
 
 use std::ops::Range;
 
-use super::edits::{Edited, Edits, LineMap};
 use super::marks;
+use crate::source::edits::{Edited, Edits, LineMap};
 use crate::syntax::ast::{Member, MemberKind, Statement, StatementKind};
 use crate::syntax::token::{Keyword, Punctuation, Token, TokenKind};
 use crate::syntax::tokenize;

@@ -2,15 +2,15 @@
 
 use onescan_base::TimeSpan;
 
-use super::constant::{self, Constant, Constants};
-use super::edits::Edits;
 use super::marks;
 use super::single;
 use super::tasks::{self, ALWAYS, TaskTable};
 use crate::diagnostic::{Code, Diagnostic};
 use crate::run::Task;
+use crate::source::edits::Edits;
 use crate::syntax::SourceFile;
 use crate::syntax::ast::{Configuration, Connection, Ident, Resource, TaskDeclaration};
+use crate::syntax::constant::{self, Constant, Constants};
 use crate::syntax::lexer::tokenize_in;
 
 /// The name of an instance of a program, as tasks have it.

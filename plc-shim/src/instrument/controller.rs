@@ -1,9 +1,9 @@
 //! Execution controllers (`[SDSP]` sec. V-B, Fig. 11): header and footer of every
 //! scheduled program, the footer also before each RETURN.
 
-use super::edits::Edits;
 use super::template::{self, Controller, Number};
 use super::{marks, scl};
+use crate::source::edits::Edits;
 use crate::syntax::SourceFile;
 use crate::syntax::ast::{Pou, Statement, StatementKind};
 use crate::syntax::token::Keyword;

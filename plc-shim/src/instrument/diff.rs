@@ -24,7 +24,7 @@ pub fn unified(file: &File) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::super::edits::LineMap;
+    use crate::source::edits::LineMap;
     use super::*;
 
     fn file(before: Option<&str>, text: Option<&str>) -> File {

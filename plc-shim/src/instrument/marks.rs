@@ -17,7 +17,7 @@ use std::ops::Range;
 
 use thiserror::Error;
 
-use super::edits::{Edited, Edits};
+use crate::source::edits::{Edited, Edits};
 
 const OPENING: &str = "(*@sdsp ";
 const CLOSING: &str = "*)";

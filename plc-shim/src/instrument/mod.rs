@@ -3,7 +3,6 @@
 //!
 //! | module | subject |
 //! |---|---|
-//! | [`edits`] | changes of a text, and where its lines come from |
 //! | [`marks`] | comments that tell what was changed, and the way back |
 //! | [`diff`] | a changed file as a unified diff |
 //! | [`template`] | the shim's sources in `iec/shim` |
@@ -13,7 +12,6 @@
 //! | [`survey`] | programs and sources of time in a project |
 //! | [`tasks`] | the task table |
 //! | [`single`] | tasks with SINGLE |
-//! | [`constant`] | constant expressions of tasks |
 //! | [`configuration`] | a project's CONFIGURATION |
 //! | [`plain`] | a project without the shim, and its changes |
 //! | [`controller`] | execution controllers |
@@ -34,10 +32,8 @@ mod chart_script;
 mod clock;
 mod codesys;
 mod configuration;
-pub(crate) mod constant;
 mod controller;
 pub mod diff;
-pub mod edits;
 mod foreign;
 mod marks;
 mod motion;
@@ -62,7 +58,6 @@ use std::sync::Arc;
 
 use thiserror::Error;
 
-use self::edits::{Conflict, LineMap};
 use self::plain::Plain;
 use self::survey::{Survey, survey};
 pub use self::target::Target;
@@ -72,6 +67,7 @@ use crate::diagnostic::{Diagnostics, Severity};
 use crate::input::Input;
 use crate::input::encoding::Encoding;
 use crate::run::{RunError, Task};
+use crate::source::edits::{Conflict, LineMap};
 use crate::syntax::ast::{Configuration, ProgramDeclaration};
 use crate::syntax::parser::parse_source;
 

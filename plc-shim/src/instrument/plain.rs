@@ -6,7 +6,6 @@ use std::sync::Arc;
 use onescan_base::TimeSpan;
 
 use super::chart_plan::Plan as ChartPlan;
-use super::edits::{Edited, Edits, LineMap};
 use super::marks::{self, Original};
 use super::motion_use::Motion;
 use super::survey::Survey;
@@ -18,6 +17,7 @@ use crate::input::Input;
 use crate::input::encoding::Encoding;
 use crate::input::kind::{FileKind, SourceKind};
 use crate::run::Task;
+use crate::source::edits::{Edited, Edits, LineMap};
 use crate::syntax::ast::{Ident, Pou};
 use crate::syntax::{FileId, SourceFile, SourceMap, Span};
 

@@ -9,7 +9,6 @@ use std::ops::Range;
 use onescan_base::duration::XmlDuration;
 
 use super::controller;
-use super::edits::Edits;
 use super::marks;
 use super::plcopen_unit as unit;
 use super::target::Sources;
@@ -17,6 +16,7 @@ use super::tasks::{TaskTable, literal};
 use super::template::{self, Controller, Number};
 use crate::input::plcopen_instances;
 use crate::input::xml::{self, Element};
+use crate::source::edits::Edits;
 use crate::syntax::SourceFile;
 use crate::syntax::ast::{Pou, PouKind};
 

@@ -13,7 +13,6 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write as _;
 
 use super::chart_plan::{CONTROL, Plan, charts, controlled_by, elapsed, of_chart, own_flag};
-use super::edits::Edits;
 use super::marks;
 use super::plcopen::{self, Refused};
 use super::plcopen_gate::{Closed, Gate, SIGNAL};
@@ -22,6 +21,7 @@ use crate::input::plcopen_chart::inline_action_name;
 use crate::input::plcopen_chart_graph::{End, Graph, Kind, number};
 use crate::input::plcopen_condition::named_transitions;
 use crate::input::xml::Element;
+use crate::source::edits::Edits;
 use crate::syntax::Span;
 use crate::syntax::ast::{Pou, PouKind};
 

@@ -15,7 +15,6 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
 
 use super::chart_plan::Plan;
-use super::edits::Edits;
 use super::marks;
 use super::plcopen::{self, Refused};
 use super::plcopen_chart::{LocalIds, RefusedAt, position};
@@ -24,6 +23,7 @@ use crate::input::plcopen_chart_graph::{Graph, Kind, Node, connections};
 use crate::input::plcopen_condition::{Form, Leaf, expression, is_negated, named, text_leaves};
 use crate::input::plcopen_object::inner_text;
 use crate::input::xml::Element;
+use crate::source::edits::Edits;
 use crate::syntax::ast::Transition;
 
 /// The execution signal as a variable, for networks and instructions.

@@ -1,7 +1,6 @@
 //! A project in PLCopen XML as a whole: one file, with its changes and all that is the shim's.
 
 use super::chart_plan::Plan as ChartPlan;
-use super::edits::{Edited, Edits};
 use super::motion_use::Motion;
 use super::plain::Plain;
 use super::survey::Survey;
@@ -10,6 +9,7 @@ use super::tasks::TaskTable;
 use super::{File, InstrumentError, clock, plcopen, plcopen_chart};
 use crate::diagnostic::{Code, Diagnostic, Diagnostics};
 use crate::input::xml::Element;
+use crate::source::edits::{Edited, Edits};
 use crate::syntax::{FileId, SourceFile, Span};
 
 impl Plain {

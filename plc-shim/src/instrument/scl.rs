@@ -13,11 +13,11 @@ use std::collections::{BTreeMap, BTreeSet};
 use onescan_base::TimeSpan;
 
 use super::clock::{self, Form};
-use super::edits::Edits;
 use super::marks;
 use super::survey::Survey;
 use crate::dialect::Dialect;
 use crate::run::Task;
+use crate::source::edits::Edits;
 use crate::syntax::ast::{
     Call, CompilationUnit, Declaration, Expr, ExprKind, Ident, Pou, Section, SectionKind, TypeSpec, TypeSpecKind,
     Variable,

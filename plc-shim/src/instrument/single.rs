@@ -5,13 +5,13 @@
 //! for a grant the scheduler raises it; otherwise it is what SINGLE is, copied at the end of every task by a
 //! program of the shim, since an edge may come and go within a scan.
 
-use super::edits::Edits;
 use super::marks;
 use super::survey::Survey;
 use super::target::Target;
 use super::template;
 use crate::diagnostic::{Code, Diagnostic};
 use crate::run::{RunError, Task};
+use crate::source::edits::Edits;
 use crate::syntax::SourceFile;
 use crate::syntax::ast::{Configuration, Expr, ExprKind, Ident, Resource, Section, TaskDeclaration};
 use crate::syntax::lexer::tokenize_in;

@@ -4,7 +4,6 @@ use std::collections::BTreeSet;
 
 use super::chart_plan::charts;
 use super::clock::{self, Fate, Form, Kind};
-use super::constant::{self, Constants};
 use super::foreign;
 use super::motion::Role;
 use super::scl::{self, TimerCalls};
@@ -17,6 +16,7 @@ use crate::syntax::ast::{
     Call, CompilationUnit, Configuration, Declaration, Expr, ExprKind, Ident, Initialiser, InitialiserKind, Pou,
     PouKind, Section, TypeSpec, TypeSpecKind,
 };
+use crate::syntax::constant::{self, Constants};
 use crate::syntax::walk::{self, Visitor};
 use crate::syntax::{FileId, Span, parse};
 

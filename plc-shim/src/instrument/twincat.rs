@@ -2,13 +2,13 @@
 
 use std::path::{Component, Path};
 
-use super::constant::Constants;
-use super::edits::Edits;
 use super::target::Source;
 use super::{configuration, marks};
 use crate::input::xml;
+use crate::source::edits::Edits;
 use crate::syntax::SourceFile;
 use crate::syntax::ast::Configuration;
+use crate::syntax::constant::Constants;
 use crate::syntax::token::{Keyword, TokenKind};
 use crate::syntax::tokenize;
 

@@ -8,7 +8,8 @@ use super::statement::Statement;
 use super::text::TextCall;
 use super::types::TypeId;
 use super::value::Value;
-use crate::syntax::Span;
+use crate::dialect::Ties;
+use crate::source::Span;
 
 /// A register of a unit's function: a parameter or a local of WebAssembly.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -70,6 +71,15 @@ pub(crate) enum Rounding {
     Up,
     /// To the next smaller one (`FLOOR` of vendors).
     Down,
+}
+
+impl From<Ties> for Rounding {
+    fn from(ties: Ties) -> Self {
+        match ties {
+            Ties::Even => Self::NearestEven,
+            Ties::Away => Self::NearestAway,
+        }
+    }
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

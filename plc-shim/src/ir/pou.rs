@@ -8,7 +8,7 @@ use super::types::TypeId;
 use super::value::Value;
 use std::sync::Arc;
 
-use crate::syntax::Span;
+use crate::source::Span;
 use crate::syntax::ast::{Edge, Qualifier, SectionKind};
 
 /// Identifies a unit.

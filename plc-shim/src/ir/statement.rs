@@ -2,7 +2,7 @@
 
 use super::expr::{Expr, LocalId, Place};
 use super::pou::PouId;
-use crate::syntax::Span;
+use crate::source::Span;
 use std::sync::Arc;
 
 #[derive(Debug, Clone)]

@@ -2,6 +2,7 @@
 //!
 //! | module | subject |
 //! |---|---|
+//! | [`inspect`] | errors and warnings of files |
 //! | [`index`] | what the files declare, by name |
 //! | [`usage`] | what a unit does with each name |
 //! | [`types`] | the type of an expression, as far as a warning needs it |
@@ -17,6 +18,7 @@
 
 mod equality;
 mod index;
+mod inspect;
 mod instances;
 mod outputs;
 mod reachability;
@@ -31,8 +33,10 @@ use crate::application::Front;
 use crate::diagnostic::Diagnostic;
 use crate::run::TaskPlan;
 
+pub use inspect::inspect;
+
 /// All warnings; `plan` tells which programs run in one task.
-pub(crate) fn lint(front: &Front, plan: Option<&TaskPlan>) -> Vec<Diagnostic> {
+fn lint(front: &Front, plan: Option<&TaskPlan>) -> Vec<Diagnostic> {
     let index = Index::new(front);
     let units: Vec<Unit<'_>> = index.own().map(|pou| Unit { usage: Usage::of(pou, &index), pou }).collect();
     let mut findings = Vec::new();

@@ -3,7 +3,7 @@
 use super::SoftPlc;
 use crate::application::Variable;
 use crate::check::asserts::place;
-use crate::syntax::source::LineColumn;
+use crate::source::LineColumn;
 
 /// The variable in which asserts keep what they find.
 const LOG: &str = "ONESCAN_ASSERTS";

@@ -26,8 +26,8 @@ pub use statement::{
     StatementKind, UpdateOp, WhileStatement,
 };
 
-use super::source::Span;
 use crate::dialect::Dialect;
+use crate::source::Span;
 
 /// A name as written.
 #[derive(Debug, Clone)]

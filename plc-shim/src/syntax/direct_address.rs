@@ -2,6 +2,8 @@
 
 use thiserror::Error;
 
+use crate::dialect::AddressUnit;
+
 /// Most bytes of an area.
 pub const AREA_LIMIT: u32 = 1 << 20;
 
@@ -73,16 +75,6 @@ impl Width {
     pub fn bytes(self) -> u32 {
         self.bits().div_ceil(8)
     }
-}
-
-/// What the number of an address wider than a bit counts. The standard leaves it open.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum AddressUnit {
-    /// Units of its own width: `%MW1` is bytes 2 and 3, as in CODESYS.
-    #[default]
-    Element,
-    /// Bytes: `%MW1` is bytes 1 and 2, as in TwinCAT and with Siemens.
-    Byte,
 }
 
 /// Where in its area an address lies.

@@ -2,8 +2,6 @@
 //!
 //! | module | in | out |
 //! |---|---|---|
-//! | [`source`] | names and texts | files, spans, lines and columns |
-//! | [`origin`] | parts of a file | program text, and the way back into the file |
 //! | [`token`] | | the kinds of token, keywords |
 //! | [`lexer`] | text | every token, blanks and comments too |
 //! | [`literal`], [`text_literal`], [`calendar`] | a literal's text | its value |
@@ -12,6 +10,7 @@
 //! | [`ast`] | | the tree's nodes |
 //! | [`parser`] | tokens | a tree and a list of diagnostics |
 //! | [`printer`] | a tree | text that parses to the same tree |
+//! | `constant` | an expression of literals and constants | its value |
 //! | `walk` | a body | each of its statements and expressions |
 //!
 //! Invariants: the texts of a file's tokens concatenated are the file; parsing never fails, it
@@ -19,18 +18,17 @@
 
 pub mod ast;
 pub mod calendar;
+pub(crate) mod constant;
 pub mod direct_address;
 pub mod lexer;
 pub mod literal;
-pub mod origin;
 pub mod parser;
 pub mod part;
 pub mod printer;
-pub mod source;
 pub mod text_literal;
 pub mod token;
 pub(crate) mod walk;
 
+pub use crate::source::{FileId, SourceFile, SourceMap, Span};
 pub use lexer::{tokenize, tokenize_in};
 pub use parser::{Parsed, parse, parse_in, parse_source};
-pub use source::{FileId, SourceFile, SourceMap, Span};

@@ -20,11 +20,11 @@ mod type_spec;
 use self::cursor::Cursor;
 use super::ast::{CompilationUnit, Expr, Initialiser};
 use super::lexer::{tokenize, tokenize_in};
-use super::origin::Origin;
-use super::source::{FileId, SourceFile};
 use super::token::{Token, TokenKind};
 use crate::diagnostic::{Code, Diagnostic};
 use crate::dialect::{Dialect, Feature};
+use crate::source::origin::Origin;
+use crate::source::{FileId, SourceFile};
 use crate::syntax::Span;
 
 /// Greatest depth to which statements, types and parentheses may be nested.

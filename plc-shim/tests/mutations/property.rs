@@ -4,8 +4,8 @@
 //! The fuzz target asks the same.
 
 use onescan_plc_shim::Input;
-use onescan_plc_shim::application::inspect;
 use onescan_plc_shim::input::kind::SourceKind;
+use onescan_plc_shim::inspect;
 use onescan_plc_shim::syntax::printer::print_unit;
 use onescan_plc_shim::syntax::{FileId, parse};
 

@@ -4,11 +4,13 @@
 //! |---|---|
 //! | [`show`] | bytes to literals |
 //! | [`read`] | literals to bytes |
+//! | [`text`] | elementary values to text, as the running program makes it too |
 //! | [`radix`] | whole numbers in other bases |
 
 mod radix;
 mod read;
 mod show;
+pub(crate) mod text;
 
 pub use radix::Radix;
 

@@ -5,9 +5,9 @@ use std::fmt::Write;
 use onescan_base::elementary::Kind;
 
 use super::super::{Application, Variable};
+use super::text::format;
 use crate::ir::text::TextShape;
 use crate::ir::{ElementaryType, Storage, Type, TypeId};
-use crate::run::text::value_text;
 
 impl Application {
     /// The value of a variable as a literal, from the memory of a PLC: `TRUE`, `-5`, `16#00FF`,
@@ -119,8 +119,8 @@ fn show_elementary(ty: ElementaryType, bytes: &[u8], text: &mut String) {
             text.push(quote);
             Ok(())
         }
-        Kind::Real => write!(text, "{}", value_text(ty, raw.cast_signed())),
-        _ => write!(text, "{}", value_text(ty, ty.wrap(i128::from(raw)) as i64)),
+        Kind::Real => write!(text, "{}", format(ty, raw.cast_signed()).text()),
+        _ => write!(text, "{}", format(ty, ty.wrap(i128::from(raw)) as i64).text()),
     };
 }
 

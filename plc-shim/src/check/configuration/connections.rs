@@ -1,8 +1,11 @@
 //! What runs with a program: its inputs before, its outputs after it (2nd ed. 2.7.1).
 
-use super::super::Checker;
-use super::super::convert::Operand;
-use super::super::scope::{Body, Scope};
+use std::collections::BTreeMap;
+
+use super::Configurer;
+use crate::check::body::Body;
+use crate::check::declare::Scope;
+use crate::check::types::operand::Operand;
 use crate::diagnostic::{Code, Diagnostic};
 use crate::ir::{
     Dispatch, ElementaryType, Entry, Expr, ExprKind, Guard, InstanceCall, Place, Pou, PouId, Statement, StatementKind,
@@ -30,7 +33,7 @@ fn unit(name: &str, side: Side, span: Span) -> Pou {
         name: name.to_owned(),
         span,
         variables: Vec::new(),
-        registers: side.scope.registers,
+        registers: side.scope.into_registers(),
         parameters: 0,
         result: None,
         guard: Guard::None,
@@ -38,15 +41,16 @@ fn unit(name: &str, side: Side, span: Span) -> Pou {
     }
 }
 
-impl<'a> Checker<'a> {
+impl<'a> Configurer<'_, 'a> {
     /// An entry for each program, then one for each function block with a task of its own.
     pub(super) fn make_entries(&mut self) {
         let declared: Vec<Option<(&'a ast::Resource, &'a ProgramDeclaration)>> =
-            (0..self.programs.len()).map(|at| self.declaration_of(at)).collect();
+            (0..self.declarations.programs().len()).map(|at| self.declaration_of(at)).collect();
         let mut blocks = Vec::new();
         for (at, declared) in declared.into_iter().enumerate() {
-            let program = self.programs[at].clone();
-            let span = declared.map_or(self.pou(program.pou).ast.name.span, |(_, declared)| declared.name.span);
+            let program = self.declarations.programs()[at].clone();
+            let span =
+                declared.map_or(self.declarations.pou(program.pou).ast().name.span, |(_, declared)| declared.name.span);
             let mut around = Around::default();
             around.before.statements = self.select_globals(program.resource, span);
             self.copy_locations(at, &mut around);
@@ -88,23 +92,23 @@ impl<'a> Checker<'a> {
     }
 
     fn declaration_of(&self, program: usize) -> Option<(&'a ast::Resource, &'a ProgramDeclaration)> {
-        let program = self.programs.get(program)?;
-        let resource = self.configured.ast?.resources.get(program.resource?)?;
+        let program = self.declarations.programs().get(program)?;
+        let resource = self.declarations.configuration()?.resources.get(program.resource?)?;
         let named = |each: &&ProgramDeclaration| each.name.text == program.name;
         Some((resource, resource.programs.iter().find(named)?))
     }
 
     /// The instance's name, with its resource's in front where others have the same.
     fn entry_name(&mut self, at: usize) -> String {
-        let name = self.programs[at].name.clone();
-        let twins = self.programs.iter().filter(|other| other.name.eq_ignore_ascii_case(&name)).count();
+        let name = self.declarations.programs()[at].name.clone();
+        let twins = self.declarations.programs().iter().filter(|other| other.name.eq_ignore_ascii_case(&name)).count();
         if twins > 1 { self.program_target(at).path } else { name }
     }
 
     /// What copies the inputs, if there are any; the call; what copies the outputs.
     fn entry(&mut self, name: String, pou: PouId, offset: u32, around: Around, span: Span) -> Entry {
         let Around { before, after } = around;
-        let ty = self.types.block(&name, pou);
+        let ty = self.declarations.types_mut().block(&name, pou);
         let mut scope = Scope::default();
         let pointer = scope.register(ElementaryType::Udint);
         let instance = Place::whole(Storage::Absolute(offset), ty, span);
@@ -114,27 +118,27 @@ impl<'a> Checker<'a> {
         let call = Side { statements: body, scope };
         let sides = [before, call, after].into_iter().filter(|side| !side.statements.is_empty());
         let units = sides.map(|side| unit(&name, side, span)).collect();
-        self.enqueue(pou);
+        self.declarations.enqueue(pou);
         Entry { name, units }
     }
 
     fn connect_input(&mut self, at: usize, input: &ast::Expr, source: &ast::Expr, side: &mut Side) -> Option<()> {
         let target = self.target_in_program(at, input)?;
         self.wants_section(&target, SectionKind::Input, input.span)?;
-        let resource = self.programs[at].resource;
+        let resource = self.declarations.programs()[at].resource;
         let global = self.is_configured_path(source, resource).then(|| self.target(source, resource));
-        let mut body = Body::new(self, std::mem::take(&mut side.scope), None);
+        let mut body = Body::new(self.declarations, std::mem::take(&mut side.scope), None);
         let value = match global {
             Some(None) => None,
             Some(Some(found)) => {
                 let value = loaded(&found, source.span);
-                let ty = body.checker.types.of_value(value.ty);
+                let ty = body.declarations().types().of_value(value.ty);
                 body.coerce(Operand::Typed(Expr { ty, ..value }), target.ty)
             }
             None => body.expression_for(source, target.ty),
         };
         let statement = value.map(|value| body.assignment(place(&target, input.span), value, source.span));
-        side.scope = body.scope;
+        side.scope = body.into_scope();
         side.statements.push(statement?);
         Some(())
     }
@@ -142,24 +146,24 @@ impl<'a> Checker<'a> {
     fn connect_output(&mut self, at: usize, output: &ast::Expr, sink: &ast::Expr, side: &mut Side) -> Option<()> {
         let source = self.target_in_program(at, output)?;
         self.wants_section(&source, SectionKind::Output, output.span)?;
-        let resource = self.programs[at].resource;
+        let resource = self.declarations.programs()[at].resource;
         let sink_place = if matches!(sink.kind, ast::ExprKind::DirectAddress(_)) {
-            Body::outside(self).target(sink)?
+            Body::outside(self.declarations).target(sink)?
         } else {
             let found = self.target(sink, resource)?;
             if found.variable.as_ref().is_some_and(|variable| variable.is_constant) {
                 let message = "a constant is not assigned to";
-                self.report(Diagnostic::error(Code::AssignToConstant, sink.span, message));
+                self.declarations.report(Diagnostic::error(Code::AssignToConstant, sink.span, message));
                 return None;
             }
             place(&found, sink.span)
         };
-        let mut body = Body::new(self, std::mem::take(&mut side.scope), None);
+        let mut body = Body::new(self.declarations, std::mem::take(&mut side.scope), None);
         let value = loaded(&source, output.span);
-        let ty = body.checker.types.of_value(value.ty);
+        let ty = body.declarations().types().of_value(value.ty);
         let value = body.coerce(Operand::Typed(Expr { ty, ..value }), sink_place.ty);
         let statement = value.map(|value| body.assignment(sink_place, value, output.span));
-        side.scope = body.scope;
+        side.scope = body.into_scope();
         side.statements.push(statement?);
         Some(())
     }
@@ -173,7 +177,7 @@ impl<'a> Checker<'a> {
         let (kind, mark) = if wanted == SectionKind::Input { ("an input", ":=") } else { ("an output", "=>") };
         let message = format!("`{}` is not {kind}, which `{mark}` wants", target.path);
         let found = Diagnostic::error(Code::UnsuitableConnection, span, message);
-        self.report(found.with_label(variable.span, "declared here"));
+        self.declarations.report(found.with_label(variable.span, "declared here"));
         None
     }
 
@@ -187,19 +191,21 @@ impl<'a> Checker<'a> {
     ) -> Option<(Option<usize>, usize, Entry)> {
         let task = self.task_named(resource, task);
         let target = self.target_in_program(at, block)?;
-        let Type::FunctionBlock { pou, name } = self.types.get(target.ty).clone() else {
-            let message =
-                format!("only instances of function blocks have tasks, this is {}", self.types.name(target.ty));
-            self.report(Diagnostic::error(Code::UnsuitableConnection, block.span, message));
+        let Type::FunctionBlock { pou, name } = self.declarations.types().get(target.ty).clone() else {
+            let message = format!(
+                "only instances of function blocks have tasks, this is {}",
+                self.declarations.types().name(target.ty)
+            );
+            self.declarations.report(Diagnostic::error(Code::UnsuitableConnection, block.span, message));
             return None;
         };
-        let scope = self.interface(pou, block.span)?;
+        let scope = self.declarations.interface(pou, block.span)?;
         if let Some(reference) = scope.inputs().find(|input| input.section == SectionKind::InOut) {
             let message = format!("{name} has a VAR_IN_OUT `{}`, which nobody gives it here", reference.name);
-            self.report(Diagnostic::error(Code::UnsuitableConnection, block.span, message));
+            self.declarations.report(Diagnostic::error(Code::UnsuitableConnection, block.span, message));
             return None;
         }
-        let program = self.programs[at].clone();
+        let program = self.declarations.programs()[at].clone();
         self.configured.task_blocks.push((at, target.inside - program.offset, block.span));
         let mut around = Around::default();
         around.before.statements = self.select_globals(program.resource, block.span);
@@ -210,22 +216,23 @@ impl<'a> Checker<'a> {
     }
 
     /// The task alone runs such an instance (2nd ed. 2.7.2), so its program must not.
-    pub(super) fn report_double_calls(&mut self) {
+    pub(super) fn report_double_calls(&mut self, checked: &BTreeMap<PouId, Pou>) {
         for (program, offset, span) in self.configured.task_blocks.clone() {
-            let Some(unit) = self.programs.get(program).and_then(|program| self.checked.get(&program.pou)) else {
+            let Some(unit) = self.declarations.programs().get(program).and_then(|program| checked.get(&program.pou))
+            else {
                 continue;
             };
             if let Some(call) = call_of(&unit.body, offset) {
                 let message = "this instance has a task of its own, and its program calls it too";
                 let found = Diagnostic::error(Code::BlockCalledTwice, span, message).with_label(call, "called here");
                 let help = "assign to its inputs and read its outputs, without a call";
-                self.report(found.with_help(help));
+                self.declarations.report(found.with_help(help));
             }
         }
     }
 }
 
-pub(super) fn place(target: &Target, span: Span) -> Place {
+pub(in crate::check) fn place(target: &Target, span: Span) -> Place {
     let place = Place::whole(target.storage, target.ty, span);
     if target.inside == 0 { place } else { place.member(target.inside, target.ty) }
 }
@@ -256,6 +263,7 @@ fn call_of(statements: &[Statement], offset: u32) -> Option<Span> {
                 open.extend(inner.first.iter().chain(inner.parts.iter().flat_map(|(_, part)| part)));
             }
             StatementKind::While(_, body) | StatementKind::Repeat(body, _) => open.extend(body),
+            // The others have no statements inside.
             _ => {}
         }
     }

@@ -1,143 +1,19 @@
 //! Which resource sees which global variable (2nd ed. 2.7.1).
-//!
-//! Code is compiled once for all resources. A name that one resource alone declares is a variable
-//! like any other, which units of other resources must not use. A name with several declarations
-//! stands for the address of the running resource's own, set before each program.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 
-use super::super::Checker;
-use super::super::layout::INIT_RETAINS_NAME;
-use super::super::names::{GlobalEntry, Progress};
+use super::Configurer;
 use crate::diagnostic::{Code, Diagnostic};
-use crate::ir::{ElementaryType, PouId, Statement, StatementKind, Storage, Variable};
-use crate::ir::{Place, TypeId};
+use crate::ir::{ElementaryType, Place, Statement, StatementKind, Storage, TypeId};
 use crate::syntax::Span;
-use crate::syntax::ast::{self, Ident};
 
-/// A name that several resources, or a resource and the configuration, declare.
-pub(super) struct Alternatives {
-    /// Where the address of the running resource's variable stands.
-    cell: u32,
-    /// The key of each resource's variable.
-    by_resource: BTreeMap<usize, String>,
-    /// The key of the variable of all other resources.
-    shared: Option<String>,
-}
-
-/// One declared name of a section.
-struct Declared<'a> {
-    name: &'a Ident,
-    ast: &'a ast::Variable,
-    section: &'a ast::Section,
-}
-
-impl<'a> Checker<'a> {
-    /// Takes the resources' global variables among the others; all of those are known.
-    pub(in super::super) fn collect_resource_globals(&mut self) {
-        let Some(ast) = self.configured.ast else { return };
-        let mut homes: BTreeMap<String, Vec<usize>> = BTreeMap::new();
-        let mut found = Vec::new();
-        for (index, resource) in ast.resources.iter().enumerate() {
-            let declared: Vec<Declared<'a>> = resource.sections.iter().flat_map(declared).collect();
-            self.report_twins(&declared.iter().map(|each| each.name).collect::<Vec<_>>());
-            for each in declared {
-                let homes = homes.entry(each.name.key()).or_default();
-                if homes.last() != Some(&index) {
-                    homes.push(index);
-                    found.push((index, each));
-                }
-            }
-        }
-        for (index, each) in found {
-            let key = each.name.key();
-            let shared = homes.get(&key).is_some_and(|homes| homes.len() > 1) || self.globals.contains_key(&key);
-            let key = if shared { self.add_alternative(index, &key, each.name.span) } else { Some(key) };
-            if let Some(key) = key {
-                let entry = GlobalEntry {
-                    ast: Some((each.ast, &each.section.qualifiers)),
-                    name: each.name.text.clone(),
-                    span: each.name.span,
-                    progress: Progress::Untouched,
-                    variable: None,
-                    home: Some(index),
-                    seen_from: std::sync::Arc::default(),
-                };
-                self.globals.insert(key, entry);
-            }
-        }
-    }
-
-    /// Makes `key` stand for several variables, and gives the key of this resource's own.
-    fn add_alternative(&mut self, resource: usize, key: &str, span: Span) -> Option<String> {
-        if !self.configured.alternatives.contains_key(key) {
-            let cell = self.allocate(ElementaryType::Udint.size(), ElementaryType::Udint.size(), span)?;
-            let shared = self.globals.remove(key).map(|entry| {
-                // No identifier has a dot, so no other variable has the key.
-                let shared = format!(".{key}");
-                self.globals.insert(shared.clone(), entry);
-                shared
-            });
-            let alternatives = Alternatives { cell, by_resource: BTreeMap::new(), shared };
-            self.configured.alternatives.insert(key.to_owned(), alternatives);
-            let entry = GlobalEntry {
-                ast: None,
-                name: key.to_owned(),
-                span,
-                progress: Progress::Untouched,
-                variable: None,
-                home: None,
-                seen_from: std::sync::Arc::default(),
-            };
-            self.globals.insert(key.to_owned(), entry);
-        }
-        let own = format!("{resource}.{key}");
-        self.configured.alternatives.get_mut(key)?.by_resource.insert(resource, own.clone());
-        Some(own)
-    }
-
-    /// What a name with several declarations stands for inside of units.
-    pub(in super::super) fn alternative_global(&mut self, key: &str, used: Option<Span>) -> Option<Variable> {
-        let alternatives = self.configured.alternatives.get(key)?;
-        let cell = alternatives.cell;
-        let keys: Vec<String> = alternatives.by_resource.values().chain(&alternatives.shared).cloned().collect();
-        let variables: Vec<Variable> = keys.iter().map(|key| self.global(key, used)).collect::<Option<_>>()?;
-        let (first, others) = variables.split_first()?;
-        for other in others.iter().filter(|other| other.ty != first.ty) {
-            let (wanted, found) = (self.types.name(first.ty), self.types.name(other.ty));
-            let message = format!("`{}` is {wanted} in one resource, {found} in another", other.name);
-            let found = Diagnostic::error(Code::ExternalWithoutGlobal, other.span, message);
-            let found = found.with_label(first.span, "declared here");
-            self.report(found.with_help("give the two variables different names"));
-        }
-        let storage = Storage::AbsolutePointer(cell);
-        let is_constant = variables.iter().all(|variable| variable.is_constant);
-        let variable = Variable { storage, constant: None, is_constant, ..first.clone() };
-        if let Some(entry) = self.globals.get_mut(key) {
-            entry.progress = Progress::Done;
-            entry.variable = Some(variable.clone());
-        }
-        Some(variable)
-    }
-
-    /// The key under which `resource`, or what is outside of resources, finds a global variable.
-    pub(super) fn key_in(&self, key: &str, resource: Option<usize>) -> Option<String> {
-        if let Some(alternatives) = self.configured.alternatives.get(key) {
-            let own = resource.and_then(|index| alternatives.by_resource.get(&index));
-            return own.or(alternatives.shared.as_ref()).cloned();
-        }
-        let key = self.open_globals.get(key).map_or(key, String::as_str);
-        let entry = self.globals.get(key)?;
-        (entry.home.is_none() || entry.home == resource).then(|| key.to_owned())
-    }
-
+impl Configurer<'_, '_> {
     /// Lets every name with several declarations stand for the resource's own.
     pub(super) fn select_globals(&mut self, resource: Option<usize>, span: Span) -> Vec<Statement> {
-        let names: Vec<(String, u32)> =
-            self.configured.alternatives.iter().map(|(key, each)| (key.clone(), each.cell)).collect();
+        let names = self.declarations.alternatives();
         let mut statements = Vec::new();
         for (name, cell) in names {
-            let own = self.key_in(&name, resource).and_then(|key| self.global(&key, None));
+            let own = self.declarations.key_in(&name, resource).and_then(|key| self.declarations.global(&key, None));
             if let Some(own) = own {
                 let pointer: TypeId = ElementaryType::Udint.into();
                 let cell = Place::whole(Storage::Absolute(cell), pointer, span);
@@ -148,21 +24,16 @@ impl<'a> Checker<'a> {
         statements
     }
 
-    /// Notes that a unit uses a global variable by its name.
-    pub(in super::super) fn note_global_use(&mut self, pou: Option<PouId>, key: &str, span: Span) {
-        if let (Some(pou), true) = (pou, self.configured.ast.is_some()) {
-            self.configured.uses.push((pou, key.to_owned(), span));
-        }
-    }
-
     /// Units that run in a resource use no global variable of another one.
     pub(super) fn report_foreign_globals(&mut self) {
-        let uses = std::mem::take(&mut self.configured.uses);
+        let uses = self.declarations.global_uses().to_vec();
         let mut found = BTreeMap::new();
-        for program in self.programs.clone() {
-            let reached = self.reached(program.pou);
+        for program in self.declarations.programs().to_vec() {
+            let reached = self.declarations.reached_from(program.pou);
             for (pou, key, span) in uses.iter().filter(|(pou, ..)| reached.contains(pou)) {
-                if self.key_in(key, program.resource).is_none() && self.globals.contains_key(key) {
+                if self.declarations.key_in(key, program.resource).is_none()
+                    && self.declarations.global_declared(key).is_some()
+                {
                     // One finding for a unit, where it uses the name first.
                     let first = found.entry((*pou, key.clone())).or_insert((*span, program.name.clone()));
                     first.0 = if span.start < first.0.start { *span } else { first.0 };
@@ -170,46 +41,10 @@ impl<'a> Checker<'a> {
             }
         }
         for ((_, key), (span, program)) in found {
-            let Some(entry) = self.globals.get(&key) else { continue };
-            let (name, declared) = (entry.name.clone(), entry.span);
+            let Some((name, declared)) = self.declarations.global_declared(&key) else { continue };
             let message = format!("`{name}` belongs to another resource than `{program}`, which runs this");
             let found = Diagnostic::error(Code::ForeignGlobal, span, message).with_label(declared, "declared here");
-            self.report(found.with_help("declare it in the configuration, outside of its resources"));
+            self.declarations.report(found.with_help("declare it in the configuration, outside of its resources"));
         }
     }
-
-    /// A unit and all that it calls.
-    fn reached(&self, start: PouId) -> BTreeSet<PouId> {
-        let mut seen = BTreeSet::from([start]);
-        let mut open = vec![start];
-        while let Some(pou) = open.pop() {
-            for (callee, _) in self.calls.get(&pou).into_iter().flatten() {
-                if seen.insert(*callee) {
-                    open.push(*callee);
-                }
-            }
-        }
-        seen
-    }
-
-    /// The global variables that belong to no resource.
-    pub(in super::super) fn shared_globals(&self) -> Vec<Variable> {
-        let all = self.globals_of(None).into_iter();
-        all.filter(|variable| !matches!(variable.storage, Storage::AbsolutePointer(_))).collect()
-    }
-
-    /// The resource's own global variables.
-    pub(super) fn own_globals(&self, resource: usize) -> Vec<Variable> {
-        self.globals_of(Some(resource))
-    }
-
-    fn globals_of(&self, home: Option<usize>) -> Vec<Variable> {
-        let found = self.globals.values().filter(|entry| entry.home == home && entry.name != INIT_RETAINS_NAME);
-        found.filter_map(|entry| entry.variable.clone()).collect()
-    }
-}
-
-fn declared(section: &ast::Section) -> impl Iterator<Item = Declared<'_>> {
-    let each = move |ast| move |name| Declared { name, ast, section };
-    section.variables.iter().flat_map(move |ast: &ast::Variable| ast.names.iter().map(each(ast)))
 }

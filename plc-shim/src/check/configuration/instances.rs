@@ -1,17 +1,14 @@
 //! `VAR_CONFIG` and `VAR_ACCESS` (2nd ed. 2.7.1, 2.4.3; Table 49 features 10 and 11).
 
-use super::super::Checker;
-use super::super::initial::plain;
-use super::super::names::TypedImage;
-use super::super::scope::Body;
-use super::super::start::Started;
-use super::super::types::Need;
+use super::{Configurer, connections};
+use crate::check::declare::{Need, Started, TypedImage};
+use crate::check::resolve::Written;
 use crate::diagnostic::{Code, Diagnostic};
 use crate::ir::{Access, Storage, Target};
 use crate::syntax::Span;
 use crate::syntax::ast::{AccessDirection, AccessPath, InstanceValue, TypeSpec};
 
-impl<'a> Checker<'a> {
+impl<'a> Configurer<'_, 'a> {
     /// Gives variables of single instances initial values of their own.
     pub(super) fn instance_values(&mut self, values: &'a [InstanceValue]) {
         for value in values {
@@ -33,9 +30,10 @@ impl<'a> Checker<'a> {
         }
         if let Some(initial) = &value.initial {
             // What is not mentioned keeps the value that its own declaration gives.
-            let image = self.image_at(target.inside, self.types.size(target.ty));
-            let mut body = Body::outside(self);
-            let TypedImage { image, starts, .. } = body.with_initial(&plain(target.ty, image.into()), initial)?;
+            let image = self.declarations.image_at(target.inside, self.declarations.types().size(target.ty));
+            let mut written = Written::outside(self.declarations);
+            let TypedImage { image, starts, .. } =
+                written.with_initial(&TypedImage::plain(target.ty, image.into()), initial)?;
             if !matches!(target.storage, Storage::Absolute(_)) {
                 return self.unsuitable_value(
                     &target,
@@ -43,8 +41,8 @@ impl<'a> Checker<'a> {
                     value,
                 );
             }
-            self.placed.push((target.inside, image));
-            let place = super::connections::place(&target, value.path.span);
+            self.declarations.place(target.inside, image);
+            let place = connections::place(&target, value.path.span);
             self.configured.values.push(Started { place, starts });
         }
         Some(())
@@ -52,35 +50,21 @@ impl<'a> Checker<'a> {
 
     fn unsuitable_value<T>(&mut self, target: &Target, why: &str, value: &InstanceValue) -> Option<T> {
         let message = format!("`{}` {why}", target.path);
-        self.report(Diagnostic::error(Code::NoInstanceValue, value.path.span, message));
+        self.declarations.report(Diagnostic::error(Code::NoInstanceValue, value.path.span, message));
         None
     }
 
-    /// Initial bytes as far as they have been placed.
-    fn image_at(&self, offset: u32, size: u32) -> Vec<u8> {
-        let mut image = vec![0; size as usize];
-        for (start, bytes) in &self.placed {
-            let low = offset.max(*start);
-            let high = (offset + size).min(start + bytes.len() as u32);
-            if low < high {
-                let source = (low - start) as usize..(high - start) as usize;
-                let target = (low - offset) as usize..(high - offset) as usize;
-                image[target].copy_from_slice(&bytes[source]);
-            }
-        }
-        image
-    }
-
     fn same_type(&mut self, target: &Target, spec: &'a TypeSpec, span: Span) -> Option<()> {
-        let declared = Body::outside(self).resolve(spec, Need::Size)?;
+        let declared = Written::outside(self.declarations).resolve(spec, Need::Size)?;
         if declared.ty != target.ty {
-            let (wanted, found) = (self.types.name(target.ty), self.types.name(declared.ty));
+            let (wanted, found) =
+                (self.declarations.types().name(target.ty), self.declarations.types().name(declared.ty));
             let message = format!("`{}` is {wanted} where it is declared, {found} here", target.path);
             let mut report = Diagnostic::error(Code::TypeMismatch, span, message);
             if let Some(variable) = &target.variable {
                 report = report.with_label(variable.span, "declared here");
             }
-            self.report(report);
+            self.declarations.report(report);
             return None;
         }
         Some(())
@@ -88,7 +72,7 @@ impl<'a> Checker<'a> {
 
     /// Names for those outside.
     pub(super) fn access_paths(&mut self, paths: &'a [AccessPath]) {
-        self.report_twins(&paths.iter().map(|access| &access.name).collect::<Vec<_>>());
+        self.declarations.report_twins(&paths.iter().map(|access| &access.name).collect::<Vec<_>>());
         for access in paths {
             if let Some(found) = self.access_path(access) {
                 self.configured.access.push(found);
@@ -103,7 +87,7 @@ impl<'a> Checker<'a> {
         let writable = access.direction == AccessDirection::ReadWrite;
         if writable && constant {
             let message = format!("`{}` is a constant, which is READ_ONLY", target.path);
-            self.report(Diagnostic::error(Code::AssignToConstant, access.path.span, message));
+            self.declarations.report(Diagnostic::error(Code::AssignToConstant, access.path.span, message));
             return None;
         }
         Some(Access { name: access.name.text.clone(), target, writable })

@@ -1,7 +1,7 @@
 //! Paths as in `Line.P1.fb.x` to variables: names and constant indices, no code.
 
-use super::super::Checker;
-use super::super::scope::Body;
+use super::Configurer;
+use crate::check::body::Body;
 use crate::diagnostic::{Code, Diagnostic, did_you_mean};
 use crate::ir::{Storage, Target, Type, Variable};
 use crate::syntax::Span;
@@ -39,12 +39,12 @@ fn pieces(expr: &Expr) -> Option<Vec<Piece<'_>>> {
     }
 }
 
-impl Checker<'_> {
+impl Configurer<'_, '_> {
     /// The variable at a path written in `resource`, or outside of resources.
-    pub(super) fn target(&mut self, expr: &Expr, resource: Option<usize>) -> Option<Target> {
+    pub(in crate::check) fn target(&mut self, expr: &Expr, resource: Option<usize>) -> Option<Target> {
         let Some(pieces) = pieces(expr) else {
             let message = "the path of a variable is wanted here";
-            self.report(Diagnostic::error(Code::UnknownPath, expr.span, message));
+            self.declarations.report(Diagnostic::error(Code::UnknownPath, expr.span, message));
             return None;
         };
         let (root, rest) = self.root(&pieces, resource)?;
@@ -56,22 +56,26 @@ impl Checker<'_> {
         let Some(Piece::Name(first)) = pieces(expr).and_then(|pieces| pieces.first().copied()) else {
             return false;
         };
-        self.key_in(&first.key(), resource).is_some()
+        self.declarations.key_in(&first.key(), resource).is_some()
             || self.resource_named(first).is_some()
             || self.program_named(first, resource).is_some()
     }
 
     fn resource_named(&self, name: &Ident) -> Option<usize> {
-        let resources = &self.configured.ast?.resources;
+        let resources = &self.declarations.configuration()?.resources;
         let is_it = |each: &Ident| each.text.eq_ignore_ascii_case(&name.text);
         resources.iter().position(|resource| resource.name.as_ref().is_some_and(|(each, _)| is_it(each)))
     }
 
     /// The program's instance of this name, in `resource` or else the only one.
     fn program_named(&self, name: &Ident, resource: Option<usize>) -> Option<usize> {
-        let named = |at: &usize| self.programs.get(*at).is_some_and(|each| each.name.eq_ignore_ascii_case(&name.text));
-        let all: Vec<usize> = (0..self.programs.len()).filter(named).collect();
-        let own = |at: &&usize| resource.is_some() && self.programs.get(**at).is_some_and(|it| it.resource == resource);
+        let named = |at: &usize| {
+            self.declarations.programs().get(*at).is_some_and(|each| each.name.eq_ignore_ascii_case(&name.text))
+        };
+        let all: Vec<usize> = (0..self.declarations.programs().len()).filter(named).collect();
+        let own = |at: &&usize| {
+            resource.is_some() && self.declarations.programs().get(**at).is_some_and(|it| it.resource == resource)
+        };
         all.iter().find(own).copied().or(if all.len() == 1 { all.first().copied() } else { None })
     }
 
@@ -91,7 +95,8 @@ impl Checker<'_> {
             if let Some(found) = self.global_target(second, Some(index)) {
                 return Some((found.ok()?, rest));
             }
-            let inside = |at: usize| self.programs.get(at).is_some_and(|each| each.resource == Some(index));
+            let inside =
+                |at: usize| self.declarations.programs().get(at).is_some_and(|each| each.resource == Some(index));
             if let Some(found) = self.program_named(second, Some(index)).filter(|at| inside(*at)) {
                 return Some((self.program_target(found), rest));
             }
@@ -104,26 +109,25 @@ impl Checker<'_> {
     }
 
     fn similar(&self, name: &Ident, resource: Option<usize>) -> Option<String> {
-        let globals = self.globals.values().filter(|each| each.home.is_none() || each.home == resource);
-        let globals = globals.map(|each| each.name.as_str());
-        let programs = self.programs.iter().map(|each| each.name.as_str());
-        let resources = self.configured.ast.into_iter().flat_map(|ast| &ast.resources);
+        let globals = self.declarations.global_names_in(resource);
+        let programs = self.declarations.programs().iter().map(|each| each.name.as_str());
+        let resources = self.declarations.configuration().into_iter().flat_map(|ast| &ast.resources);
         let resources = resources.filter_map(|each| Some(each.name.as_ref()?.0.text.as_str()));
         did_you_mean(&name.text, globals.chain(programs).chain(resources))
     }
 
     fn no_path<T>(&mut self, name: &Ident, message: &str, help: Option<String>) -> Option<T> {
         let found = Diagnostic::error(Code::UnknownPath, name.span, message).with_optional_help(help);
-        self.report(found);
+        self.declarations.report(found);
         None
     }
 
     /// A global variable as `resource` sees it; an error is one whose declaration is wrong, which has
     /// been reported.
     fn global_target(&mut self, name: &Ident, resource: Option<usize>) -> Option<Result<Target, ()>> {
-        let key = self.key_in(&name.key(), resource)?;
-        let home = self.globals.get(&key).and_then(|entry| entry.home);
-        let Some(variable) = self.global(&key, Some(name.span)) else {
+        let key = self.declarations.key_in(&name.key(), resource)?;
+        let home = self.declarations.resource_of_global(&key);
+        let Some(variable) = self.declarations.global(&key, Some(name.span)) else {
             return Some(Err(()));
         };
         let (storage, inside) = match variable.storage {
@@ -138,10 +142,10 @@ impl Checker<'_> {
 
     pub(super) fn program_target(&mut self, index: usize) -> Target {
         // Indices come from `program_named` and from walks over all programs.
-        let program = self.programs[index].clone();
+        let program = self.declarations.programs()[index].clone();
         let home = program.resource.and_then(|home| self.resource_name(home));
         let path = home.map_or_else(|| program.name.clone(), |home| format!("{}.{}", home.text, program.name));
-        let ty = self.types.block(&program.name, program.pou);
+        let ty = self.declarations.types_mut().block(&program.name, program.pou);
         Target { path, storage: Storage::Absolute(0), inside: program.offset, ty, variable: None, open: None }
     }
 
@@ -150,7 +154,7 @@ impl Checker<'_> {
         let root = self.program_target(index);
         let Some(pieces) = pieces(expr) else {
             let message = "the path of a variable is wanted here";
-            self.report(Diagnostic::error(Code::UnknownPath, expr.span, message));
+            self.declarations.report(Diagnostic::error(Code::UnknownPath, expr.span, message));
             return None;
         };
         self.along(root, &pieces)
@@ -164,7 +168,7 @@ impl Checker<'_> {
     }
 
     fn step_to_member(&mut self, at: Target, name: &Ident) -> Option<Target> {
-        match self.types.get(at.ty).clone() {
+        match self.declarations.types().get(at.ty).clone() {
             Type::Struct { fields, .. } => {
                 let names: Vec<&str> = fields.iter().map(|field| field.name.as_str()).collect();
                 let Some(field) = fields.iter().find(|field| field.name.eq_ignore_ascii_case(&name.text)) else {
@@ -173,7 +177,7 @@ impl Checker<'_> {
                 if field.bit.is_some() {
                     let message = format!("`{}` is one bit of a byte of its structure", field.name);
                     let found = Diagnostic::error(Code::UnsuitableConnection, name.span, message);
-                    self.report(found.with_help("connect a variable of its own"));
+                    self.declarations.report(found.with_help("connect a variable of its own"));
                     return None;
                 }
                 let path = format!("{}.{}", at.path, field.name);
@@ -181,12 +185,12 @@ impl Checker<'_> {
                 Some(Target { path, inside: at.inside + field.offset, ty: field.ty, open, ..at })
             }
             Type::FunctionBlock { pou, .. } => {
-                let scope = self.interface(pou, name.span)?;
+                let scope = self.declarations.interface(pou, name.span)?;
                 if scope.is_broken(&name.key()) {
                     return None;
                 }
                 let Some(variable) = scope.find(&name.key()) else {
-                    let names: Vec<&str> = scope.variables.iter().map(|each| each.name.as_str()).collect();
+                    let names: Vec<&str> = scope.variables().iter().map(|each| each.name.as_str()).collect();
                     return self.no_member(&at, name, &names);
                 };
                 let (storage, inside) = match variable.storage {
@@ -211,30 +215,30 @@ impl Checker<'_> {
     }
 
     fn step_to_element(&mut self, at: Target, indices: &[Expr], span: Span) -> Option<Target> {
-        let Type::Array { dimensions, element } = self.types.get(at.ty).clone() else {
+        let Type::Array { dimensions, element } = self.declarations.types().get(at.ty).clone() else {
             let message = format!("`{}` is not an array", at.path);
-            self.report(Diagnostic::error(Code::NotIndexable, span, message));
+            self.declarations.report(Diagnostic::error(Code::NotIndexable, span, message));
             return None;
         };
         if dimensions.len() != indices.len() {
             let (wanted, found) = (dimensions.len(), indices.len());
             let message = format!("the array has {wanted} dimensions, there are {found} indices");
-            self.report(Diagnostic::error(Code::WrongDimensions, span, message));
+            self.declarations.report(Diagnostic::error(Code::WrongDimensions, span, message));
             return None;
         }
         let mut number: u64 = 0;
         let mut list = Vec::new();
         for (bounds, index) in dimensions.iter().zip(indices) {
-            let value = Body::outside(self).constant_integer(index)?;
+            let value = Body::outside(self.declarations).constant_integer(index)?;
             if !(i128::from(bounds.low)..=i128::from(bounds.high)).contains(&value) {
                 let message = format!("index {value} is outside of {}..{}", bounds.low, bounds.high);
-                self.report(Diagnostic::error(Code::IndexOutOfRange, index.span, message));
+                self.declarations.report(Diagnostic::error(Code::IndexOutOfRange, index.span, message));
                 return None;
             }
             number = number * bounds.count() + (value - i128::from(bounds.low)) as u64;
             list.push(value.to_string());
         }
-        let inside = at.inside + number as u32 * self.types.size(element);
+        let inside = at.inside + number as u32 * self.declarations.types().size(element);
         let path = format!("{}[{}]", at.path, list.join(","));
         Some(Target { path, inside, ty: element, ..at })
     }

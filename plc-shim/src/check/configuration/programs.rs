@@ -1,17 +1,15 @@
 //! Instances of programs (2nd ed. 2.7.1).
 
-use std::collections::BTreeSet;
-
-use super::super::Checker;
+use super::Configurer;
 use crate::diagnostic::{Code, Diagnostic, did_you_mean};
 use crate::ir::{PouId, Program, Retention};
 use crate::syntax::ast::{self, Ident, PouKind, ProgramDeclaration};
 
-impl<'a> Checker<'a> {
+impl<'a> Configurer<'_, 'a> {
     /// Places the programs of a resource.
     pub(super) fn place_instances(&mut self, resource: &'a ast::Resource, index: usize) {
         let names: Vec<&Ident> = resource.programs.iter().map(|program| &program.name).collect();
-        self.report_twins(&names);
+        self.declarations.report_twins(&names);
         for declared in &resource.programs {
             let Some(pou) = self.program_type(&declared.program) else { continue };
             self.report_hidden(declared);
@@ -22,10 +20,9 @@ impl<'a> Checker<'a> {
 
     /// Every other program has one instance, under its own name.
     pub(super) fn place_other_programs(&mut self) {
-        for index in 0..self.pous.len() {
-            let id = PouId(index as u32);
-            let ast = self.pou(id).ast;
-            if ast.kind != PouKind::Program || self.programs.iter().any(|program| program.pou == id) {
+        for id in self.declarations.unit_ids() {
+            let ast = self.declarations.pou(id).ast();
+            if ast.kind != PouKind::Program || self.declarations.programs().iter().any(|program| program.pou == id) {
                 continue;
             }
             self.place_program(id, &ast.name, None, None);
@@ -34,59 +31,59 @@ impl<'a> Checker<'a> {
 
     /// What no resource declares never runs, unless another unit calls it, as vendors allow.
     pub(super) fn report_idle_programs(&mut self) {
-        let Some(ast) = self.configured.ast else { return };
+        let Some(ast) = self.declarations.configuration() else { return };
         let declared: usize = ast.resources.iter().map(|resource| resource.programs.len()).sum();
         // A program may be the one that is meant by a wrong name.
-        if self.programs.iter().filter(|program| program.resource.is_some()).count() < declared {
+        if self.declarations.programs().iter().filter(|program| program.resource.is_some()).count() < declared {
             return;
         }
-        let called: BTreeSet<PouId> = self.calls.values().flatten().map(|(callee, _)| *callee).collect();
-        for program in self.programs.clone() {
+        let called = self.declarations.called();
+        for program in self.declarations.programs().to_vec() {
             if program.resource.is_some() || called.contains(&program.pou) {
                 continue;
             }
-            let span = self.pou(program.pou).ast.name.span;
+            let span = self.declarations.pou(program.pou).ast().name.span;
             let name = program.name;
             let message = format!("program `{name}` has no instance in the configuration, so it never runs");
             let help = format!("write `PROGRAM {name} WITH .. : {name};` in one of its resources");
-            self.report(Diagnostic::warning(Code::ProgramNeverRuns, span, message).with_help(help));
+            self.declarations.report(Diagnostic::warning(Code::ProgramNeverRuns, span, message).with_help(help));
         }
     }
 
     fn place_program(&mut self, pou: PouId, name: &Ident, resource: Option<usize>, retention: Option<Retention>) {
-        let (size, align, image) = self.pou(pou).instance();
-        if let Some(offset) = self.allocate(size, align, name.span) {
+        let (size, align, image) = self.declarations.pou(pou).instance();
+        if let Some(offset) = self.declarations.allocate(size, align, name.span) {
             // The type of the program's instances, for paths that lead through them.
-            let ty = self.types.block(&self.pou(pou).ast.name.text.clone(), pou);
-            self.types.complete_block(ty, align, image.clone());
-            self.placed.push((offset, image));
-            self.programs.push(Program { name: name.text.clone(), pou, offset, resource, retention });
+            let unit = &self.declarations.pou(pou).ast().name.text;
+            let ty = self.declarations.types_mut().block(unit, pou);
+            self.declarations.types_mut().complete_block(ty, align, image.clone());
+            self.declarations.place(offset, image);
+            self.declarations.add_program(Program { name: name.text.clone(), pou, offset, resource, retention });
         }
     }
 
     fn program_type(&mut self, name: &Ident) -> Option<PouId> {
-        let found = self.pou_names.get(&name.key()).copied();
+        let found = self.declarations.unit_of_key(&name.key());
         if let Some(pou) = found
-            && self.pou(pou).ast.kind == PouKind::Program
+            && self.declarations.pou(pou).ast().kind == PouKind::Program
         {
             return Some(pou);
         }
         let (message, help) = if found.is_some() {
             (format!("`{}` is no program", name.text), None)
         } else {
-            let programs = self.pous.iter().filter(|pou| pou.ast.kind == PouKind::Program);
-            let help = did_you_mean(&name.text, programs.map(|pou| pou.ast.name.text.as_str()));
+            let programs = self.declarations.unit_names(|kind| kind == PouKind::Program);
+            let help = did_you_mean(&name.text, programs);
             (format!("program `{}` is not declared", name.text), help)
         };
-        self.report(Diagnostic::error(Code::UnknownProgram, name.span, message).with_optional_help(help));
+        self.declarations.report(Diagnostic::error(Code::UnknownProgram, name.span, message).with_optional_help(help));
         None
     }
 
     /// Paths begin with globals, resources and programs alike.
     fn report_hidden(&mut self, declared: &ProgramDeclaration) {
-        if let Some(global) = self.globals.get(&declared.name.key()) {
-            let first = global.span;
-            self.report_duplicate(&declared.name, Some(first));
+        if let Some((_, first)) = self.declarations.global_declared(&declared.name.key()) {
+            self.declarations.report_duplicate(&declared.name, Some(first));
         }
     }
 }

@@ -2,8 +2,8 @@
 
 use onescan_base::TimeSpan;
 
-use super::super::Checker;
-use super::super::scope::Body;
+use super::Configurer;
+use crate::check::body::Body;
 use crate::diagnostic::{Code, Diagnostic, did_you_mean};
 use crate::ir::{ElementaryType, Task, Value};
 use crate::syntax::ast::{self, Expr, Ident, TaskDeclaration};
@@ -11,11 +11,11 @@ use crate::syntax::ast::{self, Expr, Ident, TaskDeclaration};
 /// The inputs of a task.
 const INPUTS: [&str; 3] = ["SINGLE", "INTERVAL", "PRIORITY"];
 
-impl<'a> Checker<'a> {
+impl<'a> Configurer<'_, 'a> {
     /// The tasks of a resource, each in its place, wrong or not.
     pub(super) fn tasks(&mut self, resource: &'a ast::Resource, index: usize) -> Vec<Task> {
         let names: Vec<&Ident> = resource.tasks.iter().map(|task| &task.name).collect();
-        self.report_twins(&names);
+        self.declarations.report_twins(&names);
         resource.tasks.iter().map(|task| self.task(task, index)).collect()
     }
 
@@ -28,11 +28,11 @@ impl<'a> Checker<'a> {
             priority: 0,
             entries: Vec::new(),
         };
-        let known = self.diagnostics.len();
+        let known = self.declarations.mark();
         for (at, (name, value)) in ast.inputs.iter().enumerate() {
             if ast.inputs.iter().take(at).any(|(other, _)| other.key() == name.key()) {
                 let message = format!("`{}` is given twice", name.text);
-                self.report(Diagnostic::error(Code::TaskInput, name.span, message));
+                self.declarations.report(Diagnostic::error(Code::TaskInput, name.span, message));
                 continue;
             }
             match name.key().as_str() {
@@ -44,21 +44,21 @@ impl<'a> Checker<'a> {
                     let message = format!("a task has no input `{}`", name.text);
                     let help = did_you_mean(&name.text, INPUTS);
                     let found = Diagnostic::error(Code::TaskInput, name.span, message);
-                    self.report(found.with_optional_help(help));
+                    self.declarations.report(found.with_optional_help(help));
                 }
             }
         }
         let is_triggered = ast.inputs.iter().any(|(name, _)| name.key() == "SINGLE");
-        if task.interval.is_none() && !is_triggered && self.diagnostics.len() == known {
+        if task.interval.is_none() && !is_triggered && self.declarations.mark() == known {
             let message = format!("task `{}` has neither SINGLE nor an INTERVAL, so it never runs", ast.name.text);
-            self.report(Diagnostic::error(Code::TaskNeverRuns, ast.name.span, message));
+            self.declarations.report(Diagnostic::error(Code::TaskNeverRuns, ast.name.span, message));
         }
         task
     }
 
     /// Nothing for an interval of 0, which is as good as none.
     fn interval(&mut self, value: &Expr) -> Option<TimeSpan> {
-        let time = Body::outside(self).constant_of_type(value, ElementaryType::Time.into());
+        let time = Body::outside(self.declarations).constant_of_type(value, ElementaryType::Time.into());
         let ns = time.and_then(Value::as_int)?;
         if let Ok(ns) = u64::try_from(ns) {
             return TimeSpan::from_nanos(ns);
@@ -67,7 +67,7 @@ impl<'a> Checker<'a> {
     }
 
     fn priority(&mut self, value: &Expr) -> Option<u32> {
-        let priority = Body::outside(self).constant_integer(value)?;
+        let priority = Body::outside(self.declarations).constant_integer(value)?;
         match u16::try_from(priority) {
             Ok(priority) => Some(u32::from(priority)),
             Err(_) => self.unsuitable(value, "a priority is a UINT; 0 comes first"),
@@ -75,7 +75,7 @@ impl<'a> Checker<'a> {
     }
 
     fn unsuitable<T>(&mut self, value: &Expr, message: &str) -> Option<T> {
-        self.report(Diagnostic::error(Code::TaskInput, value.span, message));
+        self.declarations.report(Diagnostic::error(Code::TaskInput, value.span, message));
         None
     }
 
@@ -96,7 +96,7 @@ impl<'a> Checker<'a> {
     fn single(&mut self, value: &Expr, resource: usize) -> Option<String> {
         let target = self.target(value, Some(resource))?;
         if target.ty != ElementaryType::Bool.into() {
-            let message = format!("SINGLE is a BOOL, this is {}", self.types.name(target.ty));
+            let message = format!("SINGLE is a BOOL, this is {}", self.declarations.types().name(target.ty));
             return self.unsuitable(value, &message);
         }
         Some(target.path)
@@ -108,7 +108,7 @@ impl<'a> Checker<'a> {
         if found.is_none() {
             let help = did_you_mean(&name.text, resource.tasks.iter().map(|task| task.name.text.as_str()));
             let message = format!("there is no task `{}` in this resource", name.text);
-            self.report(Diagnostic::error(Code::UnknownTask, name.span, message).with_optional_help(help));
+            self.declarations.report(Diagnostic::error(Code::UnknownTask, name.span, message).with_optional_help(help));
         }
         found
     }

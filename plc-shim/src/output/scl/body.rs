@@ -7,7 +7,7 @@ use super::names::{EnumeratedValue, Names, member, quoted};
 use super::scope::Scope;
 use super::spec::{elementary, refused};
 use crate::diagnostic::{Code, Diagnostic};
-use crate::instrument::edits::Edits;
+use crate::source::edits::Edits;
 use crate::syntax::ast::{
     BinaryOp, Call, Edge, Expr, ExprKind, Ident, InitialiserKind, Literal, Statement, StatementKind, TypedValue,
     UpdateOp,

@@ -9,8 +9,8 @@ use super::spec;
 use super::unit::HEAD;
 use super::variables::{semicolon, value};
 use crate::diagnostic::Diagnostic;
-use crate::instrument::constant::Constants;
 use crate::run::Task;
+use crate::syntax::constant::Constants;
 
 /// Start values by data block: paths within it, and literals.
 pub(crate) type StartValues = BTreeMap<String, Vec<(String, String)>>;

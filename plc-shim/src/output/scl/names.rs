@@ -2,12 +2,12 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use crate::instrument::constant::{self, Constant, Constants};
 use crate::ir::ElementaryType;
 use crate::syntax::ast::{
     CompilationUnit, Configuration, Declaration, EnumValue, Expr, Field, Ident, Pou, PouKind, Qualifier, Section,
     TypeDeclaration, TypeSpec, TypeSpecKind, Variable,
 };
+use crate::syntax::constant::{self, Constant, Constants};
 use crate::syntax::{FileId, SourceMap};
 
 /// The data block of global variables that have no block of their own.

@@ -3,11 +3,11 @@
 use std::collections::BTreeMap;
 
 use super::names::{Names, Shape};
-use crate::instrument::constant::{self, Constants};
 use crate::ir::ElementaryType;
 use crate::syntax::ast::{
     BinaryOp, Call, Edge, Expr, ExprKind, Ident, Literal, Pou, Qualifier, SectionKind, TypeSpec, UnaryOp,
 };
+use crate::syntax::constant::{self, Constants};
 
 /// A variable of a unit, or a function's result.
 #[derive(Clone, Copy)]

@@ -2,10 +2,10 @@
 
 use super::names::Names;
 use crate::diagnostic::{Code, Diagnostic};
-use crate::instrument::constant::Constants;
 use crate::ir::ElementaryType;
 use crate::syntax::Span;
 use crate::syntax::ast::{Dimension, Expr, TypeSpec, TypeSpecKind};
+use crate::syntax::constant::Constants;
 
 /// Characters of a string whose declaration does not say it (2nd ed. 2.3.1); SCL has 254.
 const STRING_LENGTH: i128 = 80;

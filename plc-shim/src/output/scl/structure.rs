@@ -8,10 +8,10 @@ use super::scope::Scope;
 use super::spec::{self, refused};
 use super::variables::{applied, replace_lines, value};
 use crate::diagnostic::Diagnostic;
-use crate::instrument::constant::Constants;
-use crate::instrument::edits::Edits;
+use crate::source::edits::Edits;
 use crate::syntax::SourceFile;
 use crate::syntax::ast::{Field, TypeDeclaration, TypeSpecKind};
+use crate::syntax::constant::Constants;
 use crate::syntax::token::{Keyword, TokenKind};
 
 /// A structure with the comments above it; nothing for a type that its uses are written without.

@@ -8,7 +8,7 @@ use super::names::{Names, Shape, member};
 use super::scope::Scope;
 use super::spec::{self, refused};
 use crate::diagnostic::Diagnostic;
-use crate::instrument::edits::Edits;
+use crate::source::edits::Edits;
 use crate::syntax::ast::{
     Edge, Expr, ExprKind, Initialiser, InitialiserKind, Literal, Pou, PouKind, Qualifier, Section, SectionKind,
     TypeSpec, TypeSpecKind, TypedValue, UnaryOp, Variable,

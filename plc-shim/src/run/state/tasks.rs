@@ -4,7 +4,7 @@ use onescan_base::{ElementaryType, TimeSpan};
 use thiserror::Error;
 
 use crate::application::identity::bytes::{Reader, Writer};
-use crate::run::text::value_text;
+use crate::application::text::format;
 use crate::run::{Task, TaskPlan};
 
 /// In what the task plan of a saved state differs from that of the PLC.
@@ -171,6 +171,7 @@ fn programs(names: &[String]) -> String {
 
 /// `20ms`
 fn duration(span: TimeSpan) -> String {
-    let text = value_text(ElementaryType::Time, span.as_nanos().cast_signed());
+    let text = format(ElementaryType::Time, span.as_nanos().cast_signed());
+    let text = text.text();
     text.trim_start_matches("T#").to_owned()
 }

@@ -2,9 +2,9 @@
 
 use wasmtime::{Caller, Error, Global, Linker, Memory, Trap, Val};
 
-use super::format::{Line, format};
 use super::view::{Outside, Target, View};
 use super::{edit, parse};
+use crate::application::text::{Line, format};
 use crate::compile::text_host::{MODULE, TextImport};
 use crate::ir::ElementaryType;
 use crate::ir::text::Edit;

@@ -4,7 +4,6 @@
 //! |---|---|
 //! | [`view`] | a string in memory |
 //! | [`edit`] | order, search, pieces of strings |
-//! | [`format`] | values to text |
 //! | [`parse`] | text to values |
 //! | [`link`] | what the module imports |
 //!
@@ -12,12 +11,6 @@
 //! only failure is an address outside of it. Their work is paid for from the budget.
 
 mod edit;
-mod format;
 pub(super) mod link;
 mod parse;
 mod view;
-
-/// The text of a value of type `ty`, given by its bits.
-pub(crate) fn value_text(ty: crate::ir::ElementaryType, bits: i64) -> String {
-    format::format(ty, bits).text().to_owned()
-}

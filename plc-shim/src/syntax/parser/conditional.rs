@@ -8,7 +8,7 @@ use std::collections::BTreeSet;
 use super::cursor::Cursor;
 use crate::diagnostic::{Code, Diagnostic};
 use crate::dialect::Feature;
-use crate::syntax::source::Span;
+use crate::source::Span;
 use crate::syntax::token::{Token, TokenKind};
 
 /// One `{IF}` that has not ended.

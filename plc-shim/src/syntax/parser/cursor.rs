@@ -5,9 +5,9 @@ use std::collections::BTreeMap;
 use super::MAX_NESTING;
 use crate::diagnostic::{Code, Diagnostic};
 use crate::dialect::{Dialect, Feature};
+use crate::source::origin::Origin;
+use crate::source::{FileId, Span};
 use crate::syntax::ast::Ident;
-use crate::syntax::origin::Origin;
-use crate::syntax::source::{FileId, Span};
 use crate::syntax::token::{Keyword, Punctuation, Token, TokenKind};
 
 /// Reads the tokens that matter to the grammar; trivia and broken tokens are left out.

@@ -3,9 +3,9 @@
 use super::cursor::Cursor;
 use crate::diagnostic::{Code, Diagnostic};
 use crate::dialect::Feature;
+use crate::source::Span;
 use crate::syntax::ast::{Argument, BinaryOp, Call, Expr, ExprKind, Ident, Literal, MAX_HEIGHT, Subrange, UnaryOp};
 use crate::syntax::literal::{parse_integer, parse_real};
-use crate::syntax::source::Span;
 use crate::syntax::token::{Keyword, Punctuation, TokenKind};
 
 /// Unary operators bind tighter than these and looser than `**`.

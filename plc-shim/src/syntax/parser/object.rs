@@ -3,12 +3,12 @@
 use super::cursor::Cursor;
 use super::declaration::{UnitParts, begins_declaration, ends_unit};
 use crate::diagnostic::{Code, Diagnostic};
+use crate::source::Span;
 use crate::syntax::ast::{
     Declaration, Expr, ExprKind, Ident, Literal, Member, MemberKind, Modifier, Namespace, NamespaceKind, Object, Pou,
     PouKind, Section, TypeSpec, TypeSpecKind,
 };
 use crate::syntax::literal::parse_typed;
-use crate::syntax::source::Span;
 use crate::syntax::token::{Keyword, Punctuation, TokenKind};
 
 /// Keywords that end what this module reads.

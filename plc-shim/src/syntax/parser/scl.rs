@@ -4,12 +4,12 @@ use super::cursor::Cursor;
 use super::declaration::{begins_declaration, section_kind};
 use crate::diagnostic::{Code, Diagnostic};
 use crate::dialect::{Dialect, Feature};
+use crate::source::Span;
 use crate::syntax::ast::{
     Declaration, ElementInit, Expr, ExprKind, Field, Ident, Initialiser, InitialiserKind, Literal, PouKind, Qualifier,
     Section, SectionKind, StructureInit, TypeSpec, TypeSpecKind, Variable,
 };
 use crate::syntax::literal::{parse_duration, parse_typed};
-use crate::syntax::source::Span;
 use crate::syntax::token::{Keyword, Punctuation, TokenKind};
 
 impl Cursor<'_> {

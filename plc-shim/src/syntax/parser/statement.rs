@@ -4,11 +4,11 @@ use super::cursor::Cursor;
 use super::object::ends_object;
 use crate::diagnostic::{Code, Diagnostic};
 use crate::dialect::Feature;
+use crate::source::Span;
 use crate::syntax::ast::{
     CaseBranch, CaseLabel, CaseStatement, ExprKind, ForStatement, IfBranch, IfStatement, RepeatStatement, Statement,
     StatementKind, WhileStatement,
 };
-use crate::syntax::source::Span;
 use crate::syntax::token::{Keyword, Punctuation, TokenKind};
 
 /// Keywords that close a list of statements, whoever opened it.

@@ -1,0 +1,77 @@
+//! Generic inputs of vendors' units (CODESYS, TwinCAT: `ANY`, `ANY_NUM` and the like): what is given is a
+//! variable of one of the types; the unit sees its class, address and size.
+
+use super::argument::Passing;
+use crate::check::body::Body;
+use crate::check::types::build::assign;
+use crate::check::types::generic::{Generic, class_of};
+use crate::check::types::operand::constant;
+use crate::diagnostic::{Code, Diagnostic};
+use crate::ir::{Argument, ElementaryType, Expr, ExprKind, Place, Type, TypeId, Value, Variable};
+use crate::syntax::ast::{self, ReferenceKind};
+
+impl Body<'_, '_> {
+    /// What an input of a generic type is given: class, address and size of a variable.
+    pub(super) fn generic_argument(
+        &mut self,
+        generic: Generic,
+        parameter: &Variable,
+        expr: &ast::Expr,
+        passing: &mut Passing,
+    ) -> Option<Argument> {
+        let variable = self.place(expr)?.place;
+        let span = expr.span;
+        if self.declarations.generic(variable.ty).is_some() && (generic == Generic::Any || variable.ty == parameter.ty)
+        {
+            return Some(Argument::Value(Expr { kind: ExprKind::Load(variable), ty: parameter.ty, span }));
+        }
+        let Some(class) = self.class_taken(generic, variable.ty) else {
+            let message =
+                format!("`{}` is {}, this is {}", parameter.name, generic.name(), self.type_name(variable.ty));
+            self.report(Diagnostic::error(Code::InvalidArgument, span, message));
+            return None;
+        };
+        let size = self.declarations.types().size(variable.ty);
+        let memory = self.through_memory(variable, passing)?;
+        let given = self.temporary(parameter.ty, span)?;
+        let Type::Struct { fields, .. } = self.declarations.types().get(parameter.ty).clone() else { return None };
+        let udint = |value, ty| Expr { ty, ..constant(Value::Int(value), ElementaryType::Udint, span) };
+        for field in fields {
+            let member = given.clone().member(field.offset, field.ty);
+            let value = match field.name.as_str() {
+                "TypeClass" => udint(class, field.ty),
+                "pValue" => Expr { kind: ExprKind::Address(memory.clone()), ty: field.ty, span },
+                _ => constant(Value::Int(i128::from(size)), ElementaryType::Dint, span),
+            };
+            passing.before.push(assign(&member, value));
+        }
+        Some(Argument::Value(Expr { kind: ExprKind::Load(Place { span, ..given }), ty: parameter.ty, span }))
+    }
+
+    /// The class of a type, if variables of it are taken.
+    fn class_taken(&self, generic: Generic, ty: TypeId) -> Option<i128> {
+        let (class, kind) = match self.declarations.types().get(ty) {
+            Type::Elementary(elementary) => (class_of(*elementary), Some(elementary.kind())),
+            Type::Subrange { base, .. } => (24, Some(base.kind())),
+            Type::Enumeration { base, .. } => (25, Some(base.kind())),
+            Type::Text(shape) => (if shape.wide { 17 } else { 16 }, None),
+            Type::Reference { kind: ReferenceKind::Reference, .. } => (23, None),
+            Type::Reference { .. } | Type::Address { .. } => (22, None),
+            Type::Array { .. } => (26, None),
+            Type::Struct { .. } | Type::FunctionBlock { .. } => (28, None),
+            Type::Interface { .. } => (0xF000, None),
+            Type::OpenArray { .. } | Type::Nothing | Type::Null => return None,
+        };
+        let taken = match (generic, kind) {
+            (Generic::Any, _) => true,
+            (Generic::AnyString, _) => matches!(self.declarations.types().get(ty), Type::Text(_)),
+            (_, Some(kind)) => generic.takes(kind),
+            (_, None) => false,
+        };
+        taken.then_some(class)
+    }
+
+    pub(super) fn is_generic(&self, ty: TypeId) -> bool {
+        self.declarations.generic(ty).is_some()
+    }
+}

@@ -1,0 +1,135 @@
+//! `X_TO_Y`, `X_TRUNC_Y`, `TO_Y`, `TRUNC` (2nd ed. Table 22, 3rd ed. Tables 22 to 27), and of vendors
+//! `ANY_TO_Y`, `ROUND`, `CEIL`, `FLOOR`, `ROUND_Y`, `CEIL_Y`, `FLOOR_Y`.
+//!
+//! | from, to | value |
+//! |---|---|
+//! | integer, narrower integer | low-order bits |
+//! | real, integer | nearest, ties to even; saturates; NaN becomes 0 |
+//! | bit string, BOOL | rightmost bit |
+//! | number, BOOL | FALSE for 0 |
+//! | REAL, DWORD and LREAL, LWORD | the same bits; other pairs of reals and bit strings do not exist |
+//! | real and bit string where bit strings are numbers (CODESYS, TwinCAT) | the number |
+//! | TIME, number | milliseconds |
+//! | TOD, number | milliseconds |
+//! | DATE, DT, number | seconds |
+//! | LTIME, LDATE, LTOD, LDT, number | nanoseconds |
+//! | number, DATE or TOD | the day it lies in, the time of its day |
+
+use crate::check::body::Body;
+use crate::check::body::expression::calendar::{day_start, within_day};
+use crate::check::standard::conversion::{Conversion, is_allowed, is_mixed};
+use crate::check::types::number::as_number;
+use crate::check::types::operand::{Operand, constant, converted};
+use crate::diagnostic::{Code, Diagnostic};
+use crate::dialect::Feature;
+use crate::ir::elementary::Kind;
+use crate::ir::{Binary, ElementaryType, Expr, ExprKind, Intrinsic, Rounding, Value};
+use crate::syntax::Span;
+
+impl Body<'_, '_> {
+    pub(in crate::check) fn conversion(
+        &mut self,
+        conversion: Conversion,
+        operand: Operand,
+        span: Span,
+    ) -> Option<Operand> {
+        let Conversion { from, to, rounding } = conversion;
+        let expr = match from {
+            Some(from) => self.coerce(operand, from.into())?,
+            None => self.settle(operand)?,
+        };
+        if self.shape(expr.ty).is_some() && rounding == Rounding::NearestEven {
+            return self.parsed(expr, to, span);
+        }
+        let Some(from) = self.elementary(expr.ty) else {
+            let found = self.type_name(expr.ty);
+            return self.mismatch("an elementary value", &found, expr.span);
+        };
+        if is_mixed(from, to) && self.declarations.dialect(span).has(Feature::BitArithmetic) {
+            return Some(Operand::Typed(self.as_numbers_do(expr, (from, to), rounding)));
+        }
+        if from != to && !is_allowed(from, to, rounding) {
+            let message = format!("there is no conversion from {from} to {to}");
+            let found = Diagnostic::error(Code::InvalidOperand, span, message);
+            self.report(found.with_help("convert to an integer type on the way"));
+            return None;
+        }
+        let rounding =
+            if rounding == Rounding::NearestEven { self.declarations.dialect(span).ties().into() } else { rounding };
+        let value = Expr { span, ..lower(expr, from, to, rounding) };
+        Some(Operand::Typed(self.time_value(value)))
+    }
+
+    /// A bit string as the number it is, from a real or to one.
+    fn as_numbers_do(&self, expr: Expr, (from, to): (ElementaryType, ElementaryType), rounding: Rounding) -> Expr {
+        let rounding = if rounding == Rounding::NearestEven {
+            self.declarations.dialect(expr.span).ties().into()
+        } else {
+            rounding
+        };
+        let number = converted(expr, as_number(from), Rounding::NearestEven);
+        let there = lower(number, as_number(from), as_number(to), rounding);
+        converted(there, to, Rounding::NearestEven)
+    }
+}
+
+/// Nanoseconds of the unit in which a duration or date becomes a number.
+fn unit_ns(ty: ElementaryType) -> i128 {
+    match ty {
+        ElementaryType::Date | ElementaryType::Dt => 1_000_000_000,
+        ElementaryType::Time | ElementaryType::Tod => 1_000_000,
+        _ => 1,
+    }
+}
+
+fn joined(operator: Binary, left: Expr, right: Expr) -> Expr {
+    let (ty, span) = (left.ty, left.span);
+    Expr { kind: ExprKind::Binary(operator, Box::new(left), Box::new(right)), ty, span }
+}
+
+/// A DATE is a midnight, a TOD less than a day.
+fn normalised(expr: Expr, ty: ElementaryType) -> Expr {
+    match ty.kind() {
+        Kind::Date => day_start(expr),
+        Kind::TimeOfDay => within_day(expr),
+        _ => expr,
+    }
+}
+
+fn lower(expr: Expr, from: ElementaryType, to: ElementaryType, rounding: Rounding) -> Expr {
+    let span = expr.span;
+    let lint = |value| constant(Value::Int(value), ElementaryType::Lint, span);
+    let lreal = |value: i128| constant(Value::Lreal(value as f64), ElementaryType::Lreal, span);
+    let counts = |ty: ElementaryType| ty.is_duration() || ty.is_calendar();
+    match (from.kind(), to.kind()) {
+        // 3rd ed. Table 25: the bits are transferred, between types of one size only.
+        (Kind::Real, Kind::Bits) | (Kind::Bits, Kind::Real) => {
+            let kind = ExprKind::Intrinsic(Intrinsic::Reinterpret, vec![expr]);
+            Expr { kind, ty: to.into(), span }
+        }
+        (Kind::DateTime, Kind::Date) => converted(day_start(expr), to, rounding),
+        (Kind::DateTime | Kind::Duration, Kind::TimeOfDay) => converted(within_day(expr), to, rounding),
+        _ if counts(from) && counts(to) => converted(expr, to, rounding),
+        (_, Kind::Real) if counts(from) => {
+            let ns = converted(expr, ElementaryType::Lreal, rounding);
+            converted(joined(Binary::Divide, ns, lreal(unit_ns(from))), to, rounding)
+        }
+        (_, Kind::Signed | Kind::Unsigned | Kind::Bits) if counts(from) => {
+            let ns = converted(expr, ElementaryType::Lint, rounding);
+            converted(joined(Binary::Divide, ns, lint(unit_ns(from))), to, rounding)
+        }
+        (Kind::Real, _) if counts(to) => {
+            let number = converted(expr, ElementaryType::Lreal, rounding);
+            normalised(converted(joined(Binary::Multiply, number, lreal(unit_ns(to))), to, rounding), to)
+        }
+        (Kind::Bool | Kind::Signed | Kind::Unsigned | Kind::Bits, _) if counts(to) => {
+            let number = converted(expr, ElementaryType::Lint, rounding);
+            normalised(converted(joined(Binary::Multiply, number, lint(unit_ns(to))), to, rounding), to)
+        }
+        (Kind::Bits, Kind::Bool) => {
+            let one = constant(Value::Int(1), from, span);
+            converted(joined(Binary::And, expr, one), to, rounding)
+        }
+        _ => converted(expr, to, rounding),
+    }
+}

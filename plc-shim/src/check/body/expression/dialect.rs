@@ -1,0 +1,198 @@
+//! What dialects do their own way. A place in the text tells its file, and the file its dialect.
+
+use crate::check::body::Body;
+use crate::check::declare::VIRTUAL_TIME_OFFSET;
+use crate::check::standard::vendor::VENDOR_FUNCTIONS;
+use crate::check::types::constant::fold;
+use crate::check::types::number::{MS, as_number, counter, keeps};
+use crate::check::types::operand::{Operand, constant, converted};
+use crate::diagnostic::{Code, Diagnostic};
+use crate::dialect::{Dialect, DivisionByZero, Feature};
+use crate::ir::elementary::Kind;
+use crate::ir::{Binary, ElementaryType as E, Expr, ExprKind, Place, Rounding, Storage, Type, Value};
+use crate::syntax::Span;
+use crate::syntax::ast::{self, BinaryOp, Call, Ident};
+
+fn joined(operator: Binary, left: Expr, right: Expr) -> Expr {
+    let (ty, span) = (left.ty, left.span);
+    Expr { kind: ExprKind::Binary(operator, Box::new(left), Box::new(right)), ty, span }
+}
+
+impl Body<'_, '_> {
+    /// A TIME as the dialect counts it: whole milliseconds that wrap. Everything else as it is.
+    pub(in crate::check::body) fn time_value(&self, expr: Expr) -> Expr {
+        let counter = counter(self.declarations.dialect(expr.span).time());
+        let Some(counter) = counter.filter(|_| expr.ty == E::Time.into()) else { return expr };
+        let unit = |span| constant(Value::Int(MS), E::Lint, span);
+        let span = expr.span;
+        let ns = converted(expr, E::Lint, Rounding::NearestEven);
+        let ms = joined(Binary::Divide, ns, unit(span));
+        let wrapped = converted(converted(ms, counter, Rounding::NearestEven), E::Lint, Rounding::NearestEven);
+        converted(joined(Binary::Multiply, wrapped, unit(span)), E::Time, Rounding::NearestEven)
+    }
+
+    /// Reports a TIME that the dialect cannot count.
+    pub(super) fn check_duration(&mut self, ty: E, ns: i64, span: Span) -> Option<()> {
+        let dialect = self.declarations.dialect(span);
+        let Some(counter) = counter(dialect.time()).filter(|_| ty == E::Time) else { return Some(()) };
+        let ns = i128::from(ns);
+        if ns % MS == 0 && counter.wrap(ns / MS) == ns / MS {
+            return Some(());
+        }
+        let signs = if counter == E::Dint { "signed" } else { "unsigned" };
+        let message = format!("TIME of {dialect} counts milliseconds in {signs} 32 bits");
+        self.report(Diagnostic::error(Code::OutOfRange, span, message).with_help("LTIME counts nanoseconds"));
+        None
+    }
+
+    /// A division, by what the dialect does if the divisor is 0.
+    pub(super) fn division(&self, operator: Binary, span: Span) -> Binary {
+        match (operator, self.declarations.dialect(span).division_by_zero()) {
+            (Binary::Divide, DivisionByZero::Continue) => Binary::DivideAnyway,
+            _ => operator,
+        }
+    }
+
+    /// True if operators for numbers take `ty`, and those for bit strings too.
+    pub(super) fn bits_are_numbers(&self, ty: E, span: Span) -> bool {
+        let has = self.declarations.dialect(span).has(Feature::BitArithmetic);
+        has && (ty.kind() == Kind::Bits || ty.is_integer())
+    }
+
+    /// The type of an integer that is shifted as its bits are.
+    pub(in crate::check::body) fn shifted_integer(&self, expr: &Expr) -> Option<E> {
+        let has = self.declarations.dialect(expr.span).has(Feature::IntegerShifts);
+        self.plain_elementary(expr).filter(|ty| has && ty.is_integer())
+    }
+
+    /// A value that counts or selects, where bit strings and enumerations are numbers; all else as it is.
+    pub(in crate::check::body) fn as_index(&self, expr: Expr) -> Expr {
+        let expr = self.as_number(expr);
+        match self.plain_elementary(&expr) {
+            Some(ty) if as_number(ty) != ty && self.bits_are_numbers(ty, expr.span) => {
+                converted(expr, as_number(ty), Rounding::NearestEven)
+            }
+            _ => expr,
+        }
+    }
+
+    /// True if `ty` has bits to invert.
+    pub(super) fn has_bits(&self, ty: E, span: Span) -> bool {
+        ty.is_bits() || self.bits_are_numbers(ty, span)
+    }
+
+    /// True if a value becomes one of `wanted` without a conversion function.
+    pub(super) fn widens(&self, found: E, wanted: E, span: Span) -> bool {
+        if found.widens_to(wanted) {
+            return true;
+        }
+        let dialect = self.declarations.dialect(span);
+        let (from, to) =
+            if dialect.has(Feature::BitArithmetic) { (as_number(found), as_number(wanted)) } else { (found, wanted) };
+        let sign = dialect.has(Feature::SignChange) && from.is_integer() && to.is_integer();
+        let real = dialect.has(Feature::LossyReals) && found.is_number() && wanted.is_real();
+        from.widens_to(to) || sign && from.size() <= to.size() || real
+    }
+
+    /// Warns of a value that may not be the same one of type `wanted`, which the dialect allows.
+    pub(super) fn warn_of_loss(&mut self, expr: &Expr, found: E, wanted: E) {
+        let (from, to) = (as_number(found), as_number(wanted));
+        if from.widens_to(to) || found == E::Bool {
+            return;
+        }
+        if let Ok(value) = fold(self.declarations.types(), expr)
+            && keeps(value, to)
+        {
+            return;
+        }
+        let what = if to.is_real() { "lose digits" } else { "change its sign" };
+        let message = format!("this {found} may {what} as {wanted}");
+        let help = format!("{found}_TO_{wanted} says that it is meant");
+        self.report(Diagnostic::warning(Code::LossyConversion, expr.span, message).with_help(help));
+    }
+
+    /// The smallest type that both widen to.
+    pub(super) fn common(&self, left: E, right: E, span: Span) -> Option<E> {
+        let numbers = || {
+            let has = self.declarations.dialect(span).has(Feature::BitArithmetic);
+            has.then(|| as_number(left).common(as_number(right))).flatten()
+        };
+        left.common(right).or_else(numbers)
+    }
+
+    /// `AND_THEN`, `OR_ELSE`: the right operand is evaluated only if the left one does not tell.
+    pub(super) fn short_circuit(
+        &mut self,
+        operator: BinaryOp,
+        left: &ast::Expr,
+        right: &ast::Expr,
+        span: Span,
+    ) -> Option<Operand> {
+        let (left, right) = (self.condition(left), self.condition(right));
+        let (left, right) = (left?, right?);
+        let known = constant(Value::Bool(operator == BinaryOp::OrElse), E::Bool, span);
+        let parts = if operator == BinaryOp::AndThen { [left, right, known] } else { [left, known, right] };
+        Some(Operand::Typed(Expr { kind: ExprKind::Conditional(Box::new(parts)), ty: E::Bool.into(), span }))
+    }
+
+    /// True for `TIME` and `LTIME`, called as functions.
+    pub(in crate::check::body) fn is_clock(name: &Ident) -> bool {
+        matches!(name.key().as_str(), "TIME" | "LTIME")
+    }
+
+    /// `TIME()` and `LTIME()`: virtual time since the start.
+    pub(in crate::check::body) fn clock_function(&mut self, name: &Ident, call: &Call, span: Span) -> Option<Operand> {
+        let dialect = self.declarations.dialect(span);
+        if !dialect.has(Feature::ClockFunctions) {
+            let (about, homes) = (Feature::ClockFunctions.about(), Feature::ClockFunctions.homes());
+            let found = Diagnostic::error(Code::WrongDialect, span, format!("{about} is not part of {dialect}"));
+            self.report(found.with_help(format!("it is part of {homes}: --dialect chooses")));
+            return None;
+        }
+        if let Some(argument) = call.arguments.first() {
+            let message = format!("{}() takes no arguments", name.key());
+            let span = match argument {
+                ast::Argument::Positional(expr) | ast::Argument::Input(_, expr) => expr.span,
+                ast::Argument::Output { name, .. } => name.span,
+            };
+            self.report(Diagnostic::error(Code::TooManyArguments, span, message));
+            return None;
+        }
+        let place = Place::whole(Storage::Absolute(VIRTUAL_TIME_OFFSET), E::Time.into(), span);
+        let now = Expr { kind: ExprKind::Load(place), ty: E::Time.into(), span };
+        let long = name.key() == "LTIME";
+        let now = if long { converted(now, E::Ltime, Rounding::NearestEven) } else { self.time_value(now) };
+        Some(Operand::Typed(now))
+    }
+
+    /// Reports a function of a vendor's controllers; true if it is one.
+    pub(in crate::check::body) fn report_vendor_function(&mut self, name: &Ident) -> bool {
+        let key = name.key();
+        let known = VENDOR_FUNCTIONS.iter().find(|(begin, ..)| key.starts_with(begin));
+        let Some((_, code, help)) = known else { return false };
+        let message = format!("`{}` is a function of a vendor's controllers", name.text);
+        self.report(Diagnostic::error(*code, name.span, message).with_help(*help));
+        true
+    }
+
+    /// What `x.TON(..)` calls in SCL: the instance `x` of TON, `TON_TIME` and the like.
+    pub(in crate::check::body) fn instance_of<'e>(&mut self, callee: &'e ast::Expr) -> &'e ast::Expr {
+        let ast::ExprKind::Member(base, name) = &callee.kind else { return callee };
+        if self.declarations.dialect(callee.span) != Dialect::SiemensScl {
+            return callee;
+        }
+        let before = self.declarations.mark();
+        let place = self.place(base);
+        // Were the base wrong, the callee as a whole would be reported.
+        self.declarations.forget_since(before);
+        let ty = place.map(|located| self.declarations.types().get(located.place.ty).clone());
+        match ty {
+            Some(Type::FunctionBlock { name: block, .. }) => {
+                let block = block.to_ascii_uppercase();
+                let plain = block.split('_').next().unwrap_or(&block);
+                if plain == name.key() { base } else { callee }
+            }
+            _ => callee,
+        }
+    }
+}

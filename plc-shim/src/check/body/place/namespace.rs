@@ -1,0 +1,26 @@
+//! Names with a namespace in front (3rd ed. 6.9).
+
+use crate::check::body::Body;
+use crate::syntax::ast::{self, Ident};
+
+impl Body<'_, '_> {
+    /// `a.b.c` as one name, if it begins with a namespace and not with a variable.
+    pub(in crate::check::body) fn qualified_name(&self, expr: &ast::Expr) -> Option<Ident> {
+        let ast::ExprKind::Member(base, last) = &expr.kind else { return None };
+        let first = match &base.kind {
+            ast::ExprKind::Name(name) if !self.scope.declares(&name.key()) => name.clone(),
+            _ => self.qualified_name(base)?,
+        };
+        let text = format!("{}.{}", first.text, last.text);
+        let found = Ident { text, span: first.span.to(last.span) };
+        self.declarations.is_in_namespace(&found.key()).then_some(found)
+    }
+
+    /// True for the first name of a namespace that no variable hides.
+    pub(in crate::check::body) fn is_namespace(&self, name: &Ident) -> bool {
+        let key = name.key();
+        !self.scope.declares(&key)
+            && self.declarations.global_key(&key).is_none()
+            && self.declarations.is_in_namespace(&key)
+    }
+}

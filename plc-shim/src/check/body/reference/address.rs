@@ -1,0 +1,145 @@
+//! `REF` (3rd ed. 6.4.4.10.3), and `ADR`, `SIZEOF`, `__ISVALIDREF` of vendors.
+
+use crate::check::body::Body;
+use crate::check::body::place::{Access, Located};
+use crate::check::standard::place::PlaceFunction;
+use crate::check::types::operand::{Operand, constant};
+use crate::check::types::reference;
+use crate::diagnostic::{Code, Diagnostic};
+use crate::ir::{Binary, ElementaryType, Expr, ExprKind, Place, Type, Value};
+use crate::syntax::Span;
+use crate::syntax::ast::{self, Argument, Call, Ident, PouKind, ReferenceKind, SectionKind};
+use crate::syntax::walk::root;
+
+fn positional(argument: &Argument) -> Option<&ast::Expr> {
+    match argument {
+        Argument::Positional(expr) | Argument::Input(_, expr) => Some(expr),
+        Argument::Output { .. } => None,
+    }
+}
+
+impl Body<'_, '_> {
+    pub(in crate::check::body) fn place_call(
+        &mut self,
+        function: PlaceFunction,
+        name: &Ident,
+        call: &Call,
+        span: Span,
+    ) -> Option<Operand> {
+        let given: Vec<&ast::Expr> = call.arguments.iter().filter_map(positional).collect();
+        if let (PlaceFunction::LowerBound | PlaceFunction::UpperBound, [array, number]) = (function, &given[..]) {
+            return self.bound(function, array, number, span);
+        }
+        let bounds = matches!(function, PlaceFunction::LowerBound | PlaceFunction::UpperBound);
+        let wanted = if bounds { 2 } else { 1 };
+        let ([argument], false) = (&given[..], bounds) else {
+            let missing = call.arguments.len() < wanted;
+            let code = if missing { Code::MissingArgument } else { Code::TooManyArguments };
+            let what = if bounds { "an array and a dimension" } else { "one variable" };
+            let message = format!("{} takes {what}", name.key());
+            self.report(Diagnostic::error(code, span, message));
+            return None;
+        };
+        match function {
+            PlaceFunction::Ref => self.reference_to(argument, span),
+            PlaceFunction::Adr => self.address_of(argument, span),
+            PlaceFunction::SizeOf => self.size_of(argument, span),
+            PlaceFunction::IsValidRef => self.is_valid_reference(argument, span),
+            PlaceFunction::LowerBound | PlaceFunction::UpperBound => None,
+        }
+    }
+
+    fn reference_to(&mut self, argument: &ast::Expr, span: Span) -> Option<Operand> {
+        let place = self.referable(argument)?;
+        let ty = self.declarations.types_mut().reference(Some(ReferenceKind::RefTo), place.ty);
+        Some(Operand::Typed(Expr { kind: ExprKind::Address(place), ty, span }))
+    }
+
+    fn address_of(&mut self, argument: &ast::Expr, span: Span) -> Option<Operand> {
+        let place = self.place(argument)?.place;
+        self.require_address(&place, argument.span)?;
+        let ty = self.declarations.types_mut().reference(None, place.ty);
+        Some(Operand::Typed(Expr { kind: ExprKind::Address(place), ty, span }))
+    }
+
+    /// What a reference may refer to: it outlives the call and may be written to.
+    fn referable(&mut self, expr: &ast::Expr) -> Option<Place> {
+        let located = self.place(expr)?;
+        self.reject_constant(&located, expr.span)?;
+        if self.is_temporary(expr) {
+            let message = "a variable that does not outlive the call is not referred to";
+            self.report(Diagnostic::error(Code::NotReferable, expr.span, message));
+            return None;
+        }
+        self.require_address(&located.place, expr.span)?;
+        Some(located.place)
+    }
+
+    pub(super) fn reject_constant(&mut self, located: &Located, span: Span) -> Option<()> {
+        if located.access != Access::Constant {
+            return Some(());
+        }
+        let message = "a constant is not referred to";
+        self.report(Diagnostic::error(Code::NotReferable, span, message));
+        None
+    }
+
+    pub(super) fn require_address(&mut self, place: &Place, span: Span) -> Option<()> {
+        if place.has_address() && !matches!(self.declarations.types().get(place.ty), Type::OpenArray { .. }) {
+            return Some(());
+        }
+        let message = "a bit has no address of its own";
+        self.report(Diagnostic::error(Code::NotReferable, span, message));
+        None
+    }
+
+    /// 3rd ed. 6.4.4.10.2: `VAR_TEMP` and the variables of functions.
+    fn is_temporary(&self, expr: &ast::Expr) -> bool {
+        let Some(variable) = root(expr).and_then(|name| self.scope.find(&name.key())) else { return false };
+        let function = self.pou.is_some_and(|id| self.declarations.pou(id).ast().kind == PouKind::Function);
+        match variable.section {
+            SectionKind::Temp => true,
+            SectionKind::External | SectionKind::Global | SectionKind::InOut => false,
+            _ => function,
+        }
+    }
+
+    /// Bytes of a variable or type, as a constant that suits any integer.
+    fn size_of(&mut self, argument: &ast::Expr, span: Span) -> Option<Operand> {
+        let ty = match &argument.kind {
+            ast::ExprKind::Name(name) if self.variable_named(name).is_none() && self.names_type(name) => {
+                self.declarations.type_meant(name)?
+            }
+            _ => self.place(argument)?.place.ty,
+        };
+        if matches!(self.declarations.types().get(ty), Type::OpenArray { .. }) {
+            let message = "SIZEOF of ARRAY [*] is not supported yet";
+            self.report(Diagnostic::error(Code::UnsupportedFeature, span, message));
+            return None;
+        }
+        Some(Operand::Integer { value: i128::from(self.declarations.types().size(ty)), span })
+    }
+
+    fn names_type(&self, name: &Ident) -> bool {
+        let key = name.key();
+        ElementaryType::find(&key).is_some()
+            || self.declarations.has_type(&key)
+            || self
+                .declarations
+                .unit_of_key(&key)
+                .is_some_and(|id| self.declarations.pou(id).ast().kind == PouKind::FunctionBlock)
+    }
+
+    fn is_valid_reference(&mut self, argument: &ast::Expr, span: Span) -> Option<Operand> {
+        let place = self.declared_place(argument)?.place;
+        if reference::target_of(self.declarations.types(), place.ty).is_none() {
+            let message = format!("a reference is wanted, this is {}", self.type_name(place.ty));
+            self.report(Diagnostic::error(Code::NotAReference, argument.span, message));
+            return None;
+        }
+        let number = Expr { kind: ExprKind::Load(place), ty: ElementaryType::Udint.into(), span };
+        let null = constant(Value::Int(0), ElementaryType::Udint, span);
+        let kind = ExprKind::Binary(Binary::NotEqual, Box::new(number), Box::new(null));
+        Some(Operand::Typed(Expr { kind, ty: ElementaryType::Bool.into(), span }))
+    }
+}

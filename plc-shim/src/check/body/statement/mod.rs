@@ -1,0 +1,277 @@
+//! Statements (2nd ed. 3.3.2).
+
+pub(super) mod assignment;
+pub(super) mod instruction;
+pub(super) mod jump;
+pub(super) mod wire;
+
+use std::collections::BTreeMap;
+
+use super::Body;
+use super::place::Access;
+use crate::check::types::operand::{Operand, constant};
+use crate::diagnostic::{Code, Diagnostic};
+use crate::ir::{
+    CaseArm, CaseStatement, ElementaryType, Expr, ForStatement, IfBranch, Place, Statement, StatementKind, Type,
+    TypeId, Value,
+};
+use crate::syntax::{Span, ast};
+
+impl Body<'_, '_> {
+    pub(in crate::check) fn statements(&mut self, list: &[ast::Statement]) -> Vec<Statement> {
+        if instruction::is_list(list) {
+            let list = self.instructions(list);
+            return self.lowered(&list);
+        }
+        self.lowered(list)
+    }
+
+    /// The same of statements alone.
+    fn lowered(&mut self, list: &[ast::Statement]) -> Vec<Statement> {
+        if jump::has_labels(list) { self.labelled(list) } else { self.unlabelled(list) }
+    }
+
+    /// Statements that no jump leads into.
+    fn unlabelled(&mut self, list: &[ast::Statement]) -> Vec<Statement> {
+        let mut checked = Vec::new();
+        for statement in list {
+            if let ast::StatementKind::Chain(targets, value) = &statement.kind {
+                checked.extend(self.chained(targets, value, statement.span));
+            } else {
+                checked.extend(self.statement(statement));
+            }
+        }
+        checked
+    }
+
+    fn statement(&mut self, statement: &ast::Statement) -> Option<Statement> {
+        let span = statement.span;
+        let kind = match &statement.kind {
+            // A chain is several statements, and a label is the beginning of some.
+            ast::StatementKind::Empty
+            | ast::StatementKind::Error
+            | ast::StatementKind::Chain(..)
+            | ast::StatementKind::Label(_) => return None,
+            ast::StatementKind::Update(operator, target, value) => {
+                return self.update(*operator, target, value, span);
+            }
+            ast::StatementKind::Assign(target, value) => return self.assign(target, value, span),
+            ast::StatementKind::Refer(target, value) => return self.refer(target, value, span),
+            ast::StatementKind::Attempt(target, value) => return self.attempt(target, value, span),
+            ast::StatementKind::Call(call) => self.call_statement(call, span)?,
+            ast::StatementKind::If(inner) => self.if_statement(inner),
+            ast::StatementKind::Case(inner) => self.case_statement(inner)?,
+            ast::StatementKind::For(inner) => self.for_statement(inner)?,
+            ast::StatementKind::While(inner) => {
+                let condition = self.condition(&inner.condition);
+                let body = self.loop_body(&inner.body);
+                StatementKind::While(condition?, body)
+            }
+            ast::StatementKind::Repeat(inner) => {
+                let body = self.loop_body(&inner.body);
+                StatementKind::Repeat(body, self.condition(&inner.until)?)
+            }
+            ast::StatementKind::Exit => self.inside_loop("EXIT", StatementKind::Exit, span)?,
+            ast::StatementKind::Continue => self.inside_loop("CONTINUE", StatementKind::Continue, span)?,
+            ast::StatementKind::Return => StatementKind::Return,
+            ast::StatementKind::Jump(label) => self.jump(label)?,
+            // What it does stands behind it.
+            ast::StatementKind::Instruction(_) => StatementKind::Pass,
+        };
+        // Statements that contain others are pointed at by their first line's beginning.
+        Some(Statement { kind, span })
+    }
+
+    fn inside_loop(&mut self, word: &str, kind: StatementKind, span: Span) -> Option<StatementKind> {
+        if self.loops > 0 {
+            return Some(kind);
+        }
+        let message = format!("{word} outside of a loop");
+        self.report(Diagnostic::error(Code::MisplacedStatement, span, message));
+        None
+    }
+
+    fn loop_body(&mut self, list: &[ast::Statement]) -> Vec<Statement> {
+        self.loops += 1;
+        let body = self.statements(list);
+        self.loops -= 1;
+        body
+    }
+
+    pub(in crate::check) fn condition(&mut self, expr: &ast::Expr) -> Option<Expr> {
+        self.expression_of(expr, ElementaryType::Bool)
+    }
+
+    pub(in crate::check) fn assign(&mut self, target: &ast::Expr, value: &ast::Expr, span: Span) -> Option<Statement> {
+        if let Some(set) = self.property_assignment(target, value, span) {
+            return set;
+        }
+        if let Some(assigned) = self.character_assignment(target, value, span) {
+            return assigned;
+        }
+        if let Some(name) = self.new_wire(target) {
+            return self.first_value(name, value, span);
+        }
+        let target = self.target(target);
+        let context = target.as_ref().and_then(|target| self.elementary(target.ty));
+        let value = self.within(context, |body| body.expression(value));
+        let (target, value) = (target?, value?);
+        if matches!(self.declarations.types().get(target.ty), Type::FunctionBlock { .. }) {
+            let message = "instances are not assigned to one another";
+            self.report(Diagnostic::error(Code::NotAssignable, span, message));
+            return None;
+        }
+        let value = self.coerce(value, target.ty)?;
+        Some(self.assignment(target, value, span))
+    }
+
+    /// A place that may be written to.
+    pub(in crate::check) fn target(&mut self, expr: &ast::Expr) -> Option<Place> {
+        let located = self.place(expr)?;
+        match located.access {
+            Access::ReadWrite => {}
+            Access::Constant => {
+                let message = "a constant is not assigned to";
+                self.report(Diagnostic::error(Code::AssignToConstant, expr.span, message));
+                return None;
+            }
+            Access::Chart => {
+                let message = "steps, transitions and action flags are written by their chart only";
+                self.report(Diagnostic::error(Code::NotAssignable, expr.span, message));
+                return None;
+            }
+            Access::InstanceOutput => {
+                let message = "an output is written by its own instance only";
+                self.report(Diagnostic::error(Code::NotAssignable, expr.span, message));
+                return None;
+            }
+            Access::Value => {
+                let message = "this is a copy of what the property or call gives, which nobody would read";
+                let found = Diagnostic::error(Code::NotAssignable, expr.span, message);
+                self.report(found.with_help("change a copy in a variable and assign that to the property"));
+                return None;
+            }
+            // 2nd ed. Table 16 forbids it; every vendor allows it, and programs rely on that.
+            Access::OwnInput => {
+                let message = "an input is written by the caller; this value is overwritten";
+                self.report(Diagnostic::warning(Code::AssignToInput, expr.span, message));
+            }
+            Access::MachineInput => {
+                let message = "an input is written by the machine; this value is overwritten";
+                self.report(Diagnostic::warning(Code::AssignToInput, expr.span, message));
+            }
+        }
+        let result = self.scope.result().map(|result| result.storage);
+        self.result_assigned |= result == Some(located.place.storage);
+        Some(located.place)
+    }
+
+    fn if_statement(&mut self, inner: &ast::IfStatement) -> StatementKind {
+        let mut branches = Vec::new();
+        for branch in &inner.branches {
+            let condition = self.condition(&branch.condition);
+            let body = self.statements(&branch.body);
+            branches.extend(condition.map(|condition| IfBranch { condition, body }));
+        }
+        StatementKind::If(branches, self.statements(&inner.otherwise))
+    }
+
+    fn case_statement(&mut self, inner: &ast::CaseStatement) -> Option<StatementKind> {
+        let selector = self.expression(&inner.selector).and_then(|operand| self.settle(operand));
+        let selector = selector.and_then(|selector| self.selectable(selector));
+        let ty = selector.as_ref().map(|(selector, _)| selector.ty);
+        let mut known = BTreeMap::new();
+        let mut arms = Vec::new();
+        for branch in &inner.branches {
+            let labels = ty.map(|ty| self.case_labels(&branch.labels, ty, &mut known));
+            let body = self.statements(&branch.body);
+            // Labels that are wrong have been reported; without any the arm is never taken.
+            arms.push(CaseArm { labels: labels.unwrap_or_default(), body });
+        }
+        let otherwise = self.statements(&inner.otherwise);
+        let (selector, elementary) = selector?;
+        let register = self.scope.register(elementary);
+        let case = CaseStatement { selector, register, arms, otherwise };
+        Some(StatementKind::Case(Box::new(case)))
+    }
+
+    /// 2nd ed. 3.3.2.3: an integer or an enumeration selects; 3rd ed. adds bit strings.
+    fn selectable(&mut self, selector: Expr) -> Option<(Expr, ElementaryType)> {
+        match self.elementary(selector.ty) {
+            Some(ty) if (ty.is_integer() || ty.is_bits()) && !self.is_reference(&Operand::Typed(selector.clone())) => {
+                Some((selector, ty))
+            }
+            _ => {
+                let found = self.type_name(selector.ty);
+                self.mismatch("an integer or enumeration", &found, selector.span)
+            }
+        }
+    }
+
+    fn case_labels(
+        &mut self,
+        labels: &[ast::CaseLabel],
+        ty: TypeId,
+        known: &mut BTreeMap<i128, i128>,
+    ) -> Vec<(i128, i128)> {
+        let mut ranges = Vec::new();
+        for label in labels {
+            let low = self.constant_of_type(&label.low, ty).and_then(Value::as_int);
+            let high = match &label.high {
+                Some(high) => self.constant_of_type(high, ty).and_then(Value::as_int),
+                None => low,
+            };
+            let (Some(low), Some(high)) = (low, high) else {
+                continue;
+            };
+            let span = label.high.as_ref().map_or(label.low.span, |high| label.low.span.to(high.span));
+            if low > high {
+                let message = format!("range {low}..{high} is reversed");
+                self.report(Diagnostic::error(Code::InvalidRange, span, message));
+                continue;
+            }
+            let before = known.range(..=high).next_back();
+            if before.is_some_and(|(_, known_high)| *known_high >= low) {
+                let message = "this label is selected by an earlier one already";
+                self.report(Diagnostic::warning(Code::DuplicateCase, span, message));
+            } else {
+                known.insert(low, high);
+            }
+            ranges.push((low, high));
+        }
+        ranges
+    }
+
+    fn for_statement(&mut self, inner: &ast::ForStatement) -> Option<StatementKind> {
+        let variable = self.target(&inner.variable).and_then(|place| self.control_variable(place));
+        let header = variable.and_then(|(place, ty)| {
+            let from = self.expression_of(&inner.from, ty);
+            let to = self.expression_of(&inner.to, ty);
+            let by = match &inner.by {
+                Some(by) => self.expression_of(by, ty),
+                None => Some(constant(Value::Int(1), ty, inner.to.span)),
+            };
+            Some((place, from?, to?, by?))
+        });
+        let body = self.loop_body(&inner.body);
+        let (variable, from, to, by) = header?;
+        let last = self.scope.register(ElementaryType::Lint);
+        let step = self.scope.register(ElementaryType::Lint);
+        let inner = ForStatement { variable, from, to, by, last, step, body };
+        Some(StatementKind::For(Box::new(inner)))
+    }
+
+    fn control_variable(&mut self, place: Place) -> Option<(Place, ElementaryType)> {
+        match self.declarations.types().get(place.ty) {
+            Type::Elementary(ty) | Type::Subrange { base: ty, .. } if ty.is_integer() => {
+                let ty = *ty;
+                Some((place, ty))
+            }
+            _ => {
+                let message = format!("a FOR control variable is an integer, this is {}", self.type_name(place.ty));
+                self.report(Diagnostic::error(Code::LoopVariable, place.span, message));
+                None
+            }
+        }
+    }
+}

@@ -1,0 +1,60 @@
+//! What is wrong with the text, in the order in which it was found.
+
+use std::collections::BTreeSet;
+
+use super::Declarations;
+use super::start::Occasion;
+use crate::diagnostic::Diagnostic;
+use crate::ir::PouId;
+use crate::syntax::Span;
+
+/// All findings so far, and what has been reported that is found more than once.
+#[derive(Debug, Default)]
+pub(super) struct Findings {
+    diagnostics: Vec<Diagnostic>,
+    /// Where something was wrong already, and when.
+    faulty_starts: BTreeSet<(u32, u32, Occasion)>,
+    /// Methods `FB_init` that do not suit those of their bases.
+    faulty_hooks: BTreeSet<PouId>,
+}
+
+impl Findings {
+    pub(super) fn into_list(self) -> Vec<Diagnostic> {
+        self.diagnostics
+    }
+}
+
+/// How much had been found at some point: later findings can be taken back.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(in crate::check) struct Mark(usize);
+
+impl Declarations<'_> {
+    pub(in crate::check) fn report(&mut self, diagnostic: Diagnostic) {
+        self.findings.diagnostics.push(diagnostic);
+    }
+
+    pub(in crate::check) fn mark(&self) -> Mark {
+        Mark(self.findings.diagnostics.len())
+    }
+
+    /// True if something has been found since.
+    pub(in crate::check) fn has_found_since(&self, mark: Mark) -> bool {
+        self.findings.diagnostics.len() > mark.0
+    }
+
+    /// Takes back what has been found since: a trial, or what is reported elsewhere.
+    pub(in crate::check) fn forget_since(&mut self, mark: Mark) {
+        self.findings.diagnostics.truncate(mark.0);
+    }
+
+    /// True for the first fault in what is done at `span` at an occasion. A type's text is gone through for each
+    /// variable of it, and is reported once.
+    pub(in crate::check) fn is_first_fault(&mut self, span: Span, occasion: Occasion) -> bool {
+        self.findings.faulty_starts.insert((span.file.0, span.start, occasion))
+    }
+
+    /// True for the first fault of an `FB_init`, however many instances there are.
+    pub(in crate::check) fn is_first_hook_fault(&mut self, hook: PouId) -> bool {
+        self.findings.faulty_hooks.insert(hook)
+    }
+}

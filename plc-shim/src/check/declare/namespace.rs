@@ -1,0 +1,222 @@
+//! Names in namespaces (3rd ed. 6.9): the key of what is declared in `a.b` is `A.B.NAME`.
+//!
+//! A name is looked for in the namespace of the unit, then in those around it, then in those that
+//! `USING` names, in their order.
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use super::Declarations;
+use crate::diagnostic::{Code, Diagnostic, did_you_mean};
+use crate::dialect::AddressUnit;
+use crate::ir::PouId;
+use crate::syntax::Span;
+use crate::syntax::ast::{CompilationUnit, Declaration, Ident, Modifier, Namespace, NamespaceKind};
+
+/// Libraries of vendors that hold what the standard defines; their names may stand before it.
+const STANDARD_LIBRARIES: [&str; 4] = ["STANDARD", "TC2_STANDARD", "STANDARD64", "IEC61131_STANDARD"];
+
+/// Where something is declared, and so what it sees.
+#[derive(Debug, Default, PartialEq, Eq)]
+pub(in crate::check) struct Home {
+    /// The key of the namespace; empty outside of any.
+    pub(in crate::check) namespace: String,
+    /// Its name as written.
+    pub(in crate::check) shown: String,
+    /// Keys of the namespaces whose names are seen as well.
+    pub(super) using: Vec<String>,
+    /// True inside of `NAMESPACE INTERNAL`.
+    pub(in crate::check) internal: bool,
+    /// True inside of a list of global variables whose names are known without it.
+    pub(in crate::check) open: bool,
+}
+
+impl Home {
+    /// The key of what is declared here.
+    pub(in crate::check) fn key(&self, name: &Ident) -> String {
+        joined(&self.namespace, &name.key())
+    }
+
+    /// The full name of what is declared here.
+    pub(in crate::check) fn full_name(&self, name: &Ident) -> String {
+        joined(&self.shown, &name.text)
+    }
+
+    fn inside(&self, namespace: &Namespace) -> Self {
+        let mut using = self.using.clone();
+        using.extend(namespace.using.iter().map(Ident::key));
+        Self {
+            namespace: joined(&self.namespace, &namespace.name.key()),
+            shown: joined(&self.shown, &namespace.name.text),
+            using,
+            internal: self.internal || namespace.kind == NamespaceKind::Internal,
+            open: namespace.kind == NamespaceKind::Open,
+        }
+    }
+
+    /// With what a unit uses by itself.
+    pub(in crate::check) fn with(self: &Arc<Self>, using: &[Ident]) -> Arc<Self> {
+        if using.is_empty() {
+            return self.clone();
+        }
+        let mut all = self.using.clone();
+        all.extend(using.iter().map(Ident::key));
+        let (namespace, shown) = (self.namespace.clone(), self.shown.clone());
+        Arc::new(Self { namespace, shown, using: all, ..**self })
+    }
+}
+
+pub(in crate::check) fn joined(namespace: &str, key: &str) -> String {
+    if namespace.is_empty() { key.to_owned() } else { format!("{namespace}.{key}") }
+}
+
+impl<'a> Declarations<'a> {
+    pub(in crate::check) fn collect(&mut self, units: &[(crate::syntax::FileId, &'a CompilationUnit)]) {
+        // Who looks from outside sees the addresses as the first file has them.
+        self.address_unit = units.first().map_or_else(AddressUnit::default, |(_, unit)| unit.dialect.address_unit());
+        self.dialects = units.iter().map(|(file, unit)| (*file, unit.dialect)).collect();
+        let mut used = Vec::new();
+        for (_, unit) in units {
+            let mut home = Home::default();
+            for declaration in &unit.declarations {
+                if let Declaration::Using(names) = declaration {
+                    used.extend(names);
+                    home.using.extend(names.iter().map(Ident::key));
+                }
+            }
+            self.collect_all(&unit.declarations, &Arc::new(home), &mut used);
+        }
+        for name in used {
+            self.check_using(name);
+        }
+        self.home = Arc::default();
+        self.collect_resource_globals();
+    }
+
+    fn collect_all(&mut self, list: &'a [Declaration], home: &Arc<Home>, used: &mut Vec<&'a Ident>) {
+        self.home = home.clone();
+        for declaration in list {
+            match declaration {
+                Declaration::Pou(pou) => {
+                    used.extend(&pou.object.using);
+                    self.collect_pou(pou);
+                }
+                Declaration::Type(declaration) => self.collect_type(declaration),
+                Declaration::Globals(section) => self.collect_globals(section),
+                Declaration::Using(_) => {}
+                Declaration::Configuration(configuration) => self.collect_configuration(configuration),
+                Declaration::Namespace(namespace) => {
+                    used.extend(&namespace.using);
+                    let inner = Arc::new(home.inside(namespace));
+                    self.namespaces.insert(inner.namespace.clone(), inner.shown.clone());
+                    self.collect_all(&namespace.declarations, &inner, used);
+                    self.home = home.clone();
+                }
+            }
+        }
+    }
+
+    fn check_using(&mut self, name: &Ident) {
+        let key = name.key();
+        // A vendor's library is named where it is used, and is known without that.
+        if self.namespaces.contains_key(&key) || STANDARD_LIBRARIES.contains(&key.as_str()) {
+            return;
+        }
+        let help = did_you_mean(&name.text, self.namespaces.values().map(String::as_str));
+        let message = format!("there is no namespace `{}`", name.text);
+        let found = Diagnostic::error(Code::UnknownNamespace, name.span, message);
+        self.report(found.with_optional_help(help));
+    }
+
+    /// Runs `action` with the names that are seen from `home`.
+    pub(in crate::check) fn at_home<T>(&mut self, home: Arc<Home>, action: impl FnOnce(&mut Self) -> T) -> T {
+        let outer = std::mem::replace(&mut self.home, home);
+        let result = action(self);
+        self.home = outer;
+        result
+    }
+
+    /// The full key of what `key` means here, if `map` has it.
+    fn full_key<T>(&self, map: &BTreeMap<String, T>, key: &str) -> Option<String> {
+        let mut namespace = self.home.namespace.as_str();
+        loop {
+            let full = joined(namespace, key);
+            if map.contains_key(&full) {
+                return Some(full);
+            }
+            if namespace.is_empty() {
+                break;
+            }
+            namespace = namespace.rsplit_once('.').map_or("", |(around, _)| around);
+        }
+        let used = self.home.using.iter().map(|namespace| joined(namespace, key));
+        used.into_iter().find(|full| map.contains_key(full))
+    }
+
+    pub(in crate::check) fn type_key(&self, key: &str) -> Option<String> {
+        self.full_key(&self.type_names, key)
+    }
+
+    pub(in crate::check) fn global_key(&self, key: &str) -> Option<String> {
+        self.full_key(&self.globals, key).or_else(|| self.open_globals.get(key).cloned())
+    }
+
+    pub(in crate::check) fn pou_named(&self, key: &str) -> Option<PouId> {
+        let full = self.full_key(&self.pou_names, key);
+        if let Some(found) = full.and_then(|full| self.pou_names.get(&full)) {
+            return Some(*found);
+        }
+        let (library, name) = key.split_once('.')?;
+        let found = self.pou_names.get(name).copied().filter(|_| STANDARD_LIBRARIES.contains(&library))?;
+        self.is_library(found).then_some(found)
+    }
+
+    /// How to name what is declared in a namespace that is not seen from here.
+    pub(in crate::check) fn elsewhere(&self, name: &Ident) -> Option<String> {
+        let key = name.key();
+        let is_it = |home: &Home, other: &Ident| !home.namespace.is_empty() && other.key() == key;
+        let units = self.pous.iter().filter(|entry| entry.membership.is_none() && is_it(&entry.home, &entry.ast.name));
+        let types = self.type_names.values().filter(|entry| is_it(&entry.home, &entry.ast.name));
+        let globals =
+            self.globals.iter().filter(|(full, _)| full.rsplit_once('.').is_some_and(|(_, last)| last == key));
+        let units = units.map(|entry| entry.home.full_name(&entry.ast.name));
+        let types = types.map(|entry| entry.home.full_name(&entry.ast.name));
+        let globals = globals.map(|(_, entry)| format!("{}.{}", entry.seen_from.shown, entry.name));
+        let found = units.chain(types).chain(globals).next()?;
+        Some(format!("write `{found}`"))
+    }
+
+    /// True if `home` is the namespace of what runs now, or inside of it (3rd ed. 6.9.3).
+    pub(super) fn is_inside(&self, home: &Home) -> bool {
+        let (here, there) = (&self.home.namespace, &home.namespace);
+        here == there || here.strip_prefix(there.as_str()).is_some_and(|rest| there.is_empty() || rest.starts_with('.'))
+    }
+
+    /// Reports a unit that only its own namespace may use (3rd ed. 6.9.3).
+    pub(in crate::check) fn check_internal(&mut self, id: PouId, used: Span) {
+        let entry = self.pou(id);
+        let is_internal = entry.home.internal || entry.ast.object.modifiers.contains(&Modifier::Internal);
+        if is_internal && !self.is_inside(&entry.home.clone()) {
+            let message = format!("`{}` is INTERNAL to its namespace", self.pou(id).ast.name.text);
+            self.report(Diagnostic::error(Code::AccessDenied, used, message));
+        }
+    }
+
+    /// True if `key` names a namespace, or something in one.
+    pub(in crate::check) fn is_in_namespace(&self, key: &str) -> bool {
+        let known = |key: &str| {
+            let mut around = self.home.namespace.as_str();
+            loop {
+                if self.namespaces.contains_key(&joined(around, key)) {
+                    return true;
+                }
+                if around.is_empty() {
+                    return self.home.using.iter().any(|each| self.namespaces.contains_key(&joined(each, key)));
+                }
+                around = around.rsplit_once('.').map_or("", |(outer, _)| outer);
+            }
+        };
+        let library = key.split_once('.').is_some_and(|(first, _)| STANDARD_LIBRARIES.contains(&first));
+        library || key.match_indices('.').any(|(at, _)| known(&key[..at])) || known(key)
+    }
+}

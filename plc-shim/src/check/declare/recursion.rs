@@ -1,0 +1,44 @@
+//! Units do not call themselves, be it by way of others (2nd ed. 2.5).
+
+use std::collections::BTreeSet;
+
+use super::Declarations;
+use crate::diagnostic::{Code, Diagnostic};
+use crate::ir::PouId;
+
+impl Declarations<'_> {
+    /// Reports each call that closes a circle. Walks the calls depth first, with its own stack.
+    pub(in crate::check) fn report_recursion(&mut self) {
+        let mut done = BTreeSet::new();
+        for root in self.queued() {
+            self.walk(root, &mut done);
+        }
+    }
+
+    fn walk(&mut self, root: PouId, done: &mut BTreeSet<PouId>) {
+        let mut path = vec![(root, 0_usize)];
+        let mut on_path = BTreeSet::from([root]);
+        while let Some((caller, next)) = path.last_mut() {
+            let caller = *caller;
+            let call = self.calls_of(caller).get(*next).copied();
+            *next += 1;
+            match call {
+                None => {
+                    path.pop();
+                    on_path.remove(&caller);
+                    done.insert(caller);
+                }
+                Some((next_unit, span)) if on_path.contains(&next_unit) => {
+                    let name = self.display_name(next_unit);
+                    let message = format!("this call makes `{name}` call itself");
+                    self.report(Diagnostic::error(Code::Recursion, span, message));
+                }
+                Some((next_unit, _)) if !done.contains(&next_unit) => {
+                    path.push((next_unit, 0));
+                    on_path.insert(next_unit);
+                }
+                Some(_) => {}
+            }
+        }
+    }
+}

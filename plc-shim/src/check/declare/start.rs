@@ -1,0 +1,183 @@
+//! What runs before the first scan and before another start, as declarations say it: initial values that are no
+//! constants, instances with hooks.
+//!
+//! A variable's initial bytes and what a start adds to them come together from its type and its
+//! initial value ([`TypedImage`](super::entry::TypedImage)). What belongs to a unit's own variables becomes a
+//! function of the unit, so that each instance, wherever it lies, is started by one call.
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use super::Declarations;
+use super::class::{Membership, Role};
+use super::namespace::Home;
+use crate::ir::{Place, PouId, TypeId};
+use crate::syntax::Span;
+use crate::syntax::ast::{self, Argument, CompilationUnit, Declaration, Ident, PouKind};
+
+/// When a unit's variables are gone through.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub(in crate::check) enum Occasion {
+    /// Before the first scan after a start.
+    Start,
+    /// Before another start.
+    End,
+}
+
+impl Occasion {
+    const ALL: [Self; 2] = [Self::Start, Self::End];
+
+    fn role(self) -> Role {
+        match self {
+            Self::Start => Role::Start,
+            Self::End => Role::End,
+        }
+    }
+}
+
+/// What is done at a start, in its order.
+pub(in crate::check) type Starts<'a> = Arc<[Start<'a>]>;
+
+/// What is done to a part of a value.
+#[derive(Debug, Clone)]
+pub(in crate::check) struct Start<'a> {
+    /// Bytes from where the value begins.
+    pub(in crate::check) offset: u32,
+    pub(in crate::check) kind: StartKind<'a>,
+    /// Where it is written.
+    pub(in crate::check) span: Span,
+    /// From where names are seen; nothing for the unit that declares the variable.
+    pub(in crate::check) home: Option<Arc<Home>>,
+}
+
+#[derive(Debug, Clone)]
+pub(in crate::check) enum StartKind<'a> {
+    /// Starts what is in the instance, then itself.
+    Instance(PouId, Given<'a>),
+    /// The same for so many elements, so many bytes apart.
+    Each { count: u32, stride: u32, starts: Starts<'a> },
+    /// Assigns an initial value that is no constant.
+    Value(TypeId, &'a ast::Expr),
+    /// Gives what `FB_init` may have written the value that its instance is declared with.
+    Bytes(TypeId, Arc<[u8]>),
+    /// Sets a property of an instance.
+    Property(PouId, &'a Ident, &'a ast::Expr),
+}
+
+/// The units that make starts and ends: they have no text. By where their owners' names stand.
+pub(super) type Stages = BTreeMap<(u32, u32), [ast::Pou; 2]>;
+
+/// A unit for each occasion of each unit that has variables.
+pub(in crate::check) fn stages(units: &[(crate::syntax::FileId, &CompilationUnit)]) -> Stages {
+    let mut stages = Stages::new();
+    let mut open: Vec<&[Declaration]> = units.iter().map(|(_, unit)| unit.declarations.as_slice()).collect();
+    while let Some(list) = open.pop() {
+        for declaration in list {
+            match declaration {
+                Declaration::Pou(pou) if !matches!(pou.kind, PouKind::Function | PouKind::Interface) => {
+                    stages.insert(place_of(&pou.name), [stage(pou, "start"), stage(pou, "end")]);
+                }
+                Declaration::Namespace(namespace) => open.push(&namespace.declarations),
+                // The others declare no unit that keeps variables.
+                _ => {}
+            }
+        }
+    }
+    stages
+}
+
+fn place_of(name: &Ident) -> (u32, u32) {
+    (name.span.file.0, name.span.start)
+}
+
+fn stage(owner: &ast::Pou, name: &str) -> ast::Pou {
+    ast::Pou {
+        kind: PouKind::Method,
+        name: Ident { text: name.to_owned(), span: owner.name.span },
+        result: None,
+        sections: Vec::new(),
+        body: Vec::new(),
+        chart: ast::Chart::default(),
+        object: ast::Object::default(),
+        span: owner.span,
+    }
+}
+
+/// A variable outside of units, and what is done to it.
+#[derive(Debug, Clone)]
+pub(in crate::check) struct Started<'a> {
+    pub(in crate::check) place: Place,
+    pub(in crate::check) starts: Starts<'a>,
+}
+
+impl Declarations<'_> {
+    /// Adds the units of a unit's occasions.
+    pub(super) fn collect_stages(&mut self, owner: PouId) {
+        let Some(stages) = self.stages.get(&place_of(&self.pou(owner).ast.name)) else { return };
+        for (occasion, stage) in Occasion::ALL.into_iter().zip(stages) {
+            let id = self.add_pou(stage, Some(Membership { owner, role: occasion.role() }));
+            if let Some(class) = self.classes.get_mut(&owner) {
+                class.stages.insert(occasion, id);
+            }
+        }
+    }
+
+    /// The unit of an occasion, if there is something to do.
+    pub(in crate::check) fn stage(&self, owner: PouId, occasion: Occasion) -> Option<PouId> {
+        let stage = self.class(owner)?.stages.get(&occasion).copied()?;
+        self.has_inner(owner, occasion).then_some(stage)
+    }
+
+    /// True if variables of the unit, or of its bases, have something to do.
+    fn has_inner(&self, id: PouId, occasion: Occasion) -> bool {
+        let own = self.pou(id).starts.iter().any(|start| self.acts(start, occasion));
+        own || self.base_of(id).is_some_and(|base| self.has_inner(base, occasion))
+    }
+
+    pub(in crate::check) fn acts(&self, start: &Start<'_>, occasion: Occasion) -> bool {
+        match &start.kind {
+            StartKind::Instance(pou, _) => self.instance_acts(*pou, occasion),
+            StartKind::Each { starts, .. } => starts.iter().any(|start| self.acts(start, occasion)),
+            _ => occasion == Occasion::Start,
+        }
+    }
+
+    fn instance_acts(&self, pou: PouId, occasion: Occasion) -> bool {
+        self.has_inner(pou, occasion) || self.has_hook(pou, occasion)
+    }
+
+    /// True if an instance of a declared unit has something to do at any time.
+    pub(in crate::check) fn instance_starts(&self, pou: PouId) -> bool {
+        Occasion::ALL.into_iter().any(|occasion| self.instance_acts(pou, occasion))
+    }
+
+    /// Has what each unit does at a start and an end checked.
+    pub(in crate::check) fn enqueue_stages(&mut self) {
+        let owners: Vec<PouId> = self.classes.keys().copied().collect();
+        for owner in owners {
+            for occasion in Occasion::ALL {
+                if let Some(stage) = self.stage(owner, occasion) {
+                    self.enqueue(stage);
+                }
+            }
+        }
+    }
+
+    /// The statements of a unit's occasion; nothing for other units.
+    pub(in crate::check) fn stage_of(&self, id: PouId) -> Option<(PouId, Occasion)> {
+        let Membership { owner, role } = self.pou(id).membership?;
+        match role {
+            Role::Start => Some((owner, Occasion::Start)),
+            Role::End => Some((owner, Occasion::End)),
+            _ => None,
+        }
+    }
+}
+
+/// The starts of a list, so many bytes further.
+pub(in crate::check) fn moved<'a>(starts: &[Start<'a>], offset: u32) -> impl Iterator<Item = Start<'a>> {
+    starts.iter().map(move |start| Start { offset: start.offset + offset, ..start.clone() })
+}
+
+/// What a declaration gives to the `FB_init` of its instance.
+pub(in crate::check) type Given<'a> = &'a [Argument];

@@ -1,0 +1,282 @@
+//! Initial values to bytes (2nd ed. 2.4.3.2), and to what a start must do where bytes do not do.
+
+use std::ops::Range;
+
+use super::Written;
+use crate::check::body::is_dtl_literal;
+use crate::check::declare::{Occasion, Role, Start, StartKind, TypedImage};
+use crate::check::types::constant::{NoValue, fold};
+use crate::diagnostic::{Code, Diagnostic, did_you_mean};
+use crate::dialect::Feature;
+use crate::ir::{self, Dimension, Field, PouId, Storage, Type, TypeId};
+use crate::syntax::Span;
+use crate::syntax::ast::{ElementInit, Expr, ExprKind, Initialiser, InitialiserKind, ReferenceKind, StructureInit};
+
+/// A variable's initial value while it is made.
+struct Making<'a> {
+    image: Vec<u8>,
+    starts: Vec<Start<'a>>,
+}
+
+/// A value inside of the variable: its type, and bytes from the variable's beginning.
+#[derive(Clone, Copy)]
+struct Spot {
+    ty: TypeId,
+    offset: u32,
+    /// Of a BOOL that is one bit of its byte, which.
+    bit: Option<u8>,
+}
+
+impl<'a> Written<'_, 'a> {
+    /// What a variable of the type with an initial value begins with.
+    pub(in crate::check) fn with_initial(
+        &mut self,
+        declared: &TypedImage<'a>,
+        initial: &'a Initialiser,
+    ) -> Option<TypedImage<'a>> {
+        self.declarations_mut().charge_image(declared.image.len() as u64, initial.span)?;
+        let mut making = Making { image: declared.image.to_vec(), starts: declared.starts.to_vec() };
+        self.fill(Spot { ty: declared.ty, offset: 0, bit: None }, initial, &mut making)?;
+        Some(TypedImage { ty: declared.ty, image: making.image.into(), starts: making.starts.into() })
+    }
+
+    fn range(&self, spot: Spot) -> Range<usize> {
+        let start = spot.offset as usize;
+        start..start + self.declarations().types().size(spot.ty) as usize
+    }
+
+    fn fill(&mut self, spot: Spot, initial: &'a Initialiser, making: &mut Making<'a>) -> Option<()> {
+        let shape = self.declarations().types().get(spot.ty).clone();
+        match (&initial.kind, shape) {
+            (InitialiserKind::Value(expr), Type::Text(_)) if !self.is_constant_text(expr) => {
+                self.begins_with(spot, expr, making);
+                Some(())
+            }
+            (InitialiserKind::Value(expr), _) if self.body.elementary(spot.ty).is_some() => {
+                self.fill_elementary(spot, expr, making)
+            }
+            (InitialiserKind::Value(expr), Type::Text(shape)) => {
+                let bytes = self.body.text_image(shape, expr)?;
+                let range = self.range(spot);
+                making.image.get_mut(range)?.iter_mut().zip(bytes).for_each(|(target, source)| *target = source);
+                Some(())
+            }
+            (InitialiserKind::Value(expr), Type::Struct { .. }) if is_dtl_literal(expr) => {
+                let bytes = self.body.dtl_bytes(expr, spot.ty)?;
+                let range = self.range(spot);
+                making.image.get_mut(range)?.copy_from_slice(&bytes);
+                Some(())
+            }
+            (InitialiserKind::Array(elements), Type::Array { dimensions, element }) => {
+                let count = dimensions.iter().map(|each: &Dimension| each.count()).product();
+                self.fill_array(Spot { ty: element, ..spot }, count, elements, making)
+            }
+            (InitialiserKind::Elements(elements), Type::Array { dimensions, element }) => {
+                let first = Spot { ty: element, ..spot };
+                elements.iter().try_for_each(|each| self.fill_element(first, &dimensions, each, making))
+            }
+            (InitialiserKind::Struct(members), Type::Struct { fields, .. }) => {
+                self.fill_members(spot, &fields, members, making)
+            }
+            (InitialiserKind::Struct(members), Type::FunctionBlock { pou, .. }) => {
+                self.fill_instance(spot, pou, members, (initial.span, making))
+            }
+            _ => {
+                let message = format!("this does not initialise {}", self.body.type_name(spot.ty));
+                self.report(Diagnostic::error(Code::InvalidInitialiser, initial.span, message));
+                None
+            }
+        }
+    }
+
+    fn begins_with(&mut self, spot: Spot, expr: &'a Expr, making: &mut Making<'a>) {
+        making.starts.push(self.start(spot.offset, StartKind::Value(spot.ty, expr), expr.span));
+    }
+
+    fn fill_elementary(&mut self, spot: Spot, expr: &'a Expr, making: &mut Making<'a>) -> Option<()> {
+        let typed = self.body.expression_for(expr, spot.ty)?;
+        if matches!(fold(self.declarations().types(), &typed), Err(NoValue::NotConstant(_)))
+            && self.may_be_computed(&typed)
+        {
+            if spot.bit.is_some() {
+                let message = "a member that is one bit of a byte begins with a constant";
+                self.report(Diagnostic::error(Code::InvalidInitialiser, expr.span, message));
+                return None;
+            }
+            self.begins_with(spot, expr, making);
+            return Some(());
+        }
+        let value = self.body.value_of(&typed)?;
+        let range = self.range(spot);
+        if let Some(bit) = spot.bit {
+            let byte = making.image.get_mut(range.start)?;
+            *byte = *byte & !(1 << bit) | (value.bytes()[0] & 1) << bit;
+            return Some(());
+        }
+        making.image.get_mut(range)?.iter_mut().zip(value.bytes()).for_each(|(target, source)| *target = source);
+        Some(())
+    }
+
+    /// A reference may begin with `REF` of any variable (3rd ed. 6.4.4.10.2).
+    fn may_be_computed(&self, value: &ir::Expr) -> bool {
+        let refers = matches!(
+            self.declarations().types().get(value.ty),
+            Type::Reference { kind: ReferenceKind::RefTo | ReferenceKind::Pointer, .. } | Type::Interface { .. }
+        );
+        refers || self.declarations().dialect(value.span).has(Feature::ComputedInitialValues)
+    }
+
+    /// True for what [`Self::text_image`] takes or reports.
+    fn is_constant_text(&mut self, expr: &Expr) -> bool {
+        let computed = self.declarations().dialect(expr.span).has(Feature::ComputedInitialValues);
+        let literal = matches!(expr.kind, ExprKind::Literal(_));
+        !computed || literal || self.body.constant_text(expr).is_some()
+    }
+
+    fn fill_array(
+        &mut self,
+        element: Spot,
+        count: u64,
+        elements: &'a [Initialiser],
+        making: &mut Making<'a>,
+    ) -> Option<()> {
+        let size = self.declarations().types().size(element.ty);
+        let mut next: u64 = 0;
+        for initial in elements {
+            let (times, value) = match &initial.kind {
+                InitialiserKind::Repeat(times, value) => (self.body.constant_integer(times)?, value.as_deref()),
+                _ => (1, Some(initial)),
+            };
+            let times = u64::try_from(times).unwrap_or(u64::MAX);
+            if next.checked_add(times).is_none_or(|end| end > count) {
+                return self.too_many_elements(count, initial.span);
+            }
+            let spot = Spot { offset: element.offset + next as u32 * size, ..element };
+            next += times;
+            if let Some(value) = value.filter(|_| times > 0) {
+                self.fill_alike(spot, times as u32, value, making)?;
+            }
+        }
+        Some(())
+    }
+
+    /// One element by its indices; `first` is that of the smallest ones.
+    fn fill_element(
+        &mut self,
+        first: Spot,
+        dimensions: &[Dimension],
+        element: &'a ElementInit,
+        making: &mut Making<'a>,
+    ) -> Option<()> {
+        let span = element.indices.first().map_or(element.value.span, |index| index.span);
+        if element.indices.len() != dimensions.len() {
+            let message = format!("{} indices for {} dimensions", element.indices.len(), dimensions.len());
+            self.report(Diagnostic::error(Code::WrongDimensions, span, message));
+            return None;
+        }
+        let mut number: u64 = 0;
+        for (bounds, index) in dimensions.iter().zip(&element.indices) {
+            let value = self.body.constant_integer(index)?;
+            let Some(value) = i64::try_from(value).ok().filter(|value| (bounds.low..=bounds.high).contains(value))
+            else {
+                let message = format!("index {value} is outside of {}..{}", bounds.low, bounds.high);
+                self.report(Diagnostic::error(Code::IndexOutOfRange, index.span, message));
+                return None;
+            };
+            number = number * bounds.count() + (value - bounds.low) as u64;
+        }
+        let offset = first.offset + number as u32 * self.declarations().types().size(first.ty);
+        self.fill(Spot { offset, ..first }, &element.value, making)
+    }
+
+    /// Gives so many elements in a row the same value.
+    fn fill_alike(&mut self, first: Spot, times: u32, value: &'a Initialiser, making: &mut Making<'a>) -> Option<()> {
+        let known = making.starts.len();
+        self.fill(first, value, making)?;
+        let (range, size) = (self.range(first), self.declarations().types().size(first.ty));
+        let (from, end) = (range.start, range.start + size as usize * times as usize);
+        let row = making.image.get_mut(from..end)?;
+        if let Some((first, others)) = row.split_at_mut_checked(size as usize) {
+            others.chunks_mut(size as usize).for_each(|other| other.copy_from_slice(first));
+        }
+        if times > 1 && making.starts.len() > known {
+            let own = making.starts.split_off(known);
+            let inside = own.into_iter().map(|start| Start { offset: start.offset - first.offset, ..start });
+            let kind = StartKind::Each { count: times, stride: size, starts: inside.collect() };
+            making.starts.push(self.start(first.offset, kind, value.span));
+        }
+        Some(())
+    }
+
+    fn too_many_elements<T>(&mut self, count: u64, span: Span) -> Option<T> {
+        let message = format!("more values than the array's {count} elements");
+        self.report(Diagnostic::error(Code::InvalidInitialiser, span, message));
+        None
+    }
+
+    /// The variables of an instance, and its properties, which vendors allow here too.
+    fn fill_instance(
+        &mut self,
+        spot: Spot,
+        pou: PouId,
+        members: &'a [StructureInit],
+        (span, making): (Span, &mut Making<'a>),
+    ) -> Option<()> {
+        let scope = self.declarations_mut().interface(pou, span)?;
+        let fields = scope.variables().iter().filter_map(|variable| match variable.storage {
+            Storage::Instance(offset) => {
+                Some(Field { name: variable.name.clone(), ty: variable.ty, offset, bit: None, open: None })
+            }
+            _ => None,
+        });
+        let fields: Vec<Field> = fields.collect();
+        let overwritten = self.declarations().has_hook(pou, Occasion::Start);
+        for member in members {
+            let is_field = fields.iter().any(|field| field.name.eq_ignore_ascii_case(&member.name.text));
+            let setter = self.declarations().find_member(pou, Role::Setter, &member.name.text);
+            if let (false, Some(_), InitialiserKind::Value(value)) = (is_field, setter, &member.value.kind) {
+                let kind = StartKind::Property(pou, &member.name, value);
+                making.starts.push(self.start(spot.offset, kind, member.name.span));
+                continue;
+            }
+            let filled = self.fill_member(spot, &fields, member, making)?;
+            if overwritten {
+                let bytes = making.image.get(self.range(filled))?.into();
+                let kind = StartKind::Bytes(filled.ty, bytes);
+                making.starts.push(self.start(filled.offset, kind, member.name.span));
+            }
+        }
+        Some(())
+    }
+
+    fn fill_members(
+        &mut self,
+        spot: Spot,
+        fields: &[Field],
+        members: &'a [StructureInit],
+        making: &mut Making<'a>,
+    ) -> Option<()> {
+        members.iter().try_for_each(|member| self.fill_member(spot, fields, member, making).map(|_| ()))
+    }
+
+    fn fill_member(
+        &mut self,
+        spot: Spot,
+        fields: &[Field],
+        member: &'a StructureInit,
+        making: &mut Making<'a>,
+    ) -> Option<Spot> {
+        let name = &member.name.text;
+        let field = fields.iter().find(|field| field.name.eq_ignore_ascii_case(name));
+        let Some(field) = field else {
+            let message = format!("{} has no member `{name}`", self.body.type_name(spot.ty));
+            let help = did_you_mean(name, fields.iter().map(|field| field.name.as_str()));
+            let found = Diagnostic::error(Code::UnknownMember, member.name.span, message);
+            self.report(found.with_optional_help(help));
+            return None;
+        };
+        let inner = Spot { ty: field.ty, offset: spot.offset + field.offset, bit: field.bit };
+        self.fill(inner, &member.value, making)?;
+        Some(inner)
+    }
+}

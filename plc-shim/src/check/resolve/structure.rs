@@ -1,0 +1,211 @@
+//! Structures: members one behind the other, or where their addresses say (3rd ed. 6.4.4.6, Table 11).
+
+use std::collections::BTreeMap;
+use std::ops::Range;
+use std::sync::Arc;
+
+use super::Written;
+use crate::check::declare::{MEMORY_LIMIT, Need, Start, TypedImage, align_up, moved};
+use crate::diagnostic::{Code, Diagnostic};
+use crate::ir::{ElementaryType, Field, Type, TypeId};
+use crate::syntax::Span;
+use crate::syntax::ast::{self, Ident};
+use crate::syntax::direct_address::{DirectAddress, RelativeAddress, Width};
+
+/// Whether members with addresses may lie on the same bytes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Sharing {
+    Refused,
+    /// `OVERLAP`
+    Allowed,
+}
+
+/// A structure while its members are placed.
+struct Making<'a> {
+    fields: Vec<Field>,
+    image: Vec<u8>,
+    starts: Vec<Start<'a>>,
+    taken: Taken,
+}
+
+/// Bits that members take: disjoint ranges, end by begin.
+#[derive(Default)]
+struct Taken(BTreeMap<u64, u64>);
+
+impl Taken {
+    fn touches(&self, bits: &Range<u64>) -> bool {
+        self.0.range(..bits.end).next_back().is_some_and(|(_, end)| *end > bits.start)
+    }
+
+    fn add(&mut self, bits: Range<u64>) {
+        let mut joined = bits;
+        while let Some((begin, end)) = self.0.range(..joined.end).next_back().map(|(begin, end)| (*begin, *end)) {
+            if end <= joined.start {
+                break;
+            }
+            self.0.remove(&begin);
+            joined = joined.start.min(begin)..joined.end.max(end);
+        }
+        self.0.insert(joined.start, joined.end);
+    }
+}
+
+impl<'a> Written<'_, 'a> {
+    pub(super) fn structure(
+        &mut self,
+        name: &str,
+        (reserved, extends): (Option<TypeId>, Option<&Ident>),
+        (members, sharing): (&'a [ast::Field], Sharing),
+        span: Span,
+    ) -> Option<TypedImage<'a>> {
+        let mut making = self.extended(extends)?;
+        for member in members {
+            if making.fields.iter().any(|other| other.name.eq_ignore_ascii_case(&member.name.text)) {
+                self.declarations_mut().report_duplicate(&member.name, None);
+                continue;
+            }
+            let mut resolved = self.resolve(&member.spec, Need::Size)?;
+            self.body.reject_open_array(resolved.ty, member.spec.span)?;
+            if let Some(initial) = &member.initial {
+                resolved = self.with_initial(&resolved, initial)?;
+            }
+            self.place_member(&mut making, member, &resolved, (sharing, span))?;
+        }
+        // What has no members takes a byte, so that no array has more elements than bytes.
+        let Making { fields, mut image, starts, .. } = making;
+        image.resize(image.len().max(1), 0);
+        let align = fields.iter().map(|field| self.declarations().types().align(field.ty)).max();
+        image.resize(align_up(image.len() as u32, align.unwrap_or(1)) as usize, 0);
+        let image: Arc<[u8]> = image.into();
+        let ty = reserved.unwrap_or_else(|| self.declarations_mut().types_mut().structure(name.to_owned()));
+        self.declarations_mut().types_mut().complete_structure(ty, fields, image.clone());
+        Some(TypedImage { ty, image, starts: starts.into() })
+    }
+
+    /// The members of the structure that another adds to, as vendors have it.
+    fn extended(&mut self, base: Option<&Ident>) -> Option<Making<'a>> {
+        let (mut fields, mut image, mut starts) = (Vec::new(), Vec::new(), Vec::new());
+        if let Some(name) = base {
+            let resolved = self.type_by_name(name, Need::Size)?;
+            let Type::Struct { fields: inherited, .. } = self.declarations().types().get(resolved.ty) else {
+                let message = format!("`{}` is not a structure", name.text);
+                self.report(Diagnostic::error(Code::WrongBase, name.span, message));
+                return None;
+            };
+            (fields, image, starts) = (inherited.clone(), resolved.image.to_vec(), resolved.starts.to_vec());
+        }
+        let mut taken = Taken::default();
+        if !image.is_empty() {
+            taken.add(0..8 * image.len() as u64);
+        }
+        Some(Making { fields, image, starts, taken })
+    }
+
+    /// Adds a member where its address says, else behind all that there are.
+    fn place_member(
+        &mut self,
+        making: &mut Making<'a>,
+        member: &ast::Field,
+        resolved: &TypedImage<'a>,
+        (sharing, span): (Sharing, Span),
+    ) -> Option<()> {
+        let behind = align_up(making.image.len() as u32, self.declarations().types().align(resolved.ty));
+        let open = member.address.as_ref().and_then(open_address);
+        let (offset, bit) = match &member.address {
+            Some(address) => match open {
+                Some(open) => {
+                    self.declarations_mut().require_open_width(open, resolved.ty, address)?;
+                    (behind, None)
+                }
+                None => self.relative_place(address, resolved.ty)?,
+            },
+            None => (behind, None),
+        };
+        let end = offset as usize + resolved.image.len();
+        if end > MEMORY_LIMIT as usize {
+            self.declarations_mut().report_too_large(span);
+            return None;
+        }
+        let begin = 8 * u64::from(offset) + bit.map_or(0, u64::from);
+        let bits = begin..begin + if bit.is_some() { 1 } else { 8 * resolved.image.len() as u64 };
+        let shares = making.taken.touches(&bits);
+        if shares && sharing == Sharing::Refused {
+            return self.report_shared(member);
+        }
+        making.taken.add(bits);
+        self.declarations_mut().charge_image(end.saturating_sub(making.image.len()) as u64, span)?;
+        making.image.resize(making.image.len().max(end), 0);
+        // Of members that share bytes the first begins with its type's value, the others with their own only.
+        if !shares || member.initial.is_some() {
+            let target = making.image.get_mut(offset as usize..end)?;
+            match (bit, target, &resolved.image[..]) {
+                (Some(bit), [byte], [value]) => *byte = *byte & !(1 << bit) | (value & 1) << bit,
+                (_, target, bytes) => target.copy_from_slice(bytes),
+            }
+            making.starts.extend(moved(&resolved.starts, offset));
+        }
+        making.fields.push(Field {
+            name: member.name.text.clone(),
+            ty: resolved.ty,
+            offset,
+            bit,
+            open: open.map(|open| open.area),
+        });
+        Some(())
+    }
+
+    /// Byte and bit of `%B4` or `%X3.0`. `%B` is for members of every type, as the standard's examples
+    /// have it; the wider ones are for types of their width.
+    fn relative_place(&mut self, address: &Ident, ty: TypeId) -> Option<(u32, Option<u8>)> {
+        let unit = self.declarations().dialect(address.span).address_unit();
+        let found = match RelativeAddress::parse(&address.text, unit) {
+            Ok(found) => found,
+            Err(error) => return self.declarations_mut().invalid_address(&address.text, error, address.span),
+        };
+        let is_bool = self.body.elementary(ty) == Some(ElementaryType::Bool);
+        let suitable = match found.width {
+            Width::Byte => true,
+            Width::Bit => is_bool,
+            width => self.body.elementary(ty).is_none_or(|ty| ty.size() == width.bytes()),
+        };
+        if !suitable {
+            let message = format!("`{}` does not suit a member of type {}", address.text, self.body.type_name(ty));
+            let found = Diagnostic::error(Code::UnsuitableAddress, address.span, message);
+            self.report(found.with_help("write %B and the member's first byte; a BOOL may have a bit, as in %X3.0"));
+            return None;
+        }
+        Some((found.byte, found.bit))
+    }
+
+    fn report_shared<T>(&mut self, member: &ast::Field) -> Option<T> {
+        let message = format!("`{}` lies on bytes of a member before it", member.name.text);
+        let span = member.address.as_ref().map_or(member.name.span, |address| address.span);
+        let found = Diagnostic::error(Code::SharedBytes, span, message);
+        self.report(found.with_help("write STRUCT OVERLAP if members are to share bytes"));
+        None
+    }
+}
+
+/// `%I*`, `%QW*`: each structure has the member in itself, and `VAR_CONFIG` may give it a place (3rd ed. Table 11,
+/// feature 11).
+fn open_address(address: &Ident) -> Option<DirectAddress> {
+    DirectAddress::parse(&address.text).ok().filter(|_| address.text.ends_with('*'))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Taken;
+
+    #[test]
+    fn ranges_that_touch_are_found_and_joined() {
+        let mut taken = Taken::default();
+        for bits in [0..8, 16..24, 40..41] {
+            assert!(!taken.touches(&bits));
+            taken.add(bits);
+        }
+        assert!(!taken.touches(&(8..16)) && !taken.touches(&(41..48)));
+        assert!(taken.touches(&(7..9)) && taken.touches(&(23..24)) && taken.touches(&(0..100)));
+        taken.add(4..44);
+        assert_eq!(taken.0.into_iter().collect::<Vec<_>>(), [(0, 44)]);
+    }
+}

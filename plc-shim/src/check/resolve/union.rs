@@ -1,0 +1,52 @@
+//! Unions of vendors: members that share their bytes.
+
+use std::sync::Arc;
+
+use super::Written;
+use crate::check::declare::{Need, TypedImage, align_up};
+use crate::ir::{Field, TypeId};
+use crate::syntax::{Span, ast};
+
+impl<'a> Written<'_, 'a> {
+    /// Every member begins where the union does. It begins with the first member's value, then with those
+    /// that are given, the last one above the others.
+    pub(super) fn union(
+        &mut self,
+        name: &str,
+        reserved: Option<TypeId>,
+        ast: &'a [ast::Field],
+        span: Span,
+    ) -> Option<TypedImage<'a>> {
+        let mut fields: Vec<Field> = Vec::new();
+        let mut images: Vec<(bool, Arc<[u8]>)> = Vec::new();
+        let mut starts = Vec::new();
+        for field in ast {
+            if fields.iter().any(|other| other.name.eq_ignore_ascii_case(&field.name.text)) {
+                self.declarations_mut().report_duplicate(&field.name, None);
+                continue;
+            }
+            let mut resolved = self.resolve(&field.spec, Need::Size)?;
+            self.body.reject_open_array(resolved.ty, field.spec.span)?;
+            if let Some(initial) = &field.initial {
+                resolved = self.with_initial(&resolved, initial)?;
+            }
+            fields.push(Field { name: field.name.text.clone(), ty: resolved.ty, offset: 0, bit: None, open: None });
+            let counts = field.initial.is_some() || images.is_empty();
+            if counts {
+                starts.extend(resolved.starts.iter().cloned());
+            }
+            images.push((counts, resolved.image));
+        }
+        let size = images.iter().map(|(_, image)| image.len()).max().unwrap_or(0).max(1) as u32;
+        let align = fields.iter().map(|field| self.declarations().types().align(field.ty)).max().unwrap_or(1);
+        self.declarations_mut().charge_image(u64::from(size), span)?;
+        let mut image = vec![0; align_up(size, align) as usize];
+        for (_, bytes) in images.iter().filter(|(counts, _)| *counts) {
+            image.iter_mut().zip(bytes.iter()).for_each(|(target, source)| *target = *source);
+        }
+        let image: Arc<[u8]> = image.into();
+        let ty = reserved.unwrap_or_else(|| self.declarations_mut().types_mut().structure(name.to_owned()));
+        self.declarations_mut().types_mut().complete_structure(ty, fields, image.clone());
+        Some(TypedImage { ty, image, starts: starts.into() })
+    }
+}

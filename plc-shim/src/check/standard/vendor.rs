@@ -1,0 +1,21 @@
+//! Functions of vendors' controllers that have no equal here.
+
+use crate::diagnostic::Code;
+
+/// Functions of vendors' controllers that have no equal here, by how their names begin, and what to use.
+pub(in crate::check) const VENDOR_FUNCTIONS: [(&str, Code, &str); 14] = [
+    ("S_PULSE", Code::ClassicTimer, "use TP"),
+    ("S_PEXT", Code::ClassicTimer, "use TP"),
+    ("S_ODTS", Code::ClassicTimer, "use TON"),
+    ("S_ODT", Code::ClassicTimer, "use TON"),
+    ("S_OFFDT", Code::ClassicTimer, "use TOF"),
+    ("S_CUD", Code::ClassicTimer, "use CTUD"),
+    ("S_CU", Code::ClassicTimer, "use CTU"),
+    ("S_CD", Code::ClassicTimer, "use CTD"),
+    ("PEEK", Code::VendorRuntime, "declare a variable and use that"),
+    ("POKE", Code::VendorRuntime, "declare a variable and use that"),
+    ("SYSTIME", Code::VendorRuntime, "TIME() gives virtual time"),
+    ("TIME_TCK", Code::VendorRuntime, "use a timer: it counts virtual time"),
+    ("__NEW", Code::VendorRuntime, "declare the instance"),
+    ("__DELETE", Code::VendorRuntime, "declare the instance"),
+];

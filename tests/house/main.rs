@@ -1,0 +1,124 @@
+//! The order of the house, read from its sources: modules of one crate stand in rooms, the arrows between rooms point
+//! one way, and a closed room is entered through its interface only.
+//!
+//! The rooms are data ([`HOUSE`]): a line names a folder whose modules are rooms. Modules that only tests compile do not
+//! count.
+
+mod graph;
+mod source;
+mod tokens;
+
+use std::path::Path;
+
+use graph::{Arrow, Rooms};
+use source::{Field, Sources};
+
+/// A folder whose modules are rooms.
+struct Floor {
+    /// From the root of the repository.
+    folder: &'static str,
+    /// True if rooms are entered only through what their own modules show, and keep the fields of their structures to
+    /// themselves.
+    closed: bool,
+    /// Structures of closed rooms that are plain records: what they hold is their interface.
+    records: &'static [&'static str],
+    /// Circles that are still there, as the names of their rooms in alphabetical order. A circle that is gone must go
+    /// from here, too, so that it cannot come back.
+    known: &'static [&'static [&'static str]],
+}
+
+const HOUSE: &[Floor] = &[
+    Floor { folder: "plc-shim/src", closed: false, records: &[], known: &[] },
+    Floor {
+        folder: "plc-shim/src/check",
+        closed: true,
+        records: &[
+            // Declarations as they are handed on.
+            "Class",
+            "Conversion",
+            "Declared",
+            "Enumerator",
+            "Home",
+            "Kept",
+            "Membership",
+            "Outcome",
+            "Start",
+            "Started",
+            "TextConversion",
+            "TimedFunction",
+            "TypedImage",
+        ],
+        known: &[],
+    },
+];
+
+fn root() -> &'static Path {
+    Path::new(env!("CARGO_MANIFEST_DIR")).parent().expect("the tests stand in the repository")
+}
+
+fn open(fields: &[&Field]) -> String {
+    let line =
+        |field: &&Field| format!("    {}.{} ({}:{})\n", field.structure, field.name, field.file.display(), field.line);
+    fields.iter().map(line).collect()
+}
+
+fn rooms(floor: &Floor) -> Rooms {
+    let sources = Sources::read(&root().join(floor.folder));
+    Rooms::new(&sources)
+}
+
+/// What stands where, for a message.
+fn lines(arrows: &[&Arrow]) -> String {
+    arrows.iter().map(|arrow| format!("    {arrow}\n")).collect()
+}
+
+#[test]
+fn arrows_between_rooms_point_one_way() {
+    let mut found = String::new();
+    for floor in HOUSE {
+        let rooms = rooms(floor);
+        let circles = rooms.circles();
+        for circle in &circles {
+            if !floor.known.iter().any(|known| circle == known) {
+                let inside = rooms.inside(circle);
+                found += &format!("{}: circle of {}\n{}", floor.folder, circle.join(", "), lines(&inside));
+            }
+        }
+        for known in floor.known {
+            if !circles.iter().any(|circle| circle == known) {
+                found += &format!(
+                    "{}: the circle of {} is gone, so it is not known any more\n",
+                    floor.folder,
+                    known.join(", ")
+                );
+            }
+        }
+    }
+    assert!(found.is_empty(), "\n{found}");
+}
+
+#[test]
+fn a_closed_room_is_entered_through_its_interface() {
+    let mut found = String::new();
+    for floor in HOUSE.iter().filter(|floor| floor.closed) {
+        let rooms = rooms(floor);
+        let past = rooms.past_interfaces();
+        if !past.is_empty() {
+            found += &format!("{}: past a room's interface\n{}", floor.folder, lines(&past));
+        }
+    }
+    assert!(found.is_empty(), "\n{found}");
+}
+
+#[test]
+fn a_closed_room_keeps_its_fields() {
+    let mut found = String::new();
+    for floor in HOUSE.iter().filter(|floor| floor.closed) {
+        let rooms = rooms(floor);
+        let fields = rooms.open_fields(floor.records);
+        if !fields.is_empty() {
+            found += &format!("{}: fields that other rooms see\n{}", floor.folder, open(&fields));
+        }
+    }
+    assert!(found.is_empty(), "\n{found}");
+}
