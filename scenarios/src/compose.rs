@@ -144,7 +144,8 @@ impl Scenario {
                 Scene::parse(&text, &named).map_err(|plain| error(&plain))?;
                 let fault = with.faults().first();
                 let message = fault.map_or_else(|| with.to_string(), |fault| fault.kind.to_string());
-                let (index, help) = (fault.and_then(|fault| fault.overridden), fault.and_then(|fault| fault.hint.clone()));
+                let (index, help) =
+                    (fault.and_then(|fault| fault.overridden), fault.and_then(|fault| fault.hint.clone()));
                 return Err(self.wrong_override(name, index, message, help).unwrap_or_else(|| error(&with)));
             }
         };

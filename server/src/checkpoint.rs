@@ -163,7 +163,8 @@ impl PlanSummary {
         if let Some(name) = client(other, self) {
             return Some(format!("it does not have client `{name}`"));
         }
-        let find = |of: &Self, signal: &PlannedSignal| of.signals.iter().find(|other| other.name == signal.name).cloned();
+        let find =
+            |of: &Self, signal: &PlannedSignal| of.signals.iter().find(|other| other.name == signal.name).cloned();
         for signal in &self.signals {
             match find(other, signal) {
                 None => {

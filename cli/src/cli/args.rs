@@ -34,7 +34,8 @@ const EXIT_CODES: &str = "Exit codes:
   1  a run is not what its scenario expects; runs that must be equal are not; a test failed;
      a check found warnings that are denied
   2  wrong input: options, scenario, PLC source, scene, checkpoint
-  3  a client or a link failed, the PLC program stopped on a fault, or the output could not be written";
+  3  a client or a link failed, the PLC program stopped on a fault, or the output
+     could not be written";
 
 /// The commands.
 #[derive(Debug, Subcommand)]

@@ -7,7 +7,9 @@ use std::sync::{Arc, Mutex, PoisonError};
 use onescan_plc_shim::{
     Application, CodePolicy, Coverage, PlcFault, RestoreError, RunError, SoftPlc, TaskPlan, UnknownVariable, WriteError,
 };
-use onescan_server::client::{Client, ClientFault, ClientOperation, JoinRequest, OperationRefused, SourcePlace, StateError, Wake};
+use onescan_server::client::{
+    Client, ClientFault, ClientOperation, JoinRequest, OperationRefused, SourcePlace, StateError, Wake,
+};
 use onescan_server::signal::{ClientName, Port, SignalName};
 use onescan_server::time::{TimeSpan, VirtualTime};
 

@@ -86,7 +86,12 @@ impl Scenario {
     }
 
     /// Gives a PLC the initial values of the case.
-    pub(crate) fn preset(&self, plc: &mut SoftPlcClient, name: &ClientName, inputs: &[Input]) -> Result<(), ScenarioError> {
+    pub(crate) fn preset(
+        &self,
+        plc: &mut SoftPlcClient,
+        name: &ClientName,
+        inputs: &[Input],
+    ) -> Result<(), ScenarioError> {
         let Some(applied) = self.applied() else { return Ok(()) };
         let builder = Application::builder().inputs(inputs.iter().cloned());
         for setting in settings_of(applied, name) {

@@ -96,8 +96,7 @@ impl Scenario {
             let keys =
                 PeriodKeys { from: *from, until: *until, when: when.as_ref(), lasting: *lasting, place: fault.span() };
             let FailureAt { client, component, mode, .. } = failure.clone();
-            let repair =
-                Operation::Repair { client: client.clone(), component: component.clone(), mode: mode.clone() };
+            let repair = Operation::Repair { client: client.clone(), component: component.clone(), mode: mode.clone() };
             between(&mut timeline, ends(keys)?, Operation::Fail { client, component, mode }, repair);
             applied.failures.push(failure);
         }
@@ -284,7 +283,8 @@ impl Scenario {
 }
 
 fn is_number(ty: SignalType) -> bool {
-    matches!(ty, SignalType::Elementary(ty) if ty.is_number() || (ty.is_bits() && ty.size() > 0)) && ty != SignalType::BOOL
+    matches!(ty, SignalType::Elementary(ty) if ty.is_number() || (ty.is_bits() && ty.size() > 0))
+        && ty != SignalType::BOOL
 }
 
 /// An operation as the mark of a plot: short, without marks of code.
@@ -305,7 +305,8 @@ fn told(operation: &Operation) -> String {
 
 /// The operations that give a signal its values, one at each instant at which its value changes.
 fn resolve(timeline: &mut Vec<Scheduled>, signal: &SignalName, held: &[Held]) {
-    let mut instants: Vec<VirtualTime> = held.iter().flat_map(|held| std::iter::once(held.from).chain(held.until)).collect();
+    let mut instants: Vec<VirtualTime> =
+        held.iter().flat_map(|held| std::iter::once(held.from).chain(held.until)).collect();
     instants.sort_unstable();
     instants.dedup();
     let mut before: Option<&str> = None;

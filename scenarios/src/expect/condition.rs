@@ -205,8 +205,22 @@ mod tests {
     #[test]
     fn formulas_of_the_present_are_conditions() {
         let texts = [
-            "On", "not On", "x > 50 mm", "0.5 < x", "On and (x <= -1 or n = 3)", "n > 2.5", "n < 2.5", "n = 2.5",
-            "n < 300", "t >= 20 ms", "On implies n = 1", "always On", "rose(On)", "x + 1 > 2", "x > x", "y",
+            "On",
+            "not On",
+            "x > 50 mm",
+            "0.5 < x",
+            "On and (x <= -1 or n = 3)",
+            "n > 2.5",
+            "n < 2.5",
+            "n = 2.5",
+            "n < 300",
+            "t >= 20 ms",
+            "On implies n = 1",
+            "always On",
+            "rose(On)",
+            "x + 1 > 2",
+            "x > x",
+            "y",
         ];
         let read: Vec<String> = texts.iter().map(|text| format!("{text}  ->  {}", read(text))).collect();
         insta::assert_snapshot!(read.join("\n"));

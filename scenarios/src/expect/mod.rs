@@ -39,8 +39,8 @@ mod unit;
 mod verdict;
 mod window;
 
-pub use condition::condition;
 pub use bind::{Expectation, KnownSignal};
+pub use condition::condition;
 pub use error::FormulaError;
 pub use trace::{Trace, TraceEnd};
 pub use truth::Margin;

@@ -141,9 +141,9 @@ mod sensors;
 mod shapes;
 mod signals;
 
+use placed::Placed;
 use serde::Deserialize;
 use toml::de::DeTable;
-use placed::Placed;
 
 pub use error::{SceneError, SceneFault, SceneFaultKind, Thing};
 pub use failures::UnknownFailure;

@@ -157,15 +157,17 @@ mod tests {
 
     #[test]
     fn what_does_not_suit_is_the_fault_of_the_override() {
-        insta::assert_snapshot!([
-            with("bsae.friction", 1.0),
-            with("base.friction", 1.0),
-            with("body.base.friction", -1.0),
-            with("body.base.frction", 1.0),
-            with("body.base.friction", "much"),
-            with("body.base", 1.0),
-        ]
-        .map(|result| result.expect_err("refused"))
-        .join("\n"));
+        insta::assert_snapshot!(
+            [
+                with("bsae.friction", 1.0),
+                with("base.friction", 1.0),
+                with("body.base.friction", -1.0),
+                with("body.base.frction", 1.0),
+                with("body.base.friction", "much"),
+                with("body.base", 1.0),
+            ]
+            .map(|result| result.expect_err("refused"))
+            .join("\n")
+        );
     }
 }
