@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use onescan_clients::soft_plc::CoverageSink;
 use onescan_plc_shim::Coverage;
-use onescan_report::file;
+use onescan_report::{OutputError, file};
 
 use super::error::RunError;
 
@@ -44,7 +44,7 @@ impl CoverageRequest {
     pub(crate) fn write_report(&self, coverage: &Coverage) -> Result<(), RunError> {
         let text = match self.format {
             CoverageFormat::Lcov => coverage.to_lcov(),
-            CoverageFormat::Cobertura => coverage.to_cobertura().map_err(RunError::Output)?,
+            CoverageFormat::Cobertura => coverage.to_cobertura().map_err(OutputError)?,
         };
         Ok(file::write_whole(&self.path, text.as_bytes())?)
     }

@@ -6,7 +6,6 @@ use onescan_report::file;
 use onescan_scenario::Scenario;
 use onescan_scenario::compose::Member;
 use onescan_server::checkpoint::Checkpoint;
-use onescan_server::client::Client;
 use onescan_server::formation::{Formation, FormationError};
 use onescan_server::lockstep::{Lockstep, Outcome, Reached};
 use onescan_server::operation::OperatorInput;

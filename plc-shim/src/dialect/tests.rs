@@ -2,7 +2,7 @@ use std::fmt::Write;
 
 use super::table::{BEHAVIOURS, FEATURES};
 use super::*;
-use crate::syntax::direct_address::AddressUnit;
+use crate::dialect::AddressUnit;
 
 #[test]
 fn every_feature_and_dialect_has_one_row() {
