@@ -34,7 +34,8 @@ fn run(path: &std::path::Path, words: &[&str]) -> (Vec<serde_json::Value>, Said)
 
 /// Virtual time of the last boundary at which nothing of the case has happened, if it has a time.
 fn last_boundary_before(case: &Scenario) -> VirtualTime {
-    let first = case.timeline().iter().filter_map(|one| if let When::At(at) = one.when { Some(at) } else { None }).min();
+    let first =
+        case.timeline().iter().filter_map(|one| if let When::At(at) = one.when { Some(at) } else { None }).min();
     let step = case.plan().step();
     first.map_or(VirtualTime::from_nanos(BEFORE_ANYTHING_MS * 1_000_000), |at| at.saturating_sub(step))
 }
@@ -49,8 +50,10 @@ fn every_case_goes_on_from_the_checkpoint_of_the_scenario_as_it_is() {
             let at = last_boundary_before(&applied);
             let file = folder.path().join(format!("{}.checkpoint", case.name));
             let file = file.to_str().unwrap();
-            let (saved, said) =
-                run(&path, &["--save-at", &at.to_string(), "--save", file, "--until", &(at + plain.plan().step()).to_string()]);
+            let (saved, said) = run(
+                &path,
+                &["--save-at", &at.to_string(), "--save", file, "--until", &(at + plain.plan().step()).to_string()],
+            );
             assert_eq!(saved.len(), 1, "{said:?}");
             let (resumed, said) = run(&path, &["--case", &case.name, "--resume", file]);
             if case.settings.is_empty() && case.seed.is_none() {
