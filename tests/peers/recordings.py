@@ -25,7 +25,7 @@ def parquet(folder):
     return {
         "rows": table.num_rows,
         "columns": table.column_names,
-        "digest": last["digest"].hex(),
+        "digest": "d2:" + last["digest"].hex(),
         "last": {name: value for name, value in last.items() if name != "digest"},
     }
 

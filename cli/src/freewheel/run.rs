@@ -19,6 +19,7 @@ use onescan_server::timeline::Scheduled;
 
 use super::item::Items;
 use super::link::{OpcLink, Route};
+use super::timeline::OwnTimeline;
 use super::wheel::{Halt, Wheel};
 
 pub use super::wheel::Clock;
