@@ -1,12 +1,8 @@
 //! The name that was probably meant.
 
-/// Names below this many characters are near to every other, so nothing is near to them except themselves in
-/// another case.
-const LENGTH_MIN: usize = 3;
-
 /// The candidate nearest to `wanted`, if any is near enough to have been meant: at most a third of the longer name's
-/// characters is wrong, swapped, missing or too many. Case does not count. Of equally near candidates the first by
-/// the alphabet.
+/// characters is wrong, swapped, missing or too many, so that nothing is guessed among names of one or two. Case does
+/// not count. Of equally near candidates the first by the alphabet.
 ///
 /// ```
 /// use onescan_base::nearest;
@@ -29,7 +25,7 @@ pub fn nearest<'a>(wanted: &str, candidates: impl IntoIterator<Item = &'a str>) 
 fn rank(wanted: &str, length: usize, candidate: &str) -> Option<usize> {
     let other = candidate.chars().count();
     let (longer, shorter) = (length.max(other), length.min(other));
-    let wrong_max = if shorter < LENGTH_MIN { 0 } else { longer / 3 };
+    let wrong_max = longer / 3;
     // Distances are quadratic in the lengths; most candidates of a large program are excluded by theirs.
     if longer - shorter > wrong_max {
         return None;
@@ -68,7 +64,8 @@ mod tests {
     #[test]
     fn short_names_are_not_guessed() {
         assert_eq!(nearest("x", ["y", "xy"]), None);
-        assert_eq!(nearest("ab", ["ac", "abc"]), None);
+        assert_eq!(nearest("ab", ["ac", "cb"]), None);
+        assert_eq!(nearest("t11", ["T1", "Tx"]), Some("T1"));
         assert_eq!(nearest("x", ["X"]), Some("X"));
         assert_eq!(nearest("Rum", ["Run"]), Some("Run"));
     }

@@ -1,22 +1,30 @@
 //! The `onescan` program: loads a scenario, composes server, plant and PLC, runs them, reports.
 //!
-//! Modules in the order in which data flows through them:
+//! Modules in the order in which data flows through them; what is further down knows nothing of what is above:
 //!
 //! | module | subject |
 //! |---|---|
 //! | [`cli`] | the command line |
-//! | [`run`] | runs of a scenario: in lockstep or not, recorded, reported |
-//! | [`regress`] | all cases run, compared with reviewed snapshots, reported |
 //! | [`review`] | snapshots looked at, accepted or rejected |
-//! | [`export`], [`diff`], [`bisect`] | recordings in other forms; where two part and why; since which commit |
-//! | [`new`] | scenarios to begin with |
-//! | [`check`] | PLC sources checked without being run |
+//! | [`compare`] | lockstep beside the other ways of bringing plant and PLC together |
+//! | [`bisect`] | the commit since which a run is another |
+//! | [`diff`] | where two recordings or snapshots part, and why |
+//! | [`regress`] | all cases run, compared with reviewed snapshots, reported |
+//! | [`snapshot`] | trajectories as small text, compared |
+//! | [`run`] | runs of a scenario: in lockstep or not, recorded, reported |
+//! | [`freewheel`] | running without lockstep, to show what it is good for |
+//! | [`session`] | part in a session that another process serves |
+//! | [`plc`] | a soft PLC as a process of its own |
+//! | [`browse`] | what a real PLC has |
 //! | [`instrument`] | PLC projects made to run in lockstep, and back |
+//! | [`check`] | PLC sources checked without being run |
 //! | [`wiring`] | signals between clients, told and drawn |
 //! | [`plant`] | scenes and components, told without a session |
-//! | [`freewheel`] | running without lockstep, to show what it is good for |
-//! | [`browse`] | what a real PLC has |
-//! | [`plc`] | a soft PLC as a process of its own |
+//! | [`export`] | recordings in other forms |
+//! | [`new`] | scenarios to begin with |
+//! | [`interrupt`] | Ctrl-C |
+//! | [`format`] | for whom the output is |
+//! | [`error`] | what several commands find wrong, and what the shell is told |
 //!
 //! Invariants. This is the only crate that starts processes and prints. What a session computes is decided
 //! in the crates below; nothing here can change a digest.
@@ -25,14 +33,20 @@ pub mod bisect;
 pub mod browse;
 pub mod check;
 pub mod cli;
+pub mod compare;
 pub mod diff;
+pub mod error;
 pub mod export;
+pub mod format;
 pub mod freewheel;
 pub mod instrument;
+pub mod interrupt;
 pub mod new;
 pub mod plant;
 pub mod plc;
 pub mod regress;
 pub mod review;
 pub mod run;
+pub mod session;
+pub mod snapshot;
 pub mod wiring;

@@ -11,7 +11,6 @@
 //! | [`array`] | names with a range, as in `arm[0..9].hold` |
 //! | [`replay`] | a client that repeats what another once did |
 //! | [`operator`] | switches and set points that nobody else writes |
-//! | [`forced`] | a client some of whose outputs are held for a time |
 //!
 //! # Invariants
 //! - A client is a function of its state, its inputs and `t_v`. None reads a random
@@ -22,7 +21,6 @@
 //! - Bad input is an error with a place, never a panic.
 
 pub mod array;
-pub mod forced;
 pub mod gateway;
 pub mod information_model;
 pub mod opcua_server;

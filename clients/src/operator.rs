@@ -1,7 +1,7 @@
 //! The operator: switches, buttons and set points that neither plant nor PLC writes.
 //!
 //! By itself an operator does nothing: its signals keep their initial values. What it does in a run
-//! comes from outside, as a [`Force`](crate::forced::Force) that begins at its instant.
+//! comes from outside, as operations on the session's timeline.
 
 use onescan_server::client::{Client, ClientFault, JoinRequest, StateError, Wake};
 use onescan_server::signal::{ClientName, Port};

@@ -8,7 +8,7 @@ use onescan_clients::operator::Operator;
 use onescan_clients::plant::{Plant, Scene, SceneError, SceneFault};
 use onescan_clients::soft_plc::{Bindings, SoftPlcClient, bind};
 use onescan_plc_shim::input::kind::{FileKind, SourceKind};
-use onescan_plc_shim::{Application, Dialect, Input, Task, TaskPlan};
+use onescan_plc_shim::{Application, Builder, Dialect, Input, Task, TaskPlan};
 use onescan_server::client::{Client, JoinRequest};
 use onescan_server::signal::{ClientName, Port, SignalName, did_you_mean};
 
@@ -46,6 +46,8 @@ pub struct Compiled {
     pub application: Application,
     /// What `bind` says, patterns written out.
     pub paths: Paths,
+    /// The sources as they are, without what the case changes.
+    pub inputs: Vec<Input>,
 }
 
 impl Scenario {
@@ -62,16 +64,16 @@ impl Scenario {
             ClientFile::Plant { scene, period } => {
                 let scene = self.scene_in_case(name, scene)?;
                 let plant = Plant::new(scene, name.clone(), period.unwrap_or(self.file().step));
-                Ok(Member::Plant(self.forced(Box::new(plant.seeded(self.seed())))))
+                Ok(Member::Plant(Box::new(plant.seeded(self.seed()))))
             }
             ClientFile::Gateway { .. } => self.gateway(name).map(Member::Gateway),
             ClientFile::SoftPlc { .. } if self.gateways.contains_key(name) => self.gateway(name).map(Member::Gateway),
             ClientFile::SoftPlc { sources, dialect, tasks, bind, .. } => {
                 let compiled = self.compiled(name, sources, *dialect, bind)?;
                 let plc = self.soft_plc(name, &compiled, tasks)?;
-                Ok(Member::Plc(self.forced(Box::new(plc))))
+                Ok(Member::Plc(Box::new(plc)))
             }
-            ClientFile::Operator { initial } => Ok(Member::Plant(self.forced(Box::new(self.operator(name, initial)?)))),
+            ClientFile::Operator { initial } => Ok(Member::Plant(Box::new(self.operator(name, initial)?))),
             ClientFile::External { command } => Ok(Member::External(command.clone())),
             ClientFile::OpcUa { command, .. } => {
                 Ok(Member::Seated { request: self.request(name)?, command: command.clone() })
@@ -130,12 +132,25 @@ impl Scenario {
 
     /// The scene of plant `name` as the case wants it.
     fn scene_in_case(&self, name: &ClientName, file: &str) -> Result<Scene, ScenarioError> {
-        // What is wrong with the scene itself is told first.
-        let plain = self.scene_of(file)?;
         let path = self.folder().join(file);
         let (text, named) = (read(&path)?, path.display().to_string());
-        let wanted = self.scene_text(name, &named, text.clone())?;
-        Ok(if wanted == text { plain } else { Scene::parse(&wanted, &named).unwrap_or(plain) })
+        let error = |error: &SceneError| ScenarioError::from(Box::new(report(error, &named, &text)));
+        let overrides = self.overrides(name);
+        let scene = match Scene::parse_with(&text, &named, &overrides) {
+            Ok(scene) => scene,
+            Err(with) if overrides.is_empty() => return Err(error(&with)),
+            Err(with) => {
+                // What is wrong with the scene itself comes first.
+                Scene::parse(&text, &named).map_err(|plain| error(&plain))?;
+                let fault = with.faults().first();
+                let message = fault.map_or_else(|| with.to_string(), |fault| fault.kind.to_string());
+                let (index, help) =
+                    (fault.and_then(|fault| fault.overridden), fault.and_then(|fault| fault.hint.clone()));
+                return Err(self.wrong_override(name, index, message, help).unwrap_or_else(|| error(&with)));
+            }
+        };
+        self.check_failures(name, &scene)?;
+        Ok(scene)
     }
 
     /// The sources of soft PLC `name`, compiled, and what its `bind` says.
@@ -149,28 +164,24 @@ impl Scenario {
         dialect: Option<Dialect>,
         bind: &BTreeMap<String, String>,
     ) -> Result<Compiled, ScenarioError> {
-        let plain = self.inputs(name, sources, dialect)?;
-        let inputs: Vec<Input> = plain.iter().cloned().map(|input| self.with_constants(name, input)).collect();
-        let compiled = match (self.writers(), self.coverage()) {
-            (Some(_), _) => Application::from_inputs_traced(inputs),
-            (None, Some(_)) => Application::from_inputs_with_coverage(inputs),
-            (None, None) => Application::from_inputs(inputs),
+        let inputs = self.inputs(name, sources, dialect)?;
+        let built = match (self.writers(), self.coverage()) {
+            (Some(_), _) => self.built(name, &inputs, Builder::traced),
+            (None, Some(_)) => self.built(name, &inputs, Builder::covered),
+            (None, None) => self.built(name, &inputs, |plain| plain),
         };
-        let application = compiled.map_err(|findings| match self.wrong_constant(name, &plain) {
-            Some(error) => error,
-            None => Box::new(PlcReport { client: name.clone(), findings }).into(),
-        })?;
+        let application = built?.map_err(|findings| Box::new(PlcReport { client: name.clone(), findings }))?;
         for warning in application.warnings().iter() {
             tracing::warn!(code = %warning.code, "{}", warning.message);
         }
         let paths = self.paths(name, bind)?;
-        Ok(Compiled { application, paths })
+        Ok(Compiled { application, paths, inputs })
     }
 
     fn soft_plc(
         &self,
         name: &ClientName,
-        Compiled { application, paths }: &Compiled,
+        Compiled { application, paths, inputs }: &Compiled,
         tasks: &[TaskFile],
     ) -> Result<SoftPlcClient, ScenarioError> {
         let bindings = self.bindings(name, application, paths)?;
@@ -178,7 +189,7 @@ impl Scenario {
         self.fits_step(name, &plan)?;
         let mut client = SoftPlcClient::new(name.clone(), application, &plan, &bindings, self.file().step)
             .map_err(|error| self.wrong_client(name, error.to_string(), None))?;
-        self.preset(&mut client, name)?;
+        self.preset(&mut client, name, inputs)?;
         if let Some(sink) = self.coverage() {
             client.cover(sink.clone());
         }

@@ -94,7 +94,7 @@ impl Scenario {
         let port = |name: &SignalName, ty| Port { name: name.clone(), ty };
         match self.file().clients.get(name).map(toml::Spanned::get_ref) {
             Some(ClientFile::SoftPlc { sources, dialect, tasks, bind, .. }) => {
-                let Compiled { application, paths } = self.compiled(name, sources, *dialect, bind)?;
+                let Compiled { application, paths, .. } = self.compiled(name, sources, *dialect, bind)?;
                 let bindings = self.bindings(name, &application, &paths)?;
                 let plan = self.task_plan(name, &application, tasks)?;
                 let plc = SoftPlcClient::new(name.clone(), &application, &plan, &bindings, self.file().step);

@@ -74,9 +74,28 @@ fn without_a_window_a_run_s_end_decides_and_a_cut_does_not() {
     let mut columns = Vec::new();
     let expectation = Expectation::parse("eventually done", &known(), &mut columns).unwrap();
     let mut run = trace(&[&[0.], &[0.]]);
-    assert_eq!(violated_at(&expectation.judge(&run)), Some(0));
+    assert_eq!(violated_at(&expectation.judge(&run)), Some(1), "it could have come until the end");
     run.set_end(TraceEnd::Cut);
     assert_eq!(expectation.judge(&run).verdict, Verdict::Open);
+}
+
+#[test]
+fn what_is_waited_for_in_vain_is_violated_when_the_wait_is_over() {
+    let ms = |formula: &str, samples: &[&[f64]]| match judge(formula, samples).verdict {
+        Verdict::Violated { at, .. } => Some(at.as_nanos() / 1_000_000),
+        _ => None,
+    };
+    let never: &[&[f64]] = &[&[0.], &[0.], &[0.], &[0.]];
+    assert_eq!(ms("eventually done", never), Some(300), "at the end of the run");
+    assert_eq!(ms("eventually[0,250ms] done", never), Some(250), "at the end of the window, between two samples");
+    assert_eq!(ms("always eventually[0,100ms] done", never), Some(100));
+    let neither: &[&[f64]] = &[&[0., 0.], &[0., 0.], &[0., 0.], &[0., 0.]];
+    assert_eq!(ms("(eventually[0,100ms] done) or (eventually[0,200ms] closed)", neither), Some(200), "not both came");
+    assert_eq!(ms("(eventually[0,100ms] done) and (eventually[0,200ms] closed)", neither), Some(100), "one did not");
+    let broken: &[&[f64]] = &[&[1., 0.], &[0., 0.], &[1., 0.], &[1., 1.]];
+    assert_eq!(ms("closed until[0,300ms] done", broken), Some(100), "it was open before the time");
+    let held: &[&[f64]] = &[&[1., 0.], &[1., 0.], &[1., 0.], &[1., 0.]];
+    assert_eq!(ms("closed until[0,300ms] done", held), Some(300));
 }
 
 #[test]
@@ -109,7 +128,7 @@ fn until_and_since_hold_what_is_between() {
 fn a_signal_holds_between_samples() {
     // Windows that begin between samples see what holds there.
     assert_eq!(judge("eventually[150ms,180ms] done", &[&[0.], &[1.], &[0.]]).verdict, Verdict::Met);
-    assert_eq!(violated_at(&judge("eventually[150ms,180ms] done", &[&[1.], &[0.], &[1.]])), Some(0));
+    assert_eq!(violated_at(&judge("eventually[150ms,180ms] done", &[&[1.], &[0.], &[1.]])), Some(1));
 }
 
 #[test]

@@ -10,7 +10,7 @@ use crate::client::StateError;
 use crate::digest::{Digest, TrajectoryDigest};
 use crate::plan::{Coupling, SessionPlan};
 use crate::session::SessionState;
-use crate::signal::{ClientName, SignalDecl};
+use crate::signal::{ClientName, SignalDecl, SignalName, SignalType};
 use crate::time::{StepCount, TimeSpan, VirtualTime};
 use crate::timeline::{TimelineError, TimelineState};
 
@@ -34,8 +34,17 @@ pub(crate) struct PlanSummary {
     step: TimeSpan,
     /// The clients in their order, or nothing in parallel coupling.
     order: Option<Vec<ClientName>>,
-    signals: Vec<SignalDecl>,
+    signals: Vec<PlannedSignal>,
     clients: Vec<ClientName>,
+}
+
+/// A signal of that plan. A declaration itself leaves out what is absent, which the binary form of
+/// checkpoints cannot.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+struct PlannedSignal {
+    name: SignalName,
+    ty: SignalType,
+    writer: Option<ClientName>,
 }
 
 /// The state of a session and of all its clients.
@@ -130,7 +139,13 @@ impl PlanSummary {
                 Some(order.iter().map(|client| plan.clients()[client.index()].clone()).collect())
             }
         };
-        Self { step: plan.step(), order, signals: plan.signals().to_vec(), clients: plan.clients().to_vec() }
+        let planned = |signal: &SignalDecl| PlannedSignal {
+            name: signal.name.clone(),
+            ty: signal.ty,
+            writer: signal.writer.clone(),
+        };
+        let signals = plan.signals().iter().map(planned).collect();
+        Self { step: plan.step(), order, signals, clients: plan.clients().to_vec() }
     }
 
     /// The first thing in which `other` is not this plan, in words; nothing if it is the same.
@@ -148,7 +163,8 @@ impl PlanSummary {
         if let Some(name) = client(other, self) {
             return Some(format!("it does not have client `{name}`"));
         }
-        let find = |of: &Self, signal: &SignalDecl| of.signals.iter().find(|other| other.name == signal.name).cloned();
+        let find =
+            |of: &Self, signal: &PlannedSignal| of.signals.iter().find(|other| other.name == signal.name).cloned();
         for signal in &self.signals {
             match find(other, signal) {
                 None => {

@@ -157,6 +157,14 @@ fn a_run_that_does_not_show_it_fails() {
 }
 
 #[test]
+fn a_margin_of_nothing_has_no_sign() {
+    let folder = shear_that_expects("no more than itself", "not (Position_1 > Position_1)");
+    let said = typed(folder.path(), &["run", ".", "--until", "100ms"]);
+    let line = said.out.lines().find(|line| line.contains("no more than itself")).expect("a line");
+    assert!(line.ends_with("met (margin 0.000e0)"), "{line}");
+}
+
+#[test]
 fn an_expectation_changes_no_digest() {
     let folder = shear_that_expects("short strokes", "always Position_1 > -100 mm");
     let said = typed(folder.path(), &["run", ".", "--until", "500ms", "--format", "json"]);

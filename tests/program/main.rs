@@ -21,6 +21,7 @@ mod load;
 mod new;
 mod opcua;
 mod operator;
+mod output;
 mod plant;
 mod plc;
 mod plc_ads;

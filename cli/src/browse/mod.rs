@@ -1,17 +1,22 @@
 //! `onescan browse`: what a PLC has, and a mapping to start from.
 
+mod error;
+
 use std::io::Write;
 use std::path::PathBuf;
 
 use onescan_clients::gateway::Settings;
 use onescan_clients::gateway::link::Found;
+use onescan_report::OutputError;
 use onescan_report::file::write_whole;
 use onescan_scenario::Scenario;
 use onescan_scenario::file::ClientFile;
 use onescan_server::signal::{ClientName, nearest};
 use serde::Serialize;
 
-use crate::run::{Format, RunError};
+pub use error::BrowseError;
+
+use crate::format::Format;
 
 /// What is asked for.
 #[derive(Clone, Debug)]
@@ -40,20 +45,20 @@ struct Line<'a> {
 ///
 /// # Errors
 /// The PLC cannot be reached or has no names, or the scenario is wrong.
-pub fn run(config: &BrowseConfig, out: &mut dyn Write) -> Result<(), RunError> {
-    let scenario = config.scenario.as_ref().map(|(path, name)| Ok::<_, RunError>((Scenario::load(path)?, name)));
+pub fn run(config: &BrowseConfig, out: &mut dyn Write) -> Result<(), BrowseError> {
+    let scenario = config.scenario.as_ref().map(|(path, name)| Ok::<_, BrowseError>((Scenario::load(path)?, name)));
     let scenario = scenario.transpose()?;
     let declared = match &scenario {
         Some((scenario, name)) => declared(scenario, name)?,
         None => Settings::default(),
     };
     let settings = Settings { url: config.url.clone(), ..declared };
-    let found = settings.browse().map_err(RunError::Browse)?;
+    let found = settings.browse()?;
     let listed = match config.format {
         Format::Json => json(&found, out),
         Format::Human => human(&found, out),
     };
-    listed.and_then(|()| out.flush()).map_err(RunError::Output)?;
+    listed.and_then(|()| out.flush()).map_err(OutputError)?;
     let Some(path) = &config.map else { return Ok(()) };
     let text = match &scenario {
         Some((scenario, name)) => mapping(scenario, name, &config.url, &found),
@@ -63,7 +68,7 @@ pub fn run(config: &BrowseConfig, out: &mut dyn Write) -> Result<(), RunError> {
 }
 
 /// The link that the scenario declares.
-fn declared(scenario: &Scenario, name: &ClientName) -> Result<Settings, RunError> {
+fn declared(scenario: &Scenario, name: &ClientName) -> Result<Settings, BrowseError> {
     match scenario.file().clients.get(name).map(toml::Spanned::get_ref) {
         Some(ClientFile::SoftPlc { gateway, .. }) => Ok(gateway.clone().unwrap_or_default()),
         Some(ClientFile::Gateway { gateway, .. }) => Ok(gateway.clone()),

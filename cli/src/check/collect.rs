@@ -10,7 +10,8 @@ use onescan_plc_shim::{Code, Dialect, Input, TaskPlan};
 use onescan_scenario::Scenario;
 use onescan_scenario::load::FILE_NAME;
 
-use crate::run::RunError;
+use super::error::CheckError;
+use crate::error::{Unreadable, Usage};
 
 /// Files that are checked together.
 pub struct Program {
@@ -25,7 +26,7 @@ pub struct Program {
 ///
 /// # Errors
 /// A file is not there, cannot be read, or is of no kind that is read.
-pub fn programs(paths: &[PathBuf], dialect: Option<Dialect>) -> Result<Vec<Program>, RunError> {
+pub fn programs(paths: &[PathBuf], dialect: Option<Dialect>) -> Result<Vec<Program>, CheckError> {
     let mut programs = Vec::new();
     let mut files = Files { dialect, ..Files::default() };
     for path in paths {
@@ -43,12 +44,12 @@ pub fn programs(paths: &[PathBuf], dialect: Option<Dialect>) -> Result<Vec<Progr
     if programs.is_empty() {
         let known: Vec<_> = EXTENSIONS.iter().map(|(extension, _)| format!(".{extension}")).collect();
         let help = format!("files with PLC sources end in {}", known.join(" "));
-        return Err(RunError::usage("there are no PLC sources here", Some(help)));
+        return Err(Usage::new("there are no PLC sources here", Some(help)).into());
     }
     Ok(programs)
 }
 
-fn scenario(path: &Path, chosen: Option<Dialect>) -> Result<Vec<Program>, RunError> {
+fn scenario(path: &Path, chosen: Option<Dialect>) -> Result<Vec<Program>, CheckError> {
     let scenario = Scenario::load(path)?;
     let mut programs = Vec::new();
     for (sources, dialect, plan) in scenario.plcs() {
@@ -72,22 +73,22 @@ struct Files {
 
 impl Files {
     /// A file that was named: it must be one that is read.
-    fn named(&mut self, path: &Path) -> Result<(), RunError> {
+    fn named(&mut self, path: &Path) -> Result<(), CheckError> {
         if let Some(kind) = FileKind::of(path) {
             return self.file(path, kind);
         }
         // A missing file is told before its wrong name.
-        std::fs::metadata(path).map_err(|source| unreadable(path, source))?;
+        std::fs::metadata(path).map_err(Unreadable::at(path))?;
         if path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("l5x")) {
-            return Err(logix(&path.display().to_string()));
+            return Err(logix(&path.display().to_string()).into());
         }
         let known: Vec<_> = EXTENSIONS.iter().map(|(extension, _)| format!(".{extension}")).collect();
         let help = format!("files with PLC sources end in {}", known.join(" "));
-        Err(RunError::usage(format!("{} is of no kind that is read", path.display()), Some(help)))
+        Err(Usage::new(format!("{} is of no kind that is read", path.display()), Some(help)).into())
     }
 
-    fn file(&mut self, path: &Path, kind: FileKind) -> Result<(), RunError> {
-        let bytes = std::fs::read(path).map_err(|source| unreadable(path, source))?;
+    fn file(&mut self, path: &Path, kind: FileKind) -> Result<(), CheckError> {
+        let bytes = std::fs::read(path).map_err(Unreadable::at(path))?;
         // The same file by two names is still one.
         let identity = path.canonicalize().unwrap_or_else(|_| path.to_owned());
         if !self.seen.insert(identity) {
@@ -109,7 +110,7 @@ impl Files {
     }
 
     /// The files of a TwinCAT project; objects without program text, as tasks are, are passed over.
-    fn project(&mut self, path: &Path, bytes: &[u8]) -> Result<(), RunError> {
+    fn project(&mut self, path: &Path, bytes: &[u8]) -> Result<(), CheckError> {
         let name = path.display().to_string();
         let folder = path.parent().unwrap_or(Path::new(""));
         match project::files(bytes) {
@@ -127,10 +128,10 @@ impl Files {
     }
 
     /// All sources in a folder and below it. Where a project is, it says which files are meant.
-    fn folder(&mut self, path: &Path) -> Result<(), RunError> {
+    fn folder(&mut self, path: &Path) -> Result<(), CheckError> {
         let mut entries = Vec::new();
-        for entry in std::fs::read_dir(path).map_err(|source| unreadable(path, source))? {
-            entries.push(entry.map_err(|source| unreadable(path, source))?.path());
+        for entry in std::fs::read_dir(path).map_err(Unreadable::at(path))? {
+            entries.push(entry.map_err(Unreadable::at(path))?.path());
         }
         entries.sort();
         let is_project = |file: &&PathBuf| FileKind::of(file) == Some(FileKind::Project);
@@ -167,13 +168,9 @@ fn is_whole(path: &Path) -> bool {
     is_own && std::fs::read(path).is_ok_and(|bytes| instrument::is_whole(&String::from_utf8_lossy(&bytes)))
 }
 
-fn unreadable(path: &Path, source: std::io::Error) -> RunError {
-    RunError::File { path: path.to_owned(), source }
-}
-
 /// Why neither files nor targets of Logix controllers are taken: `docs/decisions/007`.
-pub fn logix(what: &str) -> RunError {
+pub fn logix(what: &str) -> Usage {
     let help = "its timers and motion instructions are the controller's own and have no form in IEC 61131-3; \
         write the program in Structured Text, or let the controller take part as it is by a gateway";
-    RunError::usage(format!("{what}: projects of Logix controllers are not read or written"), Some(help.to_owned()))
+    Usage::new(format!("{what}: projects of Logix controllers are not read or written"), Some(help.to_owned()))
 }

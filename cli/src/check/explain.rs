@@ -3,8 +3,10 @@
 use std::io::{self, Write};
 
 use onescan_plc_shim::{Code, explain};
+use onescan_report::OutputError;
 
-use crate::run::RunError;
+use super::error::CheckError;
+use crate::error::Usage;
 
 /// Writes every code with a line about it.
 ///
@@ -18,11 +20,11 @@ pub fn list(out: &mut dyn Write) -> io::Result<()> {
 ///
 /// # Errors
 /// There is no such code.
-pub fn page(code: &str, out: &mut dyn Write) -> Result<(), RunError> {
+pub fn page(code: &str, out: &mut dyn Write) -> Result<(), CheckError> {
     let found = Code::ALL.iter().copied().find(|known| known.text().eq_ignore_ascii_case(code));
     let text = found.and_then(explain::page).ok_or_else(|| {
         let help = "`onescan explain --list` names them all".to_owned();
-        RunError::usage(format!("there is no code `{code}`"), Some(help))
+        Usage::new(format!("there is no code `{code}`"), Some(help))
     })?;
-    out.write_all(text.as_bytes()).map_err(RunError::Output)
+    Ok(out.write_all(text.as_bytes()).map_err(OutputError)?)
 }

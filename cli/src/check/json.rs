@@ -3,17 +3,18 @@
 use std::io::{self, Write};
 
 use onescan_plc_shim::Finding;
+use onescan_report::Severity;
 use serde::Serialize;
 
-use super::report::Report;
+use super::report::{Report, severity};
 
 /// One finding. Lines and columns count from 1, columns count characters.
 #[derive(Debug, Serialize)]
 pub struct Line<'a> {
     /// The stable code, as in `N0101`; see `onescan explain`.
     pub code: &'a str,
-    /// `error` or `warning`.
-    pub severity: String,
+    /// How grave it is.
+    pub severity: Severity,
     /// The file as it was named, or found in a folder.
     pub file: &'a str,
     /// The line it begins in.
@@ -36,7 +37,7 @@ impl<'a> From<&'a Finding> for Line<'a> {
         let (start, end) = (finding.start(), finding.end());
         Self {
             code: found.code.text(),
-            severity: found.severity.to_string(),
+            severity: severity(found.severity),
             file: finding.file(),
             line: start.line,
             column: start.column,

@@ -10,6 +10,7 @@
 //! | [`explain`] | the page behind a code |
 
 pub mod collect;
+mod error;
 pub mod explain;
 pub mod human;
 pub mod json;
@@ -20,9 +21,11 @@ use std::io::Write;
 use std::path::PathBuf;
 
 use onescan_plc_shim::{Dialect, inspect};
+use onescan_report::OutputError;
 
-use crate::run::RunError;
-use crate::run::error::ExitCode;
+pub use error::CheckError;
+
+use crate::error::ExitCode;
 use report::Report;
 
 /// For whom the findings are.
@@ -65,7 +68,7 @@ pub enum Warnings {
 /// # Errors
 /// A file cannot be read, or the report not be written. What is wrong with the sources is no error
 /// here but an exit code.
-pub fn check(config: &CheckConfig, out: &mut dyn Write) -> Result<ExitCode, RunError> {
+pub fn check(config: &CheckConfig, out: &mut dyn Write) -> Result<ExitCode, CheckError> {
     let programs = collect::programs(&config.paths, config.dialect)?;
     let files = programs.iter().map(|program| program.inputs.len()).sum();
     let findings = programs.into_iter().map(|program| inspect(program.inputs, program.plan.as_ref()));
@@ -75,6 +78,6 @@ pub fn check(config: &CheckConfig, out: &mut dyn Write) -> Result<ExitCode, RunE
         CheckFormat::Json => json::write(&report, out),
         CheckFormat::Sarif => sarif::write(&report, out),
     };
-    written.map_err(RunError::Output)?;
+    written.map_err(OutputError)?;
     Ok(report.exit_code(config.warnings))
 }

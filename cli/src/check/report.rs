@@ -5,7 +5,15 @@ use std::collections::BTreeSet;
 use onescan_plc_shim::{Diagnostics, Finding, Severity};
 
 use super::Warnings;
-use crate::run::error::ExitCode;
+use crate::error::ExitCode;
+
+/// The reports' word for how grave a finding is.
+pub fn severity(severity: Severity) -> onescan_report::Severity {
+    match severity {
+        Severity::Warning => onescan_report::Severity::Warning,
+        Severity::Error => onescan_report::Severity::Error,
+    }
+}
 
 /// What was found.
 #[derive(Debug)]

@@ -3,6 +3,7 @@
 use clap::{ArgAction, Parser, Subcommand};
 
 use super::compare::CompareArgs;
+use super::error::CommandError;
 use super::plant::{ComponentsArgs, DescribeArgs, NewArgs, WiringArgs};
 use super::plc::{BrowseArgs, PlcArgs};
 use super::recording::{BisectArgs, DiffArgs, ExportArgs};
@@ -11,7 +12,7 @@ use super::session::{ControlArgs, JoinArgs};
 use super::source::{CheckArgs, ExplainArgs, InstrumentArgs};
 use super::test::{ReviewArgs, TestArgs, WorkerArgs};
 use super::{compare, plant, plc, recording, run, session, source, test};
-use crate::run::error::{ExitCode, RunError};
+use crate::error::ExitCode;
 
 /// Deterministic lockstep virtual commissioning.
 ///
@@ -86,8 +87,8 @@ pub enum Command {
 /// Does what was typed.
 ///
 /// # Errors
-/// See [`RunError`].
-pub fn dispatch(command: Command) -> Result<ExitCode, RunError> {
+/// See [`CommandError`].
+pub fn dispatch(command: Command) -> Result<ExitCode, CommandError> {
     match command {
         Command::Run(args) => run::run(*args),
         Command::Compare(args) => compare::compare(args),

@@ -6,11 +6,12 @@ use clap::Args as ClapArgs;
 use onescan_server::signal::SignalName;
 use onescan_server::time::VirtualTime;
 
+use super::error::CommandError;
 use super::value::{FormatArg, plane};
-use crate::run::compare::CompareConfig;
-use crate::run::error::{ExitCode, RunError};
-use crate::run::interrupt::Interrupt;
-use crate::run::{Format, RunConfig};
+use crate::compare::CompareConfig;
+use crate::error::ExitCode;
+use crate::interrupt::Interrupt;
+use crate::run::RunConfig;
 
 /// Options of `compare`.
 #[derive(Debug, ClapArgs)]
@@ -37,18 +38,15 @@ pub struct CompareArgs {
 /// Sets lockstep beside the other ways.
 ///
 /// # Errors
-/// See [`RunError`].
-pub fn compare(args: CompareArgs) -> Result<ExitCode, RunError> {
+/// See [`CommandError`].
+pub fn compare(args: CompareArgs) -> Result<ExitCode, CommandError> {
     let interrupt = Interrupt::new();
     interrupt.on_signals();
-    let run = RunConfig {
-        until: args.until,
-        runs: args.runs,
-        plane: args.xy,
-        format: Format::Human,
-        ..RunConfig::headless(args.scenario, None)
-    };
+    let mut run = RunConfig::headless(args.scenario, None);
+    run.subject.until = args.until;
+    run.runs = args.runs;
+    run.picture.plane = args.xy;
     let config = CompareConfig { run, plot: args.plot, format: args.format.into() };
-    crate::run::compare::compare(&config, &interrupt, &mut std::io::stdout().lock())?;
+    crate::compare::compare(&config, &interrupt, &mut std::io::stdout().lock())?;
     Ok(ExitCode::Ok)
 }

@@ -15,6 +15,7 @@
 
 pub mod args;
 pub mod compare;
+mod error;
 pub mod opcua;
 pub mod plant;
 pub mod plc;
@@ -25,18 +26,30 @@ pub mod source;
 pub mod test;
 pub mod value;
 
+use std::io::Write;
+
 use clap::Parser;
+use onescan_report::OutputError;
+
+pub use error::CommandError;
+
+use crate::error::{Exit, ExitCode};
 
 /// Runs the program with the process's arguments.
 pub fn main() -> std::process::ExitCode {
     let args = args::Args::parse();
     start_logging(args.verbose);
     render_errors_in_one_piece();
-    let code = match args::dispatch(args.command) {
+    // What is still buffered must not be lost in silence when the process ends.
+    let done = args::dispatch(args.command)
+        .and_then(|code| std::io::stdout().flush().map(|()| code).map_err(|source| OutputError(source).into()));
+    let code = match done {
         Ok(code) => code,
         Err(error) => {
             let code = error.exit_code();
-            report(error);
+            if code != ExitCode::Ok {
+                report(error);
+            }
             code
         }
     };
@@ -44,9 +57,9 @@ pub fn main() -> std::process::ExitCode {
 }
 
 /// Errors go to standard error, with the place in the source where there is one.
-#[expect(clippy::print_stderr, reason = "this is where errors leave the program")]
-fn report(error: crate::run::RunError) {
-    eprintln!("{:?}", miette::Report::new(error));
+fn report(error: CommandError) {
+    // Where standard error takes nothing either, the exit code still tells.
+    let _ = writeln!(std::io::stderr(), "{:?}", miette::Report::new(error));
 }
 
 /// Messages of this program hold their causes, so that they read well anywhere; a list of causes

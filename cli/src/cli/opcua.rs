@@ -5,7 +5,8 @@ use std::path::PathBuf;
 use clap::Args as ClapArgs;
 use onescan_clients::opcua_server::Access;
 
-use crate::run::error::RunError;
+use super::error::CommandError;
+use crate::error::Usage;
 
 /// Options of commands that serve OPC UA.
 #[derive(Debug, ClapArgs)]
@@ -28,14 +29,14 @@ impl AccessArgs {
     ///
     /// # Errors
     /// The user has no password.
-    pub fn access(self) -> Result<Access, RunError> {
+    pub fn access(self) -> Result<Access, CommandError> {
         const PASSWORD: &str = "ONESCAN_OPCUA_PASSWORD";
         let user = match self.opcua_user {
             None => None,
             Some(user) => {
                 let Ok(password) = std::env::var(PASSWORD) else {
                     let help = Some(format!("set the environment variable {PASSWORD}"));
-                    return Err(RunError::usage(format!("there is no password for user `{user}`"), help));
+                    return Err(Usage::new(format!("there is no password for user `{user}`"), help).into());
                 };
                 Some((user, password))
             }

@@ -4,10 +4,11 @@ use std::path::PathBuf;
 
 use clap::{Args as ClapArgs, ValueEnum};
 
+use super::error::CommandError;
 use super::value::FormatArg;
+use crate::error::ExitCode;
 use crate::new::{self, Template};
 use crate::plant::{components, describe};
-use crate::run::error::{ExitCode, RunError};
 use crate::wiring::{self, WiringConfig};
 
 /// Options of `components`.
@@ -23,8 +24,8 @@ pub struct ComponentsArgs {
 /// Tells of the library of components.
 ///
 /// # Errors
-/// See [`RunError`].
-pub fn components(args: &ComponentsArgs) -> Result<ExitCode, RunError> {
+/// See [`CommandError`].
+pub fn components(args: &ComponentsArgs) -> Result<ExitCode, CommandError> {
     components::write(args.kind.as_deref(), args.format.into(), &mut std::io::stdout().lock())?;
     Ok(ExitCode::Ok)
 }
@@ -42,8 +43,8 @@ pub struct DescribeArgs {
 /// Tells what a scene is made of.
 ///
 /// # Errors
-/// See [`RunError`].
-pub fn describe(args: &DescribeArgs) -> Result<ExitCode, RunError> {
+/// See [`CommandError`].
+pub fn describe(args: &DescribeArgs) -> Result<ExitCode, CommandError> {
     describe::write(&args.scene, args.format.into(), &mut std::io::stdout().lock())?;
     Ok(ExitCode::Ok)
 }
@@ -64,8 +65,8 @@ pub struct WiringArgs {
 /// Tells how signals connect clients.
 ///
 /// # Errors
-/// See [`RunError`].
-pub fn wiring(args: WiringArgs) -> Result<ExitCode, RunError> {
+/// See [`CommandError`].
+pub fn wiring(args: WiringArgs) -> Result<ExitCode, CommandError> {
     let config = WiringConfig { scenario: args.scenario, format: args.format.into(), svg: args.svg };
     let sound = wiring::write(&config, &mut std::io::stdout().lock())?;
     Ok(if sound { ExitCode::Ok } else { ExitCode::WrongInput })
@@ -106,8 +107,8 @@ impl From<TemplateArg> for Template {
 /// Writes a scenario to begin with.
 ///
 /// # Errors
-/// See [`RunError`].
-pub fn new(args: &NewArgs) -> Result<ExitCode, RunError> {
+/// See [`CommandError`].
+pub fn new(args: &NewArgs) -> Result<ExitCode, CommandError> {
     new::write(&args.folder, args.template.into(), &mut std::io::stdout().lock())?;
     Ok(ExitCode::Ok)
 }

@@ -6,13 +6,14 @@ use std::path::PathBuf;
 use clap::Args as ClapArgs;
 use onescan_server::signal::ClientName;
 
+use super::error::CommandError;
 use super::opcua::AccessArgs;
 use super::run::ModeArg;
 use super::value::{FormatArg, client_name};
 use crate::browse::BrowseConfig;
+use crate::error::ExitCode;
+use crate::interrupt::Interrupt;
 use crate::plc::{self, Cycle, PlcConfig};
-use crate::run::error::{ExitCode, RunError};
-use crate::run::interrupt::Interrupt;
 
 /// Options of `plc`.
 #[derive(Debug, ClapArgs)]
@@ -57,8 +58,8 @@ const PLC_COMMANDS: &str = "Commands on standard input:
 /// Runs a soft PLC.
 ///
 /// # Errors
-/// See [`RunError`].
-pub fn run_plc(args: PlcArgs) -> Result<ExitCode, RunError> {
+/// See [`CommandError`].
+pub fn run_plc(args: PlcArgs) -> Result<ExitCode, CommandError> {
     let interrupt = Interrupt::new();
     interrupt.on_signals();
     let named = [args.tcp, args.modbus, args.ads, args.opcua];
@@ -67,7 +68,7 @@ pub fn run_plc(args: PlcArgs) -> Result<ExitCode, RunError> {
     let access = args.access.access()?;
     let (scenario, client, mode, cycle) = (args.scenario, args.client, args.mode.into(), args.cycle);
     let config = PlcConfig { scenario, client, mode, cycle, tcp, modbus, ads, opcua, access };
-    plc::run(&config, &interrupt, &mut std::io::stdout().lock())
+    Ok(plc::run(&config, &interrupt, &mut std::io::stdout().lock())?)
 }
 
 /// Options of `browse`.
@@ -92,8 +93,8 @@ pub struct BrowseArgs {
 /// Lists what a PLC has.
 ///
 /// # Errors
-/// See [`RunError`].
-pub fn browse(args: BrowseArgs) -> Result<ExitCode, RunError> {
+/// See [`CommandError`].
+pub fn browse(args: BrowseArgs) -> Result<ExitCode, CommandError> {
     let config = BrowseConfig {
         url: args.url,
         scenario: args.scenario.map(|path| (path, args.client)),

@@ -7,12 +7,14 @@ use onescan_server::recording::ExportFormat;
 use onescan_server::signal::pattern::SignalPattern;
 use onescan_server::time::VirtualTime;
 
+use super::error::CommandError;
 use super::value::FormatArg;
 use crate::bisect::BisectConfig;
 use crate::diff::DiffConfig;
+use crate::error::ExitCode;
+use crate::error::Usage;
 use crate::export::ExportConfig;
-use crate::run::error::{ExitCode, RunError};
-use crate::run::interrupt::Interrupt;
+use crate::interrupt::Interrupt;
 
 /// Options of `export`.
 #[derive(Debug, ClapArgs)]
@@ -50,8 +52,8 @@ pub enum ExportArg {
 /// Writes a recording in another form.
 ///
 /// # Errors
-/// See [`RunError`].
-pub fn export(args: ExportArgs) -> Result<ExitCode, RunError> {
+/// See [`CommandError`].
+pub fn export(args: ExportArgs) -> Result<ExitCode, CommandError> {
     let extension = args.output.extension().map(|extension| extension.to_string_lossy().to_ascii_lowercase());
     let format = match (args.format, extension.as_deref()) {
         (Some(ExportArg::Csv), _) | (None, Some("csv")) => ExportFormat::Csv,
@@ -59,7 +61,7 @@ pub fn export(args: ExportArgs) -> Result<ExitCode, RunError> {
         (Some(ExportArg::Mcap), _) | (None, Some("mcap")) => ExportFormat::Mcap,
         (None, _) => {
             let message = format!("the name `{}` does not say in which form to write", args.output.display());
-            return Err(RunError::usage(message, Some("add `--format csv`, `parquet` or `mcap`".to_owned())));
+            return Err(Usage::new(message, Some("add `--format csv`, `parquet` or `mcap`".to_owned())).into());
         }
     };
     let times = [args.from.unwrap_or(VirtualTime::ZERO), args.to.unwrap_or(VirtualTime::MAX)];
@@ -89,11 +91,11 @@ pub struct DiffArgs {
 /// Compares two recordings.
 ///
 /// # Errors
-/// See [`RunError`].
-pub fn diff(args: DiffArgs) -> Result<ExitCode, RunError> {
+/// See [`CommandError`].
+pub fn diff(args: DiffArgs) -> Result<ExitCode, CommandError> {
     let DiffArgs { a, b, since, signals, format } = args;
     let config = DiffConfig { recordings: [a, b], since, signals, format: format.into() };
-    crate::diff::diff(&config, &mut std::io::stdout().lock())
+    Ok(crate::diff::diff(&config, &mut std::io::stdout().lock())?)
 }
 
 /// Options of `bisect`.
@@ -118,11 +120,11 @@ pub struct BisectArgs {
 /// Finds the commit that first changed a run.
 ///
 /// # Errors
-/// See [`RunError`].
-pub fn bisect(args: BisectArgs) -> Result<ExitCode, RunError> {
+/// See [`CommandError`].
+pub fn bisect(args: BisectArgs) -> Result<ExitCode, CommandError> {
     let interrupt = Interrupt::new();
     interrupt.on_signals();
     let BisectArgs { scenario, good, bad, until, format } = args;
     let config = BisectConfig { scenario, good, bad, until, format: format.into() };
-    crate::bisect::bisect(&config, &interrupt, &mut std::io::stdout().lock(), &mut std::io::stderr().lock())
+    Ok(crate::bisect::bisect(&config, &interrupt, &mut std::io::stdout().lock(), &mut std::io::stderr().lock())?)
 }

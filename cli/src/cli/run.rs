@@ -14,14 +14,17 @@ use onescan_server::signal::pattern::SignalPattern;
 use onescan_server::signal::{ClientName, SignalName};
 use onescan_server::time::{TimeSpan, VirtualTime};
 
+use super::error::CommandError;
 use super::opcua::AccessArgs;
 use super::value::{FormatArg, client_name, plane, signal_name};
-use crate::run::config::SaveRequest;
+use crate::error::ExitCode;
+use crate::format::Format;
+use crate::interrupt::Interrupt;
+use crate::run::config::{
+    Course, Doors, Drawing, Picture, Reach, RecordRequest, Reports, SaveRequest, Subject, Watch, WatchOn,
+};
 use crate::run::coverage::{CoverageFormat, CoverageRequest};
-use crate::run::error::{ExitCode, RunError};
-use crate::run::interrupt::Interrupt;
-use crate::run::recorded::RecordRequest;
-use crate::run::{Format, RunConfig, Transport, execute};
+use crate::run::{RunConfig, Transport, execute};
 
 /// Options of `run`.
 #[derive(Debug, ClapArgs)]
@@ -180,6 +183,15 @@ pub enum WatchOnArg {
     Change,
 }
 
+impl From<WatchOnArg> for WatchOn {
+    fn from(arg: WatchOnArg) -> Self {
+        match arg {
+            WatchOnArg::End => Self::End,
+            WatchOnArg::Change => Self::Change,
+        }
+    }
+}
+
 /// A form of trajectory that is recorded beside Parquet.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum RecordAlso {
@@ -210,52 +222,56 @@ impl From<CoverageArg> for CoverageFormat {
 /// Runs a scenario.
 ///
 /// # Errors
-/// See [`RunError`].
-pub fn run(args: RunArgs) -> Result<ExitCode, RunError> {
+/// See [`CommandError`].
+pub fn run(args: RunArgs) -> Result<ExitCode, CommandError> {
     let interrupt = Interrupt::new();
     interrupt.on_signals();
     let verdict = execute(&config(args)?, &interrupt, &mut std::io::stdout().lock())?;
     Ok(verdict.exit_code())
 }
 
-fn config(args: RunArgs) -> Result<RunConfig, RunError> {
+fn config(args: RunArgs) -> Result<RunConfig, CommandError> {
     let format = args.format.into();
+    let record = args.record.map(|folder| RecordRequest {
+        folder,
+        choice: Choice {
+            signals: args.record_signals,
+            csv: args.record_also.contains(&RecordAlso::Csv),
+            mcap: args.record_also.contains(&RecordAlso::Mcap),
+        },
+    });
     Ok(RunConfig {
-        scenario: args.scenario,
-        case: args.case,
-        until: args.until,
-        pace: args.pace,
+        subject: Subject { scenario: args.scenario, case: args.case, until: args.until },
         mode: args.mode.into(),
         runs: args.runs,
-        transport: args.transport.into(),
-        gateways: args.gateways,
-        record: args.record.map(|folder| RecordRequest {
-            folder,
-            choice: Choice {
-                signals: args.record_signals,
-                csv: args.record_also.contains(&RecordAlso::Csv),
-                mcap: args.record_also.contains(&RecordAlso::Mcap),
-            },
-        }),
-        replay_operator: args.replay_operator,
-        format,
-        plot: args.plot,
-        signals: args.signals,
-        plane: args.xy,
-        watch: args.watch,
-        watch_changes: args.watch_on == WatchOnArg::Change,
-        coverage: args.coverage.map(|path| CoverageRequest::new(path, args.coverage_format.map(Into::into))),
-        html: args.html,
-        listen: args.listen,
-        opcua: args.opcua,
-        opcua_clients: args.opcua_clients,
-        opcua_access: args.access.access()?,
-        join_timeout: Duration::from_nanos(args.join_timeout.as_nanos()),
-        reply_timeout: Duration::from_nanos(args.reply_timeout.as_nanos()),
-        save: args.save_at.zip(args.save).map(|(at, path)| SaveRequest { at, path }),
-        resume: args.resume,
-        latency: args.latency,
-        progress: format == Format::Human && std::io::stderr().is_terminal(),
+        reach: Reach {
+            transport: args.transport.into(),
+            gateways: args.gateways,
+            opcua_clients: args.opcua_clients,
+            join_timeout: Duration::from_nanos(args.join_timeout.as_nanos()),
+            reply_timeout: Duration::from_nanos(args.reply_timeout.as_nanos()),
+            latency: args.latency,
+        },
+        doors: Doors { listen: args.listen, opcua: args.opcua, access: args.access.access()? },
+        course: Course {
+            pace: args.pace,
+            resume: args.resume,
+            replay_operator: args.replay_operator,
+            save: args.save_at.zip(args.save).map(|(at, path)| SaveRequest { at, path }),
+        },
+        picture: Picture {
+            drawing: args.plot.map_or(Drawing::Nothing, Drawing::File),
+            signals: args.signals,
+            plane: args.xy,
+        },
+        watch: Watch { variables: args.watch, on: args.watch_on.into() },
+        reports: Reports {
+            format,
+            progress: format == Format::Human && std::io::stderr().is_terminal(),
+            record,
+            coverage: args.coverage.map(|path| CoverageRequest::new(path, args.coverage_format.map(Into::into))),
+            html: args.html,
+        },
     })
 }
 

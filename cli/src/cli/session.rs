@@ -1,24 +1,16 @@
 //! With a session that another process serves: `onescan join` and `control`.
 
-use std::io::Write;
 use std::net::SocketAddr;
 use std::path::PathBuf;
-use std::time::Duration;
 
 use clap::{Args as ClapArgs, ValueEnum};
-use onescan_scenario::Scenario;
-use onescan_scenario::compose::Member;
 use onescan_server::operation::Operation;
 use onescan_server::signal::{ClientName, SignalName};
-use onescan_server::transport::tcp::operator::operate;
-use onescan_server::transport::tcp::participant::take_part;
 
+use super::error::CommandError;
 use super::value::{FormatArg, client_name, signal_name};
-use crate::run::Format;
-use crate::run::error::{ExitCode, RunError};
-
-/// How long an operator waits for the next step boundary.
-const OPERATOR_PATIENCE: Duration = Duration::from_secs(30);
+use crate::error::{ExitCode, Usage};
+use crate::session;
 
 /// Options of `join`.
 #[derive(Debug, ClapArgs)]
@@ -39,22 +31,9 @@ pub struct JoinArgs {
 /// Takes part in a session.
 ///
 /// # Errors
-/// See [`RunError`].
-pub fn join(args: &JoinArgs) -> Result<ExitCode, RunError> {
-    let scenario = Scenario::load_case(&args.scenario, args.case.as_deref())?;
-    let mut client = match scenario.member(&args.client)? {
-        Member::Plant(client) | Member::Plc(client) | Member::Gateway(client) => client,
-        Member::External(_) => {
-            let message = format!("client `{}` is external: its own program joins", args.client);
-            return Err(RunError::usage(message, None));
-        }
-        Member::Seated { .. } => {
-            let message = format!("client `{}` takes part over OPC UA: its own program does", args.client);
-            return Err(RunError::usage(message, None));
-        }
-    };
-    let end = take_part(client.as_mut(), args.server)?;
-    tracing::info!(%end, "left");
+/// See [`CommandError`].
+pub fn join(args: &JoinArgs) -> Result<ExitCode, CommandError> {
+    session::join(&args.scenario, args.case.as_deref(), &args.client, args.server)?;
     Ok(ExitCode::Ok)
 }
 
@@ -127,20 +106,9 @@ impl ControlArgs {
 /// Asks a session.
 ///
 /// # Errors
-/// See [`RunError`].
-pub fn control(args: &ControlArgs) -> Result<ExitCode, RunError> {
-    let operation = args.operation().map_err(|message| RunError::usage(message, None))?;
-    let status = operate(args.server, operation, OPERATOR_PATIENCE)?;
-    let mut out = std::io::stdout().lock();
-    let written = match Format::from(args.format) {
-        Format::Json => {
-            serde_json::to_writer(&mut out, &status).map_err(std::io::Error::from).and_then(|()| writeln!(out))
-        }
-        Format::Human => {
-            let held = if status.held { "held" } else { "running" };
-            writeln!(out, "{held} in state {} after step {}, t_v = {}", status.state, status.steps, status.t_v)
-        }
-    };
-    written.map_err(RunError::Output)?;
+/// See [`CommandError`].
+pub fn control(args: &ControlArgs) -> Result<ExitCode, CommandError> {
+    let operation = args.operation().map_err(|message| Usage::new(message, None))?;
+    session::control(args.server, operation, args.format.into(), &mut std::io::stdout().lock())?;
     Ok(ExitCode::Ok)
 }

@@ -5,13 +5,15 @@ use std::path::PathBuf;
 use clap::{Args as ClapArgs, ValueEnum};
 use onescan_plc_shim::instrument::Target;
 use onescan_plc_shim::{Dialect, Task};
+use onescan_report::OutputError;
 use onescan_server::time::TimeSpan;
 
+use super::error::CommandError;
 use super::value::FormatArg;
 use crate::check::collect::logix;
 use crate::check::{self, CheckConfig, CheckFormat, Warnings};
+use crate::error::ExitCode;
 use crate::instrument::{Destination, Diff, Direction, InstrumentConfig};
-use crate::run::error::{ExitCode, RunError};
 
 /// Options of `check`.
 #[derive(Debug, ClapArgs)]
@@ -58,11 +60,11 @@ impl From<CheckFormatArg> for CheckFormat {
 /// Checks sources.
 ///
 /// # Errors
-/// See [`RunError`].
-pub fn check(args: CheckArgs) -> Result<ExitCode, RunError> {
+/// See [`CommandError`].
+pub fn check(args: CheckArgs) -> Result<ExitCode, CommandError> {
     let warnings = if args.deny_warnings { Warnings::Denied } else { Warnings::Allowed };
     let config = CheckConfig { paths: args.paths, dialect: args.dialect, format: args.format.into(), warnings };
-    check::check(&config, &mut std::io::stdout().lock())
+    Ok(check::check(&config, &mut std::io::stdout().lock())?)
 }
 
 /// Options of `explain`.
@@ -79,12 +81,12 @@ pub struct ExplainArgs {
 /// Explains a code.
 ///
 /// # Errors
-/// See [`RunError`].
-pub fn explain(args: &ExplainArgs) -> Result<ExitCode, RunError> {
+/// See [`CommandError`].
+pub fn explain(args: &ExplainArgs) -> Result<ExitCode, CommandError> {
     let mut out = std::io::stdout().lock();
     match &args.code {
         Some(code) => check::explain::page(code, &mut out)?,
-        None => check::explain::list(&mut out).map_err(RunError::Output)?,
+        None => check::explain::list(&mut out).map_err(OutputError)?,
     }
     Ok(ExitCode::Ok)
 }
@@ -143,13 +145,13 @@ pub enum TargetArg {
 }
 
 impl TargetArg {
-    fn target(self) -> Result<Target, RunError> {
+    fn target(self) -> Result<Target, CommandError> {
         match self {
             Self::Iec => Ok(Target::Iec),
             Self::Twincat => Ok(Target::TwinCat),
             Self::Codesys => Ok(Target::Codesys),
             Self::Scl => Ok(Target::Scl),
-            Self::L5x => Err(logix("--target l5x")),
+            Self::L5x => Err(logix("--target l5x").into()),
         }
     }
 }
@@ -157,8 +159,8 @@ impl TargetArg {
 /// Attaches the shim, or takes it off.
 ///
 /// # Errors
-/// See [`RunError`].
-pub fn instrument(args: InstrumentArgs) -> Result<ExitCode, RunError> {
+/// See [`CommandError`].
+pub fn instrument(args: InstrumentArgs) -> Result<ExitCode, CommandError> {
     let destination = match args.output {
         Some(folder) => Destination::Folder(folder),
         None if args.in_place => Destination::InPlace,
@@ -174,7 +176,7 @@ pub fn instrument(args: InstrumentArgs) -> Result<ExitCode, RunError> {
         format: args.format.into(),
         warnings: if args.deny_warnings { Warnings::Denied } else { Warnings::Allowed },
     };
-    crate::instrument::instrument(&config, &mut std::io::stdout().lock(), &mut std::io::stderr().lock())
+    Ok(crate::instrument::instrument(&config, &mut std::io::stdout().lock(), &mut std::io::stderr().lock())?)
 }
 
 fn plc_task(text: &str) -> Result<Task, String> {

@@ -7,14 +7,15 @@ use clap::Args as ClapArgs;
 use onescan_plc_shim::Dialect;
 use onescan_server::time::{TimeSpan, VirtualTime};
 
+use super::error::CommandError;
 use super::run::CoverageArg;
 use super::value::FormatArg;
+use crate::error::ExitCode;
+use crate::format::Format;
 use crate::regress::worker::WorkerConfig;
 use crate::regress::{Policy, Selection, TestConfig};
 use crate::review::{Choice, ReviewConfig};
-use crate::run::Format;
 use crate::run::coverage::CoverageRequest;
-use crate::run::error::{ExitCode, RunError};
 
 /// Options of `test`.
 #[derive(Debug, ClapArgs)]
@@ -175,24 +176,24 @@ impl WorkerArgs {
 /// Runs tests.
 ///
 /// # Errors
-/// See [`RunError`].
-pub fn test(args: TestArgs) -> Result<ExitCode, RunError> {
-    crate::regress::test(&args.config(), &mut std::io::stdout().lock())
+/// See [`CommandError`].
+pub fn test(args: TestArgs) -> Result<ExitCode, CommandError> {
+    Ok(crate::regress::test(&args.config(), &mut std::io::stdout().lock())?)
 }
 
 /// Decides on snapshots.
 ///
 /// # Errors
-/// See [`RunError`].
-pub fn review(args: ReviewArgs) -> Result<ExitCode, RunError> {
-    crate::review::review(&args.config(), &mut std::io::stdout().lock())
+/// See [`CommandError`].
+pub fn review(args: ReviewArgs) -> Result<ExitCode, CommandError> {
+    Ok(crate::review::review(&args.config(), &mut std::io::stdout().lock())?)
 }
 
 /// Runs one test, as a process of [`test`].
 ///
 /// # Errors
-/// See [`RunError`].
-pub fn work(args: WorkerArgs) -> Result<ExitCode, RunError> {
+/// See [`CommandError`].
+pub fn work(args: WorkerArgs) -> Result<ExitCode, CommandError> {
     crate::regress::worker::work(&args.config(), &mut std::io::stdout().lock())?;
     Ok(ExitCode::Ok)
 }

@@ -3,7 +3,7 @@
 use clap::ValueEnum;
 use onescan_server::signal::{ClientName, SignalName};
 
-use crate::run::Format;
+use crate::format::Format;
 
 /// See [`Format`].
 #[derive(Clone, Copy, Debug, Default, ValueEnum)]

@@ -12,7 +12,8 @@ use onescan_server::signal::pattern::{SignalPattern, choose};
 use onescan_server::signal::{ClientName, SignalName, SignalType};
 use onescan_server::time::VirtualTime;
 
-use crate::run::error::RunError;
+use super::error::DiffError;
+use crate::error::Usage;
 
 /// Steps that are compared by value at once.
 const WINDOW_STEPS: u64 = 4_096;
@@ -86,21 +87,21 @@ impl<'r> Comparison<'r> {
         recordings: &'r [Recording; 2],
         since: VirtualTime,
         patterns: &[SignalPattern],
-    ) -> Result<Self, RunError> {
+    ) -> Result<Self, DiffError> {
         let [a, b] = recordings;
         let in_both = |signal: &&onescan_server::record::header::HeaderSignal| {
             let other = b.header().signals.iter().find(|other| other.name == signal.name);
             signal.recorded && other.is_some_and(|other| other.recorded && other.ty == signal.ty)
         };
         let common: Vec<&SignalName> = a.header().signals.iter().filter(in_both).map(|signal| &signal.name).collect();
-        let chosen = choose(patterns, common.iter().copied())
-            .map_err(|unmatched| RunError::usage(unmatched.to_string(), None))?;
+        let chosen =
+            choose(patterns, common.iter().copied()).map_err(|unmatched| Usage::new(unmatched.to_string(), None))?;
         let exact = |name: &SignalName| name.as_str().parse().ok();
         let signals = chosen.into_iter().filter_map(|index| exact(common[index])).collect();
         for recording in recordings {
             if recording.steps().is_none() {
                 let message = format!("{} has no complete part: no step is recorded", recording.folder().display());
-                return Err(RunError::usage(message, None));
+                return Err(Usage::new(message, None).into());
             }
         }
         let types = |recording: &Recording| -> Vec<(SignalName, SignalType)> {
@@ -117,7 +118,7 @@ impl<'r> Comparison<'r> {
     ///
     /// # Errors
     /// A part that cannot be read.
-    pub fn first(&self) -> Result<Option<Divergence>, RunError> {
+    pub fn first(&self) -> Result<Option<Divergence>, DiffError> {
         let found = match self.basis {
             Basis::Digests => self.by_digest()?,
             Basis::Values => self.by_value()?,
@@ -132,7 +133,7 @@ impl<'r> Comparison<'r> {
         self.recordings[index].steps().unwrap_or(0..=0)
     }
 
-    fn by_digest(&self) -> Result<Option<Divergence>, RunError> {
+    fn by_digest(&self) -> Result<Option<Divergence>, DiffError> {
         let [a, b] = self.recordings;
         let (mut equal, mut low) = (None, *self.steps(0).start());
         let mut high = *self.steps(0).end().min(self.steps(1).end());
@@ -160,7 +161,7 @@ impl<'r> Comparison<'r> {
         self.recordings[index].rows(&self.signals, step..=step)
     }
 
-    fn by_value(&self) -> Result<Option<Divergence>, RunError> {
+    fn by_value(&self) -> Result<Option<Divergence>, DiffError> {
         let Some(mut steps) = self.recordings[0].steps_between(self.since, VirtualTime::MAX)? else { return Ok(None) };
         while !steps.is_empty() {
             let window = *steps.start()..=(*steps.start() + WINDOW_STEPS - 1).min(*steps.end());
@@ -172,7 +173,7 @@ impl<'r> Comparison<'r> {
         Ok(None)
     }
 
-    fn in_window(&self, window: RangeInclusive<u64>) -> Result<Option<Divergence>, RunError> {
+    fn in_window(&self, window: RangeInclusive<u64>) -> Result<Option<Divergence>, DiffError> {
         let ours = self.recordings[0].rows(&self.signals, window)?;
         let (Some(first), Some(last)) = (ours.rows.first(), ours.rows.last()) else { return Ok(None) };
         let Some(steps) = self.recordings[1].steps_between(first.t_v, last.t_v)? else { return Ok(None) };
@@ -192,8 +193,8 @@ impl<'r> Comparison<'r> {
     }
 
     /// Runs that are equal as far as both go are still not equal if one goes on.
-    fn by_length(&self) -> Result<Option<Divergence>, RunError> {
-        let last = |index: usize| -> Result<VirtualTime, RunError> {
+    fn by_length(&self) -> Result<Option<Divergence>, DiffError> {
+        let last = |index: usize| -> Result<VirtualTime, DiffError> {
             let step = *self.steps(index).end();
             let row = self.recordings[index].rows(&self.signals, step..=step)?;
             Ok(row.rows.first().map_or(VirtualTime::ZERO, |row| row.t_v))
@@ -217,7 +218,7 @@ impl<'r> Comparison<'r> {
     ///
     /// # Errors
     /// A part that cannot be read.
-    pub fn around(&self, found: &Divergence) -> Result<Around, RunError> {
+    pub fn around(&self, found: &Divergence) -> Result<Around, DiffError> {
         let signals: Vec<SignalName> =
             found.differences.iter().take(AROUND_SIGNALS).map(|difference| difference.signal.clone()).collect();
         if signals.is_empty() {

@@ -10,6 +10,7 @@
 //! | [`trajectory`] | two snapshots of trajectories |
 
 pub mod cause;
+mod error;
 pub mod first;
 pub mod parting;
 pub mod report;
@@ -19,12 +20,17 @@ pub mod trajectory;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
+use onescan_report::OutputError;
 use onescan_server::recording::Recording;
 use onescan_server::signal::pattern::SignalPattern;
 use onescan_server::time::VirtualTime;
 
-use crate::run::Format;
-use crate::run::error::{ExitCode, RunError};
+pub use error::DiffError;
+
+use crate::error::ExitCode;
+use crate::error::Usage;
+use crate::format::Format;
+
 use first::{Comparison, Divergence};
 use report::Report;
 use trajectory::TrajectoryReport;
@@ -46,7 +52,7 @@ pub struct DiffConfig {
 ///
 /// # Errors
 /// A recording that cannot be read, a signal that neither has.
-pub fn diff(config: &DiffConfig, out: &mut dyn Write) -> Result<ExitCode, RunError> {
+pub fn diff(config: &DiffConfig, out: &mut dyn Write) -> Result<ExitCode, DiffError> {
     let [a, b] = &config.recordings;
     match [a, b].map(|path| path.is_file()) {
         [true, true] => return snapshots(config, out),
@@ -55,7 +61,7 @@ pub fn diff(config: &DiffConfig, out: &mut dyn Write) -> Result<ExitCode, RunErr
             let (file, folder) = if is_snapshot { (a, b) } else { (b, a) };
             let message = format!("{} is a file and {} is not", file.display(), folder.display());
             let help = "compare two recordings, which are folders, or two snapshots".to_owned();
-            return Err(RunError::usage(message, Some(help)));
+            return Err(Usage::new(message, Some(help)).into());
         }
     }
     let report = compare(a, b, config.since, &config.signals)?;
@@ -63,18 +69,18 @@ pub fn diff(config: &DiffConfig, out: &mut dyn Write) -> Result<ExitCode, RunErr
         Format::Human => report.write(out),
         Format::Json => report.write_json(out),
     }
-    .map_err(RunError::Output)?;
+    .map_err(OutputError)?;
     Ok(if report.is_equal() { ExitCode::Ok } else { ExitCode::Unmet })
 }
 
-fn snapshots(config: &DiffConfig, out: &mut dyn Write) -> Result<ExitCode, RunError> {
+fn snapshots(config: &DiffConfig, out: &mut dyn Write) -> Result<ExitCode, DiffError> {
     let [a, b] = &config.recordings;
     let report = TrajectoryReport::of([a, b], config.since, &config.signals)?;
     match config.format {
         Format::Human => report.write(out),
         Format::Json => report.write_json(out),
     }
-    .map_err(RunError::Output)?;
+    .map_err(OutputError)?;
     Ok(if report.is_equal() { ExitCode::Ok } else { ExitCode::Unmet })
 }
 
@@ -82,7 +88,7 @@ fn snapshots(config: &DiffConfig, out: &mut dyn Write) -> Result<ExitCode, RunEr
 ///
 /// # Errors
 /// A recording that cannot be read, a signal that neither has.
-pub fn compare(a: &Path, b: &Path, since: VirtualTime, signals: &[SignalPattern]) -> Result<Report, RunError> {
+pub fn compare(a: &Path, b: &Path, since: VirtualTime, signals: &[SignalPattern]) -> Result<Report, DiffError> {
     let recordings = [Recording::open(a)?, Recording::open(b)?];
     let comparison = Comparison::new(&recordings, since, signals)?;
     let divergence = comparison.first()?;

@@ -9,11 +9,12 @@ use onescan_server::signal::pattern::{SignalPattern, choose};
 use onescan_server::time::VirtualTime;
 use serde_json::{Value, json};
 
+use super::error::DiffError;
 use super::report::{NAMES, table};
-use crate::regress::snapshot::store::read;
-use crate::regress::snapshot::value::show;
-use crate::regress::snapshot::{Difference, Sampled, Snapshot, Track, compare};
-use crate::run::error::RunError;
+use crate::error::Usage;
+use crate::snapshot::store::read;
+use crate::snapshot::value::show;
+use crate::snapshot::{Difference, Sampled, Snapshot, Track, compare};
 
 /// Signals that are listed for people.
 const LISTED: usize = 20;
@@ -35,10 +36,10 @@ impl TrajectoryReport {
     ///
     /// # Errors
     /// A file is no snapshot; a pattern of no signal.
-    pub fn of(paths: [&Path; 2], since: VirtualTime, patterns: &[SignalPattern]) -> Result<Self, RunError> {
-        let one = |path: &Path| -> Result<Snapshot, RunError> {
-            let none = || RunError::usage(format!("{} is not there", path.display()), None);
-            read(path)?.ok_or_else(none)
+    pub fn of(paths: [&Path; 2], since: VirtualTime, patterns: &[SignalPattern]) -> Result<Self, DiffError> {
+        let one = |path: &Path| -> Result<Snapshot, DiffError> {
+            let none = || Usage::new(format!("{} is not there", path.display()), None);
+            Ok(read(path)?.ok_or_else(none)?)
         };
         let mut snapshots = [one(paths[0])?, one(paths[1])?];
         choose_signals(&mut snapshots, patterns)?;
@@ -168,14 +169,14 @@ impl TrajectoryReport {
 }
 
 /// Leaves the signals that `patterns` choose of those that either has.
-fn choose_signals(snapshots: &mut [Snapshot; 2], patterns: &[SignalPattern]) -> Result<(), RunError> {
+fn choose_signals(snapshots: &mut [Snapshot; 2], patterns: &[SignalPattern]) -> Result<(), DiffError> {
     let all: BTreeSet<SignalName> = snapshots
         .iter()
         .flat_map(|snapshot| &snapshot.signals)
         .filter_map(|track| SignalName::new(track.name.as_str()).ok())
         .collect();
     let all: Vec<SignalName> = all.into_iter().collect();
-    let chosen = choose(patterns, all.iter()).map_err(|unmatched| RunError::usage(unmatched.to_string(), None))?;
+    let chosen = choose(patterns, all.iter()).map_err(|unmatched| Usage::new(unmatched.to_string(), None))?;
     let chosen: BTreeSet<&str> = chosen.into_iter().map(|index| all[index].as_str()).collect();
     for snapshot in snapshots {
         snapshot.signals.retain(|track| chosen.contains(track.name.as_str()));

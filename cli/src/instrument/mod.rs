@@ -5,19 +5,23 @@
 //! | [`project`] | which files are meant, and where the result goes |
 //! | [`report`] | what was changed, for people and machines |
 
+mod error;
 pub mod project;
 pub mod report;
 
 use std::io::Write;
 use std::path::PathBuf;
 
-use onescan_plc_shim::instrument::{self, InstrumentError, Options, Target};
+use onescan_plc_shim::instrument::{self, InstrumentError as Refusal, Options, Target};
 use onescan_plc_shim::{Diagnostics, Task, TaskPlan};
 use onescan_report::file::write_all_whole;
 
+pub use error::InstrumentError;
+
 use crate::check::Warnings;
-use crate::run::error::ExitCode;
-use crate::run::{Format, RunError};
+use crate::error::ExitCode;
+use crate::error::Usage;
+use crate::format::Format;
 
 /// What is asked for.
 #[derive(Clone, Debug)]
@@ -74,7 +78,11 @@ pub enum Diff {
 /// # Errors
 /// A file cannot be read or written, or the tasks are wrong. What is wrong with the sources is no error
 /// here but an exit code.
-pub fn instrument(config: &InstrumentConfig, out: &mut dyn Write, err: &mut dyn Write) -> Result<ExitCode, RunError> {
+pub fn instrument(
+    config: &InstrumentConfig,
+    out: &mut dyn Write,
+    err: &mut dyn Write,
+) -> Result<ExitCode, InstrumentError> {
     let program = project::program(&config.project)?;
     let project = match config.direction {
         Direction::Remove => instrument::remove(&program.inputs),
@@ -85,11 +93,11 @@ pub fn instrument(config: &InstrumentConfig, out: &mut dyn Write, err: &mut dyn 
     };
     let project = match project {
         Ok(project) => project,
-        Err(InstrumentError::Text(findings)) => {
+        Err(Refusal::Text(findings)) => {
             report::findings(&findings, program.inputs.len(), config.format, out)?;
             return Ok(ExitCode::WrongInput);
         }
-        Err(error) => return Err(RunError::usage(error.to_string(), None)),
+        Err(error) => return Err(Usage::new(error.to_string(), None).into()),
     };
     if !project.warnings.is_empty() && config.warnings == Warnings::Denied {
         report::findings(&project.warnings, program.inputs.len(), config.format, out)?;
@@ -107,7 +115,12 @@ fn tasks(config: &InstrumentConfig, plan: Option<TaskPlan>) -> Option<Vec<Task>>
 }
 
 /// Findings for people go where they do not mix with the result; for machines they are in it.
-fn tell(warnings: &Diagnostics, files: usize, config: &InstrumentConfig, err: &mut dyn Write) -> Result<(), RunError> {
+fn tell(
+    warnings: &Diagnostics,
+    files: usize,
+    config: &InstrumentConfig,
+    err: &mut dyn Write,
+) -> Result<(), InstrumentError> {
     if warnings.is_empty() || config.format == Format::Json {
         return Ok(());
     }

@@ -8,20 +8,21 @@ use onescan_plc_shim::input::kind::{FileKind, SourceKind};
 use onescan_plc_shim::instrument::{File, Project};
 use onescan_report::file::Write;
 
+use super::error::InstrumentError;
 use super::{Destination, InstrumentConfig};
 use crate::check::collect::{self, Program};
-use crate::run::RunError;
+use crate::error::{Unreadable, Usage};
 
 /// The program behind `project`, and the shim's own files beside it.
 ///
 /// # Errors
 /// A file is not there, cannot be read, or is of no kind that is read; or there are several programs.
-pub fn program(project: &Path) -> Result<Program, RunError> {
+pub fn program(project: &Path) -> Result<Program, InstrumentError> {
     let mut programs = collect::programs(&[project.to_owned()], None)?;
     let count = programs.len();
     let (Some(mut program), 1) = (programs.pop(), count) else {
         let help = "name the folder with the sources of one".to_owned();
-        return Err(RunError::usage(format!("there are {count} PLCs here"), Some(help)));
+        return Err(Usage::new(format!("there are {count} PLCs here"), Some(help)).into());
     };
     add_own(&mut program.inputs)?;
     add_manifests(project, &mut program.inputs)?;
@@ -29,19 +30,19 @@ pub fn program(project: &Path) -> Result<Program, RunError> {
 }
 
 /// TwinCAT projects say themselves which files they have.
-fn add_manifests(path: &Path, inputs: &mut Vec<Input>) -> Result<(), RunError> {
-    let unreadable = |source| RunError::File { path: path.to_owned(), source };
+fn add_manifests(path: &Path, inputs: &mut Vec<Input>) -> Result<(), InstrumentError> {
+    let unreadable = Unreadable::at(path);
     if path.is_dir() {
         let mut entries = Vec::new();
-        for entry in std::fs::read_dir(path).map_err(unreadable)? {
-            entries.push(entry.map_err(unreadable)?.path());
+        for entry in std::fs::read_dir(path).map_err(&unreadable)? {
+            entries.push(entry.map_err(&unreadable)?.path());
         }
         entries.sort();
         // A link to a folder may lead in a circle.
         let inner = |entry: &&PathBuf| !entry.is_symlink() && (entry.is_dir() || is_manifest(entry));
         entries.iter().filter(inner).try_for_each(|entry| add_manifests(entry, inputs))
     } else if is_manifest(path) {
-        let bytes = std::fs::read(path).map_err(unreadable)?;
+        let bytes = std::fs::read(path).map_err(&unreadable)?;
         let name = path.strip_prefix(".").unwrap_or(path).display().to_string();
         inputs.push(Input::read(&name, SourceKind::Text, &bytes));
         Ok(())
@@ -55,16 +56,16 @@ fn is_manifest(path: &Path) -> bool {
 }
 
 /// A scenario names its sources, and so not those that were added to it.
-fn add_own(inputs: &mut Vec<Input>) -> Result<(), RunError> {
+fn add_own(inputs: &mut Vec<Input>) -> Result<(), InstrumentError> {
     let Some(first) = inputs.first().map(|input| PathBuf::from(input.file().name())) else {
         return Ok(());
     };
     let folder = first.parent().unwrap_or(Path::new(""));
     let shown = if folder == Path::new("") { Path::new(".") } else { folder };
-    let unreadable = |source| RunError::File { path: shown.to_owned(), source };
+    let unreadable = Unreadable::at(shown);
     let mut own = Vec::new();
-    for entry in std::fs::read_dir(shown).map_err(unreadable)? {
-        let path = folder.join(entry.map_err(unreadable)?.file_name());
+    for entry in std::fs::read_dir(shown).map_err(&unreadable)? {
+        let path = folder.join(entry.map_err(&unreadable)?.file_name());
         let name = path.file_name().map_or_else(String::new, |name| name.to_string_lossy().to_lowercase());
         let known = inputs.iter().any(|input| Path::new(input.file().name()) == path);
         if name.starts_with("sdsp") && !known && path.is_file() {
@@ -74,7 +75,7 @@ fn add_own(inputs: &mut Vec<Input>) -> Result<(), RunError> {
     own.sort();
     for path in own {
         if let Some(FileKind::Source(kind)) = FileKind::of(&path) {
-            let bytes = std::fs::read(&path).map_err(|source| RunError::File { path: path.clone(), source })?;
+            let bytes = std::fs::read(&path).map_err(Unreadable::at(&path))?;
             inputs.push(Input::read(&path.display().to_string(), kind, &bytes));
         }
     }
@@ -85,7 +86,7 @@ fn add_own(inputs: &mut Vec<Input>) -> Result<(), RunError> {
 ///
 /// # Errors
 /// A file lies outside of the project, or cannot be encoded.
-pub(super) fn writes(config: &InstrumentConfig, project: &Project) -> Result<Vec<Write>, RunError> {
+pub(super) fn writes(config: &InstrumentConfig, project: &Project) -> Result<Vec<Write>, InstrumentError> {
     let mut writes = Vec::new();
     for file in &project.files {
         let path = match &config.destination {
@@ -100,7 +101,7 @@ pub(super) fn writes(config: &InstrumentConfig, project: &Project) -> Result<Vec
             Some(text) => {
                 let encoding = file.encoding.unwrap_or(Encoding { charset: Charset::Utf8, mark: false });
                 let encoded = encode(text, encoding);
-                Some(encoded.map_err(|error| RunError::usage(format!("{}: {error}", file.name), None))?)
+                Some(encoded.map_err(|error| Usage::new(format!("{}: {error}", file.name), None))?)
             }
         };
         writes.push(Write { path, bytes });
@@ -109,7 +110,7 @@ pub(super) fn writes(config: &InstrumentConfig, project: &Project) -> Result<Vec
 }
 
 /// A file's path within the project.
-pub(super) fn relative<'f>(file: &'f File, project: &Path) -> Result<&'f Path, RunError> {
+pub(super) fn relative<'f>(file: &'f File, project: &Path) -> Result<&'f Path, InstrumentError> {
     let root = if project.is_dir() { project } else { project.parent().unwrap_or(Path::new("")) };
     let root = root.strip_prefix(".").unwrap_or(root);
     let path = Path::new(&file.name).strip_prefix(root).unwrap_or(Path::new(&file.name));
@@ -118,5 +119,5 @@ pub(super) fn relative<'f>(file: &'f File, project: &Path) -> Result<&'f Path, R
         return Ok(path);
     }
     let help = "use --in-place, or name the folder that holds all sources".to_owned();
-    Err(RunError::usage(format!("{} lies outside of the project", file.name), Some(help)))
+    Err(Usage::new(format!("{} lies outside of the project", file.name), Some(help)).into())
 }

@@ -4,13 +4,15 @@ use std::io::{self, Write};
 
 use onescan_plc_shim::Diagnostics;
 use onescan_plc_shim::instrument::{File, Project, diff};
+use onescan_report::OutputError;
 use serde::Serialize;
 
+use super::error::InstrumentError;
 use super::{Destination, Diff, Direction, InstrumentConfig};
 use crate::check::json::Line;
 use crate::check::report::Report;
 use crate::check::{human, json};
-use crate::run::{Format, RunError};
+use crate::format::Format;
 
 /// The report for machines.
 #[derive(Serialize)]
@@ -36,25 +38,30 @@ struct JsonFile<'a> {
 ///
 /// # Errors
 /// Those of `out`.
-pub fn findings(findings: &Diagnostics, files: usize, format: Format, out: &mut dyn Write) -> Result<(), RunError> {
+pub fn findings(
+    findings: &Diagnostics,
+    files: usize,
+    format: Format,
+    out: &mut dyn Write,
+) -> Result<(), InstrumentError> {
     let report = Report { files, findings: vec![findings.clone()] };
     let written = match format {
         Format::Human => human::write(&report, out),
         Format::Json => json::write(&report, out),
     };
-    written.map_err(RunError::Output)
+    Ok(written.map_err(OutputError)?)
 }
 
 /// Writes what was changed.
 ///
 /// # Errors
 /// Those of `out`.
-pub fn write(config: &InstrumentConfig, project: &Project, out: &mut dyn Write) -> Result<(), RunError> {
+pub fn write(config: &InstrumentConfig, project: &Project, out: &mut dyn Write) -> Result<(), InstrumentError> {
     let written = match config.format {
         Format::Json => write_json(config, project, out),
         Format::Human => write_human(config, project, out),
     };
-    written.map_err(RunError::Output)
+    Ok(written.map_err(OutputError)?)
 }
 
 fn write_json(config: &InstrumentConfig, project: &Project, out: &mut dyn Write) -> io::Result<()> {

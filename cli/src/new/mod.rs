@@ -1,13 +1,18 @@
 //! Scenarios to begin with: small, complete, commented, green at once.
 
+mod error;
+
 use std::io::Write;
 use std::path::Path;
 
+use onescan_report::OutputError;
 use onescan_report::file::{Write as Output, write_all_whole};
 use onescan_server::signal::BadName;
 use onescan_server::signal::ClientName;
 
-use crate::run::RunError;
+pub use error::NewError;
+
+use crate::error::Usage;
 
 /// What to begin with.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -48,15 +53,15 @@ impl Template {
 ///
 /// # Errors
 /// The folder is there, its name cannot be a scenario's, or it cannot be written.
-pub fn write(folder: &Path, template: Template, out: &mut dyn Write) -> Result<(), RunError> {
+pub fn write(folder: &Path, template: Template, out: &mut dyn Write) -> Result<(), NewError> {
     let name = folder.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
     ClientName::new(name.as_str()).map_err(|BadName(name)| {
         let help = "use letters, digits, `_` and `-`, beginning with a letter".to_owned();
-        RunError::usage(format!("`{name}` cannot name a scenario"), Some(help))
+        Usage::new(format!("`{name}` cannot name a scenario"), Some(help))
     })?;
     if folder.exists() {
         let help = "choose another name, or remove it first".to_owned();
-        return Err(RunError::usage(format!("{} is there already", folder.display()), Some(help)));
+        return Err(Usage::new(format!("{} is there already", folder.display()), Some(help)).into());
     }
     let place = folder.display().to_string();
     let filled = |text: &str| text.replace("{name}", &name);
@@ -66,7 +71,7 @@ pub fn write(folder: &Path, template: Template, out: &mut dyn Write) -> Result<(
         .map(|(file, text)| Output { path: folder.join(file), bytes: Some(filled(text).into_bytes()) });
     write_all_whole(&written.collect::<Vec<_>>())?;
     for (file, _) in template.files() {
-        writeln!(out, "{}", folder.join(file).display()).map_err(RunError::Output)?;
+        writeln!(out, "{}", folder.join(file).display()).map_err(OutputError)?;
     }
-    writeln!(out, "\nnext: onescan run {place}").map_err(RunError::Output)
+    Ok(writeln!(out, "\nnext: onescan run {place}").map_err(OutputError)?)
 }

@@ -4,20 +4,21 @@ use std::io::{self, Write};
 use std::path::Path;
 
 use onescan_clients::plant::component::kinds;
-use onescan_clients::plant::scene::model::{
-    Body, BodyKind, Bound, Component, Mass, Moved, Scene, Sensing, Shape, Wire,
-};
+use onescan_clients::plant::scene::model::{Body, BodyKind, Component, Mass, Moved, Scene, Sensing, Shape, Wire};
+use onescan_report::OutputError;
 use onescan_scenario::compose::report;
 use onescan_scenario::file::ClientFile;
 use onescan_scenario::{Scenario, ScenarioError};
 
-use crate::run::{Format, RunError};
+use super::error::PlantError;
+use crate::error::Usage;
+use crate::format::Format;
 
 /// Reads the scene of a file, or those of a scenario's plants, and writes what it is made of.
 ///
 /// # Errors
 /// A file that cannot be read or is not a scene, a scenario without one; those of `out`.
-pub fn write(path: &Path, format: Format, out: &mut dyn Write) -> Result<(), RunError> {
+pub fn write(path: &Path, format: Format, out: &mut dyn Write) -> Result<(), PlantError> {
     if !path.is_dir() {
         return one_scene(path, format, out);
     }
@@ -29,30 +30,30 @@ pub fn write(path: &Path, format: Format, out: &mut dyn Write) -> Result<(), Run
     let scenes: Vec<_> = scenes.collect();
     for scene in &scenes {
         if scenes.len() > 1 && format == Format::Human {
-            writeln!(out, "{}", scene.display()).map_err(RunError::Output)?;
+            writeln!(out, "{}", scene.display()).map_err(OutputError)?;
         }
         one_scene(scene, format, out)?;
     }
     if scenes.is_empty() {
-        return Err(RunError::usage(format!("no client of {} has a scene", path.display()), None));
+        return Err(Usage::new(format!("no client of {} has a scene", path.display()), None).into());
     }
     Ok(())
 }
 
-fn one_scene(path: &Path, format: Format, out: &mut dyn Write) -> Result<(), RunError> {
+fn one_scene(path: &Path, format: Format, out: &mut dyn Write) -> Result<(), PlantError> {
     let file = path.display().to_string();
     let text = std::fs::read_to_string(path).map_err(|source| {
         let help = Some("give a scene, as `my-cell/plant.toml`, or the folder of its scenario".to_owned());
-        RunError::Scenario(ScenarioError::Unreadable { path: path.to_owned(), source, help })
+        PlantError::Scenario(ScenarioError::Unreadable { path: path.to_owned(), source, help })
     })?;
     let scene =
         Scene::parse(&text, &file).map_err(|error| ScenarioError::from(Box::new(report(&error, &file, &text))))?;
     match format {
         Format::Json => {
-            serde_json::to_writer_pretty(&mut *out, &scene).map_err(io::Error::from).map_err(RunError::Output)?;
-            writeln!(out).map_err(RunError::Output)
+            serde_json::to_writer_pretty(&mut *out, &scene).map_err(io::Error::from).map_err(OutputError)?;
+            Ok(writeln!(out).map_err(OutputError)?)
         }
-        Format::Human => tree(&scene, out).map_err(RunError::Output),
+        Format::Human => Ok(tree(&scene, out).map_err(OutputError)?),
     }
 }
 
@@ -145,24 +146,12 @@ fn body(body: &Body) -> String {
 
 /// A component: what it is bound to, what of it is not preset, and its wires.
 fn one(component: &Component, scene: &Scene) -> String {
-    let bound = match &component.bound {
-        Bound::Nothing => String::new(),
-        Bound::Drives(joint) => format!(", drives joint {}", scene.joints[*joint].name),
-        Bound::Measures(joint) => format!(", measures joint {}", scene.joints[*joint].name),
-        Bound::Belt { body, .. } => format!(", belt {}", scene.bodies[*body].name),
-        Bound::Ray { targets, .. } => format!(", a ray at {} bodies", targets.len()),
-        Bound::Touch { body, shape, targets } => {
-            let name = shape.map_or(&scene.bodies[*body].name, |shape| &scene.shapes[shape].name);
-            format!(", {name} and {} others", targets.len())
-        }
-        Bound::Meet { targets } => format!(", {} bodies among each other", targets.len()),
-        Bound::Collect { body, targets } => {
-            format!(", body {} takes {} others", scene.bodies[*body].name, targets.len())
-        }
-        Bound::Place { body, targets } => format!(", {} bodies at {}", targets.len(), scene.bodies[*body].name),
-    };
-    let mut lines = vec![format!("{}: {}{bound}", component.name, component.kind)];
+    let mut lines = vec![format!("{}: {}", component.name, component.kind)];
     let Some(kind) = kinds().into_iter().find(|kind| kind.name == component.kind) else { return lines.concat() };
+    let bound = kind.coupling.in_words(&component.bound, scene);
+    if !bound.is_empty() {
+        lines[0] += &format!(", {bound}");
+    }
     for (parameter, setting) in kind.parameters.iter().zip(&component.settings) {
         if parameter.preset != *setting {
             lines.push(format!("{} = {setting}", parameter.key));

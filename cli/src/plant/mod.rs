@@ -7,3 +7,6 @@
 
 pub mod components;
 pub mod describe;
+mod error;
+
+pub use error::PlantError;

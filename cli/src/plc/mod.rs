@@ -6,6 +6,7 @@
 //! | [`operator`] | commands that are typed while it runs |
 
 pub mod config;
+mod error;
 pub mod operator;
 
 use std::io::Write;
@@ -17,26 +18,29 @@ use onescan_clients::gateway::tcp::Layouts;
 use onescan_clients::opcua_server::{Running, ServeError};
 use onescan_clients::station::{Clockwork, Controller, Wires, ads, modbus, opcua, tcp};
 use onescan_plc_shim::SoftPlc;
+use onescan_report::OutputError;
 use onescan_scenario::file::ClientFile;
 use onescan_scenario::gateway::Instrumented;
 use onescan_scenario::{Mode, Scenario};
 use onescan_server::signal::ClientName;
 
 pub use config::{Cycle, PlcConfig};
+pub use error::PlcError;
 
-use crate::run::RunError;
-use crate::run::error::ExitCode;
-use crate::run::interrupt::Interrupt;
+use crate::error::{ListenError, Usage};
+
+use crate::error::ExitCode;
+use crate::interrupt::Interrupt;
 
 /// Runs the PLC until it is told to quit.
 ///
 /// # Errors
 /// The scenario has no such PLC, its sources are wrong, or an address cannot be listened on.
-pub fn run(config: &PlcConfig, interrupt: &Interrupt, out: &mut dyn Write) -> Result<ExitCode, RunError> {
+pub fn run(config: &PlcConfig, interrupt: &Interrupt, out: &mut dyn Write) -> Result<ExitCode, PlcError> {
     let scenario = Scenario::load(&config.scenario)?;
     let name = the_plc(&scenario, config.client.as_ref())?;
     let program = scenario.instrumented(&name, config.mode)?;
-    let wrong = |text: String| RunError::Scenario(scenario.wrong_client(&name, text, None));
+    let wrong = |text: String| PlcError::Scenario(scenario.wrong_client(&name, text, None));
     let plc = SoftPlc::new(&program.application, &program.plan).map_err(|error| wrong(error.to_string()))?;
     let wires = Wires::new(&program.exchange, &program.application, &program.bindings);
     let wires = wires.map_err(|error| wrong(error.to_string()))?;
@@ -49,16 +53,16 @@ pub fn run(config: &PlcConfig, interrupt: &Interrupt, out: &mut dyn Write) -> Re
     let (urls, _served) = serve(config, &scenario, &name, &program, &controller)?;
     let clockwork = Clockwork::start(Arc::clone(&controller), config.cycle.interval());
     for url in &urls {
-        writeln!(out, "serving {url}").map_err(RunError::Output)?;
+        writeln!(out, "serving {url}").map_err(OutputError)?;
     }
-    writeln!(out, "{}", operator::status(&controller)).and_then(|()| out.flush()).map_err(RunError::Output)?;
+    writeln!(out, "{}", operator::status(&controller)).and_then(|()| out.flush()).map_err(OutputError)?;
     let code = operator::attend(&controller, interrupt, out)?;
     drop(clockwork);
     Ok(code)
 }
 
 /// The PLC that is meant: the only soft PLC, if no name is given.
-fn the_plc(scenario: &Scenario, wanted: Option<&ClientName>) -> Result<ClientName, RunError> {
+fn the_plc(scenario: &Scenario, wanted: Option<&ClientName>) -> Result<ClientName, PlcError> {
     if let Some(name) = wanted {
         return Ok(name.clone());
     }
@@ -66,10 +70,10 @@ fn the_plc(scenario: &Scenario, wanted: Option<&ClientName>) -> Result<ClientNam
     let mut plcs = scenario.file().clients.iter().filter(|(_, client)| is_plc(client)).map(|(name, _)| name);
     match (plcs.next(), plcs.next()) {
         (Some(one), None) => Ok(one.clone()),
-        (None, _) => Err(RunError::usage("the scenario has no soft PLC", None)),
+        (None, _) => Err(Usage::new("the scenario has no soft PLC", None).into()),
         (Some(one), Some(other)) => {
             let help = Some(format!("say which: `--client {one}` or `--client {other}`"));
-            Err(RunError::usage("the scenario has several soft PLCs", help))
+            Err(Usage::new("the scenario has several soft PLCs", help).into())
         }
     }
 }
@@ -81,30 +85,28 @@ fn serve(
     name: &ClientName,
     program: &Instrumented,
     controller: &Arc<Controller>,
-) -> Result<(Vec<String>, Option<Running>), RunError> {
+) -> Result<(Vec<String>, Option<Running>), PlcError> {
     let (mut urls, mut served) = (Vec::new(), None);
-    let unfit = |fault: MappingFault| RunError::Scenario(scenario.wrong_client(name, fault.message, fault.help));
+    let unfit = |fault: MappingFault| PlcError::Scenario(scenario.wrong_client(name, fault.message, fault.help));
     if let Some(address) = config.tcp {
         let layouts = Layouts::new(&program.settings.layout, &program.exchange).map_err(unfit)?;
-        let address =
-            tcp::serve(address, controller, layouts).map_err(|source| RunError::Listen { address, source })?;
+        let address = tcp::serve(address, controller, layouts).map_err(ListenError::on(address))?;
         urls.push(format!("tcp://{address}"));
     }
     if let Some(address) = config.modbus {
         let map = RegisterMap::new(&program.settings.modbus, &program.exchange).map_err(unfit)?;
-        let address = modbus::serve(address, controller, map).map_err(|source| RunError::Listen { address, source })?;
+        let address = modbus::serve(address, controller, map).map_err(ListenError::on(address))?;
         urls.push(format!("modbus://{address}"));
     }
     if let Some(address) = config.ads {
         let options = &program.settings.ads;
-        let address =
-            ads::serve(address, controller, options).map_err(|source| RunError::Listen { address, source })?;
+        let address = ads::serve(address, controller, options).map_err(ListenError::on(address))?;
         urls.push(format!("ads://{address}"));
     }
     if let Some(address) = config.opcua {
         let running = opcua::serve(address, controller, &config.access).map_err(|error| match error {
-            ServeError::Io(source) => RunError::Listen { address, source },
-            ServeError::Setup(text) => RunError::usage(text, None),
+            ServeError::Io(source) => PlcError::from(ListenError { address, source }),
+            ServeError::Setup(text) => Usage::new(text, None).into(),
         })?;
         urls.push(format!("opc.tcp://{}", running.address()));
         served = Some(running);

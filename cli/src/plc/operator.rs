@@ -5,11 +5,12 @@ use std::sync::mpsc::{Receiver, RecvTimeoutError, channel};
 use std::time::Duration;
 
 use onescan_clients::station::{Controller, Status};
+use onescan_report::OutputError;
 use onescan_server::signal::did_you_mean;
 
-use crate::run::RunError;
-use crate::run::error::ExitCode;
-use crate::run::interrupt::Interrupt;
+use super::error::PlcError;
+use crate::error::ExitCode;
+use crate::interrupt::Interrupt;
 
 /// How often Ctrl-C is looked for.
 const GLANCE: Duration = Duration::from_millis(50);
@@ -21,7 +22,7 @@ const COMMANDS: [&str; 6] = ["run", "stop", "cold", "warm", "status", "quit"];
 ///
 /// # Errors
 /// The answers cannot be written.
-pub fn attend(controller: &Controller, interrupt: &Interrupt, out: &mut dyn Write) -> Result<ExitCode, RunError> {
+pub fn attend(controller: &Controller, interrupt: &Interrupt, out: &mut dyn Write) -> Result<ExitCode, PlcError> {
     let mut lines = Some(typed());
     while !interrupt.is_raised() {
         let Some(typed) = &lines else {
@@ -30,7 +31,7 @@ pub fn attend(controller: &Controller, interrupt: &Interrupt, out: &mut dyn Writ
         };
         match typed.recv_timeout(GLANCE) {
             Ok(line) => match obey(line.trim(), controller) {
-                Some(answer) => writeln!(out, "{answer}").and_then(|()| out.flush()).map_err(RunError::Output)?,
+                Some(answer) => writeln!(out, "{answer}").and_then(|()| out.flush()).map_err(OutputError)?,
                 None => break,
             },
             Err(RecvTimeoutError::Timeout) => {}

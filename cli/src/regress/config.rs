@@ -7,7 +7,7 @@ use onescan_plc_shim::Dialect;
 use onescan_server::time::{TimeSpan, VirtualTime};
 
 use super::selection::Selection;
-use crate::run::Format;
+use crate::format::Format;
 use crate::run::coverage::CoverageRequest;
 
 /// What becomes of snapshots that are new or have changed.

@@ -6,7 +6,8 @@ use std::path::{Path, PathBuf};
 use onescan_plc_shim::input::kind::FileKind;
 use onescan_scenario::load::FILE_NAME;
 
-use crate::run::RunError;
+use super::error::TestError;
+use crate::error::{Unreadable, Usage};
 
 /// Scenarios and sources, each once, in the order in which they were named; what a folder holds by name.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -23,7 +24,7 @@ impl Found {
     ///
     /// # Errors
     /// A path that is not there or is of no kind that is tested.
-    pub fn behind(paths: &[PathBuf]) -> Result<Self, RunError> {
+    pub fn behind(paths: &[PathBuf]) -> Result<Self, TestError> {
         let mut found = Self::default();
         for path in paths {
             found.path(path)?;
@@ -35,8 +36,8 @@ impl Found {
         Ok(found)
     }
 
-    fn path(&mut self, path: &Path) -> Result<(), RunError> {
-        let meta = std::fs::metadata(path).map_err(|source| RunError::File { path: path.to_owned(), source })?;
+    fn path(&mut self, path: &Path) -> Result<(), TestError> {
+        let meta = std::fs::metadata(path).map_err(Unreadable::at(path))?;
         if meta.is_dir() {
             let before = self.scenarios.len();
             gather(path, &mut self.scenarios)?;
@@ -50,7 +51,7 @@ impl Found {
             self.sources.push(path.to_owned());
         } else {
             let help = format!("name a scenario's folder, its `{FILE_NAME}`, or PLC sources as in `plc/*.st`");
-            return Err(RunError::usage(format!("{} is nothing that can be tested", path.display()), Some(help)));
+            return Err(Usage::new(format!("{} is nothing that can be tested", path.display()), Some(help)).into());
         }
         Ok(())
     }
@@ -60,15 +61,15 @@ impl Found {
 const PASSED_OVER: [&str; 3] = ["target", "node_modules", "templates"];
 
 /// All scenarios in a folder and below it, without hidden folders.
-fn gather(folder: &Path, found: &mut Vec<PathBuf>) -> Result<(), RunError> {
+fn gather(folder: &Path, found: &mut Vec<PathBuf>) -> Result<(), TestError> {
     if folder.join(FILE_NAME).is_file() {
         found.push(folder.to_owned());
         return Ok(());
     }
-    let failed = |source| RunError::File { path: folder.to_owned(), source };
+    let failed = Unreadable::at(folder);
     let mut inner = Vec::new();
-    for entry in std::fs::read_dir(folder).map_err(failed)? {
-        let path = entry.map_err(failed)?.path();
+    for entry in std::fs::read_dir(folder).map_err(&failed)? {
+        let path = entry.map_err(&failed)?.path();
         let name = path.file_name().unwrap_or_default().to_string_lossy();
         // A link may lead in a circle.
         if path.is_dir() && !path.is_symlink() && !name.starts_with('.') && !PASSED_OVER.contains(&name.as_ref()) {

@@ -1,68 +1,30 @@
-//! The report format of `JUnit`, as CI servers read it: a suite for each scenario, a case for each test.
-//!
-//! `time` of a case is virtual time, so that equal runs give equal reports; only the root says how
-//! long it all took.
+//! All tests for CI servers.
 
-use std::fmt::Write as _;
+use onescan_report::junit::{Case, Ended, Suite, Tests, Trouble};
 
 use super::outcome::{Outcome, Report, Status};
 use super::summary::details;
-use crate::regress::page::markup::escaped;
 
 /// The report as XML.
 pub fn text(report: &Report) -> String {
-    let mut text = String::new();
-    // Writing to a string cannot fail.
-    let _ = write(report, &mut text);
-    text
+    let of = |suite: &&str| Suite {
+        name: (*suite).to_owned(),
+        cases: report.outcomes.iter().filter(|outcome| outcome.suite == *suite).map(case).collect(),
+    };
+    Tests { suites: report.suites().iter().map(of).collect(), wall_time: report.wall_time }.to_xml()
 }
 
-fn write(report: &Report, text: &mut String) -> std::fmt::Result {
-    let all: Vec<&Outcome> = report.outcomes.iter().collect();
-    writeln!(text, "<?xml version=\"1.0\" encoding=\"UTF-8\"?>")?;
-    let wall = report.wall_time.as_secs_f64();
-    writeln!(text, "<testsuites name=\"onescan\" {} time=\"{wall:.3}\">", counts(&all))?;
-    for suite in report.suites() {
-        let tests: Vec<&Outcome> = report.outcomes.iter().filter(|outcome| outcome.suite == suite).collect();
-        let time = tests.iter().map(|test| test.virtual_time_ns).sum::<u64>() as f64 / 1e9;
-        writeln!(
-            text,
-            "  <testsuite name=\"{}\" {} skipped=\"0\" time=\"{time:.3}\">",
-            escaped(suite),
-            counts(&tests)
-        )?;
-        for test in tests {
-            case(test, text)?;
-        }
-        writeln!(text, "  </testsuite>")?;
+fn case(outcome: &Outcome) -> Case {
+    let place = outcome.asserts.first().map(|failed| &failed.place).or(outcome.place.as_ref());
+    let trouble = || Trouble { word: outcome.status.word(), lines: details(outcome) };
+    Case {
+        name: outcome.name.clone(),
+        virtual_time_ns: outcome.virtual_time_ns,
+        place: place.map(|place| (place.file.clone(), place.line)),
+        ended: match outcome.status {
+            Status::Passed | Status::New | Status::Blessed => Ended::Well,
+            Status::Missing | Status::Changed | Status::Failed => Ended::Failure(trouble()),
+            Status::Fault | Status::Wrong => Ended::Error(trouble()),
+        },
     }
-    writeln!(text, "</testsuites>")
-}
-
-fn is_error(status: Status) -> bool {
-    matches!(status, Status::Fault | Status::Wrong)
-}
-
-fn counts(tests: &[&Outcome]) -> String {
-    let errors = tests.iter().filter(|test| is_error(test.status)).count();
-    let failures = tests.iter().filter(|test| test.status.is_bad()).count() - errors;
-    format!("tests=\"{}\" failures=\"{failures}\" errors=\"{errors}\"", tests.len())
-}
-
-fn case(test: &Outcome, text: &mut String) -> std::fmt::Result {
-    let name = if test.name.is_empty() { "(all)" } else { &test.name };
-    let (name, class) = (escaped(name), escaped(&test.suite));
-    let time = test.virtual_time_ns as f64 / 1e9;
-    write!(text, "    <testcase name=\"{name}\" classname=\"{class}\" time=\"{time:.3}\"")?;
-    if let Some(place) = test.asserts.first().map(|failed| &failed.place).or(test.place.as_ref()) {
-        write!(text, " file=\"{}\" line=\"{}\"", escaped(&place.file), place.line)?;
-    }
-    if !test.status.is_bad() {
-        return writeln!(text, "/>");
-    }
-    let lines = details(test);
-    let first = lines.first().map_or_else(|| test.status.word().to_owned(), Clone::clone);
-    let kind = if is_error(test.status) { "error" } else { "failure" };
-    let (first, all, ty) = (escaped(&first), escaped(&lines.join("\n")), test.status.word());
-    writeln!(text, ">\n      <{kind} message=\"{first}\" type=\"{ty}\">{all}</{kind}>\n    </testcase>")
 }

@@ -12,7 +12,6 @@
 //! | [`worker`] | one unit, in such a process |
 //! | [`unit_test`], `test_tags` | test programs in ST, each in a fresh PLC |
 //! | [`ran`] | what a process says of its unit |
-//! | [`snapshot`] | trajectories as text, compared |
 //! | [`outcome`] | passed, changed, failed: what came of each test |
 //! | [`summary`] | for people and as JSON |
 //! | [`junit`], [`sarif`], [`page`] | reports for others |
@@ -24,6 +23,7 @@
 pub mod config;
 pub mod coverage;
 pub mod discover;
+mod error;
 pub mod junit;
 pub mod outcome;
 pub mod page;
@@ -32,7 +32,6 @@ pub mod pool;
 pub mod ran;
 pub mod sarif;
 pub mod selection;
-pub mod snapshot;
 pub mod summary;
 mod test_tags;
 pub mod unit_test;
@@ -40,13 +39,15 @@ pub mod worker;
 
 use std::io::Write;
 
+use onescan_report::OutputError;
 use onescan_report::file;
 
 pub use config::{Policy, TestConfig};
+pub use error::TestError;
 pub use selection::Selection;
 
-use crate::run::error::ExitCode;
-use crate::run::{Format, RunError};
+use crate::error::ExitCode;
+use crate::format::Format;
 use outcome::Outcome;
 
 /// Runs all tests that `config` asks for, and writes what came of them to `out`.
@@ -54,7 +55,7 @@ use outcome::Outcome;
 /// # Errors
 /// There is nothing to test, or a report cannot be written. What is wrong with a test is no error here
 /// but an outcome.
-pub fn test(config: &TestConfig, out: &mut dyn Write) -> Result<ExitCode, RunError> {
+pub fn test(config: &TestConfig, out: &mut dyn Write) -> Result<ExitCode, TestError> {
     let started = std::time::Instant::now();
     let units = plan::units(config)?;
     let worked = pool::work(config, &units)?;
@@ -63,7 +64,7 @@ pub fn test(config: &TestConfig, out: &mut dyn Write) -> Result<ExitCode, RunErr
         outcomes.extend(outcome::judge(config, unit, worked)?);
     }
     if outcomes.is_empty() {
-        return Err(plan::none_chosen("none of the tests"));
+        return Err(plan::none_chosen("none of the tests").into());
     }
     let orphans = plan::orphans(config, &units)?;
     let executed = coverage::merged(&units, &worked);
@@ -74,7 +75,7 @@ pub fn test(config: &TestConfig, out: &mut dyn Write) -> Result<ExitCode, RunErr
         Format::Human => summary::write_human(config, &report, out),
         Format::Json => summary::write_json(&report, out),
     }
-    .map_err(RunError::Output)?;
+    .map_err(OutputError)?;
     Ok(report.exit_code())
 }
 
@@ -82,7 +83,7 @@ fn write_reports(
     config: &TestConfig,
     report: &outcome::Report,
     coverage: &onescan_plc_shim::Coverage,
-) -> Result<(), RunError> {
+) -> Result<(), TestError> {
     if let Some(request) = &config.coverage {
         request.write_report(coverage)?;
     }
@@ -93,7 +94,7 @@ fn write_reports(
         file::write_whole(path, sarif::text(report).as_bytes())?;
     }
     if let Some(path) = &config.html {
-        file::write_whole(path, page::of_tests(report, coverage).as_bytes())?;
+        file::write_whole(path, page::of_tests(report, coverage).to_html().as_bytes())?;
     }
     Ok(())
 }

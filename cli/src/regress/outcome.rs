@@ -7,11 +7,13 @@ use onescan_server::client::SourcePlace;
 use serde::Serialize;
 
 use super::config::{Policy, TestConfig};
+use super::error::TestError;
 use super::plan::{CaseUnit, Unit, shown};
-use super::ran::{Event, FailedAssert, Ran, Shown, Worked, within};
-use super::snapshot::{Difference, Snapshot, compare};
-use crate::run::RunError;
-use crate::run::error::ExitCode;
+use super::ran::{FailedAssert, Ran, Shown, Worked, within};
+use crate::error::ExitCode;
+use crate::run::RunStatus;
+use crate::run::page::Event;
+use crate::snapshot::{Difference, Snapshot, compare};
 
 /// How a test ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
@@ -158,7 +160,7 @@ impl Report {
 ///
 /// # Errors
 /// A snapshot cannot be written.
-pub fn judge(config: &TestConfig, unit: &Unit, worked: &Worked) -> Result<Vec<Outcome>, RunError> {
+pub fn judge(config: &TestConfig, unit: &Unit, worked: &Worked) -> Result<Vec<Outcome>, TestError> {
     if let Some((error, code)) = &worked.error {
         return Ok(vec![broken(unit, error, *code)]);
     }
@@ -179,7 +181,7 @@ fn broken(unit: &Unit, error: &str, code: i32) -> Outcome {
         Unit::Case(unit) => (unit.place.case.clone(), unit.tags.clone()),
         _ => Default::default(),
     };
-    let ran = Ran { name, error: Some(error.to_owned()), ..Ran::default() };
+    let ran = Ran { error: Some(error.to_owned()), ..Ran::new(name, RunStatus::Failed) };
     let status = if wrong { Status::Wrong } else { Status::Fault };
     Outcome { tags, ..outcome(&unit.suite(), &ran, "", status) }
 }
@@ -211,10 +213,10 @@ fn test_program(suite: &str, ran: &Ran) -> Outcome {
     Outcome { asserts_made: Some(ran.asserts_made), tags: ran.tags.clone(), ..outcome(suite, ran, "", status) }
 }
 
-fn case(config: &TestConfig, unit: &CaseUnit, suite: &str, ran: &Ran) -> Result<Outcome, RunError> {
+fn case(config: &TestConfig, unit: &CaseUnit, suite: &str, ran: &Ran) -> Result<Outcome, TestError> {
     let folder = shown(&unit.place.scenario);
     let with = |status| Outcome { tags: unit.tags.clone(), ..outcome(suite, ran, &folder, status) };
-    if ran.status != "completed" {
+    if ran.status != RunStatus::Completed {
         return Ok(with(Status::Fault));
     }
     let taken = ran.snapshot.as_deref().map(Snapshot::parse).and_then(Result::ok);
@@ -222,7 +224,7 @@ fn case(config: &TestConfig, unit: &CaseUnit, suite: &str, ran: &Ran) -> Result<
         let error = Some("its process gave no trajectory".to_owned());
         return Ok(Outcome { error, ..with(Status::Fault) });
     };
-    let violated = ran.expectations.iter().any(|shown| shown.verdict == "violated");
+    let violated = ran.expectations.iter().any(|shown| shown.is_violated());
     let mut judged = match unit.place.read_reviewed() {
         Ok(reviewed) => held_against(config, unit, reviewed.as_ref(), &taken, with)?,
         Err(error) => Outcome { error: Some(error.to_string()), ..with(Status::Wrong) },
@@ -241,7 +243,7 @@ fn held_against(
     reviewed: Option<&Snapshot>,
     taken: &Snapshot,
     with: impl Fn(Status) -> Outcome,
-) -> Result<Outcome, RunError> {
+) -> Result<Outcome, TestError> {
     let differences = reviewed.map(|reviewed| compare(reviewed, taken, &unit.choice.tolerances));
     let is_equal = differences.as_ref().is_some_and(Vec::is_empty);
     let place = &unit.place;

@@ -7,9 +7,10 @@ use onescan_scenario::case::Catalogue;
 
 use super::config::TestConfig;
 use super::discover::Found;
-use super::snapshot::store::{Place, reviewed};
-use super::snapshot::take::Choice;
-use crate::run::RunError;
+use super::error::TestError;
+use crate::error::Usage;
+use crate::snapshot::store::{Place, reviewed};
+use crate::snapshot::take::Choice;
 
 /// What one process does.
 #[derive(Clone, Debug, PartialEq)]
@@ -74,7 +75,7 @@ pub fn shown(path: &Path) -> String {
 ///
 /// # Errors
 /// Nothing is asked for that is there.
-pub fn units(config: &TestConfig) -> Result<Vec<Unit>, RunError> {
+pub fn units(config: &TestConfig) -> Result<Vec<Unit>, TestError> {
     let found = Found::behind(&config.paths)?;
     let mut units = Vec::new();
     let mut left_out = 0;
@@ -100,13 +101,13 @@ pub fn units(config: &TestConfig) -> Result<Vec<Unit>, RunError> {
         (false, _) => Ok(units),
         (true, 0) => {
             let help = "a scenario is a folder with a `scenario.toml`; test programs are in PLC sources".to_owned();
-            Err(RunError::usage("there is nothing to test here", Some(help)))
+            Err(Usage::new("there is nothing to test here", Some(help)).into())
         }
-        (true, _) => Err(none_chosen(&format!("none of {left_out} cases"))),
+        (true, _) => Err(none_chosen(&format!("none of {left_out} cases")).into()),
     }
 }
 
-fn cases(folder: &Path) -> Result<Vec<CaseUnit>, RunError> {
+fn cases(folder: &Path) -> Result<Vec<CaseUnit>, TestError> {
     let scenario = Scenario::load(folder)?;
     let catalogue = Catalogue::load(folder)?;
     let mut units = Vec::new();
@@ -125,16 +126,16 @@ fn is_chosen(config: &TestConfig, case: &CaseUnit) -> bool {
 }
 
 /// The error of a selection that leaves nothing.
-pub(super) fn none_chosen(of: &str) -> RunError {
+pub(super) fn none_chosen(of: &str) -> Usage {
     let help = "see `--filter`, `--tag` and `--skip-tag`".to_owned();
-    RunError::usage(format!("{of} is chosen"), Some(help))
+    Usage::new(format!("{of} is chosen"), Some(help))
 }
 
 /// Reviewed snapshots of the scenarios tested that belong to no case any more.
 ///
 /// # Errors
 /// A folder cannot be read.
-pub fn orphans(config: &TestConfig, units: &[Unit]) -> Result<Vec<PathBuf>, RunError> {
+pub fn orphans(config: &TestConfig, units: &[Unit]) -> Result<Vec<PathBuf>, TestError> {
     // What was left out is not known here.
     if !config.selection.is_all() {
         return Ok(Vec::new());

@@ -9,18 +9,19 @@ use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
 use super::Selection;
 use super::config::TestConfig;
+use super::error::TestError;
 use super::plan::Unit;
 use super::ran::Worked;
-use crate::run::RunError;
-use crate::run::error::ExitCode;
+use crate::error::ExitCode;
+use crate::error::SpawnError;
 
 /// Works on all units; the results are in the units' order.
 ///
 /// # Errors
 /// A process cannot be started.
-pub fn work(config: &TestConfig, units: &[Unit]) -> Result<Vec<Worked>, RunError> {
+pub fn work(config: &TestConfig, units: &[Unit]) -> Result<Vec<Worked>, TestError> {
     let next = AtomicUsize::new(0);
-    let done: Mutex<Vec<Option<Result<Worked, RunError>>>> = Mutex::new(units.iter().map(|_| None).collect());
+    let done: Mutex<Vec<Option<Result<Worked, TestError>>>> = Mutex::new(units.iter().map(|_| None).collect());
     let bar = bar(config, units.len());
     std::thread::scope(|scope| {
         for _ in 0..config.jobs.get().min(units.len()) {
@@ -54,12 +55,12 @@ fn bar(config: &TestConfig, units: usize) -> ProgressBar {
     bar
 }
 
-fn one(config: &TestConfig, unit: &Unit) -> Result<Worked, RunError> {
+fn one(config: &TestConfig, unit: &Unit) -> Result<Worked, TestError> {
     if let Unit::Unreadable { error, .. } = unit {
         let error = Some((error.clone(), ExitCode::WrongInput as i32));
         return Ok(Worked { error, ..Worked::default() });
     }
-    let spawn = |source| RunError::Spawn { client: "test".to_owned(), command: "onescan".to_owned(), source };
+    let spawn = |source| SpawnError { client: "test".to_owned(), command: "onescan".to_owned(), source };
     let program = std::env::current_exe().map_err(spawn)?;
     let output = command(config, unit, &program).output().map_err(spawn)?;
     let said = || String::from_utf8_lossy(&output.stderr).trim_end().to_owned();

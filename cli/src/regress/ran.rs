@@ -1,11 +1,13 @@
 //! What a process says of its unit, as JSON on its standard output.
 
 use onescan_plc_shim::coverage::{Counted, Row};
+use onescan_report::Verdict;
 use onescan_server::client::SourcePlace;
 use serde::{Deserialize, Serialize};
 
-use crate::run::RunReport;
 use crate::run::expectation::SignalValue;
+use crate::run::page::Event;
+use crate::run::{RunReport, RunStatus};
 
 /// All that came of a unit.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -19,15 +21,15 @@ pub struct Worked {
 }
 
 /// One test that was run.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Ran {
     /// Its name.
     pub name: String,
     /// The tags of a test program.
     #[serde(default)]
     pub tags: Vec<String>,
-    /// `completed`, `stopped` or `failed`.
-    pub status: String,
+    /// How it ended.
+    pub status: RunStatus,
     /// The digest over all steps.
     pub digest: Option<String>,
     /// Steps or scans.
@@ -59,14 +61,21 @@ pub struct Ran {
 pub struct Shown {
     /// Its name.
     pub name: String,
-    /// `met`, `open` or `violated`.
-    pub verdict: String,
+    /// Whether it was met.
+    pub verdict: Verdict,
     /// When it was first violated.
     pub at_ns: Option<u64>,
     /// What its signals were then.
     pub values: Vec<(String, f64)>,
     /// By how much it was met.
     pub margin: Option<f64>,
+}
+
+impl Shown {
+    /// True if the run did not show it.
+    pub fn is_violated(&self) -> bool {
+        self.verdict == Verdict::Violated
+    }
 }
 
 /// An assert that did not hold.
@@ -80,15 +89,6 @@ pub struct FailedAssert {
     pub at_ns: u64,
     /// In how many scans.
     pub times: u64,
-}
-
-/// Something that happened from outside.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Event {
-    /// When.
-    pub at_ns: u64,
-    /// What.
-    pub text: String,
 }
 
 /// A row of coverage.
@@ -128,6 +128,27 @@ pub fn within(folder: &str, file: &str) -> String {
 }
 
 impl Ran {
+    /// A test of which nothing is known yet but how it ended.
+    pub fn new(name: String, status: RunStatus) -> Self {
+        Self {
+            name,
+            tags: Vec::new(),
+            status,
+            digest: None,
+            steps: 0,
+            virtual_time_ns: 0,
+            step_ns: 0,
+            error: None,
+            place: None,
+            expectations: Vec::new(),
+            asserts: Vec::new(),
+            asserts_made: 0,
+            events: Vec::new(),
+            snapshot: None,
+            picture: None,
+        }
+    }
+
     /// What a report of a run says.
     pub fn of(name: &str, report: &RunReport, step_ns: u64) -> Self {
         use onescan_server::end::FailureCause;
@@ -135,14 +156,12 @@ impl Ran {
         let place = if let Some(FailureCause::Fault(fault)) = cause { fault.place.clone() } else { None };
         let shown = report.expectations.iter().map(|expectation| Shown {
             name: expectation.name.clone(),
-            verdict: expectation.verdict.to_owned(),
+            verdict: expectation.verdict,
             at_ns: expectation.at.map(onescan_server::time::VirtualTime::as_nanos),
             values: expectation.values.iter().map(|SignalValue { signal, value }| (signal.clone(), *value)).collect(),
             margin: expectation.margin,
         });
         Self {
-            name: name.to_owned(),
-            status: report.status.to_owned(),
             digest: report.digest.map(|digest| digest.to_string()),
             steps: report.steps.0,
             virtual_time_ns: report.virtual_time.as_nanos(),
@@ -150,7 +169,7 @@ impl Ran {
             error: report.error.clone(),
             place,
             expectations: shown.collect(),
-            ..Self::default()
+            ..Self::new(name.to_owned(), report.status)
         }
     }
 }

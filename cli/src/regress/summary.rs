@@ -9,6 +9,7 @@ use super::config::{Policy, TestConfig};
 use super::outcome::{Outcome, Report, Status};
 use super::plan::shown;
 use super::ran::{FailedAssert, Shown};
+use crate::run::coverage::share;
 
 /// So many differences of one test are shown; who has more begins with these.
 const SHOWN: usize = 5;
@@ -77,7 +78,7 @@ pub fn details(outcome: &Outcome) -> Vec<String> {
         }
     }
     lines.extend(outcome.asserts.iter().map(assert));
-    lines.extend(outcome.expectations.iter().filter(|shown| shown.verdict == "violated").map(violation));
+    lines.extend(outcome.expectations.iter().filter(|shown| shown.is_violated()).map(violation));
     lines.extend(outcome.differences.iter().take(SHOWN).map(ToString::to_string));
     if let Some(more @ 1..) = outcome.differences.len().checked_sub(SHOWN) {
         lines.push(format!("... and {more} more signals"));
@@ -98,12 +99,6 @@ pub fn violation(shown: &Shown) -> String {
     let values: Vec<String> = shown.values.iter().map(|(signal, value)| format!("{signal} = {value}")).collect();
     let values = if values.is_empty() { String::new() } else { format!(": {}", values.join(", ")) };
     format!("expectation `{}` violated{at}{values}", shown.name)
-}
-
-/// How much of something was executed.
-pub fn share((all, some): (usize, usize)) -> String {
-    let percent = (100 * some).checked_div(all);
-    percent.map_or_else(|| "none".to_owned(), |percent| format!("{percent}% ({some} of {all})"))
 }
 
 /// How many there were of each sort.

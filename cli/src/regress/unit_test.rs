@@ -15,11 +15,14 @@ use onescan_server::client::SourcePlace;
 use onescan_server::time::TimeSpan;
 use thiserror::Error;
 
+use super::error::TestError;
 use super::ran::{FailedAssert, Ran, Worked};
 use super::test_tags;
 use super::worker::{WorkerConfig, rows};
 use crate::check::collect;
-use crate::run::RunError;
+use crate::error::Usage;
+use crate::error::{Exit, ExitCode};
+use crate::run::RunStatus;
 
 /// What the names of tests begin with.
 pub const PREFIX: &str = "TEST_";
@@ -34,6 +37,12 @@ const DONE: &str = "Done";
 pub struct SourcesReport {
     /// Errors and warnings.
     pub findings: Diagnostics,
+}
+
+impl Exit for Box<SourcesReport> {
+    fn exit_code(&self) -> ExitCode {
+        ExitCode::WrongInput
+    }
 }
 
 impl miette::Diagnostic for SourcesReport {
@@ -67,18 +76,18 @@ impl Test {
 ///
 /// # Errors
 /// The sources cannot be read, do not compile, or have no test.
-pub fn run(config: &WorkerConfig) -> Result<Worked, RunError> {
+pub fn run(config: &WorkerConfig) -> Result<Worked, TestError> {
     let programs = collect::programs(&config.sources, config.dialect)?;
     let mut inputs: Vec<Input> = programs.into_iter().flat_map(|program| program.inputs).collect();
     let tests: Vec<Test> = inputs.iter().flat_map(declared).collect();
     if tests.is_empty() {
         let help = format!("a test is a PROGRAM or a FUNCTION_BLOCK whose name begins with `{PREFIX}`");
-        return Err(RunError::usage("there is no test in these sources", Some(help)));
+        return Err(Usage::new("there is no test in these sources", Some(help)).into());
     }
     inputs.extend(harness(&tests));
     let compiled =
         if config.cover { Application::from_inputs_with_coverage(inputs) } else { Application::from_inputs(inputs) };
-    let application = compiled.map_err(|findings| RunError::Sources(Box::new(SourcesReport { findings })))?;
+    let application = compiled.map_err(|findings| TestError::Sources(Box::new(SourcesReport { findings })))?;
     let mut worked = Worked::default();
     let mut coverage = Coverage::default();
     for test in tests.iter().filter(|test| config.selection.has_tags(&test.tags)) {
@@ -125,26 +134,24 @@ fn one(
     application: &Application,
     test: &Test,
     coverage: &mut Coverage,
-) -> Result<Ran, RunError> {
+) -> Result<Ran, TestError> {
     let interval = config.scan.unwrap_or(TimeSpan::millis::<10>());
     let programs = vec![test.program()];
     let plan =
         TaskPlan::new(vec![Task { name: "test".to_owned(), interval: Some(interval), programs, ..Task::default() }]);
-    let refused = |error: onescan_plc_shim::RunError| RunError::usage(error.to_string(), None);
+    let refused = |error: onescan_plc_shim::RunError| Usage::new(error.to_string(), None);
     let mut plc = SoftPlc::new(application, &plan).map_err(refused)?;
     let done = done_offset(application, test)?;
     let mut ran = Ran {
-        name: test.name.clone(),
         tags: test.tags.clone(),
-        status: "completed".to_owned(),
         step_ns: interval.as_nanos(),
         place: Some(test.place.clone()),
-        ..Ran::default()
+        ..Ran::new(test.name.clone(), RunStatus::Completed)
     };
     loop {
         let now_ns = ran.virtual_time_ns.saturating_add(interval.as_nanos());
         if now_ns > config.until.as_nanos() {
-            "failed".clone_into(&mut ran.status);
+            ran.status = RunStatus::Failed;
             let until = config.until;
             ran.error = Some(format!("it is not done at t_v = {until}: its output `{DONE}` is still FALSE"));
             break;
@@ -167,13 +174,13 @@ fn one(
 }
 
 /// Where the output lies that says that the test is done, if it has one.
-fn done_offset(application: &Application, test: &Test) -> Result<Option<usize>, RunError> {
+fn done_offset(application: &Application, test: &Test) -> Result<Option<usize>, TestError> {
     let Ok(variable) = application.variable(&test.done()) else { return Ok(None) };
     if variable.ty == Some(ElementaryType::Bool) {
         return Ok(Some(variable.offset as usize));
     }
     let message = format!("{}: `{}.{DONE}` is {}, not BOOL", test.place, test.name, variable.type_name);
-    Err(RunError::usage(message, None))
+    Err(Usage::new(message, None).into())
 }
 
 /// What the asserts of a scan have found. One that fails in several scans is told once.
@@ -191,7 +198,7 @@ fn note(ran: &mut Ran, plc: &mut SoftPlc) {
 
 fn faulted(ran: &mut Ran, fault: &PlcFault) {
     let at = &fault.at;
-    "failed".clone_into(&mut ran.status);
+    ran.status = RunStatus::Failed;
     ran.error = Some(format!("PLC fault: {} in {at}{}, t_v = {}", fault.kind, fault.way(), fault.virtual_time));
     if !at.file.is_empty() {
         ran.place = Some(SourcePlace { file: at.file.clone(), line: at.line, column: at.column });

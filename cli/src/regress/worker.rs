@@ -6,15 +6,19 @@ use std::path::{Path, PathBuf};
 use std::rc::Rc;
 
 use onescan_plc_shim::{Coverage, Dialect};
+use onescan_report::OutputError;
 use onescan_scenario::Scenario;
 use onescan_scenario::case::{Catalogue, DEFAULT};
 use onescan_server::time::{TimeSpan, VirtualTime};
 
-use super::ran::{Event, Ran, Worked};
-use super::snapshot::take::{Choice, Taker};
+use super::TestError;
+use super::ran::{Ran, Worked};
 use super::{Selection, unit_test};
-use crate::run::interrupt::Interrupt;
-use crate::run::{RunConfig, RunError, watched};
+use crate::interrupt::Interrupt;
+use crate::run::config::{Drawing, Picture};
+use crate::run::page::Event;
+use crate::run::{RunConfig, watched};
+use crate::snapshot::take::{Choice, Taker};
 
 /// What a process is to do.
 #[derive(Clone, Debug, Default)]
@@ -43,16 +47,16 @@ pub struct WorkerConfig {
 ///
 /// # Errors
 /// The input is wrong.
-pub fn work(config: &WorkerConfig, out: &mut dyn Write) -> Result<(), RunError> {
+pub fn work(config: &WorkerConfig, out: &mut dyn Write) -> Result<(), TestError> {
     let worked = match &config.scenario {
         Some(scenario) => case(config, scenario)?,
         None => unit_test::run(config)?,
     };
-    serde_json::to_writer(&mut *out, &worked).map_err(|error| RunError::Output(error.into()))?;
-    out.flush().map_err(RunError::Output)
+    serde_json::to_writer(&mut *out, &worked).map_err(|error| OutputError(error.into()))?;
+    Ok(out.flush().map_err(OutputError)?)
 }
 
-fn case(config: &WorkerConfig, folder: &Path) -> Result<Worked, RunError> {
+fn case(config: &WorkerConfig, folder: &Path) -> Result<Worked, TestError> {
     let mut scenario = Scenario::load_case(folder, config.case.as_deref())?;
     if config.cover {
         scenario.cover();
@@ -63,13 +67,11 @@ fn case(config: &WorkerConfig, folder: &Path) -> Result<Worked, RunError> {
     let taker = Taker::new(&scenario, choice.clone(), Rc::clone(&snapshot));
     let mut run = RunConfig::headless(folder.to_owned(), config.case.clone());
     if config.draw {
-        // The plot is not written but handed over.
-        run.plot = Some(PathBuf::new());
-        run.signals = choice.signals;
+        run.picture = Picture { drawing: Drawing::Kept, signals: choice.signals, plane: None };
     }
     let (report, plot) = watched(&run, &scenario, &Interrupt::new(), vec![Box::new(taker)])?;
     let mut ran = Ran::of(config.case.as_deref().unwrap_or(DEFAULT), &report, scenario.file().step.as_nanos());
-    ran.snapshot = snapshot.borrow().as_ref().map(super::snapshot::Snapshot::to_text);
+    ran.snapshot = snapshot.borrow().as_ref().map(crate::snapshot::Snapshot::to_text);
     ran.picture = config.draw.then(|| plot.to_svg());
     ran.events = scenario.case_events().into_iter().map(|(at_ns, text)| Event { at_ns, text }).collect();
     let coverage =

@@ -4,7 +4,7 @@ use onescan_server::signal::SignalType;
 use onescan_server::time::VirtualTime;
 
 use super::canvas::Canvas;
-use crate::regress::snapshot::Track;
+use crate::snapshot::Track;
 
 /// Rows of a curve.
 const ROWS: usize = 4;

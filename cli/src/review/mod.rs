@@ -9,6 +9,7 @@
 
 pub mod canvas;
 pub mod chart;
+mod error;
 pub mod page;
 pub mod view;
 
@@ -16,17 +17,20 @@ use std::io::{IsTerminal, Write};
 use std::path::PathBuf;
 
 use console::{Key, Term};
+use onescan_report::OutputError;
 use onescan_report::file;
 use onescan_scenario::Scenario;
 use onescan_scenario::case::Catalogue;
 
+pub use error::ReviewError;
+
 use crate::regress::discover::Found;
 use crate::regress::plan::suite_of;
-use crate::regress::snapshot::store::{Place, pending};
-use crate::regress::snapshot::take;
-use crate::regress::snapshot::{Difference, Snapshot, compare};
-use crate::run::RunError;
-use crate::run::error::ExitCode;
+use crate::snapshot::store::{Place, pending};
+use crate::snapshot::take;
+use crate::snapshot::{Difference, Snapshot, compare};
+
+use crate::error::ExitCode;
 
 /// Columns of a terminal that does not say how wide it is.
 const WIDTH: usize = 80;
@@ -85,13 +89,13 @@ impl Waiting {
 ///
 /// # Errors
 /// A snapshot cannot be read or written.
-pub fn review(config: &ReviewConfig, out: &mut dyn Write) -> Result<ExitCode, RunError> {
+pub fn review(config: &ReviewConfig, out: &mut dyn Write) -> Result<ExitCode, ReviewError> {
     let waiting = waiting(config)?;
     if let Some(path) = &config.html {
         file::write_whole(path, page::of(&waiting).as_bytes())?;
     }
     if waiting.is_empty() {
-        writeln!(out, "no snapshot waits for a review").map_err(RunError::Output)?;
+        writeln!(out, "no snapshot waits for a review").map_err(OutputError)?;
         return Ok(ExitCode::Ok);
     }
     let term = Term::stdout();
@@ -105,9 +109,9 @@ pub fn review(config: &ReviewConfig, out: &mut dyn Write) -> Result<ExitCode, Ru
             Choice::List => Decision::Skip,
             Choice::Ask => {
                 let width = if on_terminal { usize::from(term.size().1) } else { WIDTH };
-                out.write_all(view::text(one, width, colours).as_bytes()).map_err(RunError::Output)?;
+                out.write_all(view::text(one, width, colours).as_bytes()).map_err(OutputError)?;
                 if on_terminal && std::io::stdin().is_terminal() {
-                    ask(&term, index + 1, waiting.len(), out).map_err(RunError::Output)?
+                    ask(&term, index + 1, waiting.len(), out).map_err(OutputError)?
                 } else {
                     Decision::Skip
                 }
@@ -119,11 +123,11 @@ pub fn review(config: &ReviewConfig, out: &mut dyn Write) -> Result<ExitCode, Ru
             Decision::Skip => {}
             Decision::Quit => break,
         }
-        tell(config, one, what, out).map_err(RunError::Output)?;
+        tell(config, one, what, out).map_err(OutputError)?;
     }
     if config.choice == Choice::Ask && !(on_terminal && std::io::stdin().is_terminal()) {
         let how = "on a terminal, or with --accept-all or --reject-all";
-        writeln!(out, "{} waiting: decide {how}", waiting.len()).map_err(RunError::Output)?;
+        writeln!(out, "{} waiting: decide {how}", waiting.len()).map_err(OutputError)?;
     }
     Ok(ExitCode::Ok)
 }
@@ -164,7 +168,7 @@ fn ask(term: &Term, number: usize, of: usize, out: &mut dyn Write) -> std::io::R
 }
 
 /// Everything that waits, in the order of scenarios and cases.
-fn waiting(config: &ReviewConfig) -> Result<Vec<Waiting>, RunError> {
+fn waiting(config: &ReviewConfig) -> Result<Vec<Waiting>, ReviewError> {
     let mut all = Vec::new();
     for folder in &Found::behind(&config.paths)?.scenarios {
         for place in pending(folder)? {

@@ -1,13 +1,11 @@
 //! All pending snapshots as one self-contained page.
 
-use onescan_plc_shim::Coverage;
+use onescan_report::page::{Mood, Page, Section};
 use onescan_report::plot::{Mark, Panel, Plot, Shape, Trajectory};
 use onescan_server::signal::SignalType;
 
 use super::{Waiting, chart, view};
-use crate::regress::page::page;
-use crate::regress::page::section::Section;
-use crate::regress::snapshot::{Difference, Track};
+use crate::snapshot::{Difference, Track};
 
 /// The page.
 pub fn of(waiting: &[Waiting]) -> String {
@@ -15,11 +13,18 @@ pub fn of(waiting: &[Waiting]) -> String {
         .iter()
         .map(|one| {
             let lines = one.differences.iter().map(ToString::to_string).collect();
-            Section::of_review(one.name(), one.status(), lines, plot(one).to_svg())
+            Section {
+                title: one.name(),
+                status: one.status().to_owned(),
+                mood: Mood::Bad,
+                lines,
+                svg: Some(plot(one).to_svg()),
+                ..Section::default()
+            }
         })
         .collect();
-    let count = format!("{} waiting", waiting.len());
-    page("onescan review", &count, "", &sections, &Coverage::default())
+    let (title, totals) = ("onescan review".to_owned(), format!("{} waiting", waiting.len()));
+    Page { title, totals, sections, ..Page::default() }.to_html()
 }
 
 /// Old over new, and beneath each signal that differs by how much it does.

@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 use onescan_server::time::VirtualTime;
 
 use super::{Waiting, chart};
-use crate::regress::snapshot::{Difference, Track};
+use crate::snapshot::{Difference, Track};
 
 /// So many signals are drawn; the page has all of them.
 const SIGNALS_MAX: usize = 8;

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use onescan_clients::soft_plc::CoverageSink;
 use onescan_plc_shim::Coverage;
-use onescan_report::file;
+use onescan_report::{OutputError, file};
 
 use super::error::RunError;
 
@@ -44,8 +44,14 @@ impl CoverageRequest {
     pub(crate) fn write_report(&self, coverage: &Coverage) -> Result<(), RunError> {
         let text = match self.format {
             CoverageFormat::Lcov => coverage.to_lcov(),
-            CoverageFormat::Cobertura => coverage.to_cobertura().map_err(RunError::Output)?,
+            CoverageFormat::Cobertura => coverage.to_cobertura().map_err(OutputError)?,
         };
         Ok(file::write_whole(&self.path, text.as_bytes())?)
     }
+}
+
+/// How much of something was executed, in words.
+pub(crate) fn share((all, some): (usize, usize)) -> String {
+    let percent = (100 * some).checked_div(all);
+    percent.map_or_else(|| "none".to_owned(), |percent| format!("{percent}% ({some} of {all})"))
 }

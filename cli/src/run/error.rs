@@ -1,14 +1,18 @@
-//! Why nothing came of a run, and whose fault that is.
+//! Why nothing came of a run.
+
+use std::path::PathBuf;
 
 use miette::Diagnostic;
-use onescan_clients::gateway::{LinkFault, SettingsFault};
+use onescan_report::{FileError, OutputError};
 use onescan_scenario::ScenarioError;
 use onescan_server::checkpoint::CheckpointError;
 use onescan_server::formation::FormationError;
 use onescan_server::record::RecordError;
 use onescan_server::recording::RecordingError;
-use onescan_server::transport::tcp::participant::ParticipantError;
+use onescan_server::time::VirtualTime;
 use thiserror::Error;
+
+use crate::error::{Exit, ExitCode, ListenError, SpawnError, Unreadable, Usage};
 
 /// Why nothing came of a run.
 #[derive(Debug, Error, Diagnostic)]
@@ -17,19 +21,10 @@ pub enum RunError {
     #[error(transparent)]
     #[diagnostic(transparent)]
     Scenario(#[from] ScenarioError),
-    /// PLC sources that do not compile.
+    /// The options are wrong.
     #[error(transparent)]
     #[diagnostic(transparent)]
-    Sources(#[from] Box<crate::regress::unit_test::SourcesReport>),
-    /// The options are wrong.
-    #[error("{message}")]
-    Usage {
-        /// What is wrong.
-        message: String,
-        /// What to do.
-        #[help]
-        help: Option<String>,
-    },
+    Usage(#[from] Usage),
     /// The session could not be formed.
     #[error(transparent)]
     Formation(#[from] FormationError),
@@ -42,23 +37,11 @@ pub enum RunError {
         status: String,
     },
     /// A client's process cannot be started.
-    #[error("cannot start `{command}` for client `{client}`: {source}")]
-    Spawn {
-        /// Who.
-        client: String,
-        /// The program.
-        command: String,
-        /// Why.
-        source: std::io::Error,
-    },
+    #[error(transparent)]
+    Spawn(#[from] SpawnError),
     /// The address cannot be listened on.
-    #[error("cannot listen on {address}: {source}")]
-    Listen {
-        /// Where.
-        address: std::net::SocketAddr,
-        /// Why.
-        source: std::io::Error,
-    },
+    #[error(transparent)]
+    Listen(#[from] ListenError),
     /// A recording cannot be written.
     #[error(transparent)]
     Record(#[from] RecordError),
@@ -66,75 +49,48 @@ pub enum RunError {
     #[error(transparent)]
     Recording(#[from] RecordingError),
     /// A file cannot be read.
-    #[error("{}: {source}", path.display())]
-    File {
-        /// The file.
-        path: std::path::PathBuf,
-        /// Why.
-        source: std::io::Error,
-    },
+    #[error(transparent)]
+    Unreadable(#[from] Unreadable),
     /// A file cannot be written.
     #[error(transparent)]
-    Write(#[from] onescan_report::FileError),
+    File(#[from] FileError),
     /// A checkpoint cannot be taken.
     #[error("cannot save the session: {0}")]
     Save(CheckpointError),
     /// The run ended before the checkpoint could be taken.
     #[error("cannot save the session: it ended at t_v = {0}, before the checkpoint was due")]
-    SaveTooLate(onescan_server::time::VirtualTime),
+    SaveTooLate(VirtualTime),
     /// A checkpoint cannot be taken up.
     #[error("cannot resume from {}: {source}", path.display())]
     Resume {
         /// The file.
-        path: std::path::PathBuf,
+        path: PathBuf,
         /// Why.
         source: CheckpointError,
     },
-    /// A PLC does not say what it has.
-    #[error("{0}")]
-    Browse(SettingsFault),
+    /// What the case does to the session cannot be done.
+    #[error("the case cannot be put on this session: {0}")]
+    Timeline(onescan_server::operation::OperationError),
     /// The report cannot be written.
-    #[error("cannot write the report: {0}")]
-    Output(std::io::Error),
-    /// This process is a client and could not stay to the end.
     #[error(transparent)]
-    Participant(#[from] ParticipantError),
+    Output(#[from] OutputError),
 }
 
-/// What the program tells the shell.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum ExitCode {
-    /// All is well.
-    Ok = 0,
-    /// A run failed its expectations: those of its scenario, or runs that must be equal are not.
-    Unmet = 1,
-    /// The input is wrong: options, scenario, sources, checkpoint.
-    WrongInput = 2,
-    /// A client or a link failed.
-    Fault = 3,
-}
-
-impl RunError {
-    pub(crate) fn usage(message: impl Into<String>, help: Option<String>) -> Self {
-        Self::Usage { message: message.into(), help }
-    }
-
-    /// Whose fault it is.
-    pub fn exit_code(&self) -> ExitCode {
+impl Exit for RunError {
+    fn exit_code(&self) -> ExitCode {
         match self {
-            Self::Formation(
-                FormationError::Missing { .. } | FormationError::Interrupted { .. } | FormationError::Connection(_),
-            )
-            | Self::ClientProcess { .. }
-            | Self::Spawn { .. }
-            | Self::Scenario(ScenarioError::Link { .. })
-            | Self::Browse(SettingsFault::Link(
-                LinkFault::Unreachable { .. } | LinkFault::Refused { .. } | LinkFault::Lost(_),
-            ))
-            | Self::Save(_)
-            | Self::SaveTooLate(_) => ExitCode::Fault,
-            Self::Participant(error) if !matches!(error, ParticipantError::Refused(_)) => ExitCode::Fault,
-            _ => ExitCode::WrongInput,
+            Self::Scenario(error) => error.exit_code(),
+            Self::Usage(error) => error.exit_code(),
+            Self::Formation(error) => error.exit_code(),
+            Self::Spawn(error) => error.exit_code(),
+            Self::Listen(error) => error.exit_code(),
+            Self::Record(error) => error.exit_code(),
+            Self::Recording(error) => error.exit_code(),
+            Self::Unreadable(error) => error.exit_code(),
+            Self::File(error) => error.exit_code(),
+            Self::Output(error) => error.exit_code(),
+            Self::ClientProcess { .. } | Self::Save(_) | Self::SaveTooLate(_) => ExitCode::Fault,
+            Self::Resume { .. } | Self::Timeline(_) => ExitCode::WrongInput,
         }
     }
 }

@@ -4,8 +4,9 @@ use std::cell::RefCell;
 use std::io::Write;
 use std::rc::Rc;
 
+use onescan_report::Verdict;
 use onescan_scenario::Scenario;
-use onescan_scenario::expect::{Trace, Verdict};
+use onescan_scenario::expect::{self, Expectation, Trace};
 use onescan_server::digest::TrajectoryDigest;
 use onescan_server::record::{Observer, RecordError};
 use onescan_server::session::Session;
@@ -20,8 +21,8 @@ use super::sampler::Chosen;
 pub struct ExpectationReport {
     /// Its name.
     pub name: String,
-    /// `met`, `open` or `violated`.
-    pub verdict: &'static str,
+    /// Whether it was met.
+    pub verdict: Verdict,
     /// When it was first violated.
     #[serde(rename = "at_ns", skip_serializing_if = "Option::is_none")]
     pub at: Option<VirtualTime>,
@@ -45,15 +46,15 @@ pub struct SignalValue {
 impl ExpectationReport {
     /// True if the run did not show it.
     pub fn is_violated(&self) -> bool {
-        self.verdict == "violated"
+        self.verdict == Verdict::Violated
     }
 
     pub(super) fn write(&self, out: &mut dyn Write) -> std::io::Result<()> {
         write!(out, "  expectation `{}` ", self.name)?;
-        match self.at {
-            Some(at) => write!(out, "violated at {at}")?,
-            None if self.verdict == "open" => write!(out, "open at the end of the run")?,
-            None => write!(out, "met")?,
+        match (self.verdict, self.at) {
+            (Verdict::Violated, Some(at)) => write!(out, "violated at {at}")?,
+            (Verdict::Open, _) => write!(out, "open at the end of the run")?,
+            (verdict, _) => write!(out, "{}", verdict.word())?,
         }
         for (index, SignalValue { signal, value }) in self.values.iter().enumerate() {
             write!(out, "{} {signal} = {value}", if index == 0 { ":" } else { "," })?;
@@ -67,14 +68,15 @@ impl ExpectationReport {
 
 /// What all expectations say to a trace.
 pub(super) fn judge(scenario: &Scenario, trace: &Trace) -> Vec<ExpectationReport> {
-    let report = |(name, expectation): &(String, onescan_scenario::expect::Expectation)| {
+    let report = |(name, expectation): &(String, Expectation)| {
         let outcome = expectation.judge(trace);
-        let margin = outcome.margin.greatest;
+        // A margin of -0, which negation gives, reads as if something were missing.
+        let margin = outcome.margin.greatest + 0.0;
         let exact = margin.is_finite() && margin == outcome.margin.least;
         let (verdict, at, values) = match outcome.verdict {
-            Verdict::Met => ("met", None, Vec::new()),
-            Verdict::Open => ("open", None, Vec::new()),
-            Verdict::Violated { at, values } => ("violated", Some(at), values),
+            expect::Verdict::Met => (Verdict::Met, None, Vec::new()),
+            expect::Verdict::Open => (Verdict::Open, None, Vec::new()),
+            expect::Verdict::Violated { at, values } => (Verdict::Violated, Some(at), values),
         };
         let values = values.into_iter().map(|(signal, value)| SignalValue { signal, value }).collect();
         ExpectationReport { name: name.clone(), verdict, at, values, margin: exact.then_some(margin) }

@@ -11,9 +11,10 @@ use onescan_server::lockstep::{Lockstep, Outcome};
 
 use super::config::RunConfig;
 use super::error::RunError;
-use super::interrupt::Interrupt;
 use super::progress::Progress;
+use crate::error::Usage;
 use crate::freewheel::run::{Clock, Freewheeler, Trace};
+use crate::interrupt::Interrupt;
 
 /// Runs the scenario once; `watch` adds observers to the replay.
 pub(super) fn run(
@@ -33,7 +34,7 @@ pub(super) fn run(
             Member::Plant(client) => clients.push(Freewheeler { client, clock: plant_clock(config.mode, scenario) }),
             Member::Plc(client) => clients.push(Freewheeler { client, clock: Clock::Grid }),
             Member::Gateway(_) | Member::External(_) | Member::Seated { .. } => {
-                return Err(RunError::usage(format!("client `{name}` can only take part in lockstep"), None));
+                return Err(Usage::new(format!("client `{name}` can only take part in lockstep"), None).into());
             }
         }
     }
@@ -65,11 +66,11 @@ fn spin(
     interrupt: &Interrupt,
     clients: Vec<Freewheeler>,
 ) -> Result<Trace, RunError> {
-    let end = config.end(scenario);
+    let end = config.subject.end(scenario);
     let done = AtomicBool::new(false);
     let started = Instant::now();
     std::thread::scope(|scope| {
-        if config.progress {
+        if config.reports.progress {
             let (label, done) = (format!("run {number}/{}", config.runs), &done);
             scope.spawn(move || {
                 let bar = Progress::new(end, label);

@@ -2,38 +2,38 @@
 //!
 //! | module | subject |
 //! |---|---|
-//! | [`compare`] | lockstep beside the other ways |
 //! | [`config`] | what is asked for |
+//! | `check` | options that contradict each other |
 //! | [`coverage`] | which statements and branches were executed |
 //! | [`error`] | why nothing came of it |
 //! | [`lockstep`] | one run in lockstep |
 //! | [`processes`] | clients as processes of their own |
 //! | [`freewheel`] | one run without lockstep |
-//! | [`interrupt`] | Ctrl-C, at a step boundary |
 //! | [`progress`] | a bar on a terminal |
 //! | [`sampler`] | what a plot shows |
 //! | [`recorded`] | a run's recording |
 //! | [`rerun`] | a recorded run once more |
 //! | [`expectation`] | what a run had to show |
 //! | [`watch`] | what watched variables were |
+//! | [`page`] | all runs as a page |
 //! | [`report`] | what came of a run, for people and machines |
 //! | `seats` | clients that take part over OPC UA |
 //! | [`session_log`] | which client a session waited for |
 
-pub mod compare;
+mod check;
 pub mod config;
 pub mod coverage;
 pub mod error;
 pub mod expectation;
 mod freewheel;
-pub mod interrupt;
 mod lockstep;
+pub mod page;
 mod processes;
 mod progress;
 pub mod recorded;
 pub mod report;
 pub mod rerun;
-mod sampler;
+pub(crate) mod sampler;
 mod seats;
 pub mod session_log;
 pub mod watch;
@@ -43,6 +43,7 @@ use std::io::Write;
 use std::rc::Rc;
 use std::time::Instant;
 
+use onescan_report::OutputError;
 use onescan_report::file;
 use onescan_report::plot::Plot;
 use onescan_scenario::expect::{Trace, TraceEnd};
@@ -50,14 +51,14 @@ use onescan_scenario::{Mode, Scenario};
 use onescan_server::lockstep::Lockstep;
 use onescan_server::record::Observer;
 
-pub use config::{Format, RunConfig, Transport};
+use config::{Drawing, WatchOn};
+pub use config::{RunConfig, Transport};
 pub use error::RunError;
-pub use report::{RunReport, Verdict};
+pub use report::{RunReport, RunStatus, Verdict};
 
-use crate::regress::page::of_runs;
-use crate::regress::ran::Event;
+use crate::interrupt::Interrupt;
 use expectation::Witness;
-use interrupt::Interrupt;
+use page::Event;
 use recorded::Recorded;
 use sampler::{Sampler, Samples};
 use session_log::SessionLog;
@@ -69,50 +70,55 @@ use watch::WatchReport;
 /// See [`RunError`]. A failed client is no error here but a verdict: what there is of the run is
 /// recorded, plotted and reported.
 pub fn execute(config: &RunConfig, interrupt: &Interrupt, out: &mut dyn Write) -> Result<Verdict, RunError> {
-    let mut scenario = Scenario::load_case(&config.scenario, config.case.as_deref())?;
+    let mut scenario = Scenario::load_case(&config.subject.scenario, config.subject.case.as_deref())?;
     // A page says what was executed where that is seen.
-    if config.coverage.is_some() || (config.html.is_some() && config.transport == Transport::Inproc) {
+    if config.reports.coverage.is_some()
+        || (config.reports.html.is_some() && config.reach.transport == Transport::Inproc)
+    {
         scenario.cover();
     }
-    for (client, url) in &config.gateways {
+    for (client, url) in &config.reach.gateways {
         scenario.commission(client, url.clone())?;
     }
     config.check(&scenario)?;
-    if !config.watch.is_empty() {
-        scenario.watch(&config.watch, config.watch_changes)?;
+    if !config.watch.variables.is_empty() {
+        scenario.watch(&config.watch.variables, config.watch.on == WatchOn::Change)?;
     }
     let mut reports: Vec<RunReport> = Vec::new();
     let mut samples = Vec::new();
     for number in 1..=config.runs {
         let (report, sampled) = one_run(config, &scenario, number, interrupt, Vec::new())?;
-        report.write(config.format, config.runs, out).map_err(RunError::Output)?;
+        report.write(config.reports.format, config.runs, out).map_err(OutputError)?;
         reports.push(report);
         samples.push(sampled);
         if interrupt.is_raised() || reports.iter().any(RunReport::is_failed) {
             break;
         }
     }
-    if let (Some(request), Some(sink)) = (&config.coverage, scenario.coverage()) {
+    if let (Some(request), Some(sink)) = (&config.reports.coverage, scenario.coverage()) {
         request.write(sink)?;
     }
-    if let Some(path) = &config.plot {
-        file::write_whole(path, sampler::picture(&scenario, config, &samples, &reports).as_bytes())?;
+    if let Drawing::File(path) = &config.picture.drawing {
+        file::write_whole(
+            path,
+            sampler::picture(&scenario, config.mode, &config.picture, &samples, &reports).as_bytes(),
+        )?;
     }
-    if let Some(path) = &config.html {
-        let plot = sampler::plot(&scenario, config, &samples, &reports);
-        file::write_whole(path, page(&scenario, &reports, &plot).as_bytes())?;
+    if let Some(path) = &config.reports.html {
+        let plot = sampler::plot(&scenario, config.mode, &config.picture, &samples, &reports);
+        file::write_whole(path, page_of(&scenario, &reports, &plot).as_bytes())?;
     }
-    let verdict = Verdict::of(config, &reports);
-    verdict.write(config, &reports, out).map_err(RunError::Output)?;
+    let verdict = Verdict::of(config.mode, &reports);
+    verdict.write(config.reports.format, &reports, out).map_err(OutputError)?;
     Ok(verdict)
 }
 
 /// The page about all runs.
-fn page(scenario: &Scenario, reports: &[RunReport], plot: &Plot) -> String {
+fn page_of(scenario: &Scenario, reports: &[RunReport], plot: &Plot) -> String {
     let events: Vec<Event> = scenario.case_events().into_iter().map(|(at_ns, text)| Event { at_ns, text }).collect();
     let coverage =
         scenario.coverage().map(|sink| sink.lock().unwrap_or_else(std::sync::PoisonError::into_inner).clone());
-    of_runs(reports, scenario.file().step.as_nanos(), &events, plot, &coverage.unwrap_or_default())
+    page::of_runs(reports, &events, plot, &coverage.unwrap_or_default()).to_html()
 }
 
 /// One run that others watch, and its plot; without signals unless the run has a plot.
@@ -126,12 +132,15 @@ pub(crate) fn watched(
     observers: Vec<Box<dyn Observer>>,
 ) -> Result<(RunReport, Plot), RunError> {
     let (report, samples) = one_run(config, scenario, 1, interrupt, observers)?;
-    let plot = sampler::plot(scenario, config, &[samples], std::slice::from_ref(&report));
+    let plot = sampler::plot(scenario, config.mode, &config.picture, &[samples], std::slice::from_ref(&report));
     Ok((report, plot))
 }
 
 /// One run, and what a plot needs of it.
-fn one_run(
+///
+/// # Errors
+/// See [`RunError`].
+pub(crate) fn one_run(
     config: &RunConfig,
     scenario: &Scenario,
     number: u32,
@@ -139,15 +148,19 @@ fn one_run(
     observers: Vec<Box<dyn Observer>>,
 ) -> Result<(RunReport, Samples), RunError> {
     let started = Instant::now();
-    let samples = Rc::new(RefCell::new(Samples::new(&config.sampled(scenario))));
+    let samples = Rc::new(RefCell::new(Samples::new(&config.picture.sampled(scenario))));
     let trace = Rc::new(RefCell::new(Trace::default()));
-    let recorded = config.record.as_ref().map(|request| Recorded::begin(request, config, scenario, number));
+    let recorded = config
+        .reports
+        .record
+        .as_ref()
+        .map(|request| Recorded::begin(request, &config.subject, config.mode, scenario, number));
     let (recorded, recorder) = recorded.transpose()?.unzip();
     let watch = |lockstep: &mut Lockstep| {
         for observer in observers {
             lockstep.observe(observer);
         }
-        if config.plot.is_some() || config.html.is_some() {
+        if config.is_drawn() {
             lockstep.observe(Box::new(Sampler::new(Rc::clone(&samples))));
         }
         let expected = scenario.expectations();
@@ -166,9 +179,9 @@ fn one_run(
     let mut report = RunReport::new(config, scenario, number, &outcome, started.elapsed());
     report.latency = log.latencies();
     let mut trace = trace.replace(Trace::default());
-    trace.set_end(if report.status == "completed" { TraceEnd::Complete } else { TraceEnd::Cut });
+    trace.set_end(if report.status == RunStatus::Completed { TraceEnd::Complete } else { TraceEnd::Cut });
     report.expectations = expectation::judge(scenario, &trace);
-    report.watched = WatchReport::take(config, scenario);
+    report.watched = WatchReport::take(&config.watch, scenario);
     if let Some(recorded) = &recorded {
         recorded.end(&report)?;
     }

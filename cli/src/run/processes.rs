@@ -7,8 +7,9 @@ use std::time::{Duration, Instant};
 
 use onescan_server::signal::ClientName;
 
-use super::config::RunConfig;
+use super::config::Subject;
 use super::error::RunError;
+use crate::error::SpawnError;
 
 /// How long a process may take to leave once the session is over.
 const LEAVE_TIMEOUT: Duration = Duration::from_secs(5);
@@ -23,21 +24,21 @@ pub(super) struct Processes {
 }
 
 impl Processes {
-    /// Starts this program as the client `name` of the run's scenario and case.
+    /// Starts this program as the client `name` of what is run.
     pub(super) fn start_client(
         &mut self,
         name: &ClientName,
-        config: &RunConfig,
+        subject: &Subject,
         server: SocketAddr,
     ) -> Result<(), RunError> {
-        let program = std::env::current_exe().map_err(|source| RunError::Spawn {
+        let program = std::env::current_exe().map_err(|source| SpawnError {
             client: name.to_string(),
             command: "onescan".to_owned(),
             source,
         })?;
         let mut command = Command::new(program);
-        command.arg("join").arg(&config.scenario).arg(name.as_str()).arg("--server").arg(server.to_string());
-        if let Some(case) = &config.case {
+        command.arg("join").arg(&subject.scenario).arg(name.as_str()).arg("--server").arg(server.to_string());
+        if let Some(case) = &subject.case {
             command.arg("--case").arg(case);
         }
         self.start(name, command)
@@ -65,7 +66,7 @@ impl Processes {
         // Ctrl-C is for the server, which ends the session in order; clients leave when it does.
         #[cfg(unix)]
         std::os::unix::process::CommandExt::process_group(&mut command, 0);
-        let child = command.spawn().map_err(|source| RunError::Spawn {
+        let child = command.spawn().map_err(|source| SpawnError {
             client: name.to_string(),
             command: command.get_program().to_string_lossy().into_owned(),
             source,

@@ -2,28 +2,20 @@
 
 use std::path::{Component, Path, PathBuf};
 
-use onescan_report::file;
-use onescan_scenario::{Scenario, ScenarioError};
+use onescan_report::OutputError;
+use onescan_report::{FileError, file};
+use onescan_scenario::{Mode, Scenario, ScenarioError};
 use onescan_server::record::event::{self, Event, EventKind};
 use onescan_server::record::recorder::EVENTS;
-use onescan_server::record::{Choice, Provenance, Recorder, SourceFile};
+use onescan_server::record::{Provenance, Recorder, SourceFile};
 use onescan_server::time::VirtualTime;
 
-use super::config::RunConfig;
+use super::config::{RecordRequest, Subject};
 use super::error::RunError;
 use super::report::RunReport;
 
 /// Name of the folder with the scenario's files.
 const SCENARIO: &str = "scenario";
-
-/// What is to be recorded, and where.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct RecordRequest {
-    /// The folder of all runs.
-    pub folder: PathBuf,
-    /// Signals and forms.
-    pub choice: Choice,
-}
 
 /// The recording of one run.
 pub(super) struct Recorded {
@@ -34,7 +26,8 @@ impl Recorded {
     /// Makes the folder of run `number` with the scenario's files in it, and a recorder for the rest.
     pub(super) fn begin(
         request: &RecordRequest,
-        config: &RunConfig,
+        subject: &Subject,
+        mode: Mode,
         scenario: &Scenario,
         number: u32,
     ) -> Result<(Self, Recorder), RunError> {
@@ -46,9 +39,9 @@ impl Recorded {
             onescan: env!("CARGO_PKG_VERSION").to_owned(),
             scenario: scenario.name().to_owned(),
             folder: own_folder,
-            case: config.case.clone(),
-            mode: config.mode.name().to_owned(),
-            until: config.end(scenario),
+            case: subject.case.clone(),
+            mode: mode.name().to_owned(),
+            until: subject.end(scenario),
             seed: scenario.seed(),
             files,
         };
@@ -65,7 +58,7 @@ impl Recorded {
         };
         let events: Vec<Event> = report.expectations.iter().filter_map(violated).collect();
         event::append(&self.folder.join(EVENTS), &events)?;
-        let mut text = serde_json::to_vec_pretty(report).map_err(|e| RunError::Output(e.into()))?;
+        let mut text = serde_json::to_vec_pretty(report).map_err(|e| OutputError(e.into()))?;
         text.push(b'\n');
         Ok(file::write_whole(&self.folder.join("run.json"), &text)?)
     }
@@ -74,7 +67,7 @@ impl Recorded {
 fn remove(path: &Path) -> Result<(), RunError> {
     match std::fs::remove_file(path) {
         Err(source) if source.kind() != std::io::ErrorKind::NotFound => {
-            Err(RunError::File { path: path.to_owned(), source })
+            Err(FileError { path: path.to_owned(), source }.into())
         }
         _ => Ok(()),
     }

@@ -8,13 +8,14 @@ use onescan_server::end::{Failure, SessionEnd};
 use onescan_server::lockstep::Outcome;
 use onescan_server::record::Digest;
 use onescan_server::time::{StepCount, TimeSpan, VirtualTime};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
-use super::config::{Format, RunConfig, Transport};
-use super::error::ExitCode;
+use super::config::{RunConfig, Transport};
 use super::expectation::ExpectationReport;
 use super::session_log::{self, ClientLatency};
 use super::watch::WatchReport;
+use crate::error::ExitCode;
+use crate::format::Format;
 
 /// What came of one run. Its JSON form is a contract: fields are added, never changed.
 #[derive(Clone, Debug, Serialize)]
@@ -30,8 +31,8 @@ pub struct RunReport {
     pub mode: Mode,
     /// How clients were reached.
     pub transport: Transport,
-    /// `completed`, `stopped` or `failed`.
-    pub status: &'static str,
+    /// How it ended.
+    pub status: RunStatus,
     /// The digest over all steps; absent if there was none.
     pub digest: Option<Digest>,
     /// Steps committed.
@@ -63,6 +64,29 @@ pub struct RunReport {
     pub version: &'static str,
 }
 
+/// How a run ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum RunStatus {
+    /// It came to its end.
+    Completed,
+    /// Somebody stopped it.
+    Stopped,
+    /// A client or a link ended it.
+    Failed,
+}
+
+impl RunStatus {
+    /// As it is written in reports.
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Completed => "completed",
+            Self::Stopped => "stopped",
+            Self::Failed => "failed",
+        }
+    }
+}
+
 impl RunReport {
     pub(super) fn new(
         config: &RunConfig,
@@ -72,16 +96,16 @@ impl RunReport {
         wall_time: Duration,
     ) -> Self {
         let (status, failure) = match &outcome.end {
-            SessionEnd::Completed { .. } => ("completed", None),
-            SessionEnd::Stopped { .. } => ("stopped", None),
-            SessionEnd::Failed(failure) => ("failed", Some(failure.clone())),
+            SessionEnd::Completed { .. } => (RunStatus::Completed, None),
+            SessionEnd::Stopped { .. } => (RunStatus::Stopped, None),
+            SessionEnd::Failed(failure) => (RunStatus::Failed, Some(failure.clone())),
         };
         Self {
             scenario: scenario.name().to_owned(),
             case: scenario.case().map(|case| case.name.clone()),
             run,
             mode: config.mode,
-            transport: config.transport,
+            transport: config.reach.transport,
             status,
             digest: outcome.digest,
             steps: outcome.steps,
@@ -124,7 +148,7 @@ impl RunReport {
                     if runs == 1 { format!("{}{case}", self.scenario) } else { format!("run {}/{runs}", self.run) };
                 let digest = self.digest.map_or_else(|| "none".to_owned(), |digest| digest.to_string());
                 let (steps, t_v, wall) = (self.steps, self.virtual_time, self.wall_time_s);
-                writeln!(out, "{name}: {}, {steps} steps, {t_v} virtual in {wall:.3} s", self.status)?;
+                writeln!(out, "{name}: {}, {steps} steps, {t_v} virtual in {wall:.3} s", self.status.word())?;
                 writeln!(out, "  digest {digest}")?;
                 if let Some(error) = &self.error {
                     writeln!(out, "  {error}")?;
@@ -156,10 +180,10 @@ pub enum Verdict {
 }
 
 impl Verdict {
-    pub(super) fn of(config: &RunConfig, reports: &[RunReport]) -> Self {
+    pub(super) fn of(mode: Mode, reports: &[RunReport]) -> Self {
         if reports.iter().any(RunReport::is_failed) {
             Self::Failed
-        } else if config.mode == Mode::Lockstep && distinct_digests(&completed(reports)) > 1 {
+        } else if mode == Mode::Lockstep && distinct_digests(&completed(reports)) > 1 {
             Self::Unequal
         } else if reports.iter().any(RunReport::is_unmet) {
             Self::Unmet
@@ -178,8 +202,8 @@ impl Verdict {
     }
 
     /// The last line for people, where there is more than one run.
-    pub(super) fn write(self, config: &RunConfig, reports: &[RunReport], out: &mut dyn Write) -> std::io::Result<()> {
-        if config.format == Format::Json || reports.len() < 2 || self == Self::Failed {
+    pub(super) fn write(self, format: Format, reports: &[RunReport], out: &mut dyn Write) -> std::io::Result<()> {
+        if format == Format::Json || reports.len() < 2 || self == Self::Failed {
             return Ok(());
         }
         let runs = reports.len();
@@ -198,7 +222,7 @@ impl Verdict {
 
 /// Runs that came to their end; one that was stopped half-way is equal to nothing.
 fn completed(reports: &[RunReport]) -> Vec<&RunReport> {
-    reports.iter().filter(|report| report.status == "completed").collect()
+    reports.iter().filter(|report| report.status == RunStatus::Completed).collect()
 }
 
 fn distinct_digests(reports: &[&RunReport]) -> usize {

@@ -8,6 +8,7 @@ use onescan_server::record::Digest;
 use onescan_server::time::{StepCount, VirtualTime};
 
 use super::error::RunError;
+use crate::error::Usage;
 
 /// How far it came.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -34,11 +35,11 @@ pub fn rerun(scenario: &Scenario, until: VirtualTime, inputs: Vec<OperatorInput>
             }
             Member::Gateway(_) => {
                 let message = format!("client `{name}` is a real PLC and cannot be run again");
-                return Err(RunError::usage(message, None));
+                return Err(Usage::new(message, None).into());
             }
             Member::External(_) | Member::Seated { .. } => {
                 let message = format!("client `{name}` is a program of its own and cannot be run again");
-                return Err(RunError::usage(message, None));
+                return Err(Usage::new(message, None).into());
             }
         }
     }

@@ -10,7 +10,7 @@ use onescan_server::record::{Observer, RecordError};
 use onescan_server::session::Session;
 use onescan_server::signal::{SignalId, SignalName, SignalType};
 
-use super::config::RunConfig;
+use super::config::Picture;
 use super::report::RunReport;
 
 /// Signals chosen by name, found anew in each session.
@@ -41,11 +41,11 @@ impl Chosen {
 
 /// Chosen signals of one run.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Samples {
-    pub(super) names: Vec<SignalName>,
-    pub(super) t_ns: Vec<u64>,
+pub(crate) struct Samples {
+    pub(crate) names: Vec<SignalName>,
+    pub(crate) t_ns: Vec<u64>,
     /// A row a signal.
-    pub(super) values: Vec<Vec<f64>>,
+    pub(crate) values: Vec<Vec<f64>>,
 }
 
 impl Samples {
@@ -89,15 +89,21 @@ impl Observer for Sampler {
 }
 
 /// The picture of a plot: over time, or in the plane that was asked for.
-pub(super) fn picture(scenario: &Scenario, config: &RunConfig, runs: &[Samples], reports: &[RunReport]) -> String {
-    let plot = plot(scenario, config, runs, reports);
-    let Some(plane) = &config.plane else { return plot.to_svg() };
+pub(super) fn picture(
+    scenario: &Scenario,
+    mode: Mode,
+    picture: &Picture,
+    runs: &[Samples],
+    reports: &[RunReport],
+) -> String {
+    let plot = plot(scenario, mode, picture, runs, reports);
+    let Some(plane) = &picture.plane else { return plot.to_svg() };
     let panels = plane.iter().map(|name| panel(scenario, name, runs.iter())).collect();
     Plot { panels, ..plot }.to_plane_svg().unwrap_or_default()
 }
 
 /// A signal of several runs.
-pub(super) fn panel<'r>(scenario: &Scenario, name: &SignalName, runs: impl Iterator<Item = &'r Samples>) -> Panel {
+pub(crate) fn panel<'r>(scenario: &Scenario, name: &SignalName, runs: impl Iterator<Item = &'r Samples>) -> Panel {
     let signal = scenario.file().signals.get(name).map(toml::Spanned::get_ref);
     let trajectory = |run: &Samples| {
         let row = run.names.iter().position(|known| known == name);
@@ -113,8 +119,14 @@ pub(super) fn panel<'r>(scenario: &Scenario, name: &SignalName, runs: impl Itera
 }
 
 /// The plot of several runs, laid over each other.
-pub(super) fn plot(scenario: &Scenario, config: &RunConfig, runs: &[Samples], reports: &[RunReport]) -> Plot {
-    let mode = match config.mode {
+pub(super) fn plot(
+    scenario: &Scenario,
+    mode: Mode,
+    picture: &Picture,
+    runs: &[Samples],
+    reports: &[RunReport],
+) -> Plot {
+    let mode = match mode {
         Mode::Lockstep => "lockstep",
         Mode::Freewheel => "free-wheeling",
         Mode::Halt => "held by a timer",
@@ -124,7 +136,7 @@ pub(super) fn plot(scenario: &Scenario, config: &RunConfig, runs: &[Samples], re
         1 => String::new(),
         n => format!(", {n} runs"),
     };
-    let panels = config.plotted(scenario).into_iter().map(|name| panel(scenario, &name, runs.iter()));
+    let panels = picture.plotted(scenario).into_iter().map(|name| panel(scenario, &name, runs.iter()));
     Plot {
         title: format!("{}: {mode}{count}", scenario.name()),
         runs: (1..=runs.len()).map(|number| format!("run {number}")).collect(),

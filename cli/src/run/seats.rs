@@ -12,10 +12,11 @@ use onescan_server::formation::FormationError;
 use onescan_server::plan::SessionPlan;
 use onescan_server::published::Published;
 
-use super::config::RunConfig;
+use super::config::Doors;
 use super::error::RunError;
-use super::interrupt::Interrupt;
 use super::processes::Processes;
+use crate::error::{ListenError, Usage};
+use crate::interrupt::Interrupt;
 
 /// What is said here is for the user, also without `--verbose`.
 const NOTICE: &str = "onescan::notice";
@@ -48,21 +49,21 @@ impl Seats {
     /// Serves the session, if anybody is to come or `--opcua` asks for it.
     pub(super) fn open(
         self,
-        config: &RunConfig,
+        doors: &Doors,
         plan: &SessionPlan,
         interrupt: &Interrupt,
     ) -> Result<Option<Desk>, RunError> {
-        if self.expected.is_empty() && config.opcua.is_none() {
+        if self.expected.is_empty() && doors.opcua.is_none() {
             return Ok(None);
         }
         let requests: Vec<JoinRequest> = self.expected.iter().map(|expected| expected.request.clone()).collect();
         let board = Arc::new(Board::new(plan.clone(), &requests, interrupt.mailbox()));
-        let address = config.opcua.unwrap_or(SocketAddr::from((Ipv4Addr::LOCALHOST, 0)));
-        let service = serve(address, &board, &config.opcua_access).map_err(|error| match error {
-            ServeError::Io(source) => RunError::Listen { address, source },
-            ServeError::Setup(text) => RunError::usage(text, None),
+        let address = doors.opcua.unwrap_or(SocketAddr::from((Ipv4Addr::LOCALHOST, 0)));
+        let service = serve(address, &board, &doors.access).map_err(|error| match error {
+            ServeError::Io(source) => RunError::from(ListenError { address, source }),
+            ServeError::Setup(text) => Usage::new(text, None).into(),
         })?;
-        if config.opcua.is_some() {
+        if doors.opcua.is_some() {
             tracing::info!(target: NOTICE, "serving the session at {}", service.url());
         }
         Ok(Some(Desk { board, service, expected: self.expected }))
@@ -103,12 +104,12 @@ impl Desk {
     /// Waits until all have started.
     pub(super) fn wait(
         &self,
-        config: &RunConfig,
+        patience: Duration,
         interrupt: &Interrupt,
         processes: &mut Processes,
     ) -> Result<(), RunError> {
         const LOOK_UP: Duration = Duration::from_millis(50);
-        let deadline = Instant::now() + config.join_timeout;
+        let deadline = Instant::now() + patience;
         loop {
             let missing = self.board.missing().join(", ");
             if missing.is_empty() {
@@ -121,7 +122,7 @@ impl Desk {
                 return Err(FormationError::Interrupted { missing }.into());
             }
             if Instant::now() > deadline {
-                return Err(FormationError::Missing { missing, patience: config.join_timeout }.into());
+                return Err(FormationError::Missing { missing, patience }.into());
             }
             self.board.wait_for_start(LOOK_UP);
         }

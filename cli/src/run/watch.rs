@@ -6,7 +6,7 @@ use onescan_scenario::Scenario;
 use onescan_server::time::VirtualTime;
 use serde::Serialize;
 
-use super::config::RunConfig;
+use super::config::{Watch, WatchOn};
 
 /// A value of a watched variable. Its JSON form is a contract: fields are added, never changed.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
@@ -37,16 +37,16 @@ fn is_zero(number: &u64) -> bool {
 
 impl WatchReport {
     /// What the run that has ended showed; nothing if nothing is watched.
-    pub(super) fn take(config: &RunConfig, scenario: &Scenario) -> Option<Self> {
-        if config.watch.is_empty() {
+    pub(super) fn take(watch: &Watch, scenario: &Scenario) -> Option<Self> {
+        if watch.variables.is_empty() {
             return None;
         }
         let mut seen = scenario.take_sightings();
-        if !config.watch_changes {
+        if watch.on == WatchOn::End {
             seen.list.sort_by_key(|sighting| sighting.watch);
         }
         let values = seen.list.into_iter().filter_map(|sighting| {
-            let request = config.watch.get(sighting.watch)?;
+            let request = watch.variables.get(sighting.watch)?;
             let client = request.client.iter().map(|client| format!("{client}:"));
             let path: String = client.chain([request.watch.path.clone()]).collect();
             Some(WatchedValue { path, value: sighting.value, since: sighting.since })

@@ -105,7 +105,7 @@ impl Map {
             let (kind, ends) = match entry.get_ref() {
                 ClientFile::Plant { scene, .. } => ("plant", Some(of_plant(&scenario.scene_of(scene)?))),
                 ClientFile::SoftPlc { sources, dialect, bind, .. } => {
-                    let Compiled { application, paths } = scenario.compiled(name, sources, *dialect, bind)?;
+                    let Compiled { application, paths, .. } = scenario.compiled(name, sources, *dialect, bind)?;
                     ("soft-plc", Some(of_plc(&application, name, scenario.plan().signals(), &paths)))
                 }
                 // It writes whatever the scenario says that it writes.

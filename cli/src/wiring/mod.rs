@@ -12,6 +12,7 @@
 
 mod drawing;
 mod ends;
+mod error;
 mod fold;
 mod map;
 mod text;
@@ -19,11 +20,13 @@ mod text;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
+use onescan_report::OutputError;
 use onescan_report::file::write_whole;
 use onescan_scenario::Scenario;
 
-use crate::run::{Format, RunError};
+use crate::format::Format;
 
+pub use error::WiringError;
 pub use map::{Map, Trouble};
 
 /// What to tell of a scenario's wiring.
@@ -41,7 +44,7 @@ pub struct WiringConfig {
 ///
 /// # Errors
 /// A scenario, scene or source that cannot be read; those of `out` and of the drawing's file.
-pub fn write(config: &WiringConfig, out: &mut dyn Write) -> Result<bool, RunError> {
+pub fn write(config: &WiringConfig, out: &mut dyn Write) -> Result<bool, WiringError> {
     let scenario = Scenario::load(&config.scenario)?;
     let map = Map::of(&scenario)?;
     if let Some(path) = &config.svg {
@@ -49,14 +52,14 @@ pub fn write(config: &WiringConfig, out: &mut dyn Write) -> Result<bool, RunErro
     }
     match config.format {
         Format::Json => {
-            serde_json::to_writer_pretty(&mut *out, &map).map_err(std::io::Error::from).map_err(RunError::Output)?;
-            writeln!(out).map_err(RunError::Output)?;
+            serde_json::to_writer_pretty(&mut *out, &map).map_err(std::io::Error::from).map_err(OutputError)?;
+            writeln!(out).map_err(OutputError)?;
         }
-        Format::Human => text::write(&map, out).map_err(RunError::Output)?,
+        Format::Human => text::write(&map, out).map_err(OutputError)?,
     }
     Ok(map.is_sound())
 }
 
-fn draw(map: &Map, title: &str, path: &Path) -> Result<(), RunError> {
+fn draw(map: &Map, title: &str, path: &Path) -> Result<(), WiringError> {
     Ok(write_whole(path, drawing::svg(map, title).as_bytes())?)
 }

@@ -12,21 +12,16 @@ use onescan_server::signal::{PortLayout, SignalName, SlotError};
 use rapier3d::prelude::*;
 
 use super::command::{Command, NumberSlot};
-use super::coordinate::Gauge;
+use super::coordinate::Measured;
+use super::motor::Motor;
 use super::scene::Scene;
 use super::scene::model::{self, Moved};
 use super::setpoint::{Bounds, Setpoint};
-use super::world::{World, measured_axis};
-
-/// The part of the position error that one period corrects. Below 1 the loop settles without
-/// overshoot; the smaller, the gentler after a blocked axis comes free.
-const CORRECTED_A_PERIOD: f64 = 0.25;
-/// The motor's gain per second, so high that only its greatest force limits it.
-const MOTOR_GAIN_PER_S: f64 = 1e12;
+use super::world::World;
 
 /// What an axis moves.
 enum Mover {
-    Joint { joint: usize, motor: ImpulseJointHandle, along: JointAxis },
+    Joint(Motor),
     Belt { body: RigidBodyHandle, direction: Vector },
 }
 
@@ -37,13 +32,6 @@ pub(super) struct Axis {
     bounds: Bounds,
     position: Option<NumberSlot>,
     velocity: Option<NumberSlot>,
-}
-
-/// The joints as they were measured last, in the scene's order.
-#[derive(Clone, Copy)]
-pub(super) struct Measured<'m> {
-    pub(super) gauges: &'m [Gauge],
-    pub(super) positions: &'m [f64],
 }
 
 impl Axis {
@@ -63,9 +51,7 @@ impl Axis {
                 let described = &scene.joints[joint];
                 bounds.lower = described.lower.unwrap_or(f64::NEG_INFINITY);
                 bounds.upper = described.upper.unwrap_or(f64::INFINITY);
-                let (motor, along) = (world.joint(joint), measured_axis(described.kind));
-                arm(world, motor, along, axis.effort_max);
-                Mover::Joint { joint, motor, along }
+                Mover::Joint(Motor::bind(joint, axis.effort_max, scene, world))
             }
             Moved::Belt { body, direction } => {
                 let body = world.handle(Some(body));
@@ -84,8 +70,8 @@ impl Axis {
 
     /// Where the axis rests before the first turn.
     pub(super) fn rest(&self, scene: &Scene) -> Setpoint {
-        let position = match self.mover {
-            Mover::Joint { joint, .. } => scene.joints[joint].initial,
+        let position = match &self.mover {
+            Mover::Joint(motor) => scene.joints[motor.joint()].initial,
             Mover::Belt { .. } => 0.0,
         };
         Setpoint { position, velocity: 0.0 }
@@ -104,26 +90,20 @@ impl Axis {
         inputs: &[u8],
         world: &mut World,
     ) -> Result<(), ClientFault> {
-        match self.mover {
-            Mover::Joint { joint, motor, along } => {
-                let speed = self.bounds.speed;
+        match &self.mover {
+            Mover::Joint(motor) => {
+                let (joint, speed) = (motor.joint(), self.bounds.speed);
                 let position = measured.positions[joint];
                 let velocity = || measured.gauges[joint].velocity(world).clamp(-speed, speed);
                 let from = setpoint.near(position, speed * dt_s, velocity);
                 let to = self.command.advance(name, from, &self.bounds, dt_s, inputs)?;
-                let correction = CORRECTED_A_PERIOD * (from.position - position);
-                let velocity = (to.position - from.position + correction) / dt_s;
-                if let Some(joint) = world.physics.impulse_joints.get_mut(motor, true) {
-                    joint.data.set_motor_velocity(along, velocity, MOTOR_GAIN_PER_S);
-                }
+                motor.follow([from.position, to.position], measured, dt_s, None, world)?;
                 *setpoint = to;
             }
             Mover::Belt { body, direction } => {
                 let to = self.command.advance(name, *setpoint, &self.bounds, dt_s, inputs)?;
                 let velocity = (to.position - setpoint.position) / dt_s;
-                if let Some(body) = world.physics.bodies.get_mut(body) {
-                    body.set_linvel(direction * velocity, true);
-                }
+                world.run(*body, *direction * velocity)?;
                 *setpoint = to;
             }
         }
@@ -133,27 +113,18 @@ impl Axis {
     /// Writes where the axis is and how fast.
     pub(super) fn feed_back(&self, setpoint: Setpoint, measured: Measured<'_>, world: &World, outputs: &mut [u8]) {
         if let Some(slot) = self.position {
-            let position = match self.mover {
-                Mover::Joint { joint, .. } => measured.positions[joint],
+            let position = match &self.mover {
+                Mover::Joint(motor) => measured.positions[motor.joint()],
                 Mover::Belt { .. } => setpoint.position,
             };
             slot.set(outputs, position);
         }
         if let Some(slot) = self.velocity {
-            let velocity = match self.mover {
-                Mover::Joint { joint, .. } => measured.gauges[joint].velocity(world),
-                Mover::Belt { body, direction } => world.body(body).linvel().dot(direction),
+            let velocity = match &self.mover {
+                Mover::Joint(motor) => measured.gauges[motor.joint()].velocity(world),
+                Mover::Belt { body, direction } => world.body(*body).linvel().dot(*direction),
             };
             slot.set(outputs, velocity);
         }
-    }
-}
-
-/// Makes a joint's motor hold it where it is.
-pub(super) fn arm(world: &mut World, motor: ImpulseJointHandle, along: JointAxis, effort_max: Option<f64>) {
-    if let Some(joint) = world.physics.impulse_joints.get_mut(motor, true) {
-        joint.data.set_motor_model(along, MotorModel::AccelerationBased);
-        joint.data.set_motor_velocity(along, 0.0, MOTOR_GAIN_PER_S);
-        joint.data.set_motor_max_force(along, effort_max.unwrap_or(Real::MAX));
     }
 }

@@ -7,6 +7,7 @@
 
 use std::collections::VecDeque;
 
+use onescan_server::client::ClientFault;
 use onescan_server::signal::{Port, SignalType};
 use serde::{Deserialize, Serialize};
 
@@ -118,45 +119,65 @@ impl Channels {
     }
 
     /// Takes the session's bytes in.
-    pub(super) fn take(&mut self, now_ns: u64, outer: &[u8]) {
+    ///
+    /// # Errors
+    /// A channel for a signal that is not a number, which no checked scene has; as in what follows.
+    pub(super) fn take(&mut self, now_ns: u64, outer: &[u8]) -> Result<(), ClientFault> {
         for (from, to, size) in &self.copies {
             self.inner[*to..to + size].copy_from_slice(&outer[*from..from + size]);
         }
         for channel in &mut self.conditioned {
-            let raw = channel.outer.1.as_f64(&outer[channel.outer.0..]).unwrap_or_default();
+            let raw = channel.read(channel.outer, outer)?;
             let value = channel.pass(now_ns, channel.condition.scaled_back(raw));
-            write(channel.inner.1, &mut self.inner[channel.inner.0..], value);
+            channel.write(channel.inner, &mut self.inner, value)?;
         }
+        Ok(())
     }
 
     /// Gives the plant's bytes to the session.
-    pub(super) fn give(&mut self, now_ns: u64, outer: &mut [u8]) {
+    pub(super) fn give(&mut self, now_ns: u64, outer: &mut [u8]) -> Result<(), ClientFault> {
         for (to, from, size) in &self.copies {
             outer[*to..to + size].copy_from_slice(&self.inner[*from..from + size]);
         }
         for channel in &mut self.conditioned {
-            let value = channel.inner.1.as_f64(&self.inner[channel.inner.0..]).unwrap_or_default();
+            let value = channel.read(channel.inner, &self.inner)?;
             let passed = channel.pass(now_ns, value);
-            write(channel.outer.1, &mut outer[channel.outer.0..], channel.condition.scaled(passed));
+            channel.write(channel.outer, outer, channel.condition.scaled(passed))?;
         }
+        Ok(())
     }
 
     /// Gives the plant's bytes at the set-up, when nothing is on its way yet: as if they had long
     /// stood so.
-    pub(super) fn give_at_once(&mut self, outer: &mut [u8]) {
+    pub(super) fn give_at_once(&mut self, outer: &mut [u8]) -> Result<(), ClientFault> {
         for (to, from, size) in &self.copies {
             outer[*to..to + size].copy_from_slice(&self.inner[*from..from + size]);
         }
         for channel in &mut self.conditioned {
-            let value = channel.inner.1.as_f64(&self.inner[channel.inner.0..]).unwrap_or_default();
+            let value = channel.read(channel.inner, &self.inner)?;
             channel.memory.arrived = channel.disturbed(value);
             let raw = channel.condition.scaled(channel.memory.arrived);
-            write(channel.outer.1, &mut outer[channel.outer.0..], raw);
+            channel.write(channel.outer, outer, raw)?;
         }
+        Ok(())
     }
 }
 
 impl Channel {
+    /// The number at a place of a port.
+    fn read(&self, (at, ty): (usize, SignalType), port: &[u8]) -> Result<f64, ClientFault> {
+        ty.as_f64(&port[at..]).ok_or_else(|| self.not_a_number(ty))
+    }
+
+    /// Puts a number at a place of a port.
+    fn write(&self, (at, ty): (usize, SignalType), port: &mut [u8], value: f64) -> Result<(), ClientFault> {
+        if write(ty, &mut port[at..], value) { Ok(()) } else { Err(self.not_a_number(ty)) }
+    }
+
+    fn not_a_number(&self, ty: SignalType) -> ClientFault {
+        ClientFault::new(format!("signal `{}` is {ty}, which no `[[signal]]` can condition", self.condition.signal))
+    }
+
     /// A sample with its noise, rounded to the quantum.
     fn disturbed(&mut self, value: f64) -> f64 {
         let Condition { quantum, noise_mean, noise_sigma, .. } = self.condition;
@@ -205,8 +226,10 @@ impl Condition {
     }
 }
 
-/// Writes a number as a value of a type: whole numbers are rounded and limited to their range.
-fn write(ty: SignalType, bytes: &mut [u8], value: f64) {
+/// Writes a number as a value of a type: whole numbers are rounded and limited to their range. False
+/// for a type that a scene's check lets no `[[signal]]` have; nothing is written then.
+#[must_use]
+fn write(ty: SignalType, bytes: &mut [u8], value: f64) -> bool {
     use SignalType as T;
     let whole = value.round();
     match ty {
@@ -218,9 +241,10 @@ fn write(ty: SignalType, bytes: &mut [u8], value: f64) {
         T::DINT => bytes[..4].copy_from_slice(&(whole as i32).to_le_bytes()),
         T::UDINT | T::DWORD => bytes[..4].copy_from_slice(&(whole as u32).to_le_bytes()),
         T::REAL => bytes[..4].copy_from_slice(&(value as f32).to_le_bytes()),
-        // the scene's check lets no other type through
-        _ => bytes[..8].copy_from_slice(&value.to_le_bytes()),
+        T::LREAL => bytes[..8].copy_from_slice(&value.to_le_bytes()),
+        _ => return false,
     }
+    true
 }
 
 #[cfg(test)]
@@ -252,8 +276,8 @@ mod tests {
         let mut outer = [0; 8];
         (1..=count)
             .map(|k| {
-                write(SignalType::LREAL, channels.inner_mut(), k as f64);
-                channels.give(k * 1_000_000, &mut outer);
+                assert!(write(SignalType::LREAL, channels.inner_mut(), k as f64));
+                channels.give(k * 1_000_000, &mut outer).expect("numbers");
                 f64::from_le_bytes(outer)
             })
             .collect()
@@ -303,7 +327,7 @@ mod tests {
         assert_eq!(scaled.scaled_back(13_824.0), 5.0);
         let ports = [Port { name: scaled.signal.clone(), ty: SignalType::INT }];
         let mut channels = Channels::new(&ports, &[scaled], 1);
-        channels.take(1_000_000, &6_912_i16.to_le_bytes());
+        channels.take(1_000_000, &6_912_i16.to_le_bytes()).expect("numbers");
         assert_eq!(channels.inner(), 2.5_f64.to_le_bytes());
     }
 
@@ -320,11 +344,11 @@ mod tests {
         let new = |seed: u64| Channels::new(&ports, std::slice::from_ref(&all), seed);
         let (mut first, mut second, mut outer) = (new(1), new(2), [[0; 8]; 2]);
         for k in 1..200 {
-            write(SignalType::LREAL, first.inner_mut(), k as f64);
-            first.give(k * 1_000_000, &mut outer[0]);
+            assert!(write(SignalType::LREAL, first.inner_mut(), k as f64));
+            first.give(k * 1_000_000, &mut outer[0]).expect("numbers");
             if k > 100 {
-                write(SignalType::LREAL, second.inner_mut(), k as f64);
-                second.give(k * 1_000_000, &mut outer[1]);
+                assert!(write(SignalType::LREAL, second.inner_mut(), k as f64));
+                second.give(k * 1_000_000, &mut outer[1]).expect("numbers");
                 assert_eq!(outer[0], outer[1], "{k}");
             } else if k == 100 {
                 assert!(second.fits(&first.memory()));

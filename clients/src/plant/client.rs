@@ -1,9 +1,12 @@
 //! The plant as a client of a session.
 
 use std::path::Path;
+use std::sync::Arc;
 
-use onescan_server::client::{Client, ClientFault, JoinRequest, StateError, Wake};
-use onescan_server::signal::{ClientName, Port, SlotError};
+use onescan_server::client::{
+    Client, ClientFault, ClientOperation, ClientView, JoinRequest, OperationRefused, Pose, StateError, Wake,
+};
+use onescan_server::signal::{ClientName, Port};
 use onescan_server::time::{TimeSpan, VirtualTime};
 
 use super::failure::FailureRefused;
@@ -18,6 +21,8 @@ pub struct Plant {
     period: TimeSpan,
     seed: u64,
     scene: Scene,
+    /// The bodies' names, shared with every view of them.
+    names: Vec<Arc<str>>,
     /// An error only where the scene is not plain data, which no checked scene is.
     identity: Result<Identity, String>,
     machine: Option<Machine>,
@@ -47,7 +52,8 @@ impl Plant {
     /// The plant of a scene that was checked before.
     pub fn new(scene: Scene, name: ClientName, period: TimeSpan) -> Self {
         let identity = Identity::new(&scene, &name, period).map_err(|error| error.to_string());
-        Self { name, period, seed: 0, scene, identity, machine: None }
+        let names = scene.bodies.iter().map(|body| Arc::from(body.name.as_str())).collect();
+        Self { name, period, seed: 0, scene, names, identity, machine: None }
     }
 
     /// The plant with the scenario's seed, on which noise and jitter depend; 0 without.
@@ -78,7 +84,8 @@ impl Plant {
         check_size("outputs", &self.scene.writes, outputs)?;
         let found = failing.iter().map(|(component, mode)| self.scene.find_failure(component, mode));
         let found = found.collect::<Result<Vec<_>, _>>().map_err(|unknown| ClientFault::new(unknown.to_string()))?;
-        let machine = Machine::build(&self.scene, self.period, self.seed).map_err(|error| unbound(&error))?;
+        let machine = Machine::build(&self.scene, self.period, self.seed)
+            .map_err(|unbuilt| ClientFault::new(unbuilt.to_string()))?;
         let machine = self.machine.insert(machine);
         for mode in found {
             machine.fail(mode);
@@ -145,6 +152,39 @@ impl Client for Plant {
         self.set_up(&[], outputs)
     }
 
+    fn begin(&mut self, operations: &[ClientOperation], outputs: &mut [u8]) -> Result<(), ClientFault> {
+        let mut failing: Vec<(String, String)> = Vec::new();
+        for operation in operations {
+            match operation {
+                ClientOperation::Fail { component, mode } => failing.push((component.clone(), mode.clone())),
+                ClientOperation::Repair { component, mode } => {
+                    failing.retain(|failed| (&failed.0, &failed.1) != (component, mode));
+                }
+                variable => return Err(ClientFault::new(format!("{variable}: {}", OperationRefused::Unsupported))),
+            }
+        }
+        self.set_up(&failing, outputs)
+    }
+
+    fn operate(&mut self, operation: &ClientOperation) -> Result<(), OperationRefused> {
+        let done = match operation {
+            ClientOperation::Fail { component, mode } => self.fail(component, mode),
+            ClientOperation::Repair { component, mode } => self.repair(component, mode),
+            ClientOperation::WriteVariable { .. }
+            | ClientOperation::ForceVariable { .. }
+            | ClientOperation::ReleaseVariable { .. } => return Err(OperationRefused::Unsupported),
+        };
+        done.map_err(|refused| OperationRefused::Because(refused.to_string()))
+    }
+
+    fn show(&self, view: &mut ClientView) {
+        view.poses.extend(self.poses().zip(&self.names).map(|(pose, name)| Pose {
+            body: Arc::clone(name),
+            position_m: pose.position_m,
+            rotation_xyzw: pose.rotation_xyzw,
+        }));
+    }
+
     fn turn(&mut self, t_v: VirtualTime, inputs: &[u8], outputs: &mut [u8]) -> Result<Wake, ClientFault> {
         check_size("inputs", &self.scene.reads, inputs)?;
         check_size("outputs", &self.scene.writes, outputs)?;
@@ -174,9 +214,4 @@ impl Client for Plant {
         self.machine = Some(machine);
         Ok(())
     }
-}
-
-/// A signal that was lost between the scene and its ports.
-fn unbound(error: &SlotError) -> ClientFault {
-    ClientFault::new(error.to_string())
 }

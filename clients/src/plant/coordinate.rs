@@ -12,8 +12,16 @@ use rapier3d::prelude::RigidBodyHandle;
 use super::scene::model::{Joint, JointKind};
 use super::world::{World, local_frames};
 
+/// The joints as they were measured last, in the scene's order.
+#[derive(Clone, Copy)]
+pub(crate) struct Measured<'m> {
+    pub(super) gauges: &'m [Gauge],
+    /// m or rad.
+    pub(super) positions: &'m [f64],
+}
+
 /// How a joint is measured.
-pub(super) struct Gauge {
+pub(crate) struct Gauge {
     kind: JointKind,
     parent: RigidBodyHandle,
     child: RigidBodyHandle,

@@ -190,7 +190,9 @@ fn value_difference<'v>(key: &'v str, saved: &'v Value, own: &'v Value) -> Optio
     }
     match (saved, own) {
         (Value::Object(before), Value::Object(now)) if before.keys().eq(now.keys()) => {
-            now.iter().find_map(|(key, own)| value_difference(key, before.get(key)?, own))
+            // the name of a variant, as of a shape's form, is no key of a scene
+            let inner = |inner: &'v str| if inner.starts_with(char::is_uppercase) { key } else { inner };
+            now.iter().find_map(|(key, own)| value_difference(inner(key), before.get(key)?, own))
         }
         _ => Some(Differing { key, saved, own }),
     }

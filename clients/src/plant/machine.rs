@@ -1,17 +1,17 @@
 //! A whole plant in motion: world, axes, sensors and components, one turn at a time.
 
 use onescan_server::client::ClientFault;
-use onescan_server::signal::{PortLayout, SlotError};
+use onescan_server::signal::PortLayout;
 use onescan_server::time::{TimeSpan, VirtualTime};
 use rapier3d::prelude::PhysicsWorld;
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
-use super::axis::{Axis, Measured};
+use super::axis::Axis;
 use super::channel::{Channels, ChannelsMemory, inner_ports};
 use super::component::declare::Value;
-use super::coordinate::Gauge;
-use super::part::{Moment, Part, PartMemory};
+use super::coordinate::{Gauge, Measured};
+use super::part::{Moment, Part, PartMemory, Unbuilt};
 use super::placement::Placement;
 use super::scene::Scene;
 use super::scene::failures::FoundMode;
@@ -60,8 +60,8 @@ impl Machine {
     /// Builds the machine of a scene, at rest in the scene's pose.
     ///
     /// # Errors
-    /// A signal of the scene that its ports do not have.
-    pub(super) fn build(scene: &Scene, period: TimeSpan, seed: u64) -> Result<Self, SlotError> {
+    /// None that a checked scene could cause.
+    pub(super) fn build(scene: &Scene, period: TimeSpan, seed: u64) -> Result<Self, Unbuilt> {
         let reads = PortLayout::new(inner_ports(&scene.reads, &scene.conditions));
         let writes = PortLayout::new(inner_ports(&scene.writes, &scene.conditions));
         let mut world = World::build(scene, period);
@@ -75,7 +75,7 @@ impl Machine {
             scene.sensors.iter().map(|sensor| Sensor::build(sensor, &world, &writes)).collect::<Result<Vec<_>, _>>()?;
         let mut parts = Vec::with_capacity(scene.components.len());
         for described in &scene.components {
-            parts.extend(Part::build(described, scene, seed, &mut world, [&reads, &writes])?);
+            parts.push(Part::build(described, scene, seed, &mut world, [&reads, &writes])?);
         }
         let channels = (!scene.conditions.is_empty()).then(|| Channels::pair(scene, seed));
         Ok(Self {
@@ -181,9 +181,9 @@ impl Machine {
             Some(mut channels) => {
                 let zeros = vec![0; channels[0].inner().len()];
                 let begun = self.observe(scene, 0, &zeros, channels[1].inner_mut());
-                channels[1].give_at_once(outputs);
+                let sent = channels[1].give_at_once(outputs);
                 self.channels = Some(channels);
-                begun
+                begun.and(sent)
             }
         };
         self.dt_s = dt_s;
@@ -206,11 +206,12 @@ impl Machine {
             return self.inner_turn(scene, now_ns, inputs, outputs);
         };
         let [taken, given] = &mut channels;
-        taken.take(now_ns, inputs);
-        let turned = self.inner_turn(scene, now_ns, taken.inner(), given.inner_mut());
-        given.give(now_ns, outputs);
+        let turned = taken.take(now_ns, inputs);
+        let turned = turned.and_then(|()| self.inner_turn(scene, now_ns, taken.inner(), given.inner_mut()));
+        let sent = given.give(now_ns, outputs);
+        // back in any case: a state that is restored after a fault finds its channels
         self.channels = Some(channels);
-        turned
+        turned.and(sent)
     }
 
     fn inner_turn(&mut self, scene: &Scene, now_ns: u64, inputs: &[u8], outputs: &mut [u8]) -> Result<(), ClientFault> {

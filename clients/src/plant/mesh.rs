@@ -134,6 +134,7 @@ impl Mesh {
                         cause: format!("a facet of {} corners", corners.len()),
                     })?);
                 }
+                // "solid", "facet normal", "outer loop" and their ends say nothing that corners do not
                 _ => {}
             }
         }
@@ -148,6 +149,7 @@ impl Mesh {
             match words.next() {
                 Some("v") => mesh.corners.push(numbers(words, index + 1)?),
                 Some("f") => mesh.face(words, index + 1)?,
+                // normals, textures, materials and groups: only the form matters
                 _ => {}
             }
         }

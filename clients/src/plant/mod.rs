@@ -13,9 +13,11 @@
 //! | `coordinate` | where a joint stands, measured from the poses of its bodies |
 //! | `setpoint` | the motion a drive wants: ramps and trapezoids in closed form |
 //! | `command` | what the PLC commands of a drive |
+//! | `motor` | the motor of a joint, as axes and components drive it |
 //! | `axis` | a driven axis: command, setpoint, what it moves, feedback |
 //! | `sensor` | end-position and proximity sensors |
 //! | [`component`] | the library: cylinders, motors, sensors, … by their equations |
+//! | [`coupling`] | what ties a component to the world of rigid bodies |
 //! | `part` | a component of the scene, bound to signals, other components and the world |
 //! | `machine` | all of these, one turn at a time |
 //! | `random` | random numbers from the scenario's seed |
@@ -42,10 +44,12 @@ mod client;
 mod command;
 pub mod component;
 mod coordinate;
+pub mod coupling;
 mod failure;
 mod identity;
 mod machine;
 pub mod mesh;
+mod motor;
 mod part;
 mod placement;
 mod pose;

@@ -1,27 +1,34 @@
 //! A component of the scene at work: bound to its signals, to other components and to the world.
 
 use onescan_server::client::ClientFault;
-use onescan_server::signal::{PortLayout, Slot, SlotError};
-use rapier3d::math::Vector;
-use rapier3d::prelude::*;
+use onescan_server::signal::{PortLayout, SignalName, Slot, SlotError};
 use serde::{Deserialize, Serialize};
+use thiserror::Error;
 
-use super::axis::{Measured, arm};
 use super::command::NumberSlot;
-use super::component::behaviour::{Running, Start, Turn};
-use super::component::coupling::{Coordinate, Effect, Seen};
+use super::component::behaviour::{Running, Surroundings};
 use super::component::declare::{Failed, Value};
 use super::component::kind::Values;
 use super::component::library::entry;
+use super::coordinate::Measured;
+use super::coupling::Unbound;
 use super::machine::Misfit;
 use super::random::seed_for;
 use super::scene::Scene;
-use super::scene::model::{self, Bound, When, Wire};
-use super::world::{Surface, World, measured_axis};
+use super::scene::model::{self, When, Wire};
+use super::world::World;
 
-/// The part of a joint's deviation that one period corrects, as for an axis.
-const CORRECTED_A_PERIOD: f64 = 0.25;
-const MOTOR_GAIN_PER_S: f64 = 1e12;
+/// Why a plant cannot be built; no checked scene is the cause.
+#[derive(Clone, Debug, PartialEq, Error)]
+pub(super) enum Unbuilt {
+    /// A signal that the plant's ports do not have.
+    #[error(transparent)]
+    Slot(#[from] SlotError),
+    #[error("component `{0}` is of no kind in the library")]
+    UnknownKind(String),
+    #[error("component `{0}`: {1}")]
+    Unbound(String, Unbound),
+}
 
 /// A value in a port.
 #[derive(Clone, Copy)]
@@ -32,14 +39,16 @@ enum ValueSlot {
 }
 
 impl ValueSlot {
-    fn find(layout: &PortLayout, name: &str, values: Values, number: model::NumberType) -> Result<Self, SlotError> {
+    fn find(
+        layout: &PortLayout,
+        name: &SignalName,
+        values: Values,
+        number: model::NumberType,
+    ) -> Result<Self, SlotError> {
         Ok(match values {
-            Values::Bool => Self::Bool(layout.slot(name)?),
-            Values::Whole => Self::Whole(layout.slot(name)?),
-            Values::Number => Self::Number(match number {
-                model::NumberType::Real => NumberSlot::Real(layout.slot(name)?),
-                model::NumberType::Lreal => NumberSlot::Lreal(layout.slot(name)?),
-            }),
+            Values::Bool => Self::Bool(layout.slot(name.as_str())?),
+            Values::Whole => Self::Whole(layout.slot(name.as_str())?),
+            Values::Number => Self::Number(NumberSlot::find(layout, name, number)?),
         })
     }
 
@@ -51,14 +60,16 @@ impl ValueSlot {
         }
     }
 
-    fn set(self, port: &mut [u8], value: Value) {
+    /// True if the value is of the slot's type, and written.
+    #[must_use]
+    fn set(self, port: &mut [u8], value: Value) -> bool {
         match (self, value) {
             (Self::Bool(slot), Value::Bool(value)) => slot.set(port, value),
             (Self::Whole(slot), Value::Whole(value)) => slot.set(port, value),
             (Self::Number(slot), Value::Number(value)) => slot.set(port, value),
-            // a component gives the values that its kind states
-            _ => {}
+            (Self::Bool(_) | Self::Whole(_) | Self::Number(_), _) => return false,
         }
+        true
     }
 }
 
@@ -75,23 +86,9 @@ enum Switch {
     Between(model::Between),
 }
 
-/// What of the world a part is bound to.
-enum Tie {
-    Nothing,
-    Moved { joint: usize, motor: ImpulseJointHandle, along: JointAxis },
-    Measured(usize),
-    Belt { body: RigidBodyHandle, direction: Vector },
-    Ray { body: RigidBodyHandle, point: Vector, direction: Vector, targets: Vec<RigidBodyHandle> },
-    Touch { surface: Surface, targets: Vec<RigidBodyHandle> },
-    Meet { targets: Vec<RigidBodyHandle> },
-    Collect { body: RigidBodyHandle, targets: Vec<RigidBodyHandle> },
-    Place { body: RigidBodyHandle, targets: Vec<RigidBodyHandle> },
-}
-
 /// A component at work.
 pub(super) struct Part {
     running: Box<dyn Running>,
-    tie: Tie,
     feeds: Vec<Feed>,
     outputs: Vec<Option<ValueSlot>>,
     switches: Vec<(usize, Switch)>,
@@ -99,16 +96,8 @@ pub(super) struct Part {
     taken: Vec<Value>,
     /// Outputs of the last turn.
     given: Vec<Value>,
-    held: Option<Held>,
     /// What has been made to fail while the plant runs, beside what the switches say.
     failed: Failed,
-}
-
-/// A body that a part holds fast.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-struct Held {
-    target: u32,
-    joint: ImpulseJointHandle,
 }
 
 /// What a part remembers, as plain data.
@@ -116,7 +105,6 @@ struct Held {
 pub(super) struct PartMemory {
     state: Vec<u8>,
     given: Vec<Value>,
-    held: Option<Held>,
     failed: Failed,
 }
 
@@ -130,61 +118,44 @@ pub(super) struct Moment<'m> {
 }
 
 impl Part {
-    /// Binds a component in a world that still stands in the scene's pose; none for a kind that is
-    /// not in the library, which no checked scene has.
+    /// Binds a component in a world that still stands in the scene's pose.
+    ///
+    /// # Errors
+    /// None that a checked scene could cause.
     pub(super) fn build(
         described: &model::Component,
         scene: &Scene,
         seed: u64,
         world: &mut World,
         [reads, writes]: [&PortLayout; 2],
-    ) -> Result<Option<Self>, SlotError> {
-        let Some(entry) = entry(described.kind) else { return Ok(None) };
+    ) -> Result<Self, Unbuilt> {
+        let name = || described.name.clone();
+        let entry = entry(described.kind).ok_or_else(|| Unbuilt::UnknownKind(name()))?;
         let kind = (entry.kind)();
         let mut feeds = Vec::new();
         for (wire, input) in described.inputs.iter().zip(&kind.inputs) {
             feeds.push(match wire {
                 Wire::Open => Feed::Open,
-                Wire::Signal(name) => {
-                    Feed::Port(ValueSlot::find(reads, name.as_str(), input.values, described.number)?)
-                }
+                Wire::Signal(name) => Feed::Port(ValueSlot::find(reads, name, input.values, described.number)?),
                 Wire::Output { component, output } => Feed::Output { part: *component, output: *output },
             });
         }
         let mut outputs = Vec::new();
         for (name, output) in described.outputs.iter().zip(&kind.outputs) {
-            let slot = |name: &onescan_server::signal::SignalName| {
-                ValueSlot::find(writes, name.as_str(), output.values, described.number)
-            };
+            let slot = |name: &SignalName| ValueSlot::find(writes, name, output.values, described.number);
             outputs.push(name.as_ref().map(slot).transpose()?);
         }
-        let mut switches = Vec::new();
-        for failure in &described.failures {
-            let switch = match &failure.when {
-                When::Signal(name) => Switch::Signal(reads.slot(name.as_str())?),
-                When::Between(between) => Switch::Between(*between),
-            };
-            switches.push((failure.mode, switch));
-        }
-        let tie = Tie::bind(&described.bound, scene, world);
-        let joint = match described.bound {
-            Bound::Drives(index) | Bound::Measures(index) => {
-                Some(Coordinate { position: scene.joints[index].initial, velocity: 0.0 })
-            }
-            _ => None,
-        };
-        let start = Start { joint, seed: seed_for(seed, "component", &described.name) };
-        Ok(Some(Self {
-            running: (entry.start)(&described.settings, &start),
-            tie,
+        let seed = seed_for(seed, "component", &described.name);
+        let running = (entry.start)(&described.settings, seed, &described.bound, scene, world);
+        Ok(Self {
+            running: running.map_err(|unbound| Unbuilt::Unbound(name(), unbound))?,
             feeds,
             outputs,
-            switches,
+            switches: switches(described, reads)?,
             taken: (entry.unconnected)(),
             given: kind.outputs.iter().map(|output| Value::zero(output.values)).collect(),
-            held: None,
             failed: Failed::default(),
-        }))
+        })
     }
 
     /// First half of a turn, before the world moves; `others` are all parts' outputs so far.
@@ -199,11 +170,9 @@ impl Part {
         world: &mut World,
     ) -> Result<(), ClientFault> {
         self.take(described, moment, others)?;
-        let turn = self.turn(moment, world);
-        self.running.drive(&self.taken, &turn);
-        let effect = self.running.effect();
-        self.apply(effect, moment, world);
-        Ok(())
+        let around = self.surroundings(moment);
+        let driven = self.running.drive(&self.taken, &around, world);
+        driven.map_err(|fault| ClientFault::new(format!("component `{}`: {fault}", described.name)))
     }
 
     /// Second half of a turn, after the world has moved.
@@ -219,11 +188,16 @@ impl Part {
         outputs: &mut [u8],
     ) -> Result<(), ClientFault> {
         self.take(described, moment, others)?;
-        let turn = self.turn(moment, world);
-        self.running.sense(&self.taken, &turn, &mut self.given);
+        self.running.sense(&self.taken, &self.surroundings(moment), world, &mut self.given);
         for (slot, value) in self.outputs.iter().zip(&self.given) {
-            if let Some(slot) = slot {
-                slot.set(outputs, *value);
+            // a component gives the values that its kind states, by the same macro
+            if let Some(slot) = slot
+                && !slot.set(outputs, *value)
+            {
+                let name = &described.name;
+                return Err(ClientFault::new(format!(
+                    "component `{name}` gives {value:?} where another type is wanted"
+                )));
             }
         }
         Ok(())
@@ -248,8 +222,7 @@ impl Part {
     /// # Errors
     /// A state that does not go into bytes, which no kind has: each is plain data.
     pub(super) fn memory(&self) -> Result<PartMemory, postcard::Error> {
-        let Self { given, held, failed, .. } = self;
-        Ok(PartMemory { state: self.running.save()?, given: given.clone(), held: *held, failed: *failed })
+        Ok(PartMemory { state: self.running.save()?, given: self.given.clone(), failed: self.failed })
     }
 
     /// Checks that a memory is one of such a part; `name` is the part in the refusal.
@@ -271,7 +244,7 @@ impl Part {
     pub(super) fn restore(&mut self, memory: PartMemory, name: &str) -> Result<(), Misfit> {
         let taken = self.running.restore(&memory.state);
         taken.map_err(|error| Misfit(format!("component `{name}`: {error}")))?;
-        (self.given, self.held, self.failed) = (memory.given, memory.held, memory.failed);
+        (self.given, self.failed) = (memory.given, memory.failed);
         Ok(())
     }
 
@@ -302,7 +275,7 @@ impl Part {
         Ok(())
     }
 
-    fn turn(&self, moment: &Moment<'_>, world: &World) -> Turn {
+    fn surroundings<'m>(&self, moment: &Moment<'m>) -> Surroundings<'m> {
         let mut failed = self.failed;
         for (mode, switch) in &self.switches {
             let on = match switch {
@@ -313,137 +286,18 @@ impl Part {
                 failed = failed.with(*mode);
             }
         }
-        Turn { dt_s: moment.dt_s, seen: self.tie.see(moment.measured, world), failed }
-    }
-
-    fn apply(&mut self, effect: Effect, moment: &Moment<'_>, world: &mut World) {
-        match (effect, &self.tie) {
-            (Effect::Move { from, to, effort_max }, Tie::Moved { joint, motor, along }) => {
-                let correction = CORRECTED_A_PERIOD * (from - moment.measured.positions[*joint]);
-                let velocity = (to - from + correction) / moment.dt_s;
-                if let Some(joint) = world.physics.impulse_joints.get_mut(*motor, true) {
-                    joint.data.set_motor_velocity(*along, velocity, MOTOR_GAIN_PER_S);
-                    joint.data.set_motor_max_force(*along, effort_max);
-                }
-            }
-            (Effect::Run { velocity_m_s }, Tie::Belt { body, direction }) => {
-                if let Some(body) = world.physics.bodies.get_mut(*body) {
-                    body.set_linvel(*direction * velocity_m_s, true);
-                }
-            }
-            (Effect::Hold(target), Tie::Touch { surface, targets }) if self.held.map(|held| held.target) != target => {
-                if let Some(held) = self.held.take() {
-                    world.physics.remove_impulse_joint(held.joint);
-                }
-                self.held = target.and_then(|target| {
-                    let joint = world.hold(surface.body, *targets.get(target as usize)?);
-                    Some(Held { target, joint })
-                });
-            }
-            (Effect::Remove(target), Tie::Collect { targets, .. }) => {
-                if let Some(target) = targets.get(target as usize) {
-                    world.take_out(*target);
-                }
-            }
-            (Effect::Place(target), Tie::Place { body, targets }) => {
-                if let Some(target) = targets.get(target as usize) {
-                    world.put_in(*target, *body);
-                }
-            }
-            _ => {}
-        }
+        Surroundings { dt_s: moment.dt_s, measured: moment.measured, failed }
     }
 }
 
-impl Tie {
-    fn bind(bound: &Bound, scene: &Scene, world: &mut World) -> Self {
-        let handles = |world: &World, indices: &[usize]| -> Vec<_> {
-            indices.iter().map(|index| world.handle(Some(*index))).collect()
+/// The scene's own switches of failures, by the index of the mode.
+fn switches(described: &model::Component, reads: &PortLayout) -> Result<Vec<(usize, Switch)>, SlotError> {
+    let switch = |failure: &model::FailureSwitch| {
+        let switch = match &failure.when {
+            When::Signal(name) => Switch::Signal(reads.slot(name.as_str())?),
+            When::Between(between) => Switch::Between(*between),
         };
-        match bound {
-            Bound::Nothing => Self::Nothing,
-            Bound::Drives(joint) => {
-                let (motor, along) = (world.joint(*joint), measured_axis(scene.joints[*joint].kind));
-                arm(world, motor, along, None);
-                Self::Moved { joint: *joint, motor, along }
-            }
-            Bound::Measures(joint) => Self::Measured(*joint),
-            Bound::Belt { body, direction } => {
-                let body = world.handle(Some(*body));
-                world.keep_in_place(body);
-                Self::Belt { body, direction: Vector::from_array(*direction) }
-            }
-            Bound::Ray { body, point_m, direction, targets } => {
-                let body = world.handle(*body);
-                let pose = world.body(body).position();
-                Self::Ray {
-                    body,
-                    point: pose.inverse_transform_point(Vector::from_array(*point_m)),
-                    direction: pose.inverse_transform_vector(Vector::from_array(*direction)),
-                    targets: handles(world, targets),
-                }
-            }
-            Bound::Touch { body, shape, targets } => {
-                let shape = shape.map(|shape| world.shape(shape));
-                let surface = Surface { body: world.handle(Some(*body)), shape };
-                Self::Touch { surface, targets: handles(world, targets) }
-            }
-            Bound::Meet { targets } => {
-                let mut targets = handles(world, targets);
-                targets.sort_unstable_by_key(|target| target.0);
-                Self::Meet { targets }
-            }
-            Bound::Collect { body, targets } => {
-                Self::Collect { body: world.handle(Some(*body)), targets: handles(world, targets) }
-            }
-            Bound::Place { body, targets } => {
-                let targets = handles(world, targets);
-                for target in &targets {
-                    world.take_out(*target);
-                }
-                Self::Place { body: world.handle(Some(*body)), targets }
-            }
-        }
-    }
-
-    fn see(&self, measured: Measured<'_>, world: &World) -> Seen {
-        let joint = |index: usize| {
-            let (position, velocity) = (measured.positions[index], measured.gauges[index].velocity(world));
-            Seen { joint: Some(Coordinate { position, velocity }), ..Seen::default() }
-        };
-        match self {
-            Self::Nothing | Self::Belt { .. } => Seen::default(),
-            Self::Moved { joint: index, .. } | Self::Measured(index) => joint(*index),
-            Self::Ray { body, point, direction, targets } => {
-                let pose = *world.body(*body).position();
-                let ray = Ray::new(pose * *point, pose.rotation * *direction);
-                let hits = targets.iter().filter_map(|target| world.ray_distance(&ray, *target));
-                Seen { hit_m: hits.reduce(f64::min), ..Seen::default() }
-            }
-            Self::Touch { surface, targets } => first(targets, |target| world.touch(*surface, target)),
-            Self::Meet { targets } => Seen { count: world.contacts_among(targets), ..Seen::default() },
-            Self::Collect { body, targets } => {
-                let surface = Surface { body: *body, shape: None };
-                first(targets, |target| !world.hangs(target) && world.touch(surface, target))
-            }
-            Self::Place { body, targets } => {
-                let surface = Surface { body: *body, shape: None };
-                let seen = first(targets, |target| !world.body(target).is_enabled());
-                let free = !targets.iter().any(|target| world.touch(surface, *target));
-                Seen { target: seen.target.filter(|_| free), ..seen }
-            }
-        }
-    }
-}
-
-/// The first of the targets for which something holds, and how many there are.
-fn first(targets: &[RigidBodyHandle], holds: impl Fn(RigidBodyHandle) -> bool) -> Seen {
-    let mut seen = Seen::default();
-    for (index, target) in targets.iter().enumerate() {
-        if holds(*target) {
-            seen.count += 1;
-            seen.target = seen.target.or(Some(index as u32));
-        }
-    }
-    seen
+        Ok((failure.mode, switch))
+    };
+    described.failures.iter().map(switch).collect()
 }

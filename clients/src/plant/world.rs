@@ -19,13 +19,13 @@ const SWEEPS: usize = 4;
 
 /// A body, or one shape of it.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Surface {
+pub(crate) struct Surface {
     pub(super) body: RigidBodyHandle,
     pub(super) shape: Option<ColliderHandle>,
 }
 
 /// The rigid bodies of a plant, and where each thing of the scene is in them.
-pub(super) struct World {
+pub(crate) struct World {
     /// All of the state that the engine keeps.
     pub(super) physics: PhysicsWorld,
     ground: RigidBodyHandle,
@@ -74,7 +74,7 @@ impl World {
     pub(super) fn step(&mut self, scene: &Scene) -> Result<(), ClientFault> {
         for _ in 0..self.substeps {
             self.physics.step();
-            self.put_belts_back();
+            self.put_belts_back()?;
             if let Some(lost) = self.physics.quarantine().bodies().first() {
                 return Err(self.fault(scene, *lost, "its position or velocity is no longer a finite number"));
             }
@@ -96,12 +96,12 @@ impl World {
         self.belts.push((body, *self.body(body).position()));
     }
 
-    fn put_belts_back(&mut self) {
-        for (handle, place) in &self.belts {
-            if let Some(body) = self.physics.bodies.get_mut(*handle) {
-                body.set_position(*place, true);
-            }
+    fn put_belts_back(&mut self) -> Result<(), ClientFault> {
+        for index in 0..self.belts.len() {
+            let (belt, place) = self.belts[index];
+            self.body_mut(belt)?.set_position(place, true);
         }
+        Ok(())
     }
 
     fn fault(&self, scene: &Scene, handle: RigidBodyHandle, what: &str) -> ClientFault {
@@ -211,21 +211,34 @@ impl World {
     }
 
     /// Takes a body out of the world until it is put in again.
-    pub(super) fn take_out(&mut self, handle: RigidBodyHandle) {
-        if let Some(body) = self.physics.bodies.get_mut(handle) {
-            body.set_enabled(false);
-        }
+    ///
+    /// # Errors
+    /// A body that there is not, as in all that follow.
+    pub(super) fn take_out(&mut self, handle: RigidBodyHandle) -> Result<(), ClientFault> {
+        self.body_mut(handle)?.set_enabled(false);
+        Ok(())
     }
 
     /// Puts a body into the world, at rest where another one is.
-    pub(super) fn put_in(&mut self, handle: RigidBodyHandle, place: RigidBodyHandle) {
+    pub(super) fn put_in(&mut self, handle: RigidBodyHandle, place: RigidBodyHandle) -> Result<(), ClientFault> {
         let pose = *self.body(place).position();
-        if let Some(body) = self.physics.bodies.get_mut(handle) {
-            body.set_enabled(true);
-            body.set_position(pose, true);
-            body.set_linvel(Vector::ZERO, true);
-            body.set_angvel(AngVector::ZERO, true);
-        }
+        let body = self.body_mut(handle)?;
+        body.set_enabled(true);
+        body.set_position(pose, true);
+        body.set_linvel(Vector::ZERO, true);
+        body.set_angvel(AngVector::ZERO, true);
+        Ok(())
+    }
+
+    /// Gives a belt the velocity of its surface.
+    pub(super) fn run(&mut self, belt: RigidBodyHandle, velocity: Vector) -> Result<(), ClientFault> {
+        self.body_mut(belt)?.set_linvel(velocity, true);
+        Ok(())
+    }
+
+    fn body_mut(&mut self, handle: RigidBodyHandle) -> Result<&mut RigidBody, ClientFault> {
+        let body = self.physics.bodies.get_mut(handle);
+        body.ok_or_else(|| ClientFault::new("a body of the scene is not in the world"))
     }
 
     /// True if a body hangs on a joint.
@@ -238,6 +251,15 @@ impl World {
         let between = self.body(holder).position().inv_mul(self.body(held).position());
         let joint = FixedJointBuilder::new().local_frame1(between).contacts_enabled(false);
         self.physics.insert_impulse_joint(holder, held, joint)
+    }
+
+    /// Removes the joint that [`hold`](Self::hold) gave.
+    ///
+    /// # Errors
+    /// A joint that there is not.
+    pub(super) fn let_go(&mut self, joint: ImpulseJointHandle) -> Result<(), ClientFault> {
+        let removed = self.physics.remove_impulse_joint(joint);
+        removed.map(|_| ()).ok_or_else(|| ClientFault::new("the joint that holds a body is not in the world"))
     }
 }
 

@@ -149,7 +149,7 @@ fn checked_place(signal: &SignalDecl, variable: &Variable) -> Result<Place, Bind
 
 #[cfg(test)]
 mod tests {
-    use onescan_server::signal::SignalType;
+    use onescan_base::SignalType;
 
     use super::*;
 

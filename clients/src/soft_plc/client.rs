@@ -7,7 +7,9 @@ use std::sync::{Arc, Mutex, PoisonError};
 use onescan_plc_shim::{
     Application, CodePolicy, Coverage, PlcFault, RestoreError, RunError, SoftPlc, TaskPlan, UnknownVariable, WriteError,
 };
-use onescan_server::client::{Client, ClientFault, JoinRequest, SourcePlace, StateError, Wake};
+use onescan_server::client::{
+    Client, ClientFault, ClientOperation, JoinRequest, OperationRefused, SourcePlace, StateError, Wake,
+};
 use onescan_server::signal::{ClientName, Port, SignalName};
 use onescan_server::time::{TimeSpan, VirtualTime};
 
@@ -234,6 +236,34 @@ impl Client for SoftPlcClient {
         self.take_outputs(outputs);
         self.look(VirtualTime::default());
         Ok(())
+    }
+
+    fn begin(&mut self, operations: &[ClientOperation], outputs: &mut [u8]) -> Result<(), ClientFault> {
+        self.setup(outputs)?;
+        for operation in operations {
+            self.operate(operation).map_err(|refused| ClientFault::new(format!("{operation}: {refused}")))?;
+        }
+        // What was set may be an output.
+        self.take_outputs(outputs);
+        Ok(())
+    }
+
+    fn operate(&mut self, operation: &ClientOperation) -> Result<(), OperationRefused> {
+        let refused = |error: &dyn std::fmt::Display| OperationRefused::Because(error.to_string());
+        match operation {
+            ClientOperation::WriteVariable { variable, value } => {
+                self.set_variable(variable, value).map_err(|error| refused(&error))
+            }
+            ClientOperation::ForceVariable { variable, value } => {
+                self.force_variable(variable, value).map_err(|error| refused(&error))
+            }
+            ClientOperation::ReleaseVariable { variable } => match self.release_variable(variable) {
+                Ok(true) => Ok(()),
+                Ok(false) => Err(refused(&format!("variable `{variable}` is not forced"))),
+                Err(unknown) => Err(refused(&unknown)),
+            },
+            ClientOperation::Fail { .. } | ClientOperation::Repair { .. } => Err(OperationRefused::Unsupported),
+        }
     }
 
     fn turn(&mut self, t_v: VirtualTime, inputs: &[u8], outputs: &mut [u8]) -> Result<Wake, ClientFault> {

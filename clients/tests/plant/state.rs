@@ -208,7 +208,7 @@ fn a_refusal_says_what_differs() {
         ("name = \"hinge\"", "name = \"pivot\""),
         ("version = 1", "version = 1\nsubsteps = 4"),
         ("range_m = 2.0", "range_m = 2.5\ntargets = [\"a\"]"),
-        ("[[sensor]]", "[[component]]\nname = \"line\"\nkind = \"conveyor\"\n[[sensor]]"),
+        ("[[sensor]]", "[[component]]\nname = \"line\"\nkind = \"asynchronous_motor\"\n[[sensor]]"),
     ];
     let mut told = String::new();
     let state = Bench::new(HEAP).plant.save().expect("a state");
@@ -218,6 +218,15 @@ fn a_refusal_says_what_differs() {
             .replacen(from, to, 1)
             .replace("joint = \"hinge\"", if to.contains("pivot") { "joint = \"pivot\"" } else { "joint = \"hinge\"" });
         writeln!(told, "{}", Bench::new(&other).plant.restore(&state).expect_err("refused")).expect("a string grows");
+    }
+    let cylinder = |settings: &str| {
+        let scene = "version = 1\n[[component]]\nname = \"clamp\"\nkind = \"pneumatic_cylinder\"\nstroke_m = 0.3\n";
+        Bench::new(&format!("{scene}{settings}"))
+    };
+    let clamp = cylinder("extend_signal = \"Go\"\n").plant.save().expect("a state");
+    for settings in ["moving_kg = 2\nextend_signal = \"Go\"\n", "extend_signal = \"Gone\"\n"] {
+        let refused = cylinder(settings).plant.restore(&clamp).expect_err("refused");
+        writeln!(told, "{refused}").expect("a string grows");
     }
     let named = |name: &str| ClientName::new(name).expect("a name");
     let span = |ms| TimeSpan::from_millis(ms).expect("not zero");

@@ -7,13 +7,11 @@ use wasm_encoder::{
     Function, FunctionSection, ImportSection, MemorySection, MemoryType, Module, TypeSection, ValType,
 };
 
-use super::budget::{self, BUDGET_EXPORT};
-use super::cost::Costs;
-use super::emitter::{Shared, value_type};
+use super::analyse::Program;
+use super::emit::{self, Made, Shared, value_type};
 use super::fault::{FaultTable, FunctionMarks};
-use super::function::Made;
 use super::points::{NOTES_MEMORY, Point, Points};
-use super::{dispatch, entry, function, host, text_host, trace};
+use super::{host, text_host, trace};
 use crate::check::Checked;
 use crate::ir::{Pou, PouId, TypeTable};
 use crate::syntax::FileId;
@@ -22,6 +20,9 @@ use crate::syntax::FileId;
 pub(crate) const MEMORY_EXPORT: &str = "memory";
 /// Name of the export of the memory that execution is noted in, of a module that notes it.
 pub(crate) const NOTES_EXPORT: &str = "notes";
+
+/// Name of the export of the global that holds the budget of instructions.
+pub(crate) const BUDGET_EXPORT: &str = "budget";
 
 const PAGE: u64 = 65_536;
 
@@ -55,68 +56,37 @@ pub(crate) enum Noted<'l> {
 }
 
 /// Compiles what has been checked without errors.
+///
+/// Types, imports and functions are numbered in the order in which they are added, and code refers to them by number:
+/// 1. the host's functions, which are known beforehand;
+/// 2. the signatures of the rows of methods, which calls name;
+/// 3. the units, in the order of their ids: their numbers are given out before any is compiled, as one calls the
+///    other;
+/// 4. what tasks run, then what runs at the start and the end, which nothing calls.
+///
+/// [`Sections::finish`] puts the sections into the order that WebAssembly prescribes.
 pub(crate) fn compile(checked: &Checked, noted: Noted<'_>) -> Compiled {
-    let traced = matches!(noted, Noted::Traced(_));
-    let tracing = if traced { trace::IMPORTS.len() } else { 0 };
-    let first_function = (host::IMPORTS.len() + text_host::IMPORTS.len() + tracing) as u32;
-    let order = checked.pous.keys().zip(first_function..);
-    let functions: BTreeMap<_, _> = order.map(|(id, index)| (*id, index)).collect();
     let mut sections = Sections::default();
     sections.add_imports();
-    if traced {
+    if matches!(noted, Noted::Traced(_)) {
         sections.add_trace_imports();
     }
-    let rows = dispatch::place_rows(&checked.rows, |parameters, results| sections.add_type(parameters, results));
-    let (costs, order) = Costs::new(&checked.pous);
+    let first_function = sections.imports.len();
+    let functions = checked.pous.keys().copied().zip(first_function..).collect();
+    let rows = emit::place_rows(&checked.rows, |parameters, results| sections.add_type(parameters, results));
     let points = match noted {
         Noted::Nothing => None,
         Noted::Traced(library) => Some(Points::traced(library)),
         Noted::AllBut(library) => Some(Points::new(library)),
     };
-    let mut shared = Shared {
-        points,
-        types: &checked.types,
-        pous: &checked.pous,
-        costs,
-        functions,
-        rows,
-        areas: checked.areas,
-        memory_size: checked.image.len() as u32,
-        data: Vec::new(),
-    };
-    let instances = entry::only_instances(checked);
-    // Callees first: a call must know what it costs.
-    let mut made: BTreeMap<PouId, Made> = BTreeMap::new();
-    for id in order {
-        if let Some(pou) = checked.pous.get(&id) {
-            made.insert(id, function::unit(&mut shared, id, pou, instances.get(&id).copied()));
-        }
-    }
+    let (program, order) = Program::new(&checked.types, &checked.pous, checked.areas, points.is_some());
+    let mut shared = Shared::new(program, functions, rows, checked.image.len() as u32, points);
     let mut faults = FaultTable { first_function, functions: Vec::new() };
-    for (pou, Made { body, marks, units }) in checked.pous.values().zip(made.into_values()) {
-        let (parameters, results) = signature(pou, &checked.types);
-        sections.add_function(parameters, results, &body);
-        faults.functions.push(FunctionMarks { units, is_entry: false, marks });
-    }
-    for (index, entry) in checked.entries.iter().enumerate() {
-        for (part, unit) in entry.units.iter().enumerate() {
-            let (body, marks) = entry::function(&mut shared, unit, true);
-            let at = sections.add_function(Vec::new(), Vec::new(), &body);
-            sections.exports.export(&entry_export(index, part), ExportKind::Func, at);
-            faults.functions.push(marks);
-        }
-    }
-    for (unit, export) in [(&checked.start, START_EXPORT), (&checked.end, END_EXPORT)] {
-        if let Some(unit) = unit {
-            let (body, marks) = entry::function(&mut shared, unit, false);
-            let at = sections.add_function(Vec::new(), Vec::new(), &body);
-            sections.exports.export(export, ExportKind::Func, at);
-            faults.functions.push(marks);
-        }
-    }
-    let points = shared.points.as_ref().map_or(0, Points::bytes);
+    sections.add_units(checked, order, &mut shared, &mut faults);
+    sections.add_entries(checked, &mut shared, &mut faults);
+    let points = shared.points().map_or(0, Points::bytes);
     let wasm = sections.finish(checked, points, &shared, &hints(&faults));
-    Compiled { wasm, faults, points: shared.points.map(Points::into_list).unwrap_or_default() }
+    Compiled { wasm, faults, points: shared.into_points().map_or_else(Vec::new, Points::into_list) }
 }
 
 /// Which branches are taken as a rule.
@@ -196,6 +166,48 @@ impl Sections {
         self.imports.len() + self.functions.len() - 1
     }
 
+    /// Compiles the units in this `order`, callees first, as a call must know what it costs; adds them in that of their
+    /// ids, by which they are numbered.
+    fn add_units(&mut self, checked: &Checked, order: Vec<PouId>, shared: &mut Shared<'_>, faults: &mut FaultTable) {
+        let instances = emit::only_instances(checked);
+        let mut made: BTreeMap<PouId, Made> = BTreeMap::new();
+        for id in order {
+            if let Some(pou) = checked.pous.get(&id) {
+                made.insert(id, emit::unit(shared, id, pou, instances.get(&id).copied()));
+            }
+        }
+        debug_assert_eq!(made.len(), checked.pous.len(), "every unit has its place in the order");
+        for (pou, Made { body, marks, units }) in checked.pous.values().zip(made.into_values()) {
+            let (parameters, results) = signature(pou, &checked.types);
+            self.add_function(parameters, results, &body);
+            faults.functions.push(FunctionMarks { units, is_entry: false, marks });
+        }
+    }
+
+    /// What tasks run, what runs before the first scan, and what before another start.
+    fn add_entries(&mut self, checked: &Checked, shared: &mut Shared<'_>, faults: &mut FaultTable) {
+        for (index, entry) in checked.entries.iter().enumerate() {
+            for (part, unit) in entry.units.iter().enumerate() {
+                let (body, marks) = emit::entry_function(shared, unit, true);
+                self.add_export(&entry_export(index, part), &body);
+                faults.functions.push(marks);
+            }
+        }
+        for (unit, export) in [(&checked.start, START_EXPORT), (&checked.end, END_EXPORT)] {
+            if let Some(unit) = unit {
+                let (body, marks) = emit::entry_function(shared, unit, false);
+                self.add_export(export, &body);
+                faults.functions.push(marks);
+            }
+        }
+    }
+
+    /// A function without parameters for the host to call.
+    fn add_export(&mut self, name: &str, body: &Function) {
+        let at = self.add_function(Vec::new(), Vec::new(), body);
+        self.exports.export(name, ExportKind::Func, at);
+    }
+
     /// `noted` bytes, for what is noted while the program runs, lie in a memory of their own.
     fn finish(mut self, checked: &Checked, noted: usize, shared: &Shared<'_>, hints: &BranchHints) -> Vec<u8> {
         let mut memories = MemorySection::new();
@@ -207,16 +219,19 @@ impl Sections {
         }
         self.exports.export(BUDGET_EXPORT, ExportKind::Global, 0);
         let mut data = DataSection::new();
-        for bytes in &shared.data {
+        for bytes in shared.data() {
             data.passive(bytes.iter().copied());
         }
+        // Of the sections that WebAssembly has, in its order (core specification 2.0, 5.5.2): type, import, function,
+        // table, memory, global, export, element, data count, code, data; the hints are a custom section that must
+        // stand before the code.
         let mut module = Module::new();
         module.section(&self.types).section(&self.imports).section(&self.functions);
         if checked.rows.is_empty() {
-            module.section(&memories).section(&budget::globals()).section(&self.exports);
+            module.section(&memories).section(&emit::globals()).section(&self.exports);
         } else {
-            let (table, elements) = dispatch::table(&checked.rows, shared);
-            module.section(&table).section(&memories).section(&budget::globals());
+            let (table, elements) = emit::table(&checked.rows, shared);
+            module.section(&table).section(&memories).section(&emit::globals());
             module.section(&self.exports).section(&elements);
         }
         module.section(&DataCountSection { count: data.len() });

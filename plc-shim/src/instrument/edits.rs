@@ -121,11 +121,6 @@ impl LineMap {
         Self::of((1..=breaks(text) + 1).map(Some).collect())
     }
 
-    /// Where the lines come from in what `earlier` leads back to.
-    pub(crate) fn through(&self, earlier: &Self) -> Self {
-        Self::of(self.origins.iter().map(|line| line.and_then(|line| earlier.original(line))).collect())
-    }
-
     /// The original's line that `line` comes from; nothing for a line that was put in.
     pub fn original(&self, line: u32) -> Option<u32> {
         let at = (line as usize).checked_sub(1)?;

@@ -156,8 +156,6 @@ pub struct File {
     pub encoding: Option<Encoding>,
     /// Where its lines come from, without the shim.
     pub lines: LineMap,
-    /// Where its lines come from in `before`.
-    from: LineMap,
 }
 
 impl File {

@@ -39,8 +39,6 @@ pub(super) struct Given {
     pub(super) name: String,
     text: Arc<str>,
     encoding: Option<Encoding>,
-    /// Where the lines are of what it was before it was instrumented.
-    plain_lines: LineMap,
 }
 
 impl Plain {
@@ -65,11 +63,7 @@ impl Plain {
     fn add(&mut self, input: &Input) {
         let (name, text) = (input.file().name(), input.file().shown_text());
         let original = marks::original(text);
-        let plain_lines = match &original {
-            Ok(Original::Text(plain)) => plain.lines.clone(),
-            _ => LineMap::same(text),
-        };
-        let given = Given { name: name.to_owned(), text: text.clone(), encoding: input.encoding(), plain_lines };
+        let given = Given { name: name.to_owned(), text: text.clone(), encoding: input.encoding() };
         let kind = match (FileKind::of(Path::new(name)), &original) {
             (Some(FileKind::Project), Ok(Original::Text(plain))) => {
                 return self.manifests.push((given, plain.text.as_str().into()));
@@ -255,7 +249,7 @@ impl Plain {
         } else {
             let folder = self.given.first().and_then(|first| Path::new(&first.name).parent());
             let name = folder.unwrap_or(Path::new("")).join(&source.name).display().to_string();
-            File { name, before: None, text, encoding: None, lines: LineMap::default(), from: LineMap::default() }
+            File { name, before: None, text, encoding: None, lines: LineMap::default() }
         });
     }
 
@@ -295,7 +289,6 @@ fn rename(name: &Ident, new: &str, file: &SourceFile, edits: &mut Edits) {
 
 impl Given {
     pub(super) fn file(&self, text: Option<Arc<str>>, lines: LineMap) -> File {
-        let from = lines.through(&self.plain_lines);
-        File { name: self.name.clone(), before: Some(self.text.clone()), text, encoding: self.encoding, lines, from }
+        File { name: self.name.clone(), before: Some(self.text.clone()), text, encoding: self.encoding, lines }
     }
 }

@@ -279,9 +279,9 @@ END_CONFIGURATION"
 
 #[test]
 fn iec3_table_11_members_at_open_addresses_are_completed_by_var_config() {
-    let text = "TYPE Drive : STRUCT ready AT %I* : BOOL; speed AT %QW* : INT; own : INT; END_STRUCT END_TYPE
+    let text = "TYPE Drive : STRUCT ready AT %I* : BOOL; speed AT %QW* : INT; own : INT; END_STRUCT; END_TYPE
         FUNCTION_BLOCK Axis VAR d : Drive; END_VAR
-            IF d.ready THEN d.speed := d.speed + 1; END_IF
+            IF d.ready THEN d.speed := d.speed + 1; END_IF;
         END_FUNCTION_BLOCK
         PROGRAM P VAR axes : ARRAY [1..2] OF Axis; spare : Drive := (speed := 7); END_VAR axes[1](); axes[2](); END_PROGRAM
         PROGRAM Area VAR a AT %IX0.0 : BOOL; b AT %IX0.1 : BOOL; out AT %QW2 : INT; END_VAR ; END_PROGRAM
@@ -309,7 +309,7 @@ fn iec3_table_11_members_at_open_addresses_are_completed_by_var_config() {
         );
     }
     insta::assert_snapshot!(findings(
-        "TYPE Drive : STRUCT ready AT %I* : BOOL; own : BOOL; END_STRUCT END_TYPE
+        "TYPE Drive : STRUCT ready AT %I* : BOOL; own : BOOL; END_STRUCT; END_TYPE
 PROGRAM P VAR d : Drive; END_VAR ; END_PROGRAM
 CONFIGURATION c
     PROGRAM P1 : P;

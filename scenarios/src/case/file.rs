@@ -70,6 +70,12 @@ pub struct CaseFile {
     /// Signals that are held.
     #[serde(default, rename = "force")]
     pub forces: Vec<Spanned<ForceFile>>,
+    /// Signals that do not arrive as they were sent.
+    #[serde(default, rename = "disturbance")]
+    pub disturbances: Vec<Spanned<DisturbanceFile>>,
+    /// Variables of PLCs.
+    #[serde(default, rename = "variable")]
+    pub variables: Vec<Spanned<VariableFile>>,
     /// Expectations of the scenario that this case need not meet.
     #[serde(default)]
     pub waive: Vec<Spanned<String>>,
@@ -101,12 +107,17 @@ pub struct FaultFile {
     pub component: Spanned<String>,
     /// How it fails.
     pub mode: Spanned<String>,
-    /// From when; from the start if absent.
+    /// From when; from the start if absent. With `when`: from when on the condition counts.
     #[serde(default, deserialize_with = "from_optional_text")]
     pub from: Option<VirtualTime>,
     /// Until when; for ever if absent.
     #[serde(default, deserialize_with = "from_optional_text")]
     pub until: Option<VirtualTime>,
+    /// A condition on signals: it begins in the step after this has come true.
+    pub when: Option<Spanned<String>>,
+    /// How long it lasts.
+    #[serde(default, rename = "for", deserialize_with = "from_optional_text")]
+    pub lasting: Option<TimeSpan>,
 }
 
 /// A signal keeps a value for a time, whatever its writer gives.
@@ -117,10 +128,78 @@ pub struct ForceFile {
     pub signal: Spanned<SignalName>,
     /// The value.
     pub value: Spanned<toml::Value>,
-    /// From when; from the start if absent.
+    /// From when; from the start if absent. With `when`: from when on the condition counts.
     #[serde(default, deserialize_with = "from_optional_text")]
     pub from: Option<VirtualTime>,
     /// Until when; for ever if absent.
     #[serde(default, deserialize_with = "from_optional_text")]
     pub until: Option<VirtualTime>,
+    /// A condition on signals: it begins in the step after this has come true.
+    pub when: Option<Spanned<String>>,
+    /// How long it lasts.
+    #[serde(default, rename = "for", deserialize_with = "from_optional_text")]
+    pub lasting: Option<TimeSpan>,
+}
+
+/// A fault on the way of a signal from its writer to its readers.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct DisturbanceFile {
+    /// The signal.
+    pub signal: Spanned<SignalName>,
+    /// The fault.
+    pub kind: DisturbanceKind,
+    /// By how much: a number for `offset`, a time as in `"20ms"` for `late`.
+    pub by: Option<Spanned<toml::Value>>,
+    /// From when; from the start if absent. With `when`: from when on the condition counts.
+    #[serde(default, deserialize_with = "from_optional_text")]
+    pub from: Option<VirtualTime>,
+    /// Until when; for ever if absent.
+    #[serde(default, deserialize_with = "from_optional_text")]
+    pub until: Option<VirtualTime>,
+    /// A condition on signals: it begins in the step after this has come true.
+    pub when: Option<Spanned<String>>,
+    /// How long it lasts.
+    #[serde(default, rename = "for", deserialize_with = "from_optional_text")]
+    pub lasting: Option<TimeSpan>,
+}
+
+/// What can be wrong with a signal on its way.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum DisturbanceKind {
+    /// It keeps the value that it has.
+    Stuck,
+    /// A BOOL arrives negated.
+    Inverted,
+    /// A number arrives shifted.
+    Offset,
+    /// Values arrive late.
+    Late,
+}
+
+/// A variable of a PLC is forced for a time, or written once.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct VariableFile {
+    /// The PLC, where there is more than one.
+    pub client: Option<Spanned<String>>,
+    /// The variable's path: `Main.limit`.
+    pub variable: Spanned<String>,
+    /// The value: a number, a truth value, or a literal of IEC 61131-3 as text.
+    pub value: Spanned<toml::Value>,
+    /// When it is written, once; the program may write it again.
+    #[serde(default, deserialize_with = "from_optional_text")]
+    pub at: Option<VirtualTime>,
+    /// From when it is forced; from the start if absent. With `when`: from when on the condition counts.
+    #[serde(default, deserialize_with = "from_optional_text")]
+    pub from: Option<VirtualTime>,
+    /// Until when; for ever if absent.
+    #[serde(default, deserialize_with = "from_optional_text")]
+    pub until: Option<VirtualTime>,
+    /// A condition on signals: it begins in the step after this has come true.
+    pub when: Option<Spanned<String>>,
+    /// How long it is forced.
+    #[serde(default, rename = "for", deserialize_with = "from_optional_text")]
+    pub lasting: Option<TimeSpan>,
 }

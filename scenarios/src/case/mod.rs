@@ -6,8 +6,8 @@
 //! | [`catalogue`] | the file read; all cases, those of matrices one by one |
 //! | [`matrix`] | every combination of values |
 //! | [`value`] | TOML values as those of signals and variables |
-//! | [`scene`] | parameters and failures written into the text of a scene |
-//! | [`constant`] | constants of a PLC, in its text |
+//! | [`timeline`] | what a case does while a session runs, as operations |
+//! | [`settings`] | parameters of plants, constants and initial values of PLCs |
 //! | [`apply`] | a case put on its scenario |
 //!
 //! A scenario without the file, and one whose file names no case, has one case, called
@@ -15,16 +15,17 @@
 
 pub mod apply;
 pub mod catalogue;
-pub mod constant;
 pub mod file;
 pub mod matrix;
-pub mod scene;
+pub mod settings;
+pub mod timeline;
 pub mod value;
 
 use std::ops::Range;
 
-use onescan_clients::forced::Force;
+use onescan_server::signal::ClientName;
 use onescan_server::time::VirtualTime;
+use onescan_server::timeline::Scheduled;
 
 pub use catalogue::Catalogue;
 
@@ -68,9 +69,9 @@ pub struct Case {
 pub struct Applied {
     /// The case.
     pub case: Case,
-    /// Operator's inputs and forced signals.
-    pub forces: Vec<Force>,
-    /// Failures of components.
+    /// What it does while the session runs.
+    pub timeline: Vec<Scheduled>,
+    /// Failures of components, which can be checked only when their plants are read.
     pub failures: Vec<FailureAt>,
     /// `cases.toml`, for errors that are found when clients are made.
     pub source: (String, String),
@@ -80,15 +81,11 @@ pub struct Applied {
 #[derive(Clone, Debug, PartialEq)]
 pub struct FailureAt {
     /// The plant.
-    pub client: String,
+    pub client: ClientName,
     /// The component.
     pub component: String,
     /// How it fails.
     pub mode: String,
-    /// From when,
-    pub from: VirtualTime,
-    /// until when; for ever if absent.
-    pub until: Option<VirtualTime>,
     /// Where it stands in `cases.toml`.
     pub place: Range<usize>,
 }

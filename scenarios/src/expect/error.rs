@@ -57,6 +57,9 @@ pub enum FormulaErrorKind {
     /// A text.
     #[error("`{0}` is a {1}; expectations are on BOOLs, numbers and times")]
     Text(String, String),
+    /// More than one image is needed to judge it.
+    #[error("a condition is judged on one image: no windows, no edges, no arithmetic with signals")]
+    NotNow,
     /// A unit that is unknown.
     #[error("`{0}` is no unit that is known here")]
     UnknownUnit(String),

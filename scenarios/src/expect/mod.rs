@@ -12,6 +12,7 @@
 //! | [`formula`] | formulas and terms |
 //! | [`unit`] | units of measurement, and numbers carried from one to another |
 //! | [`bind`] | names to signals, units to factors |
+//! | [`condition`] | formulas of the present, which a running session can judge |
 //! | [`trace`] | the signals a formula needs, sample by sample |
 //! | [`truth`] | three-valued truth, and the margin by which a formula holds |
 //! | [`window`] | greatest and least values in windows of time |
@@ -26,6 +27,7 @@
 //! that holds does so by an infinite margin.
 
 mod bind;
+mod condition;
 mod error;
 mod evaluate;
 mod formula;
@@ -38,6 +40,7 @@ mod verdict;
 mod window;
 
 pub use bind::{Expectation, KnownSignal};
+pub use condition::condition;
 pub use error::FormulaError;
 pub use trace::{Trace, TraceEnd};
 pub use truth::Margin;

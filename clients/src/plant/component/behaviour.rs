@@ -4,12 +4,17 @@
 //! 2. `sense`: looks at the world, after it has moved, and gives the outputs. At the set-up it does
 //!    so once with a period of 0.
 
+use onescan_server::client::ClientFault;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
-use super::coupling::{Coordinate, Coupling, Effect, Seen};
 use super::declare::{Failed, FailureSet, ParameterSet, SignalSet, Value};
 use super::kind::Kind;
+use crate::plant::coordinate::Measured;
+use crate::plant::coupling::{Coupling, Tie, Unbound};
+use crate::plant::scene::Scene;
+use crate::plant::scene::model::Bound;
+use crate::plant::world::World;
 
 /// A kind of component, by its equations.
 pub(crate) trait Component: Sized + Send + 'static {
@@ -21,9 +26,6 @@ pub(crate) trait Component: Sized + Send + 'static {
     const FORMULA: &'static [&'static str];
     /// Where they come from.
     const SOURCE: &'static str;
-    /// What of the scene it is bound to.
-    const COUPLING: Coupling = Coupling::None;
-
     /// What describes one of its kind.
     type Parameters: ParameterSet;
     /// What it takes.
@@ -32,6 +34,8 @@ pub(crate) trait Component: Sized + Send + 'static {
     type Outputs: SignalSet;
     /// How it fails.
     type Failure: FailureSet;
+    /// What ties it to the world.
+    type Tie: Tie;
     /// All that it remembers.
     type State: Clone + PartialEq + std::fmt::Debug + Send + Serialize + DeserializeOwned;
 
@@ -44,19 +48,22 @@ pub(crate) trait Component: Sized + Send + 'static {
     }
 
     /// Its state at the set-up.
-    fn initial(&self, start: &Start) -> Self::State;
+    fn initial(&self, start: &Start<SeenBy<Self>>) -> Self::State;
 
     /// Moves the state by one period.
-    fn drive(&self, _state: &mut Self::State, _inputs: &Self::Inputs, _turn: &Turn) {}
+    fn drive(&self, _state: &mut Self::State, _inputs: &Self::Inputs, _turn: &Turn<SeenBy<Self>>) {}
 
     /// What it does to the world in the period that `drive` has begun.
-    fn effect(&self, _state: &Self::State) -> Effect {
-        Effect::None
-    }
+    fn effect(&self, state: &Self::State) -> EffectOf<Self>;
 
     /// Looks at the world and says what there is.
-    fn sense(&self, state: &mut Self::State, inputs: &Self::Inputs, turn: &Turn) -> Self::Outputs;
+    fn sense(&self, state: &mut Self::State, inputs: &Self::Inputs, turn: &Turn<SeenBy<Self>>) -> Self::Outputs;
 }
+
+/// What a component sees of the world.
+pub(crate) type SeenBy<C> = <<C as Component>::Tie as Tie>::Seen;
+/// What a component does to the world.
+pub(crate) type EffectOf<C> = <<C as Component>::Tie as Tie>::Effect;
 
 /// A parameter that does not go with another.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -67,17 +74,17 @@ pub(crate) struct Conflict {
 
 /// What a component begins with.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(crate) struct Start {
-    /// The joint that it is bound to, if any.
-    pub(crate) joint: Option<Coordinate>,
+pub(crate) struct Start<Seen = ()> {
+    /// What it sees of the world in the scene's pose.
+    pub(crate) seen: Seen,
     /// A seed of its own, from the scenario's.
     pub(crate) seed: u64,
 }
 
 /// The circumstances of a half turn.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(crate) struct Turn {
-    /// The period, s.
+pub(crate) struct Turn<Seen = ()> {
+    /// The period, s; 0 at the set-up.
     pub(crate) dt_s: f64,
     /// What it sees of the world.
     pub(crate) seen: Seen,
@@ -85,11 +92,21 @@ pub(crate) struct Turn {
     pub(crate) failed: Failed,
 }
 
-/// A component of any kind, with its state.
+/// What surrounds a component of any kind in a half turn.
+#[derive(Clone, Copy)]
+pub(crate) struct Surroundings<'s> {
+    /// The period, s; 0 at the set-up.
+    pub(crate) dt_s: f64,
+    pub(crate) measured: Measured<'s>,
+    pub(crate) failed: Failed,
+}
+
+/// A component of any kind, with its state and its tie to the world.
 pub(crate) trait Running: Send {
-    fn drive(&mut self, inputs: &[Value], turn: &Turn);
-    fn effect(&self) -> Effect;
-    fn sense(&mut self, inputs: &[Value], turn: &Turn, outputs: &mut Vec<Value>);
+    /// First half of a turn; what the component then does to the world is done.
+    fn drive(&mut self, inputs: &[Value], around: &Surroundings<'_>, world: &mut World) -> Result<(), ClientFault>;
+    /// Second half of a turn.
+    fn sense(&mut self, inputs: &[Value], around: &Surroundings<'_>, world: &World, outputs: &mut Vec<Value>);
     /// The state as bytes.
     fn save(&self) -> postcard::Result<Vec<u8>>;
     /// Checks that bytes are a state of such a component.
@@ -98,42 +115,64 @@ pub(crate) trait Running: Send {
     fn restore(&mut self, bytes: &[u8]) -> postcard::Result<()>;
 }
 
-/// A component with its state.
-pub(super) struct Runner<C: Component> {
+/// A component with its state and its tie to the world.
+struct Runner<C: Component> {
     component: C,
     state: C::State,
+    tie: C::Tie,
+}
+
+/// What a [`Runner`] remembers.
+type Memory<C> = (<C as Component>::State, <<C as Component>::Tie as Tie>::Memory);
+
+/// Ties a component to a world that still stands in the scene's pose.
+///
+/// # Errors
+/// A binding that is not one of the component's coupling.
+pub(super) fn run<C: Component>(
+    component: C,
+    seed: u64,
+    bound: &Bound,
+    scene: &Scene,
+    world: &mut World,
+) -> Result<Box<dyn Running>, Unbound> {
+    let tie = C::Tie::bind(bound, scene, world)?;
+    let state = component.initial(&Start { seen: tie.at_start(), seed });
+    Ok(Box::new(Runner { component, state, tie }))
 }
 
 impl<C: Component> Runner<C> {
-    pub(super) fn new(component: C, start: &Start) -> Self {
-        let state = component.initial(start);
-        Self { component, state }
+    fn turn(&self, around: &Surroundings<'_>, world: &World) -> Turn<SeenBy<C>> {
+        let Surroundings { dt_s, measured, failed } = *around;
+        Turn { dt_s, seen: self.tie.see(measured, world), failed }
     }
 }
 
 impl<C: Component> Running for Runner<C> {
-    fn drive(&mut self, inputs: &[Value], turn: &Turn) {
-        self.component.drive(&mut self.state, &C::Inputs::read(inputs), turn);
+    fn drive(&mut self, inputs: &[Value], around: &Surroundings<'_>, world: &mut World) -> Result<(), ClientFault> {
+        let turn = self.turn(around, world);
+        self.component.drive(&mut self.state, &C::Inputs::read(inputs), &turn);
+        let effect = self.component.effect(&self.state);
+        self.tie.apply(effect, around.measured, around.dt_s, world)
     }
 
-    fn effect(&self) -> Effect {
-        self.component.effect(&self.state)
-    }
-
-    fn sense(&mut self, inputs: &[Value], turn: &Turn, outputs: &mut Vec<Value>) {
-        self.component.sense(&mut self.state, &C::Inputs::read(inputs), turn).write(outputs);
+    fn sense(&mut self, inputs: &[Value], around: &Surroundings<'_>, world: &World, outputs: &mut Vec<Value>) {
+        let turn = self.turn(around, world);
+        self.component.sense(&mut self.state, &C::Inputs::read(inputs), &turn).write(outputs);
     }
 
     fn save(&self) -> postcard::Result<Vec<u8>> {
-        postcard::to_stdvec(&self.state)
+        postcard::to_stdvec(&(&self.state, self.tie.memory()))
     }
 
     fn check(&self, bytes: &[u8]) -> postcard::Result<()> {
-        postcard::from_bytes::<C::State>(bytes).map(|_| ())
+        postcard::from_bytes::<Memory<C>>(bytes).map(|_| ())
     }
 
     fn restore(&mut self, bytes: &[u8]) -> postcard::Result<()> {
-        self.state = postcard::from_bytes(bytes)?;
+        let (state, tie) = postcard::from_bytes::<Memory<C>>(bytes)?;
+        self.state = state;
+        self.tie.restore(tie);
         Ok(())
     }
 }
@@ -145,7 +184,7 @@ pub(super) fn kind<C: Component>() -> Kind {
         summary: C::SUMMARY,
         formula: C::FORMULA,
         source: C::SOURCE,
-        coupling: C::COUPLING,
+        coupling: Coupling::of::<C::Tie>(),
         parameters: C::Parameters::table(),
         inputs: C::Inputs::table(),
         outputs: C::Outputs::table(),

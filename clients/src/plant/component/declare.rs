@@ -278,15 +278,26 @@ macro_rules! failures {
 }
 pub(crate) use failures;
 
-/// The types of a component, which every kind calls the same: `Parameters`, `Inputs`, `Outputs`, `Failure`
-/// and `State`, those of its own file.
+/// The types of a component, which every kind calls the same: `Parameters`, `Inputs`, `Outputs`,
+/// `Failure` and `State`, those of its own file; and its tie to the world:
+/// `own_types!()` for none, `own_types!(sees Ray)` for one that it does nothing with,
+/// `own_types!(moves Slides)` for one whose effect it then states itself.
 macro_rules! own_types {
     () => {
+        $crate::plant::component::declare::own_types!(sees $crate::plant::coupling::Nothing);
+    };
+    (sees $tie:ty) => {
+        $crate::plant::component::declare::own_types!(moves $tie);
+
+        fn effect(&self, _: &State) {}
+    };
+    (moves $tie:ty) => {
         type Parameters = Parameters;
         type Inputs = Inputs;
         type Outputs = Outputs;
         type Failure = Failure;
         type State = State;
+        type Tie = $tie;
     };
 }
 pub(crate) use own_types;

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::coupling::Coordinate;
+use crate::plant::coupling::Coordinate;
 
 /// How many equal sub-steps of at most `longest_s` make `dt_s`, and how long each is.
 pub(crate) fn substeps(dt_s: f64, longest_s: f64) -> (u32, f64) {

@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use super::coupling::Coupling;
+use crate::plant::coupling::Coupling;
 
 /// A kind of component.
 #[derive(Clone, Debug, PartialEq, Serialize)]

@@ -4,7 +4,6 @@
 //! |---|---|
 //! | [`kind`] | what a kind of component is, as plain data |
 //! | `declare` | parameters, signals and failures, stated once as structs and enums |
-//! | [`coupling`] | what ties a component to the world of rigid bodies |
 //! | `behaviour` | what every component is: a state and two halves of a turn |
 //! | `dynamics` | lags, friction, sub-steps |
 //! | `fluid` | flow of air and oil through orifices |
@@ -18,7 +17,6 @@
 //! - What it states of itself is read by the scene, the schema, the documentation and the program.
 
 pub(crate) mod behaviour;
-pub mod coupling;
 pub(crate) mod declare;
 pub(crate) mod dynamics;
 pub(crate) mod fluid;

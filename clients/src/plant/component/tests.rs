@@ -1,29 +1,29 @@
 //! A rig to run one component without a scene, and what holds for every kind.
 
-use super::behaviour::{Component, Start, Turn};
-use super::coupling::{Coordinate, Seen};
-use super::declare::{Failed, FailureSet, Value};
+use super::behaviour::{Component, SeenBy, Start, Turn};
+use super::declare::{Failed, FailureSet, SignalSet, Value};
 use super::kind::{Form, Setting, Values, unit};
 use super::library::{ENTRIES, entry, kinds};
+use crate::plant::coupling::{Coordinate, Hit, Targets};
 use crate::plant::random::Random;
 
 /// What is seen of so many targets.
-pub(crate) fn touched(count: u32) -> Seen {
-    Seen { target: (count > 0).then_some(0), count, ..Seen::default() }
+pub(crate) fn touched(count: u32) -> Targets {
+    Targets { first: (count > 0).then_some(0), count }
 }
 
 /// A component alone.
 pub(crate) struct Rig<C: Component> {
     pub(crate) component: C,
     pub(crate) state: C::State,
-    pub(crate) seen: Seen,
+    pub(crate) seen: SeenBy<C>,
     failed: Failed,
 }
 
 impl<C: Component> Rig<C> {
     pub(crate) fn new(component: C) -> Self {
-        let state = component.initial(&Start { joint: None, seed: 1 });
-        Self { component, state, seen: Seen::default(), failed: Failed::default() }
+        let state = component.initial(&Start { seen: SeenBy::<C>::default(), seed: 1 });
+        Self { component, state, seen: SeenBy::<C>::default(), failed: Failed::default() }
     }
 
     /// The rig with one more failure.
@@ -60,54 +60,98 @@ impl Weather {
             .collect()
     }
 
-    fn turn(&mut self, modes: usize) -> Turn {
-        let joint = Coordinate { position: self.0.normal(), velocity: self.0.normal() };
-        let count = (self.0.bits() % 3) as u32;
-        let seen = Seen {
-            joint: Some(joint),
-            hit_m: (self.0.uniform() < 0.5).then(|| 0.1 * self.0.uniform()),
-            target: (count > 0).then(|| count - 1),
-            count,
-        };
+    fn turn<S: Sight>(&mut self, modes: usize) -> Turn<S> {
+        let seen = S::in_weather(&mut self.0);
         let failed = (0..modes)
             .fold(Failed::default(), |failed, mode| if self.0.uniform() < 0.1 { failed.with(mode) } else { failed });
         Turn { dt_s: 0.01, seen, failed }
     }
 }
 
-#[test]
-fn every_kind_goes_on_to_the_bit_from_a_saved_state() {
-    for kind in kinds() {
-        let entry = entry(kind.name).expect("in the table");
-        let settings: Vec<Setting> = kind.parameters.iter().map(|parameter| parameter.preset).collect();
-        let mut weather = Weather(Random::new(3));
-        let mut first = (entry.start)(&settings, &Start { joint: None, seed: 5 });
-        let mut second = (entry.start)(&settings, &Start { joint: None, seed: 99 });
-        for k in 0..300 {
-            let (inputs, turn) = (weather.inputs(&kind.inputs), weather.turn(kind.failures.len()));
-            let (mut one, mut other) = (Vec::new(), Vec::new());
-            first.drive(&inputs, &turn);
-            first.sense(&inputs, &turn, &mut one);
-            if k >= 100 {
-                second.drive(&inputs, &turn);
-                assert_eq!(second.effect(), first.effect(), "{} {k}", kind.name);
-                second.sense(&inputs, &turn, &mut other);
-                assert_eq!(one, other, "{} {k}", kind.name);
-            }
-            for value in &one {
-                assert!(!matches!(value, Value::Number(number) if !number.is_finite()), "{} {k}", kind.name);
-            }
-            assert_eq!(one.len(), kind.outputs.len());
-            if k == 99 {
-                second
-                    .restore(&first.save().expect("plain data"))
-                    .unwrap_or_else(|error| panic!("{}: {error}", kind.name));
-            }
-            assert!(k < 99 || second.save() == first.save(), "{} {k}", kind.name);
+/// What a component may see, at random.
+pub(crate) trait Sight {
+    fn in_weather(random: &mut Random) -> Self;
+}
+
+impl Sight for () {
+    fn in_weather(_: &mut Random) {}
+}
+
+impl Sight for u32 {
+    fn in_weather(random: &mut Random) -> Self {
+        (random.bits() % 3) as u32
+    }
+}
+
+impl Sight for Coordinate {
+    fn in_weather(random: &mut Random) -> Self {
+        Self { position: random.normal(), velocity: random.normal() }
+    }
+}
+
+impl Sight for Option<Coordinate> {
+    fn in_weather(random: &mut Random) -> Self {
+        Some(Coordinate::in_weather(random))
+    }
+}
+
+impl Sight for Hit {
+    fn in_weather(random: &mut Random) -> Self {
+        Self { hit_m: (random.uniform() < 0.5).then(|| 0.1 * random.uniform()) }
+    }
+}
+
+impl Sight for Targets {
+    fn in_weather(random: &mut Random) -> Self {
+        let count = (random.bits() % 3) as u32;
+        Self { first: (count > 0).then(|| count - 1), count }
+    }
+}
+
+/// What holds for every kind: from a saved state it goes on to the bit, and its outputs are finite
+/// numbers.
+pub(crate) fn laws<C: Component>()
+where
+    SeenBy<C>: Sight,
+{
+    let (inputs, modes) = (C::Inputs::table(), C::Failure::table().len());
+    let new = |seed| {
+        let component = C::new(C::Parameters::default());
+        let state = component.initial(&Start { seen: SeenBy::<C>::default(), seed });
+        (component, state)
+    };
+    let mut weather = Weather(Random::new(3));
+    let ((first, mut state), (second, mut other)) = (new(5), new(99));
+    for k in 0..300 {
+        let taken = C::Inputs::read(&weather.inputs(&inputs));
+        let turn = weather.turn(modes);
+        let (mut one, mut again) = (Vec::new(), Vec::new());
+        first.drive(&mut state, &taken, &turn);
+        if k >= 100 {
+            second.drive(&mut other, &taken, &turn);
+            assert_eq!(second.effect(&other), first.effect(&state), "{} {k}", C::NAME);
+            second.sense(&mut other, &taken, &turn).write(&mut again);
         }
-        let stateless = first.save() == Ok(Vec::new());
-        assert_eq!(first.check(&[]).is_ok(), stateless, "{}: a cut state is refused", kind.name);
-        assert_eq!(first.restore(&[]).is_ok(), stateless, "{}: a cut state is refused", kind.name);
+        first.sense(&mut state, &taken, &turn).write(&mut one);
+        assert!(k < 100 || one == again, "{} {k}: {one:?} {again:?}", C::NAME);
+        for value in &one {
+            assert!(!matches!(value, Value::Number(number) if !number.is_finite()), "{} {k}", C::NAME);
+        }
+        assert_eq!(one.len(), C::Outputs::table().len());
+        if k == 99 {
+            let saved = postcard::to_stdvec(&state).expect("plain data");
+            other = postcard::from_bytes(&saved).expect("a state");
+            let cut = postcard::from_bytes::<C::State>(&[]);
+            assert_eq!(cut.is_ok(), saved.is_empty(), "{}: a cut state is refused", C::NAME);
+        }
+        assert!(k < 99 || state == other, "{} {k}", C::NAME);
+    }
+}
+
+#[test]
+fn every_kind_keeps_the_laws() {
+    for entry in ENTRIES {
+        (entry.laws)();
     }
 }
 

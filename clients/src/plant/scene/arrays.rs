@@ -5,7 +5,9 @@
 //! in a row by `step_m`, from one copy to the next, or evenly on a circle by `turn_about_m`, a point
 //! of the vertical that the copies are turned about.
 
-use toml::{Spanned, Value};
+use toml::Value;
+
+use super::placed::Placed;
 
 use super::error::SceneFaultKind;
 use super::faults::Faults;
@@ -15,7 +17,7 @@ use super::format::{
 };
 use crate::array::{ArrayError, at_index, indices, name_at, names};
 
-type Text = Spanned<String>;
+type Text = Placed<String>;
 
 /// A table that may be an array.
 trait Table: Clone {
@@ -39,7 +41,7 @@ pub(super) fn expand(written: &mut SceneFile, faults: &mut Faults<'_>) {
     tables(&mut written.signal, faults);
 }
 
-fn tables<T: Table>(all: &mut Vec<Spanned<T>>, faults: &mut Faults<'_>) {
+fn tables<T: Table>(all: &mut Vec<Placed<T>>, faults: &mut Faults<'_>) {
     let mut expanded = Vec::with_capacity(all.len());
     for table in std::mem::take(all) {
         let Some(name) = table.get_ref().name() else {
@@ -72,7 +74,7 @@ pub(super) fn listed(list: &[Text], faults: &mut Faults<'_>) -> Vec<Text> {
     let mut all = Vec::new();
     for name in list {
         match names(name.get_ref()) {
-            Ok(names) => all.extend(names.into_iter().map(|one| Spanned::new(name.span(), one))),
+            Ok(names) => all.extend(names.into_iter().map(|one| Placed::new(name.span(), one))),
             Err(error) => faults.add(name.span(), error.into()),
         }
     }
@@ -87,8 +89,8 @@ fn placed(
     faults: &mut Faults<'_>,
 ) {
     let around = |written: Option<&Triple>, value: [f64; 3]| {
-        let span = written.or(turn_about).or(step).map_or(0..0, Spanned::span);
-        Some(Spanned::new(span, value))
+        let span = written.or(turn_about).or(step).map_or(0..0, Placed::span);
+        Some(Placed::new(span, value))
     };
     if let (Some(_), Some(step)) = (turn_about, step) {
         let whose = "an array that is turned about a point".to_owned();
@@ -165,7 +167,7 @@ table!(SignalTable, name, [], []);
 impl Table for ComponentTable {
     fn name(&self) -> Option<Text> {
         let value = self.get("name")?;
-        value.get_ref().as_str().map(|name| Spanned::new(value.span(), name.to_owned()))
+        value.get_ref().as_str().map(|name| Placed::new(value.span(), name.to_owned()))
     }
 
     fn become_copy(&mut self, name: String, index: usize) {
@@ -182,7 +184,8 @@ fn count_in(value: &mut Value, index: usize) {
     match value {
         Value::String(text) => *text = at_index(text, index),
         Value::Array(list) => list.iter_mut().for_each(|one| count_in(one, index)),
-        _ => {}
+        // what is not a text, nor a list of texts, is the same in every copy
+        Value::Integer(_) | Value::Float(_) | Value::Boolean(_) | Value::Datetime(_) | Value::Table(_) => {}
     }
 }
 

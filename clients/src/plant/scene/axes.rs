@@ -1,7 +1,7 @@
 //! Second pass over `[[axis]]`: which joint, commanded how, how fast and how strong.
 
+use super::placed::Placed;
 use onescan_server::signal::{SignalName, SignalType};
-use toml::Spanned;
 
 use super::error::{SceneFaultKind, Thing};
 use super::faults::Faults;
@@ -23,7 +23,7 @@ pub(super) fn check(
     Names::gather(Thing::Axis, file.axis.iter().map(|axis| &axis.get_ref().name), faults);
     let mut driven: Vec<(Thing, &str, &str)> = Vec::new();
     let mut axes = Vec::new();
-    for written in file.axis.iter().map(Spanned::get_ref) {
+    for written in file.axis.iter().map(Placed::get_ref) {
         let (moved, thing, name) = match (&written.joint, &written.belt) {
             (Some(joint), None) => (drivable(written, joint, file, joints, faults), Thing::Joint, joint),
             (None, Some(belt)) => (runnable(written, belt, file, bodies, faults), Thing::Body, belt),
@@ -49,7 +49,7 @@ pub(super) fn check(
 /// The joint of an axis, which must be one that a motor moves, and its unit.
 fn drivable(
     written: &AxisTable,
-    name: &Spanned<String>,
+    name: &Placed<String>,
     file: &SceneFile,
     joints: &Names,
     faults: &mut Faults<'_>,
@@ -72,7 +72,7 @@ fn drivable(
 /// The belt of an axis, which must be a kinematic body without a velocity of its own.
 fn runnable(
     written: &AxisTable,
-    name: &Spanned<String>,
+    name: &Placed<String>,
     file: &SceneFile,
     bodies: &Names,
     faults: &mut Faults<'_>,
@@ -106,7 +106,7 @@ fn axis(written: &AxisTable, moved: Moved, unit: Unit, signals: &mut Signals, fa
     };
     let drive = drive(written, number, signals, faults);
     let limits = limits(written, unit, faults);
-    let mut feedback = |name: Option<&Spanned<String>>, faults: &mut Faults<'_>| {
+    let mut feedback = |name: Option<&Placed<String>>, faults: &mut Faults<'_>| {
         name.and_then(|name| signals.write(name, number, faults))
     };
     let position = feedback(written.position_signal.as_ref(), faults);
@@ -158,7 +158,7 @@ fn drive(written: &AxisTable, number: SignalType, signals: &mut Signals, faults:
         DriveKind::Position => "position",
     };
     let whose = format!("{named} axis `{}`", text(&written.name));
-    let mut command = |key: &'static str, value: Option<&Spanned<String>>, ty: Option<SignalType>| {
+    let mut command = |key: &'static str, value: Option<&Placed<String>>, ty: Option<SignalType>| {
         match (value, ty) {
             (Some(name), Some(ty)) => return signals.read(name, ty, faults),
             (Some(name), None) => {

@@ -1,6 +1,6 @@
 //! What a component is bound to: the keys of its coupling, found in the scene.
 
-use toml::Spanned;
+use super::placed::Placed;
 
 use super::bodies::GROUND;
 use super::components::Keys;
@@ -8,13 +8,13 @@ use super::error::{SceneFaultKind, Thing};
 use super::faults::Faults;
 use super::format::{BodyKind, JointKind, SceneFile};
 use super::joints::{kind_name, unit};
-use super::model::{Axis, Bound, Moved};
+use super::model::{Axis, Bound, Driven, Moved};
 use super::names::Names;
 use super::text;
-use crate::plant::component::coupling::Coupling;
+use crate::plant::coupling::{BindingKey, Coupling, Names as Named, Which};
 
 /// What of the scene has its place already.
-pub(super) struct Placed<'s> {
+pub(super) struct Lookup<'s> {
     pub(super) file: &'s SceneFile,
     pub(super) bodies: &'s Names,
     pub(super) shapes: &'s Names,
@@ -22,26 +22,9 @@ pub(super) struct Placed<'s> {
     pub(super) axes: &'s [Axis],
 }
 
-impl Placed<'_> {
-    /// Who drives a joint or a belt already.
-    fn driver(&self, bound: &Bound, components: &[(String, Bound)]) -> Option<String> {
-        let driven = |bound: &Bound| match bound {
-            Bound::Drives(joint) => Some((Thing::Joint, *joint)),
-            Bound::Belt { body, .. } => Some((Thing::Body, *body)),
-            _ => None,
-        };
-        let by_axis = |moved: Moved| match moved {
-            Moved::Joint(joint) => (Thing::Joint, joint),
-            Moved::Belt { body, .. } => (Thing::Body, body),
-        };
-        let wanted = driven(bound)?;
-        let axis = self.axes.iter().find(|axis| by_axis(axis.moved) == wanted);
-        let component = components.iter().find(|(_, known)| driven(known) == Some(wanted));
-        axis.map(|axis| format!("axis `{}`", axis.name))
-            .or_else(|| component.map(|(name, _)| format!("component `{name}`")))
-    }
-
-    /// What a component with these keys is bound to; `others` were bound before.
+impl Lookup<'_> {
+    /// What a component with these keys is bound to; none if a key is wrong. `others` were bound
+    /// before.
     pub(super) fn bind(
         &self,
         coupling: Coupling,
@@ -49,146 +32,198 @@ impl Placed<'_> {
         others: &[(String, Bound)],
         faults: &mut Faults<'_>,
     ) -> Option<Bound> {
+        let mut bound = Some(Bound::default());
         for key in coupling.keys() {
             if key.needed && keys.get(key.key).is_none() {
                 faults.add(keys.kind.span(), SceneFaultKind::Missing { whose: keys.whose(), key: key.key });
+                bound = None;
+                continue;
             }
+            let so_far = bound.clone().unwrap_or_default();
+            let found = self.find(key, so_far, keys, others, faults);
+            bound = bound.and(found);
         }
-        match coupling {
-            Coupling::None => Some(Bound::Nothing),
-            Coupling::Slides | Coupling::Turns if keys.get("joint").is_none() => Some(Bound::Nothing),
-            Coupling::Slides | Coupling::Turns => {
-                let wanted = if coupling == Coupling::Slides { JointKind::Prismatic } else { JointKind::Revolute };
-                let name = keys.text("joint", "the name of a joint", faults)?;
-                let (joint, kind) = self.joint(&name, faults)?;
-                if kind != wanted {
-                    let undrivable =
-                        SceneFaultKind::Undrivable { joint: text(&name).to_owned(), kind: kind_name(kind) };
-                    let hint = format!("a {} drives a {} joint", text(&keys.kind), kind_name(wanted));
-                    faults.add_hinted(name.span(), undrivable, Some(hint));
-                    return None;
-                }
-                self.alone(Bound::Drives(joint), Thing::Joint, &name, others, faults)
-            }
-            Coupling::Measures => {
-                let name = keys.text("joint", "the name of a joint", faults)?;
-                let (joint, kind) = self.joint(&name, faults)?;
-                if unit(kind).is_none() {
-                    let joint = text(&name).to_owned();
-                    faults.add(name.span(), SceneFaultKind::Unmeasurable { joint, kind: kind_name(kind) });
-                    return None;
-                }
-                Some(Bound::Measures(joint))
-            }
-            Coupling::Belt => self.belt(keys, others, faults),
-            Coupling::Ray => self.ray(keys, faults),
-            Coupling::Touch | Coupling::Contact => self.touch(coupling, keys, faults),
-            Coupling::Collect => {
-                let body = self.shaped(keys, faults);
-                let targets = self.dynamic_targets(keys, body, faults);
-                Some(Bound::Collect { body: body?, targets })
-            }
-            Coupling::Meet => {
-                let mut targets = self.dynamic_targets(keys, None, faults);
-                targets.sort_unstable();
-                targets.dedup();
-                Some(Bound::Meet { targets })
-            }
-            Coupling::Place => {
-                let body = self.body(keys, faults);
-                let targets = self.targets(&keys.texts("targets", faults)?, faults);
-                Some(Bound::Place { body: body?, targets })
-            }
-        }
+        bound
     }
 
-    /// The bound, unless something else drives the same.
-    fn alone(
+    /// A binding with what one key adds to it; none if that is wrong.
+    fn find(
         &self,
-        bound: Bound,
-        thing: Thing,
-        name: &Spanned<String>,
+        BindingKey { key, names, .. }: &BindingKey,
+        mut bound: Bound,
+        keys: &Keys<'_>,
         others: &[(String, Bound)],
         faults: &mut Faults<'_>,
     ) -> Option<Bound> {
-        match self.driver(&bound, others) {
-            None => Some(bound),
-            Some(first) => {
-                let name_text = text(name).to_owned();
-                faults.add(name.span(), SceneFaultKind::DrivenTwice { thing, name: name_text, first });
-                None
-            }
+        // bodies are the only things that a key without a value stands for
+        if let Named::Bodies { named, absent } = names {
+            bound.targets = match keys.texts(key, faults) {
+                Some(texts) => self.named_bodies(&texts, *named, faults),
+                None => self.bodies_but(bound.body, *absent),
+            };
+            return Some(bound);
         }
+        if keys.get(key).is_none() {
+            return Some(bound);
+        }
+        match names {
+            Named::DrivenJoint(kind) => {
+                bound.drives = Some(self.driven_joint(key, *kind, keys, others, faults)?);
+            }
+            Named::MeasuredJoint => bound.measures = Some(self.measured_joint(key, keys, faults)?),
+            Named::Belt => bound.drives = Some(self.belt(key, keys, others, faults)?),
+            Named::Carrier => bound.body = self.carrier(key, keys, faults)?,
+            Named::Body => bound.body = Some(self.body(key, keys, faults)?),
+            Named::TouchedBody => bound.body = Some(self.touched_body(key, keys, faults)?),
+            Named::ShapeOfBody => bound.shape = Some(self.shape_of(bound.body, key, keys, faults)?),
+            Named::Direction => {
+                let direction = keys.triple(key, faults)?;
+                bound.direction = Some(faults.direction(key, &direction)?);
+            }
+            Named::Point => {
+                let point = keys.triple(key, faults)?;
+                bound.point_m = Some(faults.triple(key, Some(&point))?);
+            }
+            Named::Bodies { .. } => {}
+        }
+        Some(bound)
     }
 
-    fn joint(&self, name: &Spanned<String>, faults: &mut Faults<'_>) -> Option<(usize, JointKind)> {
+    fn driven_joint(
+        &self,
+        key: &'static str,
+        wanted: JointKind,
+        keys: &Keys<'_>,
+        others: &[(String, Bound)],
+        faults: &mut Faults<'_>,
+    ) -> Option<Driven> {
+        let name = keys.text(key, "the name of a joint", faults)?;
+        let (joint, kind) = self.joint(&name, faults)?;
+        if kind != wanted {
+            let undrivable = SceneFaultKind::Undrivable { joint: text(&name).to_owned(), kind: kind_name(kind) };
+            let hint = format!("a {} drives a {} joint", text(&keys.kind), kind_name(wanted));
+            faults.add_hinted(name.span(), undrivable, Some(hint));
+            return None;
+        }
+        self.alone(Driven::Joint(joint), &name, others, faults)
+    }
+
+    fn measured_joint(&self, key: &'static str, keys: &Keys<'_>, faults: &mut Faults<'_>) -> Option<usize> {
+        let name = keys.text(key, "the name of a joint", faults)?;
+        let (joint, kind) = self.joint(&name, faults)?;
+        if unit(kind).is_none() {
+            let joint = text(&name).to_owned();
+            faults.add(name.span(), SceneFaultKind::Unmeasurable { joint, kind: kind_name(kind) });
+            return None;
+        }
+        Some(joint)
+    }
+
+    fn belt(
+        &self,
+        key: &'static str,
+        keys: &Keys<'_>,
+        others: &[(String, Bound)],
+        faults: &mut Faults<'_>,
+    ) -> Option<Driven> {
+        let name = keys.text(key, "the name of a body", faults)?;
+        let body = self.bodies.find(&name, faults)?;
+        if self.file.body[body].get_ref().kind != BodyKind::Kinematic {
+            let hint = Some("write `kind = \"kinematic\"` in its table".to_owned());
+            faults.add_hinted(name.span(), SceneFaultKind::NotKinematic(text(&name).to_owned()), hint);
+            return None;
+        }
+        self.alone(Driven::Belt(body), &name, others, faults)
+    }
+
+    /// What is driven, unless something else drives the same.
+    fn alone(
+        &self,
+        driven: Driven,
+        name: &Placed<String>,
+        others: &[(String, Bound)],
+        faults: &mut Faults<'_>,
+    ) -> Option<Driven> {
+        let Some(first) = self.driver(driven, others) else { return Some(driven) };
+        let thing = match driven {
+            Driven::Joint(_) => Thing::Joint,
+            Driven::Belt(_) => Thing::Body,
+        };
+        faults.add(name.span(), SceneFaultKind::DrivenTwice { thing, name: text(name).to_owned(), first });
+        None
+    }
+
+    /// Who drives a joint or a belt already.
+    fn driver(&self, wanted: Driven, components: &[(String, Bound)]) -> Option<String> {
+        let by_axis = |moved: Moved| match moved {
+            Moved::Joint(joint) => Driven::Joint(joint),
+            Moved::Belt { body, .. } => Driven::Belt(body),
+        };
+        let axis = self.axes.iter().find(|axis| by_axis(axis.moved) == wanted);
+        let component = components.iter().find(|(_, known)| known.drives == Some(wanted));
+        axis.map(|axis| format!("axis `{}`", axis.name))
+            .or_else(|| component.map(|(name, _)| format!("component `{name}`")))
+    }
+
+    fn joint(&self, name: &Placed<String>, faults: &mut Faults<'_>) -> Option<(usize, JointKind)> {
         let joint = self.joints.find(name, faults)?;
         Some((joint, *self.file.joint[joint].get_ref().kind.get_ref()))
     }
 
-    fn body(&self, keys: &Keys<'_>, faults: &mut Faults<'_>) -> Option<usize> {
-        self.bodies.find(&keys.text("body", "the name of a body", faults)?, faults)
+    fn body(&self, key: &'static str, keys: &Keys<'_>, faults: &mut Faults<'_>) -> Option<usize> {
+        self.bodies.find(&keys.text(key, "the name of a body", faults)?, faults)
     }
 
-    /// A body that others touch, or one of its shapes.
-    fn touch(&self, coupling: Coupling, keys: &Keys<'_>, faults: &mut Faults<'_>) -> Option<Bound> {
-        let named = keys.text("shape", "the name of a shape", faults);
-        let body = if named.is_some() { self.body(keys, faults) } else { self.shaped(keys, faults) };
-        let shape = named.as_ref().map(|name| (name, self.shapes.find(name, faults)));
-        if let (Some(body), Some((name, Some(shape)))) = (body, &shape)
-            && text(&self.file.shape[*shape].get_ref().body) != text(&self.file.body[body].get_ref().name)
-        {
-            let body = text(&self.file.body[body].get_ref().name).to_owned();
-            faults.add(name.span(), SceneFaultKind::ForeignShape { shape: text(name).to_owned(), body });
+    /// A body or the ground, which is none; the outer none is a fault.
+    fn carrier(&self, key: &'static str, keys: &Keys<'_>, faults: &mut Faults<'_>) -> Option<Option<usize>> {
+        let name = keys.text(key, "the name of a body", faults)?;
+        if text(&name) == GROUND {
+            return Some(None);
         }
-        let targets = match (coupling, keys.texts("targets", faults)) {
-            (Coupling::Contact, Some(names)) => {
-                names.iter().filter_map(|name| self.bodies.find(name, faults)).collect()
-            }
-            (_, Some(names)) => self.targets(&names, faults),
-            (_, None) => self.dynamic().filter(|index| Some(*index) != body).collect(),
-        };
-        let shape = match shape {
-            Some((_, found)) => Some(found?),
-            None => None,
-        };
-        Some(Bound::Touch { body: body?, shape, targets })
+        self.bodies.find_beside(&name, Some(GROUND), faults).map(Some)
     }
 
-    /// The dynamic bodies that count, all but one if nothing is said.
-    fn dynamic_targets(&self, keys: &Keys<'_>, but: Option<usize>, faults: &mut Faults<'_>) -> Vec<usize> {
-        match keys.texts("targets", faults) {
-            Some(names) => self.targets(&names, faults),
-            None => self.dynamic().filter(|index| Some(*index) != but).collect(),
-        }
-    }
-
-    /// The body that targets touch: one with a shape.
-    fn shaped(&self, keys: &Keys<'_>, faults: &mut Faults<'_>) -> Option<usize> {
-        let body = self.body(keys, faults)?;
+    /// A body that targets touch: one with a shape, unless `shape` names the one that counts.
+    fn touched_body(&self, key: &'static str, keys: &Keys<'_>, faults: &mut Faults<'_>) -> Option<usize> {
+        let body = self.body(key, keys, faults)?;
         let name = text(&self.file.body[body].get_ref().name);
         let attached = self.file.shape.iter().any(|shape| text(&shape.get_ref().body) == name);
-        if self.file.body[body].get_ref().shape.is_none() && !attached {
-            let span = keys.get("body").map_or_else(|| keys.kind.span(), Spanned::span);
-            let name = text(&self.file.body[body].get_ref().name).to_owned();
-            faults.add(span, SceneFaultKind::Shapeless(name));
+        if self.file.body[body].get_ref().shape.is_none() && !attached && keys.get("shape").is_none() {
+            let span = keys.get(key).map_or_else(|| keys.kind.span(), Placed::span);
+            faults.add(span, SceneFaultKind::Shapeless(name.to_owned()));
             return None;
         }
         Some(body)
     }
 
-    /// Indices of the dynamic bodies.
-    fn dynamic(&self) -> impl Iterator<Item = usize> {
-        let bodies = self.file.body.iter().enumerate();
-        bodies.filter(|(_, body)| body.get_ref().kind == BodyKind::Dynamic).map(|(index, _)| index)
+    /// One of the shapes of a body; of a body that is not known itself nothing more is said.
+    fn shape_of(
+        &self,
+        body: Option<usize>,
+        key: &'static str,
+        keys: &Keys<'_>,
+        faults: &mut Faults<'_>,
+    ) -> Option<usize> {
+        let name = keys.text(key, "the name of a shape", faults)?;
+        let shape = self.shapes.find(&name, faults)?;
+        let body = text(&self.file.body[body?].get_ref().name);
+        if text(&self.file.shape[shape].get_ref().body) != body {
+            let (shape, body) = (text(&name).to_owned(), body.to_owned());
+            faults.add(name.span(), SceneFaultKind::ForeignShape { shape, body });
+        }
+        Some(shape)
     }
 
-    /// Bodies that are touched, held or placed, which must be dynamic.
-    fn targets(&self, names: &[Spanned<String>], faults: &mut Faults<'_>) -> Vec<usize> {
+    /// All bodies but one.
+    fn bodies_but(&self, but: Option<usize>, which: Which) -> Vec<usize> {
+        (0..self.file.body.len()).filter(|index| Some(*index) != but && self.is(*index, which)).collect()
+    }
+
+    fn named_bodies(&self, names: &[Placed<String>], which: Which, faults: &mut Faults<'_>) -> Vec<usize> {
         let mut found = Vec::new();
         for name in names {
             let Some(index) = self.bodies.find(name, faults) else { continue };
-            if self.file.body[index].get_ref().kind == BodyKind::Dynamic {
+            if self.is(index, which) {
                 found.push(index);
             } else {
                 faults.add(name.span(), SceneFaultKind::NotDynamic(text(name).to_owned()));
@@ -197,32 +232,10 @@ impl Placed<'_> {
         found
     }
 
-    fn belt(&self, keys: &Keys<'_>, others: &[(String, Bound)], faults: &mut Faults<'_>) -> Option<Bound> {
-        let direction = keys.triple("direction", faults);
-        let name = keys.text("belt", "the name of a body", faults)?;
-        let body = self.bodies.find(&name, faults)?;
-        if self.file.body[body].get_ref().kind != BodyKind::Kinematic {
-            let hint = Some("write `kind = \"kinematic\"` in its table".to_owned());
-            faults.add_hinted(name.span(), SceneFaultKind::NotKinematic(text(&name).to_owned()), hint);
-            return None;
+    fn is(&self, body: usize, which: Which) -> bool {
+        match which {
+            Which::Any => true,
+            Which::Dynamic => self.file.body[body].get_ref().kind == BodyKind::Dynamic,
         }
-        let direction = faults.direction("direction", &direction?)?;
-        self.alone(Bound::Belt { body, direction }, Thing::Body, &name, others, faults)
-    }
-
-    fn ray(&self, keys: &Keys<'_>, faults: &mut Faults<'_>) -> Option<Bound> {
-        let carrier = keys.text("body", "the name of a body", faults);
-        let body = match &carrier {
-            Some(name) if text(name) != GROUND => Some(self.bodies.find_beside(name, Some(GROUND), faults)?),
-            Some(_) | None => None,
-        };
-        let (point, direction) = (keys.triple("point_m", faults), keys.triple("direction", faults));
-        let targets = match keys.texts("targets", faults) {
-            Some(names) => names.iter().filter_map(|name| self.bodies.find(name, faults)).collect(),
-            None => (0..self.file.body.len()).filter(|index| Some(*index) != body).collect(),
-        };
-        let point_m = faults.triple("point_m", point.as_ref());
-        let direction = direction.and_then(|direction| faults.direction("direction", &direction));
-        Some(Bound::Ray { body, point_m: point_m?, direction: direction?, targets })
     }
 }

@@ -1,6 +1,6 @@
 //! Second pass over `[[body]]`: shape, mass, pose and what it collides with.
 
-use toml::Spanned;
+use super::placed::Placed;
 
 use super::error::SceneFaultKind;
 use super::faults::Faults;
@@ -22,12 +22,12 @@ const DENSITY_KG_M3: Allowed = Allowed::Within(1e-2, 1e5);
 pub(super) const FRICTION: f64 = 0.5;
 pub(super) const RESTITUTION: f64 = 0.0;
 
-pub(super) fn check(tables: &[Spanned<BodyTable>], faults: &mut Faults<'_>) -> Vec<Body> {
+pub(super) fn check(tables: &[Placed<BodyTable>], faults: &mut Faults<'_>) -> Vec<Body> {
     let mut groups = Vec::new();
     tables.iter().filter_map(|table| body(table, &mut groups, faults)).collect()
 }
 
-fn body<'f>(table: &'f Spanned<BodyTable>, groups: &mut Vec<&'f str>, faults: &mut Faults<'_>) -> Option<Body> {
+fn body<'f>(table: &'f Placed<BodyTable>, groups: &mut Vec<&'f str>, faults: &mut Faults<'_>) -> Option<Body> {
     let written = table.get_ref();
     if text(&written.name) == GROUND {
         faults.add(written.name.span(), SceneFaultKind::Reserved(GROUND.to_owned()));
@@ -57,7 +57,7 @@ fn body<'f>(table: &'f Spanned<BodyTable>, groups: &mut Vec<&'f str>, faults: &m
 }
 
 /// The shape of a body; none where none is written or where it is at fault.
-fn shape(table: &Spanned<BodyTable>, faults: &mut Faults<'_>) -> Option<Shape> {
+fn shape(table: &Placed<BodyTable>, faults: &mut Faults<'_>) -> Option<Shape> {
     let written = table.get_ref();
     let name = text(&written.name);
     let Some(kind) = &written.shape else {

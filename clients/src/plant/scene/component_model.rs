@@ -27,61 +27,32 @@ pub struct Component {
     pub failures: Vec<FailureSwitch>,
 }
 
-/// What of the world a component is bound to.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub enum Bound {
-    /// Nothing.
-    Nothing,
-    /// The joint of this index, which it moves.
-    Drives(usize),
-    /// The joint of this index, which it measures.
-    Measures(usize),
-    /// The surface of a kinematic body.
-    Belt {
-        /// Index of the body.
-        body: usize,
-        /// Unit vector that the surface runs along.
-        direction: [f64; 3],
-    },
-    /// A ray that meets bodies.
-    Ray {
-        /// Index of the body that carries it, none for the ground.
-        body: Option<usize>,
-        /// Where it begins.
-        point_m: [f64; 3],
-        /// Unit vector of the ray.
-        direction: [f64; 3],
-        /// Indices of the bodies that it meets.
-        targets: Vec<usize>,
-    },
-    /// A body that others touch.
-    Touch {
-        /// Index of the body.
-        body: usize,
-        /// Index of the only shape of it that counts, all if none.
-        shape: Option<usize>,
-        /// Indices of the others.
-        targets: Vec<usize>,
-    },
-    /// A body that takes out of the world what touches it.
-    Collect {
-        /// Index of the body.
-        body: usize,
-        /// Indices of the others.
-        targets: Vec<usize>,
-    },
-    /// Bodies that may meet each other.
-    Meet {
-        /// Their indices, in rising order.
-        targets: Vec<usize>,
-    },
-    /// A body at whose place others appear.
-    Place {
-        /// Index of the body.
-        body: usize,
-        /// Indices of the others.
-        targets: Vec<usize>,
-    },
+/// What of the world a component is bound to: what its coupling's keys name, and nothing else.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct Bound {
+    /// What it drives; nothing else in the scene does.
+    pub drives: Option<Driven>,
+    /// Index of the joint that it measures.
+    pub measures: Option<usize>,
+    /// Index of the body that carries it, is touched or gives the place; none for the ground.
+    pub body: Option<usize>,
+    /// Index of the only shape of the body that counts, all if none.
+    pub shape: Option<usize>,
+    /// Where it begins.
+    pub point_m: Option<[f64; 3]>,
+    /// Unit vector along which it points or runs.
+    pub direction: Option<[f64; 3]>,
+    /// Indices of the bodies that it sees, holds or places.
+    pub targets: Vec<usize>,
+}
+
+/// What one axis or component alone drives.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+pub enum Driven {
+    /// The joint of this index.
+    Joint(usize),
+    /// The surface of the kinematic body of this index.
+    Belt(usize),
 }
 
 /// Where an input comes from.

@@ -2,10 +2,12 @@
 
 use onescan_base::nearest;
 use onescan_server::signal::{SignalName, SignalType};
-use toml::{Spanned, Value};
+use toml::Value;
+
+use super::placed::Placed;
 
 use super::arrays::listed;
-use super::bindings::Placed;
+use super::bindings::Lookup;
 use super::error::{SceneFaultKind, Thing};
 use super::faults::Faults;
 use super::format::{ComponentTable, NumberType};
@@ -19,16 +21,16 @@ use crate::plant::component::library::{ENTRIES, Entry, entry};
 /// One `[[component]]` with its name and kind.
 pub(super) struct Keys<'f> {
     table: &'f ComponentTable,
-    pub(super) name: Spanned<String>,
-    pub(super) kind: Spanned<String>,
+    pub(super) name: Placed<String>,
+    pub(super) kind: Placed<String>,
 }
 
 impl<'f> Keys<'f> {
-    fn of(table: &'f Spanned<ComponentTable>, faults: &mut Faults<'_>) -> Option<Self> {
+    fn of(table: &'f Placed<ComponentTable>, faults: &mut Faults<'_>) -> Option<Self> {
         let mut named = |key: &'static str| {
             let found = table.get_ref().get(key);
             match found.map(|value| (value.span(), value.get_ref())) {
-                Some((span, Value::String(name))) => return Some(Spanned::new(span, name.clone())),
+                Some((span, Value::String(name))) => return Some(Placed::new(span, name.clone())),
                 Some((span, _)) => {
                     faults.add(span, SceneFaultKind::Text { key: key.to_owned(), wanted: "a text" });
                 }
@@ -41,7 +43,7 @@ impl<'f> Keys<'f> {
     }
 
     /// What stands behind a key.
-    pub(super) fn get(&self, key: &str) -> Option<&'f Spanned<Value>> {
+    pub(super) fn get(&self, key: &str) -> Option<&'f Placed<Value>> {
         self.table.get(key)
     }
 
@@ -51,29 +53,29 @@ impl<'f> Keys<'f> {
     }
 
     /// A name behind a key.
-    pub(super) fn text(&self, key: &str, wanted: &'static str, faults: &mut Faults<'_>) -> Option<Spanned<String>> {
+    pub(super) fn text(&self, key: &str, wanted: &'static str, faults: &mut Faults<'_>) -> Option<Placed<String>> {
         let value = self.get(key)?;
         if let Value::String(name) = value.get_ref() {
-            return Some(Spanned::new(value.span(), name.clone()));
+            return Some(Placed::new(value.span(), name.clone()));
         }
         faults.add(value.span(), SceneFaultKind::Text { key: key.to_owned(), wanted });
         None
     }
 
     /// Names behind a key; all at the place of the list.
-    pub(super) fn texts(&self, key: &str, faults: &mut Faults<'_>) -> Option<Vec<Spanned<String>>> {
+    pub(super) fn texts(&self, key: &str, faults: &mut Faults<'_>) -> Option<Vec<Placed<String>>> {
         let value = self.get(key)?;
         let named = |value: &Value| value.as_str().map(str::to_owned);
         let names = value.get_ref().as_array().and_then(|list| list.iter().map(named).collect::<Option<Vec<_>>>());
         if names.is_none() {
             faults.add(value.span(), SceneFaultKind::Text { key: key.to_owned(), wanted: "a list of names" });
         }
-        let names: Vec<_> = names?.into_iter().map(|name| Spanned::new(value.span(), name)).collect();
+        let names: Vec<_> = names?.into_iter().map(|name| Placed::new(value.span(), name)).collect();
         Some(listed(&names, faults))
     }
 
     /// Three numbers behind a key.
-    pub(super) fn triple(&self, key: &str, faults: &mut Faults<'_>) -> Option<Spanned<[f64; 3]>> {
+    pub(super) fn triple(&self, key: &str, faults: &mut Faults<'_>) -> Option<Placed<[f64; 3]>> {
         let value = self.get(key)?;
         let number = |value: &Value| value.as_float().or_else(|| value.as_integer().map(|whole| whole as f64));
         let numbers = value.get_ref().as_array().and_then(|list| list.iter().map(number).collect::<Option<Vec<_>>>());
@@ -81,7 +83,7 @@ impl<'f> Keys<'f> {
         if triple.is_none() {
             faults.add(value.span(), SceneFaultKind::Text { key: key.to_owned(), wanted: "three numbers" });
         }
-        triple.map(|triple| Spanned::new(value.span(), triple))
+        triple.map(|triple| Placed::new(value.span(), triple))
     }
 }
 
@@ -94,7 +96,7 @@ struct Known<'f> {
 
 /// The components, and the names of those whose kind is not known, which nobody else shall miss.
 pub(super) fn check(
-    placed: &Placed<'_>,
+    placed: &Lookup<'_>,
     signals: &mut Signals,
     faults: &mut Faults<'_>,
 ) -> (Vec<Component>, Vec<String>) {
@@ -110,13 +112,15 @@ pub(super) fn check(
     for one in &known {
         refuse_unknown_keys(one, faults);
         let to = placed.bind(one.kind.coupling, &one.keys, &bound, faults);
-        bound.push((text(&one.keys.name).to_owned(), to.clone().unwrap_or(Bound::Nothing)));
+        // of no meaning where a fault was found
+        let to = to.unwrap_or_default();
+        bound.push((text(&one.keys.name).to_owned(), to.clone()));
         let number = number_type(&one.keys, faults);
         components.push(Component {
             name: text(&one.keys.name).to_owned(),
             kind: one.entry.name,
             settings: settings(one, faults),
-            bound: to.unwrap_or(Bound::Nothing),
+            bound: to,
             inputs: inputs(one, (&known, &lost), number, signals, faults),
             outputs: outputs(one, number, signals, faults),
             number,
@@ -184,7 +188,7 @@ fn settings(one: &Known<'_>, faults: &mut Faults<'_>) -> Vec<Setting> {
         settings.push(setting.and_then(|(_, setting)| setting).unwrap_or(parameter.preset));
     }
     if whole && let Some(conflict) = (entry.conflict)(&settings) {
-        let span = keys.get(conflict.key).map_or_else(|| keys.kind.span(), Spanned::span);
+        let span = keys.get(conflict.key).map_or_else(|| keys.kind.span(), Placed::span);
         let at = kind.parameters.iter().position(|parameter| parameter.key == conflict.key);
         let value = at.and_then(|at| settings.get(at)).map(ToString::to_string).unwrap_or_default();
         faults.add(span, SceneFaultKind::Number { key: conflict.key, wanted: conflict.wanted.to_owned(), value });
@@ -245,7 +249,7 @@ fn inputs(
 
 /// The output that `"component.output"` names.
 fn output_of(
-    from: &Spanned<String>,
+    from: &Placed<String>,
     key: &str,
     wanted: Values,
     (known, lost): (&[Known<'_>], &[String]),
@@ -259,7 +263,7 @@ fn output_of(
         return None;
     }
     let Some(component) = known.iter().position(|other| text(&other.keys.name) == name) else {
-        let named = Spanned::new(from.span(), name.to_owned());
+        let named = Placed::new(from.span(), name.to_owned());
         faults.unknown(Thing::Component, &named, known.iter().map(|other| text(&other.keys.name)));
         return None;
     };

@@ -1,8 +1,8 @@
 //! Second pass over `[[signal]]`: what happens to a signal between the plant and the session.
 
+use super::placed::Placed;
 use onescan_base::nearest;
 use onescan_server::signal::SignalType;
-use toml::Spanned;
 
 use super::error::{SceneFaultKind, Thing};
 use super::failures::nanoseconds;
@@ -17,7 +17,7 @@ use super::text;
 /// Longest delay: what is on its way is part of the plant's state.
 const TIME_S: Allowed = Allowed::Within(0.0, 60.0);
 
-pub(super) fn check(tables: &[Spanned<SignalTable>], signals: &mut Signals, faults: &mut Faults<'_>) -> Vec<Condition> {
+pub(super) fn check(tables: &[Placed<SignalTable>], signals: &mut Signals, faults: &mut Faults<'_>) -> Vec<Condition> {
     Names::gather(Thing::Signal, tables.iter().map(|table| &table.get_ref().name), faults);
     tables.iter().filter_map(|table| condition(table.get_ref(), signals, faults)).collect()
 }
@@ -35,7 +35,7 @@ fn condition(table: &SignalTable, signals: &mut Signals, faults: &mut Faults<'_>
     if let Some(ty) = ty(table, faults) {
         signals.retype(&port.name, ty);
     }
-    let mut number = |key: &'static str, value: Option<&Spanned<f64>>, allowed: Allowed| {
+    let mut number = |key: &'static str, value: Option<&Placed<f64>>, allowed: Allowed| {
         faults.number(Entry::new(key, value), allowed).unwrap_or(0.0)
     };
     let delay_s = number("delay_s", table.delay_s.as_ref(), TIME_S);
@@ -60,12 +60,12 @@ fn condition(table: &SignalTable, signals: &mut Signals, faults: &mut Faults<'_>
 /// Keys that mean nothing for a BOOL.
 fn refuse_number_keys(table: &SignalTable, faults: &mut Faults<'_>) {
     let keys = [
-        ("type", table.ty.as_ref().map(Spanned::span)),
-        ("range", table.range.as_ref().map(Spanned::span)),
-        ("raw", table.raw.as_ref().map(Spanned::span)),
-        ("quantum", table.quantum.as_ref().map(Spanned::span)),
-        ("noise_mean", table.noise_mean.as_ref().map(Spanned::span)),
-        ("noise_sigma", table.noise_sigma.as_ref().map(Spanned::span)),
+        ("type", table.ty.as_ref().map(Placed::span)),
+        ("range", table.range.as_ref().map(Placed::span)),
+        ("raw", table.raw.as_ref().map(Placed::span)),
+        ("quantum", table.quantum.as_ref().map(Placed::span)),
+        ("noise_mean", table.noise_mean.as_ref().map(Placed::span)),
+        ("noise_sigma", table.noise_sigma.as_ref().map(Placed::span)),
     ];
     for (key, span) in keys {
         if let Some(span) = span {
@@ -90,7 +90,7 @@ fn ty(table: &SignalTable, faults: &mut Faults<'_>) -> Option<SignalType> {
 }
 
 fn scale(table: &SignalTable, faults: &mut Faults<'_>) -> Option<Range> {
-    let mut ends = |key: &'static str, written: &Spanned<[f64; 2]>| {
+    let mut ends = |key: &'static str, written: &Placed<[f64; 2]>| {
         let [low, high] = *written.get_ref();
         let good = low.is_finite() && high.is_finite() && low < high;
         if !good {

@@ -49,6 +49,9 @@ pub struct SceneFault {
     pub span: std::ops::Range<usize>,
     /// What the user could do.
     pub hint: Option<String>,
+    /// Which of the overrides is at fault, from 0; nothing if the file itself is. `span` then lies
+    /// behind the text.
+    pub overridden: Option<usize>,
 }
 
 impl fmt::Display for SceneFault {
@@ -99,6 +102,19 @@ impl fmt::Display for Thing {
 /// The kinds of fault in a scene file.
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum SceneFaultKind {
+    /// An override of something that the scene does not have.
+    #[error("the scene has nothing called `{0}`")]
+    Nothing(String),
+    /// An override that may mean two things.
+    #[error("`{name}` may be a {one} or a {other} of the scene")]
+    Ambiguous {
+        /// The name.
+        name: String,
+        /// One section.
+        one: &'static str,
+        /// The other.
+        other: &'static str,
+    },
     /// Not TOML, an unknown key, a missing key or a value of the wrong type.
     #[error("{0}")]
     Form(String),

@@ -1,9 +1,9 @@
 //! Second pass over `[[failure]]`: what fails, how and when.
 
+use super::placed::Placed;
 use onescan_base::nearest;
 use onescan_server::signal::SignalType;
 use thiserror::Error;
-use toml::Spanned;
 
 use super::error::{SceneFaultKind, Thing};
 use super::faults::Faults;
@@ -96,12 +96,12 @@ fn did_you_mean(near: &str) -> String {
 }
 
 pub(super) fn check(
-    tables: &[Spanned<FailureTable>],
+    tables: &[Placed<FailureTable>],
     (components, lost): (&mut [Component], &[String]),
     signals: &mut Signals,
     faults: &mut Faults<'_>,
 ) {
-    for table in tables.iter().map(Spanned::get_ref) {
+    for table in tables.iter().map(Placed::get_ref) {
         let when = when(table, signals, faults);
         if lost.iter().any(|lost| lost == text(&table.component)) {
             continue;

@@ -3,11 +3,12 @@
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
+use super::placed::Placed;
 use onescan_base::nearest;
 use onescan_server::client::SourcePlace;
-use toml::Spanned;
 
 use super::error::{SceneError, SceneFault, SceneFaultKind, Thing};
+use super::overrides::index_of;
 
 /// The faults found so far in one file.
 pub(super) struct Faults<'t> {
@@ -19,6 +20,16 @@ pub(super) struct Faults<'t> {
 impl<'t> Faults<'t> {
     pub(super) fn new(text: &'t str, file: &'t str) -> Self {
         Self { text, file, found: Vec::new() }
+    }
+
+    /// The file's text.
+    pub(super) fn text(&self) -> &'t str {
+        self.text
+    }
+
+    /// True if nothing was found so far.
+    pub(super) fn is_empty(&self) -> bool {
+        self.found.is_empty()
     }
 
     /// Line and column of a byte of the file.
@@ -47,7 +58,8 @@ impl<'t> Faults<'t> {
 
     pub(super) fn add_hinted(&mut self, span: Range<usize>, kind: SceneFaultKind, hint: Option<String>) {
         let place = self.place(span.start);
-        self.found.push(SceneFault { kind, place, span, hint });
+        let overridden = index_of(&span, self.text);
+        self.found.push(SceneFault { kind, place, span, hint, overridden });
     }
 
     /// The fault in the form of a file that the TOML reader stopped at.
@@ -60,20 +72,22 @@ impl<'t> Faults<'t> {
     pub(super) fn unknown<'n>(
         &mut self,
         thing: Thing,
-        name: &Spanned<String>,
+        name: &Placed<String>,
         candidates: impl IntoIterator<Item = &'n str>,
     ) {
         let hint = nearest(name.get_ref(), candidates).map(|near| format!("did you mean `{near}`?"));
         self.add_hinted(name.span(), SceneFaultKind::Unknown { thing, name: name.get_ref().clone() }, hint);
     }
 
-    /// `value`, if nothing at all was found.
-    pub(super) fn into_result<T>(mut self, value: T) -> Result<T, SceneError> {
-        if self.found.is_empty() {
-            return Ok(value);
-        }
+    /// What was found so far, as an error.
+    pub(super) fn into_error(mut self) -> SceneError {
         self.found.sort_by_key(|fault| fault.span.start);
-        Err(SceneError::Faulty(self.found))
+        SceneError::Faulty(self.found)
+    }
+
+    /// `value`, if nothing at all was found.
+    pub(super) fn into_result<T>(self, value: T) -> Result<T, SceneError> {
+        if self.found.is_empty() { Ok(value) } else { Err(self.into_error()) }
     }
 }
 

@@ -1,77 +1,80 @@
 //! The scene file as it is written: one struct a table, nothing checked yet but form and keys.
 //!
-//! Every value that a later check may refuse is [`Spanned`], so that the refusal can name its line.
+//! Every value that a later check may refuse is [`Placed`], so that the refusal can name its line.
 
 use std::collections::BTreeMap;
 
+use super::placed::Placed;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-use toml::Spanned;
 
 /// Three components, of which each has its place.
-pub(super) type Triple = Spanned<[f64; 3]>;
+pub(super) type Triple = Placed<[f64; 3]>;
 
 /// A whole scene file.
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(super) struct SceneFile {
-    pub(super) version: Spanned<i64>,
+    pub(super) version: Placed<i64>,
     pub(super) gravity_m_s2: Option<Triple>,
-    pub(super) extent_m: Option<Spanned<f64>>,
-    pub(super) substeps: Option<Spanned<i64>>,
-    pub(super) solver_iterations: Option<Spanned<i64>>,
+    pub(super) extent_m: Option<Placed<f64>>,
+    pub(super) substeps: Option<Placed<i64>>,
+    pub(super) solver_iterations: Option<Placed<i64>>,
     #[serde(default)]
-    pub(super) body: Vec<Spanned<BodyTable>>,
+    pub(super) body: Vec<Placed<BodyTable>>,
     #[serde(default)]
-    pub(super) shape: Vec<Spanned<ShapeTable>>,
+    pub(super) shape: Vec<Placed<ShapeTable>>,
     #[serde(default)]
-    pub(super) urdf: Vec<Spanned<UrdfTable>>,
+    pub(super) urdf: Vec<Placed<UrdfTable>>,
     #[serde(default)]
-    pub(super) joint: Vec<Spanned<JointTable>>,
+    pub(super) joint: Vec<Placed<JointTable>>,
     #[serde(default)]
-    pub(super) axis: Vec<Spanned<AxisTable>>,
+    pub(super) axis: Vec<Placed<AxisTable>>,
     #[serde(default)]
-    pub(super) sensor: Vec<Spanned<SensorTable>>,
+    pub(super) sensor: Vec<Placed<SensorTable>>,
+    /// The schema takes what a component may have from the library's kinds.
     #[serde(default)]
-    pub(super) component: Vec<Spanned<ComponentTable>>,
+    #[schemars(with = "Vec<serde_json::Value>")]
+    pub(super) component: Vec<Placed<ComponentTable>>,
     #[serde(default)]
-    pub(super) failure: Vec<Spanned<FailureTable>>,
+    pub(super) failure: Vec<Placed<FailureTable>>,
     #[serde(default)]
-    pub(super) signal: Vec<Spanned<SignalTable>>,
+    pub(super) signal: Vec<Placed<SignalTable>>,
 }
 
 /// `[[component]]`: its keys depend on its kind and are checked in the second pass.
-pub(super) type ComponentTable = BTreeMap<Spanned<String>, Spanned<toml::Value>>;
+pub(super) type ComponentTable = BTreeMap<Placed<String>, Placed<toml::Value>>;
 
 /// `[[failure]]`
-#[derive(Clone, Debug, Deserialize)]
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(super) struct FailureTable {
-    pub(super) component: Spanned<String>,
-    pub(super) mode: Spanned<String>,
-    pub(super) signal: Option<Spanned<String>>,
-    pub(super) from_s: Option<Spanned<f64>>,
-    pub(super) until_s: Option<Spanned<f64>>,
+    pub(super) component: Placed<String>,
+    pub(super) mode: Placed<String>,
+    pub(super) signal: Option<Placed<String>>,
+    pub(super) from_s: Option<Placed<f64>>,
+    pub(super) until_s: Option<Placed<f64>>,
 }
 
 /// `[[signal]]`
-#[derive(Clone, Debug, Deserialize)]
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(super) struct SignalTable {
-    pub(super) name: Spanned<String>,
+    pub(super) name: Placed<String>,
     #[serde(rename = "type")]
-    pub(super) ty: Option<Spanned<String>>,
-    pub(super) range: Option<Spanned<[f64; 2]>>,
-    pub(super) raw: Option<Spanned<[f64; 2]>>,
-    pub(super) delay_s: Option<Spanned<f64>>,
-    pub(super) jitter_s: Option<Spanned<f64>>,
-    pub(super) sample_s: Option<Spanned<f64>>,
-    pub(super) quantum: Option<Spanned<f64>>,
-    pub(super) noise_mean: Option<Spanned<f64>>,
-    pub(super) noise_sigma: Option<Spanned<f64>>,
+    pub(super) ty: Option<Placed<String>>,
+    pub(super) range: Option<Placed<[f64; 2]>>,
+    pub(super) raw: Option<Placed<[f64; 2]>>,
+    pub(super) delay_s: Option<Placed<f64>>,
+    pub(super) jitter_s: Option<Placed<f64>>,
+    pub(super) sample_s: Option<Placed<f64>>,
+    pub(super) quantum: Option<Placed<f64>>,
+    pub(super) noise_mean: Option<Placed<f64>>,
+    pub(super) noise_sigma: Option<Placed<f64>>,
 }
 
 /// How a body moves.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum BodyKind {
     /// Never moves.
@@ -83,7 +86,7 @@ pub enum BodyKind {
 }
 
 /// The form of a body's only shape.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub(super) enum ShapeKind {
     Box,
@@ -94,71 +97,71 @@ pub(super) enum ShapeKind {
 }
 
 /// `[[body]]`
-#[derive(Clone, Debug, Deserialize)]
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(super) struct BodyTable {
-    pub(super) name: Spanned<String>,
+    pub(super) name: Placed<String>,
     pub(super) kind: BodyKind,
-    pub(super) shape: Option<Spanned<ShapeKind>>,
+    pub(super) shape: Option<Placed<ShapeKind>>,
     pub(super) size_m: Option<Triple>,
-    pub(super) radius_m: Option<Spanned<f64>>,
-    pub(super) length_m: Option<Spanned<f64>>,
-    pub(super) mesh: Option<Spanned<String>>,
-    pub(super) unit_m: Option<Spanned<f64>>,
-    pub(super) hull: Option<Spanned<bool>>,
+    pub(super) radius_m: Option<Placed<f64>>,
+    pub(super) length_m: Option<Placed<f64>>,
+    pub(super) mesh: Option<Placed<String>>,
+    pub(super) unit_m: Option<Placed<f64>>,
+    pub(super) hull: Option<Placed<bool>>,
     pub(super) position_m: Option<Triple>,
     pub(super) rpy_deg: Option<Triple>,
     pub(super) velocity_m_s: Option<Triple>,
-    pub(super) mass_kg: Option<Spanned<f64>>,
-    pub(super) density_kg_m3: Option<Spanned<f64>>,
+    pub(super) mass_kg: Option<Placed<f64>>,
+    pub(super) density_kg_m3: Option<Placed<f64>>,
     pub(super) centre_m: Option<Triple>,
-    pub(super) inertia_kg_m2: Option<Spanned<[f64; 6]>>,
-    pub(super) friction: Option<Spanned<f64>>,
-    pub(super) restitution: Option<Spanned<f64>>,
+    pub(super) inertia_kg_m2: Option<Placed<[f64; 6]>>,
+    pub(super) friction: Option<Placed<f64>>,
+    pub(super) restitution: Option<Placed<f64>>,
     pub(super) collides: Option<bool>,
-    pub(super) group: Option<Spanned<String>>,
+    pub(super) group: Option<Placed<String>>,
     pub(super) turn_about_m: Option<Triple>,
     pub(super) step_m: Option<Triple>,
 }
 
 /// `[[shape]]`: one more shape of a body.
-#[derive(Clone, Debug, Deserialize)]
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(super) struct ShapeTable {
-    pub(super) name: Spanned<String>,
-    pub(super) body: Spanned<String>,
-    pub(super) shape: Spanned<ShapeKind>,
+    pub(super) name: Placed<String>,
+    pub(super) body: Placed<String>,
+    pub(super) shape: Placed<ShapeKind>,
     pub(super) size_m: Option<Triple>,
-    pub(super) radius_m: Option<Spanned<f64>>,
-    pub(super) length_m: Option<Spanned<f64>>,
-    pub(super) mesh: Option<Spanned<String>>,
-    pub(super) unit_m: Option<Spanned<f64>>,
-    pub(super) hull: Option<Spanned<bool>>,
+    pub(super) radius_m: Option<Placed<f64>>,
+    pub(super) length_m: Option<Placed<f64>>,
+    pub(super) mesh: Option<Placed<String>>,
+    pub(super) unit_m: Option<Placed<f64>>,
+    pub(super) hull: Option<Placed<bool>>,
     pub(super) position_m: Option<Triple>,
     pub(super) rpy_deg: Option<Triple>,
-    pub(super) mass_kg: Option<Spanned<f64>>,
-    pub(super) friction: Option<Spanned<f64>>,
-    pub(super) restitution: Option<Spanned<f64>>,
+    pub(super) mass_kg: Option<Placed<f64>>,
+    pub(super) friction: Option<Placed<f64>>,
+    pub(super) restitution: Option<Placed<f64>>,
     pub(super) collides: Option<bool>,
     pub(super) turn_about_m: Option<Triple>,
     pub(super) step_m: Option<Triple>,
 }
 
 /// `[[urdf]]`: bodies, shapes and joints from a file.
-#[derive(Clone, Debug, Deserialize)]
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(super) struct UrdfTable {
-    pub(super) name: Spanned<String>,
-    pub(super) file: Spanned<String>,
+    pub(super) name: Placed<String>,
+    pub(super) file: Placed<String>,
     pub(super) position_m: Option<Triple>,
     pub(super) rpy_deg: Option<Triple>,
     pub(super) fixed: Option<bool>,
     pub(super) collides: Option<bool>,
-    pub(super) friction: Option<Spanned<f64>>,
+    pub(super) friction: Option<Placed<f64>>,
 }
 
 /// What a joint leaves free.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum JointKind {
     /// Translation along `axis`.
@@ -174,27 +177,27 @@ pub enum JointKind {
 }
 
 /// `[[joint]]`
-#[derive(Clone, Debug, Deserialize)]
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(super) struct JointTable {
-    pub(super) name: Spanned<String>,
-    pub(super) kind: Spanned<JointKind>,
-    pub(super) parent: Spanned<String>,
-    pub(super) child: Spanned<String>,
+    pub(super) name: Placed<String>,
+    pub(super) kind: Placed<JointKind>,
+    pub(super) parent: Placed<String>,
+    pub(super) child: Placed<String>,
     pub(super) anchor_m: Option<Triple>,
     pub(super) axis: Option<Triple>,
     pub(super) slide: Option<Triple>,
-    pub(super) initial_m: Option<Spanned<f64>>,
-    pub(super) initial_rad: Option<Spanned<f64>>,
-    pub(super) lower_m: Option<Spanned<f64>>,
-    pub(super) lower_rad: Option<Spanned<f64>>,
-    pub(super) upper_m: Option<Spanned<f64>>,
-    pub(super) upper_rad: Option<Spanned<f64>>,
+    pub(super) initial_m: Option<Placed<f64>>,
+    pub(super) initial_rad: Option<Placed<f64>>,
+    pub(super) lower_m: Option<Placed<f64>>,
+    pub(super) lower_rad: Option<Placed<f64>>,
+    pub(super) upper_m: Option<Placed<f64>>,
+    pub(super) upper_rad: Option<Placed<f64>>,
     pub(super) contacts: Option<bool>,
 }
 
 /// How an axis is commanded.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub(super) enum DriveKind {
     /// Two BOOL signals and one fixed speed.
@@ -206,7 +209,7 @@ pub(super) enum DriveKind {
 }
 
 /// The IEC type of an axis's number signals.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub enum NumberType {
     /// IEC 60559 binary32.
     #[serde(rename = "REAL")]
@@ -218,31 +221,31 @@ pub enum NumberType {
 }
 
 /// `[[axis]]`
-#[derive(Clone, Debug, Deserialize)]
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(super) struct AxisTable {
-    pub(super) name: Spanned<String>,
-    pub(super) joint: Option<Spanned<String>>,
-    pub(super) belt: Option<Spanned<String>>,
+    pub(super) name: Placed<String>,
+    pub(super) joint: Option<Placed<String>>,
+    pub(super) belt: Option<Placed<String>>,
     pub(super) direction: Option<Triple>,
-    pub(super) drive: Spanned<DriveKind>,
-    pub(super) forward_signal: Option<Spanned<String>>,
-    pub(super) reverse_signal: Option<Spanned<String>>,
-    pub(super) command_signal: Option<Spanned<String>>,
-    pub(super) speed_m_s: Option<Spanned<f64>>,
-    pub(super) speed_rad_s: Option<Spanned<f64>>,
-    pub(super) acceleration_m_s2: Option<Spanned<f64>>,
-    pub(super) acceleration_rad_s2: Option<Spanned<f64>>,
-    pub(super) force_max_n: Option<Spanned<f64>>,
-    pub(super) torque_max_nm: Option<Spanned<f64>>,
-    pub(super) position_signal: Option<Spanned<String>>,
-    pub(super) velocity_signal: Option<Spanned<String>>,
+    pub(super) drive: Placed<DriveKind>,
+    pub(super) forward_signal: Option<Placed<String>>,
+    pub(super) reverse_signal: Option<Placed<String>>,
+    pub(super) command_signal: Option<Placed<String>>,
+    pub(super) speed_m_s: Option<Placed<f64>>,
+    pub(super) speed_rad_s: Option<Placed<f64>>,
+    pub(super) acceleration_m_s2: Option<Placed<f64>>,
+    pub(super) acceleration_rad_s2: Option<Placed<f64>>,
+    pub(super) force_max_n: Option<Placed<f64>>,
+    pub(super) torque_max_nm: Option<Placed<f64>>,
+    pub(super) position_signal: Option<Placed<String>>,
+    pub(super) velocity_signal: Option<Placed<String>>,
     #[serde(default)]
     pub(super) signal_type: NumberType,
 }
 
 /// What a sensor detects.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub(super) enum SensorKind {
     EndPosition,
@@ -250,22 +253,22 @@ pub(super) enum SensorKind {
 }
 
 /// `[[sensor]]`
-#[derive(Clone, Debug, Deserialize)]
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(super) struct SensorTable {
-    pub(super) name: Spanned<String>,
-    pub(super) kind: Spanned<SensorKind>,
-    pub(super) signal: Spanned<String>,
-    pub(super) joint: Option<Spanned<String>>,
-    pub(super) from_m: Option<Spanned<f64>>,
-    pub(super) from_rad: Option<Spanned<f64>>,
-    pub(super) to_m: Option<Spanned<f64>>,
-    pub(super) to_rad: Option<Spanned<f64>>,
-    pub(super) hysteresis_m: Option<Spanned<f64>>,
-    pub(super) hysteresis_rad: Option<Spanned<f64>>,
-    pub(super) body: Option<Spanned<String>>,
+    pub(super) name: Placed<String>,
+    pub(super) kind: Placed<SensorKind>,
+    pub(super) signal: Placed<String>,
+    pub(super) joint: Option<Placed<String>>,
+    pub(super) from_m: Option<Placed<f64>>,
+    pub(super) from_rad: Option<Placed<f64>>,
+    pub(super) to_m: Option<Placed<f64>>,
+    pub(super) to_rad: Option<Placed<f64>>,
+    pub(super) hysteresis_m: Option<Placed<f64>>,
+    pub(super) hysteresis_rad: Option<Placed<f64>>,
+    pub(super) body: Option<Placed<String>>,
     pub(super) point_m: Option<Triple>,
     pub(super) direction: Option<Triple>,
-    pub(super) range_m: Option<Spanned<f64>>,
-    pub(super) targets: Option<Vec<Spanned<String>>>,
+    pub(super) range_m: Option<Placed<f64>>,
+    pub(super) targets: Option<Vec<Placed<String>>>,
 }

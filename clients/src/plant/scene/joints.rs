@@ -2,7 +2,7 @@
 
 use std::f64::consts::TAU;
 
-use toml::Spanned;
+use super::placed::Placed;
 
 use super::bodies::GROUND;
 use super::error::SceneFaultKind;
@@ -17,8 +17,8 @@ use super::text;
 const OBLIQUE_MAX: f64 = 1e-6;
 
 pub(super) fn check(
-    tables: &[Spanned<JointTable>],
-    body_tables: &[Spanned<BodyTable>],
+    tables: &[Placed<JointTable>],
+    body_tables: &[Placed<BodyTable>],
     bodies: &Names,
     faults: &mut Faults<'_>,
 ) -> Vec<Joint> {
@@ -47,7 +47,7 @@ pub(super) fn kind_name(kind: JointKind) -> &'static str {
 
 fn joint(
     written: &JointTable,
-    body_tables: &[Spanned<BodyTable>],
+    body_tables: &[Placed<BodyTable>],
     bodies: &Names,
     faults: &mut Faults<'_>,
 ) -> Option<Joint> {
@@ -76,7 +76,7 @@ fn joint(
 /// The bodies of a joint: two different ones, of which a force moves one at least.
 fn joined(
     written: &JointTable,
-    body_tables: &[Spanned<BodyTable>],
+    body_tables: &[Placed<BodyTable>],
     bodies: &Names,
     faults: &mut Faults<'_>,
 ) -> Option<(Option<usize>, usize)> {

@@ -2,9 +2,9 @@
 
 use std::ops::Range;
 
+use super::placed::Placed;
 use rapier3d::math::Vector;
 use rapier3d::prelude::SharedShape;
-use toml::Spanned;
 
 use super::error::SceneFaultKind;
 use super::faults::Faults;
@@ -24,18 +24,18 @@ const FLAT: f64 = 1e-9;
 /// The keys of a shape that is a mesh.
 #[derive(Clone, Copy)]
 pub(super) struct MeshKeys<'f> {
-    pub(super) mesh: Option<&'f Spanned<String>>,
-    pub(super) unit_m: Option<&'f Spanned<f64>>,
-    pub(super) hull: Option<&'f Spanned<bool>>,
+    pub(super) mesh: Option<&'f Placed<String>>,
+    pub(super) unit_m: Option<&'f Placed<f64>>,
+    pub(super) hull: Option<&'f Placed<bool>>,
 }
 
 impl MeshKeys<'_> {
     /// The places of these keys, where they are written.
     pub(super) fn written(&self) -> [(Option<Range<usize>>, &'static str); 3] {
         [
-            (self.mesh.map(Spanned::span), "mesh"),
-            (self.unit_m.map(Spanned::span), "unit_m"),
-            (self.hull.map(Spanned::span), "hull"),
+            (self.mesh.map(Placed::span), "mesh"),
+            (self.unit_m.map(Placed::span), "unit_m"),
+            (self.hull.map(Placed::span), "hull"),
         ]
     }
 

@@ -106,6 +106,8 @@
 //! |---|---|
 //! | `format` | the tables and keys of the file |
 //! | `faults` | gathering faults, finding their lines |
+//! | [`overrides`] | values in the place of the file's own |
+//! | `placed` | a value with its place in the file |
 //! | `number`, `names` | what a number and a name must be |
 //! | `arrays` | one table for many things |
 //! | `robots` | the tables that a URDF file stands for |
@@ -131,19 +133,24 @@ mod meshes;
 pub mod model;
 mod names;
 mod number;
+pub mod overrides;
+mod placed;
 mod robots;
 pub mod schema;
 mod sensors;
 mod shapes;
 mod signals;
 
-use toml::Spanned;
+use placed::Placed;
+use serde::Deserialize;
+use toml::de::DeTable;
 
 pub use error::{SceneError, SceneFault, SceneFaultKind, Thing};
 pub use failures::UnknownFailure;
 pub use model::Scene;
+pub use overrides::Override;
 
-use bindings::Placed;
+use bindings::Lookup;
 use faults::Faults;
 use format::SceneFile;
 use names::Names;
@@ -165,8 +172,25 @@ impl Scene {
     /// # Errors
     /// [`SceneError::Faulty`] with every fault that was found.
     pub fn parse(text: &str, file: &str) -> Result<Self, SceneError> {
+        Self::parse_with(text, file, &[])
+    }
+
+    /// Reads a scene as [`Scene::parse`] does, with `overrides` in the place of the file's own values.
+    ///
+    /// # Errors
+    /// [`SceneError::Faulty`] with every fault that was found; those of an override say which.
+    pub fn parse_with(text: &str, file: &str, overrides: &[Override]) -> Result<Self, SceneError> {
         let mut faults = Faults::new(text, file);
-        match toml::from_str::<SceneFile>(text) {
+        let mut document = match DeTable::parse(text) {
+            Ok(document) => document,
+            Err(error) => return Err(faults.into_form_error(&error)),
+        };
+        overrides::apply(document.get_mut(), overrides, &mut faults);
+        if !faults.is_empty() {
+            // What an override was to change is not there: the rest would be checked without it.
+            return Err(faults.into_error());
+        }
+        match SceneFile::deserialize(toml::Deserializer::from(document)) {
             Ok(mut written) => {
                 arrays::expand(&mut written, &mut faults);
                 robots::expand(&mut written, &mut faults);
@@ -195,7 +219,7 @@ fn check(written: &SceneFile, faults: &mut Faults<'_>) -> Scene {
     let scene_joints = joints::check(&written.joint, &written.body, &bodies, faults);
     let axes = axes::check(written, &bodies, &joints, &mut signals, faults);
     let sensors = sensors::check(written, &bodies, &joints, &mut signals, faults);
-    let placed = Placed { file: written, bodies: &bodies, shapes: &shapes, joints: &joints, axes: &axes };
+    let placed = Lookup { file: written, bodies: &bodies, shapes: &shapes, joints: &joints, axes: &axes };
     let (mut components, lost) = components::check(&placed, &mut signals, faults);
     failures::check(&written.failure, (&mut components, &lost), &mut signals, faults);
     let conditions = conditions::check(&written.signal, &mut signals, faults);
@@ -220,6 +244,6 @@ fn check(written: &SceneFile, faults: &mut Faults<'_>) -> Scene {
 }
 
 /// The text of a spanned name.
-fn text(name: &Spanned<String>) -> &str {
+fn text(name: &Placed<String>) -> &str {
     name.get_ref()
 }

@@ -5,7 +5,7 @@
 use onescan_server::signal::{Port, SignalName};
 use serde::Serialize;
 
-pub use super::component_model::{Between, Bound, Component, Condition, FailureSwitch, Range, When, Wire};
+pub use super::component_model::{Between, Bound, Component, Condition, Driven, FailureSwitch, Range, When, Wire};
 pub use super::format::{BodyKind, JointKind, NumberType};
 
 /// Most collision groups of a scene; one bit of 32 stands for the bodies without a group.

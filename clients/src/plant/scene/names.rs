@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use toml::Spanned;
+use super::placed::Placed;
 
 use super::error::{SceneFaultKind, Thing};
 use super::faults::Faults;
@@ -22,7 +22,7 @@ impl Names {
     /// Takes all names of a sort; a name that was there before is a fault.
     pub(super) fn gather<'n>(
         thing: Thing,
-        names: impl IntoIterator<Item = &'n Spanned<String>>,
+        names: impl IntoIterator<Item = &'n Placed<String>>,
         faults: &mut Faults<'_>,
     ) -> Self {
         let mut all = Self::none(thing);
@@ -33,7 +33,7 @@ impl Names {
     }
 
     /// Takes one more name; a name that was there before is a fault.
-    pub(super) fn claim(&mut self, name: &Spanned<String>, faults: &mut Faults<'_>) {
+    pub(super) fn claim(&mut self, name: &Placed<String>, faults: &mut Faults<'_>) {
         if let Some((_, first)) = self.entries.iter().find(|(known, _)| known == name.get_ref()) {
             let first = faults.place(first.start);
             let doubled = SceneFaultKind::Doubled { thing: self.thing, name: name.get_ref().clone(), first };
@@ -48,14 +48,14 @@ impl Names {
     }
 
     /// The index of a name; one that was never given is a fault.
-    pub(super) fn find(&self, name: &Spanned<String>, faults: &mut Faults<'_>) -> Option<usize> {
+    pub(super) fn find(&self, name: &Placed<String>, faults: &mut Faults<'_>) -> Option<usize> {
         self.find_beside(name, None, faults)
     }
 
     /// Like [`Names::find`], with one more name that the scene knows by itself.
     pub(super) fn find_beside(
         &self,
-        name: &Spanned<String>,
+        name: &Placed<String>,
         known: Option<&str>,
         faults: &mut Faults<'_>,
     ) -> Option<usize> {

@@ -1,6 +1,6 @@
 //! Numbers of a scene: finite, of the right sign, in the right unit.
 
-use toml::Spanned;
+use super::placed::Placed;
 
 use super::error::SceneFaultKind;
 use super::faults::Faults;
@@ -54,11 +54,11 @@ pub(super) enum Unit {
 #[derive(Clone, Copy)]
 pub(super) struct Entry<'f> {
     pub(super) key: &'static str,
-    pub(super) value: Option<&'f Spanned<f64>>,
+    pub(super) value: Option<&'f Placed<f64>>,
 }
 
 impl<'f> Entry<'f> {
-    pub(super) fn new(key: &'static str, value: Option<&'f Spanned<f64>>) -> Self {
+    pub(super) fn new(key: &'static str, value: Option<&'f Placed<f64>>) -> Self {
         Self { key, value }
     }
 }
@@ -79,7 +79,7 @@ impl Faults<'_> {
     }
 
     /// A whole number from 1 to `max`.
-    pub(super) fn count(&mut self, key: &'static str, written: Option<&Spanned<i64>>, max: u32) -> Option<u32> {
+    pub(super) fn count(&mut self, key: &'static str, written: Option<&Placed<i64>>, max: u32) -> Option<u32> {
         let written = written?;
         let value = u32::try_from(*written.get_ref()).ok().filter(|value| (1..=max).contains(value));
         if value.is_none() {

@@ -9,9 +9,9 @@ use std::f64::consts::TAU;
 use std::ops::Range;
 use std::path::Path;
 
+use super::placed::Placed;
 use rapier3d::glamx::{DMat3, DQuat, DVec3};
 use rapier3d::math::Pose;
-use toml::Spanned;
 
 use super::error::SceneFaultKind;
 use super::faults::Faults;
@@ -50,11 +50,11 @@ struct Placing<'t> {
 }
 
 impl Placing<'_> {
-    fn at<T>(&self, value: T) -> Spanned<T> {
-        Spanned::new(self.place.clone(), value)
+    fn at<T>(&self, value: T) -> Placed<T> {
+        Placed::new(self.place.clone(), value)
     }
 
-    fn named(&self, name: &str) -> Spanned<String> {
+    fn named(&self, name: &str) -> Placed<String> {
         self.at(format!("{}.{name}", self.table.name.get_ref()))
     }
 
@@ -133,8 +133,8 @@ impl Placing<'_> {
 
     fn shape(
         &self,
-        name: Spanned<String>,
-        body: Spanned<String>,
+        name: Placed<String>,
+        body: Placed<String>,
         geometry: &Geometry,
         place: &Pose,
     ) -> Result<ShapeTable, String> {
@@ -195,7 +195,7 @@ impl Placing<'_> {
         Err(format!("names the mesh `{file}`, of which no folder around it has `{inside}`"))
     }
 
-    fn joint(&self, joint: &Joint, [parent, child]: [Spanned<String>; 2], place: &Pose) -> JointTable {
+    fn joint(&self, joint: &Joint, [parent, child]: [Placed<String>; 2], place: &Pose) -> JointTable {
         let axis = place.rotation * DVec3::from_array(joint.axis);
         let turns = joint.freedom == Freedom::Turns;
         // bodies cannot keep limits that are a turn or more apart

@@ -1,7 +1,7 @@
 //! Second pass over `[[sensor]]`: what each detects and where it says so.
 
+use super::placed::Placed;
 use onescan_server::signal::SignalType;
-use toml::Spanned;
 
 use super::arrays::listed;
 use super::bodies::GROUND;
@@ -50,17 +50,17 @@ fn whose(sensor: &SensorTable) -> String {
 
 /// Keys of the other kind of sensor are faults.
 fn refuse_foreign(sensor: &SensorTable, faults: &mut Faults<'_>) {
-    let number = |value: &Option<Spanned<f64>>| value.as_ref().map(Spanned::span);
+    let number = |value: &Option<Placed<f64>>| value.as_ref().map(Placed::span);
     let foreign = match sensor.kind.get_ref() {
         SensorKind::EndPosition => vec![
-            ("body", sensor.body.as_ref().map(Spanned::span)),
+            ("body", sensor.body.as_ref().map(Placed::span)),
             ("point_m", sensor.point_m.as_ref().map(Triple::span)),
             ("direction", sensor.direction.as_ref().map(Triple::span)),
             ("range_m", number(&sensor.range_m)),
             ("targets", sensor.targets.as_ref().map(|_| sensor.kind.span())),
         ],
         SensorKind::Proximity => vec![
-            ("joint", sensor.joint.as_ref().map(Spanned::span)),
+            ("joint", sensor.joint.as_ref().map(Placed::span)),
             ("from_m", number(&sensor.from_m)),
             ("from_rad", number(&sensor.from_rad)),
             ("to_m", number(&sensor.to_m)),
@@ -91,7 +91,7 @@ fn needed<'f, T>(
 
 fn end_position(
     sensor: &SensorTable,
-    joint_tables: &[Spanned<JointTable>],
+    joint_tables: &[Placed<JointTable>],
     joints: &Names,
     faults: &mut Faults<'_>,
 ) -> Option<Sensing> {

@@ -1,6 +1,6 @@
 //! The measures of a shape, and the second pass over `[[shape]]`: more shapes of a body.
 
-use toml::Spanned;
+use super::placed::Placed;
 
 use super::bodies::{FRICTION, LENGTH_M, MASS_KG, RESTITUTION};
 use super::error::SceneFaultKind;
@@ -13,8 +13,8 @@ use super::number::{Allowed, Entry};
 use super::text;
 
 pub(super) fn check(
-    tables: &[Spanned<ShapeTable>],
-    of: &[Spanned<BodyTable>],
+    tables: &[Placed<ShapeTable>],
+    of: &[Placed<BodyTable>],
     bodies: &Names,
     faults: &mut Faults<'_>,
 ) -> Vec<Attached> {
@@ -23,7 +23,7 @@ pub(super) fn check(
 
 fn attached(
     written: &ShapeTable,
-    of: &[Spanned<BodyTable>],
+    of: &[Placed<BodyTable>],
     bodies: &Names,
     faults: &mut Faults<'_>,
 ) -> Option<Attached> {
@@ -63,10 +63,10 @@ fn attached(
 /// The measures of one shape, as they are written.
 pub(super) struct Measures<'f> {
     pub(super) name: &'f str,
-    pub(super) kind: &'f Spanned<ShapeKind>,
+    pub(super) kind: &'f Placed<ShapeKind>,
     pub(super) size_m: Option<&'f Triple>,
-    pub(super) radius_m: Option<&'f Spanned<f64>>,
-    pub(super) length_m: Option<&'f Spanned<f64>>,
+    pub(super) radius_m: Option<&'f Placed<f64>>,
+    pub(super) length_m: Option<&'f Placed<f64>>,
     pub(super) mesh: MeshKeys<'f>,
     /// Whether forces move its body.
     pub(super) dynamic: bool,
@@ -106,7 +106,7 @@ impl Measures<'_> {
         faults.add(self.kind.span(), SceneFaultKind::Missing { whose: self.whose(), key });
     }
 
-    fn length(&self, key: &'static str, value: Option<&Spanned<f64>>, faults: &mut Faults<'_>) -> Option<f64> {
+    fn length(&self, key: &'static str, value: Option<&Placed<f64>>, faults: &mut Faults<'_>) -> Option<f64> {
         if value.is_none() {
             self.missing(key, faults);
         }
@@ -137,8 +137,8 @@ impl Measures<'_> {
         };
         let foreign = [
             (size.map(Triple::span), "size_m"),
-            (radius.map(Spanned::span), "radius_m"),
-            (length.map(Spanned::span), "length_m"),
+            (radius.map(Placed::span), "radius_m"),
+            (length.map(Placed::span), "length_m"),
         ];
         let of_mesh = self.mesh.written().into_iter().filter(|_| *self.kind.get_ref() != ShapeKind::Mesh);
         for (span, key) in foreign.into_iter().chain(of_mesh) {

@@ -1,7 +1,7 @@
 //! The signals of a scene: each written once, each read as one type.
 
+use super::placed::Placed;
 use onescan_server::signal::{Port, SignalName, SignalType};
-use toml::Spanned;
 
 use super::error::{SceneFaultKind, Thing};
 use super::faults::Faults;
@@ -40,7 +40,7 @@ impl Signals {
     /// A signal that the plant reads; several axes may read the same one.
     pub(super) fn read(
         &mut self,
-        name: &Spanned<String>,
+        name: &Placed<String>,
         ty: SignalType,
         faults: &mut Faults<'_>,
     ) -> Option<SignalName> {
@@ -56,7 +56,7 @@ impl Signals {
     /// A signal that the plant writes.
     pub(super) fn write(
         &mut self,
-        name: &Spanned<String>,
+        name: &Placed<String>,
         ty: SignalType,
         faults: &mut Faults<'_>,
     ) -> Option<SignalName> {
@@ -77,6 +77,6 @@ impl Signals {
     }
 }
 
-fn signal_name(name: &Spanned<String>, faults: &mut Faults<'_>) -> Option<SignalName> {
+fn signal_name(name: &Placed<String>, faults: &mut Faults<'_>) -> Option<SignalName> {
     SignalName::new(name.get_ref().as_str()).map_err(|bad| faults.add(name.span(), bad.into())).ok()
 }

@@ -125,9 +125,10 @@ impl Robot {
     /// # Errors
     /// See [`UrdfError`].
     pub fn parse(text: &str) -> Result<Self, UrdfError> {
-        let root = Element::parse(text)?;
-        if root.name != "robot" {
-            return Err(root.wrong(format!("<{}> in place of <robot>", root.name)));
+        let document = xml::document(text)?;
+        let root = Element::root(&document);
+        if root.name() != "robot" {
+            return Err(root.wrong(format!("<{}> in place of <robot>", root.name())));
         }
         let links = root.all("link").map(link).collect::<Result<Vec<_>, _>>()?;
         if let Some(twin) = (1..links.len()).find(|at| links[..*at].iter().any(|link| link.name == links[*at].name)) {
@@ -135,22 +136,22 @@ impl Robot {
             return Err(UrdfError { line: *line, cause: format!("link `{name}` is there twice") });
         }
         let joints = root.all("joint").map(|element| joint(element, &links)).collect::<Result<Vec<_>, _>>()?;
-        sorted(&links, &joints, &root)
+        sorted(&links, &joints, root)
     }
 }
 
-fn origin(element: &Element) -> Result<Origin, UrdfError> {
+fn origin(element: Element<'_>) -> Result<Origin, UrdfError> {
     let Some(origin) = element.child("origin") else { return Ok(Origin::default()) };
     Ok(Origin { xyz_m: origin.triple("xyz", [0.0; 3])?, rpy_rad: origin.triple("rpy", [0.0; 3])? })
 }
 
-fn link(element: &Element) -> Result<Link, UrdfError> {
+fn link(element: Element<'_>) -> Result<Link, UrdfError> {
     let inertial = element.child("inertial").map(inertial).transpose()?;
     let collisions = element.all("collision").map(collision).collect::<Result<_, _>>()?;
-    Ok(Link { name: element.text("name")?.to_owned(), inertial, collisions, line: element.line })
+    Ok(Link { name: element.text("name")?.to_owned(), inertial, collisions, line: element.line() })
 }
 
-fn inertial(element: &Element) -> Result<Inertial, UrdfError> {
+fn inertial(element: Element<'_>) -> Result<Inertial, UrdfError> {
     let mass = element.needed("mass")?;
     let mass_kg = mass.number("value")?;
     let tensor = element.needed("inertia")?;
@@ -171,10 +172,10 @@ fn inertial(element: &Element) -> Result<Inertial, UrdfError> {
     Ok(Inertial { origin: origin(element)?, mass_kg, inertia_kg_m2 })
 }
 
-fn collision(element: &Element) -> Result<Collision, UrdfError> {
+fn collision(element: Element<'_>) -> Result<Collision, UrdfError> {
     let geometry = element.needed("geometry")?;
     let form = geometry.first().ok_or_else(|| geometry.wrong("<geometry> is empty".to_owned()))?;
-    let geometry = match form.name.as_str() {
+    let geometry = match form.name() {
         "box" => {
             form.text("size")?;
             Geometry::Box(form.triple("size", [0.0; 3])?)
@@ -196,7 +197,7 @@ fn collision(element: &Element) -> Result<Collision, UrdfError> {
     Ok(Collision { origin: origin(element)?, geometry })
 }
 
-fn joint(element: &Element, links: &[Link]) -> Result<Joint, UrdfError> {
+fn joint(element: Element<'_>, links: &[Link]) -> Result<Joint, UrdfError> {
     let name = element.text("name")?.to_owned();
     let end = |which: &str| {
         let end = element.needed(which)?;
@@ -237,7 +238,7 @@ fn joint(element: &Element, links: &[Link]) -> Result<Joint, UrdfError> {
 }
 
 /// The tree with parents in front of their children.
-fn sorted(links: &[Link], joints: &[Joint], root: &Element) -> Result<Robot, UrdfError> {
+fn sorted(links: &[Link], joints: &[Joint], root: Element<'_>) -> Result<Robot, UrdfError> {
     let above = |link: usize| joints.iter().filter(move |joint| joint.child == link).count();
     let roots: Vec<usize> = (0..links.len()).filter(|link| above(*link) == 0).collect();
     let [first] = roots[..] else {
@@ -261,12 +262,18 @@ fn sorted(links: &[Link], joints: &[Joint], root: &Element) -> Result<Robot, Urd
         let Link { name, line, .. } = &links[lost];
         return Err(UrdfError { line: *line, cause: format!("link `{name}` hangs in a loop of joints") });
     }
-    let place = |link: usize| order.iter().position(|known| *known == link).unwrap_or_default();
-    let joints = carried.iter().map(|index| {
+    // every link has its place in the order, or was refused as lost above
+    let place = |link: usize| {
+        let Link { name, line, .. } = &links[link];
+        let lost = || UrdfError { line: *line, cause: format!("link `{name}` has no place in the tree") };
+        order.iter().position(|known| *known == link).ok_or_else(lost)
+    };
+    let placed = |index: &usize| {
         let joint = joints[*index].clone();
-        Joint { parent: place(joint.parent), child: place(joint.child), ..joint }
-    });
-    Ok(Robot { joints: joints.collect(), links: order.iter().map(|link| links[*link].clone()).collect() })
+        Ok(Joint { parent: place(joint.parent)?, child: place(joint.child)?, ..joint })
+    };
+    let joints = carried.iter().map(placed).collect::<Result<_, UrdfError>>()?;
+    Ok(Robot { joints, links: order.iter().map(|link| links[*link].clone()).collect() })
 }
 
 #[cfg(test)]

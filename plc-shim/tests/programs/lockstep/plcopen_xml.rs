@@ -125,7 +125,7 @@ fn every_language_gives_the_same_at_the_same_time() {
 fn tasks_of_the_project_get_a_scheduler() {
     let project = round_trip(&configured(), &Options { target: Target::Iec, tasks: None });
     let text = text(&project);
-    assert!(text.contains("<task name=\"SDSP_Cycle\" priority=\"0\" interval=\"PT0.010000000S\">"), "{text}");
+    assert!(text.contains("<task name=\"SDSP_Cycle\" priority=\"0\" interval=\"PT0.01S\">"), "{text}");
     let application = match Application::from_inputs([read(&text)]) {
         Ok(application) => application,
         Err(found) => panic!("{found}\n{text}"),

@@ -1,8 +1,29 @@
 //! The kinds of component, a file each. This table is all that knows them.
+//!
+//! | group | subject |
+//! |---|---|
+//! | `actuator` | what moves, turns, carries, grips |
+//! | `sensor` | what measures and detects |
+//! | `process` | what is heated, filled, fed and taken away |
+//! | `panel` | what people press and see |
+//! | `logic` | what is computed beside the PLC |
+//!
+//! # A new kind
+//! 1. Its file in its group: what it states of itself, its equations, its tests. The nearest kind is
+//!    a good start; `own_types!` names its coupling.
+//! 2. Its line in the table below.
+//! 3. `UPDATE_DOCS=1 cargo test -p onescan-clients --lib plant` writes its page and its part of the
+//!    schema; without the switch the same tests compare them.
+//!
+//! `cargo fmt` does not see files behind a macro: `rustfmt --edition 2024 FILE` formats a kind.
 
-use super::behaviour::{self, Component, Conflict, Runner, Running, Start};
+use super::behaviour::{self, Component, Conflict, Running};
 use super::declare::{ParameterSet, SignalSet, Value};
 use super::kind::{Kind, Setting};
+use crate::plant::coupling::Unbound;
+use crate::plant::scene::Scene;
+use crate::plant::scene::model::Bound;
+use crate::plant::world::World;
 
 /// A kind in the table.
 pub(crate) struct Entry {
@@ -10,66 +31,88 @@ pub(crate) struct Entry {
     pub(crate) kind: fn() -> Kind,
     /// A conflict between settings, one for each parameter.
     pub(crate) conflict: fn(&[Setting]) -> Option<Conflict>,
-    /// A component with these settings, one for each parameter.
-    pub(crate) start: fn(&[Setting], &Start) -> Box<dyn Running>,
+    /// A component with these settings, one for each parameter, a seed of its own and what it is
+    /// bound to, in a world that still stands in the scene's pose.
+    pub(crate) start: fn(&[Setting], u64, &Bound, &Scene, &mut World) -> Result<Box<dyn Running>, Unbound>,
     /// What its inputs hold where nothing is connected.
     pub(crate) unconnected: fn() -> Vec<Value>,
+    /// What holds for every kind, tried on this one.
+    #[cfg(test)]
+    pub(crate) laws: fn(),
 }
 
 fn conflict<C: Component>(settings: &[Setting]) -> Option<Conflict> {
     C::conflict(&C::Parameters::read(settings))
 }
 
-fn start<C: Component>(settings: &[Setting], start: &Start) -> Box<dyn Running> {
-    Box::new(Runner::new(C::new(C::Parameters::read(settings)), start))
+fn start<C: Component>(
+    settings: &[Setting],
+    seed: u64,
+    bound: &Bound,
+    scene: &Scene,
+    world: &mut World,
+) -> Result<Box<dyn Running>, Unbound> {
+    behaviour::run(C::new(C::Parameters::read(settings)), seed, bound, scene, world)
 }
 
 macro_rules! library {
-    ($($module:ident :: $component:ident),+ $(,)?) => {
-        $( mod $module; )+
+    ($($group:ident { $($module:ident :: $component:ident),+ $(,)? })+) => {
+        $( mod $group { $( pub(super) mod $module; )+ } )+
 
         /// Every kind, in the order of the documentation.
-        pub(crate) const ENTRIES: &[Entry] = &[ $( Entry {
-            name: <$module::$component as Component>::NAME,
-            kind: behaviour::kind::<$module::$component>,
-            conflict: conflict::<$module::$component>,
-            start: start::<$module::$component>,
-            unconnected: <$module::$component as Component>::Inputs::unconnected,
-        } ),+ ];
+        pub(crate) const ENTRIES: &[Entry] = &[ $( $( Entry {
+            name: <$group::$module::$component as Component>::NAME,
+            kind: behaviour::kind::<$group::$module::$component>,
+            conflict: conflict::<$group::$module::$component>,
+            start: start::<$group::$module::$component>,
+            unconnected: <$group::$module::$component as Component>::Inputs::unconnected,
+            #[cfg(test)]
+            laws: super::tests::laws::<$group::$module::$component>,
+        }, )+ )+ ];
     };
 }
 
 library! {
-    pneumatic_cylinder::PneumaticCylinder,
-    hydraulic_cylinder::HydraulicCylinder,
-    servo_axis::ServoAxis,
-    asynchronous_motor::AsynchronousMotor,
-    conveyor::Conveyor,
-    light_barrier::LightBarrier,
-    inductive_sensor::InductiveSensor,
-    capacitive_sensor::CapacitiveSensor,
-    limit_switch::LimitSwitch,
-    incremental_encoder::IncrementalEncoder,
-    absolute_encoder::AbsoluteEncoder,
-    pressure_sensor::PressureSensor,
-    temperature_sensor::TemperatureSensor,
-    tank::Tank,
-    heater::Heater,
-    contact_sensor::ContactSensor,
-    collision_monitor::CollisionMonitor,
-    input_controller::InputController,
-    gate::Gate,
-    arm::Arm,
-    gripper::Gripper,
-    vacuum_cup::VacuumCup,
-    workpiece_source::WorkpieceSource,
-    workpiece_sink::WorkpieceSink,
-    push_button::PushButton,
-    emergency_stop::EmergencyStop,
-    lamp::Lamp,
-    turntable::Turntable,
-    spindle::Spindle,
-    line_scanner::LineScanner,
+    actuator {
+        pneumatic_cylinder::PneumaticCylinder,
+        hydraulic_cylinder::HydraulicCylinder,
+        servo_axis::ServoAxis,
+        asynchronous_motor::AsynchronousMotor,
+        conveyor::Conveyor,
+        arm::Arm,
+        gripper::Gripper,
+        vacuum_cup::VacuumCup,
+        turntable::Turntable,
+        spindle::Spindle,
+    }
+    sensor {
+        light_barrier::LightBarrier,
+        inductive_sensor::InductiveSensor,
+        capacitive_sensor::CapacitiveSensor,
+        limit_switch::LimitSwitch,
+        incremental_encoder::IncrementalEncoder,
+        absolute_encoder::AbsoluteEncoder,
+        pressure_sensor::PressureSensor,
+        temperature_sensor::TemperatureSensor,
+        contact_sensor::ContactSensor,
+        collision_monitor::CollisionMonitor,
+        line_scanner::LineScanner,
+    }
+    process {
+        tank::Tank,
+        heater::Heater,
+        workpiece_source::WorkpieceSource,
+        workpiece_sink::WorkpieceSink,
+    }
+    panel {
+        push_button::PushButton,
+        emergency_stop::EmergencyStop,
+        lamp::Lamp,
+    }
+    logic {
+        input_controller::InputController,
+        gate::Gate,
+    }
 }
 
 /// Every kind of component.

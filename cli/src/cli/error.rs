@@ -1,0 +1,72 @@
+//! Why nothing came of what was typed.
+
+use onescan_report::OutputError;
+
+use crate::bisect::BisectError;
+use crate::browse::BrowseError;
+use crate::check::CheckError;
+use crate::diff::DiffError;
+use crate::error::{Usage, sum_of_errors};
+use crate::export::ExportError;
+use crate::instrument::InstrumentError;
+use crate::new::NewError;
+use crate::plant::PlantError;
+use crate::plc::PlcError;
+use crate::regress::TestError;
+use crate::review::ReviewError;
+use crate::run::RunError;
+use crate::session::SessionError;
+use crate::wiring::WiringError;
+
+sum_of_errors! {
+    /// Why nothing came of what was typed.
+    pub enum CommandError {
+        /// `run` or `compare` came to nothing.
+        #[diagnostic(transparent)]
+        Run(RunError),
+        /// `test` came to nothing.
+        #[diagnostic(transparent)]
+        Test(TestError),
+        /// `review` came to nothing.
+        #[diagnostic(transparent)]
+        Review(ReviewError),
+        /// `export` came to nothing.
+        #[diagnostic(transparent)]
+        Export(ExportError),
+        /// `diff` came to nothing.
+        #[diagnostic(transparent)]
+        Diff(DiffError),
+        /// `bisect` came to nothing.
+        #[diagnostic(transparent)]
+        Bisect(BisectError),
+        /// `check` or `explain` came to nothing.
+        #[diagnostic(transparent)]
+        Check(CheckError),
+        /// `instrument` came to nothing.
+        #[diagnostic(transparent)]
+        Instrument(InstrumentError),
+        /// `plc` came to nothing.
+        #[diagnostic(transparent)]
+        Plc(PlcError),
+        /// `browse` came to nothing.
+        #[diagnostic(transparent)]
+        Browse(BrowseError),
+        /// `components` or `describe` came to nothing.
+        #[diagnostic(transparent)]
+        Plant(PlantError),
+        /// `wiring` came to nothing.
+        #[diagnostic(transparent)]
+        Wiring(WiringError),
+        /// `new` came to nothing.
+        #[diagnostic(transparent)]
+        New(NewError),
+        /// `join` or `control` came to nothing.
+        #[diagnostic(transparent)]
+        Session(SessionError),
+        /// What was typed is wrong.
+        #[diagnostic(transparent)]
+        Usage(Usage),
+        /// The report cannot be written.
+        Output(OutputError),
+    }
+}

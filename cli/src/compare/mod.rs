@@ -1,0 +1,224 @@
+//! `onescan compare`: lockstep beside the other ways of bringing plant and PLC together, in one table and one plot.
+
+use std::io::Write;
+use std::path::PathBuf;
+
+use onescan_report::OutputError;
+use onescan_report::file;
+use onescan_report::plot::Plot;
+use onescan_scenario::{Mode, Scenario};
+use onescan_server::signal::{SignalName, SignalType};
+use serde::Serialize;
+
+use crate::error::Usage;
+use crate::format::Format;
+use crate::interrupt::Interrupt;
+use crate::run::config::{Drawing, Picture};
+use crate::run::sampler::{Samples, panel};
+use crate::run::{RunConfig, RunError, one_run};
+
+/// The ways, lockstep first: the others are held against it.
+const MODES: [Mode; 4] = [Mode::Lockstep, Mode::Freewheel, Mode::Halt, Mode::Follow];
+
+/// What is asked for.
+#[derive(Clone, Debug)]
+pub struct CompareConfig {
+    /// How each run is made; its mode and what it writes are this command's business.
+    pub run: RunConfig,
+    /// File for the plot.
+    pub plot: Option<PathBuf>,
+    /// For whom the table is.
+    pub format: Format,
+}
+
+/// A way of bringing plant and PLC together, over all of its runs. Its JSON form is a contract.
+#[derive(Clone, Debug, Serialize)]
+pub struct Row {
+    /// The way.
+    pub mode: Mode,
+    /// Its runs.
+    pub runs: usize,
+    /// Different digests among them.
+    pub digests: usize,
+    /// The largest distance of a signal with a fraction from lockstep, as a part of its range there, 0 to 1.
+    pub deviation: f64,
+    /// The signal that it is of.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub deviating: Option<String>,
+    /// How far edges are from those of lockstep on average, ms; positive if late.
+    pub offset_ms: f64,
+    /// Edges of lockstep that are missing, on average of the runs.
+    pub lost_edges: f64,
+    /// Edges of lockstep.
+    pub edges: usize,
+    /// Steps a second, wall clock.
+    pub steps_per_s: f64,
+}
+
+/// A run, as far as it is compared.
+struct Run {
+    digest: String,
+    samples: Samples,
+    steps_per_s: f64,
+}
+
+/// Runs the scenario in every mode and writes the table to `out`.
+///
+/// # Errors
+/// As those of a run.
+pub fn compare(config: &CompareConfig, interrupt: &Interrupt, out: &mut dyn Write) -> Result<Vec<Row>, RunError> {
+    let scenario = Scenario::load(&config.run.subject.scenario)?;
+    let names: Vec<SignalName> = scenario.file().signals.keys().cloned().collect();
+    let mut all: Vec<Vec<Run>> = Vec::new();
+    for mode in MODES {
+        let run = RunConfig {
+            mode,
+            picture: Picture { drawing: Drawing::Kept, signals: names.clone(), ..config.run.picture.clone() },
+            ..config.run.clone()
+        };
+        run.check(&scenario)?;
+        let mut runs = Vec::new();
+        for number in 1..=config.run.runs {
+            let (report, samples) = one_run(&run, &scenario, number, interrupt, Vec::new())?;
+            if let Some(error) = &report.error {
+                return Err(Usage::new(format!("{}: {error}", mode.name()), None).into());
+            }
+            let digest = report.digest.map_or_else(String::new, |digest| digest.to_string());
+            runs.push(Run { digest, samples, steps_per_s: report.steps.0 as f64 / report.wall_time_s.max(1e-9) });
+            if interrupt.is_raised() {
+                return Err(Usage::new("stopped before there was anything to compare", None).into());
+            }
+        }
+        all.push(runs);
+    }
+    let types: Vec<SignalType> = scenario.file().signals.values().map(|signal| signal.get_ref().ty).collect();
+    let rows: Vec<Row> =
+        MODES.iter().zip(&all).map(|(mode, runs)| row(*mode, runs, &all[0][0].samples, &types)).collect();
+    if let Some(path) = &config.plot {
+        let plot = plot(&config.run.picture, &scenario, &all);
+        let picture =
+            config.run.picture.plane.as_ref().and_then(|_| plot.to_plane_svg()).unwrap_or_else(|| plot.to_svg());
+        file::write_whole(path, picture.as_bytes())?;
+    }
+    write(&rows, config.format, out).map_err(OutputError)?;
+    Ok(rows)
+}
+
+fn row(mode: Mode, runs: &[Run], lockstep: &Samples, types: &[SignalType]) -> Row {
+    let mut digests: Vec<&str> = runs.iter().map(|run| run.digest.as_str()).collect();
+    digests.sort_unstable();
+    digests.dedup();
+    let (mut deviation, mut deviating) = (0.0, None);
+    let (mut edges, mut lost, mut offsets) = (0, 0, Vec::new());
+    for (index, ty) in types.iter().enumerate() {
+        let analog = matches!(*ty, SignalType::REAL | SignalType::LREAL);
+        for run in runs {
+            if analog {
+                let found = distance(&lockstep.values[index], &run.samples.values[index]);
+                if found > deviation {
+                    (deviation, deviating) = (found, Some(lockstep.names[index].to_string()));
+                }
+                continue;
+            }
+            let (ours, theirs) = (edges_of(lockstep, index), edges_of(&run.samples, index));
+            edges += ours.len();
+            lost += ours.len().saturating_sub(theirs.len());
+            offsets.extend(ours.iter().zip(&theirs).map(|(a, b)| (*b as f64 - *a as f64) / 1e6));
+        }
+    }
+    let count = runs.len().max(1);
+    let mean = |values: &[f64]| if values.is_empty() { 0.0 } else { values.iter().sum::<f64>() / values.len() as f64 };
+    let rates: Vec<f64> = runs.iter().map(|run| run.steps_per_s).collect();
+    Row {
+        mode,
+        runs: runs.len(),
+        digests: digests.len(),
+        deviation,
+        deviating,
+        offset_ms: mean(&offsets),
+        lost_edges: lost as f64 / count as f64,
+        edges: edges / count,
+        steps_per_s: mean(&rates),
+    }
+}
+
+/// The largest distance of two trajectories, as a part of the first one's range.
+fn distance(ours: &[f64], theirs: &[f64]) -> f64 {
+    let (low, high) =
+        ours.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| (low.min(*value), high.max(*value)));
+    let largest = ours.iter().zip(theirs).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+    if high > low { largest / (high - low) } else { 0.0 }
+}
+
+/// When a signal that jumps has changed.
+fn edges_of(samples: &Samples, index: usize) -> Vec<u64> {
+    let values = &samples.values[index];
+    let changed = |k: &usize| values[*k] != values[*k - 1];
+    (1..values.len()).filter(changed).map(|k| samples.t_ns[k]).collect()
+}
+
+/// One run of each mode over each other.
+fn plot(picture: &Picture, scenario: &Scenario, all: &[Vec<Run>]) -> Plot {
+    let first = |runs: &'_ [Run]| runs.first().map(|run| run.samples.clone()).unwrap_or_default();
+    let samples: Vec<Samples> = all.iter().map(|runs| first(runs)).collect();
+    let names = picture.plane.as_ref().map_or_else(|| picture.plotted(scenario), |plane| plane.to_vec());
+    Plot {
+        title: format!("{}: lockstep and the other ways", scenario.name()),
+        runs: MODES.iter().map(|mode| mode.name().to_owned()).collect(),
+        panels: names.iter().map(|name| panel(scenario, name, samples.iter())).collect(),
+        marks: Vec::new(),
+    }
+}
+
+fn write(rows: &[Row], format: Format, out: &mut dyn Write) -> std::io::Result<()> {
+    if format == Format::Json {
+        for row in rows {
+            serde_json::to_writer(&mut *out, row)?;
+            writeln!(out)?;
+        }
+        return out.flush();
+    }
+    writeln!(out, "mode       runs  digests  deviation  time offset  lost edges     steps/s")?;
+    for row in rows {
+        let (mode, lost) = (row.mode.name(), format!("{:.1} of {}", row.lost_edges, row.edges));
+        writeln!(
+            out,
+            "{mode:9}  {:4}  {:7}  {:7.2} %  {:+8.1} ms  {lost:>10}  {:10.0}",
+            row.runs,
+            row.digests,
+            row.deviation * 100.0,
+            row.offset_ms,
+            row.steps_per_s
+        )?;
+    }
+    out.flush()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn run(digest: &str, level: &[f64], flag: &[f64]) -> Run {
+        let names = ["level", "flag"].map(|name| SignalName::new(name).unwrap()).to_vec();
+        let t_ns = (0..level.len() as u64).map(|k| k * 10_000_000).collect();
+        let samples = Samples { names, t_ns, values: vec![level.to_vec(), flag.to_vec()] };
+        Run { digest: digest.to_owned(), samples, steps_per_s: 100.0 }
+    }
+
+    #[test]
+    fn what_free_wheeling_costs_is_counted() {
+        let types = [SignalType::LREAL, SignalType::BOOL];
+        let lockstep = run("a", &[0.0, 1.0, 2.0, 4.0], &[0.0, 1.0, 0.0, 1.0]);
+        let same =
+            row(Mode::Lockstep, &[run("a", &[0.0, 1.0, 2.0, 4.0], &[0.0, 1.0, 0.0, 1.0])], &lockstep.samples, &types);
+        assert_eq!((same.digests, same.deviation, same.offset_ms, same.lost_edges, same.edges), (1, 0.0, 0.0, 0.0, 3));
+        let others = [
+            run("b", &[0.0, 0.0, 2.0, 4.0], &[0.0, 0.0, 1.0, 1.0]),
+            run("c", &[0.0, 1.0, 2.0, 2.0], &[0.0, 1.0, 0.0, 1.0]),
+        ];
+        let free = row(Mode::Freewheel, &others, &lockstep.samples, &types);
+        assert_eq!((free.digests, free.deviating.as_deref()), (2, Some("level")));
+        // 2 of 4; one edge of four is 10 ms late; two of three are missing in one of two runs.
+        assert_eq!((free.deviation, free.offset_ms, free.lost_edges), (0.5, 2.5, 1.0));
+    }
+}

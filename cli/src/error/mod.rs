@@ -1,0 +1,26 @@
+//! What several commands find wrong, and what the shell is told of it.
+//!
+//! Each command has an error of its own, which names all that can go wrong with it; these are the parts.
+//!
+//! | module | subject |
+//! |---|---|
+//! | [`usage`] | what was typed is wrong |
+//! | [`unreadable`] | a file that was named cannot be read |
+//! | [`process`] | another program cannot be started |
+//! | [`listen`] | an address cannot be listened on |
+//! | [`exit`] | what the program tells the shell |
+//! | `sum` | errors that are one of several |
+
+pub mod exit;
+pub mod listen;
+pub mod process;
+mod sum;
+pub mod unreadable;
+pub mod usage;
+
+pub use exit::{Exit, ExitCode};
+pub use listen::ListenError;
+pub use process::SpawnError;
+pub(crate) use sum::sum_of_errors;
+pub use unreadable::Unreadable;
+pub use usage::Usage;

@@ -1,0 +1,17 @@
+//! Another program cannot be started.
+
+use std::io;
+
+use thiserror::Error;
+
+/// A process that cannot be started.
+#[derive(Debug, Error)]
+#[error("cannot start `{command}` for client `{client}`: {source}")]
+pub struct SpawnError {
+    /// For whom.
+    pub client: String,
+    /// The program.
+    pub command: String,
+    /// Why.
+    pub source: io::Error,
+}

@@ -1,0 +1,18 @@
+//! Why there is no new scenario.
+
+use onescan_report::{FileError, OutputError};
+
+use crate::error::{Usage, sum_of_errors};
+
+sum_of_errors! {
+    /// Why there is no new scenario.
+    pub enum NewError {
+        /// What was typed is wrong.
+        #[diagnostic(transparent)]
+        Usage(Usage),
+        /// A file cannot be written.
+        File(FileError),
+        /// The report cannot be written.
+        Output(OutputError),
+    }
+}

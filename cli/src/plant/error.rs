@@ -1,0 +1,20 @@
+//! Why nothing is told of a scene or the library.
+
+use onescan_report::OutputError;
+use onescan_scenario::ScenarioError;
+
+use crate::error::{Usage, sum_of_errors};
+
+sum_of_errors! {
+    /// Why nothing is told of a scene or the library.
+    pub enum PlantError {
+        /// The scenario is wrong.
+        #[diagnostic(transparent)]
+        Scenario(ScenarioError),
+        /// What was typed is wrong.
+        #[diagnostic(transparent)]
+        Usage(Usage),
+        /// The report cannot be written.
+        Output(OutputError),
+    }
+}

@@ -1,0 +1,22 @@
+//! Why a PLC does not run.
+
+use onescan_report::OutputError;
+use onescan_scenario::ScenarioError;
+
+use crate::error::{ListenError, Usage, sum_of_errors};
+
+sum_of_errors! {
+    /// Why a PLC does not run.
+    pub enum PlcError {
+        /// The scenario is wrong.
+        #[diagnostic(transparent)]
+        Scenario(ScenarioError),
+        /// What was typed is wrong.
+        #[diagnostic(transparent)]
+        Usage(Usage),
+        /// An address cannot be listened on.
+        Listen(ListenError),
+        /// The report cannot be written.
+        Output(OutputError),
+    }
+}

@@ -1,0 +1,42 @@
+//! Why nothing was tested. What is wrong with a test is no error but an outcome.
+
+use onescan_report::{FileError, OutputError};
+use onescan_scenario::ScenarioError;
+
+use super::unit_test::SourcesReport;
+use crate::check::CheckError;
+use crate::error::{SpawnError, Unreadable, Usage, sum_of_errors};
+use crate::run::RunError;
+use crate::snapshot::StoreError;
+
+sum_of_errors! {
+    /// Why nothing was tested. What is wrong with a test is no error but an outcome.
+    pub enum TestError {
+        /// The scenario is wrong.
+        #[diagnostic(transparent)]
+        Scenario(ScenarioError),
+        /// What was typed is wrong.
+        #[diagnostic(transparent)]
+        Usage(Usage),
+        /// A file cannot be read.
+        Unreadable(Unreadable),
+        /// A snapshot cannot be read or written.
+        #[diagnostic(transparent)]
+        Snapshot(StoreError),
+        /// The sources cannot be read.
+        #[diagnostic(transparent)]
+        Check(CheckError),
+        /// Nothing came of a run.
+        #[diagnostic(transparent)]
+        Run(RunError),
+        /// Sources with test programs do not compile.
+        #[diagnostic(transparent)]
+        Sources(Box<SourcesReport>),
+        /// A process cannot be started.
+        Spawn(SpawnError),
+        /// A file cannot be written.
+        File(FileError),
+        /// The report cannot be written.
+        Output(OutputError),
+    }
+}

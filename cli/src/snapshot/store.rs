@@ -1,0 +1,138 @@
+//! The files of a scenario's snapshots: reviewed ones, and pending ones beside them.
+
+use std::path::{Path, PathBuf};
+
+use onescan_report::{FileError, file};
+
+use super::Snapshot;
+use super::error::StoreError;
+use crate::error::{Unreadable, Usage};
+
+/// The folder beside `scenario.toml`.
+pub const FOLDER: &str = "snapshots";
+const REVIEWED: &str = ".traj";
+const PENDING: &str = ".traj.new";
+
+/// The snapshot of one case.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Place {
+    /// The scenario's folder.
+    pub scenario: PathBuf,
+    /// The case.
+    pub case: String,
+}
+
+impl Place {
+    /// The snapshot that was reviewed.
+    pub fn reviewed(&self) -> PathBuf {
+        self.scenario.join(FOLDER).join(format!("{}{REVIEWED}", self.case))
+    }
+
+    /// The snapshot that waits for a review.
+    pub fn pending(&self) -> PathBuf {
+        self.scenario.join(FOLDER).join(format!("{}{PENDING}", self.case))
+    }
+
+    /// The reviewed snapshot, if there is one.
+    ///
+    /// # Errors
+    /// It cannot be read, or is none.
+    pub fn read_reviewed(&self) -> Result<Option<Snapshot>, StoreError> {
+        read(&self.reviewed())
+    }
+
+    /// The pending snapshot, if there is one.
+    ///
+    /// # Errors
+    /// It cannot be read, or is none.
+    pub fn read_pending(&self) -> Result<Option<Snapshot>, StoreError> {
+        read(&self.pending())
+    }
+
+    /// Makes a snapshot the reviewed one; what was pending is so no longer.
+    ///
+    /// # Errors
+    /// The files cannot be written.
+    pub fn accept(&self, snapshot: &Snapshot) -> Result<(), StoreError> {
+        self.write(&self.reviewed(), snapshot)?;
+        self.reject()
+    }
+
+    /// Keeps a snapshot for a review.
+    ///
+    /// # Errors
+    /// The file cannot be written.
+    pub fn keep(&self, snapshot: &Snapshot) -> Result<(), StoreError> {
+        self.write(&self.pending(), snapshot)
+    }
+
+    /// Drops what is pending.
+    ///
+    /// # Errors
+    /// The file cannot be removed.
+    pub fn reject(&self) -> Result<(), StoreError> {
+        let path = self.pending();
+        match std::fs::remove_file(&path) {
+            Err(source) if source.kind() != std::io::ErrorKind::NotFound => Err(FileError { path, source }.into()),
+            _ => Ok(()),
+        }
+    }
+
+    fn write(&self, path: &Path, snapshot: &Snapshot) -> Result<(), StoreError> {
+        file::create_folder(&self.scenario.join(FOLDER))?;
+        Ok(file::write_whole(path, snapshot.to_text().as_bytes())?)
+    }
+}
+
+/// The snapshot in a file, if it is there.
+///
+/// # Errors
+/// It cannot be read, or is none.
+pub fn read(path: &Path) -> Result<Option<Snapshot>, StoreError> {
+    let bytes = match std::fs::read(path) {
+        Ok(bytes) => bytes,
+        Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Ok(None),
+        Err(source) => return Err(Unreadable { path: path.to_owned(), source }.into()),
+    };
+    let help = || Some("take it back from version control, or delete it and run `onescan test` again".to_owned());
+    let Ok(text) = String::from_utf8(bytes) else {
+        return Err(Usage::new(format!("{} is no snapshot: it is not text", path.display()), help()).into());
+    };
+    match Snapshot::parse(&text) {
+        Ok(snapshot) => Ok(Some(snapshot)),
+        Err(error) => Err(Usage::new(format!("{}: {error}", path.display()), help()).into()),
+    }
+}
+
+/// The snapshots that wait for a review below a scenario, in the order of their names.
+///
+/// # Errors
+/// The folder cannot be read.
+pub fn pending(scenario: &Path) -> Result<Vec<Place>, StoreError> {
+    named(scenario, PENDING)
+}
+
+/// The reviewed snapshots of a scenario, in the order of their names.
+///
+/// # Errors
+/// The folder cannot be read.
+pub fn reviewed(scenario: &Path) -> Result<Vec<Place>, StoreError> {
+    named(scenario, REVIEWED)
+}
+
+fn named(scenario: &Path, ending: &str) -> Result<Vec<Place>, StoreError> {
+    let folder = scenario.join(FOLDER);
+    let failed = Unreadable::at(&folder);
+    let entries = match std::fs::read_dir(&folder) {
+        Ok(entries) => entries,
+        Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Ok(Vec::new()),
+        Err(error) => return Err(failed(error).into()),
+    };
+    let mut cases = Vec::new();
+    for entry in entries {
+        let name = entry.map_err(&failed)?.file_name().to_string_lossy().into_owned();
+        cases.extend(name.strip_suffix(ending).map(str::to_owned));
+    }
+    cases.sort();
+    Ok(cases.into_iter().map(|case| Place { scenario: scenario.to_owned(), case }).collect())
+}

@@ -1,0 +1,19 @@
+//! Why nothing is told of how clients are connected.
+
+use onescan_report::{FileError, OutputError};
+use onescan_scenario::ScenarioError;
+
+use crate::error::sum_of_errors;
+
+sum_of_errors! {
+    /// Why nothing is told of how clients are connected.
+    pub enum WiringError {
+        /// The scenario is wrong.
+        #[diagnostic(transparent)]
+        Scenario(ScenarioError),
+        /// A file cannot be written.
+        File(FileError),
+        /// The report cannot be written.
+        Output(OutputError),
+    }
+}

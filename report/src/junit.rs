@@ -1,0 +1,143 @@
+//! The report format of `JUnit`, as CI servers read it: a suite for each scenario, a case for each test.
+//!
+//! `time` of a case is virtual time, so that equal runs give equal reports; only the root says how
+//! long it all took.
+
+use std::fmt::{self, Write as _};
+use std::time::Duration;
+
+/// All tests.
+#[derive(Clone, Debug)]
+pub struct Tests {
+    /// In the order of the report.
+    pub suites: Vec<Suite>,
+    /// How long it all took, wall clock.
+    pub wall_time: Duration,
+}
+
+/// Tests that belong together.
+#[derive(Clone, Debug)]
+pub struct Suite {
+    /// The scenario's folder, or the sources.
+    pub name: String,
+    /// In the order of the report.
+    pub cases: Vec<Case>,
+}
+
+/// One test.
+#[derive(Clone, Debug)]
+pub struct Case {
+    /// The case of the scenario or the test program; empty if it is not known.
+    pub name: String,
+    /// Virtual time at its end.
+    pub virtual_time_ns: u64,
+    /// File and line that it leads to.
+    pub place: Option<(String, u32)>,
+    /// How it ended.
+    pub ended: Ended,
+}
+
+/// How a test ended.
+#[derive(Clone, Debug)]
+pub enum Ended {
+    /// All is as it should be.
+    Well,
+    /// The test did not find what it wants.
+    Failure(Trouble),
+    /// The test could not be made.
+    Error(Trouble),
+}
+
+/// What went wrong.
+#[derive(Clone, Debug)]
+pub struct Trouble {
+    /// In a word.
+    pub word: &'static str,
+    /// What there is to say of it.
+    pub lines: Vec<String>,
+}
+
+impl Tests {
+    /// The report as XML.
+    pub fn to_xml(&self) -> String {
+        let mut text = String::new();
+        // A String takes everything, so that there is nothing to tell.
+        let written = self.write(&mut text);
+        debug_assert!(written.is_ok());
+        text
+    }
+
+    fn write(&self, text: &mut String) -> fmt::Result {
+        let all: Vec<&Case> = self.suites.iter().flat_map(|suite| &suite.cases).collect();
+        let (counts, wall) = (counts(&all), self.wall_time.as_secs_f64());
+        writeln!(text, "<?xml version=\"1.0\" encoding=\"UTF-8\"?>")?;
+        writeln!(text, "<testsuites name=\"onescan\" {counts} time=\"{wall:.3}\">")?;
+        self.suites.iter().try_for_each(|suite| suite.write(text))?;
+        writeln!(text, "</testsuites>")
+    }
+}
+
+impl Suite {
+    fn write(&self, text: &mut String) -> fmt::Result {
+        let cases: Vec<&Case> = self.cases.iter().collect();
+        let time = cases.iter().map(|case| case.virtual_time_ns).sum::<u64>() as f64 / 1e9;
+        let (name, counts) = (escaped(&self.name), counts(&cases));
+        writeln!(text, "  <testsuite name=\"{name}\" {counts} skipped=\"0\" time=\"{time:.3}\">")?;
+        self.cases.iter().try_for_each(|case| case.write(&name, text))?;
+        writeln!(text, "  </testsuite>")
+    }
+}
+
+impl Case {
+    /// `class` is escaped already.
+    fn write(&self, class: &str, text: &mut String) -> fmt::Result {
+        let name = escaped(if self.name.is_empty() { "(all)" } else { &self.name });
+        let time = self.virtual_time_ns as f64 / 1e9;
+        write!(text, "    <testcase name=\"{name}\" classname=\"{class}\" time=\"{time:.3}\"")?;
+        if let Some((file, line)) = &self.place {
+            write!(text, " file=\"{}\" line=\"{line}\"", escaped(file))?;
+        }
+        let (kind, Trouble { word, lines }) = match &self.ended {
+            Ended::Well => return writeln!(text, "/>"),
+            Ended::Failure(trouble) => ("failure", trouble),
+            Ended::Error(trouble) => ("error", trouble),
+        };
+        let first = escaped(lines.first().map_or(*word, String::as_str));
+        let all = escaped(&lines.join("\n"));
+        writeln!(text, ">\n      <{kind} message=\"{first}\" type=\"{word}\">{all}</{kind}>\n    </testcase>")
+    }
+}
+
+fn counts(cases: &[&Case]) -> String {
+    let errors = cases.iter().filter(|case| matches!(case.ended, Ended::Error(_))).count();
+    let failures = cases.iter().filter(|case| matches!(case.ended, Ended::Failure(_))).count();
+    format!("tests=\"{}\" failures=\"{failures}\" errors=\"{errors}\"", cases.len())
+}
+
+/// Text that may stand between tags and in quoted attributes of XML. Characters that XML 1.0 has no place
+/// for become U+FFFD.
+fn escaped(text: &str) -> String {
+    let mut safe = String::with_capacity(text.len());
+    for letter in text.chars() {
+        match letter {
+            '&' => safe.push_str("&amp;"),
+            '<' => safe.push_str("&lt;"),
+            '>' => safe.push_str("&gt;"),
+            '"' => safe.push_str("&quot;"),
+            '\n' | '\t' => safe.push(letter),
+            '\u{0}'..='\u{1f}' | '\u{fffe}' | '\u{ffff}' => safe.push('\u{fffd}'),
+            _ => safe.push(letter),
+        }
+    }
+    safe
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn text_stays_text() {
+        assert_eq!(escaped("a < b && \"c\"\u{1b}"), "a &lt; b &amp;&amp; &quot;c&quot;\u{fffd}");
+    }
+}

@@ -1,0 +1,102 @@
+//! One self-contained page: what was run, what came of it, in pictures. Nothing is loaded from elsewhere.
+//!
+//! | module | subject |
+//! |---|---|
+//! | [`section`] | one test or run |
+//! | [`coverage`] | coverage by file |
+//!
+//! Equal runs give equal pages, except for the line in the header that says how long it took.
+
+pub mod coverage;
+pub mod section;
+
+use maud::{DOCTYPE, Markup, PreEscaped, html};
+
+pub use coverage::CoveredFile;
+pub use section::{Event, Mood, Section, Shown};
+
+const STYLE: &str = include_str!("style.css");
+
+/// Ends a line of the page's text, so that two pages can be compared line by line.
+const LINE: PreEscaped<&str> = PreEscaped("\n");
+
+/// What a page shows.
+#[derive(Clone, Debug, Default)]
+pub struct Page {
+    /// What was run.
+    pub title: String,
+    /// What came of it, in a line.
+    pub totals: String,
+    /// How long it all took; empty if that is not known.
+    pub wall: String,
+    /// Tests or runs.
+    pub sections: Vec<Section>,
+    /// Files of the PLC's code; none where nothing was noted.
+    pub coverage: Vec<CoveredFile>,
+}
+
+impl Page {
+    /// The page as HTML.
+    pub fn to_html(&self) -> String {
+        let Self { title, totals, wall, sections, coverage } = self;
+        let made = format!("onescan {} {wall}", env!("CARGO_PKG_VERSION"));
+        let page = html! {
+            (DOCTYPE) (LINE)
+            html lang="en" { (LINE)
+                head { (LINE)
+                    meta charset="utf-8"; (LINE)
+                    meta name="viewport" content="width=device-width, initial-scale=1"; (LINE)
+                    title { (title) } (LINE)
+                    style { (LINE) (PreEscaped(STYLE)) } (LINE)
+                } (LINE)
+                body { (LINE)
+                    header { h1 { (title) } (LINE)
+                        p { (totals) } (LINE)
+                        p class="made" { (made) }
+                    } (LINE)
+                    main { (LINE)
+                        @if sections.len() > 1 { (contents(sections)) (LINE) }
+                        @for (index, section) in sections.iter().enumerate() { (section.markup(index)) (LINE) }
+                        @if !coverage.is_empty() { (coverage::markup(coverage)) (LINE) }
+                    } (LINE)
+                } (LINE)
+            } (LINE)
+        };
+        printable(page)
+    }
+}
+
+/// A line for each section.
+fn contents(sections: &[Section]) -> Markup {
+    html! {
+        table class="contents" {
+            thead { tr { th { "test" } th { "result" } th { "virtual time" } th { "steps" } } } (LINE)
+            @for (index, section) in sections.iter().enumerate() {
+                tr {
+                    td { a href=(format!("#t{index}")) { (section.title) } }
+                    td class=(section.mood.class()) { (section.status) }
+                    td { (section.virtual_time) }
+                    td { (section.steps) }
+                } (LINE)
+            }
+        }
+    }
+}
+
+/// HTML has no place for control characters, which an error's text may bring along. All text of a page goes
+/// through here, so that none is forgotten.
+fn printable(page: Markup) -> String {
+    let strange = |letter: char| letter < ' ' && !matches!(letter, '\n' | '\t');
+    page.into_string().replace(strange, "\u{fffd}")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn text_stays_text() {
+        let page = Page { title: "a < b && \"c\"\u{1b}".to_owned(), ..Page::default() };
+        assert!(page.to_html().contains("<h1>a &lt; b &amp;&amp; &quot;c&quot;\u{fffd}</h1>"));
+    }
+}

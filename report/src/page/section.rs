@@ -1,0 +1,146 @@
+//! One test or run of a page.
+
+use maud::{Markup, PreEscaped, html};
+
+use super::LINE;
+use crate::verdict::Verdict;
+
+/// So many events are listed; a machine's signals change often.
+const EVENTS_MAX: usize = 200;
+
+/// What a page says of one test or run.
+#[derive(Clone, Debug, Default)]
+pub struct Section {
+    /// The test or run.
+    pub title: String,
+    /// How it ended, in a word.
+    pub status: String,
+    /// How that is taken.
+    pub mood: Mood,
+    /// Steps or scans.
+    pub steps: u64,
+    /// Virtual time of the last of them, with its unit.
+    pub virtual_time: String,
+    /// Names and values.
+    pub facts: Vec<(&'static str, String)>,
+    /// What there is to say of it.
+    pub lines: Vec<String>,
+    /// What it had to show.
+    pub expectations: Vec<Shown>,
+    /// What happened, in the order of time.
+    pub events: Vec<Event>,
+    /// Its trajectories, as an SVG document.
+    pub svg: Option<String>,
+}
+
+/// How a status is taken.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Mood {
+    /// As all should be.
+    #[default]
+    Good,
+    /// Not decided.
+    Open,
+    /// To be looked at.
+    Bad,
+}
+
+impl Mood {
+    pub(super) fn class(self) -> &'static str {
+        match self {
+            Self::Good => "good",
+            Self::Open => "open",
+            Self::Bad => "bad",
+        }
+    }
+}
+
+impl From<Verdict> for Mood {
+    fn from(verdict: Verdict) -> Self {
+        match verdict {
+            Verdict::Met => Self::Good,
+            Verdict::Open => Self::Open,
+            Verdict::Violated => Self::Bad,
+        }
+    }
+}
+
+/// What came of an expectation.
+#[derive(Clone, Debug)]
+pub struct Shown {
+    /// Its name.
+    pub name: String,
+    /// Whether it was met.
+    pub verdict: Verdict,
+    /// When it was first violated, with the unit; empty if it was not.
+    pub at: String,
+    /// What its signals were then.
+    pub values: Vec<(String, f64)>,
+    /// By how much it was met; absent where that is infinite or not known.
+    pub margin: Option<f64>,
+}
+
+/// Something that happened.
+#[derive(Clone, Debug)]
+pub struct Event {
+    /// When, with the unit.
+    pub at: String,
+    /// What.
+    pub what: String,
+}
+
+impl Section {
+    pub(super) fn markup(&self, index: usize) -> Markup {
+        html! {
+            section id=(format!("t{index}")) {
+                h2 { (self.title) " " span class=(self.mood.class()) { (self.status) } } (LINE)
+                @if !self.lines.is_empty() { pre { (self.lines.join("\n")) } (LINE) }
+                table {
+                    @for (name, value) in &self.facts { tr { th { (name) } td class="value" { (value) } } (LINE) }
+                } (LINE)
+                @if !self.expectations.is_empty() { (expectations(&self.expectations)) (LINE) }
+                // The picture is a document of this program, whose own text is escaped.
+                @if let Some(svg) = &self.svg { h3 { "trajectories" } (LINE) (PreEscaped(svg)) (LINE) }
+                @if !self.events.is_empty() { (events(&self.events)) (LINE) }
+            }
+        }
+    }
+}
+
+fn expectations(all: &[Shown]) -> Markup {
+    let values = |shown: &Shown| -> String {
+        let values: Vec<String> = shown.values.iter().map(|(signal, value)| format!("{signal} = {value}")).collect();
+        values.join(", ")
+    };
+    html! {
+        h3 { "expectations" } (LINE)
+        table {
+            thead { tr { th { "name" } th { "verdict" } th { "at" } th { "signals" } th { "margin" } } } (LINE)
+            @for shown in all {
+                tr {
+                    td { (shown.name) }
+                    td class=(Mood::from(shown.verdict).class()) { (shown.verdict.word()) }
+                    td { (shown.at) }
+                    td class="value" { (values(shown)) }
+                    td { @if let Some(margin) = shown.margin { (format!("{margin:.3e}")) } }
+                } (LINE)
+            }
+        }
+    }
+}
+
+fn events(all: &[Event]) -> Markup {
+    html! {
+        details {
+            summary { (all.len()) " events" } (LINE)
+            table {
+                @for Event { at, what } in all.iter().take(EVENTS_MAX) {
+                    tr { td class="value" { (at) } td { (what) } } (LINE)
+                }
+                @if let Some(more @ 1..) = all.len().checked_sub(EVENTS_MAX) {
+                    tr { td {} td { "... and " (more) " more" } } (LINE)
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,169 @@
+//! What a case sets before a session begins: parameters of plants, constants and initial values of
+//! PLCs. All of it is typed by whoever owns it, the scene's format and the PLC's declarations.
+
+use std::collections::BTreeMap;
+
+use onescan_clients::plant::scene::{Override, UnknownFailure};
+use onescan_clients::soft_plc::SoftPlcClient;
+use onescan_plc_shim::{Application, BuildError, Builder, ConstantError, Diagnostics, Input, WriteError};
+use onescan_server::checkpoint::Makeup;
+use onescan_server::signal::ClientName;
+
+use super::apply::{settings_of, wrong_case};
+use super::value::{literal_of, quoted};
+use super::{Applied, Setting};
+use crate::Scenario;
+use crate::error::ScenarioError;
+
+/// What is behind the client's name in a setting's path.
+fn own_path(setting: &Setting) -> &str {
+    setting.path.split_once('.').map_or("", |(_, path)| path)
+}
+
+impl Scenario {
+    /// What the case sets in the scene of plant `name`.
+    pub(crate) fn overrides(&self, name: &ClientName) -> Vec<Override> {
+        let settings = self.applied().into_iter().flat_map(|applied| settings_of(applied, name));
+        settings.map(|setting| Override::new(own_path(setting), &setting.value)).collect()
+    }
+
+    /// The error of override `index` of plant `name`; the last one's if none is named, since without
+    /// them the scene was right.
+    pub(crate) fn wrong_override(
+        &self,
+        name: &ClientName,
+        index: Option<usize>,
+        message: String,
+        help: Option<String>,
+    ) -> Option<ScenarioError> {
+        let applied = self.applied()?;
+        let settings: Vec<&Setting> = settings_of(applied, name).collect();
+        let setting = index.and_then(|index| settings.get(index)).or(settings.last())?;
+        Some(wrong_case(applied, message, setting.place.clone(), help))
+    }
+
+    /// The application of PLC `name`, with the constants of the case. `sources` adds the sources and
+    /// says what it is built for.
+    pub(crate) fn built(
+        &self,
+        name: &ClientName,
+        inputs: &[Input],
+        flavour: impl Fn(Builder) -> Builder,
+    ) -> Result<Result<Application, Diagnostics>, ScenarioError> {
+        let mut builder = flavour(Application::builder()).inputs(inputs.iter().cloned());
+        let mut constants: Vec<(&Applied, &Setting)> = Vec::new();
+        if let Some(applied) = self.applied() {
+            for setting in settings_of(applied, name) {
+                // What is not a constant is a variable: it is preset when the PLC is made.
+                if let Some(literal) = literal_of(&setting.value)
+                    && builder.has_constant(own_path(setting))
+                {
+                    builder = builder.constant(own_path(setting), literal);
+                    constants.push((applied, setting));
+                }
+            }
+        }
+        match builder.build() {
+            Ok(application) => Ok(Ok(application)),
+            Err(BuildError::Constant(error)) => match blamed(&error, &constants) {
+                Some((applied, setting)) => {
+                    let message = format!("`{name}` does not compile with this constant: {error}");
+                    Err(wrong_case(applied, message, setting.place.clone(), None))
+                }
+                // Only constants of the case are given, so one of them is named.
+                None => Err(self.wrong_client(name, error.to_string(), None)),
+            },
+            Err(BuildError::Sources(findings)) => match constants.last() {
+                Some((applied, setting)) if Application::from_inputs(inputs.to_vec()).is_ok() => {
+                    let first = findings.findings().first().map(|found| found.diagnostic().message.clone());
+                    let what = first.unwrap_or_else(|| "it does not compile".to_owned());
+                    let message = format!("`{name}` does not compile with the constants of this case: {what}");
+                    Err(wrong_case(applied, message, setting.place.clone(), None))
+                }
+                _ => Ok(Err(findings)),
+            },
+        }
+    }
+
+    /// Gives a PLC the initial values of the case.
+    pub(crate) fn preset(
+        &self,
+        plc: &mut SoftPlcClient,
+        name: &ClientName,
+        inputs: &[Input],
+    ) -> Result<(), ScenarioError> {
+        let Some(applied) = self.applied() else { return Ok(()) };
+        let builder = Application::builder().inputs(inputs.iter().cloned());
+        for setting in settings_of(applied, name) {
+            let path = own_path(setting);
+            let refused = |message, help| wrong_case(applied, message, setting.place.clone(), help);
+            let Some(literal) = literal_of(&setting.value) else {
+                return Err(refused(format!("`{path}` takes a number, a BOOL or a literal as text"), None));
+            };
+            if builder.has_constant(path) {
+                continue;
+            }
+            let mut written = plc.preset(path, &literal);
+            if written.is_err() && setting.value.is_str() {
+                // A text may also be that of a string, without its quotation marks.
+                let quotes = ['\'', '"'].into_iter().map(|quote| quoted(&literal, quote));
+                written = quotes
+                    .fold(written, |before, text| before.or_else(|error| plc.preset(path, &text).map_err(|_| error)));
+            }
+            written.map_err(|error| match error {
+                WriteError::Unknown(unknown) => {
+                    refused(format!("`{name}` has no variable `{}`", unknown.path), unknown.help)
+                }
+                error => refused(error.to_string(), None),
+            })?;
+        }
+        Ok(())
+    }
+
+    /// Refuses failures of components that plant `name` does not have.
+    pub(crate) fn check_failures(
+        &self,
+        name: &ClientName,
+        scene: &onescan_clients::plant::Scene,
+    ) -> Result<(), ScenarioError> {
+        let Some(applied) = self.applied() else { return Ok(()) };
+        for failure in applied.failures.iter().filter(|failure| failure.client == *name) {
+            if let Err(unknown) = scene.check_failure(&failure.component, &failure.mode) {
+                let (message, help) = match unknown {
+                    UnknownFailure::Component { component, hint } => {
+                        (format!("no component `{component}` in this scene"), hint)
+                    }
+                    UnknownFailure::Mode { component, mode, hint } => {
+                        (format!("component `{component}` has no failure mode `{mode}`"), Some(hint))
+                    }
+                };
+                return Err(wrong_case(applied, message, failure.place.clone(), help));
+            }
+        }
+        Ok(())
+    }
+
+    /// What a session of this scenario is made of, for checkpoints.
+    pub fn makeup(&self) -> Makeup {
+        let mut settings = BTreeMap::new();
+        settings.insert("seed".to_owned(), self.seed().to_string());
+        for setting in self.applied().into_iter().flat_map(|applied| &applied.case.settings) {
+            settings.insert(setting.path.clone(), setting.value.to_string());
+        }
+        let case = self.case().map_or(super::DEFAULT, |case| case.name.as_str());
+        Makeup { name: format!("case `{case}`"), settings }
+    }
+}
+
+/// The setting that a constant's error is about.
+fn blamed<'a>(error: &ConstantError, constants: &[(&'a Applied, &'a Setting)]) -> Option<(&'a Applied, &'a Setting)> {
+    let path = match error {
+        ConstantError::Unknown { path, .. }
+        | ConstantError::Variable { path, .. }
+        | ConstantError::Ambiguous { path, .. }
+        | ConstantError::Twice { path, .. }
+        | ConstantError::Value { path, .. } => path,
+    };
+    let named = constants.iter().find(|(_, setting)| own_path(setting).eq_ignore_ascii_case(path));
+    named.or(constants.last()).copied()
+}

@@ -1,0 +1,64 @@
+//! Where output goes: readers that leave early, disks that are full.
+
+use std::fs::File;
+use std::io::pipe;
+use std::process::Stdio;
+
+use crate::typed::{Said, copied_shear, onescan, scenario};
+
+#[test]
+fn a_reader_that_has_left_is_no_failure() {
+    for words in [&["explain", "--list"][..], &["run", ".", "--until", "100ms"], &["run", ".", "--format", "json"]] {
+        let (reader, writer) = pipe().expect("a pipe");
+        drop(reader);
+        let output = onescan(&scenario("shear")).args(words).stdout(writer).output().expect("the program starts");
+        let said = Said::from(output);
+        assert_eq!((said.code, said.err.as_str()), (Some(0), ""), "{words:?}");
+    }
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn a_full_disk_is_a_fault_and_not_wrong_input() {
+    for words in [&["explain", "--list"][..], &["explain", "N0101"], &["run", ".", "--until", "100ms"]] {
+        let full = File::options().write(true).open("/dev/full").expect("Linux has it");
+        let output = onescan(&scenario("shear")).args(words).stdout(full).output().expect("the program starts");
+        let said = Said::from(output);
+        assert_eq!(said.code, Some(3), "{words:?}: {said:?}");
+        assert!(said.err.contains("cannot write the report: No space left on device"), "{said:?}");
+    }
+}
+
+#[cfg(unix)]
+#[test]
+fn a_picture_that_cannot_be_written_is_a_fault_and_leaves_nothing() {
+    let folder = copied_shear();
+    // No file may grow, as on a full disk; the signal that comes with it is not taken.
+    let program = onescan(folder.path());
+    let limited = format!(
+        "trap '' XFSZ; ulimit -f 0; exec '{}' run . --until 100ms --plot plot.svg",
+        program.get_program().to_string_lossy()
+    );
+    let output = std::process::Command::new("sh")
+        .current_dir(folder.path())
+        .args(["-c", &limited])
+        .env("NO_COLOR", "1")
+        .stdin(Stdio::null())
+        .output()
+        .expect("a shell");
+    let said = Said::from(output);
+    assert_eq!(said.code, Some(3), "{said:?}");
+    assert!(said.err.contains("plot.svg: File too large"), "{said:?}");
+    let left: Vec<_> = std::fs::read_dir(folder.path()).expect("a folder").flatten().map(|e| e.file_name()).collect();
+    assert!(
+        left.iter().all(|name| !name.to_string_lossy().contains("svg") && !name.to_string_lossy().starts_with(".tmp"))
+    );
+}
+
+#[test]
+fn a_path_that_cannot_be_is_wrong_input() {
+    let folder = copied_shear();
+    let words = ["run", ".", "--until", "100ms", "--plot", "no/such/folder/plot.svg"];
+    let said = Said::from(onescan(folder.path()).args(words).output().expect("the program starts"));
+    assert_eq!(said.code, Some(2), "{said:?}");
+}
