@@ -194,7 +194,9 @@ struct Collector {
 impl Collector {
     fn of(units: &[(FileId, CompilationUnit)]) -> Self {
         let mut collector = Self::default();
-        units.iter().for_each(|(_, unit)| collector.declarations(&unit.declarations, &[]));
+        for (_, unit) in units {
+            collector.declarations(&unit.declarations, &[]);
+        }
         for (_, unit) in units {
             for declaration in &unit.declarations {
                 if let Declaration::Configuration(configuration) = declaration {

@@ -41,7 +41,7 @@ impl SoftPlc {
             let site = self.logged(&format!("sites[{index}]"));
             match site.zip(self.logged(&format!("texts[{index}]"))) {
                 Some((site, text)) => {
-                    found.failed.push(self.failed(number(self.bytes(&site)), text_of(self.bytes(&text))))
+                    found.failed.push(self.failed(number(self.bytes(&site)), text_of(self.bytes(&text))));
                 }
                 // Counted, but beyond what the log has room for.
                 None => found.lost += 1,

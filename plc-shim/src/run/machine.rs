@@ -96,7 +96,7 @@ impl Machine {
         let rows = row::link(&mut store, &functions).map_err(|error| module_error(&error))?;
         let start = optional(&instance, &mut store, START_EXPORT)?;
         let end = optional(&instance, &mut store, END_EXPORT)?;
-        Ok(Self { store, memory, notes, budget, size, entries, rows, start, end })
+        Ok(Self { store, memory, budget, notes, size, entries, rows, start, end })
     }
 
     pub(super) fn memory(&self) -> &[u8] {

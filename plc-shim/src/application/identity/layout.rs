@@ -153,7 +153,7 @@ impl Layout {
                 self.add_ranges(*element, 0, &mut inside);
                 let inside = joined(inside);
                 let stride = self.shapes.get(*element as usize).map_or(0, |shape| shape.size as usize).max(1);
-                if inside == [0..stride] {
+                if matches!(&inside[..], [range] if *range == (0..stride)) {
                     // Without a gap, so that a large array of numbers is one range.
                     found.push(base..base + size);
                     return;

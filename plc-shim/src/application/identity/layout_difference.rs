@@ -114,11 +114,12 @@ impl Search<'_> {
 
 /// Members by name, and by number where methods of different units share one.
 fn by_name(members: &[Member]) -> BTreeMap<(String, usize), &Member> {
-    let mut found = BTreeMap::new();
-    for member in members {
+    let mut counts: BTreeMap<String, usize> = BTreeMap::new();
+    let numbered = members.iter().map(|member| {
         let name = member.name.to_ascii_uppercase();
-        let number = (0..).find(|number| !found.contains_key(&(name.clone(), *number))).unwrap_or(0);
-        found.insert((name, number), member);
-    }
-    found
+        let count = counts.entry(name.clone()).or_default();
+        *count += 1;
+        ((name, *count), member)
+    });
+    numbered.collect()
 }
