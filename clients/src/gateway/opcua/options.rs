@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use opcua::client::IdentityToken;
 use opcua::crypto::SecurityPolicy;
 use opcua::types::MessageSecurityMode;
+use schemars::JsonSchema;
 use serde::Deserialize;
 
 use crate::gateway::fault::LinkFault;
@@ -13,7 +14,7 @@ use crate::gateway::fault::LinkFault;
 pub const NAMESPACE: &str = "urn:onescan:plc:variables";
 
 /// How a client presents itself, and where its variables are.
-#[derive(Clone, Debug, PartialEq, Eq, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct Options {
     /// The namespace of points without an address: each is there under its name.
