@@ -6,7 +6,7 @@ use std::borrow::Cow;
 use onescan_base::ElementaryType;
 use onescan_clients::gateway::settings::Text;
 use onescan_plc_shim::Dialect;
-use onescan_server::signal::NAME_BYTES_MAX;
+use onescan_server::signal::name::NAME_BYTES_MAX;
 use onescan_server::time::TimeSpan;
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde_json::json;

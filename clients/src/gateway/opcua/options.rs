@@ -20,8 +20,10 @@ pub struct Options {
     /// The namespace of points without an address: each is there under its name.
     pub namespace: String,
     /// `None`, `Basic256Sha256`, `Aes128-Sha256-RsaOaep` or `Aes256-Sha256-RsaPss`.
+    #[schemars(extend("enum" = ["None", "Basic256Sha256", "Aes128-Sha256-RsaOaep", "Aes256-Sha256-RsaPss"]))]
     pub policy: String,
     /// With a policy: `Sign` or `SignAndEncrypt`.
+    #[schemars(extend("enum" = ["Sign", "SignAndEncrypt"]))]
     pub mode: String,
     /// The user; anonymous if absent.
     pub user: Option<String>,
@@ -29,7 +31,7 @@ pub struct Options {
     pub password_env: String,
     /// The user's certificate and private key, in place of a password.
     pub user_certificate: Option<PathBuf>,
-    /// See `user_certificate`.
+    /// The private key of `user_certificate`; both or neither.
     pub user_key: Option<PathBuf>,
     /// The folder with the certificates of this program (`own`, `private`) and those it trusts (`trusted`);
     /// made when it is not there. Without it nothing is kept.
