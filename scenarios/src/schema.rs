@@ -42,6 +42,9 @@ fn as_written(schema: &mut Schema) {
             schema.insert("type".to_owned(), one);
         }
     }
+    if let Some(Value::Array(choices)) = schema.get_mut("enum") {
+        choices.retain(|choice| !choice.is_null());
+    }
     // The width of a number says nothing beside its bounds.
     schema.remove("format");
     if schema.get("default").is_some_and(|default| !is_told(default, schema.get("type"))) {

@@ -29,7 +29,7 @@ pub struct Options {
     pub user: Option<String>,
     /// Name of the environment variable that holds the user's password: it has no place in a file.
     pub password_env: String,
-    /// The user's certificate and private key, in place of a password.
+    /// The user's certificate, in place of a password.
     pub user_certificate: Option<PathBuf>,
     /// The private key of `user_certificate`; both or neither.
     pub user_key: Option<PathBuf>,
