@@ -66,7 +66,9 @@ fn faults_of(schema: &Map<String, Value>, keyword: &str, wanted: &Value, value: 
             let pattern = Regex::new(wanted.as_str().expect("a text")).expect("a pattern");
             value.as_str().is_none_or(|text| pattern.is_match(text))
         }
-        "maxLength" => value.as_str().is_none_or(|text| text.chars().count() as u64 <= wanted.as_u64().expect("a count")),
+        "maxLength" => {
+            value.as_str().is_none_or(|text| text.chars().count() as u64 <= wanted.as_u64().expect("a count"))
+        }
         "minItems" => value.as_array().is_none_or(|items| items.len() as u64 >= wanted.as_u64().expect("a count")),
         "minimum" => value.as_f64().is_none_or(|number| number >= wanted.as_f64().expect("a number")),
         "maximum" => value.as_f64().is_none_or(|number| number <= wanted.as_f64().expect("a number")),
