@@ -13,6 +13,7 @@ mod errors;
 mod expectations;
 mod faults;
 mod filling_machine;
+mod forks;
 mod freewheel;
 mod gantry_robot;
 mod help;

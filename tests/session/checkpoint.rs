@@ -2,7 +2,9 @@
 
 use onescan_server::checkpoint::{Checkpoint, CheckpointError};
 use onescan_server::lockstep::Reached;
+use onescan_server::operation::Operation;
 use onescan_server::plan::Coupling;
+use onescan_server::timeline::{Scheduled, Timeline, When};
 use onescan_tests::run::{PATIENCE, boxed, in_process, over_tcp, run};
 use onescan_tests::toy::{Mixer, RING, ring, ring_plan};
 use onescan_tests::{at_ms, client, plan, span_ms};
@@ -72,4 +74,34 @@ fn a_damaged_or_foreign_checkpoint_is_refused() {
         other.resume(&checkpoint).unwrap_err().to_string(),
         "the checkpoint belongs to another session: it has a client `beta`, which this session does not have"
     );
+}
+
+/// Two ways to one state: the digest is over the way, the hash of the state over what is left of it.
+#[test]
+fn runs_that_come_together_have_one_state_and_two_digests() {
+    let session = |scheduled: Vec<Scheduled>| {
+        let ulint = onescan_server::signal::SignalType::ULINT;
+        let plan = plan(span_ms(10), &Coupling::Parallel, &[("alpha.out", ulint, "alpha")], &["alpha"]);
+        let mut lockstep = in_process(plan, boxed([Mixer::new("alpha", span_ms(10), &[])]));
+        let timeline = Timeline::new(scheduled, lockstep.session()).unwrap();
+        lockstep.set_timeline(timeline);
+        lockstep
+    };
+    let signal = onescan_server::signal::SignalName::new("alpha.out").unwrap();
+    let write = Operation::Write { signal, value: "7".to_owned() };
+    let mut plain = session(Vec::new());
+    let mut disturbed = session(vec![Scheduled { when: When::At(at_ms(30)), operation: write }]);
+    let mut at = |ms: u64| {
+        [&mut plain, &mut disturbed].map(|lockstep| {
+            lockstep.run_to(at_ms(ms)).unwrap();
+            let checkpoint = lockstep.checkpoint().unwrap();
+            (checkpoint.digest(), checkpoint.state_hash().unwrap())
+        })
+    };
+    let [before, same] = at(20);
+    assert!(before.0 == same.0 && before.1 != same.1, "the write is still to come");
+    let [one, other] = at(30);
+    assert!(one.0 != other.0 && one.1 != other.1, "the value that was written is seen");
+    let [one, other] = at(40);
+    assert!(one.0 != other.0 && one.1 == other.1, "its writer has written it again, and nobody has read it");
 }

@@ -7,6 +7,7 @@
 //! | [`item`] | values that both sides can reach, one by one |
 //! | [`link`] | the OPC-like exchange: update rate, one item at a time |
 //! | [`synchronizer`] | a plant that follows a PLC's clock |
+//! | `timeline` | what a case does to one client, by its own clock |
 //! | [`wheel`] | a client that runs on its own clock |
 //! | [`run`] | all of them for some time, and what came of it |
 //!
@@ -17,4 +18,5 @@ mod item;
 mod link;
 pub mod run;
 pub mod synchronizer;
+mod timeline;
 mod wheel;

@@ -15,6 +15,7 @@ use onescan_server::plan::SessionPlan;
 use onescan_server::signal::{PortLayout, SignalName};
 use onescan_server::state::ClientState;
 use onescan_server::time::VirtualTime;
+use onescan_server::timeline::Scheduled;
 
 use super::item::Items;
 use super::link::{OpcLink, Route};
@@ -48,13 +49,13 @@ pub struct Trace {
 pub fn run(
     plan: &SessionPlan,
     clients: Vec<Freewheeler>,
-    link: &FreewheelFile,
+    (link, timeline): (&FreewheelFile, &[Scheduled]),
     until: VirtualTime,
     stop: &AtomicBool,
 ) -> Result<Trace, FormationError> {
     let requests: Vec<JoinRequest> = clients.iter().map(|client| client.client.join()).collect();
     replayed(plan, requests.iter().map(|request| (request.clone(), Vec::new())))?;
-    let (mut wheels, links) = connect(clients, &requests, link);
+    let (mut wheels, links) = connect(clients, &requests, link, timeline);
     let mut failed = None;
     for (wheel, request) in wheels.iter_mut().zip(&requests) {
         if let Err(fault) = wheel.set_up(PortLayout::new(request.writes.clone()).size()) {
@@ -116,17 +117,24 @@ fn end_of(request: &JoinRequest, state: ClientState, t_v: VirtualTime, fault: Cl
 }
 
 /// Gives every client its process images, and a link from its outputs to whoever reads them.
-fn connect(clients: Vec<Freewheeler>, requests: &[JoinRequest], link: &FreewheelFile) -> (Vec<Wheel>, Vec<OpcLink>) {
+fn connect(
+    clients: Vec<Freewheeler>,
+    requests: &[JoinRequest],
+    link: &FreewheelFile,
+    timeline: &[Scheduled],
+) -> (Vec<Wheel>, Vec<OpcLink>) {
     let plc_clock = Arc::new(AtomicU64::new(0));
     let wheels: Vec<Wheel> = clients
         .into_iter()
         .zip(requests)
         .map(|(client, request)| Wheel {
             client: client.client,
+            timeline: OwnTimeline::new(timeline, request),
             period: request.period,
             clock: client.clock,
             inputs: Arc::new(Items::new(&PortLayout::new(request.reads.clone()))),
             outputs: Arc::new(Items::new(&PortLayout::new(request.writes.clone()))),
+            own: Vec::new(),
             recorded: Vec::new(),
             reached: VirtualTime::ZERO,
             plc_clock: Arc::clone(&plc_clock),

@@ -9,6 +9,7 @@ use onescan_server::time::{TimeSpan, VirtualTime};
 
 use super::item::Items;
 use super::synchronizer::Synchronizer;
+use super::timeline::OwnTimeline;
 
 /// How a client keeps its cycle.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -26,11 +27,15 @@ pub enum Clock {
 /// A client, its process images and its clock.
 pub(super) struct Wheel {
     pub(super) client: Box<dyn Client>,
+    /// What the case does to it.
+    pub(super) timeline: OwnTimeline,
     pub(super) period: TimeSpan,
     pub(super) clock: Clock,
     pub(super) inputs: Arc<Items>,
     pub(super) outputs: Arc<Items>,
-    /// Outputs after setup and after each cycle.
+    /// Its own outputs, whatever the case holds.
+    pub(super) own: Vec<u8>,
+    /// Outputs after setup and after each cycle, as others see them.
     pub(super) recorded: Vec<Vec<u8>>,
     /// How far its own clock has come.
     pub(super) reached: VirtualTime,
@@ -48,9 +53,10 @@ impl Wheel {
     /// Initialises the client and shows its initial outputs.
     pub(super) fn set_up(&mut self, output_bytes: usize) -> Result<(), ClientFault> {
         let mut outputs = vec![0; output_bytes];
-        self.client.setup(&mut outputs)?;
-        self.outputs.copy_from(&outputs);
-        self.recorded = vec![outputs];
+        self.timeline.set_up(self.client.as_mut(), &mut outputs)?;
+        let seen = self.timeline.seen(&outputs);
+        self.outputs.copy_from(&seen);
+        (self.own, self.recorded) = (outputs, vec![seen]);
         Ok(())
     }
 
@@ -58,7 +64,7 @@ impl Wheel {
     pub(super) fn run(&mut self, input_bytes: usize, until: VirtualTime, stops: [&AtomicBool; 2]) -> Result<(), Halt> {
         let period = Duration::from_nanos(self.period.as_nanos());
         let mut inputs = vec![0; input_bytes];
-        let mut outputs = self.recorded.last().cloned().unwrap_or_default();
+        let mut outputs = self.own.clone();
         let mut t = VirtualTime::ZERO;
         let mut synchronizer = Synchronizer::default();
         let mut due = Instant::now() + period;
@@ -81,9 +87,12 @@ impl Wheel {
             }
             t = t + self.period;
             self.inputs.copy_to(&mut inputs);
-            self.client.turn(t, &inputs, &mut outputs).map_err(|fault| Halt { t, fault })?;
-            self.outputs.copy_from(&outputs);
-            self.recorded.push(outputs.clone());
+            let asked = self.timeline.before(t, self.client.as_mut());
+            let turned = asked.and_then(|()| self.client.turn(t, &inputs, &mut outputs));
+            turned.map_err(|fault| Halt { t, fault })?;
+            let seen = self.timeline.seen(&outputs);
+            self.outputs.copy_from(&seen);
+            self.recorded.push(seen);
             self.reached = t;
             if self.clock == Clock::Grid {
                 self.plc_clock.store(t.as_nanos(), Ordering::Relaxed);

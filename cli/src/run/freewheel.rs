@@ -82,7 +82,13 @@ fn spin(
             });
         }
         let stop = interrupt.flag();
-        let trace = crate::freewheel::run::run(scenario.plan(), clients, &scenario.file().freewheel, end, stop);
+        let trace = crate::freewheel::run::run(
+            scenario.plan(),
+            clients,
+            (&scenario.file().freewheel, scenario.timeline()),
+            end,
+            stop,
+        );
         done.store(true, Ordering::Relaxed);
         Ok(trace?)
     })

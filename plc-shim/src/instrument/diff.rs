@@ -24,8 +24,8 @@ pub fn unified(file: &File) -> String {
 
 #[cfg(test)]
 mod tests {
-    use crate::source::edits::LineMap;
     use super::*;
+    use crate::source::edits::LineMap;
 
     fn file(before: Option<&str>, text: Option<&str>) -> File {
         File {
