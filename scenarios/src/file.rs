@@ -7,28 +7,33 @@ use onescan_clients::gateway::Settings;
 use onescan_plc_shim::Dialect;
 use onescan_server::signal::{ClientName, SignalName, SignalType};
 use onescan_server::time::{TimeSpan, VirtualTime};
+use schemars::JsonSchema;
 use serde::{Deserialize, Deserializer};
 use toml::Spanned;
+
+use crate::form::{DialectName, Name, Scalar, Time, Type};
 
 /// The only version of the format so far.
 pub const VERSION: u32 = 1;
 
-/// The whole file.
-#[derive(Clone, Debug, Deserialize)]
+/// `scenario.toml`: a session.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ScenarioFile {
-    /// Version of the format.
+    /// Version of the format: 1.
     pub version: u32,
     /// What the scenario is about, in one line.
     #[serde(default)]
     pub title: String,
-    /// The step of virtual time.
+    /// The step of virtual time, as in `"10ms"`.
     #[serde(deserialize_with = "from_text")]
+    #[schemars(with = "Time")]
     pub step: TimeSpan,
-    /// Virtual time at which a run is complete, unless the command line says otherwise.
+    /// Virtual time at which a run is complete, unless `--until` or a case says otherwise.
     #[serde(deserialize_with = "from_text")]
+    #[schemars(with = "Time")]
     pub until: VirtualTime,
-    /// What noise, jitter and other chance begin with.
+    /// Seed of all noise, jitter and other randomness.
     #[serde(default)]
     pub seed: u64,
     /// How clients see each other within a step.
@@ -36,8 +41,10 @@ pub struct ScenarioFile {
     pub coupling: CouplingFile,
     /// The session's signals by name.
     #[serde(default)]
+    #[schemars(with = "BTreeMap<String, SignalFile>")]
     pub signals: BTreeMap<SignalName, Spanned<SignalFile>>,
     /// The session's clients by name.
+    #[schemars(with = "BTreeMap<String, ClientFile>")]
     pub clients: BTreeMap<ClientName, Spanned<ClientFile>>,
     /// What every run must show.
     #[serde(default)]
@@ -51,33 +58,39 @@ pub struct ScenarioFile {
 }
 
 /// `"parallel"` or `{ sequential = ["plc", "plant"] }`.
-#[derive(Clone, Debug, Default, Deserialize)]
+#[derive(Clone, Debug, Default, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case", deny_unknown_fields)]
 pub enum CouplingFile {
-    /// SDSP.
+    /// All clients of a step read the image of the step before (SDSP).
     #[default]
     Parallel,
-    /// OneScan, in this order.
-    Sequential(Vec<ClientName>),
+    /// The clients run in this order, and each sees what those before it wrote (OneScan).
+    Sequential(
+        /// All clients, in the order in which they run.
+        #[schemars(with = "Vec<Name>")]
+        Vec<ClientName>,
+    ),
 }
 
 /// One signal.
-#[derive(Clone, Debug, Deserialize)]
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct SignalFile {
-    /// Its elementary type.
+    /// An elementary type of IEC 61131-3: `BOOL`, `INT`, `LREAL`, `TIME`, `STRING[80]`.
     #[serde(rename = "type")]
+    #[schemars(with = "Type")]
     pub ty: SignalType,
-    /// The client that writes it.
+    /// The client that writes it; exactly one.
+    #[schemars(with = "Name")]
     pub writer: ClientName,
-    /// Its unit, for people.
+    /// Its unit, as `"bar"` or `"mm"`: reports show it, and expectations convert to it.
     pub unit: Option<String>,
-    /// What it means, for people.
+    /// What it means, for readers.
     pub about: Option<String>,
 }
 
 /// One client.
-#[derive(Clone, Debug, Deserialize)]
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(tag = "kind", rename_all = "kebab-case", deny_unknown_fields)]
 pub enum ClientFile {
     /// A scene of rigid bodies.
@@ -86,16 +99,18 @@ pub enum ClientFile {
         scene: String,
         /// Virtual time of one turn; the session's step if absent.
         #[serde(default, deserialize_with = "from_optional_text")]
+        #[schemars(with = "Option<Time>")]
         period: Option<TimeSpan>,
     },
     /// The embedded soft PLC.
     SoftPlc {
         /// Source files, relative to the scenario's folder.
         sources: Vec<String>,
-        /// The dialect of all of them, if not that which each file's name tells.
+        /// The dialect of all sources; from each file's name if absent.
         #[serde(default, deserialize_with = "from_optional_text")]
+        #[schemars(with = "Option<DialectName>")]
         dialect: Option<Dialect>,
-        /// Its tasks, in place of those of its own CONFIGURATION.
+        /// Its tasks, in place of all tasks of the sources' CONFIGURATION.
         #[serde(default)]
         tasks: Vec<TaskFile>,
         /// Signals whose PLC variable is not found by the signal's name, with the variable's path: by
@@ -110,26 +125,31 @@ pub enum ClientFile {
     Gateway {
         /// Virtual time of one turn; the session's step if absent.
         #[serde(default, deserialize_with = "from_optional_text")]
+        #[schemars(with = "Option<Time>")]
         period: Option<TimeSpan>,
         /// The signals that it reads.
         #[serde(default)]
+        #[schemars(with = "Vec<Name>")]
         reads: Vec<SignalName>,
-        /// Its link.
+        /// The link to the PLC.
         gateway: Settings,
     },
     /// Switches and set points that neither plant nor PLC writes; a case says what it does.
     Operator {
         /// Values of its signals at the start; 0, FALSE or empty if absent.
         #[serde(default)]
+        #[schemars(with = "BTreeMap<String, Scalar>")]
         initial: BTreeMap<SignalName, toml::Value>,
     },
     /// A program of its own that takes part over OPC UA, in the session's information model (`docs/opcua.md`).
     OpcUa {
         /// Virtual time of one turn; the session's step if absent.
         #[serde(default, deserialize_with = "from_optional_text")]
+        #[schemars(with = "Option<Time>")]
         period: Option<TimeSpan>,
         /// The signals that it reads. It writes those whose writer it is.
         #[serde(default)]
+        #[schemars(with = "Vec<Name>")]
         reads: Vec<SignalName>,
         /// The program to start, with its arguments; `{server}` stands for the server's endpoint.
         /// Without it the server waits for somebody to start it.
@@ -146,45 +166,50 @@ pub enum ClientFile {
 }
 
 /// One task of a soft PLC (IEC 61131-3 2.7.2).
-#[derive(Clone, Debug, Deserialize)]
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct TaskFile {
-    /// Its name.
+    /// The task's name, for reports.
     pub name: String,
-    /// Its cycle time.
+    /// Its cycle time, a multiple of the step.
     #[serde(default, deserialize_with = "from_optional_text")]
+    #[schemars(with = "Option<Time>")]
     pub interval: Option<TimeSpan>,
     /// Path of a BOOL of the PLC whose rising edges start it.
     #[serde(default)]
     pub single: Option<String>,
-    /// Its priority; 0 is the highest.
+    /// Its priority, from 0, which is the highest.
     #[serde(default)]
     pub priority: u32,
     /// The programs it runs, in this order; with a CONFIGURATION, their instances.
     pub programs: Vec<String>,
 }
 
-/// Something that every run must show (see [`crate::expect`]).
-#[derive(Clone, Debug, Deserialize)]
+/// Something that every run must show.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ExpectFile {
-    /// Its name, for reports.
+    /// Its name in reports; unique.
+    #[schemars(with = "String")]
     pub name: Spanned<String>,
-    /// Signal temporal logic over the scenario's signals.
+    /// Signal temporal logic over the scenario's signals, as in `"always (Push implies not Belt_On)"`.
+    #[schemars(with = "String")]
     pub formula: Spanned<String>,
-    /// What it means, for people.
+    /// What it means, for readers.
     pub about: Option<String>,
 }
 
 /// The OPC-like link between free-wheeling clients (`[SDSP]` sec. II-C and III).
-#[derive(Clone, Debug, Deserialize)]
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct FreewheelFile {
     /// How often the link looks for changes: the update rate of the OPC client group.
     #[serde(deserialize_with = "from_text")]
+    #[schemars(with = "Time")]
     pub update_rate: TimeSpan,
     /// How long the link needs for one item: items that change together arrive one after the other.
     #[serde(deserialize_with = "from_text")]
+    #[schemars(with = "Time")]
     pub item_transfer: TimeSpan,
 }
 
@@ -197,11 +222,12 @@ impl Default for FreewheelFile {
 }
 
 /// What a plot shows.
-#[derive(Clone, Debug, Default, Deserialize)]
+#[derive(Clone, Debug, Default, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct PlotFile {
     /// The signals, a panel each, from top to bottom; all if empty.
     #[serde(default)]
+    #[schemars(with = "Vec<Name>")]
     pub signals: Vec<Spanned<SignalName>>,
 }
 

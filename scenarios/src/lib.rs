@@ -4,11 +4,13 @@
 //!
 //! | module | subject |
 //! |---|---|
+//! | `form` | the forms of values in the files, for schemas |
 //! | [`file`] | `scenario.toml` as it is written |
 //! | [`load`] | `scenario.toml` read and checked |
 //! | `arrays` | signals written as arrays and patterns |
 //! | [`expectations`] | what it expects of every run |
 //! | [`case`] | one scenario, tried in many ways |
+//! | [`schema`] | the JSON schemas of both files |
 //! | [`compose`] | a scenario's plan and its clients |
 //! | [`gateway`] | its real PLCs |
 //! | [`watch`] | variables of its soft PLCs that a run looks at |
@@ -27,10 +29,12 @@ pub mod error;
 pub mod expect;
 pub mod expectations;
 pub mod file;
+mod form;
 pub mod gateway;
 pub mod load;
 pub mod mode;
 mod refusal;
+pub mod schema;
 pub mod watch;
 
 pub use error::ScenarioError;

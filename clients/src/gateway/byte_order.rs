@@ -1,10 +1,11 @@
 //! The order of a value's bytes on a link. Packed bytes are little-endian; most PLCs are not.
 
 use onescan_server::signal::SignalType;
+use schemars::JsonSchema;
 use serde::Deserialize;
 
 /// Which byte of a number comes first.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum ByteOrder {
     /// The most significant one, as in S7 and on the network.

@@ -8,6 +8,7 @@
 use std::time::Duration;
 
 use rust7::client::{S7Client, S7Error};
+use schemars::JsonSchema;
 use serde::Deserialize;
 
 use super::exchange::{Direction, Exchange};
@@ -24,7 +25,7 @@ const SHORT_BYTES: usize = 200;
 const GRANT_BYTES: usize = 4;
 
 /// What a scenario says of an S7 link.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct Options {
     /// Rack of the CPU.

@@ -1,10 +1,12 @@
 //! What a scenario says of a link, and the link made of it.
 
+use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::time::Duration;
 
 use onescan_base::did_you_mean;
 use onescan_server::time::TimeSpan;
+use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::Deserialize;
 use thiserror::Error;
 
@@ -19,7 +21,7 @@ use super::s7::{self, S7Link};
 use super::tcp::{Declaration, Layouts, TcpLink};
 
 /// A PLC's link as a scenario declares it, `[clients.NAME.gateway]`.
-#[derive(Clone, Debug, Default, Deserialize)]
+#[derive(Clone, Debug, Default, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct Settings {
     /// Where the PLC is, as in `tcp://192.168.0.1:2000`.
@@ -57,6 +59,21 @@ where
 {
     fn deserialize<D: serde::Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         String::deserialize(deserializer)?.parse().map(Self).map_err(serde::de::Error::custom)
+    }
+}
+
+impl JsonSchema for Text<TimeSpan> {
+    fn inline_schema() -> bool {
+        true
+    }
+
+    fn schema_name() -> Cow<'static, str> {
+        "Time".into()
+    }
+
+    /// A number and a unit. What the pattern cannot tell, as fractions of a nanosecond, the reader refuses.
+    fn json_schema(_: &mut SchemaGenerator) -> Schema {
+        json_schema!({ "type": "string", "pattern": r"^ *[0-9][0-9_]*(\.[0-9_]+)? *(ns|us|ms|s|min|h) *$" })
     }
 }
 

@@ -4,168 +4,207 @@ use std::collections::BTreeMap;
 
 use onescan_server::signal::SignalName;
 use onescan_server::time::{TimeSpan, VirtualTime};
+use schemars::JsonSchema;
 use serde::Deserialize;
 use toml::Spanned;
 
 use crate::file::{ExpectFile, from_optional_text, from_text};
+use crate::form::{Amount, CaseName, Matrix, Name, Scalar, Settings, Time};
 
 /// The only version of the format so far.
 pub const VERSION: u32 = 1;
 
-/// The whole file.
-#[derive(Clone, Debug, Default, Deserialize)]
+/// `cases.toml`: what is tried on a scenario.
+#[derive(Clone, Debug, Default, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct CasesFile {
-    /// Version of the format.
+    /// Version of the format: 1.
     pub version: u32,
-    /// What snapshots of trajectories hold.
+    /// What snapshots of trajectories contain.
     #[serde(default)]
     pub snapshot: SnapshotFile,
-    /// The cases.
+    /// The cases; one called `default` if there are none.
     #[serde(default, rename = "case")]
+    #[schemars(with = "Vec<CaseFile>")]
     pub cases: Vec<Spanned<CaseFile>>,
 }
 
-/// What snapshots hold.
-#[derive(Clone, Debug, Default, Deserialize)]
+/// What snapshots contain.
+#[derive(Clone, Debug, Default, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct SnapshotFile {
     /// The signals; those of the plot if empty, all if there is no plot.
+    #[schemars(with = "Vec<Name>")]
     pub signals: Vec<Spanned<SignalName>>,
     /// How far apart samples of REAL and LREAL are; a hundredth of the run if absent.
     #[serde(deserialize_with = "from_optional_text")]
+    #[schemars(with = "Option<Time>")]
     pub sample: Option<TimeSpan>,
     /// By how much a number may differ from its snapshot, in its own unit; not at all if absent.
+    #[schemars(with = "BTreeMap<String, f64>")]
     pub tolerance: BTreeMap<SignalName, Spanned<f64>>,
 }
 
 /// One `[[case]]`.
-#[derive(Clone, Debug, Deserialize)]
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct CaseFile {
-    /// Its name: letters, digits, `-`, `_` and `.`.
+    /// Its name: letters, digits, `-`, `_` and `.`; unique, without regard to case.
+    #[schemars(with = "CaseName")]
     pub name: Spanned<String>,
     /// What it is about, in one line.
     pub about: Option<String>,
-    /// Words to choose it by.
+    /// Words by which to select it.
     #[serde(default)]
     pub tags: Vec<String>,
-    /// What chance begins with.
+    /// Seed of all randomness; the scenario's if absent.
     pub seed: Option<u64>,
-    /// When its run is complete.
+    /// Virtual time at which its run is complete; the scenario's if absent.
     #[serde(default, deserialize_with = "from_optional_text")]
+    #[schemars(with = "Option<Time>")]
     pub until: Option<VirtualTime>,
-    /// Values by path.
+    /// Values by path: parameters of plants, initial values and constants of PLCs, as in
+    /// `plant.clamp.stroke_m = 0.08`.
     #[serde(default)]
+    #[schemars(with = "Settings")]
     pub set: toml::Table,
-    /// Lists of values by path: a case for each combination.
+    /// Lists of values by path, or `seed`: one case for each combination.
     #[serde(default)]
+    #[schemars(with = "Matrix")]
     pub matrix: toml::Table,
-    /// What the operator does.
+    /// An operator's inputs.
     #[serde(default, rename = "input")]
+    #[schemars(with = "Vec<InputFile>")]
     pub inputs: Vec<Spanned<InputFile>>,
     /// Components that fail.
     #[serde(default, rename = "fault")]
+    #[schemars(with = "Vec<FaultFile>")]
     pub faults: Vec<Spanned<FaultFile>>,
     /// Signals that are held.
     #[serde(default, rename = "force")]
+    #[schemars(with = "Vec<ForceFile>")]
     pub forces: Vec<Spanned<ForceFile>>,
     /// Signals that do not arrive as they were sent.
     #[serde(default, rename = "disturbance")]
+    #[schemars(with = "Vec<DisturbanceFile>")]
     pub disturbances: Vec<Spanned<DisturbanceFile>>,
-    /// Variables of PLCs.
+    /// Variables of PLCs that are forced or written.
     #[serde(default, rename = "variable")]
+    #[schemars(with = "Vec<VariableFile>")]
     pub variables: Vec<Spanned<VariableFile>>,
     /// Expectations of the scenario that this case need not meet.
     #[serde(default)]
+    #[schemars(with = "Vec<String>")]
     pub waive: Vec<Spanned<String>>,
-    /// What this case must show beside what the scenario expects.
+    /// What this case must show in addition to what the scenario expects.
     #[serde(default)]
     pub expect: Vec<ExpectFile>,
 }
 
 /// A signal takes a value at an instant and keeps it until its next input.
-#[derive(Clone, Debug, Deserialize)]
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct InputFile {
-    /// When.
+    /// From when on the signal has the value.
     #[serde(deserialize_with = "from_text")]
+    #[schemars(with = "Time")]
     pub at: VirtualTime,
-    /// The signal.
+    /// The signal's name.
+    #[schemars(with = "Name")]
     pub signal: Spanned<SignalName>,
-    /// The value.
+    /// A value of the signal's type: `true`, `3`, `2.5`, `"200ms"`.
+    #[schemars(with = "Scalar")]
     pub value: Spanned<toml::Value>,
 }
 
 /// A component fails for a time.
-#[derive(Clone, Debug, Deserialize)]
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct FaultFile {
-    /// The plant, where there is more than one.
+    /// The plant, if there are several.
+    #[schemars(with = "Option<Name>")]
     pub client: Option<Spanned<String>>,
-    /// The component.
+    /// The component that fails.
+    #[schemars(with = "String")]
     pub component: Spanned<String>,
-    /// How it fails.
+    /// How it fails: one of the modes that `onescan components KIND` lists.
+    #[schemars(with = "String")]
     pub mode: Spanned<String>,
     /// From when; from the start if absent. With `when`: from when on the condition counts.
     #[serde(default, deserialize_with = "from_optional_text")]
+    #[schemars(with = "Option<Time>")]
     pub from: Option<VirtualTime>,
-    /// Until when; for ever if absent.
+    /// Until when; never ends if absent. Not together with `when` or `for`.
     #[serde(default, deserialize_with = "from_optional_text")]
+    #[schemars(with = "Option<Time>")]
     pub until: Option<VirtualTime>,
-    /// A condition on signals: it begins in the step after this has come true.
+    /// A condition on signals: it begins in the step after the condition has come true.
+    #[schemars(with = "Option<String>")]
     pub when: Option<Spanned<String>>,
     /// How long it lasts.
     #[serde(default, rename = "for", deserialize_with = "from_optional_text")]
+    #[schemars(with = "Option<Time>")]
     pub lasting: Option<TimeSpan>,
 }
 
 /// A signal keeps a value for a time, whatever its writer gives.
-#[derive(Clone, Debug, Deserialize)]
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ForceFile {
-    /// The signal.
+    /// The signal's name.
+    #[schemars(with = "Name")]
     pub signal: Spanned<SignalName>,
-    /// The value.
+    /// A value of the signal's type: `true`, `3`, `2.5`, `"200ms"`.
+    #[schemars(with = "Scalar")]
     pub value: Spanned<toml::Value>,
     /// From when; from the start if absent. With `when`: from when on the condition counts.
     #[serde(default, deserialize_with = "from_optional_text")]
+    #[schemars(with = "Option<Time>")]
     pub from: Option<VirtualTime>,
-    /// Until when; for ever if absent.
+    /// Until when; never ends if absent. Not together with `when` or `for`.
     #[serde(default, deserialize_with = "from_optional_text")]
+    #[schemars(with = "Option<Time>")]
     pub until: Option<VirtualTime>,
-    /// A condition on signals: it begins in the step after this has come true.
+    /// A condition on signals: it begins in the step after the condition has come true.
+    #[schemars(with = "Option<String>")]
     pub when: Option<Spanned<String>>,
     /// How long it lasts.
     #[serde(default, rename = "for", deserialize_with = "from_optional_text")]
+    #[schemars(with = "Option<Time>")]
     pub lasting: Option<TimeSpan>,
 }
 
 /// A fault on the way of a signal from its writer to its readers.
-#[derive(Clone, Debug, Deserialize)]
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct DisturbanceFile {
-    /// The signal.
+    /// The signal's name.
+    #[schemars(with = "Name")]
     pub signal: Spanned<SignalName>,
-    /// The fault.
+    /// What is wrong with the signal.
     pub kind: DisturbanceKind,
-    /// By how much: a number for `offset`, a time as in `"20ms"` for `late`.
+    /// By how much: a number of the signal's type for `offset`, a time as in `"20ms"` for `late`.
+    #[schemars(with = "Option<Amount>")]
     pub by: Option<Spanned<toml::Value>>,
     /// From when; from the start if absent. With `when`: from when on the condition counts.
     #[serde(default, deserialize_with = "from_optional_text")]
+    #[schemars(with = "Option<Time>")]
     pub from: Option<VirtualTime>,
-    /// Until when; for ever if absent.
+    /// Until when; never ends if absent. Not together with `when` or `for`.
     #[serde(default, deserialize_with = "from_optional_text")]
+    #[schemars(with = "Option<Time>")]
     pub until: Option<VirtualTime>,
-    /// A condition on signals: it begins in the step after this has come true.
+    /// A condition on signals: it begins in the step after the condition has come true.
+    #[schemars(with = "Option<String>")]
     pub when: Option<Spanned<String>>,
     /// How long it lasts.
     #[serde(default, rename = "for", deserialize_with = "from_optional_text")]
+    #[schemars(with = "Option<Time>")]
     pub lasting: Option<TimeSpan>,
 }
 
 /// What can be wrong with a signal on its way.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum DisturbanceKind {
     /// It keeps the value that it has.
@@ -179,27 +218,35 @@ pub enum DisturbanceKind {
 }
 
 /// A variable of a PLC is forced for a time, or written once.
-#[derive(Clone, Debug, Deserialize)]
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct VariableFile {
-    /// The PLC, where there is more than one.
+    /// The soft PLC, if there are several.
+    #[schemars(with = "Option<Name>")]
     pub client: Option<Spanned<String>>,
     /// The variable's path: `Main.limit`.
+    #[schemars(with = "String")]
     pub variable: Spanned<String>,
-    /// The value: a number, a truth value, or a literal of IEC 61131-3 as text.
+    /// A number, a BOOL, or a literal of IEC 61131-3 as text.
+    #[schemars(with = "Scalar")]
     pub value: Spanned<toml::Value>,
-    /// When it is written, once; the program may write it again.
+    /// When it is written, once; the program may overwrite it. Without `at` it is forced.
     #[serde(default, deserialize_with = "from_optional_text")]
+    #[schemars(with = "Option<Time>")]
     pub at: Option<VirtualTime>,
     /// From when it is forced; from the start if absent. With `when`: from when on the condition counts.
     #[serde(default, deserialize_with = "from_optional_text")]
+    #[schemars(with = "Option<Time>")]
     pub from: Option<VirtualTime>,
-    /// Until when; for ever if absent.
+    /// Until when; never ends if absent. Not together with `when` or `for`.
     #[serde(default, deserialize_with = "from_optional_text")]
+    #[schemars(with = "Option<Time>")]
     pub until: Option<VirtualTime>,
-    /// A condition on signals: it begins in the step after this has come true.
+    /// A condition on signals: it begins in the step after the condition has come true.
+    #[schemars(with = "Option<String>")]
     pub when: Option<Spanned<String>>,
     /// How long it is forced.
     #[serde(default, rename = "for", deserialize_with = "from_optional_text")]
+    #[schemars(with = "Option<Time>")]
     pub lasting: Option<TimeSpan>,
 }

@@ -1,18 +1,21 @@
 //! What a scenario says of an ADS link.
 
+use schemars::JsonSchema;
 use serde::Deserialize;
 
 use super::frame::NetId;
 
 /// The keys of `[clients.NAME.gateway.ads]`.
-#[derive(Clone, Debug, PartialEq, Eq, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct Options {
     /// AMS `NetId` of the PLC; without it its IP address and `.1.1`.
+    #[schemars(with = "Option<String>")]
     pub net_id: Option<NetId>,
     /// AMS port of the PLC: 851 is the first of TwinCAT 3, 801 that of TwinCAT 2.
     pub port: u16,
     /// AMS `NetId` of this gateway, as the PLC's route to it has it; without it its IP address and `.1.1`.
+    #[schemars(with = "Option<String>")]
     pub source_net_id: Option<NetId>,
     /// AMS port of this gateway.
     pub source_port: u16,

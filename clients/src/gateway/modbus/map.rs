@@ -7,6 +7,7 @@
 use std::fmt;
 
 use onescan_server::signal::SignalType;
+use schemars::JsonSchema;
 use serde::Deserialize;
 
 use crate::gateway::byte_order::{ByteOrder, is_number};
@@ -14,7 +15,7 @@ use crate::gateway::exchange::{Direction, Exchange, Point};
 use crate::gateway::fault::MappingFault;
 
 /// What a scenario says of a Modbus link.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct Options {
     /// The unit, for gateways to serial lines; 255 for the PLC itself.

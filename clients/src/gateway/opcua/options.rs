@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use opcua::client::IdentityToken;
 use opcua::crypto::SecurityPolicy;
 use opcua::types::MessageSecurityMode;
+use schemars::JsonSchema;
 use serde::Deserialize;
 
 use crate::gateway::fault::LinkFault;
@@ -13,22 +14,24 @@ use crate::gateway::fault::LinkFault;
 pub const NAMESPACE: &str = "urn:onescan:plc:variables";
 
 /// How a client presents itself, and where its variables are.
-#[derive(Clone, Debug, PartialEq, Eq, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct Options {
     /// The namespace of points without an address: each is there under its name.
     pub namespace: String,
     /// `None`, `Basic256Sha256`, `Aes128-Sha256-RsaOaep` or `Aes256-Sha256-RsaPss`.
+    #[schemars(extend("enum" = ["None", "Basic256Sha256", "Aes128-Sha256-RsaOaep", "Aes256-Sha256-RsaPss"]))]
     pub policy: String,
     /// With a policy: `Sign` or `SignAndEncrypt`.
+    #[schemars(extend("enum" = ["Sign", "SignAndEncrypt"]))]
     pub mode: String,
     /// The user; anonymous if absent.
     pub user: Option<String>,
     /// Name of the environment variable that holds the user's password: it has no place in a file.
     pub password_env: String,
-    /// The user's certificate and private key, in place of a password.
+    /// The user's certificate, in place of a password.
     pub user_certificate: Option<PathBuf>,
-    /// See `user_certificate`.
+    /// The private key of `user_certificate`; both or neither.
     pub user_key: Option<PathBuf>,
     /// The folder with the certificates of this program (`own`, `private`) and those it trusts (`trusted`);
     /// made when it is not there. Without it nothing is kept.

@@ -7,6 +7,7 @@ use std::collections::BTreeMap;
 
 use onescan_base::did_you_mean;
 use onescan_server::signal::SignalType;
+use schemars::JsonSchema;
 use serde::Deserialize;
 
 use crate::gateway::byte_order::{ByteOrder, is_number};
@@ -20,7 +21,7 @@ const DEPTH_MAX: u32 = 8;
 
 /// The blocks as a scenario declares them. A field is written `Name: TYPE`, the type elementary or a
 /// structure's name; fields named `_` are room that nobody uses.
-#[derive(Clone, Debug, Default, PartialEq, Eq, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Eq, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct Declaration {
     /// Order of the bytes of every number.

@@ -1,0 +1,116 @@
+//! The forms of values in the files, for their JSON schemas: types of other crates are to an editor what a person
+//! writes.
+
+use std::borrow::Cow;
+
+use onescan_base::ElementaryType;
+use onescan_clients::gateway::settings::Text;
+use onescan_plc_shim::Dialect;
+use onescan_server::signal::name::NAME_BYTES_MAX;
+use onescan_server::time::TimeSpan;
+use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
+use serde_json::json;
+
+/// A time, as in `"10ms"`.
+pub(crate) type Time = Text<TimeSpan>;
+
+/// A form whose schema is always written out where it is used.
+macro_rules! form {
+    ($(#[$doc:meta])* $name:ident, $schema:expr) => {
+        $(#[$doc])*
+        pub(crate) struct $name;
+
+        impl JsonSchema for $name {
+            fn inline_schema() -> bool {
+                true
+            }
+
+            fn schema_name() -> Cow<'static, str> {
+                stringify!($name).into()
+            }
+
+            fn json_schema(_: &mut SchemaGenerator) -> Schema {
+                $schema
+            }
+        }
+    };
+}
+
+form!(
+    /// The name of a signal or client.
+    Name,
+    json_schema!({
+        "type": "string",
+        "pattern": r"^[A-Za-z_][A-Za-z0-9_.,\[\]-]*$",
+        "maxLength": NAME_BYTES_MAX,
+    })
+);
+
+form!(
+    /// The name of a case, which is also that of a file.
+    CaseName,
+    json_schema!({ "type": "string", "pattern": r"^[A-Za-z0-9_-][A-Za-z0-9_.-]*$" })
+);
+
+form!(
+    /// The type of a signal. The reader takes small letters, too; an editor offers the standard's spelling.
+    Type,
+    json_schema!({
+        "type": "string",
+        "anyOf": [
+            { "enum": ElementaryType::ALL.iter().map(|ty| ty.name()).collect::<Vec<_>>() },
+            { "pattern": r"^(W?STRING(\[ *[0-9]{1,5} *\])?|L?TIME_OF_DAY|L?DATE_AND_TIME)$" },
+        ],
+    })
+);
+
+form!(
+    /// The dialect of a PLC's sources.
+    DialectName,
+    json_schema!({ "type": "string", "enum": Dialect::ALL.map(Dialect::name) })
+);
+
+form!(
+    /// The value of a signal or variable.
+    Scalar,
+    json_schema!({ "type": ["boolean", "number", "string"] })
+);
+
+form!(
+    /// By how much a disturbance changes a signal: a number, or a time as text.
+    Amount,
+    json_schema!({ "type": ["number", "string"] })
+);
+
+form!(
+    /// Values by path. A path is a quoted key or tables in one another, so only the first part is seen here.
+    Settings,
+    json_schema!({
+        "type": "object",
+        "properties": { "seed": seed("Seed of all randomness.") },
+        "additionalProperties": true,
+    })
+);
+
+form!(
+    /// Lists of values by path.
+    Matrix,
+    json_schema!({
+        "type": "object",
+        "properties": {
+            "seed": {
+                "description": "Seeds of all randomness.",
+                "type": "array",
+                "items": seed("One seed."),
+                "minItems": 1,
+            },
+        },
+        "additionalProperties": {
+            "anyOf": [{ "type": "array", "minItems": 1 }, { "type": "object" }],
+        },
+    })
+);
+
+fn seed(about: &str) -> serde_json::Value {
+    json!({ "description": about, "type": "integer", "minimum": 0 })
+}

@@ -1,0 +1,123 @@
+//! The JSON schemas of `scenario.toml` and `cases.toml`, for editors: made from the structs that the files are read
+//! into.
+
+use schemars::generate::SchemaSettings;
+use schemars::transform::transform_subschemas;
+use schemars::{JsonSchema, Schema};
+use serde_json::{Value, json};
+
+use crate::case;
+use crate::case::file::CasesFile;
+use crate::file::{self, ScenarioFile};
+
+/// The schema of `scenario.toml` (JSON Schema 2020-12).
+pub fn scenario() -> Value {
+    schema::<ScenarioFile>("onescan scenario", file::VERSION)
+}
+
+/// The schema of `cases.toml` (JSON Schema 2020-12).
+pub fn cases() -> Value {
+    schema::<CasesFile>("onescan cases", case::file::VERSION)
+}
+
+fn schema<File: JsonSchema>(title: &str, version: u32) -> Value {
+    // References are resolved, since not every editor follows them.
+    let settings = SchemaSettings::draft2020_12().with(|settings| settings.inline_subschemas = true);
+    let mut top = settings.into_generator().into_root_schema_for::<File>();
+    as_written(&mut top);
+    let mut top = top.to_value();
+    top["title"] = json!(title);
+    let about = top["properties"]["version"]["description"].take();
+    top["properties"]["version"] = json!({ "const": version, "description": about });
+    top
+}
+
+/// Brings a schema of Rust's types to what a person writes in TOML.
+fn as_written(schema: &mut Schema) {
+    // There is no null: an absent key is absent.
+    if let Some(Value::Array(types)) = schema.get_mut("type") {
+        types.retain(|ty| ty != "null");
+        if let [one] = &types[..] {
+            let one = one.clone();
+            schema.insert("type".to_owned(), one);
+        }
+    }
+    if let Some(Value::Array(choices)) = schema.get_mut("enum") {
+        choices.retain(|choice| !choice.is_null());
+    }
+    // The width of a number says nothing beside its bounds.
+    schema.remove("format");
+    if schema.get("default").is_some_and(|default| !is_told(default, schema.get("type"))) {
+        schema.remove("default");
+    }
+    // An editor shows at `kind` what the table is.
+    let about = schema.get("description").cloned();
+    if let (Some(about), Some(kind)) = (about, schema.get_mut("properties").and_then(|keys| keys.get_mut("kind")))
+        && kind.get("const").is_some()
+    {
+        kind["description"] = about;
+    }
+    transform_subschemas(&mut as_written, schema);
+}
+
+/// True for a default that tells a reader something. Emptiness does not, nor does a value in another form than that in
+/// which it is written, as the nanoseconds of a time.
+fn is_told(default: &Value, ty: Option<&Value>) -> bool {
+    match (default, ty.and_then(Value::as_str)) {
+        (Value::Bool(_), Some("boolean")) | (Value::Number(_), Some("integer" | "number")) => true,
+        (Value::String(text), Some("string")) => !text.is_empty(),
+        _ => false,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn is_published(name: &str, schema: &Value) {
+        let path = format!("{}/../docs/schemas/{name}.schema.json", env!("CARGO_MANIFEST_DIR"));
+        let made = format!("{}\n", serde_json::to_string_pretty(schema).expect("JSON"));
+        if std::env::var_os("UPDATE_DOCS").is_some() {
+            std::fs::write(&path, &made).expect("written");
+        }
+        let published = std::fs::read_to_string(&path).expect("published");
+        assert!(published == made, "run with UPDATE_DOCS=1 and read the difference in {path}");
+    }
+
+    #[test]
+    fn the_published_schemas_are_those_of_the_structs() {
+        is_published("scenario", &scenario());
+        is_published("cases", &cases());
+    }
+
+    /// The keys without a description.
+    fn undescribed(schema: &Value, at: &str, found: &mut Vec<String>) {
+        match schema {
+            Value::Object(fields) => {
+                for (key, value) in fields {
+                    if key != "properties" {
+                        undescribed(value, at, found);
+                        continue;
+                    }
+                    for (name, property) in value.as_object().expect("keys") {
+                        let at = format!("{at}.{name}");
+                        if property["description"].as_str().is_none_or(str::is_empty) {
+                            found.push(at.clone());
+                        }
+                        undescribed(property, &at, found);
+                    }
+                }
+            }
+            Value::Array(list) => list.iter().for_each(|value| undescribed(value, at, found)),
+            Value::Null | Value::Bool(_) | Value::Number(_) | Value::String(_) => {}
+        }
+    }
+
+    #[test]
+    fn every_key_is_described() {
+        let mut found = Vec::new();
+        undescribed(&scenario(), "scenario", &mut found);
+        undescribed(&cases(), "cases", &mut found);
+        assert!(found.is_empty(), "{found:?}");
+    }
+}
