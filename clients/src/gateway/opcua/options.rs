@@ -2,12 +2,16 @@
 
 use std::path::PathBuf;
 
+#[cfg(feature = "opcua")]
 use opcua::client::IdentityToken;
+#[cfg(feature = "opcua")]
 use opcua::crypto::SecurityPolicy;
+#[cfg(feature = "opcua")]
 use opcua::types::MessageSecurityMode;
 use schemars::JsonSchema;
 use serde::Deserialize;
 
+#[cfg(feature = "opcua")]
 use crate::gateway::fault::LinkFault;
 
 /// The namespace in which `onescan plc` has its variables.
@@ -56,6 +60,7 @@ impl Default for Options {
     }
 }
 
+#[cfg(feature = "opcua")]
 impl Options {
     /// Policy and mode of the connection.
     ///
