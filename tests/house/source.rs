@@ -66,6 +66,7 @@ impl Sources {
     }
 
     /// Reads the file of a module, then those of the modules that it declares; the files that are theirs lie in `folder`.
+    #[expect(clippy::needless_pass_by_value, reason = "each module has its own")]
     fn module(&mut self, file: &Path, folder: &Path, place: Place) {
         let text = std::fs::read_to_string(file).unwrap_or_else(|error| panic!("{}: {error}", file.display()));
         let mut reader = Reader {

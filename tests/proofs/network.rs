@@ -131,7 +131,7 @@ impl Network {
             match entered {
                 ServerState::Start => {}
                 ServerState::InitialWrite => {
-                    state.pipes[i].to_client.push_back(json(&ServerMessage::Setup { operations: Vec::new() }))
+                    state.pipes[i].to_client.push_back(json(&ServerMessage::Setup { operations: Vec::new() }));
                 }
                 ServerState::PreRead | ServerState::Write => state.session.ready(id).expect("awaited"),
                 ServerState::Read => {

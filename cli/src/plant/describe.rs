@@ -150,7 +150,8 @@ fn one(component: &Component, scene: &Scene) -> String {
     let Some(kind) = kinds().into_iter().find(|kind| kind.name == component.kind) else { return lines.concat() };
     let bound = kind.coupling.in_words(&component.bound, scene);
     if !bound.is_empty() {
-        lines[0] += &format!(", {bound}");
+        lines[0].push_str(", ");
+        lines[0].push_str(&bound.to_string());
     }
     for (parameter, setting) in kind.parameters.iter().zip(&component.settings) {
         if parameter.preset != *setting {

@@ -89,7 +89,8 @@ fn name_values(described: &Component, tree: &mut Value) -> Result<(), serde_json
     fields.remove("failures");
     let Some(kind) = entry(described.kind).map(|entry| (entry.kind)()) else { return Ok(()) };
     let Kind { parameters, inputs, outputs, .. } = kind;
-    let keyed = |keys: Vec<String>, values: Vec<Value>| Value::Object(Map::from_iter(keys.into_iter().zip(values)));
+    let keyed =
+        |keys: Vec<String>, values: Vec<Value>| Value::Object(keys.into_iter().zip(values).collect::<Map<_, _>>());
     let settings = described.settings.iter().map(serde_json::to_value).collect::<Result<Vec<_>, _>>()?;
     let settings = settings.into_iter().map(bare).collect();
     let keys = parameters.iter().map(|parameter| parameter.key.to_owned()).collect();

@@ -144,7 +144,7 @@ fn a_state_goes_into_the_same_plant_whatever_has_failed() {
     let state = healthy.plant.save().expect("a state");
     let failing = |plant: &mut Plant, turn| {
         if turn == 50 {
-            plant.fail("door", "no_supply").expect("a mode")
+            plant.fail("door", "no_supply").expect("a mode");
         }
     };
     let mut failed = Bench::new(CELL);

@@ -37,7 +37,7 @@ fn wanted(ty: SignalType) -> String {
         E::REAL | E::LREAL => "a number".to_owned(),
         E::TIME | E::LTIME => "a time as text, as in \"500ms\"".to_owned(),
         E::String(_) | E::Wstring(_) => "a text".to_owned(),
-        _ => format!("a whole number of {ty}"),
+        E::Elementary(_) => format!("a whole number of {ty}"),
     }
 }
 

@@ -62,11 +62,11 @@ impl Signals<'_> {
             | Formula::Historically(..)
             | Formula::Once(..)
             | Formula::Since(..)
-            | Formula::Edge(..) => return Err(self.refused(0..self.whole)),
+            | Formula::Edge(..) => return Err(Self::refused(0..self.whole)),
         })
     }
 
-    fn refused(&self, place: std::ops::Range<usize>) -> FormulaError {
+    fn refused(place: std::ops::Range<usize>) -> FormulaError {
         let help = "compare signals with values, and combine with `and`, `or`, `not`, `implies`".to_owned();
         FormulaError::new(FormulaErrorKind::NotNow, place).with_help(help)
     }
@@ -74,7 +74,7 @@ impl Signals<'_> {
     fn signal(&self, column: usize) -> Result<(SignalName, SignalType), FormulaError> {
         let known = self.known.iter().find(|known| Some(&known.name) == self.columns.get(column));
         let found = known.and_then(|known| Some((SignalName::new(known.name.as_str()).ok()?, known.ty)));
-        found.ok_or_else(|| self.refused(0..self.whole))
+        found.ok_or_else(|| Self::refused(0..self.whole))
     }
 
     fn comparison(
@@ -85,33 +85,33 @@ impl Signals<'_> {
     ) -> Result<Condition, FormulaError> {
         let place = left.place.start.min(right.place.start)..left.place.end.max(right.place.end);
         let relation = relation(comparison);
-        let (signal, relation, value) = match (self.side(left)?, self.side(right)?) {
+        let (signal, relation, value) = match (Self::side(left)?, Self::side(right)?) {
             (Side::Signal(signal, times, by), Side::Number(number)) => (signal, relation, number * by / times),
             (Side::Number(number), Side::Signal(signal, times, by)) => (signal, turned(relation), number * by / times),
-            _ => return Err(self.refused(place)),
+            _ => return Err(Self::refused(place)),
         };
         let (signal, ty) = self.signal(signal)?;
-        Ok(on(signal, ty, relation, value))
+        Ok(on(&signal, ty, relation, value))
     }
 
-    fn side(&self, term: &Term<usize>) -> Result<Side, FormulaError> {
+    fn side(term: &Term<usize>) -> Result<Side, FormulaError> {
         if let Some(number) = constant(term) {
             return Ok(Side::Number(number));
         }
         match &term.kind {
             TermKind::Signal(signal) => Ok(Side::Signal(*signal, 1.0, 1.0)),
-            TermKind::Scaled(inner, times, by) => match self.side(inner)? {
+            TermKind::Scaled(inner, times, by) => match Self::side(inner)? {
                 Side::Signal(signal, own_times, own_by) => Ok(Side::Signal(signal, own_times * times, own_by * by)),
-                Side::Number(_) => Err(self.refused(term.place.clone())),
+                Side::Number(_) => Err(Self::refused(term.place.clone())),
             },
-            _ => Err(self.refused(term.place.clone())),
+            _ => Err(Self::refused(term.place.clone())),
         }
     }
 }
 
 /// A number compared with a signal of a type that may not have it: an integer cannot be 2.5, but it can
 /// be greater.
-fn on(signal: SignalName, ty: SignalType, relation: Relation, value: f64) -> Condition {
+fn on(signal: &SignalName, ty: SignalType, relation: Relation, value: f64) -> Condition {
     let compare = |relation, value: String| Condition::Compare { signal: signal.clone(), relation, value };
     let SignalType::Elementary(elementary) = ty else { return compare(relation, value.to_string()) };
     let Some((low, high)) = elementary.range() else { return compare(relation, format!("{value:?}")) };

@@ -55,9 +55,8 @@ impl Encoder {
                 block.digest(&mut digest, std::mem::take(&mut known));
                 sinks.iter_mut().try_for_each(|sink| sink.block(&block))?;
                 block.clear();
-                if back.send(block).is_err() {
-                    // A session that ends does not want it back; what it sent before is still encoded.
-                }
+                // A session that ends does not want it back; what it sent before is still encoded.
+                let _wanted = back.send(block);
             }
             sinks.iter_mut().try_for_each(|sink| sink.end())
         };
@@ -74,11 +73,8 @@ impl Encoder {
 
     /// Waits until everything is written.
     pub(super) fn finish(self, last: Option<Block>) -> io::Result<()> {
-        if let Some(block) = last {
-            if self.filled.send(block).is_err() {
-                // The thread has failed, which its own result reports below.
-            }
-        }
+        // If it is not taken the thread has failed, which its own result reports below.
+        let _taken = last.map_or(Ok(()), |block| self.filled.send(block));
         drop(self.filled);
         self.thread.join().unwrap_or_else(|_| Err(io::Error::other("the recorder's thread ended early")))
     }

@@ -79,7 +79,7 @@ impl Form {
         match self.ty {
             T::String(capacity) => usize::from(capacity) + 1,
             T::Wstring(capacity) => 2 * (usize::from(capacity) + 1),
-            other => other.size(),
+            other @ T::Elementary(_) => other.size(),
         }
     }
 
@@ -99,7 +99,7 @@ impl Form {
             T::String(_) => 30,
             T::Wstring(_) => 31,
             // LWORD and ULINT; and durations and dates, which TwinCAT counts in ns without a sign.
-            _ => 21,
+            T::Elementary(_) => 21,
         }
     }
 
@@ -115,7 +115,7 @@ impl Form {
         let end = out.len() + self.size();
         match self.ty {
             T::String(_) | T::Wstring(_) => out.extend_from_slice(&packed[2..]),
-            _ => out.extend_from_slice(packed),
+            T::Elementary(_) => out.extend_from_slice(packed),
         }
         out.resize(end, 0);
     }
@@ -129,7 +129,7 @@ impl Form {
                 packed[0] = bytes[0];
                 return bytes[0] <= 1;
             }
-            _ => {
+            T::Elementary(_) => {
                 packed.copy_from_slice(bytes);
                 return true;
             }

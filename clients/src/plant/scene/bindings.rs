@@ -175,6 +175,7 @@ impl Lookup<'_> {
     }
 
     /// A body or the ground, which is none; the outer none is a fault.
+    #[expect(clippy::option_option, reason = "nothing is a fault, the inner nothing is the ground")]
     fn carrier(&self, key: &'static str, keys: &Keys<'_>, faults: &mut Faults<'_>) -> Option<Option<usize>> {
         let name = keys.text(key, "the name of a body", faults)?;
         if text(&name) == GROUND {

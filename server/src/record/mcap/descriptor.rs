@@ -55,7 +55,7 @@ impl Form {
             T::REAL => Self::Float,
             T::LREAL => Self::Double,
             T::CHAR | T::WCHAR | T::String(_) | T::Wstring(_) => Self::Text,
-            _ => Self::Signed64,
+            T::Elementary(_) => Self::Signed64,
         }
     }
 

@@ -143,7 +143,7 @@ fn text_bytes(ty: T, text: &str) -> Vec<u8> {
             bytes.extend(units.flat_map(u16::to_le_bytes));
             (bytes.len() - 2) / 2
         }
-        _ => 0,
+        T::Elementary(_) => 0,
     };
     bytes[..2].copy_from_slice(&(count as u16).to_le_bytes());
     bytes.resize(ty.size().max(2), 0);

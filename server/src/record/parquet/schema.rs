@@ -52,7 +52,7 @@ impl Held {
             T::REAL => Self::Same(Physical::FLOAT),
             T::LREAL => Self::Same(Physical::DOUBLE),
             T::String(_) | T::Wstring(_) => Self::Text,
-            _ => Self::Same(Physical::INT64),
+            T::Elementary(_) => Self::Same(Physical::INT64),
         }
     }
 

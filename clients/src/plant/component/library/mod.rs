@@ -25,6 +25,9 @@ use crate::plant::scene::Scene;
 use crate::plant::scene::model::Bound;
 use crate::plant::world::World;
 
+/// Makes a component of its settings, its seed and what it is bound to.
+type Starter = fn(&[Setting], u64, &Bound, &Scene, &mut World) -> Result<Box<dyn Running>, Unbound>;
+
 /// A kind in the table.
 pub(crate) struct Entry {
     pub(crate) name: &'static str,
@@ -33,7 +36,7 @@ pub(crate) struct Entry {
     pub(crate) conflict: fn(&[Setting]) -> Option<Conflict>,
     /// A component with these settings, one for each parameter, a seed of its own and what it is
     /// bound to, in a world that still stands in the scene's pose.
-    pub(crate) start: fn(&[Setting], u64, &Bound, &Scene, &mut World) -> Result<Box<dyn Running>, Unbound>,
+    pub(crate) start: Starter,
     /// What its inputs hold where nothing is connected.
     pub(crate) unconnected: fn() -> Vec<Value>,
     /// What holds for every kind, tried on this one.

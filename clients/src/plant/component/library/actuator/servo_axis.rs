@@ -213,7 +213,7 @@ impl ServoAxis {
             _ if !inputs.enable => Doing::Off,
             // enabling takes a period of its own: the set point starts from the encoder at rest
             Doing::Off => Doing::Standing,
-            Doing::Standing => self.from_rest(state, inputs, [execute, home]),
+            Doing::Standing => self.leave_rest(state, inputs, [execute, home]),
             Doing::Velocity { homing: true, .. } => self.home(state, inputs, turn),
             Doing::Moving { .. } if inputs.halt => STOPPING,
             // a move goes on to its target: a new `execute` waits for rest
@@ -224,7 +224,7 @@ impl ServoAxis {
     }
 
     /// What starts at rest: of commands in one period a move comes before homing, homing before a jog.
-    fn from_rest(&self, state: &mut State, inputs: &Inputs, [execute, home]: [bool; 2]) -> Doing {
+    fn leave_rest(&self, state: &mut State, inputs: &Inputs, [execute, home]: [bool; 2]) -> Doing {
         if execute {
             self.start(state, inputs)
         } else if home {
