@@ -151,7 +151,7 @@ fn one(component: &Component, scene: &Scene) -> String {
     let bound = kind.coupling.in_words(&component.bound, scene);
     if !bound.is_empty() {
         lines[0].push_str(", ");
-        lines[0].push_str(&bound.to_string());
+        lines[0].push_str(&bound);
     }
     for (parameter, setting) in kind.parameters.iter().zip(&component.settings) {
         if parameter.preset != *setting {
