@@ -122,7 +122,9 @@ impl fmt::Display for Condition {
         };
         match self {
             Self::Compare { signal, relation, value } => write!(f, "{signal} {} {value}", relation.sign()),
+            Self::All(all) if all.is_empty() => f.write_str("always"),
             Self::All(all) => list(f, all, "and"),
+            Self::Any(all) if all.is_empty() => f.write_str("never"),
             Self::Any(all) => list(f, all, "or"),
             Self::Not(inner) => write!(f, "not ({inner})"),
         }

@@ -134,8 +134,8 @@ mod tests {
     use toml::Value;
 
     const SCENE: &str = "version = 1\nextent_m = 5.0\n[[body]]\nname = \"base\"\nkind = \"fixed\"\nfriction = 0.5\n\
-        [[component]]\nname = \"air\"\nkind = \"tank\"\nlevel_signal = \"Level\"\n\
-        [[component]]\nname = \"base\"\nkind = \"tank\"\nlevel_signal = \"Other\"\n";
+        [[component]]\nname = \"air\"\nkind = \"tank\"\nlevel_m_signal = \"Level\"\n\
+        [[component]]\nname = \"base\"\nkind = \"tank\"\nlevel_m_signal = \"Other\"\n";
 
     fn with(path: &str, value: impl Into<Value>) -> Result<Scene, String> {
         let overrides = [Override::new(path, &value.into())];
