@@ -19,7 +19,7 @@ fn backwards() -> Coupling<onescan_server::signal::ClientName> {
 #[test]
 fn the_digest_of_a_session_is_this() {
     let parallel = digest(&Coupling::Parallel).expect("it ran");
-    insta::assert_snapshot!(parallel, @"818fb42dfcf1ae01377edd514616c0d7996261bed8fee38151fe92de338382ba");
+    insta::assert_snapshot!(parallel, @"d2:aea11102c53d06a8df2058702c014d4ce0207f855b481d88ed4a5054b7b4d5a8");
 }
 
 #[test]
