@@ -231,7 +231,8 @@ fn a_refusal_says_what_differs() {
     let named = |name: &str| ClientName::new(name).expect("a name");
     let span = |ms| TimeSpan::from_millis(ms).expect("not zero");
     let plant = |name: &str, ms| Plant::parse(HEAP, "scene.toml", named(name), span(ms)).expect("a scene");
-    for mut other in vec![plant("other", 10), plant("plant", 20), plant("plant", 10).seeded(7)] {
+    for (name, ms, seed) in [("other", 10, 0), ("plant", 20, 0), ("plant", 10, 7)] {
+        let mut other = plant(name, ms).seeded(seed);
         writeln!(told, "{}", other.restore(&state).expect_err("refused")).expect("a string grows");
     }
     insta::assert_snapshot!(told);
