@@ -16,6 +16,7 @@
 pub mod args;
 pub mod compare;
 mod error;
+mod logging;
 pub mod opcua;
 pub mod plant;
 pub mod plc;
@@ -38,7 +39,7 @@ use crate::error::{Exit, ExitCode};
 /// Runs the program with the process's arguments.
 pub fn main() -> std::process::ExitCode {
     let args = args::Args::parse();
-    start_logging(args.verbose);
+    logging::start(args.verbose);
     render_errors_in_one_piece();
     // What is still buffered must not be lost in silence when the process ends.
     let done = args::dispatch(args.command)
@@ -67,24 +68,4 @@ fn report(error: CommandError) {
 fn render_errors_in_one_piece() {
     // Only a second call fails, and this is the only one.
     let _ = miette::set_hook(Box::new(|_| Box::new(miette::MietteHandlerOpts::new().without_cause_chain().build())));
-}
-
-/// Log lines go to standard error: warnings, what is meant for the user, and more with `--verbose`.
-fn start_logging(verbose: u8) {
-    use tracing_subscriber::EnvFilter;
-    let level = match verbose {
-        // What OPC UA has to say of its certificates is in the errors that come of it.
-        0 => "warn,onescan::notice=info,opcua_client=off,opcua_server=off,opcua_core=off,opcua_crypto=off",
-        1 => "info",
-        2 => "debug",
-        _ => "trace",
-    };
-    let filter = EnvFilter::try_from_env("ONESCAN_LOG").unwrap_or_else(|_| EnvFilter::new(level));
-    tracing_subscriber::fmt()
-        .with_env_filter(filter)
-        .with_writer(std::io::stderr)
-        .with_ansi(std::io::IsTerminal::is_terminal(&std::io::stderr()))
-        .without_time()
-        .with_target(verbose > 1)
-        .init();
 }

@@ -1,0 +1,38 @@
+//! What is logged, and where.
+
+use tracing_subscriber::filter::{LevelFilter, Targets};
+
+/// Log lines go to standard error: warnings, what is meant for the user, and more with `--verbose`.
+/// `ONESCAN_LOG` takes precedence, as a list of `target=level`.
+pub(super) fn start(verbose: u8) {
+    use tracing_subscriber::layer::{Layer as _, SubscriberExt as _};
+    use tracing_subscriber::util::SubscriberInitExt as _;
+    let (chosen, wrong) = match std::env::var("ONESCAN_LOG").map(|text| text.parse::<Targets>()) {
+        Ok(Ok(targets)) => (targets, None),
+        Ok(Err(wrong)) => (targets_of(verbose), Some(wrong)),
+        Err(_) => (targets_of(verbose), None),
+    };
+    let lines = tracing_subscriber::fmt::layer()
+        .with_writer(std::io::stderr)
+        .with_ansi(std::io::IsTerminal::is_terminal(&std::io::stderr()))
+        .without_time()
+        .with_target(verbose > 1);
+    tracing_subscriber::registry().with(lines.with_filter(chosen)).init();
+    if let Some(wrong) = wrong {
+        tracing::warn!("`ONESCAN_LOG` is not a list of `target=level` and is left out: {wrong}");
+    }
+}
+
+fn targets_of(verbose: u8) -> Targets {
+    match verbose {
+        // What OPC UA has to say of its certificates is in the errors that come of it.
+        0 => ["opcua_client", "opcua_server", "opcua_core", "opcua_crypto"]
+            .into_iter()
+            .fold(Targets::new(), |targets, silent| targets.with_target(silent, LevelFilter::OFF))
+            .with_default(LevelFilter::WARN)
+            .with_target("onescan::notice", LevelFilter::INFO),
+        1 => Targets::new().with_default(LevelFilter::INFO),
+        2 => Targets::new().with_default(LevelFilter::DEBUG),
+        _ => Targets::new().with_default(LevelFilter::TRACE),
+    }
+}
