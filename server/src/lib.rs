@@ -27,8 +27,6 @@
 //! | [`formation`] | clients come together |
 //! | [`wire`] | the protocol of clients outside this process |
 //! | [`transport`] | a carrier of its frames: TCP |
-//! | [`record`] | recordings |
-//! | [`recording`] | a recording read back |
 //!
 //! Invariants. Up to [`session`] the crate is *sans-IO*: no clock, no thread, no socket, no random
 //! number, no iteration in hash order, and after the start nothing is allocated by a step. Nothing
@@ -51,8 +49,6 @@ pub mod operation;
 pub mod pacing;
 pub mod plan;
 pub mod published;
-pub mod record;
-pub mod recording;
 pub mod session;
 pub mod signal;
 pub mod state;

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use onescan_server::recording::Recording;
+use onescan_recording::Recording;
 
 use crate::typed::{begun, copied_shear, edit, run_shear, scenario, typed};
 use crate::venv::python;

@@ -1,8 +1,8 @@
 //! A digest depends on what the session computes and on nothing else.
 
+use onescan_server::digest::Digest;
 use onescan_server::pacing::Pace;
 use onescan_server::plan::Coupling;
-use onescan_server::record::Digest;
 use onescan_tests::run::{PATIENCE, boxed, in_process, over_tcp, run};
 use onescan_tests::toy::{ring, ring_plan};
 use onescan_tests::{at_ms, client};

@@ -1,10 +1,10 @@
 //! One client fails: the session ends for all, with a reason that names client, state and `t_v`.
 
+use onescan_recording::Recording;
+use onescan_recording::{Choice, EventKind, Recorder};
 use onescan_server::client::ClientFault;
 use onescan_server::end::{Failure, FailureCause, SessionEnd};
 use onescan_server::plan::Coupling;
-use onescan_server::record::{Choice, EventKind, Recorder};
-use onescan_server::recording::Recording;
 use onescan_server::state::ClientState;
 use onescan_server::time::StepCount;
 use onescan_server::transport::tcp::participant::ParticipantError;

@@ -5,13 +5,13 @@ use std::path::Path;
 use std::process::{Child, Command, Stdio};
 use std::time::Duration;
 
+use onescan_recording::Recording;
+use onescan_recording::{Choice, Recorder};
 use onescan_server::end::{Failure, FailureCause, SessionEnd, Violation};
 use onescan_server::formation::Formation;
 use onescan_server::lockstep::{Lockstep, Outcome};
 use onescan_server::mailbox::Mailbox;
 use onescan_server::plan::Coupling;
-use onescan_server::record::{Choice, Recorder};
-use onescan_server::recording::Recording;
 use onescan_server::state::ClientState;
 use onescan_server::time::StepCount;
 use onescan_server::transport::tcp::Lobby;

@@ -4,13 +4,13 @@ use std::net::{Ipv4Addr, SocketAddr};
 use std::thread::JoinHandle;
 use std::time::Duration;
 
+use onescan_recording::Provenance;
 use onescan_server::client::Client;
 use onescan_server::end::SessionEnd;
 use onescan_server::formation::Formation;
 use onescan_server::lockstep::{Lockstep, Outcome};
 use onescan_server::mailbox::Mailbox;
 use onescan_server::plan::SessionPlan;
-use onescan_server::record::Provenance;
 use onescan_server::time::VirtualTime;
 use onescan_server::transport::tcp::Lobby;
 use onescan_server::transport::tcp::participant::{ParticipantError, take_part};

@@ -13,7 +13,7 @@ use std::process::{Command, Stdio};
 use onescan_report::FileError;
 use onescan_report::OutputError;
 use onescan_report::file;
-use onescan_server::record::Digest;
+use onescan_server::digest::Digest;
 use onescan_server::time::VirtualTime;
 use serde_json::json;
 
@@ -152,7 +152,7 @@ impl Search<'_> {
         config.subject.until = self.config.until;
         config.reports.record = Some(RecordRequest { folder: record.clone(), ..RecordRequest::default() });
         execute(&config, self.interrupt, &mut io::sink()).map_err(|error| error.to_string())?;
-        let recording = onescan_server::recording::Recording::open(&record).map_err(|error| error.to_string())?;
+        let recording = onescan_recording::Recording::open(&record).map_err(|error| error.to_string())?;
         let last = recording.steps().map(|steps| recording.digest(*steps.end()));
         Ok((record, last.transpose().map_err(|error| error.to_string())?))
     }

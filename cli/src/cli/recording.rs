@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use clap::{Args as ClapArgs, ValueEnum};
-use onescan_server::recording::ExportFormat;
+use onescan_recording::ExportFormat;
 use onescan_server::signal::pattern::SignalPattern;
 use onescan_server::time::VirtualTime;
 

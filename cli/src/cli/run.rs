@@ -6,10 +6,10 @@ use std::path::PathBuf;
 use std::time::Duration;
 
 use clap::{Args as ClapArgs, ValueEnum};
+use onescan_recording::Choice;
 use onescan_scenario::Mode;
 use onescan_scenario::watch::WatchRequest;
 use onescan_server::pacing::Pace;
-use onescan_server::record::Choice;
 use onescan_server::signal::pattern::SignalPattern;
 use onescan_server::signal::{ClientName, SignalName};
 use onescan_server::time::{TimeSpan, VirtualTime};

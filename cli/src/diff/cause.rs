@@ -7,9 +7,9 @@ use std::collections::BTreeSet;
 use std::sync::PoisonError;
 
 use onescan_clients::soft_plc::{Traced, Written};
+use onescan_recording::Recording;
 use onescan_scenario::file::ClientFile;
 use onescan_scenario::{Mode, Scenario};
-use onescan_server::recording::Recording;
 use onescan_server::signal::{ClientName, SignalName};
 use onescan_server::time::VirtualTime;
 

@@ -1,7 +1,7 @@
 //! Why two recordings or snapshots cannot be compared.
 
+use onescan_recording::RecordingError;
 use onescan_report::OutputError;
-use onescan_server::recording::RecordingError;
 
 use crate::error::{Usage, sum_of_errors};
 use crate::snapshot::StoreError;

@@ -20,8 +20,8 @@ pub mod trajectory;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
+use onescan_recording::Recording;
 use onescan_report::OutputError;
-use onescan_server::recording::Recording;
 use onescan_server::signal::pattern::SignalPattern;
 use onescan_server::time::VirtualTime;
 

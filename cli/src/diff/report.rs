@@ -4,7 +4,7 @@ use std::io::{self, Write};
 
 use onescan_clients::soft_plc::Written;
 use onescan_plc_shim::{FaultSite, Way};
-use onescan_server::recording::Recording;
+use onescan_recording::Recording;
 use serde_json::{Value, json};
 
 use super::cause::{Cause, Causes};

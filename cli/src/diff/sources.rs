@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use onescan_server::recording::Recording;
+use onescan_recording::Recording;
 use serde::Serialize;
 
 /// Lines of one file that are shown at most.

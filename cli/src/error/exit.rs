@@ -3,11 +3,11 @@
 use std::io;
 
 use onescan_clients::gateway::{LinkFault, SettingsFault};
+use onescan_recording::RecordingError;
 use onescan_report::{FileError, OutputError};
 use onescan_scenario::ScenarioError;
 use onescan_server::formation::FormationError;
-use onescan_server::record::RecordError;
-use onescan_server::recording::RecordingError;
+use onescan_server::observer::RecordError;
 use onescan_server::transport::tcp::participant::ParticipantError;
 
 use super::{ListenError, SpawnError, Unreadable, Usage};

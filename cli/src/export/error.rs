@@ -1,7 +1,7 @@
 //! Why nothing was exported.
 
+use onescan_recording::RecordingError;
 use onescan_report::FileError;
-use onescan_server::recording::RecordingError;
 
 use crate::error::{Usage, sum_of_errors};
 

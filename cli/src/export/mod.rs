@@ -4,8 +4,8 @@ mod error;
 
 use std::path::PathBuf;
 
+use onescan_recording::{ExportFormat, Recording, RecordingError};
 use onescan_report::file;
-use onescan_server::recording::{ExportFormat, Recording, RecordingError};
 use onescan_server::signal::pattern::SignalPattern;
 use onescan_server::time::VirtualTime;
 

@@ -7,10 +7,10 @@ use std::path::PathBuf;
 use std::time::Duration;
 
 use onescan_clients::opcua_server::Access;
+use onescan_recording::Choice;
 use onescan_scenario::watch::WatchRequest;
 use onescan_scenario::{Mode, Scenario};
 use onescan_server::pacing::Pace;
-use onescan_server::record::Choice;
 use onescan_server::signal::{ClientName, SignalName};
 use onescan_server::time::VirtualTime;
 

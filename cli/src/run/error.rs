@@ -3,12 +3,12 @@
 use std::path::PathBuf;
 
 use miette::Diagnostic;
+use onescan_recording::RecordingError;
 use onescan_report::{FileError, OutputError};
 use onescan_scenario::ScenarioError;
 use onescan_server::checkpoint::CheckpointError;
 use onescan_server::formation::FormationError;
-use onescan_server::record::RecordError;
-use onescan_server::recording::RecordingError;
+use onescan_server::observer::RecordError;
 use onescan_server::time::VirtualTime;
 use thiserror::Error;
 

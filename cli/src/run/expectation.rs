@@ -8,7 +8,7 @@ use onescan_report::Verdict;
 use onescan_scenario::Scenario;
 use onescan_scenario::expect::{self, Expectation, Trace};
 use onescan_server::digest::TrajectoryDigest;
-use onescan_server::record::{Observer, RecordError};
+use onescan_server::observer::{Observer, RecordError};
 use onescan_server::session::Session;
 use onescan_server::signal::SignalName;
 use onescan_server::time::VirtualTime;

@@ -2,6 +2,8 @@
 
 use std::net::{Ipv4Addr, SocketAddr};
 
+use onescan_recording::Recording;
+use onescan_recording::event;
 use onescan_report::file;
 use onescan_scenario::Scenario;
 use onescan_scenario::compose::Member;
@@ -9,8 +11,6 @@ use onescan_server::checkpoint::Checkpoint;
 use onescan_server::formation::{Formation, FormationError};
 use onescan_server::lockstep::{Lockstep, Outcome, Reached};
 use onescan_server::operation::OperatorInput;
-use onescan_server::record::event;
-use onescan_server::recording::Recording;
 use onescan_server::signal::ClientName;
 use onescan_server::timeline::Timeline;
 use onescan_server::transport::tcp::Lobby;

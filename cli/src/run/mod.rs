@@ -55,7 +55,7 @@ use onescan_report::plot::Plot;
 use onescan_scenario::expect::{Trace, TraceEnd};
 use onescan_scenario::{Mode, Scenario};
 use onescan_server::lockstep::Lockstep;
-use onescan_server::record::Observer;
+use onescan_server::observer::Observer;
 
 use config::{Drawing, WatchOn};
 pub use config::{RunConfig, Transport};

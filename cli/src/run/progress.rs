@@ -5,7 +5,7 @@ use std::time::Duration;
 use super::session_log::SessionLog;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use onescan_server::digest::TrajectoryDigest;
-use onescan_server::record::{Observer, RecordError};
+use onescan_server::observer::{Observer, RecordError};
 use onescan_server::session::Session;
 use onescan_server::time::VirtualTime;
 

@@ -2,12 +2,12 @@
 
 use std::path::{Component, Path, PathBuf};
 
+use onescan_recording::event::{self, Event, EventKind};
+use onescan_recording::recorder::EVENTS;
+use onescan_recording::{Provenance, Recorder, SourceFile};
 use onescan_report::OutputError;
 use onescan_report::{FileError, file};
 use onescan_scenario::{Mode, Scenario, ScenarioError};
-use onescan_server::record::event::{self, Event, EventKind};
-use onescan_server::record::recorder::EVENTS;
-use onescan_server::record::{Provenance, Recorder, SourceFile};
 use onescan_server::time::VirtualTime;
 
 use super::config::{RecordRequest, Subject};

@@ -4,9 +4,9 @@ use std::io::Write;
 use std::time::Duration;
 
 use onescan_scenario::{Mode, Scenario};
+use onescan_server::digest::Digest;
 use onescan_server::end::{Failure, SessionEnd};
 use onescan_server::lockstep::Outcome;
-use onescan_server::record::Digest;
 use onescan_server::time::{StepCount, TimeSpan, VirtualTime};
 use serde::{Deserialize, Serialize};
 

@@ -2,9 +2,9 @@
 
 use onescan_scenario::Scenario;
 use onescan_scenario::compose::Member;
+use onescan_server::digest::Digest;
 use onescan_server::formation::Formation;
 use onescan_server::operation::OperatorInput;
-use onescan_server::record::Digest;
 use onescan_server::time::{StepCount, VirtualTime};
 
 use super::error::RunError;

@@ -6,7 +6,7 @@ use std::rc::Rc;
 use onescan_report::plot::{Mark, Panel, Plot, Shape, Trajectory};
 use onescan_scenario::{Mode, Scenario};
 use onescan_server::digest::TrajectoryDigest;
-use onescan_server::record::{Observer, RecordError};
+use onescan_server::observer::{Observer, RecordError};
 use onescan_server::session::Session;
 use onescan_server::signal::{SignalName, SignalType};
 

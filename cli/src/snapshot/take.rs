@@ -6,7 +6,7 @@ use std::rc::Rc;
 use onescan_scenario::case::{Catalogue, DEFAULT};
 use onescan_scenario::{Scenario, ScenarioError};
 use onescan_server::digest::TrajectoryDigest;
-use onescan_server::record::{Observer, RecordError};
+use onescan_server::observer::{Observer, RecordError};
 use onescan_server::session::Session;
 use onescan_server::signal::{SignalId, SignalName, SignalType, did_you_mean};
 use onescan_server::time::{TimeSpan, VirtualTime};

@@ -9,11 +9,12 @@ use parquet::data_type::DataType;
 use parquet::errors::{ParquetError, Result};
 use parquet::file::reader::{FileReader, RowGroupReader, SerializedFileReader};
 
+use onescan_server::signal::SignalType as T;
+
 use super::super::block::Block;
 use super::super::column::Column;
 use super::FIRST_STEP;
 use super::schema::{DIGEST_BYTES, LEADING};
-use crate::signal::SignalType as T;
 
 /// A part: which steps it holds.
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -6,8 +6,8 @@
 use std::borrow::Cow;
 use std::ops::RangeInclusive;
 
-use crate::digest::TrajectoryDigest;
-use crate::session::Session;
+use onescan_server::digest::TrajectoryDigest;
+use onescan_server::session::Session;
 
 /// Bytes of images in a block at most, but for a single image that is larger.
 const BLOCK_BYTES: usize = 8 << 20;

@@ -1,4 +1,4 @@
-//! What a session leaves behind.
+//! Recordings: what a session leaves behind, and how it is read back.
 //!
 //! | module | subject |
 //! |---|---|
@@ -8,8 +8,10 @@
 //! | `column`, `block` | the signals recorded; runs of steps |
 //! | `sink` | the thread that encodes |
 //! | [`parquet`], [`csv`], [`mcap`] | the forms of a trajectory |
+//! | [`reader`] | a recording read back |
 //!
-//! What is read back is in [`crate::recording`].
+//! Invariants. A session knows nothing of its recording but the [`Observer`](onescan_server::observer::Observer)
+//! that it calls; equal sessions leave equal files, to the byte; a killed process leaves all whole parts.
 
 pub(crate) mod block;
 pub(crate) mod column;
@@ -18,13 +20,12 @@ pub mod event;
 pub mod header;
 pub mod mcap;
 pub mod parquet;
+pub mod reader;
 pub mod recorder;
 pub(crate) mod sink;
 
 pub use column::Column;
 pub use event::{Event, EventKind};
 pub use header::{Header, Provenance, SourceFile};
+pub use reader::{ExportFormat, Recording, RecordingError, Row, Rows};
 pub use recorder::{Choice, Recorder};
-
-pub use crate::digest::Digest;
-pub use crate::observer::{Observer, RecordError};

@@ -9,10 +9,11 @@ use std::sync::Arc;
 use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
 use std::thread::JoinHandle;
 
+use onescan_server::digest::TrajectoryDigest;
+use onescan_server::observer::RecordError;
+
 use super::block::Block;
 use super::column::Column;
-use crate::digest::TrajectoryDigest;
-use crate::observer::RecordError;
 
 /// One that fills, one that waits, one that is encoded.
 const BLOCKS: usize = 3;

@@ -16,6 +16,13 @@
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
+use onescan_server::digest::TrajectoryDigest;
+use onescan_server::observer::{Observer, RecordError};
+use onescan_server::operation::{Author, OperatorInput};
+use onescan_server::session::Session;
+use onescan_server::signal::pattern::SignalPattern;
+use onescan_server::time::{StepCount, VirtualTime};
+
 use super::block::{Block, Schedule};
 use super::column::{Column, columns};
 use super::csv::CsvSink;
@@ -24,12 +31,6 @@ use super::header::{Header, Provenance};
 use super::mcap::McapSink;
 use super::parquet::ParquetSink;
 use super::sink::{Encoder, Shape, Sink, failed};
-use crate::digest::TrajectoryDigest;
-use crate::observer::{Observer, RecordError};
-use crate::operation::{Author, OperatorInput};
-use crate::session::Session;
-use crate::signal::pattern::SignalPattern;
-use crate::time::{StepCount, VirtualTime};
 
 /// Name of the header's file.
 pub const HEADER: &str = "recording.json";

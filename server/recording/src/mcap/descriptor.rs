@@ -3,8 +3,9 @@
 //! Viewers want the description as a serialised `FileDescriptorSet` (protobuf's `descriptor.proto`).
 //! It has one message with one field a signal; both are short enough to be written by hand.
 
+use onescan_server::signal::SignalType as T;
+
 use super::super::column::Column;
-use crate::signal::SignalType as T;
 
 /// Wire types of protobuf.
 const VARINT: u32 = 0;

@@ -1,8 +1,8 @@
 //! The signals that are recorded, and where they lie in an image.
 
-use crate::session::Session;
-use crate::signal::pattern::{SignalPattern, Unmatched, choose};
-use crate::signal::{ClientName, SignalName, SignalType};
+use onescan_server::session::Session;
+use onescan_server::signal::pattern::{SignalPattern, Unmatched, choose};
+use onescan_server::signal::{ClientName, SignalName, SignalType};
 
 /// A signal that is recorded.
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -6,10 +6,10 @@ use std::path::Path;
 
 use serde::{Deserialize, Serialize};
 
-use crate::end::{Failure, SessionEnd};
-use crate::observer::RecordError;
-use crate::operation::{Author, Operation, OperatorInput};
-use crate::time::{StepCount, VirtualTime};
+use onescan_server::end::{Failure, SessionEnd};
+use onescan_server::observer::RecordError;
+use onescan_server::operation::{Author, Operation, OperatorInput};
+use onescan_server::time::{StepCount, VirtualTime};
 
 /// An event, and the step boundary that it belongs to.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

@@ -17,8 +17,9 @@ use parquet::basic::{LogicalType, Repetition, TimeUnit, Type as Physical};
 use parquet::errors::Result;
 use parquet::schema::types::{PrimitiveTypeBuilder, Type, TypePtr};
 
+use onescan_server::signal::SignalType as T;
+
 use super::super::column::Column;
-use crate::signal::SignalType as T;
 
 /// Columns before those of signals: their names, and how many there are.
 pub(crate) const LEADING: [&str; 3] = ["step", "t_v_ns", "digest"];

@@ -9,18 +9,20 @@ use std::sync::Arc;
 
 use thiserror::Error;
 
-use crate::operation::OperatorInput;
-use crate::record::block::Block;
-use crate::record::column::Column;
-use crate::record::event::{self, Event};
-use crate::record::header::{FORMAT, Header};
-use crate::record::parquet::read::Part;
-use crate::record::parquet::{ParquetFile, parts};
-use crate::record::recorder::{EVENTS, HEADER, TRAJECTORY};
-use crate::record::sink::Sink;
-use crate::record::{Digest, csv, mcap};
-use crate::signal::pattern::{SignalPattern, Unmatched, choose};
-use crate::time::{StepCount, VirtualTime};
+use onescan_server::digest::Digest;
+use onescan_server::operation::OperatorInput;
+use onescan_server::signal::pattern::{SignalPattern, Unmatched, choose};
+use onescan_server::time::{StepCount, VirtualTime};
+
+use crate::block::Block;
+use crate::column::Column;
+use crate::event::{self, Event};
+use crate::header::{FORMAT, Header};
+use crate::parquet::read::Part;
+use crate::parquet::{ParquetFile, parts};
+use crate::recorder::{EVENTS, HEADER, TRAJECTORY};
+use crate::sink::Sink;
+use crate::{csv, mcap};
 
 /// Why a folder is not read as a recording.
 #[derive(Debug, Error)]

@@ -2,16 +2,16 @@
 //! without; the time of processors that a step costs, which another load of the machine hardly
 //! changes; and how much memory the process has while it records.
 //!
-//! `cargo bench -p onescan-server --bench recording`, with `-- --parquet` in that form only; with `-- --steps 10000000` one long run, to see
+//! `cargo bench -p onescan-recording --bench recording`, with `-- --parquet` in that form only; with `-- --steps 10000000` one long run, to see
 //! that memory stays flat.
 
 use std::time::{Duration, Instant};
 
+use onescan_recording::{Choice, Provenance, Recorder};
 use onescan_server::client::{Client, ClientFault, JoinRequest, Wake};
 use onescan_server::formation::Formation;
 use onescan_server::lockstep::Lockstep;
 use onescan_server::plan::{Coupling, SessionPlan};
-use onescan_server::record::{Choice, Provenance, Recorder};
 use onescan_server::signal::{ClientName, Port, SignalDecl, SignalName, SignalType};
 use onescan_server::time::{TimeSpan, VirtualTime};
 
