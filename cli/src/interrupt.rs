@@ -6,7 +6,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
 use onescan_server::mailbox::Mailbox;
-use onescan_server::session::Control;
+use onescan_server::operation::Control;
 
 /// A second signal before this is an echo of the first: some programs signal a process and its group.
 const IMPATIENCE: Duration = Duration::from_secs(1);

@@ -6,8 +6,9 @@
 //! | [`soft_plc`] | the embedded soft PLC, which runs IEC 61131-3 source text |
 //! | [`gateway`] | a real PLC, over the links that it has |
 //! | [`station`] | a soft PLC on a clock of its own, for gateways to be tried on |
-//! | [`information_model`] | a session over OPC UA: clients that have nothing but an OPC UA client |
+//! | `information_model` | a session over OPC UA: clients that have nothing but an OPC UA client |
 //! | [`opcua_server`] | endpoints, users and certificates of an OPC UA server |
+//! | `listener` | listening, for every server |
 //! | [`array`] | names with a range, as in `arm[0..9].hold` |
 //! | [`replay`] | a client that repeats what another once did |
 //! | [`operator`] | switches and set points that nobody else writes |
@@ -16,14 +17,16 @@
 //! - A client is a function of its state, its inputs and `t_v`. None reads a random
 //!   source, a thread's identity or the order of a hash map.
 //! - Transcendental functions come from `libm`, at set-up as well as in a turn.
-//! - Files are read before a session; nothing but [`gateway`], [`station`] and [`information_model`] opens a socket, starts a thread or
-//!   reads a wall clock, and what a step computes does not depend on it.
+//! - Files are read before a session. Nothing but [`gateway`], [`station`], [`opcua_server`] and
+//!   `information_model` opens a socket, starts a thread or reads a wall clock, and what a step computes
+//!   does not depend on it.
 //! - Bad input is an error with a place, never a panic.
 
 pub mod array;
 pub mod gateway;
 #[cfg(feature = "opcua")]
 pub mod information_model;
+mod listener;
 pub mod opcua_server;
 pub mod operator;
 pub mod plant;

@@ -110,15 +110,6 @@ impl Application {
         Self::without_constants(Self::builder().inputs(inputs).covered())
     }
 
-    /// Like [`Self::from_inputs`], to be run with [`SoftPlc::watch`](crate::SoftPlc::watch). It
-    /// computes the same, slowly, and takes saved states of the other builds.
-    ///
-    /// # Errors
-    /// All that is wrong with the files, and the warnings too.
-    pub fn from_inputs_traced(inputs: impl IntoIterator<Item = Input>) -> Result<Self, Diagnostics> {
-        Self::without_constants(Self::builder().inputs(inputs).traced())
-    }
-
     /// Begins an application whose constants can be set, or that tells what it executes.
     pub fn builder() -> Builder {
         Builder::default()

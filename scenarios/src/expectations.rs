@@ -6,7 +6,7 @@ use onescan_server::signal::SignalName;
 use toml::Spanned;
 
 use super::file::{ExpectFile, ScenarioFile};
-use crate::expect::{Expectation, KnownSignal};
+use crate::expect::Expectation;
 
 /// All expectations of a scenario.
 #[derive(Clone, Debug, Default)]
@@ -33,14 +33,7 @@ impl Expectations {
 
     /// Adds expectations on signals of `file` that stand in `text`.
     pub(crate) fn add(&mut self, file: &ScenarioFile, entries: &[ExpectFile], text: &str) -> Result<(), Wrong> {
-        let known: Vec<KnownSignal> = file
-            .signals
-            .iter()
-            .map(|(name, signal)| {
-                let signal = signal.get_ref();
-                KnownSignal { name: name.to_string(), ty: signal.ty, unit: signal.unit.clone() }
-            })
-            .collect();
+        let known = file.known_signals();
         let mut columns: Vec<String> = self.signals.iter().map(ToString::to_string).collect();
         for ExpectFile { name, formula, .. } in entries {
             if self.named.iter().any(|(other, _)| other == name.get_ref()) {

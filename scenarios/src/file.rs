@@ -11,6 +11,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Deserializer};
 use toml::Spanned;
 
+use crate::expect::KnownSignal;
 use crate::form::{DialectName, Name, Scalar, Time, Type};
 
 /// The only version of the format so far.
@@ -211,6 +212,17 @@ pub struct FreewheelFile {
     #[serde(deserialize_with = "from_text")]
     #[schemars(with = "Time")]
     pub item_transfer: TimeSpan,
+}
+
+impl ScenarioFile {
+    /// The signals, as formulas know them.
+    pub(crate) fn known_signals(&self) -> Vec<KnownSignal> {
+        let known = |(name, signal): (&SignalName, &Spanned<SignalFile>)| {
+            let signal = signal.get_ref();
+            KnownSignal { name: name.to_string(), ty: signal.ty, unit: signal.unit.clone() }
+        };
+        self.signals.iter().map(known).collect()
+    }
 }
 
 impl Default for FreewheelFile {

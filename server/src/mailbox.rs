@@ -11,8 +11,7 @@ use std::time::Duration;
 
 use tokio::sync::oneshot;
 
-use crate::operation::{Operation, OperationError};
-use crate::session::Control;
+use crate::operation::{Control, Operation, OperationError};
 use crate::wire::message::Status;
 
 /// A wish, and who wants to hear how things are once it is taken.

@@ -12,7 +12,6 @@ use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
 use crate::client::{ClientOperation, OperationRefused};
-use crate::session::Control;
 use crate::signal::{ClientName, SignalName, SignalType};
 use crate::time::{StepCount, TimeSpan, VirtualTime};
 
@@ -168,6 +167,22 @@ impl Operation {
     pub fn is_lasting(&self) -> bool {
         !matches!(self, Self::Pause | Self::Resume | Self::Step)
     }
+}
+
+/// What somebody who watches over a session may ask for. All of it acts at a step boundary.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Control {
+    /// End the session for all.
+    Stop,
+    /// Hold virtual time.
+    Pause,
+    /// Let virtual time run again.
+    Resume,
+    /// Run exactly one step, then hold.
+    Step,
+    /// Begin anew at `t_v = 0`; held if it was held.
+    Reset,
 }
 
 impl From<Control> for Operation {

@@ -110,25 +110,6 @@ impl SessionPlan {
         &self.clients
     }
 
-    /// A hash over everything in the plan: equal plans, equal fingerprints.
-    pub fn fingerprint(&self) -> [u8; 32] {
-        let mut hasher = blake3::Hasher::new_derive_key("onescan session plan 1");
-        hasher.update(&self.step.as_nanos().to_le_bytes());
-        if let Coupling::Sequential { order } = &self.coupling {
-            for client in order {
-                hasher.update(&client.0.to_le_bytes());
-            }
-        }
-        for signal in &self.signals {
-            let writer = signal.writer.as_ref().map_or("", ClientName::as_str);
-            hasher.update(format!("signal {}:{} by {writer}\n", signal.name, signal.ty).as_bytes());
-        }
-        for client in &self.clients {
-            hasher.update(format!("client {client}\n").as_bytes());
-        }
-        *hasher.finalize().as_bytes()
-    }
-
     /// The client of this name.
     pub fn client_id(&self, name: &ClientName) -> Option<ClientId> {
         self.clients.binary_search(name).ok().map(ClientId::from_index)

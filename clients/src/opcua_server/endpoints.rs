@@ -11,7 +11,7 @@ use tokio::net::TcpListener;
 
 use super::{Access, ServeError};
 use crate::gateway::opcua::pki::Pki;
-use crate::station::listen::bind;
+use crate::listener::bind;
 
 /// Shortest publishing interval, and how often subscriptions are looked at.
 const SUBSCRIPTIONS_MS: u64 = 1;

@@ -6,12 +6,13 @@ use std::net::{Shutdown, SocketAddr, TcpListener, TcpStream};
 use std::sync::Arc;
 
 use super::controller::{Controller, Snapshot};
-use super::listen::{accept, bind};
+use super::listen::accept;
 use crate::gateway::ads::Options;
 use crate::gateway::ads::command::{self, SUM_MAX};
 use crate::gateway::ads::frame::{Bytes, Frame, Kind, MAX_DATA};
 use crate::gateway::ads::symbol::{Form, READ_ONLY, Symbol};
 use crate::gateway::exchange::{Direction, Point};
+use crate::listener::bind;
 
 /// Index group of a PLC's data; the offset is that of the packed value, behind [`FROM_PLC`] of those that it writes.
 const DATA: u32 = 0x4040;

@@ -10,17 +10,6 @@ pub(super) const GLANCE: Duration = Duration::from_millis(100);
 /// A client that does not take what is sent to it for so long is left.
 const WRITE_TIMEOUT: Duration = Duration::from_secs(3);
 
-/// A listener that does not block, and the address that it got.
-///
-/// # Errors
-/// The address cannot be listened on.
-pub(crate) fn bind(address: SocketAddr) -> std::io::Result<(TcpListener, SocketAddr)> {
-    let listener = TcpListener::bind(address)?;
-    let address = listener.local_addr()?;
-    listener.set_nonblocking(true)?;
-    Ok((listener, address))
-}
-
 /// Hands each client to `attend`, until all is over.
 pub(super) fn accept(listener: &TcpListener, controller: &Controller, mut attend: impl FnMut(TcpStream, SocketAddr)) {
     while !controller.is_over() {

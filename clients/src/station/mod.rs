@@ -20,7 +20,7 @@
 pub mod ads;
 pub mod controller;
 pub mod cycle;
-pub(crate) mod listen;
+mod listen;
 pub mod modbus;
 #[cfg(feature = "opcua")]
 pub mod opcua;

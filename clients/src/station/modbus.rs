@@ -10,11 +10,12 @@ use tokio_modbus::server::Service;
 use tokio_modbus::server::tcp::{Server, accept_tcp_connection};
 
 use super::controller::Controller;
-use super::listen::{GLANCE, bind};
+use super::listen::GLANCE;
 use crate::gateway::exchange::Direction;
 use crate::gateway::modbus::RegisterMap;
 use crate::gateway::modbus::map::{Entry, Span, Table};
 use crate::gateway::modbus::registers;
+use crate::listener::bind;
 
 /// Serves the PLC's registers at `address`; gives the address that it got. The server ends with the controller.
 ///

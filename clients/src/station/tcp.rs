@@ -12,9 +12,10 @@ use bytes::BytesMut;
 use tokio_util::codec::Decoder;
 
 use super::controller::Controller;
-use super::listen::{GLANCE, accept, bind};
+use super::listen::{GLANCE, accept};
 use crate::gateway::exchange::Direction;
 use crate::gateway::tcp::{BlockCodec, Layouts};
+use crate::listener::bind;
 
 /// Serves the PLC's blocks at `address`; gives the address that it got. The server ends with the controller.
 ///

@@ -265,7 +265,7 @@ impl SoftPlc {
     }
 
     /// Watches places in memory from here on, in place of those watched before. The application must
-    /// have been compiled for it ([`Application::from_inputs_traced`]).
+    /// have been compiled for it ([`Builder::traced`](crate::Builder::traced)).
     pub fn watch(&mut self, places: impl IntoIterator<Item = (Range<usize>, Option<u8>)>) {
         let watched = places.into_iter().map(|(range, bit)| Watched::new(range, bit)).collect();
         self.machine.set_trace(Trace::new(watched));

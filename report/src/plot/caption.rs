@@ -1,6 +1,6 @@
 //! The words of a picture: names, units, and a description for readers who do not see it.
 
-use super::panel::Axis;
+use super::agreement::Agreement;
 use super::range::TimeRange;
 use super::ticks::power_of_ten;
 use super::{Panel, Plot};
@@ -21,13 +21,17 @@ pub(super) fn time(exponent: i32) -> String {
     format!("time{}", in_unit(Some("s"), exponent))
 }
 
-/// What the picture shows.
-pub(super) fn description(times: TimeRange, panels: &[Axis<'_>], run_labels: &[String]) -> String {
-    let signal = |axis: &Axis<'_>| {
-        let remark = axis.agreement.remark().map(|remark| format!(": {remark}"));
-        format!("{}{}", heading(axis.panel, 0), remark.unwrap_or_default())
+/// What the picture shows: each panel, and how far its runs agree.
+pub(super) fn description<'p>(
+    times: TimeRange,
+    panels: impl Iterator<Item = (&'p Panel, &'p Agreement)>,
+    run_labels: &[String],
+) -> String {
+    let signal = |(panel, agreement): (&Panel, &Agreement)| {
+        let remark = agreement.remark().map_or_else(String::new, |remark| format!(": {remark}"));
+        format!("{}{remark}", heading(panel, 0))
     };
-    let signals: Vec<String> = panels.iter().map(signal).collect();
+    let signals: Vec<String> = panels.map(signal).collect();
     let seconds = times.seconds();
     format!(
         "Signals over time from {} s to {} s. Signals: {}. Runs: {}.",

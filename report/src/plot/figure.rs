@@ -25,7 +25,8 @@ pub(super) fn draw(plot: &Plot) -> String {
     let mut document = Document::default();
     open(&mut document, layout.height_px);
     document.text("title", &[], if plot.title.is_empty() { "Trajectories" } else { &plot.title });
-    document.text("desc", &[], &caption::description(time.range, &panels, &run_labels));
+    let signals = panels.iter().map(|axis| (axis.panel, &axis.agreement));
+    document.text("desc", &[], &caption::description(time.range, signals, &run_labels));
     document.empty("rect", &[("width", &WIDTH_PX), ("height", &layout.height_px), ("fill", &GROUND)]);
     draw_title(&mut document, &plot.title, &layout);
     draw_legend(&mut document, &layout);

@@ -57,7 +57,7 @@ impl Scenario {
         entry: &CaseFile,
         applied: &mut Applied,
     ) -> Result<(), ScenarioError> {
-        let known = self.known_signals();
+        let known = self.file().known_signals();
         let ends = |keys: PeriodKeys<'_>| period(catalogue, &known, keys);
         let mut held: BTreeMap<SignalName, Vec<Held>> = BTreeMap::new();
         let mut timeline = Vec::new();
@@ -120,14 +120,6 @@ impl Scenario {
         });
         applied.timeline = timeline;
         Ok(())
-    }
-
-    fn known_signals(&self) -> Vec<KnownSignal> {
-        let known = |(name, signal): (&SignalName, &Spanned<crate::file::SignalFile>)| {
-            let signal = signal.get_ref();
-            KnownSignal { name: name.to_string(), ty: signal.ty, unit: signal.unit.clone() }
-        };
-        self.file().signals.iter().map(known).collect()
     }
 
     fn type_of(&self, catalogue: &Catalogue, signal: &Spanned<SignalName>) -> Result<SignalType, ScenarioError> {

@@ -32,7 +32,6 @@ use std::sync::Arc;
 use onescan_base::nearest;
 
 pub use saved::SessionState;
-use serde::{Deserialize, Serialize};
 pub use turn::Turn;
 
 use crate::client::{ClientId, JoinRequest};
@@ -44,22 +43,6 @@ use crate::plan::SessionPlan;
 use crate::signal::{ClientName, SignalName};
 use crate::state::ServerState;
 use crate::time::VirtualTime;
-
-/// What somebody who watches over a session may ask for. All of it acts at a step boundary.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Control {
-    /// End the session for all.
-    Stop,
-    /// Hold virtual time.
-    Pause,
-    /// Let virtual time run again.
-    Resume,
-    /// Run exactly one step, then hold.
-    Step,
-    /// Begin anew at `t_v = 0`; held if it was held.
-    Reset,
-}
 
 /// How the session goes on at the next boundary.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]

@@ -2,9 +2,9 @@
 
 use onescan_base::did_you_mean;
 
-use super::{Control, Mode, Session};
+use super::{Mode, Session};
 use crate::client::OperationRefused;
-use crate::operation::{Operation, OperationError, SignalFault};
+use crate::operation::{Control, Operation, OperationError, SignalFault};
 use crate::signal::{SignalId, SignalName};
 
 impl Session {
