@@ -10,6 +10,7 @@
 //! | `arrays` | signals written as arrays and patterns |
 //! | [`expectations`] | what it expects of every run |
 //! | [`case`] | one scenario, tried in many ways |
+//! | `apply` | a case put on its scenario |
 //! | [`schema`] | the JSON schemas of both files |
 //! | [`compose`] | a scenario's plan and its clients |
 //! | [`gateway`] | its real PLCs |
@@ -22,6 +23,7 @@
 //! Invariants. This is the only crate that reads scenario files. It starts no process, runs no session
 //! and prints nothing.
 
+mod apply;
 mod arrays;
 pub mod case;
 pub mod compose;

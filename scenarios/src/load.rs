@@ -5,17 +5,18 @@ use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
+use onescan_clients::soft_plc::watch::Sightings;
 use onescan_clients::soft_plc::{CoverageSink, TraceSink};
 use onescan_server::plan::{Coupling, PlanError, SessionPlan};
 use onescan_server::signal::{ClientName, SignalDecl, SignalName, did_you_mean};
 use onescan_server::time::{TimeSpan, VirtualTime};
 
 use super::arrays;
-use super::case::{self, Applied, Catalogue};
+use super::case::{self, Applied};
 use super::error::{ScenarioError, wrong};
 use super::expectations::Expectations;
 use super::file::{ClientFile, CouplingFile, ScenarioFile, VERSION};
-use super::watch::Watched;
+use super::watch::{WatchRequest, Watched};
 
 /// The file that makes a folder a scenario.
 pub const FILE_NAME: &str = "scenario.toml";
@@ -98,23 +99,6 @@ impl Scenario {
         })
     }
 
-    /// The scenario in `path` as the case called `name` wants it; as it is without a name.
-    ///
-    /// # Errors
-    /// See [`ScenarioError`].
-    pub fn load_case(path: &Path, name: Option<&str>) -> Result<Self, ScenarioError> {
-        let scenario = Self::load(path)?;
-        let Some(name) = name else { return Ok(scenario) };
-        let catalogue = Catalogue::load(scenario.folder())?;
-        if let Some(case) = catalogue.find(name) {
-            return scenario.with_case(&catalogue, case);
-        }
-        let names = || catalogue.cases().iter().map(|case| case.name.as_str());
-        let all = || format!("its cases are {}", names().collect::<Vec<_>>().join(", "));
-        let help = did_you_mean(name, names()).unwrap_or_else(all);
-        Err(ScenarioError::UnknownCase { scenario: scenario.name, case: name.to_owned(), help })
-    }
-
     /// The case that is tried.
     pub fn case(&self) -> Option<&case::Case> {
         self.applied().map(|applied| &applied.case)
@@ -152,6 +136,23 @@ impl Scenario {
         let sink = TraceSink::default();
         self.writers = Some((signals, sink.clone()));
         sink
+    }
+
+    /// Lets soft PLCs look at variables, at all their changes if `changes`, else at what they are last.
+    ///
+    /// # Errors
+    /// A PLC is not named, or is none of the scenario's. Paths are looked at when the PLCs are made.
+    pub fn watch(&mut self, requests: &[WatchRequest], changes: bool) -> Result<(), ScenarioError> {
+        let is_plc = |client: &ClientFile| matches!(client, ClientFile::SoftPlc { .. });
+        let plcs = self.file.clients.iter().filter(|(_, each)| is_plc(each.get_ref())).map(|(name, _)| name.clone());
+        let watched = Watched::new(requests, &plcs.collect::<Vec<_>>(), changes);
+        self.watched = Some(watched.map_err(|unclear| self.wrong_option(unclear.message, Some(unclear.help)))?);
+        Ok(())
+    }
+
+    /// What the PLCs of a run have seen; the next run begins with nothing.
+    pub fn take_sightings(&self) -> Sightings {
+        self.watched.as_ref().map_or_else(Sightings::default, Watched::take_sightings)
     }
 
     /// The signals whose writers are asked for, and where they are told.

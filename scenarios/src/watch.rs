@@ -1,14 +1,11 @@
 //! Variables of the scenario's soft PLCs that a run looks at.
 
 use std::str::FromStr;
+use std::sync::PoisonError;
 
 use onescan_clients::soft_plc::watch::{SightingSink, Sightings, Watch};
 use onescan_plc_shim::Radix;
 use onescan_server::signal::ClientName;
-
-use super::error::ScenarioError;
-use super::file::ClientFile;
-use super::load::Scenario;
 
 /// A variable to look at: `Main.x`, `plc2:Main.x`, `Main.status=bin`.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -61,7 +58,35 @@ pub(crate) struct Watched {
     sink: SightingSink,
 }
 
+/// Why it is not clear which PLC is to be watched.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) struct Unclear {
+    pub(crate) message: String,
+    pub(crate) help: String,
+}
+
 impl Watched {
+    /// What `requests` ask for, of the soft PLCs `plcs`: all changes if `changes`, else what is seen last.
+    pub(crate) fn new(requests: &[WatchRequest], plcs: &[ClientName], changes: bool) -> Result<Self, Unclear> {
+        let mut list = Vec::new();
+        for request in requests {
+            let found = match (&request.client, plcs) {
+                (None, [only]) => Some(only),
+                (None, _) => None,
+                (Some(wanted), _) => plcs.iter().find(|name| name.as_str() == wanted),
+            };
+            let client = found.ok_or_else(|| Unclear::of(request, plcs))?;
+            list.push((client.clone(), request.watch.clone()));
+        }
+        Ok(Self { list, changes, sink: SightingSink::default() })
+    }
+
+    /// What the PLCs of a run have seen; the next run begins with nothing.
+    pub(crate) fn take_sightings(&self) -> Sightings {
+        // A client that panicked has seen what it has seen.
+        std::mem::take(&mut self.sink.lock().unwrap_or_else(PoisonError::into_inner))
+    }
+
     /// What client `name` looks at, each with its number.
     pub(crate) fn of(&self, name: &ClientName) -> (Vec<(usize, Watch)>, bool, SightingSink) {
         let own = self.list.iter().enumerate().filter(|(_, (client, _))| client == name);
@@ -69,51 +94,19 @@ impl Watched {
     }
 }
 
-impl Scenario {
-    /// Lets soft PLCs look at variables, at all their changes if `changes`, else at what they are last.
-    ///
-    /// # Errors
-    /// A PLC is not named, or is none of the scenario's. Paths are looked at when the PLCs are made.
-    pub fn watch(&mut self, requests: &[WatchRequest], changes: bool) -> Result<(), ScenarioError> {
-        let is_plc = |client: &ClientFile| matches!(client, ClientFile::SoftPlc { .. });
-        let plcs: Vec<ClientName> = self
-            .file()
-            .clients
-            .iter()
-            .filter(|(_, each)| is_plc(each.get_ref()))
-            .map(|(name, _)| name.clone())
-            .collect();
-        let mut list = Vec::new();
-        for request in requests {
-            let path = &request.watch.path;
-            let found = match (&request.client, plcs.as_slice()) {
-                (None, [only]) => Some(only),
-                (None, _) => None,
-                (Some(wanted), _) => plcs.iter().find(|name| name.as_str() == wanted),
-            };
-            let Some(client) = found else {
-                let names: Vec<&str> = plcs.iter().map(ClientName::as_str).collect();
-                let help = match names.as_slice() {
-                    [] => "the scenario has no soft PLC".to_owned(),
-                    [first, ..] => format!("its soft PLCs are {}: write `{first}:{path}`", names.join(", ")),
-                };
-                let message = match &request.client {
-                    Some(wanted) => format!("the scenario has no soft PLC `{wanted}` to watch"),
-                    None => format!("whose `{path}` is to be watched is not said"),
-                };
-                return Err(self.wrong_option(message, Some(help)));
-            };
-            list.push((client.clone(), request.watch.clone()));
-        }
-        self.watched = Some(Watched { list, changes, sink: SightingSink::default() });
-        Ok(())
-    }
-
-    /// What the PLCs of a run have seen; the next run begins with nothing.
-    pub fn take_sightings(&self) -> Sightings {
-        let Some(watched) = &self.watched else { return Sightings::default() };
-        // A client that panicked has seen what it has seen.
-        std::mem::take(&mut watched.sink.lock().unwrap_or_else(std::sync::PoisonError::into_inner))
+impl Unclear {
+    fn of(request: &WatchRequest, plcs: &[ClientName]) -> Self {
+        let path = &request.watch.path;
+        let names: Vec<&str> = plcs.iter().map(ClientName::as_str).collect();
+        let help = match names.as_slice() {
+            [] => "the scenario has no soft PLC".to_owned(),
+            [first, ..] => format!("its soft PLCs are {}: write `{first}:{path}`", names.join(", ")),
+        };
+        let message = match &request.client {
+            Some(wanted) => format!("the scenario has no soft PLC `{wanted}` to watch"),
+            None => format!("whose `{path}` is to be watched is not said"),
+        };
+        Self { message, help }
     }
 }
 

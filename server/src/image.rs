@@ -1,68 +1,12 @@
 //! The image: all signals of a session in one flat, fixed byte layout.
 //!
-//! The layout follows from the signals alone: falling alignment, then name, no padding. Outputs are
-//! staged as they come and become visible together, at the commit.
+//! Outputs are staged as they come and become visible together, at the commit.
 
-use std::ops::Range;
 use std::sync::Arc;
 
 use crate::interference::Interference;
-use crate::signal::{BadValue, PortLayout, SignalDecl, SignalId, SignalType};
-
-/// Where each signal lies in the image.
-#[derive(Clone, Debug, PartialEq, Eq, Hash)]
-pub struct ImageLayout {
-    offsets: Vec<usize>,
-    types: Vec<SignalType>,
-    size: usize,
-}
-
-impl ImageLayout {
-    /// Lays out `signals`, which are sorted by name.
-    pub fn new(signals: &[SignalDecl]) -> Self {
-        let mut order: Vec<usize> = (0..signals.len()).collect();
-        order.sort_by_key(|index| (std::cmp::Reverse(signals[*index].ty.alignment()), *index));
-        let mut offsets = vec![0; signals.len()];
-        let mut size = 0;
-        for index in order {
-            offsets[index] = size;
-            size += signals[index].ty.size();
-        }
-        Self { offsets, types: signals.iter().map(|signal| signal.ty).collect(), size }
-    }
-
-    /// Bytes of the image.
-    pub fn size(&self) -> usize {
-        self.size
-    }
-
-    /// The bytes of `signal` in `image`.
-    pub fn bytes<'a>(&self, signal: SignalId, image: &'a [u8]) -> &'a [u8] {
-        let offset = self.offsets[signal.index()];
-        &image[offset..offset + self.types[signal.index()].size()]
-    }
-
-    /// The first byte of `signal` in an image.
-    pub fn offset(&self, signal: SignalId) -> usize {
-        self.offsets[signal.index()]
-    }
-
-    /// Where `signal` lies in an image.
-    pub fn range(&self, signal: SignalId) -> Range<usize> {
-        let offset = self.offsets[signal.index()];
-        offset..offset + self.types[signal.index()].size()
-    }
-
-    /// The type of `signal`.
-    pub fn ty(&self, signal: SignalId) -> SignalType {
-        self.types[signal.index()]
-    }
-
-    /// All signals in the order of their names.
-    pub fn signals(&self) -> impl ExactSizeIterator<Item = SignalId> + use<> {
-        (0..self.types.len() as u32).map(SignalId)
-    }
-}
+use crate::layout::ImageLayout;
+use crate::signal::{BadValue, PortLayout, SignalId, SignalType};
 
 /// One run of bytes that is copied between a port and the image.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -87,7 +31,7 @@ impl PortMap {
         let mut runs: Vec<Run> = Vec::new();
         let mut to_canonicalise = Vec::new();
         for ((signal, offset), id) in port.iter().zip(ids) {
-            let run = Run { image: layout.offsets[id.index()], port: offset, len: signal.ty.size() };
+            let run = Run { image: layout.offset(*id), port: offset, len: signal.ty.size() };
             match runs.last_mut() {
                 Some(last) if last.image + last.len == run.image && last.port + last.len == run.port => {
                     last.len += run.len;
@@ -210,31 +154,14 @@ impl Image {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::signal::{Port, SignalName};
+    use crate::layout::tests::signals;
+    use crate::signal::{Port, SignalDecl};
     use proptest::prelude::*;
-
-    fn signals(types: &[SignalType]) -> Vec<SignalDecl> {
-        let decl = |(index, ty): (usize, &SignalType)| SignalDecl {
-            name: SignalName::new(format!("s{index:03}")).unwrap(),
-            ty: *ty,
-            writer: None,
-            unit: None,
-        };
-        types.iter().enumerate().map(decl).collect()
-    }
 
     fn map_of(signals: &[SignalDecl], ids: &[u32], layout: &ImageLayout) -> PortMap {
         let ids: Vec<SignalId> = ids.iter().copied().map(SignalId).collect();
         let ports = ids.iter().map(|id| Port { name: signals[id.index()].name.clone(), ty: signals[id.index()].ty });
         PortMap::new(&PortLayout::new(ports.collect()), &ids, layout)
-    }
-
-    #[test]
-    fn wide_signals_come_first_and_nothing_is_padded() {
-        use SignalType as T;
-        let layout = ImageLayout::new(&signals(&[T::BOOL, T::LREAL, T::INT, T::REAL, T::BOOL]));
-        assert_eq!(layout.size(), 16);
-        assert_eq!(layout.offsets, [14, 0, 12, 8, 15]);
     }
 
     #[test]

@@ -11,7 +11,7 @@ use onescan_base::ElementaryType;
 use onescan_base::elementary::Kind;
 use serde::{Deserialize, Serialize};
 
-use crate::image::ImageLayout;
+use crate::layout::ImageLayout;
 use crate::operation::SignalFault;
 use crate::signal::{SignalId, SignalType};
 use crate::time::TimeSpan;

@@ -4,7 +4,8 @@ use onescan_base::nearest;
 use thiserror::Error;
 
 use crate::client::JoinRequest;
-use crate::image::{ImageLayout, PortMap};
+use crate::image::PortMap;
+use crate::layout::ImageLayout;
 use crate::plan::{SessionPlan, hint};
 use crate::signal::{ClientName, Port, PortLayout, SignalId, SignalName, SignalType};
 use crate::time::TimeSpan;

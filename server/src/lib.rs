@@ -10,8 +10,9 @@
 //! | [`client`] | the interface of everything that takes part |
 //! | [`plan`] | a session before anybody joins |
 //! | [`operation`] | what is done to a session from outside, as data |
+//! | [`layout`] | where each signal lies among all values |
 //! | `interference` | what lies over the writers' values: writes, forces, faults of signals |
-//! | [`image`] | all values in one byte layout; staged, then committed |
+//! | [`image`] | all values; staged, then committed |
 //! | [`join`] | who may join, and why not |
 //! | [`state`] | the states of \[SDSP\], Figs. 8 and 9 |
 //! | [`cycle`] | the barrier: states, virtual time, delays |
@@ -42,6 +43,7 @@ pub mod formation;
 pub mod image;
 mod interference;
 pub mod join;
+pub mod layout;
 pub mod lockstep;
 pub mod mailbox;
 pub mod observer;

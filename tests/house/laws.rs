@@ -64,7 +64,9 @@ fn rust_files(folder: &Path, found: &mut Vec<PathBuf>) {
 /// Places at which one of `words` stands outside of comments and texts, as `file:line: word`, by file.
 fn places_of(words: &[&str]) -> BTreeMap<String, Vec<String>> {
     let mut files = Vec::new();
-    CRATES.iter().for_each(|each| rust_files(&root().join(each).join("src"), &mut files));
+    for each in CRATES {
+        rust_files(&root().join(each).join("src"), &mut files);
+    }
     files.sort();
     let mut places: BTreeMap<String, Vec<String>> = BTreeMap::new();
     for path in files {

@@ -16,7 +16,7 @@ use std::path::Path;
 use graph::{Arrow, Rooms};
 use source::{Field, Sources};
 
-/// A folder whose modules are rooms.
+/// A folder whose modules are rooms: the source of a crate, and rooms large enough to have an order of their own.
 struct Floor {
     /// From the root of the repository.
     folder: &'static str,
@@ -43,9 +43,7 @@ const HOUSE: &[Floor] = &[
     open_floor("server/recording/src"),
     open_floor("clients/src"),
     open_floor("clients/src/gateway"),
-    open_floor("clients/src/plant"),
     open_floor("clients/src/plant/component"),
-    open_floor("clients/src/plant/scene"),
     open_floor("clients/src/soft_plc"),
     open_floor("clients/src/station"),
     open_floor("scenarios/src"),
@@ -56,7 +54,6 @@ const HOUSE: &[Floor] = &[
     open_floor("cli/src"),
     open_floor("plc-shim/src"),
     open_floor("plc-shim/src/compile"),
-    open_floor("plc-shim/src/instrument"),
     Floor {
         folder: "plc-shim/src/check",
         closed: true,

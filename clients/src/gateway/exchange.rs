@@ -9,7 +9,8 @@ use std::collections::BTreeMap;
 use onescan_server::signal::{Port, SignalType};
 use onescan_server::time::VirtualTime;
 
-use super::handshake::{Answer, Order, Report};
+use super::answer::Answer;
+use super::handshake::{Order, Report};
 
 /// Which way a point goes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -4,7 +4,7 @@ use std::time::Duration;
 
 use thiserror::Error;
 
-use super::handshake::Answer;
+use super::answer::Answer;
 
 /// Why a link cannot do what it is to do.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]

@@ -3,6 +3,7 @@
 //! | module | subject |
 //! |---|---|
 //! | [`handshake`] | what is to be written and read next, and what the PLC's words mean: sans-IO |
+//! | [`answer`] | what its scheduler says of a grant |
 //! | [`fault`] | what can be wrong with a link, told apart by name |
 //! | [`byte_order`] | which byte of a number comes first |
 //! | [`exchange`] | the signals and synchronisation words in their order, as packed bytes |
@@ -23,6 +24,7 @@
 //! - A wall clock decides when to give up, never what a step computes.
 
 pub mod ads;
+pub mod answer;
 pub mod byte_order;
 pub mod client;
 pub mod exchange;

@@ -9,7 +9,7 @@ use std::sync::{Arc, Condvar, Mutex, MutexGuard, OnceLock, PoisonError};
 use std::time::{Duration, Instant};
 
 use onescan_server::client::JoinRequest;
-use onescan_server::image::ImageLayout;
+use onescan_server::layout::ImageLayout;
 use onescan_server::mailbox::Mailbox;
 use onescan_server::plan::SessionPlan;
 use onescan_server::published::{Follower, Published, SessionView};

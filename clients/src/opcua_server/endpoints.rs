@@ -9,8 +9,8 @@ use opcua::server::{ANONYMOUS_USER_TOKEN_ID, ServerBuilder, ServerHandle, Server
 use opcua::types::MessageSecurityMode;
 use tokio::net::TcpListener;
 
+use super::pki::Pki;
 use super::{Access, ServeError};
-use crate::gateway::opcua::pki::Pki;
 use crate::listener::bind;
 
 /// Shortest publishing interval, and how often subscriptions are looked at.

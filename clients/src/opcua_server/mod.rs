@@ -3,12 +3,15 @@
 //! | module | subject |
 //! |---|---|
 //! | `endpoints` | the server itself, with the feature `opcua` |
+//! | `pki` | the folder for certificates, of servers and of clients |
 //! | `absent` | what stands for it without that feature |
 
 #[cfg(not(feature = "opcua"))]
 mod absent;
 #[cfg(feature = "opcua")]
 mod endpoints;
+#[cfg(feature = "opcua")]
+pub(crate) mod pki;
 
 use std::path::PathBuf;
 

@@ -162,12 +162,12 @@ impl Catalogue {
     }
 
     /// The entry of a case as it is written.
-    pub(super) fn entry(&self, case: &Case) -> Option<&CaseFile> {
+    pub(crate) fn entry(&self, case: &Case) -> Option<&CaseFile> {
         self.file.cases.get(case.entry?).map(Spanned::get_ref)
     }
 
     /// The file's name and text.
-    pub(super) fn source(&self) -> (String, String) {
+    pub(crate) fn source(&self) -> (String, String) {
         (self.path.display().to_string(), self.text.clone())
     }
 

@@ -6,19 +6,15 @@
 //! | [`catalogue`] | the file read; all cases, those of matrices one by one |
 //! | [`matrix`] | every combination of values |
 //! | [`value`] | TOML values as those of signals and variables |
-//! | [`timeline`] | what a case does while a session runs, as operations |
-//! | [`settings`] | parameters of plants, constants and initial values of PLCs |
-//! | [`apply`] | a case put on its scenario |
+//!
+//! How a case is put on its scenario is in `apply`, beside this room.
 //!
 //! A scenario without the file, and one whose file names no case, has one case, called
 //! [`DEFAULT`]: the scenario as it is.
 
-pub mod apply;
 pub mod catalogue;
 pub mod file;
 pub mod matrix;
-pub mod settings;
-pub mod timeline;
 pub mod value;
 
 use std::ops::Range;

@@ -19,8 +19,8 @@ use crate::column::Column;
 use crate::event::{self, Event};
 use crate::header::{FORMAT, Header};
 use crate::parquet::read::Part;
-use crate::parquet::{ParquetFile, parts};
-use crate::recorder::{EVENTS, HEADER, TRAJECTORY};
+use crate::parquet::{ParquetFile, TRAJECTORY, parts};
+use crate::recorder::{EVENTS, HEADER};
 use crate::sink::Sink;
 use crate::{csv, mcap};
 

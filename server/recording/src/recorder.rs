@@ -36,8 +36,6 @@ use super::sink::{Encoder, Shape, Sink, failed};
 pub const HEADER: &str = "recording.json";
 /// Name of the file of events.
 pub const EVENTS: &str = "events.jsonl";
-/// Name of the folder with the parts of the trajectory.
-pub const TRAJECTORY: &str = "trajectory";
 
 /// What is recorded, and in which forms beside Parquet.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]

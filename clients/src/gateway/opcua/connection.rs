@@ -12,8 +12,8 @@ use tokio::runtime::Runtime;
 use tokio::task::JoinHandle;
 
 use super::options::Options;
-use super::pki::Pki;
 use crate::gateway::fault::LinkFault;
+use crate::opcua_server::pki::Pki;
 
 /// How long a session may take to come about, and a request to be answered.
 const TIMEOUT: Duration = Duration::from_secs(5);

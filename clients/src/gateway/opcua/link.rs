@@ -8,11 +8,11 @@ use tokio::runtime::Runtime;
 
 use super::connection::{Connection, lost};
 use super::options::Options;
-use super::pki::Pki;
 use super::{browse, value};
 use crate::gateway::exchange::{Direction, Exchange, Point};
 use crate::gateway::fault::{LinkFault, MappingFault};
 use crate::gateway::link::{Found, Link};
+use crate::opcua_server::pki::Pki;
 
 /// Variables of an OPC UA server.
 pub struct OpcUaLink {

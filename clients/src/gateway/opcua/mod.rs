@@ -3,7 +3,6 @@
 //! | module | subject |
 //! |---|---|
 //! | [`options`] | security policy, user, certificates, namespace |
-//! | [`pki`] | the folder for certificates |
 //! | [`value`] | packed values as Variants |
 //! | [`connection`] | a session with the server, and what it says when there is none |
 //! | [`browse`] | the variables that there are |
@@ -19,8 +18,6 @@ pub mod connection;
 #[cfg(feature = "opcua")]
 pub mod link;
 pub mod options;
-#[cfg(feature = "opcua")]
-pub mod pki;
 #[cfg(feature = "opcua")]
 pub mod value;
 

@@ -29,11 +29,13 @@ use parquet::file::writer::SerializedFileWriter;
 
 use super::block::Block;
 use super::column::Column;
-use super::recorder::TRAJECTORY;
 use super::sink::{Shape, Sink};
 use encode::Encoded;
 use schema::Held;
 use transpose::Columns;
+
+/// Name of the folder with the parts of the trajectory.
+pub const TRAJECTORY: &str = "trajectory";
 
 /// Key of a part's first step among its metadata.
 pub(crate) const FIRST_STEP: &str = "onescan.first_step";

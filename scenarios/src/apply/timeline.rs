@@ -13,13 +13,13 @@ use onescan_server::time::{TimeSpan, VirtualTime};
 use onescan_server::timeline::{Scheduled, When};
 use toml::{Spanned, Value};
 
-use super::file::{CaseFile, DisturbanceFile, DisturbanceKind, FaultFile, VariableFile};
-use super::value::{bytes_of, literal_of};
-use super::{Applied, Catalogue, FailureAt};
-use crate::Scenario;
+use crate::case::file::{CaseFile, DisturbanceFile, DisturbanceKind, FaultFile, VariableFile};
+use crate::case::value::{bytes_of, literal_of};
+use crate::case::{Applied, Catalogue, FailureAt};
 use crate::error::ScenarioError;
 use crate::expect::{KnownSignal, condition};
 use crate::file::ClientFile;
+use crate::load::Scenario;
 
 /// When something of a case begins and ends.
 struct Period {

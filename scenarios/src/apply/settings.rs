@@ -9,11 +9,11 @@ use onescan_plc_shim::{Application, BuildError, Builder, ConstantError, Diagnost
 use onescan_server::checkpoint::Makeup;
 use onescan_server::signal::ClientName;
 
-use super::apply::{settings_of, wrong_case};
-use super::value::{literal_of, quoted};
-use super::{Applied, Setting};
-use crate::Scenario;
+use super::{settings_of, wrong_case};
+use crate::case::value::{literal_of, quoted};
+use crate::case::{Applied, DEFAULT, Setting};
 use crate::error::ScenarioError;
+use crate::load::Scenario;
 
 /// What is behind the client's name in a setting's path.
 fn own_path(setting: &Setting) -> &str {
@@ -150,7 +150,7 @@ impl Scenario {
         for setting in self.applied().into_iter().flat_map(|applied| &applied.case.settings) {
             settings.insert(setting.path.clone(), setting.value.to_string());
         }
-        let case = self.case().map_or(super::DEFAULT, |case| case.name.as_str());
+        let case = self.case().map_or(DEFAULT, |case| case.name.as_str());
         Makeup { name: format!("case `{case}`"), settings }
     }
 }

@@ -1,16 +1,43 @@
 //! A case put on its scenario.
+//!
+//! | module | subject |
+//! |---|---|
+//! | this file | the case's own keys, and its expectations |
+//! | `settings` | parameters of plants, constants and initial values of PLCs |
+//! | `timeline` | what a case does while a session runs, as operations |
+
+mod settings;
+mod timeline;
 
 use std::ops::Range;
+use std::path::Path;
 
 use onescan_server::signal::{ClientName, did_you_mean};
 
-use super::file::CaseFile;
-use super::{Applied, Case, Catalogue, Setting};
-use crate::Scenario;
+use crate::case::file::CaseFile;
+use crate::case::{Applied, Case, Catalogue, Setting};
 use crate::error::{ScenarioError, wrong};
 use crate::file::ClientFile;
+use crate::load::Scenario;
 
 impl Scenario {
+    /// The scenario in `path` as the case called `name` wants it; as it is without a name.
+    ///
+    /// # Errors
+    /// See [`ScenarioError`].
+    pub fn load_case(path: &Path, name: Option<&str>) -> Result<Self, ScenarioError> {
+        let scenario = Self::load(path)?;
+        let Some(name) = name else { return Ok(scenario) };
+        let catalogue = Catalogue::load(scenario.folder())?;
+        if let Some(case) = catalogue.find(name) {
+            return scenario.with_case(&catalogue, case);
+        }
+        let names = || catalogue.cases().iter().map(|case| case.name.as_str());
+        let all = || format!("its cases are {}", names().collect::<Vec<_>>().join(", "));
+        let help = did_you_mean(name, names()).unwrap_or_else(all);
+        Err(ScenarioError::UnknownCase { scenario: scenario.name().to_owned(), case: name.to_owned(), help })
+    }
+
     /// The scenario as `case` wants it.
     ///
     /// # Errors
@@ -80,5 +107,5 @@ pub(super) fn wrong_case(
     help: Option<String>,
 ) -> ScenarioError {
     let (path, text) = &applied.source;
-    wrong(std::path::Path::new(path), text, message, Some(place), help)
+    wrong(Path::new(path), text, message, Some(place), help)
 }
