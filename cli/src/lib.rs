@@ -18,13 +18,13 @@
 //! | [`browse`] | what a real PLC has |
 //! | [`instrument`] | PLC projects made to run in lockstep, and back |
 //! | [`check`] | PLC sources checked without being run |
-//! | [`wiring`] | signals between clients, told and drawn |
-//! | [`plant`] | scenes and components, told without a session |
+//! | [`wiring`] | signals between clients, listed and drawn |
+//! | [`plant`] | scenes and components, described without a session |
 //! | [`export`] | recordings in other forms |
 //! | [`new`] | scenarios to begin with |
 //! | [`interrupt`] | Ctrl-C |
 //! | [`format`] | for whom the output is |
-//! | [`error`] | what several commands find wrong, and what the shell is told |
+//! | [`error`] | errors of several commands, and exit codes |
 //!
 //! Invariants. This is the only crate that starts processes and prints. What a session computes is decided
 //! in the crates below; nothing here can change a digest.

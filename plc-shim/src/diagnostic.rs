@@ -1,4 +1,4 @@
-//! What is told to the user about program text: a stable code, a place, a message, a hint.
+//! What is reported about program text: a stable code, a place, a message, a hint.
 
 use std::fmt;
 use std::sync::Arc;

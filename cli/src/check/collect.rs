@@ -65,7 +65,7 @@ fn scenario(path: &Path, chosen: Option<Dialect>) -> Result<Vec<Program>, CheckE
 /// Files, each once.
 #[derive(Default)]
 struct Files {
-    /// The dialect of all of them, if not that which each file's name tells.
+    /// The dialect of all of them, if not the one that each file's name says.
     dialect: Option<Dialect>,
     inputs: Vec<Input>,
     seen: BTreeSet<PathBuf>,
@@ -77,7 +77,7 @@ impl Files {
         if let Some(kind) = FileKind::of(path) {
             return self.file(path, kind);
         }
-        // A missing file is told before its wrong name.
+        // A missing file is reported before its wrong name.
         std::fs::metadata(path).map_err(Unreadable::at(path))?;
         if path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("l5x")) {
             return Err(logix(&path.display().to_string()).into());

@@ -45,7 +45,7 @@ pub enum CheckFormat {
 pub struct CheckConfig {
     /// Files, folders and scenarios.
     pub paths: Vec<PathBuf>,
-    /// The dialect of all files, if not that which each file's name tells.
+    /// The dialect of all files, if not the one that each file's name says.
     pub dialect: Option<Dialect>,
     /// For whom the findings are.
     pub format: CheckFormat,
@@ -56,7 +56,7 @@ pub struct CheckConfig {
 /// What becomes of a check that has found nothing but warnings.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Warnings {
-    /// They are told.
+    /// They are reported.
     #[default]
     Allowed,
     /// They make it fail.

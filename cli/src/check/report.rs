@@ -40,7 +40,7 @@ impl Report {
         self.iter().map(Finding::file).collect::<BTreeSet<_>>().len()
     }
 
-    /// What the program tells the shell.
+    /// The exit code.
     pub fn exit_code(&self, warnings: Warnings) -> ExitCode {
         if self.count(Severity::Error) > 0 {
             ExitCode::WrongInput

@@ -72,7 +72,7 @@ pub enum Command {
     Plc(PlcArgs),
     /// List what a real PLC has, and write a mapping to start from
     Browse(BrowseArgs),
-    /// List the library of components, or tell all about one kind
+    /// List the library of components, or describe one kind in full
     Components(ComponentsArgs),
     /// Tell what a scene is made of: bodies, joints, components, signals
     Describe(DescribeArgs),

@@ -59,7 +59,7 @@ pub fn main() -> std::process::ExitCode {
 
 /// Errors go to standard error, with the place in the source where there is one.
 fn report(error: CommandError) {
-    // Where standard error takes nothing either, the exit code still tells.
+    // Where standard error takes nothing either, the exit code still says it.
     let _ = writeln!(std::io::stderr(), "{:?}", miette::Report::new(error));
 }
 

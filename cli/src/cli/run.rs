@@ -173,7 +173,7 @@ impl From<TransportArg> for Transport {
     }
 }
 
-/// When watched variables are told.
+/// When watched variables are reported.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
 pub enum WatchOnArg {
     /// What they are at the end

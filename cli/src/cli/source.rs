@@ -23,7 +23,7 @@ pub struct CheckArgs {
     #[arg(required = true, value_name = "FILE|FOLDER|SCENARIO")]
     pub paths: Vec<PathBuf>,
     /// Read all files in this dialect: iec2, iec3, codesys, twincat or siemens-scl [default: what a file's
-    /// name or PLCopen XML tells, as in `.scl`, else iec3]
+    /// name or PLCopen XML says, as in `.scl`, else iec3]
     #[arg(long, value_name = "NAME")]
     pub dialect: Option<Dialect>,
     /// `human`; `json`: an object a finding with `code`, `severity`, `file`, `line`, `column`,

@@ -66,7 +66,7 @@ pub struct TestArgs {
     /// Virtual time at which a test program with an output `Done` must be done
     #[arg(long, default_value = "1min", value_name = "TIME")]
     pub until: VirtualTime,
-    /// The dialect of sources with test programs [default: what a file's name tells, else iec3]
+    /// The dialect of sources with test programs [default: what a file's name says, else iec3]
     #[arg(long, value_name = "NAME")]
     pub dialect: Option<Dialect>,
 }

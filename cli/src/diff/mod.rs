@@ -35,7 +35,7 @@ use first::{Comparison, Divergence};
 use report::Report;
 use trajectory::TrajectoryReport;
 
-/// What is compared, and how it is told.
+/// What is compared, and how the result is shown.
 #[derive(Clone, Debug)]
 pub struct DiffConfig {
     /// The two recordings, or two files with snapshots.

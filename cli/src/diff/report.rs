@@ -14,9 +14,9 @@ use super::sources::FileDifference;
 
 /// Signals that are listed for people.
 const LISTED: usize = 20;
-/// Signals whose statements are told to people.
+/// Signals whose statements are shown in text.
 const EXPLAINED: usize = 4;
-/// Decisions around a statement that are told to people, the innermost.
+/// Decisions around a statement that are shown in text, the innermost.
 const WITHIN: usize = 3;
 /// What the two recordings are called.
 pub(super) const NAMES: [&str; 2] = ["A", "B"];

@@ -74,7 +74,7 @@ impl TrajectoryReport {
         self.write_others(out)?;
         self.write_around(out)?;
         let Snapshot { case, .. } = &self.snapshots[1];
-        writeln!(out, "\nwhich statement it was is told of recordings: onescan run SCENARIO --case {case} --record DIR")
+        writeln!(out, "\nto find the statement, compare recordings: onescan run SCENARIO --case {case} --record DIR")
     }
 
     /// When values first differ.

@@ -1,4 +1,4 @@
-//! What the program tells the shell, and what of it each part of an error is worth.
+//! Exit codes, and which of them each error stands for.
 
 use std::io;
 
@@ -12,7 +12,7 @@ use onescan_server::transport::tcp::participant::ParticipantError;
 
 use super::{ListenError, SpawnError, Unreadable, Usage};
 
-/// What the program tells the shell.
+/// The exit code of the program.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ExitCode {
     /// All is well.
@@ -27,7 +27,7 @@ pub enum ExitCode {
 
 /// An error that ends the program.
 pub trait Exit {
-    /// Whose fault it is. [`ExitCode::Ok`] means that there is nobody left to tell, and nothing to be told.
+    /// Whose fault it is. [`ExitCode::Ok`] means that nobody is left to report to, and there is nothing to report.
     fn exit_code(&self) -> ExitCode;
 }
 

@@ -1,4 +1,4 @@
-//! What several commands find wrong, and what the shell is told of it.
+//! Errors that several commands report, and their exit codes.
 //!
 //! Each command has an error of its own, which names all that can go wrong with it; these are the parts.
 //!
@@ -8,7 +8,7 @@
 //! | [`unreadable`] | a file that was named cannot be read |
 //! | [`process`] | another program cannot be started |
 //! | [`listen`] | an address cannot be listened on |
-//! | [`exit`] | what the program tells the shell |
+//! | [`exit`] | exit codes |
 //! | `sum` | errors that are one of several |
 
 pub mod exit;

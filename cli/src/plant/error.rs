@@ -1,4 +1,4 @@
-//! Why nothing is told of a scene or the library.
+//! Why a scene or the library cannot be described.
 
 use onescan_report::OutputError;
 use onescan_scenario::ScenarioError;
@@ -6,7 +6,7 @@ use onescan_scenario::ScenarioError;
 use crate::error::{Usage, sum_of_errors};
 
 sum_of_errors! {
-    /// Why nothing is told of a scene or the library.
+    /// Why a scene or the library cannot be described.
     pub enum PlantError {
         /// The scenario is wrong.
         #[diagnostic(transparent)]

@@ -32,7 +32,7 @@ use crate::error::{ListenError, Usage};
 use crate::error::ExitCode;
 use crate::interrupt::Interrupt;
 
-/// Runs the PLC until it is told to quit.
+/// Runs the PLC until it is asked to quit.
 ///
 /// # Errors
 /// The scenario has no such PLC, its sources are wrong, or an address cannot be listened on.

@@ -142,7 +142,7 @@ impl Report {
         self.outcomes.iter().filter(|outcome| outcome.status == status).count()
     }
 
-    /// What the program tells the shell: the gravest of all.
+    /// The exit code: the gravest of all.
     pub fn exit_code(&self) -> ExitCode {
         let codes = self.outcomes.iter().map(|outcome| outcome.status.exit_code());
         codes.max_by_key(|code| *code as u8).unwrap_or(ExitCode::Ok)

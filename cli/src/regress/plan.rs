@@ -112,7 +112,7 @@ fn cases(folder: &Path) -> Result<Vec<CaseUnit>, TestError> {
     let catalogue = Catalogue::load(folder)?;
     let mut units = Vec::new();
     for case in catalogue.cases() {
-        // What is wrong with a case is told before anything runs.
+        // What is wrong with a case is reported before anything runs.
         let choice = Choice::of(&scenario.clone().with_case(&catalogue, case)?, &catalogue)?;
         let place = Place { scenario: folder.to_owned(), case: case.name.clone() };
         units.push(CaseUnit { place, tags: case.tags.clone(), choice, is_named: case.entry.is_some() });

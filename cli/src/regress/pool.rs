@@ -74,7 +74,7 @@ fn one(config: &TestConfig, unit: &Unit) -> Result<Worked, TestError> {
     }
 }
 
-/// What the process of a unit is told.
+/// What the process of a unit is given.
 fn command(config: &TestConfig, unit: &Unit, program: &Path) -> Command {
     let mut command = Command::new(program);
     command.arg("test-worker").stdin(Stdio::null());

@@ -159,7 +159,7 @@ fn done_offset(application: &Application, test: &Test) -> Result<Option<usize>, 
     Err(Usage::new(message, None).into())
 }
 
-/// What the asserts of a scan have found. One that fails in several scans is told once.
+/// What the asserts of a scan have found. One that fails in several scans is reported once.
 fn note(ran: &mut Ran, plc: &mut SoftPlc) {
     let found = plc.take_asserts();
     ran.asserts_made += found.made;

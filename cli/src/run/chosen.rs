@@ -19,7 +19,7 @@ impl Chosen {
         &self.names
     }
 
-    /// Finds the signals in a session that begins; tells how many there are.
+    /// Finds the signals in a session that begins; returns how many there are.
     pub(super) fn find(&mut self, session: &Session) -> usize {
         self.signals = self.names.iter().filter_map(|name| session.signal_id(name.as_str())).collect();
         self.signals.len()

@@ -140,11 +140,11 @@ pub enum Drawing {
 pub struct Watch {
     /// The variables.
     pub variables: Vec<WatchRequest>,
-    /// What is told of them.
+    /// When they are reported.
     pub on: WatchOn,
 }
 
-/// What is told of watched variables.
+/// When watched variables are reported.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum WatchOn {
     /// What they are last.

@@ -85,7 +85,7 @@ impl Processes {
 }
 
 impl Drop for Processes {
-    /// The server has told everybody to leave; one that does not is ended.
+    /// The server has asked everybody to leave; a process that does not is killed.
     fn drop(&mut self) {
         let patience = Instant::now() + LEAVE_TIMEOUT;
         for (_, child) in &mut self.children {

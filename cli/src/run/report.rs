@@ -192,7 +192,7 @@ impl Verdict {
         }
     }
 
-    /// What the program tells the shell.
+    /// The exit code.
     pub fn exit_code(self) -> ExitCode {
         match self {
             Self::Good => ExitCode::Ok,

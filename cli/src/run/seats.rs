@@ -85,7 +85,7 @@ impl Desk {
         self.board.published()
     }
 
-    /// What tells subscribers of each step over OPC UA.
+    /// What notifies subscribers of each step over OPC UA.
     pub(super) fn observer(&self) -> Box<dyn Observer> {
         Box::new(BoardObserver::new(Arc::clone(&self.board)))
     }

@@ -1,4 +1,4 @@
-//! Clients over OPC UA in a program without OPC UA: nobody can come in, and who asks for it is told so.
+//! Clients over OPC UA in a program without OPC UA: nobody can join over it, and whoever asks for it gets an error that says so.
 
 use std::convert::Infallible;
 use std::iter::Empty;

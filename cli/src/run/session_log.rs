@@ -15,7 +15,7 @@ use serde::Serialize;
 
 /// Slowest turns that are named.
 const SLOWEST: usize = 3;
-/// Longest turn that the histogram tells from a longer one, ns.
+/// Longest turn that the histogram can distinguish from a longer one, ns.
 const LONGEST_NS: u64 = 3_600_000_000_000;
 
 /// Turns of all watched clients of a run.

@@ -1,4 +1,4 @@
-//! Why nothing is told of how clients are connected.
+//! Why the wiring of clients cannot be reported.
 
 use onescan_report::{FileError, OutputError};
 use onescan_scenario::ScenarioError;
@@ -6,7 +6,7 @@ use onescan_scenario::ScenarioError;
 use crate::error::sum_of_errors;
 
 sum_of_errors! {
-    /// Why nothing is told of how clients are connected.
+    /// Why the wiring of clients cannot be reported.
     pub enum WiringError {
         /// The scenario is wrong.
         #[diagnostic(transparent)]

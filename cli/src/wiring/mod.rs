@@ -1,6 +1,6 @@
 //! The wiring of a scenario: one map of all signals between its clients, and what is wrong with it.
 //!
-//! A session stops at the first signal that cannot be connected; here all of them are told.
+//! A session stops at the first signal that cannot be connected; here all of them are reported.
 //!
 //! | module | subject |
 //! |---|---|
@@ -29,7 +29,7 @@ use crate::format::Format;
 pub use error::WiringError;
 pub use map::{Map, Trouble};
 
-/// What to tell of a scenario's wiring.
+/// What to report about a scenario's wiring.
 #[derive(Clone, Debug)]
 pub struct WiringConfig {
     /// The scenario: a folder or a file.

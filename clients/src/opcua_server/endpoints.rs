@@ -34,7 +34,7 @@ impl Drop for Running {
     fn drop(&mut self) {
         self.handle.cancel();
         if let Some(thread) = self.thread.take() {
-            // A panic in there has been told by the thread itself.
+            // The thread itself has reported its panic.
             let _ = thread.join();
         }
     }

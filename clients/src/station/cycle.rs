@@ -31,7 +31,7 @@ impl Drop for Clockwork {
     fn drop(&mut self) {
         self.controller.end();
         if let Some(thread) = self.thread.take() {
-            // A panic in there has been told by the thread itself.
+            // The thread itself has reported its panic.
             let _ = thread.join();
         }
     }

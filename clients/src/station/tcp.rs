@@ -59,7 +59,7 @@ fn attend(stream: TcpStream, holder: u64, controller: &Arc<Controller>, layouts:
         let _ = incoming.shutdown(Shutdown::Both);
     });
     std::thread::spawn(move || {
-        // A gateway that is gone has been told by the half that reads.
+        // The half that reads has reported a gateway that is gone.
         let _ = send(&stream, &b, &theirs, &taken);
         let _ = stream.shutdown(Shutdown::Both);
     });

@@ -35,7 +35,8 @@ impl Part {
         let metadata = reader.metadata().file_metadata();
         let first_step = metadata.key_value_metadata().into_iter().flatten().find(|pair| pair.key == FIRST_STEP);
         let first_step = first_step.and_then(|pair| pair.value.as_ref()?.parse().ok());
-        let first_step = first_step.ok_or_else(|| wrong("it is no part of a recording: its first step is not told"))?;
+        let first_step =
+            first_step.ok_or_else(|| wrong("it is not part of a recording: it does not say its first step"))?;
         let rows = u64::try_from(metadata.num_rows()).map_err(|_| wrong("it has less than no rows"))?;
         Ok(Self { path: path.to_owned(), first_step, rows })
     }

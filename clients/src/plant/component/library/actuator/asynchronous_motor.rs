@@ -61,7 +61,7 @@ signals! {
 }
 
 signals! {
-    /// What the inverter tells.
+    /// Feedback of the inverter.
     Outputs {
         /// speed of the shaft
         speed_1_min: f64,

@@ -40,7 +40,7 @@ signals! {
 }
 
 signals! {
-    /// What the drive tells.
+    /// Feedback of the drive.
     Outputs {
         /// the belt moves
         running: bool,

@@ -98,7 +98,7 @@ signals! {
 }
 
 signals! {
-    /// What the drive tells.
+    /// Feedback of the drive.
     Outputs {
         /// the drive holds the axis
         ready: bool,
