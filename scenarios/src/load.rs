@@ -22,6 +22,15 @@ use super::watch::{WatchRequest, Watched};
 pub const FILE_NAME: &str = "scenario.toml";
 
 /// A scenario, checked as far as that is possible without its plant and its PLC.
+///
+/// ```
+/// use onescan_scenario::Scenario;
+///
+/// let scenario = Scenario::load("shear".as_ref())?;
+/// assert_eq!(scenario.plan().step().to_string(), "10 ms");
+/// assert_eq!(scenario.plan().clients().len(), 2);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Debug)]
 pub struct Scenario {
     name: String,

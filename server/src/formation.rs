@@ -13,6 +13,45 @@ use crate::session::Session;
 use crate::signal::PortLayout;
 
 /// A session in state `start`, and how its clients are reached.
+///
+/// ```
+/// use onescan_server::client::{Client, ClientFault, JoinRequest, Wake};
+/// use onescan_server::formation::Formation;
+/// use onescan_server::plan::{Coupling, SessionPlan};
+/// use onescan_server::signal::{ClientName, Port, SignalDecl, SignalName, SignalType};
+/// use onescan_server::time::{TimeSpan, VirtualTime};
+///
+/// /// Counts its turns in one byte.
+/// struct Counter(JoinRequest);
+///
+/// impl Client for Counter {
+///     fn join(&self) -> JoinRequest {
+///         self.0.clone()
+///     }
+///     fn setup(&mut self, outputs: &mut [u8]) -> Result<(), ClientFault> {
+///         outputs[0] = 0;
+///         Ok(())
+///     }
+///     fn turn(&mut self, _: VirtualTime, _: &[u8], outputs: &mut [u8]) -> Result<Wake, ClientFault> {
+///         outputs[0] += 1;
+///         Ok(Wake::NextPeriod)
+///     }
+/// }
+///
+/// let step: TimeSpan = "10ms".parse()?;
+/// let (name, ty) = (ClientName::new("counter")?, SignalType::BYTE);
+/// let signal = SignalName::new("turns")?;
+/// let decl = SignalDecl { name: signal.clone(), ty, writer: Some(name.clone()), unit: None };
+/// let plan = SessionPlan::new(step, &Coupling::Parallel, vec![decl], vec![name.clone()])?;
+///
+/// let mut formation = Formation::new(plan);
+/// let writes = vec![Port { name: signal, ty }];
+/// formation.join(Box::new(Counter(JoinRequest { name, period: step, reads: vec![], writes })))?;
+/// let mut lockstep = formation.start()?;
+/// lockstep.run_to(VirtualTime::ZERO + "50ms".parse()?)?;
+/// assert_eq!(lockstep.session().image(), [5]);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub struct Formation {
     session: Session,
     carriers: Vec<Option<Box<dyn Carrier>>>,

@@ -16,6 +16,32 @@ use super::scene::{Scene, SceneError};
 use super::state::{self, Restored};
 
 /// A simulated machine that takes part in a session.
+///
+/// ```
+/// use onescan_clients::plant::Plant;
+/// use onescan_server::client::Client;
+/// use onescan_server::signal::ClientName;
+/// use onescan_server::time::VirtualTime;
+///
+/// let scene = r#"
+///     version = 1
+///
+///     [[component]]
+///     name = "tank"
+///     kind = "tank"
+///     pump_signal = "Pump"
+///     level_m_signal = "Level"
+/// "#;
+/// let mut plant = Plant::parse(scene, "tank.toml", ClientName::new("plant")?, "10ms".parse()?)?;
+/// let (pump, mut level) = (1.0_f64.to_le_bytes(), [0; 8]);
+/// plant.setup(&mut level)?;
+/// let before = f64::from_le_bytes(level);
+/// for step in 1..=100 {
+///     plant.turn(VirtualTime::from_nanos(step * 10_000_000), &pump, &mut level)?;
+/// }
+/// assert!(f64::from_le_bytes(level) > before);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub struct Plant {
     name: ClientName,
     period: TimeSpan,

@@ -163,6 +163,19 @@ impl File {
 
 /// Attaches scheduler, execution controllers and replacement timers to a project.
 ///
+/// ```
+/// use onescan_plc_shim::Input;
+/// use onescan_plc_shim::input::kind::SourceKind;
+/// use onescan_plc_shim::instrument::{Options, instrument};
+///
+/// let text = "PROGRAM Main VAR pause : TON; END_VAR pause(IN := TRUE, PT := T#1s); END_PROGRAM";
+/// let project = instrument(&[Input::from_text("main.st", SourceKind::Text, text)], &Options::default())?;
+/// let main = &project.files[0];
+/// assert!(main.is_changed(), "its timer runs on virtual time now");
+/// assert!(project.files.len() > 1, "the shim's own files stand beside it");
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
 /// # Errors
 /// Text or tasks are wrong; see [`InstrumentError`].
 pub fn instrument(inputs: &[Input], options: &Options) -> Result<Project, InstrumentError> {

@@ -18,6 +18,20 @@ use crate::check::{INIT_RETAINS_OFFSET, VIRTUAL_TIME_OFFSET};
 use crate::coverage::Coverage;
 
 /// Runs an application's programs by a task plan, one scan at a time.
+///
+/// ```
+/// use onescan_plc_shim::{Application, SoftPlc, TaskPlan, VirtualTime};
+///
+/// let text = "PROGRAM Main VAR pause : TON; END_VAR pause(IN := TRUE, PT := T#20ms); END_PROGRAM";
+/// let application = Application::from_sources([("main.st", text)])?;
+/// let mut plc = SoftPlc::new(&application, &TaskPlan::single(&application, "10ms".parse()?))?;
+/// let over = plc.variable("Main.pause.Q")?;
+/// for ms in [10, 20, 30] {
+///     plc.scan(VirtualTime::from_nanos(ms * 1_000_000))?;
+/// }
+/// assert_eq!(application.value_text(&over, plc.memory()), "TRUE");
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub struct SoftPlc {
     application: Application,
     machine: Machine,

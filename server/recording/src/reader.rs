@@ -78,6 +78,16 @@ pub enum ExportFormat {
 }
 
 /// A recording.
+///
+/// ```no_run
+/// use onescan_recording::Recording;
+///
+/// let recording = Recording::open("out".as_ref())?;
+/// if let Some(steps) = recording.steps() {
+///     println!("{}", recording.digest(*steps.end())?);
+/// }
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Debug)]
 pub struct Recording {
     folder: PathBuf,
