@@ -101,10 +101,14 @@ fn arrow(sources: &Sources, named: &Named) -> Option<Arrow> {
     if from == to {
         return None;
     }
-    let entered = absolute(sources, &named.from, &named.to)?;
-    let entered = module_of(sources, &entered);
-    // A room may show modules whose names say what their items mean; what lies below these is its own.
-    let past_interface = entered.len() > 2 || entered.len() == 2 && sources.private.contains(entered);
+    let whole = absolute(sources, &named.from, &named.to)?;
+    let entered = module_of(sources, &whole);
+    // A room may show modules whose names say what their items mean; what lies below these is its own. What it shows
+    // under the name of a private module is an item.
+    let is_item = entered.len() == whole.len()
+        && whole.split_last().is_some_and(|(name, room)| sources.imports.contains_key(&(room.to_vec(), name.clone())));
+    let is_private = sources.private.contains(entered) && !is_item;
+    let past_interface = entered.len() > 2 || entered.len() == 2 && is_private;
     Some(Arrow { file: named.file.clone(), line: named.line, from, to, path: named.to.join("::"), past_interface })
 }
 

@@ -20,18 +20,18 @@ use source::{Field, Sources};
 struct Floor {
     /// From the root of the repository.
     folder: &'static str,
-    /// True if rooms are entered only through what their own modules show, and keep the fields of their structures to
-    /// themselves.
+    /// True if rooms are entered only through what their own modules show.
     closed: bool,
-    /// Structures of closed rooms that are plain records: what they hold is their interface.
-    records: &'static [&'static str],
+    /// Structures that are plain records, whose fields are their interface, if rooms keep the fields of all others to
+    /// themselves. Nothing where fields are not looked at.
+    records: Option<&'static [&'static str]>,
     /// Circles that are still there, as the names of their rooms in alphabetical order. A circle that is gone must go
     /// from here, too, so that it cannot come back.
     known: &'static [&'static [&'static str]],
 }
 
 const fn open_floor(folder: &'static str) -> Floor {
-    Floor { folder, closed: false, records: &[], known: &[] }
+    Floor { folder, closed: false, records: None, known: &[] }
 }
 
 const HOUSE: &[Floor] = &[
@@ -53,11 +53,11 @@ const HOUSE: &[Floor] = &[
     open_floor("report/src/plot"),
     open_floor("cli/src"),
     open_floor("plc-shim/src"),
-    open_floor("plc-shim/src/compile"),
+    Floor { folder: "plc-shim/src/compile", closed: true, records: None, known: &[] },
     Floor {
         folder: "plc-shim/src/check",
         closed: true,
-        records: &[
+        records: Some(&[
             // Declarations as they are handed on.
             "Class",
             "Conversion",
@@ -72,7 +72,7 @@ const HOUSE: &[Floor] = &[
             "TextConversion",
             "TimedFunction",
             "TypedImage",
-        ],
+        ]),
         known: &[],
     },
 ];
@@ -136,11 +136,12 @@ fn a_closed_room_is_entered_through_its_interface() {
 }
 
 #[test]
-fn a_closed_room_keeps_its_fields() {
+fn rooms_keep_their_fields() {
     let mut found = String::new();
-    for floor in HOUSE.iter().filter(|floor| floor.closed) {
+    for floor in HOUSE {
+        let Some(records) = floor.records else { continue };
         let rooms = rooms(floor);
-        let fields = rooms.open_fields(floor.records);
+        let fields = rooms.open_fields(records);
         if !fields.is_empty() {
             found += &format!("{}: fields that other rooms see\n{}", floor.folder, open(&fields));
         }
