@@ -2,18 +2,18 @@
 //! without; the time of processors that a step costs, which another load of the machine hardly
 //! changes; and how much memory the process has while it records.
 //!
-//! `cargo bench -p onescan-recording --bench recording`, with `-- --parquet` in that form only; with `-- --steps 10000000` one long run, to see
-//! that memory stays flat.
+//! `cargo bench -p onescan-tests --bench recording`, with `-- --parquet` in that form only; with
+//! `-- --steps 10000000` one long run, to see that memory stays flat.
 
 use std::time::{Duration, Instant};
 
-use onescan_recording::{Choice, Provenance, Recorder};
+use onescan_recording::{Choice, Recorder};
 use onescan_server::client::{Client, ClientFault, JoinRequest, Wake};
-use onescan_server::formation::Formation;
 use onescan_server::lockstep::Lockstep;
 use onescan_server::plan::{Coupling, SessionPlan};
 use onescan_server::signal::{ClientName, Port, SignalDecl, SignalName, SignalType};
 use onescan_server::time::{TimeSpan, VirtualTime};
+use onescan_tests::run::{boxed, in_process, provenance};
 
 /// How many signals of a type a client writes, and every how many of them changes in a step.
 #[derive(Clone, Copy)]
@@ -87,13 +87,11 @@ fn session(groups: &[Group]) -> Lockstep {
         ports.iter().map(declare).collect::<Vec<_>>()
     });
     let plan = SessionPlan::new(step, &Coupling::Parallel, declared.collect(), names.to_vec()).expect("a plan");
-    let mut formation = Formation::new(plan);
-    for (own, name) in names.into_iter().enumerate() {
+    let half = |(own, name): (usize, ClientName)| {
         let request = JoinRequest { name, period: step, reads: both[1 - own].clone(), writes: both[own].clone() };
-        let half = Half { request, groups: groups.to_vec(), state: own as u64 };
-        formation.join(Box::new(half)).expect("the plan has a place");
-    }
-    formation.start().expect("all have joined")
+        Half { request, groups: groups.to_vec(), state: own as u64 }
+    };
+    in_process(plan, boxed(names.into_iter().enumerate().map(half)))
 }
 
 /// What some steps take.
@@ -123,17 +121,7 @@ fn timed(groups: &[Group], steps: u64, record: Option<Choice>) -> Cost {
     let mut lockstep = session(groups);
     lockstep.set_until(Some(VirtualTime::from_nanos(steps * 1_000_000)));
     if let Some(choice) = record {
-        let provenance = Provenance {
-            onescan: String::new(),
-            scenario: String::new(),
-            folder: String::new(),
-            case: None,
-            mode: "lockstep".to_owned(),
-            until: VirtualTime::ZERO,
-            seed: 0,
-            files: Vec::new(),
-        };
-        lockstep.observe(Box::new(Recorder::new(folder.path(), provenance, choice)));
+        lockstep.observe(Box::new(Recorder::new(folder.path(), provenance(), choice)));
     }
     let used = || (processors("/proc/thread-self/stat"), processors("/proc/self/stat"));
     let (started, before) = (Instant::now(), used());
