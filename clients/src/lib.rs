@@ -30,6 +30,8 @@ mod listener;
 pub mod opcua_server;
 pub mod operator;
 pub mod plant;
+#[cfg(test)]
+mod published;
 pub mod replay;
 pub mod soft_plc;
 pub mod station;
