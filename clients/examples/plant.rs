@@ -1,6 +1,8 @@
 //! A plant without a session: a belt carries a box through a light barrier. Run it by
 //! `cargo run -p onescan-clients --example plant`.
 
+#![expect(clippy::print_stdout, reason = "an example is for the terminal")]
+
 use std::error::Error;
 
 use onescan_clients::plant::Plant;
@@ -49,7 +51,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let names = |ports: &[onescan_server::signal::Port]| -> Vec<String> {
         ports.iter().map(|port| format!("{}: {}", port.name, port.ty)).collect()
     };
-    show(&format!("reads {}, writes {}", names(&request.reads).join(", "), names(&request.writes).join(", ")));
+    println!("reads {}, writes {}", names(&request.reads).join(", "), names(&request.writes).join(", "));
 
     // The only input is `Run`, the only output `At_Barrier`: one byte each.
     let (inputs, mut outputs) = ([1], [0]);
@@ -60,14 +62,9 @@ fn main() -> Result<(), Box<dyn Error>> {
         now = now + period;
         plant.turn(now, &inputs, &mut outputs)?;
         if outputs != before {
-            show(&format!("{now}: At_Barrier = {}", outputs[0] == 1));
+            println!("{now}: At_Barrier = {}", outputs[0] == 1);
             before = outputs;
         }
     }
     Ok(())
-}
-
-#[expect(clippy::print_stdout, reason = "an example is for the terminal")]
-fn show(line: &str) {
-    println!("{line}");
 }

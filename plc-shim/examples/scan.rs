@@ -1,5 +1,7 @@
 //! Program text to a PLC that scans. Run it by `cargo run -p onescan-plc-shim --example scan`.
 
+#![expect(clippy::print_stdout, reason = "an example is for the terminal")]
+
 use std::error::Error;
 
 use onescan_plc_shim::{Application, SoftPlc, TaskPlan, TimeSpan, VirtualTime};
@@ -30,16 +32,11 @@ fn main() -> Result<(), Box<dyn Error>> {
         now = now + interval;
         plc.scan(now)?;
     }
-    show(&format!("{now}: {} blinks", application.value_text(&blinks, plc.memory())));
+    println!("{now}: {} blinks", application.value_text(&blinks, plc.memory()));
 
     // What is wrong with a text is a list of findings, each with its place.
     if let Err(findings) = Application::from_sources([("wrong.st", BLINK.replace("blinks + 1", "blink + 1"))]) {
-        show(&findings.to_string());
+        println!("{findings}");
     }
     Ok(())
-}
-
-#[expect(clippy::print_stdout, reason = "an example is for the terminal")]
-fn show(line: &str) {
-    println!("{line}");
 }

@@ -1,6 +1,8 @@
 //! Two runs of one signal as a picture, drawn over each other. Run it by
 //! `cargo run -p onescan-report --example picture > picture.svg`.
 
+#![expect(clippy::print_stdout, reason = "an example is for the terminal")]
+
 use onescan_report::plot::{Panel, Plot, Shape, Trajectory};
 
 fn main() {
@@ -22,10 +24,5 @@ fn main() {
         panels: vec![panel],
         marks: Vec::new(),
     };
-    show(&plot.to_svg());
-}
-
-#[expect(clippy::print_stdout, reason = "an example is for the terminal")]
-fn show(line: &str) {
-    println!("{line}");
+    println!("{}", plot.to_svg());
 }

@@ -1,6 +1,8 @@
 //! What a scenario's files say, without a run. Run it by
 //! `cargo run -p onescan-scenario --example describe -- scenarios/shear`.
 
+#![expect(clippy::print_stdout, reason = "an example is for the terminal")]
+
 use std::error::Error;
 use std::path::PathBuf;
 
@@ -10,18 +12,13 @@ fn main() -> Result<(), Box<dyn Error>> {
     let folder = std::env::args_os().nth(1).map_or_else(|| PathBuf::from("scenarios/shear"), PathBuf::from);
     let scenario = Scenario::load(&folder)?;
     let plan = scenario.plan();
-    show(&format!("{}: steps of {} until {}", scenario.name(), plan.step(), scenario.until()));
+    println!("{}: steps of {} until {}", scenario.name(), plan.step(), scenario.until());
     for signal in plan.signals() {
         let writer = signal.writer.as_ref().map_or_else(|| "nobody".to_owned(), ToString::to_string);
-        show(&format!("  {}: {}, written by {writer}", signal.name, signal.ty));
+        println!("  {}: {}, written by {writer}", signal.name, signal.ty);
     }
     for (name, _) in &scenario.expectations().named {
-        show(&format!("  expects `{name}`"));
+        println!("  expects `{name}`");
     }
     Ok(())
-}
-
-#[expect(clippy::print_stdout, reason = "an example is for the terminal")]
-fn show(line: &str) {
-    println!("{line}");
 }

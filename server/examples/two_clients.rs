@@ -1,6 +1,8 @@
 //! Two clients in lockstep: a counter, and one that doubles what it reads. Run it by
 //! `cargo run -p onescan-server --example two_clients`.
 
+#![expect(clippy::print_stdout, reason = "an example is for the terminal")]
+
 use std::error::Error;
 
 use onescan_server::client::{Client, ClientFault, JoinRequest, Wake};
@@ -62,14 +64,9 @@ fn main() -> Result<(), Box<dyn Error>> {
 
     // Both read what was committed before the step, so `double` is one step behind.
     let session = lockstep.session();
-    show(&format!("{} steps, image {:?}", outcome.steps.0, session.image()));
+    println!("{} steps, image {:?}", outcome.steps.0, session.image());
     if let Some(digest) = outcome.digest {
-        show(&digest.to_string());
+        println!("{digest}");
     }
     Ok(())
-}
-
-#[expect(clippy::print_stdout, reason = "an example is for the terminal")]
-fn show(line: &str) {
-    println!("{line}");
 }
