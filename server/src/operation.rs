@@ -175,13 +175,13 @@ impl Operation {
 pub enum Control {
     /// End the session for all.
     Stop,
-    /// Hold virtual time.
+    /// Hold virtual time at the next step boundary, until `Resume` or `Step`.
     Pause,
     /// Let virtual time run again.
     Resume,
     /// Run exactly one step, then hold.
     Step,
-    /// Begin anew at `t_v = 0`; held if it was held.
+    /// Restart at `t_v = 0`, from the initial write; a session that is held stays held.
     Reset,
 }
 

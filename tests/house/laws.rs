@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use crate::root;
 use crate::tokens::{Token, tokens};
 
-/// Which of our crates a crate may stand on. What is not here may stand on none.
+/// The crates of the program, and which of them each may stand on.
 const STANDS_ON: &[(&str, &[&str])] = &[
     ("base", &[]),
     ("server", &["onescan-base"]),
@@ -46,9 +46,6 @@ const UNORDERED: &[&str] = &["HashMap", "HashSet", "RandomState", "thread_rng", 
 const HARMLESS: &[(&str, &str)] =
     &[("clients/src/information_model/manager.rs", "the library's interface; looked up by key, never iterated")];
 
-/// Crates whose code can be on a session's path, or writes what is compared.
-const CRATES: &[&str] = &["base", "server", "server/recording", "plc-shim", "clients", "scenarios", "report", "cli"];
-
 fn rust_files(folder: &Path, found: &mut Vec<PathBuf>) {
     let entries = std::fs::read_dir(folder).unwrap_or_else(|error| panic!("{}: {error}", folder.display()));
     for entry in entries {
@@ -64,8 +61,8 @@ fn rust_files(folder: &Path, found: &mut Vec<PathBuf>) {
 /// Places at which one of `words` stands outside of comments and texts, as `file:line: word`, by file.
 fn places_of(words: &[&str]) -> BTreeMap<String, Vec<String>> {
     let mut files = Vec::new();
-    for each in CRATES {
-        rust_files(&root().join(each).join("src"), &mut files);
+    for (folder, _) in STANDS_ON {
+        rust_files(&root().join(folder).join("src"), &mut files);
     }
     files.sort();
     let mut places: BTreeMap<String, Vec<String>> = BTreeMap::new();

@@ -10,6 +10,7 @@ use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
+use onescan_recording::Recording;
 use onescan_report::FileError;
 use onescan_report::OutputError;
 use onescan_report::file;
@@ -152,7 +153,7 @@ impl Search<'_> {
         config.subject.until = self.config.until;
         config.reports.record = Some(RecordRequest { folder: record.clone(), ..RecordRequest::default() });
         execute(&config, self.interrupt, &mut io::sink()).map_err(|error| error.to_string())?;
-        let recording = onescan_recording::Recording::open(&record).map_err(|error| error.to_string())?;
+        let recording = Recording::open(&record).map_err(|error| error.to_string())?;
         let last = recording.steps().map(|steps| recording.digest(*steps.end()));
         Ok((record, last.transpose().map_err(|error| error.to_string())?))
     }

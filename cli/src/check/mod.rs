@@ -56,7 +56,7 @@ pub struct CheckConfig {
 /// What becomes of a check that has found nothing but warnings.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Warnings {
-    /// They are reported.
+    /// They are reported, and the exit code is 0.
     #[default]
     Allowed,
     /// They make it fail.

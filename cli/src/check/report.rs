@@ -40,7 +40,7 @@ impl Report {
         self.iter().map(Finding::file).collect::<BTreeSet<_>>().len()
     }
 
-    /// The exit code.
+    /// 2 with errors, 1 with warnings where these are denied, else 0.
     pub fn exit_code(&self, warnings: Warnings) -> ExitCode {
         if self.count(Severity::Error) > 0 {
             ExitCode::WrongInput

@@ -7,17 +7,15 @@ use tracing_subscriber::filter::{LevelFilter, Targets};
 pub(super) fn start(verbose: u8) {
     use tracing_subscriber::layer::{Layer as _, SubscriberExt as _};
     use tracing_subscriber::util::SubscriberInitExt as _;
-    let (chosen, wrong) = match std::env::var("ONESCAN_LOG").map(|text| text.parse::<Targets>()) {
-        Ok(Ok(targets)) => (targets, None),
-        Ok(Err(wrong)) => (targets_of(verbose), Some(wrong)),
-        Err(_) => (targets_of(verbose), None),
-    };
+    let asked = std::env::var("ONESCAN_LOG").ok().map(|text| text.parse::<Targets>()).transpose();
+    let (asked, wrong) = asked.map_or_else(|wrong| (None, Some(wrong)), |asked| (asked, None));
+    let targets = asked.unwrap_or_else(|| targets_of(verbose));
     let lines = tracing_subscriber::fmt::layer()
         .with_writer(std::io::stderr)
         .with_ansi(std::io::IsTerminal::is_terminal(&std::io::stderr()))
         .without_time()
         .with_target(verbose > 1);
-    tracing_subscriber::registry().with(lines.with_filter(chosen)).init();
+    tracing_subscriber::registry().with(lines.with_filter(targets)).init();
     if let Some(wrong) = wrong {
         tracing::warn!("`ONESCAN_LOG` is not a list of `target=level` and is left out: {wrong}");
     }

@@ -7,7 +7,8 @@
 
 use std::ops::RangeInclusive;
 
-use onescan_recording::{Recording, RecordingError, Row, Rows};
+use onescan_recording::header::HeaderSignal;
+use onescan_recording::{Column, Recording, RecordingError, Row, Rows};
 use onescan_server::signal::pattern::{SignalPattern, choose};
 use onescan_server::signal::{ClientName, SignalName, SignalType};
 use onescan_server::time::VirtualTime;
@@ -89,7 +90,7 @@ impl<'r> Comparison<'r> {
         patterns: &[SignalPattern],
     ) -> Result<Self, DiffError> {
         let [a, b] = recordings;
-        let in_both = |signal: &&onescan_recording::header::HeaderSignal| {
+        let in_both = |signal: &&HeaderSignal| {
             let other = b.header().signals.iter().find(|other| other.name == signal.name);
             signal.recorded && other.is_some_and(|other| other.recorded && other.ty == signal.ty)
         };
@@ -248,7 +249,7 @@ fn differences([a, b]: &[Rows; 2]) -> Vec<Difference> {
     let (Some(ours), Some(theirs)) = (a.rows.first(), b.rows.first()) else { return Vec::new() };
     let pairs = a.columns.iter().zip(&b.columns);
     let differing = pairs.filter(|(x, y)| ours.bytes(x) != theirs.bytes(y));
-    let difference = |(x, y): (&onescan_recording::Column, &onescan_recording::Column)| Difference {
+    let difference = |(x, y): (&Column, &Column)| Difference {
         signal: x.name.clone(),
         ty: x.ty,
         writer: x.writer.clone(),

@@ -2,8 +2,7 @@
 
 use std::net::{Ipv4Addr, SocketAddr};
 
-use onescan_recording::Recording;
-use onescan_recording::event;
+use onescan_recording::{Recording, event};
 use onescan_report::file;
 use onescan_scenario::Scenario;
 use onescan_scenario::compose::Member;

@@ -192,7 +192,7 @@ impl Verdict {
         }
     }
 
-    /// The exit code.
+    /// 0 if all is well, 1 for unequal runs and violated expectations, 3 for a session that failed.
     pub fn exit_code(self) -> ExitCode {
         match self {
             Self::Good => ExitCode::Ok,

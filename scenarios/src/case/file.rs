@@ -29,7 +29,7 @@ pub struct CasesFile {
     pub cases: Vec<Spanned<CaseFile>>,
 }
 
-/// What snapshots contain.
+/// Which signals a snapshot contains, and how far a run may be from it.
 #[derive(Clone, Debug, Default, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct SnapshotFile {

@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use onescan_server::plan::Coupling;
 use onescan_server::session::Session;
-use onescan_server::signal::{ClientName, SignalName, SignalType};
+use onescan_server::signal::{ClientName, SignalDecl, SignalId, SignalName, SignalType};
 use onescan_server::time::{StepCount, TimeSpan, VirtualTime};
 
 use super::column::Column;
@@ -93,14 +93,13 @@ pub struct Header {
 impl Header {
     pub(super) fn new(session: &Session, provenance: &Provenance, columns: &[Column]) -> Self {
         let plan = session.plan();
-        let signal =
-            |(id, signal): (onescan_server::signal::SignalId, &onescan_server::signal::SignalDecl)| HeaderSignal {
-                name: signal.name.clone(),
-                ty: signal.ty,
-                unit: signal.unit.clone(),
-                writer: session.writer(id).cloned(),
-                recorded: columns.iter().any(|column| column.name == signal.name),
-            };
+        let signal = |(id, signal): (SignalId, &SignalDecl)| HeaderSignal {
+            name: signal.name.clone(),
+            ty: signal.ty,
+            unit: signal.unit.clone(),
+            writer: session.writer(id).cloned(),
+            recorded: columns.iter().any(|column| column.name == signal.name),
+        };
         let coupling = match plan.coupling() {
             Coupling::Parallel => Coupling::Parallel,
             Coupling::Sequential { order } => {
