@@ -37,6 +37,7 @@ macro_rules! elementary_types {
             }
 
             /// Bytes in memory and in an image; also the natural alignment.
+            #[inline] // as that of a signal's type
             pub const fn size(self) -> u32 {
                 match self { $(Self::$variant => $size,)* }
             }

@@ -54,6 +54,7 @@ constants! {
 
 impl SignalType {
     /// Bytes of one value in an image.
+    #[inline] // asked for every signal in every step, from another crate
     pub const fn size(self) -> usize {
         match self {
             Self::Elementary(ty) => ty.size() as usize,

@@ -85,6 +85,7 @@ impl SignalType {
     /// assert_eq!(SignalType::BOOL.canonicalise(&mut [2]), Err(BadValue::Bool(2)));
     /// # Ok::<(), BadValue>(())
     /// ```
+    #[inline] // done to outputs in every step, from another crate
     pub fn canonicalise(self, bytes: &mut [u8]) -> Result<(), BadValue> {
         match self {
             Self::BOOL if bytes[0] > 1 => Err(BadValue::Bool(bytes[0])),
