@@ -14,6 +14,7 @@ mod root;
 mod value;
 mod variable;
 mod vendor_library;
+mod zero_terminated;
 
 use std::collections::BTreeSet;
 use std::ops::Range;
@@ -41,6 +42,7 @@ pub(crate) use room::with_room;
 pub(crate) use value::text;
 pub use value::{Radix, WriteError};
 pub use variable::{Program, UnknownVariable, Variable, VariableAccess};
+pub use zero_terminated::ZeroTerminated;
 
 /// A compiled program: what it declares, its code, its memory at a cold start. Cheap to clone.
 #[derive(Debug, Clone)]

@@ -45,7 +45,7 @@ pub mod syntax;
 
 pub use application::{
     Application, BuildError, Builder, CodeDifference, ConstantError, Program, Radix, UnknownVariable, Variable,
-    VariableAccess, VariableDifference, WriteError,
+    VariableAccess, VariableDifference, WriteError, ZeroTerminated,
 };
 pub use compile::fault::FaultKind;
 pub use coverage::Coverage;

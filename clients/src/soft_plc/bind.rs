@@ -6,8 +6,8 @@
 
 use std::collections::BTreeMap;
 
-use onescan_base::nearest;
-use onescan_plc_shim::{Application, Variable};
+use onescan_base::{SignalType, nearest};
+use onescan_plc_shim::{Application, Variable, ZeroTerminated};
 use onescan_server::signal::{ClientName, Port, SignalDecl, SignalName};
 use thiserror::Error;
 
@@ -29,6 +29,40 @@ pub struct Place {
     pub offset: usize,
     /// The bit of that byte, for a BOOL at an address like `%QX0.1`.
     pub bit: Option<u8>,
+    /// Set for a string that has no count in front, as the signal's value has.
+    pub text: Option<ZeroTerminated>,
+}
+
+impl Place {
+    /// Where a variable lies.
+    pub fn of(variable: &Variable) -> Self {
+        Self { offset: variable.offset as usize, bit: variable.bit, text: variable.zero_terminated }
+    }
+
+    /// Bytes that it takes in memory; `len` are those of the signal's value.
+    pub fn size(self, len: usize) -> usize {
+        self.text.map_or(len, ZeroTerminated::size)
+    }
+
+    /// Writes a signal's value into the PLC's memory. A place of another application, beyond its end, is left out.
+    pub fn give(self, value: &[u8], memory: &mut [u8]) {
+        let Some(bytes) = memory.get_mut(self.offset..self.offset + self.size(value.len())) else { return };
+        match (self.bit, self.text, bytes, value) {
+            (Some(bit), _, [byte, ..], [value, ..]) => *byte = *byte & !(1 << bit) | (value & 1) << bit,
+            (_, Some(text), bytes, value) => text.give(value, bytes),
+            (_, None, bytes, value) => bytes.copy_from_slice(value),
+        }
+    }
+
+    /// Reads a signal's value out of the PLC's memory.
+    pub fn take(self, memory: &[u8], value: &mut [u8]) {
+        let Some(bytes) = memory.get(self.offset..self.offset + self.size(value.len())) else { return };
+        match (self.bit, self.text, bytes, value) {
+            (Some(bit), _, [byte, ..], [value, ..]) => *value = byte >> bit & 1,
+            (_, Some(text), bytes, value) => text.take(bytes, value),
+            (_, None, bytes, value) => value.copy_from_slice(bytes),
+        }
+    }
 }
 
 /// All signals of a PLC.
@@ -134,8 +168,11 @@ fn inputs_named(application: &Application, signal: &SignalName) -> Vec<Variable>
 }
 
 fn checked_place(signal: &SignalDecl, variable: &Variable) -> Result<Place, BindError> {
-    if variable.signal_type == Some(signal.ty) {
-        return Ok(Place { offset: variable.offset as usize, bit: variable.bit });
+    // An address has a width and no type of its own, unless a bit is asked for.
+    let is_address = variable.path.starts_with('%') && variable.bit.is_none() && signal.ty != SignalType::Bool;
+    let same_width = is_address && !signal.ty.is_text() && signal.ty.size() == variable.size as usize;
+    if variable.signal_type == Some(signal.ty) || same_width {
+        return Ok(Place::of(variable));
     }
     Err(BindError {
         signal: signal.name.clone(),
@@ -149,8 +186,6 @@ fn checked_place(signal: &SignalDecl, variable: &Variable) -> Result<Place, Bind
 
 #[cfg(test)]
 mod tests {
-    use onescan_base::SignalType;
-
     use super::*;
 
     const SOURCE: &str = "

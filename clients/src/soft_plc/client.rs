@@ -27,19 +27,11 @@ struct Run {
 
 impl Run {
     fn take(&self, memory: &[u8], port: &mut [u8]) {
-        let Place { offset, bit } = self.memory;
-        match bit {
-            Some(bit) => port[self.port] = memory[offset] >> bit & 1,
-            None => port[self.port..self.port + self.len].copy_from_slice(&memory[offset..offset + self.len]),
-        }
+        self.memory.take(memory, &mut port[self.port..self.port + self.len]);
     }
 
     fn give(&self, port: &[u8], memory: &mut [u8]) {
-        let Place { offset, bit } = self.memory;
-        match bit {
-            Some(bit) => memory[offset] = memory[offset] & !(1 << bit) | (port[self.port] & 1) << bit,
-            None => memory[offset..offset + self.len].copy_from_slice(&port[self.port..self.port + self.len]),
-        }
+        self.memory.give(&port[self.port..self.port + self.len], memory);
     }
 }
 
@@ -137,8 +129,8 @@ impl SoftPlcClient {
     pub fn trace(&mut self, signals: &BTreeSet<SignalName>, sink: TraceSink) {
         // An output has one place.
         let outputs = self.request.writes.iter().zip(&self.outputs).map(|(port, run)| {
-            let Place { offset, bit } = run.memory;
-            (port.name.clone(), (offset..offset + run.len, bit))
+            let Place { offset, bit, .. } = run.memory;
+            (port.name.clone(), (offset..offset + run.memory.size(run.len), bit))
         });
         self.tracing = Some(Tracing::start(&self.request.name, &mut self.plc, signals, outputs, sink));
     }
@@ -176,8 +168,8 @@ impl SoftPlcClient {
     /// The signal that writes into a part of memory, or into the bit of a byte, before every scan.
     pub(super) fn input_at(&self, range: Range<usize>, bit: Option<u8>) -> Option<SignalName> {
         let reaches = |run: &&Run| {
-            let Place { offset, bit: own } = run.memory;
-            let shares_bytes = offset < range.end && range.start < offset + run.len;
+            let Place { offset, bit: own, .. } = run.memory;
+            let shares_bytes = offset < range.end && range.start < offset + run.memory.size(run.len);
             shares_bytes && (own.is_none() || bit.is_none() || own == bit)
         };
         let found = self.inputs.iter().find(reaches)?;

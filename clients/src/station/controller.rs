@@ -302,23 +302,16 @@ fn preset(state: &mut State, offset: usize, bytes: &[u8]) {
 
 fn put(state: &mut State, places: &[Place], value: &[u8]) {
     let memory = state.plc.memory_mut();
-    for Place { offset, bit } in places {
-        match (bit, memory.get_mut(*offset..offset + value.len())) {
-            (Some(bit), Some(byte)) => byte[0] = byte[0] & !(1 << bit) | (value[0] & 1) << bit,
-            (None, Some(bytes)) => bytes.copy_from_slice(value),
-            (_, None) => {}
-        }
+    for place in places {
+        place.give(value, memory);
     }
 }
 
 fn get(state: &State, wire: &Wire, value: &mut [u8]) {
     match &wire.source {
         Source::Memory(places) => {
-            let Some(Place { offset, bit }) = places.first() else { return };
-            match (bit, state.plc.memory().get(*offset..offset + value.len())) {
-                (Some(bit), Some(byte)) => value[0] = byte[0] >> bit & 1,
-                (None, Some(bytes)) => value.copy_from_slice(bytes),
-                (_, None) => {}
+            if let Some(place) = places.first() {
+                place.take(state.plc.memory(), value);
             }
         }
         Source::Boots => value.copy_from_slice(&state.boots.to_le_bytes()),

@@ -96,7 +96,7 @@ fn source(name: &str, application: &Application, bound: &[Bound]) -> Result<Sour
     if is_word(name) {
         let found = application.variable(name);
         let found = found.map_err(|cause| WireError::NoShim { word: name.to_owned(), cause })?;
-        return Ok(Source::Memory(vec![Place { offset: found.offset as usize, bit: found.bit }]));
+        return Ok(Source::Memory(vec![Place::of(&found)]));
     }
     let is_it = |bound: &&Bound| SignalName::as_str(&bound.port.name) == name;
     let found = bound.iter().find(is_it).ok_or_else(|| WireError::Unbound(name.to_owned()))?;

@@ -4,6 +4,7 @@ use onescan_base::SignalType;
 use thiserror::Error;
 
 use super::Application;
+use super::zero_terminated::ZeroTerminated;
 use crate::check::{Checked, Kept};
 use crate::diagnostic::did_you_mean;
 use crate::ir::{self, ElementaryType, Location, Storage, Type, TypeId, TypeTable};
@@ -28,6 +29,8 @@ pub struct Variable {
     pub ty: Option<ElementaryType>,
     /// Its type as a session has it: also of strings, with their length. Nothing for what no signal can be.
     pub signal_type: Option<SignalType>,
+    /// Set for a string that lies in memory otherwise than a signal has it.
+    pub zero_terminated: Option<ZeroTerminated>,
     /// The name of its type.
     pub type_name: String,
     /// The direct address it is located at (`AT`), as written.
@@ -54,6 +57,8 @@ pub enum VariableAccess {
 pub struct Program {
     /// Its name.
     pub name: String,
+    /// True if another unit calls it: then it runs with that.
+    pub is_called: bool,
     /// `VAR_INPUT`
     pub inputs: Vec<Variable>,
     /// `VAR_OUTPUT`
@@ -105,6 +110,7 @@ impl Application {
             };
             Some(Program {
                 name: name.to_owned(),
+                is_called: program.is_called,
                 inputs: of(SectionKind::Input),
                 outputs: of(SectionKind::Output),
                 locals: of(SectionKind::Local),
@@ -235,6 +241,7 @@ impl Application {
             bit: spot.bit,
             ty: types.elementary(spot.ty),
             signal_type: signal_type(types, spot.ty),
+            zero_terminated: types.text(spot.ty).and_then(ZeroTerminated::of),
             type_name: types.name(spot.ty),
             address: spot.address,
             access: spot.access,
@@ -243,7 +250,8 @@ impl Application {
     }
 }
 
-/// Both sides hold a value in the same bytes, so the type is all that they must agree on.
+/// Both sides hold a value in the same bytes, strings left out that end with a 0 ([`ZeroTerminated`]), so the type is
+/// all that they must agree on.
 fn signal_type(types: &TypeTable, ty: TypeId) -> Option<SignalType> {
     match types.get(ty) {
         Type::Text(shape) if shape.wide => SignalType::wstring(shape.capacity),

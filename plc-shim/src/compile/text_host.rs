@@ -12,6 +12,8 @@ pub(crate) const MODULE: &str = "text";
 /// An import. Its position follows those of the mathematical functions.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum TextImport {
+    /// A string to its characters in use.
+    Length,
     /// Two strings to their order.
     Compare,
     /// Two strings to a position.
@@ -25,12 +27,19 @@ pub(crate) enum TextImport {
 }
 
 /// All imports in their order.
-pub(crate) const IMPORTS: [TextImport; 5] =
-    [TextImport::Compare, TextImport::Find, TextImport::Edit, TextImport::Format, TextImport::Parse];
+pub(crate) const IMPORTS: [TextImport; 6] = [
+    TextImport::Length,
+    TextImport::Compare,
+    TextImport::Find,
+    TextImport::Edit,
+    TextImport::Format,
+    TextImport::Parse,
+];
 
 impl TextImport {
     pub(crate) fn name(self) -> &'static str {
         match self {
+            Self::Length => "length",
             Self::Compare => "compare",
             Self::Find => "find",
             Self::Edit => "edit",
@@ -48,6 +57,7 @@ impl TextImport {
     pub(crate) fn signature(self) -> (Vec<ValType>, ValType) {
         let (word, long) = (ValType::I32, ValType::I64);
         match self {
+            Self::Length => (vec![word; 2], word),
             Self::Compare | Self::Find => (vec![word; 4], word),
             Self::Edit => (vec![word, word, word, word, word, long, long, word, word], word),
             Self::Format => (vec![word, long, word, word], word),

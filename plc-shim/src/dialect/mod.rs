@@ -27,11 +27,13 @@ pub enum Dialect {
     TwinCat,
     /// SCL of Siemens' TIA Portal, as external source.
     SiemensScl,
+    /// MatIEC, the compiler of Beremiz and OpenPLC: the 2nd edition with habits of its own.
+    Matiec,
 }
 
 impl Dialect {
     /// Every dialect, in the order of the table's columns.
-    pub const ALL: [Self; 5] = [Self::Iec2, Self::Iec3, Self::Codesys, Self::TwinCat, Self::SiemensScl];
+    pub const ALL: [Self; 6] = [Self::Iec2, Self::Iec3, Self::Codesys, Self::TwinCat, Self::SiemensScl, Self::Matiec];
 
     /// Its name in options and scenarios.
     pub fn name(self) -> &'static str {
@@ -41,6 +43,7 @@ impl Dialect {
             Self::Codesys => "codesys",
             Self::TwinCat => "twincat",
             Self::SiemensScl => "siemens-scl",
+            Self::Matiec => "matiec",
         }
     }
 
@@ -88,6 +91,27 @@ impl Dialect {
     /// What the number of a direct address wider than a bit counts.
     pub fn address_unit(self) -> AddressUnit {
         self.behaviour().address_unit
+    }
+
+    /// True if `-a ** b` is `-(a ** b)`.
+    pub fn negates_powers(self) -> bool {
+        self.behaviour().negates_powers
+    }
+
+    /// How characters of a string lie in memory.
+    pub fn strings(self) -> StringMemory {
+        self.behaviour().strings
+    }
+
+    /// What a number becomes as BOOL.
+    pub fn truth(self) -> Truth {
+        self.behaviour().truth
+    }
+
+    /// Nanoseconds of 1, if a duration becomes a number or a number a duration; nothing if there is no such rule and
+    /// TIME counts nanoseconds.
+    pub fn time_number_ns(self) -> u32 {
+        self.behaviour().time_number_ns
     }
 
     /// What a division by zero does.
@@ -169,6 +193,32 @@ pub struct Behaviour {
     pub division_by_zero: DivisionByZero,
     /// What the number of a direct address wider than a bit counts.
     pub address_unit: AddressUnit,
+    /// True if `-a ** b` is `-(a ** b)`.
+    pub negates_powers: bool,
+    /// What `DWORD_TO_BOOL` and the like take for TRUE.
+    pub truth: Truth,
+    /// The unit of a number that a TIME becomes, in nanoseconds: `TIME_TO_DINT(T#1s)` is 1000 if it is 1,000,000.
+    pub time_number_ns: u32,
+    /// How characters of a STRING lie in memory.
+    pub strings: StringMemory,
+}
+
+/// What a number becomes as BOOL.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Truth {
+    /// Its lowest bit: conversions cut bits off on the left (2nd ed. 2.5.1.5.1).
+    LowestBit,
+    /// TRUE unless it is 0.
+    NotZero,
+}
+
+/// How characters of a STRING lie in memory, for who looks by pointer.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum StringMemory {
+    /// Their count in 16 bits, then the characters.
+    Counted,
+    /// The characters, then a 0; `SIZEOF` counts it.
+    ZeroTerminated,
 }
 
 macro_rules! features {
@@ -222,7 +272,16 @@ features! {
     ClockFunctions "`TIME()`, `LTIME()`",
     QuotedNames "names as `#local` and `\"global\"`",
     Blocks "`ORGANIZATION_BLOCK`, `DATA_BLOCK`",
-    InstanceInternals "an instance's `VAR` from outside",
+    InstanceInternals "an instance's `VAR` written from outside",
+    BitsAsReals "a bit string's number from a REAL, or to one, by a conversion function",
+    EmptyArguments "an input without a value in a call, `IN := ,`",
+    WindowsCharacters "characters of Windows-1252 in a STRING, as in `'€'`",
+    DoubleQuotes "a STRING between double quotes",
+    LooseWidths "a variable at an address of another width, as in `DWORD AT %ML50`",
+    OwnStandardFunctions "a function of one's own with the name of a standard function",
+    InstanceCopies "an instance assigned to another one",
+    ReadableInternals "an instance's `VAR` read from outside",
+    ProgramInstances "a program called, or its variables used, by its name",
     ShortPrefixes "literals as `W#16#FF`, `L#5`, `S5T#2s`",
     DivOperator "the operator `DIV`",
 }

@@ -1,7 +1,7 @@
 //! The dialects as data.
 
-use super::Dialect::{self, Codesys, Iec2, Iec3, SiemensScl, TwinCat};
-use super::{AddressUnit, Behaviour, DivisionByZero, Feature, Ties, TimeRange};
+use super::Dialect::{self, Codesys, Iec2, Iec3, Matiec, SiemensScl, TwinCat};
+use super::{AddressUnit, Behaviour, DivisionByZero, Feature, StringMemory, Ties, TimeRange, Truth};
 
 /// Who has a construct, and where that is written.
 #[derive(Debug, Clone, Copy)]
@@ -24,7 +24,7 @@ pub const FEATURES: &[FeatureRow] = &[
     row(Feature::LineComments, &[Iec3, Codesys, TwinCat, SiemensScl], "3rd ed. Table 3"),
     row(Feature::StarComments, &[Iec3, SiemensScl], "3rd ed. Table 3; CODESYS and TwinCAT: Comments"),
     row(Feature::Continue, &[Iec3, Codesys, TwinCat, SiemensScl], "3rd ed. Table 72.9"),
-    row(Feature::Power, &[Iec2, Iec3, SiemensScl], "2nd ed. Table 52; CODESYS and TwinCAT: EXPT instead"),
+    row(Feature::Power, &[Iec2, Iec3, SiemensScl, Matiec], "2nd ed. Table 52; CODESYS and TwinCAT: EXPT instead"),
     row(Feature::LooseEnds, &[Codesys, TwinCat], "CODESYS: ST statements; TwinCAT: ST instructions"),
     row(Feature::ShortCircuit, &[Codesys, TwinCat], "CODESYS and TwinCAT: operators AND_THEN, OR_ELSE"),
     row(Feature::SetReset, &[Codesys, TwinCat], "CODESYS and TwinCAT: ExST assignments S= and R="),
@@ -55,6 +55,31 @@ pub const FEATURES: &[FeatureRow] = &[
     row(Feature::QuotedNames, &[SiemensScl], "S7-1200 System Manual: SCL, addressing of tags"),
     row(Feature::Blocks, &[SiemensScl], "TIA Portal: external source files, SCL"),
     row(Feature::InstanceInternals, &[SiemensScl], "TIA Portal: addressing instance data blocks"),
+    row(
+        Feature::BitsAsReals,
+        &[Iec2, Codesys, TwinCat, Matiec],
+        "2nd ed. Table 22; CODESYS and TwinCAT: type conversions; 3rd ed. Table 25 transfers bits",
+    ),
+    row(
+        Feature::EmptyArguments,
+        &[Codesys, TwinCat],
+        "CODESYS and TwinCAT: calling a function block, as its editor completes it",
+    ),
+    row(Feature::WindowsCharacters, &[Codesys, TwinCat], "CODESYS and TwinCAT: data type STRING"),
+    row(Feature::DoubleQuotes, &[Matiec], "OpenPLC's editor, initial values"),
+    row(Feature::LooseWidths, &[Matiec], "MatIEC: accepts it"),
+    row(
+        Feature::OwnStandardFunctions,
+        &[Codesys, TwinCat, Matiec],
+        "CODESYS and TwinCAT: rules for identifiers, keywords alone; MatIEC: overloaded functions",
+    ),
+    row(Feature::InstanceCopies, &[Codesys, TwinCat], "CODESYS and TwinCAT: assignment of instances, a copy"),
+    row(
+        Feature::ReadableInternals,
+        &[Codesys, TwinCat, SiemensScl],
+        "CODESYS: VAR, local variables; TwinCAT: local variables; TIA Portal: addressing instance data blocks",
+    ),
+    row(Feature::ProgramInstances, &[Codesys, TwinCat], "CODESYS and TwinCAT: object PROGRAM, calling a program"),
     row(Feature::ShortPrefixes, &[SiemensScl], "TIA Portal: constants; S7-SCL V5.3: 7.4"),
     row(Feature::DivOperator, &[SiemensScl], "S7-SCL V5.3: 10.3"),
 ];
@@ -67,7 +92,7 @@ pub struct BehaviourRow {
     /// What it does.
     pub behaviour: Behaviour,
     /// Where each of it is written, in the order of the fields.
-    pub sources: [&'static str; 5],
+    pub sources: [&'static str; 9],
 }
 
 /// What the standard says, or README.md where it leaves a choice.
@@ -77,14 +102,22 @@ pub const STANDARD: Behaviour = Behaviour {
     ties: Ties::Even,
     division_by_zero: DivisionByZero::Fault,
     address_unit: AddressUnit::Element,
+    negates_powers: false,
+    truth: Truth::LowestBit,
+    time_number_ns: 1_000_000,
+    strings: StringMemory::Counted,
 };
 
-const STANDARD_SOURCES: [&str; 5] = [
+const STANDARD_SOURCES: [&str; 9] = [
     "left open by 2nd ed. 2.3.1",
     "left open by 2nd ed. 2.2.3",
     "2nd ed. 2.5.1.5.1, IEC 60559",
     "2nd ed. Annex E",
     "left open by 2nd ed. 2.4.1.1",
+    "2nd ed. B.3.1, 3rd ed. Table 71",
+    "2nd ed. 2.5.1.5.1",
+    "left open by 2nd ed. 2.5.1.5.1",
+    "left open by 2nd ed. 2.3.1",
 ];
 
 /// How the dialects behave.
@@ -93,13 +126,22 @@ pub const BEHAVIOURS: &[BehaviourRow] = &[
     BehaviourRow { dialect: Iec3, behaviour: STANDARD, sources: STANDARD_SOURCES },
     BehaviourRow {
         dialect: Codesys,
-        behaviour: Behaviour { time: TimeRange::Unsigned32, ..STANDARD },
+        behaviour: Behaviour {
+            time: TimeRange::Unsigned32,
+            truth: Truth::NotZero,
+            strings: StringMemory::ZeroTerminated,
+            ..STANDARD
+        },
         sources: [
             "CODESYS: data type STRING",
             "CODESYS: data type TIME",
             "CODESYS: conversion REAL, LREAL",
             "CODESYS: operator DIV",
             "CODESYS: addresses",
+            "CODESYS: EXPT, no operator",
+            "CODESYS: operator TO_BOOL",
+            "CODESYS: operator TIME_TO",
+            "CODESYS: data type STRING",
         ],
     },
     BehaviourRow {
@@ -108,6 +150,8 @@ pub const BEHAVIOURS: &[BehaviourRow] = &[
             time: TimeRange::Unsigned32,
             ties: Ties::Away,
             address_unit: AddressUnit::Byte,
+            truth: Truth::NotZero,
+            strings: StringMemory::ZeroTerminated,
             ..STANDARD
         },
         sources: [
@@ -116,6 +160,10 @@ pub const BEHAVIOURS: &[BehaviourRow] = &[
             "TwinCAT: floating point number conversion",
             "TwinCAT: operator DIV",
             "TwinCAT: addresses",
+            "TwinCAT: EXPT, no operator",
+            "TwinCAT: TO_BOOL",
+            "TwinCAT: TIME_TO",
+            "TwinCAT: STRING",
         ],
     },
     BehaviourRow {
@@ -125,6 +173,7 @@ pub const BEHAVIOURS: &[BehaviourRow] = &[
             time: TimeRange::Signed32,
             division_by_zero: DivisionByZero::Continue,
             address_unit: AddressUnit::Byte,
+            negates_powers: true,
             ..STANDARD
         },
         sources: [
@@ -133,6 +182,25 @@ pub const BEHAVIOURS: &[BehaviourRow] = &[
             "S7-1200 System Manual: CONV, round to even",
             "S7-1200 System Manual: ENO of add, subtract, multiply, divide",
             "S7-1200 System Manual: accessing data",
+            "S7-1200 System Manual: SCL, order of operators",
+            "S7-1200 System Manual: CONV",
+            "S7-1200 System Manual: data types, Time",
+            "S7-1200 System Manual: data types, String; here its two counts are one",
+        ],
+    },
+    BehaviourRow {
+        dialect: Matiec,
+        behaviour: Behaviour { truth: Truth::NotZero, time_number_ns: 1_000_000_000, ..STANDARD },
+        sources: [
+            "left open by 2nd ed. 2.3.1",
+            "left open by 2nd ed. 2.2.3",
+            "2nd ed. 2.5.1.5.1, IEC 60559",
+            "2nd ed. Annex E",
+            "left open by 2nd ed. 2.4.1.1",
+            "2nd ed. B.3.1",
+            "MatIEC: iec_std_functions, to_bool",
+            "MatIEC: iec_std_lib, TIME_TO_REAL",
+            "left open by 2nd ed. 2.3.1",
         ],
     },
 ];

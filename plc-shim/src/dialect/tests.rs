@@ -29,7 +29,7 @@ fn dialects_have_names_and_files() {
     assert_eq!(Feature::ChainedAssignment.homes(), "codesys, twincat and siemens-scl");
 }
 
-fn behaviour_cells(behaviour: Behaviour) -> [String; 5] {
+fn behaviour_cells(behaviour: Behaviour) -> [String; 9] {
     let time = match behaviour.time {
         TimeRange::Nanoseconds64 => "signed 64 bit nanoseconds",
         TimeRange::Unsigned32 => "unsigned 32 bit milliseconds, wrapping",
@@ -47,7 +47,18 @@ fn behaviour_cells(behaviour: Behaviour) -> [String; 5] {
         AddressUnit::Element => "units of its own width",
         AddressUnit::Byte => "bytes",
     };
-    [behaviour.string_length.to_string(), time.to_owned(), ties.to_owned(), division.to_owned(), unit.to_owned()]
+    let power = if behaviour.negates_powers { "-(a ** b)" } else { "(-a) ** b" };
+    let truth = match behaviour.truth {
+        Truth::LowestBit => "its lowest bit",
+        Truth::NotZero => "TRUE unless it is 0",
+    };
+    let number = if behaviour.time_number_ns == 1_000_000 { "milliseconds" } else { "seconds" };
+    let strings = match behaviour.strings {
+        StringMemory::Counted => "a count of 16 bits, the characters",
+        StringMemory::ZeroTerminated => "the characters, a 0",
+    };
+    let length = behaviour.string_length.to_string();
+    [&length, time, ties, division, unit, power, truth, number, strings].map(ToOwned::to_owned)
 }
 
 /// The tables of `docs/dialects.md`.
@@ -65,6 +76,10 @@ fn tables() -> String {
         "real halfway between two integers",
         "division by zero",
         "what the number of `%MW3` counts",
+        "`-a ** b`",
+        "a bit string as BOOL, by `DWORD_TO_BOOL`",
+        "what the number of a TIME or TOD counts, by `TIME_TO_REAL`",
+        "STRING in memory",
     ];
     text += "\n| behaviour | dialect | what it does | source |\n|---|---|---|---|\n";
     for (index, subject) in subjects.iter().enumerate() {

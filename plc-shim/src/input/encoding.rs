@@ -6,6 +6,8 @@
 
 use std::fmt;
 
+use crate::syntax::windows_1252::{byte_of, character_of};
+
 /// How a file's text is written in bytes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Encoding {
@@ -56,12 +58,6 @@ pub enum EncodingError {
     Unencodable(char, Charset),
 }
 
-/// What Windows-1252 has at 80 to 9F (WHATWG encoding standard, index windows-1252).
-const WINDOWS_1252: [char; 32] = [
-    '€', '\u{81}', '‚', 'ƒ', '„', '…', '†', '‡', 'ˆ', '‰', 'Š', '‹', 'Œ', '\u{8d}', 'Ž', '\u{8f}', '\u{90}', '‘', '’',
-    '“', '”', '•', '–', '—', '˜', '™', 'š', '›', 'œ', '\u{9d}', 'ž', 'Ÿ',
-];
-
 /// The text of a file.
 ///
 /// # Errors
@@ -76,7 +72,7 @@ pub fn decode(bytes: &[u8]) -> Result<(String, Encoding), EncodingError> {
         },
         Charset::Utf16Le => utf16(rest, skipped, Charset::Utf16Le, u16::from_le_bytes)?,
         Charset::Utf16Be => utf16(rest, skipped, Charset::Utf16Be, u16::from_be_bytes)?,
-        Charset::Windows1252 => rest.iter().map(|byte| windows_1252(*byte)).collect(),
+        Charset::Windows1252 => rest.iter().map(|byte| character_of(*byte)).collect(),
     };
     if text.contains('\0') { Err(EncodingError::Binary) } else { Ok((text, encoding)) }
 }
@@ -154,20 +150,6 @@ fn utf16(bytes: &[u8], skipped: usize, charset: Charset, unit: fn([u8; 2]) -> u1
     Ok(text)
 }
 
-fn windows_1252(byte: u8) -> char {
-    match byte {
-        0x80..=0x9f => WINDOWS_1252[usize::from(byte - 0x80)],
-        _ => char::from(byte),
-    }
-}
-
-fn byte_of(one: char) -> Option<u8> {
-    if let Some(at) = WINDOWS_1252.iter().position(|other| *other == one) {
-        return Some(0x80 + at as u8);
-    }
-    u8::try_from(u32::from(one)).ok().filter(|byte| !(0x80..=0x9f).contains(byte))
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -187,7 +169,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_not_utf_8_is_windows_1252() {
+    fn what_is_not_utf_8_is_character_of() {
         assert_eq!(read(b"(* 5 \x80, 3 \xb5m *)"), ("(* 5 €, 3 µm *)".to_owned(), Charset::Windows1252, false));
         assert_eq!(read("(* 5 €, 3 µm *)".as_bytes()).1, Charset::Utf8);
         assert_eq!(read(b"").1, Charset::Utf8);

@@ -49,6 +49,9 @@ fn programs(root: &Element) -> BTreeSet<String> {
     found
 }
 
+/// How the editor of Beremiz, which OpenPLC's is made of, names the schema once more. It writes no name of its own.
+const BEREMIZ_NAMESPACE: &str = "xmlns:ns1=\"http://www.plcopen.org/xml/tc6_0201\"";
+
 /// The dialect of the tool that wrote the file: its name, or CODESYS' own data in it.
 fn dialect(file: &str, root: &Element) -> Dialect {
     let product = root.child("fileHeader").and_then(|header| header.attribute("productName"));
@@ -57,6 +60,8 @@ fn dialect(file: &str, root: &Element) -> Dialect {
         Dialect::TwinCat
     } else if product.contains("CODESYS") || file.contains("3s-software.com/plcopenxml/") {
         Dialect::Codesys
+    } else if product.contains("BEREMIZ") || product.contains("OPENPLC") || file.contains(BEREMIZ_NAMESPACE) {
+        Dialect::Matiec
     } else {
         Dialect::default()
     }

@@ -17,6 +17,8 @@ pub(crate) struct Program {
     /// The resource it belongs to.
     pub(crate) resource: Option<usize>,
     pub(crate) retention: Option<Retention>,
+    /// True if a unit calls it, as some vendors allow: then no task runs it unless one names it.
+    pub(crate) is_called: bool,
 }
 
 /// What a task can run: an instance of a program with its connections, or an instance of a function

@@ -86,7 +86,7 @@ pub(crate) struct CaseArm {
     pub(crate) body: Vec<Statement>,
 }
 
-/// All expressions are of the variable's type. The registers hold the last value and the step
+/// All expressions are of the variable's type; the step of an unsigned one may be signed. The registers hold the last value and the step
 /// as 64 bit numbers.
 #[derive(Debug, Clone)]
 pub(crate) struct ForStatement {

@@ -1,21 +1,25 @@
 //! Character strings and the functions on them (2nd ed. 2.3.1 Table 10, 2.5.1.5.5).
 //!
-//! A string lies in memory as a 16 bit count of the characters in use, then room for all that it
-//! may hold, zero behind the last: one byte for a character of STRING (ISO 8859-1), two for one
-//! of WSTRING (UTF-16).
+//! A character is one byte in a STRING (ISO 8859-1), two in a WSTRING (UTF-16). How characters lie in memory is the
+//! dialect's, see [`StringMemory`]; what lies behind the last one is zero.
 
 use onescan_base::ElementaryType;
 
 use super::expr::{Expr, Place};
+use crate::dialect::StringMemory;
 
 /// Most characters of a string, so that every position is an INT.
 pub(crate) const MAX_CAPACITY: u16 = 32_767;
 
-/// Width and capacity of a string type.
+/// Bytes of the count in front of the characters, where there is one.
+const COUNT_SIZE: u32 = 2;
+
+/// Width, capacity and memory of a string type.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) struct TextShape {
     pub(crate) wide: bool,
     pub(crate) capacity: u16,
+    pub(crate) memory: StringMemory,
 }
 
 impl TextShape {
@@ -26,7 +30,19 @@ impl TextShape {
 
     /// Bytes in memory.
     pub(crate) fn size(self) -> u32 {
-        2 + u32::from(self.capacity) * self.unit()
+        let capacity = u32::from(self.capacity);
+        match self.memory {
+            StringMemory::Counted => COUNT_SIZE + capacity * self.unit(),
+            StringMemory::ZeroTerminated => (capacity + 1) * self.unit(),
+        }
+    }
+
+    /// Bytes in front of the first character.
+    pub(crate) fn first(self) -> u32 {
+        match self.memory {
+            StringMemory::Counted => COUNT_SIZE,
+            StringMemory::ZeroTerminated => 0,
+        }
     }
 
     /// The keyword.
@@ -36,24 +52,51 @@ impl TextShape {
 
     /// As one number, for calls of the host.
     pub(crate) fn code(self) -> i32 {
-        i32::from(self.capacity) | i32::from(self.wide) << 16
+        let terminated = self.memory == StringMemory::ZeroTerminated;
+        i32::from(self.capacity) | i32::from(self.wide) << 16 | i32::from(terminated) << 17
     }
 
     /// What [`Self::code`] made.
     pub(crate) fn from_code(code: i32) -> Self {
-        Self { wide: code >> 16 & 1 == 1, capacity: code as u16 }
+        let terminated = code >> 17 & 1 == 1;
+        let memory = if terminated { StringMemory::ZeroTerminated } else { StringMemory::Counted };
+        Self { wide: code >> 16 & 1 == 1, capacity: code as u16, memory }
     }
 
     /// The bytes of these characters; what does not fit is cut off.
     pub(crate) fn encode(self, units: &[u16]) -> Vec<u8> {
         let used = units.len().min(usize::from(self.capacity));
         let mut bytes = Vec::with_capacity(self.size() as usize);
-        bytes.extend_from_slice(&(used as u16).to_le_bytes());
+        if self.memory == StringMemory::Counted {
+            bytes.extend_from_slice(&(used as u16).to_le_bytes());
+        }
         for unit in units.iter().take(used) {
             bytes.extend_from_slice(&unit.to_le_bytes()[..self.unit() as usize]);
         }
         bytes.resize(self.size() as usize, 0);
         bytes
+    }
+
+    /// How many characters of a string are in use; never more than there is room for, whatever stands in memory.
+    pub(crate) fn used(self, bytes: &[u8]) -> usize {
+        let capacity = usize::from(self.capacity);
+        match self.memory {
+            StringMemory::Counted => {
+                let count = bytes.first_chunk::<2>().map_or(0, |count| u16::from_le_bytes(*count));
+                usize::from(count).min(capacity)
+            }
+            StringMemory::ZeroTerminated if self.wide => {
+                bytes.chunks_exact(2).take(capacity).take_while(|unit| *unit != [0, 0]).count()
+            }
+            StringMemory::ZeroTerminated => bytes.iter().take(capacity).take_while(|byte| **byte != 0).count(),
+        }
+    }
+
+    /// The characters of a string in memory.
+    pub(crate) fn decode(self, bytes: &[u8]) -> Vec<u16> {
+        let units = bytes.get(self.first() as usize..).unwrap_or_default().chunks_exact(self.unit() as usize);
+        let unit = |unit: &[u8]| unit.iter().rev().fold(0, |whole, byte| whole << 8 | u16::from(*byte));
+        units.take(self.used(bytes)).map(unit).collect()
     }
 }
 

@@ -46,9 +46,10 @@ impl TaskPlan {
         Self { tasks, background: Vec::new(), fuel_per_task: Self::DEFAULT_FUEL }
     }
 
-    /// One task that runs all programs of the application in their order.
+    /// One task that runs all programs of the application in their order, those left out that a program calls.
     pub fn single(application: &Application, interval: TimeSpan) -> Self {
-        let programs = application.programs().map(|program| program.name).collect();
+        let programs = application.programs().filter(|program| !program.is_called);
+        let programs = programs.map(|program| program.name).collect();
         Self::new(vec![Task { name: "main".to_owned(), interval: Some(interval), programs, ..Task::default() }])
     }
 }

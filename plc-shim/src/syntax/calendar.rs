@@ -72,7 +72,8 @@ fn parse_time_of_day(text: &str) -> Result<i64, String> {
     let mut parts = text.splitn(3, ':');
     let hour = field(parts.next(), "hour", 0..=23)?;
     let minute = field(parts.next(), "minute", 0..=59)?;
-    let seconds = parts.next().ok_or("the seconds are missing")?.replace('_', "");
+    // Vendors leave the seconds out: `TOD#12:00`.
+    let seconds = parts.next().unwrap_or("0").replace('_', "");
     let (whole, fraction) = seconds.split_once('.').unwrap_or((&seconds, ""));
     let second = field(Some(whole), "second", 0..=59)?;
     if !fraction.bytes().all(|digit| digit.is_ascii_digit()) {
@@ -148,7 +149,8 @@ mod tests {
         let time = |text| parse_calendar(CalendarKind::TimeOfDay, text);
         assert_eq!(time("15:36:55.36"), Ok(56_215_360_000_000));
         assert_eq!(time("00:00:00.0000000019"), Ok(1));
-        for wrong in ["24:00:00", "23:60:00", "23:59:60", "23:59", "1:2:x", "1:2:3.x"] {
+        assert_eq!(time("12:30"), time("12:30:00"));
+        for wrong in ["24:00:00", "23:60:00", "23:59:60", "23", "1:2:x", "1:2:3.x"] {
             assert!(time(wrong).is_err(), "{wrong}");
         }
         let both = parse_calendar(CalendarKind::DateAndTime, "1984-06-25-15:36:55.360");

@@ -148,6 +148,25 @@ impl DirectAddress {
         Ok(Self { area, width, position: position(width, rest)? })
     }
 
+    /// True for an address of more levels than a place in an area has, as in `%IW2.5.7.1` (2nd ed. 2.4.1.1, Table 15):
+    /// rack, module and channel, whose order the standard leaves to the maker.
+    pub fn is_hierarchical(text: &str) -> bool {
+        let width = text.chars().nth(2).and_then(Width::find);
+        let levels = text.split('.').count();
+        let numbers = text.trim_start_matches(|letter: char| !letter.is_ascii_digit()).split('.');
+        let deepest = if width.is_none_or(|width| width == Width::Bit) { 2 } else { 1 };
+        levels > deepest && numbers.clone().all(|level| number(level).is_ok())
+    }
+
+    /// The area and width of a hierarchical address.
+    ///
+    /// # Errors
+    /// What is wrong with its letters.
+    pub fn parse_hierarchical(text: &str) -> Result<(Area, Width), AddressError> {
+        let end = text.find('.').unwrap_or(text.len());
+        Self::parse(text.get(..end).unwrap_or(text)).map(|first| (first.area, first.width))
+    }
+
     /// First byte and, of a bit, its number in that byte; nothing if the place is open.
     ///
     /// # Errors

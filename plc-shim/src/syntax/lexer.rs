@@ -73,9 +73,13 @@ impl<'a> Lexer<'a> {
             '%' => self.direct_address(),
             '`' => self.wire(),
             '0'..='9' => self.number(),
-            _ if first.is_ascii_alphabetic() || first == '_' => self.word(),
+            _ if self.begins_name(first) => self.word(),
             _ => self.mark(first),
         }
+    }
+
+    fn begins_name(&self, first: char) -> bool {
+        is_part_of_name(self.dialect, first) && !first.is_numeric()
     }
 
     /// Comments nest in the 3rd edition (6.1.5), in the 2nd they do not (2.1.5).
@@ -190,7 +194,8 @@ impl<'a> Lexer<'a> {
 
     fn word(&mut self) -> TokenKind {
         let start = self.at;
-        self.take_while(|character| character.is_ascii_alphanumeric() || character == '_');
+        let dialect = self.dialect;
+        self.take_while(|character| is_part_of_name(dialect, character));
         let text = self.text.get(start..self.at).unwrap_or("");
         if self.peek(0) == b'#' && matches!(self.peek(1), b'\'' | b'"') {
             self.at += 1;
@@ -245,6 +250,12 @@ impl<'a> Lexer<'a> {
         self.take_while(|character| character == first);
         TokenKind::Unknown
     }
+}
+
+/// Letters of every language in SCL, those of ASCII elsewhere (2nd ed. 2.1.1; TIA Portal: rules for names).
+fn is_part_of_name(dialect: Dialect, character: char) -> bool {
+    let beyond = dialect == Dialect::SiemensScl && character.is_alphanumeric();
+    character.is_ascii_alphanumeric() || character == '_' || beyond
 }
 
 #[cfg(test)]

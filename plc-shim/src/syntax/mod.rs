@@ -28,6 +28,7 @@ pub mod printer;
 pub mod text_literal;
 pub mod token;
 pub(crate) mod walk;
+pub(crate) mod windows_1252;
 
 pub use crate::source::{FileId, SourceFile, SourceMap, Span};
 pub use lexer::{tokenize, tokenize_in};

@@ -1,5 +1,7 @@
 //! Character strings as written (2nd ed. 2.2.2, Tables 5 and 6; 3rd ed. 6.3.3).
 
+use super::windows_1252::byte_of;
+
 /// The characters of a literal.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Text {
@@ -14,6 +16,19 @@ pub struct Text {
 /// # Errors
 /// A sentence that says what is wrong.
 pub fn parse_text(text: &str) -> Result<Text, String> {
+    // The first 256 characters of ISO/IEC 10646 (2nd ed. 2.1.1).
+    parse_with(text, |character| u8::try_from(u32::from(character)).ok())
+}
+
+/// The same, the characters of a STRING those of Windows-1252, as vendors have them.
+///
+/// # Errors
+/// A sentence that says what is wrong.
+pub fn parse_windows_text(text: &str) -> Result<Text, String> {
+    parse_with(text, byte_of)
+}
+
+fn parse_with(text: &str, code: impl Fn(char) -> Option<u8>) -> Result<Text, String> {
     let wide = text.starts_with('"');
     let inner = text.get(1..text.len().saturating_sub(1)).unwrap_or("");
     let mut units = Vec::with_capacity(inner.len());
@@ -24,9 +39,8 @@ pub fn parse_text(text: &str) -> Result<Text, String> {
         } else if wide {
             units.extend_from_slice(character.encode_utf16(&mut [0; 2]));
         } else {
-            // The first 256 characters of ISO/IEC 10646 (2nd ed. 2.1.1).
-            let code = u8::try_from(u32::from(character));
-            units.push(u16::from(code.map_err(|_| format!("`{character}` needs a \"wide\" string"))?));
+            let missing = || format!("`{character}` needs a \"wide\" string");
+            units.push(u16::from(code(character).ok_or_else(missing)?));
         }
     }
     Ok(Text { wide, units })
@@ -77,6 +91,12 @@ mod tests {
         for wrong in ["'$'", "'$x'", "'$1'", "'$1g'", "'\u{20ac}'"] {
             assert!(narrow(wrong).is_err(), "{wrong}");
         }
+    }
+
+    #[test]
+    fn vendors_have_the_characters_of_windows_1252() {
+        assert_eq!(parse_windows_text("'a€ä'").map(|found| found.units), Ok(vec![0x61, 0x80, 0xe4]));
+        assert!(parse_windows_text("'Ω'").is_err());
     }
 
     #[test]

@@ -38,7 +38,7 @@ fn an_input_of_any_type_is_its_class_address_and_size() {
             ("INT", 2_007),
             ("ULINT", 8_013),
             ("LREAL", 8_015),
-            ("STRING(9)", 11_016),
+            ("STRING(9)", 10_016),
             ("WSTRING(4)", 10_017),
             ("LTIME", 8_037),
             ("E", 1_025),

@@ -38,7 +38,10 @@ fn codesys_and_twincat_count_from_0_and_end_with_0() {
             [97, 0, 5, 3, 118],
             "{dialect}"
         );
-        assert_eq!(["s", "t", "u", "v", "x", "w"].map(read), ["'Zbc'", "'HELLO'", "'0123'", "'ab'", "'ad'", "\"uvw\""]);
+        assert_eq!(
+            ["s", "t", "u", "v", "x", "w"].map(read),
+            ["'Zbc'", "'HELLO'", "'0123'", "'ab'", "'adc'", "\"uvw\""]
+        );
     }
 }
 
@@ -53,7 +56,8 @@ fn a_position_outside_of_the_string_stops_the_plc() {
         (Dialect::Codesys, "b := s[i + 3];", false),
         (Dialect::Codesys, "b := s[i + 4];", true),
         (Dialect::Codesys, "b := s[i - 1];", true),
-        (Dialect::Codesys, "s[i + 3] := 1;", true),
+        (Dialect::Codesys, "s[i + 3] := 1;", false),
+        (Dialect::Codesys, "s[i + 4] := 1;", true),
         (Dialect::Codesys, "s[i - 1] := 1;", true),
     ] {
         let character = if dialect == Dialect::Iec3 { "c : CHAR;" } else { "b : BYTE;" };
@@ -86,7 +90,7 @@ fn wrong_characters_are_told() {
         iec("c := s[1, 2];"),
         iec("s[1] := 'xy';"),
         vendor("b := s[4];"),
-        vendor("s[3] := 1;"),
+        vendor("s[4] := 1;"),
         vendor("s[0] := 'x';"),
         vendor("k[0] := 1;"),
         vendor("s[b > 1] := 1;"),

@@ -63,7 +63,25 @@ fn use_of(feature: Feature) -> &'static str {
         Feature::Blocks => "ORGANIZATION_BLOCK P VAR_TEMP a : INT; END_VAR BEGIN a := 1; END_ORGANIZATION_BLOCK",
         Feature::InstanceInternals => {
             "FUNCTION_BLOCK F VAR a : INT; END_VAR a := a + 1; END_FUNCTION_BLOCK
+             PROGRAM P VAR f1 : F; b : INT; END_VAR f1(); f1.a := b; END_PROGRAM"
+        }
+        Feature::BitsAsReals => "PROGRAM P VAR w : WORD; r : REAL; END_VAR r := WORD_TO_REAL(w); END_PROGRAM",
+        Feature::EmptyArguments => "PROGRAM P VAR t : TON; END_VAR t(IN := TRUE, PT := ); END_PROGRAM",
+        Feature::WindowsCharacters => "PROGRAM P VAR s : STRING := '€'; END_VAR s := s; END_PROGRAM",
+        Feature::DoubleQuotes => "PROGRAM P VAR s : STRING := \"a\"; END_VAR s := s; END_PROGRAM",
+        Feature::LooseWidths => "PROGRAM P VAR d AT %ML50 : DWORD; END_VAR d := d; END_PROGRAM",
+        Feature::OwnStandardFunctions => {
+            "FUNCTION MULTIME : TIME VAR_INPUT t : TIME; x : REAL; END_VAR MULTIME := t; END_FUNCTION
+             PROGRAM P VAR t : TIME; END_VAR t := MULTIME(t := t, x := 2.0); END_PROGRAM"
+        }
+        Feature::InstanceCopies => "PROGRAM P VAR a, b : TON; END_VAR a := b; END_PROGRAM",
+        Feature::ReadableInternals => {
+            "FUNCTION_BLOCK F VAR a : INT; END_VAR a := a + 1; END_FUNCTION_BLOCK
              PROGRAM P VAR f1 : F; b : INT; END_VAR f1(); b := f1.a; END_PROGRAM"
+        }
+        Feature::ProgramInstances => {
+            "PROGRAM Q VAR_INPUT i : INT; END_VAR VAR n : INT; END_VAR n := i; END_PROGRAM
+             PROGRAM P VAR x : INT; END_VAR Q(i := 1); x := Q.n; END_PROGRAM"
         }
         Feature::ShortPrefixes => "PROGRAM P VAR w : WORD; END_VAR w := W#16#FF; END_PROGRAM",
         Feature::DivOperator => "PROGRAM P VAR a : INT; END_VAR a := a DIV 2; END_PROGRAM",
@@ -86,7 +104,15 @@ fn every_construct_is_for_its_dialects_alone() {
 }
 
 /// Constructs whose absence is no syntax of its own: another error says it.
-const TOLD_OTHERWISE: [Feature; 14] = [
+const TOLD_OTHERWISE: [Feature; 22] = [
+    Feature::WindowsCharacters,
+    Feature::DoubleQuotes,
+    Feature::LooseWidths,
+    Feature::BitsAsReals,
+    Feature::OwnStandardFunctions,
+    Feature::InstanceCopies,
+    Feature::ReadableInternals,
+    Feature::ProgramInstances,
     Feature::VendorParameters,
     Feature::CharactersAsBytes,
     Feature::IntegerShifts,
@@ -194,6 +220,7 @@ fn time_wraps_where_the_dialect_counts_milliseconds() {
         let (ms, days) = (1_000_000, 86_400_000_000_000);
         let wrapped = (1_i64 << 32) * ms;
         let expected = match dialect.time() {
+            TimeRange::Nanoseconds64 if dialect == Dialect::Matiec => [-ms, 5 * ms, -1_000 * ms, 60 * days],
             TimeRange::Nanoseconds64 => [-ms, 5 * ms, -ms, 60 * days],
             TimeRange::Unsigned32 => [wrapped - ms, 4 * ms, wrapped - ms, 60 * days - wrapped],
             TimeRange::Signed32 => [-ms, 4 * ms, -ms, 60 * days - wrapped],

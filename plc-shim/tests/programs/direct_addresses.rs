@@ -102,10 +102,6 @@ fn wrong_addresses_are_told() {
     let statements = [
         ("%IX1.8 := TRUE;", "test.st:1:24: error[R0901]: `%IX1.8` is no direct address: a byte has the bits 0 to 7"),
         (
-            "%MW1.2 := 1;",
-            "test.st:1:24: error[R0901]: `%MW1.2` is no direct address: an address has one number, a bit's address a byte and a bit",
-        ),
-        (
             "%QZ1 := 1;",
             "test.st:1:24: error[R0901]: `%QZ1` is no direct address: behind the area stands X, B, W, D, L or a number",
         ),
@@ -143,4 +139,16 @@ fn wrong_addresses_are_told() {
     ] {
         assert!(findings(unit).contains("error[R0902]: a variable of this section has no direct address"), "{unit}");
     }
+}
+
+#[test]
+fn a_hierarchical_address_is_one_place_whoever_names_it() {
+    let text = "PROGRAM P VAR a AT %IW2.5.7.1 : WORD; b AT %QW0.0.2.8193.0 : WORD := 16#12; c AT %IW2.5.7.2 : UINT; n, m : WORD; END_VAR
+          n := %IW2.5.7.1; %QW0.0.2.8193.0 := %QW0.0.2.8193.0 + 1; m := Q.d; END_PROGRAM
+        PROGRAM Q VAR d AT %iw2.5.7.1 : WORD; e AT %QX1.2.3 : BOOL; END_VAR e := TRUE; END_PROGRAM";
+    let mut rig = Rig::in_dialect(onescan_plc_shim::Dialect::Codesys, text);
+    rig.plc.write("P.a", "16#ABCD").expect("it is a variable");
+    rig.scan().expect("no fault");
+    assert_eq!(["P.n", "P.m", "P.b", "P.c"].map(|path| rig.int(path)), [0xabcd, 0xabcd, 0x13, 0]);
+    assert!(rig.bool("Q.e"));
 }

@@ -19,7 +19,7 @@ const TABLE: &[(&str, &str, i64)] = &[
     ("a : UDINT := 16#FFFF_FFFF; r : BOOL;", "r := a > 1;", 1),
     // Precedence and operators.
     ("r : INT;", "r := 2 + 3 * 4 - 1;", 13),
-    ("r : DINT; x : LREAL := 3.0;", "r := LREAL_TO_DINT(-x ** 2);", -9),
+    ("r : DINT; x : LREAL := 3.0;", "r := LREAL_TO_DINT(-x ** 2);", 9),
     ("r : BOOL; a, b : BOOL := TRUE;", "r := NOT a OR b XOR a AND NOT b;", 1),
     ("r : BYTE := 16#0F;", "r := NOT r AND 16#3C;", 0x30),
     ("r : WORD; b : BYTE := 16#80;", "r := b OR WORD#16#100;", 0x180),

@@ -105,9 +105,15 @@ impl Rig {
 
     /// A STRING or WSTRING.
     pub(crate) fn text(&self, path: &str) -> String {
-        let bytes = self.memory_of(path);
+        let variable = self.variable(path);
+        let mut bytes = self.memory_of(path).to_vec();
+        if let Some(text) = variable.zero_terminated {
+            let memory = std::mem::take(&mut bytes);
+            bytes.resize(memory.len() + 2, 0);
+            text.take(&memory, &mut bytes);
+        }
         let used = usize::from(u16::from_le_bytes([bytes[0], bytes[1]]));
-        if self.variable(path).type_name.starts_with('W') {
+        if variable.type_name.starts_with('W') {
             let units = bytes[2..].chunks_exact(2).map(|unit| u16::from_le_bytes([unit[0], unit[1]]));
             String::from_utf16_lossy(&units.take(used).collect::<Vec<_>>())
         } else {

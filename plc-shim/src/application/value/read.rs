@@ -4,6 +4,7 @@ use onescan_base::elementary::Kind;
 
 use super::super::{Application, Variable};
 use super::WriteError;
+use crate::dialect::StringMemory;
 use crate::ir::text::TextShape;
 use crate::ir::{ElementaryType, Type, Value};
 use crate::syntax::ast::{Expr, ExprKind, Literal, TypedValue, UnaryOp};
@@ -130,7 +131,7 @@ fn integer(ty: ElementaryType, value: i128) -> Result<Value, String> {
 }
 
 fn character(ty: ElementaryType, text: &str) -> Result<Value, String> {
-    let shape = TextShape { wide: ty.size() == 2, capacity: 1 };
+    let shape = TextShape { wide: ty.size() == 2, capacity: 1, memory: StringMemory::Counted };
     let body = text.split_once('#').map_or(text, |(_, body)| if body.starts_with(['\'', '"']) { body } else { text });
     let bytes = string(shape, body)?;
     if bytes.first() != Some(&1) {

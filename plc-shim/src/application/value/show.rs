@@ -126,10 +126,8 @@ fn show_elementary(ty: ElementaryType, bytes: &[u8], text: &mut String) {
 
 fn show_text(shape: TextShape, bytes: &[u8], text: &mut String) {
     let quote = if shape.wide { '"' } else { '\'' };
-    let used = number(bytes.get(..2).unwrap_or_default()) as usize;
-    let characters = bytes.get(2..).unwrap_or_default().chunks_exact(shape.unit() as usize);
     text.push(quote);
-    show_units(characters.take(used).map(|unit| number(unit) as u16), shape.wide, text);
+    show_units(shape.decode(bytes).into_iter(), shape.wide, text);
     text.push(quote);
 }
 

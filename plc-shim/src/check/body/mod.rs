@@ -56,6 +56,8 @@ pub(super) struct Body<'c, 'a> {
     label_count: u32,
     /// Values that elements of a network hand on.
     wires: BTreeMap<String, Place>,
+    /// Constants of later sections whose values are being worked out.
+    later: Vec<String>,
     /// How many wires lists of instructions have so far.
     instruction_wires: u32,
 }
@@ -77,6 +79,7 @@ impl<'c, 'a> Body<'c, 'a> {
             labels: Vec::new(),
             label_count: 0,
             wires: BTreeMap::new(),
+            later: Vec::new(),
             instruction_wires: 0,
             network: None,
         }

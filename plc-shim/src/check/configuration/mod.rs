@@ -75,6 +75,7 @@ impl<'d, 'a> Configurer<'d, 'a> {
 
     /// What can be said only when every unit's body is known.
     pub(super) fn check(&mut self, checked: &BTreeMap<PouId, Pou>) {
+        self.note_called_programs();
         self.report_idle_programs();
         self.report_foreign_globals();
         self.report_double_calls(checked);

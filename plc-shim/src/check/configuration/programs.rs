@@ -50,15 +50,34 @@ impl<'a> Configurer<'_, 'a> {
         }
     }
 
+    /// Notes which programs other units call.
+    pub(super) fn note_called_programs(&mut self) {
+        let called = self.declarations.called();
+        self.declarations.programs_mut().for_each(|program| program.is_called = called.contains(&program.pou));
+    }
+
     fn place_program(&mut self, pou: PouId, name: &Ident, resource: Option<usize>, retention: Option<Retention>) {
         let (size, align, image) = self.declarations.pou(pou).instance();
-        if let Some(offset) = self.declarations.allocate(size, align, name.span) {
+        let is_first = self.declarations.programs().iter().all(|program| program.pou != pou);
+        let offset = if is_first {
+            self.declarations.first_instance(pou, name.span)
+        } else {
+            self.declarations.allocate(size, align, name.span)
+        };
+        if let Some(offset) = offset {
             // The type of the program's instances, for paths that lead through them.
             let unit = &self.declarations.pou(pou).ast().name.text;
             let ty = self.declarations.types_mut().block(unit, pou);
             self.declarations.types_mut().complete_block(ty, align, image.clone());
             self.declarations.place(offset, image);
-            self.declarations.add_program(Program { name: name.text.clone(), pou, offset, resource, retention });
+            self.declarations.add_program(Program {
+                name: name.text.clone(),
+                pou,
+                offset,
+                resource,
+                retention,
+                is_called: false,
+            });
         }
     }
 

@@ -5,6 +5,7 @@ use std::sync::Arc;
 use super::Declarations;
 use super::entry::TypedImage;
 use crate::diagnostic::{Code, Diagnostic};
+use crate::dialect::Feature;
 use crate::ir::{ElementaryType, Location, Storage, Type, TypeId};
 use crate::syntax::Span;
 use crate::syntax::ast::{self, Ident, PouKind, SectionKind};
@@ -55,6 +56,9 @@ impl Declarations<'_> {
     /// Where a declaration, with `AT` or without, puts its variable; an open address leaves it free.
     pub(in crate::check) fn located(&mut self, ast: &ast::Variable, declared: &TypedImage<'_>) -> Option<Placement> {
         let Some(name) = &ast.address else { return Some(Placement::Free) };
+        if DirectAddress::is_hierarchical(&name.text) {
+            return self.located_apart(name, ast.initial.is_some(), declared);
+        }
         let (address, location) = self.direct_address(&name.text, name.span)?;
         let Some(location) = location else {
             self.require_open_width(address, declared.ty, name)?;
@@ -69,6 +73,33 @@ impl Declarations<'_> {
         let (image, explicit) = (declared.image.clone(), ast.initial.is_some());
         self.located.push(Initial { location, image, explicit });
         Some(Placement::At(Storage::Located(location)))
+    }
+
+    /// A hierarchical address has a place of its own, wherever it is named.
+    fn located_apart(&mut self, name: &Ident, explicit: bool, declared: &TypedImage<'_>) -> Option<Placement> {
+        let width = match DirectAddress::parse_hierarchical(&name.text) {
+            Ok((_, width)) => width,
+            Err(error) => return self.invalid_address(&name.text, error, name.span),
+        };
+        self.require_width(width, declared.ty, name)?;
+        let offset = self.hierarchical_place(&name.text, self.types.size(declared.ty), name.span)?;
+        if explicit || declared.image.iter().any(|byte| *byte != 0) {
+            self.place(offset, declared.image.clone());
+        }
+        Some(Placement::At(Storage::Absolute(offset)))
+    }
+
+    /// Where a hierarchical address lies, which is the same for all that name it.
+    pub(in crate::check) fn hierarchical_place(&mut self, text: &str, size: u32, span: Span) -> Option<u32> {
+        let key = text.to_ascii_uppercase();
+        if let Some((offset, known)) = self.hierarchical.get(&key)
+            && *known >= size
+        {
+            return Some(*offset);
+        }
+        let offset = self.allocate(size.max(8), 8, span)?;
+        self.hierarchical.insert(key, (offset, size.max(8)));
+        Some(offset)
     }
 
     /// What is located has a place of its own: no parameter of a block, nothing of a function.
@@ -121,6 +152,11 @@ impl Declarations<'_> {
             }
             (None, _) => (width != Width::Bit, format!("{found} begins at a byte, as in %B0")),
         };
+        if !suitable && elementary.is_some() && self.dialect(address.span).has(Feature::LooseWidths) {
+            let message = format!("`{}` is of another width than {found}, which lies at its beginning", address.text);
+            self.report(Diagnostic::warning(Code::UnsuitableAddress, address.span, message));
+            return Some(());
+        }
         if !suitable {
             let message = format!("`{}` does not suit a variable of type {found}", address.text);
             let help = help.replace('%', &format!("%{}", area_letter(&address.text)));

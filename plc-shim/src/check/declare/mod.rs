@@ -18,6 +18,7 @@ mod located;
 mod names;
 mod namespace;
 mod overrides;
+mod program;
 mod query;
 mod recursion;
 mod scope;
@@ -89,9 +90,13 @@ pub(super) struct Declarations<'a> {
     memory: Memory,
     areas: Areas,
     address_unit: AddressUnit,
+    /// Offset and size of what lies at hierarchical addresses, by their texts in capitals.
+    hierarchical: BTreeMap<String, (u32, u32)>,
     /// Initial values of what is located.
     located: Vec<Initial>,
     programs: Vec<Program>,
+    /// Where the first instances of programs lie.
+    program_places: BTreeMap<PouId, u32>,
     configuration: Option<&'a ast::Configuration>,
     /// Globals that several resources have under one name.
     alternatives: BTreeMap<String, Alternatives>,
@@ -149,8 +154,10 @@ impl<'a> Declarations<'a> {
             memory: Memory::default(),
             areas: Areas::default(),
             address_unit: AddressUnit::default(),
+            hierarchical: BTreeMap::new(),
             located: Vec::new(),
             programs: Vec::new(),
+            program_places: BTreeMap::new(),
             configuration: None,
             alternatives: BTreeMap::new(),
             global_uses: Vec::new(),

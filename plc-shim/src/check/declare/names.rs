@@ -9,6 +9,7 @@ use super::entry::{GlobalEntry, PouEntry, Progress, TypeEntry};
 use super::start::Starts;
 use crate::check::standard;
 use crate::diagnostic::{Code, Diagnostic};
+use crate::dialect::Feature;
 use crate::ir::{ElementaryType, PouId};
 use crate::syntax::Span;
 use crate::syntax::ast::{self, Ident, PouKind, TypeDeclaration};
@@ -25,7 +26,11 @@ impl<'a> Declarations<'a> {
             }
             return;
         }
-        if self.is_taken(&ast.name) {
+        let is_own_function = ast.kind == PouKind::Function
+            && self.declared_at(&ast.name).is_none()
+            && standard::is_reserved(&ast.name.key())
+            && self.dialect(ast.name.span).has(Feature::OwnStandardFunctions);
+        if !is_own_function && self.is_taken(&ast.name) {
             return;
         }
         let id = self.add_pou(ast, None);

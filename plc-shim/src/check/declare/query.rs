@@ -132,6 +132,10 @@ impl<'a> Declarations<'a> {
         &self.programs
     }
 
+    pub(in crate::check) fn programs_mut(&mut self) -> impl Iterator<Item = &mut Program> {
+        self.programs.iter_mut()
+    }
+
     pub(in crate::check) fn add_program(&mut self, program: Program) {
         self.programs.push(program);
     }

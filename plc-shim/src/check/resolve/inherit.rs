@@ -102,9 +102,9 @@ fn seen_by_methods(scope: &Scope, owner: PouId) -> Scope {
     let keys = scope.keys();
     for (index, variable) in scope.variables().iter().enumerate() {
         let lasting = match variable.storage {
-            Storage::Instance(_) | Storage::InstancePointer(_) => true,
+            Storage::Instance(_) | Storage::InstancePointer(_) | Storage::Located(_) => true,
             Storage::Register(_) | Storage::RegisterPointer(_) => false,
-            _ => variable.section == SectionKind::External,
+            _ => matches!(variable.section, SectionKind::External | SectionKind::Static),
         };
         let hidden = variable.visibility == Visibility::Private && variable.owner != Some(owner);
         if lasting && !hidden {

@@ -81,12 +81,36 @@ impl<'a> Written<'_, 'a> {
             (InitialiserKind::Struct(members), Type::FunctionBlock { pou, .. }) => {
                 self.fill_instance(spot, pou, members, (initial.span, making))
             }
+            (InitialiserKind::Value(expr), Type::Struct { .. } | Type::Array { .. } | Type::FunctionBlock { .. })
+                if let Some(constant) = self.whole_constant(expr, spot.ty) =>
+            {
+                let range = self.range(spot);
+                making.image.get_mut(range)?.copy_from_slice(&constant);
+                Some(())
+            }
+            (InitialiserKind::Value(expr), Type::Struct { .. } | Type::Array { .. } | Type::FunctionBlock { .. })
+                if self.declarations().dialect(expr.span).has(Feature::ComputedInitialValues) =>
+            {
+                self.begins_with(spot, expr, making);
+                Some(())
+            }
             _ => {
                 let message = format!("this does not initialise {}", self.body.type_name(spot.ty));
                 self.report(Diagnostic::error(Code::InvalidInitialiser, initial.span, message));
                 None
             }
         }
+    }
+
+    /// The bytes of a constant of several parts.
+    fn whole_constant(&mut self, expr: &Expr, wanted: ir::TypeId) -> Option<std::sync::Arc<[u8]>> {
+        let name = match &expr.kind {
+            ExprKind::Name(name) => name.clone(),
+            ExprKind::Member(..) => self.body.qualified_name(expr)?,
+            _ => return None,
+        };
+        let variable = self.body.variable_named(&name)?.ok()?;
+        (variable.is_constant && variable.ty == wanted).then_some(variable.image)
     }
 
     fn begins_with(&mut self, spot: Spot, expr: &'a Expr, making: &mut Making<'a>) {

@@ -22,6 +22,7 @@ impl<'a> Written<'_, 'a> {
                 capacity
             }
         };
-        Some(self.declarations_mut().types_mut().string(TextShape { wide, capacity }))
+        let memory = self.declarations().dialect(span).strings();
+        Some(self.declarations_mut().types_mut().string(TextShape { wide, capacity, memory }))
     }
 }

@@ -5,12 +5,12 @@
 //! |---|---|
 //! | integer, narrower integer | low-order bits |
 //! | real, integer | nearest, ties to even; saturates; NaN becomes 0 |
-//! | bit string, BOOL | rightmost bit |
+//! | bit string, BOOL | rightmost bit; FALSE for 0 alone where the dialect says so |
 //! | number, BOOL | FALSE for 0 |
 //! | REAL, DWORD and LREAL, LWORD | the same bits; other pairs of reals and bit strings do not exist |
-//! | real and bit string where bit strings are numbers (CODESYS, TwinCAT) | the number |
-//! | TIME, number | milliseconds |
-//! | TOD, number | milliseconds |
+//! | real and bit string as numbers (2nd edition, CODESYS, TwinCAT) | the number |
+//! | TIME, number | milliseconds; seconds in matiec |
+//! | TOD, number | milliseconds; seconds in matiec |
 //! | DATE, DT, number | seconds |
 //! | LTIME, LDATE, LTOD, LDT, number | nanoseconds |
 //! | number, DATE or TOD | the day it lies in, the time of its day |
@@ -25,18 +25,20 @@ pub(in crate::check) struct Conversion {
     pub(in crate::check) from: Option<ElementaryType>,
     pub(in crate::check) to: ElementaryType,
     pub(in crate::check) rounding: Rounding,
+    /// True if `to` stands for any integer type that the place wants.
+    pub(in crate::check) takes_context: bool,
 }
 
 /// The conversion that `key`, in capitals, names.
 pub(in crate::check) fn find(key: &str) -> Option<Conversion> {
     if let Some((_, rounding)) = WHOLE.into_iter().find(|(name, _)| *name == key) {
-        // 2nd ed. Table 22 leaves the result's type to the context; vendors give DINT.
-        return Some(Conversion { from: None, to: ElementaryType::Dint, rounding });
+        // 2nd ed. Table 22: ANY_INT, as the place wants it; vendors give DINT.
+        return Some(Conversion { from: None, to: ElementaryType::Dint, rounding, takes_context: true });
     }
     let overloaded = |name: &str, rounding| {
         let to = ElementaryType::find(key.strip_prefix(name)?.strip_prefix('_')?)?;
         let exists = matches!(name, "TO" | "ANY_TO") || to.is_integer();
-        exists.then_some(Conversion { from: None, to, rounding })
+        exists.then_some(Conversion { from: None, to, rounding, takes_context: false })
     };
     let values = [("TO", Rounding::NearestEven), ("ANY_TO", Rounding::NearestEven)];
     let found = values.into_iter().chain(WHOLE).find_map(|(name, rounding)| overloaded(name, rounding));
@@ -46,7 +48,7 @@ pub(in crate::check) fn find(key: &str) -> Option<Conversion> {
             let (from, to) = key.split_once(mark)?;
             let (from, to) = (ElementaryType::find(from)?, ElementaryType::find(to)?);
             let exists = is_allowed(from, to, rounding) || is_mixed(from, to) && rounding == Rounding::NearestEven;
-            exists.then_some(Conversion { from: Some(from), to, rounding })
+            exists.then_some(Conversion { from: Some(from), to, rounding, takes_context: false })
         })
     })
 }

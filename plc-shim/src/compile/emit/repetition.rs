@@ -7,7 +7,7 @@ use crate::compile::analyse::{Count, Driven, Register, Survey};
 use crate::compile::fault::FaultKind;
 use crate::compile::points::PointKind;
 use crate::ir::elementary::Kind;
-use crate::ir::{Binary, ElementaryType, Expr, ForStatement, LocalId, Statement};
+use crate::ir::{Binary, ElementaryType, Expr, ForStatement, Statement};
 use crate::syntax::Span;
 
 /// A loop's body runs.
@@ -96,7 +96,7 @@ impl Emitter<'_, '_> {
         let (last, step) = (self.register(inner.last), self.register(inner.step));
         self.widened(&inner.to, ty);
         self.set(last);
-        self.widened(&inner.by, ty);
+        self.widened(&inner.by, self.held_as(inner.by.ty));
         self.set(step);
         self.store(&inner.variable, |emitter| emitter.expression(&inner.from));
         self.get(step);
@@ -156,9 +156,9 @@ impl Emitter<'_, '_> {
     }
 
     /// Pushes whether the step is negative.
-    fn downwards(&mut self, step: LocalId, ty: ElementaryType) {
-        if ty.kind() == Kind::Signed {
-            self.get(self.register(step));
+    fn downwards(&mut self, inner: &ForStatement) {
+        if self.held_as(inner.by.ty).kind() == Kind::Signed {
+            self.get(self.register(inner.step));
             self.emit(Instruction::I64Const(0));
             self.emit(Instruction::I64LtS);
         } else {
@@ -178,7 +178,7 @@ impl Emitter<'_, '_> {
         self.get(variable);
         self.get(last);
         self.emit(if signed { Instruction::I64GtS } else { Instruction::I64GtU });
-        self.downwards(inner.step, ty);
+        self.downwards(inner);
         self.emit(Instruction::Select);
         self.release(variable);
     }
@@ -197,7 +197,7 @@ impl Emitter<'_, '_> {
         self.set(up);
         self.get(down);
         self.get(up);
-        self.downwards(inner.step, ty);
+        self.downwards(inner);
         self.emit(Instruction::Select);
         // A body that changed the variable past the last value ends the loop too.
         self.beyond(inner, ty);

@@ -4,6 +4,7 @@ use wasm_encoder::{Instruction, MemArg, ValType};
 
 use super::emitter::{Emitter, value_type};
 use crate::compile::text_host::TextImport;
+use crate::dialect::StringMemory;
 use crate::ir::text::{Edit, TextCall, TextFunction, TextShape};
 use crate::ir::{ElementaryType, Expr};
 use crate::syntax::Span;
@@ -52,7 +53,7 @@ impl Emitter<'_, '_> {
     fn shape_of(&mut self, expr: &Expr) -> TextShape {
         self.scope().types().text(expr.ty).unwrap_or_else(|| {
             self.impossible(expr.span);
-            TextShape { wide: false, capacity: 0 }
+            TextShape { wide: false, capacity: 0, memory: StringMemory::Counted }
         })
     }
 
@@ -73,7 +74,12 @@ impl Emitter<'_, '_> {
     /// The count in use; never more than there is room for, whatever stands in memory.
     fn text_length(&mut self, operands: &[Expr], span: Span) {
         let [operand] = operands else { return self.impossible(span) };
-        let capacity = i32::from(self.shape_of(operand).capacity);
+        let shape = self.shape_of(operand);
+        if shape.memory == StringMemory::ZeroTerminated {
+            self.text_operands(operands);
+            return self.host(TextImport::Length);
+        }
+        let capacity = i32::from(shape.capacity);
         let used = self.scratch(ValType::I32);
         self.expression(operand);
         self.emit(Instruction::I32Load16U(MemArg { offset: 0, align: 0, memory_index: 0 }));

@@ -225,6 +225,11 @@ impl Visitor for Body<'_, '_> {
                 None => self.member(name),
             },
             ExprKind::Part(_, part) => self.part(part),
+            // In SCL a sign binds looser than `**`.
+            ExprKind::Binary(BinaryOp::Power, base, _) if matches!(base.kind, ExprKind::Unary(..)) => {
+                self.edits.insert(base.span.start, "(");
+                self.edits.insert(base.span.end, ")");
+            }
             _ => self.other(expr),
         }
     }

@@ -55,12 +55,20 @@ fn pay(caller: &mut Caller<'_, HostState>, cost: u64) -> Result<(), Error> {
 
 /// Gives the module its functions on strings.
 pub(in crate::run) fn link(linker: &mut Linker<HostState>) -> Result<(), Error> {
+    linker.func_wrap(MODULE, TextImport::Length.name(), length)?;
     linker.func_wrap(MODULE, TextImport::Compare.name(), compare)?;
     linker.func_wrap(MODULE, TextImport::Find.name(), find)?;
     linker.func_wrap(MODULE, TextImport::Edit.name(), edit_strings)?;
     linker.func_wrap(MODULE, TextImport::Format.name(), format_value)?;
     linker.func_wrap(MODULE, TextImport::Parse.name(), parse_value)?;
     Ok(())
+}
+
+fn length(mut caller: Caller<'_, HostState>, a: i32, a_code: i32) -> Result<i32, Error> {
+    with_memory(&mut caller, |memory| {
+        let used = View::new(memory, a, a_code)?.used;
+        Ok((used as i32, used as u64))
+    })
 }
 
 fn compare(mut caller: Caller<'_, HostState>, a: i32, a_code: i32, b: i32, b_code: i32) -> Result<i32, Error> {

@@ -1,5 +1,6 @@
 //! A string in memory.
 
+use crate::dialect::StringMemory;
 use crate::ir::text::TextShape;
 
 /// An address outside of memory.
@@ -25,8 +26,7 @@ impl View {
         let address = address.cast_unsigned() as usize;
         let end = address.checked_add(shape.size() as usize).ok_or(Outside)?;
         let bytes = memory.get(address..end).ok_or(Outside)?;
-        let count = bytes.first_chunk::<2>().map_or(0, |count| u16::from_le_bytes(*count));
-        Ok(Self { start: address + 2, shape, used: usize::from(count.min(shape.capacity)) })
+        Ok(Self { start: address + shape.first() as usize, shape, used: shape.used(bytes) })
     }
 
     /// The characters in use of a STRING; nothing of a WSTRING.
@@ -65,7 +65,7 @@ impl Target {
     }
 
     fn offset(&self, index: usize) -> usize {
-        self.address + 2 + index * self.shape.unit() as usize
+        self.address + self.shape.first() as usize + index * self.shape.unit() as usize
     }
 
     /// Adds a character if there is room. One beyond 8 bits becomes `?` in a STRING.
@@ -114,11 +114,14 @@ impl Target {
         }
     }
 
-    /// Writes the count and clears what lies behind the last character.
+    /// Writes the count, if there is one, and clears what lies behind the last character.
     pub(super) fn finish(self, memory: &mut [u8]) {
         let (first, end) = (self.offset(self.used), self.address + self.shape.size() as usize);
         if let Some(rest) = memory.get_mut(first..end) {
             rest.fill(0);
+        }
+        if self.shape.memory == StringMemory::ZeroTerminated {
+            return;
         }
         if let Some(count) = memory.get_mut(self.address..self.address + 2) {
             count.copy_from_slice(&(self.used as u16).to_le_bytes());

@@ -181,6 +181,7 @@ impl Cursor<'_> {
     fn at_variable(&mut self) -> bool {
         match self.peek() {
             Some(TokenKind::Identifier) => !self.at_statement(),
+            Some(TokenKind::Keyword(Keyword::At)) => true,
             Some(TokenKind::Keyword(_)) => self.peek_ahead(1) == Some(TokenKind::Punctuation(Punctuation::Colon)),
             _ => false,
         }
@@ -229,11 +230,14 @@ impl Cursor<'_> {
 
     fn variable(&mut self, variables: &mut Vec<Variable>) {
         let known = self.reported();
-        if matches!(self.peek(), Some(TokenKind::Keyword(_))) {
+        let is_nameless = self.at_keyword(Keyword::At) && self.peek_ahead(1) == Some(TokenKind::DirectAddress);
+        if matches!(self.peek(), Some(TokenKind::Keyword(_))) && !is_nameless {
             self.report_keyword_as_name();
         }
-        let names = self.identifier_list("a variable's name");
+        let names = if is_nameless { Vec::new() } else { self.identifier_list("a variable's name") };
         let address = self.take_keyword(Keyword::At).then(|| self.address()).flatten();
+        // `AT %QW5 : WORD;` (2nd ed. B.1.4.3): its address is its name.
+        let names = if is_nameless { address.iter().cloned().collect() } else { names };
         self.expect_mark(Punctuation::Colon);
         if self.reported() > known {
             // The names are kept, so that their uses are not reported as well.
@@ -280,7 +284,8 @@ impl Cursor<'_> {
     /// The `;` of a declaration that began when `known` findings were reported.
     pub(super) fn end_of_declaration(&mut self, known: usize) {
         if self.take_mark(Punctuation::Semicolon) {
-            return;
+            // A second one declares nothing.
+            return self.take_semicolons();
         }
         let closes = |kind| {
             matches!(
@@ -300,9 +305,18 @@ impl Cursor<'_> {
         self.take_mark(Punctuation::Semicolon);
     }
 
+    /// `TYPE INTERNAL Name :`, as vendors' libraries have it; who is outside of the library does not see the files.
+    fn pass_access_of_type(&mut self) {
+        let is_access = matches!(Modifier::find(self.next_text()), Some(Modifier::Public | Modifier::Internal));
+        if is_access && self.peek_ahead(1) == Some(TokenKind::Identifier) {
+            self.advance();
+        }
+    }
+
     fn type_block(&mut self, into: &mut Vec<Declaration>) {
         self.advance();
         while self.peek() == Some(TokenKind::Identifier) {
+            self.pass_access_of_type();
             let (known, start) = (self.reported(), self.span());
             let Some(name) = self.take_identifier() else {
                 break;

@@ -8,7 +8,7 @@ use crate::syntax::ast::{Argument, BinaryOp, Call, Expr, ExprKind, Ident, Litera
 use crate::syntax::literal::{parse_integer, parse_real};
 use crate::syntax::token::{Keyword, Punctuation, TokenKind};
 
-/// Unary operators bind tighter than these and looser than `**`.
+/// Unary operators bind tighter than all with this precedence; in SCL `**` has a greater one.
 const UNARY_PRECEDENCE: u8 = 8;
 
 impl Cursor<'_> {
@@ -100,9 +100,18 @@ impl Cursor<'_> {
         };
         let start = self.span();
         self.advance();
-        let operand = self.binary(UNARY_PRECEDENCE);
+        let operand = self.unary_operand();
         let (span, height) = (start.to(operand.span), operand.height);
         self.node(ExprKind::Unary(operator, Box::new(operand)), span, height)
+    }
+
+    /// Both editions have negation bind tighter than `**` (2nd ed. B.3.1, 3rd ed. Table 71), SCL the other way.
+    fn unary_operand(&mut self) -> Expr {
+        if self.dialect().negates_powers() {
+            return self.binary(UNARY_PRECEDENCE);
+        }
+        let span = self.span();
+        self.nested(Self::unary).unwrap_or_else(|| error_at(span))
     }
 
     /// A primary with its members, indices and calls.
@@ -173,7 +182,7 @@ impl Cursor<'_> {
             return arguments;
         }
         loop {
-            arguments.push(self.argument());
+            arguments.extend(self.given_argument());
             if !self.take_mark(Punctuation::Comma) {
                 break;
             }
@@ -209,6 +218,22 @@ impl Cursor<'_> {
         }
         self.expect_mark(Punctuation::RightParen);
         Ok(arguments)
+    }
+
+    /// Nothing for `name := ,`, an input that is left as it is.
+    fn given_argument(&mut self) -> Option<Argument> {
+        use Punctuation::{Assign, Comma, RightParen};
+        let behind = |mark| Some(TokenKind::Punctuation(mark));
+        let is_empty = self.peek() == Some(TokenKind::Identifier)
+            && self.peek_ahead(1) == behind(Assign)
+            && [behind(Comma), behind(RightParen)].contains(&self.peek_ahead(2));
+        if !is_empty {
+            return Some(self.argument());
+        }
+        self.require(Feature::EmptyArguments, self.span());
+        self.advance();
+        self.advance();
+        None
     }
 
     pub(super) fn argument(&mut self) -> Argument {

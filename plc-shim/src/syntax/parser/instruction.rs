@@ -79,6 +79,8 @@ impl Cursor<'_> {
             (Some(Word::Jump(_)), Some(TokenKind::Identifier)) => {
                 self.peek_ahead(ahead + 2) != Some(TokenKind::Punctuation(Punctuation::Semicolon))
             }
+            // `r REF= x`, `s S= x` and `r ?= x` are statements on variables of these names.
+            (Some(Word::Set | Word::Reset), Some(TokenKind::Identifier)) if self.is_statement_mark(ahead + 2) => false,
             (Some(_), Some(TokenKind::Punctuation(mark))) => {
                 !alone && matches!(mark, Punctuation::Minus | Punctuation::Plus)
             }
@@ -86,6 +88,13 @@ impl Cursor<'_> {
             (None, Some(TokenKind::Punctuation(Punctuation::LeftParen))) => self.is_formal_call(ahead + 1),
             _ => false,
         }
+    }
+
+    /// True for a mark that an operand of an instruction never has behind it.
+    fn is_statement_mark(&self, ahead: usize) -> bool {
+        use Punctuation::{Assign, Equal};
+        let Some(TokenKind::Punctuation(mark)) = self.peek_ahead(ahead) else { return false };
+        matches!(mark, Assign | Equal) && !self.is_line_break(ahead)
     }
 
     /// True if behind the parentheses that open there no `;` follows and another instruction does.

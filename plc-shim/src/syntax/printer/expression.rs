@@ -1,7 +1,7 @@
 //! Expressions to text.
 
 use super::Printer;
-use crate::syntax::ast::{Argument, Call, Expr, ExprKind, Literal, TypedValue, UnaryOp};
+use crate::syntax::ast::{Argument, BinaryOp, Call, Expr, ExprKind, Literal, TypedValue, UnaryOp};
 
 impl Printer {
     pub(super) fn expression(&mut self, expr: &Expr) {
@@ -37,10 +37,11 @@ impl Printer {
                     UnaryOp::Plus => "+",
                     UnaryOp::Not => "NOT ",
                 });
-                self.expression(operand);
+                self.operand_of(operand, |kind| matches!(kind, ExprKind::Binary(BinaryOp::Power, ..)));
             }
             ExprKind::Binary(operator, left, right) => {
-                self.expression(left);
+                let is_sign = |kind: &ExprKind| matches!(kind, ExprKind::Unary(..));
+                self.operand_of(left, |kind| *operator == BinaryOp::Power && is_sign(kind));
                 self.word(" ");
                 self.word(operator.text());
                 self.word(" ");
@@ -53,6 +54,16 @@ impl Printer {
             }
             ExprKind::Error => {}
         }
+    }
+
+    /// Between parentheses what a sign and `**` make of it depends on the dialect.
+    fn operand_of(&mut self, operand: &Expr, is_ambiguous: impl Fn(&ExprKind) -> bool) {
+        if !is_ambiguous(&operand.kind) {
+            return self.expression(operand);
+        }
+        self.word("(");
+        self.expression(operand);
+        self.word(")");
     }
 
     pub(super) fn call(&mut self, call: &Call) {

@@ -5,12 +5,12 @@
 //! |---|---|
 //! | integer, narrower integer | low-order bits |
 //! | real, integer | nearest, ties to even; saturates; NaN becomes 0 |
-//! | bit string, BOOL | rightmost bit |
+//! | bit string, BOOL | rightmost bit; FALSE for 0 alone where the dialect says so |
 //! | number, BOOL | FALSE for 0 |
 //! | REAL, DWORD and LREAL, LWORD | the same bits; other pairs of reals and bit strings do not exist |
-//! | real and bit string where bit strings are numbers (CODESYS, TwinCAT) | the number |
-//! | TIME, number | milliseconds |
-//! | TOD, number | milliseconds |
+//! | real and bit string as numbers (2nd edition, CODESYS, TwinCAT) | the number |
+//! | TIME, number | milliseconds; seconds in matiec |
+//! | TOD, number | milliseconds; seconds in matiec |
 //! | DATE, DT, number | seconds |
 //! | LTIME, LDATE, LTOD, LDT, number | nanoseconds |
 //! | number, DATE or TOD | the day it lies in, the time of its day |
@@ -21,7 +21,7 @@ use crate::check::standard::conversion::{Conversion, is_allowed, is_mixed};
 use crate::check::types::number::as_number;
 use crate::check::types::operand::{Operand, constant, converted};
 use crate::diagnostic::{Code, Diagnostic};
-use crate::dialect::Feature;
+use crate::dialect::{Dialect, Feature, Truth};
 use crate::ir::elementary::Kind;
 use crate::ir::{Binary, ElementaryType, Expr, ExprKind, Intrinsic, Rounding, Value};
 use crate::syntax::Span;
@@ -33,7 +33,10 @@ impl Body<'_, '_> {
         operand: Operand,
         span: Span,
     ) -> Option<Operand> {
-        let Conversion { from, to, rounding } = conversion;
+        let Conversion { from, mut to, rounding, takes_context } = conversion;
+        if takes_context {
+            to = self.context.filter(|wanted| wanted.is_integer()).unwrap_or(to);
+        }
         let expr = match from {
             Some(from) => self.coerce(operand, from.into())?,
             None => self.settle(operand)?,
@@ -45,9 +48,11 @@ impl Body<'_, '_> {
             let found = self.type_name(expr.ty);
             return self.mismatch("an elementary value", &found, expr.span);
         };
-        if is_mixed(from, to) && self.declarations.dialect(span).has(Feature::BitArithmetic) {
+        if is_mixed(from, to) && self.declarations.dialect(span).has(Feature::BitsAsReals) {
             return Some(Operand::Typed(self.as_numbers_do(expr, (from, to), rounding)));
         }
+        // What is whole already has nothing to cut off.
+        let rounding = if from.is_integer() && to.is_integer() { Rounding::NearestEven } else { rounding };
         if from != to && !is_allowed(from, to, rounding) {
             let message = format!("there is no conversion from {from} to {to}");
             let found = Diagnostic::error(Code::InvalidOperand, span, message);
@@ -56,7 +61,7 @@ impl Body<'_, '_> {
         }
         let rounding =
             if rounding == Rounding::NearestEven { self.declarations.dialect(span).ties().into() } else { rounding };
-        let value = Expr { span, ..lower(expr, from, to, rounding) };
+        let value = Expr { span, ..lower(expr, (from, to), rounding, self.declarations.dialect(span)) };
         Some(Operand::Typed(self.time_value(value)))
     }
 
@@ -68,16 +73,17 @@ impl Body<'_, '_> {
             rounding
         };
         let number = converted(expr, as_number(from), Rounding::NearestEven);
-        let there = lower(number, as_number(from), as_number(to), rounding);
+        let dialect = self.declarations.dialect(number.span);
+        let there = lower(number, (as_number(from), as_number(to)), rounding, dialect);
         converted(there, to, Rounding::NearestEven)
     }
 }
 
 /// Nanoseconds of the unit in which a duration or date becomes a number.
-fn unit_ns(ty: ElementaryType) -> i128 {
+fn unit_ns(ty: ElementaryType, dialect: Dialect) -> i128 {
     match ty {
         ElementaryType::Date | ElementaryType::Dt => 1_000_000_000,
-        ElementaryType::Time | ElementaryType::Tod => 1_000_000,
+        ElementaryType::Time | ElementaryType::Tod => dialect.time_number_ns().into(),
         _ => 1,
     }
 }
@@ -96,7 +102,7 @@ fn normalised(expr: Expr, ty: ElementaryType) -> Expr {
     }
 }
 
-fn lower(expr: Expr, from: ElementaryType, to: ElementaryType, rounding: Rounding) -> Expr {
+fn lower(expr: Expr, (from, to): (ElementaryType, ElementaryType), rounding: Rounding, dialect: Dialect) -> Expr {
     let span = expr.span;
     let lint = |value| constant(Value::Int(value), ElementaryType::Lint, span);
     let lreal = |value: i128| constant(Value::Lreal(value as f64), ElementaryType::Lreal, span);
@@ -112,21 +118,21 @@ fn lower(expr: Expr, from: ElementaryType, to: ElementaryType, rounding: Roundin
         _ if counts(from) && counts(to) => converted(expr, to, rounding),
         (_, Kind::Real) if counts(from) => {
             let ns = converted(expr, ElementaryType::Lreal, rounding);
-            converted(joined(Binary::Divide, ns, lreal(unit_ns(from))), to, rounding)
+            converted(joined(Binary::Divide, ns, lreal(unit_ns(from, dialect))), to, rounding)
         }
         (_, Kind::Signed | Kind::Unsigned | Kind::Bits) if counts(from) => {
             let ns = converted(expr, ElementaryType::Lint, rounding);
-            converted(joined(Binary::Divide, ns, lint(unit_ns(from))), to, rounding)
+            converted(joined(Binary::Divide, ns, lint(unit_ns(from, dialect))), to, rounding)
         }
         (Kind::Real, _) if counts(to) => {
             let number = converted(expr, ElementaryType::Lreal, rounding);
-            normalised(converted(joined(Binary::Multiply, number, lreal(unit_ns(to))), to, rounding), to)
+            normalised(converted(joined(Binary::Multiply, number, lreal(unit_ns(to, dialect))), to, rounding), to)
         }
         (Kind::Bool | Kind::Signed | Kind::Unsigned | Kind::Bits, _) if counts(to) => {
             let number = converted(expr, ElementaryType::Lint, rounding);
-            normalised(converted(joined(Binary::Multiply, number, lint(unit_ns(to))), to, rounding), to)
+            normalised(converted(joined(Binary::Multiply, number, lint(unit_ns(to, dialect))), to, rounding), to)
         }
-        (Kind::Bits, Kind::Bool) => {
+        (Kind::Bits, Kind::Bool) if dialect.truth() == Truth::LowestBit => {
             let one = constant(Value::Int(1), from, span);
             converted(joined(Binary::And, expr, one), to, rounding)
         }

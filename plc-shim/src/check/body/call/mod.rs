@@ -137,7 +137,6 @@ impl Body<'_, '_> {
     fn report_unknown_function<T>(&mut self, name: &Ident) -> Option<T> {
         if let Some(id) = self.declarations.pou_named(&name.key()) {
             let what = match self.declarations.pou(id).ast().kind {
-                PouKind::Program => "a program",
                 PouKind::Class => "a class",
                 PouKind::Interface => "an interface",
                 _ => "a function block type",
@@ -175,7 +174,10 @@ impl Body<'_, '_> {
             }
             ast::ExprKind::Name(name) if self.is_this(name) => false,
             ast::ExprKind::Name(name) => {
-                !self.is_local(name) && self.declarations.global_key(&name.key()).is_none() || self.is_own_result(name)
+                let is_variable = self.is_local(name)
+                    || self.declarations.global_key(&name.key()).is_some()
+                    || self.declarations.program_of_name(&name.key()).is_some();
+                !is_variable || self.is_own_result(name)
             }
             _ => false,
         };

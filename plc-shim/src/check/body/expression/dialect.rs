@@ -76,6 +76,22 @@ impl Body<'_, '_> {
         }
     }
 
+    /// A number that a sign can stand before, where bit strings are numbers and unsigned ones become signed: the
+    /// signed type of the next size. All else as it is.
+    pub(super) fn as_signed_number(&self, expr: Expr) -> Expr {
+        match self.plain_elementary(&expr) {
+            Some(ty) if self.bits_are_numbers(ty, expr.span) && !ty.is_signed() => {
+                let wider = match ty.size() {
+                    1 => E::Int,
+                    2 => E::Dint,
+                    _ => E::Lint,
+                };
+                converted(expr, wider, Rounding::NearestEven)
+            }
+            _ => expr,
+        }
+    }
+
     /// True if `ty` has bits to invert.
     pub(super) fn has_bits(&self, ty: E, span: Span) -> bool {
         ty.is_bits() || self.bits_are_numbers(ty, span)
@@ -117,7 +133,13 @@ impl Body<'_, '_> {
             let has = self.declarations.dialect(span).has(Feature::BitArithmetic);
             has.then(|| as_number(left).common(as_number(right))).flatten()
         };
-        left.common(right).or_else(numbers)
+        // No type holds all of ULINT and of a signed one; as in C the unsigned one counts.
+        let unsigned = || {
+            let has = self.declarations.dialect(span).has(Feature::SignChange);
+            let both = as_number(left).is_integer() && as_number(right).is_integer();
+            (has && both && (as_number(left) == E::Ulint || as_number(right) == E::Ulint)).then_some(E::Ulint)
+        };
+        left.common(right).or_else(numbers).or_else(unsigned)
     }
 
     /// `AND_THEN`, `OR_ELSE`: the right operand is evaluated only if the left one does not tell.

@@ -56,6 +56,7 @@ impl Body<'_, '_> {
     }
 
     fn signed(&mut self, operator: UnaryOp, expr: Expr, span: Span) -> Option<Operand> {
+        let expr = self.as_signed_number(expr);
         let ty = self.plain_elementary(&expr);
         if !ty.is_some_and(|ty| ty.is_signed() && !ty.is_calendar() || ty.is_real()) {
             let message = format!("{} has no sign", self.type_name(expr.ty));

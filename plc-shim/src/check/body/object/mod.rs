@@ -1,6 +1,7 @@
 //! The instance that a unit works on: `THIS`, `SUPER`, inherited variables, who sees what
 //! (3rd ed. 6.6.5.5 to 6.6.5.10).
 
+pub(super) mod copy;
 pub(super) mod interface_value;
 pub(super) mod method_call;
 pub(super) mod property;

@@ -1,13 +1,14 @@
 //! Names, members and indices to places (2nd ed. 2.4.1.2).
 
 pub(super) mod direct;
+mod later_constant;
 pub(super) mod namespace;
 pub(super) mod open_array;
 pub(super) mod part;
 
-use super::Body;
 use super::expression::enumeration_value;
 use super::statement::wire;
+use super::{Body, Meant};
 use crate::check::declare::chart;
 use crate::check::types::constant;
 use crate::check::types::operand::Operand;
@@ -30,6 +31,8 @@ pub(in crate::check) enum Access {
     OwnInput,
     /// It is an output of an instance.
     InstanceOutput,
+    /// It is a variable that an instance keeps for itself.
+    Internal,
     /// It is an input of the machine.
     MachineInput,
     /// It is the state of a chart.
@@ -205,7 +208,7 @@ impl Body<'_, '_> {
     }
 
     /// The variable of this name; an error is one that has been reported.
-    pub(super) fn variable_named(&mut self, name: &Ident) -> Option<Result<Variable, ()>> {
+    pub(in crate::check) fn variable_named(&mut self, name: &Ident) -> Option<Result<Variable, ()>> {
         let key = name.key();
         let local = !name.is_quoted() || self.is_own_result(name);
         if local && self.scope.is_broken(&key) {
@@ -223,7 +226,21 @@ impl Body<'_, '_> {
             self.declarations.note_global_use(self.pou, &key, name.span);
             return Some(self.declarations.global(&key, Some(name.span)).ok_or(()));
         }
-        None
+        if let Some(found) = self.later_constant(name) {
+            return Some(found.ok_or(()));
+        }
+        self.program_named(name).map(|found| found.ok_or(()))
+    }
+
+    /// The instance of the program of this name; nothing inside if it is not to be had.
+    fn program_named(&mut self, name: &Ident) -> Meant<Variable> {
+        let id = self.declarations.program_of_name(&name.key())?;
+        let instance = self.declarations.program_instance(id, name);
+        if self.own_class() != Some(id) {
+            return Some(instance);
+        }
+        // A program that names itself means the instance that runs.
+        Some(instance.map(|variable| Variable { storage: Storage::Instance(0), ..variable }))
     }
 
     fn meaning(&mut self, name: &Ident) -> Option<Meaning> {
@@ -334,6 +351,10 @@ impl Body<'_, '_> {
             SectionKind::Output => Access::InstanceOutput,
             SectionKind::Local if self.may_see(variable) => Access::ReadWrite,
             SectionKind::Local if self.declarations.dialect(span).has(Feature::InstanceInternals) => Access::ReadWrite,
+            SectionKind::Local if self.declarations.dialect(span).has(Feature::ReadableInternals) => {
+                // An instance inside of another one is called and written to as if it were one's own.
+                if self.is_instance_type(variable.ty) { Access::ReadWrite } else { Access::Internal }
+            }
             _ => {
                 let ty = self.type_name(base.place.ty);
                 let message = format!("`{}` is internal to {ty}", name.text);
@@ -342,6 +363,10 @@ impl Body<'_, '_> {
                 return None;
             }
         };
+        if let Storage::Absolute(_) | Storage::Located(_) = variable.storage {
+            // It lies in one place for all instances.
+            return Some(Located { place: Place::whole(variable.storage, variable.ty, span), access });
+        }
         let Storage::Instance(offset) = variable.storage else {
             return self.reference_in_this(&base, variable, span);
         };

@@ -5,7 +5,7 @@ use crate::syntax::ast::{self, Ident};
 
 impl Body<'_, '_> {
     /// `a.b.c` as one name, if it begins with a namespace and not with a variable.
-    pub(in crate::check::body) fn qualified_name(&self, expr: &ast::Expr) -> Option<Ident> {
+    pub(in crate::check) fn qualified_name(&self, expr: &ast::Expr) -> Option<Ident> {
         let ast::ExprKind::Member(base, last) = &expr.kind else { return None };
         let first = match &base.kind {
             ast::ExprKind::Name(name) if !self.scope.declares(&name.key()) => name.clone(),

@@ -1,12 +1,13 @@
 //! `REF` (3rd ed. 6.4.4.10.3), and `ADR`, `SIZEOF`, `__ISVALIDREF` of vendors.
 
+use super::as_reference;
 use crate::check::body::Body;
 use crate::check::body::place::{Access, Located};
 use crate::check::standard::place::PlaceFunction;
 use crate::check::types::operand::{Operand, constant};
 use crate::check::types::reference;
 use crate::diagnostic::{Code, Diagnostic};
-use crate::ir::{Binary, ElementaryType, Expr, ExprKind, Place, Type, Value};
+use crate::ir::{Binary, ElementaryType, Expr, ExprKind, Place, Storage, Type, Value};
 use crate::syntax::Span;
 use crate::syntax::ast::{self, Argument, Call, Ident, PouKind, ReferenceKind, SectionKind};
 use crate::syntax::walk::root;
@@ -131,15 +132,40 @@ impl Body<'_, '_> {
     }
 
     fn is_valid_reference(&mut self, argument: &ast::Expr, span: Span) -> Option<Operand> {
-        let place = self.declared_place(argument)?.place;
-        if reference::target_of(self.declarations.types(), place.ty).is_none() {
-            let message = format!("a reference is wanted, this is {}", self.type_name(place.ty));
-            self.report(Diagnostic::error(Code::NotAReference, argument.span, message));
-            return None;
-        }
-        let number = Expr { kind: ExprKind::Load(place), ty: ElementaryType::Udint.into(), span };
+        let udint = ElementaryType::Udint.into();
+        let address = match self.given_reference(argument) {
+            Some(given) => self.referring_value(as_reference(given?), argument.span)?,
+            None => {
+                let place = self.declared_place(argument)?.place;
+                // What comes by VAR_IN_OUT is a reference, too.
+                let is_in_out = matches!(place.storage, Storage::InstancePointer(_) | Storage::RegisterPointer(_));
+                if is_in_out
+                    && place.steps.is_empty()
+                    && reference::target_of(self.declarations.types(), place.ty).is_none()
+                {
+                    Expr { kind: ExprKind::Address(place), ty: udint, span }
+                } else {
+                    let ty = place.ty;
+                    let value = Operand::Typed(Expr { kind: ExprKind::Load(place), ty, span });
+                    self.referring_value(value, argument.span)?
+                }
+            }
+        };
         let null = constant(Value::Int(0), ElementaryType::Udint, span);
-        let kind = ExprKind::Binary(Binary::NotEqual, Box::new(number), Box::new(null));
+        let address = Expr { ty: udint, ..address };
+        let kind = ExprKind::Binary(Binary::NotEqual, Box::new(address), Box::new(null));
         Some(Operand::Typed(Expr { kind, ty: ElementaryType::Bool.into(), span }))
+    }
+
+    /// What refers to something, be it a reference, a pointer or an interface.
+    fn referring_value(&mut self, value: Operand, span: Span) -> Option<Expr> {
+        let value = self.settle(value)?;
+        let types = self.declarations.types();
+        if reference::target_of(types, value.ty).is_some() || matches!(types.get(value.ty), Type::Interface { .. }) {
+            return Some(value);
+        }
+        let message = format!("a reference is wanted, this is {}", self.type_name(value.ty));
+        self.report(Diagnostic::error(Code::NotAReference, span, message));
+        None
     }
 }

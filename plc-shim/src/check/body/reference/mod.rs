@@ -2,8 +2,8 @@
 
 pub(super) mod address;
 
-use super::Body;
 use super::place::{Access, Located};
+use super::{Body, Meant};
 use crate::check::types::operand::{Operand, constant, converted};
 use crate::check::types::reference::target_of;
 use crate::diagnostic::{Code, Diagnostic};
@@ -294,6 +294,9 @@ impl Body<'_, '_> {
         if is_null {
             return Some(Expr { ty: wanted, ..Self::null(value.span) });
         }
+        if let Some(given) = self.given_reference(value) {
+            return self.reference_given(given?, wanted);
+        }
         let source = self.declared_place(value)?.place;
         if source.ty == wanted {
             return Some(Expr { kind: ExprKind::Load(source), ty: wanted, span: value.span });
@@ -301,11 +304,36 @@ impl Body<'_, '_> {
         let located = self.place(value)?;
         self.reject_constant(&located, value.span)?;
         let place = located.place;
-        if place.ty != target {
+        if place.ty != target && !self.derives(place.ty, target) {
             let (target, found) = (self.type_name(target), self.type_name(place.ty));
             return self.mismatch(&target, &found, value.span);
         }
         Some(Expr { kind: ExprKind::Address(place), ty: wanted, span: value.span })
+    }
+
+    /// What a call or a property gives; nothing if `value` is neither.
+    fn given_reference(&mut self, value: &ast::Expr) -> Meant<Operand> {
+        match &value.kind {
+            ast::ExprKind::Name(name) => self.own_property(name),
+            ast::ExprKind::Member(object, name) => self.property_of(object, name),
+            ast::ExprKind::Call(call) => Some(self.call_expression(call, value.span)),
+            ast::ExprKind::Paren(inner) => self.given_reference(inner),
+            _ => None,
+        }
+    }
+
+    /// A reference that a call gave, as one of type `wanted`.
+    fn reference_given(&mut self, given: Operand, wanted: TypeId) -> Option<Expr> {
+        let given = as_reference(given);
+        if let Operand::Typed(expr) = &given {
+            let types = self.declarations.types();
+            let targets = target_of(types, expr.ty).zip(target_of(types, wanted));
+            let is_same = targets.is_some_and(|((_, found), (_, wanted))| found == wanted);
+            if is_same || targets.is_some_and(|((_, found), (_, wanted))| self.derives(found, wanted)) {
+                return Some(Expr { ty: wanted, ..expr.clone() });
+            }
+        }
+        self.no_reference(&given, wanted)
     }
 
     /// `a ?= b` (3rd ed. 6.6.6.7): NULL unless `b` refers to what `a` may refer to.
@@ -335,4 +363,18 @@ impl Body<'_, '_> {
 fn pointer_to(value: Expr, wanted: TypeId) -> Option<Expr> {
     let ExprKind::Load(place) = value.kind else { return None };
     Some(Expr { kind: ExprKind::Address(place), ty: wanted, span: value.span })
+}
+
+/// The reference that a value was read by, if it was.
+pub(super) fn as_reference(value: Operand) -> Operand {
+    let read_by = match &value {
+        Operand::Typed(Expr { kind: ExprKind::Load(place), .. }) if place.storage == Storage::Referred => {
+            match place.steps.as_slice() {
+                [Step::Pointer { address, .. }] => Some((**address).clone()),
+                _ => None,
+            }
+        }
+        _ => None,
+    };
+    read_by.map_or(value, Operand::Typed)
 }

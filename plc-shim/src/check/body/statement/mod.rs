@@ -11,6 +11,7 @@ use super::Body;
 use super::place::Access;
 use crate::check::types::operand::{Operand, constant};
 use crate::diagnostic::{Code, Diagnostic};
+use crate::dialect::Feature;
 use crate::ir::{
     CaseArm, CaseStatement, ElementaryType, Expr, ForStatement, IfBranch, Place, Statement, StatementKind, Type,
     TypeId, Value,
@@ -117,9 +118,7 @@ impl Body<'_, '_> {
         let value = self.within(context, |body| body.expression(value));
         let (target, value) = (target?, value?);
         if matches!(self.declarations.types().get(target.ty), Type::FunctionBlock { .. }) {
-            let message = "instances are not assigned to one another";
-            self.report(Diagnostic::error(Code::NotAssignable, span, message));
-            return None;
+            return self.instance_copy(target, value, span);
         }
         let value = self.coerce(value, target.ty)?;
         Some(self.assignment(target, value, span))
@@ -143,6 +142,12 @@ impl Body<'_, '_> {
             Access::InstanceOutput => {
                 let message = "an output is written by its own instance only";
                 self.report(Diagnostic::error(Code::NotAssignable, expr.span, message));
+                return None;
+            }
+            Access::Internal => {
+                let message = "a variable that an instance keeps for itself is read from outside, not written";
+                let found = Diagnostic::error(Code::NotAssignable, expr.span, message);
+                self.report(found.with_help("declare it as VAR_INPUT, or as a property with SET"));
                 return None;
             }
             Access::Value => {
@@ -248,7 +253,7 @@ impl Body<'_, '_> {
             let from = self.expression_of(&inner.from, ty);
             let to = self.expression_of(&inner.to, ty);
             let by = match &inner.by {
-                Some(by) => self.expression_of(by, ty),
+                Some(by) => self.expression_of(by, self.step_type(ty, by.span)),
                 None => Some(constant(Value::Int(1), ty, inner.to.span)),
             };
             Some((place, from?, to?, by?))
@@ -259,6 +264,12 @@ impl Body<'_, '_> {
         let step = self.scope.register(ElementaryType::Lint);
         let inner = ForStatement { variable, from, to, by, last, step, body };
         Some(StatementKind::For(Box::new(inner)))
+    }
+
+    /// The type of a step. Where integers change their sign, an unsigned variable may count down.
+    fn step_type(&self, ty: ElementaryType, span: Span) -> ElementaryType {
+        let counts_down = !ty.is_signed() && self.declarations.dialect(span).has(Feature::SignChange);
+        if counts_down { ElementaryType::Lint } else { ty }
     }
 
     fn control_variable(&mut self, place: Place) -> Option<(Place, ElementaryType)> {

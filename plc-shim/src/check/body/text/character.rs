@@ -1,22 +1,20 @@
 //! Single characters of strings, `s[i]` (3rd ed. 6.4.2.2; CODESYS, TwinCAT: index access to strings).
 //!
 //! The standard counts from 1 and has CHAR or WCHAR; CODESYS and TwinCAT count from 0, have BYTE or WORD, and
-//! end a string with a 0. Here a string has a count, which follows what is written there.
+//! end a string with a 0. A string with a count in front has that follow what is written; in one that ends with a 0
+//! a character is a place like any other.
 
 use crate::check::body::place::{Access, Located};
 use crate::check::body::{Body, Meant};
 use crate::check::types::build::{assign, joined, load, not, operation, when};
 use crate::check::types::operand::{Operand, constant, converted};
-use crate::dialect::Feature;
+use crate::dialect::{Feature, StringMemory};
 use crate::ir::text::TextShape;
 use crate::ir::{
-    Binary, Dimension, ElementaryType, Expr, ExprKind, Place, Rounding, Statement, StatementKind, Step, Storage, Type,
+    Binary, Dimension, ElementaryType, Expr, ExprKind, Place, Rounding, Statement, StatementKind, Step, Storage,
     TypeTable, Value,
 };
 use crate::syntax::{Span, ast};
-
-/// Where the first character lies behind the count.
-const FIRST: u32 = 2;
 
 /// A string, and which of its characters is meant.
 struct Indexed {
@@ -55,14 +53,16 @@ impl Body<'_, '_> {
     ) -> Meant<Located> {
         let shape = self.shape(text.place.ty)?;
         let low = i64::from(!self.ends_with_zero(span));
-        let bounds = Dimension { low, high: low + i64::from(shape.capacity) - 1 };
+        // The 0 behind the last character has a place, too.
+        let last = if shape.memory == StringMemory::ZeroTerminated { shape.capacity } else { shape.capacity - 1 };
+        let bounds = Dimension { low, high: low + i64::from(last) };
         let Some(step) = self.index_step(bounds, index, shape.unit()) else { return Some(None) };
         Some(Some(self.character_at(text, shape, step, span)))
     }
 
     fn character_at(&self, text: Located, shape: TextShape, step: Step, span: Span) -> Located {
         let ty = self.character_type(shape, span).into();
-        let mut place = text.place.member(FIRST, ty);
+        let mut place = text.place.member(shape.first(), ty);
         place.steps.push(step);
         Located { place: Place { span, ..place }, access: text.access }
     }
@@ -75,6 +75,10 @@ impl Body<'_, '_> {
         span: Span,
     ) -> Option<Operand> {
         let shape = self.shape(text.place.ty)?;
+        if shape.memory == StringMemory::ZeroTerminated {
+            let place = self.character_place(text, index, span)??.place;
+            return Some(Operand::Typed(load(&place)));
+        }
         let Indexed { text, position, before } = self.indexed(text.place, self.readable(shape, span), index, span)?;
         let behind = compared(Binary::GreaterEqual, load(&position), count_of(&text));
         let inside =
@@ -108,8 +112,8 @@ impl Body<'_, '_> {
             return None;
         }
         let known = self.declarations.mark();
-        let text =
-            self.base_place(base).filter(|base| matches!(self.declarations.types().get(base.place.ty), Type::Text(_)));
+        let counted = |shape: TextShape| shape.memory == StringMemory::Counted;
+        let text = self.base_place(base).filter(|base| self.shape(base.place.ty).is_some_and(counted));
         let Some(text) = text else {
             // Whatever is wrong is reported on the usual way.
             self.declarations.forget_since(known);

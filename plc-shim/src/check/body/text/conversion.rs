@@ -66,7 +66,7 @@ impl Body<'_, '_> {
             self.report(Diagnostic::error(Code::InvalidOperand, span, message));
             return None;
         };
-        let shape = TextShape { wide, capacity: VALUE_CAPACITY };
+        let shape = TextShape { wide, capacity: VALUE_CAPACITY, memory: self.declarations.dialect(span).strings() };
         self.made_text(TextFunction::Format(from), vec![expr], shape, span).map(Operand::Typed)
     }
 }

@@ -78,6 +78,7 @@ impl Body<'_, '_> {
         let shapes = strings.iter().filter_map(|each| self.shape(each.ty));
         let shape = shapes.reduce(|sum, each| TextShape {
             wide: sum.wide,
+            memory: sum.memory,
             capacity: sum.capacity.saturating_add(each.capacity).min(MAX_CAPACITY),
         })?;
         let operands = strings.into_iter().chain(numbers).collect();

@@ -7,9 +7,10 @@ pub(super) mod function;
 use super::Body;
 use crate::check::types::operand::{Operand, constant};
 use crate::diagnostic::{Code, Diagnostic};
+use crate::dialect::Feature;
 use crate::ir::text::{Edit, MAX_CAPACITY, TextCall, TextFunction, TextShape};
 use crate::ir::{Binary, ElementaryType, Expr, ExprKind, TypeId, Value};
-use crate::syntax::text_literal::{Text, parse_text};
+use crate::syntax::text_literal::{Text, parse_text, parse_windows_text};
 use crate::syntax::{Span, ast};
 
 impl Body<'_, '_> {
@@ -20,7 +21,8 @@ impl Body<'_, '_> {
         if text.len() < 2 || !text.ends_with(quote) {
             return None;
         }
-        match parse_text(text) {
+        let has_windows = self.declarations.dialect(span).has(Feature::WindowsCharacters);
+        match if has_windows { parse_windows_text(text) } else { parse_text(text) } {
             Ok(text) if text.units.len() <= usize::from(MAX_CAPACITY) => Some(Operand::Text { text, span }),
             Ok(_) => self.invalid_literal("string is too long".to_owned(), span),
             Err(message) => self.invalid_literal(message, span),
@@ -66,8 +68,12 @@ impl Body<'_, '_> {
 
     /// A literal as a string of its own length.
     pub(super) fn settled_text(&mut self, text: &Text, span: Span) -> Option<Expr> {
-        let shape = TextShape { wide: text.wide, capacity: text.units.len() as u16 };
+        let shape = self.own_shape(text, text.units.len() as u16, span);
         self.stored_text(shape, text, span)
+    }
+
+    fn own_shape(&self, text: &Text, capacity: u16, span: Span) -> TextShape {
+        TextShape { wide: text.wide, capacity, memory: self.declarations.dialect(span).strings() }
     }
 
     fn stored_text(&mut self, shape: TextShape, text: &Text, span: Span) -> Option<Expr> {
@@ -94,7 +100,7 @@ impl Body<'_, '_> {
 
     /// The operand as a string of `shape`; what does not fit is cut off (2nd ed. 2.4.3.2).
     pub(super) fn coerce_text(&mut self, operand: Operand, shape: TextShape) -> Option<Expr> {
-        match operand {
+        match self.between_other_quotes(operand, shape) {
             Operand::Text { text, span } if text.wide == shape.wide => {
                 self.warn_if_cut(&text, shape, span);
                 self.stored_text(shape, &text, span)
@@ -114,6 +120,23 @@ impl Body<'_, '_> {
                 self.report(report);
                 None
             }
+        }
+    }
+
+    /// A STRING between double quotes, where the dialect's tools write it so; all else as it is.
+    fn between_other_quotes(&mut self, operand: Operand, shape: TextShape) -> Operand {
+        match operand {
+            Operand::Text { text, span }
+                if text.wide
+                    && !shape.wide
+                    && text.units.iter().all(|unit| *unit < 0x100)
+                    && self.declarations.dialect(span).has(Feature::DoubleQuotes) =>
+            {
+                let message = "a STRING stands between single quotes";
+                self.report(Diagnostic::warning(Code::TypeMismatch, span, message));
+                Operand::Text { text: Text { wide: false, ..text }, span }
+            }
+            other => other,
         }
     }
 
@@ -184,9 +207,7 @@ impl Body<'_, '_> {
         let mut widest: Option<TextShape> = None;
         for operand in &operands {
             let shape = match operand {
-                Operand::Text { text, .. } => {
-                    Some(TextShape { wide: text.wide, capacity: text.units.len().max(1) as u16 })
-                }
+                Operand::Text { text, span } => Some(self.own_shape(text, text.units.len().max(1) as u16, *span)),
                 Operand::Typed(expr) => self.shape(expr.ty),
                 _ => None,
             };
@@ -212,7 +233,7 @@ impl Body<'_, '_> {
             Some(text) => Operand::Text { text, span: expr.span },
             None => self.expression(expr)?,
         };
-        match operand {
+        match self.between_other_quotes(operand, shape) {
             Operand::Text { text, span } if text.wide == shape.wide => {
                 self.warn_if_cut(&text, shape, span);
                 Some(shape.encode(&text.units))
@@ -233,9 +254,6 @@ impl Body<'_, '_> {
         };
         let variable = self.variable_named(name)?.ok()?;
         let shape = self.shape(variable.ty).filter(|_| variable.is_constant)?;
-        let used = variable.image.first_chunk::<2>().map_or(0, |bytes| u16::from_le_bytes(*bytes));
-        let units = variable.image.get(2..)?.chunks_exact(shape.unit() as usize).take(usize::from(used));
-        let unit = |bytes: &[u8]| u16::from(bytes[0]) | bytes.get(1).map_or(0, |high| u16::from(*high) << 8);
-        Some(Text { wide: shape.wide, units: units.map(unit).collect() })
+        Some(Text { wide: shape.wide, units: shape.decode(&variable.image) })
     }
 }
