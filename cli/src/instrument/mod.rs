@@ -97,6 +97,11 @@ pub fn instrument(
             report::findings(&findings, program.inputs.len(), config.format, out)?;
             return Ok(ExitCode::WrongInput);
         }
+        Err(Refusal::Emitted(findings)) => {
+            report::findings(&findings, program.inputs.len(), config.format, out)?;
+            let help = "nothing was written; report it, with these lines".to_owned();
+            return Err(Usage::new("the instrumented project would not check", Some(help)).into());
+        }
         Err(error) => return Err(Usage::new(error.to_string(), None).into()),
     };
     if !project.warnings.is_empty() && config.warnings == Warnings::Denied {

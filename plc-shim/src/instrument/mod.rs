@@ -20,6 +20,7 @@
 //! | [`chart`], [`chart_plan`], [`chart_script`], [`chart_action`] | Sequential Function Charts: execution signal, action control, times of steps |
 //! | [`plcopen_chart`], [`plcopen_gate`] | the same of charts that are drawn, in PLCopen XML |
 //! | [`port`], [`codesys`] | a project in text for a tool that takes another form |
+//! | [`verify`] | what has been written is checked |
 //! | [`target`], [`twincat`] | the shim's sources as a vendor's tool takes them |
 //!
 //! Invariants: text goes in and comes out, no file is touched; what is not marked stays byte for byte;
@@ -53,6 +54,7 @@ mod target;
 mod tasks;
 mod template;
 mod twincat;
+mod verify;
 
 use std::sync::Arc;
 
@@ -87,6 +89,9 @@ pub enum InstrumentError {
     /// The text is wrong.
     #[error("{0}")]
     Text(Diagnostics),
+    /// What was made of right sources is wrong.
+    #[error("{0}")]
+    Emitted(Diagnostics),
     /// The tasks are wrong.
     #[error(transparent)]
     Tasks(#[from] RunError),
@@ -183,10 +188,11 @@ pub fn instrument(inputs: &[Input], options: &Options) -> Result<Project, Instru
     if let Some(own) = plain.only_own() {
         return Err(InstrumentError::OnlyOwn(own.to_owned()));
     }
-    match port::ported(&plain, options) {
-        Some(ported) => ported,
-        None => Ok(attach(&plain, options)?.project),
-    }
+    let project = match port::ported(&plain, options) {
+        Some(ported) => ported?,
+        None => attach(&plain, options)?.project,
+    };
+    verify::verified(inputs, project, options.target)
 }
 
 /// A project with the shim attached to its own files.

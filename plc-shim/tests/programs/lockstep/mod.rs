@@ -18,3 +18,4 @@ mod rewriting;
 mod scl;
 mod scl_port;
 mod single;
+mod verified;
