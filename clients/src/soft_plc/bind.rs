@@ -169,7 +169,8 @@ fn inputs_named(application: &Application, signal: &SignalName) -> Vec<Variable>
 
 fn checked_place(signal: &SignalDecl, variable: &Variable) -> Result<Place, BindError> {
     // An address has a width and no type of its own, unless a bit is asked for.
-    let is_address = variable.path.starts_with('%') && variable.bit.is_none() && signal.ty != SignalType::from(ElementaryType::Bool);
+    let is_address =
+        variable.path.starts_with('%') && variable.bit.is_none() && signal.ty != SignalType::from(ElementaryType::Bool);
     let same_width = is_address && !signal.ty.is_text() && signal.ty.size() == variable.size as usize;
     if variable.signal_type == Some(signal.ty) || same_width {
         return Ok(Place::of(variable));

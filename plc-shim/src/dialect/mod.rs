@@ -276,6 +276,8 @@ features! {
     BitsAsReals "a bit string's number from a REAL, or to one, by a conversion function",
     EmptyArguments "an input without a value in a call, `IN := ,`",
     WindowsCharacters "characters of Windows-1252 in a STRING, as in `'€'`",
+    LeftOutInputs "an input with a value of its own left out of a list without names",
+    LooseStrings "a string of another length for a `VAR_IN_OUT`",
     DoubleQuotes "a STRING between double quotes",
     LooseWidths "a variable at an address of another width, as in `DWORD AT %ML50`",
     OwnStandardFunctions "a function of one's own with the name of a standard function",

@@ -66,6 +66,8 @@ pub const FEATURES: &[FeatureRow] = &[
         "CODESYS and TwinCAT: calling a function block, as its editor completes it",
     ),
     row(Feature::WindowsCharacters, &[Codesys, TwinCat], "CODESYS and TwinCAT: data type STRING"),
+    row(Feature::LeftOutInputs, &[Codesys, TwinCat], "CODESYS and TwinCAT: FUNCTION, optional inputs"),
+    row(Feature::LooseStrings, &[Codesys, TwinCat], "CODESYS and TwinCAT: VAR_IN_OUT, strings"),
     row(Feature::DoubleQuotes, &[Matiec], "OpenPLC's editor, initial values"),
     row(Feature::LooseWidths, &[Matiec], "MatIEC: accepts it"),
     row(

@@ -68,6 +68,14 @@ fn use_of(feature: Feature) -> &'static str {
         Feature::BitsAsReals => "PROGRAM P VAR w : WORD; r : REAL; END_VAR r := WORD_TO_REAL(w); END_PROGRAM",
         Feature::EmptyArguments => "PROGRAM P VAR t : TON; END_VAR t(IN := TRUE, PT := ); END_PROGRAM",
         Feature::WindowsCharacters => "PROGRAM P VAR s : STRING := '€'; END_VAR s := s; END_PROGRAM",
+        Feature::LeftOutInputs => {
+            "FUNCTION F : INT VAR_INPUT a : INT; b : INT := 7; END_VAR F := a + b; END_FUNCTION
+             PROGRAM P VAR n : INT; END_VAR n := F(1); END_PROGRAM"
+        }
+        Feature::LooseStrings => {
+            "FUNCTION F : INT VAR_IN_OUT s : STRING[9]; END_VAR F := LEN(s); s := 'a'; END_FUNCTION
+             PROGRAM P VAR s : STRING[20]; n : INT; END_VAR n := F(s); END_PROGRAM"
+        }
         Feature::DoubleQuotes => "PROGRAM P VAR s : STRING := \"a\"; END_VAR s := s; END_PROGRAM",
         Feature::LooseWidths => "PROGRAM P VAR d AT %ML50 : DWORD; END_VAR d := d; END_PROGRAM",
         Feature::OwnStandardFunctions => {
@@ -104,7 +112,9 @@ fn every_construct_is_for_its_dialects_alone() {
 }
 
 /// Constructs whose absence is no syntax of its own: another error says it.
-const TOLD_OTHERWISE: [Feature; 22] = [
+const TOLD_OTHERWISE: [Feature; 24] = [
+    Feature::LeftOutInputs,
+    Feature::LooseStrings,
     Feature::WindowsCharacters,
     Feature::DoubleQuotes,
     Feature::LooseWidths,

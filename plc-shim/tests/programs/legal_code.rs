@@ -187,3 +187,46 @@ fn what_matiec_and_its_editors_write() {
     );
     insta::assert_snapshot!(found);
 }
+
+#[test]
+fn arguments_of_vendors() {
+    gives(
+        VENDORS,
+        "FUNCTION F : INT VAR_INPUT a : INT; b : INT := 7; s : STRING := 'abc'; END_VAR F := a + b + LEN(s); END_FUNCTION
+         PROGRAM P VAR r : INT; END_VAR r := F(1) * 10 + F(1, 2, 'x'); END_PROGRAM",
+        114,
+    );
+    gives(
+        VENDORS,
+        "FUNCTION F : INT VAR_IN_OUT CONSTANT s : STRING; END_VAR F := LEN(s); END_FUNCTION
+         VAR_GLOBAL CONSTANT k : STRING := 'abcd'; END_VAR
+         PROGRAM P VAR r : INT; t : STRING := 'xy'; END_VAR r := 100 * F('a') + 10 * F(k) + F(t); END_PROGRAM",
+        142,
+    );
+    gives(
+        VENDORS,
+        "TYPE Base : STRUCT a : INT; END_STRUCT END_TYPE TYPE More EXTENDS Base : STRUCT b : INT; END_STRUCT END_TYPE
+         FUNCTION F : INT VAR_IN_OUT s : Base; END_VAR s.a := s.a + 1; F := s.a; END_FUNCTION
+         PROGRAM P VAR m : More := (a := 4, b := 9); r : INT; END_VAR r := 10 * F(m) + m.b; END_PROGRAM",
+        59,
+    );
+    gives(VENDORS, "PROGRAM P VAR i : BYTE; r : INT; END_VAR FOR i := 1 TO 3 DO r := r + i; END_FOR; END_PROGRAM", 6);
+    gives(
+        VENDORS,
+        "FUNCTION F : LREAL VAR_INPUT x : LREAL; END_VAR VAR bits : POINTER TO ULINT := ADR(x); END_VAR bits^ := bits^ + 0; F := x; END_FUNCTION
+         PROGRAM P VAR r : DINT; END_VAR r := LREAL_TO_DINT(F(2.0)); END_PROGRAM",
+        2,
+    );
+}
+
+#[test]
+fn a_method_called_by_pointer_or_reference_is_that_of_the_instance() {
+    gives(
+        VENDORS,
+        "FUNCTION_BLOCK Base METHOD Kind : INT Kind := 1; END_METHOD END_FUNCTION_BLOCK
+         FUNCTION_BLOCK Derived EXTENDS Base METHOD Kind : INT Kind := 2; END_METHOD END_FUNCTION_BLOCK
+         PROGRAM P VAR d : Derived; p : POINTER TO Base; q : REFERENCE TO Base; r : INT; END_VAR
+           p := ADR(d); q REF= d; r := 10 * p^.Kind() + q.Kind(); END_PROGRAM",
+        22,
+    );
+}

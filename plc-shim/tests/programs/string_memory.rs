@@ -78,3 +78,17 @@ fn strings_of_two_dialects_are_assigned_and_compared() {
         assert_eq!(rig.int("P.n"), 8);
     }
 }
+
+#[test]
+fn strings_of_other_lengths_go_by_reference() {
+    let text = "FUNCTION F : INT VAR_IN_OUT s : STRING(5); END_VAR F := LEN(s); s := 'vwxyz'; END_FUNCTION
+        PROGRAM P VAR long : STRING(9) := 'abcdefghi'; short : STRING(3) := 'abc'; behind : DWORD := 16#11223344; n, m : INT; END_VAR
+        n := F(long); m := F(short); END_PROGRAM";
+    for dialect in VENDORS {
+        let mut rig = Rig::in_dialect(dialect, text);
+        rig.scan().expect("no fault");
+        assert_eq!(["n", "m", "behind"].map(|name| rig.int(&format!("P.{name}"))), [5, 3, 0x1122_3344], "{dialect}");
+        let value = |path: &str| rig.plc.application().value_text(&rig.variable(path), rig.plc.memory());
+        assert_eq!([value("P.long"), value("P.short")], ["'vwxyz'", "'vwx'"]);
+    }
+}

@@ -2,13 +2,19 @@
 
 use std::collections::BTreeSet;
 
-use crate::syntax::ast::{Argument, Call, Expr, ExprKind, Pou};
+use crate::syntax::ast::{Argument, Call, Expr, ExprKind, InitialiserKind, Pou};
 use crate::syntax::walk::{self, Visitor, root};
 
-/// Keys of the names that `REF`, `ADR` or `REF=` is used on in a unit's body.
+/// Keys of the names that `REF`, `ADR` or `REF=` is used on in a unit's body and initial values.
 pub(in crate::check) fn referred(unit: &Pou) -> BTreeSet<String> {
     let mut collector = Collector(BTreeSet::new());
     walk::unit(unit, &mut collector);
+    let declared = unit.sections.iter().flat_map(|section| &section.variables);
+    for initial in declared.filter_map(|variable| variable.initial.as_ref()) {
+        if let InitialiserKind::Value(value) = &initial.kind {
+            walk::expression(value, &mut collector);
+        }
+    }
     collector.0
 }
 

@@ -1,10 +1,12 @@
 //! Arguments of calls: values, references, and what goes through memory (2nd ed. 2.5.1.1, 2.5.2.1).
 
 use crate::check::body::Body;
+use crate::check::body::place::Access;
 use crate::check::types::constant::decode;
-use crate::check::types::operand::constant;
+use crate::check::types::operand::{Operand, constant};
 use crate::diagnostic::{Code, Diagnostic};
-use crate::ir::{Argument, Expr, ExprKind, Place, Statement, StatementKind, Storage, Type, TypeId, Variable};
+use crate::dialect::Feature;
+use crate::ir::{Argument, Expr, ExprKind, Field, Place, Statement, StatementKind, Storage, Type, TypeId, Variable};
 use crate::syntax::Span;
 use crate::syntax::ast::{self, ReferenceKind, SectionKind};
 
@@ -17,18 +19,31 @@ impl Body<'_, '_> {
     ) -> Option<Argument> {
         let has_default =
             !self.is_open(parameter.ty) && !self.is_instance_type(parameter.ty) && !self.is_generic(parameter.ty);
+        let optional = named || self.has_own_value(parameter);
         match self.elementary(parameter.ty) {
-            Some(ty) if named && parameter.section == SectionKind::Input => {
+            Some(ty) if optional && parameter.section == SectionKind::Input => {
                 let value = constant(decode(ty, &parameter.image), ty, span);
                 Some(Argument::Value(Expr { ty: parameter.ty, ..value }))
             }
-            None if named && parameter.section == SectionKind::Input && has_default => {
+            None if optional && parameter.section == SectionKind::Input && has_default => {
                 let place = self.declarations.constant_bytes(parameter.ty, parameter.image.clone(), span)?;
                 let kind = ExprKind::Load(place);
                 Some(Argument::Value(Expr { kind, ty: parameter.ty, span }))
             }
             _ => self.missing_argument(&parameter.name, span),
         }
+    }
+
+    /// True for an input whose declaration gives a value: with vendors it may be left out of a list without names.
+    fn has_own_value(&self, parameter: &Variable) -> bool {
+        let Some(owner) =
+            parameter.owner.filter(|_| self.declarations.dialect(parameter.span).has(Feature::LeftOutInputs))
+        else {
+            return false;
+        };
+        let mut declared = self.declarations.pou(owner).ast().sections.iter().flat_map(|section| &section.variables);
+        let is_it = |variable: &&ast::Variable| variable.names.iter().any(|name| name.span == parameter.span);
+        declared.find(is_it).is_some_and(|variable| variable.initial.is_some())
     }
 
     pub(in crate::check) fn is_instance_type(&self, ty: TypeId) -> bool {
@@ -65,14 +80,88 @@ impl Body<'_, '_> {
 
     /// The variable given for a `VAR_IN_OUT`. One in a register or in a bit goes through memory.
     fn reference(&mut self, parameter: &Variable, expr: &ast::Expr, passing: &mut Passing) -> Option<Place> {
-        let place = self.target(expr)?;
-        if place.ty != parameter.ty && !self.derives(place.ty, parameter.ty) {
+        if parameter.is_constant {
+            return self.constant_reference(parameter, expr, passing);
+        }
+        let place = self.given_place(expr)?;
+        if let Some(given) = self.other_string(parameter, &place, passing) {
+            return given;
+        }
+        if place.ty != parameter.ty && !self.derives(place.ty, parameter.ty) && !self.begins_as(place.ty, parameter.ty)
+        {
             let (wanted, found) = (self.type_name(parameter.ty), self.type_name(place.ty));
             let message = format!("VAR_IN_OUT `{}` is {wanted}, this is {found}", parameter.name);
             self.report(Diagnostic::error(Code::InvalidArgument, expr.span, message));
             return None;
         }
         self.through_memory(place, passing)
+    }
+
+    /// What a `VAR_IN_OUT` may be given: what may be written, and of an instance what it keeps for itself, which
+    /// vendors let be handed on.
+    fn given_place(&mut self, expr: &ast::Expr) -> Option<Place> {
+        let known = self.declarations.mark();
+        match self.place(expr) {
+            Some(located) if located.access == Access::Internal => Some(located.place),
+            _ => {
+                self.declarations.forget_since(known);
+                self.target(expr)
+            }
+        }
+    }
+
+    /// `VAR_IN_OUT CONSTANT` takes constants and values as well, which the unit reads only (CODESYS, TwinCAT).
+    fn constant_reference(&mut self, parameter: &Variable, expr: &ast::Expr, passing: &mut Passing) -> Option<Place> {
+        let value = self.expression_for(expr, parameter.ty)?;
+        match value.kind {
+            ExprKind::Load(place) if place.has_address() => Some(Place { ty: parameter.ty, ..place }),
+            _ => {
+                let memory = self.temporary(parameter.ty, expr.span)?;
+                passing.before.push(self.assignment(memory.clone(), value, expr.span));
+                Some(memory)
+            }
+        }
+    }
+
+    /// True for a structure that adds to another one: it begins with the members of that.
+    fn begins_as(&self, found: TypeId, wanted: TypeId) -> bool {
+        match (self.declarations.types().get(found), self.declarations.types().get(wanted)) {
+            (Type::Struct { fields: found, .. }, Type::Struct { fields: wanted, name, .. }) => {
+                let alike = |(one, other): (&Field, &Field)| {
+                    one.offset == other.offset && one.ty == other.ty && one.name.eq_ignore_ascii_case(&other.name)
+                };
+                let declared = !name.is_empty() && wanted.len() <= found.len();
+                declared && found.iter().zip(wanted).all(alike)
+            }
+            _ => false,
+        }
+    }
+
+    /// A string of another length for a `VAR_IN_OUT`, as vendors take it: one with more room as it is, of another one a
+    /// copy that is copied back, so that nothing is written behind its end. Nothing if it is no such string.
+    fn other_string(&mut self, parameter: &Variable, place: &Place, passing: &mut Passing) -> Option<Option<Place>> {
+        let (wanted, found) = (self.shape(parameter.ty)?, self.shape(place.ty)?);
+        let is_allowed = self.declarations.dialect(place.span).has(Feature::LooseStrings);
+        if wanted == found || wanted.wide != found.wide || !is_allowed {
+            return None;
+        }
+        if wanted.memory == found.memory && found.capacity > wanted.capacity {
+            return Some(Some(Place { ty: parameter.ty, ..place.clone() }));
+        }
+        Some(self.copied_string(parameter.ty, place, passing))
+    }
+
+    fn copied_string(&mut self, wanted: TypeId, place: &Place, passing: &mut Passing) -> Option<Place> {
+        let memory = self.temporary(wanted, place.span)?;
+        for (target, source, statements) in
+            [(&memory, place, &mut passing.before), (place, &memory, &mut passing.after)]
+        {
+            let (ty, span) = (source.ty, source.span);
+            let value = Operand::Typed(Expr { kind: ExprKind::Load(source.clone()), ty, span });
+            let value = self.coerce(value, target.ty)?;
+            statements.push(Statement { kind: StatementKind::Copy(target.clone(), value), span });
+        }
+        Some(memory)
     }
 
     /// The place, or memory that holds its value during the call if it has no address.

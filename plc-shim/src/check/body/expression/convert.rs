@@ -43,6 +43,8 @@ impl Body<'_, '_> {
         };
         match (operand, wanted) {
             (Operand::Typed(expr), _) if expr.ty == target => Some(expr),
+            // Inside of its unit an input of type ANY is what the library declares it to be.
+            (Operand::Typed(expr), None) if self.is_generic_value(&expr, target) => Some(Expr { ty: target, ..expr }),
             (Operand::Typed(expr), Some(wanted)) => self.widen(expr, wanted),
             (Operand::Integer { value, span }, Some(wanted)) => self.literal_integer(value, wanted, span),
             (Operand::Real { value, span }, Some(wanted)) => self.literal_real(value, wanted, span),
@@ -55,6 +57,13 @@ impl Body<'_, '_> {
                 self.mismatch(&wanted, &found, operand.span())
             }
         }
+    }
+
+    fn is_generic_value(&self, expr: &Expr, target: TypeId) -> bool {
+        let types = self.declarations.types();
+        let is_any_type =
+            matches!(types.get(target), Type::Struct { name, .. } if name.eq_ignore_ascii_case("AnyType"));
+        is_any_type && self.declarations.generic(expr.ty).is_some() && types.size(expr.ty) == types.size(target)
     }
 
     pub(in crate::check::body) fn describe(&self, operand: &Operand) -> String {

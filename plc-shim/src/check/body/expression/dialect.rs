@@ -54,7 +54,7 @@ impl Body<'_, '_> {
     }
 
     /// True if operators for numbers take `ty`, and those for bit strings too.
-    pub(super) fn bits_are_numbers(&self, ty: E, span: Span) -> bool {
+    pub(in crate::check::body) fn bits_are_numbers(&self, ty: E, span: Span) -> bool {
         let has = self.declarations.dialect(span).has(Feature::BitArithmetic);
         has && (ty.kind() == Kind::Bits || ty.is_integer())
     }

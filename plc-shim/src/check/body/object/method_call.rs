@@ -129,6 +129,8 @@ impl Body<'_, '_> {
                 Storage::InstancePointer(_) | Storage::RegisterPointer(_) if place.steps.is_empty() => {
                     (*pou, Known::Reference)
                 }
+                // What a pointer or a reference leads to may be of a derived type, too.
+                Storage::Referred if place.steps.len() == 1 => (*pou, Known::Reference),
                 _ => (*pou, Known::Exactly),
             },
             _ => return None,

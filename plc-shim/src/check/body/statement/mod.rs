@@ -9,6 +9,7 @@ use std::collections::BTreeMap;
 
 use super::Body;
 use super::place::Access;
+use crate::check::types::number::as_number;
 use crate::check::types::operand::{Operand, constant};
 use crate::diagnostic::{Code, Diagnostic};
 use crate::dialect::Feature;
@@ -277,6 +278,10 @@ impl Body<'_, '_> {
             Type::Elementary(ty) | Type::Subrange { base: ty, .. } if ty.is_integer() => {
                 let ty = *ty;
                 Some((place, ty))
+            }
+            Type::Elementary(ty) if self.bits_are_numbers(*ty, place.span) => {
+                let ty = as_number(*ty);
+                Some((Place { ty: ty.into(), ..place }, ty))
             }
             _ => {
                 let message = format!("a FOR control variable is an integer, this is {}", self.type_name(place.ty));
