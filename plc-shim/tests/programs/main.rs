@@ -2,6 +2,7 @@
 
 mod any_inputs;
 mod bit_strings;
+mod cascades;
 mod characters;
 mod configurations;
 mod constants;
@@ -27,6 +28,7 @@ mod language;
 mod ld;
 mod lints;
 mod lockstep;
+mod mistakes;
 mod namespaces;
 mod object_inputs;
 mod objects;

@@ -5,7 +5,7 @@ use crate::diagnostic::{Code, Diagnostic};
 use crate::dialect::Feature;
 use crate::source::Span;
 use crate::syntax::ast::{Argument, BinaryOp, Call, Expr, ExprKind, Ident, Literal, MAX_HEIGHT, Subrange, UnaryOp};
-use crate::syntax::literal::{parse_integer, parse_real};
+use crate::syntax::literal::{missing_unit, parse_integer, parse_real};
 use crate::syntax::token::{Keyword, Punctuation, TokenKind};
 
 /// Unary operators bind tighter than these and looser than `**`.
@@ -309,7 +309,9 @@ impl Cursor<'_> {
         match value {
             Ok(literal) => ExprKind::Literal(literal),
             Err(message) => {
-                self.report(Diagnostic::error(Code::InvalidLiteral, span, message));
+                let help = missing_unit(self.text(span.start, span.end));
+                let found = Diagnostic::error(Code::InvalidLiteral, span, message);
+                self.report(found.with_optional_help(help));
                 ExprKind::Error
             }
         }
