@@ -3,6 +3,7 @@
 mod any_inputs;
 mod bit_strings;
 mod cascades;
+mod chains;
 mod characters;
 mod configurations;
 mod constants;

@@ -331,6 +331,16 @@ impl<'a> Cursor<'a> {
         self.abandoned = true;
     }
 
+    /// Reports an expression that is too high, unless the same was reported of a part of it.
+    pub(super) fn report_too_high(&mut self, found: Diagnostic) {
+        let of_part = |last: &Diagnostic| last.code == found.code && last.span.start >= found.span.start;
+        if self.diagnostics.last().is_some_and(of_part) {
+            self.suppressed += 1;
+        } else {
+            self.diagnostics.push(found);
+        }
+    }
+
     /// Skips to a token that `stop` accepts, or to the end.
     pub(super) fn skip_until(&mut self, stop: impl Fn(TokenKind) -> bool) {
         while let Some(kind) = self.peek() {
