@@ -143,6 +143,8 @@ codes! {
     SharedAction "Q1213" "two charts of a unit control one action",
     NotText "F0601" "a file is not text in an encoding that is read",
     MalformedXml "F0602" "a file is not the XML that its name promises",
+    NotProgramText "F0603" "a file holds no program text",
+    MissingFile "F0604" "a project lists a file that is not there",
     OutputNeverWritten "W0701" "an output is never written",
     InstanceNeverCalled "W0702" "a function block's instance is never called",
     RealEquality "W0703" "real numbers are compared for equality",
@@ -155,6 +157,7 @@ codes! {
     ShimNameTaken "I1003" "a name is one of the shim's",
     DamagedMarks "I1004" "marks of the shim do not fit together",
     WrittenByTwoTasks "W0707" "a variable is written by two tasks",
+    EndlessLoop "W0709" "a loop is never left",
 }
 
 impl fmt::Display for Code {
@@ -244,6 +247,24 @@ impl Diagnostic {
 #[derive(Debug, Clone)]
 pub struct Diagnostics {
     findings: Vec<Finding>,
+    /// For people who read to the end; nothing if there is only one finding, or none.
+    summary: Option<Summary>,
+}
+
+/// How many findings there are, as the last thing that is read.
+#[derive(Debug, Clone, thiserror::Error)]
+#[error("{0}")]
+struct Summary(String);
+
+impl miette::Diagnostic for Summary {
+    fn severity(&self) -> Option<miette::Severity> {
+        Some(miette::Severity::Advice)
+    }
+}
+
+/// `1 error`, `2 warnings`
+pub fn counted(number: usize, word: &str) -> String {
+    format!("{number} {word}{}", if number == 1 { "" } else { "s" })
 }
 
 impl Diagnostics {
@@ -251,7 +272,20 @@ impl Diagnostics {
     pub fn new(mut diagnostics: Vec<Diagnostic>, sources: &SourceMap) -> Self {
         diagnostics.sort_by_key(|found| (found.span.file, found.span.start, found.code));
         let findings = diagnostics.into_iter().map(|found| Finding::new(found, sources));
-        Self { findings: findings.collect() }
+        let findings: Vec<Finding> = findings.collect();
+        let count = |severity| findings.iter().filter(|found| found.diagnostic.severity == severity).count();
+        let (errors, warnings) = (count(Severity::Error), count(Severity::Warning));
+        let both = [(errors, "error"), (warnings, "warning")].into_iter().filter(|(number, _)| *number > 0);
+        let both: Vec<String> = both.map(|(number, word)| counted(number, word)).collect();
+        let summary = (findings.len() > 1).then(|| Summary(both.join(", ")));
+        Self { findings, summary }
+    }
+
+    /// As they are read: warnings first, so that the errors are the last that is seen.
+    fn as_read(&self) -> impl Iterator<Item = &Finding> {
+        let of = |severity| move |found: &&Finding| found.diagnostic.severity == severity;
+        let warnings = self.findings.iter().filter(of(Severity::Warning));
+        warnings.chain(self.findings.iter().filter(of(Severity::Error)))
     }
 
     /// True if there is none.
@@ -302,8 +336,9 @@ impl std::error::Error for Diagnostics {}
 
 impl miette::Diagnostic for Diagnostics {
     fn related<'a>(&'a self) -> Option<Box<dyn Iterator<Item = &'a dyn miette::Diagnostic> + 'a>> {
-        let each = self.findings.iter().map(|finding| finding as &dyn miette::Diagnostic);
-        Some(Box::new(each))
+        let each = self.as_read().map(|finding| finding as &dyn miette::Diagnostic);
+        let summary = self.summary.iter().map(|summary| summary as &dyn miette::Diagnostic);
+        Some(Box::new(each.chain(summary)))
     }
 }
 

@@ -46,6 +46,8 @@ const PAGES: &[(&str, &str)] = pages![
     "D0440",
     "F0601",
     "F0602",
+    "F0603",
+    "F0604",
     "G1101",
     "G1102",
     "G1103",
@@ -131,6 +133,7 @@ const PAGES: &[(&str, &str)] = pages![
     "W0706",
     "W0707",
     "W0708",
+    "W0709",
 ];
 
 /// The page that explains `code`, as Markdown.
@@ -158,6 +161,13 @@ mod tests {
             "st" | "exp" | "scl" => Input::from_text(&format!("example.{language}"), SourceKind::Text, text),
             "plcopen" => Input::from_text("example.xml", SourceKind::PlcOpen, text),
             "xml" => Input::from_text("example.TcPOU", SourceKind::TwinCat, text),
+            "plcproj" => {
+                // Only the main program is there.
+                let listing = crate::input::project::listing(text.as_bytes()).expect("a project");
+                let missing =
+                    listing.files.iter().filter(|file| !file.path.ends_with("MAIN.TcPOU")).collect::<Vec<_>>();
+                Input::with_missing_files("example.plcproj", &listing, &missing)
+            }
             "hex" => {
                 let bytes = text.split_whitespace().map(|byte| u8::from_str_radix(byte, 16).expect("a byte"));
                 Input::read("example.st", SourceKind::Text, &bytes.collect::<Vec<_>>())

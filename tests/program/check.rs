@@ -133,6 +133,42 @@ fn a_project_says_which_files_are_meant() {
 }
 
 #[test]
+fn a_missing_file_of_a_project_is_told_and_the_others_are_checked() {
+    let project = b"<Project><ItemGroup>\n  <Compile Include=\"POUs\\FB_Ramp.TcPOU\"/>\n  <Compile Include=\"Old.TcDUT\"/>\n</ItemGroup></Project>";
+    let folder = folder(&[("plc.plcproj", project), ("POUs/FB_Ramp.TcPOU", POU)]);
+    let said = checked(folder.path(), &["."]);
+    assert_eq!((said.code, said.err.as_str()), (Some(2), ""), "{said:?}");
+    insta::assert_snapshot!(said.out);
+}
+
+#[test]
+fn a_file_that_is_quite_wrong_does_not_hide_the_others() {
+    let wrong =
+        format!("PROGRAM Wrong\nVAR a : INT; END_VAR\n{}END_PROGRAM\n", "  a := missing.x;;\n  a = 1;\n".repeat(40));
+    let folder = folder(&[("a.st", wrong.as_bytes()), ("b.st", WRONG[0].1)]);
+    let said = checked(folder.path(), &["."]);
+    let lines: Vec<&str> =
+        said.out.lines().filter(|line| line.contains("more") || line.contains("in 2 files")).collect();
+    assert_eq!(lines, ["... and 16 more errors in a.st", "42 errors, 1 warning in 2 files"]);
+    let json = checked(folder.path(), &[".", "--format", "json"]);
+    assert_eq!(json.out.lines().count(), 43, "machines are told all");
+}
+
+#[test]
+fn a_run_of_what_does_not_compile_ends_with_the_error_and_the_count() {
+    let folder = copied_shear();
+    edit(folder.path(), "plc/alignment.st", "a.Q AND b.Q", "a.Q AND bb.Q");
+    let path = folder.path().join("plc/alignment.st");
+    let text = std::fs::read_to_string(&path).unwrap();
+    std::fs::write(&path, format!("{text}\nPROGRAM Later VAR x : INT; END_VAR ABS(x); ABS(x); END_PROGRAM\n")).unwrap();
+    let said = typed(folder.path(), &["run", "."]);
+    assert_eq!(said.code, Some(2), "{said:?}");
+    let (warnings, errors) = (said.err.rfind("C0307").unwrap(), said.err.find("N0101").unwrap());
+    assert!(warnings < errors, "{said:?}");
+    assert!(said.err.trim_end().ends_with("1 error, 2 warnings"), "{said:?}");
+}
+
+#[test]
 fn the_sources_of_a_scenario_are_clean() {
     let said = checked(&scenario("shear"), &["."]);
     assert_eq!((said.code, said.out.as_str()), (Some(0), "2 files, no findings\n"), "{said:?}");

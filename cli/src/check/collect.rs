@@ -89,6 +89,10 @@ impl Files {
 
     fn file(&mut self, path: &Path, kind: FileKind) -> Result<(), CheckError> {
         let bytes = std::fs::read(path).map_err(Unreadable::at(path))?;
+        self.read(path, kind, &bytes)
+    }
+
+    fn read(&mut self, path: &Path, kind: FileKind, bytes: &[u8]) -> Result<(), CheckError> {
         // The same file by two names is still one.
         let identity = path.canonicalize().unwrap_or_else(|_| path.to_owned());
         if !self.seen.insert(identity) {
@@ -98,28 +102,36 @@ impl Files {
             FileKind::Source(kind) => {
                 // A file of the folder `.` is named as if the folder had not been.
                 let name = path.strip_prefix(".").unwrap_or(path).display().to_string();
-                let input = Input::read(&name, kind, &bytes);
+                let input = Input::read(&name, kind, bytes);
                 self.inputs.push(match self.dialect {
                     Some(dialect) => input.in_dialect(dialect),
                     None => input,
                 });
                 Ok(())
             }
-            FileKind::Project => self.project(path, &bytes),
+            FileKind::Project => self.project(path, bytes),
         }
     }
 
     /// The files of a TwinCAT project; objects without program text, as tasks are, are passed over.
     fn project(&mut self, path: &Path, bytes: &[u8]) -> Result<(), CheckError> {
-        let name = path.display().to_string();
+        let name = path.strip_prefix(".").unwrap_or(path).display().to_string();
         let folder = path.parent().unwrap_or(Path::new(""));
-        match project::files(bytes) {
-            Ok(files) => {
-                let files = files.iter().map(|file| folder.join(file));
-                for file in files {
-                    if let Some(kind @ FileKind::Source(_)) = FileKind::of(&file) {
-                        self.file(&file, kind)?;
+        match project::listing(bytes) {
+            Ok(listing) => {
+                let mut missing = Vec::new();
+                for listed in &listing.files {
+                    let file = folder.join(&listed.path);
+                    let Some(kind @ FileKind::Source(_)) = FileKind::of(&file) else { continue };
+                    match std::fs::read(&file) {
+                        Ok(bytes) => self.read(&file, kind, &bytes)?,
+                        // What is there is checked all the same.
+                        Err(error) if error.kind() == std::io::ErrorKind::NotFound => missing.push(listed),
+                        Err(error) => return Err(Unreadable::at(&file)(error).into()),
                     }
+                }
+                if !missing.is_empty() {
+                    self.inputs.push(Input::with_missing_files(&name, &listing, &missing));
                 }
             }
             Err(error) => self.inputs.push(Input::unreadable(&name, Code::MalformedXml, error.to_string())),

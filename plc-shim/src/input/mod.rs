@@ -4,6 +4,7 @@
 //! |---|---|---|
 //! | [`encoding`] | bytes | text, and the way back |
 //! | [`kind`] | a file's name | what kind of file it is |
+//! | `foreign` | text | what it is, if it is no program |
 //! | `xml` | text | a tree whose nodes know their place |
 //! | `twincat`, `twincat_task` | TwinCAT's objects | program text |
 //! | `plcopen`, `plcopen_instances`, `plcopen_object` | PLCopen XML, and what CODESYS adds to it | program text |
@@ -15,6 +16,7 @@
 //! told; every place in program text leads back into the file that it was taken out of.
 
 pub mod encoding;
+mod foreign;
 pub mod kind;
 mod plcopen;
 pub(crate) mod plcopen_chart;
@@ -31,7 +33,9 @@ pub(crate) mod xml;
 use std::sync::Arc;
 
 use self::encoding::{Encoding, decode};
+use self::foreign::Foreign;
 use self::kind::SourceKind;
+use self::project::{Listed, Listing};
 use self::xml::XmlError;
 use crate::diagnostic::{Code, Diagnostic};
 use crate::dialect::Dialect;
@@ -66,6 +70,9 @@ impl Input {
         let text = text.into();
         let read = match kind {
             SourceKind::Text => {
+                if let Some(foreign) = foreign::recognise(&text) {
+                    return Self::holding_no_program(name, &text, foreign);
+                }
                 let file = SourceFile::new(name, text).in_dialect(Dialect::of_file(name));
                 return Self { file, encoding: None, diagnostics: Vec::new() };
             }
@@ -76,6 +83,33 @@ impl Input {
         let (extracted, origin) = taken.extract.finish(text);
         let file = SourceFile::extracted(name, extracted, origin).in_dialect(taken.dialect);
         Self { file, encoding: None, diagnostics: taken.diagnostics }
+    }
+
+    fn holding_no_program(name: &str, text: &Arc<str>, foreign: Foreign) -> Self {
+        let mut taken = Taken::default();
+        let start = (text.len() - text.trim_start().len()) as u32;
+        let first = text[start as usize..].chars().next().map_or(0, |first| first.len_utf8() as u32);
+        taken.report(start..start + first, Code::NotProgramText, &format!("this is {}, not a program", foreign.what));
+        for found in &mut taken.diagnostics {
+            found.help = foreign.help.map(str::to_owned);
+        }
+        let (extracted, origin) = taken.extract.finish(text.clone());
+        let file = SourceFile::extracted(name, extracted, origin).in_dialect(Dialect::of_file(name));
+        Self { file, encoding: None, diagnostics: taken.diagnostics }
+    }
+
+    /// A project that lists files that are not there: each is told at its place.
+    pub fn with_missing_files(name: &str, listing: &Listing, missing: &[&Listed]) -> Self {
+        let mut taken = Taken::default();
+        for file in missing {
+            let message = format!("`{}` is not there", file.path);
+            taken.report(file.place.clone(), Code::MissingFile, &message);
+        }
+        for found in &mut taken.diagnostics {
+            found.help = Some("add the file, or take it out of the project; all others are read".to_owned());
+        }
+        let (extracted, origin) = taken.extract.finish(listing.text.clone());
+        Self { file: SourceFile::extracted(name, extracted, origin), encoding: None, diagnostics: taken.diagnostics }
     }
 
     /// A file of which nothing is read.

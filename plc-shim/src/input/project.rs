@@ -1,5 +1,8 @@
 //! TwinCAT's `.plcproj`: which files make up a PLC project.
 
+use std::ops::Range;
+use std::sync::Arc;
+
 use super::encoding::decode;
 use super::xml;
 
@@ -19,11 +22,37 @@ pub enum ProjectError {
     },
 }
 
+/// A project's text and the files that it lists.
+#[derive(Debug, Clone)]
+pub struct Listing {
+    /// The text.
+    pub text: Arc<str>,
+    /// The files that it compiles, in their order.
+    pub files: Vec<Listed>,
+}
+
+/// A file that a project compiles.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Listed {
+    /// With `/` between folders, relative to the project's folder.
+    pub path: String,
+    /// Where the project names it.
+    pub place: Range<u32>,
+}
+
 /// The files that a project compiles, with `/` between folders, relative to the project's folder.
 ///
 /// # Errors
 /// It is no project.
 pub fn files(bytes: &[u8]) -> Result<Vec<String>, ProjectError> {
+    Ok(listing(bytes)?.files.into_iter().map(|file| file.path).collect())
+}
+
+/// The same, with where the project names each.
+///
+/// # Errors
+/// It is no project.
+pub fn listing(bytes: &[u8]) -> Result<Listing, ProjectError> {
     let (text, _) = decode(bytes)?;
     let root = xml::parse(&text).map_err(|error| {
         let before = text.get(..error.at as usize).unwrap_or("");
@@ -31,7 +60,8 @@ pub fn files(bytes: &[u8]) -> Result<Vec<String>, ProjectError> {
     })?;
     let items = root.elements().filter(|group| group.name == "ItemGroup").flat_map(xml::Element::elements);
     let included = items.filter(|item| item.name == "Compile").filter_map(|item| item.attribute("Include"));
-    Ok(included.map(|include| include.value.replace('\\', "/")).collect())
+    let listed = included.map(|include| Listed { path: include.value.replace('\\', "/"), place: include.span.clone() });
+    Ok(Listing { files: listed.collect(), text: text.into() })
 }
 
 #[cfg(test)]

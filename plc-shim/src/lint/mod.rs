@@ -12,10 +12,12 @@
 //! | [`reachability`] | W0705 |
 //! | [`unused`] | W0706 |
 //! | [`tasks`] | W0707 |
+//! | [`endless`] | W0709 |
 //!
 //! A warning that is wrong costs more trust than one that is missing: where names alone do not
 //! decide, nothing is said.
 
+mod endless;
 mod equality;
 mod index;
 mod inspect;
@@ -45,6 +47,7 @@ fn lint(front: &Front, plan: Option<&TaskPlan>) -> Vec<Diagnostic> {
         instances::lint(unit, &index, &mut findings);
         equality::lint(unit, &index, &mut findings);
         reachability::lint(unit, &mut findings);
+        endless::lint(unit, &mut findings);
         unused::lint(unit, &index, &mut findings);
     }
     for pou in index.own_members() {
@@ -52,6 +55,7 @@ fn lint(front: &Front, plan: Option<&TaskPlan>) -> Vec<Diagnostic> {
         outputs::lint(&unit, &units, &mut findings);
         equality::lint(&unit, &index, &mut findings);
         reachability::lint(&unit, &mut findings);
+        endless::lint(&unit, &mut findings);
         unused::lint(&unit, &index, &mut findings);
     }
     outputs::lint_globals(&units, &index, &mut findings);

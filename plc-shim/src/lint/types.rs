@@ -12,6 +12,10 @@ pub(super) fn is_real(expr: &Expr, pou: &Pou, index: &Index<'_>) -> bool {
         ExprKind::Binary(operator, left, right) => {
             !operator.is_comparison() && (is_real(left, pou, index) || is_real(right, pou, index))
         }
+        ExprKind::Chain(first, links) => {
+            let any = || links.iter().any(|link| is_real(&link.operand, pou, index));
+            !links.iter().any(|link| link.operator.is_comparison()) && (is_real(first, pou, index) || any())
+        }
         ExprKind::Call(call) => gives_real(call, pou, index),
         _ => spec_of(expr, pou, index).is_some_and(|spec| is_real_spec(spec, index)),
     }

@@ -18,7 +18,9 @@ pub use declaration::{
     PouKind, Qualifier, ReferenceKind, Section, SectionKind, StructureInit, Subrange, TypeDeclaration, TypeSpec,
     TypeSpecKind, Variable,
 };
-pub use expression::{Argument, BinaryOp, Call, Expr, ExprKind, Literal, MAX_HEIGHT, TypedValue, UnaryOp};
+pub use expression::{
+    Argument, BinaryOp, CHAIN_HEIGHT, Call, Expr, ExprKind, Link, Literal, MAX_HEIGHT, TypedValue, UnaryOp,
+};
 pub use instruction::{Instruction, ListCall, When};
 pub use object::{Member, MemberKind, Modifier, Namespace, NamespaceKind, Object};
 pub use statement::{

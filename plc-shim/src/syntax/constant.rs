@@ -50,6 +50,9 @@ fn within(expr: &Expr, constants: &Constants<'_>, depth: u32) -> Option<Constant
         ExprKind::Binary(op, left, right) => {
             computed(*op, within(left, constants, depth)?, within(right, constants, depth)?)
         }
+        ExprKind::Chain(first, links) => links.iter().try_fold(within(first, constants, depth)?, |left, link| {
+            computed(link.operator, left, within(&link.operand, constants, depth)?)
+        }),
         _ => None,
     }
 }

@@ -82,6 +82,36 @@ pub fn parse_duration(body: &str) -> Result<i64, String> {
     body.parse().map(IecDuration::nanos).map_err(|error: IecDurationError| error.to_string())
 }
 
+/// What `T#1m30`, a duration that ends without a unit, may have been meant to be.
+pub fn missing_unit(text: &str) -> Option<String> {
+    let (prefix, body) = text.split_once('#')?;
+    let durations = ["T", "TIME", "LT", "LTIME", "S5T", "S5TIME"];
+    if !durations.iter().any(|known| known.eq_ignore_ascii_case(prefix))
+        || !body.ends_with(|end: char| end.is_ascii_digit())
+    {
+        return None;
+    }
+    let before = body.trim_end_matches(|one: char| one.is_ascii_digit() || matches!(one, '.' | '_'));
+    let number = &body[before.len()..];
+    let unit = match before.trim_start_matches(|one: char| !one.is_ascii_alphabetic()) {
+        "" if number.contains('.') => "s",
+        "" => "ms",
+        _ => {
+            let last = before.rfind(|one: char| !one.is_ascii_alphabetic()).map_or(0, |at| at + 1);
+            match before[last..].to_ascii_lowercase().as_str() {
+                "d" => "h",
+                "h" => "m",
+                "m" => "s",
+                "s" => "ms",
+                "ms" => "us",
+                "us" => "ns",
+                _ => return None,
+            }
+        }
+    };
+    Some(format!("write the unit, as in `{text}{unit}`"))
+}
+
 /// Single underscores between digits mean nothing (2nd ed. 2.2.1).
 fn without_underscores(text: &str) -> Result<String, String> {
     if text.starts_with('_') || text.ends_with('_') || text.contains("__") {
@@ -93,6 +123,15 @@ fn without_underscores(text: &str) -> Result<String, String> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_missing_unit_is_the_one_that_comes_next() {
+        let meant =
+            ["T#500", "T#1.5", "t#1m30", "TIME#2h_15", "LT#3us4"].map(|text| missing_unit(text).unwrap_or_default());
+        let meant = meant.map(|help| help.split('`').nth(1).map(str::to_owned).unwrap_or_default());
+        assert_eq!(meant, ["T#500ms", "T#1.5s", "t#1m30s", "TIME#2h_15m", "LT#3us4ns"]);
+        assert_eq!([missing_unit("INT#5"), missing_unit("T#5x5"), missing_unit("T#5ms")], [None, None, None]);
+    }
 
     #[test]
     fn integers_of_every_base() {

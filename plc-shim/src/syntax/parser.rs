@@ -14,6 +14,7 @@ mod initialiser;
 mod instruction;
 mod object;
 mod scl;
+mod slip;
 mod statement;
 mod type_spec;
 
@@ -29,6 +30,9 @@ use crate::syntax::Span;
 
 /// Greatest depth to which statements, types and parentheses may be nested.
 pub const MAX_NESTING: u16 = 200;
+
+/// More characters than these that begin no token are no slips, if the file declares nothing.
+const RUBBISH: usize = 3;
 
 /// A file's tree, beside its tokens.
 #[derive(Debug, Clone)]
@@ -64,8 +68,21 @@ fn parse_text(dialect: Dialect, file: FileId, text: &str, origin: Option<&Origin
     report_lexical_errors(&mut cursor, &tokens);
     conditional::apply(&mut cursor, &tokens);
     let unit = CompilationUnit { dialect, ..cursor.compilation_unit() };
-    let diagnostics = cursor.into_diagnostics();
+    let mut diagnostics = cursor.into_diagnostics();
+    if unit.declarations.is_empty() {
+        leave_out_rubbish(&mut diagnostics);
+    }
     Parsed { tokens, unit, diagnostics }
+}
+
+/// In a file that declares nothing, its first error says it all: what stands in it is no program.
+fn leave_out_rubbish(diagnostics: &mut Vec<Diagnostic>) {
+    let unknown = |found: &Diagnostic| found.code == Code::UnknownCharacter;
+    let grammar = diagnostics.iter().position(|found| found.code == Code::UnexpectedToken);
+    if let Some(first) = grammar.filter(|_| diagnostics.iter().filter(|found| unknown(found)).count() > RUBBISH) {
+        let first = diagnostics.swap_remove(first);
+        *diagnostics = vec![first.with_help("this file seems to hold something else than a program")];
+    }
 }
 
 /// The initial value that `text`, the text of `file`, is on its own, and what is wrong with it.

@@ -184,6 +184,10 @@ pub(crate) fn expression(expr: &Expr, visitor: &mut impl Visitor) {
             expression(left, visitor);
             expression(right, visitor);
         }
+        ExprKind::Chain(first, links) => {
+            expression(first, visitor);
+            links.iter().for_each(|link| expression(&link.operand, visitor));
+        }
         ExprKind::Call(inner) => call(inner, visitor),
         _ => {}
     }

@@ -26,8 +26,6 @@ fn expressions() {
         ("ABS(", "x", ")"),
         ("MAX(1, ", "x", ")"),
         ("a[", "0", "]"),
-        ("1 + ", "x", ""),
-        ("2 ** ", "x", ""),
         ("(1 + ", "x", ")"),
         ("SEL(b, 1, ", "x", ")"),
     ] {
@@ -103,6 +101,8 @@ fn long_rows() {
     let elsifs: String = (0..2000).map(|n| format!("ELSIF x = {n} THEN x := {n}; ")).collect();
     for text in [
         program("", &"x := x + 1;\n".repeat(DEEP)),
+        program("", &format!("x := {}x;", "1 + ".repeat(DEEP))),
+        program("", &format!("x := {}x;", "2 * ".repeat(DEEP))),
         program("", &format!("CASE x OF {arms} END_CASE;")),
         program("", &format!("IF b THEN ; {elsifs} END_IF;")),
         program(&(0..DEEP).map(|n| format!("v{n} : INT; ")).collect::<String>(), ""),

@@ -123,7 +123,8 @@ fn every_finding_is_a_related_diagnostic_with_its_own_source() {
     let text = "PROGRAM P VAR x, x : INT; END_VAR x := y; END_PROGRAM";
     let found = onescan_plc_shim::Application::from_sources([("two.st", text)]).expect_err("wrong");
     let related: Vec<_> = found.related().expect("findings").collect();
-    assert_eq!(related.len(), 2);
+    assert_eq!(related.len(), 3);
+    assert_eq!(related[2].to_string(), "2 errors");
     let labels: Vec<_> = related[0].labels().expect("labels").collect();
     assert_eq!((labels[0].offset(), labels[1].offset()), (17, 14));
     assert_eq!(labels[1].label(), Some("first declared here"));
@@ -132,4 +133,13 @@ fn every_finding_is_a_related_diagnostic_with_its_own_source() {
     let contents = source.read_span(span.inner(), 0, 0).expect("inside of the text");
     assert_eq!(contents.name(), Some("two.st"));
     assert_eq!(contents.data(), b"y");
+}
+
+#[test]
+fn errors_are_read_last_and_counted() {
+    use miette::Diagnostic;
+    let text = "PROGRAM P VAR x : INT; END_VAR x := y; ABS(x); END_PROGRAM";
+    let found = onescan_plc_shim::Application::from_sources([("both.st", text)]).expect_err("wrong");
+    let read: Vec<_> = found.related().expect("findings").map(ToString::to_string).collect();
+    assert_eq!(read, ["the result of this call is lost", "`y` is not declared", "1 error, 1 warning"]);
 }

@@ -2,6 +2,8 @@
 
 mod any_inputs;
 mod bit_strings;
+mod cascades;
+mod chains;
 mod characters;
 mod configurations;
 mod constants;
@@ -28,6 +30,7 @@ mod ld;
 mod legal_code;
 mod lints;
 mod lockstep;
+mod mistakes;
 mod namespaces;
 mod object_inputs;
 mod objects;

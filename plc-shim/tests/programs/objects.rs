@@ -414,7 +414,7 @@ METHOD Alone END_METHOD"
     test.st:80:16: error[C0303]: `SetSize` takes 1 arguments
     test.st:81:13: error[C0301]: `SetSize` has no such parameter `size`
     test.st:82:33: error[T0201]: Square is wanted, this is INT
-    test.st:83:3: error[N0101]: `Square` is not declared
+    test.st:83:3: error[N0106]: `Square` is a class, not an instance (declare an instance, `square_1 : Square;`, and write `square_1` here)
     test.st:84:16: error[C0305]: VAR_IN_OUT `shape` is Shape, this is INT
     test.st:85:20: error[N0104]: `height` is internal to Simple
     test.st:86:14: error[T0201]: INT is wanted, this is BOOL (convert it with BOOL_TO_INT)

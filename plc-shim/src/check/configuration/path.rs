@@ -186,7 +186,7 @@ impl Configurer<'_, '_> {
             }
             Type::FunctionBlock { pou, .. } => {
                 let scope = self.declarations.interface(pou, name.span)?;
-                if scope.is_broken(&name.key()) {
+                if scope.may_have(&name.key()) {
                     return None;
                 }
                 let Some(variable) = scope.find(&name.key()) else {

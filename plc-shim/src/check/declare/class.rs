@@ -45,6 +45,10 @@ pub(in crate::check) struct Membership {
 #[derive(Debug, Default)]
 pub(in crate::check) struct Class {
     pub(in crate::check) base: Option<PouId>,
+    /// It extends what is not there, or not what it may extend.
+    pub(super) lacks_base: bool,
+    /// It implements such a thing.
+    pub(super) lacks_interface: bool,
     /// `IMPLEMENTS`, and `EXTENDS` of an interface.
     pub(in crate::check) interfaces: Vec<PouId>,
     pub(in crate::check) members: BTreeMap<(Role, String), PouId>,
@@ -99,17 +103,22 @@ impl Declarations<'_> {
         if kind == PouKind::Interface {
             for name in &object.extends {
                 let found = self.base_named(name, |found| found == PouKind::Interface, "an interface");
-                self.classes.entry(id).or_default().interfaces.extend(found);
+                let class = self.classes.entry(id).or_default();
+                class.lacks_base |= found.is_none();
+                class.interfaces.extend(found);
             }
         } else if let Some(name) = object.extends.first() {
             let what = if kind == PouKind::Class { "a class" } else { "a function block or class" };
             let base = self.base_named(name, |found| found.has_instances() && wanted(found), what);
             let base = base.filter(|base| self.may_be_extended(*base, name));
-            self.classes.entry(id).or_default().base = base;
+            let class = self.classes.entry(id).or_default();
+            (class.base, class.lacks_base) = (base, base.is_none());
         }
         for name in &object.implements {
             let found = self.base_named(name, |found| found == PouKind::Interface, "an interface");
-            self.classes.entry(id).or_default().interfaces.extend(found);
+            let class = self.classes.entry(id).or_default();
+            class.lacks_interface |= found.is_none();
+            class.interfaces.extend(found);
         }
     }
 
@@ -149,7 +158,7 @@ impl Declarations<'_> {
                 let span = name.span;
                 self.report(Diagnostic::error(Code::Recursion, span, message));
                 if let Some(class) = self.classes.get_mut(&id) {
-                    class.base = None;
+                    (class.base, class.lacks_base) = (None, true);
                     class.interfaces.clear();
                 }
             }
@@ -172,8 +181,12 @@ impl Declarations<'_> {
         found
     }
 
-    /// True if every `derived` is a `base` too.
+    /// True if every `derived` is a `base` too, or may be for all that is known.
     pub(in crate::check) fn is_a(&self, derived: PouId, base: PouId) -> bool {
+        self.is_known_as(derived, base) || self.may_be_more(derived)
+    }
+
+    fn is_known_as(&self, derived: PouId, base: PouId) -> bool {
         derived == base || self.ancestors(derived).contains(&base)
     }
 
@@ -217,7 +230,7 @@ impl Declarations<'_> {
             return self.family(id);
         }
         let ids = self.classes.keys().copied();
-        ids.filter(|each| self.pou(*each).ast.kind.has_instances() && self.is_a(*each, id)).collect()
+        ids.filter(|each| self.pou(*each).ast.kind.has_instances() && self.is_known_as(*each, id)).collect()
     }
 
     /// Numbers of the types that can stand where a `kind` is wanted, neighbours joined.

@@ -66,6 +66,9 @@ impl<'a> Declarations<'a> {
         if let Some(entry) = self.type_names.get_mut(key) {
             entry.progress = Progress::Done;
             entry.resolved.clone_from(&resolved);
+            if resolved.is_none() {
+                self.unmade.extend(entry.reserved);
+            }
         }
         resolved
     }

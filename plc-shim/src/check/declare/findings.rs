@@ -1,12 +1,13 @@
 //! What is wrong with the text, in the order in which it was found.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 use super::Declarations;
 use super::start::Occasion;
-use crate::diagnostic::Diagnostic;
+use crate::diagnostic::{Code, Diagnostic};
 use crate::ir::PouId;
 use crate::syntax::Span;
+use crate::syntax::ast::Ident;
 
 /// All findings so far, and what has been reported that is found more than once.
 #[derive(Debug, Default)]
@@ -16,9 +17,16 @@ pub(super) struct Findings {
     faulty_starts: BTreeSet<(u32, u32, Occasion)>,
     /// Methods `FB_init` that do not suit those of their bases.
     faulty_hooks: BTreeSet<PouId>,
+    /// Names that are not declared, by the unit that uses them: which finding tells so.
+    unknown: BTreeMap<(Option<PouId>, Code, String), (usize, Span)>,
 }
 
 impl Findings {
+    /// True if something of the code has been found.
+    pub(super) fn has(&self, code: Code) -> bool {
+        self.diagnostics.iter().any(|found| found.code == code)
+    }
+
     pub(super) fn into_list(self) -> Vec<Diagnostic> {
         self.diagnostics
     }
@@ -31,6 +39,22 @@ pub(in crate::check) struct Mark(usize);
 impl Declarations<'_> {
     pub(in crate::check) fn report(&mut self, diagnostic: Diagnostic) {
         self.findings.diagnostics.push(diagnostic);
+    }
+
+    /// Reports a name that is not declared, once for each unit that uses it.
+    pub(in crate::check) fn report_name(&mut self, unit: Option<PouId>, name: &Ident, found: Diagnostic) {
+        let place = (self.findings.diagnostics.len(), found.span);
+        // In SCL `"x"` is another name than `x`.
+        let slot = (unit, found.code, name.text.to_ascii_uppercase());
+        if let Some((index, span)) = self.findings.unknown.get(&slot) {
+            // One that was taken back tells nothing.
+            let told = self.findings.diagnostics.get(*index);
+            if told.is_some_and(|told| told.span == *span && told.code == found.code) {
+                return;
+            }
+        }
+        self.findings.unknown.insert(slot, place);
+        self.report(found);
     }
 
     pub(in crate::check) fn mark(&self) -> Mark {

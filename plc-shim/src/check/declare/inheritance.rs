@@ -13,7 +13,7 @@ impl Declarations<'_> {
         for id in ids {
             self.check_members(id);
             self.check_hooks(id);
-            if self.pou(id).ast.kind.has_instances() && !self.is_abstract(id) {
+            if self.pou(id).ast.kind.has_instances() && !self.is_abstract(id) && !self.may_inherit(id) {
                 self.check_complete(id);
             }
         }
@@ -35,7 +35,7 @@ impl Declarations<'_> {
             let of_base = self.base_of(id).and_then(|base| self.find_member(base, role, &name));
             if let Some(base) = of_base {
                 self.check_finality(member, base);
-            } else if overrides {
+            } else if overrides && !self.may_inherit(id) {
                 let message = format!("no base has a method `{}` to override", self.pou(member).ast.name.text);
                 self.report(Diagnostic::error(Code::NothingOverridden, span, message));
             }
@@ -66,6 +66,10 @@ impl Declarations<'_> {
         let (Some(own), Some(above)) = (self.pou(member).scope.clone(), self.pou(base).scope.clone()) else {
             return;
         };
+        // With a parameter or result whose declaration is wrong nothing can be compared.
+        if [(member, &own), (base, &above)].iter().any(|(id, scope)| scope.has_broken() || self.lacks_result(*id)) {
+            return;
+        }
         let parameter =
             |each: &&Variable| matches!(each.section, SectionKind::Input | SectionKind::InOut | SectionKind::Output);
         let result = |place: Option<&crate::ir::Place>| place.map(|place| place.ty);

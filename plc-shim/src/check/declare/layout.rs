@@ -99,6 +99,10 @@ impl Declarations<'_> {
     }
 
     pub(in crate::check) fn report_too_large(&mut self, span: Span) {
+        // The first says it; what comes behind it does not fit either.
+        if self.findings.has(Code::TooLarge) {
+            return;
+        }
         let message = format!("more than {} MiB of variables", MEMORY_LIMIT >> 20);
         self.report(Diagnostic::error(Code::TooLarge, span, message));
     }

@@ -23,6 +23,7 @@ mod query;
 mod recursion;
 mod scope;
 mod start;
+mod unknown;
 mod variable;
 mod vendor_parameter;
 mod visibility;
@@ -73,6 +74,8 @@ pub(super) struct Declarations<'a> {
     dialects: BTreeMap<FileId, Dialect>,
     types: TypeTable,
     type_names: BTreeMap<String, TypeEntry<'a>>,
+    /// Structures that something refers to, and whose declarations are wrong.
+    unmade: BTreeSet<TypeId>,
     pous: Vec<PouEntry<'a>>,
     pou_names: BTreeMap<String, PouId>,
     /// Where what is being resolved stands.
@@ -137,6 +140,7 @@ impl<'a> Declarations<'a> {
             dialects: BTreeMap::new(),
             types: TypeTable::new(),
             type_names: BTreeMap::new(),
+            unmade: BTreeSet::new(),
             pous: Vec::new(),
             pou_names: BTreeMap::new(),
             home: Arc::default(),

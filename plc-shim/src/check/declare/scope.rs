@@ -23,6 +23,8 @@ pub(in crate::check) struct Scope {
     outer: Option<Arc<Scope>>,
     /// True if the unit has fixed memory, which two activations would share.
     has_memory: bool,
+    /// True if the unit may have variables that nobody knows: those of a base that is not there.
+    lacks_names: bool,
 }
 
 impl Scope {
@@ -68,7 +70,7 @@ impl Scope {
 
     /// True if any declaration is wrong.
     pub(in crate::check) fn has_broken(&self) -> bool {
-        self.by_name.values().any(|index| *index >= self.variables.len())
+        self.lacks_names || self.by_name.values().any(|index| *index >= self.variables.len())
     }
 
     /// What a caller can set: inputs and in-outs in their order.
@@ -85,6 +87,16 @@ impl Scope {
     /// What stands in a list without names, which EN never does.
     pub(in crate::check) fn positional(&self) -> impl Iterator<Item = &Variable> {
         self.inputs().filter(|variable| !parameter::is_control(variable))
+    }
+
+    /// True if a variable of the name may be there, for all that is known.
+    pub(in crate::check) fn may_have(&self, key: &str) -> bool {
+        self.lacks_names || self.is_broken(key)
+    }
+
+    /// Notes that the unit may have variables that nobody knows.
+    pub(in crate::check) fn lack_names(&mut self) {
+        self.lacks_names = true;
     }
 
     /// Adds a variable under a name's key.

@@ -19,6 +19,9 @@ impl<'a> Interface<'_, 'a> {
             self.scope_mut().set_outer(seen);
             return;
         }
+        if self.declarations().may_inherit(id) {
+            self.scope_mut().lack_names();
+        }
         let type_id = self.declarations().class(id).and_then(|class| class.type_id);
         match self.declarations().base_of(id) {
             Some(base) => self.inherit_from(base),
@@ -62,6 +65,10 @@ impl<'a> Interface<'_, 'a> {
                 self.scope_mut().add(key, variable);
             }
         }
+        // Names whose declaration is wrong stay known.
+        for key in scope.broken() {
+            self.scope_mut().add_broken(key.to_owned());
+        }
     }
 
     /// The first parameter of a method is the address of its instance.
@@ -82,8 +89,9 @@ impl<'a> Interface<'_, 'a> {
     /// The value that is given to a property, under the property's name.
     pub(super) fn declare_new_value(&mut self, ast: &'a ast::Pou) {
         let Some(spec) = ast.result.as_ref().filter(|_| self.is_setter()) else { return };
-        let Some(declared) = self.written().resolve(spec, Need::Size) else { return };
-        let Some(storage) = self.parameter(&declared, &ast.name) else { return };
+        let declared = self.written().resolve(spec, Need::Size);
+        let placed = declared.and_then(|declared| Some((self.parameter(&declared, &ast.name)?, declared)));
+        let Some((storage, declared)) = placed else { return self.declare_broken(&ast.name) };
         let shape = ast::Variable { names: Vec::new(), address: None, spec: spec.clone(), edge: None, initial: None };
         let kind = SectionKind::Input;
         let variable = self.declarations().variable(&ast.name, &shape, kind, &[], &declared, storage);

@@ -293,6 +293,13 @@ impl<'a> Written<'_, 'a> {
         let name = &member.name.text;
         let field = fields.iter().find(|field| field.name.eq_ignore_ascii_case(name));
         let Some(field) = field else {
+            let unknown = match self.declarations().types().get(spot.ty) {
+                Type::FunctionBlock { pou, .. } => self.declarations().may_inherit(*pou),
+                _ => self.declarations().is_unmade(spot.ty),
+            };
+            if unknown {
+                return None;
+            }
             let message = format!("{} has no member `{name}`", self.body.type_name(spot.ty));
             let help = did_you_mean(name, fields.iter().map(|field| field.name.as_str()));
             let found = Diagnostic::error(Code::UnknownMember, member.name.span, message);

@@ -84,7 +84,8 @@ fn argument_span(argument: &Argument) -> Span {
 impl<'a> Written<'_, 'a> {
     /// Reports arguments of an instance whose block has no `FB_init`.
     fn check_taken(&mut self, pou: PouId, given: Given<'a>, span: Span) {
-        if !given.is_empty() && !self.declarations().has_hook(pou, Occasion::Start) {
+        let known = !self.declarations().may_inherit(pou);
+        if !given.is_empty() && known && !self.declarations().has_hook(pou, Occasion::Start) {
             let name = &self.declarations().pou(pou).ast().name.text;
             let message = format!("`{name}` has no FB_init that takes arguments");
             let help = format!("inputs begin with values as in `: {name} := (..)`");

@@ -137,12 +137,9 @@ impl<'c, 'a> Interface<'c, 'a> {
             self.declarations_mut().report_duplicate(&ast.name, Some(parameter));
             return;
         }
-        let Some(declared) = self.written.resolve(spec, Need::Size) else {
-            return;
-        };
-        let Some(storage) = self.temporary(&declared, &ast.name) else {
-            return;
-        };
+        let declared = self.written.resolve(spec, Need::Size);
+        let placed = declared.and_then(|declared| Some((self.temporary(&declared, &ast.name)?, declared)));
+        let Some((storage, declared)) = placed else { return self.declare_broken(&ast.name) };
         let span = ast.name.span;
         self.written.body.reject_open_array(declared.ty, spec.span);
         self.scope_mut().set_result(Place::whole(storage, declared.ty, span));
@@ -220,7 +217,7 @@ impl<'c, 'a> Interface<'c, 'a> {
     }
 
     /// A name whose type is wrong is known all the same, so that its uses are not reported.
-    fn declare_broken(&mut self, name: &Ident) {
+    pub(super) fn declare_broken(&mut self, name: &Ident) {
         self.scope_mut().add_broken(name.key());
     }
 

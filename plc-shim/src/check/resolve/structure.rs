@@ -59,17 +59,17 @@ impl<'a> Written<'_, 'a> {
         span: Span,
     ) -> Option<TypedImage<'a>> {
         let mut making = self.extended(extends)?;
+        let mut sound = true;
         for member in members {
             if making.fields.iter().any(|other| other.name.eq_ignore_ascii_case(&member.name.text)) {
                 self.declarations_mut().report_duplicate(&member.name, None);
                 continue;
             }
-            let mut resolved = self.resolve(&member.spec, Need::Size)?;
-            self.body.reject_open_array(resolved.ty, member.spec.span)?;
-            if let Some(initial) = &member.initial {
-                resolved = self.with_initial(&resolved, initial)?;
-            }
-            self.place_member(&mut making, member, &resolved, (sharing, span))?;
+            // The members behind a wrong one are looked at, too.
+            sound &= self.member(&mut making, member, (sharing, span)).is_some();
+        }
+        if !sound {
+            return None;
         }
         // What has no members takes a byte, so that no array has more elements than bytes.
         let Making { fields, mut image, starts, .. } = making;
@@ -80,6 +80,20 @@ impl<'a> Written<'_, 'a> {
         let ty = reserved.unwrap_or_else(|| self.declarations_mut().types_mut().structure(name.to_owned()));
         self.declarations_mut().types_mut().complete_structure(ty, fields, image.clone());
         Some(TypedImage { ty, image, starts: starts.into() })
+    }
+
+    fn member(
+        &mut self,
+        making: &mut Making<'a>,
+        member: &'a ast::Field,
+        (sharing, span): (Sharing, Span),
+    ) -> Option<()> {
+        let mut resolved = self.resolve(&member.spec, Need::Size)?;
+        self.body.reject_open_array(resolved.ty, member.spec.span)?;
+        if let Some(initial) = &member.initial {
+            resolved = self.with_initial(&resolved, initial)?;
+        }
+        self.place_member(making, member, &resolved, (sharing, span))
     }
 
     /// The members of the structure that another adds to, as vendors have it.

@@ -20,22 +20,26 @@ impl<'a> Written<'_, 'a> {
         let mut fields: Vec<Field> = Vec::new();
         let mut images: Vec<(bool, Arc<[u8]>)> = Vec::new();
         let mut starts = Vec::new();
+        let mut sound = true;
         for field in ast {
             if fields.iter().any(|other| other.name.eq_ignore_ascii_case(&field.name.text)) {
                 self.declarations_mut().report_duplicate(&field.name, None);
                 continue;
             }
-            let mut resolved = self.resolve(&field.spec, Need::Size)?;
-            self.body.reject_open_array(resolved.ty, field.spec.span)?;
-            if let Some(initial) = &field.initial {
-                resolved = self.with_initial(&resolved, initial)?;
-            }
+            // The members behind a wrong one are looked at, too.
+            let Some(resolved) = self.shared_member(field) else {
+                sound = false;
+                continue;
+            };
             fields.push(Field { name: field.name.text.clone(), ty: resolved.ty, offset: 0, bit: None, open: None });
             let counts = field.initial.is_some() || images.is_empty();
             if counts {
                 starts.extend(resolved.starts.iter().cloned());
             }
             images.push((counts, resolved.image));
+        }
+        if !sound {
+            return None;
         }
         let size = images.iter().map(|(_, image)| image.len()).max().unwrap_or(0).max(1) as u32;
         let align = fields.iter().map(|field| self.declarations().types().align(field.ty)).max().unwrap_or(1);
@@ -48,5 +52,14 @@ impl<'a> Written<'_, 'a> {
         let ty = reserved.unwrap_or_else(|| self.declarations_mut().types_mut().structure(name.to_owned()));
         self.declarations_mut().types_mut().complete_structure(ty, fields, image.clone());
         Some(TypedImage { ty, image, starts: starts.into() })
+    }
+
+    fn shared_member(&mut self, field: &'a ast::Field) -> Option<TypedImage<'a>> {
+        let resolved = self.resolve(&field.spec, Need::Size)?;
+        self.body.reject_open_array(resolved.ty, field.spec.span)?;
+        match &field.initial {
+            Some(initial) => self.with_initial(&resolved, initial),
+            None => Some(resolved),
+        }
     }
 }

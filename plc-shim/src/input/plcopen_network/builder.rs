@@ -34,7 +34,14 @@ pub(super) struct Builder<'w, 'f, 'n> {
 /// True for what needs no parentheses as an operand.
 fn is_atomic(text: &str) -> bool {
     let atomic = |kind: &ExprKind| {
-        !matches!(kind, ExprKind::Unary(..) | ExprKind::Binary(..) | ExprKind::Dereference(_) | ExprKind::Error)
+        !matches!(
+            kind,
+            ExprKind::Unary(..)
+                | ExprKind::Binary(..)
+                | ExprKind::Chain(..)
+                | ExprKind::Dereference(_)
+                | ExprKind::Error
+        )
     };
     parse_expression(text).is_some_and(|expr| atomic(&expr.kind))
 }

@@ -164,6 +164,10 @@ impl<'w, 'a> Body<'w, 'a> {
         self.names.value(&name.key(), Some(&ty.key())).filter(|_| !is_local)
     }
 
+    fn refuse_short(&mut self, span: Span) {
+        self.refuse(span, "AND_THEN and OR_ELSE", "write one IF inside of the other");
+    }
+
     fn other(&mut self, expr: &Expr) {
         match &expr.kind {
             ExprKind::DirectAddress(_) => {
@@ -172,12 +176,17 @@ impl<'w, 'a> Body<'w, 'a> {
             ExprKind::Dereference(_) => {
                 self.refuse(expr.span, "references of this kind", "pass the variable as VAR_IN_OUT");
             }
-            ExprKind::Binary(BinaryOp::AndThen | BinaryOp::OrElse, ..) => {
-                self.refuse(expr.span, "AND_THEN and OR_ELSE", "write one IF inside of the other");
+            ExprKind::Chain(_, links) if links.iter().any(|link| is_short(link.operator)) => {
+                self.refuse_short(expr.span)
             }
+            ExprKind::Binary(operator, ..) if is_short(*operator) => self.refuse_short(expr.span),
             _ => {}
         }
     }
+}
+
+fn is_short(operator: BinaryOp) -> bool {
+    matches!(operator, BinaryOp::AndThen | BinaryOp::OrElse)
 }
 
 /// The trigger of an input with an edge.

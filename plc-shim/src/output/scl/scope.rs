@@ -84,6 +84,13 @@ impl<'a> Scope<'a> {
             ExprKind::Binary(op, ..) if op.is_comparison() => Some(ElementaryType::Bool),
             ExprKind::Binary(BinaryOp::Power, base, _) => self.type_of(names, base),
             ExprKind::Binary(_, left, right) => wider(self.type_of(names, left), self.type_of(names, right)),
+            ExprKind::Chain(first, links) => {
+                links.iter().fold(self.type_of(names, first), |left, link| match link.operator {
+                    op if op.is_comparison() => Some(ElementaryType::Bool),
+                    BinaryOp::Power => left,
+                    _ => wider(left, self.type_of(names, &link.operand)),
+                })
+            }
             ExprKind::Call(call) => self.result(names, call),
             _ => None,
         }

@@ -7,6 +7,9 @@ use crate::syntax::calendar::CalendarKind;
 /// recurse into an expression without exhausting the stack.
 pub const MAX_HEIGHT: u16 = 250;
 
+/// Levels that a chain counts for, however long it is: the checker makes trees of so many of its operators.
+pub const CHAIN_HEIGHT: u16 = 16;
+
 /// An expression and its place.
 #[derive(Debug, Clone)]
 pub struct Expr {
@@ -48,10 +51,21 @@ pub enum ExprKind {
     Unary(UnaryOp, Box<Expr>),
     /// `a + b`
     Binary(BinaryOp, Box<Expr>, Box<Expr>),
+    /// `a + b + c - d ..`, from the left to the right: what would be too high a tree of [`Self::Binary`].
+    Chain(Box<Expr>, Vec<Link>),
     /// `(a)`
     Paren(Box<Expr>),
     /// Text that is no expression; a diagnostic has been given.
     Error,
+}
+
+/// An operator of a chain and what stands behind it.
+#[derive(Debug, Clone)]
+pub struct Link {
+    /// What is done with all that is before it.
+    pub operator: BinaryOp,
+    /// The right operand.
+    pub operand: Expr,
 }
 
 /// A call of a function or an instance.

@@ -5,6 +5,7 @@ use onescan_base::ElementaryType;
 use super::cursor::Cursor;
 use crate::diagnostic::{Code, Diagnostic};
 use crate::dialect::Feature;
+use crate::source::Span;
 use crate::syntax::ast::{BinaryOp, Expr, ExprKind, StatementKind, UpdateOp};
 use crate::syntax::token::{Keyword, Punctuation, TokenKind};
 
@@ -17,7 +18,10 @@ impl Cursor<'_> {
             return kind;
         }
         let known = self.reported();
-        let target = self.expression();
+        let target = self.expression_or_target();
+        if self.pass_increment(&target) {
+            return StatementKind::Error;
+        }
         if self.take_mark(Punctuation::Assign) {
             return self.assigned(target);
         }
@@ -29,8 +33,9 @@ impl Cursor<'_> {
             self.advance();
             return StatementKind::Refer(target, self.expression());
         }
-        if let Some(operator) = self.take_update() {
+        if let Some((operator, at)) = self.take_update() {
             let value = self.expression();
+            self.require_update(operator, at, &target, &value);
             return StatementKind::Update(operator, target, value);
         }
         if let ExprKind::Call(call) = target.kind {
@@ -48,26 +53,9 @@ impl Cursor<'_> {
         StatementKind::Error
     }
 
-    /// What begins no statement here, and does in other languages.
-    fn slip(&mut self) -> Option<StatementKind> {
-        let span = self.span();
-        let next = self.peek_ahead(1);
-        let (message, help) = if self.at_word("ELSEIF") || self.at_word("ELIF") {
-            ("this begins no branch", "write `ELSIF`")
-        } else if self.at_mark(Punctuation::Star) && next == Some(TokenKind::Punctuation(Punctuation::RightParen)) {
-            self.advance();
-            ("there is no `(*` before this", "a comment in a comment has an end of its own")
-        } else if self.peek() == Some(TokenKind::Identifier)
-            && next == Some(TokenKind::Punctuation(Punctuation::Colon))
-            && self.peek_ahead(2) == Some(TokenKind::Punctuation(Punctuation::Equal))
-        {
-            ("there is a blank in `:=`", "write `:=`")
-        } else {
-            return None;
-        };
-        self.report(Diagnostic::error(Code::UnexpectedToken, span, message).with_help(help));
-        self.advance();
-        Some(StatementKind::Error)
+    /// What a statement begins with; of `a++` the name alone.
+    fn expression_or_target(&mut self) -> Expr {
+        if self.is_increment() { self.postfix() } else { self.expression() }
     }
 
     /// What stands behind `target :=`.
@@ -90,7 +78,7 @@ impl Cursor<'_> {
         self.at_word("REF") && self.peek_ahead(1) == Some(TokenKind::Punctuation(Punctuation::Equal))
     }
 
-    fn take_update(&mut self) -> Option<UpdateOp> {
+    fn take_update(&mut self) -> Option<(UpdateOp, Span)> {
         let span = self.span();
         let operator = match self.peek()? {
             TokenKind::Punctuation(Punctuation::PlusAssign) => UpdateOp::Add,
@@ -110,9 +98,18 @@ impl Cursor<'_> {
             _ => return None,
         };
         self.advance();
-        let set_or_reset = matches!(operator, UpdateOp::Set | UpdateOp::Reset);
-        self.require(if set_or_reset { Feature::SetReset } else { Feature::CompoundAssignment }, span);
-        Some(operator)
+        Some((operator, span))
+    }
+
+    /// Reports `+=` and the like where the dialect lacks them.
+    fn require_update(&mut self, operator: UpdateOp, at: Span, target: &Expr, value: &Expr) {
+        if matches!(operator, UpdateOp::Set | UpdateOp::Reset) {
+            return self.require(Feature::SetReset, at);
+        }
+        let text = |expr: &Expr| self.text(expr.span.start, expr.span.end);
+        let (target, sign) = (text(target), operator.text().trim_end_matches('='));
+        let instead = format!("{target} := {target} {sign} {}", text(value));
+        self.require_or(Feature::CompoundAssignment, at, Some(instead));
     }
 
     /// `label:`

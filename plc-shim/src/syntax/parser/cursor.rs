@@ -28,6 +28,8 @@ pub(super) struct Cursor<'a> {
     foreign: BTreeMap<Feature, Diagnostic>,
     /// The way back into the file that the text was taken out of.
     origin: Option<&'a Origin>,
+    /// The name that the unit's result has; nothing in units without one.
+    result_name: Option<String>,
 }
 
 impl<'a> Cursor<'a> {
@@ -58,6 +60,7 @@ impl<'a> Cursor<'a> {
             dialect,
             foreign: BTreeMap::new(),
             origin: None,
+            result_name: None,
         }
     }
 
@@ -86,12 +89,28 @@ impl<'a> Cursor<'a> {
 
     /// Reports `feature` if the dialect lacks it, once for a file. The grammar goes on as if it had it.
     pub(super) fn require(&mut self, feature: Feature, span: Span) {
+        self.require_or(feature, span, None);
+    }
+
+    /// The same, with what can be written instead.
+    pub(super) fn require_or(&mut self, feature: Feature, span: Span, instead: Option<String>) {
         if !self.dialect.has(feature) && !self.is_generated(span.start) {
             let message = format!("{} is not part of {}", feature.about(), self.dialect);
-            let help = format!("it is part of {}: --dialect chooses", feature.homes());
+            let homes = format!("it is part of {}: --dialect chooses", feature.homes());
+            let help = instead.map_or_else(|| homes.clone(), |instead| format!("write `{instead}`; {homes}"));
             let found = Diagnostic::error(Code::WrongDialect, span, message).with_help(help);
             self.foreign.entry(feature).or_insert(found);
         }
+    }
+
+    /// The name that the result of the unit has.
+    pub(super) fn result_name(&self) -> Option<&str> {
+        self.result_name.as_deref()
+    }
+
+    /// Sets it, and gives that of the unit around.
+    pub(super) fn replace_result_name(&mut self, name: Option<String>) -> Option<String> {
+        std::mem::replace(&mut self.result_name, name)
     }
 
     /// Leaves out the tokens that `counts` says do not count.
@@ -147,6 +166,25 @@ impl<'a> Cursor<'a> {
         let Some(next) = self.tokens.get(self.at + ahead) else { return true };
         let before = (self.at + ahead).checked_sub(1).and_then(|before| self.tokens.get(before));
         before.is_none_or(|before| self.text(before.end, next.start).contains('\n'))
+    }
+
+    /// True if nothing stands between the token so many places ahead and the one behind it.
+    pub(super) fn touches_next(&self, ahead: usize) -> bool {
+        let pair = (self.tokens.get(self.at + ahead), self.tokens.get(self.at + ahead + 1));
+        matches!(pair, (Some(first), Some(second)) if first.end == second.start)
+    }
+
+    /// Makes names of the keyword here and of those behind it that stand where a name does.
+    pub(super) fn take_for_names(&mut self, keyword: Keyword) {
+        let word = TokenKind::Keyword(keyword);
+        let mut before = None;
+        for at in self.at..self.tokens.len() {
+            let next = self.tokens.get(at + 1).map(|token| token.kind);
+            if self.tokens[at].kind == word && (at == self.at || is_name_place(before, next)) {
+                self.tokens[at].kind = TokenKind::Identifier;
+            }
+            before = Some(self.tokens[at].kind);
+        }
     }
 
     pub(super) fn take_word(&mut self, word: &str) -> bool {
@@ -252,6 +290,7 @@ impl<'a> Cursor<'a> {
     }
 
     pub(super) fn expect_identifier(&mut self, what: &str) -> Option<Ident> {
+        self.name_keyword();
         let found = self.take_identifier();
         if found.is_none() {
             self.unexpected(what);
@@ -292,6 +331,16 @@ impl<'a> Cursor<'a> {
         self.abandoned = true;
     }
 
+    /// Reports an expression that is too high, unless the same was reported of a part of it.
+    pub(super) fn report_too_high(&mut self, found: Diagnostic) {
+        let of_part = |last: &Diagnostic| last.code == found.code && last.span.start >= found.span.start;
+        if self.diagnostics.last().is_some_and(of_part) {
+            self.suppressed += 1;
+        } else {
+            self.diagnostics.push(found);
+        }
+    }
+
     /// Skips to a token that `stop` accepts, or to the end.
     pub(super) fn skip_until(&mut self, stop: impl Fn(TokenKind) -> bool) {
         while let Some(kind) = self.peek() {
@@ -301,6 +350,28 @@ impl<'a> Cursor<'a> {
             self.advance();
         }
     }
+}
+
+/// True if a keyword that stands between operands, or behind a name, stands here as a name itself.
+fn is_name_place(before: Option<TokenKind>, next: Option<TokenKind>) -> bool {
+    use Punctuation as P;
+    let behind_operand = matches!(
+        before,
+        Some(
+            TokenKind::Identifier
+                | TokenKind::Integer
+                | TokenKind::Real
+                | TokenKind::Typed
+                | TokenKind::String
+                | TokenKind::WideString
+                | TokenKind::DirectAddress
+                | TokenKind::Keyword(Keyword::True | Keyword::False)
+                | TokenKind::Punctuation(P::RightParen | P::RightBracket | P::Caret)
+        )
+    );
+    // `MOD(a, b)` is a function, and an address follows `AT`.
+    let follows = matches!(next, Some(TokenKind::Punctuation(P::LeftParen) | TokenKind::DirectAddress));
+    !behind_operand && !follows
 }
 
 /// A name never follows another, so `METHOD Start` begins a method, and `method := 1` assigns. Nor has

@@ -179,6 +179,7 @@ impl Cursor<'_> {
 
     /// True where a variable is declared, be it under a name that is none.
     fn at_variable(&mut self) -> bool {
+        self.name_keyword();
         match self.peek() {
             Some(TokenKind::Identifier) => !self.at_statement(),
             Some(TokenKind::Keyword(Keyword::At)) => true,
@@ -190,6 +191,9 @@ impl Cursor<'_> {
     /// True where a statement begins with a name: the section's end is missing.
     fn at_statement(&self) -> bool {
         use Punctuation as P;
+        if self.at_counted_name() {
+            return false;
+        }
         let marks = [P::Assign, P::LeftParen, P::Dot, P::LeftBracket, P::Caret];
         self.peek() == Some(TokenKind::Identifier)
             && marks.iter().any(|mark| self.peek_ahead(1) == Some(TokenKind::Punctuation(*mark)))
@@ -233,8 +237,12 @@ impl Cursor<'_> {
         let is_nameless = self.at_keyword(Keyword::At) && self.peek_ahead(1) == Some(TokenKind::DirectAddress);
         if matches!(self.peek(), Some(TokenKind::Keyword(_))) && !is_nameless {
             self.report_keyword_as_name();
+            self.advance();
         }
         let names = if is_nameless { Vec::new() } else { self.identifier_list("a variable's name") };
+        if self.at_mark(Punctuation::LeftBracket) {
+            self.pass_count();
+        }
         let address = self.take_keyword(Keyword::At).then(|| self.address()).flatten();
         // `AT %QW5 : WORD;` (2nd ed. B.1.4.3): its address is its name.
         let names = if is_nameless { address.iter().cloned().collect() } else { names };
@@ -250,14 +258,6 @@ impl Cursor<'_> {
             variables.push(Variable { names, address, spec, edge, initial });
         }
         self.end_of_declaration(known);
-    }
-
-    /// Reports `if : INT;` and passes its name.
-    fn report_keyword_as_name(&mut self) {
-        let message = format!("`{}` is a keyword, not a name", self.next_text());
-        let span = self.span();
-        self.report(Diagnostic::error(Code::UnexpectedToken, span, message));
-        self.advance();
     }
 
     fn edge(&mut self) -> Option<Edge> {

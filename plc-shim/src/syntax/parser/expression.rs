@@ -4,9 +4,14 @@ use super::cursor::Cursor;
 use crate::diagnostic::{Code, Diagnostic};
 use crate::dialect::Feature;
 use crate::source::Span;
-use crate::syntax::ast::{Argument, BinaryOp, Call, Expr, ExprKind, Ident, Literal, MAX_HEIGHT, Subrange, UnaryOp};
-use crate::syntax::literal::{parse_integer, parse_real};
+use crate::syntax::ast::{
+    Argument, BinaryOp, CHAIN_HEIGHT, Call, Expr, ExprKind, Ident, Link, Literal, MAX_HEIGHT, Subrange, UnaryOp,
+};
+use crate::syntax::literal::{missing_unit, parse_integer, parse_real};
 use crate::syntax::token::{Keyword, Punctuation, TokenKind};
+
+/// So many operators in a row are nodes above one another; what is behind them makes a chain.
+const ROW_OF_NODES: u32 = 64;
 
 /// Unary operators bind tighter than all with this precedence; in SCL `**` has a greater one.
 const UNARY_PRECEDENCE: u8 = 8;
@@ -23,6 +28,8 @@ impl Cursor<'_> {
 
     fn operator_chain(&mut self, minimum: u8) -> Expr {
         let mut left = self.unary();
+        // Operators so far, all of which have `left` on their left.
+        let mut row = 0;
         while let Some(operator) = self.peek_operator() {
             if operator.precedence() <= minimum {
                 break;
@@ -31,12 +38,37 @@ impl Cursor<'_> {
             self.advance();
             // All operators of a level are left associative (2nd ed. 3.3.1), `**` included.
             let right = self.binary(operator.precedence());
-            let span = left.span.to(right.span);
-            let height = left.height.max(right.height);
-            let kind = ExprKind::Binary(operator, Box::new(left), Box::new(right));
-            left = self.node(kind, span, height);
+            row += 1;
+            left = self.linked(left, Link { operator, operand: right }, row);
         }
         left
+    }
+
+    /// `left` with one operator more. A long row grows in length and not in height, so it may have any number.
+    fn linked(&mut self, left: Expr, link: Link, row: u32) -> Expr {
+        let span = left.span.to(link.operand.span);
+        let height = left.height.max(link.operand.height);
+        if row <= ROW_OF_NODES {
+            let kind = ExprKind::Binary(link.operator, Box::new(left), Box::new(link.operand));
+            return self.node(kind, span, height);
+        }
+        let below = link.operand.height + (CHAIN_HEIGHT - 1);
+        match left.kind {
+            ExprKind::Chain(first, mut links) if row > ROW_OF_NODES + 1 => {
+                links.push(link);
+                let kind = ExprKind::Chain(first, links);
+                // Its own levels are counted already.
+                if below < left.height {
+                    return Expr { kind, span, height: left.height };
+                }
+                self.node(kind, span, below)
+            }
+            kind => {
+                let below = below.max(left.height + (CHAIN_HEIGHT - 1));
+                let first = Expr { kind, ..left };
+                self.node(ExprKind::Chain(Box::new(first), vec![link]), span, below)
+            }
+        }
     }
 
     fn peek_operator(&self) -> Option<BinaryOp> {
@@ -334,7 +366,9 @@ impl Cursor<'_> {
         match value {
             Ok(literal) => ExprKind::Literal(literal),
             Err(message) => {
-                self.report(Diagnostic::error(Code::InvalidLiteral, span, message));
+                let help = missing_unit(self.text(span.start, span.end));
+                let found = Diagnostic::error(Code::InvalidLiteral, span, message);
+                self.report(found.with_optional_help(help));
                 ExprKind::Error
             }
         }
@@ -355,7 +389,7 @@ impl Cursor<'_> {
         if height >= MAX_HEIGHT {
             let message = format!("expression is nested or chained beyond {MAX_HEIGHT} levels");
             let help = "assign parts of it to variables first";
-            self.report(Diagnostic::error(Code::NestingTooDeep, span, message).with_help(help));
+            self.report_too_high(Diagnostic::error(Code::NestingTooDeep, span, message).with_help(help));
             return error_at(span);
         }
         Expr { kind, span, height: height + 1 }

@@ -38,7 +38,10 @@ impl Cursor<'_> {
         let result = has_result.then(|| self.type_spec()).filter(|result| !self.is_void(result));
         self.heritage(&mut object);
         self.take_mark(Punctuation::Semicolon);
-        Some(self.unit_behind_head(kind, end, (name, result, object), start))
+        let around = self.replace_result_name(result.is_some().then(|| name.text.clone()));
+        let unit = self.unit_behind_head(kind, end, (name, result, object), start);
+        self.replace_result_name(around);
+        Some(unit)
     }
 
     /// The rest of a unit: variables and members in any order, then statements.

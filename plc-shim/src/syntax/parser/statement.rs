@@ -133,7 +133,8 @@ impl Cursor<'_> {
                 Keyword::Repeat => self.repeat_statement(),
                 Keyword::Exit => self.single(StatementKind::Exit),
                 Keyword::Continue => self.single(StatementKind::Continue),
-                Keyword::Return => self.single(StatementKind::Return),
+                Keyword::Return => self.returned(),
+
                 _ => self.assignment_or_call(),
             },
             _ => self.assignment_or_call(),
@@ -195,7 +196,8 @@ impl Cursor<'_> {
         self.advance();
         let selector = self.condition(Keyword::Of);
         let mut branches = Vec::new();
-        while !matches!(self.peek(), None | Some(TokenKind::Keyword(_))) {
+        while self.at_foreign_label() || !matches!(self.peek(), None | Some(TokenKind::Keyword(_))) {
+            self.pass_foreign_label();
             let position = self.position();
             branches.push(self.case_branch());
             if self.position() == position {
@@ -221,7 +223,7 @@ impl Cursor<'_> {
             });
             self.take_mark(Punctuation::Colon);
         }
-        let body = self.statements_until(Self::at_case_label);
+        let body = self.statements_until(|cursor| cursor.at_foreign_label() || cursor.at_case_label());
         CaseBranch { labels, body }
     }
 

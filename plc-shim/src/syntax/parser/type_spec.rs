@@ -68,6 +68,9 @@ impl Cursor<'_> {
         {
             return self.listed_instances(name);
         }
+        if self.at_mark(Punctuation::LeftBracket) {
+            return self.counted_array(name);
+        }
         TypeSpecKind::Name(name)
     }
 
@@ -138,9 +141,13 @@ impl Cursor<'_> {
         }
         loop {
             let low = self.expression();
-            self.expect_mark(Punctuation::Range);
-            let high = self.expression();
-            dimensions.push(Dimension { low, high });
+            let is_count = self.at_mark(Punctuation::RightBracket) || self.at_mark(Punctuation::Comma);
+            dimensions.push(if is_count {
+                self.dimension_of(low)
+            } else {
+                self.expect_mark(Punctuation::Range);
+                Dimension { low, high: self.expression() }
+            });
             if !self.take_mark(Punctuation::Comma) {
                 break;
             }
@@ -182,8 +189,10 @@ impl Cursor<'_> {
 
     fn members_of(&mut self, end: Keyword) -> Vec<Field> {
         let mut fields = Vec::new();
+        self.name_keyword();
         while self.peek() == Some(TokenKind::Identifier) {
             self.fields(&mut fields);
+            self.name_keyword();
         }
         self.expect_keyword(end);
         fields

@@ -47,6 +47,15 @@ impl Printer {
                 self.word(" ");
                 self.expression(right);
             }
+            ExprKind::Chain(first, links) => {
+                self.expression(first);
+                for link in links {
+                    self.word(" ");
+                    self.word(link.operator.text());
+                    self.word(" ");
+                    self.expression(&link.operand);
+                }
+            }
             ExprKind::Paren(inner) => {
                 self.word("(");
                 self.expression(inner);

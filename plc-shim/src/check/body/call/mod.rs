@@ -26,7 +26,7 @@ use crate::ir::{
     StatementKind, Type, TypeTable, Unary, Variable,
 };
 use crate::syntax::Span;
-use crate::syntax::ast::{self, Call, Ident, PouKind, SectionKind};
+use crate::syntax::ast::{self, BinaryOp, Call, Ident, PouKind, SectionKind};
 
 /// The arguments of a call by the parameter they belong to.
 #[derive(Default)]
@@ -147,6 +147,9 @@ impl Body<'_, '_> {
             self.report(found.with_help(help));
             return None;
         }
+        if self.may_inherit() {
+            return None;
+        }
         let functions = self.declarations.unit_names(|kind| kind == PouKind::Function);
         let variables = self.scope.variables().iter().map(|variable| variable.name.as_str());
         let standard: Vec<&str> = form::names().collect();
@@ -155,7 +158,7 @@ impl Body<'_, '_> {
         let help = self.declarations.elsewhere(name).or(help);
         let message = format!("there is no function or instance `{}`", name.text);
         let found = Diagnostic::error(Code::UnknownFunction, name.span, message);
-        self.report(found.with_optional_help(help));
+        self.declarations.report_name(self.pou, name, found.with_optional_help(help));
         None
     }
 
@@ -217,6 +220,10 @@ impl Body<'_, '_> {
                     if scope.has_broken() {
                         return None;
                     }
+                    if self.report_compared_parameter(scope, expr) {
+                        sound = false;
+                        continue;
+                    }
                     if let Some(variable) = scope.positional().nth(index) {
                         (variable.name.to_ascii_uppercase(), expr.span, expr)
                     } else {
@@ -254,6 +261,24 @@ impl Body<'_, '_> {
         sound.then_some(matched)
     }
 
+    /// Reports `t(IN = q)`, which is a comparison with what the caller does not know.
+    fn report_compared_parameter(&mut self, scope: &Scope, expr: &ast::Expr) -> bool {
+        let ast::ExprKind::Binary(BinaryOp::Equal, left, _) = &expr.kind else { return false };
+        let ast::ExprKind::Name(name) = &left.kind else { return false };
+        let key = name.key();
+        let parameter = |found: &Variable| match found.section {
+            SectionKind::Input | SectionKind::InOut => Some(":="),
+            SectionKind::Output => Some("=>"),
+            _ => None,
+        };
+        let known = self.scope.declares(&key) || self.declarations.global_key(&key).is_some();
+        let Some(sign) = scope.own(&key).and_then(parameter).filter(|_| !known) else { return false };
+        let message = format!("`{} =` compares, it gives nothing to the parameter", name.text);
+        let found = Diagnostic::error(Code::InvalidArgument, expr.span, message);
+        self.report(found.with_help(format!("write `{} {sign}`", name.text)));
+        true
+    }
+
     fn has_parameter(
         &mut self,
         scope: &Scope,
@@ -263,7 +288,7 @@ impl Body<'_, '_> {
     ) -> Option<Variable> {
         let known = |variable: &&Variable| accepts(variable) && self.declarations.is_called_so(variable, name);
         let found = scope.own(&name.key()).filter(known);
-        if found.is_none() && !scope.is_broken(&name.key()) {
+        if found.is_none() && !scope.may_have(&name.key()) {
             let names = scope.variables().iter().filter(|variable| accepts(variable));
             let help = did_you_mean(&name.text, names.map(|variable| variable.name.as_str()));
             let message = format!("`{callee}` has no such parameter `{}`", name.text);
@@ -306,7 +331,7 @@ impl Body<'_, '_> {
             self.outputs(&matched.outputs, |variable, span| Place::whole(variable.storage, variable.ty, span));
         let mut after = passing.after;
         after.extend(outputs?);
-        if !sound {
+        if !sound || self.declarations.lacks_result(id) {
             return None;
         }
         // A function without a result (3rd ed. 6.6.2.2) can only be called as a statement.

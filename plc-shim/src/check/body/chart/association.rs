@@ -79,7 +79,7 @@ impl Body<'_, '_> {
     fn boolean_action(&mut self, association: &Association) -> Option<Place> {
         let name = &association.action;
         if !self.scope.declares(&name.key()) && self.declarations.global_key(&name.key()).is_none() {
-            let class = self.own_class()?;
+            let class = self.own_class().filter(|class| !self.declarations.may_inherit(*class))?;
             let members = self.declarations.member_names(class);
             let variables = self.scope.variables().iter().filter(|each| each.ty == ElementaryType::Bool.into());
             let names = variables.filter(|each| !each.of_chart).map(|each| each.name.as_str());

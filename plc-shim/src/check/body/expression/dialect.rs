@@ -150,7 +150,19 @@ impl Body<'_, '_> {
         right: &ast::Expr,
         span: Span,
     ) -> Option<Operand> {
-        let (left, right) = (self.condition(left), self.condition(right));
+        let left = self.condition(left);
+        self.short_circuited(operator, left, right, span)
+    }
+
+    /// The same, of a left side that has been checked.
+    pub(super) fn short_circuited(
+        &mut self,
+        operator: BinaryOp,
+        left: Option<Expr>,
+        right: &ast::Expr,
+        span: Span,
+    ) -> Option<Operand> {
+        let right = self.condition(right);
         let (left, right) = (left?, right?);
         let known = constant(Value::Bool(operator == BinaryOp::OrElse), E::Bool, span);
         let parts = if operator == BinaryOp::AndThen { [left, right, known] } else { [left, known, right] };

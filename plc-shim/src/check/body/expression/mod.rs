@@ -1,6 +1,7 @@
 //! Expressions (2nd ed. 3.3.1).
 
 pub(super) mod calendar;
+mod chain;
 pub(super) mod constant;
 pub(super) mod convert;
 pub(super) mod dialect;
@@ -36,6 +37,7 @@ impl Body<'_, '_> {
                 let (left, right) = self.within(context, |body| (body.expression(left), body.expression(right)));
                 self.binary(*operator, left?, right?, expr.span)
             }
+            ast::ExprKind::Chain(first, links) => self.row_of_operators(first, links, expr.span),
             ast::ExprKind::Call(call) => {
                 let result = self.call_expression(call, expr.span)?;
                 Some(self.referred_result(result))

@@ -92,6 +92,7 @@ impl Body<'_, '_> {
         if let Operand::Typed(expr) = &value
             && let Type::FunctionBlock { pou, .. } = self.declarations.types().get(expr.ty)
             && self.declarations.class(*pou).is_none_or(|class| class.type_id.is_none())
+            && !self.declarations.may_be_more(*pou)
         {
             // An instance without a number implements nothing.
             let found = self.type_name(expr.ty);

@@ -82,6 +82,9 @@ impl Body<'_, '_> {
     }
 
     fn unknown_method<T>(&mut self, class: PouId, name: &Ident) -> Option<T> {
+        if self.declarations.may_inherit(class) {
+            return None;
+        }
         let names = self.declarations.member_names(class);
         let help = crate::diagnostic::did_you_mean(&name.text, names.iter().map(String::as_str));
         let message = format!("{} has no method `{}`", self.declarations.pou(class).ast().name.text, name.text);
@@ -208,6 +211,9 @@ impl Body<'_, '_> {
         let scope = self.declarations.interface(method, span)?;
         let name = self.declarations.pou(method).ast().name.text.clone();
         let (pou, dispatch) = self.dispatch(object.class, object.known, role, &name, method, span)?;
+        if self.declarations.lacks_result(method) {
+            return None;
+        }
         let ty = scope.result().map_or(TypeTable::nothing(), |result| result.ty);
         let aggregate = scope.result().is_some() && self.elementary(ty).is_none();
         let result = if aggregate { Some(self.temporary(ty, span)?) } else { None };
@@ -232,6 +238,9 @@ impl Body<'_, '_> {
     ) -> Option<(PouId, Dispatch)> {
         if matches!(known, Known::Exactly | Known::Super) {
             if self.declarations.is_prototype(method) {
+                if self.declarations.may_inherit(class) {
+                    return None;
+                }
                 let message = format!("`{}` is ABSTRACT and has no statements", self.declarations.display_name(method));
                 self.report(Diagnostic::error(Code::AbstractInstance, span, message));
                 return None;

@@ -22,6 +22,11 @@ impl Body<'_, '_> {
         (self.declarations.pou(id).ast().kind != PouKind::Function).then_some(id)
     }
 
+    /// True where a name may be that of an unknown base.
+    pub(super) fn may_inherit(&self) -> bool {
+        self.own_class().is_some_and(|class| self.declarations.may_inherit(class))
+    }
+
     pub(super) fn is_this(&self, name: &Ident) -> bool {
         name.key() == "THIS" && !self.scope.declares("THIS")
     }
@@ -51,6 +56,9 @@ impl Body<'_, '_> {
     }
 
     fn no_object<T>(&mut self, word: &str, span: Span) -> Option<T> {
+        if self.may_inherit() {
+            return None;
+        }
         let message = match word {
             "THIS" => "THIS is used where no instance runs".to_owned(),
             _ => format!("{word} is used in what extends nothing"),

@@ -18,7 +18,7 @@ use crate::ir::{
     Dimension, ElementaryType, Expr, ExprKind, Location, Part, Place, Step, Storage, Type, TypeId, Variable,
 };
 use crate::syntax::Span;
-use crate::syntax::ast::{self, Ident, ReferenceKind, SectionKind};
+use crate::syntax::ast::{self, Ident, PouKind, ReferenceKind, SectionKind};
 use crate::syntax::direct_address::Area;
 
 /// Who may write to a place.
@@ -278,18 +278,52 @@ impl Body<'_, '_> {
     }
 
     fn report_unknown<T>(&mut self, name: &Ident) -> Option<T> {
+        if self.may_inherit() {
+            return None;
+        }
+        if let Some(found) = self.type_for_instance(name) {
+            self.report(found);
+            return None;
+        }
         let own = self.scope.variables().iter().map(|variable| variable.name.as_str());
         let globals = self.declarations.global_names();
         let help = did_you_mean(&name.text, own.chain(globals));
         let help = self.declarations.elsewhere(name).or(help);
+        let other_branch = || "in a CASE all other values come behind `ELSE`".to_owned();
+        let help = help.or_else(|| (name.key() == "DEFAULT").then(other_branch));
         let message = format!("`{}` is not declared", name.text);
         let found = Diagnostic::error(Code::UnknownName, name.span, message);
-        self.report(found.with_optional_help(help));
+        self.declarations.report_name(self.pou, name, found.with_optional_help(help));
         None
+    }
+
+    /// What is wrong with the name of a type, block or function where a variable is wanted.
+    fn type_for_instance(&self, name: &Ident) -> Option<Diagnostic> {
+        let (key, text) = (name.key(), &name.text);
+        let kind = self.declarations.pou_named(&key).map(|id| self.declarations.pou(id).ast().kind);
+        let (message, help) = match kind {
+            Some(kind) if kind.has_instances() && kind != PouKind::Program => {
+                let instance = format!("{}_1", text.to_ascii_lowercase());
+                let what = if kind == PouKind::Class { "class" } else { "function block" };
+                let help = format!("declare an instance, `{instance} : {text};`, and write `{instance}` here");
+                (format!("`{text}` is a {what}, not an instance"), help)
+            }
+            Some(PouKind::Function) => {
+                (format!("`{text}` is a function, not a variable"), format!("call it as `{text}(..)`"))
+            }
+            Some(_) => return None,
+            None => {
+                self.declarations.type_key(&key)?;
+                let help = format!("declare a variable of the type, `: {text};`");
+                (format!("`{text}` is a type, not a variable"), help)
+            }
+        };
+        Some(Diagnostic::error(Code::NotAVariable, name.span, message).with_help(help))
     }
 
     fn member(&mut self, base: Located, name: &Ident, span: Span) -> Option<Located> {
         match self.declarations.types().get(base.place.ty).clone() {
+            Type::Struct { .. } if self.declarations.is_unmade(base.place.ty) => None,
             Type::Struct { fields, .. } => {
                 let field = fields.iter().find(|field| field.name.eq_ignore_ascii_case(&name.text));
                 let Some(field) = field else {
@@ -302,6 +336,7 @@ impl Body<'_, '_> {
             }
             Type::FunctionBlock { pou, .. } => self.instance_member(base, pou, name, span),
             Type::Elementary(_) if self.is_constant(name) => self.named_bit(base, name, span),
+            Type::Interface { pou, .. } if self.declarations.may_inherit(pou) => None,
             Type::Interface { name: interface, pou } => {
                 let message = format!("{interface} has no method or property `{}`", name.text);
                 let known = self.declarations.member_names(pou);
@@ -336,6 +371,9 @@ impl Body<'_, '_> {
         let Some(variable) = found else {
             if let Some(found) = self.not_a_variable(pou, name) {
                 return found;
+            }
+            if self.declarations.may_inherit(pou) {
+                return None;
             }
             let open = |variable: &&Variable| matches!(variable.section, SectionKind::Input | SectionKind::Output);
             let names = scope.variables().iter().filter(open).map(|variable| variable.name.as_str());

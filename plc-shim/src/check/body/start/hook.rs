@@ -69,6 +69,10 @@ impl<'a> Body<'_, 'a> {
     /// The arguments with the names of what they are for.
     fn named(&mut self, init: PouId, given: Given<'a>, span: Span) -> Option<Vec<Named>> {
         let scope = self.declarations.interface(init, span)?;
+        // With an input whose declaration is wrong nothing can be counted.
+        if scope.has_broken() {
+            return None;
+        }
         let mut own = scope.positional().skip(INIT_INPUTS.len());
         let mut named = Vec::new();
         for argument in given {

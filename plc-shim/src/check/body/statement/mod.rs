@@ -104,6 +104,11 @@ impl Body<'_, '_> {
         self.expression_of(expr, ElementaryType::Bool)
     }
 
+    /// A BOOL, of an operand that has been checked.
+    pub(in crate::check::body) fn truth_of(&mut self, operand: Operand) -> Option<Expr> {
+        self.coerce(operand, ElementaryType::Bool.into())
+    }
+
     pub(in crate::check) fn assign(&mut self, target: &ast::Expr, value: &ast::Expr, span: Span) -> Option<Statement> {
         if let Some(set) = self.property_assignment(target, value, span) {
             return set;
