@@ -52,3 +52,4 @@ mod string_expressions;
 mod strings;
 mod subranges;
 mod unions;
+mod vendor;
