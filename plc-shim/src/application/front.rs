@@ -8,7 +8,7 @@ use crate::check::{Checked, check};
 use crate::diagnostic::{Diagnostic, Severity};
 use crate::input::Input;
 use crate::syntax::ast::{CompilationUnit, Configuration, Declaration};
-use crate::syntax::{FileId, SourceFile, SourceMap, parse_source};
+use crate::syntax::{FileId, SourceMap, parse_source};
 
 /// What is known of files once they have been checked.
 pub(crate) struct Front {
@@ -63,8 +63,8 @@ impl Parsed {
             findings.extend(input.add_to(&mut sources));
         }
         let needed = library::for_program(sources.iter().map(|(_, file)| file));
-        for (name, text) in needed {
-            library.insert(sources.add(SourceFile::new(name, text)));
+        for file in needed {
+            library.insert(sources.add(file));
         }
         let mut units = Vec::new();
         for (id, file) in sources.iter() {

@@ -1,7 +1,8 @@
 //! The standard function blocks (2nd ed. 2.5.2.3), some functions, and PLCopen's motion blocks, as program text
 //! like any other.
 
-use super::vendor_library;
+use super::vendor_library::{self, Part};
+use crate::dialect::Dialect;
 use crate::syntax::token::{Keyword, Punctuation, TokenKind};
 use crate::syntax::{SourceFile, tokenize};
 
@@ -48,13 +49,15 @@ pub(crate) const MOTION: [(&str, &str); 15] = [
 ];
 
 /// The library for a program of these files: nobody pays for motion control or asserts but who uses them.
-pub(crate) fn for_program<'s>(files: impl Iterator<Item = &'s SourceFile>) -> Vec<(&'static str, &'static str)> {
-    let texts: Vec<_> = files.map(SourceFile::text).collect();
-    let axis = texts.iter().filter_map(|text| axis_in(text)).max();
+pub(crate) fn for_program<'s>(files: impl Iterator<Item = &'s SourceFile>) -> Vec<SourceFile> {
+    let texts: Vec<(&str, Dialect)> = files.map(|file| (&**file.text(), file.dialect())).collect();
+    let axis = texts.iter().filter_map(|(text, _)| axis_in(text)).max();
     let motion: &[_] = if axis == Some(Axis::Used) { &MOTION } else { &[] };
     let vendors = vendor_library::for_texts(&texts, !motion.is_empty());
-    let asserts = texts.iter().any(|text| mentions_assert(text)).then_some(&ASSERTS);
-    FILES.iter().chain(motion).chain(asserts).copied().chain(vendors).collect()
+    let asserts = texts.iter().any(|(text, _)| mentions_assert(text)).then_some(&ASSERTS);
+    let own = FILES.iter().chain(motion).chain(asserts).map(|(name, text)| (*name, *text, Dialect::default()));
+    let vendors = vendors.into_iter().map(|Part { name, text, dialect, .. }| (name, text, dialect));
+    own.chain(vendors).map(|(name, text, dialect)| SourceFile::new(name, text).in_dialect(dialect)).collect()
 }
 
 /// What a file has to do with the type of an axis.

@@ -39,6 +39,7 @@ pub(crate) use self::declare::{
     CALL_DEPTH_OFFSET, INIT_RETAINS_OFFSET, Kept, Overrides, VIRTUAL_TIME_NAME, VIRTUAL_TIME_OFFSET,
 };
 pub(crate) use self::standard::exists as is_standard_function;
+pub(crate) use self::standard::vendor::is_qualified_only;
 
 /// The checked program.
 #[derive(Debug)]

@@ -270,6 +270,7 @@ features! {
     GenericInputs "an input of type `ANY`, `ANY_NUM` and the like",
     IntegerShifts "a shift or rotation of an integer",
     ClockFunctions "`TIME()`, `LTIME()`",
+    OwnStandardBlocks "an own block with the name of a standard one",
     QuotedNames "names as `#local` and `\"global\"`",
     Blocks "`ORGANIZATION_BLOCK`, `DATA_BLOCK`",
     InstanceInternals "an instance's `VAR` written from outside",

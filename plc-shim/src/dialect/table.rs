@@ -52,6 +52,11 @@ pub const FEATURES: &[FeatureRow] = &[
     row(Feature::GenericInputs, &[Codesys, TwinCat], "CODESYS and TwinCAT: data types ANY and ANY_<type>"),
     row(Feature::IntegerShifts, &[Codesys, TwinCat, SiemensScl], "CODESYS V2.3, TwinCAT 2: SHR; TIA Portal: SHR, ROR"),
     row(Feature::ClockFunctions, &[Codesys, TwinCat], "CODESYS and TwinCAT: operators TIME, LTIME"),
+    row(
+        Feature::OwnStandardBlocks,
+        &[Codesys, TwinCat],
+        "CODESYS and TwinCAT: a project's own objects go before those of libraries",
+    ),
     row(Feature::QuotedNames, &[SiemensScl], "S7-1200 System Manual: SCL, addressing of tags"),
     row(Feature::Blocks, &[SiemensScl], "TIA Portal: external source files, SCL"),
     row(Feature::InstanceInternals, &[SiemensScl], "TIA Portal: addressing instance data blocks"),

@@ -8,6 +8,7 @@
 //! | `machine` | the compiled module with its memory |
 //! | `row` | the programs of a task as one call |
 //! | `fault` | a trap as an error in the source |
+//! | `task_info` | what programs read about their task |
 //! | `soft_plc` | the PLC itself |
 //! | `force` | variables that keep a value, reading and writing by path |
 //! | `asserts` | what the asserts of a test program have found |
@@ -25,6 +26,7 @@ mod row;
 mod scheduler;
 mod soft_plc;
 mod state;
+mod task_info;
 pub(crate) mod text;
 mod trace;
 mod way;

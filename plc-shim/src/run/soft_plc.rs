@@ -11,6 +11,7 @@ use super::machine::{Machine, Occasion, Trapped};
 use super::plan::{Resolved, RunError, TaskPlan, resolve};
 use super::scheduler::Scheduler;
 use super::state::{CodePolicy, Decoder, Meaning, RestoreError, State};
+use super::task_info::TaskInfo;
 use super::trace::{Trace, Watched};
 use super::way::WayId;
 use crate::application::{Application, UnknownVariable, Variable};
@@ -41,6 +42,7 @@ pub struct SoftPlc {
     /// What each scan runs at its end.
     background: Vec<usize>,
     is_triggered: bool,
+    task_info: Option<TaskInfo>,
     plan: TaskPlan,
     /// Made when a state is saved or restored first.
     meaning: OnceLock<Meaning>,
@@ -76,6 +78,7 @@ impl SoftPlc {
             tasks,
             background,
             is_triggered: singles.iter().any(Option::is_some),
+            task_info: TaskInfo::find(application, plan),
             plan: plan.clone(),
             meaning: OnceLock::new(),
             now: VirtualTime::default(),
@@ -173,11 +176,13 @@ impl SoftPlc {
         self.scheduler.look(now, self.machine.memory());
         while let Some(task) = self.scheduler.take_due(now) {
             self.begin_task().map_err(|trapped| self.stop(&trapped))?;
+            self.enter(Some(task));
             self.run_task(task)?;
             self.scheduler.look(now, self.machine.memory());
         }
         for at in 0..self.background.len() {
             self.begin_task().map_err(|trapped| self.stop(&trapped))?;
+            self.enter(None);
             self.run_entry(self.background[at])?;
         }
         Ok(())
@@ -188,6 +193,14 @@ impl SoftPlc {
         let time = self.now.as_nanos().to_le_bytes();
         copy_to(self.machine.memory_mut(), VIRTUAL_TIME_OFFSET as usize, &time);
         self.machine.refuel(self.plan.fuel_per_task)
+    }
+
+    /// Tells the programs which task runs them, if they ask.
+    fn enter(&mut self, task: Option<usize>) {
+        if let Some(info) = &self.task_info {
+            info.enter(task, self.now, self.machine.memory_mut());
+            self.apply_forces();
+        }
     }
 
     fn run_task(&mut self, task: usize) -> Result<(), PlcFault> {

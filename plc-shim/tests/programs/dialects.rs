@@ -59,6 +59,9 @@ fn use_of(feature: Feature) -> &'static str {
         }
         Feature::IntegerShifts => "PROGRAM P VAR i : INT; END_VAR i := SHR(i, 1); END_PROGRAM",
         Feature::ClockFunctions => "PROGRAM P VAR t : TIME; END_VAR t := TIME(); END_PROGRAM",
+        Feature::OwnStandardBlocks => {
+            "FUNCTION_BLOCK SR VAR_INPUT a : INT; END_VAR END_FUNCTION_BLOCK PROGRAM P VAR f1 : SR; END_VAR f1(a := 1); END_PROGRAM"
+        }
         Feature::QuotedNames => "PROGRAM P VAR a : INT; END_VAR a := #a + 1; END_PROGRAM",
         Feature::Blocks => "ORGANIZATION_BLOCK P VAR_TEMP a : INT; END_VAR BEGIN a := 1; END_ORGANIZATION_BLOCK",
         Feature::InstanceInternals => {
@@ -112,7 +115,8 @@ fn every_construct_is_for_its_dialects_alone() {
 }
 
 /// Constructs whose absence is no syntax of its own: another error says it.
-const TOLD_OTHERWISE: [Feature; 24] = [
+const TOLD_OTHERWISE: [Feature; 25] = [
+    Feature::OwnStandardBlocks,
     Feature::LeftOutInputs,
     Feature::LooseStrings,
     Feature::WindowsCharacters,

@@ -95,7 +95,7 @@ fn what_no_vendor_s_runtime_has_here_is_told() {
         __CATCH(exc)
             a := 0;
         __ENDTRY
-        p := SysTimeGetMs();
+        p := TIME_TCK();
         IF a > 3 THEN JMP ende; END_IF
         a := a * 2;
         ende: a := a - 1;

@@ -58,3 +58,4 @@ mod string_memory;
 mod strings;
 mod subranges;
 mod unions;
+mod vendor;

@@ -121,6 +121,7 @@ pub(super) struct GlobalEntry<'a> {
 pub(in crate::check) struct Enumerator {
     pub(in crate::check) ty: TypeId,
     pub(in crate::check) value: i128,
+    pub(in crate::check) of_library: bool,
 }
 
 /// What the runtime provides.

@@ -125,7 +125,7 @@ impl<'a> Declarations<'a> {
             let own = resource.and_then(|index| alternatives.by_resource.get(&index));
             return own.or(alternatives.shared.as_ref()).cloned();
         }
-        let key = self.open_globals.get(key).map_or(key, String::as_str);
+        let key = self.open.globals.get(key).map_or(key, String::as_str);
         let entry = self.globals.get(key)?;
         (entry.home.is_none() || entry.home == resource).then(|| key.to_owned())
     }

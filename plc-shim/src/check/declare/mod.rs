@@ -38,6 +38,7 @@ use self::findings::Findings;
 use self::global::Alternatives;
 use self::layout::Memory;
 use self::located::Initial;
+use self::namespace::OpenNames;
 use self::start::Stages;
 use crate::check::types::generic::Generic;
 use crate::dialect::{AddressUnit, Dialect};
@@ -82,8 +83,7 @@ pub(super) struct Declarations<'a> {
     home: Arc<Home>,
     /// Names of namespaces by their keys.
     namespaces: BTreeMap<String, String>,
-    /// Full keys of global variables that are known without their list's name.
-    open_globals: BTreeMap<String, String>,
+    open: OpenNames,
     classes: BTreeMap<PouId, Class>,
     /// Names that a method or action has in some unit, and those of properties.
     method_names: BTreeSet<String>,
@@ -145,7 +145,7 @@ impl<'a> Declarations<'a> {
             pou_names: BTreeMap::new(),
             home: Arc::default(),
             namespaces: BTreeMap::new(),
-            open_globals: BTreeMap::new(),
+            open: OpenNames::default(),
             classes: BTreeMap::new(),
             method_names: BTreeSet::new(),
             property_names: BTreeSet::new(),

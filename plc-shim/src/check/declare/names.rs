@@ -21,7 +21,8 @@ impl<'a> Declarations<'a> {
             && let Some(user) = self.declared_at(&ast.name)
         {
             // Functions of the 3rd edition are younger than many programs, whose own go before.
-            if ast.kind != ast::PouKind::Function {
+            let may_be_own = self.dialect(user).has(Feature::OwnStandardBlocks);
+            if ast.kind != ast::PouKind::Function && !may_be_own {
                 self.report_reserved(&ast.name, user);
             }
             return;
@@ -34,7 +35,11 @@ impl<'a> Declarations<'a> {
             return;
         }
         let id = self.add_pou(ast, None);
-        self.pou_names.insert(self.home.key(&ast.name), id);
+        let key = self.home.key(&ast.name);
+        if self.home.open {
+            self.open.units.entry(ast.name.key()).or_insert_with(|| key.clone());
+        }
+        self.pou_names.insert(key, id);
         let mut class = Class::default();
         for member in &ast.object.members {
             let role = member.kind.into();
@@ -83,7 +88,11 @@ impl<'a> Declarations<'a> {
         if !self.is_taken(&ast.name) {
             let (home, progress) = (self.home.clone(), Progress::Untouched);
             let entry = TypeEntry { ast, home, progress, reserved: None, resolved: None };
-            self.type_names.insert(self.home.key(&ast.name), entry);
+            let key = self.home.key(&ast.name);
+            if self.home.open {
+                self.open.types.entry(ast.name.key()).or_insert_with(|| key.clone());
+            }
+            self.type_names.insert(key, entry);
         }
     }
 
@@ -92,6 +101,9 @@ impl<'a> Declarations<'a> {
             for name in &variable.names {
                 let key = self.home.key(name);
                 if let Some(first) = self.globals.get(&key) {
+                    if self.library.contains(&name.span.file) {
+                        continue;
+                    }
                     let first = first.ast.map(|_| first.span);
                     self.report_duplicate(name, first);
                     continue;
@@ -106,7 +118,7 @@ impl<'a> Declarations<'a> {
                     home: None,
                 };
                 if self.home.open {
-                    self.open_globals.entry(name.key()).or_insert_with(|| key.clone());
+                    self.open.globals.entry(name.key()).or_insert_with(|| key.clone());
                 }
                 self.globals.insert(key, entry);
             }

@@ -13,8 +13,37 @@ use crate::ir::PouId;
 use crate::syntax::Span;
 use crate::syntax::ast::{CompilationUnit, Declaration, Ident, Modifier, Namespace, NamespaceKind};
 
-/// Libraries of vendors that hold what the standard defines; their names may stand before it.
-const STANDARD_LIBRARIES: [&str; 4] = ["STANDARD", "TC2_STANDARD", "STANDARD64", "IEC61131_STANDARD"];
+/// Libraries of vendors; their names may stand before what they hold, which is known without that.
+const LIBRARIES: [&str; 20] = [
+    "STANDARD",
+    "STANDARD64",
+    "IEC61131_STANDARD",
+    "UTIL",
+    "CAA",
+    "CMPERRORS",
+    "SYSTYPES",
+    "SYSTIME",
+    "SYSTIMECORE",
+    "SYSTIMERTC",
+    "SYSMEM",
+    "SYSFILE",
+    "SYSDIR",
+    "GLOBAL",
+    "TC2_STANDARD",
+    "TC2_SYSTEM",
+    "TC2_UTILITIES",
+    "TC2_MC2",
+    "TC3_MODULE",
+    "TC3_EVENTLOGGER",
+];
+
+/// Full keys of what is known without its namespace, by names.
+#[derive(Default)]
+pub(super) struct OpenNames {
+    pub(super) units: BTreeMap<String, String>,
+    pub(super) types: BTreeMap<String, String>,
+    pub(super) globals: BTreeMap<String, String>,
+}
 
 /// Where something is declared, and so what it sees.
 #[derive(Debug, Default, PartialEq, Eq)]
@@ -119,7 +148,7 @@ impl<'a> Declarations<'a> {
     fn check_using(&mut self, name: &Ident) {
         let key = name.key();
         // A vendor's library is named where it is used, and is known without that.
-        if self.namespaces.contains_key(&key) || STANDARD_LIBRARIES.contains(&key.as_str()) {
+        if self.namespaces.contains_key(&key) || LIBRARIES.contains(&key.as_str()) {
             return;
         }
         let help = did_you_mean(&name.text, self.namespaces.values().map(String::as_str));
@@ -154,21 +183,66 @@ impl<'a> Declarations<'a> {
     }
 
     pub(in crate::check) fn type_key(&self, key: &str) -> Option<String> {
-        self.full_key(&self.type_names, key)
+        let of_library = |key: &String| self.is_library_type(key);
+        self.known_key(&self.type_names, &self.open.types, of_library, key)
     }
 
     pub(in crate::check) fn global_key(&self, key: &str) -> Option<String> {
-        self.full_key(&self.globals, key).or_else(|| self.open_globals.get(key).cloned())
+        let span = |key: &String| self.globals.get(key).map(|entry| entry.span);
+        let of_library = |key: &String| span(key).is_some_and(|span| self.library.contains(&span.file));
+        self.known_key(&self.globals, &self.open.globals, of_library, key)
     }
 
     pub(in crate::check) fn pou_named(&self, key: &str) -> Option<PouId> {
-        let full = self.full_key(&self.pou_names, key);
-        if let Some(found) = full.and_then(|full| self.pou_names.get(&full)) {
-            return Some(*found);
+        let of_library = |key: &String| self.pou_names.get(key).is_some_and(|id| self.is_library(*id));
+        let full = self.known_key(&self.pou_names, &self.open.units, of_library, key)?;
+        self.pou_names.get(&full).copied()
+    }
+
+    /// The full key of what a name means here: in its namespaces, then in those that are open, then, with the name of
+    /// a vendor's library before it, what there is of libraries.
+    fn known_key<T>(
+        &self,
+        map: &BTreeMap<String, T>,
+        open: &BTreeMap<String, String>,
+        of_library: impl Fn(&String) -> bool,
+        key: &str,
+    ) -> Option<String> {
+        let taken = self.pou_names.contains_key(key) || self.type_names.contains_key(key);
+        let opened = || open.get(key).filter(|full| !taken || !of_library(full)).cloned();
+        let found = self.full_key(map, key).or_else(opened);
+        if found.is_some() || !key.contains('.') {
+            return found;
         }
-        let (library, name) = key.split_once('.')?;
-        let found = self.pou_names.get(name).copied().filter(|_| STANDARD_LIBRARIES.contains(&library))?;
-        self.is_library(found).then_some(found)
+        let name = self.without_libraries(key)?.to_owned();
+        let open = open.get(&name).cloned();
+        open.into_iter().chain([name]).find(|full| map.contains_key(full) && of_library(full))
+    }
+
+    /// What stands behind the names of vendors' libraries; nothing if none stands before it.
+    pub(in crate::check) fn without_libraries<'k>(&self, key: &'k str) -> Option<&'k str> {
+        let mut name = key;
+        while let Some((first, rest)) = name.split_once('.')
+            && self.is_vendor_library(first)
+        {
+            name = rest;
+        }
+        (name.len() < key.len()).then_some(name)
+    }
+
+    /// A name without those of vendors' libraries before it.
+    pub(in crate::check) fn behind_libraries(&self, name: &Ident) -> Ident {
+        match self.without_libraries(&name.text) {
+            Some(rest) => Ident { text: rest.to_owned(), ..name.clone() },
+            None => name.clone(),
+        }
+    }
+
+    /// True for the name of a vendor's library, in any case, unless the program has something of the name.
+    fn is_vendor_library(&self, name: &str) -> bool {
+        let known = LIBRARIES.iter().any(|library| library.eq_ignore_ascii_case(name));
+        let key = name.to_ascii_uppercase();
+        known && !self.globals.contains_key(&key) && !self.pou_names.contains_key(&key)
     }
 
     /// How to name what is declared in a namespace that is not seen from here.
@@ -216,7 +290,7 @@ impl<'a> Declarations<'a> {
                 around = around.rsplit_once('.').map_or("", |(outer, _)| outer);
             }
         };
-        let library = key.split_once('.').is_some_and(|(first, _)| STANDARD_LIBRARIES.contains(&first));
+        let library = self.is_vendor_library(key.split_once('.').map_or(key, |(first, _)| first));
         library || key.match_indices('.').any(|(at, _)| known(&key[..at])) || known(key)
     }
 }

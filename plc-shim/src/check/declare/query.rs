@@ -59,6 +59,11 @@ impl<'a> Declarations<'a> {
         self.type_span(key).is_some_and(|span| self.library.contains(&span.file))
     }
 
+    /// True for a place in a file of the library.
+    pub(in crate::check) fn is_in_library(&self, span: Span) -> bool {
+        self.library.contains(&span.file)
+    }
+
     /// The names of all types, as written.
     pub(in crate::check) fn type_names(&self) -> impl Iterator<Item = &str> {
         self.type_names.values().map(|entry| entry.ast.name.text.as_str())
@@ -93,8 +98,15 @@ impl<'a> Declarations<'a> {
         self.enumerators.get(key).map_or(&[], Vec::as_slice)
     }
 
+    /// Makes a value known by its name alone. One of a user's enumerations goes before those of libraries.
     pub(in crate::check) fn add_enumerator(&mut self, name: &str, enumerator: Enumerator) {
-        self.enumerators.entry(name.to_ascii_uppercase()).or_default().push(enumerator);
+        let known = self.enumerators.entry(name.to_ascii_uppercase()).or_default();
+        if !enumerator.of_library {
+            known.retain(|each| !each.of_library);
+        } else if known.iter().any(|each| !each.of_library) {
+            return;
+        }
+        known.push(enumerator);
     }
 
     /// Makes room in an area of direct addresses.

@@ -5,6 +5,7 @@ use std::sync::Arc;
 use super::Written;
 use super::structure::Sharing;
 use crate::check::declare::{Enumerator, MEMORY_LIMIT, Need, StartKind, TypedImage};
+use crate::check::standard::vendor::is_qualified_only;
 use crate::check::types::generic::Generic;
 use crate::diagnostic::{Code, Diagnostic, did_you_mean};
 use crate::ir::{Dimension, ElementaryType, TypeId};
@@ -88,7 +89,10 @@ impl<'a> Written<'_, 'a> {
     /// A reference's target need not be known yet: structures refer to one another, and to themselves.
     fn reference_type(&mut self, kind: ast::ReferenceKind, target: &'a TypeSpec) -> Option<TypedImage<'a>> {
         let reserved = match &target.kind {
-            TypeSpecKind::Name(name) => self.declarations_mut().reserved(&name.key()),
+            TypeSpecKind::Name(name) => {
+                let key = self.declarations().type_key(&name.key());
+                key.and_then(|key| self.declarations_mut().reserved(&key))
+            }
             _ => None,
         };
         let target_ty = match reserved {
@@ -220,9 +224,11 @@ impl<'a> Written<'_, 'a> {
         }
         let ty = self.declarations_mut().types_mut().enumeration(name.to_owned(), base, values.clone());
         // Values of vendors' system are known by their type only: projects have values of the same names.
-        let known = if self.declarations().home().namespace == SYSTEM { Vec::new() } else { values };
+        let of_library = ast.first().is_some_and(|each| self.declarations().is_in_library(each.name.span));
+        let qualified_only = self.declarations().home().namespace == SYSTEM || of_library && is_qualified_only(name);
+        let known = if qualified_only { Vec::new() } else { values };
         for (name, value) in known {
-            self.declarations_mut().add_enumerator(&name, Enumerator { ty, value });
+            self.declarations_mut().add_enumerator(&name, Enumerator { ty, value, of_library });
         }
         Some(self.whole(ty))
     }

@@ -80,6 +80,8 @@ const LATER: &[(&str, Form)] = &[
     ("ATAN2", Form::RealPair(Intrinsic::Atan2)),
     ("FRAC", Form::Real(Intrinsic::Fraction)),
     ("IS_VALID", Form::IsValid),
+    // TIA Portal: SWAP.
+    ("SWAP", Form::SwapBytes),
     // Memory is little-endian (3rd ed. Table 37).
     ("TO_BIG_ENDIAN", Form::SwapBytes),
     ("BIG_ENDIAN_TO", Form::SwapBytes),

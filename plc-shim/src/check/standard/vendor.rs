@@ -1,4 +1,4 @@
-//! Functions of vendors' controllers that have no equal here.
+//! Functions of vendors' controllers that have no equal here, and enumerations that vendors know their own way.
 
 use crate::diagnostic::Code;
 
@@ -19,3 +19,11 @@ pub(in crate::check) const VENDOR_FUNCTIONS: [(&str, Code, &str); 14] = [
     ("__NEW", Code::VendorRuntime, "declare the instance"),
     ("__DELETE", Code::VendorRuntime, "declare the instance"),
 ];
+
+/// Enumerations of vendors' libraries (`{attribute 'qualified_only'}`).
+const QUALIFIED_ONLY: [&str; 2] = ["TcEventSeverity", "TcEventConfirmationState"];
+
+/// True for an enumeration of a library whose values are known behind its name only.
+pub(crate) fn is_qualified_only(name: &str) -> bool {
+    QUALIFIED_ONLY.iter().any(|known| known.eq_ignore_ascii_case(name))
+}

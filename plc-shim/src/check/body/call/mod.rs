@@ -65,6 +65,7 @@ impl Body<'_, '_> {
         if let Some(id) = self.function_named(name) {
             return self.function_call(id, name, call, span).map(Operand::Typed);
         }
+        let name = &self.declarations.behind_libraries(name);
         if memory::exists(&name.key()) {
             return self.memory_call(name, call, span);
         }
@@ -109,6 +110,13 @@ impl Body<'_, '_> {
     pub(super) fn function_named(&self, name: &Ident) -> Option<PouId> {
         let id = self.declarations.pou_named(&name.key())?;
         (self.declarations.pou(id).ast().kind == PouKind::Function).then_some(id)
+    }
+
+    /// True for a declared function, and for one that comes with the language behind the name of its library.
+    fn is_function(&self, name: &Ident) -> bool {
+        let key = name.key();
+        let comes = |key: &str| memory::exists(key) || PlaceFunction::find(key).is_some() || standard::exists(key);
+        self.function_named(name).is_some() || self.declarations.without_libraries(&key).is_some_and(comes)
     }
 
     /// True for what is called as a statement.
@@ -171,7 +179,7 @@ impl Body<'_, '_> {
         }
         let function = match &call.callee.kind {
             ast::ExprKind::Member(..)
-                if self.qualified_name(&call.callee).is_some_and(|name| self.function_named(&name).is_some()) =>
+                if self.qualified_name(&call.callee).is_some_and(|name| self.is_function(&name)) =>
             {
                 true
             }

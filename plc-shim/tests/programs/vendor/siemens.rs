@@ -1,0 +1,44 @@
+//! SIMATIC: scaling, date and time.
+
+use onescan_plc_shim::Dialect;
+
+use super::hold;
+
+#[test]
+fn scaling() {
+    hold(
+        Dialect::SiemensScl,
+        "r, u, b : Real; i, j : Int; w, w2, w3, w4 : Word; low : Int := -27648; raw : Int := 13824;",
+        "w := SCALE(IN := 13824, HI_LIM := 100.0, LO_LIM := 0.0, BIPOLAR := FALSE, OUT => r);
+         w2 := SCALE(IN := 30000, HI_LIM := 100.0, LO_LIM := 0.0, BIPOLAR := FALSE, OUT => u);
+         w3 := SCALE(IN := low, HI_LIM := 100.0, LO_LIM := -100.0, BIPOLAR := TRUE, OUT => b);
+         w4 := UNSCALE(IN := 50.0, HI_LIM := 100.0, LO_LIM := 0.0, BIPOLAR := FALSE, OUT => i);
+         w4 := UNSCALE(IN := 500.0, HI_LIM := 100.0, LO_LIM := 0.0, BIPOLAR := FALSE, OUT => j);",
+        &[
+            "r = 50.0 AND w = W#16#0",
+            "u = 100.0 AND w2 = W#16#8",
+            "b = -100.0 AND w3 = W#16#0",
+            "i = 13824 AND j = 27648 AND w4 = W#16#8",
+            "NORM_X(MIN := 0, VALUE := raw, MAX := 27648) = 0.5",
+            "SCALE_X(MIN := 10.0, VALUE := 0.5, MAX := 30.0) = 20.0",
+            "SCALE_X(MIN := 0.0, VALUE := NORM_X(MIN := 0, VALUE := raw, MAX := 27648), MAX := 80.0) = 40.0",
+            "SWAP(W#16#1234) = W#16#3412 AND SWAP(DW#16#12345678) = DW#16#78563412",
+        ],
+    );
+}
+
+#[test]
+fn date_and_time() {
+    hold(
+        Dialect::SiemensScl,
+        "now, local, a, b : DTL; error, error2 : Int; day : Date := D#2024-05-06; clock : Time_Of_Day := TOD#07:08:09;",
+        "error := RD_SYS_T(OUT => now); error2 := RD_LOC_T(OUT => local);
+         a := T_COMBINE(IN1 := day, IN2 := clock); b := a; b.SECOND := 4;",
+        &[
+            "error = 0 AND now.YEAR = 1970 AND now.NANOSECOND = 10000000 AND local.NANOSECOND = now.NANOSECOND",
+            "T_ADD(IN1 := T#1s, IN2 := T#500ms) = T#1s500ms AND T_SUB(IN1 := T#1s, IN2 := T#500ms) = T#500ms",
+            "a.YEAR = 2024 AND a.HOUR = 7 AND a.SECOND = 9 AND a.WEEKDAY = 2",
+            "T_DIFF(IN1 := a, IN2 := b) = T#5s",
+        ],
+    );
+}
