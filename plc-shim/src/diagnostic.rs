@@ -155,6 +155,7 @@ codes! {
     ShimNameTaken "I1003" "a name is one of the shim's",
     DamagedMarks "I1004" "marks of the shim do not fit together",
     WrittenByTwoTasks "W0707" "a variable is written by two tasks",
+    StubUsed "W0709" "a stub is called, which does nothing",
 }
 
 impl fmt::Display for Code {

@@ -131,6 +131,7 @@ const PAGES: &[(&str, &str)] = pages![
     "W0706",
     "W0707",
     "W0708",
+    "W0709",
 ];
 
 /// The page that explains `code`, as Markdown.

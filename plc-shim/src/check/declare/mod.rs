@@ -22,6 +22,7 @@ mod query;
 mod recursion;
 mod scope;
 mod start;
+mod stub;
 mod variable;
 mod vendor_parameter;
 mod visibility;
@@ -37,6 +38,7 @@ use self::global::Alternatives;
 use self::layout::Memory;
 use self::located::Initial;
 use self::start::Stages;
+use self::stub::Stubs;
 use crate::check::types::generic::Generic;
 use crate::dialect::{AddressUnit, Dialect};
 use crate::ir::{Areas, ElementaryType, PouId, Program, TypeId, TypeTable};
@@ -78,6 +80,8 @@ pub(super) struct Declarations<'a> {
     home: Arc<Home>,
     /// Names of namespaces by their keys.
     namespaces: BTreeMap<String, String>,
+    /// Keys of namespaces that are names of libraries: what they lack is looked for outside of them.
+    libraries: BTreeSet<String>,
     /// Full keys of global variables that are known without their list's name.
     open_globals: BTreeMap<String, String>,
     classes: BTreeMap<PouId, Class>,
@@ -102,6 +106,7 @@ pub(super) struct Declarations<'a> {
     generics: BTreeMap<TypeId, Generic>,
     depth: u32,
     chart_parts: Vec<(Span, String)>,
+    stubs: Stubs,
     findings: Findings,
 }
 
@@ -136,6 +141,7 @@ impl<'a> Declarations<'a> {
             pou_names: BTreeMap::new(),
             home: Arc::default(),
             namespaces: BTreeMap::new(),
+            libraries: BTreeSet::new(),
             open_globals: BTreeMap::new(),
             classes: BTreeMap::new(),
             method_names: BTreeSet::new(),
@@ -157,6 +163,7 @@ impl<'a> Declarations<'a> {
             calls: Calls::default(),
             depth: 0,
             chart_parts: Vec::new(),
+            stubs: Stubs::default(),
             findings: Findings::default(),
         }
     }

@@ -109,6 +109,9 @@ impl<'a> Declarations<'a> {
                     used.extend(&namespace.using);
                     let inner = Arc::new(home.inside(namespace));
                     self.namespaces.insert(inner.namespace.clone(), inner.shown.clone());
+                    if namespace.external {
+                        self.libraries.insert(inner.namespace.clone());
+                    }
                     self.collect_all(&namespace.declarations, &inner, used);
                     self.home = home.clone();
                 }
@@ -150,7 +153,11 @@ impl<'a> Declarations<'a> {
             namespace = namespace.rsplit_once('.').map_or("", |(around, _)| around);
         }
         let used = self.home.using.iter().map(|namespace| joined(namespace, key));
-        used.into_iter().find(|full| map.contains_key(full))
+        if let Some(found) = used.into_iter().find(|full| map.contains_key(full)) {
+            return Some(found);
+        }
+        let (library, rest) = key.split_once('.')?;
+        self.libraries.contains(library).then(|| self.full_key(map, rest))?
     }
 
     pub(in crate::check) fn type_key(&self, key: &str) -> Option<String> {

@@ -277,6 +277,7 @@ impl Body<'_, '_> {
 
     fn function_call(&mut self, id: PouId, name: &Ident, call: &Call, span: Span) -> Option<Expr> {
         self.note_call(id, span);
+        self.declarations.note_stub(id, span);
         let scope = self.declarations.interface(id, span)?;
         let matched = self.matched(&scope, &name.text, call)?;
         let named = call.arguments.iter().any(|each| !matches!(each, ast::Argument::Positional(_)));

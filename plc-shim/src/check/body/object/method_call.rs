@@ -205,6 +205,7 @@ impl Body<'_, '_> {
     ) -> Option<Expr> {
         let scope = self.declarations.interface(method, span)?;
         let name = self.declarations.pou(method).ast().name.text.clone();
+        self.declarations.note_stub(method, span);
         let (pou, dispatch) = self.dispatch(object.class, object.known, role, &name, method, span)?;
         let ty = scope.result().map_or(TypeTable::nothing(), |result| result.ty);
         let aggregate = scope.result().is_some() && self.elementary(ty).is_none();
