@@ -1,7 +1,6 @@
 //! Calls: of what is declared, whose parameters tell what their arguments are; of what is not, which they tell.
 
 use super::collect::{Collector, Found, Scope, elementary};
-use super::foreign::Signature;
 use super::names::{Access, Kind};
 use super::ty::Ty;
 use super::world::{Home, World};
@@ -38,7 +37,7 @@ impl<'a> Collector<'a> {
             if World::has_function(&key) && !self.is_variable(name, scope) {
                 return self.standard_call(&key, call, scope);
             }
-            if let Some(instance) = self.seen(name, scope) {
+            if let Some(instance) = self.seen_callable(name, scope) {
                 return self.instance_call(&instance, call, scope);
             }
         }
@@ -91,9 +90,7 @@ impl<'a> Collector<'a> {
         if let Some(found) = self.call_in_namespace(base, name, call, is_used, scope) {
             return found;
         }
-        let inside = base.names_the_object();
         let object = self.infer(base, scope);
-        let _ = inside;
         match self.slots.resolved(&object) {
             Ty::Declared(key) => match self.find(&key, &name.text) {
                 Some(Found::Method(method, home)) => self.declared_call(method, &home, call, scope),
@@ -127,9 +124,19 @@ impl<'a> Collector<'a> {
         scope: &Scope<'a>,
     ) -> Option<Ty> {
         let path = super::names::path_of(base)?;
-        let [first] = path[..] else { return None };
-        if self.seen(first, scope).is_some() {
+        if self.seen(path.first()?, scope).is_some() {
             return None;
+        }
+        let (rest, in_library) = self.behind_libraries(&path, scope);
+        let outside = Scope { home: scope.home.clone(), class: None, local: None };
+        let scope = if in_library { &outside } else { scope };
+        let first = match rest {
+            [] => return Some(self.call_of_name(name, call, is_used, scope)),
+            [first] => *first,
+            _ => return None,
+        };
+        if in_library && let Some(found) = self.seen(first, scope) {
+            return Some(self.method_on(&found, name, call, is_used, scope));
         }
         let key = first.key();
         let full = format!("{key}.{}", name.key());
@@ -146,7 +153,7 @@ impl<'a> Collector<'a> {
             if World::has_function(&name.key()) {
                 return Some(self.standard_call(&name.key(), call, scope));
             }
-            let shown = if self.world.is_library(&key) { name.text.clone() } else { format!("{}.{}", first.text, name.text) };
+            let shown = format!("{}.{}", first.text, name.text);
             return Some(self.function_call(&shown, call, is_used, scope));
         }
         let head = self.head(first, scope);
@@ -157,13 +164,7 @@ impl<'a> Collector<'a> {
                 call.arguments.iter().for_each(|argument| self.argument(argument, scope));
                 Some(Ty::Unknown)
             }
-            Some(Kind::Library) => Some(match self.world.function(&scope.home, &name.key()) {
-                Some(unit) => {
-                    let (pou, home) = (unit.pou, unit.home.clone());
-                    self.declared_call(pou, &home, call, scope)
-                }
-                None => self.function_call(&name.text, call, is_used, scope),
-            }),
+            Some(Kind::Library) => Some(self.function_call(&name.text, call, is_used, scope)),
             Some(Kind::List) => {
                 self.needs.lists.entry(key).or_insert_with(|| first.text.clone());
                 Some(self.function_call(&format!("{}.{}", first.text, name.text), call, is_used, scope))
@@ -253,7 +254,6 @@ impl<'a> Collector<'a> {
             }
             Argument::Output { name, target, .. } => {
                 let parameter = self.foreign_member(key, name, Access::Read, false);
-                self.foreign(key).member(&name.text).output = true;
                 if let Some(target) = target {
                     let target = self.place(target, Access::Write, scope);
                     self.flow(&parameter, &target);
@@ -406,9 +406,4 @@ fn named(key: &str) -> Option<Ty> {
         "WSTRING" => Some(Ty::Text(true)),
         _ => E::find(key).map(elementary),
     }
-}
-
-/// True if a signature says more than that something is called.
-pub(super) fn has_parameters(signature: &Signature) -> bool {
-    !signature.positional.is_empty() || !signature.named.is_empty() || !signature.outputs.is_empty()
 }

@@ -168,14 +168,17 @@ impl<'a> Collector<'a> {
     }
 
     fn foreign_named(&mut self, name: &Ident, home: &Home) -> Ty {
-        let Some((first, rest)) = name.text.split_once('.') else {
+        let first = name.text.split_once('.').map(|(first, rest)| (first, first.to_ascii_uppercase(), rest));
+        let own = |key: &str| self.world.is_namespace(home, key) && !self.world.is_library(key);
+        let Some((first, library, rest)) = first.filter(|(_, key, _)| !own(key)) else {
+            // A namespace that is declared lacks it.
             let key = name.key();
             self.foreign(&key).name.clone_from(&name.text);
             return Ty::Foreign(key);
         };
         // A name in front of a type's is that of a library.
-        if !self.world.is_namespace(home, &first.to_ascii_uppercase()) {
-            self.needs.libraries.entry(first.to_ascii_uppercase()).or_insert_with(|| first.to_owned());
+        if !self.world.is_namespace(home, &library) {
+            self.needs.libraries.entry(library).or_insert_with(|| first.to_owned());
         }
         let inner = Ident { text: rest.to_owned(), span: name.span };
         self.named(&inner, home, MAX_DEPTH - 1)
@@ -222,9 +225,6 @@ impl<'a> Collector<'a> {
         for variable in &section.variables {
             self.constants_of(&variable.spec, scope);
             let ty = self.type_of(&variable.spec, &scope.home, 0);
-            if let TypeSpecKind::Instance(_, arguments) = &variable.spec.kind {
-                self.init_arguments(&ty, arguments, scope);
-            }
             if let Some(initial) = &variable.initial {
                 self.initial(&ty, initial, scope);
             }
@@ -236,8 +236,16 @@ impl<'a> Collector<'a> {
             InitArguments::Same(list) => std::slice::from_ref(list),
             InitArguments::Listed(lists) => lists,
         };
+        let foreign = match ty {
+            Ty::Foreign(key) => Some(key.clone()),
+            Ty::Declared(class) => match self.find(class, "FB_init") {
+                Some(Found::Foreign(key)) => Some(key),
+                _ => None,
+            },
+            _ => None,
+        };
         for list in lists {
-            let Ty::Foreign(key) = ty else {
+            let Some(key) = &foreign else {
                 list.iter().for_each(|argument| self.plain_argument(argument, scope));
                 continue;
             };
@@ -270,6 +278,10 @@ impl<'a> Collector<'a> {
                     self.constant(&dimension.high, scope);
                 }
                 self.constants_of(inner, scope);
+            }
+            TypeSpecKind::Instance(name, arguments) => {
+                let ty = self.named(name, &scope.home, 0);
+                self.init_arguments(&ty, arguments, scope);
             }
             TypeSpecKind::String(_, Some(length)) => self.constant(length, scope),
             TypeSpecKind::Subrange(_, bounds) => {

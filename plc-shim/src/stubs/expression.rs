@@ -64,7 +64,21 @@ impl<'a> Collector<'a> {
         if let Some(found) = self.dotted(expr, access, scope) {
             return found;
         }
+        // `__SYSTEM.Kind.Value`
+        if let Some(path) = super::names::path_of(base)
+            && let full = path.iter().map(|name| name.key()).collect::<Vec<_>>().join(".")
+            && path.len() > 1
+            && self.needs.types.contains_key(&full)
+        {
+            self.foreign(&full).add_value(&name.text);
+            return Ty::Foreign(full);
+        }
         let inside = base.names_the_object();
+        if is_super(base)
+            && let Ty::Foreign(key) = self.infer(base, scope)
+        {
+            self.foreign(&key).member(&name.text).via_super = true;
+        }
         if let ExprKind::Member(inner, middle) = &base.kind
             && let Some(path) = super::names::path_of(inner)
             && let [first] = path[..]
@@ -198,4 +212,8 @@ fn joined(known_left: Ty, known_right: Ty, left: Ty, right: Ty) -> Ty {
         (Ty::Slot(_), _) => left,
         _ => right,
     }
+}
+
+fn is_super(expr: &Expr) -> bool {
+    matches!(&expr.kind, ExprKind::Name(name) if name.key() == "SUPER")
 }

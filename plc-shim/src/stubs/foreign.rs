@@ -34,7 +34,8 @@ pub(super) struct Member {
     pub(super) written_inside: bool,
     pub(super) written_outside: bool,
     pub(super) input: bool,
-    pub(super) output: bool,
+    /// It is used as `SUPER^.member`, which properties are.
+    pub(super) via_super: bool,
     pub(super) called: Option<(Signature, Slot)>,
 }
 

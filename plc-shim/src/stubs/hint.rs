@@ -105,3 +105,12 @@ pub(super) fn is_global(name: &str) -> bool {
     has("GVL") || has("F_") || has("E_") || has("TC2_") || has("TC3_") || begins(name, "g") || begins(name, "e")
         || name.len() > 3 && is_capitals(name) && !name.starts_with('_')
 }
+
+/// True for names that TwinCAT's libraries have.
+pub(super) fn is_library(name: &str) -> bool {
+    let mut letters = name.chars();
+    let start: String = letters.by_ref().take(2).collect();
+    start.eq_ignore_ascii_case("Tc")
+        && letters.next().is_some_and(|one| matches!(one, '2' | '3'))
+        && letters.next() == Some('_')
+}

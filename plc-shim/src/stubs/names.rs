@@ -5,7 +5,7 @@ use super::foreign::{Function, Global, Head};
 use super::hint;
 use super::ty::Ty;
 use super::world::joined;
-use crate::syntax::ast::{Expr, ExprKind, Ident, PouKind};
+use crate::syntax::ast::{Expr, ExprKind, Ident};
 
 /// What is done to a place.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -80,6 +80,16 @@ impl<'a> Collector<'a> {
         self.global_seen(&key, scope)
     }
 
+    /// The same, of what can be called: values of enumerations and types leave their names to functions.
+    pub(super) fn seen_callable(&mut self, name: &Ident, scope: &Scope<'a>) -> Option<Ty> {
+        let key = name.key();
+        let is_hidden = self.world.enumerators.contains_key(&key) || self.world.type_key(&scope.home, &key).is_some();
+        if is_hidden && !self.local_seen(name, scope) {
+            return None;
+        }
+        self.seen(name, scope)
+    }
+
     fn global_seen(&mut self, key: &str, scope: &Scope<'a>) -> Option<Ty> {
         if let Some(found) = self.world.global_key(&scope.home, key) {
             let (spec, home) = self.world.globals.get(&found)?;
@@ -94,9 +104,8 @@ impl<'a> Collector<'a> {
         if let Some(found) = self.world.type_key(&scope.home, key) {
             return Some(Ty::Declared(found));
         }
-        matches!(key, "TRUE" | "FALSE" | "NULL" | "INIT_RETAINS" | "VIRTUAL_TIME" | "__SYSTEM")
+        matches!(key, "TRUE" | "FALSE" | "NULL" | "INIT_RETAINS" | "VIRTUAL_TIME" | "THISSTRUCT")
             .then_some(Ty::Unknown)
-            .or_else(|| key.starts_with("__").then_some(Ty::Unknown))
     }
 
     fn base_type(&mut self, scope: &Scope<'a>) -> Ty {
@@ -212,18 +221,43 @@ impl<'a> Collector<'a> {
     pub(super) fn dotted(&mut self, expr: &Expr, access: Access, scope: &Scope<'a>) -> Option<Ty> {
         let ExprKind::Member(base, last) = &expr.kind else { return None };
         let path = path_of(base)?;
-        let first = *path.first()?;
-        if self.local_seen(first, scope) {
+        if self.local_seen(path.first()?, scope) {
             return None;
         }
-        let prefix = path.iter().map(|name| name.key()).collect::<Vec<_>>().join(".");
-        if self.is_declared_prefix(&prefix, scope) {
-            return self.in_namespace(&prefix, &path, last, access, scope);
+        let (rest, in_library) = self.behind_libraries(&path, scope);
+        let outside = Scope { home: scope.home.clone(), class: None, local: None };
+        let scope = if in_library { &outside } else { scope };
+        match rest {
+            [] => Some(self.name(last, access, scope)),
+            [first] => self.in_namespace(first, last, access, scope).or_else(|| {
+                let found = in_library.then(|| self.global_seen(&first.key(), scope)).flatten();
+                match found {
+                    Some(found) => Some(self.member(&found, last, access, false)),
+                    None => self.unknown_head(first, last, access, scope),
+                }
+            }),
+            _ => None,
         }
-        if path.len() > 1 {
-            return None;
+    }
+
+    /// The names behind those of libraries, and whether there is such a library in front.
+    pub(super) fn behind_libraries<'p, 'e>(
+        &mut self,
+        path: &'p [&'e Ident],
+        scope: &Scope<'a>,
+    ) -> (&'p [&'e Ident], bool) {
+        let mut rest = path;
+        while let [first, behind @ ..] = rest {
+            let key = first.key();
+            if super::hint::is_library(&first.text) && !self.world.is_namespace(&scope.home, &key) {
+                self.needs.libraries.entry(key.clone()).or_insert_with(|| first.text.clone());
+            }
+            if !self.needs.libraries.contains_key(&key) && !self.world.is_library(&key) {
+                break;
+            }
+            rest = behind;
         }
-        self.unknown_head(first, last, access, scope)
+        (rest, rest.len() < path.len())
     }
 
     /// True for a variable that a body sees.
@@ -244,67 +278,20 @@ impl<'a> Collector<'a> {
             || self.world.global_key(&scope.home, &key).is_some()
     }
 
-    fn is_declared_prefix(&self, prefix: &str, scope: &Scope<'a>) -> bool {
-        self.world.is_namespace(&scope.home, prefix)
-            || prefix.split('.').next().is_some_and(|first| {
-                self.needs.libraries.contains_key(first) || self.world.is_namespace(&scope.home, first)
-            })
-    }
-
-    /// What a namespace or library has of a name.
-    fn in_namespace(
-        &mut self,
-        prefix: &str,
-        path: &[&Ident],
-        last: &Ident,
-        access: Access,
-        scope: &Scope<'a>,
-    ) -> Option<Ty> {
-        let full = joined(prefix, &last.key());
+    /// What a namespace has of a name.
+    fn in_namespace(&mut self, first: &Ident, last: &Ident, access: Access, scope: &Scope<'a>) -> Option<Ty> {
+        let key = first.key();
+        let full = joined(&key, &last.key());
+        if self.needs.types.contains_key(&full) {
+            return Some(Ty::Foreign(full));
+        }
+        if !self.world.is_namespace(&scope.home, &key) {
+            return None;
+        }
         if let Some(found) = self.global_seen(&full, scope) {
             return Some(found);
         }
-        // `List.variable.member`, `Library.List.variable`, `Library.Enumeration.Value`
-        let (first, rest) = prefix.split_once('.').unwrap_or((prefix, ""));
-        if self.needs.libraries.contains_key(first) || self.world.is_library(first) {
-            let name = if rest.is_empty() { last } else { path.get(1)? };
-            if rest.is_empty() {
-                if self.needs.types.contains_key(&last.key()) {
-                    return Some(Ty::Foreign(last.key()));
-                }
-                if let Some(found) = self.seen_global(last, scope) {
-                    return Some(found);
-                }
-                // What follows tells what it is.
-                let head = self.head(last, scope);
-                head.outside = true;
-                return match self.kind(&last.key(), scope) {
-                    Some(Kind::Global) => Some(self.global(&last.key(), &last.text, access)),
-                    None if self.known.is_some() => Some(self.global(&last.key(), &last.text, access)),
-                    _ => Some(Ty::Unknown),
-                };
-            }
-            if path.len() == 2 {
-                if let Some(found) = self.seen_global(name, scope) {
-                    return Some(self.member(&found, last, access, false));
-                }
-                return self.unknown_head(name, last, access, scope);
-            }
-            return None;
-        }
-        // The longest part that is declared is a variable.
-        if path.len() > 1 && self.world.is_namespace(&scope.home, prefix) || path.len() == 1 {
-            let is_list = self.world.is_namespace(&scope.home, prefix);
-            if is_list {
-                let shown = path.iter().map(|name| name.text.as_str()).collect::<Vec<_>>().join(".");
-                return Some(self.listed(prefix, &shown, last, access));
-            }
-        }
-        None
-    }
-
-    fn seen_global(&mut self, name: &Ident, scope: &Scope<'a>) -> Option<Ty> {
-        self.global_seen(&name.key(), scope)
+        Some(self.listed(&key, &first.text, last, access))
     }
 
     /// A variable of a list.
@@ -343,12 +330,6 @@ impl<'a> Collector<'a> {
                 Some(self.member(&ty, last, access, false))
             }
         }
-    }
-
-    /// True if a unit of the kind has the name.
-    pub(super) fn is_unit(&self, ty: &Ty, kind: PouKind) -> bool {
-        let Ty::Declared(key) = ty else { return false };
-        self.world.units.get(key).is_some_and(|unit| unit.pou.kind == kind)
     }
 }
 

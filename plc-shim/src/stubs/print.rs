@@ -14,7 +14,10 @@ use crate::syntax::FileId;
 use crate::syntax::ast::{Pou, PouKind, SectionKind, TypeSpec, TypeSpecKind};
 
 /// What the file is called.
-pub const FILE: &str = "stubs.st";
+pub(super) const FILE: &str = "stubs.st";
+/// What runs with the arguments of a declaration, and what it is always given.
+const INIT: &str = "FB_init";
+const INIT_INPUTS: [&str; 2] = ["bInitRetains", "bInCopyCode"];
 /// The first number of a constant that bounds something: nobody knows the right one.
 const FIRST_CONSTANT: usize = 100;
 
@@ -55,6 +58,7 @@ impl<'c, 'a> Printer<'c, 'a> {
         let mut edits: Vec<(usize, String)> = Vec::new();
         let mut groups: [String; 6] = Default::default();
         let [libraries, types, interfaces, blocks, functions, globals] = &mut groups;
+        let mut lists: BTreeMap<String, String> = BTreeMap::new();
         let needs = &self.collector.needs;
         for (key, name) in &needs.libraries {
             if !self.collector.world.is_library(key) {
@@ -78,11 +82,16 @@ impl<'c, 'a> Printer<'c, 'a> {
                 Shape::Interface => &mut *interfaces,
                 _ => &mut *types,
             };
-            group.push('\n');
-            group.push_str(&self.foreign(key, found, &shape));
             added += 1;
+            let Some((list, name)) = found.name.rsplit_once('.') else {
+                group.push('\n');
+                group.push_str(&self.foreign(key, &found.name, found, &shape));
+                continue;
+            };
+            let inner = lists.entry(list.to_owned()).or_default();
+            inner.push('\n');
+            inner.push_str(&self.foreign(key, name, found, &shape));
         }
-        let mut lists: BTreeMap<String, String> = BTreeMap::new();
         for function in needs.functions.values() {
             let (list, text) = self.function(function);
             let target = if list.is_empty() { &mut *functions } else { lists.entry(list).or_default() };
@@ -124,8 +133,7 @@ impl<'c, 'a> Printer<'c, 'a> {
         !found.members.is_empty() || found.called
     }
 
-    fn foreign(&self, key: &str, found: &Foreign, shape: &Shape) -> String {
-        let name = &found.name;
+    fn foreign(&self, key: &str, name: &str, found: &Foreign, shape: &Shape) -> String {
         match shape {
             Shape::Alias(ty) => format!("{{external}}\nTYPE {name} : {}; END_TYPE\n", self.type_text(ty, name)),
             Shape::Enumeration => {
@@ -153,7 +161,7 @@ impl<'c, 'a> Printer<'c, 'a> {
 
     /// What a stub that is there lacks, and where it goes.
     fn addition(&self, key: &str, found: &Foreign, text: &str, file: Option<FileId>) -> Option<(usize, String)> {
-        if found.members.is_empty() {
+        if found.members.is_empty() && found.init.is_none() {
             return None;
         }
         let world = self.collector.world;
@@ -200,6 +208,33 @@ impl<'c, 'a> Printer<'c, 'a> {
         found.order.iter().filter_map(|key| found.members.get(key))
     }
 
+    /// The method that is run with the arguments of a declaration.
+    fn init(&self, key: &str, found: &Foreign) -> String {
+        let called = found.members.get(&INIT.to_ascii_uppercase()).and_then(|member| member.called.as_ref());
+        let mut signature = match (&found.init, called) {
+            (Some(init), _) => init.clone(),
+            (None, Some((explicit, _))) => {
+                // Who calls it gives what the system gives, too.
+                let mut signature = explicit.clone();
+                signature.positional = signature.positional.split_off(2.min(explicit.positional.len()));
+                signature
+            }
+            (None, None) => return String::new(),
+        };
+        signature.named.retain(|(name, _)| !INIT_INPUTS.iter().any(|known| known.eq_ignore_ascii_case(name)));
+        let count = signature.named.len().max(signature.positional.len());
+        let inputs = |method: &Pou| {
+            let sections = method.sections.iter().filter(|section| section.kind == SectionKind::Input);
+            sections.flat_map(|section| &section.variables).map(|each| each.names.len()).sum::<usize>()
+        };
+        // What is derived has the names.
+        if let Some(own) = self.heir(key, Part::Method, INIT).filter(|method| inputs(method) == count + 2) {
+            return self.copied_method(own);
+        }
+        let fixed = INIT_INPUTS.map(|name| format!("        {name} : BOOL;\n")).concat();
+        format!("METHOD {INIT} : BOOL\n    VAR_INPUT\n{fixed}    END_VAR\n{}END_METHOD\n", self.parameters(&signature))
+    }
+
     /// True for what is called and is no instance.
     fn is_method(&self, member: &Member) -> bool {
         let is_instance = member.field.is_some_and(|slot| {
@@ -210,11 +245,8 @@ impl<'c, 'a> Printer<'c, 'a> {
 
     fn block_members(&self, key: &str, found: &Foreign) -> String {
         let (mut inputs, mut outputs, mut others) = (String::new(), String::new(), String::new());
-        if let Some(init) = &found.init {
-            let fixed = "    VAR_INPUT\n        bInitRetains : BOOL;\n        bInCopyCode : BOOL;\n    END_VAR\n";
-            let _ = write!(others, "METHOD FB_init : BOOL\n{fixed}{}END_METHOD\n", self.parameters(init));
-        }
-        for member in self.members(found) {
+        others.push_str(&self.init(key, found));
+        for member in self.members(found).filter(|member| !member.name.eq_ignore_ascii_case(INIT)) {
             let name = &member.name;
             if let Some(method) = self.heir(key, Part::Method, name) {
                 others.push_str(&self.copied_method(method));
@@ -225,7 +257,7 @@ impl<'c, 'a> Printer<'c, 'a> {
                 others.push_str(&self.method(name, signature, *result));
             } else {
                 let ty = self.slot_text(member.field, name);
-                if member.written_inside && member.written_outside {
+                if member.via_super || member.written_inside && member.written_outside {
                     others.push_str(&property_text(name, &ty, true, true));
                 } else if member.input || member.written_outside {
                     let _ = writeln!(inputs, "    {name} : {ty};");
@@ -323,7 +355,13 @@ impl<'c, 'a> Printer<'c, 'a> {
         let (list, name) = function.name.rsplit_once('.').unwrap_or(("", &function.name));
         // What is called as a statement may be a function without a result as well; one that has a result may be lost.
         let result = self.result(&function.signature, function.result, name);
-        let text = format!("{{external}}\nFUNCTION {name}{result}\n{}END_FUNCTION\n", self.parameters(&function.signature));
+        let parameters = if name.starts_with("__") {
+            // Operators of the compiler take whatever there is.
+            any_parameters(&function.signature)
+        } else {
+            self.parameters(&function.signature)
+        };
+        let text = format!("{{external}}\nFUNCTION {name}{result}\n{parameters}END_FUNCTION\n");
         (list.to_owned(), text)
     }
 
@@ -462,4 +500,9 @@ fn property_text(name: &str, ty: &str, is_read: bool, is_written: bool) -> Strin
     let get = if is_read { "    GET END_GET\n" } else { "" };
     let set = if is_written { "    SET END_SET\n" } else { "" };
     format!("PROPERTY {name} : {ty}\n{get}{set}END_PROPERTY\n")
+}
+
+fn any_parameters(signature: &Signature) -> String {
+    let lines: String = (1..=signature.positional.len()).map(|index| format!("        p{index} : ANY;\n")).collect();
+    if lines.is_empty() { lines } else { format!("    VAR_INPUT\n{lines}    END_VAR\n") }
 }

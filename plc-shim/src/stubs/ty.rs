@@ -112,10 +112,6 @@ impl Slots {
         self.at(slot).has_parts = true;
     }
 
-    pub(super) fn has_parts(&self, slot: Slot) -> bool {
-        self.all.get(slot.0).is_some_and(|each| each.has_parts)
-    }
-
     pub(super) fn make_value(&mut self, slot: Slot) {
         self.at(slot).is_value = true;
     }
@@ -206,11 +202,6 @@ impl Slots {
         groups.sort();
         groups.dedup();
         groups.len() > 1
-    }
-
-    /// What is given for it, as far as that is known.
-    pub(super) fn sources(&self, slot: Slot) -> Vec<Ty> {
-        self.all.get(slot.0).map(|each| each.from.iter().map(|ty| self.resolved(ty)).collect()).unwrap_or_default()
     }
 
     /// Slots whose members are used and whose types nothing decides, each with its path, and whether it is a value;

@@ -157,7 +157,19 @@ impl<'a> Declarations<'a> {
             return Some(found);
         }
         let (library, rest) = key.split_once('.')?;
-        self.libraries.contains(library).then(|| self.full_key(map, rest))?
+        self.is_library_name(library).then(|| self.full_key(map, rest))?
+    }
+
+    /// True for the name of a library whose content is known without it.
+    fn is_library_name(&self, key: &str) -> bool {
+        STANDARD_LIBRARIES.contains(&key) || self.libraries.contains(key)
+    }
+
+    /// What stands behind the name of a library.
+    pub(in crate::check) fn without_library(&self, name: &Ident) -> Option<Ident> {
+        let (library, rest) = name.text.split_once('.')?;
+        let found = Ident { text: rest.to_owned(), span: name.span };
+        self.is_library_name(&library.to_ascii_uppercase()).then_some(found)
     }
 
     pub(in crate::check) fn type_key(&self, key: &str) -> Option<String> {

@@ -65,6 +65,8 @@ impl Body<'_, '_> {
         if let Some(id) = self.function_named(name) {
             return self.function_call(id, name, call, span).map(Operand::Typed);
         }
+        let plain = self.declarations.without_library(name);
+        let name = plain.as_ref().unwrap_or(name);
         if memory::exists(&name.key()) {
             return self.memory_call(name, call, span);
         }
