@@ -128,14 +128,15 @@ impl<'a> Collector<'a> {
             return None;
         }
         let (rest, in_library) = self.behind_libraries(&path, scope);
+        // What a library has is no member of a base; arguments still stand where they stand.
         let outside = Scope { home: scope.home.clone(), class: None, local: None };
-        let scope = if in_library { &outside } else { scope };
+        let around = if in_library { &outside } else { scope };
         let first = match rest {
-            [] => return Some(self.call_of_name(name, call, is_used, scope)),
+            [] => return Some(self.call_of_library(name, call, is_used, &outside, scope)),
             [first] => *first,
             _ => return None,
         };
-        if in_library && let Some(found) = self.seen(first, scope) {
+        if in_library && let Some(found) = self.seen(first, around) {
             return Some(self.method_on(&found, name, call, is_used, scope));
         }
         let key = first.key();
@@ -156,10 +157,10 @@ impl<'a> Collector<'a> {
             let shown = format!("{}.{}", first.text, name.text);
             return Some(self.function_call(&shown, call, is_used, scope));
         }
-        let head = self.head(first, scope);
+        let head = self.head(first, around);
         head.parts.insert(name.key());
         head.part_called = true;
-        match self.kind(&key, scope) {
+        match self.kind(&key, around) {
             None => {
                 call.arguments.iter().for_each(|argument| self.argument(argument, scope));
                 Some(Ty::Unknown)
@@ -179,6 +180,31 @@ impl<'a> Collector<'a> {
             }
             Some(Kind::Enumeration(_)) => Some(Ty::Unknown),
         }
+    }
+
+    /// `Library.function(x)`
+    fn call_of_library(
+        &mut self,
+        name: &Ident,
+        call: &Call,
+        is_used: bool,
+        outside: &Scope<'a>,
+        scope: &Scope<'a>,
+    ) -> Ty {
+        let key = name.key();
+        if let Some(unit) = self.world.function(&scope.home, &key) {
+            let (pou, home) = (unit.pou, unit.home.clone());
+            return self.declared_call(pou, &home, call, scope);
+        }
+        if World::has_function(&key) {
+            return self.standard_call(&key, call, scope);
+        }
+        if let Some(instance) = self.seen_callable(name, outside) {
+            return self.instance_call(&instance, call, scope);
+        }
+        let head = self.head(name, outside);
+        head.called = true;
+        self.function_call(&name.text, call, is_used, scope)
     }
 
     fn method_on(&mut self, ty: &Ty, name: &Ident, call: &Call, is_used: bool, scope: &Scope<'a>) -> Ty {
@@ -227,7 +253,11 @@ impl<'a> Collector<'a> {
             Ty::Declared(key) => self.block_call(&key, call, scope),
             Ty::Foreign(key) => {
                 self.foreign(&key).called = true;
-                for argument in &call.arguments {
+                for (index, argument) in call.arguments.iter().enumerate() {
+                    if matches!(argument, Argument::Positional(_)) {
+                        let found = self.foreign(&key);
+                        found.inputs = found.inputs.max(index + 1);
+                    }
                     self.block_argument(&key, argument, scope);
                 }
             }
@@ -334,6 +364,9 @@ impl<'a> Collector<'a> {
 
     /// A function of the language.
     fn standard_call(&mut self, key: &str, call: &Call, scope: &Scope<'a>) -> Ty {
+        if key == "__NEW" {
+            return self.made(call, scope);
+        }
         let values = call.arguments.iter().map(|argument| match argument {
             Argument::Positional(value) | Argument::Input(_, value) => self.infer(value, scope),
             Argument::Output { target, .. } => {
@@ -342,6 +375,24 @@ impl<'a> Collector<'a> {
         });
         let values: Vec<Ty> = values.collect();
         self.standard_result(key, &values)
+    }
+
+    /// `__NEW(Type(a := x), n)`
+    fn made(&mut self, call: &Call, scope: &Scope<'a>) -> Ty {
+        let Some(Argument::Positional(wanted)) = call.arguments.first() else { return Ty::Unknown };
+        let (named, arguments) = match &wanted.kind {
+            ExprKind::Call(inner) => (&*inner.callee, inner.arguments.as_slice()),
+            _ => (wanted, [].as_slice()),
+        };
+        let Some(path) = super::names::path_of(named) else { return Ty::Unknown };
+        let text = path.iter().map(|name| name.text.as_str()).collect::<Vec<_>>().join(".");
+        let ty = self.named(&Ident { text, span: named.span }, &scope.home, 0);
+        if !arguments.is_empty() {
+            let arguments = crate::syntax::ast::InitArguments::Same(arguments.to_vec());
+            self.init_arguments(&ty, &arguments, scope);
+        }
+        call.arguments.iter().skip(1).for_each(|argument| self.argument(argument, scope));
+        Ty::Pointer(ReferenceKind::Pointer, Box::new(ty))
     }
 
     fn standard_result(&mut self, key: &str, values: &[Ty]) -> Ty {

@@ -231,7 +231,7 @@ impl<'a> Collector<'a> {
         }
     }
 
-    fn init_arguments(&mut self, ty: &Ty, arguments: &InitArguments, scope: &Scope<'a>) {
+    pub(super) fn init_arguments(&mut self, ty: &Ty, arguments: &InitArguments, scope: &Scope<'a>) {
         let lists = match arguments {
             InitArguments::Same(list) => std::slice::from_ref(list),
             InitArguments::Listed(lists) => lists,
@@ -326,10 +326,7 @@ impl<'a> Collector<'a> {
         match &initial.kind {
             InitialiserKind::Value(value) => self.wanted(value, ty, scope),
             InitialiserKind::Array(values) => {
-                let element = match self.slots.resolved(ty) {
-                    Ty::Array(_, element) => *element,
-                    _ => Ty::Unknown,
-                };
+                let element = self.element(ty, 1);
                 values.iter().for_each(|value| self.initial(&element, value, scope));
             }
             InitialiserKind::Repeat(count, value) => {
@@ -549,14 +546,14 @@ impl<'a> Collector<'a> {
     }
 
     pub(super) fn arguments(&mut self, signature: &mut Signature, path: &str, list: &[Argument], scope: &Scope<'a>) {
-        let mut position = 0;
-        for argument in list {
+        // Names and places may be mixed: what has no name is counted with what has.
+        for (position, argument) in list.iter().enumerate() {
             match argument {
                 Argument::Positional(value) => {
                     let found = self.infer(value, scope);
                     let is_place = is_place(value);
-                    if signature.positional.len() <= position {
-                        let slot = self.slots.of(&format!("{path}.p{}", position + 1));
+                    while signature.positional.len() <= position {
+                        let slot = self.slots.of(&format!("{path}.p{}", signature.positional.len() + 1));
                         signature.positional.push(super::foreign::Argument { slot, is_place: true });
                     }
                     if let Some(parameter) = signature.positional.get_mut(position) {
@@ -564,7 +561,6 @@ impl<'a> Collector<'a> {
                         let slot = parameter.slot;
                         self.flow(&found, &Ty::Slot(slot));
                     }
-                    position += 1;
                 }
                 Argument::Input(name, value) => {
                     let found = self.infer(value, scope);

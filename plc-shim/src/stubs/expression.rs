@@ -143,7 +143,7 @@ impl<'a> Collector<'a> {
         }
     }
 
-    fn element(&mut self, ty: &Ty, dimensions: usize) -> Ty {
+    pub(super) fn element(&mut self, ty: &Ty, dimensions: usize) -> Ty {
         match self.slots.resolved(ty) {
             Ty::Array(_, inner) | Ty::Pointer(_, inner) => *inner,
             Ty::Text(_) => elementary(E::Byte),

@@ -49,6 +49,8 @@ pub(super) struct Foreign {
     /// The members' keys, in the order in which they were found.
     pub(super) order: Vec<String>,
     pub(super) called: bool,
+    /// So many inputs are given without names.
+    pub(super) inputs: usize,
     pub(super) base_of_block: bool,
     pub(super) base_of_interface: bool,
     pub(super) base_of_structure: bool,

@@ -102,7 +102,7 @@ fn is_capitals(name: &str) -> bool {
 /// True for names that are seldom members of a base: lists of globals, libraries, functions, constants.
 pub(super) fn is_global(name: &str) -> bool {
     let has = |prefix: &str| name.get(..prefix.len()).is_some_and(|start| start.eq_ignore_ascii_case(prefix));
-    has("GVL") || has("F_") || has("E_") || has("TC2_") || has("TC3_") || begins(name, "g") || begins(name, "e")
+    name.starts_with("__") || has("GVL") || has("F_") || has("E_") || has("TC2_") || has("TC3_") || begins(name, "g") || begins(name, "e")
         || name.len() > 3 && is_capitals(name) && !name.starts_with('_')
 }
 

@@ -104,8 +104,9 @@ impl<'a> Collector<'a> {
         if let Some(found) = self.world.type_key(&scope.home, key) {
             return Some(Ty::Declared(found));
         }
-        matches!(key, "TRUE" | "FALSE" | "NULL" | "INIT_RETAINS" | "VIRTUAL_TIME" | "THISSTRUCT")
+        matches!(key, "TRUE" | "FALSE" | "NULL" | "INIT_RETAINS" | "VIRTUAL_TIME")
             .then_some(Ty::Unknown)
+            .or_else(|| matches!(key, "__TRY" | "__CATCH" | "__FINALLY" | "__ENDTRY").then_some(Ty::Unknown))
     }
 
     fn base_type(&mut self, scope: &Scope<'a>) -> Ty {

@@ -266,6 +266,9 @@ impl<'c, 'a> Printer<'c, 'a> {
                 }
             }
         }
+        for index in inputs.lines().count()..found.inputs {
+            let _ = writeln!(inputs, "    p{} : DINT;", index + 1);
+        }
         let section = |word: &str, lines: String| {
             if lines.is_empty() { lines } else { format!("{word}\n{lines}END_VAR\n") }
         };

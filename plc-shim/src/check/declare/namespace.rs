@@ -161,7 +161,7 @@ impl<'a> Declarations<'a> {
     }
 
     /// True for the name of a library whose content is known without it.
-    fn is_library_name(&self, key: &str) -> bool {
+    pub(super) fn is_library_name(&self, key: &str) -> bool {
         STANDARD_LIBRARIES.contains(&key) || self.libraries.contains(key)
     }
 

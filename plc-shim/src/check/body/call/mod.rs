@@ -96,7 +96,14 @@ impl Body<'_, '_> {
     /// the others leave their names to functions.
     fn is_callable_variable(&self, key: &str) -> bool {
         let outer = || self.scope.outer()?.find(key).map(|variable| variable.ty);
-        let is_block = |ty| matches!(self.declarations.types().get(ty), Type::FunctionBlock { .. });
+        let types = self.declarations.types();
+        let is_block = |ty| match types.get(ty) {
+            Type::FunctionBlock { .. } => true,
+            Type::Reference { kind: ast::ReferenceKind::Reference, target } => {
+                matches!(types.get(*target), Type::FunctionBlock { .. })
+            }
+            _ => false,
+        };
         self.scope.own_name(key) || outer().is_some_and(is_block)
     }
 
@@ -171,7 +178,10 @@ impl Body<'_, '_> {
         }
         let function = match &call.callee.kind {
             ast::ExprKind::Member(..)
-                if self.qualified_name(&call.callee).is_some_and(|name| self.function_named(&name).is_some()) =>
+                if self.qualified_name(&call.callee).is_some_and(|name| {
+                    let plain = self.declarations.without_library(&name);
+                    self.function_named(&name).is_some() || plain.is_some_and(|name| standard::is_known(&name.key()))
+                }) =>
             {
                 true
             }
