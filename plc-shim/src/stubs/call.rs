@@ -61,7 +61,14 @@ impl<'a> Collector<'a> {
                 }
                 self.method_of(&base, name, call, is_used, scope)
             }
-            Some(_) if is_instance || self.known.as_ref().and_then(|known| known.get(&key)).is_some_and(|head| !head.parts.is_empty() || head.bare) => {
+            Some(_)
+                if is_instance
+                    || self
+                        .known
+                        .as_ref()
+                        .and_then(|known| known.get(&key))
+                        .is_some_and(|head| !head.parts.is_empty() || head.bare) =>
+            {
                 let ty = self.global(&key, &name.text, Access::Read);
                 self.instance_call(&ty, call, scope)
             }
@@ -72,7 +79,11 @@ impl<'a> Collector<'a> {
     fn is_variable(&mut self, name: &Ident, scope: &Scope<'a>) -> bool {
         let key = name.key();
         let local = scope.local.is_some_and(|local| {
-            local.sections.iter().flat_map(|section| &section.variables).any(|each| each.names.iter().any(|name| name.key() == key))
+            local
+                .sections
+                .iter()
+                .flat_map(|section| &section.variables)
+                .any(|each| each.names.iter().any(|name| name.key() == key))
         });
         local || scope.class.clone().is_some_and(|class| matches!(self.find(&class, &key), Some(Found::Variable(_))))
     }
@@ -317,7 +328,8 @@ impl<'a> Collector<'a> {
     fn declared_call(&mut self, pou: &'a Pou, home: &Home, call: &Call, scope: &Scope<'a>) -> Ty {
         let accepts = |kind| matches!(kind, SectionKind::Input | SectionKind::InOut);
         let inputs = pou.sections.iter().filter(|section| accepts(section.kind)).flat_map(|section| &section.variables);
-        let inputs: Vec<_> = inputs.flat_map(|each| each.names.iter().map(move |name| (name.key(), &each.spec))).collect();
+        let inputs: Vec<_> =
+            inputs.flat_map(|each| each.names.iter().map(move |name| (name.key(), &each.spec))).collect();
         let all = pou.sections.iter().flat_map(|section| &section.variables);
         let all: Vec<_> = all.flat_map(|each| each.names.iter().map(move |name| (name.key(), &each.spec))).collect();
         for (index, argument) in call.arguments.iter().enumerate() {
@@ -425,13 +437,21 @@ impl<'a> Collector<'a> {
             "ABS" => first,
             "MIN" | "MAX" | "LIMIT" => {
                 values.windows(2).for_each(|pair| self.beside_pair(pair));
-                values.iter().map(|value| self.slots.resolved(value)).find(|ty| matches!(ty, Ty::Elementary(_))).unwrap_or(first)
+                values
+                    .iter()
+                    .map(|value| self.slots.resolved(value))
+                    .find(|ty| matches!(ty, Ty::Elementary(_)))
+                    .unwrap_or(first)
             }
             "SEL" => {
                 self.flow(&first, &elementary(E::Bool));
                 values.get(1..).unwrap_or_default().windows(2).for_each(|pair| self.beside_pair(pair));
                 let rest = values.get(1..).unwrap_or_default();
-                rest.iter().find(|ty| !matches!(ty, Ty::Integer | Ty::Real)).or(rest.first()).cloned().unwrap_or(Ty::Unknown)
+                rest.iter()
+                    .find(|ty| !matches!(ty, Ty::Integer | Ty::Real))
+                    .or(rest.first())
+                    .cloned()
+                    .unwrap_or(Ty::Unknown)
             }
             "TIME" => elementary(E::Time),
             "LTIME" => elementary(E::Ltime),

@@ -74,6 +74,18 @@ impl<'a> Collector<'a> {
     }
 
     fn heritage(&mut self, unit: &Unit<'_>) {
+        // A unit that bears the name of its base is not its own base.
+        for base in unit.pou.object.extends.iter().chain(&unit.pou.object.implements) {
+            let key = base.key();
+            if let Some((library, last)) = key.split_once('.')
+                && last == unit.pou.name.key()
+                && !self.world.units.contains_key(&key)
+            {
+                let name = base.text.split('.').next().unwrap_or(library).to_owned();
+                self.needs.libraries.insert(library.to_owned(), name);
+                self.needs.shadowed.insert(key);
+            }
+        }
         for base in &unit.pou.object.extends {
             if let Ty::Foreign(key) = self.named(base, &unit.home, 0) {
                 let is_interface = unit.pou.kind == PouKind::Interface;
@@ -124,12 +136,12 @@ impl<'a> Collector<'a> {
             TypeSpecKind::Array(dimensions, inner) => {
                 let bounds = dimensions.iter().map(|each| match (number(&each.low), number(&each.high)) {
                     (Some(low), Some(high)) => format!("{low}..{high}"),
-                    _ => "0..255".to_owned(),
+                    _ => super::ty::ANY_BOUNDS.to_owned(),
                 });
                 Ty::Array(bounds.collect(), Box::new(self.type_of(inner, home, depth)))
             }
             TypeSpecKind::OpenArray(count, inner) => {
-                let bounds = (0..*count).map(|_| "0..255".to_owned()).collect();
+                let bounds = (0..*count).map(|_| super::ty::ANY_BOUNDS.to_owned()).collect();
                 Ty::Array(bounds, Box::new(self.type_of(inner, home, depth)))
             }
             TypeSpecKind::Reference(kind, inner) => Ty::Pointer(*kind, Box::new(self.type_of(inner, home, depth))),
@@ -168,6 +180,11 @@ impl<'a> Collector<'a> {
     }
 
     fn foreign_named(&mut self, name: &Ident, home: &Home) -> Ty {
+        if self.needs.shadowed.contains(&name.key()) {
+            let key = name.key();
+            self.foreign(&key).name.clone_from(&name.text);
+            return Ty::Foreign(key);
+        }
         let first = name.text.split_once('.').map(|(first, rest)| (first, first.to_ascii_uppercase(), rest));
         let own = |key: &str| self.world.is_namespace(home, key) && !self.world.is_library(key);
         let Some((first, library, rest)) = first.filter(|(_, key, _)| !own(key)) else {
@@ -208,6 +225,7 @@ impl<'a> Collector<'a> {
     }
 
     fn body(&mut self, pou: &'a Pou, scope: &Scope<'a>) {
+        pou.result.iter().for_each(|result| self.constants_of(result, scope));
         pou.sections.iter().for_each(|section| self.initials(section, scope));
         for association in pou.chart.steps.iter().flat_map(|step| &step.associations) {
             association.time.iter().for_each(|time| self.wanted(time, &elementary(ElementaryType::Time), scope));

@@ -28,7 +28,10 @@ impl<'a> Collector<'a> {
             ExprKind::Member(base, name) => self.member_expression(expr, base, name, access, scope),
             ExprKind::Part(base, part) => {
                 self.infer(base, scope);
-                let is_bit = part.text.trim_start_matches(['.', '%']).starts_with(|first: char| first.is_ascii_digit() || first == 'X');
+                let is_bit = part
+                    .text
+                    .trim_start_matches(['.', '%'])
+                    .starts_with(|first: char| first.is_ascii_digit() || first == 'X');
                 if is_bit { elementary(E::Bool) } else { Ty::Unknown }
             }
             ExprKind::Dereference(inner) => {
@@ -125,44 +128,46 @@ impl<'a> Collector<'a> {
     }
 
     fn dereferenced(&mut self, ty: &Ty) -> Ty {
+        // What is followed is a pointer in every pass, whatever an earlier one has decided.
+        if let Ty::Slot(slot) = ty {
+            let inner = Ty::Slot(self.slots.below(*slot, "^"));
+            self.slots.given(*slot, &Ty::Pointer(ReferenceKind::Pointer, Box::new(inner)));
+        }
         match self.slots.resolved(ty) {
             Ty::Pointer(_, inner) => *inner,
-            Ty::Slot(_) => {
-                let Ty::Slot(slot) = ty else { return Ty::Unknown };
-                let inner = self.slots.below(*slot, "^");
-                self.slots.given(*slot, &Ty::Pointer(ReferenceKind::Pointer, Box::new(Ty::Slot(inner))));
-                Ty::Slot(inner)
-            }
-            Ty::Foreign(key) => {
-                let Some(value) = self.foreign(&key).value else { return Ty::Unknown };
-                let value = Ty::Slot(value);
+            Ty::Slot(slot) => Ty::Slot(self.slots.below(slot, "^")),
+            Ty::Foreign(key) => match self.alias(&key) {
                 // An interface is not followed, an alias may be.
-                if matches!(self.slots.resolved(&value), Ty::Foreign(_)) { Ty::Unknown } else { self.dereferenced(&value) }
-            }
+                Some(value) => self.dereferenced(&value),
+                None => Ty::Unknown,
+            },
             _ => Ty::Unknown,
         }
     }
 
+    /// The type that a foreign one may be another name of.
+    fn alias(&mut self, key: &str) -> Option<Ty> {
+        let value = Ty::Slot(self.foreign(key).value?);
+        (!matches!(self.slots.resolved(&value), Ty::Foreign(_))).then_some(value)
+    }
+
     pub(super) fn element(&mut self, ty: &Ty, dimensions: usize) -> Ty {
-        match self.slots.resolved(ty) {
+        let known = self.slots.resolved(ty);
+        if let Ty::Slot(slot) = ty
+            && !matches!(known, Ty::Pointer(..) | Ty::Text(_) | Ty::Foreign(_) | Ty::Declared(_))
+        {
+            let inner = Ty::Slot(self.slots.below(*slot, "[]"));
+            let bounds = vec![super::ty::ANY_BOUNDS.to_owned(); dimensions];
+            self.slots.given(*slot, &Ty::Array(bounds, Box::new(inner)));
+        }
+        match known {
             Ty::Array(_, inner) | Ty::Pointer(_, inner) => *inner,
             Ty::Text(_) => elementary(E::Byte),
-            Ty::Slot(_) => {
-                let Ty::Slot(slot) = ty else { return Ty::Unknown };
-                let inner = self.slots.below(*slot, "[]");
-                let bounds = vec!["0..255".to_owned(); dimensions];
-                self.slots.given(*slot, &Ty::Array(bounds, Box::new(Ty::Slot(inner))));
-                Ty::Slot(inner)
-            }
-            Ty::Foreign(key) => {
-                let Some(value) = self.foreign(&key).value else { return Ty::Unknown };
-                let value = Ty::Slot(value);
-                if matches!(self.slots.resolved(&value), Ty::Foreign(_)) {
-                    Ty::Unknown
-                } else {
-                    self.element(&value, dimensions)
-                }
-            }
+            Ty::Slot(slot) => Ty::Slot(self.slots.below(slot, "[]")),
+            Ty::Foreign(key) => match self.alias(&key) {
+                Some(value) => self.element(&value, dimensions),
+                None => Ty::Unknown,
+            },
             _ => Ty::Unknown,
         }
     }

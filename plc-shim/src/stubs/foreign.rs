@@ -34,6 +34,8 @@ pub(super) struct Member {
     pub(super) written_inside: bool,
     pub(super) written_outside: bool,
     pub(super) input: bool,
+    /// It is the bound of an array or the like.
+    pub(super) is_constant: bool,
     /// It is used as `SUPER^.member`, which properties are.
     pub(super) via_super: bool,
     pub(super) called: Option<(Signature, Slot)>,
@@ -129,5 +131,7 @@ pub(super) struct Needs {
     pub(super) libraries: BTreeMap<String, String>,
     /// Names of lists of globals.
     pub(super) lists: BTreeMap<String, String>,
+    /// Types of libraries whose names the project has for units of its own.
+    pub(super) shadowed: BTreeSet<String>,
     pub(super) heads: BTreeMap<String, Head>,
 }

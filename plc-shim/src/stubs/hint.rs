@@ -41,7 +41,10 @@ pub(super) fn of_name(name: &str) -> Ty {
             return Ty::Text(wide);
         }
     }
-    if FLAGS.iter().any(|flag| name.eq_ignore_ascii_case(flag)) || capitals_after(name, "Is") || capitals_after(name, "Has") {
+    if FLAGS.iter().any(|flag| name.eq_ignore_ascii_case(flag))
+        || capitals_after(name, "Is")
+        || capitals_after(name, "Has")
+    {
         return Ty::Elementary(E::Bool);
     }
     let found = PREFIXES.iter().find(|(prefix, _)| begins(name, prefix));
@@ -62,7 +65,9 @@ pub(super) fn real(name: &str) -> E {
 }
 
 fn begins(name: &str, prefix: &str) -> bool {
-    name.strip_prefix(prefix).and_then(|rest| rest.chars().next()).is_some_and(|next| next.is_uppercase() || next == '_')
+    name.strip_prefix(prefix)
+        .and_then(|rest| rest.chars().next())
+        .is_some_and(|next| next.is_uppercase() || next == '_')
 }
 
 fn capitals_after(name: &str, word: &str) -> bool {
@@ -84,7 +89,10 @@ pub(super) fn of_type(name: &str) -> Option<TypeHint> {
     let second = name.chars().nth(1);
     if has("FB_") || begins(name, "fb") || has("MC_") {
         Some(TypeHint::Block)
-    } else if has("I_") || has("ITF_") || name.starts_with('I') && second.is_some_and(char::is_uppercase) && !is_capitals(name) {
+    } else if has("I_")
+        || has("ITF_")
+        || name.starts_with('I') && second.is_some_and(char::is_uppercase) && !is_capitals(name)
+    {
         Some(TypeHint::Interface)
     } else if has("ST_") || begins(name, "st") {
         Some(TypeHint::Structure)
@@ -102,7 +110,14 @@ fn is_capitals(name: &str) -> bool {
 /// True for names that are seldom members of a base: lists of globals, libraries, functions, constants.
 pub(super) fn is_global(name: &str) -> bool {
     let has = |prefix: &str| name.get(..prefix.len()).is_some_and(|start| start.eq_ignore_ascii_case(prefix));
-    name.starts_with("__") || has("GVL") || has("F_") || has("E_") || has("TC2_") || has("TC3_") || begins(name, "g") || begins(name, "e")
+    name.starts_with("__")
+        || has("GVL")
+        || has("F_")
+        || has("E_")
+        || has("TC2_")
+        || has("TC3_")
+        || begins(name, "g")
+        || begins(name, "e")
         || name.len() > 3 && is_capitals(name) && !name.starts_with('_')
 }
 

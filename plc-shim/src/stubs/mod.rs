@@ -23,6 +23,8 @@ mod hint;
 mod names;
 mod print;
 mod shape;
+#[cfg(test)]
+mod tests;
 mod ty;
 mod world;
 
@@ -113,7 +115,13 @@ fn fresh(needs: Needs) -> Needs {
         };
         (key, kept)
     });
-    Needs { types: types.collect(), heads: needs.heads, libraries: needs.libraries, ..Needs::default() }
+    Needs {
+        types: types.collect(),
+        heads: needs.heads,
+        libraries: needs.libraries,
+        shadowed: needs.shadowed,
+        ..Needs::default()
+    }
 }
 
 /// Gives types to slots whose members are used, where nothing else does; true if there was one.
@@ -142,6 +150,7 @@ fn anonymous_name(path: &str) -> String {
     let plain = |one: char| if one.is_ascii_alphanumeric() { one } else { '_' };
     let words: String = path.chars().map(plain).collect();
     let parts: Vec<&str> = words.split('_').filter(|part| !part.is_empty()).collect();
+    let parts = parts.strip_prefix(&["T"]).unwrap_or(&parts);
     format!("T_{}", parts.join("_"))
 }
 

@@ -138,7 +138,8 @@ impl<'a> Collector<'a> {
         }
         let based = scope.class.clone().and_then(|class| self.foreign_base(&class));
         let is_alone = head.bare || head.called;
-        let is_enumeration = !head.parts.is_empty() && !is_alone && !head.part_called && !head.part_written && !head.part_deep;
+        let is_enumeration =
+            !head.parts.is_empty() && !is_alone && !head.part_called && !head.part_written && !head.part_deep;
         if let Some(base) = based
             && !head.outside
             && (!hint::is_global(&head.name) || head.written || head.part_written)
@@ -213,7 +214,8 @@ impl<'a> Collector<'a> {
         match access {
             Access::Write if inside => member.written_inside = true,
             Access::Write | Access::Initial => member.written_outside = true,
-            Access::Read | Access::Constant => member.read = true,
+            Access::Constant => member.is_constant = true,
+            Access::Read => member.read = true,
         }
         Ty::Slot(slot)
     }
@@ -302,7 +304,13 @@ impl<'a> Collector<'a> {
     }
 
     /// `a.b` where nobody declares `a`.
-    pub(super) fn unknown_head(&mut self, first: &Ident, last: &Ident, access: Access, scope: &Scope<'a>) -> Option<Ty> {
+    pub(super) fn unknown_head(
+        &mut self,
+        first: &Ident,
+        last: &Ident,
+        access: Access,
+        scope: &Scope<'a>,
+    ) -> Option<Ty> {
         if self.global_seen(&first.key(), scope).is_some() {
             return None;
         }

@@ -137,11 +137,7 @@ impl<'c, 'a> Printer<'c, 'a> {
         match shape {
             Shape::Alias(ty) => format!("{{external}}\nTYPE {name} : {}; END_TYPE\n", self.type_text(ty, name)),
             Shape::Enumeration => {
-                let values = if found.values.is_empty() {
-                    format!("{name}_0")
-                } else {
-                    found.values.join(", ")
-                };
+                let values = if found.values.is_empty() { format!("{name}_0") } else { found.values.join(", ") };
                 format!("{{external}}\nTYPE {name} : ({values}); END_TYPE\n")
             }
             Shape::Structure => {
@@ -166,12 +162,15 @@ impl<'c, 'a> Printer<'c, 'a> {
         }
         let world = self.collector.world;
         if let Some(unit) = world.units.get(key) {
-            let (span, end) = (unit.pou.span, match unit.pou.kind {
-                PouKind::Interface => "END_INTERFACE",
-                PouKind::Class => "END_CLASS",
-                PouKind::Program => "END_PROGRAM",
-                _ => "END_FUNCTION_BLOCK",
-            });
+            let (span, end) = (
+                unit.pou.span,
+                match unit.pou.kind {
+                    PouKind::Interface => "END_INTERFACE",
+                    PouKind::Class => "END_CLASS",
+                    PouKind::Program => "END_PROGRAM",
+                    _ => "END_FUNCTION_BLOCK",
+                },
+            );
             let inner = if unit.pou.kind == PouKind::Interface {
                 self.interface_members(key, found)
             } else {
@@ -198,9 +197,9 @@ impl<'c, 'a> Printer<'c, 'a> {
     }
 
     fn fields(&self, found: &Foreign) -> String {
-        let members = self.members(found).map(|member| {
-            format!("    {} : {};\n", member.name, self.slot_text(member.field, &member.name))
-        });
+        let members = self
+            .members(found)
+            .map(|member| format!("    {} : {};\n", member.name, self.slot_text(member.field, &member.name)));
         members.collect()
     }
 
@@ -237,14 +236,15 @@ impl<'c, 'a> Printer<'c, 'a> {
 
     /// True for what is called and is no instance.
     fn is_method(&self, member: &Member) -> bool {
-        let is_instance = member.field.is_some_and(|slot| {
-            matches!(self.collector.slots.decided(slot), Some(Ty::Foreign(_) | Ty::Declared(_)))
-        });
+        let is_instance = member
+            .field
+            .is_some_and(|slot| matches!(self.collector.slots.decided(slot), Some(Ty::Foreign(_) | Ty::Declared(_))));
         member.called.is_some() && !is_instance
     }
 
     fn block_members(&self, key: &str, found: &Foreign) -> String {
         let (mut inputs, mut outputs, mut others) = (String::new(), String::new(), String::new());
+        let mut constants = String::new();
         others.push_str(&self.init(key, found));
         for member in self.members(found).filter(|member| !member.name.eq_ignore_ascii_case(INIT)) {
             let name = &member.name;
@@ -255,6 +255,9 @@ impl<'c, 'a> Printer<'c, 'a> {
                 others.push_str(&property_text(name, &ty, true, true));
             } else if let Some((signature, result)) = member.called.as_ref().filter(|_| self.is_method(member)) {
                 others.push_str(&self.method(name, signature, *result));
+            } else if member.is_constant && !member.written_inside && !member.written_outside {
+                let number = FIRST_CONSTANT + constants.lines().count();
+                let _ = writeln!(constants, "    {name} : DINT := {number};");
             } else {
                 let ty = self.slot_text(member.field, name);
                 if member.via_super || member.written_inside && member.written_outside {
@@ -272,7 +275,8 @@ impl<'c, 'a> Printer<'c, 'a> {
         let section = |word: &str, lines: String| {
             if lines.is_empty() { lines } else { format!("{word}\n{lines}END_VAR\n") }
         };
-        [section("VAR_INPUT", inputs), section("VAR_OUTPUT", outputs), others].concat()
+        let constants = section("VAR CONSTANT", constants);
+        [section("VAR_INPUT", inputs), section("VAR_OUTPUT", outputs), constants, others].concat()
     }
 
     fn interface_members(&self, key: &str, found: &Foreign) -> String {
@@ -414,9 +418,7 @@ impl<'c, 'a> Printer<'c, 'a> {
         let best = all.iter().find(|argument| slots.decided(argument.slot).is_some()).unwrap_or(first);
         let ty = slots.last_choice(best.slot);
         let is_block = match &ty {
-            Ty::Declared(key) => {
-                self.collector.world.units.get(key).is_some_and(|unit| unit.pou.kind.has_instances())
-            }
+            Ty::Declared(key) => self.collector.world.units.get(key).is_some_and(|unit| unit.pou.kind.has_instances()),
             Ty::Foreign(key) => {
                 self.collector.needs.types.get(key).is_some_and(|found| self.collector.shape(found) == Shape::Block)
             }

@@ -3,8 +3,8 @@
 use std::collections::BTreeMap;
 
 use super::hint;
-use crate::syntax::ast::ReferenceKind;
 use crate::ElementaryType;
+use crate::syntax::ast::ReferenceKind;
 
 /// A type.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -54,6 +54,9 @@ struct Evidence {
     is_value: bool,
     decided: Option<Ty>,
 }
+
+/// The bounds of an array of which only elements are known.
+pub(super) const ANY_BOUNDS: &str = "0..255";
 
 /// All slots, by their paths.
 #[derive(Debug, Default)]
@@ -166,7 +169,13 @@ impl Slots {
             return kept;
         }
         let built = |ty: &&Ty| matches!(ty, Ty::Array(..) | Ty::Pointer(..));
-        if let Some(found) = in_order().find(built) {
+        // One that a declaration tells goes before one that is only indexed or followed.
+        let told = |ty: &&Ty| match ty {
+            Ty::Array(bounds, _) => bounds.iter().any(|each| each != ANY_BOUNDS),
+            Ty::Pointer(_, inner) => !matches!(**inner, Ty::Slot(_)),
+            _ => false,
+        };
+        if let Some(found) = in_order().find(told).or_else(|| in_order().find(built)) {
             return Some(found.clone());
         }
         if let Some(Ty::Text(_)) = in_order().find(|ty| matches!(ty, Ty::Text(_))) {
@@ -263,11 +272,7 @@ fn group(ty: &Ty) -> Option<String> {
 }
 
 /// The type of what takes `from`, goes to `to` and stands beside others.
-fn elementary_of(
-    from: &[ElementaryType],
-    to: &[ElementaryType],
-    beside: &[ElementaryType],
-) -> Option<ElementaryType> {
+fn elementary_of(from: &[ElementaryType], to: &[ElementaryType], beside: &[ElementaryType]) -> Option<ElementaryType> {
     let all = || to.iter().chain(from).chain(beside).copied();
     if let Some(found) = all().find(|ty| *ty == ElementaryType::Bool || !(ty.is_number() || ty.is_bits())) {
         return Some(found);

@@ -235,7 +235,7 @@ impl<'a> Declarations<'a> {
                 around = around.rsplit_once('.').map_or("", |(outer, _)| outer);
             }
         };
-        let library = key.split_once('.').is_some_and(|(first, _)| STANDARD_LIBRARIES.contains(&first));
+        let library = key.split('.').next().is_some_and(|first| STANDARD_LIBRARIES.contains(&first));
         library || key.match_indices('.').any(|(at, _)| known(&key[..at])) || known(key)
     }
 }
