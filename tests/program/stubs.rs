@@ -84,8 +84,8 @@ METHOD Blink : INT Blink := 5; END_METHOD
 END_FUNCTION_BLOCK
 PROGRAM TEST_Stubs VAR fb : FB_Lamp; END_VAR
   fb(bOn := TRUE); fb();
-  ASSERT(fb.bOn AND fb.bLit AND fb.nCalls = 0);
-  ASSERT(F_Level(7) = 0 AND fb.Blink() = 0);
+  ASSERT(fb.bOn AND fb.bLit AND fb.nCalls = 0, 'initial values');
+  ASSERT(F_Level(7) = 0 AND fb.Blink() = 0, 'no results');
 END_PROGRAM
 ",
     );

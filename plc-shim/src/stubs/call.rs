@@ -332,7 +332,10 @@ impl<'a> Collector<'a> {
             inputs.flat_map(|each| each.names.iter().map(move |name| (name.key(), &each.spec))).collect();
         let all = pou.sections.iter().flat_map(|section| &section.variables);
         let all: Vec<_> = all.flat_map(|each| each.names.iter().map(move |name| (name.key(), &each.spec))).collect();
-        for (index, argument) in call.arguments.iter().enumerate() {
+        let mut given = 0;
+        for argument in &call.arguments {
+            let index = given;
+            given += usize::from(!matches!(argument, Argument::Output { .. }));
             let spec = match argument {
                 Argument::Positional(_) => inputs.get(index).map(|(_, spec)| *spec),
                 Argument::Input(name, _) | Argument::Output { name, .. } => {

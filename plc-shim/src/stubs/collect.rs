@@ -565,7 +565,10 @@ impl<'a> Collector<'a> {
 
     pub(super) fn arguments(&mut self, signature: &mut Signature, path: &str, list: &[Argument], scope: &Scope<'a>) {
         // Names and places may be mixed: what has no name is counted with what has.
-        for (position, argument) in list.iter().enumerate() {
+        let mut given = 0;
+        for argument in list {
+            let position = given;
+            given += usize::from(!matches!(argument, Argument::Output { .. }));
             match argument {
                 Argument::Positional(value) => {
                     let found = self.infer(value, scope);

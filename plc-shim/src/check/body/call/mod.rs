@@ -220,7 +220,11 @@ impl Body<'_, '_> {
     pub(super) fn matched<'e>(&mut self, scope: &Scope, callee: &str, call: &'e Call) -> Option<Matched<'e>> {
         let mut matched = Matched::default();
         let mut sound = true;
-        for (index, argument) in call.arguments.iter().enumerate() {
+        let mut given = 0;
+        for argument in &call.arguments {
+            // What has no name is counted with the inputs before it; outputs have their own.
+            let index = given;
+            given += usize::from(!matches!(argument, ast::Argument::Output { .. }));
             let (name, span, expr) = match argument {
                 ast::Argument::Positional(expr) => {
                     // With a parameter whose declaration is wrong the others cannot be counted.
