@@ -34,7 +34,7 @@ use crate::syntax::{FileId, SourceMap};
 pub use builder::{BuildError, Builder};
 pub use constant::ConstantError;
 use constant::{Constants, Setting};
-pub(crate) use front::Front;
+pub(crate) use front::{Front, Parsed};
 use identity::code::Code;
 use identity::layout::Layout;
 pub use identity::{CodeDifference, VariableDifference};

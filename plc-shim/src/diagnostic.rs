@@ -158,6 +158,7 @@ codes! {
     DamagedMarks "I1004" "marks of the shim do not fit together",
     WrittenByTwoTasks "W0707" "a variable is written by two tasks",
     EndlessLoop "W0709" "a loop is never left",
+    StubUsed "W0710" "a stub is called, which does nothing",
 }
 
 impl fmt::Display for Code {

@@ -14,6 +14,7 @@
 //! | `compile` | the checked program | one WebAssembly module, and the source behind each trap |
 //! | [`application`] | files | all of the above in one value |
 //! | `output` | program text | the files that other tools import |
+//! | [`stubs`] | a project | declarations of what it names and nobody declares |
 //! | [`instrument`] | a project | the same, made to run in lockstep |
 //! | [`run`] | an application and a task plan | a soft PLC that scans |
 //! | [`coverage`] | what has been executed | reports of it |
@@ -41,6 +42,7 @@ mod lint;
 mod output;
 pub mod run;
 pub mod source;
+pub mod stubs;
 pub mod syntax;
 
 pub use application::{

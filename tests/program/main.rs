@@ -38,6 +38,7 @@ mod regression;
 mod reports;
 mod review;
 mod run;
+mod stubs;
 mod third_party;
 mod twincat;
 mod typed;

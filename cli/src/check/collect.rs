@@ -11,6 +11,7 @@ use onescan_scenario::Scenario;
 use onescan_scenario::load::FILE_NAME;
 
 use super::error::CheckError;
+use super::stubs::FOLDER as LIBRARIES;
 use crate::error::{Unreadable, Usage};
 
 /// Files that are checked together.
@@ -136,7 +137,9 @@ impl Files {
             }
             Err(error) => self.inputs.push(Input::unreadable(&name, Code::MalformedXml, error.to_string())),
         }
-        Ok(())
+        // Declarations of libraries stand beside the project, which does not list them.
+        let libraries = folder.join(LIBRARIES);
+        if libraries.is_dir() { self.folder(&libraries) } else { Ok(()) }
     }
 
     /// All sources in a folder and below it. Where a project is, it says which files are meant.

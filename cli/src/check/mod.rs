@@ -7,6 +7,7 @@
 //! | [`human`] | for people |
 //! | [`json`] | a JSON object a finding |
 //! | [`sarif`] | SARIF 2.1.0, which code hosts and editors read |
+//! | [`stubs`] | declarations of libraries that are not there |
 //! | [`explain`] | the page behind a code |
 
 pub mod collect;
@@ -16,6 +17,7 @@ pub mod human;
 pub mod json;
 pub mod report;
 pub mod sarif;
+pub mod stubs;
 
 use std::io::Write;
 use std::path::PathBuf;
@@ -51,6 +53,8 @@ pub struct CheckConfig {
     pub format: CheckFormat,
     /// Whether warnings alone make the check fail.
     pub warnings: Warnings,
+    /// Whether calls of stubs make it fail, as errors do.
+    pub stubs: Warnings,
 }
 
 /// What becomes of a check that has found nothing but warnings.
@@ -79,5 +83,5 @@ pub fn check(config: &CheckConfig, out: &mut dyn Write) -> Result<ExitCode, Chec
         CheckFormat::Sarif => sarif::write(&report, out),
     };
     written.map_err(OutputError)?;
-    Ok(report.exit_code(config.warnings))
+    Ok(report.exit_code(config.warnings, config.stubs))
 }

@@ -5,6 +5,7 @@ use std::collections::BTreeSet;
 use onescan_plc_shim::{Diagnostics, Finding, Severity};
 
 use super::Warnings;
+use super::stubs::is_stub;
 use crate::error::ExitCode;
 
 /// The reports' word for how grave a finding is.
@@ -40,9 +41,10 @@ impl Report {
         self.iter().map(Finding::file).collect::<BTreeSet<_>>().len()
     }
 
-    /// 2 with errors, 1 with warnings where these are denied, else 0.
-    pub fn exit_code(&self, warnings: Warnings) -> ExitCode {
-        if self.count(Severity::Error) > 0 {
+    /// 2 with errors, or with calls of stubs where these are denied, 1 with warnings where these are, else 0.
+    pub fn exit_code(&self, warnings: Warnings, stubs: Warnings) -> ExitCode {
+        let denied = stubs == Warnings::Denied && self.iter().any(is_stub);
+        if denied || self.count(Severity::Error) > 0 {
             ExitCode::WrongInput
         } else if warnings == Warnings::Denied && self.count(Severity::Warning) > 0 {
             ExitCode::Unmet

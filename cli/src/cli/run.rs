@@ -17,6 +17,7 @@ use onescan_server::time::{TimeSpan, VirtualTime};
 use super::error::CommandError;
 use super::opcua::AccessArgs;
 use super::value::{FormatArg, client_name, plane, signal_name};
+use crate::check::stubs;
 use crate::error::ExitCode;
 use crate::format::Format;
 use crate::interrupt::Interrupt;
@@ -34,6 +35,9 @@ pub struct RunArgs {
     /// A case of the scenario's `cases.toml` [default: the scenario as it is]
     #[arg(long, value_name = "NAME")]
     pub case: Option<String>,
+    /// Refuse PLC sources that call a stub: a unit behind `{external}`, which does nothing
+    #[arg(long)]
+    pub deny_stubs: bool,
     /// Virtual time at which a run is complete, as in `2.5s` [default: the scenario's `until`]
     #[arg(long, value_name = "TIME")]
     pub until: Option<VirtualTime>,
@@ -224,6 +228,9 @@ impl From<CoverageArg> for CoverageFormat {
 /// # Errors
 /// See [`CommandError`].
 pub fn run(args: RunArgs) -> Result<ExitCode, CommandError> {
+    if args.deny_stubs {
+        stubs::deny(std::slice::from_ref(&args.scenario), None)?;
+    }
     let interrupt = Interrupt::new();
     interrupt.on_signals();
     let verdict = execute(&config(args)?, &interrupt, &mut std::io::stdout().lock())?;

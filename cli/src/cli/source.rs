@@ -11,6 +11,7 @@ use onescan_server::time::TimeSpan;
 use super::error::CommandError;
 use super::value::FormatArg;
 use crate::check::collect::logix;
+use crate::check::stubs::{self, StubsConfig};
 use crate::check::{self, CheckConfig, CheckFormat, Warnings};
 use crate::error::ExitCode;
 use crate::instrument::{Destination, Diff, Direction, InstrumentConfig};
@@ -33,6 +34,14 @@ pub struct CheckArgs {
     /// Fail with exit code 1 if there are warnings
     #[arg(long)]
     pub deny_warnings: bool,
+    /// Fail with exit code 2 if a stub is called: a unit behind `{external}`, which does nothing
+    #[arg(long)]
+    pub deny_stubs: bool,
+    /// Write what the project names and nobody declares as `{external}` declarations to `stubs.st` in this folder,
+    /// with types guessed from use; what is in the file stays, what is missing is added [default folder:
+    /// `libraries` of the project]
+    #[arg(long, value_name = "DIR", num_args = 0..=1, require_equals = true, conflicts_with = "deny_stubs")]
+    pub write_stubs: Option<Option<PathBuf>>,
 }
 
 /// See [`CheckFormat`].
@@ -62,8 +71,13 @@ impl From<CheckFormatArg> for CheckFormat {
 /// # Errors
 /// See [`CommandError`].
 pub fn check(args: CheckArgs) -> Result<ExitCode, CommandError> {
-    let warnings = if args.deny_warnings { Warnings::Denied } else { Warnings::Allowed };
-    let config = CheckConfig { paths: args.paths, dialect: args.dialect, format: args.format.into(), warnings };
+    let denied = |is: bool| if is { Warnings::Denied } else { Warnings::Allowed };
+    if let Some(folder) = args.write_stubs {
+        let config = StubsConfig { paths: args.paths, dialect: args.dialect, folder };
+        return Ok(stubs::write(&config, &mut std::io::stdout().lock())?);
+    }
+    let (warnings, stubs) = (denied(args.deny_warnings), denied(args.deny_stubs));
+    let config = CheckConfig { paths: args.paths, dialect: args.dialect, format: args.format.into(), warnings, stubs };
     Ok(check::check(&config, &mut std::io::stdout().lock())?)
 }
 

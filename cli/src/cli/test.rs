@@ -69,6 +69,9 @@ pub struct TestArgs {
     /// The dialect of sources with test programs [default: what a file's name says, else iec3]
     #[arg(long, value_name = "NAME")]
     pub dialect: Option<Dialect>,
+    /// Refuse PLC sources that call a stub: a unit behind `{external}`, which does nothing
+    #[arg(long)]
+    pub deny_stubs: bool,
 }
 
 impl TestArgs {
@@ -178,6 +181,9 @@ impl WorkerArgs {
 /// # Errors
 /// See [`CommandError`].
 pub fn test(args: TestArgs) -> Result<ExitCode, CommandError> {
+    if args.deny_stubs {
+        crate::regress::deny_stubs(&args.paths, args.dialect)?;
+    }
     Ok(crate::regress::test(&args.config(), &mut std::io::stdout().lock())?)
 }
 

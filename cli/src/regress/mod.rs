@@ -38,7 +38,9 @@ pub mod unit_test;
 pub mod worker;
 
 use std::io::Write;
+use std::path::PathBuf;
 
+use onescan_plc_shim::Dialect;
 use onescan_report::OutputError;
 use onescan_report::file;
 
@@ -46,9 +48,26 @@ pub use config::{Policy, TestConfig};
 pub use error::TestError;
 pub use selection::Selection;
 
+use crate::check::stubs;
 use crate::error::ExitCode;
 use crate::format::Format;
+use discover::Found;
 use outcome::Outcome;
+
+/// Refuses tests whose sources call stubs.
+///
+/// # Errors
+/// Some do, or they cannot be read.
+pub fn deny_stubs(paths: &[PathBuf], dialect: Option<Dialect>) -> Result<(), TestError> {
+    let found = Found::behind(paths)?;
+    if !found.sources.is_empty() {
+        stubs::deny(&found.sources, dialect)?;
+    }
+    for scenario in found.scenarios {
+        stubs::deny(&[scenario], None)?;
+    }
+    Ok(())
+}
 
 /// Runs all tests that `config` asks for, and writes what came of them to `out`.
 ///

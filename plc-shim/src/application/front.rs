@@ -47,15 +47,15 @@ impl Front {
 }
 
 /// Files as trees, with what is wrong with their text.
-struct Parsed {
-    sources: SourceMap,
-    units: Vec<(FileId, CompilationUnit)>,
-    library: BTreeSet<FileId>,
+pub(crate) struct Parsed {
+    pub(crate) sources: SourceMap,
+    pub(crate) units: Vec<(FileId, CompilationUnit)>,
+    pub(crate) library: BTreeSet<FileId>,
     findings: Vec<Diagnostic>,
 }
 
 impl Parsed {
-    fn new(inputs: impl IntoIterator<Item = Input>) -> Self {
+    pub(crate) fn new(inputs: impl IntoIterator<Item = Input>) -> Self {
         let mut sources = SourceMap::default();
         let mut findings = Vec::new();
         let mut library = BTreeSet::new();

@@ -38,8 +38,8 @@ use crate::syntax::{FileId, Span};
 pub(crate) use self::declare::{
     CALL_DEPTH_OFFSET, INIT_RETAINS_OFFSET, Kept, Overrides, VIRTUAL_TIME_NAME, VIRTUAL_TIME_OFFSET,
 };
-pub(crate) use self::standard::exists as is_standard_function;
 pub(crate) use self::standard::vendor::is_qualified_only;
+pub(crate) use self::standard::{exists as is_standard_function, is_known as knows_function};
 
 /// The checked program.
 #[derive(Debug)]
@@ -98,6 +98,7 @@ pub(crate) fn check(
         pous.extend(check_unit(&mut declarations, id).map(|unit| (id, unit)));
     }
     declarations.report_recursion();
+    declarations.report_stubs();
     declarations.guard_circles(&mut pous);
     declarations.place_areas();
     let mut configurer = Configurer::new(&mut declarations, &mut configured);

@@ -7,7 +7,7 @@ use std::path::Path;
 pub enum SourceKind {
     /// Text alone: `.st`, `.iec`, `.exp`, `.scl`.
     Text,
-    /// One object of a TwinCAT 3 project: `.TcPOU`, `.TcDUT`, `.TcGVL`, `.TcIO`, `.TcTTO`.
+    /// One object of a TwinCAT 3 project: `.TcPOU`, `.TcDUT`, `.TcGVL`, `.TcIO`, `.TcTLEO`, `.TcTTO`.
     TwinCat,
     /// PLCopen XML (IEC 61131-10, TC6 2.01): `.xml`.
     PlcOpen,
@@ -23,7 +23,7 @@ pub enum FileKind {
 }
 
 /// Every extension that is read.
-pub const EXTENSIONS: [(&str, FileKind); 11] = [
+pub const EXTENSIONS: [(&str, FileKind); 12] = [
     ("st", FileKind::Source(SourceKind::Text)),
     ("iec", FileKind::Source(SourceKind::Text)),
     ("exp", FileKind::Source(SourceKind::Text)),
@@ -32,6 +32,7 @@ pub const EXTENSIONS: [(&str, FileKind); 11] = [
     ("TcDUT", FileKind::Source(SourceKind::TwinCat)),
     ("TcGVL", FileKind::Source(SourceKind::TwinCat)),
     ("TcIO", FileKind::Source(SourceKind::TwinCat)),
+    ("TcTLEO", FileKind::Source(SourceKind::TwinCat)),
     ("TcTTO", FileKind::Source(SourceKind::TwinCat)),
     ("plcproj", FileKind::Project),
     ("xml", FileKind::Source(SourceKind::PlcOpen)),

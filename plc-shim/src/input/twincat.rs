@@ -21,7 +21,7 @@ pub(super) fn extract(file: &str) -> Result<Taken, XmlError> {
     for object in root.elements() {
         match object.name.as_str() {
             "POU" => pou(&mut taken, file, object),
-            "DUT" => declaration(&mut taken, file, object),
+            "DUT" | "EnumerationTextList" => declaration(&mut taken, file, object),
             "GVL" => global_list(&mut taken, file, object),
             "Task" => super::twincat_task::task(&mut taken, file, object),
             "Itf" => interface(&mut taken, file, object),

@@ -58,7 +58,9 @@ impl<'a> Index<'a> {
                     self.in_outs.extend(in_outs.map(Ident::key));
                 }
                 self.units.insert(pou.name.key(), pou);
-                if library {
+                if pou.external {
+                    // What it does and uses is not known: nothing is said of it.
+                } else if library {
                     self.library.insert(pou.name.key());
                 } else {
                     self.own.push(pou);

@@ -28,13 +28,16 @@ impl Body<'_, '_> {
     fn into_unit(mut self, id: PouId) -> Pou {
         let ast = self.declarations.pou(id).ast();
         let mut statements = self.prologue(ast.kind);
-        if let Some((owner, occasion)) = self.declarations.stage_of(id) {
+        let external = self.declarations.is_external(id);
+        if external {
+            // What is done elsewhere does nothing here, whatever its text says.
+        } else if let Some((owner, occasion)) = self.declarations.stage_of(id) {
             statements.extend(self.staged(owner, occasion));
         } else {
             statements.extend(self.chart(ast));
             statements.extend(self.statements(&ast.body));
         }
-        if self.scope.result().is_some() && !self.result_assigned && !is_hook(&ast.name.text) {
+        if self.scope.result().is_some() && !self.result_assigned && !external && !is_hook(&ast.name.text) {
             let message = format!("function `{}` never assigns its result", ast.name.text);
             self.report(Diagnostic::warning(Code::MissingResult, ast.name.span, message));
         }

@@ -23,6 +23,7 @@ mod query;
 mod recursion;
 mod scope;
 mod start;
+mod stub;
 mod unknown;
 mod variable;
 mod vendor_parameter;
@@ -40,6 +41,7 @@ use self::layout::Memory;
 use self::located::Initial;
 use self::namespace::OpenNames;
 use self::start::Stages;
+use self::stub::Stubs;
 use crate::check::types::generic::Generic;
 use crate::dialect::{AddressUnit, Dialect};
 use crate::ir::{Areas, ElementaryType, PouId, Program, TypeId, TypeTable};
@@ -84,6 +86,8 @@ pub(super) struct Declarations<'a> {
     /// Names of namespaces by their keys.
     namespaces: BTreeMap<String, String>,
     open: OpenNames,
+    /// Keys of namespaces that are names of libraries: what they lack is looked for outside of them.
+    libraries: BTreeSet<String>,
     classes: BTreeMap<PouId, Class>,
     /// Names that a method or action has in some unit, and those of properties.
     method_names: BTreeSet<String>,
@@ -110,6 +114,7 @@ pub(super) struct Declarations<'a> {
     generics: BTreeMap<TypeId, Generic>,
     depth: u32,
     chart_parts: Vec<(Span, String)>,
+    stubs: Stubs,
     findings: Findings,
 }
 
@@ -146,6 +151,7 @@ impl<'a> Declarations<'a> {
             home: Arc::default(),
             namespaces: BTreeMap::new(),
             open: OpenNames::default(),
+            libraries: BTreeSet::new(),
             classes: BTreeMap::new(),
             method_names: BTreeSet::new(),
             property_names: BTreeSet::new(),
@@ -168,6 +174,7 @@ impl<'a> Declarations<'a> {
             calls: Calls::default(),
             depth: 0,
             chart_parts: Vec::new(),
+            stubs: Stubs::default(),
             findings: Findings::default(),
         }
     }

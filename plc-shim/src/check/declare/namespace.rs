@@ -138,6 +138,9 @@ impl<'a> Declarations<'a> {
                     used.extend(&namespace.using);
                     let inner = Arc::new(home.inside(namespace));
                     self.namespaces.insert(inner.namespace.clone(), inner.shown.clone());
+                    if namespace.external {
+                        self.libraries.insert(inner.namespace.clone());
+                    }
                     self.collect_all(&namespace.declarations, &inner, used);
                     self.home = home.clone();
                 }
@@ -216,7 +219,9 @@ impl<'a> Declarations<'a> {
         }
         let name = self.without_libraries(key)?.to_owned();
         let open = open.get(&name).cloned();
-        open.into_iter().chain([name]).find(|full| map.contains_key(full) && of_library(full))
+        // What stubs stand for is where they are written, among the user's files.
+        let is_stub = key.split_once('.').is_some_and(|(first, _)| self.libraries.contains(first));
+        open.into_iter().chain([name]).find(|full| map.contains_key(full) && (is_stub || of_library(full)))
     }
 
     /// What stands behind the names of vendors' libraries; nothing if none stands before it.
@@ -240,8 +245,8 @@ impl<'a> Declarations<'a> {
 
     /// True for the name of a vendor's library, in any case, unless the program has something of the name.
     fn is_vendor_library(&self, name: &str) -> bool {
-        let known = LIBRARIES.iter().any(|library| library.eq_ignore_ascii_case(name));
         let key = name.to_ascii_uppercase();
+        let known = LIBRARIES.contains(&key.as_str()) || self.libraries.contains(&key);
         known && !self.globals.contains_key(&key) && !self.pou_names.contains_key(&key)
     }
 

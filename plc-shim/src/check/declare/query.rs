@@ -95,6 +95,10 @@ impl<'a> Declarations<'a> {
 
     /// The values of enumerations that the name alone stands for.
     pub(in crate::check) fn enumerators(&self, key: &str) -> &[Enumerator] {
+        let mut key = key;
+        while let Some((_, rest)) = key.split_once('.').filter(|(first, _)| self.is_library_name(first)) {
+            key = rest;
+        }
         self.enumerators.get(key).map_or(&[], Vec::as_slice)
     }
 

@@ -99,6 +99,7 @@ fn stage(owner: &ast::Pou, name: &str) -> ast::Pou {
         body: Vec::new(),
         chart: ast::Chart::default(),
         object: ast::Object::default(),
+        external: owner.external,
         span: owner.span,
     }
 }

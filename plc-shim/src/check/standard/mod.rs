@@ -28,3 +28,14 @@ pub(in crate::check) fn is_reserved(key: &str) -> bool {
     let conversion = || conversion::find(key).is_some() || text_conversion::find(key).is_some();
     form::is_reserved(key) || !conversion::is_of_vendors(key) && conversion()
 }
+
+/// True for every function that is no unit: those of the standard, those on memory, places and instances, and what of
+/// a vendor's runtime is told by its name.
+pub(crate) fn is_known(key: &str) -> bool {
+    exists(key)
+        || memory::exists(key)
+        || place::PlaceFunction::find(key).is_some()
+        || query::Query::find(key).is_some()
+        || matches!(key, "TIME" | "LTIME")
+        || vendor::VENDOR_FUNCTIONS.iter().any(|(begin, ..)| key.starts_with(begin))
+}

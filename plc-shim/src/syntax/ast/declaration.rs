@@ -67,6 +67,8 @@ pub struct Pou {
     pub chart: Chart,
     /// Its bases and methods.
     pub object: Object,
+    /// True behind `{external}`: declared here, and done elsewhere.
+    pub external: bool,
     /// Where it stands.
     pub span: Span,
 }
@@ -276,6 +278,8 @@ pub struct TypeDeclaration {
     pub name: Ident,
     /// The structure that it adds members to, as vendors have it.
     pub extends: Option<Ident>,
+    /// True behind `{external}`.
+    pub external: bool,
     /// What it is.
     pub spec: TypeSpec,
     /// The initial value of its variables.

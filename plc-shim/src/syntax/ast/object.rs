@@ -104,4 +104,6 @@ pub struct Namespace {
     pub using: Vec<Ident>,
     /// What it declares.
     pub declarations: Vec<Declaration>,
+    /// True behind `{external}`: the name of a library, whose declarations may stand outside of it.
+    pub external: bool,
 }

@@ -30,6 +30,10 @@ pub(super) struct Cursor<'a> {
     origin: Option<&'a Origin>,
     /// The name that the unit's result has; nothing in units without one.
     result_name: Option<String>,
+    /// Starts of tokens behind the pragma `{external}`, in order.
+    external: Vec<u32>,
+    /// True inside of what stands behind it.
+    in_external: bool,
 }
 
 impl<'a> Cursor<'a> {
@@ -45,6 +49,7 @@ impl<'a> Cursor<'a> {
             kind if kind.is_trivia() || is_broken(kind) => None,
             _ => Some(*token),
         };
+        let external = behind_external(tokens, text);
         let mut tokens: Vec<Token> = tokens.iter().filter_map(good).collect();
         promote_soft_keywords(&mut tokens, text);
         Self {
@@ -61,7 +66,14 @@ impl<'a> Cursor<'a> {
             foreign: BTreeMap::new(),
             origin: None,
             result_name: None,
+            external,
+            in_external: false,
         }
+    }
+
+    /// True if `{external}` stands before the next token.
+    pub(super) fn at_external(&self) -> bool {
+        self.external.binary_search(&self.span().start).is_ok()
     }
 
     /// The same, of text that was taken out of a file.
@@ -137,6 +149,16 @@ impl<'a> Cursor<'a> {
         } else {
             self.diagnostics.push(diagnostic);
         }
+    }
+
+    /// Notes that what is external begins or ends; gives what was before.
+    pub(super) fn set_external(&mut self, external: bool) -> bool {
+        std::mem::replace(&mut self.in_external, external)
+    }
+
+    /// True inside of what is done elsewhere, which keeps to no dialect.
+    pub(super) fn is_in_external(&self) -> bool {
+        self.in_external
     }
 
     /// Kind of the token taken last.
@@ -394,4 +416,19 @@ fn promote_soft_keywords(tokens: &mut [Token], text: &str) {
         }
         next_is_name = is_name;
     }
+}
+
+/// Where the tokens stand that the pragma `{external}` is before, with other trivia in between at most.
+fn behind_external(tokens: &[Token], text: &str) -> Vec<u32> {
+    let mut found = Vec::new();
+    let mut is_behind = false;
+    for token in tokens {
+        if token.kind == TokenKind::Pragma {
+            let pragma = text.get(token.start as usize..token.end as usize).unwrap_or("");
+            is_behind |= pragma.trim_matches(['{', '}']).trim().eq_ignore_ascii_case("external");
+        } else if !token.kind.is_trivia() && std::mem::take(&mut is_behind) {
+            found.push(token.start);
+        }
+    }
+    found
 }

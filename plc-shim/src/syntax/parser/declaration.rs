@@ -314,6 +314,7 @@ impl Cursor<'_> {
     }
 
     fn type_block(&mut self, into: &mut Vec<Declaration>) {
+        let external = self.at_external();
         self.advance();
         while self.peek() == Some(TokenKind::Identifier) {
             self.pass_access_of_type();
@@ -328,7 +329,7 @@ impl Cursor<'_> {
             let (spec, behind) = self.type_spec_extending();
             let (initial, extends) = (self.optional_initialiser(), before.or(behind));
             let span = self.span_from(start);
-            into.push(Declaration::Type(TypeDeclaration { name, extends, spec, initial, span }));
+            into.push(Declaration::Type(TypeDeclaration { name, extends, external, spec, initial, span }));
             self.end_of_declaration(known);
         }
         if !self.take_keyword(Keyword::EndType) {

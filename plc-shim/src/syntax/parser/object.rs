@@ -30,6 +30,14 @@ pub(super) fn ends_object(keyword: Keyword) -> bool {
 impl Cursor<'_> {
     /// A unit from its keyword to its end; nothing if it has no name.
     pub(super) fn unit(&mut self, kind: PouKind, end: Keyword) -> Option<Pou> {
+        let external = self.at_external();
+        let outer = self.set_external(external || self.is_in_external());
+        let unit = self.plain_unit(kind, end);
+        self.set_external(outer);
+        unit.map(|unit| Pou { external, ..unit })
+    }
+
+    fn plain_unit(&mut self, kind: PouKind, end: Keyword) -> Option<Pou> {
         let start = self.span();
         self.advance();
         let mut object = Object { modifiers: self.modifiers(), ..Object::default() };
@@ -66,7 +74,7 @@ impl Cursor<'_> {
             self.report_syntax(found.with_help("put them into a method"));
         }
         let span = self.span_from(start);
-        Pou { kind, name, result, sections, body, chart, object, span }
+        Pou { kind, name, result, sections, body, chart, object, external: false, span }
     }
 
     fn sections_and_members(&mut self, object: &mut Object) -> Vec<Section> {
@@ -157,7 +165,10 @@ impl Cursor<'_> {
         let body = self.body(Keyword::EndAction, &mut parts);
         let (kind, span) = (PouKind::Action, self.span_from(start));
         let UnitParts { sections, chart, .. } = parts;
-        let pou = Pou { kind, name, result: None, sections, body, chart, object: Object::default(), span };
+        let pou = {
+            let (object, external) = (Object::default(), false);
+            Pou { kind, name, result: None, sections, body, chart, object, external, span }
+        };
         members.push(Member { kind: MemberKind::Action, pou });
     }
 
@@ -253,6 +264,7 @@ impl Cursor<'_> {
     }
 
     fn namespace(&mut self, into: &mut Vec<Declaration>) {
+        let external = self.at_external();
         self.advance();
         let named = self.peek_ahead(1) == Some(TokenKind::Identifier);
         let kind = if named && self.take_word("INTERNAL") {
@@ -271,7 +283,7 @@ impl Cursor<'_> {
         if !self.take_keyword(Keyword::EndNamespace) {
             self.unexpected("`END_NAMESPACE`");
         }
-        into.push(Declaration::Namespace(Namespace { kind, name, using, declarations }));
+        into.push(Declaration::Namespace(Namespace { kind, name, using, declarations, external }));
     }
 
     fn namespace_content(&mut self) -> (Vec<Ident>, Vec<Declaration>) {

@@ -42,7 +42,7 @@ impl Cursor<'_> {
         if matches!(name.key().as_str(), "STRING" | "WSTRING") {
             return self.string_type(name);
         }
-        if is_generic(&name) {
+        if is_generic(&name) && !self.is_in_external() {
             self.require(Feature::GenericInputs, name.span);
         }
         let name = self.qualified(name);

@@ -6,6 +6,9 @@ use crate::syntax::ast::{
     Qualifier, Section, SectionKind, StructureInit, TypeDeclaration, TypeSpec, TypeSpecKind, Variable,
 };
 
+/// The pragma of what is declared here, and done elsewhere.
+pub(super) const EXTERNAL: &str = "{external}";
+
 impl Printer {
     pub(super) fn declaration(&mut self, declaration: &Declaration) {
         match declaration {
@@ -28,6 +31,9 @@ impl Printer {
             PouKind::FunctionBlock => ("FUNCTION_BLOCK ", "END_FUNCTION_BLOCK"),
             PouKind::Function => ("FUNCTION ", "END_FUNCTION"),
         };
+        if pou.external {
+            self.line(EXTERNAL);
+        }
         self.word(begin);
         self.modifiers(&pou.object.modifiers);
         self.name(&pou.name);
@@ -107,6 +113,9 @@ impl Printer {
     }
 
     fn type_declaration(&mut self, declaration: &TypeDeclaration) {
+        if declaration.external {
+            self.line(EXTERNAL);
+        }
         self.line("TYPE");
         self.indented(|printer| {
             printer.begin_line();

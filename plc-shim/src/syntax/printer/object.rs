@@ -1,6 +1,7 @@
 //! Classes, methods and namespaces to text.
 
 use super::Printer;
+use super::declaration::EXTERNAL;
 use crate::syntax::ast::{Ident, Member, MemberKind, Modifier, Namespace, NamespaceKind, Object, Pou};
 
 impl Printer {
@@ -84,6 +85,9 @@ impl Printer {
     }
 
     pub(super) fn namespace(&mut self, namespace: &Namespace) {
+        if namespace.external {
+            self.line(EXTERNAL);
+        }
         self.word(match namespace.kind {
             NamespaceKind::Plain => "NAMESPACE ",
             NamespaceKind::Internal => "NAMESPACE INTERNAL ",

@@ -32,6 +32,7 @@ impl Body<'_, '_> {
             return None;
         };
         let dispatch = self.body_dispatch(&instance, pou, call, span)?;
+        self.declarations.note_stub(pou, span);
         let scope = self.declarations.interface(pou, span)?;
         let split = enable::split(call, scope.find(ENO).is_some());
         let (enabling, rest) = split.map_or((None, None), |(enabling, rest)| (Some(enabling), Some(rest)));

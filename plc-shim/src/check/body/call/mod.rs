@@ -95,7 +95,14 @@ impl Body<'_, '_> {
     /// the others leave their names to functions.
     fn is_callable_variable(&self, key: &str) -> bool {
         let outer = || self.scope.outer()?.find(key).map(|variable| variable.ty);
-        let is_block = |ty| matches!(self.declarations.types().get(ty), Type::FunctionBlock { .. });
+        let types = self.declarations.types();
+        let is_block = |ty| match types.get(ty) {
+            Type::FunctionBlock { .. } => true,
+            Type::Reference { kind: ast::ReferenceKind::Reference, target } => {
+                matches!(types.get(*target), Type::FunctionBlock { .. })
+            }
+            _ => false,
+        };
         self.scope.own_name(key) || outer().is_some_and(is_block)
     }
 
@@ -221,7 +228,11 @@ impl Body<'_, '_> {
     pub(super) fn matched<'e>(&mut self, scope: &Scope, callee: &str, call: &'e Call) -> Option<Matched<'e>> {
         let mut matched = Matched::default();
         let mut sound = true;
-        for (index, argument) in call.arguments.iter().enumerate() {
+        let mut given = 0;
+        for argument in &call.arguments {
+            // What has no name is counted with the inputs before it; outputs have their own.
+            let index = given;
+            given += usize::from(!matches!(argument, ast::Argument::Output { .. }));
             let (name, span, expr) = match argument {
                 ast::Argument::Positional(expr) => {
                     // With a parameter whose declaration is wrong the others cannot be counted.
@@ -312,6 +323,7 @@ impl Body<'_, '_> {
 
     fn function_call(&mut self, id: PouId, name: &Ident, call: &Call, span: Span) -> Option<Expr> {
         self.note_call(id, span);
+        self.declarations.note_stub(id, span);
         let scope = self.declarations.interface(id, span)?;
         let matched = self.matched(&scope, &name.text, call)?;
         let named = call.arguments.iter().any(|each| !matches!(each, ast::Argument::Positional(_)));

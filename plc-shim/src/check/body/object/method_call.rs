@@ -210,6 +210,7 @@ impl Body<'_, '_> {
     ) -> Option<Expr> {
         let scope = self.declarations.interface(method, span)?;
         let name = self.declarations.pou(method).ast().name.text.clone();
+        self.declarations.note_stub(method, span);
         let (pou, dispatch) = self.dispatch(object.class, object.known, role, &name, method, span)?;
         if self.declarations.lacks_result(method) {
             return None;

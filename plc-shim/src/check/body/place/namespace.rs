@@ -9,7 +9,8 @@ impl Body<'_, '_> {
         let ast::ExprKind::Member(base, last) = &expr.kind else { return None };
         let first = match &base.kind {
             ast::ExprKind::Name(name) if !self.scope.declares(&name.key()) => name.clone(),
-            _ => self.qualified_name(base)?,
+            // What a variable of a namespace has are members.
+            _ => self.qualified_name(base).filter(|name| self.declarations.global_key(&name.key()).is_none())?,
         };
         let text = format!("{}.{}", first.text, last.text);
         let found = Ident { text, span: first.span.to(last.span) };

@@ -1,0 +1,137 @@
+//! What the project names and nobody declares, and how it is used.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use super::ty::Slot;
+
+/// The arguments that calls give.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Signature {
+    /// Those without names.
+    pub(super) positional: Vec<Argument>,
+    /// `a := x`, in the order in which they were found first.
+    pub(super) named: Vec<(String, Argument)>,
+    /// `b => y`
+    pub(super) outputs: Vec<(String, Slot)>,
+    /// The result is used.
+    pub(super) is_used: bool,
+}
+
+/// What is given for a parameter.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Argument {
+    pub(super) slot: Slot,
+    /// All that was given are variables.
+    pub(super) is_place: bool,
+}
+
+/// A member of a type that nobody declares.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Member {
+    pub(super) name: String,
+    pub(super) field: Option<Slot>,
+    pub(super) read: bool,
+    pub(super) written_inside: bool,
+    pub(super) written_outside: bool,
+    pub(super) input: bool,
+    /// It is the bound of an array or the like.
+    pub(super) is_constant: bool,
+    /// It is used as `SUPER^.member`, which properties are.
+    pub(super) via_super: bool,
+    pub(super) called: Option<(Signature, Slot)>,
+}
+
+/// A type that nobody declares.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Foreign {
+    pub(super) name: String,
+    /// The type as a value: an alias has its type.
+    pub(super) value: Option<Slot>,
+    pub(super) members: BTreeMap<String, Member>,
+    /// The members' keys, in the order in which they were found.
+    pub(super) order: Vec<String>,
+    pub(super) called: bool,
+    /// So many inputs are given without names.
+    pub(super) inputs: usize,
+    pub(super) base_of_block: bool,
+    pub(super) base_of_interface: bool,
+    pub(super) base_of_structure: bool,
+    pub(super) implemented: bool,
+    pub(super) init: Option<Signature>,
+    /// Names of its values, as an enumeration.
+    pub(super) values: Vec<String>,
+    /// Names of variables of it.
+    pub(super) variables: BTreeSet<String>,
+    /// It is the type of what a call gives.
+    pub(super) is_value: bool,
+    /// It got its name here.
+    pub(super) is_anonymous: bool,
+    /// The key of the declared unit that it adds members to.
+    pub(super) extends_stub: bool,
+}
+
+impl Foreign {
+    pub(super) fn member(&mut self, name: &str) -> &mut Member {
+        let key = name.to_ascii_uppercase();
+        if !self.members.contains_key(&key) {
+            self.order.push(key.clone());
+        }
+        self.members.entry(key).or_insert_with(|| Member { name: name.to_owned(), ..Member::default() })
+    }
+
+    pub(super) fn add_value(&mut self, name: &str) {
+        if !self.values.iter().any(|known| known.eq_ignore_ascii_case(name)) {
+            self.values.push(name.to_owned());
+        }
+    }
+}
+
+/// A function that nobody declares.
+#[derive(Debug, Clone)]
+pub(super) struct Function {
+    pub(super) name: String,
+    pub(super) signature: Signature,
+    pub(super) result: Slot,
+}
+
+/// A global variable or constant that nobody declares.
+#[derive(Debug, Clone)]
+pub(super) struct Global {
+    pub(super) name: String,
+    pub(super) slot: Slot,
+    pub(super) written: bool,
+    /// It is the bound of an array or the like.
+    pub(super) is_constant: bool,
+}
+
+/// How an unknown name that begins an expression is used.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Head {
+    pub(super) name: String,
+    /// It is a value by itself, is indexed or followed.
+    pub(super) bare: bool,
+    pub(super) called: bool,
+    pub(super) written: bool,
+    /// What follows its dot.
+    pub(super) parts: BTreeSet<String>,
+    pub(super) part_called: bool,
+    pub(super) part_written: bool,
+    pub(super) part_deep: bool,
+    /// It is used where no base of an unknown type can have it.
+    pub(super) outside: bool,
+}
+
+/// All of it.
+#[derive(Debug, Default)]
+pub(super) struct Needs {
+    pub(super) types: BTreeMap<String, Foreign>,
+    pub(super) functions: BTreeMap<String, Function>,
+    pub(super) globals: BTreeMap<String, Global>,
+    /// Names of libraries in front of types.
+    pub(super) libraries: BTreeMap<String, String>,
+    /// Names of lists of globals.
+    pub(super) lists: BTreeMap<String, String>,
+    /// Types of libraries whose names the project has for units of its own.
+    pub(super) shadowed: BTreeSet<String>,
+    pub(super) heads: BTreeMap<String, Head>,
+}

@@ -1,0 +1,513 @@
+//! Stubs as program text.
+
+use std::collections::BTreeMap;
+use std::fmt::Write as _;
+
+use super::Stubs;
+use super::collect::Collector;
+use super::foreign::{Argument, Foreign, Function, Global, Member, Signature};
+use super::shape::Shape;
+use super::ty::{Slot, Ty};
+use super::world::{Part, Unit};
+use crate::ElementaryType;
+use crate::syntax::FileId;
+use crate::syntax::ast::{Pou, PouKind, SectionKind, TypeSpec, TypeSpecKind};
+
+/// What the file is called.
+pub(super) const FILE: &str = "stubs.st";
+/// What runs with the arguments of a declaration, and what it is always given.
+const INIT: &str = "FB_init";
+const INIT_INPUTS: [&str; 2] = ["bInitRetains", "bInCopyCode"];
+/// The first number of a constant that bounds something: nobody knows the right one.
+const FIRST_CONSTANT: usize = 100;
+
+/// The text with everything that is missing: members put into stubs that are there, all else behind them.
+pub(super) fn completed(collector: &mut Collector<'_>, text: &str, file: Option<FileId>) -> Stubs {
+    collector.name_values();
+    let printer = Printer { collector, heirs: BTreeMap::new() };
+    printer.completed(text, file)
+}
+
+impl Collector<'_> {
+    /// Constants that go to an enumeration which nobody declares are its values.
+    fn name_values(&mut self) {
+        let globals: Vec<(String, Global)> =
+            self.needs.globals.iter().map(|(key, global)| (key.clone(), global.clone())).collect();
+        for (key, global) in globals {
+            let Ty::Foreign(ty) = self.slots.last_choice(global.slot) else { continue };
+            let Some(found) = self.needs.types.get(&ty) else { continue };
+            let is_value = found.members.is_empty() && !global.written && !global.name.contains('.');
+            if is_value && matches!(self.shape(found), Shape::Enumeration | Shape::Structure | Shape::Alias(_)) {
+                self.foreign(&ty).add_value(&global.name);
+                self.needs.globals.remove(&key);
+            }
+        }
+    }
+}
+
+struct Printer<'c, 'a> {
+    collector: &'c Collector<'a>,
+    /// The units that are derived from a foreign type, whose methods tell those of the base.
+    heirs: BTreeMap<String, Vec<&'c Unit<'a>>>,
+}
+
+impl<'c, 'a> Printer<'c, 'a> {
+    fn completed(mut self, text: &str, file: Option<FileId>) -> Stubs {
+        self.find_heirs();
+        let mut added = 0;
+        let mut edits: Vec<(usize, String)> = Vec::new();
+        let mut groups: [String; 6] = Default::default();
+        let [libraries, types, interfaces, blocks, functions, globals] = &mut groups;
+        let mut lists: BTreeMap<String, String> = BTreeMap::new();
+        let needs = &self.collector.needs;
+        for (key, name) in &needs.libraries {
+            if !self.collector.world.is_library(key) {
+                let _ = writeln!(libraries, "{{external}}\nNAMESPACE {name} END_NAMESPACE");
+                added += 1;
+            }
+        }
+        for (key, found) in &needs.types {
+            if found.extends_stub {
+                let edit = self.addition(key, found, text, file);
+                added += usize::from(edit.is_some());
+                edits.extend(edit);
+                continue;
+            }
+            if found.is_anonymous && !self.is_used(found) {
+                continue;
+            }
+            let shape = self.collector.shape(found);
+            let group = match shape {
+                Shape::Block => &mut *blocks,
+                Shape::Interface => &mut *interfaces,
+                _ => &mut *types,
+            };
+            added += 1;
+            let Some((list, name)) = found.name.rsplit_once('.') else {
+                group.push('\n');
+                group.push_str(&self.foreign(key, &found.name, found, &shape));
+                continue;
+            };
+            let inner = lists.entry(list.to_owned()).or_default();
+            inner.push('\n');
+            inner.push_str(&self.foreign(key, name, found, &shape));
+        }
+        for function in needs.functions.values() {
+            let (list, text) = self.function(function);
+            let target = if list.is_empty() { &mut *functions } else { lists.entry(list).or_default() };
+            target.push('\n');
+            target.push_str(&text);
+            added += 1;
+        }
+        self.globals(&mut lists, globals, &mut added);
+        for (list, inner) in &lists {
+            let _ = write!(globals, "\nNAMESPACE {list}\n{}\nEND_NAMESPACE\n", inner.trim_matches('\n'));
+        }
+        edits.sort_by_key(|(at, _)| std::cmp::Reverse(*at));
+        let mut whole = text.to_owned();
+        for (at, inserted) in edits {
+            whole.insert_str(at, &inserted);
+        }
+        for group in groups.iter().filter(|group| !group.is_empty()) {
+            if !group.starts_with('\n') {
+                whole.push('\n');
+            }
+            whole.push_str(group);
+        }
+        Stubs { text: whole, added }
+    }
+
+    fn find_heirs(&mut self) {
+        let world = self.collector.world;
+        for unit in world.units.values().filter(|unit| !unit.pou.external && !unit.library) {
+            for base in unit.pou.object.extends.iter().chain(&unit.pou.object.implements) {
+                let key = base.key();
+                let key = key.rsplit('.').next().unwrap_or(&key).to_owned();
+                self.heirs.entry(key).or_default().push(unit);
+            }
+        }
+    }
+
+    /// True if anything is of the type: an anonymous one may have been made for what turned out to be known.
+    fn is_used(&self, found: &Foreign) -> bool {
+        !found.members.is_empty() || found.called
+    }
+
+    fn foreign(&self, key: &str, name: &str, found: &Foreign, shape: &Shape) -> String {
+        match shape {
+            Shape::Alias(ty) => format!("{{external}}\nTYPE {name} : {}; END_TYPE\n", self.type_text(ty, name)),
+            Shape::Enumeration => {
+                let values = if found.values.is_empty() { format!("{name}_0") } else { found.values.join(", ") };
+                format!("{{external}}\nTYPE {name} : ({values}); END_TYPE\n")
+            }
+            Shape::Structure => {
+                let fields = self.fields(found);
+                let fields = if fields.is_empty() { "    unknown : BYTE;\n".to_owned() } else { fields };
+                format!("{{external}}\nTYPE {name} :\nSTRUCT\n{fields}END_STRUCT\nEND_TYPE\n")
+            }
+            Shape::Interface => {
+                format!("{{external}}\nINTERFACE {name}\n{}END_INTERFACE\n", self.interface_members(key, found))
+            }
+            Shape::Block => {
+                let members = self.block_members(key, found);
+                format!("{{external}}\nFUNCTION_BLOCK {name}\n{members}END_FUNCTION_BLOCK\n")
+            }
+        }
+    }
+
+    /// What a stub that is there lacks, and where it goes.
+    fn addition(&self, key: &str, found: &Foreign, text: &str, file: Option<FileId>) -> Option<(usize, String)> {
+        if found.members.is_empty() && found.init.is_none() {
+            return None;
+        }
+        let world = self.collector.world;
+        if let Some(unit) = world.units.get(key) {
+            let (span, end) = (
+                unit.pou.span,
+                match unit.pou.kind {
+                    PouKind::Interface => "END_INTERFACE",
+                    PouKind::Class => "END_CLASS",
+                    PouKind::Program => "END_PROGRAM",
+                    _ => "END_FUNCTION_BLOCK",
+                },
+            );
+            let inner = if unit.pou.kind == PouKind::Interface {
+                self.interface_members(key, found)
+            } else {
+                self.block_members(key, found)
+            };
+            let at = text.get(..span.end as usize)?.rfind(end)?;
+            return (Some(span.file) == file && !inner.is_empty()).then_some((at, inner));
+        }
+        let named = world.types.get(key)?;
+        let span = named.ast.spec.span;
+        let before = text.get(..span.end as usize)?;
+        if Some(span.file) != file {
+            return None;
+        }
+        match &named.ast.spec.kind {
+            TypeSpecKind::Struct(_) => Some((before.rfind("END_STRUCT")?, self.fields(found))),
+            TypeSpecKind::Enumeration(..) => {
+                let names = found.order.iter().filter_map(|key| found.members.get(key)).map(|member| &member.name);
+                let names: String = names.map(|name| format!(", {name}")).collect();
+                Some((before.rfind(')')?, names))
+            }
+            _ => None,
+        }
+    }
+
+    fn fields(&self, found: &Foreign) -> String {
+        let members = self
+            .members(found)
+            .map(|member| format!("    {} : {};\n", member.name, self.slot_text(member.field, &member.name)));
+        members.collect()
+    }
+
+    fn members<'f>(&self, found: &'f Foreign) -> impl Iterator<Item = &'f Member> {
+        found.order.iter().filter_map(|key| found.members.get(key))
+    }
+
+    /// The method that is run with the arguments of a declaration.
+    fn init(&self, key: &str, found: &Foreign) -> String {
+        let called = found.members.get(&INIT.to_ascii_uppercase()).and_then(|member| member.called.as_ref());
+        let mut signature = match (&found.init, called) {
+            (Some(init), _) => init.clone(),
+            (None, Some((explicit, _))) => {
+                // Who calls it gives what the system gives, too.
+                let mut signature = explicit.clone();
+                signature.positional = signature.positional.split_off(2.min(explicit.positional.len()));
+                signature
+            }
+            (None, None) => return String::new(),
+        };
+        signature.named.retain(|(name, _)| !INIT_INPUTS.iter().any(|known| known.eq_ignore_ascii_case(name)));
+        let count = signature.named.len().max(signature.positional.len());
+        let inputs = |method: &Pou| {
+            let sections = method.sections.iter().filter(|section| section.kind == SectionKind::Input);
+            sections.flat_map(|section| &section.variables).map(|each| each.names.len()).sum::<usize>()
+        };
+        // What is derived has the names.
+        if let Some(own) = self.heir(key, Part::Method, INIT).filter(|method| inputs(method) == count + 2) {
+            return self.copied_method(own);
+        }
+        let fixed = INIT_INPUTS.map(|name| format!("        {name} : BOOL;\n")).concat();
+        format!("METHOD {INIT} : BOOL\n    VAR_INPUT\n{fixed}    END_VAR\n{}END_METHOD\n", self.parameters(&signature))
+    }
+
+    /// True for what is called and is no instance.
+    fn is_method(&self, member: &Member) -> bool {
+        let is_instance = member
+            .field
+            .is_some_and(|slot| matches!(self.collector.slots.decided(slot), Some(Ty::Foreign(_) | Ty::Declared(_))));
+        member.called.is_some() && !is_instance
+    }
+
+    fn block_members(&self, key: &str, found: &Foreign) -> String {
+        let (mut inputs, mut outputs, mut others) = (String::new(), String::new(), String::new());
+        let mut constants = String::new();
+        others.push_str(&self.init(key, found));
+        for member in self.members(found).filter(|member| !member.name.eq_ignore_ascii_case(INIT)) {
+            let name = &member.name;
+            if let Some(method) = self.heir(key, Part::Method, name) {
+                others.push_str(&self.copied_method(method));
+            } else if let Some(property) = self.heir(key, Part::Property, name) {
+                let ty = property.result.as_ref().map_or("DINT".to_owned(), |spec| self.copied(spec));
+                others.push_str(&property_text(name, &ty, true, true));
+            } else if let Some((signature, result)) = member.called.as_ref().filter(|_| self.is_method(member)) {
+                others.push_str(&self.method(name, signature, *result));
+            } else if member.is_constant && !member.written_inside && !member.written_outside {
+                let number = FIRST_CONSTANT + constants.lines().count();
+                let _ = writeln!(constants, "    {name} : DINT := {number};");
+            } else {
+                let ty = self.slot_text(member.field, name);
+                if member.via_super || member.written_inside && member.written_outside {
+                    others.push_str(&property_text(name, &ty, true, true));
+                } else if member.input || member.written_outside {
+                    let _ = writeln!(inputs, "    {name} : {ty};");
+                } else {
+                    let _ = writeln!(outputs, "    {name} : {ty};");
+                }
+            }
+        }
+        for index in inputs.lines().count()..found.inputs {
+            let _ = writeln!(inputs, "    p{} : DINT;", index + 1);
+        }
+        let section = |word: &str, lines: String| {
+            if lines.is_empty() { lines } else { format!("{word}\n{lines}END_VAR\n") }
+        };
+        let constants = section("VAR CONSTANT", constants);
+        [section("VAR_INPUT", inputs), section("VAR_OUTPUT", outputs), constants, others].concat()
+    }
+
+    fn interface_members(&self, key: &str, found: &Foreign) -> String {
+        let mut text = String::new();
+        for member in self.members(found) {
+            let name = &member.name;
+            if let Some(method) = self.heir(key, Part::Method, name) {
+                text.push_str(&self.copied_method(method));
+            } else if let Some(property) = self.heir(key, Part::Property, name) {
+                let ty = property.result.as_ref().map_or("DINT".to_owned(), |spec| self.copied(spec));
+                let is_written = member.written_inside || member.written_outside;
+                text.push_str(&property_text(name, &ty, member.read || !is_written, is_written));
+            } else if let Some((signature, result)) = member.called.as_ref().filter(|_| self.is_method(member)) {
+                text.push_str(&self.method(name, signature, *result));
+            } else {
+                let ty = self.slot_text(member.field, name);
+                let is_written = member.written_inside || member.written_outside;
+                text.push_str(&property_text(name, &ty, member.read || !is_written, is_written));
+            }
+        }
+        text
+    }
+
+    /// The method or property of what is derived.
+    fn heir(&self, key: &str, part: Part, name: &str) -> Option<&'c Pou> {
+        let mut open: Vec<String> = vec![key.to_owned()];
+        let mut seen = std::collections::BTreeSet::new();
+        while let Some(next) = open.pop() {
+            for unit in self.heirs.get(&next).into_iter().flatten() {
+                if let Some(found) = unit.members.get(&(part, name.to_ascii_uppercase())) {
+                    return Some(found);
+                }
+                let own = unit.pou.name.key();
+                if seen.insert(own.clone()) {
+                    open.push(own);
+                }
+            }
+        }
+        None
+    }
+
+    fn copied_method(&self, method: &Pou) -> String {
+        let result = method.result.as_ref().map(|spec| format!(" : {}", self.copied(spec))).unwrap_or_default();
+        let mut text = format!("METHOD {}{result}\n", method.name.text);
+        for section in &method.sections {
+            let word = match section.kind {
+                SectionKind::Input => "VAR_INPUT",
+                SectionKind::InOut => "VAR_IN_OUT",
+                SectionKind::Output => "VAR_OUTPUT",
+                _ => continue,
+            };
+            let _ = writeln!(text, "    {word}");
+            for variable in &section.variables {
+                let names: Vec<&str> = variable.names.iter().map(|name| name.text.as_str()).collect();
+                let _ = writeln!(text, "        {} : {};", names.join(", "), self.copied(&variable.spec));
+            }
+            text.push_str("    END_VAR\n");
+        }
+        text.push_str("END_METHOD\n");
+        text
+    }
+
+    /// A type as the project writes it.
+    fn copied(&self, spec: &TypeSpec) -> String {
+        let text = self.collector.world.sources.text(spec.span);
+        text.split_whitespace().collect::<Vec<_>>().join(" ")
+    }
+
+    fn method(&self, name: &str, signature: &Signature, result: Slot) -> String {
+        let ty = self.result(signature, result, name);
+        format!("METHOD {name}{ty}\n{}END_METHOD\n", self.parameters(signature))
+    }
+
+    fn result(&self, signature: &Signature, result: Slot, name: &str) -> String {
+        if !signature.is_used && !self.collector.slots.is_touched(result) {
+            return String::new();
+        }
+        format!(" : {}", self.slot_text(Some(result), name))
+    }
+
+    /// A function, and the list that it belongs to.
+    fn function(&self, function: &Function) -> (String, String) {
+        let (list, name) = function.name.rsplit_once('.').unwrap_or(("", &function.name));
+        // What is called as a statement may be a function without a result as well; one that has a result may be lost.
+        let result = self.result(&function.signature, function.result, name);
+        let parameters = if name.starts_with("__") {
+            // Operators of the compiler take whatever there is.
+            any_parameters(&function.signature)
+        } else {
+            self.parameters(&function.signature)
+        };
+        let text = format!("{{external}}\nFUNCTION {name}{result}\n{parameters}END_FUNCTION\n");
+        (list.to_owned(), text)
+    }
+
+    fn parameters(&self, signature: &Signature) -> String {
+        let mut text = String::new();
+        let mut given: Vec<(String, Argument)> = signature.named.clone();
+        // Named calls give names, others the number of parameters.
+        for argument in signature.positional.iter().skip(given.len()) {
+            given.push((format!("p{}", given.len() + 1), *argument));
+        }
+        let mut section = "";
+        for (index, (name, argument)) in given.iter().enumerate() {
+            let mut all = vec![*argument];
+            all.extend(signature.positional.get(index));
+            let (word, ty) = self.parameter(&all, name);
+            if word != section {
+                if !section.is_empty() {
+                    text.push_str("    END_VAR\n");
+                }
+                let _ = writeln!(text, "    {word}");
+                section = word;
+            }
+            let _ = writeln!(text, "        {name} : {ty};");
+        }
+        if !section.is_empty() {
+            text.push_str("    END_VAR\n");
+        }
+        if !signature.outputs.is_empty() {
+            text.push_str("    VAR_OUTPUT\n");
+            for (name, slot) in &signature.outputs {
+                let _ = writeln!(text, "        {name} : {};", self.slot_text(Some(*slot), name));
+            }
+            text.push_str("    END_VAR\n");
+        }
+        text
+    }
+
+    /// The section and the type of a parameter: what takes anything is generic, a block comes as the caller's own.
+    fn parameter(&self, all: &[Argument], name: &str) -> (&'static str, String) {
+        let Some(first) = all.first() else { return ("VAR_INPUT", "DINT".to_owned()) };
+        let slots = &self.collector.slots;
+        let is_place = all.iter().all(|argument| argument.is_place);
+        let mixed = all.iter().any(|argument| slots.is_mixed(argument.slot));
+        if mixed && is_place {
+            return ("VAR_INPUT", "ANY".to_owned());
+        }
+        let best = all.iter().find(|argument| slots.decided(argument.slot).is_some()).unwrap_or(first);
+        let ty = slots.last_choice(best.slot);
+        let is_block = match &ty {
+            Ty::Declared(key) => self.collector.world.units.get(key).is_some_and(|unit| unit.pou.kind.has_instances()),
+            Ty::Foreign(key) => {
+                self.collector.needs.types.get(key).is_some_and(|found| self.collector.shape(found) == Shape::Block)
+            }
+            _ => false,
+        };
+        let section = if is_block && is_place { "VAR_IN_OUT" } else { "VAR_INPUT" };
+        (section, self.type_text(&ty, name))
+    }
+
+    fn globals(&self, lists: &mut BTreeMap<String, String>, globals: &mut String, added: &mut usize) {
+        let mut sections: BTreeMap<(String, bool), String> = BTreeMap::new();
+        for (index, global) in self.collector.needs.globals.values().enumerate() {
+            let (list, name) = global.name.rsplit_once('.').unwrap_or(("", &global.name));
+            let ty = self.collector.slots.last_choice(global.slot);
+            let is_number = matches!(&ty, Ty::Elementary(found) if found.is_number() || found.is_bits() && *found != ElementaryType::Bool);
+            let is_constant = global.is_constant && is_number && !global.written;
+            let value = if is_constant { format!(" := {}", FIRST_CONSTANT + index) } else { String::new() };
+            let ty = if is_constant { "DINT".to_owned() } else { self.type_text(&ty, name) };
+            let lines = sections.entry((list.to_owned(), is_constant)).or_default();
+            let _ = writeln!(lines, "    {name} : {ty}{value};");
+            *added += 1;
+        }
+        for ((list, is_constant), lines) in sections {
+            let word = if is_constant { " CONSTANT" } else { "" };
+            let text = format!("VAR_GLOBAL{word}\n{lines}END_VAR\n");
+            if list.is_empty() {
+                globals.push('\n');
+                globals.push_str(&text);
+            } else {
+                let inner = lists.entry(list).or_default();
+                inner.push('\n');
+                inner.push_str(&text);
+            }
+        }
+    }
+
+    fn slot_text(&self, slot: Option<Slot>, name: &str) -> String {
+        let ty = slot.map_or(Ty::Unknown, |slot| self.collector.slots.last_choice(slot));
+        self.type_text(&ty, name)
+    }
+
+    fn type_text(&self, ty: &Ty, name: &str) -> String {
+        match ty {
+            Ty::Unknown => self.type_text(&super::hint::of_name(name), name),
+            Ty::Integer => "DINT".to_owned(),
+            Ty::Real => "LREAL".to_owned(),
+            Ty::Elementary(found) => found.name().to_owned(),
+            Ty::Text(wide) => if *wide { "WSTRING(255)" } else { "STRING(255)" }.to_owned(),
+            Ty::Declared(key) => self.declared_name(key),
+            Ty::Foreign(key) => {
+                self.collector.needs.types.get(key).map_or_else(|| key.clone(), |found| found.name.clone())
+            }
+            Ty::Array(bounds, element) => {
+                format!("ARRAY [{}] OF {}", bounds.join(", "), self.type_text(element, name))
+            }
+            Ty::Pointer(kind, inner) => {
+                let inner = match &**inner {
+                    Ty::Unknown => "BYTE".to_owned(),
+                    Ty::Slot(slot) => match self.collector.slots.decided(*slot) {
+                        Some(known) => self.type_text(known, name),
+                        None => "BYTE".to_owned(),
+                    },
+                    other => self.type_text(other, name),
+                };
+                format!("{} {inner}", kind.text())
+            }
+            Ty::Slot(slot) => self.type_text(&self.collector.slots.last_choice(*slot), name),
+        }
+    }
+
+    fn declared_name(&self, key: &str) -> String {
+        let world = self.collector.world;
+        let name = world.units.get(key).map(|unit| &unit.pou.name.text);
+        let name = name.or_else(|| world.types.get(key).map(|named| &named.ast.name.text));
+        let name = name.cloned().unwrap_or_else(|| key.to_owned());
+        match key.rsplit_once('.') {
+            Some((namespace, _)) => format!("{namespace}.{name}"),
+            None => name,
+        }
+    }
+}
+
+fn property_text(name: &str, ty: &str, is_read: bool, is_written: bool) -> String {
+    let get = if is_read { "    GET END_GET\n" } else { "" };
+    let set = if is_written { "    SET END_SET\n" } else { "" };
+    format!("PROPERTY {name} : {ty}\n{get}{set}END_PROPERTY\n")
+}
+
+fn any_parameters(signature: &Signature) -> String {
+    let lines: String = (1..=signature.positional.len()).map(|index| format!("        p{index} : ANY;\n")).collect();
+    if lines.is_empty() { lines } else { format!("    VAR_INPUT\n{lines}    END_VAR\n") }
+}

@@ -1,0 +1,75 @@
+//! What a type that nobody declares is: by its use first, by its name where that does not tell.
+
+use super::collect::Collector;
+use super::foreign::Foreign;
+use super::hint::{self, TypeHint};
+use super::ty::Ty;
+
+/// What a stub of a type is.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) enum Shape {
+    Block,
+    Interface,
+    Structure,
+    Enumeration,
+    /// Another name of a type.
+    Alias(Ty),
+}
+
+impl Collector<'_> {
+    pub(super) fn shape(&self, found: &Foreign) -> Shape {
+        if found.implemented || found.base_of_interface {
+            return Shape::Interface;
+        }
+        if found.base_of_block || found.called || found.init.is_some() {
+            return Shape::Block;
+        }
+        if found.base_of_structure {
+            return Shape::Structure;
+        }
+        if !found.values.is_empty() && found.members.is_empty() {
+            return Shape::Enumeration;
+        }
+        let hint = hint::of_type(&found.name);
+        let has_methods = found.members.values().any(|member| member.called.is_some());
+        if has_methods {
+            let is_interface = hint == Some(TypeHint::Interface) || found.is_value;
+            return if is_interface { Shape::Interface } else { Shape::Block };
+        }
+        if !found.members.is_empty() {
+            return match hint {
+                Some(TypeHint::Block) => Shape::Block,
+                Some(TypeHint::Interface) => Shape::Interface,
+                _ if found.variables.iter().any(|name| hint::of_type(name) == Some(TypeHint::Block)) => Shape::Block,
+                _ => Shape::Structure,
+            };
+        }
+        match hint {
+            Some(TypeHint::Block) => return Shape::Block,
+            Some(TypeHint::Interface) => return Shape::Interface,
+            Some(TypeHint::Structure) => return Shape::Structure,
+            Some(TypeHint::Enumeration) => return Shape::Enumeration,
+            None => {}
+        }
+        self.by_value(found)
+    }
+
+    /// Nothing of it is used but the value as a whole.
+    fn by_value(&self, found: &Foreign) -> Shape {
+        if let Some(slot) = found.value {
+            match self.slots.decided(slot) {
+                Some(Ty::Declared(key)) if self.world.units.contains_key(key) => return Shape::Interface,
+                Some(Ty::Declared(_) | Ty::Foreign(_)) => {}
+                Some(other) => return Shape::Alias(other.clone()),
+                None if self.slots.is_touched(slot) => return Shape::Alias(self.slots.last_choice(slot)),
+                None => {}
+            }
+        }
+        let by_variable = found.variables.iter().find_map(|name| hint::of_type(name));
+        match by_variable {
+            Some(TypeHint::Block) => Shape::Block,
+            Some(TypeHint::Enumeration) => Shape::Enumeration,
+            _ => Shape::Structure,
+        }
+    }
+}

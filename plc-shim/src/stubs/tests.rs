@@ -1,0 +1,184 @@
+//! What is made of each kind of use: small projects, their stubs, and that they check with these.
+
+use super::{MARK, write};
+use crate::diagnostic::Severity;
+use crate::dialect::Dialect;
+use crate::input::Input;
+use crate::input::kind::SourceKind;
+use crate::lint::inspect;
+
+fn input(text: &str) -> Input {
+    Input::from_text("main.st", SourceKind::Text, text).in_dialect(Dialect::TwinCat)
+}
+
+/// The stubs of a project, without the remarks in front; asserts that it checks with them, and they alone.
+fn stubs(text: &str) -> String {
+    let written = write(&[input(text)], None);
+    let own = || Input::from_text("stubs.st", SourceKind::Text, written.text.as_str());
+    for inputs in [vec![own()], vec![input(text), own()]] {
+        let findings = inspect(inputs, None);
+        let errors: Vec<String> = findings
+            .findings()
+            .iter()
+            .filter(|found| found.diagnostic().severity == Severity::Error)
+            .map(|found| format!("{}:{}: {found}", found.file(), found.start().line))
+            .collect();
+        assert!(errors.is_empty(), "{errors:#?}\n{}", written.text);
+    }
+    let again = write(&[input(text)], Some(&written.text));
+    assert_eq!((again.added, again.text.as_str()), (0, written.text.as_str()), "a second time adds nothing");
+    let lines = written.text.lines().filter(|line| !line.starts_with("//"));
+    lines.collect::<Vec<_>>().join("\n").trim().to_owned()
+}
+
+#[test]
+fn what_is_declared_needs_no_stub() {
+    let text = "PROGRAM P VAR t : TON; x : INT; END_VAR t(IN := TRUE, PT := T#1s); x := ABS(x); END_PROGRAM";
+    let written = write(&[input(text)], None);
+    assert_eq!(written.added, 0);
+    assert!(written.text.starts_with(MARK));
+}
+
+#[test]
+fn a_function_by_its_arguments_and_result() {
+    insta::assert_snapshot!(stubs(
+        "PROGRAM P VAR x : UDINT; s : STRING; w : WORD; END_VAR
+  x := F_Crc(pData := ADR(s), cbData := SIZEOF(s));
+  IF F_IsValid(s, 5) THEN w := F_Swap(w); END_IF
+  F_Log(1.5, n => w);
+END_PROGRAM"
+    ));
+}
+
+#[test]
+fn a_block_by_its_call() {
+    insta::assert_snapshot!(stubs(
+        "PROGRAM P VAR fb : FB_EcCoESdoRead; busy : BOOL; id : UDINT; data : ARRAY [0..7] OF BYTE; END_VAR
+  fb(sNetId := '1.2.3', nSlave := 5, pDst := ADR(data), bExecute := NOT busy, tTimeout := T#5s, bBusy => busy);
+  IF fb.bError THEN id := fb.nErrId; END_IF
+END_PROGRAM"
+    ));
+}
+
+#[test]
+fn a_base_by_what_is_derived() {
+    insta::assert_snapshot!(stubs(
+        "FUNCTION_BLOCK FB_Test EXTENDS FB_TestSuite
+VAR n : INT; END_VAR
+  Adds();
+METHOD Adds
+  TEST('adds');
+  AssertEquals(Expected := n, Actual := 5, Message := 'five');
+  _count := _count + 1;
+END_METHOD
+METHOD SetUp : BOOL VAR_INPUT level : LREAL; END_VAR
+  SetUp := SUPER^.SetUp(level);
+END_METHOD
+END_FUNCTION_BLOCK
+PROGRAM P VAR t : FB_Test; END_VAR t(); t.Run(); END_PROGRAM"
+    ));
+}
+
+#[test]
+fn an_interface_by_what_implements_it() {
+    insta::assert_snapshot!(stubs(
+        "FUNCTION_BLOCK FB_Drive IMPLEMENTS I_Drive
+METHOD Move : BOOL VAR_INPUT speed : LREAL; END_VAR Move := speed > 0; END_METHOD
+PROPERTY Position : LREAL GET Position := 1.0; END_GET END_PROPERTY
+END_FUNCTION_BLOCK
+PROGRAM P VAR drive : FB_Drive; any : I_Drive; x : LREAL; END_VAR
+  any := drive;
+  IF any.Move(speed := 2.0) THEN x := any.Position; END_IF
+END_PROGRAM"
+    ));
+}
+
+#[test]
+fn structures_enumerations_and_aliases() {
+    insta::assert_snapshot!(stubs(
+        "PROGRAM P VAR st : ST_Status; eMode : E_Mode; handle : T_Handle; x : INT; other : E_Kind; END_VAR
+  st.nState := 5; st.fValue := 1.5; x := st.aItems[2];
+  CASE eMode OF E_Mode.Idle: eMode := E_Mode.Busy; END_CASE
+  other := E_Kind#Large;
+  handle := 16#FF; x := x + handle;
+END_PROGRAM"
+    ));
+}
+
+#[test]
+fn constants_and_lists_of_globals() {
+    insta::assert_snapshot!(stubs(
+        "PROGRAM P VAR a : ARRAY [0..MAX_ITEMS] OF INT; x : LREAL; t : TIME; END_VAR
+  x := GVL_Param.fSpeed; GVL_Param.bEnable := TRUE; t := GVL_Param.axis.tRamp;
+  GVL_Param.Reset(5);
+  a[0] := DEFAULT_ITEM;
+END_PROGRAM"
+    ));
+}
+
+#[test]
+fn names_behind_those_of_libraries() {
+    insta::assert_snapshot!(stubs(
+        "PROGRAM P VAR id : Tc2_Utilities.T_Id; x : INT; s : STRING; END_VAR
+  id := 5; x := Tc2_Utilities.F_Count(s); x := Tc2_Standard.LEN(s);
+  x := Tc2_Utilities.GVL_Limits.nMax;
+END_PROGRAM"
+    ));
+}
+
+#[test]
+fn arguments_of_fb_init_and_chained_calls() {
+    insta::assert_snapshot!(stubs(
+        "FUNCTION_BLOCK FB_Own EXTENDS FB_Base END_FUNCTION_BLOCK
+PROGRAM P VAR log : FB_Logger(5, 'main'); own : FB_Own(TRUE); ok : BOOL; END_VAR
+  log.Text('a').Number(5).Send();
+  ok := log.Last.bSent;
+END_PROGRAM"
+    ));
+}
+
+#[test]
+fn what_takes_anything_is_generic() {
+    insta::assert_snapshot!(stubs(
+        "PROGRAM P VAR x : INT; s : STRING; t : TIME; END_VAR
+  F_Show(x); F_Show(s); F_Show(t);
+END_PROGRAM"
+    ));
+}
+
+#[test]
+fn the_compilers_operators_and_names_alone() {
+    insta::assert_snapshot!(stubs(
+        "PROGRAM P VAR xReady, other : BOOL; sName : STRING; END_VAR
+  sName := __POUNAME();
+  xReady := bStart AND NOT xStop;
+  IF nLevel > 5 THEN other := Enable; END_IF
+END_PROGRAM"
+    ));
+}
+
+#[test]
+fn a_stub_gets_what_a_project_uses_later() {
+    let first = "PROGRAM P VAR fb : FB_Gate; END_VAR fb(bOpen := TRUE); END_PROGRAM";
+    let later = "PROGRAM P VAR fb : FB_Gate; st : ST_A; x : INT; END_VAR
+  fb(bOpen := TRUE, bClose := FALSE); x := fb.nState; st.a := 1; END_PROGRAM";
+    let own = write(&[input(first)], None).text.replace("bOpen : BOOL;", "bOpen : BOOL; (* mine *)");
+    let written = write(&[input(later)], Some(&own));
+    let shown: Vec<&str> = written.text.lines().filter(|line| !line.starts_with("//")).collect();
+    insta::assert_snapshot!(shown.join("\n").trim());
+}
+
+#[test]
+fn nothing_makes_it_fail() {
+    for text in [
+        "",
+        "PROGRAM",
+        "PROGRAM P x.y.z(; END_PROGRAM",
+        "TYPE A : A; END_TYPE PROGRAM P VAR a : A; END_VAR a.b := a; END_PROGRAM",
+        "FUNCTION_BLOCK A EXTENDS A x := SUPER^.y; END_FUNCTION_BLOCK",
+        "PROGRAM P a^[1]^.b(c^ := d, e => f[g]); END_PROGRAM",
+    ] {
+        let written = write(&[input(text)], None);
+        assert!(written.text.starts_with(MARK), "{text}");
+    }
+}

@@ -1,0 +1,285 @@
+//! Types as an inference sees them, and what was wanted of those that are not known.
+
+use std::collections::BTreeMap;
+
+use super::hint;
+use crate::ElementaryType;
+use crate::syntax::ast::ReferenceKind;
+
+/// A type.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(super) enum Ty {
+    /// Nothing is known of it, and nothing can be learned.
+    Unknown,
+    /// An integer without a type of its own.
+    Integer,
+    /// A real number without a type of its own.
+    Real,
+    /// A standard type.
+    Elementary(ElementaryType),
+    /// A string, or one of wide characters.
+    Text(bool),
+    /// What the project declares, by its full key.
+    Declared(String),
+    /// What nobody declares, by its key.
+    Foreign(String),
+    /// Dimensions as they are written, and the elements.
+    Array(Vec<String>, Box<Ty>),
+    /// A pointer or reference.
+    Pointer(ReferenceKind, Box<Ty>),
+    /// The type of something that nobody declares.
+    Slot(Slot),
+}
+
+/// The type of a variable, member, parameter or result that nobody declares.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) struct Slot(usize);
+
+/// What is known of a slot.
+#[derive(Debug, Default)]
+struct Evidence {
+    /// The last part of its path, which may tell its type.
+    name: String,
+    /// How an anonymous type of it is called.
+    path: String,
+    /// What goes into it.
+    from: Vec<Ty>,
+    /// Where it goes to.
+    to: Vec<Ty>,
+    /// What it stands beside in a comparison or an operation.
+    beside: Vec<Ty>,
+    /// Members of it are used, or it is called.
+    has_parts: bool,
+    /// It is what a call or a property of an interface gives, and so no place of its own.
+    is_value: bool,
+    decided: Option<Ty>,
+}
+
+/// The bounds of an array of which only elements are known.
+pub(super) const ANY_BOUNDS: &str = "0..255";
+
+/// All slots, by their paths.
+#[derive(Debug, Default)]
+pub(super) struct Slots {
+    keys: BTreeMap<String, usize>,
+    all: Vec<Evidence>,
+}
+
+impl Slots {
+    /// The slot of a path as written, as in `FB_X.member`.
+    pub(super) fn of(&mut self, path: &str) -> Slot {
+        let key = path.to_ascii_uppercase();
+        if let Some(found) = self.keys.get(&key) {
+            return Slot(*found);
+        }
+        let name = path.rsplit(['.', ':']).find(|part| !part.is_empty()).unwrap_or(path).to_owned();
+        self.all.push(Evidence { name, path: path.to_owned(), ..Evidence::default() });
+        self.keys.insert(key, self.all.len() - 1);
+        Slot(self.all.len() - 1)
+    }
+
+    /// What a slot refers to, or its elements.
+    pub(super) fn below(&mut self, slot: Slot, mark: &str) -> Slot {
+        let path = self.all.get(slot.0).map(|each| each.path.clone()).unwrap_or_default();
+        self.of(&format!("{path}{mark}"))
+    }
+
+    fn at(&mut self, slot: Slot) -> &mut Evidence {
+        // Slots are made by `of` only.
+        &mut self.all[slot.0]
+    }
+
+    /// Forgets what was wanted, and keeps what has been decided.
+    pub(super) fn begin_pass(&mut self) {
+        for each in &mut self.all {
+            each.from.clear();
+            each.to.clear();
+            each.beside.clear();
+            each.has_parts = false;
+        }
+    }
+
+    pub(super) fn decided(&self, slot: Slot) -> Option<&Ty> {
+        self.all.get(slot.0).and_then(|each| each.decided.as_ref())
+    }
+
+    /// The type as far as it is decided.
+    pub(super) fn resolved(&self, ty: &Ty) -> Ty {
+        match ty {
+            Ty::Slot(slot) => self.decided(*slot).cloned().unwrap_or_else(|| ty.clone()),
+            _ => ty.clone(),
+        }
+    }
+
+    pub(super) fn use_parts(&mut self, slot: Slot) {
+        self.at(slot).has_parts = true;
+    }
+
+    pub(super) fn make_value(&mut self, slot: Slot) {
+        self.at(slot).is_value = true;
+    }
+
+    pub(super) fn is_touched(&self, slot: Slot) -> bool {
+        self.all.get(slot.0).is_some_and(|each| {
+            each.has_parts || !each.from.is_empty() || !each.to.is_empty() || !each.beside.is_empty()
+        })
+    }
+
+    pub(super) fn given(&mut self, slot: Slot, from: &Ty) {
+        push(&mut self.at(slot).from, from, slot);
+    }
+
+    pub(super) fn taken(&mut self, slot: Slot, to: &Ty) {
+        push(&mut self.at(slot).to, to, slot);
+    }
+
+    pub(super) fn beside(&mut self, slot: Slot, other: &Ty) {
+        push(&mut self.at(slot).beside, other, slot);
+    }
+
+    /// Decides what the evidence decides; true if that is more than before.
+    pub(super) fn decide(&mut self) -> bool {
+        let mut changed = false;
+        for index in 0..self.all.len() {
+            let Some(found) = self.choice(Slot(index)) else { continue };
+            let each = self.at(Slot(index));
+            if each.decided.as_ref() != Some(&found) {
+                changed = true;
+                each.decided = Some(found);
+            }
+        }
+        changed
+    }
+
+    fn choice(&self, slot: Slot) -> Option<Ty> {
+        let each = self.all.get(slot.0)?;
+        let resolved = |list: &[Ty]| -> Vec<Ty> { list.iter().map(|ty| self.resolved(ty)).collect() };
+        let (from, to, beside) = (resolved(&each.from), resolved(&each.to), resolved(&each.beside));
+        let in_order = || to.iter().chain(&from).chain(&beside);
+        let named = |ty: &&Ty| matches!(ty, Ty::Declared(_) | Ty::Foreign(_));
+        if let Some(found) = in_order().find(named) {
+            return Some(found.clone());
+        }
+        if each.has_parts {
+            // What has been called anonymous stays so.
+            return each.decided.clone().filter(|ty| matches!(ty, Ty::Foreign(_)));
+        }
+        let kept = each.decided.clone().filter(|ty| matches!(ty, Ty::Foreign(_)));
+        if kept.is_some() {
+            return kept;
+        }
+        let built = |ty: &&Ty| matches!(ty, Ty::Array(..) | Ty::Pointer(..));
+        // One that a declaration tells goes before one that is only indexed or followed.
+        let told = |ty: &&Ty| match ty {
+            Ty::Array(bounds, _) => bounds.iter().any(|each| each != ANY_BOUNDS),
+            Ty::Pointer(_, inner) => !matches!(**inner, Ty::Slot(_)),
+            _ => false,
+        };
+        if let Some(found) = in_order().find(told).or_else(|| in_order().find(built)) {
+            return Some(found.clone());
+        }
+        if let Some(Ty::Text(_)) = in_order().find(|ty| matches!(ty, Ty::Text(_))) {
+            return Some(Ty::Text(in_order().any(|ty| *ty == Ty::Text(true))));
+        }
+        let elementary = |list: &[Ty]| -> Vec<ElementaryType> {
+            list.iter().filter_map(|ty| if let Ty::Elementary(found) = ty { Some(*found) } else { None }).collect()
+        };
+        elementary_of(&elementary(&from), &elementary(&to), &elementary(&beside)).map(Ty::Elementary)
+    }
+
+    /// What is written where the evidence decides nothing more: what literals and the name say.
+    pub(super) fn last_choice(&self, slot: Slot) -> Ty {
+        if let Some(decided) = self.decided(slot) {
+            return decided.clone();
+        }
+        let Some(each) = self.all.get(slot.0) else { return Ty::Elementary(ElementaryType::Dint) };
+        let all = || each.from.iter().chain(&each.to).chain(&each.beside);
+        if all().any(|ty| *ty == Ty::Real) {
+            return Ty::Elementary(hint::real(&each.name));
+        }
+        if all().any(|ty| *ty == Ty::Integer) {
+            return hint::integer(&each.name);
+        }
+        hint::of_name(&each.name)
+    }
+
+    /// True if what is given for a parameter has no type in common.
+    pub(super) fn is_mixed(&self, slot: Slot) -> bool {
+        let Some(each) = self.all.get(slot.0) else { return false };
+        let groups = each.from.iter().filter_map(|ty| group(&self.resolved(ty)));
+        let mut groups: Vec<String> = groups.collect();
+        groups.sort();
+        groups.dedup();
+        groups.len() > 1
+    }
+
+    /// Slots whose members are used and whose types nothing decides, each with its path, and whether it is a value;
+    /// those that are linked are listed together.
+    pub(super) fn anonymous(&self) -> Vec<Vec<(Slot, String, bool)>> {
+        let mut done = std::collections::BTreeSet::new();
+        let mut found = Vec::new();
+        for (index, each) in self.all.iter().enumerate() {
+            if !each.has_parts || each.decided.is_some() || done.contains(&index) {
+                continue;
+            }
+            let mut group = Vec::new();
+            let mut open = vec![index];
+            while let Some(next) = open.pop() {
+                if !done.insert(next) {
+                    continue;
+                }
+                let Some(data) = self.all.get(next) else { continue };
+                group.push((Slot(next), data.path.clone(), data.is_value));
+                let links = data.from.iter().chain(&data.to).chain(&data.beside);
+                open.extend(links.filter_map(|ty| match ty {
+                    Ty::Slot(slot) if self.decided(*slot).is_none() => Some(slot.0),
+                    _ => None,
+                }));
+            }
+            found.push(group);
+        }
+        found
+    }
+
+    pub(super) fn set(&mut self, slot: Slot, ty: Ty) {
+        self.at(slot).decided = Some(ty);
+    }
+}
+
+/// So many pieces of evidence are kept; more of them say the same.
+const KEPT: usize = 64;
+
+fn push(list: &mut Vec<Ty>, ty: &Ty, slot: Slot) {
+    if *ty != Ty::Unknown && *ty != Ty::Slot(slot) && list.len() < KEPT && !list.contains(ty) {
+        list.push(ty.clone());
+    }
+}
+
+/// Types of one group are converted into one another.
+fn group(ty: &Ty) -> Option<String> {
+    Some(match ty {
+        Ty::Unknown | Ty::Slot(_) => return None,
+        Ty::Integer | Ty::Real => "number".to_owned(),
+        Ty::Elementary(found) if found.is_number() || found.is_bits() && *found != ElementaryType::Bool => {
+            "number".to_owned()
+        }
+        Ty::Elementary(found) => found.name().to_owned(),
+        Ty::Text(wide) => format!("text {wide}"),
+        Ty::Declared(key) | Ty::Foreign(key) => key.clone(),
+        Ty::Array(..) => "array".to_owned(),
+        Ty::Pointer(..) => "pointer".to_owned(),
+    })
+}
+
+/// The type of what takes `from`, goes to `to` and stands beside others.
+fn elementary_of(from: &[ElementaryType], to: &[ElementaryType], beside: &[ElementaryType]) -> Option<ElementaryType> {
+    let all = || to.iter().chain(from).chain(beside).copied();
+    if let Some(found) = all().find(|ty| *ty == ElementaryType::Bool || !(ty.is_number() || ty.is_bits())) {
+        return Some(found);
+    }
+    let weight = |ty: &ElementaryType| (ty.is_real(), ty.size(), ty.is_signed());
+    // What is given must fit; where nothing is, what it goes to must hold it.
+    let given = from.iter().copied().max_by_key(weight);
+    let taken = to.iter().copied().min_by_key(weight);
+    given.or(taken).or_else(|| beside.iter().copied().max_by_key(weight))
+}

@@ -1,0 +1,240 @@
+//! What the files declare, by name, as far as an inference needs it.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use crate::check::knows_function;
+use crate::syntax::ast::{
+    CompilationUnit, Declaration, Ident, MemberKind, Namespace, Pou, PouKind, Section, SectionKind, TypeDeclaration,
+    TypeSpec, TypeSpecKind,
+};
+use crate::syntax::{FileId, SourceMap};
+
+/// From where names are seen.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub(super) struct Home {
+    pub(super) namespace: String,
+    pub(super) using: Vec<String>,
+}
+
+/// A unit, and its parts by name.
+#[derive(Debug)]
+pub(super) struct Unit<'a> {
+    pub(super) pou: &'a Pou,
+    pub(super) home: Home,
+    pub(super) variables: BTreeMap<String, (&'a TypeSpec, SectionKind)>,
+    pub(super) members: BTreeMap<(Part, String), &'a Pou>,
+    pub(super) library: bool,
+}
+
+/// What a member is to a caller.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) enum Part {
+    Method,
+    Property,
+}
+
+/// A type of a `TYPE` block.
+#[derive(Debug)]
+pub(super) struct Named<'a> {
+    pub(super) ast: &'a TypeDeclaration,
+    pub(super) home: Home,
+}
+
+/// Everything that is declared.
+#[derive(Debug)]
+pub(super) struct World<'a> {
+    pub(super) units: BTreeMap<String, Unit<'a>>,
+    pub(super) types: BTreeMap<String, Named<'a>>,
+    pub(super) globals: BTreeMap<String, (&'a TypeSpec, Home)>,
+    /// Full keys of globals that are known without their list's name.
+    open: BTreeMap<String, String>,
+    namespaces: BTreeSet<String>,
+    libraries: BTreeSet<String>,
+    /// The types of values of enumerations, by the value's name.
+    pub(super) enumerators: BTreeMap<String, String>,
+    /// What stands outside of units and has values: types and lists of globals.
+    pub(super) loose: Vec<(&'a Section, Home)>,
+    pub(super) sources: &'a SourceMap,
+}
+
+impl<'a> World<'a> {
+    pub(super) fn new(
+        trees: &'a [(FileId, CompilationUnit)],
+        library: &BTreeSet<FileId>,
+        sources: &'a SourceMap,
+    ) -> Self {
+        let mut world = Self {
+            units: BTreeMap::new(),
+            types: BTreeMap::new(),
+            globals: BTreeMap::new(),
+            open: BTreeMap::new(),
+            namespaces: BTreeSet::new(),
+            libraries: BTreeSet::new(),
+            enumerators: BTreeMap::new(),
+            loose: Vec::new(),
+            sources,
+        };
+        for (file, unit) in trees {
+            let mut home = Home::default();
+            for declaration in &unit.declarations {
+                if let Declaration::Using(names) = declaration {
+                    home.using.extend(names.iter().map(Ident::key));
+                }
+            }
+            world.add_all(&unit.declarations, &home, false, library.contains(file));
+        }
+        world
+    }
+
+    fn add_all(&mut self, list: &'a [Declaration], home: &Home, open: bool, library: bool) {
+        for declaration in list {
+            match declaration {
+                Declaration::Pou(pou) => self.add_unit(pou, home, library),
+                Declaration::Type(ast) => self.add_type(ast, home),
+                Declaration::Globals(section) => self.add_globals(section, home, open),
+                Declaration::Namespace(namespace) => self.add_namespace(namespace, home, library),
+                Declaration::Using(_) => {}
+                Declaration::Configuration(configuration) => {
+                    let resources = configuration.resources.iter().flat_map(|resource| &resource.sections);
+                    for section in configuration.sections.iter().chain(resources) {
+                        self.add_globals(section, home, false);
+                    }
+                }
+            }
+        }
+    }
+
+    fn add_namespace(&mut self, namespace: &'a Namespace, home: &Home, library: bool) {
+        let mut inner = home.clone();
+        inner.namespace = joined(&home.namespace, &namespace.name.key());
+        inner.using.extend(namespace.using.iter().map(Ident::key));
+        if namespace.external {
+            self.libraries.insert(inner.namespace.clone());
+        }
+        self.namespaces.insert(inner.namespace.clone());
+        let open = namespace.kind == crate::syntax::ast::NamespaceKind::Open;
+        self.add_all(&namespace.declarations, &inner, open, library);
+    }
+
+    fn add_unit(&mut self, pou: &'a Pou, home: &Home, library: bool) {
+        let key = joined(&home.namespace, &pou.name.key());
+        if self.units.contains_key(&key) || self.types.contains_key(&key) {
+            return;
+        }
+        let mut home = home.clone();
+        home.using.extend(pou.object.using.iter().map(Ident::key));
+        let mut members = BTreeMap::new();
+        for member in &pou.object.members {
+            let part = match member.kind {
+                MemberKind::Method | MemberKind::Action => Part::Method,
+                MemberKind::Getter | MemberKind::Setter => Part::Property,
+            };
+            members.entry((part, member.pou.name.key())).or_insert(&member.pou);
+        }
+        self.units.insert(key, Unit { pou, home, variables: variables(pou), members, library });
+    }
+
+    fn add_type(&mut self, ast: &'a TypeDeclaration, home: &Home) {
+        let key = joined(&home.namespace, &ast.name.key());
+        if self.types.contains_key(&key) || self.units.contains_key(&key) {
+            return;
+        }
+        if let TypeSpecKind::Enumeration(values, _) = &ast.spec.kind {
+            for value in values {
+                self.enumerators.entry(value.name.key()).or_insert_with(|| key.clone());
+            }
+        }
+        self.types.insert(key, Named { ast, home: home.clone() });
+    }
+
+    fn add_globals(&mut self, section: &'a Section, home: &Home, open: bool) {
+        for variable in &section.variables {
+            for name in &variable.names {
+                let key = joined(&home.namespace, &name.key());
+                if open {
+                    self.open.entry(name.key()).or_insert_with(|| key.clone());
+                }
+                self.globals.entry(key).or_insert_with(|| (&variable.spec, home.clone()));
+            }
+        }
+        self.loose.push((section, home.clone()));
+    }
+
+    fn full_key<T>(&self, map: &BTreeMap<String, T>, home: &Home, key: &str) -> Option<String> {
+        let mut namespace = home.namespace.as_str();
+        loop {
+            let full = joined(namespace, key);
+            if map.contains_key(&full) {
+                return Some(full);
+            }
+            if namespace.is_empty() {
+                break;
+            }
+            namespace = namespace.rsplit_once('.').map_or("", |(around, _)| around);
+        }
+        let used = home.using.iter().map(|namespace| joined(namespace, key));
+        if let Some(found) = used.into_iter().find(|full| map.contains_key(full)) {
+            return Some(found);
+        }
+        let (first, rest) = key.split_once('.')?;
+        if self.libraries.contains(first) || is_standard_library(first) {
+            return self.full_key(map, home, rest);
+        }
+        None
+    }
+
+    pub(super) fn unit_key(&self, home: &Home, key: &str) -> Option<String> {
+        self.full_key(&self.units, home, key)
+    }
+
+    pub(super) fn type_key(&self, home: &Home, key: &str) -> Option<String> {
+        self.full_key(&self.types, home, key)
+    }
+
+    pub(super) fn global_key(&self, home: &Home, key: &str) -> Option<String> {
+        self.full_key(&self.globals, home, key).or_else(|| self.open.get(key).cloned())
+    }
+
+    /// True for a name that stands for something in front of a dot: a namespace that is declared.
+    pub(super) fn is_namespace(&self, home: &Home, key: &str) -> bool {
+        is_standard_library(key)
+            || self.namespaces.contains(key)
+            || self.namespaces.contains(&joined(&home.namespace, key))
+    }
+
+    /// True for a library's name that is declared.
+    pub(super) fn is_library(&self, key: &str) -> bool {
+        is_standard_library(key) || self.libraries.contains(key)
+    }
+
+    pub(super) fn function(&self, home: &Home, key: &str) -> Option<&Unit<'a>> {
+        let unit = self.units.get(&self.unit_key(home, key)?)?;
+        (unit.pou.kind == PouKind::Function).then_some(unit)
+    }
+
+    /// True for functions that the language has.
+    pub(super) fn has_function(key: &str) -> bool {
+        knows_function(key)
+    }
+}
+
+fn variables(pou: &Pou) -> BTreeMap<String, (&TypeSpec, SectionKind)> {
+    let mut found = BTreeMap::new();
+    for section in &pou.sections {
+        for variable in &section.variables {
+            for name in &variable.names {
+                found.entry(name.key()).or_insert((&variable.spec, section.kind));
+            }
+        }
+    }
+    found
+}
+
+pub(super) fn joined(namespace: &str, key: &str) -> String {
+    if namespace.is_empty() { key.to_owned() } else { format!("{namespace}.{key}") }
+}
+
+/// Libraries whose content the language has.
+pub(super) fn is_standard_library(key: &str) -> bool {
+    matches!(key, "STANDARD" | "TC2_STANDARD" | "STANDARD64" | "IEC61131_STANDARD")
+}
