@@ -16,7 +16,9 @@ pub(super) fn program(mut body: Vec<Statement>) -> PeerProgram {
     outputs.iter_mut().filter(|(name, _)| name.starts_with('b')).for_each(|(_, ty)| *ty = "BOOL");
     outputs.extend(named(&["a[0]", "a[1]", "a[2]", "a[3]"], "DINT"));
     outputs.extend(controls);
-    let inputs = vec![("v3".to_owned(), "INT"), ("b2".to_owned(), "BOOL")];
+    // The program may write them, too, until the next scan.
+    let mut inputs = named(&["v1", "v2", "v3"], "INT");
+    inputs.extend(named(&["b1", "b2"], "BOOL"));
     PeerProgram { family: "statements", text: WORDING.program(&body), inputs, outputs, rounded: Vec::new() }
 }
 

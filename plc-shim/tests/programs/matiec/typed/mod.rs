@@ -64,7 +64,7 @@ pub(super) fn program(dice: &mut Dice) -> PeerProgram {
     }
     let arrays: Vec<Type> = types.iter().copied().filter(|one| !matches!(one.kind, Kind::Moment | Kind::Day)).collect();
     let element = dice.pick(&arrays);
-    let count = 6 + dice.below(9);
+    let count = 10 + dice.below(12);
     let around = Vec::new();
     let mut typed = Typed { dice, types, text: String::new(), around, controls: 0, rounded: 0, element };
     typed.statements(count, 2);
