@@ -16,6 +16,7 @@ import collections
 import math
 import pathlib
 import re
+import shutil
 import struct
 import subprocess
 import sys
@@ -123,6 +124,14 @@ def verdict(path, kind, ours, theirs):
 
 def compare(program, folder, counts):
     """The first difference, or None."""
+    program.counted = collections.Counter()
+    try:
+        return first_difference(program, folder, program.counted)
+    finally:
+        counts.update(program.counted)
+
+
+def first_difference(program, folder, counts):
     family = program.family
     peer = folder / f"{program.name}.peer"
     theirs = peer.read_text().split("\n")[1:-1] if peer.exists() else []
@@ -146,8 +155,35 @@ def compare(program, folder, counts):
     return None
 
 
+def corrected(library, folder):
+    """The library with the one fault of it that no choice of programs avoids: 1000000000 ns are not carried to a second,
+    so that T#990ms + T#10ms is less than T#1s."""
+    copy = folder / "corrected"
+    shutil.copytree(library, copy, dirs_exist_ok=True)
+    header = copy / "C" / "iec_std_lib.h"
+    text = header.read_text(errors="surrogateescape")
+    for fault, right in (("tv_nsec < -1000000000 ", "tv_nsec <= -1000000000 "), ("tv_nsec > 1000000000 ", "tv_nsec >= 1000000000 ")):
+        text = text.replace(fault, right)
+    header.write_text(text, errors="surrogateescape")
+    return copy
+
+
+def run(folder, library, programs):
+    """Runs programs; by name, what the system says of those that crash or do not end."""
+    build(folder, library, programs)
+    said = subprocess.run(["./scan"], cwd=folder, capture_output=True, text=True, check=True).stdout
+    return dict(line.split(" ", 1) for line in said.splitlines())
+
+
+def judge(folder, library, programs, counts):
+    """Those that differ, with their first difference."""
+    died = run(folder, library, programs)
+    found = {each: compare(each, folder, counts) for each in programs}
+    return {each: f"{what} {died.get(each.name, '')}".rstrip() for each, what in found.items() if what}
+
+
 def main():
-    folder, library = pathlib.Path(sys.argv[1]), pathlib.Path(sys.argv[2]).resolve()
+    folder, library = (pathlib.Path(word).resolve() for word in sys.argv[1:3])
     programs = [Program(path) for path in sorted(folder.glob("*_*.st"))]
     counts = collections.Counter()
     if translate(folder, library, programs):
@@ -164,14 +200,20 @@ def main():
         refused = translate(folder, library, programs)
         if refused:
             raise SystemExit(f"{folder}: {refused}")
-    build(folder, library, programs)
-    said = subprocess.run(["./scan"], cwd=folder, capture_output=True, text=True, check=True).stdout
-    died = dict(line.split(" ", 1) for line in said.splitlines())
-    for each in programs:
-        found = compare(each, folder, counts)
-        if found:
-            print(f"difference {each.name}: {found} {died.get(each.name, '')}".rstrip())
-            counts[f"{each.family} programs that differ"] += 1
+    differing = judge(folder, library, programs, counts)
+    again = [each for each in differing if each.family != "known"]
+    if again:
+        for each in again:
+            counts.subtract(each.counted)
+        translate(folder, library, again)
+        still = judge(folder, corrected(library, folder), again, counts)
+        for each in again:
+            if each not in still:
+                del differing[each]
+                counts[f"{each.family} programs equal once seconds are carried"] += 1
+    for each, what in differing.items():
+        print(f"difference {each.name}: {what}")
+        counts[f"{each.family} programs that differ"] += 1
     for what, count in sorted(counts.items()):
         print(f"{what} {count}")
 

@@ -32,7 +32,9 @@ pub(super) fn program(chart: &Chart) -> PeerProgram {
     }
     for used in uses.iter().filter(|used| used.action >= BOOLEAN) {
         let (action, step) = (used.action, used.step);
-        let statement = format!("IF s{step}.X THEN story := story * 31 + {}; END_IF;", action * 2);
+        // In which order actions run in a scan is left to the implementation.
+        let count = 1_000_u32.pow((action - BOOLEAN) as u32);
+        let statement = format!("IF s{step}.X THEN story := story + {count}; END_IF;");
         writeln!(text, "ACTION b{action}:\n    {statement}\nEND_ACTION").expect("a string takes all");
     }
     text.push_str("END_PROGRAM\n");

@@ -162,6 +162,13 @@ pub(super) const KNOWN: &[Known] = &[
         "1 00000000b2d05e00 ffffffff80000000",
     ),
     known(
+        "durations that add up to a second exactly",
+        (Right, "2.5.1.5.6"),
+        "BOOL",
+        "t : TIME := T#990ms; --- r := t + T#10ms < T#1s;",
+        "1 00 01",
+    ),
+    known(
         "a date after 2038",
         (Right, "2.2.3.2"),
         "DT",
@@ -252,6 +259,19 @@ STEP s1: r(P1); END_STEP
 TRANSITION FROM s0 TO s1 := x >= 1; END_TRANSITION
 ACTION a: x := x + 1; END_ACTION",
         "2 00 01",
+    ),
+    known(
+        "the order of actions in a scan",
+        (Open, "2.6.4.5"),
+        "INT",
+        "x : INT; ---
+INITIAL_STEP s0: a(N); END_STEP
+STEP s1: b(N); c(P1); END_STEP
+TRANSITION FROM s0 TO s1 := x >= 1; END_TRANSITION
+ACTION a: x := x + 1; END_ACTION
+ACTION b: IF s1.X THEN r := r * 2 + 1; END_IF; END_ACTION
+ACTION c: r := r * 2; END_ACTION",
+        "2 0001 0002",
     ),
     known(
         "the final scan",
