@@ -134,6 +134,7 @@ const PAGES: &[(&str, &str)] = pages![
     "W0707",
     "W0708",
     "W0709",
+    "W0710",
 ];
 
 /// The page that explains `code`, as Markdown.

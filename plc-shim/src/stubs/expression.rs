@@ -4,7 +4,7 @@ use super::collect::{Collector, Scope, elementary};
 use super::names::Access;
 use super::ty::Ty;
 use crate::ElementaryType as E;
-use crate::syntax::ast::{BinaryOp, Expr, ExprKind, Ident, Literal, ReferenceKind, TypedValue, UnaryOp};
+use crate::syntax::ast::{BinaryOp, Expr, ExprKind, Ident, Link, Literal, ReferenceKind, TypedValue, UnaryOp};
 
 impl<'a> Collector<'a> {
     /// The type of a value.
@@ -60,7 +60,21 @@ impl<'a> Collector<'a> {
             }
             ExprKind::Binary(op, left, right) => self.binary(*op, left, right, access, scope),
             ExprKind::Paren(inner) => self.place(inner, access, scope),
+            ExprKind::Chain(first, links) => self.row(first, links, access, scope),
         }
+    }
+
+    /// A long row of operators: each operand stands beside what has been found of those before it.
+    fn row(&mut self, first: &Expr, links: &[Link], access: Access, scope: &Scope<'a>) -> Ty {
+        let mut found = self.place(first, access, scope);
+        for link in links {
+            let next = self.place(&link.operand, access, scope);
+            self.beside(&found, &next);
+            if link.operator.is_comparison() {
+                found = elementary(E::Bool);
+            }
+        }
+        found
     }
 
     fn member_expression(&mut self, expr: &Expr, base: &Expr, name: &Ident, access: Access, scope: &Scope<'a>) -> Ty {

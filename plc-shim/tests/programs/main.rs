@@ -30,6 +30,7 @@ mod ld;
 mod legal_code;
 mod lints;
 mod lockstep;
+mod matiec;
 mod mistakes;
 mod namespaces;
 mod object_inputs;

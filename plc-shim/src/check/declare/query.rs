@@ -95,10 +95,7 @@ impl<'a> Declarations<'a> {
 
     /// The values of enumerations that the name alone stands for.
     pub(in crate::check) fn enumerators(&self, key: &str) -> &[Enumerator] {
-        let mut key = key;
-        while let Some((_, rest)) = key.split_once('.').filter(|(first, _)| self.is_library_name(first)) {
-            key = rest;
-        }
+        let key = self.without_libraries(key).unwrap_or(key);
         self.enumerators.get(key).map_or(&[], Vec::as_slice)
     }
 

@@ -12,7 +12,7 @@ mod plcopen_charts;
 mod plcopen_motion;
 mod plcopen_xml;
 mod ported;
-mod random;
+pub(crate) mod random;
 mod random_single;
 mod rewriting;
 mod scl;

@@ -13,7 +13,7 @@ fn statement(kind: u32, n: usize, ms: u32) -> String {
         0 => format!("t{n}(IN := i, PT := T#{ms}ms, ET => e); q := q XOR t{n}.Q;"),
         1 => format!("o{n}(IN := j, PT := T#{ms}ms, ET => e); q := o{n}.Q;"),
         2 => format!("p{n}(IN := i XOR j, PT := T#{ms}ms, ET => e); x := x + BOOL_TO_DINT(p{n}.Q);"),
-        3 => format!("c{n}(CU := q, R := c{n}.Q, PV := {}); x := x * 3 + c{n}.CV;", ms % 5),
+        3 => format!("c{n}(CU := q, R := c{n}.Q, PV := {}); x := x * 3 + INT_TO_DINT(c{n}.CV);", ms % 5),
         4 => format!("IF q THEN x := x + {ms}; END_IF;"),
         5 => format!("IF x MOD {} = 1 THEN x := x + 1; RETURN; END_IF;", ms + 2),
         6 => format!("t{n}(IN := NOT t{n}.Q, PT := T#{ms}ms); IF t{n}.Q THEN x := x + 1; END_IF;"),
@@ -23,7 +23,7 @@ fn statement(kind: u32, n: usize, ms: u32) -> String {
     }
 }
 
-fn program(name: &str, statements: &[(u32, u32)]) -> String {
+pub(crate) fn program(name: &str, statements: &[(u32, u32)]) -> String {
     let count = statements.len();
     let instances: String = (0..count).map(|n| format!("t{n} : TON; o{n} : TOF; p{n} : TP; c{n} : CTU; ")).collect();
     let body: String =

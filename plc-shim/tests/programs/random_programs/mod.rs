@@ -7,7 +7,7 @@
 //! | [`interpret`] | what it does |
 
 mod interpret;
-mod program;
+pub(crate) mod program;
 
 use onescan_plc_shim::FaultKind;
 use onescan_plc_shim::syntax::printer::print_unit;

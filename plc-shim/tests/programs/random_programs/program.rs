@@ -7,10 +7,10 @@ use std::fmt::Write;
 use proptest::prelude::*;
 
 /// Deepest nesting of loops.
-pub(super) const DEPTH: usize = 3;
+pub(crate) const DEPTH: usize = 3;
 
 #[derive(Debug, Clone)]
-pub(super) enum Number {
+pub(crate) enum Number {
     Literal(i16),
     Variable(usize),
     /// `DINT_TO_INT(a[n AND 3])`
@@ -26,7 +26,7 @@ pub(super) enum Number {
 }
 
 #[derive(Debug, Clone)]
-pub(super) enum Truth {
+pub(crate) enum Truth {
     Literal(bool),
     Variable(usize),
     Not(Box<Truth>),
@@ -35,10 +35,10 @@ pub(super) enum Truth {
 }
 
 /// Ranges; both ends of a single value are it.
-pub(super) type Labels = Vec<(i16, i16)>;
+pub(crate) type Labels = Vec<(i16, i16)>;
 
 #[derive(Debug, Clone)]
-pub(super) enum Statement {
+pub(crate) enum Statement {
     Assign(usize, Number),
     AssignTruth(usize, Truth),
     /// `a[n] := n`, where the index may be out of range.
@@ -144,126 +144,147 @@ fn statement(depth: usize) -> BoxedStrategy<Statement> {
     .boxed()
 }
 
-pub(super) fn program() -> impl Strategy<Value = Vec<Statement>> {
+pub(crate) fn program() -> impl Strategy<Value = Vec<Statement>> {
     prop::collection::vec(statement(DEPTH), 1..8)
 }
 
-fn number_text(number: &Number) -> String {
-    let sub = |number: &Number| number_text(number);
-    match number {
-        Number::Literal(value) => format!("INT#{value}"),
-        Number::Variable(index) => format!("v{index}"),
-        Number::Control(index) => format!("i{index}"),
-        Number::Element(index) => format!("DINT_TO_INT(a[ABS({} MOD 4)])", sub(index)),
-        Number::Negate(value) => format!("(-{})", sub(value)),
-        Number::Binary(op, a, b) => format!("({} {op} {})", sub(a), sub(b)),
-        Number::Select(c, a, b) => format!("SEL({}, {}, {})", truth_text(c), sub(a), sub(b)),
-        Number::Call(value) => format!("Clamp({})", sub(value)),
-    }
-}
-
-fn truth_text(truth: &Truth) -> String {
-    match truth {
-        Truth::Literal(value) => value.to_string(),
-        Truth::Variable(index) => format!("b{index}"),
-        Truth::Not(value) => format!("(NOT {})", truth_text(value)),
-        Truth::Join(op, a, b) => format!("({} {op} {})", truth_text(a), truth_text(b)),
-        Truth::Compare(op, a, b) => format!("({} {op} {})", number_text(a), number_text(b)),
-    }
-}
-
 /// Loops around a statement: those of each depth and kind have a control variable.
-pub(super) fn control(kind: usize, depth: usize) -> usize {
+pub(crate) fn control(kind: usize, depth: usize) -> usize {
     kind * DEPTH + depth % DEPTH
 }
 
-fn write_block(text: &mut String, block: &[Statement], loops: usize) {
-    for statement in block {
-        write_statement(text, statement, loops);
+/// How programs are written.
+pub(crate) struct Wording {
+    /// What stands before an operation in parentheses: a function, or nothing.
+    pub(crate) narrow: &'static str,
+    /// A statement that does nothing.
+    pub(crate) nothing: &'static str,
+}
+
+impl Wording {
+    fn number(&self, number: &Number) -> String {
+        let sub = |number: &Number| self.number(number);
+        match number {
+            Number::Literal(value) => format!("INT#{value}"),
+            Number::Variable(index) => format!("v{index}"),
+            Number::Control(index) => format!("i{index}"),
+            Number::Element(index) => format!("DINT_TO_INT(a[ABS({} MOD 4)])", sub(index)),
+            Number::Negate(value) => format!("{}(-{})", self.narrow, sub(value)),
+            Number::Binary(op, a, b) => format!("{}({} {op} {})", self.narrow, sub(a), sub(b)),
+            Number::Select(c, a, b) => format!("SEL({}, {}, {})", self.truth(c), sub(a), sub(b)),
+            Number::Call(value) => format!("Clamp({})", sub(value)),
+        }
     }
-}
 
-fn write_statement(text: &mut String, statement: &Statement, loops: usize) {
-    let line = match statement {
-        Statement::Assign(index, value) => format!("v{index} := {};", number_text(value)),
-        Statement::AssignTruth(index, value) => format!("b{index} := {};", truth_text(value)),
-        Statement::AssignElement(index, value) => {
-            format!("a[{}] := INT_TO_DINT({}) * 100000;", number_text(index), number_text(value))
+    fn truth(&self, truth: &Truth) -> String {
+        match truth {
+            Truth::Literal(value) => value.to_string(),
+            Truth::Variable(index) => format!("b{index}"),
+            Truth::Not(value) => format!("(NOT {})", self.truth(value)),
+            Truth::Join(op, a, b) => format!("({} {op} {})", self.truth(a), self.truth(b)),
+            Truth::Compare(op, a, b) => format!("({} {op} {})", self.number(a), self.number(b)),
         }
-        // Outside of a loop there is nothing to leave.
-        Statement::Exit(condition) if loops > 0 => format!("IF {} THEN EXIT; END_IF;", truth_text(condition)),
-        Statement::Continue(condition) if loops > 0 => format!("IF {} THEN CONTINUE; END_IF;", truth_text(condition)),
-        Statement::Exit(_) | Statement::Continue(_) => ";".to_owned(),
-        Statement::Return(condition) => format!("IF {} THEN RETURN; END_IF;", truth_text(condition)),
-        Statement::CallInstance(index, value) => format!("c{index}(x := {});", number_text(value)),
-        compound => return write_compound(text, compound, loops),
-    };
-    writeln!(text, "{line}").expect("a string takes all");
-}
+    }
 
-fn write_compound(text: &mut String, statement: &Statement, loops: usize) {
-    let mut line = |line: String| writeln!(text, "{line}").expect("a string takes all");
-    match statement {
-        Statement::If(branches, otherwise) => {
-            for (index, (condition, body)) in branches.iter().enumerate() {
-                let word = if index == 0 { "IF" } else { "ELSIF" };
-                writeln!(text, "{word} {} THEN", truth_text(condition)).expect("a string takes all");
-                write_block(text, body, loops);
+    fn write_block(&self, text: &mut String, block: &[Statement], loops: usize) {
+        if block.is_empty() {
+            text.push_str(self.nothing);
+        }
+        for statement in block {
+            self.write_statement(text, statement, loops);
+        }
+    }
+
+    fn write_statement(&self, text: &mut String, statement: &Statement, loops: usize) {
+        let line = match statement {
+            Statement::Assign(index, value) => format!("v{index} := {};", self.number(value)),
+            Statement::AssignTruth(index, value) => format!("b{index} := {};", self.truth(value)),
+            Statement::AssignElement(index, value) => {
+                format!("a[{}] := INT_TO_DINT({}) * 100000;", self.number(index), self.number(value))
             }
-            text.push_str("ELSE\n");
-            write_block(text, otherwise, loops);
-            text.push_str("END_IF;\n");
-        }
-        Statement::Case(value, arms, otherwise) => {
-            line(format!("CASE {} OF", number_text(value)));
-            for (labels, body) in arms {
-                let label =
-                    |(low, high): &(i16, i16)| if low == high { low.to_string() } else { format!("{low}..{high}") };
-                let labels: Vec<String> = labels.iter().map(label).collect();
-                writeln!(text, "{}: ;", labels.join(", ")).expect("a string takes all");
-                write_block(text, body, loops);
+            // Outside of a loop there is nothing to leave.
+            Statement::Exit(condition) if loops > 0 => format!("IF {} THEN EXIT; END_IF;", self.truth(condition)),
+            Statement::Continue(condition) if loops > 0 => {
+                format!("IF {} THEN CONTINUE; END_IF;", self.truth(condition))
             }
-            text.push_str("ELSE\n");
-            write_block(text, otherwise, loops);
-            text.push_str("END_CASE;\n");
+            Statement::Exit(_) | Statement::Continue(_) => self.nothing.to_owned(),
+            Statement::Return(condition) => format!("IF {} THEN RETURN; END_IF;", self.truth(condition)),
+            Statement::CallInstance(index, value) => format!("c{index}(x := {});", self.number(value)),
+            compound => return self.write_compound(text, compound, loops),
+        };
+        writeln!(text, "{line}").expect("a string takes all");
+    }
+
+    fn write_compound(&self, text: &mut String, statement: &Statement, loops: usize) {
+        let mut line = |line: String| writeln!(text, "{line}").expect("a string takes all");
+        match statement {
+            Statement::If(branches, otherwise) => {
+                for (index, (condition, body)) in branches.iter().enumerate() {
+                    let word = if index == 0 { "IF" } else { "ELSIF" };
+                    writeln!(text, "{word} {} THEN", self.truth(condition)).expect("a string takes all");
+                    self.write_block(text, body, loops);
+                }
+                text.push_str("ELSE\n");
+                self.write_block(text, otherwise, loops);
+                text.push_str("END_IF;\n");
+            }
+            Statement::Case(value, arms, otherwise) => {
+                line(format!("CASE {} OF", self.number(value)));
+                for (labels, body) in arms {
+                    let label =
+                        |(low, high): &(i16, i16)| if low == high { low.to_string() } else { format!("{low}..{high}") };
+                    let labels: Vec<String> = labels.iter().map(label).collect();
+                    writeln!(text, "{}: {}", labels.join(", "), self.nothing).expect("a string takes all");
+                    self.write_block(text, body, loops);
+                }
+                text.push_str("ELSE\n");
+                self.write_block(text, otherwise, loops);
+                text.push_str("END_CASE;\n");
+            }
+            Statement::For { from, to, by, body } => {
+                let control = control(0, loops);
+                line(format!("FOR i{control} := {} TO {} BY {by} DO", self.number(from), self.number(to)));
+                self.write_block(text, body, loops + 1);
+                text.push_str("END_FOR;\n");
+            }
+            Statement::While(limit, condition, body) => {
+                let control = control(1, loops);
+                line(format!(
+                    "i{control} := {limit}; WHILE i{control} > 0 AND {} DO i{control} := i{control} - 1;",
+                    self.truth(condition)
+                ));
+                self.write_block(text, body, loops + 1);
+                text.push_str("END_WHILE;\n");
+            }
+            Statement::Repeat(limit, until, body) => {
+                let control = control(2, loops);
+                line(format!("i{control} := {limit}; REPEAT i{control} := i{control} - 1;"));
+                self.write_block(text, body, loops + 1);
+                writeln!(text, "UNTIL i{control} <= 0 OR {} END_REPEAT;", self.truth(until))
+                    .expect("a string takes all");
+            }
+            _ => {}
         }
-        Statement::For { from, to, by, body } => {
-            let control = control(0, loops);
-            line(format!("FOR i{control} := {} TO {} BY {by} DO", number_text(from), number_text(to)));
-            write_block(text, body, loops + 1);
-            text.push_str("END_FOR;\n");
-        }
-        Statement::While(limit, condition, body) => {
-            let control = control(1, loops);
-            line(format!(
-                "i{control} := {limit}; WHILE i{control} > 0 AND {} DO i{control} := i{control} - 1;",
-                truth_text(condition)
-            ));
-            write_block(text, body, loops + 1);
-            text.push_str("END_WHILE;\n");
-        }
-        Statement::Repeat(limit, until, body) => {
-            let control = control(2, loops);
-            line(format!("i{control} := {limit}; REPEAT i{control} := i{control} - 1;"));
-            write_block(text, body, loops + 1);
-            writeln!(text, "UNTIL i{control} <= 0 OR {} END_REPEAT;", truth_text(until)).expect("a string takes all");
-        }
-        _ => {}
+    }
+
+    /// A program `P` of the numbers `v0` to `v3` and `i0` on, the truths `b0` to `b2`, an array and two instances.
+    pub(crate) fn program(&self, body: &[Statement]) -> String {
+        let controls: Vec<String> = (0..DEPTH * 3).map(|index| format!("i{index}")).collect();
+        let mut text = format!(
+            "PROGRAM P\nVAR v0, v1, v2, v3, {} : INT; b0, b1, b2 : BOOL; a : ARRAY [0..3] OF DINT; c0, c1 : Sum; END_VAR\n",
+            controls.join(", ")
+        );
+        self.write_block(&mut text, body, 0);
+        text + "END_PROGRAM\n"
     }
 }
 
 /// The whole file.
 pub(super) fn text(body: &[Statement]) -> String {
-    let controls: Vec<String> = (0..DEPTH * 3).map(|index| format!("i{index}")).collect();
-    let mut text = format!(
-        "FUNCTION Clamp : INT VAR_INPUT n : INT; END_VAR
+    let blocks = "FUNCTION Clamp : INT VAR_INPUT n : INT; END_VAR
             Clamp := n; IF n > 100 THEN Clamp := 100; RETURN; END_IF; IF n < -100 THEN Clamp := -100; END_IF;
         END_FUNCTION
         FUNCTION_BLOCK Sum VAR_INPUT x : INT; END_VAR VAR_OUTPUT total : INT; END_VAR total := total + x; END_FUNCTION_BLOCK
-        PROGRAM P
-        VAR v0, v1, v2, v3, {} : INT; b0, b1, b2 : BOOL; a : ARRAY [0..3] OF DINT; c0, c1 : Sum; END_VAR\n",
-        controls.join(", ")
-    );
-    write_block(&mut text, body, 0);
-    text + "END_PROGRAM"
+        ";
+    blocks.to_owned() + &Wording { narrow: "", nothing: ";" }.program(body)
 }
