@@ -11,6 +11,10 @@ impl Body<'_, '_> {
             ast::ExprKind::Name(name) if !self.scope.declares(&name.key()) => name.clone(),
             _ => self.qualified_name(base)?,
         };
+        // What stands behind a variable is a member of it.
+        if first.text.contains('.') && self.declarations.global_key(&first.key()).is_some() {
+            return None;
+        }
         let text = format!("{}.{}", first.text, last.text);
         let found = Ident { text, span: first.span.to(last.span) };
         self.declarations.is_in_namespace(&found.key()).then_some(found)
