@@ -1,4 +1,4 @@
-//! Tc2_System: types, constants, messages, counters.
+//! `Tc2_System`: types, constants, messages, counters.
 
 use onescan_plc_shim::Dialect;
 

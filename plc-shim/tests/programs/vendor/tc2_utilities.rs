@@ -1,4 +1,4 @@
-//! Tc2_Utilities: texts, conversions, formats, times, records in memory.
+//! `Tc2_Utilities`: texts, conversions, formats, times, records in memory.
 
 use onescan_plc_shim::Dialect;
 
