@@ -258,6 +258,7 @@ impl<'t> Scan<'t, '_> {
 #[cfg(test)]
 mod tests {
     use std::collections::BTreeSet;
+    use std::fmt::Write;
 
     use super::*;
     use crate::application::front::Front;
@@ -333,11 +334,11 @@ mod tests {
             let homes: Vec<_> = part.homes.iter().map(|home| home.name()).collect();
             let homes = if homes.len() == Dialect::ALL.len() { "all".to_owned() } else { homes.join(", ") };
             let short = part.name.rsplit('/').next().expect("a name");
-            page += &format!("\n## {short}\n\n{about}\n\nDialects: {homes}.\n\n");
+            write!(page, "\n## {short}\n\n{about}\n\nDialects: {homes}.\n\n").expect("a string");
             let mut kinds = BTreeMap::new();
             listed(&parsed.unit.declarations, "", &mut kinds);
             for (kind, names) in kinds {
-                page += &format!("- {kind}: {}\n", names.join(", "));
+                writeln!(page, "- {kind}: {}", names.join(", ")).expect("a string");
             }
         }
         page

@@ -1,7 +1,7 @@
 //! Namespaces (3rd ed. 6.9), the names of vendors' libraries and lists of global variables.
 
 use onescan_plc_shim::input::kind::SourceKind;
-use onescan_plc_shim::{Application, Input, TaskPlan, TimeSpan};
+use onescan_plc_shim::{Application, Dialect, Input, TaskPlan, TimeSpan};
 
 use crate::rig::{Rig, findings};
 
@@ -78,4 +78,14 @@ VAR_GLOBAL x : INT := 5; END_VAR]]></Declaration></GVL><GVL Name=\"Open\"><Decla
     assert_eq!((rig.int("GVL.x"), rig.int("Open.y"), rig.int("y")), (6, 2, 2));
     let found = Application::from_inputs([lists(), program("x := 1;")]).expect_err("x is qualified only");
     insta::assert_snapshot!(found, @"P.st:1:11: error[N0101]: `x` is not declared (write `GVL.x`)");
+}
+
+#[test]
+fn members_of_listed_globals_are_named_with_the_list() {
+    let text = "TYPE S : STRUCT x : INT; END_STRUCT END_TYPE
+        NAMESPACE OPEN Gvl VAR_GLOBAL s1 : S; END_VAR END_NAMESPACE
+        PROGRAM P VAR a : INT; END_VAR Gvl.s1.x := 3; a := Gvl.s1.x + s1.x; END_PROGRAM";
+    let mut rig = Rig::in_dialect(Dialect::TwinCat, text);
+    rig.scan().expect("no fault");
+    assert_eq!(rig.int("P.a"), 6);
 }

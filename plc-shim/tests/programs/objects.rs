@@ -2,7 +2,7 @@
 
 use onescan_plc_shim::Dialect;
 
-use crate::rig::Rig;
+use crate::rig::{Rig, findings_in};
 
 /// After one scan.
 fn run(text: &str) -> Rig {
@@ -494,4 +494,18 @@ PROGRAM P VAR v : IValve; a : Axis; n : INT; END_VAR
   n := a.Count.x;
 END_PROGRAM"
     ));
+}
+
+#[test]
+fn actions_of_vendors_take_the_inputs_of_their_unit() {
+    let text = "FUNCTION_BLOCK F VAR_INPUT a, b : INT; END_VAR VAR_OUTPUT sum : INT; END_VAR
+            ACTION Add: sum := a + b; END_ACTION
+        END_FUNCTION_BLOCK
+        PROGRAM P VAR f1 : ARRAY [0..1] OF F; x, y : INT; END_VAR
+            f1[1].Add(a := 3, b := 4, sum => x); f1[1].Add(b := 10); y := f1[1].sum; END_PROGRAM";
+    let mut rig = Rig::in_dialect(Dialect::TwinCat, text);
+    rig.scan().expect("no fault");
+    assert_eq!((rig.int("P.x"), rig.int("P.y")), (7, 13));
+    let told = findings_in(Dialect::TwinCat, &text.replace("b := 10", "c := 10")).to_string();
+    assert!(told.contains("`Add` has no such parameter `c`"), "{told}");
 }

@@ -14,7 +14,7 @@ use crate::syntax::Span;
 use crate::syntax::ast::{CompilationUnit, Declaration, Ident, Modifier, Namespace, NamespaceKind};
 
 /// Libraries of vendors; their names may stand before what they hold, which is known without that.
-const LIBRARIES: [&str; 20] = [
+const LIBRARIES: [&str; 22] = [
     "STANDARD",
     "STANDARD64",
     "IEC61131_STANDARD",
@@ -33,9 +33,16 @@ const LIBRARIES: [&str; 20] = [
     "TC2_SYSTEM",
     "TC2_UTILITIES",
     "TC2_MC2",
+    "TC2_ETHERCAT",
+    "IBASELIBRARY",
     "TC3_MODULE",
     "TC3_EVENTLOGGER",
 ];
+
+/// True for a list of global variables in TwinCAT's libraries, which may stand between a library and a name.
+fn is_list(name: &str) -> bool {
+    ["GLOBAL_VARIABLES", "GLOBAL_CONSTANTS"].iter().any(|list| list.eq_ignore_ascii_case(name))
+}
 
 /// Full keys of what is known without its namespace, by names.
 #[derive(Default)]
@@ -228,7 +235,7 @@ impl<'a> Declarations<'a> {
     pub(in crate::check) fn without_libraries<'k>(&self, key: &'k str) -> Option<&'k str> {
         let mut name = key;
         while let Some((first, rest)) = name.split_once('.')
-            && self.is_vendor_library(first)
+            && (self.is_vendor_library(first) || name.len() < key.len() && is_list(first))
         {
             name = rest;
         }

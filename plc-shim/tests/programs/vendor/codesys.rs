@@ -1,4 +1,4 @@
-//! CODESYS: Util, SysTime, SysFile, CAA types.
+//! CODESYS: `Util`, `SysTime`, `SysFile`, `CAA` types.
 
 use onescan_plc_shim::Dialect;
 

@@ -1,4 +1,4 @@
-//! Tc2_Standard: functions of WSTRING, timers of LTIME.
+//! `Tc2_Standard`: functions of WSTRING, timers of LTIME.
 
 use onescan_plc_shim::Dialect;
 

@@ -1,4 +1,4 @@
-//! Tc2_System: types, constants, messages, counters.
+//! `Tc2_System`: types, constants, messages, counters.
 
 use onescan_plc_shim::Dialect;
 
@@ -33,7 +33,9 @@ fn constants_and_functions() {
             "SETBIT32(0, 31) = 16#80000000 AND CLEARBIT32(16#FF, 0) = 16#FE AND GETBIT32(4, 2)",
             "CSETBIT32(0, 15, TRUE) = 16#8000 AND CSETBIT32(16#8000, 15, FALSE) = 0",
             "address.netId[2] = 17",
-            "E_OpenPath.PATH_BOOTPATH = 4 AND open = PATH_BOOTPATH",
+            "E_OpenPath.PATH_BOOTPATH = 4 AND open = PATH_BOOTPATH AND Tc2_System.PATH_BOOTPATH = open",
+            "Tc2_System.Global_Constants.MAX_STRING_LENGTH = 255",
+            "TwinCAT_SystemInfoVarList._AppInfo.ProjectName = '' AND TwinCAT_SystemInfoVarList._AppInfo.TaskCnt = 1",
         ],
     );
 }

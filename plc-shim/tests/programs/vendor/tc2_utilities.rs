@@ -1,4 +1,4 @@
-//! Tc2_Utilities: texts, conversions, formats, times, records in memory.
+//! `Tc2_Utilities`: texts, conversions, formats, times, records in memory.
 
 use onescan_plc_shim::Dialect;
 
@@ -224,9 +224,7 @@ fn records_in_a_ring() {
     FOR round := 1 TO 20 DO
         FOR i := 1 TO 3 DO
             put.n := put.n + 1; put.x := 0.5;
-            ring.pBuffer := ADR(memory); ring.cbBuffer := SIZEOF(memory);
-            ring.pWrite := ADR(put); ring.cbWrite := SIZEOF(put);
-            ring.A_AddTail();
+            ring.A_AddTail(pWrite := ADR(put), cbWrite := SIZEOF(put), pBuffer := ADR(memory), cbBuffer := SIZEOF(memory));
             IF ring.bOk THEN added := added + 1; ELSE put.n := put.n - 1; END_IF
         END_FOR
         ok := ok AND ring.nCount = 2 AND ring.cbSize = 40;

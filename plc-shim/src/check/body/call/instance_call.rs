@@ -48,7 +48,8 @@ impl Body<'_, '_> {
         self.controlled_instance(&scope, call, enabling)
     }
 
-    fn instance_inputs(
+    /// Sets the inputs of an instance that are given.
+    pub(in crate::check::body) fn instance_inputs(
         &mut self,
         scope: &Arc<Scope>,
         matched: &Matched<'_>,
@@ -85,7 +86,7 @@ impl Body<'_, '_> {
 }
 
 /// A variable inside an instance, seen from outside.
-fn member_place(base: &Place, variable: &Variable, span: Span) -> Place {
+pub(in crate::check::body) fn member_place(base: &Place, variable: &Variable, span: Span) -> Place {
     let (offset, ty) = match variable.storage {
         Storage::Instance(offset) => (offset, variable.ty),
         Storage::InstancePointer(offset) => (offset, ElementaryType::Udint.into()),

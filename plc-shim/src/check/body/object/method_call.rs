@@ -2,6 +2,7 @@
 
 use crate::check::body::call::argument::Passing;
 use crate::check::body::call::enable;
+use crate::check::body::call::instance_call::member_place;
 use crate::check::body::{Body, Meant};
 use crate::check::declare::{Role, Scope};
 use crate::check::types::operand::Operand;
@@ -69,6 +70,9 @@ impl Body<'_, '_> {
 
     fn called(&mut self, object: Object, method: PouId, name: &Ident, call: &Call, span: Span) -> Option<Expr> {
         self.check_method_access(method, name.span)?;
+        if self.declarations.pou(method).ast().kind == PouKind::Action && !call.arguments.is_empty() {
+            return self.called_action(object, method, name, call, span);
+        }
         let scope = self.declarations.interface(method, span)?;
         let make = |body: &mut Self, call: &Call| {
             let (arguments, passing) = body.method_arguments(&scope, &name.text, call, span)?;
@@ -79,6 +83,21 @@ impl Body<'_, '_> {
         }
         let own = scope.own(ENO).is_some_and(parameter::is_control);
         self.controlled(call, own, span, |body, rest| make(body, rest).map(Operand::Typed))
+    }
+
+    /// An action has the inputs and outputs of its unit (CODESYS, TwinCAT: calling of actions).
+    fn called_action(&mut self, object: Object, action: PouId, name: &Ident, call: &Call, span: Span) -> Option<Expr> {
+        let instance = match &call.callee.kind {
+            ast::ExprKind::Member(base, _) => self.place(base)?.place,
+            _ => self.this(object.class, span),
+        };
+        let scope = self.declarations.interface(object.class, span)?;
+        let matched = self.matched(&scope, &name.text, call)?;
+        let mut passing = Passing::default();
+        self.instance_inputs(&scope, &matched, &instance, &mut passing, span)?;
+        let outputs = self.outputs(&matched.outputs, |variable, span| member_place(&instance, variable, span))?;
+        passing.after.extend(outputs);
+        self.on_object(object, Role::Method, action, Vec::new(), passing, span)
     }
 
     fn unknown_method<T>(&mut self, class: PouId, name: &Ident) -> Option<T> {

@@ -261,7 +261,8 @@ impl Body<'_, '_> {
             }
             None => {}
         }
-        let found = self.declarations.enumerators(&name.key());
+        let bare = self.declarations.behind_libraries(name);
+        let found = self.declarations.enumerators(&bare.key());
         match found {
             [only] => Some(Meaning::Value(enumeration_value(only.ty, only.value, name.span))),
             [] if name.key() == "NULL" => Some(Meaning::Value(Self::null(name.span))),

@@ -12,6 +12,10 @@ impl Body<'_, '_> {
             // What a variable of a namespace has are members.
             _ => self.qualified_name(base).filter(|name| self.declarations.global_key(&name.key()).is_none())?,
         };
+        // What stands behind a variable is a member of it.
+        if first.text.contains('.') && self.declarations.global_key(&first.key()).is_some() {
+            return None;
+        }
         let text = format!("{}.{}", first.text, last.text);
         let found = Ident { text, span: first.span.to(last.span) };
         self.declarations.is_in_namespace(&found.key()).then_some(found)
