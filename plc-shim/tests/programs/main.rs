@@ -29,6 +29,7 @@ mod language;
 mod ld;
 mod lints;
 mod lockstep;
+mod memory;
 mod mistakes;
 mod namespaces;
 mod object_inputs;

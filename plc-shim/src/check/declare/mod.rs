@@ -22,6 +22,7 @@ mod query;
 mod recursion;
 mod scope;
 mod start;
+mod too_large;
 mod unknown;
 mod variable;
 mod vendor_parameter;
@@ -40,7 +41,7 @@ use self::located::Initial;
 use self::start::Stages;
 use crate::check::types::generic::Generic;
 use crate::dialect::{AddressUnit, Dialect};
-use crate::ir::{Areas, ElementaryType, PouId, Program, TypeId, TypeTable};
+use crate::ir::{Areas, ElementaryType, MemoryLimit, PouId, Program, TypeId, TypeTable};
 use crate::syntax::{FileId, Span, ast};
 
 pub(super) use self::class::{Membership, Role};
@@ -50,7 +51,7 @@ pub(super) use self::hook::{EXIT_INPUTS, INIT_INPUTS, is_hook, suits_init};
 pub(crate) use self::kept::Kept;
 pub(super) use self::kept::place_of;
 pub(crate) use self::layout::{CALL_DEPTH_OFFSET, INIT_RETAINS_OFFSET, VIRTUAL_TIME_NAME, VIRTUAL_TIME_OFFSET};
-pub(super) use self::layout::{INIT_RETAINS_NAME, MEMORY_LIMIT, align_up};
+pub(super) use self::layout::{INIT_RETAINS_NAME, align_up};
 pub(super) use self::located::Placement;
 pub(super) use self::namespace::Home;
 pub(crate) use self::overrides::Overrides;
@@ -90,6 +91,9 @@ pub(super) struct Declarations<'a> {
     globals: BTreeMap<String, GlobalEntry<'a>>,
     enumerators: BTreeMap<String, Vec<Enumerator>>,
     memory: Memory,
+    memory_limit: MemoryLimit,
+    /// What did not fit, and how large it is.
+    too_large: Vec<(Span, Option<u64>)>,
     areas: Areas,
     address_unit: AddressUnit,
     /// Initial values of what is located.
@@ -123,7 +127,7 @@ impl<'a> Declarations<'a> {
     pub(super) fn new(
         library: &'a BTreeSet<FileId>,
         stages: &'a Stages,
-        overrides: &'a Overrides,
+        (overrides, memory_limit): (&'a Overrides, MemoryLimit),
         resolver: &'static dyn Resolve,
     ) -> Self {
         Self {
@@ -151,6 +155,8 @@ impl<'a> Declarations<'a> {
             ]),
             enumerators: BTreeMap::new(),
             memory: Memory::default(),
+            memory_limit,
+            too_large: Vec::new(),
             areas: Areas::default(),
             address_unit: AddressUnit::default(),
             located: Vec::new(),
