@@ -117,13 +117,13 @@ impl Application {
         Builder::default()
     }
 
-    fn without_constants(Builder { inputs, purpose, .. }: Builder) -> Result<Self, Diagnostics> {
-        with_room(|| Self::compiled(Front::new(inputs), &Constants::default(), purpose))
+    fn without_constants(Builder { inputs, purpose, memory_limit, .. }: Builder) -> Result<Self, Diagnostics> {
+        with_room(|| Self::compiled(Front::within(memory_limit, inputs), &Constants::default(), purpose))
     }
 
-    fn built(Builder { inputs, constants, purpose }: Builder) -> Result<Self, BuildError> {
+    fn built(Builder { inputs, constants, purpose, memory_limit }: Builder) -> Result<Self, BuildError> {
         with_room(|| {
-            let (front, constants) = Front::with_constants(inputs, &constants)?;
+            let (front, constants) = Front::with_constants(memory_limit, inputs, &constants)?;
             match constants.wrong_value(&front.findings, &front.sources) {
                 Some(error) => Err(error.into()),
                 None => Ok(Self::compiled(front, &constants, purpose)?),

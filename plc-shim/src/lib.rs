@@ -54,7 +54,8 @@ pub use coverage::Coverage;
 pub use diagnostic::{Code, Diagnostic, Diagnostics, Finding, Severity};
 pub use dialect::Dialect;
 pub use input::Input;
-pub use lint::inspect;
+pub use ir::{MemoryLimit, MemoryLimitError};
+pub use lint::{inspect, inspect_within};
 pub use onescan_base::{ElementaryType, SignalType, TimeSpan, VirtualTime};
 pub use run::{
     CodePolicy, FaultSite, PlanDifference, PlcFault, RestoreError, RunError, SoftPlc, Task, TaskPlan, Way, WayId,

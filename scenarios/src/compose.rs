@@ -8,7 +8,7 @@ use onescan_clients::operator::Operator;
 use onescan_clients::plant::{Plant, Scene, SceneError, SceneFault};
 use onescan_clients::soft_plc::{Bindings, SoftPlcClient, bind};
 use onescan_plc_shim::input::kind::{FileKind, SourceKind};
-use onescan_plc_shim::{Application, Builder, Dialect, Input, Task, TaskPlan};
+use onescan_plc_shim::{Application, Builder, Dialect, Input, MemoryLimit, Task, TaskPlan};
 use onescan_server::client::{Client, JoinRequest};
 use onescan_server::signal::{ClientName, Port, SignalName, did_you_mean};
 
@@ -50,6 +50,18 @@ pub struct Compiled {
     pub inputs: Vec<Input>,
 }
 
+/// The sources of a soft PLC, and how they are compiled.
+pub struct PlcSources<'a> {
+    /// Files, relative to the scenario's folder.
+    pub sources: &'a [String],
+    /// The dialect of all of them; from each file's name if absent.
+    pub dialect: Option<Dialect>,
+    /// The tasks that the scenario gives it.
+    pub plan: Option<TaskPlan>,
+    /// How much memory its variables may take.
+    pub memory_limit: MemoryLimit,
+}
+
 impl Scenario {
     /// The client `name`, ready to join.
     ///
@@ -81,12 +93,25 @@ impl Scenario {
         }
     }
 
-    /// The sources of each soft PLC, their dialect, and the tasks that the scenario gives it.
-    pub fn plcs(&self) -> impl Iterator<Item = (&[String], Option<Dialect>, Option<TaskPlan>)> {
-        self.file().clients.values().filter_map(|client| match client.get_ref() {
-            ClientFile::SoftPlc { sources, dialect, tasks, .. } => Some((sources.as_slice(), *dialect, plan_of(tasks))),
+    /// What the scenario says of each soft PLC.
+    pub fn plcs(&self) -> impl Iterator<Item = PlcSources<'_>> {
+        self.file().clients.iter().filter_map(|(name, client)| match client.get_ref() {
+            ClientFile::SoftPlc { sources, dialect, tasks, .. } => Some(PlcSources {
+                sources,
+                dialect: *dialect,
+                plan: plan_of(tasks),
+                memory_limit: self.memory_limit(name),
+            }),
             _ => None,
         })
+    }
+
+    /// How much memory the variables of PLC `name` may take.
+    pub(crate) fn memory_limit(&self, name: &ClientName) -> MemoryLimit {
+        match self.file().clients.get(name).map(toml::Spanned::get_ref) {
+            Some(ClientFile::SoftPlc { memory_limit_mib, .. }) => memory_limit_mib.unwrap_or_default(),
+            _ => MemoryLimit::default(),
+        }
     }
 
     /// The sources of PLC `name`.

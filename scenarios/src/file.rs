@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::str::FromStr;
 
 use onescan_clients::gateway::Settings;
-use onescan_plc_shim::Dialect;
+use onescan_plc_shim::{Dialect, MemoryLimit};
 use onescan_server::signal::{ClientName, SignalName, SignalType};
 use onescan_server::time::{TimeSpan, VirtualTime};
 use schemars::JsonSchema;
@@ -12,7 +12,7 @@ use serde::{Deserialize, Deserializer};
 use toml::Spanned;
 
 use crate::expect::KnownSignal;
-use crate::form::{DialectName, Name, Scalar, Time, Type};
+use crate::form::{DialectName, Mebibytes, Name, Scalar, Time, Type};
 
 /// The only version of the format so far.
 pub const VERSION: u32 = 1;
@@ -111,6 +111,10 @@ pub enum ClientFile {
         #[serde(default, deserialize_with = "from_optional_text")]
         #[schemars(with = "Option<DialectName>")]
         dialect: Option<Dialect>,
+        /// MiB that all its variables may take together, up to 2047; 64 if absent.
+        #[serde(default, deserialize_with = "memory_limit")]
+        #[schemars(with = "Option<Mebibytes>")]
+        memory_limit_mib: Option<MemoryLimit>,
         /// Its tasks, in place of all tasks of the sources' CONFIGURATION.
         #[serde(default)]
         tasks: Vec<TaskFile>,
@@ -259,4 +263,10 @@ where
     T::Err: std::fmt::Display,
 {
     from_text(deserializer).map(Some)
+}
+
+/// A number of MiB that a PLC can address.
+fn memory_limit<'de, D: Deserializer<'de>>(from: D) -> Result<Option<MemoryLimit>, D::Error> {
+    let mib = u32::deserialize(from)?;
+    MemoryLimit::of_mib(mib).map(Some).map_err(serde::de::Error::custom)
 }

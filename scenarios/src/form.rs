@@ -5,7 +5,7 @@ use std::borrow::Cow;
 
 use onescan_base::ElementaryType;
 use onescan_clients::gateway::settings::Text;
-use onescan_plc_shim::Dialect;
+use onescan_plc_shim::{Dialect, MemoryLimit};
 use onescan_server::signal::name::NAME_BYTES_MAX;
 use onescan_server::time::TimeSpan;
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
@@ -68,6 +68,12 @@ form!(
     /// The dialect of a PLC's sources.
     DialectName,
     json_schema!({ "type": "string", "enum": Dialect::ALL.map(Dialect::name) })
+);
+
+form!(
+    /// How much memory the variables of a PLC may take.
+    Mebibytes,
+    json_schema!({ "type": "integer", "minimum": 1, "maximum": MemoryLimit::GREATEST_MIB })
 );
 
 form!(

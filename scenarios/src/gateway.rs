@@ -5,7 +5,7 @@ use onescan_clients::gateway::{Exchange, FreeGateway, Gateway, LinkFault, Settin
 use onescan_clients::soft_plc::{Bindings, SoftPlcClient};
 use onescan_plc_shim::input::kind::{FileKind, SourceKind};
 use onescan_plc_shim::instrument::{File, InstrumentError, Options, Project, Target, instrument};
-use onescan_plc_shim::{Application, Input, Task, TaskPlan, TimeSpan};
+use onescan_plc_shim::{Application, BuildError, Input, Task, TaskPlan, TimeSpan};
 use onescan_server::client::{Client, JoinRequest};
 use onescan_server::signal::{ClientName, Port, SignalName, did_you_mean};
 
@@ -154,7 +154,7 @@ impl Scenario {
         name: &ClientName,
         mode: Mode,
     ) -> Result<Instrumented, ScenarioError> {
-        let Some(ClientFile::SoftPlc { sources, dialect, tasks, bind, gateway }) =
+        let Some(ClientFile::SoftPlc { sources, dialect, tasks, bind, gateway, .. }) =
             self.file().clients.get(name).map(toml::Spanned::get_ref)
         else {
             let help = Some("only the sources of a soft PLC can be run".to_owned());
@@ -167,7 +167,7 @@ impl Scenario {
             InstrumentError::Text(findings) => Box::new(PlcReport { client: name.clone(), findings }).into(),
             other => self.wrong_client(name, other.to_string(), None),
         })?;
-        let application = built(name, project.program().filter_map(input).collect())?;
+        let application = self.built_anew(name, project.program().filter_map(input).collect())?;
         let paths = self.paths(name, bind)?;
         let paths = if project.tasks.is_some() { self.moved_paths(name, inputs, &paths, &project)? } else { paths };
         let bindings = self.bindings(name, &application, &paths)?;
@@ -194,12 +194,21 @@ impl Scenario {
         paths: &Paths,
         project: &Project,
     ) -> Result<Paths, ScenarioError> {
-        let own = self.bindings(name, &built(name, inputs)?, paths)?;
+        let own = self.bindings(name, &self.built_anew(name, inputs)?, paths)?;
         let moved = own.inputs.into_iter().chain(own.outputs).map(|bound| {
             let paths = bound.variables.iter().map(|path| project.path(path)).collect();
             (bound.port.name, paths)
         });
         Ok(moved.collect())
+    }
+
+    /// The instrumented sources of PLC `name`, compiled.
+    fn built_anew(&self, name: &ClientName, inputs: Vec<Input>) -> Result<Application, ScenarioError> {
+        let builder = Application::builder().memory_limit(self.memory_limit(name)).inputs(inputs);
+        builder.build().map_err(|error| match error {
+            BuildError::Sources(findings) => Box::new(PlcReport { client: name.clone(), findings }).into(),
+            BuildError::Constant(error) => self.wrong_client(name, error.to_string(), None),
+        })
     }
 
     fn wrong_settings(&self, name: &ClientName, fault: SettingsFault) -> ScenarioError {
@@ -230,10 +239,4 @@ fn in_one_task(plan: &TaskPlan) -> TaskPlan {
     let scheduler = std::iter::once("SDSP_Scheduler".to_owned());
     let programs = scheduler.chain(plan.tasks.iter().flat_map(|task| task.programs.iter().cloned())).collect();
     TaskPlan::new(vec![Task { name: "cycle".to_owned(), interval: Some(CYCLE), programs, ..Task::default() }])
-}
-
-/// The instrumented sources of PLC `name`, compiled.
-fn built(name: &ClientName, inputs: Vec<Input>) -> Result<Application, ScenarioError> {
-    let compiled = Application::from_inputs(inputs);
-    Ok(compiled.map_err(|findings| Box::new(PlcReport { client: name.clone(), findings }))?)
 }

@@ -169,6 +169,49 @@ fn a_run_of_what_does_not_compile_ends_with_the_error_and_the_count() {
 }
 
 #[test]
+fn more_memory_is_a_setting() {
+    let big = b"PROGRAM Big VAR_OUTPUT o : USINT; END_VAR VAR list : ARRAY[0..99999999] OF USINT; END_VAR
+        o := list[o]; list[0] := 1; END_PROGRAM\n";
+    let folder = folder(&[("big.st", big)]);
+    let said = checked(folder.path(), &["big.st"]);
+    assert!(said.code == Some(2) && said.out.contains("L0502"), "{said:?}");
+    assert_eq!(checked(folder.path(), &["big.st", "--memory-limit", "96"]).out, "1 file, no findings\n");
+    assert_eq!(checked(folder.path(), &["big.st", "--memory-limit", "95"]).code, Some(2));
+    for (limit, why) in [("0", "from 1 to 2047"), ("2048", "from 1 to 2047"), ("much", "no whole number")] {
+        let said = checked(folder.path(), &["big.st", "--memory-limit", limit]);
+        assert!(said.code == Some(2) && said.err.contains(why), "{said:?}");
+    }
+}
+
+#[test]
+fn a_scenario_says_how_much_memory_its_plc_has() {
+    let folder = copied_shear();
+    edit(
+        folder.path(),
+        "plc/alignment.st",
+        "VAR_OUTPUT\n",
+        "VAR\n  list : ARRAY[0..99999999] OF BYTE;\nEND_VAR\nVAR_OUTPUT\n",
+    );
+    assert!(checked(folder.path(), &["."]).out.contains("L0502"));
+    assert!(typed(folder.path(), &["run", "."]).err.contains("L0502"));
+    let edited = |limit: &str| {
+        edit(
+            folder.path(),
+            "scenario.toml",
+            "kind = \"soft-plc\"",
+            &format!("kind = \"soft-plc\"\nmemory_limit_mib = {limit}"),
+        )
+    };
+    edited("128");
+    assert!(!checked(folder.path(), &["."]).out.contains("L0502"));
+    let said = typed(folder.path(), &["run", ".", "--until", "100ms"]);
+    assert_eq!(said.code, Some(0), "{said:?}");
+    edit(folder.path(), "scenario.toml", "memory_limit_mib = 128", "memory_limit_mib = 5000");
+    let said = typed(folder.path(), &["run", "."]);
+    assert!(said.code == Some(2) && said.err.contains("from 1 to 2047"), "{said:?}");
+}
+
+#[test]
 fn the_sources_of_a_scenario_are_clean() {
     let said = checked(&scenario("shear"), &["."]);
     assert_eq!((said.code, said.out.as_str()), (Some(0), "2 files, no findings\n"), "{said:?}");

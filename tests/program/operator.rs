@@ -79,3 +79,49 @@ fn inputs_can_be_written_by_hand() {
     assert_eq!(said.code, Some(2), "{said:?}");
     assert!(said.err.contains("inputs.jsonl: line 1: unknown variant `farce`"), "{said:?}");
 }
+
+/// A switch that is turned stays turned, in either coupling and in whatever order clients run.
+#[test]
+fn what_is_written_to_an_operators_signal_stands() {
+    let scenario = |coupling: &str| {
+        format!(
+            "version = 1\nstep = \"10ms\"\nuntil = \"200ms\"\ncoupling = {coupling}
+[signals]\nlevel = {{ type = \"INT\", writer = \"hand\" }}\nseen = {{ type = \"INT\", writer = \"plc\" }}
+[clients.hand]\nkind = \"operator\"\ninitial = {{ level = 1 }}
+[clients.plc]\nkind = \"soft-plc\"\nsources = [\"main.st\"]
+tasks = [{{ name = \"main\", interval = \"10ms\", programs = [\"Main\"] }}]\n"
+        )
+    };
+    let write = |step: u64, value: &str| {
+        let t_v_ns = step * 10_000_000;
+        format!(
+            "{{\"step\":{step},\"t_v_ns\":{t_v_ns},\"event\":\"operator\",\"action\":\"write\",\"signal\":\"level\",\"value\":\"{value}\"}}\n"
+        )
+    };
+    let program =
+        "PROGRAM Main VAR_INPUT level : INT; END_VAR VAR_OUTPUT seen : INT; END_VAR seen := level; END_PROGRAM";
+    let orders =
+        [("\"parallel\"", 1), ("{ sequential = [\"hand\", \"plc\"] }", 0), ("{ sequential = [\"plc\", \"hand\"] }", 1)];
+    for (coupling, later) in orders {
+        let folder = tempfile::tempdir().unwrap();
+        let file = |name: &str, text: &str| std::fs::write(folder.path().join(name), text).unwrap();
+        file("scenario.toml", &scenario(coupling));
+        file("main.st", program);
+        file("inputs.jsonl", &[write(0, "2"), write(5, "7"), write(12, "3")].concat());
+        let words = ["run", ".", "--replay-operator", "inputs.jsonl", "--record", "r", "--record-also", "csv"];
+        let said = typed(folder.path(), &words);
+        assert_eq!(said.code, Some(0), "{said:?}");
+        let csv = std::fs::read_to_string(folder.path().join("r/run-1/trajectory.csv")).unwrap();
+        let rows: Vec<Vec<&str>> = csv.lines().map(|row| row.split(',').collect()).collect();
+        let column = |name: &str| {
+            let at = rows[0].iter().position(|known| *known == name).unwrap();
+            rows[1..].iter().map(|row| row[at].to_owned()).collect::<Vec<_>>()
+        };
+        let steps = |values: &[(&str, usize)]| -> Vec<String> {
+            values.iter().flat_map(|(value, count)| vec![(*value).to_owned(); *count]).collect()
+        };
+        assert_eq!(column("level"), steps(&[("1", 1), ("2", 5), ("7", 7), ("3", 8)]), "{coupling}");
+        let seen = &column("seen")[1 + later..];
+        assert_eq!(seen, &column("level")[1..seen.len() + 1], "{coupling}");
+    }
+}

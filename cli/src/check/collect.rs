@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use onescan_plc_shim::input::kind::{EXTENSIONS, FileKind};
 use onescan_plc_shim::input::project;
 use onescan_plc_shim::instrument;
-use onescan_plc_shim::{Code, Dialect, Input, TaskPlan};
+use onescan_plc_shim::{Code, Dialect, Input, MemoryLimit, TaskPlan};
 use onescan_scenario::Scenario;
 use onescan_scenario::load::FILE_NAME;
 
@@ -20,27 +20,34 @@ pub struct Program {
     pub inputs: Vec<Input>,
     /// Which programs run in which task, where that is known.
     pub plan: Option<TaskPlan>,
+    /// How much memory its variables may take.
+    pub memory_limit: MemoryLimit,
 }
 
 /// The programs behind `paths`: each soft PLC of a scenario, and all other files as one. A dialect that is
-/// chosen goes before those of scenarios and files.
+/// chosen goes before those of scenarios and files, and so does a limit of memory.
 ///
 /// # Errors
 /// A file is not there, cannot be read, or is of no kind that is read.
-pub fn programs(paths: &[PathBuf], dialect: Option<Dialect>) -> Result<Vec<Program>, CheckError> {
+pub fn programs(
+    paths: &[PathBuf],
+    dialect: Option<Dialect>,
+    memory_limit: Option<MemoryLimit>,
+) -> Result<Vec<Program>, CheckError> {
     let mut programs = Vec::new();
     let mut files = Files { dialect, ..Files::default() };
     for path in paths {
         if path.is_dir() && !path.join(FILE_NAME).is_file() {
             files.folder(path)?;
         } else if path.is_dir() || path.file_name().is_some_and(|name| name == FILE_NAME) {
-            programs.extend(scenario(path, dialect)?);
+            programs.extend(scenario(path, dialect, memory_limit)?);
         } else {
             files.named(path)?;
         }
     }
     if !files.inputs.is_empty() {
-        programs.push(Program { inputs: files.inputs, plan: None });
+        let memory_limit = memory_limit.unwrap_or_default();
+        programs.push(Program { inputs: files.inputs, plan: None, memory_limit });
     }
     if programs.is_empty() {
         let known: Vec<_> = EXTENSIONS.iter().map(|(extension, _)| format!(".{extension}")).collect();
@@ -50,15 +57,20 @@ pub fn programs(paths: &[PathBuf], dialect: Option<Dialect>) -> Result<Vec<Progr
     Ok(programs)
 }
 
-fn scenario(path: &Path, chosen: Option<Dialect>) -> Result<Vec<Program>, CheckError> {
+fn scenario(
+    path: &Path,
+    chosen: Option<Dialect>,
+    chosen_limit: Option<MemoryLimit>,
+) -> Result<Vec<Program>, CheckError> {
     let scenario = Scenario::load(path)?;
     let mut programs = Vec::new();
-    for (sources, dialect, plan) in scenario.plcs() {
-        let mut files = Files { dialect: chosen.or(dialect), ..Files::default() };
-        for source in sources {
+    for plc in scenario.plcs() {
+        let mut files = Files { dialect: chosen.or(plc.dialect), ..Files::default() };
+        for source in plc.sources {
             files.named(&scenario.folder().join(source))?;
         }
-        programs.push(Program { inputs: files.inputs, plan });
+        let memory_limit = chosen_limit.unwrap_or(plc.memory_limit);
+        programs.push(Program { inputs: files.inputs, plan: plc.plan, memory_limit });
     }
     Ok(programs)
 }

@@ -22,7 +22,7 @@ pub mod stubs;
 use std::io::Write;
 use std::path::PathBuf;
 
-use onescan_plc_shim::{Dialect, inspect};
+use onescan_plc_shim::{Dialect, MemoryLimit, inspect_within};
 use onescan_report::OutputError;
 
 pub use error::CheckError;
@@ -49,6 +49,8 @@ pub struct CheckConfig {
     pub paths: Vec<PathBuf>,
     /// The dialect of all files, if not the one that each file's name says.
     pub dialect: Option<Dialect>,
+    /// How much memory variables may take, if not what a scenario says or the default.
+    pub memory_limit: Option<MemoryLimit>,
     /// For whom the findings are.
     pub format: CheckFormat,
     /// Whether warnings alone make the check fail.
@@ -73,9 +75,10 @@ pub enum Warnings {
 /// A file cannot be read, or the report not be written. What is wrong with the sources is no error
 /// here but an exit code.
 pub fn check(config: &CheckConfig, out: &mut dyn Write) -> Result<ExitCode, CheckError> {
-    let programs = collect::programs(&config.paths, config.dialect)?;
+    let programs = collect::programs(&config.paths, config.dialect, config.memory_limit)?;
     let files = programs.iter().map(|program| program.inputs.len()).sum();
-    let findings = programs.into_iter().map(|program| inspect(program.inputs, program.plan.as_ref()));
+    let findings =
+        programs.into_iter().map(|program| inspect_within(program.memory_limit, program.inputs, program.plan.as_ref()));
     let report = Report { files, findings: findings.collect() };
     let written = match config.format {
         CheckFormat::Human => human::write(&report, out),

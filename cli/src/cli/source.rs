@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::{Args as ClapArgs, ValueEnum};
 use onescan_plc_shim::instrument::Target;
-use onescan_plc_shim::{Dialect, Task};
+use onescan_plc_shim::{Dialect, MemoryLimit, Task};
 use onescan_report::OutputError;
 use onescan_server::time::TimeSpan;
 
@@ -27,6 +27,9 @@ pub struct CheckArgs {
     /// name or PLCopen XML says, as in `.scl`, else iec3]
     #[arg(long, value_name = "NAME")]
     pub dialect: Option<Dialect>,
+    /// MiB that all variables of a PLC may take together, up to 2047 [default: the scenario's, else 64]
+    #[arg(long, value_name = "MIB")]
+    pub memory_limit: Option<MemoryLimit>,
     /// `human`; `json`: an object a finding with `code`, `severity`, `file`, `line`, `column`,
     /// `end_line`, `end_column`, `message`, `help`; `sarif`: a SARIF 2.1.0 log
     #[arg(long, value_enum, default_value_t)]
@@ -77,7 +80,8 @@ pub fn check(args: CheckArgs) -> Result<ExitCode, CommandError> {
         return Ok(stubs::write(&config, &mut std::io::stdout().lock())?);
     }
     let (warnings, stubs) = (denied(args.deny_warnings), denied(args.deny_stubs));
-    let config = CheckConfig { paths: args.paths, dialect: args.dialect, format: args.format.into(), warnings, stubs };
+    let CheckArgs { paths, dialect, memory_limit, format, .. } = args;
+    let config = CheckConfig { paths, dialect, memory_limit, format: format.into(), warnings, stubs };
     Ok(check::check(&config, &mut std::io::stdout().lock())?)
 }
 

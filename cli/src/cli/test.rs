@@ -4,7 +4,7 @@ use std::num::NonZeroUsize;
 use std::path::PathBuf;
 
 use clap::Args as ClapArgs;
-use onescan_plc_shim::Dialect;
+use onescan_plc_shim::{Dialect, MemoryLimit};
 use onescan_server::time::{TimeSpan, VirtualTime};
 
 use super::error::CommandError;
@@ -72,6 +72,9 @@ pub struct TestArgs {
     /// Refuse PLC sources that call a stub: a unit behind `{external}`, which does nothing
     #[arg(long)]
     pub deny_stubs: bool,
+    /// MiB that all variables of these sources may take together, up to 2047 [default: 64]
+    #[arg(long, value_name = "MIB")]
+    pub memory_limit: Option<MemoryLimit>,
 }
 
 impl TestArgs {
@@ -92,6 +95,7 @@ impl TestArgs {
             scan: self.scan,
             until: self.until,
             dialect: self.dialect,
+            memory_limit: self.memory_limit,
             junit: self.junit,
             sarif: self.sarif,
             html: self.html,
@@ -154,6 +158,9 @@ pub struct WorkerArgs {
     /// Their dialect
     #[arg(long)]
     pub dialect: Option<Dialect>,
+    /// Their memory
+    #[arg(long)]
+    pub memory_limit: Option<MemoryLimit>,
     /// With one of these tags
     #[arg(long = "tag")]
     pub tags: Vec<String>,
@@ -170,9 +177,10 @@ pub struct WorkerArgs {
 
 impl WorkerArgs {
     fn config(self) -> WorkerConfig {
-        let Self { scenario, case, sources, scan, until, dialect, tags, skipped_tags, cover, draw } = self;
+        let Self { scenario, case, sources, scan, until, dialect, memory_limit, tags, skipped_tags, cover, draw } =
+            self;
         let selection = Selection { tags, skipped_tags, ..Selection::default() };
-        WorkerConfig { scenario, case, sources, scan, until, dialect, selection, cover, draw }
+        WorkerConfig { scenario, case, sources, scan, until, dialect, memory_limit, selection, cover, draw }
     }
 }
 

@@ -3,7 +3,7 @@
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
 
-use onescan_plc_shim::Dialect;
+use onescan_plc_shim::{Dialect, MemoryLimit};
 use onescan_server::time::{TimeSpan, VirtualTime};
 
 use super::selection::Selection;
@@ -41,6 +41,8 @@ pub struct TestConfig {
     pub until: VirtualTime,
     /// The dialect of test sources.
     pub dialect: Option<Dialect>,
+    /// How much memory their variables may take.
+    pub memory_limit: Option<MemoryLimit>,
     /// A report in the format of `JUnit`.
     pub junit: Option<PathBuf>,
     /// A SARIF log.
@@ -75,6 +77,8 @@ pub struct WorkerConfig {
     pub until: VirtualTime,
     /// Their dialect.
     pub dialect: Option<Dialect>,
+    /// How much memory their variables may take.
+    pub memory_limit: Option<MemoryLimit>,
     /// Which of their tests; names are held against filters elsewhere.
     pub selection: Selection,
     /// Whether to note what is executed.

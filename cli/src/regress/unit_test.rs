@@ -8,7 +8,9 @@ use onescan_plc_shim::input::kind::SourceKind;
 use onescan_plc_shim::run::FailedAssert as Failed;
 use onescan_plc_shim::syntax::ast::{Declaration, PouKind};
 use onescan_plc_shim::syntax::{FileId, parse_in};
-use onescan_plc_shim::{Application, Coverage, ElementaryType, Input, PlcFault, SoftPlc, Task, TaskPlan, VirtualTime};
+use onescan_plc_shim::{
+    Application, BuildError, Coverage, ElementaryType, Input, PlcFault, SoftPlc, Task, TaskPlan, VirtualTime,
+};
 use onescan_server::client::SourcePlace;
 use onescan_server::time::TimeSpan;
 
@@ -53,7 +55,7 @@ impl Test {
 /// # Errors
 /// The sources cannot be read, do not compile, or have no test.
 pub fn run(config: &WorkerConfig) -> Result<Worked, TestError> {
-    let programs = collect::programs(&config.sources, config.dialect)?;
+    let programs = collect::programs(&config.sources, config.dialect, config.memory_limit)?;
     let mut inputs: Vec<Input> = programs.into_iter().flat_map(|program| program.inputs).collect();
     let tests: Vec<Test> = inputs.iter().flat_map(declared).collect();
     if tests.is_empty() {
@@ -61,9 +63,12 @@ pub fn run(config: &WorkerConfig) -> Result<Worked, TestError> {
         return Err(Usage::new("there is no test in these sources", Some(help)).into());
     }
     inputs.extend(harness(&tests));
-    let compiled =
-        if config.cover { Application::from_inputs_with_coverage(inputs) } else { Application::from_inputs(inputs) };
-    let application = compiled.map_err(|findings| TestError::Sources(Box::new(SourcesReport { findings })))?;
+    let plain = Application::builder().memory_limit(config.memory_limit.unwrap_or_default()).inputs(inputs);
+    let compiled = if config.cover { plain.covered().build() } else { plain.build() };
+    let application = compiled.map_err(|error| match error {
+        BuildError::Sources(findings) => TestError::Sources(Box::new(SourcesReport { findings })),
+        BuildError::Constant(error) => Usage::new(error.to_string(), None).into(),
+    })?;
     let mut worked = Worked::default();
     let mut coverage = Coverage::default();
     for test in tests.iter().filter(|test| config.selection.has_tags(&test.tags)) {

@@ -6,6 +6,7 @@ use super::room::with_room;
 use super::{Application, Purpose};
 use crate::diagnostic::Diagnostics;
 use crate::input::Input;
+use crate::ir::MemoryLimit;
 
 /// Collects what an application is compiled from; made by [`Application::builder`].
 ///
@@ -26,6 +27,7 @@ pub struct Builder {
     /// Path and literal.
     pub(super) constants: Vec<(String, String)>,
     pub(super) purpose: Purpose,
+    pub(super) memory_limit: MemoryLimit,
 }
 
 /// Why there is no application.
@@ -76,6 +78,12 @@ impl Builder {
     /// slowly.
     pub fn traced(mut self) -> Self {
         self.purpose = Purpose::Trace;
+        self
+    }
+
+    /// Sets how much memory all variables may take together, 64 MiB if nobody says otherwise.
+    pub fn memory_limit(mut self, limit: MemoryLimit) -> Self {
+        self.memory_limit = limit;
         self
     }
 

@@ -7,6 +7,7 @@ use super::library;
 use crate::check::{Checked, check};
 use crate::diagnostic::{Diagnostic, Severity};
 use crate::input::Input;
+use crate::ir::MemoryLimit;
 use crate::syntax::ast::{CompilationUnit, Configuration, Declaration};
 use crate::syntax::{FileId, SourceMap, parse_source};
 
@@ -23,17 +24,23 @@ pub(crate) struct Front {
 
 impl Front {
     pub(crate) fn new(inputs: impl IntoIterator<Item = Input>) -> Self {
-        Parsed::new(inputs).checked(&Constants::default())
+        Self::within(MemoryLimit::default(), inputs)
+    }
+
+    /// The same, with so much memory for variables.
+    pub(crate) fn within(limit: MemoryLimit, inputs: impl IntoIterator<Item = Input>) -> Self {
+        Parsed::new(inputs).checked(&Constants::default(), limit)
     }
 
     /// Beside it the constants, which have other initial values: path and literal each.
     pub(crate) fn with_constants(
+        limit: MemoryLimit,
         inputs: impl IntoIterator<Item = Input>,
         constants: &[(String, String)],
     ) -> Result<(Self, Constants), ConstantError> {
         let mut parsed = Parsed::new(inputs);
         let constants = Constants::new(constants, &parsed.units, &mut parsed.sources)?;
-        Ok((parsed.checked(&constants), constants))
+        Ok((parsed.checked(&constants, limit), constants))
     }
 
     /// True if a path is that of a constant, whether or not the files are right.
@@ -76,10 +83,10 @@ impl Parsed {
         Self { sources, units, library, findings }
     }
 
-    fn checked(self, constants: &Constants) -> Front {
+    fn checked(self, constants: &Constants, limit: MemoryLimit) -> Front {
         let Self { sources, units, library, mut findings } = self;
         let trees: Vec<_> = units.iter().chain(&constants.units).map(|(id, unit)| (*id, unit)).collect();
-        let (checked, found) = check(&trees, &library, &constants.overrides);
+        let (checked, found) = check(&trees, &library, &constants.overrides, limit);
         findings.extend(constants.findings.iter().cloned().chain(found));
         Front { sources, units, library, checked, findings }
     }

@@ -31,7 +31,7 @@ use self::declare::{Declarations, Occasion, Outcome, stages};
 use self::resolve::Resolver;
 use crate::diagnostic::Diagnostic;
 use crate::dialect::AddressUnit;
-use crate::ir::{Areas, Configuration, Entry, Pou, PouId, Program, Row, TypeTable, Variable};
+use crate::ir::{Areas, Configuration, Entry, MemoryLimit, Pou, PouId, Program, Row, TypeTable, Variable};
 use crate::syntax::ast::CompilationUnit;
 use crate::syntax::{FileId, Span};
 
@@ -74,14 +74,16 @@ pub(crate) struct Checked {
 }
 
 /// Checks all units together. `library` tells the files of the standard function blocks, whose
-/// units are compiled only if they are used. Constants named by `overrides` have the initial values that it gives.
+/// units are compiled only if they are used. Constants named by `overrides` have the initial values that it gives. All variables
+/// together take no more than `limit`.
 pub(crate) fn check(
     units: &[(FileId, &CompilationUnit)],
     library: &BTreeSet<FileId>,
     overrides: &Overrides,
+    limit: MemoryLimit,
 ) -> (Checked, Vec<Diagnostic>) {
     let stages = stages(units);
-    let mut declarations = Declarations::new(library, &stages, overrides, &Resolver);
+    let mut declarations = Declarations::new(library, &stages, (overrides, limit), &Resolver);
     declarations.collect(units);
     declarations.link_classes();
     declarations.resolve_declarations();
@@ -104,6 +106,7 @@ pub(crate) fn check(
     let mut configurer = Configurer::new(&mut declarations, &mut configured);
     configurer.check(&pous);
     let (configuration, entries) = configurer.finish();
+    declarations.explain_too_large();
     let (image, globals) = (declarations.memory_image(), declarations.shared_globals());
     let (interfaces, kept) = (declarations.interfaces(), declarations.kept_by_methods());
     let Outcome { types, programs, rows, areas, address_unit, chart_parts, findings } = declarations.into_outcome();

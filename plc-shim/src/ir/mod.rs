@@ -5,6 +5,7 @@
 pub(crate) mod area;
 pub(crate) mod configuration;
 pub(crate) mod expr;
+mod memory_limit;
 pub(crate) mod pou;
 pub(crate) mod statement;
 pub(crate) mod text;
@@ -20,6 +21,7 @@ pub(crate) use expr::{
     Argument, Binary, Cast, Dispatch, Expr, ExprKind, FunctionCall, Intrinsic, LocalId, MemoryFunction, Part, Place,
     Receiver, Rounding, Row, Step, Storage, Unary,
 };
+pub use memory_limit::{MemoryLimit, MemoryLimitError};
 pub(crate) use pou::{EdgeDetection, Guard, Pou, PouId, Retention, Variable, Visibility};
 pub(crate) use statement::{
     CaseArm, CaseStatement, ForStatement, IfBranch, InstanceCall, LabelId, Labelled, Statement, StatementKind,

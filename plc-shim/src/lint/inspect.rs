@@ -4,6 +4,7 @@ use super::lint;
 use crate::application::{Front, with_room};
 use crate::diagnostic::Diagnostics;
 use crate::input::Input;
+use crate::ir::MemoryLimit;
 use crate::run::TaskPlan;
 
 /// Errors and warnings of files that belong together; `plan` tells which programs share a task.
@@ -11,9 +12,18 @@ use crate::run::TaskPlan;
 /// What is legal and seldom meant is looked for in programs without errors only: an error makes it
 /// look as if much were unused.
 pub fn inspect(inputs: impl IntoIterator<Item = Input>, plan: Option<&TaskPlan>) -> Diagnostics {
+    inspect_within(MemoryLimit::default(), inputs, plan)
+}
+
+/// The same, of a PLC whose variables may take so much memory.
+pub fn inspect_within(
+    limit: MemoryLimit,
+    inputs: impl IntoIterator<Item = Input>,
+    plan: Option<&TaskPlan>,
+) -> Diagnostics {
     let inputs: Vec<Input> = inputs.into_iter().collect();
     with_room(|| {
-        let mut front = Front::new(inputs);
+        let mut front = Front::within(limit, inputs);
         if !front.has_errors() {
             let warnings = lint(&front, plan);
             front.findings.extend(warnings);

@@ -35,7 +35,7 @@ use crate::application::Front;
 use crate::diagnostic::Diagnostic;
 use crate::run::TaskPlan;
 
-pub use inspect::inspect;
+pub use inspect::{inspect, inspect_within};
 
 /// All warnings; `plan` tells which programs run in one task.
 fn lint(front: &Front, plan: Option<&TaskPlan>) -> Vec<Diagnostic> {

@@ -31,6 +31,7 @@ mod legal_code;
 mod lints;
 mod lockstep;
 mod matiec;
+mod memory;
 mod mistakes;
 mod namespaces;
 mod object_inputs;

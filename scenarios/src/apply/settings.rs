@@ -50,7 +50,8 @@ impl Scenario {
         inputs: &[Input],
         flavour: impl Fn(Builder) -> Builder,
     ) -> Result<Result<Application, Diagnostics>, ScenarioError> {
-        let mut builder = flavour(Application::builder()).inputs(inputs.iter().cloned());
+        let fresh = || Application::builder().memory_limit(self.memory_limit(name)).inputs(inputs.iter().cloned());
+        let mut builder = flavour(fresh());
         let mut constants: Vec<(&Applied, &Setting)> = Vec::new();
         if let Some(applied) = self.applied() {
             for setting in settings_of(applied, name) {
@@ -74,7 +75,7 @@ impl Scenario {
                 None => Err(self.wrong_client(name, error.to_string(), None)),
             },
             Err(BuildError::Sources(findings)) => match constants.last() {
-                Some((applied, setting)) if Application::from_inputs(inputs.to_vec()).is_ok() => {
+                Some((applied, setting)) if fresh().build().is_ok() => {
                     let first = findings.findings().first().map(|found| found.diagnostic().message.clone());
                     let what = first.unwrap_or_else(|| "it does not compile".to_owned());
                     let message = format!("`{name}` does not compile with the constants of this case: {what}");

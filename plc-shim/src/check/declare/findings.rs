@@ -27,6 +27,13 @@ impl Findings {
         self.diagnostics.iter().any(|found| found.code == code)
     }
 
+    /// Says more with the first finding of the code.
+    pub(super) fn set_help(&mut self, code: Code, help: &str) {
+        if let Some(found) = self.diagnostics.iter_mut().find(|found| found.code == code) {
+            found.help = Some(help.to_owned());
+        }
+    }
+
     pub(super) fn into_list(self) -> Vec<Diagnostic> {
         self.diagnostics
     }

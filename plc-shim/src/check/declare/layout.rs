@@ -13,7 +13,6 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use super::Declarations;
-use crate::diagnostic::{Code, Diagnostic};
 use crate::ir::{Place, Storage, TypeId};
 use crate::syntax::Span;
 
@@ -32,12 +31,9 @@ pub(crate) const INIT_RETAINS_NAME: &str = "ONESCAN_INIT_RETAINS";
 /// Name of the global variable that holds virtual time.
 pub(crate) const VIRTUAL_TIME_NAME: &str = "ONESCAN_TV";
 
-/// Greatest size of all variables together.
-pub(crate) const MEMORY_LIMIT: u32 = 64 << 20;
-
-/// Greatest size of the initial bytes of all types together: types cost memory while compiling
-/// even if no variable is made of them.
-const IMAGE_LIMIT: u64 = 4 * MEMORY_LIMIT as u64;
+/// The initial bytes of all types together may be so many times as large as all variables: types cost memory while
+/// compiling even if no variable is made of them.
+const IMAGES_FOR_VARIABLES: u64 = 4;
 
 const FIRST_OFFSET: u32 = 64;
 
@@ -79,11 +75,11 @@ impl Declarations<'_> {
     /// Offset of a new block of memory; reports at `span` if there is no more.
     pub(in crate::check) fn allocate(&mut self, size: u32, align: u32, span: Span) -> Option<u32> {
         let offset = align_up(self.memory.next, align);
-        if let Some(end) = offset.checked_add(size).filter(|end| *end <= MEMORY_LIMIT) {
+        if let Some(end) = offset.checked_add(size).filter(|end| u64::from(*end) <= self.memory_limit()) {
             self.memory.next = end;
             Some(offset)
         } else {
-            self.report_too_large(span);
+            self.report_too_large(span, Some(size.into()));
             None
         }
     }
@@ -91,20 +87,11 @@ impl Declarations<'_> {
     /// Accounts for an image before it is made; reports at `span` if it is one too many.
     pub(in crate::check) fn charge_image(&mut self, size: u64, span: Span) -> Option<()> {
         self.memory.images = self.memory.images.saturating_add(size);
-        if self.memory.images > IMAGE_LIMIT {
-            self.report_too_large(span);
+        if self.memory.images > IMAGES_FOR_VARIABLES * self.memory_limit() {
+            self.report_too_large(span, Some(size));
             return None;
         }
         Some(())
-    }
-
-    pub(in crate::check) fn report_too_large(&mut self, span: Span) {
-        // The first says it; what comes behind it does not fit either.
-        if self.findings.has(Code::TooLarge) {
-            return;
-        }
-        let message = format!("more than {} MiB of variables", MEMORY_LIMIT >> 20);
-        self.report(Diagnostic::error(Code::TooLarge, span, message));
     }
 }
 

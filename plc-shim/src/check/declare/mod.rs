@@ -24,6 +24,7 @@ mod recursion;
 mod scope;
 mod start;
 mod stub;
+mod too_large;
 mod unknown;
 mod variable;
 mod vendor_parameter;
@@ -44,7 +45,7 @@ use self::start::Stages;
 use self::stub::Stubs;
 use crate::check::types::generic::Generic;
 use crate::dialect::{AddressUnit, Dialect};
-use crate::ir::{Areas, ElementaryType, PouId, Program, TypeId, TypeTable};
+use crate::ir::{Areas, ElementaryType, MemoryLimit, PouId, Program, TypeId, TypeTable};
 use crate::syntax::{FileId, Span, ast};
 
 pub(super) use self::class::{Membership, Role};
@@ -54,7 +55,7 @@ pub(super) use self::hook::{EXIT_INPUTS, INIT_INPUTS, is_hook, suits_init};
 pub(crate) use self::kept::Kept;
 pub(super) use self::kept::place_of;
 pub(crate) use self::layout::{CALL_DEPTH_OFFSET, INIT_RETAINS_OFFSET, VIRTUAL_TIME_NAME, VIRTUAL_TIME_OFFSET};
-pub(super) use self::layout::{INIT_RETAINS_NAME, MEMORY_LIMIT, align_up};
+pub(super) use self::layout::{INIT_RETAINS_NAME, align_up};
 pub(super) use self::located::Placement;
 pub(super) use self::namespace::Home;
 pub(crate) use self::overrides::Overrides;
@@ -95,6 +96,9 @@ pub(super) struct Declarations<'a> {
     globals: BTreeMap<String, GlobalEntry<'a>>,
     enumerators: BTreeMap<String, Vec<Enumerator>>,
     memory: Memory,
+    memory_limit: MemoryLimit,
+    /// What did not fit, and how large it is.
+    too_large: Vec<(Span, Option<u64>)>,
     areas: Areas,
     address_unit: AddressUnit,
     /// Offset and size of what lies at hierarchical addresses, by their texts in capitals.
@@ -133,7 +137,7 @@ impl<'a> Declarations<'a> {
     pub(super) fn new(
         library: &'a BTreeSet<FileId>,
         stages: &'a Stages,
-        overrides: &'a Overrides,
+        (overrides, memory_limit): (&'a Overrides, MemoryLimit),
         resolver: &'static dyn Resolve,
     ) -> Self {
         Self {
@@ -162,6 +166,8 @@ impl<'a> Declarations<'a> {
             ]),
             enumerators: BTreeMap::new(),
             memory: Memory::default(),
+            memory_limit,
+            too_large: Vec::new(),
             areas: Areas::default(),
             address_unit: AddressUnit::default(),
             hierarchical: BTreeMap::new(),

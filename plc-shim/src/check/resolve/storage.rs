@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use super::interface::{Interface, POINTER};
-use crate::check::declare::{MEMORY_LIMIT, TypedImage, align_up};
+use crate::check::declare::{TypedImage, align_up};
 use crate::check::types::parameter::takes_open_arrays;
 use crate::diagnostic::{Code, Diagnostic};
 use crate::dialect::Feature;
@@ -114,11 +114,11 @@ impl Interface<'_, '_> {
     pub(super) fn in_instance(&mut self, declared: &TypedImage<'_>, span: Span) -> Option<u32> {
         let align = self.declarations().types().align(declared.ty);
         let offset = align_up(self.image.len() as u32, align);
-        if offset as usize + declared.image.len() > MEMORY_LIMIT as usize {
-            self.declarations_mut().report_too_large(span);
+        let size = declared.image.len() as u64;
+        if u64::from(offset) + size > self.declarations().memory_limit() {
+            self.declarations_mut().report_too_large(span, Some(size));
             return None;
         }
-        let size = declared.image.len() as u64;
         self.declarations_mut().charge_image(size, span)?;
         self.align = self.align.max(align);
         self.image.resize(offset as usize, 0);

@@ -5,7 +5,7 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use super::Written;
-use crate::check::declare::{MEMORY_LIMIT, Need, Start, TypedImage, align_up, moved};
+use crate::check::declare::{Need, Start, TypedImage, align_up, moved};
 use crate::diagnostic::{Code, Diagnostic};
 use crate::ir::{ElementaryType, Field, Type, TypeId};
 use crate::syntax::Span;
@@ -136,8 +136,8 @@ impl<'a> Written<'_, 'a> {
             None => (behind, None),
         };
         let end = offset as usize + resolved.image.len();
-        if end > MEMORY_LIMIT as usize {
-            self.declarations_mut().report_too_large(span);
+        if end as u64 > self.declarations().memory_limit() {
+            self.declarations_mut().report_too_large(span, Some(end as u64));
             return None;
         }
         let begin = 8 * u64::from(offset) + bit.map_or(0, u64::from);

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use super::Written;
 use super::structure::Sharing;
-use crate::check::declare::{Enumerator, MEMORY_LIMIT, Need, StartKind, TypedImage};
+use crate::check::declare::{Enumerator, Need, StartKind, TypedImage};
 use crate::check::standard::vendor::is_qualified_only;
 use crate::check::types::generic::Generic;
 use crate::diagnostic::{Code, Diagnostic, did_you_mean};
@@ -165,11 +165,10 @@ impl<'a> Written<'_, 'a> {
         self.body.reject_open_array(element.ty, span)?;
         let bounds: Vec<Dimension> = bounds.into_iter().collect::<Option<_>>()?;
         let size = self.declarations().types().size(element.ty);
-        let total = bounds.iter().try_fold(u64::from(size), |total, each| {
-            total.checked_mul(each.count()).filter(|size| *size <= u64::from(MEMORY_LIMIT))
-        });
-        let Some(total) = total else {
-            self.declarations_mut().report_too_large(span);
+        let wanted = bounds.iter().try_fold(u64::from(size), |total, each| total.checked_mul(each.count()));
+        let limit = self.declarations().memory_limit();
+        let Some(total) = wanted.filter(|total| *total <= limit) else {
+            self.declarations_mut().report_too_large(span, wanted);
             return None;
         };
         self.declarations_mut().charge_image(total, span)?;

@@ -229,7 +229,7 @@ fn depth_is_bounded_and_reported() {
         assert_eq!(codes, [Code::NestingTooDeep], "{open}");
     }
     let chain = format!("PROGRAM p x := 1{}; END_PROGRAM", "+1".repeat(100_000));
-    assert_eq!(parse(FILE, &chain).diagnostics[0].code, Code::NestingTooDeep);
+    assert_eq!(parse(FILE, &chain).diagnostics, [], "a row is long, and not deep");
     let members = format!("PROGRAM p x := a{}; END_PROGRAM", ".b".repeat(100_000));
     assert_eq!(parse(FILE, &members).diagnostics[0].code, Code::NestingTooDeep);
     let arrays = format!("VAR_GLOBAL x : {} INT; END_VAR", "ARRAY [0..1] OF ".repeat(10_000));
