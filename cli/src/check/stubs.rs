@@ -36,7 +36,7 @@ pub fn write(config: &StubsConfig, out: &mut dyn Write) -> Result<ExitCode, Chec
     let path = folder.join(FILE);
     let present = present(&path)?;
     let identity = path.canonicalize().ok();
-    let inputs: Vec<Input> = match collect::programs(&config.paths, config.dialect)?.as_mut_slice() {
+    let inputs: Vec<Input> = match collect::programs(&config.paths, config.dialect, None)?.as_mut_slice() {
         [only] => std::mem::take(&mut only.inputs),
         _ => {
             let help = "name one folder, or the files of one project";
@@ -93,7 +93,7 @@ pub fn is_stub(finding: &Finding) -> bool {
 /// # Errors
 /// One does, or a file cannot be read.
 pub fn deny(paths: &[PathBuf], dialect: Option<Dialect>) -> Result<(), CheckError> {
-    for program in collect::programs(paths, dialect)? {
+    for program in collect::programs(paths, dialect, None)? {
         let findings = inspect(program.inputs, program.plan.as_ref());
         let mut uses = findings.findings().iter().filter(|finding| is_stub(finding));
         if let Some(first) = uses.next() {
