@@ -9,6 +9,7 @@ use std::collections::BTreeMap;
 
 use super::Body;
 use super::place::Access;
+use crate::check::types::constant::fold;
 use crate::check::types::number::as_number;
 use crate::check::types::operand::{Operand, constant};
 use crate::diagnostic::{Code, Diagnostic};
@@ -227,9 +228,9 @@ impl Body<'_, '_> {
     ) -> Vec<(i128, i128)> {
         let mut ranges = Vec::new();
         for label in labels {
-            let low = self.constant_of_type(&label.low, ty).and_then(Value::as_int);
+            let low = self.label_value(&label.low, ty);
             let high = match &label.high {
-                Some(high) => self.constant_of_type(high, ty).and_then(Value::as_int),
+                Some(high) => self.label_value(high, ty),
                 None => low,
             };
             let (Some(low), Some(high)) = (low, high) else {
@@ -251,6 +252,21 @@ impl Body<'_, '_> {
             ranges.push((low, high));
         }
         ranges
+    }
+
+    /// The number of a label. Where enumerations are integers, one of another width may select, too.
+    fn label_value(&mut self, label: &ast::Expr, ty: TypeId) -> Option<i128> {
+        if self.declarations.dialect(label.span).has(Feature::EnumerationsAsIntegers) {
+            let known = self.declarations.mark();
+            if let Some(Operand::Typed(value)) = self.within(None, |body| body.expression(label))
+                && matches!(self.declarations.types().get(value.ty), Type::Enumeration { .. })
+                && let Ok(value) = fold(self.declarations.types(), &value)
+            {
+                return value.as_int();
+            }
+            self.declarations.forget_since(known);
+        }
+        self.constant_of_type(label, ty).and_then(Value::as_int)
     }
 
     fn for_statement(&mut self, inner: &ast::ForStatement) -> Option<StatementKind> {
