@@ -200,7 +200,7 @@ fn a_scenario_says_how_much_memory_its_plc_has() {
             "scenario.toml",
             "kind = \"soft-plc\"",
             &format!("kind = \"soft-plc\"\nmemory_limit_mib = {limit}"),
-        )
+        );
     };
     edited("128");
     assert!(!checked(folder.path(), &["."]).out.contains("L0502"));

@@ -122,6 +122,6 @@ tasks = [{{ name = \"main\", interval = \"10ms\", programs = [\"Main\"] }}]\n"
         };
         assert_eq!(column("level"), steps(&[("1", 1), ("2", 5), ("7", 7), ("3", 8)]), "{coupling}");
         let seen = &column("seen")[1 + later..];
-        assert_eq!(seen, &column("level")[1..seen.len() + 1], "{coupling}");
+        assert_eq!(seen, &column("level")[1..=seen.len()], "{coupling}");
     }
 }

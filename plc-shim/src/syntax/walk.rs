@@ -186,7 +186,9 @@ pub(crate) fn expression(expr: &Expr, visitor: &mut impl Visitor) {
         }
         ExprKind::Chain(first, links) => {
             expression(first, visitor);
-            links.iter().for_each(|link| expression(&link.operand, visitor));
+            for link in links {
+                expression(&link.operand, visitor);
+            }
         }
         ExprKind::Call(inner) => call(inner, visitor),
         _ => {}

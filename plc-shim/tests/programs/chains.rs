@@ -28,7 +28,7 @@ fn on_a_thread<T: Send + 'static>(run: impl FnOnce() -> T + Send + 'static) -> T
 }
 
 /// The program after one scan.
-fn scanned(variables: &str, statements: String) -> Rig {
+fn scanned(variables: &str, statements: &str) -> Rig {
     let text = format!("{DECLARATIONS}PROGRAM P VAR {variables} END_VAR {statements} END_PROGRAM");
     on_a_thread(move || {
         let mut rig = Rig::in_dialect(Dialect::Codesys, &text);
@@ -41,7 +41,7 @@ fn scanned(variables: &str, statements: String) -> Rig {
 fn sums_of_integers() {
     let rig = scanned(
         "a : DINT := 3; x : DINT; i : INT := 10; y : INT;",
-        format!("x := {}; y := {};", row("a", "+"), row("i", "+")),
+        &format!("x := {}; y := {};", row("a", "+"), row("i", "+")),
     );
     assert_eq!(rig.int("P.x"), 15_000);
     assert_eq!(rig.int("P.y"), i64::from(50_000_u16 as i16), "it wraps at every step, as INT does");
@@ -49,7 +49,7 @@ fn sums_of_integers() {
 
 #[test]
 fn sums_of_reals_are_rounded_at_every_step() {
-    let rig = scanned("a : REAL := 0.1; x : REAL;", format!("x := {};", row("a", "+")));
+    let rig = scanned("a : REAL := 0.1; x : REAL;", &format!("x := {};", row("a", "+")));
     let expected = (1..LONG).fold(0.1_f32, |sum, _| sum + 0.1);
     assert_eq!((rig.real("P.x") as f32).to_bits(), expected.to_bits());
 }
@@ -68,7 +68,7 @@ fn operators_and_types_that_differ() {
         sum.push_str(text);
         expected += value;
     }
-    let rig = scanned("i : INT := 5; d : DINT := 7; x : DINT;", format!("x := {sum};"));
+    let rig = scanned("i : INT := 5; d : DINT := 7; x : DINT;", &format!("x := {sum};"));
     assert_eq!(rig.int("P.x"), expected);
 }
 
@@ -78,7 +78,7 @@ fn rows_of_conditions() {
     let odd = row("t", "XOR");
     let statements =
         format!("a := {all}; b := {all} AND f; c := {any} OR t; d := {odd}; IF {all} THEN e := TRUE; END_IF;");
-    let rig = scanned("t : BOOL := TRUE; f, a, b, c, d, e : BOOL;", statements);
+    let rig = scanned("t : BOOL := TRUE; f, a, b, c, d, e : BOOL;", &statements);
     let values = ["P.a", "P.b", "P.c", "P.d", "P.e"].map(|path| rig.bool(path));
     assert_eq!(values, [true, false, true, LONG % 2 == 1, true]);
 }
@@ -86,7 +86,7 @@ fn rows_of_conditions() {
 #[test]
 fn operands_are_evaluated_from_the_left() {
     // 1 - 2 - 3 - ..
-    let rig = scanned("x : DINT;", format!("x := {};", row("Next()", "-")));
+    let rig = scanned("x : DINT;", &format!("x := {};", row("Next()", "-")));
     let expected = (2..=LONG as i64).fold(1, |left, right| left - right);
     assert_eq!((rig.int("P.x"), rig.int("calls")), (expected, LONG as i64));
 }
@@ -94,10 +94,12 @@ fn operands_are_evaluated_from_the_left() {
 #[test]
 fn short_circuits_stop_where_they_should() {
     let before = vec!["Tick(TRUE)"; 1000].join(" AND_THEN ");
-    let rig =
-        scanned("x : BOOL;", format!("x := {before} AND_THEN Tick(FALSE) AND_THEN {};", row("Tick(TRUE)", "AND_THEN")));
+    let rig = scanned(
+        "x : BOOL;",
+        &format!("x := {before} AND_THEN Tick(FALSE) AND_THEN {};", row("Tick(TRUE)", "AND_THEN")),
+    );
     assert_eq!((rig.bool("P.x"), rig.int("calls")), (false, 1001));
-    let rig = scanned("x : BOOL;", format!("x := {};", row("Tick(FALSE)", "OR_ELSE")));
+    let rig = scanned("x : BOOL;", &format!("x := {};", row("Tick(FALSE)", "OR_ELSE")));
     assert_eq!((rig.bool("P.x"), rig.int("calls")), (false, LONG as i64));
 }
 
@@ -145,7 +147,7 @@ fn rows_in_rows_are_computed_or_refused() {
     let mut answers = String::new();
     for deep in [2, 10, 100, 150, 10_000] {
         let inner = vec!["a"; 100].join(" + ");
-        let nested = format!("{}a{}", format!("{inner} + (").repeat(deep), ")".repeat(deep));
+        let nested = format!("{}a{}", &format!("{inner} + (").repeat(deep), ")".repeat(deep));
         let text = format!("PROGRAM P VAR a : DINT; END_VAR a := {nested}; END_PROGRAM");
         let compiled = on_a_thread(move || Application::from_sources([("t.st", text)]).map(drop));
         let said = compiled

@@ -177,7 +177,7 @@ impl<'w, 'a> Body<'w, 'a> {
                 self.refuse(expr.span, "references of this kind", "pass the variable as VAR_IN_OUT");
             }
             ExprKind::Chain(_, links) if links.iter().any(|link| is_short(link.operator)) => {
-                self.refuse_short(expr.span)
+                self.refuse_short(expr.span);
             }
             ExprKind::Binary(operator, ..) if is_short(*operator) => self.refuse_short(expr.span),
             _ => {}
