@@ -36,18 +36,17 @@ pub fn write(config: &StubsConfig, out: &mut dyn Write) -> Result<ExitCode, Chec
     let path = folder.join(FILE);
     let present = present(&path)?;
     let identity = path.canonicalize().ok();
-    let inputs: Vec<Input> = match collect::programs(&config.paths, config.dialect, None)?.as_mut_slice() {
-        [only] => std::mem::take(&mut only.inputs),
-        _ => {
-            let help = "name one folder, or the files of one project";
-            return Err(Usage::new("stubs are written for one program at a time", Some(help.to_owned())).into());
-        }
-    };
+    let programs = collect::programs(&config.paths, config.dialect, None)?;
+    if programs.len() > 1 {
+        let help = "name one folder, or the files of one project".to_owned();
+        return Err(Usage::new("stubs are written for one program at a time", Some(help)).into());
+    }
+    let inputs = programs.into_iter().flat_map(|program| program.inputs);
     let is_other = |input: &Input| {
         let same = Path::new(input.file().name()).canonicalize().ok();
         same.is_none() || same != identity
     };
-    let inputs: Vec<Input> = inputs.into_iter().filter(is_other).collect();
+    let inputs: Vec<Input> = inputs.filter(is_other).collect();
     let written = stubs::write(&inputs, present.as_deref());
     let shown = path.display();
     let said = if written.added == 0 {

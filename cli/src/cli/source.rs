@@ -23,7 +23,7 @@ pub struct CheckArgs {
     /// files, or scenarios; files and folders are checked together, as one program
     #[arg(required = true, value_name = "FILE|FOLDER|SCENARIO")]
     pub paths: Vec<PathBuf>,
-    /// Read all files in this dialect: iec2, iec3, codesys, twincat or siemens-scl [default: what a file's
+    /// Read all files in this dialect: iec2, iec3, codesys, twincat, siemens-scl or matiec [default: what a file's
     /// name or PLCopen XML says, as in `.scl`, else iec3]
     #[arg(long, value_name = "NAME")]
     pub dialect: Option<Dialect>,

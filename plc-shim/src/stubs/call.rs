@@ -1,6 +1,7 @@
 //! Calls: of what is declared, whose parameters tell what their arguments are; of what is not, which they tell.
 
-use super::collect::{Collector, Found, Scope, elementary};
+use super::class::Found;
+use super::collect::{Collector, Scope, elementary};
 use super::names::{Access, Kind};
 use super::ty::Ty;
 use super::world::{Home, World};
@@ -426,7 +427,9 @@ impl<'a> Collector<'a> {
             "REF" => Ty::Pointer(ReferenceKind::RefTo, Box::new(first)),
             "SIZEOF" => elementary(E::Udint),
             "LEN" | "FIND" => {
-                values.iter().for_each(|value| self.flow(value, &Ty::Text(false)));
+                for value in values {
+                    self.flow(value, &Ty::Text(false));
+                }
                 elementary(E::Int)
             }
             "CONCAT" | "LEFT" | "RIGHT" | "MID" | "INSERT" | "DELETE" | "REPLACE" => {
@@ -437,7 +440,6 @@ impl<'a> Collector<'a> {
                 let known = self.slots.resolved(&first);
                 if matches!(known, Ty::Elementary(found) if found.is_real()) { known } else { elementary(E::Lreal) }
             }
-            "ABS" => first,
             "MIN" | "MAX" | "LIMIT" => {
                 values.windows(2).for_each(|pair| self.beside_pair(pair));
                 values
@@ -458,7 +460,7 @@ impl<'a> Collector<'a> {
             }
             "TIME" => elementary(E::Time),
             "LTIME" => elementary(E::Ltime),
-            "MOVE" | "SHL" | "SHR" | "ROL" | "ROR" => first,
+            "ABS" | "MOVE" | "SHL" | "SHR" | "ROL" | "ROR" => first,
             "TRUNC" => elementary(E::Dint),
             "__ISVALIDREF" | "__QUERYINTERFACE" | "__QUERYPOINTER" | "GT" | "GE" | "EQ" | "LE" | "LT" | "NE" => {
                 elementary(E::Bool)

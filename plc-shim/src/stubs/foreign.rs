@@ -27,6 +27,7 @@ pub(super) struct Argument {
 
 /// A member of a type that nobody declares.
 #[derive(Debug, Clone, Default)]
+#[expect(clippy::struct_excessive_bools, reason = "each is a use that was seen or not")]
 pub(super) struct Member {
     pub(super) name: String,
     pub(super) field: Option<Slot>,
@@ -43,6 +44,7 @@ pub(super) struct Member {
 
 /// A type that nobody declares.
 #[derive(Debug, Clone, Default)]
+#[expect(clippy::struct_excessive_bools, reason = "each is a use that was seen or not")]
 pub(super) struct Foreign {
     pub(super) name: String,
     /// The type as a value: an alias has its type.
@@ -106,6 +108,7 @@ pub(super) struct Global {
 
 /// How an unknown name that begins an expression is used.
 #[derive(Debug, Clone, Default)]
+#[expect(clippy::struct_excessive_bools, reason = "each is a use that was seen or not")]
 pub(super) struct Head {
     pub(super) name: String,
     /// It is a value by itself, is indexed or followed.

@@ -7,22 +7,28 @@
 //! | [`hint`] | what a name says where its use does not |
 //! | [`foreign`] | what is named and not declared, and how it is used |
 //! | [`names`] | what a name stands for |
-//! | [`collect`], [`expression`], [`call`] | one pass over declarations and statements |
+//! | [`class`] | members of classes and structures |
+//! | [`collect`], [`initial`], [`statement`], [`expression`], [`call`], [`argument`] | one pass over the project |
 //! | [`shape`] | what a type that nobody declares is |
-//! | [`print`] | all of it as program text |
+//! | [`print`], [`signature`] | all of it as program text |
 //!
 //! A pass collects evidence for each slot, and what it decides makes more of the next pass known, until nothing
 //! changes. What has been written is then read as part of the project, and what is still missing is added, so that a
 //! second run adds to a file and never takes away. Invariant: what is declared already is never declared again.
 
+mod argument;
 mod call;
+mod class;
 mod collect;
 mod expression;
 mod foreign;
 mod hint;
+mod initial;
 mod names;
 mod print;
 mod shape;
+mod signature;
+mod statement;
 #[cfg(test)]
 mod tests;
 mod ty;
@@ -146,7 +152,7 @@ fn name_anonymous(collector: &mut Collector<'_>) -> bool {
 /// The name of a type that has none, by the path of what is of it.
 fn anonymous_name(path: &str) -> String {
     let path = path.strip_prefix("global:").unwrap_or(path);
-    let path = path.replace("^", "_target").replace("[]", "_element").replace("()", "_result");
+    let path = path.replace('^', "_target").replace("[]", "_element").replace("()", "_result");
     let plain = |one: char| if one.is_ascii_alphanumeric() { one } else { '_' };
     let words: String = path.chars().map(plain).collect();
     let parts: Vec<&str> = words.split('_').filter(|part| !part.is_empty()).collect();

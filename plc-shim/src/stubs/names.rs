@@ -1,6 +1,7 @@
 //! What names mean: what the project declares, or what somebody else must have.
 
-use super::collect::{Collector, Found, Scope};
+use super::class::Found;
+use super::collect::{Collector, Scope};
 use super::foreign::{Function, Global, Head};
 use super::hint;
 use super::ty::Ty;

@@ -17,6 +17,7 @@ mod dialects;
 mod direct_addresses;
 mod dtl;
 mod expressions;
+mod external;
 mod fault_forms;
 mod faults;
 mod fbd;

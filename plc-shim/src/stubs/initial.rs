@@ -1,0 +1,143 @@
+//! What declarations want of constants: bounds, lengths, initial values, arguments of `FB_init`.
+
+use super::class::Found;
+use super::collect::{Collector, Scope};
+use super::names::Access;
+use super::ty::Ty;
+use crate::syntax::ast::{
+    Argument, Expr, InitArguments, Initialiser, InitialiserKind, Section, TypeSpec, TypeSpecKind,
+};
+
+impl<'a> Collector<'a> {
+    pub(super) fn initials(&mut self, section: &Section, scope: &Scope<'a>) {
+        for variable in &section.variables {
+            self.constants_of(&variable.spec, scope);
+            let ty = self.type_of(&variable.spec, &scope.home, 0);
+            if let Some(initial) = &variable.initial {
+                self.initial(&ty, initial, scope);
+            }
+        }
+    }
+
+    pub(super) fn init_arguments(&mut self, ty: &Ty, arguments: &InitArguments, scope: &Scope<'a>) {
+        let lists = match arguments {
+            InitArguments::Same(list) => std::slice::from_ref(list),
+            InitArguments::Listed(lists) => lists,
+        };
+        let foreign = match ty {
+            Ty::Foreign(key) => Some(key.clone()),
+            Ty::Declared(class) => match self.find(class, "FB_init") {
+                Some(Found::Foreign(key)) => Some(key),
+                _ => None,
+            },
+            _ => None,
+        };
+        for list in lists {
+            let Some(key) = &foreign else {
+                for argument in list {
+                    self.plain_argument(argument, scope);
+                }
+                continue;
+            };
+            let path = format!("{key}.FB_init");
+            let mut signature = self.foreign(key).init.take().unwrap_or_default();
+            self.arguments(&mut signature, &path, list, scope);
+            self.foreign(key).init = Some(signature);
+        }
+    }
+
+    fn plain_argument(&mut self, argument: &Argument, scope: &Scope<'a>) {
+        match argument {
+            Argument::Positional(value) | Argument::Input(_, value) => {
+                self.infer(value, scope);
+            }
+            Argument::Output { target, .. } => {
+                if let Some(target) = target {
+                    self.place(target, Access::Write, scope);
+                }
+            }
+        }
+    }
+
+    /// Bounds and lengths are constants.
+    pub(super) fn constants_of(&mut self, spec: &TypeSpec, scope: &Scope<'a>) {
+        match &spec.kind {
+            TypeSpecKind::Array(dimensions, inner) => {
+                for dimension in dimensions {
+                    self.constant(&dimension.low, scope);
+                    self.constant(&dimension.high, scope);
+                }
+                self.constants_of(inner, scope);
+            }
+            TypeSpecKind::Instance(name, arguments) => {
+                let ty = self.named(name, &scope.home, 0);
+                self.init_arguments(&ty, arguments, scope);
+            }
+            TypeSpecKind::String(_, Some(length)) => self.constant(length, scope),
+            TypeSpecKind::Subrange(_, bounds) => {
+                self.constant(&bounds.low, scope);
+                self.constant(&bounds.high, scope);
+            }
+            TypeSpecKind::Reference(_, inner) | TypeSpecKind::OpenArray(_, inner) => self.constants_of(inner, scope),
+            TypeSpecKind::Struct(fields) | TypeSpecKind::Union(fields) | TypeSpecKind::Overlapping(fields) => {
+                for field in fields {
+                    self.constants_of(&field.spec, scope);
+                    let ty = self.type_of(&field.spec, &scope.home, 0);
+                    field.initial.iter().for_each(|initial| self.initial(&ty, initial, scope));
+                }
+            }
+            TypeSpecKind::Enumeration(values, _) => {
+                values.iter().filter_map(|each| each.value.as_ref()).for_each(|value| self.constant(value, scope));
+            }
+            _ => {}
+        }
+    }
+
+    /// The constants that types are made of.
+    pub(super) fn type_constants(&mut self) {
+        let world = self.world;
+        for named in world.types.values() {
+            let scope = Scope { home: named.home.clone(), class: None, local: None };
+            self.constants_of(&named.ast.spec, &scope);
+            let ty = self.type_of(&named.ast.spec, &named.home, 0);
+            named.ast.initial.iter().for_each(|initial| self.initial(&ty, initial, &scope));
+        }
+    }
+
+    fn constant(&mut self, expr: &Expr, scope: &Scope<'a>) {
+        let found = self.place(expr, Access::Constant, scope);
+        self.flow(&found, &Ty::Integer);
+        if let Ty::Slot(slot) = found {
+            self.slots.given(slot, &Ty::Integer);
+        }
+    }
+
+    fn initial(&mut self, ty: &Ty, initial: &Initialiser, scope: &Scope<'a>) {
+        match &initial.kind {
+            InitialiserKind::Value(value) => self.wanted(value, ty, scope),
+            InitialiserKind::Array(values) => {
+                let element = self.element(ty, 1);
+                for value in values {
+                    self.initial(&element, value, scope);
+                }
+            }
+            InitialiserKind::Repeat(count, value) => {
+                self.constant(count, scope);
+                if let Some(value) = value {
+                    self.initial(ty, value, scope);
+                }
+            }
+            InitialiserKind::Struct(values) => {
+                for each in values {
+                    let member = self.member(ty, &each.name, Access::Initial, false);
+                    self.initial(&member, &each.value, scope);
+                }
+            }
+            InitialiserKind::Elements(elements) => {
+                for element in elements {
+                    self.initial(&Ty::Unknown, &element.value, scope);
+                }
+            }
+        }
+    }
+}
