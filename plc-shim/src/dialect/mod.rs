@@ -27,7 +27,7 @@ pub enum Dialect {
     TwinCat,
     /// SCL of Siemens' TIA Portal, as external source.
     SiemensScl,
-    /// MatIEC, the compiler of Beremiz and OpenPLC: the 2nd edition with habits of its own.
+    /// `MatIEC`, the compiler of Beremiz and `OpenPLC`: the 2nd edition with habits of its own.
     Matiec,
 }
 

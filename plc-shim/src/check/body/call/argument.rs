@@ -1,7 +1,7 @@
 //! Arguments of calls: values, references, and what goes through memory (2nd ed. 2.5.1.1, 2.5.2.1).
 
-use crate::check::body::Body;
 use crate::check::body::place::Access;
+use crate::check::body::{Body, Meant};
 use crate::check::types::constant::decode;
 use crate::check::types::operand::{Operand, constant};
 use crate::diagnostic::{Code, Diagnostic};
@@ -139,7 +139,7 @@ impl Body<'_, '_> {
 
     /// A string of another length for a `VAR_IN_OUT`, as vendors take it: one with more room as it is, of another one a
     /// copy that is copied back, so that nothing is written behind its end. Nothing if it is no such string.
-    fn other_string(&mut self, parameter: &Variable, place: &Place, passing: &mut Passing) -> Option<Option<Place>> {
+    fn other_string(&mut self, parameter: &Variable, place: &Place, passing: &mut Passing) -> Meant<Place> {
         let (wanted, found) = (self.shape(parameter.ty)?, self.shape(place.ty)?);
         let is_allowed = self.declarations.dialect(place.span).has(Feature::LooseStrings);
         if wanted == found || wanted.wide != found.wide || !is_allowed {

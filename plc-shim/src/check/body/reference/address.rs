@@ -133,28 +133,28 @@ impl Body<'_, '_> {
 
     fn is_valid_reference(&mut self, argument: &ast::Expr, span: Span) -> Option<Operand> {
         let udint = ElementaryType::Udint.into();
-        let address = match self.given_reference(argument) {
-            Some(given) => self.referring_value(as_reference(given?), argument.span)?,
-            None => {
-                let place = self.declared_place(argument)?.place;
-                // What comes by VAR_IN_OUT is a reference, too.
-                let is_in_out = matches!(place.storage, Storage::InstancePointer(_) | Storage::RegisterPointer(_));
-                if is_in_out
-                    && place.steps.is_empty()
-                    && reference::target_of(self.declarations.types(), place.ty).is_none()
-                {
-                    Expr { kind: ExprKind::Address(place), ty: udint, span }
-                } else {
-                    let ty = place.ty;
-                    let value = Operand::Typed(Expr { kind: ExprKind::Load(place), ty, span });
-                    self.referring_value(value, argument.span)?
-                }
-            }
+        let address = if let Some(given) = self.given_reference(argument) {
+            self.referring_value(as_reference(given?), argument.span)?
+        } else {
+            self.declared_reference(argument, span)?
         };
         let null = constant(Value::Int(0), ElementaryType::Udint, span);
         let address = Expr { ty: udint, ..address };
         let kind = ExprKind::Binary(Binary::NotEqual, Box::new(address), Box::new(null));
         Some(Operand::Typed(Expr { kind, ty: ElementaryType::Bool.into(), span }))
+    }
+
+    /// What a variable refers to something by: its value, or what comes by `VAR_IN_OUT` itself.
+    fn declared_reference(&mut self, argument: &ast::Expr, span: Span) -> Option<Expr> {
+        let place = self.declared_place(argument)?.place;
+        let ty = place.ty;
+        let is_in_out = matches!(place.storage, Storage::InstancePointer(_) | Storage::RegisterPointer(_));
+        let is_reference = reference::target_of(self.declarations.types(), ty).is_some();
+        if is_in_out && place.steps.is_empty() && !is_reference {
+            return Some(Expr { kind: ExprKind::Address(place), ty: ElementaryType::Udint.into(), span });
+        }
+        let value = Operand::Typed(Expr { kind: ExprKind::Load(place), ty, span });
+        self.referring_value(value, argument.span)
     }
 
     /// What refers to something, be it a reference, a pointer or an interface.
