@@ -27,6 +27,7 @@ mod language;
 mod ld;
 mod lints;
 mod lockstep;
+mod many_values;
 mod matiec;
 mod namespaces;
 mod object_inputs;
