@@ -31,6 +31,7 @@ mod ld;
 mod legal_code;
 mod lints;
 mod lockstep;
+mod many_values;
 mod matiec;
 mod memory;
 mod mistakes;

@@ -17,6 +17,10 @@
 //! ONESCAN_MATIEC=10000 ONESCAN_MATIEC_SEED=0 cargo test --release -p onescan-plc-shim --test programs matiec -- --nocapture
 //! ```
 //!
+//! Seeds 0 to 9,999 with `MatIEC` of October 2024, 1,000,000 scans, took 13 minutes on two cores: of 30,338,100 values
+//! 30,249,078 were the same to the last bit, 85,129 results of SIN, EXP and the like the next real, and 3,893 zeros had
+//! the other sign. One program was the same only after the peer's carry of seconds had been mended.
+//!
 //! `ONESCAN_MATIEC_FOLDER` keeps the programs, traces and C code in a folder.
 
 mod charts;

@@ -73,7 +73,8 @@ impl Emitter<'_, '_> {
             return;
         }
         let pinned = self.pins.iter().map(|entry| entry.register);
-        let used: BTreeSet<Register> = self.known.registers().chain(pinned).collect();
+        let entered = self.entered.iter().copied();
+        let used: BTreeSet<Register> = self.known.registers().chain(pinned).chain(entered).collect();
         let (kept, unused) = std::mem::take(&mut self.caches).into_iter().partition(|register| used.contains(register));
         self.caches = kept;
         for register in unused {
@@ -116,7 +117,11 @@ impl Emitter<'_, '_> {
         }
         self.known.enter_loop(effects, self.scope.roots());
         self.foreseen.push(effects.clone());
+        // The begin of each turn reads these registers, also where the end of the turn remembers them no longer.
+        let entered = self.entered.len();
+        self.entered.extend(self.known.registers());
         emit(self);
+        self.entered.truncate(entered);
         self.foreseen.pop();
         // Behind the loop its registers still hold what is in memory.
         self.known = Known::default();

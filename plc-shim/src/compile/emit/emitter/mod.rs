@@ -120,6 +120,8 @@ pub(crate) struct Emitter<'s, 'p> {
     registers: Registers,
     /// Registers that only [`Self::known`] uses.
     caches: Vec<Register>,
+    /// Registers of what was known where the loops around were entered.
+    entered: Vec<Register>,
     /// The units that are being compiled, the function's own first.
     frames: Vec<Frame>,
     /// What those units' names mean.
@@ -149,6 +151,7 @@ impl<'s, 'p> Emitter<'s, 'p> {
             units: Vec::new(),
             registers: Registers::new(parameters),
             caches: Vec::new(),
+            entered: Vec::new(),
             frames: Vec::new(),
             scope,
             known: Known::default(),
