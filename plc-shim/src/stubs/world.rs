@@ -114,6 +114,11 @@ impl<'a> World<'a> {
         self.namespaces.insert(inner.namespace.clone());
         let open = namespace.kind == crate::syntax::ast::NamespaceKind::Open;
         self.add_all(&namespace.declarations, &inner, open, library);
+        if open && library {
+            // What a vendor's library declares is known without its name, unless the project has something of the name.
+            self.libraries.insert(inner.namespace);
+            self.add_all(&namespace.declarations, home, false, library);
+        }
     }
 
     fn add_unit(&mut self, pou: &'a Pou, home: &Home, library: bool) {

@@ -226,9 +226,10 @@ impl<'a> Declarations<'a> {
         }
         let name = self.without_libraries(key)?.to_owned();
         let open = open.get(&name).cloned();
-        // What stubs stand for is where they are written, among the user's files.
-        let is_stub = key.split_once('.').is_some_and(|(first, _)| self.libraries.contains(first));
-        open.into_iter().chain([name]).find(|full| map.contains_key(full) && (is_stub || of_library(full)))
+        // What the library here lacks a stub may stand for, which is among the user's files.
+        let mut known = open.into_iter().chain([name]).filter(|full| map.contains_key(full)).collect::<Vec<_>>();
+        known.sort_by_key(|full| !of_library(full));
+        known.into_iter().next()
     }
 
     /// What stands behind the names of vendors' libraries; nothing if none stands before it.
