@@ -2,6 +2,7 @@
 
 import csv
 import json
+import struct
 import sys
 from pathlib import Path
 
@@ -46,7 +47,8 @@ def mcap(path):
                     channel = channels[record.channel_id]
                     counts[channel.topic] = counts.get(channel.topic, 0) + 1
                     last[channel.topic] = (channel, record)
-        except EndOfFile:
+        except (EndOfFile, struct.error):
+            # The library tells a record that is cut in its middle by either.
             whole = False
     values = {}
     for topic, (channel, record) in last.items():
