@@ -25,7 +25,7 @@ pub struct Program {
 }
 
 /// The programs behind `paths`: each soft PLC of a scenario, and all other files as one. A dialect that is
-/// chosen goes before those of scenarios and files, and so does a limit of memory.
+/// chosen takes precedence over those of scenarios and files, and so does a limit of memory.
 ///
 /// # Errors
 /// A file is not there, cannot be read, or is of no kind that is read.

@@ -1,5 +1,5 @@
 //! What vendors' libraries declare and programs take for granted, as program text. A file of it is there for
-//! the programs that name something of it, and for the files that do; a user's own declaration of a name goes before.
+//! the programs that name something of it, and for the files that do; a user's own declaration of a name takes precedence.
 //!
 //! A file that is a namespace, as in `NAMESPACE OPEN Tc2_System`, is a library by that name: its names are known
 //! without it, too.
@@ -169,6 +169,7 @@ impl<'t> Scan<'t, '_> {
 
     fn word(&self) -> &'t str {
         let token = self.tokens.get(self.at);
+        // Behind the last token there is no word.
         token.and_then(|token| self.text.get(token.start as usize..token.end as usize)).unwrap_or_default()
     }
 
@@ -195,6 +196,7 @@ impl<'t> Scan<'t, '_> {
                 Some(Keyword::Interface) => self.unit(Keyword::EndInterface),
                 Some(Keyword::Type) => self.declarations(Keyword::EndType),
                 Some(Keyword::VarGlobal) => self.declarations(Keyword::EndVar),
+                // The ends of namespaces, and marks between declarations.
                 _ => {}
             }
         }
@@ -243,6 +245,7 @@ impl<'t> Scan<'t, '_> {
                 {
                     self.names.push(self.word().to_owned());
                 }
+                // Types and values declare nothing.
                 _ => {}
             }
             self.at += 1;

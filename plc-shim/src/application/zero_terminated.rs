@@ -14,7 +14,7 @@ impl ZeroTerminated {
         (shape.memory == StringMemory::ZeroTerminated).then_some(Self { shape })
     }
 
-    /// Bytes in memory.
+    /// Bytes that it takes in memory, the 0 at its end among them.
     pub fn size(self) -> usize {
         self.shape.size() as usize
     }
@@ -24,6 +24,7 @@ impl ZeroTerminated {
         let counted = TextShape { memory: StringMemory::Counted, ..self.shape };
         let used = counted.used(signal) * self.shape.unit() as usize;
         memory.fill(0);
+        // A value without characters ends with its count.
         let characters = signal.get(counted.first() as usize..).unwrap_or_default();
         for (target, source) in memory.iter_mut().zip(characters.iter().take(used)) {
             *target = *source;

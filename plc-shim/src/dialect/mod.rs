@@ -108,8 +108,7 @@ impl Dialect {
         self.behaviour().truth
     }
 
-    /// Nanoseconds of 1, if a duration becomes a number or a number a duration; nothing if there is no such rule and
-    /// TIME counts nanoseconds.
+    /// Nanoseconds of the unit in which a TIME or TOD becomes a number, and a number one of these.
     pub fn time_number_ns(self) -> u32 {
         self.behaviour().time_number_ns
     }
@@ -290,6 +289,11 @@ features! {
 }
 
 impl Feature {
+    /// What to do about it in a dialect that does not have it.
+    pub fn help(self) -> String {
+        format!("it is part of {}: --dialect chooses", self.homes())
+    }
+
     /// The dialects that have it, as a list in a sentence.
     pub fn homes(self) -> String {
         let names: Vec<_> = Dialect::ALL.iter().filter(|dialect| dialect.has(self)).map(|one| one.name()).collect();

@@ -25,7 +25,7 @@ pub enum ProjectError {
 /// A project's text and the files that it lists.
 #[derive(Debug, Clone)]
 pub struct Listing {
-    /// The text.
+    /// Its XML, as it stands in the file.
     pub text: Arc<str>,
     /// The files that it compiles, in their order.
     pub files: Vec<Listed>,

@@ -24,7 +24,7 @@ impl MemoryLimit {
     /// The memory of a PLC has 32-bit addresses; half of them, so that no sum of two offsets overflows.
     pub const GREATEST_MIB: u32 = 2047;
 
-    /// So many MiB.
+    /// A limit of so many MiB, from 1 to [`Self::GREATEST_MIB`].
     ///
     /// # Errors
     /// None, or more than can be addressed.

@@ -94,6 +94,7 @@ impl TextShape {
 
     /// The characters of a string in memory.
     pub(crate) fn decode(self, bytes: &[u8]) -> Vec<u16> {
+        // Bytes of another application, which may be fewer, hold no characters.
         let units = bytes.get(self.first() as usize..).unwrap_or_default().chunks_exact(self.unit() as usize);
         let unit = |unit: &[u8]| unit.iter().rev().fold(0, |whole, byte| whole << 8 | u16::from(*byte));
         units.take(self.used(bytes)).map(unit).collect()

@@ -7,7 +7,7 @@ use super::ty::Slot;
 /// The arguments that calls give.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Signature {
-    /// Those without names.
+    /// What is given without a name, by position.
     pub(super) positional: Vec<Argument>,
     /// `a := x`, in the order in which they were found first.
     pub(super) named: Vec<(String, Argument)>,
@@ -124,7 +124,7 @@ pub(super) struct Head {
     pub(super) outside: bool,
 }
 
-/// All of it.
+/// What the project names and nobody declares, by keys.
 #[derive(Debug, Default)]
 pub(super) struct Needs {
     pub(super) types: BTreeMap<String, Foreign>,

@@ -5,7 +5,7 @@ use super::collect::{Collector, Scope};
 use super::foreign::{Function, Global, Head};
 use super::hint;
 use super::ty::Ty;
-use super::world::joined;
+use crate::check::joined;
 use crate::syntax::ast::{Expr, ExprKind, Ident};
 
 /// What is done to a place.

@@ -6,7 +6,7 @@ use super::hint;
 use crate::ElementaryType;
 use crate::syntax::ast::ReferenceKind;
 
-/// A type.
+/// What is known of the type of a value or place.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) enum Ty {
     /// Nothing is known of it, and nothing can be learned.

@@ -2,7 +2,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use crate::check::knows_function;
+use crate::check::{find_key, joined, knows_function};
 use crate::syntax::ast::{
     CompilationUnit, Declaration, Ident, MemberKind, Namespace, Pou, PouKind, Section, SectionKind, TypeDeclaration,
     TypeSpec, TypeSpecKind,
@@ -166,19 +166,7 @@ impl<'a> World<'a> {
     }
 
     fn full_key<T>(&self, map: &BTreeMap<String, T>, home: &Home, key: &str) -> Option<String> {
-        let mut namespace = home.namespace.as_str();
-        loop {
-            let full = joined(namespace, key);
-            if map.contains_key(&full) {
-                return Some(full);
-            }
-            if namespace.is_empty() {
-                break;
-            }
-            namespace = namespace.rsplit_once('.').map_or("", |(around, _)| around);
-        }
-        let used = home.using.iter().map(|namespace| joined(namespace, key));
-        if let Some(found) = used.into_iter().find(|full| map.contains_key(full)) {
+        if let Some(found) = find_key(map, &home.namespace, &home.using, key) {
             return Some(found);
         }
         let (first, rest) = key.split_once('.')?;
@@ -233,10 +221,6 @@ fn variables(pou: &Pou) -> BTreeMap<String, (&TypeSpec, SectionKind)> {
         }
     }
     found
-}
-
-pub(super) fn joined(namespace: &str, key: &str) -> String {
-    if namespace.is_empty() { key.to_owned() } else { format!("{namespace}.{key}") }
 }
 
 /// Libraries whose content the language has.

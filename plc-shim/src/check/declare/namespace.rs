@@ -102,8 +102,26 @@ impl Home {
     }
 }
 
-pub(in crate::check) fn joined(namespace: &str, key: &str) -> String {
+/// The full key of what is declared in a namespace.
+pub(crate) fn joined(namespace: &str, key: &str) -> String {
     if namespace.is_empty() { key.to_owned() } else { format!("{namespace}.{key}") }
+}
+
+/// The full key that `map` has for what `key` means in `namespace`: there, in those around it, then in those of
+/// `using`, in their order.
+pub(crate) fn find_key<T>(map: &BTreeMap<String, T>, namespace: &str, using: &[String], key: &str) -> Option<String> {
+    let mut around = namespace;
+    loop {
+        let full = joined(around, key);
+        if map.contains_key(&full) {
+            return Some(full);
+        }
+        if around.is_empty() {
+            break;
+        }
+        around = around.rsplit_once('.').map_or("", |(outer, _)| outer);
+    }
+    using.iter().map(|used| joined(used, key)).find(|full| map.contains_key(full))
 }
 
 impl<'a> Declarations<'a> {
@@ -177,19 +195,7 @@ impl<'a> Declarations<'a> {
 
     /// The full key of what `key` means here, if `map` has it.
     fn full_key<T>(&self, map: &BTreeMap<String, T>, key: &str) -> Option<String> {
-        let mut namespace = self.home.namespace.as_str();
-        loop {
-            let full = joined(namespace, key);
-            if map.contains_key(&full) {
-                return Some(full);
-            }
-            if namespace.is_empty() {
-                break;
-            }
-            namespace = namespace.rsplit_once('.').map_or("", |(around, _)| around);
-        }
-        let used = self.home.using.iter().map(|namespace| joined(namespace, key));
-        used.into_iter().find(|full| map.contains_key(full))
+        find_key(map, &self.home.namespace, &self.home.using, key)
     }
 
     pub(in crate::check) fn type_key(&self, key: &str) -> Option<String> {
@@ -227,9 +233,8 @@ impl<'a> Declarations<'a> {
         let name = self.without_libraries(key)?.to_owned();
         let open = open.get(&name).cloned();
         // What the library here lacks a stub may stand for, which is among the user's files.
-        let mut known = open.into_iter().chain([name]).filter(|full| map.contains_key(full)).collect::<Vec<_>>();
-        known.sort_by_key(|full| !of_library(full));
-        known.into_iter().next()
+        let known = open.into_iter().chain([name]).filter(|full| map.contains_key(full));
+        known.min_by_key(|full| !of_library(full))
     }
 
     /// What stands behind the names of vendors' libraries; nothing if none stands before it.
@@ -291,18 +296,7 @@ impl<'a> Declarations<'a> {
 
     /// True if `key` names a namespace, or something in one.
     pub(in crate::check) fn is_in_namespace(&self, key: &str) -> bool {
-        let known = |key: &str| {
-            let mut around = self.home.namespace.as_str();
-            loop {
-                if self.namespaces.contains_key(&joined(around, key)) {
-                    return true;
-                }
-                if around.is_empty() {
-                    return self.home.using.iter().any(|each| self.namespaces.contains_key(&joined(each, key)));
-                }
-                around = around.rsplit_once('.').map_or("", |(outer, _)| outer);
-            }
-        };
+        let known = |key: &str| self.full_key(&self.namespaces, key).is_some();
         let library = self.is_vendor_library(key.split_once('.').map_or(key, |(first, _)| first));
         library || key.match_indices('.').any(|(at, _)| known(&key[..at])) || known(key)
     }

@@ -99,7 +99,7 @@ impl<'a> Declarations<'a> {
         self.enumerators.get(key).map_or(&[], Vec::as_slice)
     }
 
-    /// Makes a value known by its name alone. One of a user's enumerations goes before those of libraries.
+    /// Makes a value known by its name alone. One of a user's enumerations takes precedence over those of libraries.
     pub(in crate::check) fn add_enumerator(&mut self, name: &str, enumerator: Enumerator) {
         let known = self.enumerators.entry(name.to_ascii_uppercase()).or_default();
         if !enumerator.of_library {

@@ -108,7 +108,7 @@ impl<'a> Cursor<'a> {
     pub(super) fn require_or(&mut self, feature: Feature, span: Span, instead: Option<String>) {
         if !self.dialect.has(feature) && !self.is_generated(span.start) {
             let message = format!("{} is not part of {}", feature.about(), self.dialect);
-            let homes = format!("it is part of {}: --dialect chooses", feature.homes());
+            let homes = feature.help();
             let help = instead.map_or_else(|| homes.clone(), |instead| format!("write `{instead}`; {homes}"));
             let found = Diagnostic::error(Code::WrongDialect, span, message).with_help(help);
             self.foreign.entry(feature).or_insert(found);

@@ -100,14 +100,8 @@ impl Body<'_, '_> {
     /// What a `VAR_IN_OUT` may be given: what may be written, and of an instance what it keeps for itself, which
     /// vendors let be handed on.
     fn given_place(&mut self, expr: &ast::Expr) -> Option<Place> {
-        let known = self.declarations.mark();
-        match self.place(expr) {
-            Some(located) if located.access == Access::Internal => Some(located.place),
-            _ => {
-                self.declarations.forget_since(known);
-                self.target(expr)
-            }
-        }
+        let located = self.place(expr)?;
+        if located.access == Access::Internal { Some(located.place) } else { self.writable(located, expr.span) }
     }
 
     /// `VAR_IN_OUT CONSTANT` takes constants and values as well, which the unit reads only (CODESYS, TwinCAT).

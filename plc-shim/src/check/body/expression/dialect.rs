@@ -178,9 +178,9 @@ impl Body<'_, '_> {
     pub(in crate::check::body) fn clock_function(&mut self, name: &Ident, call: &Call, span: Span) -> Option<Operand> {
         let dialect = self.declarations.dialect(span);
         if !dialect.has(Feature::ClockFunctions) {
-            let (about, homes) = (Feature::ClockFunctions.about(), Feature::ClockFunctions.homes());
-            let found = Diagnostic::error(Code::WrongDialect, span, format!("{about} is not part of {dialect}"));
-            self.report(found.with_help(format!("it is part of {homes}: --dialect chooses")));
+            let message = format!("{} is not part of {dialect}", Feature::ClockFunctions.about());
+            let found = Diagnostic::error(Code::WrongDialect, span, message);
+            self.report(found.with_help(Feature::ClockFunctions.help()));
             return None;
         }
         if let Some(argument) = call.arguments.first() {

@@ -5,7 +5,7 @@ use crate::check::types::build::{assign, load};
 use crate::check::types::operand::Operand;
 use crate::diagnostic::{Code, Diagnostic};
 use crate::dialect::Feature;
-use crate::ir::{ElementaryType, Expr, ExprKind, Place, Statement, StatementKind, Storage, TypeTable};
+use crate::ir::{ElementaryType, Expr, ExprKind, Place, Statement, StatementKind, Storage, Type, TypeId, TypeTable};
 use crate::syntax::Span;
 
 impl Body<'_, '_> {
@@ -20,8 +20,7 @@ impl Body<'_, '_> {
         if !dialect.has(Feature::InstanceCopies) {
             let message = "instances are not assigned to one another";
             let found = Diagnostic::error(Code::NotAssignable, span, message);
-            let homes = Feature::InstanceCopies.homes();
-            self.report(found.with_help(format!("it is part of {homes}: --dialect chooses")));
+            self.report(found.with_help(Feature::InstanceCopies.help()));
             return None;
         }
         let value = match value {
@@ -56,9 +55,9 @@ impl Body<'_, '_> {
         Statement { kind: StatementKind::Evaluate(all), span }
     }
 
-    fn begins_with_number(&self, ty: crate::ir::TypeId) -> bool {
+    fn begins_with_number(&self, ty: TypeId) -> bool {
         match self.declarations.types().get(ty) {
-            crate::ir::Type::FunctionBlock { pou, .. } => {
+            Type::FunctionBlock { pou, .. } => {
                 self.declarations.class(*pou).is_some_and(|class| class.type_id.is_some())
             }
             _ => false,

@@ -3,7 +3,7 @@
 use crate::check::body::{Body, Meant};
 use crate::check::types::constant::fold;
 use crate::ir::{ElementaryType, Storage, Variable, Visibility};
-use crate::syntax::ast::{Ident, InitialiserKind, Qualifier, TypeSpecKind};
+use crate::syntax::ast::{Ident, InitialiserKind, Qualifier, SectionKind, TypeSpecKind};
 
 impl Body<'_, '_> {
     /// The constant of this name while the unit is still being declared; nothing if it has none, nothing inside if
@@ -25,7 +25,7 @@ impl Body<'_, '_> {
         let constant = typed.and_then(|typed| fold(self.declarations.types(), &typed).ok());
         Some(constant.map(|constant| Variable {
             name: name.text.clone(),
-            section: crate::syntax::ast::SectionKind::Local,
+            section: SectionKind::Local,
             ty: ty.into(),
             // Its value is all that is asked for.
             storage: Storage::Absolute(0),

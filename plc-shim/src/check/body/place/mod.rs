@@ -157,18 +157,22 @@ impl Body<'_, '_> {
 
     /// The place that has the part: a variable, or what a property or a call gives.
     pub(super) fn base_place(&mut self, base: &ast::Expr) -> Option<Located> {
-        let value = match &base.kind {
-            ast::ExprKind::Name(name) => self.own_property(name),
-            ast::ExprKind::Member(object, name) => self.property_of(object, name),
-            ast::ExprKind::Call(call) => Some(self.call_expression(call, base.span)),
-            _ => None,
-        };
-        match value {
+        match self.given_value(base) {
             Some(value) => {
                 let value = value?;
                 self.place_of_value(value, base.span)
             }
             None => self.place(base),
+        }
+    }
+
+    /// What a property or a call gives; nothing if `expr` is neither.
+    pub(super) fn given_value(&mut self, expr: &ast::Expr) -> Meant<Operand> {
+        match &expr.kind {
+            ast::ExprKind::Name(name) => self.own_property(name),
+            ast::ExprKind::Member(object, name) => self.property_of(object, name),
+            ast::ExprKind::Call(call) => Some(self.call_expression(call, expr.span)),
+            _ => None,
         }
     }
 

@@ -311,14 +311,11 @@ impl Body<'_, '_> {
         Some(Expr { kind: ExprKind::Address(place), ty: wanted, span: value.span })
     }
 
-    /// What a call or a property gives; nothing if `value` is neither.
+    /// What a call or a property gives, be it between parentheses; nothing if `value` is neither.
     fn given_reference(&mut self, value: &ast::Expr) -> Meant<Operand> {
         match &value.kind {
-            ast::ExprKind::Name(name) => self.own_property(name),
-            ast::ExprKind::Member(object, name) => self.property_of(object, name),
-            ast::ExprKind::Call(call) => Some(self.call_expression(call, value.span)),
             ast::ExprKind::Paren(inner) => self.given_reference(inner),
-            _ => None,
+            _ => self.given_value(value),
         }
     }
 

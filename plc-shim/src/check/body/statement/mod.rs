@@ -8,7 +8,7 @@ pub(super) mod wire;
 use std::collections::BTreeMap;
 
 use super::Body;
-use super::place::Access;
+use super::place::{Access, Located};
 use crate::check::types::constant::fold;
 use crate::check::types::number::as_number;
 use crate::check::types::operand::{Operand, constant};
@@ -134,43 +134,48 @@ impl Body<'_, '_> {
     /// A place that may be written to.
     pub(in crate::check) fn target(&mut self, expr: &ast::Expr) -> Option<Place> {
         let located = self.place(expr)?;
+        self.writable(located, expr.span)
+    }
+
+    /// The place, if it may be written to; reports one that may not.
+    pub(in crate::check::body) fn writable(&mut self, located: Located, span: Span) -> Option<Place> {
         match located.access {
             Access::ReadWrite => {}
             Access::Constant => {
                 let message = "a constant is not assigned to";
-                self.report(Diagnostic::error(Code::AssignToConstant, expr.span, message));
+                self.report(Diagnostic::error(Code::AssignToConstant, span, message));
                 return None;
             }
             Access::Chart => {
                 let message = "steps, transitions and action flags are written by their chart only";
-                self.report(Diagnostic::error(Code::NotAssignable, expr.span, message));
+                self.report(Diagnostic::error(Code::NotAssignable, span, message));
                 return None;
             }
             Access::InstanceOutput => {
                 let message = "an output is written by its own instance only";
-                self.report(Diagnostic::error(Code::NotAssignable, expr.span, message));
+                self.report(Diagnostic::error(Code::NotAssignable, span, message));
                 return None;
             }
             Access::Internal => {
                 let message = "a variable that an instance keeps for itself is read from outside, not written";
-                let found = Diagnostic::error(Code::NotAssignable, expr.span, message);
+                let found = Diagnostic::error(Code::NotAssignable, span, message);
                 self.report(found.with_help("declare it as VAR_INPUT, or as a property with SET"));
                 return None;
             }
             Access::Value => {
                 let message = "this is a copy of what the property or call gives, which nobody would read";
-                let found = Diagnostic::error(Code::NotAssignable, expr.span, message);
+                let found = Diagnostic::error(Code::NotAssignable, span, message);
                 self.report(found.with_help("change a copy in a variable and assign that to the property"));
                 return None;
             }
             // 2nd ed. Table 16 forbids it; every vendor allows it, and programs rely on that.
             Access::OwnInput => {
                 let message = "an input is written by the caller; this value is overwritten";
-                self.report(Diagnostic::warning(Code::AssignToInput, expr.span, message));
+                self.report(Diagnostic::warning(Code::AssignToInput, span, message));
             }
             Access::MachineInput => {
                 let message = "an input is written by the machine; this value is overwritten";
-                self.report(Diagnostic::warning(Code::AssignToInput, expr.span, message));
+                self.report(Diagnostic::warning(Code::AssignToInput, span, message));
             }
         }
         let result = self.scope.result().map(|result| result.storage);
