@@ -9,6 +9,8 @@ use crate::syntax::ast::{Argument, Expr, ExprKind};
 impl<'a> Collector<'a> {
     pub(super) fn arguments(&mut self, signature: &mut Signature, path: &str, list: &[Argument], scope: &Scope<'a>) {
         // Names and places may be mixed: what has no name is counted with what has.
+        let inputs = list.iter().filter(|argument| !matches!(argument, Argument::Output { .. })).count();
+        signature.fewest = Some(signature.fewest.map_or(inputs, |known| known.min(inputs)));
         let mut given = 0;
         for argument in list {
             let position = given;

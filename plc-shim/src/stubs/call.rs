@@ -354,7 +354,7 @@ impl<'a> Collector<'a> {
         }
     }
 
-    fn argument_to(&mut self, argument: &Argument, ty: &Ty, scope: &Scope<'a>) {
+    pub(super) fn argument_to(&mut self, argument: &Argument, ty: &Ty, scope: &Scope<'a>) {
         match argument {
             Argument::Positional(value) | Argument::Input(_, value) => {
                 let found = self.infer(value, scope);

@@ -40,10 +40,9 @@ impl<'a> Collector<'a> {
             let scope = Scope { home: home.clone(), class: None, local: None };
             self.initials(section, &scope);
         }
-        for (key, unit) in &world.units {
-            if !unit.library {
-                self.unit(key, unit);
-            }
+        for (key, unit) in world.units.iter().filter(|(_, unit)| !unit.library) {
+            self.overrides(key, unit);
+            self.unit(key, unit);
         }
     }
 

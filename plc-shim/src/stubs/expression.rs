@@ -39,7 +39,7 @@ impl<'a> Collector<'a> {
                 self.dereferenced(&found)
             }
             ExprKind::Index(base, indices) => {
-                let base = self.infer(base, scope);
+                let base = self.place(base, access.of_base(), scope);
                 for index in indices {
                     let found = self.infer(index, scope);
                     self.flow(&found, &Ty::Integer);
@@ -102,7 +102,7 @@ impl<'a> Collector<'a> {
         {
             self.note_depth(first, middle);
         }
-        let base = self.infer(base, scope);
+        let base = self.place(base, access.of_base(), scope);
         self.member(&base, name, access, inside)
     }
 

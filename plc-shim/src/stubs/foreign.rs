@@ -15,6 +15,8 @@ pub(super) struct Signature {
     pub(super) outputs: Vec<(String, Slot)>,
     /// The result is used.
     pub(super) is_used: bool,
+    /// How many arguments the call gives that gives the fewest.
+    pub(super) fewest: Option<usize>,
 }
 
 /// What is given for a parameter.
@@ -34,6 +36,8 @@ pub(super) struct Member {
     pub(super) read: bool,
     pub(super) written_inside: bool,
     pub(super) written_outside: bool,
+    /// A member or an element of it is written.
+    pub(super) written_below: bool,
     pub(super) input: bool,
     /// It is the bound of an array or the like.
     pub(super) is_constant: bool,
@@ -59,6 +63,8 @@ pub(super) struct Foreign {
     pub(super) base_of_interface: bool,
     pub(super) base_of_structure: bool,
     pub(super) implemented: bool,
+    /// Interfaces that what is of the type, or of a type derived from it, is given for.
+    pub(super) stands_for: BTreeSet<String>,
     pub(super) init: Option<Signature>,
     /// Names of its values, as an enumeration.
     pub(super) values: Vec<String>,

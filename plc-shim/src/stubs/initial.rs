@@ -32,10 +32,20 @@ impl<'a> Collector<'a> {
             },
             _ => None,
         };
+        let declared = match ty {
+            Ty::Declared(class) => self.declared_init(class).unwrap_or_default(),
+            _ => Vec::new(),
+        };
         for list in lists {
             let Some(key) = &foreign else {
-                for argument in list {
-                    self.plain_argument(argument, scope);
+                for (index, argument) in list.iter().enumerate() {
+                    let wanted = match argument {
+                        Argument::Positional(_) => declared.get(index),
+                        Argument::Input(name, _) | Argument::Output { name, .. } => {
+                            declared.iter().find(|(known, _)| *known == name.key())
+                        }
+                    };
+                    self.argument_to(argument, wanted.map_or(&Ty::Unknown, |(_, ty)| ty), scope);
                 }
                 continue;
             };
@@ -43,19 +53,6 @@ impl<'a> Collector<'a> {
             let mut signature = self.foreign(key).init.take().unwrap_or_default();
             self.arguments(&mut signature, &path, list, scope);
             self.foreign(key).init = Some(signature);
-        }
-    }
-
-    fn plain_argument(&mut self, argument: &Argument, scope: &Scope<'a>) {
-        match argument {
-            Argument::Positional(value) | Argument::Input(_, value) => {
-                self.infer(value, scope);
-            }
-            Argument::Output { target, .. } => {
-                if let Some(target) = target {
-                    self.place(target, Access::Write, scope);
-                }
-            }
         }
     }
 

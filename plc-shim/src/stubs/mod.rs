@@ -8,6 +8,7 @@
 //! | [`foreign`] | what is named and not declared, and how it is used |
 //! | [`names`] | what a name stands for |
 //! | [`class`] | members of classes and structures |
+//! | [`heirs`] | what classes of the project tell of their bases and interfaces |
 //! | [`collect`], [`initial`], [`statement`], [`expression`], [`call`], [`argument`] | one pass over the project |
 //! | [`shape`] | what a type that nobody declares is |
 //! | [`print`], [`signature`] | all of it as program text |
@@ -22,6 +23,7 @@ mod class;
 mod collect;
 mod expression;
 mod foreign;
+mod heirs;
 mod hint;
 mod initial;
 mod names;

@@ -13,10 +13,22 @@ use crate::syntax::ast::{Expr, ExprKind, Ident};
 pub(super) enum Access {
     Read,
     Write,
+    /// A member or an element of it is written.
+    WriteBelow,
     /// Its value is wanted before the program runs.
     Constant,
     /// It is given an initial value.
     Initial,
+}
+
+impl Access {
+    /// What is done to what a member or an element of which is accessed.
+    pub(super) fn of_base(self) -> Self {
+        match self {
+            Self::Write | Self::WriteBelow => Self::WriteBelow,
+            Self::Read | Self::Constant | Self::Initial => Self::Read,
+        }
+    }
 }
 
 /// What an unknown name is taken for.
@@ -164,7 +176,7 @@ impl<'a> Collector<'a> {
             written: false,
             is_constant: false,
         });
-        found.written |= access == Access::Write;
+        found.written |= matches!(access, Access::Write | Access::WriteBelow);
         found.is_constant |= access == Access::Constant;
         Ty::Slot(slot)
     }
@@ -215,6 +227,10 @@ impl<'a> Collector<'a> {
         match access {
             Access::Write if inside => member.written_inside = true,
             Access::Write | Access::Initial => member.written_outside = true,
+            Access::WriteBelow => {
+                member.read = true;
+                member.written_below = true;
+            }
             Access::Constant => member.is_constant = true,
             Access::Read => member.read = true,
         }
@@ -332,11 +348,11 @@ impl<'a> Collector<'a> {
             Some(Kind::List) => Some(self.listed(&key, &first.text, last, access)),
             Some(Kind::Library) => Some(self.global(&last.key(), &last.text, access)),
             Some(Kind::Member(base)) => {
-                let ty = self.foreign_member(&base, first, Access::Read, true);
+                let ty = self.foreign_member(&base, first, access.of_base(), true);
                 Some(self.member(&ty, last, access, false))
             }
             Some(Kind::Global) => {
-                let ty = self.global(&key, &first.text, Access::Read);
+                let ty = self.global(&key, &first.text, access.of_base());
                 Some(self.member(&ty, last, access, false))
             }
         }

@@ -139,13 +139,47 @@ impl Printer<'_, '_> {
                 format!("{{external}}\nTYPE {name} :\nSTRUCT\n{fields}END_STRUCT\nEND_TYPE\n")
             }
             Shape::Interface => {
-                format!("{{external}}\nINTERFACE {name}\n{}END_INTERFACE\n", self.interface_members(key, found))
+                let (above, members) = (self.above(key, found, " EXTENDS "), self.interface_members(key, found));
+                format!("{{external}}\nINTERFACE {name}{above}\n{members}END_INTERFACE\n")
             }
             Shape::Block => {
-                let members = self.block_members(key, found);
-                format!("{{external}}\nFUNCTION_BLOCK {name}\n{members}END_FUNCTION_BLOCK\n")
+                let (above, members) = (self.above(key, found, " IMPLEMENTS "), self.block_members(key, found));
+                format!("{{external}}\nFUNCTION_BLOCK {name}{above}\n{members}END_FUNCTION_BLOCK\n")
             }
         }
+    }
+
+    /// The interfaces that a type stands for, behind a word.
+    fn above(&self, key: &str, found: &Foreign, word: &str) -> String {
+        let names = found.stands_for.iter().filter(|each| self.is_interface(each) && !self.reaches(each, key));
+        let names: Vec<String> = names.map(|each| self.type_text(&self.collector.ty_of(each), each)).collect();
+        if names.is_empty() { String::new() } else { format!("{word}{}", names.join(", ")) }
+    }
+
+    fn is_interface(&self, key: &str) -> bool {
+        let needs = &self.collector.needs;
+        let foreign = needs.types.get(key).filter(|found| !found.extends_stub);
+        match self.collector.world.units.get(key) {
+            Some(unit) => unit.pou.kind == PouKind::Interface,
+            None => foreign.is_some_and(|found| self.collector.shape(found) == Shape::Interface),
+        }
+    }
+
+    /// True if an interface stands for another: two that stand for each other would extend themselves.
+    fn reaches(&self, from: &str, to: &str) -> bool {
+        let mut open = vec![from];
+        let mut seen = std::collections::BTreeSet::new();
+        while let Some(next) = open.pop() {
+            if next == to {
+                return true;
+            }
+            if seen.insert(next)
+                && let Some(found) = self.collector.needs.types.get(next)
+            {
+                open.extend(found.stands_for.iter().map(String::as_str));
+            }
+        }
+        false
     }
 
     /// What a stub that is there lacks, and where it goes.
@@ -223,7 +257,9 @@ impl Printer<'_, '_> {
                 let ty = self.slot_text(member.field, name);
                 if member.via_super || member.written_inside && member.written_outside {
                     others.push_str(&property_text(name, &ty, true, true));
-                } else if member.input || member.written_outside {
+                } else if member.written_below && member.written_inside {
+                    others.push_str(&property_text(name, &format!("REFERENCE TO {ty}"), true, false));
+                } else if member.input || member.written_outside || member.written_below {
                     let _ = writeln!(inputs, "    {name} : {ty};");
                 } else {
                     let _ = writeln!(outputs, "    {name} : {ty};");
@@ -253,8 +289,12 @@ impl Printer<'_, '_> {
             } else if let Some((signature, result)) = member.called.as_ref().filter(|_| self.is_method(member)) {
                 text.push_str(&self.method(name, signature, *result));
             } else {
-                let ty = self.slot_text(member.field, name);
+                let mut ty = self.slot_text(member.field, name);
                 let is_written = member.written_inside || member.written_outside;
+                if member.written_below && !is_written {
+                    // What a property gives is a copy, unless it gives the thing itself.
+                    ty = format!("REFERENCE TO {ty}");
+                }
                 text.push_str(&property_text(name, &ty, member.read || !is_written, is_written));
             }
         }

@@ -7,11 +7,12 @@ use super::print::Printer;
 use super::shape::Shape;
 use super::ty::{Slot, Ty};
 use super::world::Part;
+use crate::ElementaryType;
 use crate::syntax::ast::{Pou, SectionKind, TypeSpec};
 
 /// What runs with the arguments of a declaration, and what it is always given.
 pub(super) const INIT: &str = "FB_init";
-const INIT_INPUTS: [&str; 2] = ["bInitRetains", "bInCopyCode"];
+pub(super) const INIT_INPUTS: [&str; 2] = ["bInitRetains", "bInCopyCode"];
 
 impl<'c> Printer<'c, '_> {
     /// The method that is run with the arguments of a declaration.
@@ -132,7 +133,10 @@ impl<'c> Printer<'c, '_> {
                 let _ = writeln!(text, "    {word}");
                 section = word;
             }
-            let _ = writeln!(text, "        {name} : {ty};");
+            let is_given = signature.fewest.is_none_or(|fewest| index < fewest) || word != "VAR_INPUT";
+            let initial = if is_given { None } else { neutral(&ty) };
+            let initial = initial.map(|value| format!(" := {value}")).unwrap_or_default();
+            let _ = writeln!(text, "        {name} : {ty}{initial};");
         }
         if !section.is_empty() {
             text.push_str("    END_VAR\n");
@@ -167,6 +171,26 @@ impl<'c> Printer<'c, '_> {
         };
         let section = if is_block && is_place { "VAR_IN_OUT" } else { "VAR_INPUT" };
         (section, self.type_text(&ty, name))
+    }
+}
+
+/// An initial value for an input that some calls leave out; structures have none that could be written.
+fn neutral(ty: &str) -> Option<&'static str> {
+    if ty.starts_with("STRING") {
+        return Some("''");
+    }
+    if ty.starts_with("WSTRING") {
+        return Some("\"\"");
+    }
+    if ty.starts_with("POINTER TO") {
+        return Some("0");
+    }
+    let found = ElementaryType::find(ty)?;
+    match found {
+        ElementaryType::Bool => Some("FALSE"),
+        ElementaryType::Time => Some("T#0s"),
+        ElementaryType::Ltime => Some("LTIME#0s"),
+        _ => (found.is_number() || found.is_bits()).then_some("0"),
     }
 }
 

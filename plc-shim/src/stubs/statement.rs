@@ -108,6 +108,7 @@ impl<'a> Collector<'a> {
         if from == to {
             return;
         }
+        self.stands_for(&from, &to);
         if let Some(slot) = self.value_of(&from) {
             self.slots.taken(slot, &to);
         }

@@ -28,7 +28,8 @@ impl Body<'_, '_> {
     fn into_unit(mut self, id: PouId) -> Pou {
         let ast = self.declarations.pou(id).ast();
         let mut statements = self.prologue(ast.kind);
-        let external = self.declarations.is_external(id);
+        // A prototype is called where a stub stands for what would have the method.
+        let external = self.declarations.is_external(id) || self.declarations.is_prototype(id);
         if external {
             // What is done elsewhere does nothing here, whatever its text says.
         } else if let Some((owner, occasion)) = self.declarations.stage_of(id) {

@@ -45,7 +45,7 @@ impl Declarations<'_> {
         let found = variants.filter_map(|variant| {
             let target = self.find_member(variant, role, name)?;
             let number = self.class(variant)?.type_id.unwrap_or(0);
-            Some((number, target)).filter(|_| !self.is_prototype(target))
+            Some((number, target)).filter(|_| !self.is_prototype(target) || self.rests_on_stub(variant))
         });
         found.collect()
     }

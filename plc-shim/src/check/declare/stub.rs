@@ -22,6 +22,19 @@ impl Declarations<'_> {
         unit.ast.external || unit.membership.is_some_and(|member| self.pou(member.owner).ast.external)
     }
 
+    /// True for a stub and for what is derived from one: members that its interfaces want and that are not declared are
+    /// where the stub's behaviour is.
+    pub(in crate::check) fn rests_on_stub(&self, id: PouId) -> bool {
+        let mut next = Some(id);
+        while let Some(id) = next {
+            if self.pou(id).ast.external {
+                return true;
+            }
+            next = self.base_of(id);
+        }
+        false
+    }
+
     /// Notes a call if what is called has no behaviour.
     pub(in crate::check) fn note_stub(&mut self, callee: PouId, span: Span) {
         if !self.is_external(callee) || self.library.contains(&span.file) {

@@ -257,7 +257,7 @@ impl Body<'_, '_> {
         span: Span,
     ) -> Option<(PouId, Dispatch)> {
         if matches!(known, Known::Exactly | Known::Super) {
-            if self.declarations.is_prototype(method) {
+            if self.declarations.is_prototype(method) && !self.declarations.rests_on_stub(class) {
                 if self.declarations.may_inherit(class) {
                     return None;
                 }
