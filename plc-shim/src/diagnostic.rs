@@ -159,6 +159,7 @@ codes! {
     WrittenByTwoTasks "W0707" "a variable is written by two tasks",
     EndlessLoop "W0709" "a loop is never left",
     StubUsed "W0710" "a stub is called, which does nothing",
+    UncaughtFault "W0711" "a fault within `__TRY` stops the PLC",
 }
 
 impl fmt::Display for Code {

@@ -135,6 +135,7 @@ const PAGES: &[(&str, &str)] = pages![
     "W0708",
     "W0709",
     "W0710",
+    "W0711",
 ];
 
 /// The page that explains `code`, as Markdown.

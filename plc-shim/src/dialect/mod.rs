@@ -274,7 +274,7 @@ features! {
     Blocks "`ORGANIZATION_BLOCK`, `DATA_BLOCK`",
     InstanceInternals "an instance's `VAR` written from outside",
     BitsAsReals "a bit string's number from a REAL, or to one, by a conversion function",
-    EmptyArguments "an input without a value in a call, `IN := ,`",
+    EmptyArguments "an input without a value in a call, `IN := ,` or `F(a, )`",
     WindowsCharacters "characters of Windows-1252 in a STRING, as in `'€'`",
     LeftOutInputs "an input with a value of its own left out of a list without names",
     LooseStrings "a string of another length for a `VAR_IN_OUT`",
@@ -284,6 +284,8 @@ features! {
     InstanceCopies "an instance assigned to another one",
     ReadableInternals "an instance's `VAR` read from outside",
     ProgramInstances "a program called, or its variables used, by its name",
+    ValueStatements "a value as a statement",
+    Exceptions "`__TRY`",
     ShortPrefixes "literals as `W#16#FF`, `L#5`, `S5T#2s`",
     DivOperator "the operator `DIV`",
 }

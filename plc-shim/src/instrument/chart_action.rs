@@ -48,6 +48,7 @@ fn parts(statement: &Statement) -> Vec<&[Statement]> {
             let branches = inner.branches.iter().map(|branch| branch.body.as_slice());
             branches.chain([inner.otherwise.as_slice()]).collect()
         }
+        StatementKind::Try(inner) => vec![&inner.body, &inner.handler, &inner.finally],
         StatementKind::For(inner) => vec![&inner.body],
         StatementKind::While(inner) => vec![&inner.body],
         StatementKind::Repeat(inner) => vec![&inner.body],

@@ -65,6 +65,9 @@ fn is_left(list: &[Statement], inside: Inside) -> bool {
         StatementKind::Case(inner) => {
             inner.branches.iter().any(|branch| is_left(&branch.body, inside)) || is_left(&inner.otherwise, inside)
         }
+        StatementKind::Try(inner) => {
+            [&inner.body, &inner.handler, &inner.finally].into_iter().any(|list| is_left(list, inside))
+        }
         StatementKind::For(inner) => is_left(&inner.body, Inside::AnotherLoop),
         StatementKind::While(inner) => is_left(&inner.body, Inside::AnotherLoop),
         StatementKind::Repeat(inner) => is_left(&inner.body, Inside::AnotherLoop),

@@ -56,6 +56,13 @@ fn ends(kind: &StatementKind, findings: &mut Vec<Diagnostic>) -> bool {
             list_ends(&inner.body, findings);
             false
         }
+        StatementKind::Try(inner) => {
+            let ends = list_ends(&inner.body, findings);
+            list_ends(&inner.handler, findings);
+            list_ends(&inner.finally, findings);
+            // What is done in any case is done behind a RETURN as well.
+            ends && inner.finally.is_empty()
+        }
         _ => false,
     }
 }

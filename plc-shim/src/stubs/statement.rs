@@ -50,6 +50,18 @@ impl<'a> Collector<'a> {
             StatementKind::Call(call) => {
                 self.call(call, false, scope);
             }
+            StatementKind::Value(value) => {
+                self.infer(value, scope);
+            }
+            StatementKind::Try(inner) => {
+                self.statements(&inner.body, scope);
+                if let Some(code) = &inner.code {
+                    let code = self.place(code, Access::Write, scope);
+                    self.flow(&Ty::Integer, &code);
+                }
+                self.statements(&inner.handler, scope);
+                self.statements(&inner.finally, scope);
+            }
             StatementKind::If(inner) => {
                 for branch in &inner.branches {
                     self.condition(&branch.condition, scope);

@@ -25,7 +25,7 @@ pub use instruction::{Instruction, ListCall, When};
 pub use object::{Member, MemberKind, Modifier, Namespace, NamespaceKind, Object};
 pub use statement::{
     CaseBranch, CaseLabel, CaseStatement, ForStatement, IfBranch, IfStatement, RepeatStatement, Statement,
-    StatementKind, UpdateOp, WhileStatement,
+    StatementKind, TryStatement, UpdateOp, WhileStatement,
 };
 
 use crate::dialect::Dialect;

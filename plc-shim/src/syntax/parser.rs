@@ -9,6 +9,7 @@ mod conditional;
 mod configuration;
 mod cursor;
 mod declaration;
+mod exception;
 mod expression;
 mod initialiser;
 mod instruction;

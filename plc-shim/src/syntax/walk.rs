@@ -76,6 +76,13 @@ fn statement(kind: &StatementKind, visitor: &mut impl Visitor) {
             expression(value, visitor);
         }
         StatementKind::Call(inner) => call(inner, visitor),
+        StatementKind::Value(value) => expression(value, visitor),
+        StatementKind::Try(inner) => {
+            branch(&inner.body, visitor);
+            inner.code.iter().for_each(|code| target(code, visitor));
+            branch(&inner.handler, visitor);
+            branch(&inner.finally, visitor);
+        }
         StatementKind::If(inner) => {
             for each in &inner.branches {
                 expression(&each.condition, visitor);

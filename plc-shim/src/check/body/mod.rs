@@ -57,7 +57,7 @@ pub(super) struct Body<'c, 'a> {
     /// Values that elements of a network hand on.
     wires: BTreeMap<String, Place>,
     /// Constants of later sections whose values are being worked out.
-    later: Vec<String>,
+    later: Vec<(PouId, String)>,
     /// How many wires lists of instructions have so far.
     instruction_wires: u32,
 }

@@ -208,6 +208,8 @@ impl Visitor for Body<'_, '_> {
             StatementKind::Update(UpdateOp::Set | UpdateOp::Reset, ..) => {
                 ("assignments S= and R=", "write IF .. THEN a := TRUE; END_IF")
             }
+            StatementKind::Try(_) => ("`__TRY`", "check what may fail before it does"),
+            StatementKind::Value(_) => ("values without a use", "assign it, or leave it out"),
             StatementKind::Instruction(_) => ("instruction lists", "write the body in Structured Text"),
             _ => return,
         };

@@ -28,6 +28,10 @@ pub enum StatementKind {
     Attempt(Expr, Expr),
     /// `fb(IN := x)`
     Call(Call),
+    /// `a.b`: a value that goes nowhere (vendors).
+    Value(Expr),
+    /// `__TRY` (vendors)
+    Try(Box<TryStatement>),
     /// `IF`
     If(IfStatement),
     /// `CASE`
@@ -52,6 +56,19 @@ pub enum StatementKind {
     Instruction(Box<Instruction>),
     /// Text that is no statement; a diagnostic has been given.
     Error,
+}
+
+/// `__TRY … __CATCH(code) … __FINALLY … __ENDTRY` of vendors.
+#[derive(Debug, Clone)]
+pub struct TryStatement {
+    /// What may fail.
+    pub body: Vec<Statement>,
+    /// The variable that gets the failure's code.
+    pub code: Option<Expr>,
+    /// What is done when something fails.
+    pub handler: Vec<Statement>,
+    /// What is done in any case.
+    pub finally: Vec<Statement>,
 }
 
 /// Assignments that depend on what is there already.

@@ -3,6 +3,7 @@
 use onescan_base::ElementaryType;
 
 use super::cursor::Cursor;
+use super::exception::TRY;
 use crate::diagnostic::{Code, Diagnostic};
 use crate::dialect::Feature;
 use crate::source::Span;
@@ -16,6 +17,9 @@ impl Cursor<'_> {
         }
         if let Some(kind) = self.jump() {
             return kind;
+        }
+        if self.at_word(TRY) {
+            return self.try_statement();
         }
         let known = self.reported();
         let target = self.expression_or_target();
@@ -41,6 +45,10 @@ impl Cursor<'_> {
         if let ExprKind::Call(call) = target.kind {
             return StatementKind::Call(call);
         }
+        if self.reported() == known && self.is_value(&target) {
+            self.require(Feature::ValueStatements, target.span);
+            return StatementKind::Value(target);
+        }
         if self.reported() == known {
             if self.at_mark(Punctuation::Equal) || matches!(target.kind, ExprKind::Binary(BinaryOp::Equal, ..)) {
                 let message = "this is a comparison, not an assignment";
@@ -51,6 +59,12 @@ impl Cursor<'_> {
             }
         }
         StatementKind::Error
+    }
+
+    /// True for a place that is a statement by itself. One name alone is what remains of another mistake more often.
+    fn is_value(&self, expr: &Expr) -> bool {
+        self.at_mark(Punctuation::Semicolon)
+            && matches!(expr.kind, ExprKind::Member(..) | ExprKind::Index(..) | ExprKind::Dereference(_))
     }
 
     /// What a statement begins with; of `a++` the name alone.
@@ -147,23 +161,5 @@ impl Cursor<'_> {
         let text = self.next_text();
         let string = || ["STRING", "WSTRING"].iter().any(|name| name.eq_ignore_ascii_case(text));
         self.at_keyword(Keyword::Array) || ElementaryType::find(text).is_some() || string()
-    }
-
-    /// Passes `__TRY`, `__CATCH (x)`, `__FINALLY` and `__ENDTRY`, so that the statements between are read.
-    pub(super) fn pass_exception_word(&mut self) -> bool {
-        const WORDS: [&str; 4] = ["__TRY", "__CATCH", "__FINALLY", "__ENDTRY"];
-        let Some(word) = WORDS.iter().position(|word| self.at_word(word)) else { return false };
-        if word == 0 {
-            let found = Diagnostic::error(Code::VendorRuntime, self.span(), "exceptions are not supported");
-            self.report(found.with_help("a fault stops the PLC"));
-        }
-        self.advance();
-        if word == 1 && self.at_mark(Punctuation::LeftParen) {
-            self.parenthesised();
-        }
-        if word == 3 {
-            self.take_mark(Punctuation::Semicolon);
-        }
-        true
     }
 }

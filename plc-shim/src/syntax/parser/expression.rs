@@ -215,7 +215,13 @@ impl Cursor<'_> {
         }
         loop {
             arguments.extend(self.given_argument());
+            let comma = self.span();
             if !self.take_mark(Punctuation::Comma) {
+                break;
+            }
+            if self.at_mark(Punctuation::RightParen) && self.dialect().has(Feature::EmptyArguments) {
+                // What would stand behind the comma is left as it is.
+                self.require(Feature::EmptyArguments, comma);
                 break;
             }
         }

@@ -44,6 +44,14 @@ impl Cursor<'_> {
             self.advance();
             return self.structure_initialiser();
         }
+        if self.at_mark(Punctuation::LeftParen)
+            && self.peek_ahead(1) == Some(TokenKind::Punctuation(Punctuation::RightParen))
+        {
+            self.require(Feature::EmptyArguments, self.span());
+            self.advance();
+            self.advance();
+            return InitialiserKind::Struct(Vec::new());
+        }
         InitialiserKind::Value(self.expression())
     }
 

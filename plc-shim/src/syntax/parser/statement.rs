@@ -39,14 +39,13 @@ impl Cursor<'_> {
         self.statements_until(|_| false)
     }
 
-    fn statements_until(&mut self, stop: impl Fn(&Self) -> bool) -> Vec<Statement> {
+    pub(super) fn statements_until(&mut self, stop: impl Fn(&Self) -> bool) -> Vec<Statement> {
         let mut list = Vec::new();
         loop {
             match self.peek() {
                 None => return list,
                 Some(TokenKind::Keyword(keyword)) if closes_list(keyword) => return list,
                 _ if stop(self) => return list,
-                Some(TokenKind::Identifier) if self.pass_exception_word() => {}
                 _ => list.push(self.statement()),
             }
         }
@@ -66,7 +65,8 @@ impl Cursor<'_> {
         let kind = self.nested(Self::statement_kind).unwrap_or(StatementKind::Error);
         let span = self.span_from(start);
         // A compound statement that found its end has dealt with the errors inside it.
-        let ended = self.position() > position && self.previous_closes();
+        let closes = self.previous_closes() || matches!(kind, StatementKind::Try(_));
+        let ended = self.position() > position && closes;
         if self.reported() > known && !ended {
             self.recover(position);
         } else if !(self.take_mark(Punctuation::Semicolon) || ended && self.dialect().has(Feature::LooseEnds)) {

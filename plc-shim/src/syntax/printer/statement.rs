@@ -1,7 +1,7 @@
 //! Statements to text.
 
 use super::Printer;
-use crate::syntax::ast::{CaseLabel, CaseStatement, Expr, ForStatement, IfStatement, Statement, StatementKind};
+use crate::syntax::ast::{CaseLabel, CaseStatement, Expr, ForStatement, IfStatement, Statement, StatementKind, TryStatement};
 
 impl Printer {
     pub(super) fn statements(&mut self, list: &[Statement]) {
@@ -58,6 +58,8 @@ impl Printer {
                 self.head(" ?= ", value, "");
             }
             StatementKind::Call(call) => self.call(call),
+            StatementKind::Value(value) => self.expression(value),
+            StatementKind::Try(inner) => self.try_statement(inner),
             StatementKind::If(inner) => self.if_statement(inner),
             StatementKind::Case(inner) => self.case_statement(inner),
             StatementKind::For(inner) => self.for_statement(inner),
@@ -103,6 +105,23 @@ impl Printer {
             self.block(&inner.otherwise, "");
         }
         self.word("END_IF");
+    }
+
+    fn try_statement(&mut self, inner: &TryStatement) {
+        self.word("__TRY");
+        self.block(&inner.body, "");
+        if inner.code.is_some() || !inner.handler.is_empty() {
+            self.word("__CATCH");
+            if let Some(code) = &inner.code {
+                self.head("(", code, ")");
+            }
+            self.block(&inner.handler, "");
+        }
+        if !inner.finally.is_empty() {
+            self.word("__FINALLY");
+            self.block(&inner.finally, "");
+        }
+        self.word("__ENDTRY");
     }
 
     fn case_statement(&mut self, inner: &CaseStatement) {

@@ -87,8 +87,11 @@ impl Body<'_, '_> {
         if let Some(given) = self.other_string(parameter, &place, passing) {
             return given;
         }
-        if place.ty != parameter.ty && !self.derives(place.ty, parameter.ty) && !self.begins_as(place.ty, parameter.ty)
-        {
+        let is_alike = place.ty == parameter.ty
+            || self.derives(place.ty, parameter.ty)
+            || self.begins_as(place.ty, parameter.ty)
+            || self.is_number_of(place.ty, parameter.ty, expr.span);
+        if !is_alike {
             let (wanted, found) = (self.type_name(parameter.ty), self.type_name(place.ty));
             let message = format!("VAR_IN_OUT `{}` is {wanted}, this is {found}", parameter.name);
             self.report(Diagnostic::error(Code::InvalidArgument, expr.span, message));
@@ -117,8 +120,14 @@ impl Body<'_, '_> {
         }
     }
 
+    /// True for an enumeration where the type of its numbers is wanted, as vendors have it.
+    fn is_number_of(&self, found: TypeId, wanted: TypeId, span: Span) -> bool {
+        let base = self.base_of_enumeration(found, span);
+        base.is_some_and(|base| wanted == base.into())
+    }
+
     /// True for a structure that adds to another one: it begins with the members of that.
-    fn begins_as(&self, found: TypeId, wanted: TypeId) -> bool {
+    pub(in crate::check::body) fn begins_as(&self, found: TypeId, wanted: TypeId) -> bool {
         match (self.declarations.types().get(found), self.declarations.types().get(wanted)) {
             (Type::Struct { fields: found, .. }, Type::Struct { fields: wanted, name, .. }) => {
                 let alike = |(one, other): (&Field, &Field)| {
@@ -171,7 +180,7 @@ impl Body<'_, '_> {
     }
 
     /// The variable given for a `REFERENCE TO`.
-    fn referring_argument(&mut self, ty: TypeId, expr: &ast::Expr, passing: &mut Passing) -> Option<Expr> {
+    pub(in crate::check::body) fn referring_argument(&mut self, ty: TypeId, expr: &ast::Expr, passing: &mut Passing) -> Option<Expr> {
         let value = self.referring(ty, expr)?;
         match value.kind {
             ExprKind::Address(place) => {

@@ -90,6 +90,12 @@ impl Body<'_, '_> {
             self.warn_of_loss(&expr, found, wanted);
             return Some(converted(expr, wanted, Rounding::NearestEven));
         }
+        if self.comes_of_narrower(&expr, wanted) {
+            let message = format!("this result is kept in {wanted}, which may be too small for it");
+            let help = format!("{found}_TO_{wanted} says that it is meant");
+            self.report(Diagnostic::warning(Code::LossyConversion, expr.span, message).with_help(help));
+            return Some(converted(expr, wanted, Rounding::NearestEven));
+        }
         let message = format!("{wanted} is wanted, this is {found}");
         let mut report = Diagnostic::error(Code::TypeMismatch, expr.span, message);
         if conversion::is_defined(found, wanted) {

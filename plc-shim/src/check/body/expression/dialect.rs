@@ -9,7 +9,7 @@ use crate::check::types::operand::{Operand, constant, converted};
 use crate::diagnostic::{Code, Diagnostic};
 use crate::dialect::{Dialect, DivisionByZero, Feature};
 use crate::ir::elementary::Kind;
-use crate::ir::{Binary, ElementaryType as E, Expr, ExprKind, Place, Rounding, Storage, Type, Value};
+use crate::ir::{Binary, ElementaryType as E, Expr, ExprKind, Intrinsic, Place, Rounding, Storage, Type, Value};
 use crate::syntax::Span;
 use crate::syntax::ast::{self, BinaryOp, Call, Ident};
 
@@ -108,6 +108,33 @@ impl Body<'_, '_> {
         let sign = dialect.has(Feature::SignChange) && from.is_integer() && to.is_integer();
         let real = dialect.has(Feature::LossyReals) && found.is_number() && wanted.is_real();
         from.widens_to(to) || sign && from.size() <= to.size() || real
+    }
+
+    /// True for the result of an operation on integers none of which is wider than `wanted`: vendors reckon it in more
+    /// bits and let it be assigned.
+    pub(super) fn comes_of_narrower(&self, expr: &Expr, wanted: E) -> bool {
+        let is_integer = |expr: &Expr| self.plain_elementary(expr).is_some_and(|ty| as_number(ty).is_integer());
+        let allowed = self.declarations.dialect(expr.span).has(Feature::SignChange);
+        let is_operation = matches!(expr.kind, ExprKind::Binary(..) | ExprKind::Intrinsic(..));
+        allowed && is_operation && is_integer(expr) && as_number(wanted).is_integer() && self.fits(expr, wanted.size())
+    }
+
+    /// True if no operand has more than `size` bytes before it is made wider for the operation.
+    fn fits(&self, expr: &Expr, size: u32) -> bool {
+        match &expr.kind {
+            ExprKind::Binary(operator, left, right) if !operator.is_comparison() => {
+                self.fits(left, size) && self.fits(right, size)
+            }
+            ExprKind::Convert(_, inner) | ExprKind::Limited(_, _, inner) => self.fits(inner, size),
+            ExprKind::Intrinsic(Intrinsic::Min | Intrinsic::Max, operands) => {
+                operands.iter().all(|each| self.fits(each, size))
+            }
+            ExprKind::Constant(Value::Int(value)) => {
+                let bits = size * 8;
+                (-(1_i128 << (bits - 1))..(1_i128 << bits)).contains(value)
+            }
+            _ => self.declarations.types().elementary(expr.ty).is_some_and(|ty| ty.size() <= size),
+        }
     }
 
     /// Warns of a value that may not be the same one of type `wanted`, which the dialect allows.

@@ -7,7 +7,7 @@ use crate::ir::{ElementaryType, Expr, Type, TypeId};
 use crate::syntax::Span;
 
 impl Body<'_, '_> {
-    fn base_of_enumeration(&self, ty: TypeId, span: Span) -> Option<ElementaryType> {
+    pub(in crate::check::body) fn base_of_enumeration(&self, ty: TypeId, span: Span) -> Option<ElementaryType> {
         match self.declarations.types().get(ty) {
             Type::Enumeration { base, .. } if self.declarations.dialect(span).has(Feature::EnumerationsAsIntegers) => {
                 Some(*base)

@@ -6,9 +6,9 @@ use crate::check::body::{Body, Meant};
 use crate::check::declare::Role;
 use crate::check::types::operand::Operand;
 use crate::diagnostic::{Code, Diagnostic};
-use crate::ir::{Argument, Statement, StatementKind};
+use crate::ir::{Argument, Expr, ExprKind, Statement, StatementKind, Type};
 use crate::syntax::Span;
-use crate::syntax::ast::{self, Ident};
+use crate::syntax::ast::{self, Ident, ReferenceKind};
 
 impl Body<'_, '_> {
     /// The value of a property of the running instance; nothing if the name is none.
@@ -81,6 +81,61 @@ impl Body<'_, '_> {
         Some(object.and_then(|object| self.set(object, name, value, span)))
     }
 
+    /// `property REF= value`: SET gets the reference.
+    pub(in crate::check::body) fn property_referral(
+        &mut self,
+        target: &ast::Expr,
+        value: &ast::Expr,
+        span: Span,
+    ) -> Meant<Statement> {
+        let (object, name) = match &target.kind {
+            ast::ExprKind::Name(name) => (Some(self.own_property_object(name)?), name),
+            ast::ExprKind::Member(base, name) => (self.property_object(base, name)?, name),
+            _ => return None,
+        };
+        let object = object.filter(|object| {
+            self.declarations.find_member(object.class, Role::Setter, &name.text).is_some()
+        })?;
+        Some(self.set_reference(object, name, value, span))
+    }
+
+    fn set_reference(
+        &mut self,
+        object: Object,
+        name: &Ident,
+        value: &ast::Expr,
+        span: Span,
+    ) -> Option<Statement> {
+        let setter = self.declarations.find_member(object.class, Role::Setter, &name.text)?;
+        self.check_method_access(setter, name.span)?;
+        let ty = self.declarations.interface(setter, span)?.inputs().next()?.ty;
+        if !matches!(self.declarations.types().get(ty), Type::Reference { kind: ReferenceKind::Reference, .. }) {
+            let message = format!("`REF=` is for REFERENCE TO, this is {}", self.type_name(ty));
+            self.report(Diagnostic::error(Code::NotAReference, name.span, message));
+            return None;
+        }
+        let mut passing = Passing::default();
+        let argument = self.referring_argument(ty, value, &mut passing)?;
+        let arguments = vec![Argument::Value(argument)];
+        let call = self.on_object(object, Role::Setter, setter, arguments, passing, span)?;
+        Some(Statement { kind: StatementKind::Evaluate(call), span })
+    }
+
+    /// `property := value` where the property gives a reference: the value goes to what that refers to.
+    fn written_through(&mut self, object: &Object, name: &Ident, value: &ast::Expr, span: Span) -> Meant<Statement> {
+        let getter = self.declarations.find_member(object.class, Role::Getter, &name.text)?;
+        let scope = self.declarations.interface(getter, span)?;
+        let ty = scope.result()?.ty;
+        let Type::Reference { kind: ReferenceKind::Reference, .. } = self.declarations.types().get(ty) else {
+            return None;
+        };
+        let Operand::Typed(Expr { kind: ExprKind::Load(place), .. }) = self.value(object.clone(), name)? else {
+            return Some(None);
+        };
+        let value = self.expression_for(value, place.ty);
+        Some(value.map(|value| self.assignment(place, value, span)))
+    }
+
     pub(in crate::check::body) fn set(
         &mut self,
         object: Object,
@@ -88,6 +143,9 @@ impl Body<'_, '_> {
         value: &ast::Expr,
         span: Span,
     ) -> Option<Statement> {
+        if let Some(found) = self.written_through(&object, name, value, span) {
+            return found;
+        }
         let Some(setter) = self.declarations.find_member(object.class, Role::Setter, &name.text) else {
             return self.lacks(name, "SET");
         };

@@ -81,6 +81,9 @@ impl Body<'_, '_> {
                 if let Some(found) = self.property_of(base, name) {
                     return found;
                 }
+                if let Some(found) = self.constant_of_unit(base, name) {
+                    return found;
+                }
                 if let Some(qualified) = self.qualified_name(expr)
                     && let Meaning::Value(value) = self.meaning(&qualified)?
                 {

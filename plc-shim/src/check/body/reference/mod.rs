@@ -269,6 +269,9 @@ impl Body<'_, '_> {
 impl Body<'_, '_> {
     /// `a REF= b`
     pub(super) fn refer(&mut self, target: &ast::Expr, value: &ast::Expr, span: Span) -> Option<Statement> {
+        if let Some(found) = self.property_referral(target, value, span) {
+            return found;
+        }
         let place = self.declared_place(target)?.place;
         let Type::Reference { kind: ReferenceKind::Reference, .. } = self.declarations.types().get(place.ty) else {
             let message = format!("`REF=` is for REFERENCE TO, this is {}", self.type_name(place.ty));
@@ -304,7 +307,7 @@ impl Body<'_, '_> {
         let located = self.place(value)?;
         self.reject_constant(&located, value.span)?;
         let place = located.place;
-        if place.ty != target && !self.derives(place.ty, target) {
+        if place.ty != target && !self.derives(place.ty, target) && !self.begins_as(place.ty, target) {
             let (target, found) = (self.type_name(target), self.type_name(place.ty));
             return self.mismatch(&target, &found, value.span);
         }

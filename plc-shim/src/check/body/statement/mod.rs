@@ -1,6 +1,7 @@
 //! Statements (2nd ed. 3.3.2).
 
 pub(super) mod assignment;
+mod exception;
 pub(super) mod instruction;
 pub(super) mod jump;
 pub(super) mod wire;
@@ -62,6 +63,8 @@ impl Body<'_, '_> {
             ast::StatementKind::Refer(target, value) => return self.refer(target, value, span),
             ast::StatementKind::Attempt(target, value) => return self.attempt(target, value, span),
             ast::StatementKind::Call(call) => self.call_statement(call, span)?,
+            ast::StatementKind::Value(value) => self.value_statement(value)?,
+            ast::StatementKind::Try(inner) => self.try_statement(inner, span),
             ast::StatementKind::If(inner) => self.if_statement(inner),
             ast::StatementKind::Case(inner) => self.case_statement(inner)?,
             ast::StatementKind::For(inner) => self.for_statement(inner)?,
