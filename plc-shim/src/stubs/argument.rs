@@ -12,11 +12,13 @@ impl<'a> Collector<'a> {
         let inputs = list.iter().filter(|argument| !matches!(argument, Argument::Output { .. })).count();
         signature.fewest = Some(signature.fewest.map_or(inputs, |known| known.min(inputs)));
         let mut given = 0;
+        let mut nameless = 0;
         for argument in list {
             let position = given;
             given += usize::from(!matches!(argument, Argument::Output { .. }));
             match argument {
                 Argument::Positional(value) => {
+                    nameless = position + 1;
                     let found = self.infer(value, scope);
                     let is_place = is_place(value);
                     while signature.positional.len() <= position {
@@ -33,12 +35,14 @@ impl<'a> Collector<'a> {
                     let found = self.infer(value, scope);
                     let slot = self.slots.of(&format!("{path}.{}", name.text));
                     let is_place = is_place(value);
-                    let known = signature.named.iter_mut().find(|(known, _)| known.eq_ignore_ascii_case(&name.text));
-                    if let Some((_, known)) = known {
-                        known.is_place &= is_place;
+                    let known = signature.named.iter_mut().find(|known| known.name.eq_ignore_ascii_case(&name.text));
+                    if let Some(known) = known {
+                        known.argument.is_place &= is_place;
+                        known.behind = known.behind.max(nameless);
                     } else {
                         let argument = foreign::Argument { slot, is_place };
-                        signature.named.push((name.text.clone(), argument));
+                        let name = name.text.clone();
+                        signature.named.push(foreign::Named { name, argument, behind: nameless });
                     }
                     self.flow(&found, &Ty::Slot(slot));
                 }

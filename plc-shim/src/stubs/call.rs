@@ -432,7 +432,13 @@ impl<'a> Collector<'a> {
                 }
                 elementary(E::Int)
             }
-            "CONCAT" | "LEFT" | "RIGHT" | "MID" | "INSERT" | "DELETE" | "REPLACE" => {
+            "CONCAT" | "INSERT" | "REPLACE" => {
+                for value in values.iter().take(2) {
+                    self.flow(value, &Ty::Text(false));
+                }
+                Ty::Text(false)
+            }
+            "LEFT" | "RIGHT" | "MID" | "DELETE" => {
                 self.flow(&first, &Ty::Text(false));
                 Ty::Text(false)
             }
@@ -462,7 +468,19 @@ impl<'a> Collector<'a> {
             "LTIME" => elementary(E::Ltime),
             "ABS" | "MOVE" | "SHL" | "SHR" | "ROL" | "ROR" => first,
             "TRUNC" => elementary(E::Dint),
-            "__ISVALIDREF" | "__QUERYINTERFACE" | "__QUERYPOINTER" | "GT" | "GE" | "EQ" | "LE" | "LT" | "NE" => {
+            "__QUERYINTERFACE" | "__QUERYPOINTER" => {
+                // What is asked is an interface, and what answers may be one.
+                for value in values {
+                    if let Ty::Slot(slot) = value {
+                        self.slots.use_parts(*slot);
+                        if key == "__QUERYINTERFACE" || *value == first {
+                            self.slots.make_value(*slot);
+                        }
+                    }
+                }
+                elementary(E::Bool)
+            }
+            "__ISVALIDREF" | "GT" | "GE" | "EQ" | "LE" | "LT" | "NE" => {
                 elementary(E::Bool)
             }
             _ => Ty::Unknown,

@@ -23,6 +23,8 @@ impl<'a> Collector<'a> {
     fn typed(&mut self, expr: &Expr, access: Access, scope: &Scope<'a>) -> Ty {
         match &expr.kind {
             ExprKind::Literal(literal) => self.literal(literal, expr, scope),
+            // A wire of a network is declared nowhere, and has the type of what it is given.
+            ExprKind::Name(name) if name.text.starts_with('`') => Ty::Unknown,
             ExprKind::Name(name) => self.name(name, access, scope),
             ExprKind::DirectAddress(_) | ExprKind::Error => Ty::Unknown,
             ExprKind::Member(base, name) => self.member_expression(expr, base, name, access, scope),

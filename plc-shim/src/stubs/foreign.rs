@@ -10,13 +10,45 @@ pub(super) struct Signature {
     /// What is given without a name, by position.
     pub(super) positional: Vec<Argument>,
     /// `a := x`, in the order in which they were found first.
-    pub(super) named: Vec<(String, Argument)>,
+    pub(super) named: Vec<Named>,
     /// `b => y`
     pub(super) outputs: Vec<(String, Slot)>,
     /// The result is used.
     pub(super) is_used: bool,
     /// How many arguments the call gives that gives the fewest.
     pub(super) fewest: Option<usize>,
+}
+
+impl Signature {
+    /// The parameters by their places: calls with names tell the names, others the number. A place that no name can
+    /// have has one from its number.
+    pub(super) fn in_order(&self) -> Vec<(String, Argument)> {
+        let mut open: Vec<&Named> = self.named.iter().collect();
+        let mut given: Vec<(String, Argument)> = Vec::new();
+        loop {
+            let place = given.len();
+            let next = open.iter().position(|named| named.behind <= place).map(|index| open.remove(index));
+            match (next, self.positional.get(place)) {
+                (Some(named), _) => given.push((named.name.clone(), named.argument)),
+                (None, Some(argument)) => given.push((format!("p{}", place + 1), *argument)),
+                // What stands behind all places stands there in its order.
+                (None, None) if open.is_empty() => return given,
+                (None, None) => {
+                    let named = open.remove(0);
+                    given.push((named.name.clone(), named.argument));
+                }
+            }
+        }
+    }
+}
+
+/// A parameter that calls name.
+#[derive(Debug, Clone)]
+pub(super) struct Named {
+    pub(super) name: String,
+    pub(super) argument: Argument,
+    /// So many arguments without names stand before it: its place is not one of theirs.
+    pub(super) behind: usize,
 }
 
 /// What is given for a parameter.

@@ -35,20 +35,29 @@ const FLAGS: [&str; 10] =
 
 /// The type that a name hints at; DINT if it does not.
 pub(super) fn of_name(name: &str) -> Ty {
+    told(name).unwrap_or(Ty::Elementary(E::Dint))
+}
+
+/// True for a name that hints at a type.
+pub(super) fn tells(name: &str) -> bool {
+    told(name).is_some()
+}
+
+fn told(name: &str) -> Option<Ty> {
     let name = name.trim_start_matches('_');
     for (prefix, wide) in [("s", false), ("str", false), ("ws", true)] {
         if begins(name, prefix) {
-            return Ty::Text(wide);
+            return Some(Ty::Text(wide));
         }
     }
     if FLAGS.iter().any(|flag| name.eq_ignore_ascii_case(flag))
         || capitals_after(name, "Is")
         || capitals_after(name, "Has")
     {
-        return Ty::Elementary(E::Bool);
+        return Some(Ty::Elementary(E::Bool));
     }
     let found = PREFIXES.iter().find(|(prefix, _)| begins(name, prefix));
-    Ty::Elementary(found.map_or(E::Dint, |(_, ty)| *ty))
+    found.map(|(_, ty)| Ty::Elementary(*ty))
 }
 
 /// The type of what is compared with an integer or is given one: that of the name, if it is one for integers.

@@ -362,7 +362,7 @@ impl<'a> Collector<'a> {
 /// The names of `a.b.c`, if it is nothing else.
 pub(super) fn path_of(expr: &Expr) -> Option<Vec<&Ident>> {
     match &expr.kind {
-        ExprKind::Name(name) => Some(vec![name]),
+        ExprKind::Name(name) => (!name.text.starts_with('`')).then(|| vec![name]),
         ExprKind::Member(base, name) => {
             let mut path = path_of(base)?;
             path.push(name);

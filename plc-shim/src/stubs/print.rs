@@ -246,7 +246,11 @@ impl Printer<'_, '_> {
             if let Some(method) = self.heir(key, Part::Method, name) {
                 others.push_str(&self.copied_method(method));
             } else if let Some(property) = self.heir(key, Part::Property, name) {
-                let ty = property.result.as_ref().map_or("DINT".to_owned(), |spec| self.copied(spec));
+                let mut ty = property.result.as_ref().map_or("DINT".to_owned(), |spec| self.copied(spec));
+                let is_copy = member.written_below && !ty.to_ascii_uppercase().starts_with("REFERENCE");
+                if is_copy && !member.written_inside && !member.written_outside {
+                    ty = format!("REFERENCE TO {ty}");
+                }
                 others.push_str(&property_text(name, &ty, true, true));
             } else if let Some((signature, result)) = member.called.as_ref().filter(|_| self.is_method(member)) {
                 others.push_str(&self.method(name, signature, *result));
@@ -255,7 +259,9 @@ impl Printer<'_, '_> {
                 let _ = writeln!(constants, "    {name} : DINT := {number};");
             } else {
                 let ty = self.slot_text(member.field, name);
-                if member.via_super || member.written_inside && member.written_outside {
+                if member.via_super && member.written_below {
+                    others.push_str(&property_text(name, &format!("REFERENCE TO {ty}"), true, false));
+                } else if member.via_super || member.written_inside && member.written_outside {
                     others.push_str(&property_text(name, &ty, true, true));
                 } else if member.written_below && member.written_inside {
                     others.push_str(&property_text(name, &format!("REFERENCE TO {ty}"), true, false));

@@ -56,6 +56,9 @@ impl Collector<'_> {
 
     /// Nothing of it is used but the value as a whole.
     fn by_value(&self, found: &Foreign) -> Shape {
+        if let Some(plain) = self.plain_value(found) {
+            return Shape::Alias(plain);
+        }
         if let Some(slot) = found.value {
             match self.slots.decided(slot) {
                 Some(Ty::Declared(key)) if self.world.units.contains_key(key) => return Shape::Interface,
@@ -71,5 +74,26 @@ impl Collector<'_> {
             Some(TypeHint::Enumeration) => Shape::Enumeration,
             _ => Shape::Structure,
         }
+    }
+
+    /// The plain type of a type whose values are numbers, times or strings, be it by way of other types that nobody
+    /// declares.
+    fn plain_value(&self, found: &Foreign) -> Option<Ty> {
+        let mut seen = std::collections::BTreeSet::new();
+        let mut open = vec![found];
+        let mut literal = None;
+        while let Some(next) = open.pop() {
+            let Some(slot) = next.value.filter(|slot| seen.insert(*slot)) else { continue };
+            for ty in self.slots.evidence(slot) {
+                match ty {
+                    Ty::Elementary(_) | Ty::Text(_) => return Some(ty),
+                    Ty::Real => literal = Some(Ty::Elementary(hint::real(&found.name))),
+                    Ty::Integer if literal.is_none() => literal = Some(hint::integer(&found.name)),
+                    Ty::Foreign(key) => open.extend(self.needs.types.get(&key).filter(|each| each.members.is_empty())),
+                    _ => {}
+                }
+            }
+        }
+        literal
     }
 }

@@ -28,7 +28,7 @@ impl<'c> Printer<'c, '_> {
             }
             (None, None) => return String::new(),
         };
-        signature.named.retain(|(name, _)| !INIT_INPUTS.iter().any(|known| known.eq_ignore_ascii_case(name)));
+        signature.named.retain(|named| !INIT_INPUTS.iter().any(|known| known.eq_ignore_ascii_case(&named.name)));
         let count = signature.named.len().max(signature.positional.len());
         let inputs = |method: &Pou| {
             let sections = method.sections.iter().filter(|section| section.kind == SectionKind::Input);
@@ -116,11 +116,7 @@ impl<'c> Printer<'c, '_> {
 
     pub(super) fn parameters(&self, signature: &Signature) -> String {
         let mut text = String::new();
-        let mut given: Vec<(String, Argument)> = signature.named.clone();
-        // Named calls give names, others the number of parameters.
-        for argument in signature.positional.iter().skip(given.len()) {
-            given.push((format!("p{}", given.len() + 1), *argument));
-        }
+        let given = signature.in_order();
         let mut section = "";
         for (index, (name, argument)) in given.iter().enumerate() {
             let mut all = vec![*argument];

@@ -55,6 +55,12 @@ struct Evidence {
     decided: Option<Ty>,
 }
 
+impl Evidence {
+    fn all(&self) -> impl Iterator<Item = &Ty> {
+        self.from.iter().chain(&self.to).chain(&self.beside)
+    }
+}
+
 /// The bounds of an array of which only elements are known.
 pub(super) const ANY_BOUNDS: &str = "0..255";
 
@@ -157,7 +163,9 @@ impl Slots {
         let (from, to, beside) = (resolved(&each.from), resolved(&each.to), resolved(&each.beside));
         let in_order = || to.iter().chain(&from).chain(&beside);
         let named = |ty: &&Ty| matches!(ty, Ty::Declared(_) | Ty::Foreign(_));
-        if let Some(found) = in_order().find(named) {
+        // What is indexed is no instance, whatever it is given.
+        let is_indexed = in_order().any(|ty| matches!(ty, Ty::Array(..)));
+        if let Some(found) = in_order().find(named).filter(|_| !is_indexed) {
             return Some(found.clone());
         }
         if each.has_parts {
@@ -187,27 +195,56 @@ impl Slots {
         elementary_of(&elementary(&from), &elementary(&to), &elementary(&beside)).map(Ty::Elementary)
     }
 
-    /// What is written where the evidence decides nothing more: what literals and the name say.
+    /// What is written where the evidence decides nothing more: what literals and the names say, its own and those of
+    /// what is linked with it.
     pub(super) fn last_choice(&self, slot: Slot) -> Ty {
         if let Some(decided) = self.decided(slot) {
             return decided.clone();
         }
-        let Some(each) = self.all.get(slot.0) else { return Ty::Elementary(ElementaryType::Dint) };
-        let all = || each.from.iter().chain(&each.to).chain(&each.beside);
-        if all().any(|ty| *ty == Ty::Real) {
-            return Ty::Elementary(hint::real(&each.name));
+        let linked = self.linked(slot);
+        let has = |wanted: &Ty| linked.iter().any(|each| each.all().any(|ty| ty == wanted));
+        let name = |each: &&&Evidence| hint::tells(&each.name);
+        let telling = linked.iter().find(name).or(linked.first()).map_or("", |each| each.name.as_str());
+        if has(&Ty::Real) {
+            return Ty::Elementary(hint::real(telling));
         }
-        if all().any(|ty| *ty == Ty::Integer) {
-            return hint::integer(&each.name);
+        if has(&Ty::Integer) {
+            return hint::integer(telling);
         }
-        hint::of_name(&each.name)
+        hint::of_name(telling)
+    }
+
+    /// What is known of a slot and of all undecided ones that it is linked with, itself first.
+    fn linked(&self, slot: Slot) -> Vec<&Evidence> {
+        let mut found = Vec::new();
+        let mut seen = std::collections::BTreeSet::new();
+        let mut open = std::collections::VecDeque::from([slot]);
+        while let Some(next) = open.pop_front() {
+            let Some(each) = self.all.get(next.0).filter(|each| each.decided.is_none()) else { continue };
+            if seen.insert(next) {
+                found.push(each);
+                open.extend(each.all().filter_map(|ty| if let Ty::Slot(slot) = ty { Some(*slot) } else { None }));
+            }
+        }
+        found
+    }
+
+    /// Everything that a slot is known to meet.
+    pub(super) fn evidence(&self, slot: Slot) -> impl Iterator<Item = Ty> + '_ {
+        self.all.get(slot.0).into_iter().flat_map(|each| each.all().map(|ty| self.resolved(ty)))
     }
 
     /// True if what is given for a parameter has no type in common.
     pub(super) fn is_mixed(&self, slot: Slot) -> bool {
         let Some(each) = self.all.get(slot.0) else { return false };
-        let groups = each.from.iter().filter_map(|ty| group(&self.resolved(ty)));
-        let mut groups: Vec<String> = groups.collect();
+        let resolved: Vec<Ty> = each.from.iter().map(|ty| self.resolved(ty)).collect();
+        let has = |test: fn(ElementaryType) -> bool| {
+            resolved.iter().any(|ty| matches!(ty, Ty::Elementary(found) if test(*found)))
+        };
+        if has(ElementaryType::is_real) && has(ElementaryType::is_bits) {
+            return true;
+        }
+        let mut groups: Vec<String> = resolved.iter().filter_map(group).collect();
         groups.sort();
         groups.dedup();
         groups.len() > 1

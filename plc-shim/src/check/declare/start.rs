@@ -5,7 +5,7 @@
 //! initial value ([`TypedImage`](super::entry::TypedImage)). What belongs to a unit's own variables becomes a
 //! function of the unit, so that each instance, wherever it lies, is started by one call.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 use super::Declarations;
@@ -131,14 +131,28 @@ impl Declarations<'_> {
 
     /// True if variables of the unit, or of its bases, have something to do.
     fn has_inner(&self, id: PouId, occasion: Occasion) -> bool {
-        let own = self.pou(id).starts.iter().any(|start| self.acts(start, occasion));
-        own || self.base_of(id).is_some_and(|base| self.has_inner(base, occasion))
+        self.inner_acts(id, occasion, &mut BTreeSet::new())
+    }
+
+    /// `seen` are units that are being looked at: one that contains itself has been reported.
+    fn inner_acts(&self, id: PouId, occasion: Occasion, seen: &mut BTreeSet<PouId>) -> bool {
+        if !seen.insert(id) {
+            return false;
+        }
+        let own = self.pou(id).starts.iter().any(|start| self.start_acts(start, occasion, seen));
+        own || self.base_of(id).is_some_and(|base| self.inner_acts(base, occasion, seen))
     }
 
     pub(in crate::check) fn acts(&self, start: &Start<'_>, occasion: Occasion) -> bool {
+        self.start_acts(start, occasion, &mut BTreeSet::new())
+    }
+
+    fn start_acts(&self, start: &Start<'_>, occasion: Occasion, seen: &mut BTreeSet<PouId>) -> bool {
         match &start.kind {
-            StartKind::Instance(pou, _) => self.instance_acts(*pou, occasion),
-            StartKind::Each { starts, .. } => starts.iter().any(|start| self.acts(start, occasion)),
+            StartKind::Instance(pou, _) => {
+                self.inner_acts(*pou, occasion, seen) || self.has_hook(*pou, occasion)
+            }
+            StartKind::Each { starts, .. } => starts.iter().any(|start| self.start_acts(start, occasion, seen)),
             _ => occasion == Occasion::Start,
         }
     }
