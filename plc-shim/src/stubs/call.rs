@@ -90,10 +90,11 @@ impl<'a> Collector<'a> {
     }
 
     fn function_call(&mut self, name: &str, call: &Call, is_used: bool, scope: &Scope<'a>) -> Ty {
+        let types = self.given(&call.arguments, scope);
         let found = self.function(name);
         let (result, mut signature) = (found.result, found.signature.clone());
         signature.is_used |= is_used;
-        self.arguments(&mut signature, &format!("{name}()"), &call.arguments, scope);
+        self.arguments(&mut signature, &format!("{name}()"), &call.arguments, &types);
         self.function(name).signature = signature;
         Ty::Slot(result)
     }
@@ -240,6 +241,8 @@ impl<'a> Collector<'a> {
 
     /// A method of a type that nobody declares.
     fn method_of(&mut self, key: &str, name: &Ident, call: &Call, is_used: bool, scope: &Scope<'a>) -> Ty {
+        let home = self.needs.relations.home(key, &name.text).to_owned();
+        let key = home.as_str();
         // What has members of its own is an instance.
         let shown = self.foreign(key).name.clone();
         let field = self.foreign(key).member(&name.text).field;
@@ -248,13 +251,14 @@ impl<'a> Collector<'a> {
         {
             return self.instance_call(&Ty::Slot(field), call, scope);
         }
+        let types = self.given(&call.arguments, scope);
         let path = format!("{shown}.{}()", name.text);
         let result = self.slots.of(&path);
         self.slots.make_value(result);
         let known = self.foreign(key).member(&name.text).called.take();
         let mut signature = known.map(|(signature, _)| signature).unwrap_or_default();
         signature.is_used |= is_used;
-        self.arguments(&mut signature, &path, &call.arguments, scope);
+        self.arguments(&mut signature, &path, &call.arguments, &types);
         self.foreign(key).member(&name.text).called = Some((signature, result));
         Ty::Slot(result)
     }

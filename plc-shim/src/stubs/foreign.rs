@@ -175,4 +175,38 @@ pub(super) struct Needs {
     /// Types of libraries whose names the project has for units of its own.
     pub(super) shadowed: BTreeSet<String>,
     pub(super) heads: BTreeMap<String, Head>,
+    /// What an earlier pass has found of types and the interfaces that they stand for, with those ones' members.
+    pub(super) relations: Relations,
+}
+
+/// Types and the interfaces that they stand for.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub(super) struct Relations {
+    pub(super) stands_for: BTreeMap<String, BTreeSet<String>>,
+    /// Members of each interface that something stands for.
+    pub(super) members: BTreeMap<String, BTreeSet<String>>,
+}
+
+impl Relations {
+    pub(super) fn of(types: &BTreeMap<String, Foreign>) -> Self {
+        let mut found = Self::default();
+        for (key, each) in types.iter().filter(|(_, each)| !each.stands_for.is_empty()) {
+            found.stands_for.insert(key.clone(), each.stands_for.clone());
+            for interface in &each.stands_for {
+                let members = types.get(interface).map(|each| each.members.keys().cloned().collect());
+                found.members.insert(interface.clone(), members.unwrap_or_default());
+            }
+        }
+        found
+    }
+
+    /// The interface above a type that has the member; the type itself if none has.
+    pub(super) fn home<'k>(&'k self, key: &'k str, member: &str) -> &'k str {
+        let above = self.stands_for.get(key).into_iter().flatten();
+        let member = member.to_ascii_uppercase();
+        let mut has = above.filter(|each| self.members.get(*each).is_some_and(|members| members.contains(&member)));
+        // Two that stand for each other agree on one of them.
+        has.find(|each| !self.stands_for.get(*each).is_some_and(|back| back.contains(key)) || each.as_str() < key)
+            .map_or(key, String::as_str)
+    }
 }

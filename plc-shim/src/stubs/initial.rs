@@ -50,8 +50,9 @@ impl<'a> Collector<'a> {
                 continue;
             };
             let path = format!("{key}.FB_init");
+            let types = self.given(list, scope);
             let mut signature = self.foreign(key).init.take().unwrap_or_default();
-            self.arguments(&mut signature, &path, list, scope);
+            self.arguments(&mut signature, &path, list, &types);
             self.foreign(key).init = Some(signature);
         }
     }

@@ -103,7 +103,8 @@ fn infer(collector: &mut Collector<'_>) {
         collector.pass();
         collector.type_constants();
         let heads = collector.needs.heads.clone();
-        let is_new = before.as_deref() != Some(&format!("{heads:?}"));
+        let related = foreign::Relations::of(&collector.needs.types);
+        let is_new = before.as_deref() != Some(&format!("{heads:?}")) || related != collector.needs.relations;
         collector.known = Some(heads);
         if !collector.slots.decide() && !is_new && !name_anonymous(collector) {
             return;
@@ -113,6 +114,7 @@ fn infer(collector: &mut Collector<'_>) {
 
 /// What outlives a pass: heads, and types that have got their names here.
 fn fresh(needs: Needs) -> Needs {
+    let relations = foreign::Relations::of(&needs.types);
     let types = needs.types.into_iter().filter(|(_, each)| each.is_anonymous).map(|(key, each)| {
         let kept = Foreign {
             name: each.name,
@@ -125,6 +127,7 @@ fn fresh(needs: Needs) -> Needs {
     });
     Needs {
         types: types.collect(),
+        relations,
         heads: needs.heads,
         libraries: needs.libraries,
         shadowed: needs.shadowed,

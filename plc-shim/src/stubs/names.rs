@@ -213,6 +213,8 @@ impl<'a> Collector<'a> {
     }
 
     pub(super) fn foreign_member(&mut self, key: &str, name: &Ident, access: Access, inside: bool) -> Ty {
+        let home = self.needs.relations.home(key, &name.text).to_owned();
+        let key = home.as_str();
         let shown = self.foreign(key).name.clone();
         let slot = self.slots.of(&format!("{shown}.{}", name.text));
         let is_value = {

@@ -5,7 +5,7 @@ use wasm_encoder::{BlockType, Ieee32, Ieee64, Instruction, ValType};
 use super::emitter::{Emitter, value_type};
 use crate::compile::analyse::{Address, Base, INSTANCE, constant_index};
 use crate::compile::fault::FaultKind;
-use crate::ir::{ElementaryType, Expr, Place, Step, Storage};
+use crate::ir::{ElementaryType, Expr, Place, Step, Storage, Type, TypeId};
 use crate::syntax::Span;
 
 /// What an index of an array runs through.
@@ -30,11 +30,17 @@ impl Emitter<'_, '_> {
     /// Pushes an address; the place lies at the returned offset from it.
     pub(crate) fn address(&mut self, place: &Place) -> u64 {
         let mut on = self.storage(place.storage);
-        for step in &place.steps {
+        let mut is_element = false;
+        for (index, step) in place.steps.iter().enumerate() {
             match step {
                 Step::Offset(further) => on.offset += u64::from(*further),
                 Step::Pointer { address, target } => {
-                    self.referred(address, *target, place.span);
+                    is_element = self.leads_to_element(*target, place.steps.get(index + 1));
+                    if is_element {
+                        self.referred_bytes(address, 0, place.span);
+                    } else {
+                        self.referred(address, *target, place.span);
+                    }
                     on.pushed = true;
                 }
                 Step::Open { description, indices, stride } => {
@@ -58,7 +64,17 @@ impl Emitter<'_, '_> {
         if !on.pushed {
             self.emit(Instruction::I32Const(0));
         }
+        if is_element {
+            self.ends_in_memory(on.offset + u64::from(self.size_of(place.ty)), place.span);
+        }
         on.offset
+    }
+
+    /// True for the element of an array that a pointer leads to. The array may be declared greater than what is there,
+    /// as `POINTER TO ARRAY [0..32000] OF REAL` is for an array of any length.
+    fn leads_to_element(&self, target: TypeId, next: Option<&Step>) -> bool {
+        let is_array = matches!(self.scope().types().get(target), Type::Array { .. });
+        is_array && matches!(next, Some(Step::Index { .. } | Step::Offset(_)))
     }
 
     /// Pushes what stands in a register or in memory of the address that a variable begins at.

@@ -19,7 +19,7 @@ impl Body<'_, '_> {
     ) -> Option<Argument> {
         let has_default =
             !self.is_open(parameter.ty) && !self.is_instance_type(parameter.ty) && !self.is_generic(parameter.ty);
-        let optional = named || self.has_own_value(parameter);
+        let optional = named || self.has_own_value(parameter, span);
         match self.elementary(parameter.ty) {
             Some(ty) if optional && parameter.section == SectionKind::Input => {
                 let value = constant(decode(ty, &parameter.image), ty, span);
@@ -35,10 +35,10 @@ impl Body<'_, '_> {
     }
 
     /// True for an input whose declaration gives a value: with vendors it may be left out of a list without names.
-    fn has_own_value(&self, parameter: &Variable) -> bool {
-        let Some(owner) =
-            parameter.owner.filter(|_| self.declarations.dialect(parameter.span).has(Feature::LeftOutInputs))
-        else {
+    fn has_own_value(&self, parameter: &Variable, call: Span) -> bool {
+        let is_allowed = |at: Span| self.declarations.dialect(at).has(Feature::LeftOutInputs);
+        // The caller may be of such a dialect, or what it calls: stubs are plain text.
+        let Some(owner) = parameter.owner.filter(|_| is_allowed(parameter.span) || is_allowed(call)) else {
             return false;
         };
         let mut declared = self.declarations.pou(owner).ast().sections.iter().flat_map(|section| &section.variables);

@@ -390,6 +390,7 @@ impl Body<'_, '_> {
             return self.report_unknown_member(base.place.ty, name, &names);
         };
         let access = match variable.section {
+            SectionKind::Input if variable.is_constant && !self.is_own_instance(pou) => Access::ReadWrite,
             _ if variable.is_constant && self.may_see(variable) => Access::Constant,
             _ if base.access == Access::Chart => Access::Chart,
             _ if self.is_own_instance(pou) => Access::ReadWrite,
