@@ -7,7 +7,10 @@
 //! A dialect belongs to a file, so that a library of one may be used by a program of another. The
 //! lexer, the parser and the checker ask the table; `docs/dialects.md` shows it.
 
+mod pragma;
 pub mod table;
+
+pub(crate) use pragma::Chosen;
 
 use std::path::Path;
 

@@ -38,7 +38,7 @@ use self::kind::SourceKind;
 use self::project::{Listed, Listing};
 use self::xml::XmlError;
 use crate::diagnostic::{Code, Diagnostic};
-use crate::dialect::Dialect;
+use crate::dialect::{Chosen, Dialect};
 use crate::source::origin::Extract;
 use crate::syntax::{FileId, SourceFile, SourceMap, Span};
 
@@ -73,8 +73,9 @@ impl Input {
                 if let Some(foreign) = foreign::recognise(&text) {
                     return Self::holding_no_program(name, &text, foreign);
                 }
-                let file = SourceFile::new(name, text).in_dialect(Dialect::of_file(name));
-                return Self { file, encoding: None, diagnostics: Vec::new() };
+                let (dialect, diagnostics) = dialect_of(name, &text);
+                let file = SourceFile::new(name, text).in_dialect(dialect);
+                return Self { file, encoding: None, diagnostics };
             }
             SourceKind::TwinCat => twincat::extract(&text),
             SourceKind::PlcOpen => plcopen::extract(&text),
@@ -184,6 +185,18 @@ impl Taken {
                 xml::Node::Reference(character, span) => self.extract.instead(&character.to_string(), span.clone()),
                 xml::Node::Element(_) => {}
             }
+        }
+    }
+}
+
+/// The dialect that plain text names itself, or else the one of its file's name.
+fn dialect_of(name: &str, text: &str) -> (Dialect, Vec<Diagnostic>) {
+    match Chosen::in_text(text) {
+        Chosen::Dialect(dialect) => (dialect, Vec::new()),
+        Chosen::Nothing => (Dialect::of_file(name), Vec::new()),
+        Chosen::Unknown(error, place) => {
+            let span = Span::new(UNNUMBERED, place.start, place.end);
+            (Dialect::of_file(name), vec![Diagnostic::error(Code::WrongDialect, span, error.to_string())])
         }
     }
 }

@@ -41,6 +41,7 @@ use self::foreign::{Foreign, Needs};
 use self::ty::{Slots, Ty};
 use self::world::World;
 use crate::application::{Parsed, with_room};
+use crate::dialect::Dialect;
 use crate::input::Input;
 use crate::input::kind::SourceKind;
 
@@ -69,7 +70,7 @@ pub struct Stubs {
 
 /// The stubs that `inputs` need, beside those of the text that is there already.
 pub fn write(inputs: &[Input], present: Option<&str>) -> Stubs {
-    let first = present.map_or_else(|| format!("{MARK}\n{HEAD}"), str::to_owned);
+    let first = present.map_or_else(|| format!("{MARK}\n{HEAD}{}", pragma(inputs)), str::to_owned);
     let mut stubs = Stubs { text: first, added: 0 };
     with_room(|| {
         for _ in 0..MAX_ROUNDS {
@@ -82,6 +83,16 @@ pub fn write(inputs: &[Input], present: Option<&str>) -> Stubs {
         }
     });
     stubs
+}
+
+/// Stubs are read in the dialect of the project, which says what a STRING is; what most of its files have is that.
+fn pragma(inputs: &[Input]) -> String {
+    let count = |dialect: Dialect| inputs.iter().filter(|input| input.file().dialect() == dialect).count();
+    let most = Dialect::ALL.into_iter().max_by_key(|dialect| (count(*dialect), *dialect == Dialect::default()));
+    match most {
+        Some(dialect) if dialect != Dialect::default() => format!("{{dialect '{dialect}'}}\n"),
+        _ => String::new(),
+    }
 }
 
 /// The text with what is still missing.
