@@ -43,6 +43,7 @@ const SCL: &[Dialect] = &[Dialect::SiemensScl];
 const PARTS: &[Part] = parts![
     Iec3 &Dialect::ALL, "generic_inputs";
     Iec3 &Dialect::ALL, "dtl";
+    Codesys BOTH, "dynamic_memory";
     TwinCat BOTH, "tc2_standard";
     TwinCat BOTH, "tc2_system";
     TwinCat BOTH, "tc2_utilities_conversion";
@@ -62,9 +63,12 @@ const PARTS: &[Part] = parts![
     Iec3 SCL, "siemens_clock";
 ];
 
-/// The file of what inputs of generic types are inside, and the names of those types.
-const GENERIC: (&str, [&str; 7]) =
-    ("iec/vendor/generic_inputs.st", ["ANY", "ANY_BIT", "ANY_DATE", "ANY_NUM", "ANY_REAL", "ANY_INT", "ANY_STRING"]);
+/// Files that words of the language ask for, which no file declares: of what inputs of generic types are inside, and
+/// of the memory of `__NEW`.
+const BY_WORDS: [(&str, &[&str]); 2] = [
+    ("iec/vendor/generic_inputs.st", &["ANY", "ANY_BIT", "ANY_DATE", "ANY_NUM", "ANY_REAL", "ANY_INT", "ANY_STRING"]),
+    ("iec/vendor/dynamic_memory.st", &["__NEW", "__DELETE"]),
+];
 
 const MOTION: Part = Part {
     name: "iec/vendor/tc2_mc2.st",
@@ -106,8 +110,8 @@ impl Index {
             let parts: Vec<Part> = PARTS.iter().copied().chain([MOTION]).collect();
             let mut by_name: BTreeMap<String, Vec<usize>> = BTreeMap::new();
             for (at, part) in parts.iter().enumerate() {
-                let generic = GENERIC.1.iter().filter(|_| part.name == GENERIC.0);
-                for name in declared(part.text).into_iter().chain(generic.map(|name| (*name).to_owned())) {
+                let words = BY_WORDS.iter().filter(|(name, _)| part.name == *name).flat_map(|(_, words)| *words);
+                for name in declared(part.text).into_iter().chain(words.map(|word| (*word).to_owned())) {
                     let homes = by_name.entry(name.to_ascii_uppercase()).or_default();
                     if homes.last() != Some(&at) {
                         homes.push(at);

@@ -287,6 +287,7 @@ features! {
     InstanceCopies "an instance assigned to another one",
     ReadableInternals "an instance's `VAR` read from outside",
     ProgramInstances "a program called, or its variables used, by its name",
+    DynamicMemory "`__NEW`, `__DELETE`",
     ValueStatements "a value as a statement",
     Exceptions "`__TRY`",
     ShortPrefixes "literals as `W#16#FF`, `L#5`, `S5T#2s`",

@@ -26,7 +26,7 @@ impl<'a> Collector<'a> {
             // A wire of a network is declared nowhere, and has the type of what it is given.
             ExprKind::Name(name) if name.text.starts_with('`') => Ty::Unknown,
             ExprKind::Name(name) => self.name(name, access, scope),
-            ExprKind::DirectAddress(_) | ExprKind::Error => Ty::Unknown,
+            ExprKind::DirectAddress(_) | ExprKind::Type(_) | ExprKind::Error => Ty::Unknown,
             ExprKind::Member(base, name) => self.member_expression(expr, base, name, access, scope),
             ExprKind::Part(base, part) => {
                 self.infer(base, scope);

@@ -94,6 +94,12 @@ fn use_of(feature: Feature) -> &'static str {
             "PROGRAM Q VAR_INPUT i : INT; END_VAR VAR n : INT; END_VAR n := i; END_PROGRAM
              PROGRAM P VAR x : INT; END_VAR Q(i := 1); x := Q.n; END_PROGRAM"
         }
+        Feature::DynamicMemory => "PROGRAM P VAR p : POINTER TO BYTE; END_VAR p := __NEW(BYTE); END_PROGRAM",
+        Feature::ValueStatements => {
+            "FUNCTION_BLOCK F VAR_OUTPUT q : INT; END_VAR q := 1; END_FUNCTION_BLOCK
+             PROGRAM P VAR f1 : F; END_VAR f1(); f1.q; END_PROGRAM"
+        }
+        Feature::Exceptions => "PROGRAM P VAR a : INT; END_VAR __TRY a := 1; __CATCH a := 2; __ENDTRY END_PROGRAM",
         Feature::ShortPrefixes => "PROGRAM P VAR w : WORD; END_VAR w := W#16#FF; END_PROGRAM",
         Feature::DivOperator => "PROGRAM P VAR a : INT; END_VAR a := a DIV 2; END_PROGRAM",
     }
@@ -115,7 +121,8 @@ fn every_construct_is_for_its_dialects_alone() {
 }
 
 /// Constructs whose absence is no syntax of its own: another error says it.
-const TOLD_OTHERWISE: [Feature; 25] = [
+const TOLD_OTHERWISE: [Feature; 26] = [
+    Feature::DynamicMemory,
     Feature::OwnStandardBlocks,
     Feature::LeftOutInputs,
     Feature::LooseStrings,

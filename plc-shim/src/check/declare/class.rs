@@ -225,7 +225,7 @@ impl Declarations<'_> {
     }
 
     /// All units with instances that can stand where a `kind` is wanted.
-    pub(super) fn variants(&self, id: PouId) -> Vec<PouId> {
+    pub(in crate::check) fn variants(&self, id: PouId) -> Vec<PouId> {
         if self.pou(id).ast.kind != PouKind::Interface {
             return self.family(id);
         }

@@ -17,7 +17,7 @@ impl PlaceFunction {
         Some(match key {
             "REF" => Self::Ref,
             "ADR" => Self::Adr,
-            "SIZEOF" => Self::SizeOf,
+            "SIZEOF" | "XSIZEOF" => Self::SizeOf,
             "__ISVALIDREF" => Self::IsValidRef,
             "LOWER_BOUND" => Self::LowerBound,
             "UPPER_BOUND" => Self::UpperBound,

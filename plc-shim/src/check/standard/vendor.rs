@@ -16,8 +16,8 @@ pub(in crate::check) const VENDOR_FUNCTIONS: [(&str, Code, &str); 14] = [
     ("POKE", Code::VendorRuntime, "declare a variable and use that"),
     ("SYSTIME", Code::VendorRuntime, "TIME() gives virtual time"),
     ("TIME_TCK", Code::VendorRuntime, "use a timer: it counts virtual time"),
-    ("__NEW", Code::VendorRuntime, "declare the instance"),
-    ("__DELETE", Code::VendorRuntime, "declare the instance"),
+    ("__NEW", Code::VendorRuntime, "CODESYS and TwinCAT have it: --dialect chooses"),
+    ("__DELETE", Code::VendorRuntime, "CODESYS and TwinCAT have it: --dialect chooses"),
 ];
 
 /// Enumerations of vendors' libraries (`{attribute 'qualified_only'}`).

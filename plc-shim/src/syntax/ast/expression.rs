@@ -1,6 +1,6 @@
 //! Expressions (2nd ed. 3.3.1).
 
-use super::{Ident, Span};
+use super::{Ident, Span, TypeSpec};
 use crate::syntax::calendar::CalendarKind;
 
 /// Greatest height of an expression's tree. The parser keeps to it, so that later passes may
@@ -55,6 +55,8 @@ pub enum ExprKind {
     Chain(Box<Expr>, Vec<Link>),
     /// `(a)`
     Paren(Box<Expr>),
+    /// `POINTER TO T`, a type where vendors want one: in `SIZEOF` and `__NEW`.
+    Type(Box<TypeSpec>),
     /// Text that is no expression; a diagnostic has been given.
     Error,
 }

@@ -305,6 +305,10 @@ impl Cursor<'_> {
     pub(super) fn primary(&mut self) -> Expr {
         self.pass_hash();
         let span = self.span();
+        if self.at_word("POINTER") && self.peek_ahead(1) == Some(TokenKind::Keyword(Keyword::To)) {
+            let spec = self.type_spec();
+            return Expr { kind: ExprKind::Type(Box::new(spec)), span: self.span_from(span), height: 1 };
+        }
         let text = self.next_text();
         let kind = match self.peek() {
             Some(TokenKind::Identifier) => ExprKind::Name(Self::written_name(text, span)),

@@ -61,6 +61,7 @@ impl Printer {
                 self.expression(inner);
                 self.word(")");
             }
+            ExprKind::Type(spec) => self.type_spec(spec),
             ExprKind::Error => {}
         }
     }

@@ -3,6 +3,7 @@
 pub(super) mod any_input;
 pub(super) mod argument;
 pub(super) mod conversion_function;
+pub(super) mod dynamic_memory;
 pub(super) mod enable;
 pub(super) mod enable_error;
 pub(super) mod instance_call;
@@ -12,6 +13,7 @@ pub(super) mod standard_function;
 use std::collections::BTreeMap;
 
 use self::argument::Passing;
+use self::dynamic_memory::DynamicMemory;
 use super::Body;
 use crate::check::asserts;
 use crate::check::declare::Scope;
@@ -21,6 +23,7 @@ use crate::check::standard::{self, form, memory};
 use crate::check::types::operand::Operand;
 use crate::check::types::parameter::{self, EN};
 use crate::diagnostic::{Code, Diagnostic, did_you_mean};
+use crate::dialect::Feature;
 use crate::ir::{
     Argument, ElementaryType, Expr, ExprKind, FunctionCall, Intrinsic, MemoryFunction, Place, PouId, Statement,
     StatementKind, Type, TypeTable, Unary, Variable,
@@ -71,6 +74,11 @@ impl Body<'_, '_> {
         }
         if let Some(function) = PlaceFunction::find(&name.key()) {
             return self.place_call(function, name, call, span);
+        }
+        if let Some(operator) = DynamicMemory::find(&name.key())
+            && self.declarations.dialect(span).has(Feature::DynamicMemory)
+        {
+            return self.dynamic_memory_call(operator, call, span);
         }
         if let Some(query) = Query::find(&name.key()) {
             return self.query(query, name, call, span);

@@ -48,6 +48,11 @@ impl Body<'_, '_> {
             | ast::ExprKind::Part(..)
             | ast::ExprKind::Dereference(_)
             | ast::ExprKind::DirectAddress(_) => self.load(expr),
+            ast::ExprKind::Type(_) => {
+                let message = "this is a type, a value is wanted";
+                self.report(Diagnostic::error(Code::NotAVariable, expr.span, message));
+                None
+            }
             ast::ExprKind::Error => None,
         }
     }

@@ -1,13 +1,13 @@
 //! `REF` (3rd ed. 6.4.4.10.3), and `ADR`, `SIZEOF`, `__ISVALIDREF` of vendors.
 
 use super::as_reference;
-use crate::check::body::Body;
+use crate::check::body::{Body, Meant};
 use crate::check::body::place::{Access, Located};
 use crate::check::standard::place::PlaceFunction;
 use crate::check::types::operand::{Operand, constant};
 use crate::check::types::reference;
 use crate::diagnostic::{Code, Diagnostic};
-use crate::ir::{Binary, ElementaryType, Expr, ExprKind, Place, Storage, Type, Value};
+use crate::ir::{Binary, ElementaryType, Expr, ExprKind, Place, Storage, Type, TypeId, Value};
 use crate::syntax::Span;
 use crate::syntax::ast::{self, Argument, Call, Ident, PouKind, ReferenceKind, SectionKind};
 use crate::syntax::walk::root;
@@ -107,11 +107,9 @@ impl Body<'_, '_> {
 
     /// Bytes of a variable or type, as a constant that suits any integer.
     fn size_of(&mut self, argument: &ast::Expr, span: Span) -> Option<Operand> {
-        let ty = match &argument.kind {
-            ast::ExprKind::Name(name) if self.variable_named(name).is_none() && self.names_type(name) => {
-                self.declarations.type_meant(name)?
-            }
-            _ => self.place(argument)?.place.ty,
+        let ty = match self.type_written(argument) {
+            Some(ty) => ty?,
+            None => self.place(argument)?.place.ty,
         };
         if matches!(self.declarations.types().get(ty), Type::OpenArray { .. }) {
             let message = "SIZEOF of ARRAY [*] is not supported yet";
@@ -119,6 +117,37 @@ impl Body<'_, '_> {
             return None;
         }
         Some(Operand::Integer { value: i128::from(self.declarations.types().size(ty)), span })
+    }
+
+    /// The type that an expression names; nothing if it is no type's name.
+    pub(in crate::check::body) fn type_written(&mut self, expr: &ast::Expr) -> Meant<TypeId> {
+        match &expr.kind {
+            ast::ExprKind::Name(name) if self.variable_named(name).is_none() && self.names_type(name) => {
+                Some(self.declarations.type_meant(name))
+            }
+            ast::ExprKind::Member(..) => {
+                let name = self.qualified_name(expr)?;
+                self.names_type(&name).then(|| self.declarations.type_meant(&name))
+            }
+            ast::ExprKind::Type(spec) => Some(self.type_specified(spec)),
+            _ => None,
+        }
+    }
+
+    fn type_specified(&mut self, spec: &ast::TypeSpec) -> Option<TypeId> {
+        match &spec.kind {
+            ast::TypeSpecKind::Name(name) => self.declarations.type_meant(name),
+            ast::TypeSpecKind::Reference(kind, inner) => {
+                let target = self.type_specified(inner)?;
+                Some(self.declarations.types_mut().reference(Some(*kind), target))
+            }
+            _ => {
+                let message = "the name of a type is wanted here";
+                let found = Diagnostic::error(Code::NotAVariable, spec.span, message);
+                self.report(found.with_help("declare the type in a TYPE block, and name it"));
+                None
+            }
+        }
     }
 
     fn names_type(&self, name: &Ident) -> bool {

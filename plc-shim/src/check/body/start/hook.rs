@@ -10,7 +10,7 @@ use std::sync::Arc;
 use crate::check::body::Body;
 use crate::check::body::call::argument::Passing;
 use crate::check::body::object::method_call::{Known, Object};
-use crate::check::declare::{EXIT_INPUTS, Given, INIT_INPUTS, INIT_RETAINS_NAME, Occasion, Role, Scope, suits_init};
+use crate::check::declare::{EXIT_INPUTS, INIT_INPUTS, INIT_RETAINS_NAME, Occasion, Role, Scope, suits_init};
 use crate::diagnostic::{Code, Diagnostic};
 use crate::ir::{Expr, ExprKind, Place, PouId, Statement, StatementKind, Variable};
 use crate::syntax::Span;
@@ -19,9 +19,9 @@ use crate::syntax::ast::{self, Argument, Call, Ident, Literal};
 /// An input and what it is given.
 type Named = (Ident, ast::Expr);
 
-impl<'a> Body<'_, 'a> {
+impl Body<'_, '_> {
     /// The calls of `FB_init` on the instance at a place.
-    pub(super) fn init_calls(&mut self, place: &Place, pou: PouId, given: Given<'a>) -> Vec<Statement> {
+    pub(in crate::check::body) fn init_calls(&mut self, place: &Place, pou: PouId, given: &[Argument]) -> Vec<Statement> {
         let hooks = self.declarations.hooks(pou, Occasion::Start);
         let Some(last) = hooks.last() else { return Vec::new() };
         let Some(named) = self.named(*last, given, place.span) else { return Vec::new() };
@@ -59,7 +59,7 @@ impl<'a> Body<'_, 'a> {
     }
 
     /// The calls of `FB_exit` on the instance at a place, that of the base last.
-    pub(super) fn exit_calls(&mut self, place: &Place, pou: PouId) -> Vec<Statement> {
+    pub(in crate::check::body) fn exit_calls(&mut self, place: &Place, pou: PouId) -> Vec<Statement> {
         let hooks = self.declarations.hooks(pou, Occasion::End);
         let copies = [Argument::Input(ident(EXIT_INPUTS[0], place.span), truth(false, place.span))];
         let calls = hooks.into_iter().rev().map(|hook| self.hook_call(place, pou, hook, copies.to_vec()));
@@ -67,7 +67,7 @@ impl<'a> Body<'_, 'a> {
     }
 
     /// The arguments with the names of what they are for.
-    fn named(&mut self, init: PouId, given: Given<'a>, span: Span) -> Option<Vec<Named>> {
+    fn named(&mut self, init: PouId, given: &[Argument], span: Span) -> Option<Vec<Named>> {
         let scope = self.declarations.interface(init, span)?;
         // With an input whose declaration is wrong nothing can be counted.
         if scope.has_broken() {
@@ -152,7 +152,7 @@ impl<'a> Body<'_, 'a> {
     }
 
     /// Runs what a unit's variables do at an occasion, on the instance at a place.
-    pub(super) fn stage_call(&mut self, place: &Place, stage: PouId, span: Span) -> Option<Statement> {
+    pub(in crate::check::body) fn stage_call(&mut self, place: &Place, stage: PouId, span: Span) -> Option<Statement> {
         let owner = self.declarations.owner_of(stage);
         let called =
             self.on_object(instance_at(place, owner), Role::Method, stage, Vec::new(), Passing::default(), span)?;

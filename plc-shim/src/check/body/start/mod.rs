@@ -142,7 +142,7 @@ impl<'a> Body<'_, 'a> {
         Statement { kind: StatementKind::For(Box::new(inner)), span }
     }
 
-    fn given_bytes(&self, place: Place, bytes: &Arc<[u8]>) -> Statement {
+    pub(in crate::check::body) fn given_bytes(&self, place: Place, bytes: &Arc<[u8]>) -> Statement {
         let span = place.span;
         let kind = match self.elementary(place.ty) {
             Some(ty) => {

@@ -1,0 +1,183 @@
+//! What whole projects of CODESYS and TwinCAT have in common and small examples do not, in programs of our own.
+
+use onescan_plc_shim::Dialect::{self, Codesys, TwinCat};
+use onescan_plc_shim::{FaultKind, Severity};
+
+use crate::rig::{Rig, findings_in};
+
+const VENDORS: [Dialect; 2] = [Codesys, TwinCat];
+
+/// What `P.r` is after one scan.
+fn gives(text: &str, expected: i64) {
+    for dialect in VENDORS {
+        let mut rig = Rig::in_dialect(dialect, text);
+        rig.scan().expect("no fault");
+        assert_eq!(rig.int("P.r"), expected, "{dialect}: {text}");
+    }
+}
+
+#[test]
+fn a_constant_input_has_what_it_is_given() {
+    gives(
+        "FUNCTION F : DINT VAR_INPUT CONSTANT k : DINT := 3; END_VAR F := k; END_FUNCTION
+         FUNCTION_BLOCK B VAR_INPUT CONSTANT k : DINT := 3; END_VAR VAR_OUTPUT q : DINT; END_VAR
+           METHOD M : DINT VAR_INPUT CONSTANT k : DINT := 5; END_VAR M := k; END_METHOD q := k; END_FUNCTION_BLOCK
+         PROGRAM P VAR b1, b2 : B; r : DINT; END_VAR b1(k := 40); b2(); b2.k := 8;
+           r := F(k := 9) * 1000000 + b1.q * 10000 + b2.q * 1000 + b2.k * 100 + b1.M(7) * 10; END_PROGRAM",
+        9_403_870,
+    );
+    let written = "FUNCTION F : DINT VAR_INPUT CONSTANT k : DINT; END_VAR k := 3; F := k; END_FUNCTION
+        PROGRAM P VAR r : DINT; END_VAR r := F(1); END_PROGRAM";
+    insta::assert_snapshot!(findings_in(Codesys, written), @"test.st:1:56: error[D0401]: a constant is not assigned to");
+}
+
+#[test]
+fn a_pointer_to_a_long_array_leads_to_a_shorter_one() {
+    let text = |index: &str| {
+        format!(
+            "FUNCTION Pick : DINT VAR_INPUT p : POINTER TO ARRAY [0..1000000] OF DINT; n : DINT; END_VAR
+               Pick := p^[n] + p^[2]; END_FUNCTION
+             PROGRAM P VAR a : ARRAY [0..3] OF DINT := [1, 2, 30, 400]; r : DINT; END_VAR
+               r := Pick(ADR(a), {index}); END_PROGRAM"
+        )
+    };
+    gives(&text("3"), 430);
+    for dialect in VENDORS {
+        let behind = Rig::in_dialect(dialect, &text("900000")).scan().expect_err("behind memory");
+        assert_eq!(behind.kind, FaultKind::InvalidPointer, "{dialect}");
+        let outside = Rig::in_dialect(dialect, &text("1000001")).scan().expect_err("behind the array");
+        assert_eq!(outside.kind, FaultKind::IndexOutOfRange, "{dialect}");
+    }
+}
+
+#[test]
+fn commas_and_parentheses_without_a_value() {
+    gives(
+        "FUNCTION_BLOCK F VAR_INPUT a, b : DINT; END_VAR VAR_OUTPUT q : DINT; END_VAR q := a + b; END_FUNCTION_BLOCK
+         PROGRAM P VAR f1 : F := (); r : DINT; END_VAR f1(a := 3, b := 4,); r := f1.q; END_PROGRAM",
+        7,
+    );
+}
+
+#[test]
+fn a_value_alone_is_read() {
+    let text = "FUNCTION_BLOCK F VAR_OUTPUT n : DINT; END_VAR PROPERTY Next : DINT GET n := n + 1; Next := n; END_GET
+          END_PROPERTY END_FUNCTION_BLOCK
+        PROGRAM P VAR f1 : F; r : DINT; END_VAR f1.Next; f1.Next; r := f1.n; END_PROGRAM";
+    gives(text, 2);
+    insta::assert_snapshot!(findings_in(TwinCat, text), @r"
+    test.st:3:49: warning[C0307]: this value goes nowhere
+    test.st:3:58: warning[C0307]: this value goes nowhere
+    ");
+}
+
+#[test]
+fn what_may_fail_is_guarded() {
+    let text = "PROGRAM P VAR code : DINT; r, zero : DINT; n : DINT := 1; END_VAR
+        __TRY r := 10 / n; __CATCH(code) r := 999; __FINALLY r := r + 5; __ENDTRY
+        IF zero > 0 THEN __TRY zero := 0; __CATCH zero := 1; __ENDTRY; END_IF END_PROGRAM";
+    gives(text, 15);
+    insta::assert_snapshot!(findings_in(TwinCat, text), @r"
+    test.st:2:9: warning[W0711]: a fault in here is not caught: it stops the PLC (check what may fail before it does)
+    test.st:3:26: warning[W0711]: a fault in here is not caught: it stops the PLC (check what may fail before it does)
+    ");
+    let failing = text.replace("n : DINT := 1", "n : DINT := 0");
+    let fault = Rig::in_dialect(Codesys, &failing).scan().expect_err("not caught");
+    assert_eq!(fault.kind, FaultKind::DivisionByZero);
+    insta::assert_snapshot!(
+        findings_in(TwinCat, "PROGRAM P VAR r : DINT; END_VAR __TRY r := 1; __CATCH(x) r := 2; END_PROGRAM"), @r"
+        test.st:1:33: warning[W0711]: a fault in here is not caught: it stops the PLC (check what may fail before it does)
+        test.st:1:55: error[N0101]: `x` is not declared
+        test.st:1:66: error[S0101]: `__ENDTRY` expected, found `END_PROGRAM`
+        ");
+}
+
+#[test]
+fn a_constant_of_a_block_is_known_by_the_blocks_name() {
+    gives(
+        "FUNCTION_BLOCK F VAR CONSTANT m : INT := n * 2; END_VAR VAR a : ARRAY [1..m] OF BYTE; END_VAR
+           VAR CONSTANT n : INT := G.k; END_VAR END_FUNCTION_BLOCK
+         FUNCTION_BLOCK G VAR CONSTANT k : INT := 21; END_VAR VAR text : STRING(F.n); END_VAR END_FUNCTION_BLOCK
+         PROGRAM P VAR a : ARRAY [0..F.m] OF BYTE; r : INT; END_VAR r := DINT_TO_INT(UPPER_BOUND(a, 1)); END_PROGRAM",
+        42,
+    );
+    let wrong = "FUNCTION_BLOCK F VAR CONSTANT m : INT := G.k; END_VAR END_FUNCTION_BLOCK
+        FUNCTION_BLOCK G VAR CONSTANT k : INT := F.m; END_VAR VAR n : INT; END_VAR END_FUNCTION_BLOCK
+        PROGRAM P VAR r : INT; END_VAR r := F.m + G.n; END_PROGRAM";
+    let findings = findings_in(TwinCat, wrong);
+    assert!(findings.iter().any(|found| found.severity == Severity::Error), "{findings}");
+}
+
+const REFERENCES: &str = "TYPE Base : STRUCT n : DINT; END_STRUCT END_TYPE
+    TYPE More EXTENDS Base : STRUCT m : DINT; END_STRUCT END_TYPE
+    FUNCTION_BLOCK F VAR _data : REFERENCE TO Base; END_VAR
+      PROPERTY Data : REFERENCE TO Base GET Data REF= _data; END_GET SET _data REF= Data; END_SET END_PROPERTY
+      PROPERTY Read : REFERENCE TO Base GET Read REF= _data; END_GET END_PROPERTY
+    END_FUNCTION_BLOCK";
+
+#[test]
+fn a_property_that_is_a_reference_is_set_and_written_through() {
+    gives(
+        &format!(
+            "{REFERENCES} PROGRAM P VAR f1 : F; d : More; b : Base := (n := 50); r : DINT; END_VAR
+             f1.Data REF= d; f1.Read.n := 3; r := d.n; f1.Read := b; r := r + d.n; END_PROGRAM"
+        ),
+        53,
+    );
+}
+
+#[test]
+fn an_enumeration_stands_for_its_number() {
+    gives(
+        "TYPE Mode : (Off, On := 4, Test) UINT; END_TYPE
+         FUNCTION Next : BOOL VAR_IN_OUT m : UINT; END_VAR m := m + 1; Next := TRUE; END_FUNCTION
+         PROGRAM P VAR m : Mode := Mode.On; r : INT; b : BOOL; END_VAR b := Next(m); r := m; END_PROGRAM",
+        5,
+    );
+}
+
+#[test]
+fn an_operation_on_narrow_numbers_goes_to_a_narrow_one() {
+    gives(
+        "PROGRAM P VAR r : WORD; high, low : BYTE := 7; n : INT := 5; u : UINT := 9; END_VAR
+           r := 256 * high + low; n := MIN(n, u - n); r := r + INT_TO_WORD(n); END_PROGRAM",
+        256 * 7 + 7 + 4,
+    );
+    let wide = "PROGRAM P VAR w : WORD; d : DINT; END_VAR w := d + 1; END_PROGRAM";
+    let findings = findings_in(Codesys, wide);
+    assert!(findings.iter().any(|found| found.severity == Severity::Error), "{findings}");
+}
+
+#[test]
+fn units_that_contain_one_another_are_reported_and_not_followed() {
+    let text = "FUNCTION_BLOCK H EXTENDS V END_FUNCTION_BLOCK
+        FUNCTION_BLOCK A EXTENDS V METHOD FB_init : BOOL p := THIS^; END_METHOD END_FUNCTION_BLOCK
+        FUNCTION_BLOCK V VAR_INPUT p : A; END_VAR END_FUNCTION_BLOCK";
+    let findings = findings_in(TwinCat, text);
+    assert!(findings.iter().any(|found| found.severity == Severity::Error), "{findings}");
+}
+
+#[test]
+fn plain_text_names_its_dialect() {
+    let text = "(* a library *) {dialect 'twincat'} PROGRAM P VAR a, b : BOOL; END_VAR a S= b; END_PROGRAM";
+    let found = onescan_plc_shim::Application::from_sources([("a.st", text)]);
+    assert!(found.is_ok(), "{found:?}");
+    let unknown = text.replace("twincat", "twinkat");
+    let found = onescan_plc_shim::Application::from_sources([("a.st", unknown.as_str())]).expect_err("no dialect");
+    insta::assert_snapshot!(found, @r"
+    a.st:1:27: error[S0110]: `twinkat` is no dialect: iec2, iec3, codesys, twincat, siemens-scl, matiec
+    a.st:1:74: error[S0110]: `S=`, `R=` is not part of iec3 (it is part of codesys and twincat: --dialect chooses)
+    ");
+}
+
+#[test]
+fn what_a_stub_leaves_out_is_not_missing() {
+    let text = "INTERFACE I METHOD M : DINT END_METHOD PROPERTY Q : DINT GET END_GET END_PROPERTY END_INTERFACE
+        {external} FUNCTION_BLOCK S IMPLEMENTS I END_FUNCTION_BLOCK
+        FUNCTION_BLOCK T EXTENDS S METHOD M : DINT M := 4; END_METHOD END_FUNCTION_BLOCK
+        FUNCTION_BLOCK U IMPLEMENTS I METHOD M : DINT M := 70; END_METHOD
+          PROPERTY Q : DINT GET Q := 600; END_GET END_PROPERTY END_FUNCTION_BLOCK
+        PROGRAM P VAR t1 : T; s1 : S; u1 : U; i : I; r : DINT; END_VAR
+          i := t1; r := i.M() + i.Q + s1.M() + t1.Q; i := u1; r := r + i.M() + i.Q; i := s1; r := r + i.M(); END_PROGRAM";
+    gives(text, 674);
+}
