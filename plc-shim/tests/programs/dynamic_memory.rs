@@ -121,7 +121,6 @@ fn mistakes_have_their_places() {
     test.st:3:70: error[T0201]: a pointer or an interface is wanted, this is INT
     test.st:3:74: error[C0302]: __DELETE takes one pointer
     test.st:3:97: error[O0802]: `A` is ABSTRACT and has no instances (declare an instance of what extends it)
-    test.st:3:97: error[O0802]: `A` is ABSTRACT and has no instances (declare an instance of what extends it)
     ");
     insta::assert_snapshot!(
         findings("PROGRAM P VAR p : REF_TO BYTE; END_VAR p := __NEW(BYTE); END_PROGRAM"), @"test.st:1:45: error[L0513]: `__NEW` is a function of a vendor's controllers (CODESYS and TwinCAT have it: --dialect chooses)");

@@ -81,9 +81,6 @@ impl Body<'_, '_> {
             return None;
         };
         let ty = ty?;
-        if let Type::FunctionBlock { pou, .. } = *self.declarations.types().get(ty) {
-            self.declarations.check_instance(pou, named.span);
-        }
         let count = match count {
             Some(count) => Some(self.expression_of(count, ElementaryType::Lint)?),
             None => None,
