@@ -423,6 +423,9 @@ impl<'a> Collector<'a> {
             return named(to).unwrap_or(Ty::Unknown);
         }
         if let Some(to) = key.strip_prefix("TO_") {
+            if let (Some(value), Some(true)) = (values.first(), E::find(to).map(E::is_integer)) {
+                self.flow(value, &Ty::Integer);
+            }
             return named(to).unwrap_or(Ty::Unknown);
         }
         let first = values.first().cloned().unwrap_or(Ty::Unknown);
@@ -474,14 +477,8 @@ impl<'a> Collector<'a> {
             "TRUNC" => elementary(E::Dint),
             "__QUERYINTERFACE" | "__QUERYPOINTER" => {
                 // What is asked is an interface, and what answers may be one.
-                for value in values {
-                    if let Ty::Slot(slot) = value {
-                        self.slots.use_parts(*slot);
-                        if key == "__QUERYINTERFACE" || *value == first {
-                            self.slots.make_value(*slot);
-                        }
-                    }
-                }
+                let count = if key == "__QUERYINTERFACE" { 2 } else { 1 };
+                values.iter().take(count).for_each(|value| self.asked(value));
                 elementary(E::Bool)
             }
             "__ISVALIDREF" | "GT" | "GE" | "EQ" | "LE" | "LT" | "NE" => {

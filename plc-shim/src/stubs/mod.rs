@@ -9,6 +9,7 @@
 //! | [`names`] | what a name stands for |
 //! | [`class`] | members of classes and structures |
 //! | [`heirs`] | what classes of the project tell of their bases and interfaces |
+//! | [`instances`] | where instances go |
 //! | [`collect`], [`initial`], [`statement`], [`expression`], [`call`], [`argument`] | one pass over the project |
 //! | [`shape`] | what a type that nobody declares is |
 //! | [`print`], [`signature`] | all of it as program text |
@@ -26,6 +27,7 @@ mod foreign;
 mod heirs;
 mod hint;
 mod initial;
+mod instances;
 mod names;
 mod print;
 mod shape;
@@ -113,11 +115,12 @@ fn infer(collector: &mut Collector<'_>) {
         let before = collector.known.clone().map(|known| format!("{known:?}"));
         collector.pass();
         collector.type_constants();
+        let is_settled = collector.settle_instances();
         let heads = collector.needs.heads.clone();
         let related = foreign::Relations::of(&collector.needs.types);
         let is_new = before.as_deref() != Some(&format!("{heads:?}")) || related != collector.needs.relations;
         collector.known = Some(heads);
-        if !collector.slots.decide() && !is_new && !name_anonymous(collector) {
+        if !collector.slots.decide() && !is_new && !is_settled && !name_anonymous(collector) {
             return;
         }
     }
@@ -131,6 +134,7 @@ fn fresh(needs: Needs) -> Needs {
             name: each.name,
             value: each.value,
             is_value: each.is_value,
+            implemented: each.implemented,
             is_anonymous: true,
             ..Foreign::default()
         };
@@ -166,7 +170,7 @@ fn name_anonymous(collector: &mut Collector<'_>) -> bool {
 }
 
 /// The name of a type that has none, by the path of what is of it.
-fn anonymous_name(path: &str) -> String {
+pub(super) fn anonymous_name(path: &str) -> String {
     let path = path.strip_prefix("global:").unwrap_or(path);
     let path = path.replace('^', "_target").replace("[]", "_element").replace("()", "_result");
     let plain = |one: char| if one.is_ascii_alphanumeric() { one } else { '_' };

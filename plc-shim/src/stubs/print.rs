@@ -71,7 +71,7 @@ impl Printer<'_, '_> {
                 edits.extend(edit);
                 continue;
             }
-            if found.is_anonymous && !is_used(found) {
+            if found.is_anonymous && !found.implemented && !is_used(found) {
                 continue;
             }
             let shape = self.collector.shape(found);
@@ -309,13 +309,16 @@ impl Printer<'_, '_> {
 
     fn globals(&self, lists: &mut BTreeMap<String, String>, globals: &mut String, added: &mut usize) {
         let mut sections: BTreeMap<(String, bool), String> = BTreeMap::new();
-        for (index, global) in self.collector.needs.globals.values().enumerate() {
+        let mut constants = 0;
+        for global in self.collector.needs.globals.values() {
             let (list, name) = global.name.rsplit_once('.').unwrap_or(("", &global.name));
             let ty = self.collector.slots.last_choice(global.slot);
             let is_number = matches!(&ty, Ty::Elementary(found) if found.is_number() || found.is_bits() && *found != ElementaryType::Bool);
             let is_constant = global.is_constant && is_number && !global.written;
-            let value = if is_constant { format!(" := {}", FIRST_CONSTANT + index) } else { String::new() };
-            let ty = if is_constant { "DINT".to_owned() } else { self.type_text(&ty, name) };
+            let narrow = self.collector.slots.narrowest(global.slot);
+            let value = if is_constant { format!(" := {}", value_of(narrow, constants)) } else { String::new() };
+            constants += usize::from(is_constant);
+            let ty = if is_constant { narrow.name().to_owned() } else { self.type_text(&ty, name) };
             let lines = sections.entry((list.to_owned(), is_constant)).or_default();
             let _ = writeln!(lines, "    {name} : {ty}{value};");
             *added += 1;
@@ -378,6 +381,11 @@ impl Printer<'_, '_> {
             None => name,
         }
     }
+}
+
+/// The value of a constant; those of one file differ as far as there is room.
+fn value_of(ty: ElementaryType, index: usize) -> usize {
+    if ty.size() == 1 { 1 + index % 100 } else { FIRST_CONSTANT + index }
 }
 
 fn property_text(name: &str, ty: &str, is_read: bool, is_written: bool) -> String {

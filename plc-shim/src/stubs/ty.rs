@@ -52,6 +52,8 @@ struct Evidence {
     has_parts: bool,
     /// It is what a call or a property of an interface gives, and so no place of its own.
     is_value: bool,
+    /// What has been decided stands, whatever else is found.
+    is_settled: bool,
     decided: Option<Ty>,
 }
 
@@ -159,6 +161,9 @@ impl Slots {
 
     fn choice(&self, slot: Slot) -> Option<Ty> {
         let each = self.all.get(slot.0)?;
+        if each.is_settled {
+            return each.decided.clone();
+        }
         let resolved = |list: &[Ty]| -> Vec<Ty> { list.iter().map(|ty| self.resolved(ty)).collect() };
         let (from, to, beside) = (resolved(&each.from), resolved(&each.to), resolved(&each.beside));
         let in_order = || to.iter().chain(&from).chain(&beside);
@@ -280,6 +285,40 @@ impl Slots {
 
     pub(super) fn set(&mut self, slot: Slot, ty: Ty) {
         self.at(slot).decided = Some(ty);
+    }
+
+    pub(super) fn path(&self, slot: Slot) -> String {
+        self.all.get(slot.0).map(|each| each.path.clone()).unwrap_or_default()
+    }
+
+    /// Decides a slot for good.
+    pub(super) fn settle(&mut self, slot: Slot, ty: Ty) {
+        self.at(slot).decided = Some(ty);
+        self.at(slot).is_settled = true;
+    }
+
+    /// What has not been decided for good: each slot with its path, what goes into it and where it goes to.
+    pub(super) fn unsettled(&self) -> impl Iterator<Item = (Slot, &str, Vec<Ty>, Vec<Ty>)> {
+        let open = self.all.iter().enumerate().filter(|(_, each)| !each.is_settled);
+        let resolved = |list: &[Ty]| list.iter().map(|ty| self.resolved(ty)).collect();
+        open.map(move |(index, each)| (Slot(index), each.path.as_str(), resolved(&each.from), resolved(&each.to)))
+    }
+
+    /// The type of a constant: the narrowest of all that it meets, so that it fits each.
+    pub(super) fn narrowest(&self, slot: Slot) -> ElementaryType {
+        let met: Vec<ElementaryType> = self
+            .evidence(slot)
+            .filter_map(|ty| if let Ty::Elementary(found) = ty { Some(found) } else { None })
+            .filter(|ty| ty.is_integer() || ty.is_bits() && *ty != ElementaryType::Bool)
+            .collect();
+        let Some(size) = met.iter().map(|ty| ty.size()).min() else { return ElementaryType::Dint };
+        let narrow: Vec<ElementaryType> = met.into_iter().filter(|ty| ty.size() == size).collect();
+        match narrow.as_slice() {
+            [first, rest @ ..] if rest.iter().all(|ty| ty == first) => *first,
+            // One byte less, and no sign: it fits signed and unsigned ones.
+            _ if size > 1 => ElementaryType::Usint,
+            _ => narrow.into_iter().find(|ty| ty.is_signed()).unwrap_or(ElementaryType::Usint),
+        }
     }
 }
 

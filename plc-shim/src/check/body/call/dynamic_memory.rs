@@ -75,7 +75,7 @@ impl Body<'_, '_> {
             ast::ExprKind::Call(inner) => (&*inner.callee, inner.arguments.as_slice()),
             _ => (written, [].as_slice()),
         };
-        let Some(ty) = self.type_written(named) else {
+        let Some(ty) = self.type_named(named) else {
             let message = "a type is wanted here";
             self.report(Diagnostic::error(Code::NotAVariable, named.span, message));
             return None;
@@ -166,6 +166,9 @@ impl Body<'_, '_> {
 
     /// `__DELETE(p)`: ends what `p` leads to, gives its memory back and makes `p` 0; nothing if it is 0 already.
     fn deleted(&mut self, pointer: &ast::Expr, span: Span) -> Option<Operand> {
+        if pointer.names_the_object() {
+            return self.deleted_itself(pointer, span);
+        }
         let place = self.target(pointer)?;
         let ended = match *self.declarations.types().get(place.ty) {
             Type::Reference { kind: ReferenceKind::Pointer, target } => target,
@@ -175,15 +178,29 @@ impl Body<'_, '_> {
                 return self.mismatch("a pointer or an interface", &found, pointer.span);
             }
         };
+        let held = Expr { ty: ADDRESS.into(), ..load(&place) };
+        let null = constant(Value::Int(0), ADDRESS, span);
+        let after = assign(&place, Expr { ty: place.ty, ..null });
+        self.given_back(held, ended, Some(after), span)
+    }
+
+    /// `__DELETE(THIS)`: an instance that gives itself back.
+    fn deleted_itself(&mut self, pointer: &ast::Expr, span: Span) -> Option<Operand> {
+        let operand = self.within(None, |body| body.expression(pointer))?;
+        let object = self.settle(operand)?;
+        let (ty, address) = (object.ty, Expr { ty: ADDRESS.into(), ..object });
+        self.given_back(address, ty, None, span)
+    }
+
+    /// Ends what lies at an address and gives its memory back, if that is not 0.
+    fn given_back(&mut self, held: Expr, ended: TypeId, after: Option<Statement>, span: Span) -> Option<Operand> {
         let address = self.scope.register(ADDRESS);
         let number = self.number(address, span);
-        let held = Expr { ty: ADDRESS.into(), ..load(&place) };
         let mut statements = vec![assign(&number, held)];
         let mut ending = self.ending(address, ended, span);
         let given_back = self.memory_function(GIVE_BACK, load(&number), ElementaryType::Bool, span)?;
         ending.push(Statement { kind: StatementKind::Evaluate(given_back), span });
-        let null = constant(Value::Int(0), ADDRESS, span);
-        ending.push(assign(&place, Expr { ty: place.ty, ..null }));
+        ending.extend(after);
         statements.push(when(is_not_zero(load(&number)), ending, span));
         let kind = ExprKind::After(statements, None);
         Some(Operand::Typed(Expr { kind, ty: TypeTable::nothing(), span }))

@@ -134,6 +134,19 @@ impl Body<'_, '_> {
         }
     }
 
+    /// The same where nothing but a type may stand: a variable of the name is not meant.
+    pub(in crate::check::body) fn type_named(&mut self, expr: &ast::Expr) -> Meant<TypeId> {
+        match &expr.kind {
+            ast::ExprKind::Name(name) if self.names_type(name) => Some(self.declarations.type_meant(name)),
+            ast::ExprKind::Member(..) => {
+                let path = self.qualified_name(expr)?;
+                let bare = self.declarations.behind_libraries(&path);
+                [path, bare].into_iter().find(|name| self.names_type(name)).map(|name| self.declarations.type_meant(&name))
+            }
+            _ => self.type_written(expr),
+        }
+    }
+
     fn type_specified(&mut self, spec: &ast::TypeSpec) -> Option<TypeId> {
         match &spec.kind {
             ast::TypeSpecKind::Name(name) => self.declarations.type_meant(name),
