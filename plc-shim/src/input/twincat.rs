@@ -46,6 +46,7 @@ fn pou(taken: &mut Taken, file: &str, object: &Element) {
         taken.extract.instead(end.text(), close.clone());
         taken.extract.instead("\n", close);
     }
+    drawings.write_actions(taken);
     members(taken, file, object, &mut drawings);
 }
 
@@ -85,6 +86,8 @@ fn members(taken: &mut Taken, file: &str, object: &Element, drawings: &mut Drawi
                     taken.report(part.open.clone(), Code::MalformedXml, "`<Action>` has no attribute `Name`");
                 }
             }
+            // A chart takes it in.
+            "Transition" if object.child("Implementation").is_some_and(|body| body.child("SFC").is_some()) => {}
             "Transition" => taken.unsupported(place(part), &described("TRANSITION", part)),
             _ => {}
         }

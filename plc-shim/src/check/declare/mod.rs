@@ -17,6 +17,7 @@ mod layout;
 mod located;
 mod names;
 mod namespace;
+mod numbered;
 mod overrides;
 mod program;
 mod query;
@@ -58,6 +59,7 @@ pub(crate) use self::layout::{CALL_DEPTH_OFFSET, INIT_RETAINS_OFFSET, VIRTUAL_TI
 pub(super) use self::layout::{INIT_RETAINS_NAME, align_up};
 pub(super) use self::located::Placement;
 pub(super) use self::namespace::Home;
+pub(super) use self::numbered::Numbered;
 pub(crate) use self::namespace::{find_key, joined};
 pub(crate) use self::overrides::Overrides;
 pub(super) use self::query::Outcome;

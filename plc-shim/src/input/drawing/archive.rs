@@ -70,6 +70,28 @@ impl Written {
         }
     }
 
+    /// The text that an element holds.
+    pub(super) fn below(file: &str, element: &Element) -> Self {
+        Self::of(file, element)
+    }
+
+    /// The same without the semicolon behind an expression.
+    pub(super) fn without_end(&self) -> Self {
+        let mut text = self.clone();
+        let end = text.plain.trim_end_matches([';', ' ', '\t', '\r', '\n']).len();
+        let mut surplus = (text.plain.len() - end) as u32;
+        text.plain.truncate(end);
+        while let Some(Piece::Verbatim(span)) = text.pieces.last_mut().filter(|_| surplus > 0) {
+            let taken = surplus.min(span.end - span.start);
+            span.end -= taken;
+            surplus -= taken;
+            if span.start >= span.end {
+                text.pieces.pop();
+            }
+        }
+        text
+    }
+
     pub(super) fn is_blank(&self) -> bool {
         self.plain.trim().is_empty()
     }

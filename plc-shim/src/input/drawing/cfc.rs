@@ -27,7 +27,7 @@ pub(super) fn read(sheet: &mut Sheet<'_>, chart: Object<'_>) {
         }
     }
     let used: BTreeSet<&str> = read.sources.values().flatten().map(String::as_str).collect();
-    let mut chart = Chart { sheet, read: &read, owners, used, wires: BTreeMap::new() };
+    let mut chart = Chart { sheet, read: &read, owners, used, wires: BTreeMap::new(), composed: BTreeMap::new(), depth: 0 };
     for (index, element) in read.elements.iter().enumerate() {
         chart.evaluate(index, element);
     }
@@ -42,7 +42,14 @@ struct Chart<'c, 's, 'e> {
     used: BTreeSet<&'e str>,
     /// The outputs that have a value already.
     wires: BTreeMap<(usize, usize), usize>,
+    /// The variables that composers make their values in.
+    composed: BTreeMap<usize, String>,
+    /// How many composers and selectors one behind the other are being read.
+    depth: usize,
 }
+
+/// Most composers and selectors one behind the other.
+const MAX_DEPTH: usize = 50;
 
 /// What a pin of a box is called in the text; one without a name is known by its number.
 fn name_of(pin: &Pin, direction: &str, index: usize, count: usize) -> String {
@@ -57,7 +64,8 @@ impl Chart<'_, '_, '_> {
             }
         }
         match &element.kind {
-            Kind::Input | Kind::Comment => {}
+            // They have no number of their own: each is evaluated where its value is wanted.
+            Kind::Input | Kind::Comment | Kind::Composer { .. } | Kind::Selector => {}
             Kind::Box { .. } => self.call(index, element),
             Kind::Output => self.output(element),
             Kind::Return => self.control(element, "RETURN"),
@@ -122,10 +130,68 @@ impl Chart<'_, '_, '_> {
                 };
                 Text::wire(*wire, &wanted.place)
             }
+            Kind::Composer { type_name } => self.composed(index, element, type_name)?,
+            Kind::Selector => self.selected(element, pin)?,
             // It has been told, or has no output.
             _ => return None,
         };
         Some(if pin.negated { value.negated(&pin.place) } else { value })
+    }
+
+    /// False if composers and selectors lead to one another without end.
+    fn may_go_deeper(&mut self, element: &Element<'_>) -> bool {
+        if self.depth >= MAX_DEPTH {
+            let message = format!("the value of element {} is wanted for itself", element.id);
+            self.sheet.report(&element.place, Code::FeedbackWithoutVariable, message);
+        }
+        self.depth < MAX_DEPTH
+    }
+
+    /// A structure of what comes to the inputs of a composer; a member without a line keeps its initial value.
+    fn composed(&mut self, index: usize, element: &Element<'_>, type_name: &str) -> Option<Text> {
+        if !self.may_go_deeper(element) {
+            return None;
+        }
+        let known = self.composed.get(&index).cloned();
+        let name = known.or_else(|| self.sheet.remember(type_name, &element.place).filter(|_| is_name(type_name)));
+        let Some(name) = name else {
+            let what = format!("a composer (element {}) of `{type_name}` here", element.id);
+            self.sheet.unsupported(&element.place, &what);
+            return None;
+        };
+        self.composed.insert(index, name.clone());
+        self.depth += 1;
+        for pin in &element.inputs {
+            if !is_name(&pin.name) {
+                let message = format!("`{}` is no name of a member (element {})", pin.name, element.id);
+                self.sheet.report(&pin.place, Code::MalformedXml, message);
+            } else if let Some(value) = self.value(pin) {
+                let target = Text::word(format!("{name}.{}", pin.name), &pin.place);
+                self.sheet.store(target, Storing::Plain, value, &pin.place);
+            }
+        }
+        self.depth -= 1;
+        Some(Text::word(name, &element.place))
+    }
+
+    /// A member of what comes to a selector.
+    fn selected(&mut self, element: &Element<'_>, output: &Pin) -> Option<Text> {
+        if !self.may_go_deeper(element) {
+            return None;
+        }
+        let input = element.inputs.first()?;
+        self.depth += 1;
+        let value = self.value(input);
+        self.depth -= 1;
+        let Some(value) = value.filter(|_| is_name(&output.name) && !input.negated) else {
+            let message = format!("the selector (element {}) has no structure or no name of a member", element.id);
+            self.sheet.report(&element.place, Code::Unconnected, message);
+            return None;
+        };
+        let mut text = Text::default();
+        text.operand(value, &input.place);
+        text.push(&format!(".{}", output.name), &output.place);
+        Some(text.that_is_atomic(true))
     }
 
     /// The value at a pin.

@@ -36,6 +36,10 @@ pub(super) enum Kind {
     Jump,
     Return,
     Label,
+    /// A structure whose members are the inputs; nothing of the type if the archive does not tell it.
+    Composer { type_name: String },
+    /// A structure whose members are the outputs.
+    Selector,
     /// Nothing that is evaluated.
     Comment,
     /// What is not read.
@@ -92,7 +96,12 @@ fn element<'e>(file: &str, object: Object<'e>) -> Element<'e> {
         inputs: object.object("Input").map(|object| pin(file, object)).into_iter().collect(),
         outputs: object.object("Output").map(|object| pin(file, object)).into_iter().collect(),
     };
+    let texts = || -> Vec<String> {
+        object.inner("Texts").iter().map(|text| text.word(file, "Text").trim().to_owned()).collect()
+    };
     read.kind = match object.kind {
+        "CFCComposerElement" => return composer(file, object, read, texts()),
+        "CFCSelectorElement" => return selector(file, object, read, texts()),
         "CFCBoxElement" => return called(file, object, read),
         "CFCInputElement" => Kind::Input,
         "CFCOutputElement" => Kind::Output,
@@ -103,6 +112,30 @@ fn element<'e>(file: &str, object: Object<'e>) -> Element<'e> {
         _ => Kind::Unknown,
     };
     read
+}
+
+/// A composer: its texts are the names of the members, and the type.
+fn composer<'e>(file: &str, object: Object<'e>, read: Element<'e>, texts: Vec<String>) -> Element<'e> {
+    let mut inputs: Vec<Pin> = object.inner("Inputs").into_iter().map(|object| pin(file, object)).collect();
+    let Some(type_name) = texts.get(inputs.len()).cloned().filter(|_| texts.len() == inputs.len() + 1) else {
+        return read;
+    };
+    for (pin, name) in inputs.iter_mut().zip(texts) {
+        pin.name = name;
+    }
+    Element { kind: Kind::Composer { type_name }, inputs, ..read }
+}
+
+/// A selector: its texts are the type, and the names of the members.
+fn selector<'e>(file: &str, object: Object<'e>, read: Element<'e>, texts: Vec<String>) -> Element<'e> {
+    let mut outputs: Vec<Pin> = object.inner("Outputs").into_iter().map(|object| pin(file, object)).collect();
+    if texts.len() != outputs.len() + 1 {
+        return read;
+    }
+    for (pin, name) in outputs.iter_mut().zip(texts.into_iter().skip(1)) {
+        pin.name = name;
+    }
+    Element { kind: Kind::Selector, outputs, ..read }
 }
 
 /// A box: its texts are the names of the inputs, those of the outputs, the type and the instance.

@@ -133,6 +133,7 @@ impl Networks<'_, '_> {
         let file = self.sheet.file;
         let names = tree.object("InputParam").map(|list| list.texts(file, "Names")).unwrap_or_default();
         let negations = tree.list("InputFlags");
+        let faults = self.sheet.faults.len();
         let mut enable = Signal::On;
         let mut arguments = Vec::new();
         for (index, item) in tree.list("InputItems").into_iter().enumerate() {
@@ -148,6 +149,7 @@ impl Networks<'_, '_> {
             };
             match value {
                 Some(value) if is_enable => enable = Signal::Value(value),
+                None if is_enable && self.sheet.faults.len() > faults => {}
                 None if is_enable => {
                     let message = format!("nothing is connected to EN of `{}` (id {})", shape.callee.name(), shape.id);
                     self.sheet.report(&place, Code::Unconnected, message);
@@ -212,8 +214,12 @@ impl Networks<'_, '_> {
                     None
                 }
                 (Callee::Function(name), _) if matches!(enable, Signal::Value(_)) => {
-                    let what = format!("the value of `{name}` (id {}) in a line, while its EN may be FALSE,", shape.id);
-                    self.sheet.unsupported(&shape.place, &what);
+                    let message = format!(
+                        "what `{name}` (id {}) hands on while its EN is FALSE is not known: connect its EN to the power \
+                         rail, or give its output a variable",
+                        shape.id
+                    );
+                    self.sheet.report(&shape.place, Code::UnsupportedFeature, message);
                     None
                 }
                 (Callee::Function(_), _) => value.map(Signal::Value),

@@ -16,11 +16,11 @@ pub(super) struct Fault {
     pub(super) message: String,
 }
 
-/// An instance that remembers an edge.
+/// A variable that the user did not declare: it remembers an edge, or a value is composed in it.
 #[derive(Debug)]
 pub(super) struct Memory {
     pub(super) name: String,
-    pub(super) edge: Edge,
+    pub(super) type_name: String,
     pub(super) place: Range<u32>,
 }
 
@@ -56,8 +56,8 @@ pub(super) enum Storing {
     Reset,
 }
 
-/// How the instances are called that remember edges, and how many there are.
-pub(super) struct Edges {
+/// How such variables are called, and those that there are.
+pub(super) struct Memories {
     /// Nothing where a unit keeps nothing from one call to the next.
     pub(super) prefix: Option<String>,
     pub(super) memory: Vec<Memory>,
@@ -67,7 +67,7 @@ pub(super) struct Sheet<'s> {
     pub(super) file: &'s str,
     /// Tells the wires of one body from those of another.
     body: usize,
-    edges: &'s mut Edges,
+    memories: &'s mut Memories,
     lines: Vec<Line>,
     names: Vec<String>,
     pub(super) faults: Vec<Fault>,
@@ -77,8 +77,8 @@ pub(super) struct Sheet<'s> {
 pub(super) type Finished = (Vec<Line>, Vec<String>, Vec<Fault>);
 
 impl<'s> Sheet<'s> {
-    pub(super) fn new(file: &'s str, body: usize, edges: &'s mut Edges) -> Self {
-        Self { file, body, edges, lines: Vec::new(), names: Vec::new(), faults: Vec::new() }
+    pub(super) fn new(file: &'s str, body: usize, memories: &'s mut Memories) -> Self {
+        Self { file, body, memories, lines: Vec::new(), names: Vec::new(), faults: Vec::new() }
     }
 
     pub(super) fn finish(self) -> Finished {
@@ -133,20 +133,29 @@ impl<'s> Sheet<'s> {
         Some(written.text().that_is_atomic(!composed))
     }
 
+    /// Declares a variable of the unit; nothing if it keeps none.
+    pub(super) fn remember(&mut self, type_name: &str, place: &Range<u32>) -> Option<String> {
+        let name = format!("{}{}", self.memories.prefix.as_ref()?, self.memories.memory.len() + 1);
+        let memory = Memory { name: name.clone(), type_name: type_name.to_owned(), place: place.clone() };
+        self.memories.memory.push(memory);
+        Some(name)
+    }
+
     /// True if an edge was there since the last call.
     pub(super) fn edge(&mut self, edge: Edge, value: Text, place: &Range<u32>) -> Option<Text> {
-        let what = if edge == Edge::Rising { "a rising edge" } else { "a falling edge" };
-        let Some(prefix) = &self.edges.prefix else {
+        let (what, block) = match edge {
+            Edge::Rising => ("a rising edge", "R_TRIG"),
+            Edge::Falling => ("a falling edge", "F_TRIG"),
+        };
+        let Some(name) = self.remember(block, place) else {
             let message = format!("{what} needs memory, and a function or method keeps nothing");
             self.report(place, Code::EdgeInFunction, message);
             return None;
         };
-        let name = format!("{prefix}{}", self.edges.memory.len() + 1);
         let mut call = Text::word(format!("{name}(CLK := "), place);
         call.append(value);
         call.push(");\n", place);
         self.line(call);
-        self.edges.memory.push(Memory { name: name.clone(), edge, place: place.clone() });
         Some(Text::word(format!("{name}.Q"), place))
     }
 
