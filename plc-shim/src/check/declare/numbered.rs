@@ -28,10 +28,10 @@ impl<'t> Numbered<'t> {
     /// What is told if a block has other inputs and outputs than the drawing.
     pub(in crate::check) fn lost(self, block: &str) -> String {
         let what = if self.direction == "in" { "inputs" } else { "outputs" };
+        let count = self.count;
         format!(
-            "in the drawing, {block} has {} {what} whose names were not saved, and the declaration has not so many: open \
-             the drawing in its editor, update the box and save it",
-            self.count
+            "the drawing does not name the {what} of {block}, and their number in the declaration is not {count}: open the \
+             drawing in its editor, update the box and save it"
         )
     }
 }

@@ -98,7 +98,10 @@ impl Chart<'_, '_, '_> {
             }
         };
         let Some(&(index, output)) = self.owners.get(source.as_str()) else {
-            let message = format!("there is no pin {source}, which the line to this pin begins at");
+            let message = match source.as_str() {
+                "" => format!("the line to the pin {} does not tell where it begins", pin.id),
+                _ => format!("there is no pin {source}, which the line to the pin {} begins at", pin.id),
+            };
             self.sheet.report(&pin.place, Code::DanglingConnection, message);
             return Some(Text::word("`none`", &pin.place));
         };
@@ -246,6 +249,8 @@ impl Chart<'_, '_, '_> {
             self.sheet.unsupported(&element.place, &what);
         }
         if *enable {
+            // What is connected to it is not told of once more.
+            self.results(index, element);
             let what = format!("EN and ENO of `{type_name}` (element {}) in a chart", element.id);
             return self.sheet.unsupported(&element.place, &what);
         }

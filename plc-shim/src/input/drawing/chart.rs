@@ -57,11 +57,7 @@ pub(super) fn read(sheet: &mut Sheet<'_>, body: Object<'_>, bodies: &super::char
         }
     }
     let actions = steps.iter().filter_map(|step| step.write(sheet)).collect();
-    for transition in &transitions {
-        for target in transition.to.iter().filter(|target| !names.contains(&target.to_ascii_uppercase())) {
-            let message = format!("there is no step `{target}`, which this jump leads to");
-            sheet.report(&transition.place, Code::DanglingConnection, message);
-        }
+    for transition in transitions.iter().filter(|transition| !transition.to.is_empty()) {
         transition.write(sheet, bodies);
     }
     actions

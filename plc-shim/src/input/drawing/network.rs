@@ -122,9 +122,17 @@ impl Networks<'_, '_> {
             self.sheet.report(&tree.place(), Code::DanglingConnection, message);
             return None;
         };
-        let signal = match self.tree(input)? {
-            Signal::On => Signal::On,
-            Signal::Value(value) => Signal::Value(self.kept(value, tree)),
+        let faults = self.sheet.faults.len();
+        let signal = match self.tree(input) {
+            Some(Signal::On) => Signal::On,
+            Some(Signal::Value(value)) => Signal::Value(self.kept(value, tree)),
+            // What is wrong with it has been told, once for all that the line leads to.
+            None if self.sheet.faults.len() > faults => Signal::Value(Text::word("`none`", &tree.place())),
+            None => {
+                let message = format!("nothing is connected to the line {number}");
+                self.sheet.report(&tree.place(), Code::Unconnected, message);
+                Signal::Value(Text::word("`none`", &tree.place()))
+            }
         };
         self.lines.insert(number, signal.clone());
         Some(signal)
