@@ -17,8 +17,8 @@
 //! Invariants: no file can make it fail, what is wrong with one is a diagnostic; what is not read is
 //! told; every place in program text leads back into the file that it was taken out of.
 
-pub mod encoding;
 mod drawing;
+pub mod encoding;
 mod foreign;
 pub mod kind;
 mod plcopen;

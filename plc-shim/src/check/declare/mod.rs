@@ -59,8 +59,8 @@ pub(crate) use self::layout::{CALL_DEPTH_OFFSET, INIT_RETAINS_OFFSET, VIRTUAL_TI
 pub(super) use self::layout::{INIT_RETAINS_NAME, align_up};
 pub(super) use self::located::Placement;
 pub(super) use self::namespace::Home;
-pub(super) use self::numbered::Numbered;
 pub(crate) use self::namespace::{find_key, joined};
+pub(super) use self::numbered::Numbered;
 pub(crate) use self::overrides::Overrides;
 pub(super) use self::query::Outcome;
 pub(super) use self::scope::Scope;

@@ -131,7 +131,7 @@ impl Sheet<'_> {
                 self.report(place, Code::MalformedXml, message);
             }
         }
-                let call = list(name, arguments, place).that_is_atomic(true);
+        let call = list(name, arguments, place).that_is_atomic(true);
         match result {
             Taker::Nobody => {
                 let mut call = call;

@@ -27,7 +27,8 @@ pub(super) fn read(sheet: &mut Sheet<'_>, chart: Object<'_>) {
         }
     }
     let used: BTreeSet<&str> = read.sources.values().flatten().map(String::as_str).collect();
-    let mut chart = Chart { sheet, read: &read, owners, used, wires: BTreeMap::new(), composed: BTreeMap::new(), depth: 0 };
+    let mut chart =
+        Chart { sheet, read: &read, owners, used, wires: BTreeMap::new(), composed: BTreeMap::new(), depth: 0 };
     for (index, element) in read.elements.iter().enumerate() {
         chart.evaluate(index, element);
     }

@@ -30,14 +30,22 @@ pub(super) enum BoxKind {
 
 #[derive(Debug)]
 pub(super) enum Kind {
-    Box { kind: BoxKind, type_name: String, instance: String, enable: bool, parameter: Option<Range<u32>> },
+    Box {
+        kind: BoxKind,
+        type_name: String,
+        instance: String,
+        enable: bool,
+        parameter: Option<Range<u32>>,
+    },
     Input,
     Output,
     Jump,
     Return,
     Label,
     /// A structure whose members are the inputs; nothing of the type if the archive does not tell it.
-    Composer { type_name: String },
+    Composer {
+        type_name: String,
+    },
     /// A structure whose members are the outputs.
     Selector,
     /// Nothing that is evaluated.

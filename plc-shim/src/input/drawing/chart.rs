@@ -157,7 +157,8 @@ impl Chart<'_, '_> {
         }
         let attributes = Attributes::read(self.sheet.file, element);
         let told = attributes.is_set(super::chart_element::PARALLEL);
-        let drawn = legs.iter().any(|leg| leg.inner("ElementList").first().is_some_and(|first| first.kind == "SFCStep"));
+        let drawn =
+            legs.iter().any(|leg| leg.inner("ElementList").first().is_some_and(|first| first.kind == "SFCStep"));
         if told != drawn {
             let message = format!(
                 "the legs of branch {} begin with {}, but it is told to be {}",

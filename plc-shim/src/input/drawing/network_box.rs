@@ -167,13 +167,7 @@ impl Networks<'_, '_> {
         if item.kind == "BoxTreeTerminator" && !is_enable { None } else { self.tree(item) }
     }
 
-    fn call(
-        &mut self,
-        shape: Shape<'_>,
-        enable: Signal,
-        arguments: Vec<Argument>,
-        is_wanted: bool,
-    ) -> Option<Signal> {
+    fn call(&mut self, shape: Shape<'_>, enable: Signal, arguments: Vec<Argument>, is_wanted: bool) -> Option<Signal> {
         let wanted = if is_wanted { Some(self.wanted(&shape)?) } else { None };
         let is_instance = matches!(shape.callee, Callee::Instance(_));
         let mut value = None;
