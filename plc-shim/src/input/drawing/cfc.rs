@@ -220,12 +220,11 @@ impl Chart<'_, '_, '_> {
 
     fn control(&mut self, element: &Element<'_>, statement: &str) {
         let condition = element.inputs.first().and_then(|pin| self.value(pin));
-        match condition {
-            Some(value) => self.sheet.control(statement, Signal::Value(value), &element.place),
-            None => {
-                let message = format!("nothing is connected to element {}", element.id);
-                self.sheet.report(&element.place, Code::Unconnected, message);
-            }
+        if let Some(value) = condition {
+            self.sheet.control(statement, Signal::Value(value), &element.place);
+        } else {
+            let message = format!("nothing is connected to element {}", element.id);
+            self.sheet.report(&element.place, Code::Unconnected, message);
         }
     }
 

@@ -78,7 +78,7 @@ impl Chart<'_, '_> {
                 "SFCStep" => self.step(element, open),
                 "SFCTransition" => self.transition(element, open),
                 "SFCJump" => self.jump(element, open),
-                "SFCBranch" => self.branch(element, open, depth + 1),
+                "SFCBranch" => self.branch(element, &open, depth + 1),
                 other => {
                     let what = format!("element {} of a chart (`{other}`)", element.id(self.sheet.file));
                     self.sheet.unsupported(&element.place(), &what);
@@ -147,7 +147,7 @@ impl Chart<'_, '_> {
         Vec::new()
     }
 
-    fn branch(&mut self, element: Object<'_>, open: Vec<Open>, depth: usize) -> Vec<Open> {
+    fn branch(&mut self, element: Object<'_>, open: &[Open], depth: usize) -> Vec<Open> {
         let place = element.place();
         let legs = element.inner("ElementList");
         if depth > MAX_DEPTH {
@@ -169,7 +169,7 @@ impl Chart<'_, '_> {
             self.sheet.report(&place, Code::MalformedXml, message);
             return Vec::new();
         }
-        let ends: Vec<Vec<Open>> = legs.into_iter().map(|leg| self.line(leg, open.clone(), depth)).collect();
+        let ends: Vec<Vec<Open>> = legs.into_iter().map(|leg| self.line(leg, open.to_vec(), depth)).collect();
         if told { self.together(ends, &place) } else { ends.into_iter().flatten().collect() }
     }
 

@@ -61,7 +61,7 @@ pub(super) enum Keeps {
 impl<'f> Drawings<'f> {
     /// `unit` is the name of the unit that the bodies belong to.
     pub(super) fn new(file: &'f str, unit: &str) -> Self {
-        let plain: String = unit.chars().filter(|one| one.is_ascii_alphanumeric()).collect();
+        let plain: String = unit.chars().filter(char::is_ascii_alphanumeric).collect();
         // A name that the file does not have hides no other.
         let mut prefix = format!("Drawn_{plain}_");
         while file.to_ascii_uppercase().contains(&prefix.to_ascii_uppercase()) {

@@ -136,7 +136,12 @@ impl Networks<'_, '_> {
         let faults = self.sheet.faults.len();
         let mut enable = Signal::On;
         let mut arguments = Vec::new();
-        for (index, item) in tree.list("InputItems").into_iter().enumerate() {
+        let items = tree.list("InputItems");
+        if shape.has_en && items.is_empty() {
+            let message = format!("the box of `{}` (id {}) has no input EN", shape.callee.name(), shape.id);
+            self.sheet.report(&shape.place, Code::MalformedXml, message);
+        }
+        for (index, item) in items.into_iter().enumerate() {
             let place = item.map_or_else(|| tree.place(), |item| item.place());
             let flags = negations.get(index).copied().flatten();
             let flags = flags.map_or(0, |flags| flags.word(file, "Flags").trim().parse().unwrap_or(u32::MAX));
