@@ -10,11 +10,14 @@
 //! | `plcopen`, `plcopen_instances`, `plcopen_object` | PLCopen XML, and what CODESYS adds to it | program text |
 //! | `plcopen_chart`, `plcopen_chart_graph`, `plcopen_condition` | its Sequential Function Charts | program text |
 //! | `plcopen_network` | its networks in LD and FBD | statements |
+//! | `drawing` | bodies that TwinCAT keeps as archives of objects: CFC, LD, FBD and SFC | statements |
+//! | `statement` | statements while they are made | program text |
 //! | [`project`] | a TwinCAT project | the names of its files |
 //!
 //! Invariants: no file can make it fail, what is wrong with one is a diagnostic; what is not read is
 //! told; every place in program text leads back into the file that it was taken out of.
 
+mod drawing;
 pub mod encoding;
 mod foreign;
 pub mod kind;
@@ -26,6 +29,7 @@ pub(crate) mod plcopen_instances;
 mod plcopen_network;
 pub(crate) mod plcopen_object;
 pub mod project;
+mod statement;
 mod twincat;
 mod twincat_task;
 pub(crate) mod xml;

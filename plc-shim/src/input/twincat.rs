@@ -4,6 +4,7 @@
 use std::ops::Range;
 
 use super::Taken;
+use super::drawing::{Drawings, Keeps};
 use super::xml::{Element, Node, XmlError, parse};
 use crate::diagnostic::Code;
 use crate::dialect::Dialect;
@@ -35,43 +36,65 @@ fn pou(taken: &mut Taken, file: &str, object: &Element) {
     let start = taken.extract.text().len();
     declaration(taken, file, object);
     let end = taken.extract.text().get(start..).and_then(end_of_unit);
+    let mut drawings = drawings(file, object, end);
+    drawings.declare_memory(taken);
     if let Some(implementation) = object.child("Implementation") {
-        body(taken, file, implementation);
+        body(taken, file, implementation, &mut drawings);
     }
     if let Some(end) = end {
         let close = object.child("Implementation").unwrap_or(object).close.clone();
         taken.extract.instead(end.text(), close.clone());
         taken.extract.instead("\n", close);
     }
-    members(taken, file, object);
+    drawings.write_actions(taken);
+    members(taken, file, object, &mut drawings);
+}
+
+/// The bodies that are drawn: those of the unit and its actions see what the unit keeps.
+fn drawings<'f>(file: &'f str, object: &Element, end: Option<Keyword>) -> Drawings<'f> {
+    let name = object.attribute("Name").map_or("", |name| name.value.as_str());
+    let mut drawings = Drawings::new(file, name);
+    let keeps = if end == Some(Keyword::EndFunction) { Keeps::Nothing } else { Keeps::State };
+    drawings.read(object, keeps);
+    for part in object.elements() {
+        match part.name.as_str() {
+            "Action" => drawings.read(part, keeps),
+            "Method" => drawings.read(part, Keeps::Nothing),
+            "Property" => part.elements().for_each(|accessor| drawings.read(accessor, Keeps::Nothing)),
+            _ => {}
+        }
+    }
+    drawings
 }
 
 /// What belongs to a unit, as text behind it.
-fn members(taken: &mut Taken, file: &str, object: &Element) {
+fn members(taken: &mut Taken, file: &str, object: &Element, drawings: &mut Drawings<'_>) {
     for part in object.elements() {
         match part.name.as_str() {
             "Method" => {
                 declaration(taken, file, part);
-                accessor_body(taken, file, part, "END_METHOD\n");
+                accessor_body(taken, file, part, "END_METHOD\n", drawings);
             }
-            "Property" => property(taken, file, part),
+            "Property" => property(taken, file, part, drawings),
             "Action" => {
                 if let Some(name) = part.attribute("Name") {
                     taken.extract.instead("ACTION ", part.open.clone());
                     taken.extract.verbatim(file, name.span.clone());
                     taken.extract.instead(":\n", part.open.clone());
-                    accessor_body(taken, file, part, "END_ACTION\n");
+                    accessor_body(taken, file, part, "END_ACTION\n", drawings);
                 } else {
                     taken.report(part.open.clone(), Code::MalformedXml, "`<Action>` has no attribute `Name`");
                 }
             }
+            // A chart takes it in.
+            "Transition" if object.child("Implementation").is_some_and(|body| body.child("SFC").is_some()) => {}
             "Transition" => taken.unsupported(place(part), &described("TRANSITION", part)),
             _ => {}
         }
     }
 }
 
-fn property(taken: &mut Taken, file: &str, part: &Element) {
+fn property(taken: &mut Taken, file: &str, part: &Element, drawings: &mut Drawings<'_>) {
     declaration(taken, file, part);
     for (element, begin, end) in [("Get", "GET\n", "END_GET\n"), ("Set", "SET\n", "END_SET\n")] {
         if let Some(accessor) = part.child(element) {
@@ -79,16 +102,16 @@ fn property(taken: &mut Taken, file: &str, part: &Element) {
             if accessor.child("Declaration").is_some() {
                 declaration(taken, file, accessor);
             }
-            accessor_body(taken, file, accessor, end);
+            accessor_body(taken, file, accessor, end, drawings);
         }
     }
     taken.extract.instead("END_PROPERTY\n", part.close.clone());
 }
 
 /// The statements of a member, and its end.
-fn accessor_body(taken: &mut Taken, file: &str, part: &Element, end: &str) {
+fn accessor_body(taken: &mut Taken, file: &str, part: &Element, end: &str, drawings: &mut Drawings<'_>) {
     if let Some(implementation) = part.child("Implementation") {
-        body(taken, file, implementation);
+        body(taken, file, implementation, drawings);
     }
     taken.extract.instead(end, part.close.clone());
 }
@@ -96,7 +119,7 @@ fn accessor_body(taken: &mut Taken, file: &str, part: &Element, end: &str) {
 /// The members of an interface stand in it.
 fn interface(taken: &mut Taken, file: &str, object: &Element) {
     declaration(taken, file, object);
-    members(taken, file, object);
+    members(taken, file, object, &mut Drawings::new(file, ""));
     taken.extract.instead("END_INTERFACE\n", object.close.clone());
 }
 
@@ -131,13 +154,14 @@ fn declaration(taken: &mut Taken, file: &str, object: &Element) {
     taken.extract.instead("\n", declaration.close.clone());
 }
 
-fn body(taken: &mut Taken, file: &str, implementation: &Element) {
+fn body(taken: &mut Taken, file: &str, implementation: &Element, drawings: &mut Drawings<'_>) {
     for language in implementation.elements() {
         match language.name.as_str() {
             "ST" => {
                 taken.text_of(file, language);
                 taken.extract.instead("\n", language.close.clone());
             }
+            _ if drawings.write(language, taken) => {}
             other => taken.unsupported(language.open.clone(), &format!("a body in {other}")),
         }
     }

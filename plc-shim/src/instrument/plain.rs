@@ -188,6 +188,7 @@ impl Plain {
         tasks: &TaskTable<'_>,
         globals: &str,
     ) -> Result<Vec<File>, InstrumentError> {
+        self.refuse_drawn(survey, tasks)?;
         let mut edits: Vec<Edits> = self.given.iter().map(|_| Edits::default()).collect();
         let mut changes = |id: FileId, change: &mut dyn FnMut(&SourceFile, &mut Edits)| {
             if let (Some(file), Some(edits)) = (self.sources.get(id), edits.get_mut(id.0 as usize)) {
@@ -238,6 +239,27 @@ impl Plain {
             Ok(given.file(Some(text.into()), lines))
         })
         .collect()
+    }
+
+    /// A controller stands in the body of a program or a chart, and there is no place for it in a drawing of TwinCAT.
+    fn refuse_drawn(&self, survey: &Survey<'_>, tasks: &TaskTable<'_>) -> Result<(), InstrumentError> {
+        let scheduled = tasks.numbered().map(|(pou, _)| pou);
+        for pou in scheduled.chain(survey.charts.iter().copied()).filter(|pou| self.is_object(pou.name.span)) {
+            let file = self.sources.get(pou.name.span.file);
+            let Some(language) = file.and_then(twincat::drawn_in) else { continue };
+            let name = &pou.name.text;
+            let (message, help) = if pou.chart.is_empty() {
+                let message =
+                    format!("`{name}` is drawn in {language}, where the program of a task cannot be controlled");
+                (message, "call it from a program in Structured Text, and let the task call that one")
+            } else {
+                let message = format!("`{name}` is drawn in {language}, where a chart cannot be controlled");
+                (message, "write the chart in PLCopen XML, or as a CASE statement in Structured Text")
+            };
+            let found = Diagnostic::error(Code::UnsupportedFeature, pou.name.span, message).with_help(help);
+            return Err(InstrumentError::Text(Diagnostics::new(vec![found], &self.sources)));
+        }
+        Ok(())
     }
 
     /// Adds a file of the shim's own, or puts it in the place of the one that was given.

@@ -53,6 +53,14 @@ fn object(kind: &str, name: &str, parts: &str) -> String {
     )
 }
 
+/// The language that the body of a file's unit is drawn in.
+pub(super) fn drawn_in(file: &SourceFile) -> Option<&'static str> {
+    const DRAWN: [(&str, &str); 3] = [("CFC", "CFC"), ("NWL", "LD or FBD"), ("SFC", "SFC")];
+    let unit = xml::parse(file.shown_text()).ok()?.into_child("POU")?;
+    let body = unit.child("Implementation")?;
+    DRAWN.iter().find(|(name, _)| body.child(name).is_some()).map(|(_, language)| *language)
+}
+
 /// The part of a project's configuration with the task that comes first in a cycle.
 pub(super) fn first_task<'a>(parts: &[&'a Configuration], constants: &Constants<'_>) -> Option<&'a Configuration> {
     let rank = |part: &&&Configuration| {

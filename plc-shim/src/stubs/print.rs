@@ -309,8 +309,10 @@ impl Printer<'_, '_> {
 
     fn globals(&self, lists: &mut BTreeMap<String, String>, globals: &mut String, added: &mut usize) {
         let mut sections: BTreeMap<(String, bool), String> = BTreeMap::new();
+        // A wire of a network is no variable, even where its value is wrong.
+        let named = self.collector.needs.globals.values().filter(|global| !global.name.starts_with('`'));
         let mut constants = 0;
-        for global in self.collector.needs.globals.values() {
+        for global in named {
             let (list, name) = global.name.rsplit_once('.').unwrap_or(("", &global.name));
             let ty = self.collector.slots.last_choice(global.slot);
             let is_number = matches!(&ty, Ty::Elementary(found) if found.is_number() || found.is_bits() && *found != ElementaryType::Bool);
@@ -400,5 +402,7 @@ fn is_used(found: &Foreign) -> bool {
 }
 
 fn members(found: &Foreign) -> impl Iterator<Item = &Member> {
-    found.order.iter().filter_map(|key| found.members.get(key))
+    // What a drawing knows by its number has no name that could be declared.
+    let named = |member: &&Member| !member.name.starts_with('`');
+    found.order.iter().filter_map(|key| found.members.get(key)).filter(named)
 }

@@ -182,3 +182,12 @@ fn nothing_makes_it_fail() {
         assert!(written.text.starts_with(MARK), "{text}");
     }
 }
+
+#[test]
+fn what_a_drawing_knows_by_its_number_is_not_declared() {
+    let drawn = include_str!("../../tests/inputs/level.TcPOU").replace("R_TRIG", "FB_Unknown");
+    let input = Input::from_text("Level.TcPOU", SourceKind::TwinCat, drawn);
+    let written = write(&[input], None).text;
+    assert!(written.contains("FB_Unknown"), "{written}");
+    assert!(!written.lines().any(|line| !line.starts_with("//") && line.contains('`')), "{written}");
+}

@@ -15,6 +15,8 @@ mod diagnostics;
 mod diagram;
 mod dialects;
 mod direct_addresses;
+mod drawing_mistakes;
+mod drawings;
 mod dtl;
 mod dynamic_memory;
 mod expressions;

@@ -5,9 +5,9 @@
 
 use super::builder::{Builder, Signal};
 use super::element::{Input, Link, Node, Output, Storage, attribute};
-use super::text::Text;
 use crate::check::is_standard_function;
 use crate::diagnostic::Code;
+use crate::input::statement::Text;
 use crate::syntax::parser::parse_expression;
 
 const EN: &str = "EN";

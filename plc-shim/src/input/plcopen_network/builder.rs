@@ -4,9 +4,9 @@ use std::collections::BTreeMap;
 use std::ops::Range;
 
 use super::element::{Edge, Input, Kind, Link, Modifiers, Node, Storage, attribute};
-use super::text::{Line, Piece, Text};
 use crate::diagnostic::Code;
 use crate::input::plcopen::Writer;
+use crate::input::statement::{Line, Piece, Text};
 use crate::input::xml::{Element, Node as Content};
 use crate::syntax::ast::ExprKind;
 use crate::syntax::parser::parse_expression;
@@ -63,7 +63,7 @@ impl<'w, 'f, 'n> Builder<'w, 'f, 'n> {
 
     /// The statements, and the names of the wires in them.
     pub(super) fn finish(self) -> (Vec<Line>, Vec<String>) {
-        (super::text::folded(self.lines, self.names.len()), self.names)
+        (crate::input::statement::folded(self.lines, self.names.len()), self.names)
     }
 
     pub(super) fn report(&mut self, place: &Range<u32>, code: Code, message: &str) {

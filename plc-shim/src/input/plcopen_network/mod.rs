@@ -6,7 +6,6 @@
 //! | [`graph`] | which element gets its values from which; where loops begin |
 //! | [`order`] | the order of evaluation |
 //! | [`builder`], [`block`] | elements to statements |
-//! | [`text`] | statements while they are made, and wires |
 //! | [`trigger`] | memory of edges |
 //!
 //! What an element hands on is a wire, written `` `body.id.PIN` ``; where it is used once, at once, its value
@@ -17,15 +16,14 @@ mod builder;
 mod element;
 mod graph;
 mod order;
-mod text;
 mod trigger;
 
 use std::collections::BTreeSet;
 
 use self::builder::Builder;
 use self::element::{Input, Modifiers, Node, nodes};
-use self::text::{Line, Piece, Text};
 use super::plcopen::Writer;
+use super::statement;
 use super::xml::Element;
 
 /// Which elements of a body are evaluated.
@@ -83,9 +81,7 @@ impl Writer<'_> {
             builder.result(end, variable);
         }
         let (lines, names) = builder.finish();
-        for line in lines {
-            self.line_of(line, &names);
-        }
+        statement::write(lines, &names, self.file, &mut self.taken.extract);
     }
 
     /// What is told of elements that are part of no network but are connected as if they were.
@@ -99,31 +95,6 @@ impl Writer<'_> {
             let is_connected = element.elements().any(|inner| refers_to(inner, ""));
             if is_source || is_connected || element.name == "actionBlock" {
                 self.taken.unsupported(element.open.clone(), &format!("`<{}>` in a network", element.name));
-            }
-        }
-    }
-
-    fn line_of(&mut self, line: Line, names: &[String]) {
-        let name = |wire: usize| names.get(wire).map_or("`none`", String::as_str);
-        let text = match line {
-            Line::Other(text) => text,
-            Line::Define(wire, value) => {
-                let place = match value.pieces.first() {
-                    Some(Piece::Word(_, place) | Piece::Verbatim(place) | Piece::Wire(_, place, _)) => place.clone(),
-                    None => return,
-                };
-                let mut text = Text::wire(wire, &place);
-                text.push(" := ", &place);
-                text.append(value);
-                text.push(";\n", &place);
-                text
-            }
-        };
-        for piece in text.pieces {
-            match piece {
-                Piece::Word(word, place) => self.write(&word, &place),
-                Piece::Verbatim(place) => self.taken.extract.verbatim(self.file, place),
-                Piece::Wire(wire, place, _) => self.write(name(wire), &place),
             }
         }
     }

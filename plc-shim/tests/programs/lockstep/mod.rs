@@ -5,6 +5,7 @@ mod abreast;
 mod charts;
 mod configurations;
 mod corpus;
+mod drawn;
 mod driver;
 mod equivalence;
 mod grants;

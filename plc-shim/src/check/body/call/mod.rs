@@ -16,7 +16,7 @@ use self::argument::Passing;
 use self::dynamic_memory::DynamicMemory;
 use super::Body;
 use crate::check::asserts;
-use crate::check::declare::Scope;
+use crate::check::declare::{Numbered, Scope};
 use crate::check::standard::place::PlaceFunction;
 use crate::check::standard::query::Query;
 use crate::check::standard::{self, form, memory};
@@ -314,8 +314,14 @@ impl Body<'_, '_> {
         accepts: impl Fn(&Variable) -> bool,
     ) -> Option<Variable> {
         let known = |variable: &&Variable| accepts(variable) && self.declarations.is_called_so(variable, name);
-        let found = scope.own(&name.key()).filter(known);
-        if found.is_none() && !scope.may_have(&name.key()) {
+        let numbered = Numbered::of(&name.text);
+        let found = match numbered {
+            Some(wanted) => scope.numbered(wanted).filter(|variable| accepts(variable)),
+            None => scope.own(&name.key()).filter(known),
+        };
+        if let (None, Some(wanted)) = (found, numbered) {
+            self.report(Diagnostic::error(Code::UnknownArgument, name.span, wanted.lost(&format!("`{callee}`"))));
+        } else if found.is_none() && !scope.may_have(&name.key()) {
             let names = scope.variables().iter().filter(|variable| accepts(variable));
             let help = did_you_mean(&name.text, names.map(|variable| variable.name.as_str()));
             let message = format!("`{callee}` has no such parameter `{}`", name.text);

@@ -9,7 +9,7 @@ pub(super) mod part;
 use super::expression::enumeration_value;
 use super::statement::wire;
 use super::{Body, Meant};
-use crate::check::declare::chart;
+use crate::check::declare::{Numbered, chart};
 use crate::check::types::constant;
 use crate::check::types::operand::Operand;
 use crate::diagnostic::{Code, Diagnostic, did_you_mean};
@@ -375,8 +375,17 @@ impl Body<'_, '_> {
         if scope.is_broken(&name.key()) {
             return None;
         }
-        let found = scope.find(&name.key()).filter(|variable| self.declarations.is_called_so(variable, name));
+        let numbered = Numbered::of(&name.text);
+        let found = match numbered {
+            Some(wanted) => scope.numbered(wanted),
+            None => scope.find(&name.key()).filter(|variable| self.declarations.is_called_so(variable, name)),
+        };
         let Some(variable) = found else {
+            if let Some(wanted) = numbered {
+                let message = wanted.lost(&self.type_name(base.place.ty));
+                self.report(Diagnostic::error(Code::UnknownMember, name.span, message));
+                return None;
+            }
             if let Some(found) = self.not_a_variable(pou, name) {
                 return found;
             }

@@ -3,9 +3,11 @@
 
 use std::ops::Range;
 
+use crate::source::origin::Extract;
+
 /// A part of a statement.
 #[derive(Debug, Clone)]
-pub(super) enum Piece {
+pub(in crate::input) enum Piece {
     /// A word that stands for what is at this place of the file.
     Word(String, Range<u32>),
     /// The file's own text.
@@ -16,8 +18,8 @@ pub(super) enum Piece {
 
 /// A part of a statement, or all of it.
 #[derive(Debug, Clone, Default)]
-pub(super) struct Text {
-    pub(super) pieces: Vec<Piece>,
+pub(in crate::input) struct Text {
+    pub(in crate::input) pieces: Vec<Piece>,
     /// True if it needs no parentheses as an operand.
     atomic: bool,
     /// How deep wires have been put in the place of their names.
@@ -28,36 +30,41 @@ pub(super) struct Text {
 const MAX_DEPTH: u32 = 16;
 
 impl Text {
+    /// What the file has.
+    pub(in crate::input) fn of(pieces: Vec<Piece>) -> Self {
+        Self { pieces, ..Self::default() }
+    }
+
     /// One word.
-    pub(super) fn word(word: impl Into<String>, place: &Range<u32>) -> Self {
+    pub(in crate::input) fn word(word: impl Into<String>, place: &Range<u32>) -> Self {
         Self { pieces: vec![Piece::Word(word.into(), place.clone())], atomic: true, depth: 0 }
     }
 
-    pub(super) fn wire(wire: usize, place: &Range<u32>) -> Self {
+    pub(in crate::input) fn wire(wire: usize, place: &Range<u32>) -> Self {
         Self { pieces: vec![Piece::Wire(wire, place.clone(), false)], atomic: true, depth: 0 }
     }
 
     /// The same, `true` if it needs no parentheses as an operand.
-    pub(super) fn that_is_atomic(self, atomic: bool) -> Self {
+    pub(in crate::input) fn that_is_atomic(self, atomic: bool) -> Self {
         Self { atomic, ..self }
     }
 
     /// The same, never put in the place of its wire: it gives other wires their values as well.
-    pub(super) fn that_stays(self) -> Self {
+    pub(in crate::input) fn that_stays(self) -> Self {
         Self { depth: MAX_DEPTH, ..self }
     }
 
-    pub(super) fn push(&mut self, word: &str, place: &Range<u32>) {
+    pub(in crate::input) fn push(&mut self, word: &str, place: &Range<u32>) {
         self.pieces.push(Piece::Word(word.to_owned(), place.clone()));
     }
 
-    pub(super) fn append(&mut self, other: Self) {
+    pub(in crate::input) fn append(&mut self, other: Self) {
         self.depth = self.depth.max(other.depth);
         self.pieces.extend(other.pieces);
     }
 
     /// Appends what is an operand there.
-    pub(super) fn operand(&mut self, other: Self, place: &Range<u32>) {
+    pub(in crate::input) fn operand(&mut self, other: Self, place: &Range<u32>) {
         if let [Piece::Wire(wire, at, _)] = other.pieces.as_slice() {
             return self.pieces.push(Piece::Wire(*wire, at.clone(), true));
         }
@@ -70,14 +77,14 @@ impl Text {
     }
 
     /// `NOT text`
-    pub(super) fn negated(self, place: &Range<u32>) -> Self {
+    pub(in crate::input) fn negated(self, place: &Range<u32>) -> Self {
         let mut text = Self::word("NOT ", place).that_is_atomic(false);
         text.operand(self, place);
         text
     }
 
     /// `self operator other`; one that is missing is TRUE of AND.
-    pub(super) fn joined(self, operator: &str, other: Self, place: &Range<u32>) -> Self {
+    pub(in crate::input) fn joined(self, operator: &str, other: Self, place: &Range<u32>) -> Self {
         let mut text = Self::default();
         text.operand(self, place);
         text.push(&format!(" {operator} "), place);
@@ -108,7 +115,7 @@ impl Text {
 
 /// A statement.
 #[derive(Debug)]
-pub(super) enum Line {
+pub(in crate::input) enum Line {
     /// Gives a wire its value.
     Define(usize, Text),
     /// Anything else, its end included.
@@ -143,7 +150,7 @@ fn count(uses: &mut [usize], line: &Line) {
 
 /// Leaves out wires that nobody uses, and puts values in the place of those that are used once, directly
 /// behind the statement that gives them.
-pub(super) fn folded(lines: Vec<Line>, wires: usize) -> Vec<Line> {
+pub(in crate::input) fn folded(lines: Vec<Line>, wires: usize) -> Vec<Line> {
     let mut uses = vec![0_usize; wires];
     let mut needed = Vec::new();
     // A use stands behind the value.
@@ -167,4 +174,32 @@ pub(super) fn folded(lines: Vec<Line>, wires: usize) -> Vec<Line> {
         done.push(line);
     }
     done
+}
+
+/// Appends the statements to program text; `names` are those of the wires in them.
+pub(in crate::input) fn write(lines: Vec<Line>, names: &[String], file: &str, extract: &mut Extract) {
+    let name = |wire: usize| names.get(wire).map_or("`none`", String::as_str);
+    for line in lines {
+        let text = match line {
+            Line::Other(text) => text,
+            Line::Define(wire, value) => {
+                let place = match value.pieces.first() {
+                    Some(Piece::Word(_, place) | Piece::Verbatim(place) | Piece::Wire(_, place, _)) => place.clone(),
+                    None => continue,
+                };
+                let mut text = Text::wire(wire, &place);
+                text.push(" := ", &place);
+                text.append(value);
+                text.push(";\n", &place);
+                text
+            }
+        };
+        for piece in text.pieces {
+            match piece {
+                Piece::Word(word, place) => extract.instead(&word, place),
+                Piece::Verbatim(place) => extract.verbatim(file, place),
+                Piece::Wire(wire, place, _) => extract.instead(name(wire), place),
+            }
+        }
+    }
 }
