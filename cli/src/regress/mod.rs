@@ -40,7 +40,6 @@ pub mod worker;
 use std::io::Write;
 use std::path::PathBuf;
 
-use onescan_plc_shim::Dialect;
 use onescan_report::OutputError;
 use onescan_report::file;
 
@@ -48,6 +47,7 @@ pub use config::{Policy, TestConfig};
 pub use error::TestError;
 pub use selection::Selection;
 
+use crate::check::collect::Reading;
 use crate::check::stubs;
 use crate::error::ExitCode;
 use crate::format::Format;
@@ -58,13 +58,13 @@ use outcome::Outcome;
 ///
 /// # Errors
 /// Some do, or they cannot be read.
-pub fn deny_stubs(paths: &[PathBuf], dialect: Option<Dialect>) -> Result<(), TestError> {
+pub fn deny_stubs(paths: &[PathBuf], reading: Reading) -> Result<(), TestError> {
     let found = Found::behind(paths)?;
     if !found.sources.is_empty() {
-        stubs::deny(&found.sources, dialect)?;
+        stubs::deny(&found.sources, reading)?;
     }
     for scenario in found.scenarios {
-        stubs::deny(&[scenario], None)?;
+        stubs::deny(&[scenario], Reading::default())?;
     }
     Ok(())
 }

@@ -55,7 +55,7 @@ impl Test {
 /// # Errors
 /// The sources cannot be read, do not compile, or have no test.
 pub fn run(config: &WorkerConfig) -> Result<Worked, TestError> {
-    let programs = collect::programs(&config.sources, config.dialect, config.memory_limit)?;
+    let programs = collect::programs(&config.sources, config.reading())?;
     let mut inputs: Vec<Input> = programs.into_iter().flat_map(|program| program.inputs).collect();
     let tests: Vec<Test> = inputs.iter().flat_map(declared).collect();
     if tests.is_empty() {
