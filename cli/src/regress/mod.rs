@@ -11,6 +11,7 @@
 //! | [`pool`] | units in processes of their own, several at a time |
 //! | [`worker`] | one unit, in such a process |
 //! | [`unit_test`], `test_tags` | test programs in ST, each in a fresh PLC |
+//! | `tcunit` | the suites of `TcUnit`, and what it stores of them |
 //! | [`ran`] | what a process says of its unit |
 //! | [`outcome`] | passed, changed, failed: what came of each test |
 //! | [`summary`] | for people and as JSON |
@@ -33,6 +34,7 @@ pub mod ran;
 pub mod sarif;
 pub mod selection;
 pub mod summary;
+mod tcunit;
 mod test_tags;
 pub mod unit_test;
 pub mod worker;

@@ -56,7 +56,7 @@ fn write_outcome(outcome: &Outcome, width: usize, out: &mut dyn Write) -> io::Re
         write!(out, "  {steps} {unit}{plural}, {}", VirtualTime::from_nanos(*virtual_time_ns))?;
     }
     match outcome.asserts_made {
-        Some(0) if *step_ns > 0 => write!(out, ", no asserts")?,
+        Some(0) if *step_ns > 0 && !matches!(status, Status::Skipped) => write!(out, ", no asserts")?,
         Some(1) => write!(out, ", 1 assert")?,
         Some(made) => write!(out, ", {made} asserts")?,
         None => {}
@@ -78,6 +78,7 @@ pub fn details(outcome: &Outcome) -> Vec<String> {
         }
     }
     lines.extend(outcome.asserts.iter().map(assert));
+    lines.extend(outcome.notes.iter().cloned());
     lines.extend(outcome.expectations.iter().filter(|shown| shown.is_violated()).map(violation));
     lines.extend(outcome.differences.iter().take(SHOWN).map(ToString::to_string));
     if let Some(more @ 1..) = outcome.differences.len().checked_sub(SHOWN) {
@@ -88,9 +89,10 @@ pub fn details(outcome: &Outcome) -> Vec<String> {
 
 /// An assert that did not hold, in words.
 pub fn assert(failed: &FailedAssert) -> String {
-    let FailedAssert { text, place, at_ns, times } = failed;
+    let FailedAssert { text, kind, place, at_ns, times } = failed;
     let often = if *times > 1 { format!(", in {times} scans") } else { String::new() };
-    format!("{place}: {text} (t_v = {}{often})", VirtualTime::from_nanos(*at_ns))
+    let kind = kind.as_ref().map(|kind| format!("{kind}, ")).unwrap_or_default();
+    format!("{place}: {text} ({kind}t_v = {}{often})", VirtualTime::from_nanos(*at_ns))
 }
 
 /// A violated expectation, in words.
@@ -105,7 +107,7 @@ pub fn violation(shown: &Shown) -> String {
 pub fn totals(report: &Report) -> String {
     use Status as S;
     let all = report.outcomes.len();
-    let order = [S::Passed, S::New, S::Blessed, S::Missing, S::Changed, S::Failed, S::Fault, S::Wrong];
+    let order = [S::Passed, S::New, S::Blessed, S::Missing, S::Changed, S::Failed, S::Fault, S::Wrong, S::Skipped];
     let counts = order.map(|status| (report.count(status), status.word()));
     let parts: Vec<String> =
         counts.iter().filter(|(count, _)| *count > 0).map(|(count, word)| format!("{count} {word}")).collect();
@@ -130,6 +132,7 @@ pub fn write_json(report: &Report, out: &mut dyn Write) -> io::Result<()> {
         Status::Failed,
         Status::Fault,
         Status::Wrong,
+        Status::Skipped,
     ]
     .iter()
     .map(|status| (status.word().to_owned(), report.count(*status).into()))

@@ -17,7 +17,8 @@ use onescan_server::time::TimeSpan;
 use super::config::WorkerConfig;
 use super::error::{SourcesReport, TestError};
 use super::ran::{Covered, FailedAssert, Ran, Worked};
-use super::test_tags;
+use super::tcunit::sources::Sources;
+use super::{tcunit, test_tags};
 use crate::check::collect;
 use crate::error::Usage;
 use crate::run::RunStatus;
@@ -57,11 +58,8 @@ impl Test {
 pub fn run(config: &WorkerConfig) -> Result<Worked, TestError> {
     let programs = collect::programs(&config.sources, config.reading())?;
     let mut inputs: Vec<Input> = programs.into_iter().flat_map(|program| program.inputs).collect();
-    let tests: Vec<Test> = inputs.iter().flat_map(declared).collect();
-    if tests.is_empty() {
-        let help = format!("a test is a PROGRAM or a FUNCTION_BLOCK whose name begins with `{PREFIX}`");
-        return Err(Usage::new("there is no test in these sources", Some(help)).into());
-    }
+    let sources = Sources::of(&inputs);
+    let tests: Vec<Test> = inputs.iter().flat_map(|input| declared(input, &sources)).collect();
     inputs.extend(harness(&tests));
     let plain = Application::builder().memory_limit(config.memory_limit.unwrap_or_default()).inputs(inputs);
     let compiled = if config.cover { plain.covered().build() } else { plain.build() };
@@ -74,12 +72,20 @@ pub fn run(config: &WorkerConfig) -> Result<Worked, TestError> {
     for test in tests.iter().filter(|test| config.selection.has_tags(&test.tags)) {
         worked.tests.push(one(config, &application, test, &mut coverage)?);
     }
+    match tcunit::run(config, &application, &sources, &mut coverage)? {
+        Some(ran) => worked.tests.extend(ran),
+        None if tests.is_empty() => {
+            let help = format!("a test is a PROGRAM or a FUNCTION_BLOCK whose name begins with `{PREFIX}`");
+            return Err(Usage::new("there is no test in these sources", Some(help)).into());
+        }
+        None => {}
+    }
     worked.coverage = Covered::all(&coverage);
     Ok(worked)
 }
 
-/// The tests that a file declares.
-fn declared(input: &Input) -> Vec<Test> {
+/// The tests that a file declares. Suites of `TcUnit`, and what runs them, are no tests by themselves.
+fn declared(input: &Input, sources: &Sources) -> Vec<Test> {
     let file = input.file();
     let unit = parse_in(file.dialect(), FileId(0), file.text()).unit;
     let mut tests = Vec::new();
@@ -88,7 +94,12 @@ fn declared(input: &Input) -> Vec<Test> {
         let is_program = pou.kind == PouKind::Program;
         let name = &pou.name;
         let is_test = name.text.get(..PREFIX.len()).is_some_and(|start| start.eq_ignore_ascii_case(PREFIX));
-        if is_test && (is_program || pou.kind == PouKind::FunctionBlock) {
+        let is_own = match pou.kind {
+            PouKind::Program => !sources.is_runner(&name.text),
+            PouKind::FunctionBlock => !sources.is_suite(&name.text),
+            _ => false,
+        };
+        if is_test && is_own {
             let at = file.line_column(name.span.start);
             let place = SourcePlace { file: file.name().to_owned(), line: at.line, column: at.column };
             let tags = test_tags::tags(file.dialect(), file.text(), name.span.start);
@@ -172,7 +183,7 @@ fn note(ran: &mut Ran, plc: &mut SoftPlc) {
         let place = SourcePlace { file, line: at.line, column: at.column };
         match ran.asserts.iter_mut().find(|known| known.place == place) {
             Some(known) => known.times += 1,
-            None => ran.asserts.push(FailedAssert { text, place, at_ns: ran.virtual_time_ns, times: 1 }),
+            None => ran.asserts.push(FailedAssert { text, kind: None, place, at_ns: ran.virtual_time_ns, times: 1 }),
         }
     }
 }

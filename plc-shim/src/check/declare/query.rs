@@ -44,11 +44,6 @@ impl<'a> Declarations<'a> {
         std::mem::replace(&mut self.home, home)
     }
 
-    /// True if a type has the full key.
-    pub(in crate::check) fn has_type(&self, key: &str) -> bool {
-        self.type_names.contains_key(key)
-    }
-
     /// Where the type of the full key is declared.
     pub(in crate::check) fn type_span(&self, key: &str) -> Option<Span> {
         self.type_names.get(key).map(|entry| entry.ast.name.span)
