@@ -113,6 +113,11 @@ impl Dialect {
         self.behaviour().time_number_ns
     }
 
+    /// What an assignment does whose value the subrange of its target does not have.
+    pub fn beyond_subrange(self) -> BeyondSubrange {
+        self.behaviour().beyond_subrange
+    }
+
     /// What a division by zero does.
     pub fn division_by_zero(self) -> DivisionByZero {
         self.behaviour().division_by_zero
@@ -200,6 +205,17 @@ pub struct Behaviour {
     pub time_number_ns: u32,
     /// How characters of a STRING lie in memory.
     pub strings: StringMemory,
+    /// What a value does that its subrange does not have.
+    pub beyond_subrange: BeyondSubrange,
+}
+
+/// What an assignment does whose value the subrange of its target does not have. A constant is an error in any dialect.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum BeyondSubrange {
+    /// It stops the PLC.
+    Fault,
+    /// The target takes the value.
+    Assign,
 }
 
 /// What a number becomes as BOOL.

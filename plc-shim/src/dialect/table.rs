@@ -1,7 +1,7 @@
 //! The dialects as data.
 
 use super::Dialect::{self, Codesys, Iec2, Iec3, Matiec, SiemensScl, TwinCat};
-use super::{AddressUnit, Behaviour, DivisionByZero, Feature, StringMemory, Ties, TimeRange, Truth};
+use super::{AddressUnit, Behaviour, BeyondSubrange, DivisionByZero, Feature, StringMemory, Ties, TimeRange, Truth};
 
 /// Who has a construct, and where that is written.
 #[derive(Debug, Clone, Copy)]
@@ -99,7 +99,7 @@ pub struct BehaviourRow {
     /// What it does.
     pub behaviour: Behaviour,
     /// Where each of it is written, in the order of the fields.
-    pub sources: [&'static str; 9],
+    pub sources: [&'static str; 10],
 }
 
 /// What the standard says, or README.md where it leaves a choice.
@@ -113,9 +113,10 @@ pub const STANDARD: Behaviour = Behaviour {
     truth: Truth::LowestBit,
     time_number_ns: 1_000_000,
     strings: StringMemory::Counted,
+    beyond_subrange: BeyondSubrange::Fault,
 };
 
-const STANDARD_SOURCES: [&str; 9] = [
+const STANDARD_SOURCES: [&str; 10] = [
     "left open by 2nd ed. 2.3.1",
     "left open by 2nd ed. 2.2.3",
     "2nd ed. 2.5.1.5.1, IEC 60559",
@@ -125,6 +126,7 @@ const STANDARD_SOURCES: [&str; 9] = [
     "2nd ed. 2.5.1.5.1",
     "left open by 2nd ed. 2.5.1.5.1",
     "left open by 2nd ed. 2.3.1",
+    "2nd ed. Annex E",
 ];
 
 /// How the dialects behave.
@@ -137,6 +139,7 @@ pub const BEHAVIOURS: &[BehaviourRow] = &[
             time: TimeRange::Unsigned32,
             truth: Truth::NotZero,
             strings: StringMemory::ZeroTerminated,
+            beyond_subrange: BeyondSubrange::Assign,
             ..STANDARD
         },
         sources: [
@@ -149,6 +152,7 @@ pub const BEHAVIOURS: &[BehaviourRow] = &[
             "CODESYS: operator TO_BOOL",
             "CODESYS: operator TIME_TO",
             "CODESYS: data type STRING",
+            "CODESYS: POU CheckRangeSigned; without it no check",
         ],
     },
     BehaviourRow {
@@ -159,6 +163,7 @@ pub const BEHAVIOURS: &[BehaviourRow] = &[
             address_unit: AddressUnit::Byte,
             truth: Truth::NotZero,
             strings: StringMemory::ZeroTerminated,
+            beyond_subrange: BeyondSubrange::Assign,
             ..STANDARD
         },
         sources: [
@@ -171,6 +176,7 @@ pub const BEHAVIOURS: &[BehaviourRow] = &[
             "TwinCAT: TO_BOOL",
             "TwinCAT: TIME_TO",
             "TwinCAT: STRING",
+            "TwinCAT: subrange types; POU CheckRangeSigned checks",
         ],
     },
     BehaviourRow {
@@ -193,6 +199,7 @@ pub const BEHAVIOURS: &[BehaviourRow] = &[
             "S7-1200 System Manual: CONV",
             "S7-1200 System Manual: data types, Time",
             "S7-1200 System Manual: data types, String; here its two counts are one",
+            "2nd ed. Annex E; SCL has no subranges",
         ],
     },
     BehaviourRow {
@@ -208,6 +215,7 @@ pub const BEHAVIOURS: &[BehaviourRow] = &[
             "MatIEC: iec_std_functions, to_bool",
             "MatIEC: iec_std_lib, TIME_TO_REAL",
             "left open by 2nd ed. 2.3.1",
+            "2nd ed. Annex E",
         ],
     },
 ];
