@@ -71,9 +71,6 @@ pub(super) fn run(
         End::Late => judge.unfinished(Reason::Late),
         End::Fault(fault) => judge.unfinished(Reason::Fault(fault)),
     };
-    for path in ["GVL_TcUnit.NumberOfInitializedTestSuites","GVL_TcUnit.TcUnitRunner.TestResults.TestSuiteResults.NumberOfTestSuites","GVL_TcUnit.TcUnitRunner.TestResults.TestSuiteResults.NumberOfTestCases","GVL_TcUnit.TcUnitRunner.TestResults.StoringTestSuiteResultNumber","GVL_TcUnit.TcUnitRunner.TestResults.StoredGeneralTestResults","GVL_TcUnit.TcUnitRunner.TestResults.StoredTestSuiteResults", "GVL_TcUnit.TcUnitRunner.AllTestSuitesFinished"] {
-        eprintln!("DBG {path} {:?} now {}", view.number(path), plc.now());
-    }
     if tests.is_empty() {
         return Err(Usage::new("the suites of TcUnit have no test", None).into());
     }
