@@ -118,6 +118,11 @@ impl Dialect {
         self.behaviour().beyond_subrange
     }
 
+    /// The values of LTIME.
+    pub fn long_time(self) -> LongTime {
+        self.behaviour().long_time
+    }
+
     /// What a division by zero does.
     pub fn division_by_zero(self) -> DivisionByZero {
         self.behaviour().division_by_zero
@@ -207,6 +212,17 @@ pub struct Behaviour {
     pub strings: StringMemory,
     /// What a value does that its subrange does not have.
     pub beyond_subrange: BeyondSubrange,
+    /// The values of LTIME.
+    pub long_time: LongTime,
+}
+
+/// The values of LTIME.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum LongTime {
+    /// Signed 64 bit nanoseconds.
+    Signed64,
+    /// Unsigned 64 bit nanoseconds.
+    Unsigned64,
 }
 
 /// What an assignment does whose value the subrange of its target does not have. A constant is an error in any dialect.

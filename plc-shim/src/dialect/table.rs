@@ -1,7 +1,9 @@
 //! The dialects as data.
 
 use super::Dialect::{self, Codesys, Iec2, Iec3, Matiec, SiemensScl, TwinCat};
-use super::{AddressUnit, Behaviour, BeyondSubrange, DivisionByZero, Feature, StringMemory, Ties, TimeRange, Truth};
+use super::{
+    AddressUnit, Behaviour, BeyondSubrange, DivisionByZero, Feature, LongTime, StringMemory, Ties, TimeRange, Truth,
+};
 
 /// Who has a construct, and where that is written.
 #[derive(Debug, Clone, Copy)]
@@ -99,7 +101,7 @@ pub struct BehaviourRow {
     /// What it does.
     pub behaviour: Behaviour,
     /// Where each of it is written, in the order of the fields.
-    pub sources: [&'static str; 10],
+    pub sources: [&'static str; 11],
 }
 
 /// What the standard says, or README.md where it leaves a choice.
@@ -114,9 +116,10 @@ pub const STANDARD: Behaviour = Behaviour {
     time_number_ns: 1_000_000,
     strings: StringMemory::Counted,
     beyond_subrange: BeyondSubrange::Fault,
+    long_time: LongTime::Signed64,
 };
 
-const STANDARD_SOURCES: [&str; 10] = [
+const STANDARD_SOURCES: [&str; 11] = [
     "left open by 2nd ed. 2.3.1",
     "left open by 2nd ed. 2.2.3",
     "2nd ed. 2.5.1.5.1, IEC 60559",
@@ -127,6 +130,7 @@ const STANDARD_SOURCES: [&str; 10] = [
     "left open by 2nd ed. 2.5.1.5.1",
     "left open by 2nd ed. 2.3.1",
     "2nd ed. Annex E",
+    "3rd ed. Table 10",
 ];
 
 /// How the dialects behave.
@@ -140,6 +144,7 @@ pub const BEHAVIOURS: &[BehaviourRow] = &[
             truth: Truth::NotZero,
             strings: StringMemory::ZeroTerminated,
             beyond_subrange: BeyondSubrange::Assign,
+            long_time: LongTime::Unsigned64,
             ..STANDARD
         },
         sources: [
@@ -153,6 +158,7 @@ pub const BEHAVIOURS: &[BehaviourRow] = &[
             "CODESYS: operator TIME_TO",
             "CODESYS: data type STRING",
             "CODESYS: POU CheckRangeSigned; without it no check",
+            "CODESYS: data type LTIME",
         ],
     },
     BehaviourRow {
@@ -164,6 +170,7 @@ pub const BEHAVIOURS: &[BehaviourRow] = &[
             truth: Truth::NotZero,
             strings: StringMemory::ZeroTerminated,
             beyond_subrange: BeyondSubrange::Assign,
+            long_time: LongTime::Unsigned64,
             ..STANDARD
         },
         sources: [
@@ -177,6 +184,7 @@ pub const BEHAVIOURS: &[BehaviourRow] = &[
             "TwinCAT: TIME_TO",
             "TwinCAT: STRING",
             "TwinCAT: subrange types; POU CheckRangeSigned checks",
+            "TwinCAT: TIME/LTIME",
         ],
     },
     BehaviourRow {
@@ -200,6 +208,7 @@ pub const BEHAVIOURS: &[BehaviourRow] = &[
             "S7-1200 System Manual: data types, Time",
             "S7-1200 System Manual: data types, String; here its two counts are one",
             "2nd ed. Annex E; SCL has no subranges",
+            "S7-1500: data types, LTIME",
         ],
     },
     BehaviourRow {
@@ -216,6 +225,7 @@ pub const BEHAVIOURS: &[BehaviourRow] = &[
             "MatIEC: iec_std_lib, TIME_TO_REAL",
             "left open by 2nd ed. 2.3.1",
             "2nd ed. Annex E",
+            "it has none; as 3rd ed. Table 10",
         ],
     },
 ];
