@@ -10,7 +10,8 @@
 //! | [`plan`] | units of work, filtered |
 //! | [`pool`] | units in processes of their own, several at a time |
 //! | [`worker`] | one unit, in such a process |
-//! | [`unit_test`], `test_tags` | test programs in ST, each in a fresh PLC |
+//! | `declared`, `attributes` | tests as sources declare them, and what stands before them |
+//! | [`unit_test`], `memory_text` | test programs in ST, each in a fresh PLC |
 //! | `tcunit` | the suites of `TcUnit`, and what it stores of them |
 //! | [`ran`] | what a process says of its unit |
 //! | [`outcome`] | passed, changed, failed: what came of each test |
@@ -21,11 +22,14 @@
 //! **Invariants.** The order of tests, and all that is said of them, depends on their names alone, not on
 //! who was done first. `--check` writes nothing beside a scenario.
 
+mod attributes;
 pub mod config;
 pub mod coverage;
+mod declared;
 pub mod discover;
 mod error;
 pub mod junit;
+mod memory_text;
 pub mod outcome;
 pub mod page;
 pub mod plan;
@@ -35,7 +39,6 @@ pub mod sarif;
 pub mod selection;
 pub mod summary;
 mod tcunit;
-mod test_tags;
 pub mod unit_test;
 pub mod worker;
 

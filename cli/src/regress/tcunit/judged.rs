@@ -152,13 +152,19 @@ impl Judge<'_> {
             if text.starts_with(SUMMARY) || names.iter().any(|name| text.starts_with(name)) {
                 continue;
             }
-            let of_suite = |test: &Ran| test.class.as_ref().is_some_and(|class| text.contains(class.as_str()));
+            let of_suite = |test: &Ran| test.class.as_ref().is_some_and(|class| is_about(text, class));
             let at = tests.iter().position(of_suite).unwrap_or(0);
             if let Some(test) = tests.get_mut(at) {
                 test.notes.push(text.clone());
             }
         }
     }
+}
+
+/// True for a message that names the suite, or begins with its name without its program.
+fn is_about(message: &str, class: &str) -> bool {
+    let last = class.rsplit('.').next().unwrap_or(class);
+    message.contains(class) || message.strip_prefix(last).is_some_and(|rest| rest.starts_with(['@', '.']))
 }
 
 fn fault_place(fault: &PlcFault) -> Option<SourcePlace> {

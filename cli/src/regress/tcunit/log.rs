@@ -2,7 +2,8 @@
 
 use onescan_plc_shim::{Application, Variable};
 
-use super::memory::{number, text};
+use super::super::memory_text;
+use super::memory::number;
 
 /// The kind of message that is an error: `ADSLOG_MSGTYPE_ERROR`.
 const ERROR: u64 = 4;
@@ -49,7 +50,7 @@ impl Log {
         for entry in self.seen + lost..sent {
             let Some((kind, line)) = ring.get((entry % size) as usize) else { continue };
             if number(bytes(kind, memory)) & ERROR != 0 {
-                self.messages.push(Message { text: text(line, bytes(line, memory)), at_ns });
+                self.messages.extend(memory_text::text(line, memory).map(|text| Message { text, at_ns }));
             }
         }
         self.seen = sent;

@@ -2,6 +2,8 @@
 
 use onescan_plc_shim::{Application, Variable};
 
+use super::super::memory_text::characters;
+
 /// The memory of a PLC, by the names of its application.
 #[derive(Clone, Copy)]
 pub(super) struct View<'a> {
@@ -42,7 +44,7 @@ impl<'a> View<'a> {
     }
 
     pub(super) fn text(&self, path: &str) -> Option<String> {
-        self.bytes(path).map(|(variable, bytes)| text(&variable, bytes))
+        self.bytes(path).and_then(|(variable, bytes)| characters(&variable, bytes))
     }
 
     /// The value of an enumeration by its name.
@@ -56,15 +58,4 @@ impl<'a> View<'a> {
 /// A number in memory, the low byte first.
 pub(super) fn number(bytes: &[u8]) -> u64 {
     bytes.iter().rev().take(8).fold(0, |value, byte| value << 8 | u64::from(*byte))
-}
-
-/// The characters of a string, whose code is that of Latin-1.
-pub(super) fn text(variable: &Variable, bytes: &[u8]) -> String {
-    let mut counted = vec![0; bytes.len() + 2];
-    match variable.zero_terminated {
-        Some(form) => form.take(bytes, &mut counted),
-        None => counted[..bytes.len()].copy_from_slice(bytes),
-    }
-    let (count, characters) = counted.split_at(2);
-    characters.iter().take(number(count) as usize).copied().map(char::from).collect()
 }

@@ -8,7 +8,7 @@ use onescan_plc_shim::syntax::token::{Punctuation, Token, TokenKind};
 use onescan_plc_shim::syntax::{FileId, parse_in, tokenize_in};
 use onescan_server::client::SourcePlace;
 
-use super::super::test_tags;
+use super::super::attributes::Attributes;
 
 /// The block that all suites extend.
 const SUITE: &str = "FB_TESTSUITE";
@@ -90,8 +90,10 @@ impl Sources {
             let name = &pou.name;
             if pou.kind == PouKind::FunctionBlock {
                 let base = pou.object.extends.first().map(|base| key(&base.text));
-                let (place, tags) =
-                    (place(input, name.span.start), test_tags::tags(file.dialect(), file.text(), name.span.start));
+                let (place, tags) = (
+                    place(input, name.span.start),
+                    Attributes::of(file.dialect(), file.text(), name.span.start).tags(),
+                );
                 self.blocks.entry(key(&name.text)).or_insert(Block { base, place, tags });
             }
         }
