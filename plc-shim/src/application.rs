@@ -37,6 +37,7 @@ pub use constant::ConstantError;
 use constant::{Constants, Setting};
 pub(crate) use front::{Front, Parsed};
 use identity::code::Code;
+pub use instance_path::without_home;
 use identity::layout::Layout;
 pub use identity::{CodeDifference, VariableDifference};
 pub(crate) use room::with_room;

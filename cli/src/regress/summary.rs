@@ -56,7 +56,8 @@ fn write_outcome(outcome: &Outcome, width: usize, out: &mut dyn Write) -> io::Re
         write!(out, "  {steps} {unit}{plural}, {}", VirtualTime::from_nanos(*virtual_time_ns))?;
     }
     match outcome.asserts_made {
-        Some(0) if *step_ns > 0 && !matches!(status, Status::Skipped) => write!(out, ", no asserts")?,
+        _ if *status == Status::Skipped => {}
+        Some(0) if *step_ns > 0 => write!(out, ", no asserts")?,
         Some(1) => write!(out, ", 1 assert")?,
         Some(made) => write!(out, ", {made} asserts")?,
         None => {}

@@ -18,6 +18,11 @@ const PROJECT: &str = "onescan.";
 /// What stands before a path in CODESYS: the device and its application.
 const DEVICE: &str = "Device.Application.";
 
+/// A path without what stands before it: the names by which a program's own variables are known.
+pub fn without_home(path: &str) -> &str {
+    [PROJECT, DEVICE].iter().find_map(|before| path.strip_prefix(before)).unwrap_or(path)
+}
+
 /// Writes the paths into the memory of a cold start.
 pub(super) fn write(checked: &mut Checked, sources: &SourceMap) {
     let marked = marked(sources);

@@ -3,6 +3,8 @@
 //! `TcUnit` knows them by their addresses. All that extend one block begin as that does, so the place of a member in one
 //! of them is its place in all.
 
+use onescan_plc_shim::without_home;
+
 use super::memory::View;
 use super::results::{Case, Suite, assertion, global};
 
@@ -29,19 +31,10 @@ fn any(view: View) -> Option<(String, u32)> {
 
 fn suite(view: View, at: &str) -> Suite {
     let path = view.text(&format!("{at}{PATH}")).unwrap_or_default();
-    let name = without_project(view, path);
+    let name = without_home(&path).to_owned();
     let size = view.number(&format!("{at}.NumberOfTests")).unwrap_or(0);
     let cases = (1..=size).map_while(|number| case(view, &name, &format!("{at}.Tests[{number}]"))).collect();
     Suite { name, size, is_begun: view.is_true(&format!("{at}.StartedAt")), cases }
-}
-
-/// The path of an instance without the name of its project.
-fn without_project(view: View, path: String) -> String {
-    let project = view.text("TwinCAT_SystemInfoVarList._AppInfo.ProjectName").unwrap_or_default();
-    match path.split_once(&format!("{project}.")) {
-        Some((_, rest)) if !project.is_empty() => rest.to_owned(),
-        _ => path,
-    }
 }
 
 fn case(view: View, class: &str, at: &str) -> Option<Case> {
