@@ -49,6 +49,10 @@ pub fn write_human(config: &TestConfig, report: &Report, out: &mut dyn Write) ->
 fn write_outcome(outcome: &Outcome, width: usize, out: &mut dyn Write) -> io::Result<()> {
     let Outcome { name, status, steps, virtual_time_ns, step_ns, .. } = outcome;
     let word = if status.is_bad() { status.word().to_uppercase() } else { status.word().to_owned() };
+    if did_not_run(outcome) {
+        writeln!(out, "  {word:<8} {name}")?;
+        return write_details(outcome, out);
+    }
     write!(out, "  {word:<8} {name:<width$}")?;
     if *steps > 0 {
         let unit = if outcome.asserts_made.is_some() { "scan" } else { "step" };
@@ -56,17 +60,23 @@ fn write_outcome(outcome: &Outcome, width: usize, out: &mut dyn Write) -> io::Re
         write!(out, "  {steps} {unit}{plural}, {}", VirtualTime::from_nanos(*virtual_time_ns))?;
     }
     match outcome.asserts_made {
-        _ if *status == Status::Skipped => {}
         Some(0) if *step_ns > 0 => write!(out, ", no asserts")?,
         Some(1) => write!(out, ", 1 assert")?,
         Some(made) => write!(out, ", {made} asserts")?,
         None => {}
     }
     writeln!(out)?;
-    for line in details(outcome) {
-        writeln!(out, "           {line}")?;
-    }
-    Ok(())
+    write_details(outcome, out)
+}
+
+/// True for a test of which there is nothing to count.
+fn did_not_run(outcome: &Outcome) -> bool {
+    let nothing = outcome.steps == 0 && outcome.asserts_made == Some(0) && outcome.class.is_none();
+    nothing || outcome.status == Status::Skipped
+}
+
+fn write_details(outcome: &Outcome, out: &mut dyn Write) -> io::Result<()> {
+    details(outcome).iter().try_for_each(|line| writeln!(out, "           {line}"))
 }
 
 /// What there is to say of a test that did not simply pass, a line each.

@@ -104,7 +104,8 @@ fn a_long_time_of_vendors_has_no_sign() {
         assert_eq!((rig.int("P.half"), rig.int("P.sum")), (i64::MAX, 1), "{dialect}");
         assert_eq!(rig.int("P.most"), -1, "{dialect}: all bits");
     }
-    let found = findings_in(Dialect::Iec3, "PROGRAM P VAR a : LTIME := LTIME#200000d; END_VAR a := a; END_PROGRAM").to_string();
+    let found =
+        findings_in(Dialect::Iec3, "PROGRAM P VAR a : LTIME := LTIME#200000d; END_VAR a := a; END_PROGRAM").to_string();
     assert!(found.contains("S0103") && found.contains("duration is too long"), "{found}");
 }
 

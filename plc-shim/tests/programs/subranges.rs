@@ -84,7 +84,8 @@ fn iec2_2_4_3_2_initial_values_of_derived_types() {
 #[test]
 fn vendors_assign_what_a_subrange_does_not_have() {
     for dialect in [Dialect::Codesys, Dialect::TwinCat] {
-        let text = "PROGRAM P VAR a : UINT (1..9); n : UINT; x : ARRAY [1..9] OF INT; y : INT; END_VAR a := n; END_PROGRAM";
+        let text =
+            "PROGRAM P VAR a : UINT (1..9); n : UINT; x : ARRAY [1..9] OF INT; y : INT; END_VAR a := n; END_PROGRAM";
         let mut rig = Rig::in_dialect(dialect, text);
         rig.scan().expect("no fault");
         assert_eq!(rig.int("P.a"), 0, "{dialect}");

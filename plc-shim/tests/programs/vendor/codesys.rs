@@ -141,10 +141,7 @@ fn types_of_libraries_are_there() {
         "h : CAA.HANDLE; size : CAA.SIZE; error : CAA.ERROR; n : CAA.COUNT;
          class : IBaseLibrary.TypeClass := IBaseLibrary.TYPE_DATE;",
         "error := CAA.ERROR.ERR_TIME_OUT;",
-        &[
-            "h = 0 AND n = 0 AND size = 0",
-            "class = IBaseLibrary.TypeClass.TYPE_DATE AND error <> CAA.ERROR.NO_ERROR",
-        ],
+        &["h = 0 AND n = 0 AND size = 0", "class = IBaseLibrary.TypeClass.TYPE_DATE AND error <> CAA.ERROR.NO_ERROR"],
     );
 }
 
