@@ -59,9 +59,12 @@ fn project(files: &[(&str, &str)]) -> tempfile::TempDir {
     let write = |name: &str, text: &str| std::fs::write(folder.path().join(name), text).expect("a file");
     std::fs::create_dir(folder.path().join("libraries")).expect("a folder");
     write("libraries/runner.st", RUNNER);
-    let listed: String = files.iter().map(|(name, _)| format!("<Compile Include=\"{name}\"/>")).collect();
+    let listed: Vec<String> = files.iter().map(|(name, _)| format!("<Compile Include=\"{name}\"/>")).collect();
+    let listed = listed.concat();
     write("plc.plcproj", &format!("<Project><ItemGroup>{listed}</ItemGroup></Project>"));
-    files.iter().for_each(|(name, text)| write(name, text));
+    for (name, text) in files {
+        write(name, text);
+    }
     folder
 }
 
@@ -143,7 +146,8 @@ fn a_fault_is_told_with_the_test_that_ran() {
 
 #[test]
 fn what_there_is_no_room_for_is_told() {
-    let calls: String = (1..=5).map(|n| format!("TEST('Number {n}'); Finish();\n")).collect();
+    let calls: Vec<String> = (1..=5).map(|n| format!("TEST('Number {n}'); Finish();\n")).collect();
+    let calls = calls.concat();
     let text = format!("FUNCTION_BLOCK Many EXTENDS TcUnit.FB_TestSuite\n{calls}END_FUNCTION_BLOCK");
     let folder = project(&[("many.st", &text), ("main.st", &main_of("many : Many;"))]);
     let said = tested(folder.path(), &["plc.plcproj"]);

@@ -46,7 +46,9 @@ END_PROGRAM
 
 fn tested(files: &[(&str, &str)], words: &[&str]) -> Said {
     let folder = tempfile::tempdir().expect("a folder");
-    files.iter().for_each(|(name, text)| std::fs::write(folder.path().join(name), text).expect("a file"));
+    for (name, text) in files {
+        std::fs::write(folder.path().join(name), text).expect("a file");
+    }
     let names: Vec<&str> = files.iter().map(|(name, _)| *name).collect();
     typed(folder.path(), &[&["test", "--dialect", "codesys"], &names[..], words].concat())
 }

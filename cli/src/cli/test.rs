@@ -76,7 +76,7 @@ pub struct TestArgs {
     /// MiB that all variables of these sources may take together, up to 2047 [default: 64]
     #[arg(long, value_name = "MIB")]
     pub memory_limit: Option<MemoryLimit>,
-    /// A library that the sources use, as TcUnit: a folder or a TwinCAT project, read as its source; may be given
+    /// A library that the sources use, as `TcUnit`: a folder or a TwinCAT project, read as its source; may be given
     /// several times. A project's folder `libraries` is read without this
     #[arg(long = "library", value_name = "PATH")]
     pub libraries: Vec<PathBuf>,

@@ -36,9 +36,14 @@ impl Attributes {
         lists.filter_map(|(_, value)| value.as_deref()).flat_map(listed).collect()
     }
 
-    /// What `{attribute 'test'}` has for a value; nothing inside if it has none, nothing at all without it.
-    pub(super) fn test(&self) -> Option<Option<&str>> {
-        self.0.iter().find(|(name, _)| name == "test").map(|(_, value)| value.as_deref())
+    /// True with `{attribute 'test'}`, whatever its value.
+    pub(super) fn is_test(&self) -> bool {
+        self.0.iter().any(|(name, _)| name == "test")
+    }
+
+    /// True for a unit with several tests.
+    pub(super) fn is_multitest(&self) -> bool {
+        self.value("test").is_some_and(|value| value.eq_ignore_ascii_case("multitest"))
     }
 
     /// What a test is called, if not as its unit.
@@ -96,7 +101,10 @@ mod tests {
                     {attribute 'test' := 'multitest'} FUNCTION_BLOCK B END_FUNCTION_BLOCK FUNCTION_BLOCK C END_FUNCTION_BLOCK";
         let of = |name: &str| Attributes::of(Dialect::Codesys, text, text.find(name).unwrap() as u32);
         let [a, b, c] = ["A END", "B END", "C END"].map(of);
-        assert_eq!((a.test(), b.test(), c.test()), (Some(None), Some(Some("multitest")), None));
+        assert_eq!(
+            [&a, &b, &c].map(|unit| (unit.is_test(), unit.is_multitest())),
+            [(true, false), (true, true), (false, false)]
+        );
         assert_eq!((a.case_name(), b.case_name()), (Some("N:1"), None));
         assert_eq!((a.tags(), a.timeout()), (vec!["fast".to_owned(), "unit".to_owned()], Some(Duration::from_secs(5))));
     }

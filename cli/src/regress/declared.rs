@@ -73,10 +73,9 @@ pub(super) fn tests(input: &Input, sources: &Sources) -> Vec<Test> {
 fn test(input: &Input, pou: &Pou) -> Option<Test> {
     let (file, name) = (input.file(), &pou.name);
     let attributes = Attributes::of(file.dialect(), file.text(), name.span.start);
-    let manager = attributes.test().map(|value| Manager {
-        timeout: attributes.timeout().unwrap_or(TIMEOUT),
-        is_multiple: value.is_some_and(|value| value.eq_ignore_ascii_case("multitest")),
-    });
+    let manager = attributes
+        .is_test()
+        .then(|| Manager { timeout: attributes.timeout().unwrap_or(TIMEOUT), is_multiple: attributes.is_multitest() });
     let is_named = name.text.get(..PREFIX.len()).is_some_and(|start| start.eq_ignore_ascii_case(PREFIX));
     if !is_named && manager.is_none() {
         return None;

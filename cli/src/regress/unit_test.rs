@@ -68,7 +68,7 @@ enum End {
     /// By its output.
     Done(Variable),
     /// By one of several outputs, once it is started.
-    Started(Started),
+    Started(Box<Started>),
 }
 
 /// The variables by which CODESYS' Test Manager starts a test and learns what came of it.
@@ -90,13 +90,8 @@ impl End {
             && let Some((execute, done)) = bool("xExecute").zip(bool("xDone"))
         {
             let info = application.variable(&test.variable("sInfo")).ok();
-            return Ok(Self::Started(Started {
-                execute,
-                done,
-                error: bool("xError"),
-                aborted: bool("xAborted"),
-                info,
-            }));
+            let started = Started { execute, done, error: bool("xError"), aborted: bool("xAborted"), info };
+            return Ok(Self::Started(Box::new(started)));
         }
         let Ok(variable) = application.variable(&test.variable(DONE)) else { return Ok(Self::OneScan) };
         if variable.ty == Some(ElementaryType::Bool) {
@@ -117,7 +112,8 @@ impl End {
         match self {
             Self::OneScan => (true, None),
             Self::Done(done) => (is_set(done), None),
-            Self::Started(Started { done, error, aborted, info, .. }) => {
+            Self::Started(started) => {
+                let Started { done, error, aborted, info, .. } = &**started;
                 let said = info.as_ref().and_then(|info| memory_text::text(info, memory)).unwrap_or_default();
                 let said = if said.is_empty() { said } else { format!(": {said}") };
                 let failed = [("xError", error), ("xAborted", aborted)].into_iter();
@@ -156,8 +152,8 @@ fn one(
     let mut plc = SoftPlc::new(application, &plan).map_err(refused)?;
     let end = End::of(application, test)?;
     let until = until(config, test, &end);
-    if let End::Started(Started { execute, .. }) = &end
-        && let Some(byte) = plc.memory_mut().get_mut(execute.offset as usize)
+    if let End::Started(started) = &end
+        && let Some(byte) = plc.memory_mut().get_mut(started.execute.offset as usize)
     {
         *byte = 1;
     }

@@ -60,13 +60,11 @@ impl Body<'_, '_> {
         if !is_unsigned || expr.ty != E::Ltime.into() {
             return expr;
         }
-        match expr.kind {
-            ExprKind::Constant(Value::Int(ns)) => constant(Value::Int(E::Ulint.wrap(ns)), E::Ulint, expr.span),
-            _ => {
-                let bits = converted(expr, E::Lint, Rounding::NearestEven);
-                converted(bits, E::Ulint, Rounding::NearestEven)
-            }
+        if let ExprKind::Constant(Value::Int(ns)) = expr.kind {
+            return constant(Value::Int(E::Ulint.wrap(ns)), E::Ulint, expr.span);
         }
+        let bits = converted(expr, E::Lint, Rounding::NearestEven);
+        converted(bits, E::Ulint, Rounding::NearestEven)
     }
 
     /// A division, by what the dialect does if the divisor is 0.
