@@ -64,7 +64,7 @@ pub struct TestArgs {
     /// The cycle of test programs
     #[arg(long, default_value = "10ms", value_name = "TIME")]
     pub scan: TimeSpan,
-    /// Virtual time at which a test program with an output `Done` must be done
+    /// Virtual time at which a test program with an output `Done`, and all suites of `TcUnit`, must be done
     #[arg(long, default_value = "1min", value_name = "TIME")]
     pub until: VirtualTime,
     /// The dialect of sources with test programs [default: what a file's name says, else iec3]
