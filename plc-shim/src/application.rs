@@ -4,6 +4,7 @@ mod builder;
 mod constant;
 mod front;
 pub(crate) mod identity;
+mod instance_path;
 mod leaves;
 pub(crate) mod library;
 mod namespace;
@@ -38,6 +39,7 @@ pub(crate) use front::{Front, Parsed};
 use identity::code::Code;
 use identity::layout::Layout;
 pub use identity::{CodeDifference, VariableDifference};
+pub use instance_path::without_home;
 pub(crate) use room::with_room;
 pub(crate) use value::text;
 pub use value::{Radix, WriteError};
@@ -132,11 +134,12 @@ impl Application {
     }
 
     fn compiled(front: Front, constants: &Constants, purpose: Purpose) -> Result<Self, Diagnostics> {
-        let Front { sources, checked, findings, library, .. } = front;
+        let Front { sources, mut checked, findings, library, .. } = front;
         let warnings = Diagnostics::new(findings, &sources);
         if warnings.has_errors() {
             return Err(warnings);
         }
+        instance_path::write(&mut checked, &sources);
         let noted = match purpose {
             Purpose::Run => Noted::Nothing,
             Purpose::Coverage => Noted::AllBut(&library),

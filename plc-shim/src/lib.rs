@@ -47,7 +47,7 @@ pub mod syntax;
 
 pub use application::{
     Application, BuildError, Builder, CodeDifference, ConstantError, Program, Radix, UnknownVariable, Variable,
-    VariableAccess, VariableDifference, WriteError, ZeroTerminated,
+    VariableAccess, VariableDifference, WriteError, ZeroTerminated, without_home,
 };
 pub use compile::fault::FaultKind;
 pub use coverage::Coverage;

@@ -27,6 +27,8 @@ pub struct Suite {
 /// One test.
 #[derive(Clone, Debug)]
 pub struct Case {
+    /// What it belongs to, if not to the suite as a whole.
+    pub class: Option<String>,
     /// The case of the scenario or the test program; empty if it is not known.
     pub name: String,
     /// Virtual time at its end.
@@ -42,6 +44,8 @@ pub struct Case {
 pub enum Ended {
     /// All is as it should be.
     Well,
+    /// The test is switched off.
+    Skipped,
     /// The test did not find what it wants.
     Failure(Trouble),
     /// The test could not be made.
@@ -82,15 +86,17 @@ impl Suite {
         let cases: Vec<&Case> = self.cases.iter().collect();
         let time = cases.iter().map(|case| case.virtual_time_ns).sum::<u64>() as f64 / 1e9;
         let (name, counts) = (escaped(&self.name), counts(&cases));
-        writeln!(text, "  <testsuite name=\"{name}\" {counts} skipped=\"0\" time=\"{time:.3}\">")?;
+        let skipped = cases.iter().filter(|case| matches!(case.ended, Ended::Skipped)).count();
+        writeln!(text, "  <testsuite name=\"{name}\" {counts} skipped=\"{skipped}\" time=\"{time:.3}\">")?;
         self.cases.iter().try_for_each(|case| case.write(&name, text))?;
         writeln!(text, "  </testsuite>")
     }
 }
 
 impl Case {
-    /// `class` is escaped already.
-    fn write(&self, class: &str, text: &mut String) -> fmt::Result {
+    /// `suite` is escaped already.
+    fn write(&self, suite: &str, text: &mut String) -> fmt::Result {
+        let class = self.class.as_ref().map_or_else(|| suite.to_owned(), |class| escaped(class));
         let name = escaped(if self.name.is_empty() { "(all)" } else { &self.name });
         let time = self.virtual_time_ns as f64 / 1e9;
         write!(text, "    <testcase name=\"{name}\" classname=\"{class}\" time=\"{time:.3}\"")?;
@@ -99,6 +105,7 @@ impl Case {
         }
         let (kind, Trouble { word, lines }) = match &self.ended {
             Ended::Well => return writeln!(text, "/>"),
+            Ended::Skipped => return writeln!(text, ">\n      <skipped/>\n    </testcase>"),
             Ended::Failure(trouble) => ("failure", trouble),
             Ended::Error(trouble) => ("error", trouble),
         };

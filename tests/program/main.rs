@@ -39,6 +39,8 @@ mod reports;
 mod review;
 mod run;
 mod stubs;
+mod suites;
+mod test_manager;
 mod third_party;
 mod twincat;
 mod typed;

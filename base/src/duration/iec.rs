@@ -43,6 +43,28 @@ impl IecDuration {
         self.0
     }
 
+    /// The nanoseconds of a duration that has no sign, and so may be twice as long.
+    ///
+    /// ```
+    /// use onescan_base::duration::IecDuration;
+    ///
+    /// let longest = "213503d23h34m33s709ms551us615ns";
+    /// assert!(longest.parse::<IecDuration>().is_err());
+    /// assert_eq!(IecDuration::unsigned_nanos(longest), Ok(u64::MAX));
+    /// assert_eq!(IecDuration::display_unsigned(u64::MAX).to_string(), longest);
+    /// ```
+    ///
+    /// # Errors
+    /// It is none, or too long.
+    pub fn unsigned_nanos(text: &str) -> Result<u64, IecDurationError> {
+        u64::try_from(total(text)?).map_err(|_| IecDurationError::TooLong)
+    }
+
+    /// The text of a duration that has no sign.
+    pub fn display_unsigned(ns: u64) -> impl fmt::Display {
+        Units(ns)
+    }
+
     /// The duration as milliseconds only, with a fraction where it needs one: `1500ms`, `0.25ms`. Some tools read
     /// only one unit.
     pub fn in_millis(self) -> impl fmt::Display {
@@ -67,13 +89,22 @@ impl fmt::Display for InMillis {
 impl fmt::Display for IecDuration {
     /// `1h30m`, `-2ms`; zero is `0s`.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        if self.0 == 0 {
-            return f.write_str("0s");
-        }
         if self.0 < 0 {
             f.write_str("-")?;
         }
-        let mut rest = self.0.unsigned_abs();
+        Units(self.0.unsigned_abs()).fmt(f)
+    }
+}
+
+/// So many nanoseconds, in every unit that is not 0.
+struct Units(u64);
+
+impl fmt::Display for Units {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if self.0 == 0 {
+            return f.write_str("0s");
+        }
+        let mut rest = self.0;
         for (name, unit) in UNITS {
             if rest >= unit {
                 write!(f, "{}{name}", rest / unit)?;
@@ -121,32 +152,36 @@ impl FromStr for IecDuration {
 
     /// Only the last unit may have a fraction; what it has below a nanosecond is cut off.
     fn from_str(text: &str) -> Result<Self, IecDurationError> {
-        let lower = text.to_ascii_lowercase();
-        let (negative, mut rest) = lower.strip_prefix('-').map_or((false, &*lower), |rest| (true, rest));
-        rest = rest.strip_prefix('+').unwrap_or(rest);
-        let mut total: i128 = 0;
-        let mut last_unit = None;
-        while !rest.is_empty() {
-            let end = rest.find(|first: char| first.is_ascii_alphabetic()).ok_or(IecDurationError::NoUnit)?;
-            let (number, tail) = rest.split_at(end);
-            let end = tail.find(|first: char| !first.is_ascii_alphabetic()).unwrap_or(tail.len());
-            let (unit, tail) = tail.split_at(end);
-            let index = UNITS.iter().position(|(name, _)| *name == unit);
-            let index = index.ok_or_else(|| IecDurationError::UnknownUnit(unit.to_owned()))?;
-            if last_unit.is_some_and(|last| last >= index) {
-                return Err(IecDurationError::Order(unit.to_owned()));
-            }
-            last_unit = Some(index);
-            let tail = tail.strip_prefix('_').unwrap_or(tail);
-            total = total.saturating_add(scaled(number, UNITS[index].1, tail.is_empty())?);
-            rest = tail;
-        }
-        if last_unit.is_none() {
-            return Err(IecDurationError::Empty);
-        }
-        let total = if negative { -total } else { total };
-        i64::try_from(total).map(Self).map_err(|_| IecDurationError::TooLong)
+        i64::try_from(total(text)?).map(Self).map_err(|_| IecDurationError::TooLong)
     }
+}
+
+/// The nanoseconds of a text.
+fn total(text: &str) -> Result<i128, IecDurationError> {
+    let lower = text.to_ascii_lowercase();
+    let (negative, mut rest) = lower.strip_prefix('-').map_or((false, &*lower), |rest| (true, rest));
+    rest = rest.strip_prefix('+').unwrap_or(rest);
+    let mut total: i128 = 0;
+    let mut last_unit = None;
+    while !rest.is_empty() {
+        let end = rest.find(|first: char| first.is_ascii_alphabetic()).ok_or(IecDurationError::NoUnit)?;
+        let (number, tail) = rest.split_at(end);
+        let end = tail.find(|first: char| !first.is_ascii_alphabetic()).unwrap_or(tail.len());
+        let (unit, tail) = tail.split_at(end);
+        let index = UNITS.iter().position(|(name, _)| *name == unit);
+        let index = index.ok_or_else(|| IecDurationError::UnknownUnit(unit.to_owned()))?;
+        if last_unit.is_some_and(|last| last >= index) {
+            return Err(IecDurationError::Order(unit.to_owned()));
+        }
+        last_unit = Some(index);
+        let tail = tail.strip_prefix('_').unwrap_or(tail);
+        total = total.saturating_add(scaled(number, UNITS[index].1, tail.is_empty())?);
+        rest = tail;
+    }
+    if last_unit.is_none() {
+        return Err(IecDurationError::Empty);
+    }
+    Ok(if negative { -total } else { total })
 }
 
 /// `number` times `unit_ns`, a fraction below a nanosecond cut off.

@@ -24,16 +24,23 @@ pub struct Program {
     pub memory_limit: MemoryLimit,
 }
 
-/// The programs behind `paths`: each soft PLC of a scenario, and all other files as one. A dialect that is
-/// chosen takes precedence over those of scenarios and files, and so does a limit of memory.
+/// How files are read.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Reading<'a> {
+    /// The dialect of all files; it takes precedence over those of scenarios and files.
+    pub dialect: Option<Dialect>,
+    /// How much memory variables may take; it takes precedence over that of scenarios.
+    pub memory_limit: Option<MemoryLimit>,
+    /// Sources of libraries that the files use.
+    pub libraries: &'a [PathBuf],
+}
+
+/// The programs behind `paths`: each soft PLC of a scenario, and all other files, with their libraries, as one.
 ///
 /// # Errors
 /// A file is not there, cannot be read, or is of no kind that is read.
-pub fn programs(
-    paths: &[PathBuf],
-    dialect: Option<Dialect>,
-    memory_limit: Option<MemoryLimit>,
-) -> Result<Vec<Program>, CheckError> {
+pub fn programs(paths: &[PathBuf], reading: Reading) -> Result<Vec<Program>, CheckError> {
+    let Reading { dialect, memory_limit, libraries } = reading;
     let mut programs = Vec::new();
     let mut files = Files { dialect, ..Files::default() };
     for path in paths {
@@ -46,6 +53,7 @@ pub fn programs(
         }
     }
     if !files.inputs.is_empty() {
+        files.libraries(libraries)?;
         let memory_limit = memory_limit.unwrap_or_default();
         programs.push(Program { inputs: files.inputs, plan: None, memory_limit });
     }
@@ -53,6 +61,10 @@ pub fn programs(
         let known: Vec<_> = EXTENSIONS.iter().map(|(extension, _)| format!(".{extension}")).collect();
         let help = format!("files with PLC sources end in {}", known.join(" "));
         return Err(Usage::new("there are no PLC sources here", Some(help)).into());
+    }
+    if files.seen.is_empty() && !libraries.is_empty() {
+        let help = "the PLCs of a scenario name all their sources in `scenario.toml`".to_owned();
+        return Err(Usage::new("`--library` is for PLC sources, and there are none here", Some(help)).into());
     }
     Ok(programs)
 }
@@ -82,6 +94,17 @@ struct Files {
     dialect: Option<Dialect>,
     inputs: Vec<Input>,
     seen: BTreeSet<PathBuf>,
+    part: Part,
+}
+
+/// Whose files are being read.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+enum Part {
+    /// The program's own.
+    #[default]
+    Own,
+    /// A library's, with the namespace that its project gives it.
+    Library(Option<String>),
 }
 
 impl Files {
@@ -115,7 +138,8 @@ impl Files {
             FileKind::Source(kind) => {
                 // A file of the folder `.` is named as if the folder had not been.
                 let name = path.strip_prefix(".").unwrap_or(path).display().to_string();
-                let input = Input::read(&name, kind, bytes);
+                let namespace = if let Part::Library(namespace) = &self.part { namespace.as_deref() } else { None };
+                let input = Input::read_in(namespace, &name, kind, bytes);
                 self.inputs.push(match self.dialect {
                     Some(dialect) => input.in_dialect(dialect),
                     None => input,
@@ -126,16 +150,32 @@ impl Files {
         }
     }
 
+    /// Sources of libraries: folders, projects and files.
+    fn libraries(&mut self, paths: &[PathBuf]) -> Result<(), CheckError> {
+        let outer = std::mem::replace(&mut self.part, Part::Library(None));
+        let read = paths.iter().try_for_each(|path| if path.is_dir() { self.folder(path) } else { self.named(path) });
+        self.part = outer;
+        read
+    }
+
     /// The files of a TwinCAT project; objects without program text, as tasks are, are passed over.
     fn project(&mut self, path: &Path, bytes: &[u8]) -> Result<(), CheckError> {
         let name = path.strip_prefix(".").unwrap_or(path).display().to_string();
         let folder = path.parent().unwrap_or(Path::new(""));
+        let outer = self.part.clone();
         match project::listing(bytes) {
             Ok(listing) => {
+                if let Part::Library(namespace) = &mut self.part {
+                    namespace.clone_from(&listing.namespace);
+                }
                 let mut missing = Vec::new();
                 for listed in &listing.files {
                     let file = folder.join(&listed.path);
                     let Some(kind @ FileKind::Source(_)) = FileKind::of(&file) else { continue };
+                    // A library has no tasks of its own.
+                    if self.part != Part::Own && is_task(&file) {
+                        continue;
+                    }
                     match std::fs::read(&file) {
                         Ok(bytes) => self.read(&file, kind, &bytes)?,
                         // What is there is checked all the same.
@@ -149,9 +189,10 @@ impl Files {
             }
             Err(error) => self.inputs.push(Input::unreadable(&name, Code::MalformedXml, error.to_string())),
         }
-        // Declarations of libraries stand beside the project, which does not list them.
+        self.part = outer;
+        // Libraries stand beside the project, which does not list them.
         let libraries = folder.join(LIBRARIES);
-        if libraries.is_dir() { self.folder(&libraries) } else { Ok(()) }
+        if libraries.is_dir() { self.libraries(&[libraries]) } else { Ok(()) }
     }
 
     /// All sources in a folder and below it. Where a project is, it says which files are meant.
@@ -181,6 +222,10 @@ impl Files {
         }
         Ok(())
     }
+}
+
+fn is_task(path: &Path) -> bool {
+    path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("TcTTO"))
 }
 
 /// True for XML that is not PLCopen's: folders hold much of it.

@@ -28,6 +28,7 @@ use onescan_report::OutputError;
 pub use error::CheckError;
 
 use crate::error::ExitCode;
+use collect::Reading;
 use report::Report;
 
 /// For whom the findings are.
@@ -51,12 +52,21 @@ pub struct CheckConfig {
     pub dialect: Option<Dialect>,
     /// How much memory variables may take, if not what a scenario says or the default.
     pub memory_limit: Option<MemoryLimit>,
+    /// Sources of libraries that the files use.
+    pub libraries: Vec<PathBuf>,
     /// For whom the findings are.
     pub format: CheckFormat,
     /// Whether warnings alone make the check fail.
     pub warnings: Warnings,
     /// Whether calls of stubs make it fail, as errors do.
     pub stubs: Warnings,
+}
+
+impl CheckConfig {
+    fn reading(&self) -> Reading<'_> {
+        let Self { dialect, memory_limit, .. } = *self;
+        Reading { dialect, memory_limit, libraries: &self.libraries }
+    }
 }
 
 /// What becomes of a check that has found nothing but warnings.
@@ -75,7 +85,7 @@ pub enum Warnings {
 /// A file cannot be read, or the report not be written. What is wrong with the sources is no error
 /// here but an exit code.
 pub fn check(config: &CheckConfig, out: &mut dyn Write) -> Result<ExitCode, CheckError> {
-    let programs = collect::programs(&config.paths, config.dialect, config.memory_limit)?;
+    let programs = collect::programs(&config.paths, config.reading())?;
     let files = programs.iter().map(|program| program.inputs.len()).sum();
     let findings =
         programs.into_iter().map(|program| inspect_within(program.memory_limit, program.inputs, program.plan.as_ref()));

@@ -7,7 +7,7 @@ use onescan_plc_shim::stubs::{self, MARK};
 use onescan_plc_shim::{Code, Dialect, Finding, Input, inspect};
 use onescan_report::OutputError;
 
-use super::collect;
+use super::collect::{self, Reading};
 use super::error::CheckError;
 use crate::error::{ExitCode, Unreadable, Usage};
 
@@ -23,6 +23,8 @@ pub struct StubsConfig {
     pub paths: Vec<PathBuf>,
     /// The dialect of all files, if not the one that each file's name says.
     pub dialect: Option<Dialect>,
+    /// Sources of libraries that the files use.
+    pub libraries: Vec<PathBuf>,
     /// Where the stubs go, if not into `libraries` of the project.
     pub folder: Option<PathBuf>,
 }
@@ -36,7 +38,8 @@ pub fn write(config: &StubsConfig, out: &mut dyn Write) -> Result<ExitCode, Chec
     let path = folder.join(FILE);
     let present = present(&path)?;
     let identity = path.canonicalize().ok();
-    let programs = collect::programs(&config.paths, config.dialect, None)?;
+    let reading = Reading { dialect: config.dialect, libraries: &config.libraries, ..Reading::default() };
+    let programs = collect::programs(&config.paths, reading)?;
     if programs.len() > 1 {
         let help = "name one folder, or the files of one project".to_owned();
         return Err(Usage::new("stubs are written for one program at a time", Some(help)).into());
@@ -91,8 +94,8 @@ pub fn is_stub(finding: &Finding) -> bool {
 ///
 /// # Errors
 /// One does, or a file cannot be read.
-pub fn deny(paths: &[PathBuf], dialect: Option<Dialect>) -> Result<(), CheckError> {
-    for program in collect::programs(paths, dialect, None)? {
+pub fn deny(paths: &[PathBuf], reading: Reading) -> Result<(), CheckError> {
+    for program in collect::programs(paths, reading)? {
         let findings = inspect(program.inputs, program.plan.as_ref());
         let mut uses = findings.findings().iter().filter(|finding| is_stub(finding));
         if let Some(first) = uses.next() {

@@ -17,6 +17,7 @@ use onescan_server::time::{TimeSpan, VirtualTime};
 use super::error::CommandError;
 use super::opcua::AccessArgs;
 use super::value::{FormatArg, client_name, plane, signal_name};
+use crate::check::collect::Reading;
 use crate::check::stubs;
 use crate::error::ExitCode;
 use crate::format::Format;
@@ -229,7 +230,7 @@ impl From<CoverageArg> for CoverageFormat {
 /// See [`CommandError`].
 pub fn run(args: RunArgs) -> Result<ExitCode, CommandError> {
     if args.deny_stubs {
-        stubs::deny(std::slice::from_ref(&args.scenario), None)?;
+        stubs::deny(std::slice::from_ref(&args.scenario), Reading::default())?;
     }
     let interrupt = Interrupt::new();
     interrupt.on_signals();

@@ -30,6 +30,10 @@ pub struct CheckArgs {
     /// MiB that all variables of a PLC may take together, up to 2047 [default: the scenario's, else 64]
     #[arg(long, value_name = "MIB")]
     pub memory_limit: Option<MemoryLimit>,
+    /// A library that the sources use: a folder or a TwinCAT project, read as its source; may be given several times.
+    /// A project's folder `libraries` is read without this
+    #[arg(long = "library", value_name = "PATH")]
+    pub libraries: Vec<PathBuf>,
     /// `human`; `json`: an object a finding with `code`, `severity`, `file`, `line`, `column`,
     /// `end_line`, `end_column`, `message`, `help`; `sarif`: a SARIF 2.1.0 log
     #[arg(long, value_enum, default_value_t)]
@@ -76,12 +80,12 @@ impl From<CheckFormatArg> for CheckFormat {
 pub fn check(args: CheckArgs) -> Result<ExitCode, CommandError> {
     let denied = |is: bool| if is { Warnings::Denied } else { Warnings::Allowed };
     if let Some(folder) = args.write_stubs {
-        let config = StubsConfig { paths: args.paths, dialect: args.dialect, folder };
+        let config = StubsConfig { paths: args.paths, dialect: args.dialect, libraries: args.libraries, folder };
         return Ok(stubs::write(&config, &mut std::io::stdout().lock())?);
     }
     let (warnings, stubs) = (denied(args.deny_warnings), denied(args.deny_stubs));
-    let CheckArgs { paths, dialect, memory_limit, format, .. } = args;
-    let config = CheckConfig { paths, dialect, memory_limit, format: format.into(), warnings, stubs };
+    let CheckArgs { paths, dialect, memory_limit, libraries, format, .. } = args;
+    let config = CheckConfig { paths, dialect, memory_limit, libraries, format: format.into(), warnings, stubs };
     Ok(check::check(&config, &mut std::io::stdout().lock())?)
 }
 

@@ -10,6 +10,7 @@ use onescan_server::time::{TimeSpan, VirtualTime};
 use super::error::CommandError;
 use super::run::CoverageArg;
 use super::value::FormatArg;
+use crate::check::collect::Reading;
 use crate::error::ExitCode;
 use crate::format::Format;
 use crate::regress::config::WorkerConfig;
@@ -63,7 +64,7 @@ pub struct TestArgs {
     /// The cycle of test programs
     #[arg(long, default_value = "10ms", value_name = "TIME")]
     pub scan: TimeSpan,
-    /// Virtual time at which a test program with an output `Done` must be done
+    /// Virtual time at which a test program with an output `Done`, and all suites of `TcUnit`, must be done
     #[arg(long, default_value = "1min", value_name = "TIME")]
     pub until: VirtualTime,
     /// The dialect of sources with test programs [default: what a file's name says, else iec3]
@@ -75,6 +76,10 @@ pub struct TestArgs {
     /// MiB that all variables of these sources may take together, up to 2047 [default: 64]
     #[arg(long, value_name = "MIB")]
     pub memory_limit: Option<MemoryLimit>,
+    /// A library that the sources use, as `TcUnit`: a folder or a TwinCAT project, read as its source; may be given
+    /// several times. A project's folder `libraries` is read without this
+    #[arg(long = "library", value_name = "PATH")]
+    pub libraries: Vec<PathBuf>,
 }
 
 impl TestArgs {
@@ -96,6 +101,7 @@ impl TestArgs {
             until: self.until,
             dialect: self.dialect,
             memory_limit: self.memory_limit,
+            libraries: self.libraries,
             junit: self.junit,
             sarif: self.sarif,
             html: self.html,
@@ -161,6 +167,9 @@ pub struct WorkerArgs {
     /// Their memory
     #[arg(long)]
     pub memory_limit: Option<MemoryLimit>,
+    /// Their libraries
+    #[arg(long = "library")]
+    pub libraries: Vec<PathBuf>,
     /// With one of these tags
     #[arg(long = "tag")]
     pub tags: Vec<String>,
@@ -177,10 +186,10 @@ pub struct WorkerArgs {
 
 impl WorkerArgs {
     fn config(self) -> WorkerConfig {
-        let Self { scenario, case, sources, scan, until, dialect, memory_limit, tags, skipped_tags, cover, draw } =
-            self;
+        let Self { scenario, case, sources, scan, until, dialect, memory_limit, cover, draw, .. } = self;
+        let (libraries, tags, skipped_tags) = (self.libraries, self.tags, self.skipped_tags);
         let selection = Selection { tags, skipped_tags, ..Selection::default() };
-        WorkerConfig { scenario, case, sources, scan, until, dialect, memory_limit, selection, cover, draw }
+        WorkerConfig { scenario, case, sources, scan, until, dialect, memory_limit, libraries, selection, cover, draw }
     }
 }
 
@@ -190,7 +199,8 @@ impl WorkerArgs {
 /// See [`CommandError`].
 pub fn test(args: TestArgs) -> Result<ExitCode, CommandError> {
     if args.deny_stubs {
-        crate::regress::deny_stubs(&args.paths, args.dialect)?;
+        let reading = Reading { dialect: args.dialect, libraries: &args.libraries, ..Reading::default() };
+        crate::regress::deny_stubs(&args.paths, reading)?;
     }
     Ok(crate::regress::test(&args.config(), &mut std::io::stdout().lock())?)
 }

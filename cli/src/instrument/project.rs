@@ -10,7 +10,7 @@ use onescan_report::file::Write;
 
 use super::error::InstrumentError;
 use super::{Destination, InstrumentConfig};
-use crate::check::collect::{self, Program};
+use crate::check::collect::{self, Program, Reading};
 use crate::error::{Unreadable, Usage};
 
 /// The program behind `project`, and the shim's own files beside it.
@@ -18,7 +18,7 @@ use crate::error::{Unreadable, Usage};
 /// # Errors
 /// A file is not there, cannot be read, or is of no kind that is read; or there are several programs.
 pub fn program(project: &Path) -> Result<Program, InstrumentError> {
-    let mut programs = collect::programs(&[project.to_owned()], None, None)?;
+    let mut programs = collect::programs(&[project.to_owned()], Reading::default())?;
     let count = programs.len();
     let (Some(mut program), 1) = (programs.pop(), count) else {
         let help = "name the folder with the sources of one".to_owned();

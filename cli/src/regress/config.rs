@@ -7,6 +7,7 @@ use onescan_plc_shim::{Dialect, MemoryLimit};
 use onescan_server::time::{TimeSpan, VirtualTime};
 
 use super::selection::Selection;
+use crate::check::collect::Reading;
 use crate::format::Format;
 use crate::run::coverage::CoverageRequest;
 
@@ -43,6 +44,8 @@ pub struct TestConfig {
     pub dialect: Option<Dialect>,
     /// How much memory their variables may take.
     pub memory_limit: Option<MemoryLimit>,
+    /// Sources of libraries that they use.
+    pub libraries: Vec<PathBuf>,
     /// A report in the format of `JUnit`.
     pub junit: Option<PathBuf>,
     /// A SARIF log.
@@ -79,10 +82,20 @@ pub struct WorkerConfig {
     pub dialect: Option<Dialect>,
     /// How much memory their variables may take.
     pub memory_limit: Option<MemoryLimit>,
+    /// Sources of libraries that they use.
+    pub libraries: Vec<PathBuf>,
     /// Which of their tests; names are held against filters elsewhere.
     pub selection: Selection,
     /// Whether to note what is executed.
     pub cover: bool,
     /// Whether to draw trajectories.
     pub draw: bool,
+}
+
+impl WorkerConfig {
+    /// How its sources are read.
+    pub fn reading(&self) -> Reading<'_> {
+        let Self { dialect, memory_limit, .. } = *self;
+        Reading { dialect, memory_limit, libraries: &self.libraries }
+    }
 }

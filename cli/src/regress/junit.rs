@@ -17,12 +17,16 @@ pub fn text(report: &Report) -> String {
 fn case(outcome: &Outcome) -> Case {
     let place = outcome.asserts.first().map(|failed| &failed.place).or(outcome.place.as_ref());
     let trouble = || Trouble { word: outcome.status.word(), lines: details(outcome) };
+    // CI servers show the suite, which stands before the name, as a class.
+    let own = outcome.class.as_ref().and_then(|class| outcome.name.strip_prefix(class.as_str())?.strip_prefix('@'));
     Case {
-        name: outcome.name.clone(),
+        class: outcome.class.clone(),
+        name: own.unwrap_or(&outcome.name).to_owned(),
         virtual_time_ns: outcome.virtual_time_ns,
         place: place.map(|place| (place.file.clone(), place.line)),
         ended: match outcome.status {
             Status::Passed | Status::New | Status::Blessed => Ended::Well,
+            Status::Skipped => Ended::Skipped,
             Status::Missing | Status::Changed | Status::Failed => Ended::Failure(trouble()),
             Status::Fault | Status::Wrong => Ended::Error(trouble()),
         },

@@ -10,7 +10,9 @@
 //! | [`plan`] | units of work, filtered |
 //! | [`pool`] | units in processes of their own, several at a time |
 //! | [`worker`] | one unit, in such a process |
-//! | [`unit_test`], `test_tags` | test programs in ST, each in a fresh PLC |
+//! | `declared`, `attributes` | tests as sources declare them, and what stands before them |
+//! | [`unit_test`], `memory_text` | test programs in ST, each in a fresh PLC |
+//! | `tcunit` | the suites of `TcUnit`, and what it stores of them |
 //! | [`ran`] | what a process says of its unit |
 //! | [`outcome`] | passed, changed, failed: what came of each test |
 //! | [`summary`] | for people and as JSON |
@@ -20,11 +22,14 @@
 //! **Invariants.** The order of tests, and all that is said of them, depends on their names alone, not on
 //! who was done first. `--check` writes nothing beside a scenario.
 
+mod attributes;
 pub mod config;
 pub mod coverage;
+mod declared;
 pub mod discover;
 mod error;
 pub mod junit;
+mod memory_text;
 pub mod outcome;
 pub mod page;
 pub mod plan;
@@ -33,14 +38,13 @@ pub mod ran;
 pub mod sarif;
 pub mod selection;
 pub mod summary;
-mod test_tags;
+mod tcunit;
 pub mod unit_test;
 pub mod worker;
 
 use std::io::Write;
 use std::path::PathBuf;
 
-use onescan_plc_shim::Dialect;
 use onescan_report::OutputError;
 use onescan_report::file;
 
@@ -48,6 +52,7 @@ pub use config::{Policy, TestConfig};
 pub use error::TestError;
 pub use selection::Selection;
 
+use crate::check::collect::Reading;
 use crate::check::stubs;
 use crate::error::ExitCode;
 use crate::format::Format;
@@ -58,13 +63,13 @@ use outcome::Outcome;
 ///
 /// # Errors
 /// Some do, or they cannot be read.
-pub fn deny_stubs(paths: &[PathBuf], dialect: Option<Dialect>) -> Result<(), TestError> {
+pub fn deny_stubs(paths: &[PathBuf], reading: Reading) -> Result<(), TestError> {
     let found = Found::behind(paths)?;
     if !found.sources.is_empty() {
-        stubs::deny(&found.sources, dialect)?;
+        stubs::deny(&found.sources, reading)?;
     }
     for scenario in found.scenarios {
-        stubs::deny(&[scenario], None)?;
+        stubs::deny(&[scenario], Reading::default())?;
     }
     Ok(())
 }

@@ -35,6 +35,8 @@ pub enum Status {
     Fault,
     /// The input is wrong.
     Wrong,
+    /// The test is switched off.
+    Skipped,
 }
 
 impl Status {
@@ -49,13 +51,14 @@ impl Status {
             Self::Failed => "failed",
             Self::Fault => "fault",
             Self::Wrong => "wrong",
+            Self::Skipped => "skipped",
         }
     }
 
     /// What it makes of the whole.
     pub fn exit_code(self) -> ExitCode {
         match self {
-            Self::Passed | Self::New | Self::Blessed => ExitCode::Ok,
+            Self::Passed | Self::New | Self::Blessed | Self::Skipped => ExitCode::Ok,
             Self::Missing | Self::Changed | Self::Failed => ExitCode::Unmet,
             Self::Wrong => ExitCode::WrongInput,
             Self::Fault => ExitCode::Fault,
@@ -78,6 +81,9 @@ pub struct Outcome {
     /// What to choose it by.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub tags: Vec<String>,
+    /// The suite of `TcUnit` that it is in.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub class: Option<String>,
     /// How it ended.
     pub status: Status,
     /// The digest over all steps.
@@ -99,6 +105,9 @@ pub struct Outcome {
     /// How many asserts were looked at.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub asserts_made: Option<u64>,
+    /// What else there is to say.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub notes: Vec<String>,
     /// What went wrong, in words.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub error: Option<String>,
@@ -192,6 +201,7 @@ fn outcome(suite: &str, ran: &Ran, folder: &str, status: Status) -> Outcome {
         suite: suite.to_owned(),
         name: ran.name.clone(),
         tags: Vec::new(),
+        class: ran.class.clone(),
         status,
         digest: ran.digest.clone(),
         steps: ran.steps,
@@ -200,6 +210,7 @@ fn outcome(suite: &str, ran: &Ran, folder: &str, status: Status) -> Outcome {
         expectations: ran.expectations.clone(),
         asserts: ran.asserts.clone(),
         asserts_made: None,
+        notes: ran.notes.clone(),
         error: ran.error.clone(),
         place: ran.place.as_ref().map(found),
         step_ns: ran.step_ns,
@@ -209,7 +220,11 @@ fn outcome(suite: &str, ran: &Ran, folder: &str, status: Status) -> Outcome {
 
 fn test_program(suite: &str, ran: &Ran) -> Outcome {
     let failed = ran.error.is_some() || !ran.asserts.is_empty();
-    let status = if failed { Status::Failed } else { Status::Passed };
+    let status = match (failed, ran.skipped) {
+        (true, _) => Status::Failed,
+        (false, true) => Status::Skipped,
+        (false, false) => Status::Passed,
+    };
     Outcome { asserts_made: Some(ran.asserts_made), tags: ran.tags.clone(), ..outcome(suite, ran, "", status) }
 }
 

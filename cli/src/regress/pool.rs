@@ -98,6 +98,9 @@ fn command(config: &TestConfig, unit: &Unit, program: &Path) -> Command {
             if let Some(dialect) = config.dialect {
                 command.arg("--dialect").arg(dialect.to_string());
             }
+            for library in &config.libraries {
+                command.arg("--library").arg(library);
+            }
             if let Some(limit) = config.memory_limit {
                 command.arg("--memory-limit").arg(limit.mib().to_string());
             }

@@ -29,6 +29,12 @@ pub struct Ran {
     /// The tags of a test program.
     #[serde(default)]
     pub tags: Vec<String>,
+    /// The suite of `TcUnit` that it is in.
+    #[serde(default)]
+    pub class: Option<String>,
+    /// True for a test that is switched off.
+    #[serde(default)]
+    pub skipped: bool,
     /// How it ended.
     pub status: RunStatus,
     /// The digest over all steps.
@@ -49,6 +55,9 @@ pub struct Ran {
     pub asserts: Vec<FailedAssert>,
     /// How many asserts were looked at.
     pub asserts_made: u64,
+    /// What else the library under which it ran has to say.
+    #[serde(default)]
+    pub notes: Vec<String>,
     /// What happened to it from outside.
     pub events: Vec<Event>,
     /// Its trajectory, as a snapshot's text.
@@ -84,6 +93,9 @@ impl Shown {
 pub struct FailedAssert {
     /// What was asserted.
     pub text: String,
+    /// The type of what it compares, where that is known.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub kind: Option<String>,
     /// Where it stands.
     pub place: SourcePlace,
     /// When it first did not hold.
@@ -139,6 +151,8 @@ impl Ran {
         Self {
             name,
             tags: Vec::new(),
+            class: None,
+            skipped: false,
             status,
             digest: None,
             steps: 0,
@@ -149,6 +163,7 @@ impl Ran {
             expectations: Vec::new(),
             asserts: Vec::new(),
             asserts_made: 0,
+            notes: Vec::new(),
             events: Vec::new(),
             snapshot: None,
             picture: None,

@@ -49,6 +49,10 @@ pub fn write_human(config: &TestConfig, report: &Report, out: &mut dyn Write) ->
 fn write_outcome(outcome: &Outcome, width: usize, out: &mut dyn Write) -> io::Result<()> {
     let Outcome { name, status, steps, virtual_time_ns, step_ns, .. } = outcome;
     let word = if status.is_bad() { status.word().to_uppercase() } else { status.word().to_owned() };
+    if did_not_run(outcome) {
+        writeln!(out, "  {word:<8} {name}")?;
+        return write_details(outcome, out);
+    }
     write!(out, "  {word:<8} {name:<width$}")?;
     if *steps > 0 {
         let unit = if outcome.asserts_made.is_some() { "scan" } else { "step" };
@@ -62,10 +66,17 @@ fn write_outcome(outcome: &Outcome, width: usize, out: &mut dyn Write) -> io::Re
         None => {}
     }
     writeln!(out)?;
-    for line in details(outcome) {
-        writeln!(out, "           {line}")?;
-    }
-    Ok(())
+    write_details(outcome, out)
+}
+
+/// True for a test of which there is nothing to count.
+fn did_not_run(outcome: &Outcome) -> bool {
+    let nothing = outcome.steps == 0 && outcome.asserts_made == Some(0) && outcome.class.is_none();
+    nothing || outcome.status == Status::Skipped
+}
+
+fn write_details(outcome: &Outcome, out: &mut dyn Write) -> io::Result<()> {
+    details(outcome).iter().try_for_each(|line| writeln!(out, "           {line}"))
 }
 
 /// What there is to say of a test that did not simply pass, a line each.
@@ -78,6 +89,7 @@ pub fn details(outcome: &Outcome) -> Vec<String> {
         }
     }
     lines.extend(outcome.asserts.iter().map(assert));
+    lines.extend(outcome.notes.iter().cloned());
     lines.extend(outcome.expectations.iter().filter(|shown| shown.is_violated()).map(violation));
     lines.extend(outcome.differences.iter().take(SHOWN).map(ToString::to_string));
     if let Some(more @ 1..) = outcome.differences.len().checked_sub(SHOWN) {
@@ -88,9 +100,10 @@ pub fn details(outcome: &Outcome) -> Vec<String> {
 
 /// An assert that did not hold, in words.
 pub fn assert(failed: &FailedAssert) -> String {
-    let FailedAssert { text, place, at_ns, times } = failed;
+    let FailedAssert { text, kind, place, at_ns, times } = failed;
     let often = if *times > 1 { format!(", in {times} scans") } else { String::new() };
-    format!("{place}: {text} (t_v = {}{often})", VirtualTime::from_nanos(*at_ns))
+    let kind = kind.as_ref().map(|kind| format!("{kind}, ")).unwrap_or_default();
+    format!("{place}: {text} ({kind}t_v = {}{often})", VirtualTime::from_nanos(*at_ns))
 }
 
 /// A violated expectation, in words.
@@ -105,7 +118,7 @@ pub fn violation(shown: &Shown) -> String {
 pub fn totals(report: &Report) -> String {
     use Status as S;
     let all = report.outcomes.len();
-    let order = [S::Passed, S::New, S::Blessed, S::Missing, S::Changed, S::Failed, S::Fault, S::Wrong];
+    let order = [S::Passed, S::New, S::Blessed, S::Missing, S::Changed, S::Failed, S::Fault, S::Wrong, S::Skipped];
     let counts = order.map(|status| (report.count(status), status.word()));
     let parts: Vec<String> =
         counts.iter().filter(|(count, _)| *count > 0).map(|(count, word)| format!("{count} {word}")).collect();
@@ -130,6 +143,7 @@ pub fn write_json(report: &Report, out: &mut dyn Write) -> io::Result<()> {
         Status::Failed,
         Status::Fault,
         Status::Wrong,
+        Status::Skipped,
     ]
     .iter()
     .map(|status| (status.word().to_owned(), report.count(*status).into()))

@@ -116,6 +116,16 @@ impl Dialect {
         self.behaviour().time_number_ns
     }
 
+    /// What an assignment does whose value the subrange of its target does not have.
+    pub fn beyond_subrange(self) -> BeyondSubrange {
+        self.behaviour().beyond_subrange
+    }
+
+    /// The values of LTIME.
+    pub fn long_time(self) -> LongTime {
+        self.behaviour().long_time
+    }
+
     /// What a division by zero does.
     pub fn division_by_zero(self) -> DivisionByZero {
         self.behaviour().division_by_zero
@@ -203,6 +213,28 @@ pub struct Behaviour {
     pub time_number_ns: u32,
     /// How characters of a STRING lie in memory.
     pub strings: StringMemory,
+    /// What a value does that its subrange does not have.
+    pub beyond_subrange: BeyondSubrange,
+    /// The values of LTIME.
+    pub long_time: LongTime,
+}
+
+/// The values of LTIME.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum LongTime {
+    /// Signed 64 bit nanoseconds.
+    Signed64,
+    /// Unsigned 64 bit nanoseconds.
+    Unsigned64,
+}
+
+/// What an assignment does whose value the subrange of its target does not have. A constant is an error in any dialect.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum BeyondSubrange {
+    /// It stops the PLC.
+    Fault,
+    /// The target takes the value.
+    Assign,
 }
 
 /// What a number becomes as BOOL.

@@ -1,7 +1,9 @@
 //! The dialects as data.
 
 use super::Dialect::{self, Codesys, Iec2, Iec3, Matiec, SiemensScl, TwinCat};
-use super::{AddressUnit, Behaviour, DivisionByZero, Feature, StringMemory, Ties, TimeRange, Truth};
+use super::{
+    AddressUnit, Behaviour, BeyondSubrange, DivisionByZero, Feature, LongTime, StringMemory, Ties, TimeRange, Truth,
+};
 
 /// Who has a construct, and where that is written.
 #[derive(Debug, Clone, Copy)]
@@ -102,7 +104,7 @@ pub struct BehaviourRow {
     /// What it does.
     pub behaviour: Behaviour,
     /// Where each of it is written, in the order of the fields.
-    pub sources: [&'static str; 9],
+    pub sources: [&'static str; 11],
 }
 
 /// What the standard says, or README.md where it leaves a choice.
@@ -116,9 +118,11 @@ pub const STANDARD: Behaviour = Behaviour {
     truth: Truth::LowestBit,
     time_number_ns: 1_000_000,
     strings: StringMemory::Counted,
+    beyond_subrange: BeyondSubrange::Fault,
+    long_time: LongTime::Signed64,
 };
 
-const STANDARD_SOURCES: [&str; 9] = [
+const STANDARD_SOURCES: [&str; 11] = [
     "left open by 2nd ed. 2.3.1",
     "left open by 2nd ed. 2.2.3",
     "2nd ed. 2.5.1.5.1, IEC 60559",
@@ -128,6 +132,8 @@ const STANDARD_SOURCES: [&str; 9] = [
     "2nd ed. 2.5.1.5.1",
     "left open by 2nd ed. 2.5.1.5.1",
     "left open by 2nd ed. 2.3.1",
+    "2nd ed. Annex E",
+    "3rd ed. Table 10",
 ];
 
 /// How the dialects behave.
@@ -140,6 +146,8 @@ pub const BEHAVIOURS: &[BehaviourRow] = &[
             time: TimeRange::Unsigned32,
             truth: Truth::NotZero,
             strings: StringMemory::ZeroTerminated,
+            beyond_subrange: BeyondSubrange::Assign,
+            long_time: LongTime::Unsigned64,
             ..STANDARD
         },
         sources: [
@@ -152,6 +160,8 @@ pub const BEHAVIOURS: &[BehaviourRow] = &[
             "CODESYS: operator TO_BOOL",
             "CODESYS: operator TIME_TO",
             "CODESYS: data type STRING",
+            "CODESYS: POU CheckRangeSigned; without it no check",
+            "CODESYS: data type LTIME",
         ],
     },
     BehaviourRow {
@@ -162,6 +172,8 @@ pub const BEHAVIOURS: &[BehaviourRow] = &[
             address_unit: AddressUnit::Byte,
             truth: Truth::NotZero,
             strings: StringMemory::ZeroTerminated,
+            beyond_subrange: BeyondSubrange::Assign,
+            long_time: LongTime::Unsigned64,
             ..STANDARD
         },
         sources: [
@@ -174,6 +186,8 @@ pub const BEHAVIOURS: &[BehaviourRow] = &[
             "TwinCAT: TO_BOOL",
             "TwinCAT: TIME_TO",
             "TwinCAT: STRING",
+            "TwinCAT: subrange types; POU CheckRangeSigned checks",
+            "TwinCAT: TIME/LTIME",
         ],
     },
     BehaviourRow {
@@ -196,6 +210,8 @@ pub const BEHAVIOURS: &[BehaviourRow] = &[
             "S7-1200 System Manual: CONV",
             "S7-1200 System Manual: data types, Time",
             "S7-1200 System Manual: data types, String; here its two counts are one",
+            "2nd ed. Annex E; SCL has no subranges",
+            "S7-1500: data types, LTIME",
         ],
     },
     BehaviourRow {
@@ -211,6 +227,8 @@ pub const BEHAVIOURS: &[BehaviourRow] = &[
             "MatIEC: iec_std_functions, to_bool",
             "MatIEC: iec_std_lib, TIME_TO_REAL",
             "left open by 2nd ed. 2.3.1",
+            "2nd ed. Annex E",
+            "it has none; as 3rd ed. Table 10",
         ],
     },
 ];

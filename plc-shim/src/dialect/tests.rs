@@ -29,7 +29,7 @@ fn dialects_have_names_and_files() {
     assert_eq!(Feature::ChainedAssignment.homes(), "codesys, twincat and siemens-scl");
 }
 
-fn behaviour_cells(behaviour: Behaviour) -> [String; 9] {
+fn behaviour_cells(behaviour: Behaviour) -> [String; 11] {
     let time = match behaviour.time {
         TimeRange::Nanoseconds64 => "signed 64 bit nanoseconds",
         TimeRange::Unsigned32 => "unsigned 32 bit milliseconds, wrapping",
@@ -58,7 +58,15 @@ fn behaviour_cells(behaviour: Behaviour) -> [String; 9] {
         StringMemory::ZeroTerminated => "the characters, a 0",
     };
     let length = behaviour.string_length.to_string();
-    [&length, time, ties, division, unit, power, truth, number, strings].map(ToOwned::to_owned)
+    let subrange = match behaviour.beyond_subrange {
+        BeyondSubrange::Fault => "stops the PLC",
+        BeyondSubrange::Assign => "it is assigned",
+    };
+    let long = match behaviour.long_time {
+        LongTime::Signed64 => "signed 64 bit nanoseconds",
+        LongTime::Unsigned64 => "unsigned 64 bit nanoseconds",
+    };
+    [&length, time, ties, division, unit, power, truth, number, strings, subrange, long].map(ToOwned::to_owned)
 }
 
 /// The tables of `docs/dialects.md`.
@@ -80,6 +88,8 @@ fn tables() -> String {
         "a bit string as BOOL, by `DWORD_TO_BOOL`",
         "what the number of a TIME or TOD counts, by `TIME_TO_REAL`",
         "STRING in memory",
+        "a value that a subrange does not have",
+        "LTIME",
     ];
     text += "\n| behaviour | dialect | what it does | source |\n|---|---|---|---|\n";
     for (index, subject) in subjects.iter().enumerate() {

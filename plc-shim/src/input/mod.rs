@@ -60,18 +60,29 @@ pub struct Input {
 impl Input {
     /// Reads the bytes of the file `name`.
     pub fn read(name: &str, kind: SourceKind, bytes: &[u8]) -> Self {
+        Self::read_in(None, name, kind, bytes)
+    }
+
+    /// Reads the bytes of the file `name` of a library whose names are known with its namespace before them, and
+    /// without. Program text says for itself which namespace it is in.
+    pub fn read_in(namespace: Option<&str>, name: &str, kind: SourceKind, bytes: &[u8]) -> Self {
         if bytes.len() > MAX_SIZE {
             return Self::unreadable(name, Code::TooLarge, format!("the file is larger than {MAX_SIZE} bytes"));
         }
         match decode(bytes) {
-            Ok((text, encoding)) => Self { encoding: Some(encoding), ..Self::from_text(name, kind, text) },
+            Ok((text, encoding)) => {
+                Self { encoding: Some(encoding), ..Self::taken(namespace, name, kind, text.into()) }
+            }
             Err(error) => Self::unreadable(name, Code::NotText, error.to_string()),
         }
     }
 
     /// Takes the text of the file `name`.
     pub fn from_text(name: &str, kind: SourceKind, text: impl Into<Arc<str>>) -> Self {
-        let text = text.into();
+        Self::taken(None, name, kind, text.into())
+    }
+
+    fn taken(namespace: Option<&str>, name: &str, kind: SourceKind, text: Arc<str>) -> Self {
         let read = match kind {
             SourceKind::Text => {
                 if let Some(foreign) = foreign::recognise(&text) {
@@ -81,7 +92,7 @@ impl Input {
                 let file = SourceFile::new(name, text).in_dialect(dialect);
                 return Self { file, encoding: None, diagnostics };
             }
-            SourceKind::TwinCat => twincat::extract(&text),
+            SourceKind::TwinCat => twincat::extract(&text, namespace),
             SourceKind::PlcOpen => plcopen::extract(&text),
         };
         let taken = read.unwrap_or_else(|error| Taken::malformed(&error));

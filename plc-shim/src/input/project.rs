@@ -5,6 +5,8 @@ use std::sync::Arc;
 
 use super::encoding::decode;
 use super::xml;
+use crate::syntax::token::TokenKind;
+use crate::syntax::tokenize;
 
 /// Why a project cannot be read.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
@@ -29,6 +31,9 @@ pub struct Listing {
     pub text: Arc<str>,
     /// The files that it compiles, in their order.
     pub files: Vec<Listed>,
+    /// The namespace that others know it by when they use it as a library: its default namespace, else its title, else
+    /// its name; nothing if that is no name of a program.
+    pub namespace: Option<String>,
 }
 
 /// A file that a project compiles.
@@ -61,7 +66,21 @@ pub fn listing(bytes: &[u8]) -> Result<Listing, ProjectError> {
     let items = root.elements().filter(|group| group.name == "ItemGroup").flat_map(xml::Element::elements);
     let included = items.filter(|item| item.name == "Compile").filter_map(|item| item.attribute("Include"));
     let listed = included.map(|include| Listed { path: include.value.replace('\\', "/"), place: include.span.clone() });
-    Ok(Listing { files: listed.collect(), text: text.into() })
+    let files = listed.collect();
+    Ok(Listing { files, namespace: namespace(&text, &root), text: text.into() })
+}
+
+fn namespace(text: &str, root: &xml::Element) -> Option<String> {
+    let properties: Vec<_> =
+        root.elements().filter(|group| group.name == "PropertyGroup").flat_map(xml::Element::elements).collect();
+    let value = |name: &str| properties.iter().find(|property| property.name == name).map(|found| found.text(text));
+    let named = ["DefaultNamespace", "Title", "Name"].iter().filter_map(|name| value(name));
+    named.map(|name| name.trim().to_owned()).find(|name| !name.is_empty()).filter(|name| is_identifier(name))
+}
+
+fn is_identifier(name: &str) -> bool {
+    let tokens = tokenize(name);
+    matches!(tokens.as_slice(), [only] if only.kind == TokenKind::Identifier)
 }
 
 #[cfg(test)]
@@ -79,6 +98,20 @@ mod tests {
   </ItemGroup>
 </Project>"#;
         assert_eq!(files(text).expect("a project"), ["POUs/MAIN.TcPOU", "PlcTask.TcTTO"]);
+    }
+
+    #[test]
+    fn a_library_is_known_by_its_namespace_its_title_or_its_name() {
+        let namespace = |properties: &str| {
+            let text = format!("<Project><PropertyGroup>{properties}</PropertyGroup></Project>");
+            listing(text.as_bytes()).expect("a project").namespace
+        };
+        let all = "<Name>Gears_2</Name><Title>Gears</Title>";
+        assert_eq!(namespace(&format!("{all}<DefaultNamespace> Gear </DefaultNamespace>")).as_deref(), Some("Gear"));
+        assert_eq!(namespace(&format!("{all}<DefaultNamespace></DefaultNamespace>")).as_deref(), Some("Gears"));
+        assert_eq!(namespace("<Name>Gears_2</Name>").as_deref(), Some("Gears_2"));
+        assert_eq!(namespace("<Title>Gears and more</Title><Name>Gears</Name>"), None);
+        assert_eq!(namespace(""), None);
     }
 
     #[test]

@@ -11,13 +11,16 @@ use crate::dialect::Dialect;
 use crate::syntax::token::{Keyword, TokenKind};
 use crate::syntax::tokenize;
 
-/// Program text of a `.TcPOU`, `.TcDUT`, `.TcGVL`, `.TcIO` or `.TcTTO`.
-pub(super) fn extract(file: &str) -> Result<Taken, XmlError> {
+/// Program text of a `.TcPOU`, `.TcDUT`, `.TcGVL`, `.TcIO` or `.TcTTO`, in the namespace of a library.
+pub(super) fn extract(file: &str, namespace: Option<&str>) -> Result<Taken, XmlError> {
     let root = parse(file)?;
     let mut taken = Taken { dialect: Dialect::TwinCat, ..Taken::default() };
     if root.name != "TcPlcObject" {
         taken.report(root.open.clone(), Code::MalformedXml, "`<TcPlcObject>` is wanted here");
         return Ok(taken);
+    }
+    if let Some(namespace) = namespace {
+        taken.extract.instead(&format!("NAMESPACE OPEN {namespace}\n"), root.open.clone());
     }
     for object in root.elements() {
         match object.name.as_str() {
@@ -28,6 +31,9 @@ pub(super) fn extract(file: &str) -> Result<Taken, XmlError> {
             "Itf" => interface(&mut taken, file, object),
             _ => taken.unsupported(place(object), &described(&object.name, object)),
         }
+    }
+    if namespace.is_some() {
+        taken.extract.instead("END_NAMESPACE\n", root.close.clone());
     }
     Ok(taken)
 }
@@ -262,6 +268,20 @@ VAR_GLOBAL x : INT; END_VAR]]></Declaration></GVL><GVL Name=\"Open\"><Declaratio
         METHOD M
         END_METHOD
         END_INTERFACE
+        ");
+    }
+
+    #[test]
+    fn what_is_of_a_library_is_in_its_namespace() {
+        let text =
+            "<TcPlcObject><GVL Name=\"GVL\"><Declaration>VAR_GLOBAL x : INT; END_VAR</Declaration></GVL></TcPlcObject>";
+        let input = Input::read_in(Some("Gears"), "a.TcGVL", SourceKind::TwinCat, text.as_bytes());
+        insta::assert_snapshot!(input.file().text(), @r"
+        NAMESPACE OPEN Gears
+        NAMESPACE OPEN GVL
+        VAR_GLOBAL x : INT; END_VAR
+        END_NAMESPACE
+        END_NAMESPACE
         ");
     }
 

@@ -69,6 +69,19 @@ impl Element {
     pub(crate) fn attribute(&self, name: &str) -> Option<&Attribute> {
         self.attributes.iter().find(|attribute| attribute.name == name)
     }
+
+    /// The text that stands in it, of the file that it was read from.
+    pub(crate) fn text(&self, file: &str) -> String {
+        let mut text = String::new();
+        for node in &self.children {
+            match node {
+                Node::Verbatim(span) => text.push_str(file.get(span.start as usize..span.end as usize).unwrap_or("")),
+                Node::Reference(character, _) => text.push(*character),
+                Node::Element(_) => {}
+            }
+        }
+        text
+    }
 }
 
 /// The file's outermost element.

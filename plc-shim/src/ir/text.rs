@@ -122,6 +122,8 @@ pub(crate) enum TextFunction {
     Edit(Edit),
     /// The text of a value.
     Format(ElementaryType),
+    /// The text of a LTIME without sign, as vendors write it: `LTIME#1ns`.
+    FormatLongTime,
     /// The value of a text.
     Parse(ElementaryType),
 }

@@ -120,6 +120,7 @@ impl<'a> Collector<'a> {
             Literal::Bool(_) => elementary(E::Bool),
             Literal::Integer(_) => Ty::Integer,
             Literal::Real(_) => Ty::Real,
+            Literal::LongDuration(_) => elementary(E::Ltime),
             Literal::Duration { long, .. } => elementary(if *long { E::Ltime } else { E::Time }),
             Literal::Calendar { text, .. } => {
                 let prefix = text.split('#').next().unwrap_or("");

@@ -48,7 +48,7 @@ pub fn parse_typed(text: &str) -> Result<Literal, String> {
     }
     match prefix.to_ascii_uppercase().as_str() {
         "T" | "TIME" => Ok(Literal::Duration { long: false, ns: parse_duration(body)? }),
-        "LT" | "LTIME" => Ok(Literal::Duration { long: true, ns: parse_duration(body)? }),
+        "LT" | "LTIME" => long_duration(body),
         _ => Ok(Literal::Typed { prefix: prefix.to_owned(), value: parse_typed_value(body)? }),
     }
 }
@@ -72,6 +72,15 @@ fn parse_typed_value(body: &str) -> Result<TypedValue, String> {
     }
     let value = parse_integer(magnitude)?;
     Ok(TypedValue::Integer(if negative { -value } else { value }))
+}
+
+/// A LTIME; whether it may have no sign, the dialect says.
+fn long_duration(body: &str) -> Result<Literal, String> {
+    let unsigned = IecDuration::unsigned_nanos(body).ok().filter(|ns| i64::try_from(*ns).is_err());
+    match unsigned {
+        Some(ns) => Ok(Literal::LongDuration(ns)),
+        None => Ok(Literal::Duration { long: true, ns: parse_duration(body)? }),
+    }
 }
 
 /// Nanoseconds of `1d2h3m4s5ms6us7ns`, what follows `T#`.

@@ -57,6 +57,7 @@ mod scheduling;
 mod scl;
 mod sfc;
 mod shear;
+mod source_libraries;
 mod standard_blocks;
 mod standard_functions;
 mod starts;

@@ -1,5 +1,7 @@
 //! Subranges and enumerations (2nd ed. 2.3.3, Tables 12 to 14; 3rd ed. 6.4.4).
 
+use onescan_plc_shim::{Dialect, FaultKind};
+
 use crate::rig::{Rig, findings, result};
 
 const TYPES: &str = "TYPE Percent : INT (0..100); Level : USINT (10..20) := 15; Low : SINT (-5..5); END_TYPE
@@ -77,4 +79,18 @@ fn iec2_2_4_3_2_initial_values_of_derived_types() {
         ";",
     );
     assert_eq!(["a[1][2]", "a[2][0]", "b[1,2]"].map(|name| rig.int(&format!("P.{name}"))), [7, 4, 2]);
+}
+
+#[test]
+fn vendors_assign_what_a_subrange_does_not_have() {
+    for dialect in [Dialect::Codesys, Dialect::TwinCat] {
+        let text =
+            "PROGRAM P VAR a : UINT (1..9); n : UINT; x : ARRAY [1..9] OF INT; y : INT; END_VAR a := n; END_PROGRAM";
+        let mut rig = Rig::in_dialect(dialect, text);
+        rig.scan().expect("no fault");
+        assert_eq!(rig.int("P.a"), 0, "{dialect}");
+        // An index is checked all the same.
+        let mut rig = Rig::in_dialect(dialect, &text.replace("a := n;", "a := n; y := x[a];"));
+        assert_eq!(rig.scan().expect_err("a fault").kind, FaultKind::IndexOutOfRange, "{dialect}");
+    }
 }

@@ -91,6 +91,10 @@ fn elementary(ty: ElementaryType, text: &str) -> Result<Value, String> {
         (Literal::Integer(value), _) if ty.takes_integers() => integer(ty, sign(*value)),
         (Literal::Real(value), Kind::Real) => Ok(real(ty, if negative { -value } else { *value })),
         (Literal::Duration { ns, .. }, Kind::Duration) => Ok(Value::Int(sign(i128::from(*ns)))),
+        // The bits are those of the LTIME without sign that the dialect has.
+        (Literal::LongDuration(ns), Kind::Duration) if !negative && ty == ElementaryType::Ltime => {
+            Ok(Value::Int(i128::from(ns.cast_signed())))
+        }
         (Literal::Calendar { kind, ns, .. }, _) if calendar_kind(ty) == Some(*kind) && !negative => {
             Ok(Value::Int(i128::from(*ns)))
         }

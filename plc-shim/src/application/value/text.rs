@@ -78,6 +78,14 @@ pub(crate) fn format(ty: ElementaryType, bits: i64) -> Line {
     line
 }
 
+/// The text of a LTIME without sign, as vendors write it.
+pub(crate) fn format_long_time(ns: u64) -> Line {
+    let mut line = Line::new();
+    // Writing to a line never fails.
+    let _ = write!(line, "LTIME#{}", IecDuration::display_unsigned(ns));
+    line
+}
+
 /// The decimal digits of a number, the last ones first into their places.
 fn whole(line: &mut Line, number: u64) {
     let mut digits = [b'0'; 20];

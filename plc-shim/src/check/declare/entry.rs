@@ -121,7 +121,16 @@ pub(super) struct GlobalEntry<'a> {
 pub(in crate::check) struct Enumerator {
     pub(in crate::check) ty: TypeId,
     pub(in crate::check) value: i128,
-    pub(in crate::check) of_library: bool,
+    pub(in crate::check) rank: Rank,
+}
+
+/// Which of several values of one name the name alone stands for: the first of these.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub(in crate::check) enum Rank {
+    User,
+    Library,
+    /// It should be known behind its type's name only, as `{attribute 'qualified_only'}` says.
+    Qualified,
 }
 
 /// What the runtime provides.

@@ -51,7 +51,7 @@ use crate::syntax::{FileId, Span, ast};
 
 pub(super) use self::class::{Membership, Role};
 pub(super) use self::demand::{Need, Resolve};
-pub(super) use self::entry::{Declared, Enumerator, TypedImage};
+pub(super) use self::entry::{Declared, Enumerator, Rank, TypedImage};
 pub(super) use self::hook::{EXIT_INPUTS, INIT_INPUTS, is_hook, suits_init};
 pub(crate) use self::kept::Kept;
 pub(super) use self::kept::place_of;

@@ -36,8 +36,8 @@ impl<'a> Declarations<'a> {
         }
         let id = self.add_pou(ast, None);
         let key = self.home.key(&ast.name);
-        if self.home.open {
-            self.open.units.entry(ast.name.key()).or_insert_with(|| key.clone());
+        if let Some(short) = self.home.short_key(&ast.name) {
+            self.open.units.entry(short).or_insert_with(|| key.clone());
         }
         self.pou_names.insert(key, id);
         let mut class = Class::default();
@@ -89,8 +89,8 @@ impl<'a> Declarations<'a> {
             let (home, progress) = (self.home.clone(), Progress::Untouched);
             let entry = TypeEntry { ast, home, progress, reserved: None, resolved: None };
             let key = self.home.key(&ast.name);
-            if self.home.open {
-                self.open.types.entry(ast.name.key()).or_insert_with(|| key.clone());
+            if let Some(short) = self.home.short_key(&ast.name) {
+                self.open.types.entry(short).or_insert_with(|| key.clone());
             }
             self.type_names.insert(key, entry);
         }
@@ -117,8 +117,8 @@ impl<'a> Declarations<'a> {
                     variable: None,
                     home: None,
                 };
-                if self.home.open {
-                    self.open.globals.entry(name.key()).or_insert_with(|| key.clone());
+                if let Some(short) = self.home.short_key(name) {
+                    self.open.globals.entry(short).or_insert_with(|| key.clone());
                 }
                 self.globals.insert(key, entry);
             }

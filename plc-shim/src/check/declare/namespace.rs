@@ -63,8 +63,9 @@ pub(in crate::check) struct Home {
     pub(super) using: Vec<String>,
     /// True inside of `NAMESPACE INTERNAL`.
     pub(in crate::check) internal: bool,
-    /// True inside of a list of global variables whose names are known without it.
-    pub(in crate::check) open: bool,
+    /// The namespace without the open ones that it begins with: names are known behind this, too. Nothing where none
+    /// around is open.
+    pub(in crate::check) short: Option<String>,
 }
 
 impl Home {
@@ -86,8 +87,24 @@ impl Home {
             shown: joined(&self.shown, &namespace.name.text),
             using,
             internal: self.internal || namespace.kind == NamespaceKind::Internal,
-            open: namespace.kind == NamespaceKind::Open,
+            short: self.short_inside(namespace),
         }
+    }
+
+    /// The names of a library are known without it, those of a list in it behind the list's name, and those of an
+    /// open list by themselves.
+    fn short_inside(&self, namespace: &Namespace) -> Option<String> {
+        let is_open = namespace.kind == NamespaceKind::Open;
+        match &self.short {
+            _ if is_open => Some(String::new()),
+            Some(short) => Some(joined(short, &namespace.name.key())),
+            None => None,
+        }
+    }
+
+    /// How what is declared here is known besides its key.
+    pub(super) fn short_key(&self, name: &Ident) -> Option<String> {
+        self.short.as_ref().map(|short| joined(short, &name.key()))
     }
 
     /// With what a unit uses by itself.
@@ -97,8 +114,8 @@ impl Home {
         }
         let mut all = self.using.clone();
         all.extend(using.iter().map(Ident::key));
-        let (namespace, shown) = (self.namespace.clone(), self.shown.clone());
-        Arc::new(Self { namespace, shown, using: all, ..**self })
+        let (namespace, shown, short) = (self.namespace.clone(), self.shown.clone(), self.short.clone());
+        Arc::new(Self { namespace, shown, using: all, short, ..**self })
     }
 }
 
@@ -163,6 +180,10 @@ impl<'a> Declarations<'a> {
                     used.extend(&namespace.using);
                     let inner = Arc::new(home.inside(namespace));
                     self.namespaces.insert(inner.namespace.clone(), inner.shown.clone());
+                    if let Some(short) = inner.short.as_ref().filter(|short| !short.is_empty()) {
+                        let shown = || namespace.name.text.clone();
+                        self.namespaces.entry(short.clone()).or_insert_with(shown);
+                    }
                     if namespace.external {
                         self.libraries.insert(inner.namespace.clone());
                     }

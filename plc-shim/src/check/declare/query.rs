@@ -44,11 +44,6 @@ impl<'a> Declarations<'a> {
         std::mem::replace(&mut self.home, home)
     }
 
-    /// True if a type has the full key.
-    pub(in crate::check) fn has_type(&self, key: &str) -> bool {
-        self.type_names.contains_key(key)
-    }
-
     /// Where the type of the full key is declared.
     pub(in crate::check) fn type_span(&self, key: &str) -> Option<Span> {
         self.type_names.get(key).map(|entry| entry.ast.name.span)
@@ -99,15 +94,13 @@ impl<'a> Declarations<'a> {
         self.enumerators.get(key).map_or(&[], Vec::as_slice)
     }
 
-    /// Makes a value known by its name alone. One of a user's enumerations takes precedence over those of libraries.
+    /// Makes a value known by its name alone, if none of a higher rank is.
     pub(in crate::check) fn add_enumerator(&mut self, name: &str, enumerator: Enumerator) {
         let known = self.enumerators.entry(name.to_ascii_uppercase()).or_default();
-        if !enumerator.of_library {
-            known.retain(|each| !each.of_library);
-        } else if known.iter().any(|each| !each.of_library) {
-            return;
+        known.retain(|each| each.rank <= enumerator.rank);
+        if known.iter().all(|each| each.rank == enumerator.rank) {
+            known.push(enumerator);
         }
-        known.push(enumerator);
     }
 
     /// Makes room in an area of direct addresses.

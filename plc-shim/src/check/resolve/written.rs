@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use super::Written;
 use super::structure::Sharing;
-use crate::check::declare::{Enumerator, Need, StartKind, TypedImage};
+use crate::check::declare::{Enumerator, Need, Rank, StartKind, TypedImage};
 use crate::check::standard::vendor::is_qualified_only;
 use crate::check::types::generic::Generic;
 use crate::diagnostic::{Code, Diagnostic, did_you_mean};
@@ -41,7 +41,9 @@ impl<'a> Written<'_, 'a> {
                 let ty = self.declarations_mut().own_reserved(&ast.name);
                 self.union(name, ty, fields, ast.name.span)
             }
-            TypeSpecKind::Enumeration(values, base) => self.enumeration(name, values, base.as_ref()),
+            TypeSpecKind::Enumeration(values, base) => {
+                self.enumeration(name, values, base.as_ref(), ast.qualified_only)
+            }
             _ => self.resolve(&ast.spec, Need::Size),
         }?;
         if let Some(initial) = &ast.initial {
@@ -70,7 +72,7 @@ impl<'a> Written<'_, 'a> {
                 Some(self.whole(ty))
             }
             TypeSpecKind::Union(fields) => self.union("UNION", None, fields, spec.span),
-            TypeSpecKind::Enumeration(values, base) => self.enumeration("enumeration", values, base.as_ref()),
+            TypeSpecKind::Enumeration(values, base) => self.enumeration("enumeration", values, base.as_ref(), false),
             TypeSpecKind::String(name, length) => {
                 let ty = self.text_type(name.key() == "WSTRING", length.as_deref(), spec.span)?;
                 let size = u64::from(self.declarations().types().size(ty));
@@ -201,7 +203,13 @@ impl<'a> Written<'_, 'a> {
     }
 
     /// Values count on from the one before, from 0 (3rd ed. 6.4.4.2, Table 11).
-    fn enumeration(&mut self, name: &str, ast: &'a [EnumValue], base: Option<&Ident>) -> Option<TypedImage<'a>> {
+    fn enumeration(
+        &mut self,
+        name: &str,
+        ast: &'a [EnumValue],
+        base: Option<&Ident>,
+        qualified: bool,
+    ) -> Option<TypedImage<'a>> {
         let base = base.map_or(Some(ElementaryType::Int), |base| self.integer_base(base))?;
         let mut values: Vec<(String, i128)> = Vec::new();
         let mut next = 0;
@@ -226,8 +234,13 @@ impl<'a> Written<'_, 'a> {
         let of_library = ast.first().is_some_and(|each| self.declarations().is_in_library(each.name.span));
         let qualified_only = self.declarations().home().namespace == SYSTEM || of_library && is_qualified_only(name);
         let known = if qualified_only { Vec::new() } else { values };
+        let rank = match (qualified, of_library) {
+            (true, _) => Rank::Qualified,
+            (false, true) => Rank::Library,
+            (false, false) => Rank::User,
+        };
         for (name, value) in known {
-            self.declarations_mut().add_enumerator(&name, Enumerator { ty, value, of_library });
+            self.declarations_mut().add_enumerator(&name, Enumerator { ty, value, rank });
         }
         Some(self.whole(ty))
     }

@@ -3,7 +3,7 @@
 use wasm_encoder::{Instruction, MemArg, ValType};
 
 use super::emitter::{Emitter, value_type};
-use crate::compile::text_host::TextImport;
+use crate::compile::text_host::{LONG_TIME, TextImport};
 use crate::dialect::StringMemory;
 use crate::ir::text::{Edit, TextCall, TextFunction, TextShape};
 use crate::ir::{ElementaryType, Expr};
@@ -25,7 +25,8 @@ impl Emitter<'_, '_> {
             TextFunction::Compare => self.text_pair(&call.operands, TextImport::Compare),
             TextFunction::Find => self.text_pair(&call.operands, TextImport::Find),
             TextFunction::Edit(edit) => self.edit(edit, call),
-            TextFunction::Format(ty) => self.format(ty, call),
+            TextFunction::Format(ty) => self.format(ty, type_number(ty), call),
+            TextFunction::FormatLongTime => self.format(ElementaryType::Ltime, LONG_TIME, call),
             TextFunction::Parse(ty) => {
                 self.emit(Instruction::I32Const(type_number(ty)));
                 self.text_operands(&call.operands);
@@ -119,8 +120,9 @@ impl Emitter<'_, '_> {
         self.emit(Instruction::I32Const(shape.map_or(0, TextShape::code)));
     }
 
-    fn format(&mut self, ty: ElementaryType, call: &TextCall) {
-        self.emit(Instruction::I32Const(type_number(ty)));
+    /// `form` is the number of the type, or what stands for another text of its values.
+    fn format(&mut self, ty: ElementaryType, form: i32, call: &TextCall) {
+        self.emit(Instruction::I32Const(form));
         for operand in &call.operands {
             self.settled(operand);
         }

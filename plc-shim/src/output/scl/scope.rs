@@ -135,6 +135,7 @@ fn of_literal(literal: &Literal) -> Option<ElementaryType> {
     match literal {
         Literal::Bool(_) => Some(ElementaryType::Bool),
         Literal::Typed { prefix, .. } => ElementaryType::find(prefix),
+        Literal::LongDuration(_) => Some(ElementaryType::Ltime),
         Literal::Duration { long, .. } => Some(if *long { ElementaryType::Ltime } else { ElementaryType::Time }),
         // They take the type of what they stand beside.
         _ => None,

@@ -4,8 +4,8 @@ use wasmtime::{Caller, Error, Global, Linker, Memory, Trap, Val};
 
 use super::view::{Outside, Target, View};
 use super::{edit, parse};
-use crate::application::text::{Line, format};
-use crate::compile::text_host::{MODULE, TextImport};
+use crate::application::text::{Line, format, format_long_time};
+use crate::compile::text_host::{LONG_TIME, MODULE, TextImport};
 use crate::ir::ElementaryType;
 use crate::ir::text::Edit;
 use crate::run::trace::Trace;
@@ -121,13 +121,13 @@ fn format_value(
     target: i32,
     target_code: i32,
 ) -> Result<i32, Error> {
-    let ty = type_of(ty)?;
+    let ty = if ty == LONG_TIME { None } else { Some(type_of(ty)?) };
     with_memory(&mut caller, |memory| {
         let mut made = Target::new(memory, target, target_code)?;
-        if ty.is_character() {
+        if ty.is_some_and(ElementaryType::is_character) {
             made.push(memory, bits as u16);
         }
-        let line = format(ty, bits);
+        let line = ty.map_or_else(|| format_long_time(bits.cast_unsigned()), |ty| format(ty, bits));
         made.append(memory, line.text().as_bytes());
         made.finish(memory);
         Ok((target, line.text().len() as u64))

@@ -280,6 +280,8 @@ pub struct TypeDeclaration {
     pub extends: Option<Ident>,
     /// True behind `{external}`.
     pub external: bool,
+    /// True behind `{attribute 'qualified_only'}`: the values of an enumeration are known behind its name.
+    pub qualified_only: bool,
     /// What it is.
     pub spec: TypeSpec,
     /// The initial value of its variables.

@@ -120,6 +120,8 @@ pub enum Literal {
         /// Its length in nanoseconds.
         ns: i64,
     },
+    /// `LTIME#200000d`: nanoseconds that only a LTIME without sign has.
+    LongDuration(u64),
     /// `D#1994-06-15`, `TOD#15:36:55.36`, `DT#1994-06-15-15:36:55.36`
     Calendar {
         /// What it stands for.

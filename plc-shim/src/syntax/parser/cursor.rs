@@ -32,6 +32,8 @@ pub(super) struct Cursor<'a> {
     result_name: Option<String>,
     /// Starts of tokens behind the pragma `{external}`, in order.
     external: Vec<u32>,
+    /// The same behind `{attribute 'qualified_only'}`.
+    qualified_only: Vec<u32>,
     /// True inside of what stands behind it.
     in_external: bool,
 }
@@ -49,7 +51,8 @@ impl<'a> Cursor<'a> {
             kind if kind.is_trivia() || is_broken(kind) => None,
             _ => Some(*token),
         };
-        let external = behind_external(tokens, text);
+        let external = behind(tokens, text, |pragma| pragma.eq_ignore_ascii_case("external"));
+        let qualified_only = behind(tokens, text, is_qualified_only);
         let mut tokens: Vec<Token> = tokens.iter().filter_map(good).collect();
         promote_soft_keywords(&mut tokens, text);
         Self {
@@ -67,6 +70,7 @@ impl<'a> Cursor<'a> {
             origin: None,
             result_name: None,
             external,
+            qualified_only,
             in_external: false,
         }
     }
@@ -74,6 +78,11 @@ impl<'a> Cursor<'a> {
     /// True if `{external}` stands before the next token.
     pub(super) fn at_external(&self) -> bool {
         self.external.binary_search(&self.span().start).is_ok()
+    }
+
+    /// True if `{attribute 'qualified_only'}` stands before the next token.
+    pub(super) fn at_qualified_only(&self) -> bool {
+        self.qualified_only.binary_search(&self.span().start).is_ok()
     }
 
     /// The same, of text that was taken out of a file.
@@ -418,14 +427,19 @@ fn promote_soft_keywords(tokens: &mut [Token], text: &str) {
     }
 }
 
-/// Where the tokens stand that the pragma `{external}` is before, with other trivia in between at most.
-fn behind_external(tokens: &[Token], text: &str) -> Vec<u32> {
+fn is_qualified_only(pragma: &str) -> bool {
+    let attribute = pragma.split_once(char::is_whitespace).filter(|(word, _)| word.eq_ignore_ascii_case("attribute"));
+    attribute.is_some_and(|(_, name)| name.trim().eq_ignore_ascii_case("'qualified_only'"))
+}
+
+/// Where the tokens stand that such a pragma is before, with other trivia in between at most.
+fn behind(tokens: &[Token], text: &str, is_it: impl Fn(&str) -> bool) -> Vec<u32> {
     let mut found = Vec::new();
     let mut is_behind = false;
     for token in tokens {
         if token.kind == TokenKind::Pragma {
             let pragma = text.get(token.start as usize..token.end as usize).unwrap_or("");
-            is_behind |= pragma.trim_matches(['{', '}']).trim().eq_ignore_ascii_case("external");
+            is_behind |= is_it(pragma.trim_matches(['{', '}']).trim());
         } else if !token.kind.is_trivia() && std::mem::take(&mut is_behind) {
             found.push(token.start);
         }

@@ -314,9 +314,10 @@ impl Cursor<'_> {
     }
 
     fn type_block(&mut self, into: &mut Vec<Declaration>) {
-        let external = self.at_external();
+        let (external, all_qualified) = (self.at_external(), self.at_qualified_only());
         self.advance();
         while self.peek() == Some(TokenKind::Identifier) {
+            let qualified_only = all_qualified || self.at_qualified_only();
             self.pass_access_of_type();
             let (known, start) = (self.reported(), self.span());
             let Some(name) = self.take_identifier() else {
@@ -329,7 +330,15 @@ impl Cursor<'_> {
             let (spec, behind) = self.type_spec_extending();
             let (initial, extends) = (self.optional_initialiser(), before.or(behind));
             let span = self.span_from(start);
-            into.push(Declaration::Type(TypeDeclaration { name, extends, external, spec, initial, span }));
+            into.push(Declaration::Type(TypeDeclaration {
+                name,
+                extends,
+                external,
+                qualified_only,
+                spec,
+                initial,
+                span,
+            }));
             self.end_of_declaration(known);
         }
         if !self.take_keyword(Keyword::EndType) {

@@ -125,6 +125,7 @@ impl Printer {
                 let (prefix, sign) = (if *long { "LT" } else { "T" }, if *ns < 0 { "-" } else { "" });
                 format!("{prefix}#{sign}{}ns", ns.unsigned_abs())
             }
+            Literal::LongDuration(ns) => format!("LT#{ns}ns"),
             Literal::String(text) | Literal::Calendar { text, .. } => text.clone(),
         };
         self.word(&text);

@@ -135,17 +135,58 @@ fn the_clock() {
 }
 
 #[test]
-fn files_are_not_there_and_types_of_libraries_are() {
+fn types_of_libraries_are_there() {
     hold(
         Dialect::TwinCat,
-        "handle : SysFile.SysTypes.RTS_IEC_HANDLE; result : RTS_IEC_RESULT; h : CAA.HANDLE; size : CAA.SIZE; error : CAA.ERROR;
-         class : IBaseLibrary.TypeClass := IBaseLibrary.TYPE_DATE; buffer : BYTE; n : CAA.COUNT;",
-        "handle := SysFile.SysFileOpen('a.txt', SysFile.ACCESS_MODE.AM_APPEND_PLUS, ADR(result)); h := handle;
-         n := SysFileRead(handle, ADR(buffer), 1, 0); error := CAA.ERROR.ERR_TIME_OUT;",
+        "h : CAA.HANDLE; size : CAA.SIZE; error : CAA.ERROR; n : CAA.COUNT;
+         class : IBaseLibrary.TypeClass := IBaseLibrary.TYPE_DATE;",
+        "error := CAA.ERROR.ERR_TIME_OUT;",
+        &["h = 0 AND n = 0 AND size = 0", "class = IBaseLibrary.TypeClass.TYPE_DATE AND error <> CAA.ERROR.NO_ERROR"],
+    );
+}
+
+#[test]
+fn files_are_kept_in_memory() {
+    hold(
+        Dialect::TwinCat,
+        "handle : SysFile.SysTypes.RTS_IEC_HANDLE; result, none, closed, gone : RTS_IEC_RESULT; nobody : RTS_IEC_HANDLE;
+         text : STRING(20) := 'one and two'; back : STRING(20); wrote, got, rest, size : RTS_IEC_SIZE;
+         end, renamed, again, open : RTS_IEC_RESULT;",
+        "nobody := SysFile.SysFileOpen('a.txt', SysFile.ACCESS_MODE.AM_READ, ADR(none));
+         handle := SysFile.SysFileOpen('a.txt', SysFile.ACCESS_MODE.AM_APPEND_PLUS, ADR(result));
+         wrote := SysFileWrite(handle, ADR(text), 11, ADR(result));
+         SysFileSetPos(handle, 4);
+         got := SysFileRead(handle, ADR(back), 20, ADR(result));
+         end := SysFileEOF(handle);
+         rest := SysFileRead(handle, ADR(back[8]), 1, ADR(result));
+         open := SysFileDelete('a.txt');
+         closed := SysFileClose(handle); again := SysFileClose(handle);
+         renamed := SysFileRename('a.txt', 'b.txt'); size := SysFileGetSize('b.txt', 0);
+         gone := SysFileDelete('b.txt');",
         &[
-            "handle = RTS_INVALID_HANDLE AND result = Errors.ERR_NOT_SUPPORTED AND h = SysFile.SysTypes.RTS_INVALID_HANDLE",
-            "SysFileClose(hFile := handle) <> SysDir.CmpErrors.Errors.ERR_OK AND n = 0",
-            "class = IBaseLibrary.TypeClass.TYPE_DATE AND error <> CAA.ERROR.NO_ERROR AND size = 0",
+            "nobody = RTS_INVALID_HANDLE AND none = Errors.ERR_NO_OBJECT",
+            "handle <> RTS_INVALID_HANDLE AND result = SysDir.CmpErrors.Errors.ERR_OK",
+            "wrote = 11 AND got = 7 AND back = 'and two' AND rest = 0 AND end = Errors.ERR_OK",
+            "open = Errors.ERR_FAILED AND closed = Errors.ERR_OK AND again = Errors.ERR_INVALID_HANDLE",
+            "renamed = Errors.ERR_OK AND size = 11 AND gone = Errors.ERR_OK",
+            "SysFileGetSize('b.txt', 0) = 0 AND SysFileDelete('b.txt') = Errors.ERR_NO_OBJECT",
+        ],
+    );
+}
+
+#[test]
+fn files_have_an_end() {
+    hold(
+        Dialect::Codesys,
+        "handle : RTS_IEC_HANDLE; result, full : RTS_IEC_RESULT; bytes : ARRAY [0..39999] OF BYTE; wrote : RTS_IEC_SIZE;
+         i : INT; last : RTS_IEC_HANDLE; name : STRING;",
+        "handle := SysFileOpen('big', AM_WRITE, ADR(result));
+         wrote := SysFileWrite(handle, ADR(bytes), 40000, ADR(result));
+         wrote := wrote + SysFileWrite(handle, ADR(bytes), 40000, ADR(full));
+         FOR i := 1 TO 8 DO name := CONCAT('f', INT_TO_STRING(i)); last := SysFileOpen(name, AM_WRITE, ADR(result)); END_FOR",
+        &[
+            "wrote = 40000 AND full = Errors.ERR_NOMEMORY",
+            "last = RTS_INVALID_HANDLE AND result = Errors.ERR_NOMEMORY",
         ],
     );
 }

@@ -35,13 +35,13 @@ fn constants_and_functions() {
             "address.netId[2] = 17",
             "E_OpenPath.PATH_BOOTPATH = 4 AND open = PATH_BOOTPATH AND Tc2_System.PATH_BOOTPATH = open",
             "Tc2_System.Global_Constants.MAX_STRING_LENGTH = 255",
-            "TwinCAT_SystemInfoVarList._AppInfo.ProjectName = '' AND TwinCAT_SystemInfoVarList._AppInfo.TaskCnt = 1",
+            "TwinCAT_SystemInfoVarList._AppInfo.ProjectName = 'onescan' AND TwinCAT_SystemInfoVarList._AppInfo.TaskCnt = 1",
         ],
     );
 }
 
 #[test]
-fn messages_are_counted_and_the_last_is_kept() {
+fn messages_are_counted_and_the_last_ones_are_kept() {
     hold(
         Dialect::TwinCat,
         "a, b, c : DINT; text : T_MaxString;",
@@ -54,6 +54,8 @@ fn messages_are_counted_and_the_last_is_kept() {
             "text = 'Door A is open'",
             "OnescanAdsLog.text = '-3 parts'",
             "OnescanAdsLog.count = 3",
+            "OnescanAdsLog.texts[0] = text AND OnescanAdsLog.texts[2] = OnescanAdsLog.text",
+            "OnescanAdsLog.masks[0] = 16#11 AND OnescanAdsLog.masks[1] = ADSLOG_MSGTYPE_WARN",
             "OnescanAdsLog.mask = ADSLOG_MSGTYPE_ERROR",
         ],
     );

@@ -7,7 +7,7 @@ use crate::check::types::constant::fold;
 use crate::check::types::number::{MS, as_number, counter, keeps};
 use crate::check::types::operand::{Operand, constant, converted};
 use crate::diagnostic::{Code, Diagnostic};
-use crate::dialect::{Dialect, DivisionByZero, Feature};
+use crate::dialect::{Dialect, DivisionByZero, Feature, LongTime};
 use crate::ir::elementary::Kind;
 use crate::ir::{Binary, ElementaryType as E, Expr, ExprKind, Intrinsic, Place, Rounding, Storage, Type, Value};
 use crate::syntax::Span;
@@ -43,6 +43,28 @@ impl Body<'_, '_> {
         let message = format!("TIME of {dialect} counts milliseconds in {signs} 32 bits");
         self.report(Diagnostic::error(Code::OutOfRange, span, message).with_help("LTIME counts nanoseconds"));
         None
+    }
+
+    /// A LTIME that only one without sign has.
+    pub(super) fn long_duration(&mut self, ns: u64, span: Span) -> Option<Operand> {
+        if self.declarations.dialect(span).long_time() == LongTime::Unsigned64 {
+            return Some(Operand::Typed(constant(Value::Int(i128::from(ns.cast_signed())), E::Ltime, span)));
+        }
+        self.report(Diagnostic::error(Code::InvalidLiteral, span, "duration is too long"));
+        None
+    }
+
+    /// A LTIME as the number that is compared and scaled, where it has no sign. Everything else as it is.
+    pub(in crate::check::body) fn unsigned_duration(&self, expr: Expr) -> Expr {
+        let is_unsigned = self.declarations.dialect(expr.span).long_time() == LongTime::Unsigned64;
+        if !is_unsigned || expr.ty != E::Ltime.into() {
+            return expr;
+        }
+        if let ExprKind::Constant(Value::Int(ns)) = expr.kind {
+            return constant(Value::Int(E::Ulint.wrap(ns)), E::Ulint, expr.span);
+        }
+        let bits = converted(expr, E::Lint, Rounding::NearestEven);
+        converted(bits, E::Ulint, Rounding::NearestEven)
     }
 
     /// A division, by what the dialect does if the divisor is 0.

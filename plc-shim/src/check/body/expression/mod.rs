@@ -67,6 +67,7 @@ impl Body<'_, '_> {
                 self.check_duration(ty, *ns, span)?;
                 Operand::Typed(constant(Value::Int(i128::from(*ns)), ty, span))
             }
+            Literal::LongDuration(ns) => return self.long_duration(*ns, span),
             Literal::Calendar { kind: CalendarKind::Parts, ns, .. } => return self.dtl_literal(*ns, span),
             Literal::Calendar { kind, long, ns, .. } => {
                 let value = Value::Int(i128::from(*ns));

@@ -205,6 +205,7 @@ impl Body<'_, '_> {
                 (pair.left, pair.right)
             }
         };
+        let (left, right) = (self.unsigned_duration(left), self.unsigned_duration(right));
         let kind = ExprKind::Binary(operator, Box::new(left), Box::new(right));
         Some(Operand::Typed(Expr { kind, ty: ElementaryType::Bool.into(), span }))
     }
@@ -306,10 +307,18 @@ impl Body<'_, '_> {
             let ty = left.ty;
             Expr { kind: ExprKind::Binary(operator, Box::new(left), Box::new(right)), ty, span }
         };
+        let duration = self.unsigned_duration(duration);
         if ty.is_integer() {
+            let counted =
+                if duration.ty == ElementaryType::Ulint.into() { duration.ty } else { ElementaryType::Lint.into() };
             let factor = converted(factor, ElementaryType::Lint, Rounding::NearestEven);
+            let factor = if counted == ElementaryType::Ulint.into() {
+                converted(factor, ElementaryType::Ulint, Rounding::NearestEven)
+            } else {
+                factor
+            };
             let operator = self.division(operator, span);
-            let scaled = exact(operator, duration, factor);
+            let scaled = converted(exact(operator, duration, factor), duration_ty, Rounding::NearestEven);
             return Some(Operand::Typed(self.time_value(scaled)));
         }
         let lreal = ElementaryType::Lreal;

@@ -148,14 +148,9 @@ impl Body<'_, '_> {
         let Operand::Typed(address) = operand else { return None };
         let (class, known) = match (self.declarations.types().get(address.ty), &address.kind) {
             (Type::Interface { pou, .. }, _) => (*pou, Known::Interface),
-            (Type::FunctionBlock { pou, .. }, ExprKind::Load(place)) => match place.storage {
-                Storage::InstancePointer(_) | Storage::RegisterPointer(_) if place.steps.is_empty() => {
-                    (*pou, Known::Reference)
-                }
-                // What a pointer or a reference leads to may be of a derived type, too.
-                Storage::Referred if place.steps.len() == 1 => (*pou, Known::Reference),
-                _ => (*pou, Known::Exactly),
-            },
+            (Type::FunctionBlock { pou, .. }, ExprKind::Load(place)) => {
+                (*pou, if may_be_derived(place) { Known::Reference } else { Known::Exactly })
+            }
             _ => return None,
         };
         Some(Some(Object { address, class, known }))
@@ -304,13 +299,23 @@ impl Body<'_, '_> {
             self.report(Diagnostic::error(Code::NotCallable, call.callee.span, message));
             return None;
         }
-        let by_reference = matches!(place.storage, Storage::InstancePointer(_) | Storage::RegisterPointer(_));
+        let by_reference = may_be_derived(place);
         let targets = self.declarations.targets(pou, Role::Body, "");
-        if !by_reference || !place.steps.is_empty() || targets.iter().all(|(_, target)| *target == pou) {
+        if !by_reference || targets.iter().all(|(_, target)| *target == pou) {
             self.note_call(pou, span);
             return Some(Dispatch::Direct);
         }
         self.note_dynamic(targets.iter().map(|(_, target)| *target));
         self.declarations.row(pou, Role::Body, "", pou).map(Dispatch::Row)
+    }
+}
+
+/// True for a place where an instance of a derived type may lie: what comes by `VAR_IN_OUT`, and what a pointer or a
+/// reference leads to.
+fn may_be_derived(place: &Place) -> bool {
+    match place.storage {
+        Storage::InstancePointer(_) | Storage::RegisterPointer(_) => place.steps.is_empty(),
+        Storage::Referred => place.steps.len() == 1,
+        _ => false,
     }
 }

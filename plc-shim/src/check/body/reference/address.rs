@@ -166,10 +166,10 @@ impl Body<'_, '_> {
     fn names_type(&self, name: &Ident) -> bool {
         let key = name.key();
         ElementaryType::find(&key).is_some()
-            || self.declarations.has_type(&key)
+            || self.declarations.type_key(&key).is_some()
             || self
                 .declarations
-                .unit_of_key(&key)
+                .pou_named(&key)
                 .is_some_and(|id| self.declarations.pou(id).ast().kind == PouKind::FunctionBlock)
     }
 

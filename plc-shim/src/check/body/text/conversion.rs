@@ -5,7 +5,7 @@
 //! | BOOL | `TRUE`, `FALSE` |
 //! | integers, bit strings | decimal |
 //! | REAL, LREAL | the shortest that reads back as the same number: `1.5`, `100.0`, `1.0E+20` |
-//! | TIME, LTIME | `T#1h2m3s4ms`, `LT#...` |
+//! | TIME, LTIME | `T#1h2m3s4ms`, `LT#...`; `LTIME#...` where that has no sign |
 //! | dates | `D#1994-06-15`, `TOD#15:36:55.36`, `DT#1994-06-15-15:36:55.36`, `LD#...` |
 //! | CHAR, WCHAR | the character; the first one the other way |
 //!
@@ -16,6 +16,7 @@ use crate::check::body::Body;
 use crate::check::standard::text_conversion::{Sort, TextConversion};
 use crate::check::types::operand::Operand;
 use crate::diagnostic::{Code, Diagnostic};
+use crate::dialect::LongTime;
 use crate::ir::text::{TextFunction, TextShape};
 use crate::ir::{ElementaryType, Expr};
 use crate::syntax::Span;
@@ -67,6 +68,9 @@ impl Body<'_, '_> {
             return None;
         };
         let shape = TextShape { wide, capacity: VALUE_CAPACITY, memory: self.declarations.dialect(span).strings() };
-        self.made_text(TextFunction::Format(from), vec![expr], shape, span).map(Operand::Typed)
+        let is_long =
+            from == ElementaryType::Ltime && self.declarations.dialect(span).long_time() == LongTime::Unsigned64;
+        let function = if is_long { TextFunction::FormatLongTime } else { TextFunction::Format(from) };
+        self.made_text(function, vec![expr], shape, span).map(Operand::Typed)
     }
 }

@@ -87,7 +87,8 @@ impl Walk<'_, '_> {
             self.full_address(target);
         }
         self.charge(if call.function == TextFunction::Length { 6 } else { price::TEXT_CALL });
-        let makes = matches!(call.function, TextFunction::Edit(_) | TextFunction::Format(_));
+        let makes =
+            matches!(call.function, TextFunction::Edit(_) | TextFunction::Format(_) | TextFunction::FormatLongTime);
         if makes {
             self.changed(call.target.as_ref().and_then(|target| self.scope.extent(target)));
         }
