@@ -399,7 +399,7 @@ METHOD Alone END_METHOD"
     test.st:65:21: error[O0802]: `Shape` is ABSTRACT and has no instances (declare an instance of what extends it)
     test.st:66:5: error[N0104]: `size` is internal to Square
     test.st:67:5: error[N0104]: Square has no member `Aera` (did you mean `Area`?)
-    test.st:68:9: error[S0101]: `:=` or `(` expected, found `;`
+    test.st:68:3: error[S0110]: a value as a statement is not part of iec3 (it is part of codesys and twincat: --dialect chooses)
     test.st:69:10: error[N0106]: `Area` is a method: call it as `Area()`
     test.st:70:5: error[O0801]: `Wrong.Own` is PRIVATE
     test.st:71:5: error[O0801]: `Simple.level_of` is PRIVATE

@@ -47,7 +47,8 @@ impl Cursor<'_> {
         }
         if self.reported() == known && self.is_value(&target) {
             self.require(Feature::ValueStatements, target.span);
-            return StatementKind::Value(target);
+            let is_allowed = self.dialect().has(Feature::ValueStatements);
+            return if is_allowed { StatementKind::Value(target) } else { StatementKind::Error };
         }
         if self.reported() == known {
             if self.at_mark(Punctuation::Equal) || matches!(target.kind, ExprKind::Binary(BinaryOp::Equal, ..)) {
