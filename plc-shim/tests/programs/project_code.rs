@@ -181,3 +181,27 @@ fn what_a_stub_leaves_out_is_not_missing() {
           i := t1; r := i.M() + i.Q + s1.M() + t1.Q; i := u1; r := r + i.M() + i.Q; i := s1; r := r + i.M(); END_PROGRAM";
     gives(text, 674);
 }
+
+#[test]
+fn a_reference_begins_with_what_it_refers_to() {
+    gives(
+        "FUNCTION F : DINT VAR_INPUT x : REFERENCE TO DINT := 0; END_VAR
+           IF __ISVALIDREF(x) THEN F := x; ELSE F := 1000; END_IF END_FUNCTION
+         FUNCTION_BLOCK B VAR n : DINT := 5; mine : REFERENCE TO DINT := n; END_VAR VAR_OUTPUT q : DINT; END_VAR
+           mine := mine + 1; q := n; END_FUNCTION_BLOCK
+         PROGRAM P VAR a : DINT := 40; ref : REFERENCE TO DINT := a; list : ARRAY [0..2] OF DINT := [1, 2, 300];
+           all : REFERENCE TO ARRAY [0..2] OF DINT := list; b1, b2 : B; r : DINT; END_VAR
+           b1(); ref := ref + 1; r := a + all[2] + F() + F(a) + b1.q; END_PROGRAM",
+        41 + 300 + 1000 + 41 + 6,
+    );
+}
+
+#[test]
+fn a_constant_input_may_bound_an_array() {
+    gives(
+        "FUNCTION_BLOCK F VAR_INPUT CONSTANT n : INT := 4; END_VAR VAR a : ARRAY [1..n] OF BYTE; END_VAR
+           VAR_OUTPUT q : INT; END_VAR q := n * 100 + DINT_TO_INT(UPPER_BOUND(a, 1)); END_FUNCTION_BLOCK
+         PROGRAM P VAR f1 : F; r : INT; END_VAR f1(n := 3); r := f1.q; END_PROGRAM",
+        304,
+    );
+}

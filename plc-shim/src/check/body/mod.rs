@@ -56,6 +56,9 @@ pub(super) struct Body<'c, 'a> {
     label_count: u32,
     /// Values that elements of a network hand on.
     wires: BTreeMap<String, Place>,
+    /// Statements are checked, not declarations: what a caller gives has the value that it is given. A bound of an
+    /// array has that of its declaration, as an input CONSTANT may be one.
+    is_running: bool,
     /// Constants of later sections whose values are being worked out.
     later: Vec<(PouId, String)>,
     /// How many wires lists of instructions have so far.
@@ -80,6 +83,7 @@ impl<'c, 'a> Body<'c, 'a> {
             label_count: 0,
             wires: BTreeMap::new(),
             later: Vec::new(),
+            is_running: false,
             instruction_wires: 0,
             network: None,
         }

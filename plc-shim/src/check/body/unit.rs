@@ -26,6 +26,7 @@ pub(in crate::check) fn check_unit(declarations: &mut Declarations<'_>, id: PouI
 
 impl Body<'_, '_> {
     fn into_unit(mut self, id: PouId) -> Pou {
+        self.is_running = true;
         let ast = self.declarations.pou(id).ast();
         let mut statements = self.prologue(ast.kind);
         // A prototype is called where a stub stands for what would have the method.

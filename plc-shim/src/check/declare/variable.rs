@@ -29,15 +29,13 @@ impl<'a> Declarations<'a> {
         storage: Storage,
     ) -> Variable {
         let is_constant = qualifiers.contains(&Qualifier::Constant);
-        let given = matches!(section, SectionKind::Input | SectionKind::InOut | SectionKind::Output);
         let elementary = self.types.elementary(declared.ty);
         Variable {
             name: name.text.clone(),
             section,
             ty: declared.ty,
             storage,
-            // What a caller gives has no value before the program runs: CONSTANT says that its unit does not write it.
-            constant: elementary.filter(|_| is_constant && !given).map(|ty| decode(ty, &declared.image)),
+            constant: elementary.filter(|_| is_constant).map(|ty| decode(ty, &declared.image)),
             is_constant,
             retention: Retention::of(qualifiers),
             address: ast.address.as_ref().map(|address| address.text.clone()),

@@ -254,7 +254,8 @@ impl Body<'_, '_> {
         match self.variable_named(name) {
             Some(Err(())) => return None,
             Some(Ok(variable)) => {
-                return Some(match variable.constant {
+                let given = matches!(variable.section, SectionKind::Input | SectionKind::InOut | SectionKind::Output);
+                return Some(match variable.constant.filter(|_| !given || !self.is_running) {
                     Some(value) => {
                         let kind = ExprKind::Constant(value);
                         Meaning::Value(Expr {
