@@ -320,6 +320,7 @@ features! {
     ReadableInternals "an instance's `VAR` read from outside",
     ProgramInstances "a program called, or its variables used, by its name",
     DynamicMemory "`__NEW`, `__DELETE`",
+    AssignedValues "an assignment as a value, `IF a := b THEN`",
     ValueStatements "a value as a statement",
     Exceptions "`__TRY`",
     ShortPrefixes "literals as `W#16#FF`, `L#5`, `S5T#2s`",

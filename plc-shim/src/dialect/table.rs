@@ -90,6 +90,7 @@ pub const FEATURES: &[FeatureRow] = &[
     ),
     row(Feature::ProgramInstances, &[Codesys, TwinCat], "CODESYS and TwinCAT: object PROGRAM, calling a program"),
     row(Feature::DynamicMemory, &[Codesys, TwinCat], "CODESYS and TwinCAT: operators __NEW, __DELETE"),
+    row(Feature::AssignedValues, &[Codesys, TwinCat], "CODESYS and TwinCAT: assignment as expression"),
     row(Feature::ValueStatements, &[Codesys, TwinCat], "CODESYS and TwinCAT: compile it, with a warning"),
     row(Feature::Exceptions, &[Codesys, TwinCat], "CODESYS and TwinCAT: operators __TRY, __CATCH, __FINALLY, __ENDTRY"),
     row(Feature::ShortPrefixes, &[SiemensScl], "TIA Portal: constants; S7-SCL V5.3: 7.4"),

@@ -62,6 +62,11 @@ impl<'a> Collector<'a> {
             }
             ExprKind::Binary(op, left, right) => self.binary(*op, left, right, access, scope),
             ExprKind::Paren(inner) => self.place(inner, access, scope),
+            ExprKind::Assign(target, value) => {
+                let target = self.place(target, Access::Write, scope);
+                self.wanted(value, &target, scope);
+                target
+            }
             ExprKind::Chain(first, links) => self.row(first, links, access, scope),
         }
     }

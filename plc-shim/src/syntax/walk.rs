@@ -198,6 +198,10 @@ pub(crate) fn expression(expr: &Expr, visitor: &mut impl Visitor) {
             }
         }
         ExprKind::Call(inner) => call(inner, visitor),
+        ExprKind::Assign(place, value) => {
+            target(place, visitor);
+            expression(value, visitor);
+        }
         _ => {}
     }
 }

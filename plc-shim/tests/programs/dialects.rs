@@ -95,6 +95,7 @@ fn use_of(feature: Feature) -> &'static str {
              PROGRAM P VAR x : INT; END_VAR Q(i := 1); x := Q.n; END_PROGRAM"
         }
         Feature::DynamicMemory => "PROGRAM P VAR p : POINTER TO BYTE; END_VAR p := __NEW(BYTE); END_PROGRAM",
+        Feature::AssignedValues => "PROGRAM P VAR a, b : BOOL; END_VAR IF a := b THEN b := FALSE; END_IF END_PROGRAM",
         Feature::ValueStatements => {
             "FUNCTION_BLOCK F VAR_OUTPUT q : INT; END_VAR q := 1; END_FUNCTION_BLOCK
              PROGRAM P VAR f1 : F; END_VAR f1(); f1.q; END_PROGRAM"
@@ -121,7 +122,8 @@ fn every_construct_is_for_its_dialects_alone() {
 }
 
 /// Constructs whose absence is no syntax of its own: another error says it.
-const TOLD_OTHERWISE: [Feature; 26] = [
+const TOLD_OTHERWISE: [Feature; 27] = [
+    Feature::AssignedValues,
     Feature::DynamicMemory,
     Feature::OwnStandardBlocks,
     Feature::LeftOutInputs,

@@ -205,3 +205,18 @@ fn a_constant_input_may_bound_an_array() {
         304,
     );
 }
+
+#[test]
+fn an_assignment_has_a_value() {
+    gives(
+        "FUNCTION_BLOCK F VAR _n : DINT; END_VAR PROPERTY N : DINT GET N := _n; END_GET SET _n := N * 2; END_SET END_PROPERTY
+         END_FUNCTION_BLOCK
+         PROGRAM P VAR f1 : F; i, k, r : DINT; done : BOOL; small : SINT; END_VAR
+           IF (i := i + 4) = 4 THEN r := r + 1; END_IF
+           IF done := i > 3 THEN r := r + 10; END_IF
+           WHILE (i := i - 1) > 0 DO k := k + 1; END_WHILE
+           r := r + (k := k + 1) * 100 + (f1.N := 5) * 1000 + (small := SINT#7) * 100000;
+           IF NOT done THEN r := 0; END_IF END_PROGRAM",
+        11 + 4 * 100 + 10 * 1000 + 700_000,
+    );
+}

@@ -55,6 +55,8 @@ pub enum ExprKind {
     Chain(Box<Expr>, Vec<Link>),
     /// `(a)`
     Paren(Box<Expr>),
+    /// `a := b` as a value, in a condition or between parentheses (vendors).
+    Assign(Box<Expr>, Box<Expr>),
     /// `POINTER TO T`, a type where vendors want one: in `SIZEOF` and `__NEW`.
     Type(Box<TypeSpec>),
     /// Text that is no expression; a diagnostic has been given.

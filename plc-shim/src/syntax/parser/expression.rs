@@ -21,6 +21,22 @@ impl Cursor<'_> {
         self.binary(0)
     }
 
+    /// An expression or, where vendors take its value, an assignment.
+    pub(super) fn expression_or_assignment(&mut self) -> Expr {
+        let target = self.expression();
+        let at = self.span();
+        if !self.at_mark(Punctuation::Assign) || !self.dialect().has(Feature::AssignedValues) {
+            return target;
+        }
+        self.require(Feature::AssignedValues, at);
+        self.advance();
+        let span = target.span;
+        let nested = self.nested(Self::expression_or_assignment);
+        let value = nested.unwrap_or_else(|| error_at(at));
+        let (span, height) = (span.to(value.span), target.height.max(value.height));
+        self.node(ExprKind::Assign(Box::new(target), Box::new(value)), span, height)
+    }
+
     fn binary(&mut self, minimum: u8) -> Expr {
         let span = self.span();
         self.nested(|cursor| cursor.operator_chain(minimum)).unwrap_or_else(|| error_at(span))
@@ -387,7 +403,7 @@ impl Cursor<'_> {
     pub(super) fn parenthesised(&mut self) -> Expr {
         let start = self.span();
         self.advance();
-        let inner = self.expression();
+        let inner = self.expression_or_assignment();
         self.expect_mark(Punctuation::RightParen);
         let (span, height) = (self.span_from(start), inner.height);
         self.node(ExprKind::Paren(Box::new(inner)), span, height)

@@ -168,7 +168,7 @@ impl Cursor<'_> {
     /// A condition and the keyword behind it; a slip in either does not cost the body.
     fn condition(&mut self, end: Keyword) -> crate::syntax::ast::Expr {
         let known = self.reported();
-        let condition = self.expression();
+        let condition = self.expression_or_assignment();
         if !self.at_keyword(end) {
             if self.reported() == known {
                 self.unexpected(&format!("`{}`", end.text()));

@@ -61,6 +61,11 @@ impl Printer {
                 self.expression(inner);
                 self.word(")");
             }
+            ExprKind::Assign(target, value) => {
+                self.expression(target);
+                self.word(" := ");
+                self.expression(value);
+            }
             ExprKind::Type(spec) => self.type_spec(spec),
             ExprKind::Error => {}
         }

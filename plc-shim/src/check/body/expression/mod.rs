@@ -48,6 +48,14 @@ impl Body<'_, '_> {
             | ast::ExprKind::Part(..)
             | ast::ExprKind::Dereference(_)
             | ast::ExprKind::DirectAddress(_) => self.load(expr),
+            ast::ExprKind::Assign(target, value) => {
+                let done = self.within(None, |body| body.assign(target, value, expr.span))?;
+                let found = self.load(target)?;
+                let value = self.settle(found)?;
+                let ty = value.ty;
+                let kind = ExprKind::After(vec![done], Some(Box::new(value)));
+                Some(Operand::Typed(Expr { kind, ty, span: expr.span }))
+            }
             ast::ExprKind::Type(_) => {
                 let message = "this is a type, a value is wanted";
                 self.report(Diagnostic::error(Code::NotAVariable, expr.span, message));
