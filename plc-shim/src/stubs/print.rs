@@ -387,7 +387,7 @@ impl Printer<'_, '_> {
 
 /// The value of a constant; those of one file differ as far as there is room.
 fn value_of(ty: ElementaryType, index: usize) -> usize {
-    if ty.size() == 1 { 1 + index % 100 } else { FIRST_CONSTANT + index }
+    if ty.size() == 1 { FIRST_CONSTANT - index % FIRST_CONSTANT } else { FIRST_CONSTANT + index }
 }
 
 fn property_text(name: &str, ty: &str, is_read: bool, is_written: bool) -> String {

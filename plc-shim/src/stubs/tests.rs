@@ -191,3 +191,47 @@ fn what_a_drawing_knows_by_its_number_is_not_declared() {
     assert!(written.contains("FB_Unknown"), "{written}");
     assert!(!written.lines().any(|line| !line.starts_with("//") && line.contains('`')), "{written}");
 }
+
+#[test]
+fn a_base_implements_what_its_heirs_are_given_for() {
+    insta::assert_snapshot!(stubs(
+        "FUNCTION_BLOCK Press EXTENDS Components.Machine
+VAR task : Components.Task(THIS^); slow : Slow(THIS^); END_VAR
+METHOD Work : Components.ITask
+  Work := slow;
+  Follow(task, 0);
+END_METHOD
+END_FUNCTION_BLOCK
+FUNCTION_BLOCK Slow EXTENDS Components.Task
+METHOD FB_init : BOOL VAR_INPUT bInitRetains, bInCopyCode : BOOL; Parent : Components.IObject; END_VAR END_METHOD
+END_FUNCTION_BLOCK
+PROGRAM P VAR p1 : Press; i : Components.ITask; END_VAR
+  i := p1.Work();
+  p1.Config.Limit := 5;
+END_PROGRAM"
+    ));
+}
+
+#[test]
+fn what_calls_leave_out_has_a_value_and_names_have_their_places() {
+    insta::assert_snapshot!(stubs(
+        "PROGRAM P VAR s : STRING(255); ok : BOOL; n : INT; END_VAR
+  s := F_Join('a', F_Join('b', 'c', 'd', 7));
+  ok := F_Equals(n = 5, Message := 'five');
+  ok := F_Equals(Condition := ok, Message := 'again');
+END_PROGRAM"
+    ));
+}
+
+#[test]
+fn what_is_linked_has_one_type() {
+    insta::assert_snapshot!(stubs(
+        "FUNCTION_BLOCK F EXTENDS Base
+VAR task : Task; i : T_Index; list : ARRAY [0..MAX_LIST] OF INT; wide : UINT; narrow : INT; END_VAR
+  StepDoneWhen(task.Done);
+  FOR i := 0 TO 9 DO list[i] := 0; END_FOR
+  FOR narrow := 1 TO MAX_LIST DO wide := MAX_LIST; END_FOR
+  CASE wide OF STATE_IDLE: wide := 0; STATE_BUSY: wide := 1; END_CASE
+END_FUNCTION_BLOCK"
+    ));
+}
