@@ -94,6 +94,18 @@ fn use_of(feature: Feature) -> &'static str {
             "PROGRAM Q VAR_INPUT i : INT; END_VAR VAR n : INT; END_VAR n := i; END_PROGRAM
              PROGRAM P VAR x : INT; END_VAR Q(i := 1); x := Q.n; END_PROGRAM"
         }
+        Feature::ReadableInOuts => {
+            "FUNCTION_BLOCK F VAR_IN_OUT n : INT; END_VAR n := n + 1; END_FUNCTION_BLOCK
+             PROGRAM P VAR f1 : F; a, b : INT; END_VAR f1(n := a); b := f1.n; END_PROGRAM"
+        }
+        Feature::ConditionalReturns => "PROGRAM P VAR b : BOOL; END_VAR RETURN (b); b := TRUE; END_PROGRAM",
+        Feature::LooseLast => "PROGRAM P VAR b : BOOL; END_VAR IF b THEN b := FALSE END_IF; END_PROGRAM",
+        Feature::DbSpecific => {
+            "FUNCTION_BLOCK F VAR DB_SPECIFIC a : INT; END_VAR a := a + 1; END_FUNCTION_BLOCK
+             PROGRAM P VAR f1 : F; END_VAR f1(); END_PROGRAM"
+        }
+        Feature::ValueStatements => "PROGRAM P VAR t : TON; END_VAR t.Q; END_PROGRAM",
+        Feature::Exceptions => "PROGRAM P VAR a : INT; END_VAR __TRY a := 1; __CATCH a := 2; __ENDTRY END_PROGRAM",
         Feature::ShortPrefixes => "PROGRAM P VAR w : WORD; END_VAR w := W#16#FF; END_PROGRAM",
         Feature::DivOperator => "PROGRAM P VAR a : INT; END_VAR a := a DIV 2; END_PROGRAM",
     }
@@ -115,7 +127,10 @@ fn every_construct_is_for_its_dialects_alone() {
 }
 
 /// Constructs whose absence is no syntax of its own: another error says it.
-const TOLD_OTHERWISE: [Feature; 25] = [
+const TOLD_OTHERWISE: [Feature; 28] = [
+    Feature::ReadableInOuts,
+    Feature::ConditionalReturns,
+    Feature::LooseLast,
     Feature::OwnStandardBlocks,
     Feature::LeftOutInputs,
     Feature::LooseStrings,

@@ -161,6 +161,8 @@ impl Cursor<'_> {
         self.advance();
         let qualifiers = self.qualifiers();
         let mut variables = Vec::new();
+        // One with nothing before it declares nothing.
+        self.take_semicolons();
         while self.at_variable() {
             self.variable(&mut variables);
         }
@@ -207,6 +209,11 @@ impl Cursor<'_> {
                 Some(TokenKind::Keyword(Keyword::Retain)) => Qualifier::Retain,
                 Some(TokenKind::Keyword(Keyword::NonRetain)) => Qualifier::NonRetain,
                 Some(TokenKind::Identifier) if self.at_persistent() => Qualifier::Persistent,
+                // Whether it is retained is said in the data block: nothing is by itself.
+                Some(TokenKind::Identifier) if self.at_word("DB_SPECIFIC") && self.is_name_next() => {
+                    self.require(Feature::DbSpecific, self.span());
+                    Qualifier::NonRetain
+                }
                 _ => match self.section_access() {
                     Some(access) => Qualifier::Access(access),
                     None => return found,
@@ -214,6 +221,10 @@ impl Cursor<'_> {
             });
             self.advance();
         }
+    }
+
+    fn is_name_next(&self) -> bool {
+        self.peek_ahead(1) == Some(TokenKind::Identifier)
     }
 
     /// `PUBLIC` and the like, which a variable's name may be as well.
