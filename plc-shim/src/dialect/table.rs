@@ -95,6 +95,18 @@ pub const FEATURES: &[FeatureRow] = &[
     row(Feature::ConditionalReturns, &[Codesys, TwinCat], "CODESYS: ST statement RETURN; TwinCAT: accepts it"),
     row(Feature::LooseLast, &[SiemensScl], "S7-SCL: accepts it, as sources of PCS 7 show"),
     row(Feature::DbSpecific, &[SiemensScl], "TIA Portal: exported sources, retain set in the instance data block"),
+    row(Feature::UntypedConstants, &[SiemensScl], "S7-SCL V5.3: constants"),
+    row(Feature::AlikeStructures, &[SiemensScl], "S7-SCL V5.3: value assignments with structures"),
+    row(
+        Feature::IntegersAsReals,
+        &[Codesys, TwinCat, SiemensScl],
+        "CODESYS and TwinCAT: implicit conversion, a warning only; S7-SCL V5.3: implicit conversions",
+    ),
+    row(
+        Feature::ValuesByContext,
+        &[Codesys, TwinCat],
+        "CODESYS and TwinCAT: enumerations; accept it where a value is assigned or compared",
+    ),
     row(Feature::ValueStatements, &[Codesys, TwinCat], "CODESYS and TwinCAT: compile it, with a warning"),
     row(Feature::Exceptions, &[Codesys, TwinCat], "CODESYS and TwinCAT: operators __TRY, __CATCH, __FINALLY, __ENDTRY"),
     row(Feature::ShortPrefixes, &[SiemensScl], "TIA Portal: constants; S7-SCL V5.3: 7.4"),

@@ -18,6 +18,7 @@ mod scl;
 mod slip;
 mod statement;
 mod type_spec;
+mod untyped_constant;
 
 use self::cursor::Cursor;
 use super::ast::{CompilationUnit, Expr, Initialiser};

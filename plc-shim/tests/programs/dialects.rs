@@ -104,6 +104,17 @@ fn use_of(feature: Feature) -> &'static str {
             "FUNCTION_BLOCK F VAR DB_SPECIFIC a : INT; END_VAR a := a + 1; END_FUNCTION_BLOCK
              PROGRAM P VAR f1 : F; END_VAR f1(); END_PROGRAM"
         }
+        Feature::UntypedConstants => {
+            "FUNCTION_BLOCK F CONST k := 5; END_CONST VAR a : INT; END_VAR a := k; END_FUNCTION_BLOCK
+             PROGRAM P VAR f1 : F; END_VAR f1(); END_PROGRAM"
+        }
+        Feature::AlikeStructures => {
+            "PROGRAM P VAR a : STRUCT x : INT; END_STRUCT; b : STRUCT x : INT; END_STRUCT; END_VAR a := b; END_PROGRAM"
+        }
+        Feature::IntegersAsReals => "PROGRAM P VAR r : REAL; d : DINT; END_VAR r := d; END_PROGRAM",
+        Feature::ValuesByContext => {
+            "TYPE A : (One, Two); B : (Two, Three); END_TYPE PROGRAM P VAR b1 : B; END_VAR b1 := Two; END_PROGRAM"
+        }
         Feature::ValueStatements => "PROGRAM P VAR t : TON; END_VAR t.Q; END_PROGRAM",
         Feature::Exceptions => "PROGRAM P VAR a : INT; END_VAR __TRY a := 1; __CATCH a := 2; __ENDTRY END_PROGRAM",
         Feature::ShortPrefixes => "PROGRAM P VAR w : WORD; END_VAR w := W#16#FF; END_PROGRAM",
@@ -127,7 +138,10 @@ fn every_construct_is_for_its_dialects_alone() {
 }
 
 /// Constructs whose absence is no syntax of its own: another error says it.
-const TOLD_OTHERWISE: [Feature; 28] = [
+const TOLD_OTHERWISE: [Feature; 31] = [
+    Feature::AlikeStructures,
+    Feature::IntegersAsReals,
+    Feature::ValuesByContext,
     Feature::ReadableInOuts,
     Feature::ConditionalReturns,
     Feature::LooseLast,

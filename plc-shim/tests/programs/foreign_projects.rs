@@ -179,3 +179,47 @@ fn arguments_of_instances_and_static_variables_are_read_from_xml() {
     // One variable of all instances.
     assert_eq!((rig.int("P.a.made"), rig.int("P.b.made")), (2, 2));
 }
+
+#[test]
+fn a_value_of_several_enumerations_is_that_of_its_place() {
+    let text = "TYPE A : (Close, Open); B : (Stop := 5, Close := 7, Open := 9); S : STRUCT a1 : A := Open; b1 : B := Open; END_STRUCT END_TYPE
+        FUNCTION F : INT VAR_INPUT b1 : B; END_VAR F := 0; IF b1 = Close THEN F := 1; ELSIF Open = b1 THEN F := 2; END_IF; END_FUNCTION
+        PROGRAM P VAR s : S; b2 : B; a2 : A; x, y, z : INT; END_VAR
+          b2 := Close; a2 := Open; x := F(Open) * 10 + F(b1 := Close);
+          CASE b2 OF Stop: y := 1; Close: y := 2; Open: y := 3; END_CASE;
+          IF s.a1 <> Close AND s.b1 = Open THEN z := 4; END_IF; s.b1 := Close; END_PROGRAM";
+    for dialect in VENDORS {
+        assert_eq!(values(dialect, text, 1, ["x", "y", "z", "b2", "a2", "s.b1"]), [21, 2, 4, 7, 1, 7], "{dialect}");
+        let unclear = "TYPE A : (Close, Open); B : (Stop := 5, Close := 7); END_TYPE
+            PROGRAM P VAR n : INT; END_VAR n := Close; END_PROGRAM";
+        assert!(findings_in(dialect, unclear).iter().any(|found| found.code.text() == "N0101"), "{dialect}");
+    }
+}
+
+#[test]
+fn values_of_an_enumeration_over_a_bit_string_are_bit_strings() {
+    let text = "TYPE State : WORD (Off := WORD#16#7000, Busy := 16#7001, Failed := WORD#16#8001) := Busy; END_TYPE
+        PROGRAM P VAR s, t : State; b : BOOL; END_VAR b := s = State#Busy; t := State#Failed; END_PROGRAM";
+    assert_eq!(values(Iec3, text, 1, ["b", "s", "t"]), [1, 0x7001, 0x8001]);
+}
+
+#[test]
+fn units_may_be_called_as_parts_of_charts_are() {
+    let text = "INTERFACE IStep METHOD Action : INT END_METHOD END_INTERFACE
+        CLASS Transition IMPLEMENTS IStep METHOD PUBLIC Action : INT Action := 3; END_METHOD
+          METHOD PUBLIC Step : INT Step := 4; END_METHOD END_CLASS
+        CLASS Step EXTENDS Transition IMPLEMENTS IStep END_CLASS
+        PROGRAM P VAR t : Transition; s : Step; x : INT; END_VAR x := 10 * t.Action() + s.Step(); END_PROGRAM";
+    assert_eq!(values(Iec3, text, 1, ["x"]), [34]);
+}
+
+#[test]
+fn a_shifted_number_without_a_width_is_refused() {
+    let text = "PROGRAM P VAR w : WORD; n : INT := 9; END_VAR w := SHL(1, n); END_PROGRAM";
+    for dialect in VENDORS {
+        let findings = findings_in(dialect, text);
+        let helps = findings.iter().filter_map(|found| found.help.as_deref());
+        assert!(helps.into_iter().any(|help| help.contains("WORD#1")), "{dialect}: {findings}");
+        assert_eq!(values(dialect, &text.replace("SHL(1", "SHL(WORD#1"), 1, ["w"]), [512], "{dialect}");
+    }
+}

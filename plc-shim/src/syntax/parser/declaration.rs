@@ -244,7 +244,7 @@ impl Cursor<'_> {
     }
 
     fn variable(&mut self, variables: &mut Vec<Variable>) {
-        let known = self.reported();
+        let mut known = self.reported();
         let is_nameless = self.at_keyword(Keyword::At) && self.peek_ahead(1) == Some(TokenKind::DirectAddress);
         if matches!(self.peek(), Some(TokenKind::Keyword(_))) && !is_nameless {
             self.report_keyword_as_name();
@@ -254,7 +254,16 @@ impl Cursor<'_> {
         if self.at_mark(Punctuation::LeftBracket) {
             self.pass_count();
         }
-        let address = self.take_keyword(Keyword::At).then(|| self.address()).flatten();
+        let address = match self.take_keyword(Keyword::At) {
+            true if self.at_view() => {
+                let none = self.pass_view();
+                // What is told of it says nothing about the type behind.
+                known = self.reported();
+                none
+            }
+            true => self.address(),
+            false => None,
+        };
         // `AT %QW5 : WORD;` (2nd ed. B.1.4.3): its address is its name.
         let names = if is_nameless { address.iter().cloned().collect() } else { names };
         self.expect_mark(Punctuation::Colon);

@@ -304,6 +304,12 @@ impl Body<'_, '_> {
                 let Operand::Typed(shifted) = self.shift(kind, Operand::Typed(bits), count, span)? else { return None };
                 return Some(Operand::Typed(converted(shifted, ty, Rounding::NearestEven)));
             }
+            Operand::Integer { value, span } => {
+                let message = "a bit string is wanted, this is an integer";
+                let help = format!("say how many bits are shifted, as in WORD#{}", value.max(0));
+                self.report(Diagnostic::error(Code::TypeMismatch, span, message).with_help(help));
+                return None;
+            }
             other => {
                 let found = self.describe(&other);
                 return self.mismatch("a bit string", &found, other.span());

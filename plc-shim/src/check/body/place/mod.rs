@@ -282,6 +282,9 @@ impl Body<'_, '_> {
             [] if name.key() == "NULL" => Some(Meaning::Value(Self::null(name.span))),
             [] => self.report_unknown(name),
             several => {
+                if let Some(value) = self.wanted_value(several, name.span) {
+                    return Some(Meaning::Value(value));
+                }
                 let types: Vec<_> = several.iter().map(|each| self.type_name(each.ty)).collect();
                 let message = format!("`{}` is a value of {}", name.text, types.join(" and of "));
                 let help = format!("write {}#{}", types[0], name.text);
