@@ -223,3 +223,23 @@ fn a_shifted_number_without_a_width_is_refused() {
         assert_eq!(values(dialect, &text.replace("SHL(1", "SHL(WORD#1"), 1, ["w"]), [512], "{dialect}");
     }
 }
+
+#[test]
+fn a_reference_begins_as_what_it_refers_to() {
+    let text = "FUNCTION_BLOCK Lamp VAR n : INT; END_VAR METHOD On : INT n := n + 1; On := n; END_METHOD END_FUNCTION_BLOCK
+        FUNCTION_BLOCK Switch VAR r : REFERENCE TO Lamp; END_VAR
+          METHOD FB_init : BOOL VAR_INPUT bInitRetains, bInCopyCode : BOOL; lamp1 : REFERENCE TO Lamp; END_VAR r REF= lamp1; END_METHOD
+          METHOD Press : INT Press := r.On(); END_METHOD END_FUNCTION_BLOCK
+        TYPE S : STRUCT a : INT; END_STRUCT END_TYPE
+        PROGRAM P VAR l : Lamp; r1 : REFERENCE TO Lamp := l; s1 : Switch(r1); x, y, z : INT; v : S; q : REFERENCE TO S := v;
+          w : INT := 3; t : REFERENCE TO INT REF= w; none : REFERENCE TO INT := 0; valid : BOOL; END_VAR
+          x := r1.On(); y := s1.Press(); q.a := 5; t := t + 1; valid := __ISVALIDREF(none); END_PROGRAM";
+    for dialect in VENDORS {
+        assert_eq!(values(dialect, text, 1, ["x", "y", "v.a", "w", "valid"]), [1, 2, 5, 4, 0], "{dialect}");
+        let wrong =
+            "PROGRAM P VAR w : INT; r : REFERENCE TO DINT := w; v : INT REF= w; END_VAR r := 1; v := 2; END_PROGRAM";
+        let findings = findings_in(dialect, wrong);
+        let errors = findings.iter().filter(|found| found.severity == Severity::Error).count();
+        assert_eq!(errors, 2, "{findings}");
+    }
+}

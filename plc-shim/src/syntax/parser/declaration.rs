@@ -274,7 +274,7 @@ impl Cursor<'_> {
         } else {
             let spec = self.type_spec();
             let edge = self.edge();
-            let initial = self.optional_initialiser();
+            let initial = self.reference_initialiser(&spec).or_else(|| self.optional_initialiser());
             variables.push(Variable { names, address, spec, edge, initial });
         }
         self.end_of_declaration(known);

@@ -79,7 +79,7 @@ impl<'a> Body<'_, 'a> {
             _ if occasion == Occasion::End => Vec::new(),
             StartKind::Value(ty, expr) => {
                 let known = self.declarations.mark();
-                let value = self.expression_for(expr, *ty);
+                let value = self.beginning(expr, *ty);
                 // Whatever there is to say has been said where it is declared.
                 self.declarations.forget_since(known);
                 value.map(|value| self.assignment(at(*ty), value, span)).into_iter().collect()
