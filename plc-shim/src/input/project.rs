@@ -64,22 +64,19 @@ pub fn listing(bytes: &[u8]) -> Result<Listing, ProjectError> {
     Ok(Listing { files: listed.collect(), text: text.into() })
 }
 
-/// The path that an item names: MSBuild escapes characters that mean something to it as `%28`.
+/// The path that an item names: `MSBuild` escapes characters that mean something to it as `%28`.
 fn path(include: &str) -> String {
     let mut bytes = Vec::with_capacity(include.len());
     let mut rest = include;
     while let Some((before, behind)) = rest.split_once('%') {
         bytes.extend_from_slice(before.as_bytes());
         let escaped = behind.get(..2).filter(|digits| digits.bytes().all(|digit| digit.is_ascii_hexdigit()));
-        match escaped.and_then(|digits| u8::from_str_radix(digits, 16).ok()) {
-            Some(byte) => {
-                bytes.push(byte);
-                rest = behind.get(2..).unwrap_or("");
-            }
-            None => {
-                bytes.push(b'%');
-                rest = behind;
-            }
+        if let Some(byte) = escaped.and_then(|digits| u8::from_str_radix(digits, 16).ok()) {
+            bytes.push(byte);
+            rest = behind.get(2..).unwrap_or("");
+        } else {
+            bytes.push(b'%');
+            rest = behind;
         }
     }
     bytes.extend_from_slice(rest.as_bytes());

@@ -108,7 +108,7 @@ pub(crate) fn parse_expression(text: &str) -> Option<Expr> {
     (cursor.peek().is_none() && cursor.reported() == 0).then_some(expression)
 }
 
-/// Says that C code, which MatIEC takes between braces, is not carried out: what it sets would be missing.
+/// Says that C code, which `MatIEC` takes between braces, is not carried out: what it sets would be missing.
 fn report_c_code(cursor: &mut Cursor<'_>, span: Span) {
     let text = cursor.text(span.start, span.end);
     let sets = ["__SET_VAR(", "__SET_EXTERNAL(", "__SET_LOCATED(", "SetFbVar("].iter().any(|call| text.contains(call));

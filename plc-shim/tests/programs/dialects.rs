@@ -94,6 +94,15 @@ fn use_of(feature: Feature) -> &'static str {
             "PROGRAM Q VAR_INPUT i : INT; END_VAR VAR n : INT; END_VAR n := i; END_PROGRAM
              PROGRAM P VAR x : INT; END_VAR Q(i := 1); x := Q.n; END_PROGRAM"
         }
+        Feature::ShortPrefixes => "PROGRAM P VAR w : WORD; END_VAR w := W#16#FF; END_PROGRAM",
+        Feature::DivOperator => "PROGRAM P VAR a : INT; END_VAR a := a DIV 2; END_PROGRAM",
+        other => use_in_projects(other),
+    }
+}
+
+/// The same of what projects brought to light.
+fn use_in_projects(feature: Feature) -> &'static str {
+    match feature {
         Feature::ReadableInOuts => {
             "FUNCTION_BLOCK F VAR_IN_OUT n : INT; END_VAR n := n + 1; END_FUNCTION_BLOCK
              PROGRAM P VAR f1 : F; a, b : INT; END_VAR f1(n := a); b := f1.n; END_PROGRAM"
@@ -117,8 +126,7 @@ fn use_of(feature: Feature) -> &'static str {
         }
         Feature::ValueStatements => "PROGRAM P VAR t : TON; END_VAR t.Q; END_PROGRAM",
         Feature::Exceptions => "PROGRAM P VAR a : INT; END_VAR __TRY a := 1; __CATCH a := 2; __ENDTRY END_PROGRAM",
-        Feature::ShortPrefixes => "PROGRAM P VAR w : WORD; END_VAR w := W#16#FF; END_PROGRAM",
-        Feature::DivOperator => "PROGRAM P VAR a : INT; END_VAR a := a DIV 2; END_PROGRAM",
+        other => panic!("{other:?} has no program"),
     }
 }
 

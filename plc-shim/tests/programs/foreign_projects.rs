@@ -1,4 +1,4 @@
-//! What projects of other tools hold beside plain code: calls with EN alone, what CODESYS and MatIEC alone take.
+//! What projects of other tools hold beside plain code: calls with EN alone, what CODESYS and `MatIEC` alone take.
 
 use onescan_plc_shim::Dialect::{self, Codesys, Iec3, Matiec, TwinCat};
 use onescan_plc_shim::input::kind::SourceKind;
@@ -201,6 +201,16 @@ fn values_of_an_enumeration_over_a_bit_string_are_bit_strings() {
     let text = "TYPE State : WORD (Off := WORD#16#7000, Busy := 16#7001, Failed := WORD#16#8001) := Busy; END_TYPE
         PROGRAM P VAR s, t : State; b : BOOL; END_VAR b := s = State#Busy; t := State#Failed; END_PROGRAM";
     assert_eq!(values(Iec3, text, 1, ["b", "s", "t"]), [1, 0x7001, 0x8001]);
+}
+
+#[test]
+fn an_enumeration_is_shifted_as_its_number() {
+    let text = "TYPE E : (Low := 16#12, High := 16#84) BYTE; END_TYPE
+        PROGRAM P VAR e1 : E := High; x, y : BYTE; END_VAR x := SHR(e1, 4); y := SHL(e1, 1); END_PROGRAM";
+    for dialect in VENDORS {
+        assert_eq!(values(dialect, text, 1, ["x", "y"]), [8, 8], "{dialect}");
+    }
+    assert!(findings_in(Iec3, text).iter().any(|found| found.code.text() == "T0201"));
 }
 
 #[test]

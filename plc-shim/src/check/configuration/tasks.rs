@@ -58,13 +58,12 @@ impl<'a> Configurer<'_, 'a> {
 
     /// Nothing for an interval of 0, which is as good as none.
     fn interval(&mut self, value: &Expr) -> Option<TimeSpan> {
-        let ns = match &value.kind {
-            // A cycle is no TIME of the program: it may be shorter than what a TIME counts.
-            ExprKind::Literal(Literal::Duration { ns, .. }) => i128::from(*ns),
-            _ => {
-                let time = Body::outside(self.declarations).constant_of_type(value, ElementaryType::Time.into());
-                time.and_then(Value::as_int)?
-            }
+        // A cycle is no TIME of the program: it may be shorter than what a TIME counts.
+        let ns = if let ExprKind::Literal(Literal::Duration { ns, .. }) = &value.kind {
+            i128::from(*ns)
+        } else {
+            let time = Body::outside(self.declarations).constant_of_type(value, ElementaryType::Time.into());
+            time.and_then(Value::as_int)?
         };
         if let Ok(ns) = u64::try_from(ns) {
             return TimeSpan::from_nanos(ns);

@@ -292,6 +292,10 @@ impl Body<'_, '_> {
 
     fn shift(&mut self, kind: Intrinsic, value: Operand, count: Operand, span: Span) -> Option<Operand> {
         let value = match value {
+            Operand::Typed(expr) => Operand::Typed(self.as_number(expr)),
+            constant => constant,
+        };
+        let value = match value {
             Operand::Typed(expr) if self.plain_elementary(&expr).is_some_and(ElementaryType::is_bits) => expr,
             Operand::Typed(expr) if self.shifted_integer(&expr).is_some() => {
                 let ty = self.shifted_integer(&expr)?;

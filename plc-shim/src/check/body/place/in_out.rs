@@ -1,4 +1,4 @@
-//! A `VAR_IN_OUT` of an instance, read from outside, as MatIEC has it: its instances hold what they were given last.
+//! A `VAR_IN_OUT` of an instance, read from outside, as `MatIEC` has it: its instances hold what they were given last.
 
 use crate::check::body::call::instance_call::member_place;
 use crate::check::body::{Body, Meant};
