@@ -188,6 +188,14 @@ impl Taken {
         self.diagnostics.push(Diagnostic::error(code, span, message));
     }
 
+    /// The same of what the program runs without.
+    fn warn(&mut self, place: std::ops::Range<u32>, code: Code, message: &str, help: &str) {
+        let start = self.extract.text().len() as u32;
+        self.extract.instead("\n", place);
+        let span = Span::new(UNNUMBERED, start, start + 1);
+        self.diagnostics.push(Diagnostic::warning(code, span, message).with_help(help));
+    }
+
     fn unsupported(&mut self, place: std::ops::Range<u32>, what: &str) {
         self.report(place, Code::UnsupportedFeature, &format!("{what} is not supported yet"));
     }

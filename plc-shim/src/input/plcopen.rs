@@ -9,7 +9,7 @@ use std::ops::Range;
 use super::Taken;
 use super::xml::{Element, XmlError, parse};
 use crate::diagnostic::Code;
-use crate::dialect::Dialect;
+use crate::dialect::{Dialect, Feature};
 
 /// Program text of a project.
 pub(super) fn extract(file: &str) -> Result<Taken, XmlError> {
@@ -149,7 +149,7 @@ impl Writer<'_> {
         }
         self.write("\n", &element.open);
         for section in interface.into_iter().flat_map(Element::elements) {
-            self.section(section);
+            self.interface_section(section);
         }
         if keyword != "FUNCTION " {
             self.declare_triggers(element);
@@ -199,9 +199,20 @@ impl Writer<'_> {
         }
     }
 
+    /// A section of a unit. The schema has none for `VAR_STAT`, so CODESYS and TwinCAT write `<globalVars>` there.
+    pub(super) fn interface_section(&mut self, element: &Element) {
+        let is_static = element.name == "globalVars" && self.taken.dialect.has(Feature::StaticSection);
+        self.section_called(element, is_static.then_some("VAR_STAT"));
+    }
+
     pub(super) fn section(&mut self, element: &Element) {
+        self.section_called(element, None);
+    }
+
+    fn section_called(&mut self, element: &Element, instead: Option<&'static str>) {
         let name = element.name.as_str();
-        let Some((_, keyword)) = SECTIONS.iter().find(|(known, _)| *known == name) else {
+        let known = SECTIONS.iter().find(|(known, _)| *known == name).map(|(_, keyword)| *keyword);
+        let Some(keyword) = instead.or(known) else {
             if !matches!(name, "returnType" | "documentation" | "addData") {
                 self.taken.unsupported(element.open.clone(), &format!("`<{name}>`"));
             }
@@ -242,6 +253,7 @@ impl Writer<'_> {
         }
         self.write(" : ", &element.open);
         self.inner_type(element, "type");
+        self.init_arguments(element);
         self.initial_value(element);
         self.write(";\n", &element.close);
     }

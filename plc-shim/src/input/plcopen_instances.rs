@@ -133,9 +133,26 @@ fn plain(name: &str) -> String {
     name.chars().map(|one| if one.is_alphanumeric() { one } else { '_' }).collect()
 }
 
-/// A duration as XML Schema writes it, `PT0.02S`, as the standard does; anything else as it is.
+/// A duration as XML Schema writes it, `PT0.02S` or as a time of the day, `00:00:00.02`, as the standard does;
+/// anything else as it is.
 fn duration(text: &str) -> String {
-    text.parse().map_or_else(|_| text.to_owned(), |duration: XmlDuration| format!("T#{}ns", duration.nanos()))
+    let nanos = text.parse().ok().map(|duration: XmlDuration| duration.nanos()).or_else(|| clock_nanos(text));
+    nanos.map_or_else(|| text.to_owned(), |nanos| format!("T#{nanos}ns"))
+}
+
+/// Nanoseconds from midnight to `hh:mm:ss.fff`, the form of intervals before TC6 2.01.
+fn clock_nanos(text: &str) -> Option<u64> {
+    let (hours, rest) = text.split_once(':')?;
+    let (minutes, rest) = rest.split_once(':')?;
+    let (seconds, fraction) = rest.split_once('.').unwrap_or((rest, "0"));
+    let two = |digits: &str, below: u64| {
+        let number = digits.bytes().all(|one| one.is_ascii_digit()).then(|| digits.parse::<u64>().ok()).flatten();
+        number.filter(|number| digits.len() == 2 && *number < below)
+    };
+    let decimals = fraction.bytes().all(|one| one.is_ascii_digit()) && (1..=9).contains(&fraction.len());
+    let nanos = decimals.then(|| format!("{fraction:0<9}").parse::<u64>().ok()).flatten()?;
+    let whole = (two(hours, 24)? * 60 + two(minutes, 60)?) * 60 + two(seconds, 60)?;
+    Some(whole * 1_000_000_000 + nanos)
 }
 
 #[cfg(test)]
@@ -154,6 +171,11 @@ mod tests {
             ("PTxS", "PTxS"),
             ("PT1D", "PT1D"),
             ("P1D", "P1D"),
+            ("00:00:00.100000", "T#100000000ns"),
+            ("01:02:03", "T#3723000000000ns"),
+            ("00:00:60", "00:00:60"),
+            ("0:00:01", "0:00:01"),
+            ("00:00:00.", "00:00:00."),
         ] {
             assert_eq!(duration(written), meant);
         }

@@ -73,6 +73,32 @@ impl Writer<'_> {
         }
     }
 
+    /// `(a := 1, 2)`, what a variable gives to `FB_init` of its type.
+    pub(super) fn init_arguments(&mut self, variable: &Element) {
+        let given = additions(variable, "inputassignments").flat_map(Element::elements);
+        let given: Vec<_> = given.filter(|inner| inner.name == "InputAssignment").collect();
+        let Some(first) = given.first() else { return };
+        let derived = variable.child("type").and_then(|ty| ty.child("derived")?.attribute("name"));
+        // Nothing is made for a reference, `REFERENCE TO F`, that could take them.
+        if derived.is_some_and(|name| name.value.contains(' ')) {
+            return;
+        }
+        if derived.is_none() {
+            self.taken.unsupported(first.open.clone(), "an argument of `FB_init` for the elements of an array");
+            return;
+        }
+        for (index, assignment) in given.iter().enumerate() {
+            self.write(if index == 0 { "(" } else { ", " }, &assignment.open);
+            if let Some(name) = assignment.child("Name") {
+                self.write(&format!("{} := ", inner_text(self.file, name)), &name.open);
+            }
+            if let Some(value) = assignment.child("Value") {
+                self.write(&inner_text(self.file, value), &value.open);
+            }
+        }
+        self.write(")", &first.close);
+    }
+
     /// `<union name="u">`, whose members are those of a structure.
     fn union(&mut self, union: &Element) {
         self.write("TYPE ", &union.open);
@@ -174,7 +200,7 @@ impl Writer<'_> {
 
     fn variables(&mut self, interface: Option<&Element>) {
         for section in interface.into_iter().flat_map(Element::elements) {
-            self.section(section);
+            self.interface_section(section);
         }
     }
 

@@ -65,7 +65,7 @@ pub fn listing(bytes: &[u8]) -> Result<Listing, ProjectError> {
     })?;
     let items = root.elements().filter(|group| group.name == "ItemGroup").flat_map(xml::Element::elements);
     let included = items.filter(|item| item.name == "Compile").filter_map(|item| item.attribute("Include"));
-    let listed = included.map(|include| Listed { path: include.value.replace('\\', "/"), place: include.span.clone() });
+    let listed = included.map(|include| Listed { path: path(&include.value), place: include.span.clone() });
     let files = listed.collect();
     Ok(Listing { files, namespace: namespace(&text, &root), text: text.into() })
 }
@@ -81,6 +81,26 @@ fn namespace(text: &str, root: &xml::Element) -> Option<String> {
 fn is_identifier(name: &str) -> bool {
     let tokens = tokenize(name);
     matches!(tokens.as_slice(), [only] if only.kind == TokenKind::Identifier)
+}
+
+/// The path that an item names: `MSBuild` escapes characters that mean something to it as `%28`.
+fn path(include: &str) -> String {
+    let mut bytes = Vec::with_capacity(include.len());
+    let mut rest = include;
+    while let Some((before, behind)) = rest.split_once('%') {
+        bytes.extend_from_slice(before.as_bytes());
+        let escaped = behind.get(..2).filter(|digits| digits.bytes().all(|digit| digit.is_ascii_hexdigit()));
+        if let Some(byte) = escaped.and_then(|digits| u8::from_str_radix(digits, 16).ok()) {
+            bytes.push(byte);
+            rest = behind.get(2..).unwrap_or("");
+        } else {
+            bytes.push(b'%');
+            rest = behind;
+        }
+    }
+    bytes.extend_from_slice(rest.as_bytes());
+    let decoded = String::from_utf8(bytes).unwrap_or_else(|_| include.to_owned());
+    decoded.replace('\\', "/")
 }
 
 #[cfg(test)]
@@ -112,6 +132,14 @@ mod tests {
         assert_eq!(namespace("<Name>Gears_2</Name>").as_deref(), Some("Gears_2"));
         assert_eq!(namespace("<Title>Gears and more</Title><Name>Gears</Name>"), None);
         assert_eq!(namespace(""), None);
+    }
+
+    #[test]
+    fn escaped_characters_of_paths_are_what_they_stand_for() {
+        assert_eq!(path("XTS %28Base%29\\100%25.TcPOU"), "XTS (Base)/100%.TcPOU");
+        assert_eq!(path("50% of it.TcPOU"), "50% of it.TcPOU");
+        assert_eq!(path("a%C3%A4%"), "a\u{e4}%");
+        assert_eq!(path("%ff"), "%ff");
     }
 
     #[test]

@@ -15,25 +15,39 @@ pub(super) fn task(taken: &mut Taken, file: &str, element: &Element) {
         taken.report(element.open.clone(), Code::MalformedXml, "`<Task>` has no attribute `Name`");
         return;
     };
-    let mut write = |text: &str, at: &Element| taken.extract.instead(text, at.open.clone());
-    write(&format!("CONFIGURATION {CONFIGURATION}\nTASK {} (", name.value), element);
+    write(taken, &format!("CONFIGURATION {CONFIGURATION}\nTASK {} (", name.value), element);
     let cycle = element.child("CycleTime");
     if let Some(cycle) = cycle {
         // Microseconds.
-        write(&format!("INTERVAL := T#{}us", text_in(file, cycle)), cycle);
+        write(taken, &format!("INTERVAL := T#{}us", text_in(file, cycle)), cycle);
     }
     if let Some(priority) = element.child("Priority") {
         let comma = if cycle.is_some() { ", " } else { "" };
-        write(&format!("{comma}PRIORITY := {}", text_in(file, priority)), priority);
+        write(taken, &format!("{comma}PRIORITY := {}", text_in(file, priority)), priority);
     }
-    write(");\n", element);
+    write(taken, ");\n", element);
     for call in element.elements().filter(|inner| inner.name == "PouCall") {
         if let Some(program) = call.child("Name") {
             let program_name = text_in(file, program);
-            write(&format!("PROGRAM {program_name} WITH {} : {program_name};\n", name.value), program);
+            if program_name.contains('.') {
+                pass_over(taken, program_name, program);
+                continue;
+            }
+            write(taken, &format!("PROGRAM {program_name} WITH {} : {program_name};\n", name.value), program);
         }
     }
     taken.extract.instead("END_CONFIGURATION\n", element.close.clone());
+}
+
+fn write(taken: &mut Taken, text: &str, at: &Element) {
+    taken.extract.instead(text, at.open.clone());
+}
+
+/// A program of a library, as `VisuElems.Visu_Prg`, which draws the visualisation: it is not there, nor missed.
+fn pass_over(taken: &mut Taken, name: &str, at: &Element) {
+    let message = format!("the task calls `{name}` of a library, which is left out");
+    let help = "it does not run here; a program of the project has no `.` in its name";
+    taken.warn(at.open.clone(), Code::ProgramNeverRuns, &message, help);
 }
 
 /// The text that an element holds, without blanks around it.
@@ -61,6 +75,16 @@ mod tests {
     <TaskFBGuid>{1}</TaskFBGuid>
   </Task>
 </TcPlcObject>"#;
+
+    #[test]
+    fn a_program_of_a_library_is_passed_over() {
+        let text = TASK.replace("Other", "VisuElems.Visu_Prg");
+        let input = Input::from_text("PlcTask.TcTTO", SourceKind::TwinCat, text);
+        assert!(!input.file().text().contains("Visu"), "{}", input.file().text());
+        let [found] = &input.diagnostics[..] else { panic!("{:?}", input.diagnostics) };
+        assert_eq!(found.severity, crate::Severity::Warning);
+        assert_eq!(found.message, "the task calls `VisuElems.Visu_Prg` of a library, which is left out");
+    }
 
     #[test]
     fn a_task_is_a_part_of_a_configuration() {

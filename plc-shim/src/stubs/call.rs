@@ -481,9 +481,7 @@ impl<'a> Collector<'a> {
                 values.iter().take(count).for_each(|value| self.asked(value));
                 elementary(E::Bool)
             }
-            "__ISVALIDREF" | "GT" | "GE" | "EQ" | "LE" | "LT" | "NE" => {
-                elementary(E::Bool)
-            }
+            "__ISVALIDREF" | "GT" | "GE" | "EQ" | "LE" | "LT" | "NE" => elementary(E::Bool),
             _ => Ty::Unknown,
         }
     }

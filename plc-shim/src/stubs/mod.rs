@@ -48,12 +48,12 @@ use crate::input::Input;
 use crate::input::kind::SourceKind;
 
 /// The first line of a file of stubs: who finds it may add to the file.
-pub const MARK: &str = "// Library stubs, written by `onescan check --write-stubs` from how the project uses them.";
+pub const MARK: &str = "(* Library stubs, written by `onescan check --write-stubs` from how the project uses them. *)";
 
 const HEAD: &str = "\
-// Each declaration stands for one whose source is not here: it counts, and a call of it does nothing. Types and
-// parameters are guesses. Change what is wrong, and give a block a body (without `{external}`) where its behaviour
-// matters: what stands here is kept when stubs are written again, and only what is missing is added.
+(* Each declaration stands for one whose source is not here: it counts, and a call of it does nothing. Types and
+   parameters are guesses. Change what is wrong, and give a block a body (without `{external}`) where its behaviour
+   matters: what stands here is kept when stubs are written again, and only what is missing is added. *)
 ";
 
 /// So many times what was written is read again.

@@ -105,6 +105,11 @@ impl<'a> Lexer<'a> {
     }
 
     fn pragma(&mut self) -> TokenKind {
+        // C code of MatIEC, in which braces stand.
+        if let Some(end) = self.rest().strip_prefix("{{").and_then(|inside| inside.find("}}")) {
+            self.at += "{{".len() + end + "}}".len();
+            return TokenKind::Pragma;
+        }
         self.take_while(|character| character != '}');
         if self.at == self.text.len() {
             return TokenKind::Unterminated;

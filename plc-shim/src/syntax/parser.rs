@@ -18,6 +18,7 @@ mod scl;
 mod slip;
 mod statement;
 mod type_spec;
+mod untyped_constant;
 
 use self::cursor::Cursor;
 use super::ast::{CompilationUnit, Expr, Initialiser};
@@ -107,6 +108,20 @@ pub(crate) fn parse_expression(text: &str) -> Option<Expr> {
     (cursor.peek().is_none() && cursor.reported() == 0).then_some(expression)
 }
 
+/// Says that C code, which `MatIEC` takes between braces, is not carried out: what it sets would be missing.
+fn report_c_code(cursor: &mut Cursor<'_>, span: Span) {
+    let text = cursor.text(span.start, span.end);
+    let sets = ["__SET_VAR(", "__SET_EXTERNAL(", "__SET_LOCATED(", "SetFbVar("].iter().any(|call| text.contains(call));
+    if sets {
+        let message = "C code that sets variables is not carried out";
+        let found = Diagnostic::error(Code::VendorRuntime, span, message);
+        cursor.report(found.with_help("write in Structured Text what it does"));
+    } else if text.starts_with("{{") {
+        let found = Diagnostic::warning(Code::VendorRuntime, span, "C code is not carried out");
+        cursor.report(found.with_help("it sets no variable, so the values are the same without it"));
+    }
+}
+
 fn report_lexical_errors(cursor: &mut Cursor<'_>, tokens: &[Token]) {
     for token in tokens {
         let span = Span::new(cursor.file(), token.start, token.end);
@@ -116,6 +131,7 @@ fn report_lexical_errors(cursor: &mut Cursor<'_>, tokens: &[Token]) {
                 let span = Span { end: (token.start + 1).min(token.end), ..span };
                 cursor.report(Diagnostic::error(Code::Unterminated, span, "comment, pragma or string without an end"));
             }
+            TokenKind::Pragma => report_c_code(cursor, span),
             TokenKind::LineComment => cursor.require(Feature::LineComments, span),
             TokenKind::BlockComment if cursor.text(span.start, span.end).starts_with('/') => {
                 cursor.require(Feature::StarComments, span);

@@ -94,6 +94,36 @@ fn use_of(feature: Feature) -> &'static str {
             "PROGRAM Q VAR_INPUT i : INT; END_VAR VAR n : INT; END_VAR n := i; END_PROGRAM
              PROGRAM P VAR x : INT; END_VAR Q(i := 1); x := Q.n; END_PROGRAM"
         }
+        Feature::ShortPrefixes => "PROGRAM P VAR w : WORD; END_VAR w := W#16#FF; END_PROGRAM",
+        Feature::DivOperator => "PROGRAM P VAR a : INT; END_VAR a := a DIV 2; END_PROGRAM",
+        other => use_in_projects(other),
+    }
+}
+
+/// The same of what projects brought to light.
+fn use_in_projects(feature: Feature) -> &'static str {
+    match feature {
+        Feature::ReadableInOuts => {
+            "FUNCTION_BLOCK F VAR_IN_OUT n : INT; END_VAR n := n + 1; END_FUNCTION_BLOCK
+             PROGRAM P VAR f1 : F; a, b : INT; END_VAR f1(n := a); b := f1.n; END_PROGRAM"
+        }
+        Feature::ConditionalReturns => "PROGRAM P VAR b : BOOL; END_VAR RETURN (b); b := TRUE; END_PROGRAM",
+        Feature::LooseLast => "PROGRAM P VAR b : BOOL; END_VAR IF b THEN b := FALSE END_IF; END_PROGRAM",
+        Feature::DbSpecific => {
+            "FUNCTION_BLOCK F VAR DB_SPECIFIC a : INT; END_VAR a := a + 1; END_FUNCTION_BLOCK
+             PROGRAM P VAR f1 : F; END_VAR f1(); END_PROGRAM"
+        }
+        Feature::UntypedConstants => {
+            "FUNCTION_BLOCK F CONST k := 5; END_CONST VAR a : INT; END_VAR a := k; END_FUNCTION_BLOCK
+             PROGRAM P VAR f1 : F; END_VAR f1(); END_PROGRAM"
+        }
+        Feature::AlikeStructures => {
+            "PROGRAM P VAR a : STRUCT x : INT; END_STRUCT; b : STRUCT x : INT; END_STRUCT; END_VAR a := b; END_PROGRAM"
+        }
+        Feature::IntegersAsReals => "PROGRAM P VAR r : REAL; d : DINT; END_VAR r := d; END_PROGRAM",
+        Feature::ValuesByContext => {
+            "TYPE A : (One, Two); B : (Two, Three); END_TYPE PROGRAM P VAR b1 : B; END_VAR b1 := Two; END_PROGRAM"
+        }
         Feature::DynamicMemory => "PROGRAM P VAR p : POINTER TO BYTE; END_VAR p := __NEW(BYTE); END_PROGRAM",
         Feature::AssignedValues => "PROGRAM P VAR a, b : BOOL; END_VAR IF a := b THEN b := FALSE; END_IF END_PROGRAM",
         Feature::ValueStatements => {
@@ -101,8 +131,7 @@ fn use_of(feature: Feature) -> &'static str {
              PROGRAM P VAR f1 : F; END_VAR f1(); f1.q; END_PROGRAM"
         }
         Feature::Exceptions => "PROGRAM P VAR a : INT; END_VAR __TRY a := 1; __CATCH a := 2; __ENDTRY END_PROGRAM",
-        Feature::ShortPrefixes => "PROGRAM P VAR w : WORD; END_VAR w := W#16#FF; END_PROGRAM",
-        Feature::DivOperator => "PROGRAM P VAR a : INT; END_VAR a := a DIV 2; END_PROGRAM",
+        other => panic!("{other:?} has no program"),
     }
 }
 
@@ -122,9 +151,15 @@ fn every_construct_is_for_its_dialects_alone() {
 }
 
 /// Constructs whose absence is no syntax of its own: another error says it.
-const TOLD_OTHERWISE: [Feature; 27] = [
+const TOLD_OTHERWISE: [Feature; 33] = [
     Feature::AssignedValues,
     Feature::DynamicMemory,
+    Feature::AlikeStructures,
+    Feature::IntegersAsReals,
+    Feature::ValuesByContext,
+    Feature::ReadableInOuts,
+    Feature::ConditionalReturns,
+    Feature::LooseLast,
     Feature::OwnStandardBlocks,
     Feature::LeftOutInputs,
     Feature::LooseStrings,

@@ -32,7 +32,7 @@ use std::collections::BTreeMap;
 use self::statement::jump::Labels;
 use crate::check::declare::{Declarations, Scope};
 use crate::diagnostic::Diagnostic;
-use crate::ir::{ElementaryType, Place, PouId};
+use crate::ir::{ElementaryType, Place, PouId, TypeId};
 
 pub(super) use self::expression::dtl::is_literal as is_dtl_literal;
 pub(super) use self::unit::check_unit;
@@ -45,6 +45,8 @@ pub(super) struct Body<'c, 'a> {
     pou: Option<PouId>,
     /// The type that the place of the expression wants, for constants that no operand types.
     context: Option<ElementaryType>,
+    /// The enumeration that it wants, for values that several have.
+    enumeration: Option<TypeId>,
     /// Loops around the statement.
     loops: u32,
     result_assigned: bool,
@@ -77,6 +79,7 @@ impl<'c, 'a> Body<'c, 'a> {
             scope,
             pou,
             context: None,
+            enumeration: None,
             loops: 0,
             result_assigned: false,
             labels: Vec::new(),

@@ -77,6 +77,7 @@ impl<'d, 'a> Configurer<'d, 'a> {
     pub(super) fn check(&mut self, checked: &BTreeMap<PouId, Pou>) {
         self.note_called_programs();
         self.report_idle_programs();
+        self.report_unbound_programs();
         self.report_foreign_globals();
         self.report_double_calls(checked);
     }

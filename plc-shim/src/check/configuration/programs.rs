@@ -2,8 +2,9 @@
 
 use super::Configurer;
 use crate::diagnostic::{Code, Diagnostic, did_you_mean};
+use crate::dialect::Dialect;
 use crate::ir::{PouId, Program, Retention};
-use crate::syntax::ast::{self, Ident, PouKind, ProgramDeclaration};
+use crate::syntax::ast::{self, Ident, PouKind, ProgramDeclaration, SectionKind};
 
 impl<'a> Configurer<'_, 'a> {
     /// Places the programs of a resource.
@@ -88,6 +89,12 @@ impl<'a> Configurer<'_, 'a> {
         {
             return Some(pou);
         }
+        if found.is_none() && self.is_task_of_library(name) {
+            let message = format!("program `{}` is not there, and no other: nothing runs in this task", name.text);
+            let help = "a library needs no program; an application declares one of this name";
+            self.declarations.report(Diagnostic::warning(Code::UnknownProgram, name.span, message).with_help(help));
+            return None;
+        }
         let (message, help) = if found.is_some() {
             (format!("`{}` is no program", name.text), None)
         } else {
@@ -97,6 +104,28 @@ impl<'a> Configurer<'_, 'a> {
         };
         self.declarations.report(Diagnostic::error(Code::UnknownProgram, name.span, message).with_optional_help(help));
         None
+    }
+
+    /// True for the task that TwinCAT puts into each new project, where the project is a library without programs.
+    fn is_task_of_library(&self, name: &Ident) -> bool {
+        let has_programs = self.declarations.unit_names(|kind| kind == PouKind::Program).next().is_some();
+        self.declarations.dialect(name.span) == Dialect::TwinCat && !has_programs
+    }
+
+    /// A task gives a program's `VAR_IN_OUT` nothing, so such a program is for others to call.
+    pub(super) fn report_unbound_programs(&mut self) {
+        for program in self.declarations.programs().to_vec() {
+            if program.is_called && program.resource.is_none() {
+                continue;
+            }
+            let Some(scope) = self.declarations.pou(program.pou).scope().cloned() else { continue };
+            for variable in scope.variables().iter().filter(|variable| variable.section == SectionKind::InOut) {
+                let (name, given) = (&program.name, &variable.name);
+                let message = format!("nobody gives `{given}` of program `{name}`: a task passes no VAR_IN_OUT");
+                let help = format!("call it from another program, as `{name}({given} := ..);`");
+                self.declarations.report(Diagnostic::error(Code::WrongSection, variable.span, message).with_help(help));
+            }
+        }
     }
 
     /// Paths begin with globals, resources and programs alike.

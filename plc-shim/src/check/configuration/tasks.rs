@@ -6,7 +6,7 @@ use super::Configurer;
 use crate::check::body::Body;
 use crate::diagnostic::{Code, Diagnostic, did_you_mean};
 use crate::ir::{ElementaryType, Task, Value};
-use crate::syntax::ast::{self, Expr, Ident, TaskDeclaration};
+use crate::syntax::ast::{self, Expr, ExprKind, Ident, Literal, TaskDeclaration};
 
 /// The inputs of a task.
 const INPUTS: [&str; 3] = ["SINGLE", "INTERVAL", "PRIORITY"];
@@ -58,8 +58,13 @@ impl<'a> Configurer<'_, 'a> {
 
     /// Nothing for an interval of 0, which is as good as none.
     fn interval(&mut self, value: &Expr) -> Option<TimeSpan> {
-        let time = Body::outside(self.declarations).constant_of_type(value, ElementaryType::Time.into());
-        let ns = time.and_then(Value::as_int)?;
+        // A cycle is no TIME of the program: it may be shorter than what a TIME counts.
+        let ns = if let ExprKind::Literal(Literal::Duration { ns, .. }) = &value.kind {
+            i128::from(*ns)
+        } else {
+            let time = Body::outside(self.declarations).constant_of_type(value, ElementaryType::Time.into());
+            time.and_then(Value::as_int)?
+        };
         if let Ok(ns) = u64::try_from(ns) {
             return TimeSpan::from_nanos(ns);
         }

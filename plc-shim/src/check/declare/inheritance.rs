@@ -13,7 +13,10 @@ impl Declarations<'_> {
         for id in ids {
             self.check_members(id);
             self.check_hooks(id);
-            if self.pou(id).ast.kind.has_instances() && !self.is_abstract(id) && !self.may_inherit(id) && !self.rests_on_stub(id)
+            if self.pou(id).ast.kind.has_instances()
+                && !self.is_abstract(id)
+                && !self.may_inherit(id)
+                && !self.rests_on_stub(id)
             {
                 self.check_complete(id);
             }

@@ -149,9 +149,7 @@ impl Declarations<'_> {
 
     fn start_acts(&self, start: &Start<'_>, occasion: Occasion, seen: &mut BTreeSet<PouId>) -> bool {
         match &start.kind {
-            StartKind::Instance(pou, _) => {
-                self.inner_acts(*pou, occasion, seen) || self.has_hook(*pou, occasion)
-            }
+            StartKind::Instance(pou, _) => self.inner_acts(*pou, occasion, seen) || self.has_hook(*pou, occasion),
             StartKind::Each { starts, .. } => starts.iter().any(|start| self.start_acts(start, occasion, seen)),
             _ => occasion == Occasion::Start,
         }

@@ -118,7 +118,7 @@ impl<'a> Written<'_, 'a> {
     }
 
     fn fill_elementary(&mut self, spot: Spot, expr: &'a Expr, making: &mut Making<'a>) -> Option<()> {
-        let typed = self.body.initial_for(expr, spot.ty)?;
+        let typed = self.body.beginning(expr, spot.ty)?;
         if matches!(fold(self.declarations().types(), &typed), Err(NoValue::NotConstant(_)))
             && self.may_be_computed(&typed)
         {

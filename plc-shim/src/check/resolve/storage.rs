@@ -41,8 +41,10 @@ impl Interface<'_, '_> {
                 }
                 self.temporary(declared, name)
             }
-            // Nobody calls a program, so nobody could give the variable.
-            (PouKind::Program, SectionKind::InOut) => {
+            // Where nobody calls a program, nobody could give the variable.
+            (PouKind::Program, SectionKind::InOut)
+                if !self.declarations().dialect(span).has(Feature::ProgramInstances) =>
+            {
                 let message = "a program has no VAR_IN_OUT";
                 self.report(Diagnostic::error(Code::WrongSection, span, message));
                 None

@@ -219,7 +219,11 @@ impl<'a> Written<'_, 'a> {
                 continue;
             }
             if let Some(expr) = &each.value {
-                next = self.body.constant_integer(expr)?;
+                next = if base.is_bits() {
+                    self.body.constant_of_type(expr, base.into())?.as_int()?
+                } else {
+                    self.body.constant_integer(expr)?
+                };
             }
             if base.wrap(next) != next {
                 let message = format!("{next} does not fit an enumeration ({base})");

@@ -42,7 +42,7 @@ impl Lexer<'_> {
             // More may follow a version.
             let version = is(&"VERSION");
             self.at += word.len();
-            self.take_while(|one| if version { " \t:0123456789.'".contains(one) } else { one != '\n' });
+            self.take_while(|one| if version { " \t:0123456789.'\"".contains(one) } else { one != '\n' });
             return Some(TokenKind::Pragma);
         }
         if is(&"END_REGION") {
@@ -53,6 +53,9 @@ impl Lexer<'_> {
             self.at += 2;
             self.take_while(|character| character.is_ascii_alphanumeric() || matches!(character, '_' | '.'));
             return Some(TokenKind::Typed);
+        }
+        if is(&"CONST") {
+            self.in_heading = false;
         }
         match Keyword::find(word)? {
             Keyword::Function | Keyword::FunctionBlock | Keyword::OrganizationBlock | Keyword::DataBlock => {

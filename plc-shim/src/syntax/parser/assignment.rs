@@ -89,7 +89,7 @@ impl Cursor<'_> {
     }
 
     /// `REF=`, which the lexer takes for a name and a mark.
-    fn at_reference_assignment(&self) -> bool {
+    pub(super) fn at_reference_assignment(&self) -> bool {
         self.at_word("REF") && self.peek_ahead(1) == Some(TokenKind::Punctuation(Punctuation::Equal))
     }
 

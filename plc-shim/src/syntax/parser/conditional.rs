@@ -58,7 +58,12 @@ impl Conditions<'_, '_> {
 
     fn pragma(&mut self, token: Token) {
         let span = Span::new(self.cursor.file(), token.start, token.end);
-        let text = self.cursor.text(token.start, token.end).trim_matches(['{', '}']).trim();
+        let text = self.cursor.text(token.start, token.end);
+        // C code of MatIEC has conditions of its own.
+        if text.starts_with("{{") {
+            return;
+        }
+        let text = text.trim_matches(['{', '}']).trim();
         let (word, rest) = text.split_once(|one: char| one.is_whitespace() || one == '(').unwrap_or((text, ""));
         let rest_with_mark = text.get(word.len()..).unwrap_or(rest);
         match word.to_ascii_uppercase().as_str() {

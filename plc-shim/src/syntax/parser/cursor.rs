@@ -7,7 +7,7 @@ use crate::diagnostic::{Code, Diagnostic};
 use crate::dialect::{Dialect, Feature};
 use crate::source::origin::Origin;
 use crate::source::{FileId, Span};
-use crate::syntax::ast::Ident;
+use crate::syntax::ast::{Expr, Ident};
 use crate::syntax::token::{Keyword, Punctuation, Token, TokenKind};
 
 /// Reads the tokens that matter to the grammar; trivia and broken tokens are left out.
@@ -36,6 +36,8 @@ pub(super) struct Cursor<'a> {
     qualified_only: Vec<u32>,
     /// True inside of what stands behind it.
     in_external: bool,
+    /// The unit's constants without a type, by their keys.
+    constants: BTreeMap<String, Expr>,
 }
 
 impl<'a> Cursor<'a> {
@@ -72,6 +74,7 @@ impl<'a> Cursor<'a> {
             external,
             qualified_only,
             in_external: false,
+            constants: BTreeMap::new(),
         }
     }
 
@@ -132,6 +135,15 @@ impl<'a> Cursor<'a> {
     /// Sets it, and gives that of the unit around.
     pub(super) fn replace_result_name(&mut self, name: Option<String>) -> Option<String> {
         std::mem::replace(&mut self.result_name, name)
+    }
+
+    /// Sets the constants without a type, and gives those of the unit around.
+    pub(super) fn replace_constants(&mut self, constants: BTreeMap<String, Expr>) -> BTreeMap<String, Expr> {
+        std::mem::replace(&mut self.constants, constants)
+    }
+
+    pub(super) fn constants_mut(&mut self) -> &mut BTreeMap<String, Expr> {
+        &mut self.constants
     }
 
     /// Leaves out the tokens that `counts` says do not count.
@@ -418,7 +430,8 @@ fn promote_soft_keywords(tokens: &mut [Token], text: &str) {
             Some(opens && spelling(behind.1)?.eq_ignore_ascii_case("PRIORITY"))
         };
         if is_name && let Some(word) = spelling(&tokens[at]).and_then(Keyword::find) {
-            let soft = next_is_name && (word.is_soft() || word.is_of_chart());
+            let named = at.checked_sub(1).and_then(|before| spelling(&tokens[before])).is_some_and(names_what_follows);
+            let soft = next_is_name && (word.is_soft() || word.is_of_chart() && !named);
             if soft || word == Keyword::Transition && ranked() == Some(true) {
                 tokens[at].kind = TokenKind::Keyword(word);
             }
@@ -430,6 +443,12 @@ fn promote_soft_keywords(tokens: &mut [Token], text: &str) {
 fn is_qualified_only(pragma: &str) -> bool {
     let attribute = pragma.split_once(char::is_whitespace).filter(|(word, _)| word.eq_ignore_ascii_case("attribute"));
     attribute.is_some_and(|(_, name)| name.trim().eq_ignore_ascii_case("'qualified_only'"))
+}
+
+/// True for a word whose next one is a name, be it one that begins a part of a chart elsewhere: `CLASS Step IMPLEMENTS`.
+fn names_what_follows(word: &str) -> bool {
+    let words = ["CLASS", "INTERFACE", "FUNCTION_BLOCK", "METHOD", "PROPERTY", "EXTENDS", "IMPLEMENTS"];
+    words.iter().any(|known| known.eq_ignore_ascii_case(word))
 }
 
 /// Where the tokens stand that such a pragma is before, with other trivia in between at most.

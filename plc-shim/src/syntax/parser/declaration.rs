@@ -161,6 +161,8 @@ impl Cursor<'_> {
         self.advance();
         let qualifiers = self.qualifiers();
         let mut variables = Vec::new();
+        // One with nothing before it declares nothing.
+        self.take_semicolons();
         while self.at_variable() {
             self.variable(&mut variables);
         }
@@ -207,6 +209,11 @@ impl Cursor<'_> {
                 Some(TokenKind::Keyword(Keyword::Retain)) => Qualifier::Retain,
                 Some(TokenKind::Keyword(Keyword::NonRetain)) => Qualifier::NonRetain,
                 Some(TokenKind::Identifier) if self.at_persistent() => Qualifier::Persistent,
+                // Whether it is retained is said in the data block: nothing is by itself.
+                Some(TokenKind::Identifier) if self.at_word("DB_SPECIFIC") && self.is_name_next() => {
+                    self.require(Feature::DbSpecific, self.span());
+                    Qualifier::NonRetain
+                }
                 _ => match self.section_access() {
                     Some(access) => Qualifier::Access(access),
                     None => return found,
@@ -214,6 +221,10 @@ impl Cursor<'_> {
             });
             self.advance();
         }
+    }
+
+    fn is_name_next(&self) -> bool {
+        self.peek_ahead(1) == Some(TokenKind::Identifier)
     }
 
     /// `PUBLIC` and the like, which a variable's name may be as well.
@@ -233,7 +244,7 @@ impl Cursor<'_> {
     }
 
     fn variable(&mut self, variables: &mut Vec<Variable>) {
-        let known = self.reported();
+        let mut known = self.reported();
         let is_nameless = self.at_keyword(Keyword::At) && self.peek_ahead(1) == Some(TokenKind::DirectAddress);
         if matches!(self.peek(), Some(TokenKind::Keyword(_))) && !is_nameless {
             self.report_keyword_as_name();
@@ -243,7 +254,16 @@ impl Cursor<'_> {
         if self.at_mark(Punctuation::LeftBracket) {
             self.pass_count();
         }
-        let address = self.take_keyword(Keyword::At).then(|| self.address()).flatten();
+        let address = match self.take_keyword(Keyword::At) {
+            true if self.at_view() => {
+                let none = self.pass_view();
+                // What is told of it says nothing about the type behind.
+                known = self.reported();
+                none
+            }
+            true => self.address(),
+            false => None,
+        };
         // `AT %QW5 : WORD;` (2nd ed. B.1.4.3): its address is its name.
         let names = if is_nameless { address.iter().cloned().collect() } else { names };
         self.expect_mark(Punctuation::Colon);
@@ -254,7 +274,7 @@ impl Cursor<'_> {
         } else {
             let spec = self.type_spec();
             let edge = self.edge();
-            let initial = self.optional_initialiser();
+            let initial = self.reference_initialiser(&spec).or_else(|| self.optional_initialiser());
             variables.push(Variable { names, address, spec, edge, initial });
         }
         self.end_of_declaration(known);

@@ -327,7 +327,13 @@ impl Cursor<'_> {
         }
         let text = self.next_text();
         let kind = match self.peek() {
-            Some(TokenKind::Identifier) => ExprKind::Name(Self::written_name(text, span)),
+            Some(TokenKind::Identifier) => {
+                if let Some(value) = self.constant_named(text, span) {
+                    self.advance();
+                    return value;
+                }
+                ExprKind::Name(Self::written_name(text, span))
+            }
             Some(TokenKind::Integer) => self.literal(span, parse_integer(text).map(Literal::Integer)),
             Some(TokenKind::Real) => self.literal(span, parse_real(text).map(Literal::Real)),
             Some(TokenKind::Typed) => self.typed_literal(text, span),

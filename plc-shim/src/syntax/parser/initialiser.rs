@@ -2,7 +2,7 @@
 
 use super::cursor::Cursor;
 use crate::dialect::Feature;
-use crate::syntax::ast::{Initialiser, InitialiserKind, StructureInit};
+use crate::syntax::ast::{Initialiser, InitialiserKind, ReferenceKind, StructureInit, TypeSpec, TypeSpecKind};
 use crate::syntax::token::{Punctuation, TokenKind};
 
 impl Cursor<'_> {
@@ -24,6 +24,19 @@ impl Cursor<'_> {
             elements.push(self.array_element());
         }
         Some(Initialiser { kind: InitialiserKind::Array(elements), span: self.span_from(start) })
+    }
+
+    /// `REF= variable` behind the type of a reference.
+    pub(super) fn reference_initialiser(&mut self, spec: &TypeSpec) -> Option<Initialiser> {
+        let is_reference = matches!(spec.kind, TypeSpecKind::Reference(ReferenceKind::Reference, _));
+        if !is_reference || !self.at_reference_assignment() {
+            return None;
+        }
+        self.advance();
+        self.advance();
+        let start = self.span();
+        let kind = InitialiserKind::Value(self.expression());
+        Some(Initialiser { kind, span: self.span_from(start) })
     }
 
     pub(super) fn initialiser(&mut self) -> Initialiser {

@@ -1,5 +1,7 @@
 //! Classes, interfaces, methods, properties, actions (3rd ed. 6.6.5 to 6.6.8), namespaces (3rd ed. 6.9).
 
+use std::collections::BTreeMap;
+
 use super::cursor::Cursor;
 use super::declaration::{UnitParts, begins_declaration, ends_unit};
 use crate::diagnostic::{Code, Diagnostic};
@@ -60,12 +62,15 @@ impl Cursor<'_> {
         (name, result, mut object): (Ident, Option<TypeSpec>, Object),
         start: Span,
     ) -> Pou {
+        let around = self.replace_constants(BTreeMap::new());
         let sections = self.sections_and_members(&mut object);
+        self.report_hidden_constants(&sections);
         self.take_keyword(Keyword::Begin);
         let from = self.span();
         let members = std::mem::take(&mut object.members);
         let mut parts = UnitParts { sections, members, ..UnitParts::default() };
         let body = self.body(end, &mut parts);
+        self.replace_constants(around);
         let UnitParts { sections, members, chart } = parts;
         object.members = members;
         if matches!(kind, PouKind::Class | PouKind::Interface) && !body.is_empty() {
@@ -82,6 +87,8 @@ impl Cursor<'_> {
         loop {
             if let Some(kind) = self.next_section() {
                 sections.push(self.section(kind));
+            } else if self.at_constants() {
+                self.constants();
             } else if self.at_keyword(Keyword::Using) {
                 self.using(&mut object.using);
             } else if !self.members(&mut object.members) {

@@ -4,7 +4,9 @@ use super::cursor::Cursor;
 use crate::diagnostic::{Code, Diagnostic};
 use crate::dialect::Feature;
 use crate::source::Span;
-use crate::syntax::ast::{Dimension, Expr, ExprKind, Ident, Literal, StatementKind, TypeSpec, TypeSpecKind};
+use crate::syntax::ast::{
+    Dimension, Expr, ExprKind, Ident, IfBranch, IfStatement, Literal, Statement, StatementKind, TypeSpec, TypeSpecKind,
+};
 use crate::syntax::token::{Keyword, Punctuation, TokenKind};
 
 impl Cursor<'_> {
@@ -87,7 +89,7 @@ impl Cursor<'_> {
         self.peek_ahead(2) == Some(TokenKind::Punctuation(Punctuation::Semicolon))
     }
 
-    /// What `RETURN` is; a value behind it on its line is reported, and goes to the result.
+    /// What `RETURN` is; `RETURN (b)` returns if `b` holds, where the dialect has that. Otherwise a value behind it on its line is reported, and goes to the result.
     pub(super) fn returned(&mut self) -> StatementKind {
         self.advance();
         let begins_value = match self.peek() {
@@ -100,8 +102,14 @@ impl Cursor<'_> {
         if !begins_value || self.is_line_break(0) {
             return StatementKind::Return;
         }
+        let conditional = self.at_mark(Punctuation::LeftParen) && self.dialect().has(Feature::ConditionalReturns);
         let known = self.reported();
-        let value = self.expression();
+        let (start, value) = (self.span(), self.expression());
+        if conditional {
+            let body = vec![Statement { kind: StatementKind::Return, span: self.span_from(start) }];
+            let branches = vec![IfBranch { condition: value, body }];
+            return StatementKind::If(IfStatement { branches, otherwise: Vec::new() });
+        }
         if self.reported() > known {
             return StatementKind::Return;
         }

@@ -69,7 +69,10 @@ impl Cursor<'_> {
         let ended = self.position() > position && closes;
         if self.reported() > known && !ended {
             self.recover(position);
-        } else if !(self.take_mark(Punctuation::Semicolon) || ended && self.dialect().has(Feature::LooseEnds)) {
+        } else if !(self.take_mark(Punctuation::Semicolon)
+            || ended && self.dialect().has(Feature::LooseEnds)
+            || self.at_end_of_branch() && self.dialect().has(Feature::LooseLast))
+        {
             self.missing_semicolon(ended);
         }
         Statement { kind, span }
@@ -77,6 +80,17 @@ impl Cursor<'_> {
 
     fn previous_closes(&self) -> bool {
         matches!(self.previous(), Some(TokenKind::Keyword(keyword)) if ends_statement(keyword))
+    }
+
+    /// True before what ends the statements of a branch or loop.
+    fn at_end_of_branch(&self) -> bool {
+        use Keyword as K;
+        matches!(
+            self.peek(),
+            Some(TokenKind::Keyword(
+                K::EndIf | K::Elsif | K::Else | K::EndCase | K::EndFor | K::EndWhile | K::EndRepeat | K::Until
+            ))
+        )
     }
 
     fn missing_semicolon(&mut self, behind_end: bool) {

@@ -1,7 +1,9 @@
 //! Statements to text.
 
 use super::Printer;
-use crate::syntax::ast::{CaseLabel, CaseStatement, Expr, ForStatement, IfStatement, Statement, StatementKind, TryStatement};
+use crate::syntax::ast::{
+    CaseLabel, CaseStatement, Expr, ForStatement, IfStatement, Statement, StatementKind, TryStatement,
+};
 
 impl Printer {
     pub(super) fn statements(&mut self, list: &[Statement]) {

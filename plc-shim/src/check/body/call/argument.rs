@@ -180,7 +180,12 @@ impl Body<'_, '_> {
     }
 
     /// The variable given for a `REFERENCE TO`.
-    pub(in crate::check::body) fn referring_argument(&mut self, ty: TypeId, expr: &ast::Expr, passing: &mut Passing) -> Option<Expr> {
+    pub(in crate::check::body) fn referring_argument(
+        &mut self,
+        ty: TypeId,
+        expr: &ast::Expr,
+        passing: &mut Passing,
+    ) -> Option<Expr> {
         let value = self.referring(ty, expr)?;
         match value.kind {
             ExprKind::Address(place) => {

@@ -48,12 +48,7 @@ struct Wanted<'e> {
 }
 
 impl Body<'_, '_> {
-    pub(super) fn dynamic_memory_call(
-        &mut self,
-        operator: DynamicMemory,
-        call: &Call,
-        span: Span,
-    ) -> Option<Operand> {
+    pub(super) fn dynamic_memory_call(&mut self, operator: DynamicMemory, call: &Call, span: Span) -> Option<Operand> {
         let given: Vec<&ast::Expr> = call.arguments.iter().filter_map(positional).collect();
         match (operator, &given[..]) {
             (DynamicMemory::New, [written]) => self.made(written, None, span),

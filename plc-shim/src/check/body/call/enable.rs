@@ -82,7 +82,7 @@ impl Body<'_, '_> {
     /// A call of a function with EN or ENO.
     pub(super) fn controlled_call(&mut self, call: &Call, span: Span) -> Option<Operand> {
         let own = self.declares_outcome(call, span);
-        self.controlled(call, own, span, |body, rest| body.plain_call(rest, span)).map(Operand::Typed)
+        self.controlled(call, own, span, |body, rest| body.plain_call(rest, true, span)).map(Operand::Typed)
     }
 
     /// A call that EN may forbid and ENO tells of; `own` is true if what is called has an ENO itself.

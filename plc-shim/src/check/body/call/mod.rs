@@ -45,6 +45,11 @@ pub(super) struct Wanted<'e> {
     pub(in crate::check::body) target: &'e ast::Expr,
 }
 
+/// True for a list with names, be it EN alone: what it leaves out has its initial value (2nd ed. 2.5.1.1).
+pub(super) fn is_formal(call: &Call) -> bool {
+    call.arguments.iter().any(|argument| !matches!(argument, ast::Argument::Positional(_)))
+}
+
 impl Body<'_, '_> {
     pub(super) fn call_expression(&mut self, call: &Call, span: Span) -> Option<Operand> {
         if let Some(called) = self.method_call(call, span) {
@@ -53,11 +58,11 @@ impl Body<'_, '_> {
         if enable::is_controlled(call) && !self.is_instance(call) {
             return self.controlled_call(call, span);
         }
-        self.plain_call(call, span)
+        self.plain_call(call, is_formal(call), span)
     }
 
-    /// A call without EN and ENO, unless its function declares them.
-    fn plain_call(&mut self, call: &Call, span: Span) -> Option<Operand> {
+    /// A call without EN and ENO, unless its function declares them; `formal` as [`is_formal`] has it of the whole.
+    fn plain_call(&mut self, call: &Call, formal: bool, span: Span) -> Option<Operand> {
         let qualified = self.qualified_name(&call.callee);
         let ((ast::ExprKind::Name(name), _) | (_, Some(name))) = (&call.callee.kind, &qualified) else {
             return self.not_a_function(call, span);
@@ -66,7 +71,7 @@ impl Body<'_, '_> {
             return self.not_a_function(call, span);
         }
         if let Some(id) = self.function_named(name) {
-            return self.function_call(id, name, call, span).map(Operand::Typed);
+            return self.function_call(id, name, call, formal, span).map(Operand::Typed);
         }
         let name = &self.declarations.behind_libraries(name);
         if memory::exists(&name.key()) {
@@ -335,12 +340,11 @@ impl Body<'_, '_> {
         self.declarations.note_call(self.pou, callee, span);
     }
 
-    fn function_call(&mut self, id: PouId, name: &Ident, call: &Call, span: Span) -> Option<Expr> {
+    fn function_call(&mut self, id: PouId, name: &Ident, call: &Call, formal: bool, span: Span) -> Option<Expr> {
         self.note_call(id, span);
         self.declarations.note_stub(id, span);
         let scope = self.declarations.interface(id, span)?;
         let matched = self.matched(&scope, &name.text, call)?;
-        let named = call.arguments.iter().any(|each| !matches!(each, ast::Argument::Positional(_)));
         let mut passing = Passing::default();
         let mut arguments = Vec::new();
         let mut sound = true;
@@ -351,7 +355,7 @@ impl Body<'_, '_> {
                 _ if parameter::is_control(parameter) => Some(Argument::Value(enable::boolean(true, span))),
                 Some(expr) => self.argument(parameter, expr, &mut passing),
                 None if self.declarations.is_library(id) && asserts::is_site(parameter) => Some(asserts::site(span)),
-                None => self.default_argument(parameter, named, span),
+                None => self.default_argument(parameter, formal, span),
             };
             sound &= argument.is_some();
             arguments.extend(argument);

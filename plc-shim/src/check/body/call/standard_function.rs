@@ -292,6 +292,10 @@ impl Body<'_, '_> {
 
     fn shift(&mut self, kind: Intrinsic, value: Operand, count: Operand, span: Span) -> Option<Operand> {
         let value = match value {
+            Operand::Typed(expr) => Operand::Typed(self.as_number(expr)),
+            constant => constant,
+        };
+        let value = match value {
             Operand::Typed(expr) if self.plain_elementary(&expr).is_some_and(ElementaryType::is_bits) => expr,
             Operand::Typed(expr) if self.shifted_integer(&expr).is_some() => {
                 let ty = self.shifted_integer(&expr)?;
@@ -303,6 +307,12 @@ impl Body<'_, '_> {
                 let bits = converted(expr, as_bits(ty), Rounding::NearestEven);
                 let Operand::Typed(shifted) = self.shift(kind, Operand::Typed(bits), count, span)? else { return None };
                 return Some(Operand::Typed(converted(shifted, ty, Rounding::NearestEven)));
+            }
+            Operand::Integer { value, span } => {
+                let message = "a bit string is wanted, this is an integer";
+                let help = format!("say how many bits are shifted, as in WORD#{}", value.max(0));
+                self.report(Diagnostic::error(Code::TypeMismatch, span, message).with_help(help));
+                return None;
             }
             other => {
                 let found = self.describe(&other);

@@ -5,8 +5,12 @@ use crate::check::standard::conversion;
 use crate::check::types::operand::{Operand, constant, converted};
 use crate::check::types::reference;
 use crate::diagnostic::{Code, Diagnostic};
-use crate::ir::{ElementaryType, Expr, Rounding, Type, TypeId, Value};
+use crate::dialect::Feature;
+use crate::ir::{ElementaryType, Expr, Field, Rounding, Type, TypeId, TypeTable, Value};
 use crate::syntax::Span;
+
+/// What a structure without a name of its own is called.
+const NAMELESS: &str = "STRUCT";
 
 impl Body<'_, '_> {
     pub(in crate::check::body) fn mismatch<T>(&mut self, wanted: &str, found: &str, span: Span) -> Option<T> {
@@ -45,6 +49,9 @@ impl Body<'_, '_> {
             (Operand::Typed(expr), _) if expr.ty == target => Some(expr),
             // Inside of its unit an input of type ANY is what the library declares it to be.
             (Operand::Typed(expr), None) if self.is_generic_value(&expr, target) => Some(Expr { ty: target, ..expr }),
+            (Operand::Typed(expr), None) if self.is_alike_structure(expr.ty, target, expr.span) => {
+                Some(Expr { ty: target, ..expr })
+            }
             (Operand::Typed(expr), Some(wanted)) => self.widen(expr, wanted),
             (Operand::Integer { value, span }, Some(wanted)) => self.literal_integer(value, wanted, span),
             (Operand::Real { value, span }, Some(wanted)) => self.literal_real(value, wanted, span),
@@ -57,6 +64,14 @@ impl Body<'_, '_> {
                 self.mismatch(&wanted, &found, operand.span())
             }
         }
+    }
+
+    /// True for structures that are alike in all members, one of which has no name, where the dialect has that.
+    fn is_alike_structure(&self, found: TypeId, wanted: TypeId, span: Span) -> bool {
+        let types = self.declarations.types();
+        let nameless = |ty| matches!(types.get(ty), Type::Struct { name, .. } if name == NAMELESS);
+        let has = self.declarations.dialect(span).has(Feature::AlikeStructures);
+        has && (nameless(found) || nameless(wanted)) && is_alike(types, found, wanted)
     }
 
     fn is_generic_value(&self, expr: &Expr, target: TypeId) -> bool {
@@ -187,7 +202,7 @@ impl Body<'_, '_> {
     /// An expression that must be of type `ty`.
     pub(in crate::check) fn expression_for(&mut self, expr: &crate::syntax::ast::Expr, ty: TypeId) -> Option<Expr> {
         let context = self.elementary(ty);
-        let operand = self.within(context, |body| body.expression(expr))?;
+        let operand = self.within(context, |body| body.wanting(Some(ty), |body| body.expression(expr)))?;
         self.coerce(operand, ty)
     }
 
@@ -198,8 +213,22 @@ impl Body<'_, '_> {
         check: impl FnOnce(&mut Self) -> T,
     ) -> T {
         let outer = std::mem::replace(&mut self.context, context);
-        let checked = check(self);
+        let checked = self.wanting(None, check);
         self.context = outer;
         checked
+    }
+}
+
+fn is_alike(types: &TypeTable, one: TypeId, other: TypeId) -> bool {
+    match (types.get(one), types.get(other)) {
+        _ if one == other => true,
+        (Type::Struct { fields: one, .. }, Type::Struct { fields: other, .. }) => {
+            let pair = |(one, other): (&Field, &Field)| {
+                let place = one.offset == other.offset && one.bit == other.bit;
+                place && one.name.eq_ignore_ascii_case(&other.name) && is_alike(types, one.ty, other.ty)
+            };
+            one.len() == other.len() && one.iter().zip(other).all(pair)
+        }
+        _ => false,
     }
 }

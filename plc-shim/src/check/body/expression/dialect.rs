@@ -129,7 +129,8 @@ impl Body<'_, '_> {
             if dialect.has(Feature::BitArithmetic) { (as_number(found), as_number(wanted)) } else { (found, wanted) };
         let sign = dialect.has(Feature::SignChange) && from.is_integer() && to.is_integer();
         let real = dialect.has(Feature::LossyReals) && found.is_number() && wanted.is_real();
-        from.widens_to(to) || sign && from.size() <= to.size() || real
+        let integer = dialect.has(Feature::IntegersAsReals) && found.is_integer() && found.size() <= wanted.size();
+        from.widens_to(to) || sign && from.size() <= to.size() || real || integer && wanted.is_real()
     }
 
     /// True for the result of an operation on integers none of which is wider than `wanted`: vendors reckon it in more

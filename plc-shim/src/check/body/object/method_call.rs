@@ -1,8 +1,8 @@
 //! Calls of methods and actions (3rd ed. 6.6.5.4 and 6.6.5.5).
 
 use crate::check::body::call::argument::Passing;
-use crate::check::body::call::enable;
 use crate::check::body::call::instance_call::member_place;
+use crate::check::body::call::{enable, is_formal};
 use crate::check::body::{Body, Meant};
 use crate::check::declare::{Role, Scope};
 use crate::check::types::operand::Operand;
@@ -64,7 +64,10 @@ impl Body<'_, '_> {
         };
         let Some(method) = self.declarations.find_member(object.class, Role::Method, &name.text) else {
             // A variable of the name may be an instance to call.
-            return (object.known == Known::Super).then(|| self.unknown_method(object.class, name));
+            let is_variable = |scope: std::sync::Arc<Scope>| scope.find(&name.key()).is_some();
+            let is_unknown = object.known == Known::Super
+                && !self.declarations.interface(object.class, span).is_some_and(is_variable);
+            return is_unknown.then(|| self.unknown_method(object.class, name));
         };
         Some(self.called(object, method, name, call, span))
     }
@@ -75,8 +78,9 @@ impl Body<'_, '_> {
             return self.called_action(object, method, name, call, span);
         }
         let scope = self.declarations.interface(method, span)?;
+        let formal = is_formal(call);
         let make = |body: &mut Self, call: &Call| {
-            let (arguments, passing) = body.method_arguments(&scope, &name.text, call, span)?;
+            let (arguments, passing) = body.method_arguments(&scope, &name.text, call, formal, span)?;
             body.on_object(object, Role::Method, method, arguments, passing, span)
         };
         if !enable::is_controlled(call) {
@@ -173,10 +177,10 @@ impl Body<'_, '_> {
         scope: &Scope,
         name: &str,
         call: &Call,
+        formal: bool,
         span: Span,
     ) -> Option<(Vec<Argument>, Passing)> {
         let matched = self.matched(scope, name, call)?;
-        let named = call.arguments.iter().any(|each| !matches!(each, ast::Argument::Positional(_)));
         let (mut passing, mut arguments, mut sound) = (Passing::default(), Vec::new(), true);
         for parameter in scope.inputs() {
             let given = matched.inputs.get(&parameter.name.to_ascii_uppercase()).copied();
@@ -184,7 +188,7 @@ impl Body<'_, '_> {
                 // The call is carried out, or the method would not read it.
                 _ if parameter::is_control(parameter) => Some(Argument::Value(enable::boolean(true, span))),
                 Some(expr) => self.argument(parameter, expr, &mut passing),
-                None => self.default_argument(parameter, named, span),
+                None => self.default_argument(parameter, formal, span),
             };
             sound &= argument.is_some();
             arguments.extend(argument);

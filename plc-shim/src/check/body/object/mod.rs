@@ -48,6 +48,25 @@ impl Body<'_, '_> {
         Some(Some(Located { place, access: Access::ReadWrite }))
     }
 
+    /// The running instance as one of its base, for `SUPER^.x`; nothing if the expression is not `SUPER`.
+    pub(super) fn super_place(&mut self, expr: &ast::Expr) -> Meant<Located> {
+        if !self.is_super(expr) {
+            return None;
+        }
+        let base = self.own_class().and_then(|class| self.declarations.base_of(class));
+        let Some(base) = base else {
+            return Some(self.no_object("SUPER", expr.span));
+        };
+        let place = self.this(base, expr.span);
+        Some(Some(Located { place, access: Access::ReadWrite }))
+    }
+
+    /// True for the running instance, seen as one of `class`, which is its own type or a base of that.
+    pub(super) fn is_running_instance(&self, place: &Place, class: PouId) -> bool {
+        let is_this = place.storage == Storage::Instance(0) && place.steps.is_empty();
+        is_this && self.own_class().is_some_and(|own| self.declarations.is_a(own, class))
+    }
+
     /// The running instance, seen as one of `class`.
     pub(in crate::check) fn this(&mut self, class: PouId, span: Span) -> Place {
         let ast = self.declarations.pou(class).ast();

@@ -93,19 +93,12 @@ impl Body<'_, '_> {
             ast::ExprKind::Member(base, name) => (self.property_object(base, name)?, name),
             _ => return None,
         };
-        let object = object.filter(|object| {
-            self.declarations.find_member(object.class, Role::Setter, &name.text).is_some()
-        })?;
+        let object =
+            object.filter(|object| self.declarations.find_member(object.class, Role::Setter, &name.text).is_some())?;
         Some(self.set_reference(object, name, value, span))
     }
 
-    fn set_reference(
-        &mut self,
-        object: Object,
-        name: &Ident,
-        value: &ast::Expr,
-        span: Span,
-    ) -> Option<Statement> {
+    fn set_reference(&mut self, object: Object, name: &Ident, value: &ast::Expr, span: Span) -> Option<Statement> {
         let setter = self.declarations.find_member(object.class, Role::Setter, &name.text)?;
         self.check_method_access(setter, name.span)?;
         let ty = self.declarations.interface(setter, span)?.inputs().next()?.ty;

@@ -1,6 +1,7 @@
 //! Names, members and indices to places (2nd ed. 2.4.1.2).
 
 pub(super) mod direct;
+mod in_out;
 mod later_constant;
 pub(super) mod namespace;
 pub(super) mod open_array;
@@ -79,6 +80,9 @@ impl Body<'_, '_> {
                     return self.enumerator_of(ty, &name.text, expr.span);
                 }
                 if let Some(found) = self.property_of(base, name) {
+                    return found;
+                }
+                if let Some(found) = self.in_out_of_instance(base, name, expr.span) {
                     return found;
                 }
                 if let Some(found) = self.constant_of_unit(base, name) {
@@ -160,6 +164,9 @@ impl Body<'_, '_> {
 
     /// The place that has the part: a variable, or what a property or a call gives.
     pub(super) fn base_place(&mut self, base: &ast::Expr) -> Option<Located> {
+        if let Some(found) = self.super_place(base) {
+            return found;
+        }
         match self.given_value(base) {
             Some(value) => {
                 let value = value?;
@@ -276,6 +283,9 @@ impl Body<'_, '_> {
             [] if name.key() == "NULL" => Some(Meaning::Value(Self::null(name.span))),
             [] => self.report_unknown(name),
             several => {
+                if let Some(value) = self.wanted_value(several, name.span) {
+                    return Some(Meaning::Value(value));
+                }
                 let types: Vec<_> = several.iter().map(|each| self.type_name(each.ty)).collect();
                 let message = format!("`{}` is a value of {}", name.text, types.join(" and of "));
                 let help = format!("write {}#{}", types[0], name.text);
@@ -403,7 +413,7 @@ impl Body<'_, '_> {
             SectionKind::Input if variable.is_constant && !self.is_own_instance(pou) => Access::ReadWrite,
             _ if variable.is_constant && self.may_see(variable) => Access::Constant,
             _ if base.access == Access::Chart => Access::Chart,
-            _ if self.is_own_instance(pou) => Access::ReadWrite,
+            _ if self.is_own_instance(pou) || self.is_running_instance(&base.place, pou) => Access::ReadWrite,
             SectionKind::Input => Access::ReadWrite,
             SectionKind::Output => Access::InstanceOutput,
             SectionKind::Local if self.may_see(variable) => Access::ReadWrite,

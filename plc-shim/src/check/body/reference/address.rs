@@ -1,8 +1,8 @@
 //! `REF` (3rd ed. 6.4.4.10.3), and `ADR`, `SIZEOF`, `__ISVALIDREF` of vendors.
 
 use super::as_reference;
-use crate::check::body::{Body, Meant};
 use crate::check::body::place::{Access, Located};
+use crate::check::body::{Body, Meant};
 use crate::check::standard::place::PlaceFunction;
 use crate::check::types::operand::{Operand, constant};
 use crate::check::types::reference;
@@ -141,7 +141,10 @@ impl Body<'_, '_> {
             ast::ExprKind::Member(..) => {
                 let path = self.qualified_name(expr)?;
                 let bare = self.declarations.behind_libraries(&path);
-                [path, bare].into_iter().find(|name| self.names_type(name)).map(|name| self.declarations.type_meant(&name))
+                [path, bare]
+                    .into_iter()
+                    .find(|name| self.names_type(name))
+                    .map(|name| self.declarations.type_meant(&name))
             }
             _ => self.type_written(expr),
         }

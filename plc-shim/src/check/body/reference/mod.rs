@@ -314,6 +314,21 @@ impl Body<'_, '_> {
         Some(Expr { kind: ExprKind::Address(place), ty: wanted, span: value.span })
     }
 
+    /// What a variable of type `ty` begins with. A `REFERENCE TO` begins as what it refers to, be it written with `:=`
+    /// or with `REF=` (CODESYS: data type REFERENCE).
+    pub(in crate::check) fn beginning(&mut self, expr: &ast::Expr, ty: TypeId) -> Option<Expr> {
+        let is_reference =
+            matches!(self.declarations.types().get(ty), Type::Reference { kind: ReferenceKind::Reference, .. });
+        if !is_reference {
+            return self.expression_for(expr, ty);
+        }
+        let value = self.referring(ty, expr)?;
+        if let ExprKind::Address(source) = &value.kind {
+            self.require_address(source, value.span)?;
+        }
+        Some(value)
+    }
+
     /// What a call or a property gives, be it between parentheses; nothing if `value` is neither.
     fn given_reference(&mut self, value: &ast::Expr) -> Meant<Operand> {
         match &value.kind {

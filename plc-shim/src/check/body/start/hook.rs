@@ -9,6 +9,7 @@ use std::sync::Arc;
 
 use crate::check::body::Body;
 use crate::check::body::call::argument::Passing;
+use crate::check::body::call::is_formal;
 use crate::check::body::object::method_call::{Known, Object};
 use crate::check::declare::{EXIT_INPUTS, INIT_INPUTS, INIT_RETAINS_NAME, Occasion, Role, Scope, suits_init};
 use crate::diagnostic::{Code, Diagnostic};
@@ -21,7 +22,12 @@ type Named = (Ident, ast::Expr);
 
 impl Body<'_, '_> {
     /// The calls of `FB_init` on the instance at a place.
-    pub(in crate::check::body) fn init_calls(&mut self, place: &Place, pou: PouId, given: &[Argument]) -> Vec<Statement> {
+    pub(in crate::check::body) fn init_calls(
+        &mut self,
+        place: &Place,
+        pou: PouId,
+        given: &[Argument],
+    ) -> Vec<Statement> {
         let hooks = self.declarations.hooks(pou, Occasion::Start);
         let Some(last) = hooks.last() else { return Vec::new() };
         let Some(named) = self.named(*last, given, place.span) else { return Vec::new() };
@@ -145,7 +151,7 @@ impl Body<'_, '_> {
         let unit = self.declarations.display_name(hook);
         let callee = ast::Expr { kind: ast::ExprKind::Name(ident(&unit, span)), span, height: 1 };
         let call = Call { callee: Box::new(callee), arguments };
-        let (arguments, passing) = self.method_arguments(&scope, &unit, &call, span)?;
+        let (arguments, passing) = self.method_arguments(&scope, &unit, &call, is_formal(&call), span)?;
         let object = instance_at(place, pou);
         let called = self.on_object(object, Role::Method, hook, arguments, passing, span)?;
         Some(Statement { kind: StatementKind::Evaluate(called), span })

@@ -8,13 +8,10 @@ use super::Body;
 use crate::check::declare::{Given, Home, Occasion, Start, StartKind};
 use crate::check::types::constant;
 use crate::check::types::operand::constant;
-use crate::dialect::Feature;
 use crate::ir::{
-    ElementaryType, Expr, ExprKind, ForStatement, Place, PouId, Statement, StatementKind, Step, Storage, Type, TypeId,
-    Value,
+    ElementaryType, Expr, ExprKind, ForStatement, Place, PouId, Statement, StatementKind, Step, Storage, TypeId, Value,
 };
 use crate::syntax::Span;
-use crate::syntax::ast::{self, ReferenceKind};
 
 impl<'a> Body<'_, 'a> {
     /// What a unit's occasion does: what its base does, then its own variables in their order.
@@ -82,7 +79,7 @@ impl<'a> Body<'_, 'a> {
             _ if occasion == Occasion::End => Vec::new(),
             StartKind::Value(ty, expr) => {
                 let known = self.declarations.mark();
-                let value = self.initial_for(expr, *ty);
+                let value = self.beginning(expr, *ty);
                 // Whatever there is to say has been said where it is declared.
                 self.declarations.forget_since(known);
                 value.map(|value| self.assignment(at(*ty), value, span)).into_iter().collect()
@@ -93,14 +90,6 @@ impl<'a> Body<'_, 'a> {
                 self.property_begins(&place, *pou, name, value).into_iter().collect()
             }
         }
-    }
-
-    /// An initial value. A `REFERENCE TO` of vendors begins with what it refers to.
-    pub(in crate::check) fn initial_for(&mut self, expr: &ast::Expr, ty: TypeId) -> Option<Expr> {
-        let is_reference =
-            matches!(self.declarations.types().get(ty), Type::Reference { kind: ReferenceKind::Reference, .. });
-        let computed = self.declarations.dialect(expr.span).has(Feature::ComputedInitialValues);
-        if is_reference && computed { self.referring(ty, expr) } else { self.expression_for(expr, ty) }
     }
 
     fn instance_type(&mut self, pou: PouId) -> TypeId {

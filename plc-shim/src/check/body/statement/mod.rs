@@ -125,7 +125,8 @@ impl Body<'_, '_> {
         }
         let target = self.target(target);
         let context = target.as_ref().and_then(|target| self.elementary(target.ty));
-        let value = self.within(context, |body| body.expression(value));
+        let wanted = target.as_ref().map(|target| target.ty);
+        let value = self.within(context, |body| body.wanting(wanted, |body| body.expression(value)));
         let (target, value) = (target?, value?);
         if matches!(self.declarations.types().get(target.ty), Type::FunctionBlock { .. }) {
             return self.instance_copy(target, value, span);
@@ -266,7 +267,8 @@ impl Body<'_, '_> {
     fn label_value(&mut self, label: &ast::Expr, ty: TypeId) -> Option<i128> {
         if self.declarations.dialect(label.span).has(Feature::EnumerationsAsIntegers) {
             let known = self.declarations.mark();
-            if let Some(Operand::Typed(value)) = self.within(None, |body| body.expression(label))
+            let value = self.within(None, |body| body.wanting(Some(ty), |body| body.expression(label)));
+            if let Some(Operand::Typed(value)) = value
                 && matches!(self.declarations.types().get(value.ty), Type::Enumeration { .. })
                 && let Ok(value) = fold(self.declarations.types(), &value)
             {
