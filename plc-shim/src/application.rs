@@ -11,6 +11,7 @@ mod part;
 mod retain;
 mod room;
 mod root;
+mod twincat_motion;
 mod value;
 mod variable;
 mod vendor_library;
