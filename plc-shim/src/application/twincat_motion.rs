@@ -65,7 +65,7 @@ mod tests {
     fn nothing_of_it_has_a_name_of_twincats_blocks() {
         let text: String = core().iter().map(|(_, text)| *text).collect();
         assert!(text.contains("FUNCTION_BLOCK ONESCAN_MC_Power") && text.contains("ONESCAN_AXIS : STRUCT"));
-        assert!(!text.contains("FUNCTION_BLOCK MC_") && !text.contains(" mcAborting"));
+        assert!(!text.contains("FUNCTION_BLOCK MC_") && !text.contains("= mcAborting"));
         assert!(text.contains("Command.BufferMode = MC_BufferMode#MC_Aborting"));
     }
 }
