@@ -86,11 +86,11 @@ fn mentions_twincat_motion(text: &str) -> bool {
 fn motion_for(texts: &[(&str, Dialect)]) -> Motion {
     let is_twincat = texts.iter().any(|(_, dialect)| *dialect == Dialect::TwinCat);
     match texts.iter().filter_map(|(text, _)| axis_in(text)).max() {
-        Some(Axis::Declared) => Motion::None,
         Some(Axis::Used) if is_twincat => Motion::TwinCat,
         Some(Axis::Used) => Motion::Plcopen,
         None if is_twincat && texts.iter().any(|(text, _)| mentions_twincat_motion(text)) => Motion::TwinCat,
-        None => Motion::None,
+        // A project with an axis of its own has its own blocks for it.
+        Some(Axis::Declared) | None => Motion::None,
     }
 }
 

@@ -420,7 +420,7 @@ mod tests {
         let variables: String = blocks.map(|name| format!("v{name} : {name};\n")).collect();
         let text = format!("PROGRAM P\nVAR\n{variables}END_VAR\nEND_PROGRAM\n");
         let input = Input::from_text("p.st", SourceKind::Text, text).in_dialect(Dialect::TwinCat);
-        let front = Front::new([input].into_iter());
+        let front = Front::new([input]);
         let findings: Vec<_> = front.findings.iter().map(|found| (found.span, found.message.clone())).collect();
         assert!(findings.is_empty() && variables.contains("vMC_Jog"), "{findings:?}");
     }

@@ -49,7 +49,7 @@ fn what_a_library_lacks_is_declared_beside_it() {
   IF axis.NcToPlc.ActPos > 5.0 AND torque.InTorque THEN axis.ReadStatus(); END_IF
 END_PROGRAM",
     );
-    assert!(text.contains("MC_TorqueControl") && text.contains("Axis : AXIS_REF"), "{text}");
+    assert!(text.contains("MC_TorqueControl") && text.contains("TC2_MC2.AXIS_REF"), "{text}");
     assert!(!text.contains("MC_MoveAbsolute") && !text.contains("BLOCK AXIS_REF") && !text.contains("TYPE"), "{text}");
 }
 
