@@ -12,6 +12,7 @@ mod part;
 mod retain;
 mod room;
 mod root;
+mod twincat_motion;
 mod value;
 mod variable;
 mod vendor_library;

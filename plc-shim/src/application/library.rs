@@ -1,6 +1,7 @@
 //! The standard function blocks (2nd ed. 2.5.2.3), some functions, and PLCopen's motion blocks, as program text
 //! like any other.
 
+use super::twincat_motion;
 use super::vendor_library::{self, Part};
 use crate::dialect::Dialect;
 use crate::syntax::token::{Keyword, Punctuation, TokenKind};
@@ -30,11 +31,12 @@ fn mentions_assert(text: &str) -> bool {
 }
 
 /// Motion control (PLCopen, Function blocks for motion control, 2.0), for programs that name an axis.
-pub(crate) const MOTION: [(&str, &str); 15] = [
+pub(crate) const MOTION: [(&str, &str); 16] = [
     ("iec/motion/activate.st", include_str!("../../iec/motion/activate.st")),
     ("iec/motion/axis.st", include_str!("../../iec/motion/axis.st")),
     ("iec/motion/cam.st", include_str!("../../iec/motion/cam.st")),
     ("iec/motion/command.st", include_str!("../../iec/motion/command.st")),
+    ("iec/motion/enumerations.st", include_str!("../../iec/motion/enumerations.st")),
     ("iec/motion/gear.st", include_str!("../../iec/motion/gear.st")),
     ("iec/motion/home.st", include_str!("../../iec/motion/home.st")),
     ("iec/motion/move.st", include_str!("../../iec/motion/move.st")),
@@ -51,13 +53,45 @@ pub(crate) const MOTION: [(&str, &str); 15] = [
 /// The library for a program of these files: nobody pays for motion control or asserts but who uses them.
 pub(crate) fn for_program<'s>(files: impl Iterator<Item = &'s SourceFile>) -> Vec<SourceFile> {
     let texts: Vec<(&str, Dialect)> = files.map(|file| (&**file.text(), file.dialect())).collect();
-    let axis = texts.iter().filter_map(|(text, _)| axis_in(text)).max();
-    let motion: &[_] = if axis == Some(Axis::Used) { &MOTION } else { &[] };
-    let vendors = vendor_library::for_texts(&texts, !motion.is_empty());
+    let motion = motion_for(&texts);
+    let vendors = vendor_library::for_texts(&texts, motion);
+    let core: &[_] = match motion {
+        Motion::Plcopen => &MOTION,
+        Motion::TwinCat if vendors.iter().any(Part::stands_on_an_axis) => twincat_motion::core(),
+        Motion::TwinCat | Motion::None => &[],
+    };
     let asserts = texts.iter().any(|(text, _)| mentions_assert(text)).then_some(&ASSERTS);
-    let own = FILES.iter().chain(motion).chain(asserts).map(|(name, text)| (*name, *text, Dialect::default()));
+    let own = FILES.iter().chain(core).chain(asserts).map(|(name, text)| (*name, *text, Dialect::default()));
     let vendors = vendors.into_iter().map(|Part { name, text, dialect, .. }| (name, text, dialect));
     own.chain(vendors).map(|(name, text, dialect)| SourceFile::new(name, text).in_dialect(dialect)).collect()
+}
+
+/// Whose motion control a program has.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Motion {
+    None,
+    Plcopen,
+    /// That of a project with files of TwinCAT: the same axis behind the names of `Tc2_MC2`.
+    TwinCat,
+}
+
+/// What says that `Tc2_MC2` is meant where no axis does: other libraries of TwinCAT have names of it, too.
+fn mentions_twincat_motion(text: &str) -> bool {
+    let mut words = text.split(|character: char| !character.is_ascii_alphanumeric() && character != '_');
+    words.any(|word| {
+        ["Tc2_MC2", "NCTOPLC_AXIS_REF", "PLCTONC_AXIS_REF"].iter().any(|mark| word.eq_ignore_ascii_case(mark))
+    })
+}
+
+fn motion_for(texts: &[(&str, Dialect)]) -> Motion {
+    let is_twincat = texts.iter().any(|(_, dialect)| *dialect == Dialect::TwinCat);
+    match texts.iter().filter_map(|(text, _)| axis_in(text)).max() {
+        Some(Axis::Used) if is_twincat => Motion::TwinCat,
+        Some(Axis::Used) => Motion::Plcopen,
+        None if is_twincat && texts.iter().any(|(text, _)| mentions_twincat_motion(text)) => Motion::TwinCat,
+        // A project with an axis of its own has its own blocks for it.
+        Some(Axis::Declared) | None => Motion::None,
+    }
 }
 
 /// What a file has to do with the type of an axis.
@@ -107,6 +141,22 @@ mod tests {
             let motion = if found == Some(Axis::Used) { MOTION.len() } else { 0 };
             assert_eq!(count, FILES.len() + motion, "{text}");
         }
+    }
+
+    #[test]
+    fn twincat_has_motion_control_of_its_own() {
+        let count = |text: &str| {
+            let file = SourceFile::new("a.st", text).in_dialect(Dialect::TwinCat);
+            let names: Vec<_> = for_program([&file].into_iter()).iter().map(|file| file.name().to_owned()).collect();
+            let of = |start: &str| names.iter().filter(|name| name.starts_with(start)).count();
+            (of("iec/motion/"), of("iec/vendor/tc2_mc2"))
+        };
+        assert_eq!(count("PROGRAM P VAR a : TON; END_VAR END_PROGRAM"), (0, 0));
+        assert_eq!(count("VAR d : MC_Direction; s : NCTOPLC_AXIS_REF; END_VAR"), (0, 1), "types need no axis");
+        assert_eq!(count("VAR a : AXIS_REF; END_VAR"), (MOTION.len() - 1, 2));
+        assert_eq!(count("VAR d : MC_Direction; j : MC_Jog; END_VAR"), (0, 0), "of another library");
+        assert_eq!(count("VAR j : Tc2_MC2.MC_Jog; END_VAR"), (MOTION.len() - 1, 3));
+        assert_eq!(count("TYPE AXIS_REF : STRUCT a : INT; END_STRUCT END_TYPE VAR j : MC_Jog; END_VAR"), (0, 0));
     }
 
     #[test]

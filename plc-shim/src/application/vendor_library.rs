@@ -7,6 +7,7 @@
 use std::collections::BTreeMap;
 use std::sync::OnceLock;
 
+use super::library::Motion;
 use crate::check::is_qualified_only;
 use crate::dialect::Dialect;
 use crate::syntax::token::{Keyword, Punctuation, Token, TokenKind};
@@ -20,8 +21,15 @@ pub(super) struct Part {
     pub(super) dialect: Dialect,
     /// The programs it is there for; any, if it is written in the standard's own language.
     homes: &'static [Dialect],
-    /// It stands on PLCopen's motion control, and is there only with that.
-    is_motion: bool,
+    /// The motion control that it belongs to, and is there only with; none: any program may have it.
+    motion: Option<Motion>,
+}
+
+impl Part {
+    /// True for blocks of an axis, and the axis itself.
+    pub(super) fn stands_on_an_axis(&self) -> bool {
+        self.motion == Some(Motion::TwinCat) && self.name != TWINCAT_TYPES
+    }
 }
 
 macro_rules! parts {
@@ -31,7 +39,20 @@ macro_rules! parts {
             text: include_str!(concat!("../../iec/vendor/", $name, ".st")),
             dialect: Dialect::$dialect,
             homes: $homes,
-            is_motion: false,
+            motion: None,
+        }),*]
+    };
+}
+
+/// TwinCAT's motion control: types, then the axis and its blocks.
+macro_rules! twincat_motion {
+    ($($name:literal)*) => {
+        [$(Part {
+            name: concat!("iec/vendor/", $name, ".st"),
+            text: include_str!(concat!("../../iec/vendor/", $name, ".st")),
+            dialect: Dialect::TwinCat,
+            homes: &[Dialect::TwinCat],
+            motion: Some(Motion::TwinCat),
         }),*]
     };
 }
@@ -70,24 +91,37 @@ const BY_WORDS: [(&str, &[&str]); 2] = [
     ("iec/vendor/dynamic_memory.st", &["__NEW", "__DELETE"]),
 ];
 
-const MOTION: Part = Part {
+const TWINCAT_TYPES: &str = "iec/vendor/tc2_mc2_types.st";
+
+const MOTION: [Part; 7] = twincat_motion![
+    "tc2_mc2_types"
+    "tc2_mc2_axis"
+    "tc2_mc2_gear"
+    "tc2_mc2_jog"
+    "tc2_mc2_move"
+    "tc2_mc2_power"
+    "tc2_mc2_status"
+];
+
+/// Names of `Tc2_MC2` for PLCopen's motion control.
+const PLCOPEN_MOTION: Part = Part {
     name: "iec/vendor/tc2_mc2.st",
     text: include_str!("../../iec/vendor/tc2_mc2.st"),
     dialect: Dialect::Iec3,
     homes: &Dialect::ALL,
-    is_motion: true,
+    motion: Some(Motion::Plcopen),
 };
 
-/// The files that programs of these texts ask for, in the order of the list; `has_motion` if motion control is there
-/// for them.
-pub(super) fn for_texts(texts: &[(&str, Dialect)], has_motion: bool) -> Vec<Part> {
+/// The files that programs of these texts ask for, in the order of the list; `motion` is whose they have.
+pub(super) fn for_texts(texts: &[(&str, Dialect)], motion: Motion) -> Vec<Part> {
     let index = Index::get();
     let mut wanted = vec![false; index.parts.len()];
     let mut unread = texts.to_vec();
     while let Some((text, dialect)) = unread.pop() {
         for at in index.named_in(text) {
             let (part, is_wanted) = (&index.parts[at], &mut wanted[at]);
-            if !*is_wanted && (has_motion || !part.is_motion) && part.homes.contains(&dialect) {
+            let is_at_home = part.homes.contains(&dialect) || part.motion == Some(Motion::TwinCat);
+            if !*is_wanted && is_at_home && part.motion.is_none_or(|wanted| wanted == motion) {
                 *is_wanted = true;
                 unread.push((part.text, part.dialect));
             }
@@ -107,7 +141,7 @@ impl Index {
     fn get() -> &'static Self {
         static INDEX: OnceLock<Index> = OnceLock::new();
         INDEX.get_or_init(|| {
-            let parts: Vec<Part> = PARTS.iter().copied().chain([MOTION]).collect();
+            let parts: Vec<Part> = PARTS.iter().copied().chain([PLCOPEN_MOTION]).chain(MOTION).collect();
             let mut by_name: BTreeMap<String, Vec<usize>> = BTreeMap::new();
             for (at, part) in parts.iter().enumerate() {
                 let words = BY_WORDS.iter().filter(|(name, _)| part.name == *name).flat_map(|(_, words)| *words);
@@ -275,7 +309,7 @@ mod tests {
     use crate::syntax::{FileId, SourceFile, parse_source};
 
     fn files(text: &str) -> Vec<&'static str> {
-        for_texts(&[(text, Dialect::TwinCat)], false).iter().map(|part| part.name).collect()
+        for_texts(&[(text, Dialect::TwinCat)], Motion::None).iter().map(|part| part.name).collect()
     }
 
     #[test]
@@ -292,8 +326,13 @@ mod tests {
 
     #[test]
     fn tc2_mc2_comes_with_motion_control() {
-        let count = |has_motion| for_texts(&[("VAR mode : mc_buffermode; END_VAR", Dialect::Iec3)], has_motion).len();
-        assert_eq!((count(false), count(true)), (0, 1));
+        let files = |motion| {
+            let parts = for_texts(&[("VAR mode : mc_buffermode; END_VAR", Dialect::Iec3)], motion);
+            parts.iter().map(|part| part.name).collect::<Vec<_>>()
+        };
+        assert_eq!(files(Motion::None), [""; 0]);
+        assert_eq!(files(Motion::Plcopen), [PLCOPEN_MOTION.name]);
+        assert_eq!(files(Motion::TwinCat), [TWINCAT_TYPES]);
     }
 
     #[test]
@@ -364,7 +403,8 @@ mod tests {
     #[test]
     fn every_unit_is_right_whether_it_is_used_or_not() {
         let index = Index::get();
-        let own = index.parts.iter().filter(|part| part.homes.len() < Dialect::ALL.len());
+        let is_own = |part: &&Part| part.homes.len() < Dialect::ALL.len() && part.motion.is_none();
+        let own = index.parts.iter().filter(is_own);
         let inputs = own.map(|part| Input::from_text(part.name, SourceKind::Text, part.text).in_dialect(part.dialect));
         let findings: Vec<_> =
             Front::new(inputs).findings.iter().map(|found| (found.span, found.message.clone())).collect();
@@ -372,9 +412,25 @@ mod tests {
     }
 
     #[test]
+    fn every_block_of_twincats_motion_control_is_right() {
+        let names: Vec<String> = MOTION.iter().flat_map(|part| declared(part.text)).collect();
+        let blocks = names
+            .iter()
+            .filter(|name| MOTION.iter().any(|part| part.text.contains(&format!("FUNCTION_BLOCK {name}\n"))));
+        let variables: String = blocks.map(|name| format!("v{name} : {name};\n")).collect();
+        let text = format!("PROGRAM P\nVAR\n{variables}END_VAR\nEND_PROGRAM\n");
+        let input = Input::from_text("p.st", SourceKind::Text, text).in_dialect(Dialect::TwinCat);
+        let front = Front::new([input]);
+        let findings: Vec<_> = front.findings.iter().map(|found| (found.span, found.message.clone())).collect();
+        assert!(findings.is_empty() && variables.contains("vMC_Jog"), "{findings:?}");
+    }
+
+    #[test]
     fn no_name_is_declared_twice() {
-        for (name, homes) in &Index::get().by_name {
-            assert!(homes.len() == 1, "{name}");
+        let index = Index::get();
+        for (name, homes) in &index.by_name {
+            let motions: BTreeSet<_> = homes.iter().map(|at| format!("{:?}", index.parts[*at].motion)).collect();
+            assert!(motions.len() == homes.len(), "{name}");
         }
     }
 

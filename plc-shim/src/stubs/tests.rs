@@ -43,6 +43,20 @@ fn what_is_declared_needs_no_stub() {
     assert!(written.text.starts_with(MARK));
 }
 
+/// Of a library that is there in part, only what it does not have gets a stub.
+#[test]
+fn what_a_library_lacks_is_declared_beside_it() {
+    let text = stubs(
+        "PROGRAM P VAR axis : Tc2_MC2.AXIS_REF; move : Tc2_MC2.MC_MoveAbsolute; torque : Tc2_MC2.MC_TorqueControl; END_VAR
+  move(Axis := axis, Execute := axis.Status.Operational, Velocity := 5.0);
+  torque(Axis := axis, Execute := TRUE, Torque := 5.0);
+  IF axis.NcToPlc.ActPos > 5.0 AND torque.InTorque THEN axis.ReadStatus(); END_IF
+END_PROGRAM",
+    );
+    assert!(text.contains("MC_TorqueControl") && text.contains("TC2_MC2.AXIS_REF"), "{text}");
+    assert!(!text.contains("MC_MoveAbsolute") && !text.contains("BLOCK AXIS_REF") && !text.contains("TYPE"), "{text}");
+}
+
 #[test]
 fn a_function_by_its_arguments_and_result() {
     insta::assert_snapshot!(stubs(

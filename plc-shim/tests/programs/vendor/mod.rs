@@ -2,6 +2,7 @@
 
 mod codesys;
 mod siemens;
+mod tc2_mc2;
 mod tc2_standard;
 mod tc2_system;
 mod tc2_utilities;
