@@ -82,12 +82,12 @@ impl Body<'_, '_> {
         };
         let pointer = self.declarations.types_mut().reference(Some(ReferenceKind::Pointer), ty);
         let (address, statements) = self.making(&Wanted { ty, given, count, span })?;
-        let value = Expr { ty: pointer, ..load(&self.number(address, span)) };
+        let value = Expr { ty: pointer, ..load(&Self::number(address, span)) };
         let kind = ExprKind::After(statements, Some(Box::new(value)));
         Some(Operand::Typed(Expr { kind, ty: pointer, span }))
     }
 
-    fn number(&self, register: LocalId, span: Span) -> Place {
+    fn number(register: LocalId, span: Span) -> Place {
         Place::whole(Storage::Register(register), ADDRESS.into(), span)
     }
 
@@ -97,7 +97,7 @@ impl Body<'_, '_> {
         let size = self.declarations.types().size(wanted.ty);
         let unsigned = |value: u32| constant(Value::Int(i128::from(value)), ADDRESS, span);
         let [address, at, left] = std::array::from_fn(|_| self.scope.register(ADDRESS));
-        let [address_place, at_place, left_place] = [address, at, left].map(|register| self.number(register, span));
+        let [address_place, at_place, left_place] = [address, at, left].map(|register| Self::number(register, span));
         let mut statements = Vec::new();
         let is_array = wanted.count.is_some();
         let bytes = match wanted.count.clone() {
@@ -190,7 +190,7 @@ impl Body<'_, '_> {
     /// Ends what lies at an address and gives its memory back, if that is not 0.
     fn given_back(&mut self, held: Expr, ended: TypeId, after: Option<Statement>, span: Span) -> Option<Operand> {
         let address = self.scope.register(ADDRESS);
-        let number = self.number(address, span);
+        let number = Self::number(address, span);
         let mut statements = vec![assign(&number, held)];
         let mut ending = self.ending(address, ended, span);
         let given_back = self.memory_function(GIVE_BACK, load(&number), ElementaryType::Bool, span)?;
@@ -216,7 +216,7 @@ impl Body<'_, '_> {
             }
             match self.declarations.class(*variant).and_then(|class| class.type_id) {
                 Some(number) if variants.len() > 1 => {
-                    let reference = load(&self.number(address, span));
+                    let reference = load(&Self::number(address, span));
                     let pointer = self.scope.register(ADDRESS);
                     let cast = Cast { reference, pointer, types: vec![(number, number)] };
                     let kind = ExprKind::Cast(Box::new(cast));
