@@ -20,10 +20,19 @@ fn undisturbed() -> Outcome {
 
 /// Runs the ring to 500 ms in a thread, held from the start, while `operator` uses the mailbox's address.
 fn operated(operator: impl FnOnce(&dyn Fn(Option<Control>) -> onescan_server::wire::message::Status)) -> Outcome {
+    operated_behind(&[], operator)
+}
+
+/// The same, with wishes that wait in the mailbox before the session looks into it.
+fn operated_behind(
+    first: &[Control],
+    operator: impl FnOnce(&dyn Fn(Option<Control>) -> onescan_server::wire::message::Status),
+) -> Outcome {
     let mailbox = Mailbox::new();
     let lobby = Lobby::open(loopback(), &ring_plan(&Coupling::Parallel), mailbox.clone()).expect("a free port");
     let address = lobby.address();
     mailbox.control(Control::Pause);
+    first.iter().for_each(|control| mailbox.control(*control));
     let session = std::thread::spawn(move || {
         let mut lockstep = in_process(ring_plan(&Coupling::Parallel), boxed(ring()));
         lockstep.set_mailbox(mailbox);
@@ -48,6 +57,21 @@ fn pause_and_single_steps_leave_no_trace() {
             assert_eq!(status.steps, StepCount(step), "exactly one step each");
             assert_eq!(status.t_v, at_ms(10 * step));
         }
+        ask(Some(Control::Resume));
+    });
+    assert_eq!(outcome, undisturbed());
+}
+
+#[test]
+fn steps_that_wait_together_are_one_each() {
+    let outcome = operated_behind(&[Control::Step; 7], |ask| {
+        let status = ask(None);
+        assert_eq!((status.steps, status.held), (StepCount(7), true));
+        ask(Some(Control::Resume));
+    });
+    assert_eq!(outcome, undisturbed());
+    let outcome = operated_behind(&[Control::Step, Control::Step, Control::Reset, Control::Step], |ask| {
+        assert_eq!(ask(None).steps, StepCount(1));
         ask(Some(Control::Resume));
     });
     assert_eq!(outcome, undisturbed());

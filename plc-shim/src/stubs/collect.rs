@@ -4,6 +4,7 @@ use super::foreign::{Foreign, Needs};
 use super::ty::{Slots, Ty};
 use super::world::{Home, Unit, World};
 use crate::ElementaryType;
+use crate::check::of_pointer_width;
 use crate::syntax::ast::{
     Expr, ExprKind, Ident, Literal, Pou, PouKind, Section, TransitionCondition, TypeSpec, TypeSpecKind,
 };
@@ -152,6 +153,9 @@ impl<'a> Collector<'a> {
     pub(super) fn named(&mut self, name: &Ident, home: &Home, depth: u8) -> Ty {
         let key = name.key();
         if let Some(elementary) = ElementaryType::find(&key) {
+            return Ty::Elementary(elementary);
+        }
+        if let Some(elementary) = of_pointer_width(&key) {
             return Ty::Elementary(elementary);
         }
         match key.as_str() {

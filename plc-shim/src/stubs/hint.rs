@@ -43,8 +43,15 @@ pub(super) fn tells(name: &str) -> bool {
     told(name).is_some()
 }
 
+/// Beginnings that tell whether something is given or taken, in front of the one that tells the type.
+const DIRECTIONS: [&str; 4] = ["i_", "q_", "iq_", "io_"];
+
 fn told(name: &str) -> Option<Ty> {
     let name = name.trim_start_matches('_');
+    let behind = DIRECTIONS.iter().find_map(|direction| name.strip_prefix(direction));
+    if let Some(found) = behind.filter(|rest| rest.starts_with(char::is_lowercase)).and_then(told) {
+        return Some(found);
+    }
     for (prefix, wide) in [("s", false), ("str", false), ("ws", true)] {
         if begins(name, prefix) {
             return Some(Ty::Text(wide));

@@ -4,6 +4,7 @@
 use std::collections::BTreeSet;
 
 use super::collect::Collector;
+use super::shape::Shape;
 use super::signature::INIT;
 use super::ty::{Slot, Ty};
 
@@ -19,7 +20,8 @@ impl Collector<'_> {
                 let is_null = from.contains(&Ty::Integer);
                 let is_kept = path.contains(INIT) || !path.contains("()");
                 let is_other = from.iter().any(|ty| matches!(ty, Ty::Pointer(..) | Ty::Text(_) | Ty::Elementary(_)));
-                let is_interface = instances.len() > 1 || !instances.is_empty() && (is_null || is_kept);
+                let is_held = is_kept && from.iter().any(|ty| self.is_certain(ty));
+                let is_interface = instances.len() > 1 || !instances.is_empty() && (is_null || is_held);
                 let is_plain = path.starts_with("global:") || path.starts_with("type:");
                 (is_interface && !is_other && !is_plain).then(|| (slot, path.to_owned(), instances))
             })
@@ -41,9 +43,21 @@ impl Collector<'_> {
             }
             Ty::Foreign(key) => {
                 let found = self.needs.types.get(key)?;
-                (found.base_of_block || found.called || found.init.is_some()).then(|| key.clone())
+                (self.shape(found) == Shape::Block).then(|| key.clone())
             }
             _ => None,
+        }
+    }
+
+    /// True for a block by more than its name.
+    fn is_certain(&self, ty: &Ty) -> bool {
+        match ty {
+            Ty::Declared(_) => self.instance(ty).is_some(),
+            Ty::Foreign(key) => {
+                let found = self.needs.types.get(key);
+                found.is_some_and(|found| found.base_of_block || found.called || found.init.is_some())
+            }
+            _ => false,
         }
     }
 

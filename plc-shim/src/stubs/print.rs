@@ -32,7 +32,14 @@ impl Collector<'_> {
         let globals: Vec<(String, Global)> =
             self.needs.globals.iter().map(|(key, global)| (key.clone(), global.clone())).collect();
         for (key, global) in globals {
-            let Ty::Foreign(ty) = self.slots.last_choice(global.slot) else { continue };
+            let ty = match self.slots.last_choice(global.slot) {
+                Ty::Foreign(ty) => ty,
+                Ty::Declared(ty) => {
+                    self.add_to_enumeration(&ty, &key, &global);
+                    continue;
+                }
+                _ => continue,
+            };
             let Some(found) = self.needs.types.get(&ty) else { continue };
             let is_value = found.members.is_empty() && !global.written && !global.name.contains('.');
             if is_value && matches!(self.shape(found), Shape::Enumeration | Shape::Structure | Shape::Alias(_)) {
@@ -40,6 +47,23 @@ impl Collector<'_> {
                 self.needs.globals.remove(&key);
             }
         }
+    }
+}
+
+impl Collector<'_> {
+    /// Makes a constant a value of an enumeration that is a stub already.
+    fn add_to_enumeration(&mut self, ty: &str, key: &str, global: &Global) {
+        let Some(named) = self.world.types.get(ty).filter(|named| named.ast.external) else { return };
+        let is_enumeration = matches!(named.ast.spec.kind, TypeSpecKind::Enumeration(..));
+        if !is_enumeration || global.written || global.name.contains('.') {
+            return;
+        }
+        let name = named.ast.name.text.clone();
+        let found = self.foreign(ty);
+        found.name = name;
+        found.extends_stub = true;
+        found.member(&global.name);
+        self.needs.globals.remove(key);
     }
 }
 

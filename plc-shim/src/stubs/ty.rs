@@ -208,8 +208,9 @@ impl Slots {
         }
         let linked = self.linked(slot);
         let has = |wanted: &Ty| linked.iter().any(|each| each.all().any(|ty| ty == wanted));
-        let name = |each: &&&Evidence| hint::tells(&each.name);
-        let telling = linked.iter().find(name).or(linked.first()).map_or("", |each| each.name.as_str());
+        // The same one for all of them, wherever the question begins.
+        let telling = linked.iter().map(|each| each.name.as_str()).filter(|name| hint::tells(name)).min();
+        let telling = telling.or(linked.first().map(|each| each.name.as_str())).unwrap_or_default();
         if has(&Ty::Real) {
             return Ty::Elementary(hint::real(telling));
         }

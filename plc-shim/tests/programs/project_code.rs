@@ -220,3 +220,12 @@ fn an_assignment_has_a_value() {
         11 + 4 * 100 + 10 * 1000 + 700_000,
     );
 }
+
+#[test]
+fn pvoid_is_a_number_as_wide_as_a_pointer() {
+    gives(
+        "PROGRAM P VAR a : ARRAY [0..3] OF BYTE := [1, 2, 30, 4]; p : POINTER TO BYTE; v : PVOID; r : DINT; END_VAR
+           v := ADR(a); IF (v AND 16#1) <= 1 THEN v := v + 2; END_IF p := v; r := p^; END_PROGRAM",
+        30,
+    );
+}

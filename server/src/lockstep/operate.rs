@@ -18,7 +18,11 @@ impl Lockstep {
                 tracing::warn!(%error, "an operator's input is left out");
             }
         }
-        while let Some(request) = self.mailbox.take() {
+        // Wishes behind a single step or a reset wait until that is done: of two steps each is one, and who asks then
+        // hears how things are behind it.
+        while !self.session.is_about_to_act()
+            && let Some(request) = self.mailbox.take()
+        {
             let done = match request.operation {
                 None => Ok(()),
                 Some(operation) => self.operate(operation, Author::Operator)?,

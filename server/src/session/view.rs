@@ -72,6 +72,11 @@ impl Session {
         self.mode == Mode::Held && self.cycle.is_at_boundary()
     }
 
+    /// True if a single step or a reset has been asked for and not been done.
+    pub(crate) fn is_about_to_act(&self) -> bool {
+        self.mode == Mode::OneStep || self.reset
+    }
+
     /// Copies the client's own outputs back, as its last turn left them, whatever lies over them.
     pub(crate) fn read_back(&self, client: ClientId, outputs: &mut [u8]) {
         if let Some(member) = &self.members[client.index()] {

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use super::Written;
 use super::structure::Sharing;
 use crate::check::declare::{Enumerator, Need, Rank, StartKind, TypedImage};
-use crate::check::standard::vendor::is_qualified_only;
+use crate::check::standard::vendor::{is_qualified_only, of_pointer_width};
 use crate::check::types::generic::Generic;
 use crate::diagnostic::{Code, Diagnostic, did_you_mean};
 use crate::ir::{Dimension, ElementaryType, TypeId};
@@ -14,16 +14,6 @@ use crate::syntax::ast::{self, EnumValue, Ident, PouKind, TypeSpec, TypeSpecKind
 
 /// The namespace of what vendors' compilers declare.
 const SYSTEM: &str = "__SYSTEM";
-
-/// Vendors' names of the types that are as wide as a pointer.
-fn of_pointer_width(key: &str) -> Option<ElementaryType> {
-    Some(match key {
-        "__XWORD" | "XWORD" => ElementaryType::Dword,
-        "__UXINT" | "UXINT" | "PVOID" => ElementaryType::Udint,
-        "__XINT" | "XINT" => ElementaryType::Dint,
-        _ => return None,
-    })
-}
 
 impl<'a> Written<'_, 'a> {
     pub(super) fn declared_type(&mut self, ast: &'a ast::TypeDeclaration) -> Option<TypedImage<'a>> {

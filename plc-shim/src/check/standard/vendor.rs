@@ -1,6 +1,7 @@
 //! Functions of vendors' controllers that have no equal here, and enumerations that vendors know their own way.
 
 use crate::diagnostic::Code;
+use crate::ir::ElementaryType;
 
 /// Functions of vendors' controllers that have no equal here, by how their names begin, and what to use.
 pub(in crate::check) const VENDOR_FUNCTIONS: [(&str, Code, &str); 14] = [
@@ -26,4 +27,14 @@ const QUALIFIED_ONLY: [&str; 2] = ["TcEventSeverity", "TcEventConfirmationState"
 /// True for an enumeration of a library whose values are known behind its name only.
 pub(crate) fn is_qualified_only(name: &str) -> bool {
     QUALIFIED_ONLY.iter().any(|known| known.eq_ignore_ascii_case(name))
+}
+
+/// Vendors' names of the types that are as wide as a pointer.
+pub(crate) fn of_pointer_width(key: &str) -> Option<ElementaryType> {
+    Some(match key {
+        "__XWORD" | "XWORD" => ElementaryType::Dword,
+        "__UXINT" | "UXINT" | "PVOID" => ElementaryType::Udint,
+        "__XINT" | "XINT" => ElementaryType::Dint,
+        _ => return None,
+    })
 }
