@@ -32,7 +32,9 @@ fn operated_behind(
     let lobby = Lobby::open(loopback(), &ring_plan(&Coupling::Parallel), mailbox.clone()).expect("a free port");
     let address = lobby.address();
     mailbox.control(Control::Pause);
-    first.iter().for_each(|control| mailbox.control(*control));
+    for control in first {
+        mailbox.control(*control);
+    }
     let session = std::thread::spawn(move || {
         let mut lockstep = in_process(ring_plan(&Coupling::Parallel), boxed(ring()));
         lockstep.set_mailbox(mailbox);
