@@ -121,6 +121,11 @@ impl Dialect {
         self.behaviour().beyond_subrange
     }
 
+    /// Which inputs of `SEL` are evaluated.
+    pub fn selection(self) -> Selection {
+        self.behaviour().selection
+    }
+
     /// The values of LTIME.
     pub fn long_time(self) -> LongTime {
         self.behaviour().long_time
@@ -217,6 +222,17 @@ pub struct Behaviour {
     pub beyond_subrange: BeyondSubrange,
     /// The values of LTIME.
     pub long_time: LongTime,
+    /// Which inputs of `SEL` are evaluated.
+    pub selection: Selection,
+}
+
+/// Which inputs of `SEL` are evaluated.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Selection {
+    /// All of them, as of any function.
+    All,
+    /// The one that is selected.
+    Selected,
 }
 
 /// The values of LTIME.

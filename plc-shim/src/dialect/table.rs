@@ -2,7 +2,8 @@
 
 use super::Dialect::{self, Codesys, Iec2, Iec3, Matiec, SiemensScl, TwinCat};
 use super::{
-    AddressUnit, Behaviour, BeyondSubrange, DivisionByZero, Feature, LongTime, StringMemory, Ties, TimeRange, Truth,
+    AddressUnit, Behaviour, BeyondSubrange, DivisionByZero, Feature, LongTime, Selection, StringMemory, Ties,
+    TimeRange, Truth,
 };
 
 /// Who has a construct, and where that is written.
@@ -125,7 +126,7 @@ pub struct BehaviourRow {
     /// What it does.
     pub behaviour: Behaviour,
     /// Where each of it is written, in the order of the fields.
-    pub sources: [&'static str; 11],
+    pub sources: [&'static str; 12],
 }
 
 /// What the standard says, or README.md where it leaves a choice.
@@ -141,9 +142,10 @@ pub const STANDARD: Behaviour = Behaviour {
     strings: StringMemory::Counted,
     beyond_subrange: BeyondSubrange::Fault,
     long_time: LongTime::Signed64,
+    selection: Selection::All,
 };
 
-const STANDARD_SOURCES: [&str; 11] = [
+const STANDARD_SOURCES: [&str; 12] = [
     "left open by 2nd ed. 2.3.1",
     "left open by 2nd ed. 2.2.3",
     "2nd ed. 2.5.1.5.1, IEC 60559",
@@ -155,6 +157,7 @@ const STANDARD_SOURCES: [&str; 11] = [
     "left open by 2nd ed. 2.3.1",
     "2nd ed. Annex E",
     "3rd ed. Table 10",
+    "2nd ed. 2.5.1.4, a function's inputs",
 ];
 
 /// How the dialects behave.
@@ -169,6 +172,7 @@ pub const BEHAVIOURS: &[BehaviourRow] = &[
             strings: StringMemory::ZeroTerminated,
             beyond_subrange: BeyondSubrange::Assign,
             long_time: LongTime::Unsigned64,
+            selection: Selection::Selected,
             ..STANDARD
         },
         sources: [
@@ -183,6 +187,7 @@ pub const BEHAVIOURS: &[BehaviourRow] = &[
             "CODESYS: data type STRING",
             "CODESYS: POU CheckRangeSigned; without it no check",
             "CODESYS: data type LTIME",
+            "CODESYS: operator SEL",
         ],
     },
     BehaviourRow {
@@ -195,6 +200,7 @@ pub const BEHAVIOURS: &[BehaviourRow] = &[
             strings: StringMemory::ZeroTerminated,
             beyond_subrange: BeyondSubrange::Assign,
             long_time: LongTime::Unsigned64,
+            selection: Selection::Selected,
             ..STANDARD
         },
         sources: [
@@ -209,6 +215,7 @@ pub const BEHAVIOURS: &[BehaviourRow] = &[
             "TwinCAT: STRING",
             "TwinCAT: subrange types; POU CheckRangeSigned checks",
             "TwinCAT: TIME/LTIME",
+            "TwinCAT: SEL",
         ],
     },
     BehaviourRow {
@@ -233,6 +240,7 @@ pub const BEHAVIOURS: &[BehaviourRow] = &[
             "S7-1200 System Manual: data types, String; here its two counts are one",
             "2nd ed. Annex E; SCL has no subranges",
             "S7-1500: data types, LTIME",
+            "left open by the S7-1200 System Manual",
         ],
     },
     BehaviourRow {
@@ -250,6 +258,7 @@ pub const BEHAVIOURS: &[BehaviourRow] = &[
             "left open by 2nd ed. 2.3.1",
             "2nd ed. Annex E",
             "it has none; as 3rd ed. Table 10",
+            "2nd ed. 2.5.1.4, a function's inputs",
         ],
     },
 ];

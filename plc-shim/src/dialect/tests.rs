@@ -29,7 +29,7 @@ fn dialects_have_names_and_files() {
     assert_eq!(Feature::ChainedAssignment.homes(), "codesys, twincat and siemens-scl");
 }
 
-fn behaviour_cells(behaviour: Behaviour) -> [String; 11] {
+fn behaviour_cells(behaviour: Behaviour) -> [String; 12] {
     let time = match behaviour.time {
         TimeRange::Nanoseconds64 => "signed 64 bit nanoseconds",
         TimeRange::Unsigned32 => "unsigned 32 bit milliseconds, wrapping",
@@ -66,7 +66,12 @@ fn behaviour_cells(behaviour: Behaviour) -> [String; 11] {
         LongTime::Signed64 => "signed 64 bit nanoseconds",
         LongTime::Unsigned64 => "unsigned 64 bit nanoseconds",
     };
-    [&length, time, ties, division, unit, power, truth, number, strings, subrange, long].map(ToOwned::to_owned)
+    let selection = match behaviour.selection {
+        Selection::All => "all are evaluated",
+        Selection::Selected => "only the selected one is evaluated",
+    };
+    [&length, time, ties, division, unit, power, truth, number, strings, subrange, long, selection]
+        .map(ToOwned::to_owned)
 }
 
 /// The tables of `docs/dialects.md`.
@@ -90,6 +95,7 @@ fn tables() -> String {
         "STRING in memory",
         "a value that a subrange does not have",
         "LTIME",
+        "inputs of `SEL`",
     ];
     text += "\n| behaviour | dialect | what it does | source |\n|---|---|---|---|\n";
     for (index, subject) in subjects.iter().enumerate() {

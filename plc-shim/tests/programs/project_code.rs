@@ -222,6 +222,27 @@ fn an_assignment_has_a_value() {
 }
 
 #[test]
+fn a_byte_counts_the_targets_of_a_pointer() {
+    gives(
+        "PROGRAM P VAR a : ARRAY [0..3] OF LREAL := [1.0, 2.0, 30.0, 4.0]; p : POINTER TO LREAL; i : BYTE := 2; r : DINT;
+         END_VAR p := ADR(a); r := LREAL_TO_DINT(p[i]); END_PROGRAM",
+        30,
+    );
+}
+
+#[test]
+fn sel_evaluates_what_it_selects() {
+    let text = "FUNCTION_BLOCK C VAR_OUTPUT n : DINT; END_VAR METHOD Next : DINT n := n + 1; Next := n; END_METHOD
+        END_FUNCTION_BLOCK
+        PROGRAM P VAR c1, c2 : C; a : ARRAY [0..1] OF DINT := [5, 6]; i, r : DINT; END_VAR
+          r := SEL(i > 0, 1, a[i - INDEX]) * 1000 + SEL(TRUE, c1.Next(), c2.Next()) * 100 + c1.n * 10 + c2.n; END_PROGRAM";
+    gives(&text.replace("INDEX", "1"), 1101);
+    let mut rig = Rig::in_dialect(Dialect::Iec3, &text.replace("INDEX", "0"));
+    rig.scan().expect("no fault");
+    assert_eq!(rig.int("P.r"), 1111, "a function's inputs are evaluated");
+}
+
+#[test]
 fn pvoid_is_a_number_as_wide_as_a_pointer() {
     gives(
         "PROGRAM P VAR a : ARRAY [0..3] OF BYTE := [1, 2, 30, 4]; p : POINTER TO BYTE; v : PVOID; r : DINT; END_VAR

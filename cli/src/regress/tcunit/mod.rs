@@ -32,9 +32,10 @@ use memory::View;
 use results::Results;
 use sources::Sources;
 
-/// A scan may use so many times the instructions that it may elsewhere: asserts that do not hold are compared with
-/// all those before them.
-const FUEL_FACTOR: u64 = 40;
+/// A scan may use so many times the instructions that it may elsewhere: a test computes in one scan what a machine does in
+/// an hour, and asserts that do not hold are compared with all those before them. A loop without an end takes a minute or
+/// so to be found.
+const FUEL_FACTOR: u64 = 10_000;
 
 /// How a run of the suites ended.
 enum End {

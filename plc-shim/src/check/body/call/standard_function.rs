@@ -6,6 +6,7 @@ use crate::check::standard::{conversion, text_conversion};
 use crate::check::types::number::as_bits;
 use crate::check::types::operand::{Operand, constant, converted};
 use crate::diagnostic::{Code, Diagnostic};
+use crate::dialect::Selection;
 use crate::ir::{Binary, ElementaryType, Expr, ExprKind, Intrinsic, Rounding, Type, TypeId, Value};
 use crate::syntax::Span;
 use crate::syntax::ast::{Argument, BinaryOp, Ident};
@@ -269,6 +270,12 @@ impl Body<'_, '_> {
     fn select(&mut self, selector: Operand, values: Vec<Operand>, span: Span) -> Option<Operand> {
         let selector = self.coerce(selector, ElementaryType::Bool.into())?;
         let (mut all, ty) = self.selected_values(values, span)?;
+        let is_lazy = self.declarations.dialect(span).selection() == Selection::Selected;
+        if is_lazy && self.elementary(ty).is_some() {
+            let [first, second] = <[Expr; 2]>::try_from(all).ok()?;
+            let kind = ExprKind::Conditional(Box::new([selector, second, first]));
+            return Some(Operand::Typed(Expr { kind, ty, span }));
+        }
         all.insert(0, selector);
         Some(Self::intrinsic(Intrinsic::Select, all, ty, span))
     }

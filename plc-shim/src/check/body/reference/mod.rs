@@ -106,6 +106,7 @@ impl Body<'_, '_> {
     ) -> Option<Located> {
         let operand = self.within(None, |body| body.expression(index))?;
         let index = self.settle(operand)?;
+        let index = self.as_index(index);
         if !self.plain_elementary(&index).is_some_and(ElementaryType::is_integer) {
             let found = self.type_name(index.ty);
             return self.mismatch("an integer", &found, index.span);
