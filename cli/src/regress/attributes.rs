@@ -3,20 +3,17 @@
 
 use std::time::Duration;
 
-use onescan_plc_shim::Dialect;
-use onescan_plc_shim::syntax::token::{Keyword, TokenKind};
-use onescan_plc_shim::syntax::tokenize_in;
+use onescan_plc_shim::syntax::token::{Keyword, Token, TokenKind};
 
 /// The attributes of a unit.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub(super) struct Attributes(Vec<(String, Option<String>)>);
 
 impl Attributes {
-    /// Those of the unit whose name begins at byte `name_start` of `text`. They stand between the unit before and its
-    /// first keyword, or between that and its name.
-    pub(super) fn of(dialect: Dialect, text: &str, name_start: u32) -> Self {
-        let tokens = tokenize_in(dialect, text);
-        let before = tokens.iter().take_while(|token| token.start < name_start).collect::<Vec<_>>();
+    /// Those of the unit whose name begins at byte `name_start` of `text`, whose `tokens` are all that it has. They stand
+    /// between the unit before and its first keyword, or between that and its name.
+    pub(super) fn of(tokens: &[Token], text: &str, name_start: u32) -> Self {
+        let (before, _) = tokens.split_at(tokens.partition_point(|token| token.start < name_start));
         let is_head = |kind: TokenKind| {
             kind.is_trivia()
                 || kind == TokenKind::Identifier
@@ -81,6 +78,9 @@ fn listed(value: &str) -> Vec<String> {
 
 #[cfg(test)]
 mod tests {
+    use onescan_plc_shim::Dialect;
+    use onescan_plc_shim::syntax::tokenize_in;
+
     use super::*;
 
     #[test]
@@ -88,7 +88,8 @@ mod tests {
         let text = "{attribute 'tags' := 'first'}\nPROGRAM TEST_A x := 1; END_PROGRAM\n\
                     {attribute 'hide'} (* slow *)\n{attribute 'tags' := 'slow, boundary'} {attribute 'tags' := 'm 1,'}\n\
                     PROGRAM PUBLIC {attribute 'tags' := 'within'} TEST_B END_PROGRAM PROGRAM TEST_C END_PROGRAM";
-        let of = |name: &str| Attributes::of(Dialect::default(), text, text.find(name).unwrap() as u32).tags();
+        let tokens = tokenize_in(Dialect::default(), text);
+        let of = |name: &str| Attributes::of(&tokens, text, text.find(name).unwrap() as u32).tags();
         assert_eq!(of("TEST_A"), ["first"]);
         assert_eq!(of("TEST_B"), ["slow", "boundary", "m 1", "within"]);
         assert_eq!(of("TEST_C"), [""; 0]);
@@ -99,7 +100,8 @@ mod tests {
         let text = "{attribute 'test'} {attribute 'testcasename' := 'N:1'} {attribute 'testcategory' := 'fast,unit'}\n\
                     {attribute 'testcasetimeout' := '5000'}\nFUNCTION_BLOCK A END_FUNCTION_BLOCK\n\
                     {attribute 'test' := 'multitest'} FUNCTION_BLOCK B END_FUNCTION_BLOCK FUNCTION_BLOCK C END_FUNCTION_BLOCK";
-        let of = |name: &str| Attributes::of(Dialect::Codesys, text, text.find(name).unwrap() as u32);
+        let tokens = tokenize_in(Dialect::Codesys, text);
+        let of = |name: &str| Attributes::of(&tokens, text, text.find(name).unwrap() as u32);
         let [a, b, c] = ["A END", "B END", "C END"].map(of);
         assert_eq!(
             [&a, &b, &c].map(|unit| (unit.is_test(), unit.is_multitest())),

@@ -5,7 +5,8 @@ use std::time::Duration;
 use onescan_plc_shim::Input;
 use onescan_plc_shim::input::kind::SourceKind;
 use onescan_plc_shim::syntax::ast::{Declaration, Pou, PouKind};
-use onescan_plc_shim::syntax::{FileId, parse_in};
+use onescan_plc_shim::syntax::token::Token;
+use onescan_plc_shim::syntax::{FileId, parse_in, tokenize_in};
 use onescan_server::client::SourcePlace;
 
 use super::attributes::Attributes;
@@ -67,12 +68,19 @@ pub(super) fn tests(input: &Input, sources: &Sources) -> Vec<Test> {
         PouKind::FunctionBlock => !sources.is_suite(&pou.name.text),
         _ => false,
     };
-    pous.filter(is_own).filter_map(|pou| test(input, pou)).collect()
+    let tokens = tokenize_in(file.dialect(), file.text());
+    pous.filter(is_own).filter_map(|pou| test(input, &tokens, pou)).collect()
 }
 
-fn test(input: &Input, pou: &Pou) -> Option<Test> {
-    let (file, name) = (input.file(), &pou.name);
-    let attributes = Attributes::of(file.dialect(), file.text(), name.span.start);
+/// Where a byte of a source stands.
+pub(super) fn place(input: &Input, offset: u32) -> SourcePlace {
+    let at = input.file().line_column(offset);
+    SourcePlace { file: input.file().name().to_owned(), line: at.line, column: at.column }
+}
+
+fn test(input: &Input, tokens: &[Token], pou: &Pou) -> Option<Test> {
+    let name = &pou.name;
+    let attributes = Attributes::of(tokens, input.file().text(), name.span.start);
     let manager = attributes
         .is_test()
         .then(|| Manager { timeout: attributes.timeout().unwrap_or(TIMEOUT), is_multiple: attributes.is_multitest() });
@@ -80,12 +88,11 @@ fn test(input: &Input, pou: &Pou) -> Option<Test> {
     if !is_named && manager.is_none() {
         return None;
     }
-    let at = file.line_column(name.span.start);
     Some(Test {
         unit: name.text.clone(),
         is_program: pou.kind == PouKind::Program,
         name: attributes.case_name().unwrap_or(&name.text).to_owned(),
-        place: SourcePlace { file: file.name().to_owned(), line: at.line, column: at.column },
+        place: place(input, name.span.start),
         tags: attributes.tags(),
         manager,
     })

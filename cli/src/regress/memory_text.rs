@@ -4,9 +4,13 @@ use onescan_plc_shim::{SignalType, Variable};
 
 /// The characters of a string, whose code is that of Latin-1; nothing if the variable is none.
 pub(super) fn text(variable: &Variable, memory: &[u8]) -> Option<String> {
+    characters(variable, bytes(variable, memory)?)
+}
+
+/// The bytes of a variable; nothing if it does not lie in the memory.
+pub(super) fn bytes<'m>(variable: &Variable, memory: &'m [u8]) -> Option<&'m [u8]> {
     let start = variable.offset as usize;
-    let bytes = memory.get(start..start.checked_add(variable.size as usize)?)?;
-    characters(variable, bytes)
+    memory.get(start..start.checked_add(variable.size as usize)?)
 }
 
 /// The same, of the bytes where the variable lies.

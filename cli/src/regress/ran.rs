@@ -1,7 +1,7 @@
 //! What a process says of its unit, as JSON on its standard output.
 
-use onescan_plc_shim::Coverage;
 use onescan_plc_shim::coverage::{Counted, Row};
+use onescan_plc_shim::{Coverage, PlcFault};
 use onescan_report::Verdict;
 use onescan_server::client::SourcePlace;
 use serde::{Deserialize, Serialize};
@@ -143,6 +143,12 @@ pub fn within(folder: &str, file: &str) -> String {
     } else {
         format!("{folder}/{file}")
     }
+}
+
+/// Where a fault stopped the PLC, if that is in a source.
+pub fn fault_place(fault: &PlcFault) -> Option<SourcePlace> {
+    let at = &fault.at;
+    (!at.file.is_empty()).then(|| SourcePlace { file: at.file.clone(), line: at.line, column: at.column })
 }
 
 impl Ran {

@@ -18,7 +18,7 @@ use super::config::WorkerConfig;
 use super::declared::{self, Manager, PREFIX, Test};
 use super::error::{SourcesReport, TestError};
 use super::memory_text;
-use super::ran::{Covered, FailedAssert, Ran, Worked};
+use super::ran::{Covered, FailedAssert, Ran, Worked, fault_place};
 use super::tcunit;
 use super::tcunit::sources::Sources;
 use crate::check::collect;
@@ -218,7 +218,7 @@ fn faulted(ran: &mut Ran, fault: &PlcFault) {
     let at = &fault.at;
     ran.status = RunStatus::Failed;
     ran.error = Some(format!("PLC fault: {} in {at}{}, t_v = {}", fault.kind, fault.way(), fault.virtual_time));
-    if !at.file.is_empty() {
-        ran.place = Some(SourcePlace { file: at.file.clone(), line: at.line, column: at.column });
+    if let Some(place) = fault_place(fault) {
+        ran.place = Some(place);
     }
 }

@@ -8,7 +8,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use crate::check::Checked;
 use crate::dialect::Dialect;
 use crate::ir::{Storage, Type, TypeId, Variable};
-use crate::syntax::token::TokenKind;
+use crate::syntax::pragma::behind_pragma;
 use crate::syntax::{FileId, SourceMap, tokenize_in};
 
 /// The attribute, as it is written.
@@ -53,15 +53,8 @@ fn marked(sources: &SourceMap) -> BTreeMap<(FileId, u32), &'static str> {
         if !text.contains(ATTRIBUTE) {
             continue;
         }
-        let mut is_behind = false;
-        for token in tokenize_in(dialect, text) {
-            if token.kind == TokenKind::Pragma {
-                is_behind |=
-                    text.get(token.start as usize..token.end as usize).is_some_and(|it| it.contains(ATTRIBUTE));
-            } else if !token.kind.is_trivia() && std::mem::take(&mut is_behind) {
-                marked.insert((id, token.start), before);
-            }
-        }
+        let starts = behind_pragma(&tokenize_in(dialect, text), text, |pragma| pragma.contains(ATTRIBUTE));
+        marked.extend(starts.into_iter().map(|start| ((id, start), before)));
     }
     marked
 }
@@ -80,7 +73,8 @@ impl Finder<'_> {
         let checked = self.checked;
         self.variables("", &checked.globals, 0);
         for resource in checked.configuration.iter().flat_map(|configuration| &configuration.resources) {
-            self.variables(resource.name.as_deref().unwrap_or_default(), &resource.globals, 0);
+            // A resource without a name adds none to the paths of its variables.
+            self.variables(resource.name.as_deref().unwrap_or(""), &resource.globals, 0);
         }
         for (program, entry) in checked.programs.iter().zip(&checked.entries) {
             let variables = checked.interfaces.get(&program.pou).map_or(&[][..], Vec::as_slice);

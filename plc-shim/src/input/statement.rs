@@ -44,6 +44,19 @@ impl Text {
         Self { pieces: vec![Piece::Wire(wire, place.clone(), false)], atomic: true, depth: 0 }
     }
 
+    /// `callee(argument, argument)`
+    pub(in crate::input) fn call(callee: &str, arguments: Vec<Self>, place: &Range<u32>) -> Self {
+        let mut call = Self::word(format!("{callee}("), place);
+        for (index, argument) in arguments.into_iter().enumerate() {
+            if index > 0 {
+                call.push(", ", place);
+            }
+            call.append(argument);
+        }
+        call.push(")", place);
+        call
+    }
+
     /// The same, `true` if it needs no parentheses as an operand.
     pub(in crate::input) fn that_is_atomic(self, atomic: bool) -> Self {
         Self { atomic, ..self }

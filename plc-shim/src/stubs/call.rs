@@ -2,11 +2,12 @@
 
 use super::class::Found;
 use super::collect::{Collector, Scope, elementary};
+use super::heirs::inputs;
 use super::names::{Access, Kind};
 use super::ty::Ty;
 use super::world::{Home, World};
 use crate::ElementaryType as E;
-use crate::syntax::ast::{Argument, Call, Expr, ExprKind, Ident, Pou, PouKind, ReferenceKind, SectionKind};
+use crate::syntax::ast::{Argument, Call, Expr, ExprKind, Ident, Pou, PouKind, ReferenceKind};
 
 impl<'a> Collector<'a> {
     /// The type of a call's result; `is_used` if it goes anywhere.
@@ -331,10 +332,7 @@ impl<'a> Collector<'a> {
 
     /// A call of a function or method that is declared.
     fn declared_call(&mut self, pou: &'a Pou, home: &Home, call: &Call, scope: &Scope<'a>) -> Ty {
-        let accepts = |kind| matches!(kind, SectionKind::Input | SectionKind::InOut);
-        let inputs = pou.sections.iter().filter(|section| accepts(section.kind)).flat_map(|section| &section.variables);
-        let inputs: Vec<_> =
-            inputs.flat_map(|each| each.names.iter().map(move |name| (name.key(), &each.spec))).collect();
+        let inputs = inputs(pou);
         let all = pou.sections.iter().flat_map(|section| &section.variables);
         let all: Vec<_> = all.flat_map(|each| each.names.iter().map(move |name| (name.key(), &each.spec))).collect();
         let mut given = 0;

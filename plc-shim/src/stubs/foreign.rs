@@ -145,7 +145,7 @@ pub(super) struct Global {
 }
 
 /// How an unknown name that begins an expression is used.
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
 #[expect(clippy::struct_excessive_bools, reason = "each is a use that was seen or not")]
 pub(super) struct Head {
     pub(super) name: String,

@@ -105,7 +105,7 @@ impl<'a> Collector<'a> {
 }
 
 /// Inputs in their order, by their names.
-fn inputs(pou: &Pou) -> Vec<(String, &TypeSpec)> {
+pub(super) fn inputs(pou: &Pou) -> Vec<(String, &TypeSpec)> {
     let accepts = |kind| matches!(kind, SectionKind::Input | SectionKind::InOut);
     let inputs = pou.sections.iter().filter(|section| accepts(section.kind)).flat_map(|section| &section.variables);
     inputs.flat_map(|each| each.names.iter().map(move |name| (name.key(), &each.spec))).collect()

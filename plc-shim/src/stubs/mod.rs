@@ -112,13 +112,12 @@ fn completed(inputs: &[Input], text: &str) -> Stubs {
 fn infer(collector: &mut Collector<'_>) {
     for _ in 0..MAX_PASSES {
         collector.needs = fresh(std::mem::take(&mut collector.needs));
-        let before = collector.known.clone().map(|known| format!("{known:?}"));
         collector.pass();
         collector.type_constants();
         let is_settled = collector.settle_instances();
         let heads = collector.needs.heads.clone();
         let related = foreign::Relations::of(&collector.needs.types);
-        let is_new = before.as_deref() != Some(&format!("{heads:?}")) || related != collector.needs.relations;
+        let is_new = collector.known.as_ref() != Some(&heads) || related != collector.needs.relations;
         collector.known = Some(heads);
         if !collector.slots.decide() && !is_new && !is_settled && !name_anonymous(collector) {
             return;

@@ -10,6 +10,7 @@
 //! | [`ast`] | | the tree's nodes |
 //! | [`parser`] | tokens | a tree and a list of diagnostics |
 //! | [`printer`] | a tree | text that parses to the same tree |
+//! | `pragma` | tokens | those that a pragma stands before |
 //! | `constant` | an expression of literals and constants | its value |
 //! | `walk` | a body | each of its statements and expressions |
 //!
@@ -24,6 +25,7 @@ pub mod lexer;
 pub mod literal;
 pub mod parser;
 pub mod part;
+pub(crate) mod pragma;
 pub mod printer;
 pub mod text_literal;
 pub mod token;

@@ -4,7 +4,7 @@ use onescan_plc_shim::{PlcFault, VirtualTime};
 use onescan_server::client::SourcePlace;
 use onescan_server::time::TimeSpan;
 
-use super::super::ran::{FailedAssert, Ran};
+use super::super::ran::{FailedAssert, Ran, fault_place};
 use super::log::Message;
 use super::memory::View;
 use super::results::{self, Case, Suite, global};
@@ -167,11 +167,6 @@ impl Judge<'_> {
 fn is_about(message: &str, class: &str) -> bool {
     let last = class.rsplit('.').next().unwrap_or(class);
     message.contains(class) || message.strip_prefix(last).is_some_and(|rest| rest.starts_with(['@', '.']))
-}
-
-fn fault_place(fault: &PlcFault) -> Option<SourcePlace> {
-    let at = &fault.at;
-    (!at.file.is_empty()).then(|| SourcePlace { file: at.file.clone(), line: at.line, column: at.column })
 }
 
 /// What a message about a failed assert of a test begins with.

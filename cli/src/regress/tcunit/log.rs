@@ -40,7 +40,7 @@ impl Log {
     /// Takes what was sent since the last time.
     pub(super) fn take(&mut self, memory: &[u8], at_ns: u64) {
         let Some(Places { count, ring }) = &self.places else { return };
-        let sent = number(bytes(count, memory));
+        let Some(sent) = memory_text::bytes(count, memory).map(number) else { return };
         let size = ring.len() as u64;
         let lost = sent.saturating_sub(self.seen).saturating_sub(size);
         if lost > 0 {
@@ -49,7 +49,7 @@ impl Log {
         }
         for entry in self.seen + lost..sent {
             let Some((kind, line)) = ring.get((entry % size) as usize) else { continue };
-            if number(bytes(kind, memory)) & ERROR != 0 {
+            if memory_text::bytes(kind, memory).is_some_and(|kind| number(kind) & ERROR != 0) {
                 self.messages.extend(memory_text::text(line, memory).map(|text| Message { text, at_ns }));
             }
         }
@@ -59,9 +59,4 @@ impl Log {
     pub(super) fn messages(self) -> Vec<Message> {
         self.messages
     }
-}
-
-fn bytes<'m>(variable: &Variable, memory: &'m [u8]) -> &'m [u8] {
-    let start = variable.offset as usize;
-    memory.get(start..start + variable.size as usize).unwrap_or_default()
 }

@@ -96,7 +96,7 @@ fn plan(config: &WorkerConfig, application: &Application, sources: &Sources) -> 
     Ok(plan)
 }
 
-/// Scans until all is stored and told, or the time is up.
+/// Scans until all is stored and all messages are sent, or the time is up.
 fn scans(config: &WorkerConfig, results: &Results, plc: &mut SoftPlc, step: TimeSpan) -> (End, Vec<Message>) {
     let mut log = Log::find(plc.application());
     let mut now_ns: u64 = 0;
@@ -104,7 +104,7 @@ fn scans(config: &WorkerConfig, results: &Results, plc: &mut SoftPlc, step: Time
         now_ns = now_ns.saturating_add(step.as_nanos());
         let is_stored = results.are_stored(plc.memory());
         if now_ns > config.until.as_nanos() {
-            // What is stored counts, even if not all of it is told yet.
+            // What is stored counts, even if messages about it are still to be sent.
             return (if is_stored { End::Finished } else { End::Late }, log.messages());
         }
         let scanned = plc.scan(VirtualTime::from_nanos(now_ns));
@@ -112,7 +112,7 @@ fn scans(config: &WorkerConfig, results: &Results, plc: &mut SoftPlc, step: Time
         if let Err(fault) = scanned {
             return (End::Fault(Box::new(fault)), log.messages());
         }
-        if results.are_stored(plc.memory()) && results.are_told(plc.memory()) {
+        if results.are_stored(plc.memory()) && results.are_sent(plc.memory()) {
             return (End::Finished, log.messages());
         }
     }

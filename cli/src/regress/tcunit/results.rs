@@ -2,6 +2,7 @@
 
 use onescan_plc_shim::{Application, ElementaryType, Variable};
 
+use super::super::memory_text::bytes;
 use super::memory::View;
 
 /// The list of global variables that `TcUnit` has.
@@ -58,14 +59,13 @@ impl Results {
     }
 
     /// True if no message waits to be sent.
-    pub(super) fn are_told(&self, memory: &[u8]) -> bool {
+    pub(super) fn are_sent(&self, memory: &[u8]) -> bool {
         !self.waiting.as_ref().is_some_and(|waiting| is_not_zero(waiting, memory))
     }
 }
 
 fn is_not_zero(variable: &Variable, memory: &[u8]) -> bool {
-    let start = variable.offset as usize;
-    memory.get(start..start + variable.size as usize).is_some_and(|bytes| bytes.iter().any(|byte| *byte != 0))
+    bytes(variable, memory).is_some_and(|bytes| bytes.iter().any(|byte| *byte != 0))
 }
 
 /// The path of what `TcUnit` has in its global variables.

@@ -9,6 +9,7 @@ use onescan_plc_shim::syntax::{FileId, parse_in, tokenize_in};
 use onescan_server::client::SourcePlace;
 
 use super::super::attributes::Attributes;
+use super::super::declared::place;
 
 /// The block that all suites extend.
 const SUITE: &str = "FB_TESTSUITE";
@@ -85,22 +86,20 @@ impl Sources {
         let mut pous = Vec::new();
         gather(&unit.declarations, &mut pous);
         let tokens = tokenize_in(file.dialect(), file.text());
-        let tokens: Vec<Token> = tokens.into_iter().filter(|token| !token.kind.is_trivia()).collect();
         for pou in &pous {
             let name = &pou.name;
             if pou.kind == PouKind::FunctionBlock {
                 let base = pou.object.extends.first().map(|base| key(&base.text));
-                let (place, tags) = (
-                    place(input, name.span.start),
-                    Attributes::of(file.dialect(), file.text(), name.span.start).tags(),
-                );
+                let tags = Attributes::of(&tokens, file.text(), name.span.start).tags();
+                let place = place(input, name.span.start);
                 self.blocks.entry(key(&name.text)).or_insert(Block { base, place, tags });
             }
         }
+        let tokens: Vec<Token> = tokens.into_iter().filter(|token| !token.kind.is_trivia()).collect();
         for (at, token) in tokens.iter().enumerate() {
             // What stands behind the end of a block, as methods do, is still that block's.
-            let owner = pous.iter().rev().find(|pou| pou.name.span.start <= token.start);
-            if let Some(owner) = owner {
+            let behind = pous.partition_point(|pou| pou.name.span.start <= token.start);
+            if let Some(owner) = behind.checked_sub(1).and_then(|last| pous.get(last)) {
                 self.call(input, owner, tokens.get(at..).unwrap_or_default());
             }
         }
@@ -129,11 +128,6 @@ impl Sources {
 /// The last part of a name, in capitals.
 fn key(name: &str) -> String {
     name.rsplit('.').next().unwrap_or(name).to_ascii_uppercase()
-}
-
-fn place(input: &Input, offset: u32) -> SourcePlace {
-    let at = input.file().line_column(offset);
-    SourcePlace { file: input.file().name().to_owned(), line: at.line, column: at.column }
 }
 
 /// The name that a literal gives a test, which takes blanks around it and the word for a disabled one away.

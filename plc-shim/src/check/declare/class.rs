@@ -67,6 +67,11 @@ impl Declarations<'_> {
         self.class(id)?.base
     }
 
+    /// A unit and its bases, each behind what extends it.
+    pub(super) fn with_bases(&self, id: PouId) -> impl Iterator<Item = PouId> {
+        std::iter::successors(Some(id), |id| self.base_of(*id))
+    }
+
     /// The unit whose variables a unit sees: its own, or those of what it is a method of.
     pub(in crate::check) fn owner_of(&self, id: PouId) -> PouId {
         self.pou(id).membership.map_or(id, |membership| membership.owner)

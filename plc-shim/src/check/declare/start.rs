@@ -149,19 +149,19 @@ impl Declarations<'_> {
 
     fn start_acts(&self, start: &Start<'_>, occasion: Occasion, seen: &mut BTreeSet<PouId>) -> bool {
         match &start.kind {
-            StartKind::Instance(pou, _) => self.inner_acts(*pou, occasion, seen) || self.has_hook(*pou, occasion),
+            StartKind::Instance(pou, _) => self.instance_acts(*pou, occasion, seen),
             StartKind::Each { starts, .. } => starts.iter().any(|start| self.start_acts(start, occasion, seen)),
             _ => occasion == Occasion::Start,
         }
     }
 
-    fn instance_acts(&self, pou: PouId, occasion: Occasion) -> bool {
-        self.has_inner(pou, occasion) || self.has_hook(pou, occasion)
+    fn instance_acts(&self, pou: PouId, occasion: Occasion, seen: &mut BTreeSet<PouId>) -> bool {
+        self.inner_acts(pou, occasion, seen) || self.has_hook(pou, occasion)
     }
 
     /// True if an instance of a declared unit has something to do at any time.
     pub(in crate::check) fn instance_starts(&self, pou: PouId) -> bool {
-        Occasion::ALL.into_iter().any(|occasion| self.instance_acts(pou, occasion))
+        Occasion::ALL.into_iter().any(|occasion| self.instance_acts(pou, occasion, &mut BTreeSet::new()))
     }
 
     /// Has what each unit does at a start and an end checked.

@@ -25,14 +25,7 @@ impl Declarations<'_> {
     /// True for a stub and for what is derived from one: members that its interfaces want and that are not declared are
     /// where the stub's behaviour is.
     pub(in crate::check) fn rests_on_stub(&self, id: PouId) -> bool {
-        let mut next = Some(id);
-        while let Some(id) = next {
-            if self.pou(id).ast.external {
-                return true;
-            }
-            next = self.base_of(id);
-        }
-        false
+        self.with_bases(id).any(|id| self.pou(id).ast.external)
     }
 
     /// Notes a call if what is called has no behaviour.

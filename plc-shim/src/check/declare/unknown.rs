@@ -13,14 +13,7 @@ impl Declarations<'_> {
         if self.pou(id).ast.kind == PouKind::Interface {
             return lacks(id) || self.ancestors(id).into_iter().any(lacks);
         }
-        let mut next = Some(self.owner_of(id));
-        while let Some(id) = next {
-            if lacks(id) {
-                return true;
-            }
-            next = self.base_of(id);
-        }
-        false
+        self.with_bases(self.owner_of(id)).any(lacks)
     }
 
     /// True if a unit may be something else, too: what it extends or implements is not there.

@@ -92,7 +92,7 @@ impl Sheet<'_> {
         match &block.callee {
             Callee::Instance(name) => {
                 let name = name.clone();
-                let mut call = list(&name, arguments, &place);
+                let mut call = Text::call(&name, arguments, &place);
                 call.push(";\n", &place);
                 self.line(call);
                 for output in block.outputs {
@@ -131,7 +131,7 @@ impl Sheet<'_> {
                 self.report(place, Code::MalformedXml, message);
             }
         }
-        let call = list(name, arguments, place).that_is_atomic(true);
+        let call = Text::call(name, arguments, place).that_is_atomic(true);
         match result {
             Taker::Nobody => {
                 let mut call = call;
@@ -191,16 +191,4 @@ fn is_pin(name: &str) -> bool {
     let number = |prefix: &str| name.strip_prefix(prefix).and_then(|rest| rest.strip_suffix('`'));
     let numbered = number("`in.").or_else(|| number("`out."));
     is_name(name) || numbered.is_some_and(|rest| rest.chars().all(|one| one.is_ascii_digit() || one == '.'))
-}
-
-fn list(callee: &str, arguments: Vec<Text>, place: &Range<u32>) -> Text {
-    let mut call = Text::word(format!("{callee}("), place);
-    for (index, argument) in arguments.into_iter().enumerate() {
-        if index > 0 {
-            call.push(", ", place);
-        }
-        call.append(argument);
-    }
-    call.push(")", place);
-    call
 }

@@ -92,7 +92,7 @@ impl<'n> Builder<'_, '_, 'n> {
             text.append(Text::wire(self.wire(index, output.name), &output.element.open));
             arguments.push(text);
         }
-        let call = joined(&callee, arguments, &place);
+        let call = Text::call(&callee, arguments, &place);
         if let Some(result) = result(node).filter(|result| owner.is_none() && self.is_used(index, result)) {
             let call = if outputs.is_empty() { call } else { call.that_stays() };
             return self.define(index, result.name, call.that_is_atomic(true));
@@ -152,16 +152,4 @@ fn is_stored(output: &Output<'_>) -> bool {
 /// them each in its way.
 fn has_names(node: &Node<'_>, callee: &str) -> bool {
     node.inputs.iter().all(|input| !input.name.is_empty()) && !is_standard_function(&callee.to_ascii_uppercase())
-}
-
-fn joined(callee: &str, arguments: Vec<Text>, place: &std::ops::Range<u32>) -> Text {
-    let mut call = Text::word(format!("{callee}("), place);
-    for (index, argument) in arguments.into_iter().enumerate() {
-        if index > 0 {
-            call.push(", ", place);
-        }
-        call.append(argument);
-    }
-    call.push(")", place);
-    call
 }

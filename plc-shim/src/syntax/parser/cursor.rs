@@ -8,6 +8,7 @@ use crate::dialect::{Dialect, Feature};
 use crate::source::origin::Origin;
 use crate::source::{FileId, Span};
 use crate::syntax::ast::{Expr, Ident};
+use crate::syntax::pragma::behind_pragma;
 use crate::syntax::token::{Keyword, Punctuation, Token, TokenKind};
 
 /// Reads the tokens that matter to the grammar; trivia and broken tokens are left out.
@@ -53,8 +54,8 @@ impl<'a> Cursor<'a> {
             kind if kind.is_trivia() || is_broken(kind) => None,
             _ => Some(*token),
         };
-        let external = behind(tokens, text, |pragma| pragma.eq_ignore_ascii_case("external"));
-        let qualified_only = behind(tokens, text, is_qualified_only);
+        let external = behind_pragma(tokens, text, |pragma| pragma.eq_ignore_ascii_case("external"));
+        let qualified_only = behind_pragma(tokens, text, is_qualified_only);
         let mut tokens: Vec<Token> = tokens.iter().filter_map(good).collect();
         promote_soft_keywords(&mut tokens, text);
         Self {
@@ -449,19 +450,4 @@ fn is_qualified_only(pragma: &str) -> bool {
 fn names_what_follows(word: &str) -> bool {
     let words = ["CLASS", "INTERFACE", "FUNCTION_BLOCK", "METHOD", "PROPERTY", "EXTENDS", "IMPLEMENTS"];
     words.iter().any(|known| known.eq_ignore_ascii_case(word))
-}
-
-/// Where the tokens stand that such a pragma is before, with other trivia in between at most.
-fn behind(tokens: &[Token], text: &str, is_it: impl Fn(&str) -> bool) -> Vec<u32> {
-    let mut found = Vec::new();
-    let mut is_behind = false;
-    for token in tokens {
-        if token.kind == TokenKind::Pragma {
-            let pragma = text.get(token.start as usize..token.end as usize).unwrap_or("");
-            is_behind |= is_it(pragma.trim_matches(['{', '}']).trim());
-        } else if !token.kind.is_trivia() && std::mem::take(&mut is_behind) {
-            found.push(token.start);
-        }
-    }
-    found
 }

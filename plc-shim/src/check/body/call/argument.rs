@@ -8,7 +8,7 @@ use crate::diagnostic::{Code, Diagnostic};
 use crate::dialect::Feature;
 use crate::ir::{Argument, Expr, ExprKind, Field, Place, Statement, StatementKind, Storage, Type, TypeId, Variable};
 use crate::syntax::Span;
-use crate::syntax::ast::{self, ReferenceKind, SectionKind};
+use crate::syntax::ast::{self, SectionKind};
 
 impl Body<'_, '_> {
     pub(in crate::check::body) fn default_argument(
@@ -71,8 +71,7 @@ impl Body<'_, '_> {
         if parameter.section == SectionKind::InOut {
             return self.reference(parameter, expr, passing).map(Argument::Reference);
         }
-        if matches!(self.declarations.types().get(parameter.ty), Type::Reference { kind: ReferenceKind::Reference, .. })
-        {
+        if self.is_reference_to(parameter.ty) {
             return self.referring_argument(parameter.ty, expr, passing).map(Argument::Value);
         }
         self.expression_for(expr, parameter.ty).map(Argument::Value)

@@ -6,9 +6,9 @@ use crate::check::body::{Body, Meant};
 use crate::check::declare::Role;
 use crate::check::types::operand::Operand;
 use crate::diagnostic::{Code, Diagnostic};
-use crate::ir::{Argument, Expr, ExprKind, Statement, StatementKind, Type};
+use crate::ir::{Argument, Expr, ExprKind, PouId, Statement, StatementKind, TypeId};
 use crate::syntax::Span;
-use crate::syntax::ast::{self, Ident, ReferenceKind};
+use crate::syntax::ast::{self, Ident};
 
 impl Body<'_, '_> {
     /// The value of a property of the running instance; nothing if the name is none.
@@ -45,7 +45,7 @@ impl Body<'_, '_> {
     }
 
     /// Something if the unit has a property of the name.
-    fn property_of_class(&self, class: crate::ir::PouId, name: &Ident) -> Option<()> {
+    fn property_of_class(&self, class: PouId, name: &Ident) -> Option<()> {
         let has = |role| self.declarations.find_member(class, role, &name.text).is_some();
         (has(Role::Getter) || has(Role::Setter)).then_some(())
     }
@@ -73,11 +73,7 @@ impl Body<'_, '_> {
         value: &ast::Expr,
         span: Span,
     ) -> Meant<Statement> {
-        let (object, name) = match &target.kind {
-            ast::ExprKind::Name(name) => (Some(self.own_property_object(name)?), name),
-            ast::ExprKind::Member(base, name) => (self.property_object(base, name)?, name),
-            _ => return None,
-        };
+        let (object, name) = self.property_target(target)?;
         Some(object.and_then(|object| self.set(object, name, value, span)))
     }
 
@@ -88,29 +84,51 @@ impl Body<'_, '_> {
         value: &ast::Expr,
         span: Span,
     ) -> Meant<Statement> {
-        let (object, name) = match &target.kind {
-            ast::ExprKind::Name(name) => (Some(self.own_property_object(name)?), name),
-            ast::ExprKind::Member(base, name) => (self.property_object(base, name)?, name),
-            _ => return None,
-        };
-        let object =
-            object.filter(|object| self.declarations.find_member(object.class, Role::Setter, &name.text).is_some())?;
-        Some(self.set_reference(object, name, value, span))
+        let (object, name) = self.property_target(target)?;
+        let object = object?;
+        let setter = self.declarations.find_member(object.class, Role::Setter, &name.text)?;
+        Some(self.set_reference(object, setter, (name, value), span))
     }
 
-    fn set_reference(&mut self, object: Object, name: &Ident, value: &ast::Expr, span: Span) -> Option<Statement> {
-        let setter = self.declarations.find_member(object.class, Role::Setter, &name.text)?;
-        self.check_method_access(setter, name.span)?;
-        let ty = self.declarations.interface(setter, span)?.inputs().next()?.ty;
-        if !matches!(self.declarations.types().get(ty), Type::Reference { kind: ReferenceKind::Reference, .. }) {
-            let message = format!("`REF=` is for REFERENCE TO, this is {}", self.type_name(ty));
-            self.report(Diagnostic::error(Code::NotAReference, name.span, message));
-            return None;
+    /// The object and the name of a property that is a target; nothing inside if the object is wrong.
+    fn property_target<'e>(&mut self, target: &'e ast::Expr) -> Option<(Option<Object>, &'e Ident)> {
+        match &target.kind {
+            ast::ExprKind::Name(name) => Some((Some(self.own_property_object(name)?), name)),
+            ast::ExprKind::Member(base, name) => Some((self.property_object(base, name)?, name)),
+            _ => None,
         }
+    }
+
+    fn set_reference(
+        &mut self,
+        object: Object,
+        setter: PouId,
+        (name, value): (&Ident, &ast::Expr),
+        span: Span,
+    ) -> Option<Statement> {
+        let ty = self.set_type(setter, name, span)?;
+        self.require_reference_target(ty, name.span)?;
         let mut passing = Passing::default();
         let argument = self.referring_argument(ty, value, &mut passing)?;
-        let arguments = vec![Argument::Value(argument)];
-        let call = self.on_object(object, Role::Setter, setter, arguments, passing, span)?;
+        self.set_called(object, setter, argument, passing, span)
+    }
+
+    /// The type of what SET takes, where it may be called.
+    fn set_type(&mut self, setter: PouId, name: &Ident, span: Span) -> Option<TypeId> {
+        self.check_method_access(setter, name.span)?;
+        let scope = self.declarations.interface(setter, span)?;
+        Some(scope.inputs().next()?.ty)
+    }
+
+    fn set_called(
+        &mut self,
+        object: Object,
+        setter: PouId,
+        value: Expr,
+        passing: Passing,
+        span: Span,
+    ) -> Option<Statement> {
+        let call = self.on_object(object, Role::Setter, setter, vec![Argument::Value(value)], passing, span)?;
         Some(Statement { kind: StatementKind::Evaluate(call), span })
     }
 
@@ -119,9 +137,9 @@ impl Body<'_, '_> {
         let getter = self.declarations.find_member(object.class, Role::Getter, &name.text)?;
         let scope = self.declarations.interface(getter, span)?;
         let ty = scope.result()?.ty;
-        let Type::Reference { kind: ReferenceKind::Reference, .. } = self.declarations.types().get(ty) else {
+        if !self.is_reference_to(ty) {
             return None;
-        };
+        }
         let Operand::Typed(Expr { kind: ExprKind::Load(place), .. }) = self.value(object.clone(), name)? else {
             return Some(None);
         };
@@ -142,11 +160,8 @@ impl Body<'_, '_> {
         let Some(setter) = self.declarations.find_member(object.class, Role::Setter, &name.text) else {
             return self.lacks(name, "SET");
         };
-        self.check_method_access(setter, name.span)?;
-        let scope = self.declarations.interface(setter, span)?;
-        let ty = scope.inputs().next()?.ty;
-        let arguments = vec![Argument::Value(self.expression_for(value, ty)?)];
-        let call = self.on_object(object, Role::Setter, setter, arguments, Passing::default(), span)?;
-        Some(Statement { kind: StatementKind::Evaluate(call), span })
+        let ty = self.set_type(setter, name, span)?;
+        let value = self.expression_for(value, ty)?;
+        self.set_called(object, setter, value, Passing::default(), span)
     }
 }

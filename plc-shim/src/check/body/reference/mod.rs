@@ -274,16 +274,27 @@ impl Body<'_, '_> {
             return found;
         }
         let place = self.declared_place(target)?.place;
-        let Type::Reference { kind: ReferenceKind::Reference, .. } = self.declarations.types().get(place.ty) else {
-            let message = format!("`REF=` is for REFERENCE TO, this is {}", self.type_name(place.ty));
-            self.report(Diagnostic::error(Code::NotAReference, target.span, message));
-            return None;
-        };
+        self.require_reference_target(place.ty, target.span)?;
         let value = self.referring(place.ty, value)?;
         if let ExprKind::Address(source) = &value.kind {
             self.require_address(source, value.span)?;
         }
         Some(Statement { kind: StatementKind::Assign(place, value), span })
+    }
+
+    /// Reports a target of `REF=` that is no `REFERENCE TO`.
+    pub(super) fn require_reference_target(&mut self, ty: TypeId, span: Span) -> Option<()> {
+        if self.is_reference_to(ty) {
+            return Some(());
+        }
+        let message = format!("`REF=` is for REFERENCE TO, this is {}", self.type_name(ty));
+        self.report(Diagnostic::error(Code::NotAReference, span, message));
+        None
+    }
+
+    /// True for a `REFERENCE TO` of vendors.
+    pub(super) fn is_reference_to(&self, ty: TypeId) -> bool {
+        matches!(self.declarations.types().get(ty), Type::Reference { kind: ReferenceKind::Reference, .. })
     }
 
     /// A reference of type `wanted`, a `REFERENCE TO`, to the variable `value`; NULL and 0 take it back.
@@ -318,9 +329,7 @@ impl Body<'_, '_> {
     /// What a variable of type `ty` begins with. A `REFERENCE TO` begins as what it refers to, be it written with `:=`
     /// or with `REF=` (CODESYS: data type REFERENCE).
     pub(in crate::check) fn beginning(&mut self, expr: &ast::Expr, ty: TypeId) -> Option<Expr> {
-        let is_reference =
-            matches!(self.declarations.types().get(ty), Type::Reference { kind: ReferenceKind::Reference, .. });
-        if !is_reference {
+        if !self.is_reference_to(ty) {
             return self.expression_for(expr, ty);
         }
         let value = self.referring(ty, expr)?;

@@ -1,9 +1,9 @@
 //! What vendors write as statements of their own: a value that goes nowhere, and `__TRY`.
 
 use crate::check::body::Body;
-use crate::check::types::operand::constant;
+use crate::check::types::build::{truth, when};
 use crate::diagnostic::{Code, Diagnostic};
-use crate::ir::{ElementaryType, IfBranch, StatementKind, Value};
+use crate::ir::{Statement, StatementKind};
 use crate::syntax::Span;
 use crate::syntax::ast;
 
@@ -19,7 +19,7 @@ impl Body<'_, '_> {
 
     /// `__TRY`: its statements run as if it were not there. A fault stops the PLC, wherever it is, so the handler is
     /// checked and never runs.
-    pub(super) fn try_statement(&mut self, inner: &ast::TryStatement, span: Span) -> StatementKind {
+    pub(super) fn try_statement(&mut self, inner: &ast::TryStatement, span: Span) -> Vec<Statement> {
         let at = Span { end: span.start + 5, ..span };
         let found = Diagnostic::warning(Code::UncaughtFault, at, "a fault in here is not caught: it stops the PLC");
         self.report(found.with_help("check what may fail before it does"));
@@ -29,11 +29,8 @@ impl Body<'_, '_> {
             self.target(code);
         }
         let handler = self.statements(&inner.handler);
-        let never = constant(Value::Bool(false), ElementaryType::Bool, at);
-        let branches = vec![IfBranch { condition: never, body: handler }];
-        always.push(crate::ir::Statement { kind: StatementKind::If(branches, Vec::new()), span: at });
+        always.push(when(truth(false, at), handler, at));
         always.extend(self.statements(&inner.finally));
-        let condition = constant(Value::Bool(true), ElementaryType::Bool, at);
-        StatementKind::If(vec![IfBranch { condition, body: always }], Vec::new())
+        always
     }
 }

@@ -39,10 +39,12 @@ impl Body<'_, '_> {
     fn unlabelled(&mut self, list: &[ast::Statement]) -> Vec<Statement> {
         let mut checked = Vec::new();
         for statement in list {
-            if let ast::StatementKind::Chain(targets, value) = &statement.kind {
-                checked.extend(self.chained(targets, value, statement.span));
-            } else {
-                checked.extend(self.statement(statement));
+            match &statement.kind {
+                ast::StatementKind::Chain(targets, value) => {
+                    checked.extend(self.chained(targets, value, statement.span));
+                }
+                ast::StatementKind::Try(inner) => checked.extend(self.try_statement(inner, statement.span)),
+                _ => checked.extend(self.statement(statement)),
             }
         }
         checked
@@ -51,10 +53,11 @@ impl Body<'_, '_> {
     fn statement(&mut self, statement: &ast::Statement) -> Option<Statement> {
         let span = statement.span;
         let kind = match &statement.kind {
-            // A chain is several statements, and a label is the beginning of some.
+            // A chain and what is tried are several statements, and a label is the beginning of some.
             ast::StatementKind::Empty
             | ast::StatementKind::Error
             | ast::StatementKind::Chain(..)
+            | ast::StatementKind::Try(_)
             | ast::StatementKind::Label(_) => return None,
             ast::StatementKind::Update(operator, target, value) => {
                 return self.update(*operator, target, value, span);
@@ -64,7 +67,6 @@ impl Body<'_, '_> {
             ast::StatementKind::Attempt(target, value) => return self.attempt(target, value, span),
             ast::StatementKind::Call(call) => self.call_statement(call, span)?,
             ast::StatementKind::Value(value) => self.value_statement(value)?,
-            ast::StatementKind::Try(inner) => self.try_statement(inner, span),
             ast::StatementKind::If(inner) => self.if_statement(inner),
             ast::StatementKind::Case(inner) => self.case_statement(inner)?,
             ast::StatementKind::For(inner) => self.for_statement(inner)?,
