@@ -59,7 +59,7 @@ pub(crate) use self::layout::{CALL_DEPTH_OFFSET, INIT_RETAINS_OFFSET, VIRTUAL_TI
 pub(super) use self::layout::{INIT_RETAINS_NAME, align_up};
 pub(super) use self::located::Placement;
 pub(super) use self::namespace::Home;
-pub(crate) use self::namespace::{find_key, joined};
+pub(crate) use self::namespace::{find_key, joined, short_inside};
 pub(super) use self::numbered::Numbered;
 pub(crate) use self::overrides::Overrides;
 pub(super) use self::query::Outcome;
