@@ -125,7 +125,7 @@ impl<'a> World<'a> {
         let mut inner = home.clone();
         inner.namespace = joined(&home.namespace, &namespace.name.key());
         inner.using.extend(namespace.using.iter().map(Ident::key));
-        if namespace.external {
+        if namespace.external || home.namespace.is_empty() && is_library(namespace) {
             self.libraries.insert(inner.namespace.clone());
         }
         inner.short = short_inside(home.short.as_deref(), namespace);
@@ -233,6 +233,12 @@ impl<'a> World<'a> {
     pub(super) fn has_function(key: &str) -> bool {
         knows_function(key)
     }
+}
+
+/// True for what a file of a library is in, and not for an open list of global variables.
+fn is_library(namespace: &Namespace) -> bool {
+    let is_list = namespace.declarations.iter().all(|each| matches!(each, Declaration::Globals(_)));
+    namespace.kind == NamespaceKind::Open && !is_list
 }
 
 fn variables(pou: &Pou) -> BTreeMap<String, (&TypeSpec, SectionKind)> {
