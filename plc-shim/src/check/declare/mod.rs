@@ -64,7 +64,7 @@ pub(super) use self::numbered::Numbered;
 pub(crate) use self::overrides::Overrides;
 pub(super) use self::query::Outcome;
 pub(super) use self::scope::Scope;
-pub(super) use self::start::{Given, Occasion, Start, StartKind, Started, Starts, moved, stages};
+pub(super) use self::start::{Given, Occasion, Start, StartKind, Started, Starts, Within, moved, stages};
 pub(super) use self::visibility::method_visibility;
 
 /// Greatest number of types, constants or instances that need each other in a row.
