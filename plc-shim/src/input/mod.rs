@@ -134,7 +134,12 @@ impl Input {
             found.help = Some("add the file, or take it out of the project; all others are read".to_owned());
         }
         let (extracted, origin) = taken.extract.finish(listing.text.clone());
-        Self { file: SourceFile::extracted(name, extracted, origin), encoding: None, diagnostics: taken.diagnostics, library: None }
+        Self {
+            file: SourceFile::extracted(name, extracted, origin),
+            encoding: None,
+            diagnostics: taken.diagnostics,
+            library: None,
+        }
     }
 
     /// A file of which nothing is read.
@@ -198,11 +203,11 @@ impl Taken {
     }
 
     /// The same of what the program runs without.
-    fn warn(&mut self, place: std::ops::Range<u32>, code: Code, message: &str, help: &str) {
+    fn warn(&mut self, place: std::ops::Range<u32>, code: Code, message: &str, help: Option<&str>) {
         let start = self.extract.text().len() as u32;
         self.extract.instead("\n", place);
         let span = Span::new(UNNUMBERED, start, start + 1);
-        self.diagnostics.push(Diagnostic::warning(code, span, message).with_help(help));
+        self.diagnostics.push(Diagnostic::warning(code, span, message).with_optional_help(help.map(str::to_owned)));
     }
 
     fn unsupported(&mut self, place: std::ops::Range<u32>, what: &str) {

@@ -21,7 +21,7 @@ impl Body<'_, '_> {
     }
 
     /// True for a global variable, and for a program, which vendors take for its instance.
-    fn is_global(&self, name: &Ident) -> bool {
+    pub(in crate::check::body) fn is_global(&self, name: &Ident) -> bool {
         let key = name.key();
         self.declarations.global_key(&key).is_some() || self.declarations.program_of_name(&key).is_some()
     }
