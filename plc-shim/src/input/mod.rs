@@ -123,15 +123,14 @@ impl Input {
         Self { file, encoding: None, diagnostics: taken.diagnostics, library: None }
     }
 
-    /// A project that lists files that are not there: each is told at its place.
+    /// A project that lists files that are not there: each is reported at its place. What is missed of them is an error
+    /// where it is used.
     pub fn with_missing_files(name: &str, listing: &Listing, missing: &[&Listed]) -> Self {
         let mut taken = Taken::default();
         for file in missing {
             let message = format!("`{}` is not there", file.path);
-            taken.report(file.place.clone(), Code::MissingFile, &message);
-        }
-        for found in &mut taken.diagnostics {
-            found.help = Some("add the file, or take it out of the project; all others are read".to_owned());
+            let help = "add the file, or take it out of the project; all others are read";
+            taken.warn(file.place.clone(), Code::MissingFile, &message, Some(help));
         }
         let (extracted, origin) = taken.extract.finish(listing.text.clone());
         Self {

@@ -75,6 +75,8 @@ impl<'a> Index<'a> {
             Declaration::Type(named) => {
                 self.types.insert(named.name.key(), &named.spec);
             }
+            // What a vendor's library declares is there for whoever wants it.
+            Declaration::Globals(_) if library => {}
             Declaration::Globals(section) => self.globals.push(section),
             Declaration::Namespace(namespace) => {
                 self.namespaces.extend(namespace.name.key().split('.').map(str::to_owned));

@@ -6,6 +6,8 @@ use crate::check::types::constant::decode;
 use crate::check::types::operand::{Operand, constant};
 use crate::diagnostic::{Code, Diagnostic};
 use crate::dialect::Feature;
+use crate::dialect::StringMemory;
+use crate::ir::text::TextShape;
 use crate::ir::{Argument, Expr, ExprKind, Field, Place, Statement, StatementKind, Storage, Type, TypeId, Variable};
 use crate::syntax::Span;
 use crate::syntax::ast::{self, SectionKind};
@@ -125,7 +127,7 @@ impl Body<'_, '_> {
         base.is_some_and(|base| wanted == base.into())
     }
 
-    /// True for a structure that adds to another one: it begins with the members of that.
+    /// True for a structure that adds to another one, whose members it begins with, and for a longer string.
     pub(in crate::check::body) fn begins_as(&self, found: TypeId, wanted: TypeId) -> bool {
         match (self.declarations.types().get(found), self.declarations.types().get(wanted)) {
             (Type::Struct { fields: found, .. }, Type::Struct { fields: wanted, name, .. }) => {
@@ -134,6 +136,12 @@ impl Body<'_, '_> {
                 };
                 let declared = !name.is_empty() && wanted.len() <= found.len();
                 declared && found.iter().zip(wanted).all(alike)
+            }
+            // Behind a reference a longer string is as much of it as the reference knows.
+            (Type::Text(found), Type::Text(wanted)) => {
+                let zero_terminated = |shape: &TextShape| shape.memory == StringMemory::ZeroTerminated;
+                let alike = found.wide == wanted.wide && zero_terminated(found) && zero_terminated(wanted);
+                alike && found.capacity >= wanted.capacity
             }
             _ => false,
         }
