@@ -107,7 +107,7 @@ fn a_variable_that_is_left_out_is_told_at_its_line() {
         "Sensor_1 = { \"Shear.Sensor_1\" = \"hr:300\" }",
         "Sensor_1 = [\"hr:300\", \"hr:300\"]",
         "Sensor_1 = { \"Shear.Sensor_1\" = \"hr:300\", \"Alignment.Sensro_1\" = \"hr:301\" }",
-        "Sensor_1 = [\"hr:300\", \"hr:8\"]",
+        "Sensor_1 = [\"hr:300\", \"hr:10\"]",
         "Sensor_1 = 300",
         "Strokes = \"4x100\"",
     ];
