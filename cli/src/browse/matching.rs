@@ -93,10 +93,8 @@ fn named<'f>(name: &str, found: &'f [Found]) -> Vec<&'f Found> {
 
 /// The path of a variable: that of its identifier where it is text, or else its name.
 fn path_of(found: &Found) -> Vec<String> {
-    match found.address.split_once("s=") {
-        Some((namespace, path)) if namespace.is_empty() || namespace.starts_with("ns") => segments(path),
-        _ => segments(&found.name),
-    }
+    let identifier = found.address.strip_prefix("s=").or_else(|| Some(found.address.split_once(";s=")?.1));
+    segments(identifier.unwrap_or(&found.name))
 }
 
 /// The names of a path, without case and quotes.
@@ -126,7 +124,9 @@ mod tests {
     use super::*;
 
     fn found(address: &str) -> Found {
-        let name = address.rsplit(['.', '=']).next().unwrap_or(address).to_owned();
+        // Over ADS a variable's name is its path, over OPC UA it is the last of it.
+        let is_node = address.contains("s=");
+        let name = if is_node { address.rsplit('.').next().unwrap_or(address) } else { address }.to_owned();
         Found { name, address: address.to_owned(), ty: Some(SignalType::BOOL), is_writable: true }
     }
 

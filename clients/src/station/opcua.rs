@@ -65,10 +65,8 @@ fn add_variables(manager: &SimpleNodeManager, namespace: u16, controller: &Arc<C
 /// variable's path.
 fn identifier(point: &Point) -> String {
     let Some(address) = &point.address else { return point.symbol().to_owned() };
-    match address.split_once("s=") {
-        Some((_, name)) => name.to_owned(),
-        None => address.clone(),
-    }
+    let name = address.strip_prefix("s=").or_else(|| Some(address.split_once(";s=")?.1));
+    name.unwrap_or(address).to_owned()
 }
 
 fn variable(id: &NodeId, point: &Point, direction: Direction) -> VariableBuilder {

@@ -179,9 +179,7 @@ fn entries(points: &[Point], direction: Direction, mut next: u16) -> Result<Vec<
             .checked_add(entry.count)
             .ok_or_else(|| MappingFault::new(&point.name, "there are no more registers"))?;
         if let Some(other) = entries.iter().find(|other| overlap(other, &entry)) {
-            let (other, label) = (other.point.label(), point.label());
-            let message = format!("`{other}` and `{label}` are both mapped to {}", entry.address);
-            return Err(MappingFault::new(&point.name, message));
+            return Err(MappingFault::doubled(&other.point, point, &entry.address.to_string()));
         }
         entries.push(entry);
     }

@@ -126,9 +126,7 @@ impl Layout {
         for point in points {
             let place = place_of(point, &ruler.places, size, block)?;
             if let Some(index) = moves.iter().position(|other| other.place.overlaps(place)) {
-                let (other, label) = (points[index].label(), point.label());
-                let message = format!("`{other}` and `{label}` are both mapped to {place} of `{block}`");
-                return Err(MappingFault::new(&point.name, message));
+                return Err(MappingFault::doubled(&points[index], point, &format!("{place} of `{block}`")));
             }
             moves.push(Move { packed: point.range(), place });
         }
