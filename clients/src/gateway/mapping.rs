@@ -263,6 +263,17 @@ mod tests {
     }
 
     #[test]
+    fn a_variable_with_two_names_is_one_point() {
+        let place = |offset, bit| Place { offset, bit, text: None };
+        let bound = Bound {
+            port: Port { name: SignalName::new("go").unwrap(), ty: SignalType::BOOL },
+            places: vec![place(4, Some(1)), place(4, Some(2)), place(4, Some(1))],
+            variables: ["P.go", "Q.go", "%QX4.1"].map(str::to_owned).to_vec(),
+        };
+        assert_eq!(Variables::of(&bound).paths, ["P.go", "Q.go"]);
+    }
+
+    #[test]
     fn a_variable_that_is_not_reached_is_told() {
         let all = [
             "go = \"hr:0\"",
