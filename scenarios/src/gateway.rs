@@ -115,21 +115,17 @@ impl Scenario {
     /// # Errors
     /// As above.
     pub fn agreement_over(&self, name: &ClientName, settings: Settings) -> Result<Agreement, ScenarioError> {
-        match self.file().clients.get(name).map(toml::Spanned::get_ref) {
-            Some(ClientFile::SoftPlc { sources, dialect, bind, .. }) => {
-                let compiled = self.compiled(name, sources, *dialect, bind)?;
-                self.agreement_on(name, settings, &compiled.application)
-            }
-            _ => {
-                let request = self.request(name)?;
-                let unknown =
-                    |ports: &[Port]| -> Vec<Variables> { ports.iter().cloned().map(Variables::unknown).collect() };
-                let (inputs, outputs) = (unknown(&request.reads), unknown(&request.writes));
-                let exchange = mapping::exchange(&inputs, &outputs, settings.system(), &settings.map);
-                let exchange = exchange.map_err(|fault| self.wrong_mapping(name, fault))?;
-                Ok(Agreement { settings, request, exchange, layout: None })
-            }
+        let client = self.file().clients.get(name).map(toml::Spanned::get_ref);
+        if let Some(ClientFile::SoftPlc { sources, dialect, bind, .. }) = client {
+            let compiled = self.compiled(name, sources, *dialect, bind)?;
+            return self.agreement_on(name, settings, &compiled.application);
         }
+        let request = self.request(name)?;
+        let unknown = |ports: &[Port]| -> Vec<Variables> { ports.iter().cloned().map(Variables::unknown).collect() };
+        let (inputs, outputs) = (unknown(&request.reads), unknown(&request.writes));
+        let exchange = mapping::exchange(&inputs, &outputs, settings.system(), &settings.map);
+        let exchange = exchange.map_err(|fault| self.wrong_mapping(name, fault))?;
+        Ok(Agreement { settings, request, exchange, layout: None })
     }
 
     /// What the gateway of the only soft PLC and its program, whose sources are `inputs`, must agree on; nothing if the

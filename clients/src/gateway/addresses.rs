@@ -23,26 +23,26 @@ pub enum Addresses {
 }
 
 impl Addresses {
-    fn of(value: toml::Value) -> Self {
+    fn of(value: &toml::Value) -> Self {
         let wrong = |value: &toml::Value| Self::Wrong(format!("{value} ({})", value.type_str()));
         let text = |value: &toml::Value| value.as_str().map(str::to_owned);
-        match &value {
+        match value {
             toml::Value::String(address) => Self::One(address.clone()),
             toml::Value::Array(all) => {
-                all.iter().map(text).collect::<Option<_>>().map_or_else(|| wrong(&value), Self::List)
+                all.iter().map(text).collect::<Option<_>>().map_or_else(|| wrong(value), Self::List)
             }
             toml::Value::Table(all) => {
                 let entries = all.iter().map(|(path, address)| Some((path.clone(), text(address)?)));
-                entries.collect::<Option<_>>().map_or_else(|| wrong(&value), Self::Table)
+                entries.collect::<Option<_>>().map_or_else(|| wrong(value), Self::Table)
             }
-            _ => wrong(&value),
+            _ => wrong(value),
         }
     }
 }
 
 impl<'de> Deserialize<'de> for Addresses {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        toml::Value::deserialize(deserializer).map(Self::of)
+        toml::Value::deserialize(deserializer).map(|value| Self::of(&value))
     }
 }
 

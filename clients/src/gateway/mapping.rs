@@ -9,7 +9,7 @@ use onescan_base::did_you_mean;
 use onescan_server::signal::Port;
 
 use super::addresses::{ALL, Addresses};
-use super::exchange::{Exchange, Feed, Point, SystemWords, Target, is_word};
+use super::exchange::{Direction, Exchange, Feed, Point, SystemWords, Target, is_word};
 use super::fault::MappingFault;
 use crate::soft_plc::bind::{Bound, Place};
 
@@ -62,17 +62,17 @@ pub fn exchange(
     let feeds = |signals: &[Variables]| -> Result<Vec<Feed>, MappingFault> {
         signals.iter().map(|signal| feed(signal, map.get(signal.port.name.as_str()))).collect()
     };
-    let words = map.iter().filter(|(name, _)| is_word(name)).map(|(name, address)| match address {
-        Addresses::One(address) => Ok((name.clone(), address.clone())),
-        _ => {
-            let help = Some(format!("write one address: {name} = \"…\""));
-            Err(MappingFault::new(name, format!("`{name}` is one word and has one address")).with_help(help))
+    let words = map.iter().filter(|(name, _)| is_word(name)).map(|(name, address)| {
+        if let Addresses::One(address) = address {
+            return Ok((name.clone(), address.clone()));
         }
+        let help = Some(format!("write one address: {name} = \"…\""));
+        Err(MappingFault::new(name, format!("`{name}` is one word and has one address")).with_help(help))
     });
     let words = words.collect::<Result<_, _>>()?;
     let exchange = Exchange::new(&feeds(inputs)?, &feeds(outputs)?, system, &words);
-    for points in [exchange.to_plc(), exchange.from_plc()] {
-        doubled(points)?;
+    for direction in [Direction::ToPlc, Direction::FromPlc] {
+        doubled(exchange.points(direction), direction)?;
     }
     Ok(exchange)
 }
@@ -179,11 +179,17 @@ fn tabled(port: &Port, paths: &[String], table: &BTreeMap<String, String>) -> Re
 }
 
 /// Two points in one place, as they are written.
-fn doubled(points: &[Point]) -> Result<(), MappingFault> {
+fn doubled(points: &[Point], direction: Direction) -> Result<(), MappingFault> {
     let mut seen: BTreeMap<&str, &Point> = BTreeMap::new();
     for point in points {
         let Some(address) = point.address.as_deref().map(str::trim) else { continue };
         let Some(other) = seen.insert(address, point) else { continue };
+        // One variable may be read for two signals; nothing is written twice.
+        let is_read_twice =
+            direction == Direction::FromPlc && point.variable.is_some() && point.variable == other.variable;
+        if is_read_twice {
+            continue;
+        }
         let message = format!("`{}` and `{}` are both mapped to {address}", other.label(), point.label());
         let shared = format!(
             "each has a place of its own; if the PLC has one variable for all: {} = {{ \"{ALL}\" = \"{address}\" }}",
