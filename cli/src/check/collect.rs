@@ -4,6 +4,7 @@ use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 use onescan_plc_shim::input::kind::{EXTENSIONS, FileKind};
+use onescan_plc_shim::input::needed;
 use onescan_plc_shim::input::project;
 use onescan_plc_shim::instrument;
 use onescan_plc_shim::{Code, Dialect, Input, MemoryLimit, TaskPlan};
@@ -55,7 +56,7 @@ pub fn programs(paths: &[PathBuf], reading: Reading) -> Result<Vec<Program>, Che
     if !files.inputs.is_empty() {
         files.libraries(libraries)?;
         let memory_limit = memory_limit.unwrap_or_default();
-        programs.push(Program { inputs: files.inputs, plan: None, memory_limit });
+        programs.push(Program { inputs: needed(files.inputs), plan: None, memory_limit });
     }
     if programs.is_empty() {
         let known: Vec<_> = EXTENSIONS.iter().map(|(extension, _)| format!(".{extension}")).collect();
@@ -138,8 +139,10 @@ impl Files {
             FileKind::Source(kind) => {
                 // A file of the folder `.` is named as if the folder had not been.
                 let name = path.strip_prefix(".").unwrap_or(path).display().to_string();
-                let namespace = if let Part::Library(namespace) = &self.part { namespace.as_deref() } else { None };
-                let input = Input::read_in(namespace, &name, kind, bytes);
+                let input = match &self.part {
+                    Part::Own => Input::read(&name, kind, bytes),
+                    Part::Library(namespace) => Input::of_library(namespace.as_deref(), &name, kind, bytes),
+                };
                 self.inputs.push(match self.dialect {
                     Some(dialect) => input.in_dialect(dialect),
                     None => input,

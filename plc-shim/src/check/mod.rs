@@ -37,6 +37,7 @@ use crate::syntax::{FileId, Span};
 
 pub(crate) use self::declare::{
     CALL_DEPTH_OFFSET, INIT_RETAINS_OFFSET, Kept, Overrides, VIRTUAL_TIME_NAME, VIRTUAL_TIME_OFFSET, find_key, joined,
+    short_inside,
 };
 pub(crate) use self::standard::vendor::{is_qualified_only, of_pointer_width};
 pub(crate) use self::standard::{exists as is_standard_function, is_known as knows_function};

@@ -21,6 +21,7 @@ mod drawing;
 pub mod encoding;
 mod foreign;
 pub mod kind;
+mod needed;
 mod plcopen;
 pub(crate) mod plcopen_chart;
 pub(crate) mod plcopen_chart_graph;
@@ -39,6 +40,7 @@ use std::sync::Arc;
 use self::encoding::{Encoding, decode};
 use self::foreign::Foreign;
 use self::kind::SourceKind;
+pub use self::needed::needed;
 use self::project::{Listed, Listing};
 use self::xml::XmlError;
 use crate::diagnostic::{Code, Diagnostic};
@@ -55,6 +57,8 @@ pub struct Input {
     file: SourceFile,
     encoding: Option<Encoding>,
     diagnostics: Vec<Diagnostic>,
+    /// For a file of a library, the namespace that its names are known by, if there is one.
+    library: Option<Option<String>>,
 }
 
 impl Input {
@@ -63,9 +67,14 @@ impl Input {
         Self::read_in(None, name, kind, bytes)
     }
 
-    /// Reads the bytes of the file `name` of a library whose names are known with its namespace before them, and
+    /// Reads the bytes of the file `name` of a library. Its names are known with its namespace before them, and
     /// without. Program text says for itself which namespace it is in.
-    pub fn read_in(namespace: Option<&str>, name: &str, kind: SourceKind, bytes: &[u8]) -> Self {
+    pub fn of_library(namespace: Option<&str>, name: &str, kind: SourceKind, bytes: &[u8]) -> Self {
+        let library = Some(namespace.map(str::to_owned));
+        Self { library, ..Self::read_in(namespace, name, kind, bytes) }
+    }
+
+    fn read_in(namespace: Option<&str>, name: &str, kind: SourceKind, bytes: &[u8]) -> Self {
         if bytes.len() > MAX_SIZE {
             return Self::unreadable(name, Code::TooLarge, format!("the file is larger than {MAX_SIZE} bytes"));
         }
@@ -90,7 +99,7 @@ impl Input {
                 }
                 let (dialect, diagnostics) = dialect_of(name, &text);
                 let file = SourceFile::new(name, text).in_dialect(dialect);
-                return Self { file, encoding: None, diagnostics };
+                return Self { file, encoding: None, diagnostics, library: None };
             }
             SourceKind::TwinCat => twincat::extract(&text, namespace),
             SourceKind::PlcOpen => plcopen::extract(&text),
@@ -98,7 +107,7 @@ impl Input {
         let taken = read.unwrap_or_else(|error| Taken::malformed(&error));
         let (extracted, origin) = taken.extract.finish(text);
         let file = SourceFile::extracted(name, extracted, origin).in_dialect(taken.dialect);
-        Self { file, encoding: None, diagnostics: taken.diagnostics }
+        Self { file, encoding: None, diagnostics: taken.diagnostics, library: None }
     }
 
     fn holding_no_program(name: &str, text: &Arc<str>, foreign: Foreign) -> Self {
@@ -111,7 +120,7 @@ impl Input {
         }
         let (extracted, origin) = taken.extract.finish(text.clone());
         let file = SourceFile::extracted(name, extracted, origin).in_dialect(Dialect::of_file(name));
-        Self { file, encoding: None, diagnostics: taken.diagnostics }
+        Self { file, encoding: None, diagnostics: taken.diagnostics, library: None }
     }
 
     /// A project that lists files that are not there: each is told at its place.
@@ -125,13 +134,18 @@ impl Input {
             found.help = Some("add the file, or take it out of the project; all others are read".to_owned());
         }
         let (extracted, origin) = taken.extract.finish(listing.text.clone());
-        Self { file: SourceFile::extracted(name, extracted, origin), encoding: None, diagnostics: taken.diagnostics }
+        Self {
+            file: SourceFile::extracted(name, extracted, origin),
+            encoding: None,
+            diagnostics: taken.diagnostics,
+            library: None,
+        }
     }
 
     /// A file of which nothing is read.
     pub fn unreadable(name: &str, code: Code, message: impl Into<String>) -> Self {
         let found = Diagnostic::error(code, Span::new(UNNUMBERED, 0, 0), message);
-        Self { file: SourceFile::new(name, ""), encoding: None, diagnostics: vec![found] }
+        Self { file: SourceFile::new(name, ""), encoding: None, diagnostics: vec![found], library: None }
     }
 
     /// The same file, read as `dialect` whatever its name says.
@@ -189,11 +203,11 @@ impl Taken {
     }
 
     /// The same of what the program runs without.
-    fn warn(&mut self, place: std::ops::Range<u32>, code: Code, message: &str, help: &str) {
+    fn warn(&mut self, place: std::ops::Range<u32>, code: Code, message: &str, help: Option<&str>) {
         let start = self.extract.text().len() as u32;
         self.extract.instead("\n", place);
         let span = Span::new(UNNUMBERED, start, start + 1);
-        self.diagnostics.push(Diagnostic::warning(code, span, message).with_help(help));
+        self.diagnostics.push(Diagnostic::warning(code, span, message).with_optional_help(help.map(str::to_owned)));
     }
 
     fn unsupported(&mut self, place: std::ops::Range<u32>, what: &str) {

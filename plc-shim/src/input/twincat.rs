@@ -275,7 +275,7 @@ VAR_GLOBAL x : INT; END_VAR]]></Declaration></GVL><GVL Name=\"Open\"><Declaratio
     fn what_is_of_a_library_is_in_its_namespace() {
         let text =
             "<TcPlcObject><GVL Name=\"GVL\"><Declaration>VAR_GLOBAL x : INT; END_VAR</Declaration></GVL></TcPlcObject>";
-        let input = Input::read_in(Some("Gears"), "a.TcGVL", SourceKind::TwinCat, text.as_bytes());
+        let input = Input::of_library(Some("Gears"), "a.TcGVL", SourceKind::TwinCat, text.as_bytes());
         insta::assert_snapshot!(input.file().text(), @r"
         NAMESPACE OPEN Gears
         NAMESPACE OPEN GVL

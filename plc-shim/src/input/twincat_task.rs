@@ -47,7 +47,7 @@ fn write(taken: &mut Taken, text: &str, at: &Element) {
 fn pass_over(taken: &mut Taken, name: &str, at: &Element) {
     let message = format!("the task calls `{name}` of a library, which is left out");
     let help = "it does not run here; a program of the project has no `.` in its name";
-    taken.warn(at.open.clone(), Code::ProgramNeverRuns, &message, help);
+    taken.warn(at.open.clone(), Code::ProgramNeverRuns, &message, Some(help));
 }
 
 /// The text that an element holds, without blanks around it.

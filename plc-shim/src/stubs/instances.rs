@@ -7,11 +7,12 @@ use super::collect::Collector;
 use super::shape::Shape;
 use super::signature::INIT;
 use super::ty::{Slot, Ty};
+use crate::syntax::ast::ReferenceKind;
 
 impl Collector<'_> {
     /// Decides slots that instances go to, each for good; true if there was one.
     pub(super) fn settle_instances(&mut self) -> bool {
-        let found: Vec<(Slot, String, BTreeSet<String>)> = self
+        let found: Vec<(Slot, String, BTreeSet<String>, bool)> = self
             .slots
             .unsettled()
             .filter(|(.., to)| !to.iter().any(|ty| matches!(ty, Ty::Declared(_) | Ty::Foreign(_) | Ty::Pointer(..))))
@@ -23,15 +24,28 @@ impl Collector<'_> {
                 let is_held = is_kept && from.iter().any(|ty| self.is_certain(ty));
                 let is_interface = instances.len() > 1 || !instances.is_empty() && (is_null || is_held);
                 let is_plain = path.starts_with("global:") || path.starts_with("type:");
-                (is_interface && !is_other && !is_plain).then(|| (slot, path.to_owned(), instances))
+                (is_interface && !is_other && !is_plain).then(|| (slot, path.to_owned(), instances, is_null))
             })
             .collect();
-        for (slot, path, instances) in &found {
-            let interface = self.common_interface(instances).unwrap_or_else(|| self.new_interface(path));
-            let ty = self.ty_of(&interface);
+        for (slot, path, instances, is_null) in &found {
+            let ty = match self.only_own(instances).filter(|_| !is_null) {
+                Some(block) => Ty::Pointer(ReferenceKind::Reference, Box::new(Ty::Declared(block))),
+                None => {
+                    let interface = self.common_interface(instances).unwrap_or_else(|| self.new_interface(path));
+                    self.ty_of(&interface)
+                }
+            };
             self.slots.settle(*slot, ty);
         }
         !found.is_empty()
+    }
+
+    /// The one block, if it is the project's own and stands for no interface of a library.
+    fn only_own(&mut self, instances: &BTreeSet<String>) -> Option<String> {
+        let mut all = instances.iter();
+        let only = all.next().filter(|_| all.next().is_none())?;
+        let is_own = self.world.units.contains_key(only) && self.foreign_base(only).is_none();
+        is_own.then(|| only.clone())
     }
 
     /// The key of a block that a type is.

@@ -2,10 +2,10 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use crate::check::{find_key, joined, knows_function};
+use crate::check::{find_key, joined, knows_function, short_inside};
 use crate::syntax::ast::{
-    CompilationUnit, Declaration, Ident, MemberKind, Namespace, Pou, PouKind, Section, SectionKind, TypeDeclaration,
-    TypeSpec, TypeSpecKind,
+    CompilationUnit, Declaration, Ident, MemberKind, Namespace, NamespaceKind, Pou, PouKind, Section, SectionKind,
+    TypeDeclaration, TypeSpec, TypeSpecKind,
 };
 use crate::syntax::{FileId, SourceMap};
 
@@ -14,6 +14,24 @@ use crate::syntax::{FileId, SourceMap};
 pub(super) struct Home {
     pub(super) namespace: String,
     pub(super) using: Vec<String>,
+    /// The namespace without the open ones that it begins with, as the check has it.
+    short: Option<String>,
+}
+
+/// Full keys of what is known without its namespace, by the keys that it is known by.
+#[derive(Debug, Default)]
+struct OpenNames {
+    units: BTreeMap<String, String>,
+    types: BTreeMap<String, String>,
+    globals: BTreeMap<String, String>,
+}
+
+impl OpenNames {
+    fn note(map: &mut BTreeMap<String, String>, home: &Home, name: &Ident, key: &str) {
+        if let Some(short) = &home.short {
+            map.entry(joined(short, &name.key())).or_insert_with(|| key.to_owned());
+        }
+    }
 }
 
 /// A unit, and its parts by name.
@@ -46,8 +64,7 @@ pub(super) struct World<'a> {
     pub(super) units: BTreeMap<String, Unit<'a>>,
     pub(super) types: BTreeMap<String, Named<'a>>,
     pub(super) globals: BTreeMap<String, (&'a TypeSpec, Home)>,
-    /// Full keys of globals that are known without their list's name.
-    open: BTreeMap<String, String>,
+    open: OpenNames,
     namespaces: BTreeSet<String>,
     libraries: BTreeSet<String>,
     /// The types of values of enumerations, by the value's name.
@@ -67,7 +84,7 @@ impl<'a> World<'a> {
             units: BTreeMap::new(),
             types: BTreeMap::new(),
             globals: BTreeMap::new(),
-            open: BTreeMap::new(),
+            open: OpenNames::default(),
             namespaces: BTreeSet::new(),
             libraries: BTreeSet::new(),
             enumerators: BTreeMap::new(),
@@ -81,23 +98,23 @@ impl<'a> World<'a> {
                     home.using.extend(names.iter().map(Ident::key));
                 }
             }
-            world.add_all(&unit.declarations, &home, false, library.contains(file));
+            world.add_all(&unit.declarations, &home, library.contains(file));
         }
         world
     }
 
-    fn add_all(&mut self, list: &'a [Declaration], home: &Home, open: bool, library: bool) {
+    fn add_all(&mut self, list: &'a [Declaration], home: &Home, library: bool) {
         for declaration in list {
             match declaration {
                 Declaration::Pou(pou) => self.add_unit(pou, home, library),
                 Declaration::Type(ast) => self.add_type(ast, home),
-                Declaration::Globals(section) => self.add_globals(section, home, open),
+                Declaration::Globals(section) => self.add_globals(section, home),
                 Declaration::Namespace(namespace) => self.add_namespace(namespace, home, library),
                 Declaration::Using(_) => {}
                 Declaration::Configuration(configuration) => {
                     let resources = configuration.resources.iter().flat_map(|resource| &resource.sections);
                     for section in configuration.sections.iter().chain(resources) {
-                        self.add_globals(section, home, false);
+                        self.add_globals(section, home);
                     }
                 }
             }
@@ -108,16 +125,17 @@ impl<'a> World<'a> {
         let mut inner = home.clone();
         inner.namespace = joined(&home.namespace, &namespace.name.key());
         inner.using.extend(namespace.using.iter().map(Ident::key));
-        if namespace.external {
+        if namespace.external || home.namespace.is_empty() && is_library(namespace) {
             self.libraries.insert(inner.namespace.clone());
         }
+        inner.short = short_inside(home.short.as_deref(), namespace);
         self.namespaces.insert(inner.namespace.clone());
-        let open = namespace.kind == crate::syntax::ast::NamespaceKind::Open;
-        self.add_all(&namespace.declarations, &inner, open, library);
-        if open && library {
+        self.namespaces.extend(inner.short.clone().filter(|short| !short.is_empty()));
+        self.add_all(&namespace.declarations, &inner, library);
+        if namespace.kind == NamespaceKind::Open && library {
             // What a vendor's library declares is known without its name, unless the project has something of the name.
             self.libraries.insert(inner.namespace);
-            self.add_all(&namespace.declarations, home, false, library);
+            self.add_all(&namespace.declarations, home, library);
         }
     }
 
@@ -126,6 +144,7 @@ impl<'a> World<'a> {
         if self.units.contains_key(&key) || self.types.contains_key(&key) {
             return;
         }
+        OpenNames::note(&mut self.open.units, home, &pou.name, &key);
         let mut home = home.clone();
         home.using.extend(pou.object.using.iter().map(Ident::key));
         let mut members = BTreeMap::new();
@@ -144,6 +163,7 @@ impl<'a> World<'a> {
         if self.types.contains_key(&key) || self.units.contains_key(&key) {
             return;
         }
+        OpenNames::note(&mut self.open.types, home, &ast.name, &key);
         if let TypeSpecKind::Enumeration(values, _) = &ast.spec.kind {
             for value in values {
                 self.enumerators.entry(value.name.key()).or_insert_with(|| key.clone());
@@ -152,40 +172,44 @@ impl<'a> World<'a> {
         self.types.insert(key, Named { ast, home: home.clone() });
     }
 
-    fn add_globals(&mut self, section: &'a Section, home: &Home, open: bool) {
+    fn add_globals(&mut self, section: &'a Section, home: &Home) {
         for variable in &section.variables {
             for name in &variable.names {
                 let key = joined(&home.namespace, &name.key());
-                if open {
-                    self.open.entry(name.key()).or_insert_with(|| key.clone());
-                }
+                OpenNames::note(&mut self.open.globals, home, name, &key);
                 self.globals.entry(key).or_insert_with(|| (&variable.spec, home.clone()));
             }
         }
         self.loose.push((section, home.clone()));
     }
 
-    fn full_key<T>(&self, map: &BTreeMap<String, T>, home: &Home, key: &str) -> Option<String> {
-        if let Some(found) = find_key(map, &home.namespace, &home.using, key) {
+    fn full_key<T>(
+        &self,
+        map: &BTreeMap<String, T>,
+        open: &BTreeMap<String, String>,
+        home: &Home,
+        key: &str,
+    ) -> Option<String> {
+        if let Some(found) = find_key(map, &home.namespace, &home.using, key).or_else(|| open.get(key).cloned()) {
             return Some(found);
         }
         let (first, rest) = key.split_once('.')?;
         if self.libraries.contains(first) || is_standard_library(first) {
-            return self.full_key(map, home, rest);
+            return self.full_key(map, open, home, rest);
         }
         None
     }
 
     pub(super) fn unit_key(&self, home: &Home, key: &str) -> Option<String> {
-        self.full_key(&self.units, home, key)
+        self.full_key(&self.units, &self.open.units, home, key)
     }
 
     pub(super) fn type_key(&self, home: &Home, key: &str) -> Option<String> {
-        self.full_key(&self.types, home, key)
+        self.full_key(&self.types, &self.open.types, home, key)
     }
 
     pub(super) fn global_key(&self, home: &Home, key: &str) -> Option<String> {
-        self.full_key(&self.globals, home, key).or_else(|| self.open.get(key).cloned())
+        self.full_key(&self.globals, &self.open.globals, home, key)
     }
 
     /// True for a name that stands for something in front of a dot: a namespace that is declared.
@@ -209,6 +233,12 @@ impl<'a> World<'a> {
     pub(super) fn has_function(key: &str) -> bool {
         knows_function(key)
     }
+}
+
+/// True for what a file of a library is in, and not for an open list of global variables.
+fn is_library(namespace: &Namespace) -> bool {
+    let is_list = namespace.declarations.iter().all(|each| matches!(each, Declaration::Globals(_)));
+    namespace.kind == NamespaceKind::Open && !is_list
 }
 
 fn variables(pou: &Pou) -> BTreeMap<String, (&TypeSpec, SectionKind)> {

@@ -306,3 +306,30 @@ PROGRAM P VAR a, b : Pair; END_VAR END_PROGRAM"),
     let told: String = cases.iter().map(|case| format!("{case}\n{}\n", findings(&format!("{NOTE}{case}")))).collect();
     insta::assert_snapshot!(told);
 }
+
+#[test]
+fn members_of_a_structure_name_one_another_and_this_is_the_structure() {
+    let mut rig = rig("FUNCTION_BLOCK Part
+VAR whole : REFERENCE TO ST; before : POINTER TO Part; END_VAR
+METHOD FB_init : BOOL
+VAR_INPUT bInitRetains, bInCopyCode : BOOL; first : POINTER TO Part; structure : REFERENCE TO ST; END_VAR
+  before := first; whole REF= structure;
+END_METHOD
+METHOD N : INT
+  N := whole.n;
+END_METHOD
+END_FUNCTION_BLOCK
+TYPE ABSTRACT ST : STRUCT n : INT := 3; me : Part(0, THIS^); END_STRUCT END_TYPE
+TYPE ST2 EXTENDS ST : STRUCT
+  inner : ST := (n := n + 4);
+  rest : ARRAY [1..2] OF Part(ADR(me), THIS^);
+END_STRUCT END_TYPE
+PROGRAM P
+VAR a : ST2; many : ARRAY [1..2] OF ST2 := [(n := 5)]; r : ARRAY [1..5] OF INT; END_VAR
+  r[1] := a.me.N(); r[2] := a.inner.me.N(); r[3] := a.rest[2].before^.N();
+  r[4] := many[1].rest[2].N(); r[5] := many[2].inner.n;
+END_PROGRAM");
+    rig.scan().expect("no fault");
+    let found: Vec<i64> = (1..=5).map(|index| rig.int(&format!("P.r[{index}]"))).collect();
+    assert_eq!(found, [3, 7, 3, 5, 7]);
+}

@@ -35,6 +35,7 @@ use crate::diagnostic::Diagnostic;
 use crate::ir::{ElementaryType, Place, PouId, TypeId};
 
 pub(super) use self::expression::dtl::is_literal as is_dtl_literal;
+pub(super) use self::start::Surrounding;
 pub(super) use self::unit::check_unit;
 
 /// Checks expressions and statements inside a scope.
@@ -65,6 +66,8 @@ pub(super) struct Body<'c, 'a> {
     later: Vec<(PouId, String)>,
     /// How many wires lists of instructions have so far.
     instruction_wires: u32,
+    /// The structure in one of whose initial values the expression stands.
+    surrounding: Option<Surrounding>,
 }
 
 impl<'c, 'a> Body<'c, 'a> {
@@ -89,6 +92,7 @@ impl<'c, 'a> Body<'c, 'a> {
             is_running: false,
             instruction_wires: 0,
             network: None,
+            surrounding: None,
         }
     }
 

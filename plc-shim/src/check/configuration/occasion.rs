@@ -19,7 +19,7 @@ impl Configurer<'_, '_> {
             let span = body.declarations().pou(program.pou).ast().name.span;
             let place = Place::whole(Storage::Absolute(program.offset), ElementaryType::Byte.into(), span);
             let kind = StartKind::Instance(program.pou, &[]);
-            let start = Start { offset: 0, kind, span, home: None };
+            let start = Start { offset: 0, kind, span, home: None, within: None };
             statements.extend(body.performed(&place, &[start], occasion));
         }
         // What the configuration says takes precedence over what declarations say, so it comes last.

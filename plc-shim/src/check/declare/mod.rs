@@ -59,12 +59,12 @@ pub(crate) use self::layout::{CALL_DEPTH_OFFSET, INIT_RETAINS_OFFSET, VIRTUAL_TI
 pub(super) use self::layout::{INIT_RETAINS_NAME, align_up};
 pub(super) use self::located::Placement;
 pub(super) use self::namespace::Home;
-pub(crate) use self::namespace::{find_key, joined};
+pub(crate) use self::namespace::{find_key, joined, short_inside};
 pub(super) use self::numbered::Numbered;
 pub(crate) use self::overrides::Overrides;
 pub(super) use self::query::Outcome;
 pub(super) use self::scope::Scope;
-pub(super) use self::start::{Given, Occasion, Start, StartKind, Started, Starts, moved, stages};
+pub(super) use self::start::{Given, Occasion, Start, StartKind, Started, Starts, Within, moved, stages};
 pub(super) use self::visibility::method_visibility;
 
 /// Greatest number of types, constants or instances that need each other in a row.

@@ -87,18 +87,7 @@ impl Home {
             shown: joined(&self.shown, &namespace.name.text),
             using,
             internal: self.internal || namespace.kind == NamespaceKind::Internal,
-            short: self.short_inside(namespace),
-        }
-    }
-
-    /// The names of a library are known without it, those of a list in it behind the list's name, and those of an
-    /// open list by themselves.
-    fn short_inside(&self, namespace: &Namespace) -> Option<String> {
-        let is_open = namespace.kind == NamespaceKind::Open;
-        match &self.short {
-            _ if is_open => Some(String::new()),
-            Some(short) => Some(joined(short, &namespace.name.key())),
-            None => None,
+            short: short_inside(self.short.as_deref(), namespace),
         }
     }
 
@@ -116,6 +105,16 @@ impl Home {
         all.extend(using.iter().map(Ident::key));
         let (namespace, shown, short) = (self.namespace.clone(), self.shown.clone(), self.short.clone());
         Arc::new(Self { namespace, shown, using: all, short, ..**self })
+    }
+}
+
+/// By what the names in a namespace are known besides their keys. The names of a library are known without it, those
+/// of a list in it behind the list's name, and those of an open list by themselves.
+pub(crate) fn short_inside(short: Option<&str>, namespace: &Namespace) -> Option<String> {
+    match short {
+        _ if namespace.kind == NamespaceKind::Open => Some(String::new()),
+        Some(short) => Some(joined(short, &namespace.name.key())),
+        None => None,
     }
 }
 

@@ -48,6 +48,16 @@ pub(in crate::check) struct Start<'a> {
     pub(in crate::check) span: Span,
     /// From where names are seen; nothing for the unit that declares the variable.
     pub(in crate::check) home: Option<Arc<Home>>,
+    /// The structure whose declaration says it.
+    pub(in crate::check) within: Option<Within>,
+}
+
+/// Where in a structure something is done.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(in crate::check) struct Within {
+    pub(in crate::check) structure: TypeId,
+    /// Bytes from where the structure begins.
+    pub(in crate::check) offset: u32,
 }
 
 #[derive(Debug, Clone)]

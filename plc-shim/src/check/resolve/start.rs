@@ -14,7 +14,7 @@ impl<'a> Written<'_, 'a> {
     /// What is done in one of the unit's own variables belongs to its text; all else to where it stands.
     pub(in crate::check) fn start(&self, offset: u32, kind: StartKind<'a>, span: Span) -> Start<'a> {
         let home = self.body.unit().is_none().then(|| self.declarations().home().clone());
-        Start { offset, kind, span, home }
+        Start { offset, kind, span, home, within: None }
     }
 
     /// Reports a variable that may begin with a constant only.

@@ -5,9 +5,10 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use super::Written;
-use crate::check::declare::{Need, Start, TypedImage, align_up, moved};
+use crate::check::body::Surrounding;
+use crate::check::declare::{Need, Start, TypedImage, Within, align_up, moved};
 use crate::diagnostic::{Code, Diagnostic};
-use crate::ir::{ElementaryType, Field, Type, TypeId};
+use crate::ir::{ElementaryType, Field, Place, Storage, Type, TypeId};
 use crate::syntax::Span;
 use crate::syntax::ast::{self, Ident};
 use crate::syntax::direct_address::{DirectAddress, RelativeAddress, Width};
@@ -66,7 +67,13 @@ impl<'a> Written<'_, 'a> {
                 continue;
             }
             // The members behind a wrong one are looked at, too.
+            let around = reserved.filter(|_| member.initial.is_some()).map(|ty| {
+                let place = Place::whole(Storage::Instance(0), ty, span);
+                Surrounding { place, fields: making.fields.clone() }
+            });
+            let outer = self.body.surround(around);
             sound &= self.member(&mut making, member, (sharing, span)).is_some();
+            self.body.surround(outer);
         }
         if !sound {
             return None;
@@ -79,7 +86,10 @@ impl<'a> Written<'_, 'a> {
         let image: Arc<[u8]> = image.into();
         let ty = reserved.unwrap_or_else(|| self.declarations_mut().types_mut().structure(name.to_owned()));
         self.declarations_mut().types_mut().complete_structure(ty, fields, image.clone());
-        Some(TypedImage { ty, image, starts: starts.into() })
+        // What members of other structures do has been said where they are declared.
+        let within = |start: &Start<'_>| start.within.or(Some(Within { structure: ty, offset: start.offset }));
+        let starts = starts.into_iter().map(|start| Start { within: within(&start), ..start }).collect();
+        Some(TypedImage { ty, image, starts })
     }
 
     fn member(

@@ -68,6 +68,8 @@ pub(super) struct Block {
     pub(super) callee: Callee,
     /// What comes to EN.
     pub(super) enable: Signal,
+    /// A result is wanted while EN is FALSE, too: the call itself takes EN.
+    pub(super) always: bool,
     pub(super) arguments: Vec<Argument>,
     /// The result of a function comes first; ENO is none of them.
     pub(super) outputs: Vec<Output>,
@@ -81,13 +83,19 @@ impl Sheet<'_> {
             let message = format!("`{}` is nothing that could be called", block.callee.name());
             return self.report(&place, Code::MalformedXml, message);
         }
-        let Some(arguments) = self.arguments(&block) else { return };
-        let is_conditional = matches!(block.enable, Signal::Value(_));
+        let Some(mut arguments) = self.arguments(&block) else { return };
+        let is_conditional = matches!(block.enable, Signal::Value(_)) && !block.always;
         if let Signal::Value(enable) = block.enable {
-            let mut text = Text::word("IF ", &place);
-            text.append(enable);
-            text.push(" THEN\n", &place);
-            self.line(text);
+            if block.always {
+                let mut text = Text::word("EN := ", &place);
+                text.append(enable);
+                arguments.insert(0, text);
+            } else {
+                let mut text = Text::word("IF ", &place);
+                text.append(enable);
+                text.push(" THEN\n", &place);
+                self.line(text);
+            }
         }
         match &block.callee {
             Callee::Instance(name) => {

@@ -37,6 +37,7 @@ struct Drawn {
     lines: Vec<Line>,
     names: Vec<String>,
     faults: Vec<Fault>,
+    notices: Vec<Fault>,
     /// Actions behind the unit that a chart needs.
     actions: Vec<Text>,
 }
@@ -105,6 +106,9 @@ impl<'f> Drawings<'f> {
         for fault in drawn.faults {
             taken.report(fault.place, fault.code, &fault.message);
         }
+        for notice in drawn.notices {
+            taken.warn(notice.place, notice.code, &notice.message, None);
+        }
         statement::write(drawn.lines, &drawn.names, self.file, &mut taken.extract);
         self.actions.extend(drawn.actions);
         true
@@ -157,8 +161,8 @@ fn drawn(file: &str, holder: &Element, language: &Element, number: usize, memori
             cfc::read(&mut sheet, body);
         }
     }
-    let (lines, names, faults) = sheet.finish();
-    Some(Drawn { lines, names, faults, actions })
+    let (lines, names, faults, notices) = sheet.finish();
+    Some(Drawn { lines, names, faults, notices, actions })
 }
 
 /// Variables by which TwinCAT lets a unit reset, hold or step its chart.

@@ -201,6 +201,7 @@ impl Networks<'_, '_> {
         if is_instance {
             taken.retain(|output| !matches!(output.taker, Taker::Nobody));
         }
+        let mut always = false;
         let signal = match wanted {
             Some(0) if shape.has_eno => Some(enable.clone()),
             Some(index) => match (&shape.callee, shape.slots.get(index)) {
@@ -212,21 +213,23 @@ impl Networks<'_, '_> {
                     self.sheet.report(&shape.place, Code::MalformedXml, message);
                     None
                 }
-                (Callee::Function(name), _) if matches!(enable, Signal::Value(_)) => {
-                    let message = format!(
-                        "what `{name}` (id {}) hands on while its EN is FALSE is not known: connect its EN to the power \
-                         rail, or give its output a variable",
-                        shape.id
-                    );
-                    self.sheet.report(&shape.place, Code::UnsupportedFeature, message);
-                    None
+                (Callee::Function(name), _) => {
+                    if matches!(enable, Signal::Value(_)) {
+                        always = true;
+                        let message = format!(
+                            "what `{name}` (id {}) hands on while its EN is FALSE is not documented, and is FALSE or 0 here: \
+                             connect its EN to the power rail, or give its output a variable",
+                            shape.id
+                        );
+                        self.sheet.notice(&shape.place, Code::UnsupportedFeature, message);
+                    }
+                    value.map(Signal::Value)
                 }
-                (Callee::Function(_), _) => value.map(Signal::Value),
             },
             None => None,
         };
         let Shape { place, id, callee, .. } = shape;
-        self.sheet.call(Block { place, id, callee, enable, arguments, outputs: taken });
+        self.sheet.call(Block { place, id, callee, enable, always, arguments, outputs: taken });
         signal
     }
 

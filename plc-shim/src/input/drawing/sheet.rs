@@ -71,22 +71,28 @@ pub(super) struct Sheet<'s> {
     lines: Vec<Line>,
     names: Vec<String>,
     pub(super) faults: Vec<Fault>,
+    /// What the program runs with and ought to be known.
+    notices: Vec<Fault>,
 }
 
-/// The parts of a finished sheet: its statements, the names of their wires, and what is wrong.
-pub(super) type Finished = (Vec<Line>, Vec<String>, Vec<Fault>);
+/// The parts of a finished sheet: its statements, the names of their wires, what is wrong, and what ought to be known.
+pub(super) type Finished = (Vec<Line>, Vec<String>, Vec<Fault>, Vec<Fault>);
 
 impl<'s> Sheet<'s> {
     pub(super) fn new(file: &'s str, body: usize, memories: &'s mut Memories) -> Self {
-        Self { file, body, memories, lines: Vec::new(), names: Vec::new(), faults: Vec::new() }
+        Self { file, body, memories, lines: Vec::new(), names: Vec::new(), faults: Vec::new(), notices: Vec::new() }
     }
 
     pub(super) fn finish(self) -> Finished {
-        (crate::input::statement::folded(self.lines, self.names.len()), self.names, self.faults)
+        (crate::input::statement::folded(self.lines, self.names.len()), self.names, self.faults, self.notices)
     }
 
     pub(super) fn report(&mut self, place: &Range<u32>, code: Code, message: String) {
         self.faults.push(Fault { place: place.clone(), code, message });
+    }
+
+    pub(super) fn notice(&mut self, place: &Range<u32>, code: Code, message: String) {
+        self.notices.push(Fault { place: place.clone(), code, message });
     }
 
     pub(super) fn unsupported(&mut self, place: &Range<u32>, what: &str) {

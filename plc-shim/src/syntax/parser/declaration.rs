@@ -326,8 +326,10 @@ impl Cursor<'_> {
     }
 
     /// `TYPE INTERNAL Name :`, as vendors' libraries have it; who is outside of the library does not see the files.
+    /// `TYPE ABSTRACT Name :` is a structure that others extend.
     fn pass_access_of_type(&mut self) {
-        let is_access = matches!(Modifier::find(self.next_text()), Some(Modifier::Public | Modifier::Internal));
+        let modifier = Modifier::find(self.next_text());
+        let is_access = matches!(modifier, Some(Modifier::Public | Modifier::Internal | Modifier::Abstract));
         if is_access && self.peek_ahead(1) == Some(TokenKind::Identifier) {
             self.advance();
         }

@@ -137,6 +137,12 @@ impl Body<'_, '_> {
                 let value = if boolean { Value::Bool(value == 1) } else { Value::Int(value) };
                 Some(constant(value, wanted, span))
             }
+            (_, Some((0, high))) if self.changes_sign(value, high, span) => {
+                let wrapped = wanted.wrap(value);
+                let message = format!("{value} becomes {wrapped} as {wanted}");
+                self.report(Diagnostic::warning(Code::LossyConversion, span, message));
+                Some(constant(Value::Int(wrapped), wanted, span))
+            }
             (_, range) => {
                 let (low, high) = range.unwrap_or((0, 0));
                 let message = format!("{value} does not fit {wanted} ({low} to {high})");
@@ -144,6 +150,12 @@ impl Body<'_, '_> {
                 None
             }
         }
+    }
+
+    /// True for a negative literal that vendors take as the unsigned number of its bits, as they do with variables.
+    fn changes_sign(&self, value: i128, high: i128, span: Span) -> bool {
+        let dialect = self.declarations.dialect(span);
+        dialect.has(Feature::SignChange) && value < 0 && value >= -(high / 2) - 1
     }
 
     fn literal_real(&mut self, value: f64, wanted: ElementaryType, span: Span) -> Option<Expr> {

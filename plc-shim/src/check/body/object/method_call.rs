@@ -145,7 +145,7 @@ impl Body<'_, '_> {
                 return Some(Some(program));
             }
         }
-        if self.qualified_name(expr).is_some_and(|name| self.declarations.global_key(&name.key()).is_none()) {
+        if self.qualified_name(expr).is_some_and(|name| !self.is_global(&name)) {
             return None;
         }
         let Some(operand) = self.expression(expr) else { return Some(None) };

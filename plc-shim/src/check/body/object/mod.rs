@@ -40,6 +40,9 @@ impl Body<'_, '_> {
         if !self.is_this(name) {
             return None;
         }
+        if let Some(structure) = self.this_structure(name) {
+            return Some(structure);
+        }
         let class = self.own_class().filter(|class| self.declarations.pou(*class).ast().kind.has_instances());
         let Some(class) = class else {
             return Some(self.no_object("THIS", name.span));

@@ -133,6 +133,9 @@ impl Body<'_, '_> {
 
     /// The same, the reference itself if it is one.
     pub(super) fn declared_place(&mut self, expr: &ast::Expr) -> Option<Located> {
+        if let Some(referred) = self.referred_place(expr) {
+            return referred;
+        }
         match &expr.kind {
             ast::ExprKind::Name(name) => self.named_place(name),
             ast::ExprKind::Member(base, name) => {
@@ -189,6 +192,9 @@ impl Body<'_, '_> {
     fn named_place(&mut self, name: &Ident) -> Option<Located> {
         if let Some(found) = self.this_place(name) {
             return found;
+        }
+        if let Some(sibling) = self.sibling(name) {
+            return Some(sibling);
         }
         if wire::is_wire(name) {
             // One without a value has been reported where it would have got it.
@@ -258,6 +264,9 @@ impl Body<'_, '_> {
     }
 
     fn meaning(&mut self, name: &Ident) -> Option<Meaning> {
+        if self.sibling(name).is_some() {
+            return Some(Meaning::Variable);
+        }
         match self.variable_named(name) {
             Some(Err(())) => return None,
             Some(Ok(variable)) => {

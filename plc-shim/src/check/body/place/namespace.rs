@@ -9,16 +9,21 @@ impl Body<'_, '_> {
         let ast::ExprKind::Member(base, last) = &expr.kind else { return None };
         let first = match &base.kind {
             ast::ExprKind::Name(name) if !self.scope.declares(&name.key()) => name.clone(),
-            // What a variable of a namespace has are members.
-            _ => self.qualified_name(base).filter(|name| self.declarations.global_key(&name.key()).is_none())?,
+            // What a variable or a program of a namespace has are members.
+            _ => self.qualified_name(base).filter(|name| !self.is_global(name))?,
         };
-        // What stands behind a variable is a member of it.
-        if first.text.contains('.') && self.declarations.global_key(&first.key()).is_some() {
+        if first.text.contains('.') && self.is_global(&first) {
             return None;
         }
         let text = format!("{}.{}", first.text, last.text);
         let found = Ident { text, span: first.span.to(last.span) };
         self.declarations.is_in_namespace(&found.key()).then_some(found)
+    }
+
+    /// True for a global variable, and for a program, which vendors take for its instance.
+    pub(in crate::check::body) fn is_global(&self, name: &Ident) -> bool {
+        let key = name.key();
+        self.declarations.global_key(&key).is_some() || self.declarations.program_of_name(&key).is_some()
     }
 
     /// True for the first name of a namespace that no variable hides.

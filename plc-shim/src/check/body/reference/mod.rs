@@ -80,6 +80,30 @@ impl Body<'_, '_> {
         }
     }
 
+    /// What a property or a call gives that is a reference: its target, which is a variable as any other. Nothing for
+    /// all that is none.
+    pub(super) fn referred_place(&mut self, expr: &ast::Expr) -> Meant<Located> {
+        let may_refer = match &expr.kind {
+            ast::ExprKind::Name(name) | ast::ExprKind::Member(_, name) => {
+                self.declarations.has_property_named(&name.key())
+            }
+            ast::ExprKind::Call(_) => true,
+            _ => false,
+        };
+        if !may_refer {
+            return None;
+        }
+        let known = self.declarations.mark();
+        match self.given_value(expr)? {
+            Some(Operand::Typed(Expr { kind: ExprKind::Load(place), .. })) if place.storage == Storage::Referred => {
+                Some(Some(Located { place, access: Access::ReadWrite }))
+            }
+            Some(_) => None,
+            None if self.declarations.has_found_since(known) => Some(None),
+            None => None,
+        }
+    }
+
     /// The place of a value of several parts, which lies in memory until the next call.
     pub(super) fn place_of_value(&mut self, value: Operand, span: Span) -> Option<Located> {
         let value = self.referred_result(value);

@@ -1,8 +1,11 @@
 //! What a unit's variables do before the first scan and before another start, as statements.
 
 pub(super) mod hook;
+mod surrounding;
 
 use std::sync::Arc;
+
+pub(in crate::check) use self::surrounding::Surrounding;
 
 use super::Body;
 use crate::check::declare::{Given, Home, Occasion, Start, StartKind};
@@ -39,9 +42,15 @@ impl<'a> Body<'_, 'a> {
         let mut statements = Vec::new();
         for start in starts {
             let known = self.declarations.mark();
-            let done = match &start.home {
-                Some(home) => self.seen_from(home.clone(), |body| body.perform(base, start, occasion)),
-                None => self.perform(base, start, occasion),
+            let around = start.within.and_then(|within| self.structure_around(base, start.offset, within));
+            let done = match around {
+                Some(around) => {
+                    let outer = self.surround(Some(around));
+                    let done = self.perform_at_home(base, start, occasion);
+                    self.surround(outer);
+                    done
+                }
+                None => self.perform_at_home(base, start, occasion),
             };
             statements.extend(done);
             // What is wrong with a type's text is told once, however often it is used.
@@ -50,6 +59,13 @@ impl<'a> Body<'_, 'a> {
             }
         }
         statements
+    }
+
+    fn perform_at_home(&mut self, base: &Place, start: &Start<'a>, occasion: Occasion) -> Vec<Statement> {
+        match &start.home {
+            Some(home) => self.seen_from(home.clone(), |body| body.perform(base, start, occasion)),
+            None => self.perform(base, start, occasion),
+        }
     }
 
     fn seen_from<T>(&mut self, home: Arc<Home>, make: impl FnOnce(&mut Self) -> T) -> T {
