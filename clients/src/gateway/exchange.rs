@@ -10,6 +10,7 @@ use onescan_server::signal::{Port, SignalType};
 use onescan_server::time::VirtualTime;
 
 use super::answer::Answer;
+use super::fault::MappingFault;
 use super::handshake::{Order, Report};
 
 /// Which way a point goes.
@@ -90,6 +91,17 @@ impl Point {
             (Some(_), Some(path)) => format!("{}` at `{path}", self.name),
             _ => self.key(),
         }
+    }
+
+    /// This one and another are in one place. A point without an address is there by default, so that the other one is
+    /// wrong.
+    pub fn doubled(&self, other: &Self, place: &str) -> MappingFault {
+        let message = format!("`{}` and `{}` are both mapped to {place}", self.label(), other.label());
+        let (wrong, default) = if other.address.is_some() { (other, self) } else { (self, other) };
+        let is_default = wrong.address.is_some() && default.address.is_none();
+        let help =
+            format!("`{}` is there by default: give it another address, too, or choose a free one", default.label());
+        MappingFault::new(&wrong.name, message).with_help(is_default.then_some(help))
     }
 
     /// True for a synchronisation word or a word about the PLC itself.

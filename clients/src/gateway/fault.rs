@@ -5,7 +5,6 @@ use std::time::Duration;
 use thiserror::Error;
 
 use super::answer::Answer;
-use super::exchange::Point;
 
 /// Why a link cannot do what it is to do.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
@@ -73,16 +72,6 @@ impl MappingFault {
     /// `point` is wrong, nothing is known that would mend it.
     pub fn new(point: &str, message: impl Into<String>) -> Self {
         Self { point: point.to_owned(), message: message.into(), help: None }
-    }
-
-    /// Two points are in one place. A point without an address is there by default, so that the other one is wrong.
-    pub fn doubled(one: &Point, other: &Point, place: &str) -> Self {
-        let message = format!("`{}` and `{}` are both mapped to {place}", one.label(), other.label());
-        let (wrong, default) = if other.address.is_some() { (other, one) } else { (one, other) };
-        let is_default = wrong.address.is_some() && default.address.is_none();
-        let help =
-            format!("`{}` is there by default: give it another address, too, or choose a free one", default.label());
-        Self::new(&wrong.name, message).with_help(is_default.then_some(help))
     }
 
     /// The same with something to do.

@@ -179,7 +179,7 @@ fn entries(points: &[Point], direction: Direction, mut next: u16) -> Result<Vec<
             .checked_add(entry.count)
             .ok_or_else(|| MappingFault::new(&point.name, "there are no more registers"))?;
         if let Some(other) = entries.iter().find(|other| overlap(other, &entry)) {
-            return Err(MappingFault::doubled(&other.point, point, &entry.address.to_string()));
+            return Err(other.point.doubled(point, &entry.address.to_string()));
         }
         entries.push(entry);
     }

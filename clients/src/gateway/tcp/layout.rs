@@ -126,7 +126,7 @@ impl Layout {
         for point in points {
             let place = place_of(point, &ruler.places, size, block)?;
             if let Some(index) = moves.iter().position(|other| other.place.overlaps(place)) {
-                return Err(MappingFault::doubled(&points[index], point, &format!("{place} of `{block}`")));
+                return Err(points[index].doubled(point, &format!("{place} of `{block}`")));
             }
             moves.push(Move { packed: point.range(), place });
         }
