@@ -43,6 +43,8 @@ fn equals_the_run_in_process(script: &str, url: &str) {
     assert_eq!(said.code, Some(0), "{said:?}");
     let report = serde_json::from_str(&said.out).expect("a report");
     assert_eq!(digests(&[report]), digests(&reports));
+    // It was made without a scenario.
+    assert!(said.err.contains("SDSP_Layout is 0"), "{said:?}");
 }
 
 #[test]
