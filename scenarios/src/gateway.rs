@@ -10,7 +10,9 @@ use onescan_clients::gateway::{
 };
 use onescan_clients::soft_plc::{Bindings, SoftPlcClient};
 use onescan_plc_shim::input::kind::{FileKind, SourceKind};
-use onescan_plc_shim::instrument::{Address as DirectAddress, Exchanged, File, InstrumentError, Options, Project, Target, Way, instrument};
+use onescan_plc_shim::instrument::{
+    Address as DirectAddress, Exchanged, File, InstrumentError, Options, Project, Target, Way, instrument,
+};
 use onescan_plc_shim::{Application, BuildError, Input, Task, TaskPlan, TimeSpan};
 use onescan_server::client::{Client, JoinRequest};
 use onescan_server::signal::{ClientName, Port, SignalName, did_you_mean};
@@ -186,15 +188,12 @@ impl Scenario {
         }
     }
 
-    /// What the gateway of the only soft PLC and its program, whose sources are `inputs`, must agree on; nothing if the
+    /// What the gateway of the soft PLC `name` and its program, whose sources are `inputs`, must agree on; nothing if the
     /// sources do not compile. Where the PLC is need not be known.
     ///
     /// # Errors
-    /// The mapping is wrong, or there are several PLCs.
-    pub fn agreement_of(&self, inputs: Vec<Input>) -> Result<Option<Agreement>, ScenarioError> {
-        let is_plc = |client: &toml::Spanned<ClientFile>| matches!(client.get_ref(), ClientFile::SoftPlc { .. });
-        let mut plcs = self.file().clients.iter().filter(|(_, client)| is_plc(client)).map(|(name, _)| name);
-        let (Some(name), None) = (plcs.next(), plcs.next()) else { return Ok(None) };
+    /// The mapping is wrong, or there is no such PLC.
+    pub fn agreement_of(&self, name: &ClientName, inputs: Vec<Input>) -> Result<Option<Agreement>, ScenarioError> {
         let builder = Application::builder().memory_limit(self.memory_limit(name)).inputs(inputs);
         let Ok(application) = builder.build() else { return Ok(None) };
         self.agreement_on(name, self.declared(name), &application).map(Some)

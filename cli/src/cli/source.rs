@@ -6,10 +6,11 @@ use clap::{Args as ClapArgs, ValueEnum};
 use onescan_plc_shim::instrument::Target;
 use onescan_plc_shim::{Dialect, MemoryLimit, Task};
 use onescan_report::OutputError;
+use onescan_server::signal::ClientName;
 use onescan_server::time::TimeSpan;
 
 use super::error::CommandError;
-use super::value::FormatArg;
+use super::value::{FormatArg, client_name};
 use crate::check::collect::logix;
 use crate::check::stubs::{self, StubsConfig};
 use crate::check::{self, CheckConfig, CheckFormat, Warnings};
@@ -131,6 +132,9 @@ pub struct InstrumentArgs {
     /// scenario's tasks, or one of 10 ms with all programs]
     #[arg(long = "task", value_name = "NAME:INTERVAL:PRIORITY=PROGRAM,...", value_parser = plc_task)]
     pub tasks: Vec<Task>,
+    /// The PLC, of a scenario with several that have sources
+    #[arg(long, value_name = "CLIENT", value_parser = client_name)]
+    pub client: Option<ClientName>,
     /// How often the PLC runs the task that is written for it, as in `1ms`: virtual time goes on by the steps of the
     /// session, however fast that is; for `openplc` and `beremiz` [default: the shortest interval of the tasks]
     #[arg(long, value_name = "TIME", conflicts_with = "remove")]
@@ -217,6 +221,7 @@ pub fn instrument(args: InstrumentArgs) -> Result<ExitCode, CommandError> {
         direction: if args.remove { Direction::Remove } else { Direction::Attach },
         target,
         tasks: args.tasks,
+        client: args.client,
         cycle: args.cycle,
         words_at: args.words_at,
         destination,

@@ -7,7 +7,6 @@ use onescan_clients::gateway::listing::Listing;
 use onescan_clients::gateway::settings::Settings;
 use onescan_plc_shim::instrument::Located;
 use onescan_scenario::Scenario;
-use onescan_scenario::file::ClientFile;
 use onescan_server::signal::ClientName;
 
 use super::error::InstrumentError;
@@ -31,8 +30,7 @@ pub struct Mapping {
 ///
 /// # Errors
 /// The scenario is wrong.
-pub fn mapping(scenario: Option<&Scenario>, located: &[Located]) -> Result<Mapping, InstrumentError> {
-    let plc = scenario.and_then(|scenario| Some((scenario, the_plc(scenario)?)));
+pub fn mapping(plc: Option<(&Scenario, &ClientName)>, located: &[Located]) -> Result<Mapping, InstrumentError> {
     let Some((scenario, client)) = plc else {
         let entry = |each: &Located| {
             let address = each.address.modbus()?;
@@ -43,19 +41,13 @@ pub fn mapping(scenario: Option<&Scenario>, located: &[Located]) -> Result<Mappi
         let fragment = Fragment { client, url, system_words: false, entries };
         return Ok(Mapping { text: fragment.to_string(), layout: None });
     };
-    let declared = scenario.declared(&client);
+    let declared = scenario.declared(client);
     let url = if declared.url.starts_with("modbus://") { declared.url.clone() } else { SOMEWHERE.to_owned() };
     let settings = Settings { url, system_words: false, map: addresses(located), ..declared };
-    let agreed = scenario.agreement_over(&client, settings)?;
+    let agreed = scenario.agreement_over(client, settings)?;
     let listing = Listing::new(&agreed.settings, &agreed.exchange);
-    let listing = listing.map_err(|fault| scenario.wrong_settings(&client, fault))?;
-    Ok(Mapping { text: Fragment::of(&client, &agreed, &listing).to_string(), layout: agreed.layout })
-}
-
-/// The soft PLC whose program is instrumented.
-fn the_plc(scenario: &Scenario) -> Option<ClientName> {
-    let is_plc = |client: &toml::Spanned<ClientFile>| matches!(client.get_ref(), ClientFile::SoftPlc { .. });
-    scenario.file().clients.iter().find(|(_, client)| is_plc(client)).map(|(name, _)| name.clone())
+    let listing = listing.map_err(|fault| scenario.wrong_settings(client, fault))?;
+    Ok(Mapping { text: Fragment::of(client, &agreed, &listing).to_string(), layout: agreed.layout })
 }
 
 /// The addresses by signal; of a signal with several variables, by variable.

@@ -21,10 +21,12 @@ use onescan_report::file::{Write as FileWrite, write_all_whole};
 use onescan_scenario::Scenario;
 use onescan_scenario::gateway::Agreement;
 use onescan_scenario::load::FILE_NAME;
+use onescan_server::signal::ClientName;
 
 pub use error::InstrumentError;
 
 use crate::check::Warnings;
+use crate::check::collect::Program;
 use crate::error::ExitCode;
 use crate::error::Usage;
 use crate::format::Format;
@@ -34,6 +36,8 @@ use crate::format::Format;
 pub struct InstrumentConfig {
     /// A folder, a file or a scenario.
     pub project: PathBuf,
+    /// The PLC of a scenario with several.
+    pub client: Option<ClientName>,
     /// Whether the shim is put on or taken off.
     pub direction: Direction,
     /// For whom the shim's own sources are written.
@@ -93,12 +97,12 @@ pub fn instrument(
     out: &mut dyn Write,
     err: &mut dyn Write,
 ) -> Result<ExitCode, InstrumentError> {
-    let program = project::program(&config.project)?;
+    let program = project::program(&config.project, config.client.as_ref())?;
     let mut mapping = None;
     let project = match config.direction {
         Direction::Remove => instrument::remove(&program.inputs),
         Direction::Attach => {
-            let agreed = agreed(config, &program.inputs)?;
+            let agreed = agreed(config, &program)?;
             let exchanged = agreed.as_ref().map(Agreement::exchanged).unwrap_or_default();
             let layout = agreed.and_then(|agreed| agreed.layout);
             let tasks = tasks(config, program.plan);
@@ -108,7 +112,8 @@ pub fn instrument(
             match project {
                 Ok(project) if !project.located.is_empty() => {
                     // What lies where is known now, and so is the number of the mapping.
-                    let found = gateway::mapping(scenario(config)?.as_ref(), &project.located)?;
+                    let found =
+                        gateway::mapping(scenario(config)?.as_ref().zip(program.client.as_ref()), &project.located)?;
                     mapping = Some(found.text);
                     instrument::instrument(&program.inputs, &Options { layout: found.layout, ..options })
                 }
@@ -139,15 +144,18 @@ pub fn instrument(
         writes.push(FileWrite { path: path.clone(), bytes: Some(text.clone().into_bytes()) });
     }
     write_all_whole(&writes)?;
-    report::write(config, &project, mapped.as_ref().map(|(path, _)| path.as_path()), out)?;
+    let client = program.client.as_ref().map_or("plc", ClientName::as_str);
+    let mapped = mapped.as_ref().map(|(path, _)| report::Mapped { path, client });
+    report::write(config, &project, mapped, out)?;
     tell(&project.warnings, program.inputs.len(), config, err)?;
     Ok(ExitCode::Ok)
 }
 
 /// What the scenario's gateway and the program must agree on; nothing if there is no scenario, or if its program is
 /// wrong, which is told of the program itself.
-fn agreed(config: &InstrumentConfig, inputs: &[Input]) -> Result<Option<Agreement>, InstrumentError> {
-    let Some(scenario) = scenario(config)? else { return Ok(None) };
+fn agreed(config: &InstrumentConfig, program: &Program) -> Result<Option<Agreement>, InstrumentError> {
+    let inputs = program.inputs.as_slice();
+    let (Some(scenario), Some(client)) = (scenario(config)?, &program.client) else { return Ok(None) };
     let Ok(plain) = instrument::remove(inputs) else { return Ok(None) };
     let dialect_of =
         |name: &str| inputs.iter().find(|input| input.file().name() == name).map(|input| input.file().dialect());
@@ -159,7 +167,7 @@ fn agreed(config: &InstrumentConfig, inputs: &[Input]) -> Result<Option<Agreemen
             None => input,
         })
     });
-    Ok(scenario.agreement_of(own.collect())?)
+    Ok(scenario.agreement_of(client, own.collect())?)
 }
 
 /// The scenario, if that is what is instrumented.

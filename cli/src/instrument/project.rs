@@ -7,6 +7,7 @@ use onescan_plc_shim::input::encoding::{Charset, Encoding, encode};
 use onescan_plc_shim::input::kind::{FileKind, SourceKind};
 use onescan_plc_shim::instrument::{File, Project};
 use onescan_report::file::Write;
+use onescan_server::signal::{ClientName, did_you_mean};
 
 use super::error::InstrumentError;
 use super::{Destination, InstrumentConfig};
@@ -17,11 +18,24 @@ use crate::error::{Unreadable, Usage};
 ///
 /// # Errors
 /// A file is not there, cannot be read, or is of no kind that is read; or there are several programs.
-pub fn program(project: &Path) -> Result<Program, InstrumentError> {
+pub fn program(project: &Path, client: Option<&ClientName>) -> Result<Program, InstrumentError> {
     let mut programs = collect::programs(&[project.to_owned()], Reading::default())?;
+    let clients: Vec<String> = programs.iter().filter_map(|each| Some(each.client.as_ref()?.to_string())).collect();
+    if let Some(wanted) = client {
+        programs.retain(|program| program.client.as_ref() == Some(wanted));
+        if programs.is_empty() {
+            let help = did_you_mean(wanted.as_str(), clients.iter().map(String::as_str));
+            return Err(Usage::new(format!("there is no PLC `{wanted}` with sources here"), help).into());
+        }
+    }
     let count = programs.len();
     let (Some(mut program), 1) = (programs.pop(), count) else {
-        let help = "name the folder with the sources of one".to_owned();
+        let help = match clients.split_last() {
+            Some((last, others)) => {
+                format!("say which: `--client {}` or `--client {last}`", others.join("`, `--client "))
+            }
+            None => "name the folder with the sources of one".to_owned(),
+        };
         return Err(Usage::new(format!("there are {count} PLCs here"), Some(help)).into());
     };
     add_own(&mut program.inputs)?;

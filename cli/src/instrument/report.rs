@@ -38,6 +38,15 @@ struct JsonFile<'a> {
     diff: Option<String>,
 }
 
+/// The file with the gateway's mapping.
+#[derive(Clone, Copy)]
+pub struct Mapped<'a> {
+    /// Where it is.
+    pub path: &'a Path,
+    /// The client that it is the link of.
+    pub client: &'a str,
+}
+
 /// Writes what was found.
 ///
 /// # Errors
@@ -63,7 +72,7 @@ pub fn findings(
 pub fn write(
     config: &InstrumentConfig,
     project: &Project,
-    mapping: Option<&Path>,
+    mapping: Option<Mapped<'_>>,
     out: &mut dyn Write,
 ) -> Result<(), InstrumentError> {
     let written = match config.format {
@@ -76,7 +85,7 @@ pub fn write(
 fn write_json(
     config: &InstrumentConfig,
     project: &Project,
-    mapping: Option<&Path>,
+    mapping: Option<Mapped<'_>>,
     out: &mut dyn Write,
 ) -> io::Result<()> {
     let file = |file| JsonFile {
@@ -87,7 +96,7 @@ fn write_json(
     };
     let findings = project.warnings.findings().iter().map(Line::from).collect();
     let whole = project.whole.as_deref();
-    let mapping = mapping.map(|path| path.display().to_string());
+    let mapping = mapping.map(|mapped| mapped.path.display().to_string());
     let report = Json { files: project.files.iter().map(file).collect(), whole, mapping, findings };
     serde_json::to_writer(&mut *out, &report)?;
     writeln!(out)
@@ -96,7 +105,7 @@ fn write_json(
 fn write_human(
     config: &InstrumentConfig,
     project: &Project,
-    mapping: Option<&Path>,
+    mapping: Option<Mapped<'_>>,
     out: &mut dyn Write,
 ) -> io::Result<()> {
     if config.diff == Diff::Shown {
@@ -111,10 +120,10 @@ fn write_human(
     for file in project.files.iter().filter(is_told) {
         writeln!(out, "{:<8} {}", change(file), file_name(file))?;
     }
-    if let (Some(mapping), Some(whole)) = (mapping, &project.whole) {
-        let (mapping, whole) = (mapping.display(), Path::new(whole).file_name().unwrap_or_default().display());
+    if let (Some(Mapped { path, client }), Some(whole)) = (mapping, &project.whole) {
+        let (mapping, whole) = (path.display(), Path::new(whole).file_name().unwrap_or_default().display());
         writeln!(out, "new      {mapping}\n\n{whole} is the whole project with the shim and its CONFIGURATION.")?;
-        return writeln!(out, "{mapping} says where the gateway finds its signals: `--gateway plc={mapping}`.");
+        return writeln!(out, "{mapping} says where the gateway finds its signals: `--gateway {client}={mapping}`.");
     }
     if let Some(whole) = &project.whole {
         writeln!(out, "\n{whole} is the whole project with the shim: import it alone.")?;
