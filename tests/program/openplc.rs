@@ -74,7 +74,7 @@ fn what_becomes_of_every_scenario_compiles() {
 fn what_matiec_has_not_is_refused_with_its_place() {
     let (folder, said) = instrumented("gantry-robot", &[]);
     assert_eq!(said.code, Some(2));
-    assert!(said.out.contains("servo.st:19:13"), "{}", said.out);
+    assert!(said.out.contains("robot.st:12:22"), "{}", said.out);
     assert!(said.out.contains("`MC_Power` of motion control cannot be had in MatIEC"), "{}", said.out);
     assert!(!folder.path().join("out").exists());
     let (_, said) = instrumented("filling-machine", &[]);

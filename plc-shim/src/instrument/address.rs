@@ -12,6 +12,8 @@
 use std::collections::BTreeSet;
 use std::fmt;
 
+use super::exchanged::Way;
+
 /// An address of the areas that Modbus reaches.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Address {
@@ -162,8 +164,11 @@ pub(super) struct Room {
     memory_from: u32,
 }
 
-/// The first byte of bits that are given out: below are outputs of the PLC's own, and of slaves that it writes.
-const BITS_FROM: u32 = 512;
+/// The first byte of bits that the gateway writes: below are outputs of the board and of slaves that the PLC writes.
+const TO_PLC_FROM: u32 = 512;
+/// And of those that it reads. They share no byte with the others: OpenPLC fills the last byte of a request that
+/// writes coils with FALSE, whatever lies there.
+const FROM_PLC_FROM: u32 = 768;
 
 impl Room {
     /// All that `used` leaves, behind `words_at` if that is given.
@@ -173,9 +178,14 @@ impl Room {
     }
 
     /// The next free address for a value of this width: bits are outputs, values lie in the memory.
-    pub(super) fn next(&mut self, width: Width) -> Option<Address> {
+    pub(super) fn next(&mut self, width: Width, way: Way) -> Option<Address> {
         let found = if width == Width::Bit {
-            let bits = (BITS_FROM..COUNT).flat_map(|index| (0..8).map(move |bit| (index, bit)));
+            // The last byte of each part stays free.
+            let bytes = match way {
+                Way::ToPlc => TO_PLC_FROM..FROM_PLC_FROM - 1,
+                Way::FromPlc => FROM_PLC_FROM..COUNT - 1,
+            };
+            let bits = bytes.flat_map(|index| (0..8).map(move |bit| (index, bit)));
             bits.map(|(index, bit)| Address { area: Area::Output, width, index, bit }).find(|each| self.is_free(*each))
         } else {
             let first = self.memory_from.div_ceil(width.bytes());
@@ -219,12 +229,14 @@ mod tests {
     fn what_the_project_uses_is_not_given_out() {
         let used = ["%MW0", "%QX512.0", "%QX512.1"].map(|text| Address::parse(text).expect("an address"));
         let mut room = Room::beside(used.into_iter(), None);
-        let mut next = |width| room.next(width).map(|address| address.to_string());
+        let bit = room.next(Width::Bit, Way::FromPlc).map(|address| address.to_string());
+        assert_eq!(bit.as_deref(), Some("%QX768.0"));
+        let mut next = |width| room.next(width, Way::ToPlc).map(|address| address.to_string());
         assert_eq!(next(Width::Bit).as_deref(), Some("%QX512.2"));
         assert_eq!(next(Width::Double).as_deref(), Some("%MD1"));
         assert_eq!(next(Width::Long).as_deref(), Some("%ML1"));
         assert_eq!(next(Width::Word).as_deref(), Some("%MW1"));
         let mut room = Room::beside(std::iter::empty(), Address::parse("%MD100"));
-        assert_eq!(room.next(Width::Long).map(|address| address.to_string()).as_deref(), Some("%ML50"));
+        assert_eq!(room.next(Width::Long, Way::ToPlc).map(|address| address.to_string()).as_deref(), Some("%ML50"));
     }
 }

@@ -267,7 +267,7 @@ impl Layout {
             let placed = words.iter().find(|placed| placed.word == word);
             let address = match placed {
                 Some(placed) => Address::parse(&placed.address).filter(|address| address.modbus().is_some()),
-                None => layout.room.next(width),
+                None => layout.room.next(width, way),
             };
             let address = address.ok_or_else(|| format!("there is no place for `{word}` that Modbus reaches"))?;
             layout.addresses.insert(word.to_ascii_uppercase(), address.to_string());
@@ -344,7 +344,7 @@ impl Layout {
             return self.note(exchanged, &root.to_owned(), address, Found::direct(carrier));
         }
         let none = || format!("there is no place for `{name}` that Modbus reaches");
-        let address = asked.or_else(|| self.room.next(carrier.width)).ok_or_else(none)?;
+        let address = asked.or_else(|| self.room.next(carrier.width, exchanged.way)).ok_or_else(none)?;
         if is_whole_global && carrier.is_own() {
             self.addresses.insert(root.to_ascii_uppercase(), address.to_string());
             return self.note(exchanged, &root.to_owned(), address, Found::direct(carrier));

@@ -156,6 +156,9 @@ fn variables(page: &Page<'_>, section: &Section, addresses: &BTreeMap<String, St
         Qualifier::Retain | Qualifier::Persistent => Some(" RETAIN"),
         _ => None,
     });
+    if section.variables.is_empty() {
+        return String::new();
+    }
     let mut text = format!("    VAR_GLOBAL{}\n", qualifier.unwrap_or(""));
     for variable in &section.variables {
         for name in &variable.names {

@@ -235,3 +235,6 @@ impl Text {
         Unsaid { line, message: finding.message, help: finding.help }
     }
 }
+
+#[cfg(test)]
+mod tests;
