@@ -116,9 +116,17 @@ fn write_human(
     if config.destination == Destination::Nowhere {
         return Ok(());
     }
-    let is_told = |file: &&File| project.located.is_empty() || file.is_changed() || file.text.is_none();
-    for file in project.files.iter().filter(is_told) {
-        writeln!(out, "{:<8} {}", change(file), file_name(file))?;
+    let is_whole = |file: &File| project.whole.as_deref() == Some(file_name(file));
+    for file in &project.files {
+        match mapping {
+            // The whole project goes to one place, with its mapping.
+            Some(Mapped { path, .. }) if is_whole(file) => {
+                let name = Path::new(file_name(file)).file_name().unwrap_or_default();
+                writeln!(out, "{:<8} {}", change(file), path.with_file_name(name).display())?;
+            }
+            Some(_) if file.text.is_some() => {}
+            _ => writeln!(out, "{:<8} {}", change(file), file_name(file))?,
+        }
     }
     if let (Some(Mapped { path, client }), Some(whole)) = (mapping, &project.whole) {
         let (mapping, whole) = (path.display(), Path::new(whole).file_name().unwrap_or_default().display());

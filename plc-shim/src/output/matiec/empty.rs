@@ -30,15 +30,15 @@ impl Writer<'_, '_> {
     /// `behind` is what stands before the branch, and the kinds of word that open it.
     fn list(&mut self, list: &[Statement], behind: Option<(u32, &[TokenKind])>) {
         let is_empty = |each: &&Statement| matches!(each.kind, StatementKind::Empty);
-        for each in list.iter().filter(is_empty) {
-            self.edits.replace(each.span.start..each.span.end, "");
-        }
-        if !list.iter().all(|each| is_empty(&each)) {
-            return;
+        let is_without = behind.is_some() && list.iter().all(|each| is_empty(&each));
+        for (at, each) in list.iter().filter(is_empty).enumerate() {
+            let start = each.span.start;
+            let rest = self.page.file.text().get(start as usize..).unwrap_or("");
+            let end = rest.find(';').map_or(each.span.end, |semicolon| start + semicolon as u32 + 1);
+            self.edits.replace(start..end, if is_without && at == 0 { NOTHING } else { "" });
         }
         let opened = behind.and_then(|(from, words)| self.word(from, words));
-        let at = list.first().map(|first| first.span.end).or(opened);
-        if let Some(at) = at.filter(|_| behind.is_some()) {
+        if let Some(at) = opened.filter(|_| list.is_empty()) {
             self.edits.insert(at, NOTHING);
         }
     }
