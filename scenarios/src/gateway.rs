@@ -349,8 +349,9 @@ impl Scenario {
         };
         // With a configuration of its own the scheduler is in its tasks.
         let is_configured = !project.located.is_empty();
-        let plan = match project.tasks.map(TaskPlan::new).or(asked) {
-            Some(plan) if is_configured => plan,
+        let configured = TaskPlan::configured(&application).filter(|_| is_configured);
+        let plan = match configured.clone().or(project.tasks.map(TaskPlan::new)).or(asked) {
+            Some(plan) if configured.is_some() => plan,
             Some(plan) if mode == Mode::Lockstep => in_one_task(&plan),
             Some(plan) => with_scheduler(plan),
             None => self.task_plan(name, &application, tasks)?,
