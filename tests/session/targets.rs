@@ -14,7 +14,7 @@ use onescan_tests::{at_ms, client};
 use crate::granted::Granted;
 use crate::shim::{member, shear_folder};
 
-const TARGETS: [Target; 5] = [Target::Iec, Target::TwinCat, Target::Codesys, Target::Scl, Target::OpenPlc];
+const TARGETS: [Target; 4] = [Target::Iec, Target::TwinCat, Target::Codesys, Target::Scl];
 
 /// A scenario, and the sources of its PLC.
 struct Given {
