@@ -52,6 +52,8 @@ pub struct Compiled {
 
 /// The sources of a soft PLC, and how they are compiled.
 pub struct PlcSources<'a> {
+    /// The client.
+    pub name: &'a ClientName,
     /// Files, relative to the scenario's folder.
     pub sources: &'a [String],
     /// The dialect of all of them; from each file's name if absent.
@@ -97,6 +99,7 @@ impl Scenario {
     pub fn plcs(&self) -> impl Iterator<Item = PlcSources<'_>> {
         self.file().clients.iter().filter_map(|(name, client)| match client.get_ref() {
             ClientFile::SoftPlc { sources, dialect, tasks, .. } => Some(PlcSources {
+                name,
                 sources,
                 dialect: *dialect,
                 plan: plan_of(tasks),

@@ -22,6 +22,7 @@ mod load;
 mod map;
 mod new;
 mod opcua;
+mod openplc;
 mod operator;
 mod output;
 mod plant;

@@ -10,6 +10,7 @@ use onescan_plc_shim::instrument;
 use onescan_plc_shim::{Code, Dialect, Input, MemoryLimit, TaskPlan};
 use onescan_scenario::Scenario;
 use onescan_scenario::load::FILE_NAME;
+use onescan_server::signal::ClientName;
 
 use super::error::CheckError;
 use super::stubs::FOLDER as LIBRARIES;
@@ -19,6 +20,8 @@ use crate::error::{Unreadable, Usage};
 pub struct Program {
     /// The files.
     pub inputs: Vec<Input>,
+    /// The client of a scenario that it is the program of.
+    pub client: Option<ClientName>,
     /// Which programs run in which task, where that is known.
     pub plan: Option<TaskPlan>,
     /// How much memory its variables may take.
@@ -56,7 +59,7 @@ pub fn programs(paths: &[PathBuf], reading: Reading) -> Result<Vec<Program>, Che
     if !files.inputs.is_empty() {
         files.libraries(libraries)?;
         let memory_limit = memory_limit.unwrap_or_default();
-        programs.push(Program { inputs: needed(files.inputs), plan: None, memory_limit });
+        programs.push(Program { inputs: needed(files.inputs), client: None, plan: None, memory_limit });
     }
     if programs.is_empty() {
         let known: Vec<_> = EXTENSIONS.iter().map(|(extension, _)| format!(".{extension}")).collect();
@@ -83,7 +86,8 @@ fn scenario(
             files.named(&scenario.folder().join(source))?;
         }
         let memory_limit = chosen_limit.unwrap_or(plc.memory_limit);
-        programs.push(Program { inputs: files.inputs, plan: plc.plan, memory_limit });
+        let client = Some(plc.name.clone());
+        programs.push(Program { inputs: files.inputs, client, plan: plc.plan, memory_limit });
     }
     Ok(programs)
 }

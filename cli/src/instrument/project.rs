@@ -7,6 +7,7 @@ use onescan_plc_shim::input::encoding::{Charset, Encoding, encode};
 use onescan_plc_shim::input::kind::{FileKind, SourceKind};
 use onescan_plc_shim::instrument::{File, Project};
 use onescan_report::file::Write;
+use onescan_server::signal::{ClientName, did_you_mean};
 
 use super::error::InstrumentError;
 use super::{Destination, InstrumentConfig};
@@ -17,11 +18,24 @@ use crate::error::{Unreadable, Usage};
 ///
 /// # Errors
 /// A file is not there, cannot be read, or is of no kind that is read; or there are several programs.
-pub fn program(project: &Path) -> Result<Program, InstrumentError> {
+pub fn program(project: &Path, client: Option<&ClientName>) -> Result<Program, InstrumentError> {
     let mut programs = collect::programs(&[project.to_owned()], Reading::default())?;
+    let clients: Vec<String> = programs.iter().filter_map(|each| Some(each.client.as_ref()?.to_string())).collect();
+    if let Some(wanted) = client {
+        programs.retain(|program| program.client.as_ref() == Some(wanted));
+        if programs.is_empty() {
+            let help = did_you_mean(wanted.as_str(), clients.iter().map(String::as_str));
+            return Err(Usage::new(format!("there is no PLC `{wanted}` with sources here"), help).into());
+        }
+    }
     let count = programs.len();
     let (Some(mut program), 1) = (programs.pop(), count) else {
-        let help = "name the folder with the sources of one".to_owned();
+        let help = match clients.split_last() {
+            Some((last, others)) => {
+                format!("say which: `--client {}` or `--client {last}`", others.join("`, `--client "))
+            }
+            None => "name the folder with the sources of one".to_owned(),
+        };
         return Err(Usage::new(format!("there are {count} PLCs here"), Some(help)).into());
     };
     add_own(&mut program.inputs)?;
@@ -94,6 +108,12 @@ pub(super) fn writes(config: &InstrumentConfig, project: &Project) -> Result<Vec
             Destination::InPlace if !file.is_changed() => continue,
             Destination::InPlace => PathBuf::from(&file.name),
             Destination::Folder(_) if file.text.is_none() => continue,
+            // What is imported alone needs no copies of the sources beside it.
+            Destination::Folder(_) if !project.located.is_empty() && !is_whole(file, project) => continue,
+            // The tool is given one file, and not a folder.
+            Destination::Folder(folder) if !project.located.is_empty() => {
+                folder.join(Path::new(&file.name).file_name().unwrap_or_default())
+            }
             Destination::Folder(folder) => folder.join(relative(file, &config.project)?),
         };
         let bytes = match &file.text {
@@ -107,6 +127,19 @@ pub(super) fn writes(config: &InstrumentConfig, project: &Project) -> Result<Vec
         writes.push(Write { path, bytes });
     }
     Ok(writes)
+}
+
+fn is_whole(file: &File, project: &Project) -> bool {
+    project.whole.as_ref() == Some(&file.name)
+}
+
+/// Where a file goes that belongs to the whole project; nothing if nothing is written.
+pub(super) fn beside(config: &InstrumentConfig, project: &Project, name: &str) -> Option<PathBuf> {
+    match &config.destination {
+        Destination::Nowhere => None,
+        Destination::Folder(folder) => Some(folder.join(name)),
+        Destination::InPlace => project.whole.as_ref().map(|whole| Path::new(whole).with_file_name(name)),
+    }
 }
 
 /// A file's path within the project.

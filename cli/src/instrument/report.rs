@@ -1,6 +1,7 @@
 //! What was changed, for people and machines.
 
 use std::io::{self, Write};
+use std::path::Path;
 
 use onescan_plc_shim::Diagnostics;
 use onescan_plc_shim::instrument::{File, Project, diff};
@@ -21,6 +22,9 @@ struct Json<'a> {
     /// The file that alone is to be given to the tool, if one holds the whole project.
     #[serde(skip_serializing_if = "Option::is_none")]
     whole: Option<&'a str>,
+    /// The file with the gateway's mapping, where the target has addresses.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    mapping: Option<String>,
     findings: Vec<Line<'a>>,
 }
 
@@ -32,6 +36,15 @@ struct JsonFile<'a> {
     lines: &'a [Option<u32>],
     #[serde(skip_serializing_if = "Option::is_none")]
     diff: Option<String>,
+}
+
+/// The file with the gateway's mapping.
+#[derive(Clone, Copy)]
+pub struct Mapped<'a> {
+    /// Where it is.
+    pub path: &'a Path,
+    /// The client that it is the link of.
+    pub client: &'a str,
 }
 
 /// Writes what was found.
@@ -56,15 +69,25 @@ pub fn findings(
 ///
 /// # Errors
 /// Those of `out`.
-pub fn write(config: &InstrumentConfig, project: &Project, out: &mut dyn Write) -> Result<(), InstrumentError> {
+pub fn write(
+    config: &InstrumentConfig,
+    project: &Project,
+    mapping: Option<Mapped<'_>>,
+    out: &mut dyn Write,
+) -> Result<(), InstrumentError> {
     let written = match config.format {
-        Format::Json => write_json(config, project, out),
-        Format::Human => write_human(config, project, out),
+        Format::Json => write_json(config, project, mapping, out),
+        Format::Human => write_human(config, project, mapping, out),
     };
     Ok(written.map_err(OutputError)?)
 }
 
-fn write_json(config: &InstrumentConfig, project: &Project, out: &mut dyn Write) -> io::Result<()> {
+fn write_json(
+    config: &InstrumentConfig,
+    project: &Project,
+    mapping: Option<Mapped<'_>>,
+    out: &mut dyn Write,
+) -> io::Result<()> {
     let file = |file| JsonFile {
         file: file_name(file),
         change: change(file),
@@ -73,12 +96,18 @@ fn write_json(config: &InstrumentConfig, project: &Project, out: &mut dyn Write)
     };
     let findings = project.warnings.findings().iter().map(Line::from).collect();
     let whole = project.whole.as_deref();
-    let report = Json { files: project.files.iter().map(file).collect(), whole, findings };
+    let mapping = mapping.map(|mapped| mapped.path.display().to_string());
+    let report = Json { files: project.files.iter().map(file).collect(), whole, mapping, findings };
     serde_json::to_writer(&mut *out, &report)?;
     writeln!(out)
 }
 
-fn write_human(config: &InstrumentConfig, project: &Project, out: &mut dyn Write) -> io::Result<()> {
+fn write_human(
+    config: &InstrumentConfig,
+    project: &Project,
+    mapping: Option<Mapped<'_>>,
+    out: &mut dyn Write,
+) -> io::Result<()> {
     if config.diff == Diff::Shown {
         for file in &project.files {
             write!(out, "{}", diff::unified(file))?;
@@ -87,8 +116,22 @@ fn write_human(config: &InstrumentConfig, project: &Project, out: &mut dyn Write
     if config.destination == Destination::Nowhere {
         return Ok(());
     }
+    let is_whole = |file: &File| project.whole.as_deref() == Some(file_name(file));
     for file in &project.files {
-        writeln!(out, "{:<8} {}", change(file), file_name(file))?;
+        match mapping {
+            // The whole project goes to one place, with its mapping.
+            Some(Mapped { path, .. }) if is_whole(file) => {
+                let name = Path::new(file_name(file)).file_name().unwrap_or_default();
+                writeln!(out, "{:<8} {}", change(file), path.with_file_name(name).display())?;
+            }
+            Some(_) if file.text.is_some() => {}
+            _ => writeln!(out, "{:<8} {}", change(file), file_name(file))?,
+        }
+    }
+    if let (Some(Mapped { path, client }), Some(whole)) = (mapping, &project.whole) {
+        let (mapping, whole) = (path.display(), Path::new(whole).file_name().unwrap_or_default().display());
+        writeln!(out, "new      {mapping}\n\n{whole} is the whole project with the shim and its CONFIGURATION.")?;
+        return writeln!(out, "{mapping} says where the gateway finds its signals: `--gateway {client}={mapping}`.");
     }
     if let Some(whole) = &project.whole {
         writeln!(out, "\n{whole} is the whole project with the shim: import it alone.")?;

@@ -1,0 +1,118 @@
+use super::*;
+
+fn low(text: &str) -> String {
+    let lowered = lowered(text, Dialect::default());
+    lowered.map_or_else(|unsaid| panic!("{unsaid:?}"), |lowered| lowered.text)
+}
+
+/// The text with one blank for each gap.
+fn words(text: &str) -> String {
+    text.split_whitespace().collect::<Vec<_>>().join(" ")
+}
+
+fn refused(text: &str) -> Vec<(Option<u32>, String)> {
+    match lowered(text, Dialect::default()) {
+        Ok(lowered) => panic!("{}", lowered.text),
+        Err(unsaid) => unsaid.into_iter().map(|each| (each.line, each.message)).collect(),
+    }
+}
+
+#[test]
+fn declarations_stand_one_by_one() {
+    let text = low("PROGRAM P\nVAR a, b, c : R_TRIG; n, m : INT := 3; END_VAR\na(CLK := TRUE);\nEND_PROGRAM\n");
+    assert!(text.contains("a : R_TRIG; b : R_TRIG; c : R_TRIG; n : INT := 3; m : INT := 3;"), "{text}");
+}
+
+#[test]
+fn enumerations_become_integers_and_conversions_name_both_types() {
+    let text = low(
+        "TYPE State : (Idle := 4, Busy); END_TYPE\nPROGRAM P\nVAR s : State; t : State := Busy; d : DINT; r : REAL; \
+                    END_VAR\nCASE s OF Idle: s := State#Busy; Busy: d := TO_DINT(s); END_CASE;\nr := TO_REAL(d);\n\
+                    END_PROGRAM\n",
+    );
+    assert!(text.contains("s : INT := 4; t : INT := 5;"), "{text}");
+    assert!(text.contains("CASE s OF 4: s := 5; 5: d := INT_TO_DINT(s); END_CASE;"), "{text}");
+    assert!(text.contains("r := DINT_TO_REAL(d);"), "{text}");
+}
+
+#[test]
+fn arrays_of_blocks_become_instances_and_loops_over_them_their_rounds() {
+    let block =
+        "FUNCTION_BLOCK B VAR_INPUT x : BOOL; END_VAR VAR_OUTPUT y : BOOL; END_VAR y := x; END_FUNCTION_BLOCK\n";
+    let text = low(&format!(
+        "{block}PROGRAM P\nVAR b : ARRAY [1..2] OF B; i : INT; n : INT; END_VAR\n\
+         FOR i := 1 TO 2 DO b[i](x := b[2].y); n := n + i; END_FOR;\nEND_PROGRAM\n"
+    ));
+    let text = words(&text);
+    assert!(text.contains("b_1 : B; b_2 : B;"), "{text}");
+    let rounds = "i := 1; b_1(x := b_2.y); n := n + i; i := 2; b_2(x := b_2.y); n := n + i; i := 3;";
+    assert!(text.contains(rounds), "{text}");
+    let found = refused(&format!(
+        "{block}PROGRAM P\nVAR b : ARRAY [1..2] OF B; i : INT; END_VAR\ni := 2;\nb[i]();\nEND_PROGRAM\n"
+    ));
+    assert_eq!(found, [(Some(5), "a function block that is chosen while it runs cannot be had in MatIEC".to_owned())]);
+}
+
+#[test]
+fn loops_run_also_where_the_first_value_is_the_last() {
+    let text = words(&low("PROGRAM P\nVAR i : INT; j : INT; n : INT; END_VAR\n\
+                           FOR i := 1 TO 1 DO FOR j := 9 TO 1 BY -2 DO n := n + 1; END_FOR; END_FOR;\n\
+                           FOR i := 0 TO n DO n := n - 1; END_FOR;\nEND_PROGRAM\n"));
+    let nested =
+        "i := 1; WHILE i <= 1 DO j := 9; WHILE j >= 1 DO n := n + 1; j := j - 2; END_WHILE; i := i + 1; END_WHILE;";
+    assert!(text.contains(nested), "{text}");
+    assert!(text.contains(": INT; END_VAR") && text.contains(":= n; WHILE i <= Last_"), "{text}");
+}
+
+#[test]
+fn branches_have_statements_and_comments_are_of_the_second_edition() {
+    let text =
+        low("PROGRAM P\nVAR a : BOOL; END_VAR\n// one (* two\nIF a THEN ; ELSE a := TRUE; END_IF; {pragma}\n;\n\
+                    END_PROGRAM\n");
+    assert!(text.contains("(* one ( * two *)") && !text.contains("pragma"), "{text}");
+    assert!(words(&text).contains("IF a THEN WHILE FALSE DO EXIT; END_WHILE; ELSE a := TRUE; END_IF;"), "{text}");
+}
+
+#[test]
+fn global_variables_are_declared_where_they_are_used() {
+    let text = low("VAR_GLOBAL g : INT; h : INT; END_VAR\nVAR_GLOBAL CONSTANT k : INT := 2; END_VAR\n\
+                    PROGRAM P\nVAR_EXTERNAL h : INT; END_VAR\ng := h + k;\nEND_PROGRAM\n");
+    assert!(text.contains("VAR_EXTERNAL g : INT; END_VAR\nVAR_EXTERNAL CONSTANT k : INT; END_VAR"), "{text}");
+    assert_eq!(text.matches("VAR_EXTERNAL h").count(), 1, "{text}");
+}
+
+#[test]
+fn arrays_of_structures_get_their_values_in_the_first_scan() {
+    let text = low("TYPE T : STRUCT X : INT; END_STRUCT; END_TYPE\nPROGRAM P\n\
+                    VAR t : ARRAY [1..2] OF T := [(X := 5), (X := 6)]; END_VAR\nt[1].X := 1;\nEND_PROGRAM\n");
+    let text = words(&text);
+    assert!(text.contains("t : ARRAY [1..2] OF T; END_VAR VAR Values_Given : BOOL; END_VAR"), "{text}");
+    assert!(
+        text.contains("IF NOT Values_Given THEN Values_Given := TRUE; t[1].X := 5; t[2].X := 6; END_IF;"),
+        "{text}"
+    );
+}
+
+#[test]
+fn what_there_is_no_way_for_is_refused_at_its_line() {
+    let found =
+        refused("PROGRAM P\nVAR t : LTIME; n : DINT; END_VAR\nWHILE n < 3 DO\nCONTINUE;\nEND_WHILE;\nEND_PROGRAM\n");
+    let found: Vec<_> = found.iter().map(|(line, message)| format!("{line:?} {message}")).collect();
+    let expected = ["Some(4) CONTINUE cannot be had in MatIEC", "Some(2) the type LTIME cannot be had in MatIEC"];
+    assert_eq!(found, expected);
+}
+
+#[test]
+fn the_file_has_an_order_and_a_configuration() {
+    let text = "PROGRAM P\nVAR s : Outer; END_VAR\ns.i.x := F(1);\nEND_PROGRAM\nVAR_GLOBAL g : INT := 7; h AT %MW3 : INT; END_VAR\n\
+                FUNCTION F : INT VAR_INPUT a : INT; END_VAR F := a; END_FUNCTION\n\
+                TYPE Outer : STRUCT i : Inner; END_STRUCT; Inner : STRUCT x, y : INT; END_STRUCT; END_TYPE\n";
+    let cycle = Cycle { interval: "T#10ms".to_owned(), programs: vec![("Run_P".to_owned(), "P".to_owned())] };
+    let addresses = BTreeMap::from([("G".to_owned(), "%MW0".to_owned())]);
+    let whole = assembled(text, Dialect::default(), &addresses, &cycle);
+    let at = |part: &str| whole.find(part).unwrap_or_else(|| panic!("{part}: {whole}"));
+    let order = ["Inner : STRUCT", "Outer : STRUCT", "FUNCTION F", "PROGRAM P", "CONFIGURATION Config0"];
+    assert!(order.map(at).is_sorted(), "{whole}");
+    assert!(whole.contains("g AT %MW0 : INT := 7;") && whole.contains("h AT %MW3 : INT;"), "{whole}");
+    assert!(whole.contains("PROGRAM Run_P WITH SDSP_Cycle : P;"), "{whole}");
+}
