@@ -30,6 +30,7 @@ mod plc_chart;
 mod plc_equal;
 mod plc_faults;
 mod plc_peers;
+mod plc_s7;
 mod plc_untrusted;
 mod plcopen_schema;
 mod python;

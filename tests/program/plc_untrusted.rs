@@ -56,7 +56,7 @@ fn a_plc_with_another_layout_is_told() {
 fn a_plc_is_not_upset_by_what_is_sent_to_it() {
     let (expected, _) = run_shear(&["--until", "1s"]);
     let mut plc = Plc::start(&scenario("shear"), &[]);
-    for scheme in ["tcp://", "modbus://", "opc.tcp://", "ads://"] {
+    for scheme in ["tcp://", "s7://", "modbus://", "opc.tcp://", "ads://"] {
         let gateway = plc.gateway(scheme);
         let address = gateway.rsplit("://").next().unwrap().to_owned();
         for seed in 0..20_u64 {

@@ -4,6 +4,7 @@
 //! `[Nyyssönen]` Fig. 18: 16 control bits and seven REALs are 30 bytes an axis.
 
 use std::collections::BTreeMap;
+use std::ops::Range;
 
 use onescan_base::did_you_mean;
 use onescan_server::signal::SignalType;
@@ -42,10 +43,16 @@ struct Place {
     ty: SignalType,
 }
 
+impl Place {
+    fn bytes(&self) -> Range<usize> {
+        self.byte..self.byte + self.ty.size()
+    }
+}
+
 /// A value in packed bytes and in a block.
 #[derive(Clone, Debug, PartialEq, Eq)]
 struct Move {
-    packed: std::ops::Range<usize>,
+    packed: Range<usize>,
     place: Place,
 }
 
@@ -104,6 +111,29 @@ impl Layout {
     /// Bytes of the block.
     pub fn size(&self) -> usize {
         self.size
+    }
+
+    /// The bytes in which the points lie that are `wanted`, by their index among those of the direction: as few ranges
+    /// as there are, in their order.
+    pub fn runs(&self, wanted: impl Fn(usize) -> bool) -> Vec<Range<usize>> {
+        let chosen = self.moves.iter().enumerate().filter(|(index, _)| wanted(*index));
+        let mut places: Vec<Range<usize>> = chosen.map(|(_, each)| each.place.bytes()).collect();
+        places.sort_by_key(|place| place.start);
+        let mut runs: Vec<Range<usize>> = Vec::new();
+        for place in places {
+            match runs.last_mut().filter(|last| place.start <= last.end) {
+                Some(last) => last.end = last.end.max(place.end),
+                None => runs.push(place),
+            }
+        }
+        runs
+    }
+
+    /// The points that lie in these bytes of the block in part or whole, by their index and packed bytes.
+    pub(crate) fn touched(&self, bytes: &Range<usize>) -> impl Iterator<Item = (usize, Range<usize>)> {
+        let touches = |place: Range<usize>| place.start < bytes.end && bytes.start < place.end;
+        let chosen = self.moves.iter().enumerate().filter(move |(_, each)| touches(each.place.bytes()));
+        chosen.map(|(index, each)| (index, each.packed.clone()))
     }
 
     /// Puts packed values into a block.
