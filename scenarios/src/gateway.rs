@@ -162,7 +162,7 @@ impl Scenario {
         };
         let inputs = self.inputs(name, sources, *dialect)?;
         let asked = plan_of(tasks);
-        let options = Options { target, tasks: asked.clone().map(|plan| plan.tasks) };
+        let options = Options { target, tasks: asked.clone().map(|plan| plan.tasks), ..Options::default() };
         let project = instrument(&inputs, &options).map_err(|error| match error {
             InstrumentError::Text(findings) => Box::new(PlcReport { client: name.clone(), findings }).into(),
             other => self.wrong_client(name, other.to_string(), None),

@@ -88,7 +88,7 @@ pub fn instrument(
         Direction::Remove => instrument::remove(&program.inputs),
         Direction::Attach => {
             let tasks = tasks(config, program.plan);
-            instrument::instrument(&program.inputs, &Options { target: config.target, tasks })
+            instrument::instrument(&program.inputs, &Options { target: config.target, tasks, ..Options::default() })
         }
     };
     let project = match project {

@@ -15,6 +15,7 @@
 //! | [`configuration`] | a project's CONFIGURATION |
 //! | [`plain`] | a project without the shim, and its changes |
 //! | [`controller`] | execution controllers |
+//! | [`exchanged`] | the variables that a gateway writes and reads |
 //! | [`scl`] | SCL of TIA Portal: organization blocks, timers |
 //! | [`plcopen_project`], [`plcopen`], [`plcopen_unit`] | projects in PLCopen XML |
 //! | [`chart`], [`chart_plan`], [`chart_script`], [`chart_action`] | Sequential Function Charts: execution signal, action control, times of steps |
@@ -35,6 +36,7 @@ mod codesys;
 mod configuration;
 mod controller;
 pub mod diff;
+mod exchanged;
 mod foreign;
 mod marks;
 mod motion;
@@ -60,6 +62,7 @@ use std::sync::Arc;
 
 use thiserror::Error;
 
+pub use self::exchanged::{Exchanged, Way};
 use self::plain::Plain;
 use self::survey::{Survey, survey};
 pub use self::target::Target;
@@ -81,6 +84,10 @@ pub struct Options {
     /// The tasks; without any, those of the project's CONFIGURATION, or one of 10 ms for all programs
     /// that no other calls.
     pub tasks: Option<Vec<Task>>,
+    /// What the gateway writes and reads, in the order in which it lies there; empty if no scenario is known.
+    pub exchanged: Vec<Exchanged>,
+    /// The number of the scenario's mapping, which the PLC shows as `SDSP_Layout`.
+    pub layout: Option<u32>,
 }
 
 /// Why a project cannot be instrumented.
@@ -229,7 +236,7 @@ fn attach(plain: &Plain, options: &Options) -> Result<Attached, InstrumentError>
     forms.extend((!survey.charts.is_empty()).then(clock::on_delay));
     forms.sort_by_key(|form| form.name);
     forms.dedup();
-    let sources = Sources::new(options.target, &tasks, &forms, &motion.blocks, &survey.charts);
+    let sources = Sources::new(options, &tasks, &forms, &motion.blocks, &survey.charts);
     if plain.is_xml() {
         let files = vec![plain.edited_xml(&survey, &motion, &tasks, &sources)?];
         let project = Project::of(files, Diagnostics::new(findings, &plain.sources));

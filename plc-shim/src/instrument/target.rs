@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use super::Options;
 use super::clock::Form;
 use super::marks;
 use super::motion::{self, Part, Use};
@@ -69,12 +70,13 @@ pub(super) enum Globals {
 
 impl Sources {
     pub(super) fn new(
-        target: Target,
+        options: &Options,
         tasks: &TaskTable<'_>,
         forms: &[&Form],
         blocks: &BTreeMap<String, Use>,
         charts: &[&Pou],
     ) -> Self {
+        let Options { target, layout, .. } = *options;
         let wanted: &[Only] = if forms.iter().any(|form| form.long) { &[Only::LongTime] } else { &[] };
         let mut names = tasks.names();
         let sizes = [("SDSP_PROGRAMS", tasks.programs.len().to_string())];
@@ -86,6 +88,7 @@ impl Sources {
             Target::Scl => ("DINT_TO_TIME(LINT_TO_DINT(#TV / 1000000))", "LINT_TO_LTIME(#TV)"),
         };
         names.extend([("SDSP_NOW_OF_TV", now.to_owned()), ("SDSP_NOWL_OF_TV", now_long.to_owned())]);
+        names.push(("SDSP_LAYOUT_NUMBER", layout.unwrap_or(0).to_string()));
         let fill = if target == Target::Scl { template::fill_scl } else { template::fill };
         let filled = |template: &str| fill(&template::lines_for(&tasks.with_singles(template), wanted), &names);
         let unit = |form: &&Form| Unit { name: form.new_name(), text: form.text(target) };
