@@ -59,7 +59,8 @@ fn end(pou: &Pou, controller: &Controller, places: &Places, file: &SourceFile, e
     let mut returns = Returns { starts: Vec::new() };
     walk::statements(&pou.body, &mut returns);
     for start in returns.starts {
-        edits.insert(file.shown_range(start, start + 1).start, marks::inline(footer));
+        let footer: Vec<&str> = footer.split_whitespace().collect();
+        edits.insert(file.shown_range(start, start + 1).start, marks::inline(&footer.join(" ")));
     }
     edits.insert(places.footer, marks::lines(footer, line_break));
 }
