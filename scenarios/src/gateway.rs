@@ -98,7 +98,8 @@ impl Scenario {
         is_real.then(|| {
             let Agreement { settings, request, exchange, .. } = self.agreement(name)?;
             let link = settings.link(&exchange).map_err(|fault| self.wrong_settings(name, fault))?;
-            Ok(Box::new(FreeGateway::new(request, exchange, link)) as Box<dyn Client>)
+            let patience = settings.patience().reconnect;
+            Ok(Box::new(FreeGateway::new(request, exchange, link, patience)) as Box<dyn Client>)
         })
     }
 
@@ -138,12 +139,24 @@ impl Scenario {
     /// # Errors
     /// The mapping is wrong, or there are several PLCs.
     pub fn agreement_of(&self, inputs: Vec<Input>) -> Result<Option<Agreement>, ScenarioError> {
+        self.agreement_of_over(inputs, |declared| declared)
+    }
+
+    /// The same over the link that `link` makes of the scenario's.
+    ///
+    /// # Errors
+    /// As above.
+    pub fn agreement_of_over(
+        &self,
+        inputs: Vec<Input>,
+        link: impl FnOnce(Settings) -> Settings,
+    ) -> Result<Option<Agreement>, ScenarioError> {
         let is_plc = |client: &toml::Spanned<ClientFile>| matches!(client.get_ref(), ClientFile::SoftPlc { .. });
         let mut plcs = self.file().clients.iter().filter(|(_, client)| is_plc(client)).map(|(name, _)| name);
         let (Some(name), None) = (plcs.next(), plcs.next()) else { return Ok(None) };
         let builder = Application::builder().memory_limit(self.memory_limit(name)).inputs(inputs);
         let Ok(application) = builder.build() else { return Ok(None) };
-        self.agreement_on(name, self.declared(name), &application).map(Some)
+        self.agreement_on(name, link(self.declared(name)), &application).map(Some)
     }
 
     fn agreement_on(

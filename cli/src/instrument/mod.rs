@@ -2,9 +2,11 @@
 //!
 //! | module | subject |
 //! |---|---|
+//! | [`blocks`] | the mapping that goes with data blocks |
 //! | [`project`] | which files are meant, and where the result goes |
 //! | [`report`] | what was changed, for people and machines |
 
+pub mod blocks;
 mod error;
 pub mod project;
 pub mod report;
@@ -15,7 +17,7 @@ use std::path::{Path, PathBuf};
 use onescan_plc_shim::input::kind::FileKind;
 use onescan_plc_shim::instrument::{self, InstrumentError as Refusal, Options, Target};
 use onescan_plc_shim::{Diagnostics, Input, Task, TaskPlan};
-use onescan_report::file::write_all_whole;
+use onescan_report::file::{Write as FileWrite, write_all_whole};
 use onescan_scenario::Scenario;
 use onescan_scenario::gateway::Agreement;
 use onescan_scenario::load::FILE_NAME;
@@ -88,10 +90,12 @@ pub fn instrument(
     err: &mut dyn Write,
 ) -> Result<ExitCode, InstrumentError> {
     let program = project::program(&config.project)?;
+    let mut mapping = None;
     let project = match config.direction {
         Direction::Remove => instrument::remove(&program.inputs),
         Direction::Attach => {
             let agreed = agreed(config, &program.inputs)?;
+            mapping = agreed.as_ref().filter(|_| config.target == Target::Scl).and_then(blocks::mapping);
             let exchanged = agreed.as_ref().map(Agreement::exchanged).unwrap_or_default();
             let layout = agreed.and_then(|agreed| agreed.layout);
             let tasks = tasks(config, program.plan);
@@ -115,7 +119,10 @@ pub fn instrument(
         report::findings(&project.warnings, program.inputs.len(), config.format, out)?;
         return Ok(ExitCode::Unmet);
     }
-    let writes = project::writes(config, &project)?;
+    let mut writes = project::writes(config, &project)?;
+    if let (Some(text), Some(path)) = (mapping, project::beside_own(config, &project, blocks::FILE)?) {
+        writes.push(FileWrite { path, bytes: Some(text.into_bytes()) });
+    }
     write_all_whole(&writes)?;
     report::write(config, &project, out)?;
     tell(&project.warnings, program.inputs.len(), config, err)?;
@@ -141,7 +148,11 @@ fn agreed(config: &InstrumentConfig, inputs: &[Input]) -> Result<Option<Agreemen
             None => input,
         })
     });
-    Ok(Scenario::load(path)?.agreement_of(own.collect())?)
+    let scenario = Scenario::load(path)?;
+    Ok(match config.target {
+        Target::Scl => scenario.agreement_of_over(own.collect(), blocks::settings)?,
+        _ => scenario.agreement_of(own.collect())?,
+    })
 }
 
 fn tasks(config: &InstrumentConfig, plan: Option<TaskPlan>) -> Option<Vec<Task>> {

@@ -109,6 +109,21 @@ pub(super) fn writes(config: &InstrumentConfig, project: &Project) -> Result<Vec
     Ok(writes)
 }
 
+/// Where a file goes that belongs beside the shim's own; nothing if nothing is written.
+pub(super) fn beside_own(
+    config: &InstrumentConfig,
+    project: &Project,
+    name: &str,
+) -> Result<Option<PathBuf>, InstrumentError> {
+    let is_own = |file: &&File| Path::new(&file.name).file_name().is_some_and(|name| name == "sdsp.scl");
+    let Some(own) = project.files.iter().find(is_own) else { return Ok(None) };
+    Ok(match &config.destination {
+        Destination::Nowhere => None,
+        Destination::InPlace => Some(Path::new(&own.name).with_file_name(name)),
+        Destination::Folder(folder) => Some(folder.join(relative(own, &config.project)?.with_file_name(name))),
+    })
+}
+
 /// A file's path within the project.
 pub(super) fn relative<'f>(file: &'f File, project: &Path) -> Result<&'f Path, InstrumentError> {
     let root = if project.is_dir() { project } else { project.parent().unwrap_or(Path::new("")) };

@@ -5,6 +5,7 @@ use std::time::{Duration, Instant};
 use onescan_server::client::{Client, ClientFault, JoinRequest, Wake};
 use onescan_server::time::VirtualTime;
 
+use super::contact;
 use super::exchange::{Direction, Exchange};
 use super::fault::{GatewayFault, LinkFault};
 use super::handshake::{Ask, Handshake, Notice};
@@ -71,12 +72,12 @@ impl Gateway {
         Self { handshake: self.handshake.expecting(layout), ..self }
     }
 
-    /// Connects and checks the mapping, before any session.
+    /// Connects and checks the mapping, before any session; a PLC that is not there yet is waited for.
     ///
     /// # Errors
     /// See [`LinkFault`].
     pub fn connect(&mut self) -> Result<(), LinkFault> {
-        self.link.connect()?;
+        contact::connect(&mut *self.link, self.request.name.as_str(), self.patience.reconnect)?;
         self.handshake.connected();
         Ok(())
     }

@@ -66,7 +66,7 @@ use thiserror::Error;
 
 pub use self::exchanged::{Exchanged, Way};
 use self::plain::Plain;
-pub use self::scl_exchange::{DB_FROM_PLC, DB_TO_PLC};
+pub use self::scl_exchange::{DB_FROM_PLC, DB_TO_PLC, goes_in_blocks};
 use self::survey::{Survey, survey};
 pub use self::target::Target;
 use self::target::{Globals, Sources};

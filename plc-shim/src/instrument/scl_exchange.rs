@@ -34,7 +34,7 @@ const WORDS_FROM_PLC: [(&str, Form); 4] = [
 
 /// The blocks and copies of what is exchanged; nothing if nothing is, or a value has no place in a block.
 pub(super) fn text(exchanged: &[Exchanged]) -> Option<String> {
-    if exchanged.is_empty() || refused(exchanged).is_some() {
+    if !goes_in_blocks(exchanged) {
         return None;
     }
     let of = |way: Way| exchanged.iter().filter(move |each| each.way == way).collect::<Vec<_>>();
@@ -53,6 +53,11 @@ pub(super) fn text(exchanged: &[Exchanged]) -> Option<String> {
         ("    ; // SDSP_GIVEN\n", given),
     ];
     Some(replaced.iter().fold(template::SCL_EXCHANGE.to_owned(), |text, (mark, new)| text.replace(mark, new)))
+}
+
+/// True if there is something to exchange, and all of it has a place in a data block of S7 communication.
+pub fn goes_in_blocks(exchanged: &[Exchanged]) -> bool {
+    !exchanged.is_empty() && refused(exchanged).is_none()
 }
 
 /// What is told of a signal that has no place in a data block; over OPC UA it goes as it is.
