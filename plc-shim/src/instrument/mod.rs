@@ -22,12 +22,15 @@
 //! | [`chart`], [`chart_plan`], [`chart_script`], [`chart_action`] | Sequential Function Charts: execution signal, action control, times of steps |
 //! | [`plcopen_chart`], [`plcopen_gate`] | the same of charts that are drawn, in PLCopen XML |
 //! | [`port`], [`codesys`] | a project in text for a tool that takes another form |
+//! | [`matiec`], [`taken_over`] | a project in text for MatIEC, with all that the gateway exchanges at addresses |
+//! | [`address`], [`located`] | direct addresses, and what lies there |
 //! | [`verify`] | what has been written is checked |
 //! | [`target`], [`twincat`] | the shim's sources as a vendor's tool takes them |
 //!
 //! Invariants: text goes in and comes out, no file is touched; what is not marked stays byte for byte;
 //! instrumenting twice is instrumenting once; what cannot be replaced is told.
 
+mod address;
 mod chart;
 mod chart_action;
 mod chart_plan;
@@ -39,7 +42,9 @@ mod controller;
 pub mod diff;
 mod exchanged;
 mod foreign;
+mod located;
 mod marks;
+mod matiec;
 mod motion;
 mod motion_use;
 mod plain;
@@ -54,6 +59,7 @@ mod scl_exchange;
 mod scl_port;
 mod single;
 mod survey;
+mod taken_over;
 mod target;
 mod tasks;
 mod template;
@@ -62,9 +68,12 @@ mod verify;
 
 use std::sync::Arc;
 
+use onescan_base::TimeSpan;
 use thiserror::Error;
 
+pub use self::address::Address;
 pub use self::exchanged::{Exchanged, Way};
+pub use self::located::Located;
 use self::plain::Plain;
 pub use self::scl_exchange::{DB_FROM_PLC, DB_TO_PLC, goes_in_blocks};
 use self::survey::{Survey, survey};
@@ -91,6 +100,10 @@ pub struct Options {
     pub exchanged: Vec<Exchanged>,
     /// The number of the scenario's mapping, which the PLC shows as `SDSP_Layout`.
     pub layout: Option<u32>,
+    /// Where the words of the handshake begin in the PLC's memory, as in `%MD0`; without, where there is room.
+    pub words_at: Option<String>,
+    /// The interval of the emitted task of the scheduler; without, the shortest of the project's tasks.
+    pub cycle: Option<TimeSpan>,
 }
 
 /// Why a project cannot be instrumented.
@@ -132,6 +145,8 @@ pub struct Project {
     pub whole: Option<String>,
     /// The tasks of the program, where they run other units than those that were asked for.
     pub tasks: Option<Vec<Task>>,
+    /// What lies at addresses, where the target has them.
+    pub located: Vec<Located>,
     /// The data blocks that global variables have become members of.
     homes: scl_port::Homes,
 }
@@ -139,7 +154,7 @@ pub struct Project {
 impl Project {
     /// A project whose files all are given to the tool.
     fn of(files: Vec<File>, warnings: Diagnostics) -> Self {
-        Self { files, warnings, whole: None, tasks: None, homes: scl_port::Homes::new() }
+        Self { files, warnings, whole: None, tasks: None, located: Vec::new(), homes: scl_port::Homes::new() }
     }
 
     /// The files that together are the program.

@@ -23,6 +23,10 @@ pub enum Target {
     Codesys,
     /// Siemens' TIA Portal: SCL as external source, in one file.
     Scl,
+    /// OpenPLC v3: one file for MatIEC, with addresses that its Modbus server serves.
+    OpenPlc,
+    /// Beremiz: the same.
+    Beremiz,
 }
 
 /// A file of the shim's own.
@@ -87,7 +91,7 @@ impl Sources {
         // A TIME has nanoseconds in the one and milliseconds in the other. Only durations of whole seconds are exact
         // in every tool of the one; a number stands behind a TIME (2nd ed. Table 30).
         let (now, now_long) = match target {
-            Target::Iec => ("T#1s * (TV / 1000000000) + T#1s * (TV MOD 1000000000) / 1000000000", "LT#1ns * TV"),
+            Target::Iec | Target::OpenPlc | Target::Beremiz => ("T#1s * (TV / 1000000000) + T#1s * (TV MOD 1000000000) / 1000000000", "LT#1ns * TV"),
             Target::TwinCat | Target::Codesys => ("LINT_TO_TIME(TV / 1000000)", "LINT_TO_LTIME(TV)"),
             Target::Scl => ("DINT_TO_TIME(LINT_TO_DINT(#TV / 1000000))", "LINT_TO_LTIME(#TV)"),
         };
@@ -99,7 +103,7 @@ impl Sources {
         let (globals, scheduler) = match target {
             Target::Scl => (template::SCL_GLOBALS, template::SCL_SCHEDULER),
             _ if tasks.has_singles() => (template::GLOBALS, template::EVENT_SCHEDULER),
-            Target::Iec | Target::TwinCat | Target::Codesys => (template::GLOBALS, template::SCHEDULER),
+            _ => (template::GLOBALS, template::SCHEDULER),
         };
         let mut units: Vec<Unit> = forms.iter().map(unit).collect();
         if !charts.is_empty() {
@@ -134,7 +138,7 @@ impl Sources {
     pub(super) fn files(self, target: Target, globals: Globals) -> Vec<Source> {
         let own = (globals == Globals::InFile).then_some(self.globals);
         match target {
-            Target::Iec | Target::Codesys | Target::Scl => {
+            Target::Iec | Target::Codesys | Target::Scl | Target::OpenPlc | Target::Beremiz => {
                 let forms = self.forms.into_iter().map(|unit| unit.text);
                 let motion = self.motion.into_iter().map(|part| part.text);
                 let parts: Vec<String> = self

@@ -246,8 +246,7 @@ fn passes(project: &Project, order: &[TaskIndex]) -> [usize; 4] {
     let mut plc = Plc::new(project, &[]);
     let session = SESSIONS[0];
     let mut memory = plc.after(Plc::STARTED, Event::Deliver(Message { session, step: 0 }));
-    let mut pass =
-        |plc: &mut Plc, memory| order.iter().fold(memory, |memory, task| plc.after(memory, Event::Cycle(*task)));
+    let pass = |plc: &mut Plc, memory| order.iter().fold(memory, |memory, task| plc.after(memory, Event::Cycle(*task)));
     memory = pass(&mut plc, memory);
     [1, 2, 3, 4].map(|step| {
         memory = plc.after(memory, Event::Deliver(Message { session, step }));
