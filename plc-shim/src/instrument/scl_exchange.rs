@@ -20,6 +20,10 @@ pub const DB_TO_PLC: u16 = 2001;
 /// And of the block from it.
 pub const DB_FROM_PLC: u16 = 2002;
 
+/// How the copies from the gateway's block begin, and those to the other.
+pub(super) const TAKE: &str = "(* At the head of each cycle.";
+pub(super) const GIVE: &str = "(* While no program may run,";
+
 /// The words to the PLC in their order, the grant last.
 const WORDS_TO_PLC: [(&str, Form); 4] =
     [("SDSP_Session", Form::UDINT), ("SDSP_Limit", Form::UDINT), ("SDSP_TV", Form::LINT), ("SDSP_Grant", Form::UDINT)];
