@@ -12,8 +12,6 @@ use onescan_scenario::gateway::Agreement;
 
 use crate::map::Fragment;
 
-/// The name of the file that it is written to.
-pub const FILE: &str = "gateway.toml";
 /// Where a PLC of which nothing is known is looked for.
 const SOMEWHERE: &str = "s7://192.168.0.1";
 
