@@ -10,7 +10,9 @@ use onescan_clients::gateway::{
 };
 use onescan_clients::soft_plc::{Bindings, SoftPlcClient};
 use onescan_plc_shim::input::kind::{FileKind, SourceKind};
-use onescan_plc_shim::instrument::{Address as DirectAddress, Exchanged, File, InstrumentError, Options, Project, Target, Way, instrument};
+use onescan_plc_shim::instrument::{
+    Address as DirectAddress, Exchanged, File, InstrumentError, Options, Project, Target, Way, instrument,
+};
 use onescan_plc_shim::{Application, BuildError, Input, Task, TaskPlan, TimeSpan};
 use onescan_server::client::{Client, JoinRequest};
 use onescan_server::signal::{ClientName, Port, SignalName, did_you_mean};

@@ -206,7 +206,7 @@ fn who_is_not_known_is_not_let_in() {
 /// Nobody has joined in time, but somebody tried: who, and why not.
 #[test]
 fn who_was_refused_is_named_when_nobody_has_joined() {
-    let words = ["--opcua-client", "plc", "--opcua-user", "panel", "--opcua-plain-password", "--join-timeout", "8s"];
+    let words = ["--opcua-client", "plc", "--opcua-user", "panel", "--opcua-plain-password", "--join-timeout", "20s"];
     let mut command = onescan(&scenario("shear"));
     command.args(["run", ".", "--opcua", "127.0.0.1:0"]).args(words).env("ONESCAN_OPCUA_PASSWORD", "right");
     let mut child = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
@@ -219,7 +219,10 @@ fn who_was_refused_is_named_when_nobody_has_joined() {
     assert_eq!(child.wait().unwrap().code(), Some(3));
     let mut rest = String::new();
     said.read_to_string(&mut rest).expect("text");
-    assert!(rest.contains("did not join within 8 s; somebody tried and was refused: user `panel` over OPC UA"), "{rest}");
+    assert!(
+        rest.contains("did not join within 20 s; somebody tried and was refused: user `panel` over OPC UA"),
+        "{rest}"
+    );
     assert!(!rest.contains("ERROR"), "{rest}");
 }
 

@@ -76,7 +76,7 @@ fn the_blocks_that_are_emitted_on_snap7() {
     let folder = copied_shear();
     let said = typed(folder.path(), &["instrument", ".", "--target", "scl", "-o", "out"]);
     assert_eq!(said.code, Some(0), "{said:?}");
-    let out = folder.path().join("out/plc");
+    let out = folder.path().join("out");
     let mapping = std::fs::read_to_string(out.join("gateway.toml")).expect("a mapping");
     insta::assert_snapshot!(mapping);
     let path = folder.path().join("scenario.toml");
@@ -85,7 +85,7 @@ fn the_blocks_that_are_emitted_on_snap7() {
     let rest = gateway.split_once("\n[").map(|(_, rest)| format!("\n[{rest}")).unwrap_or_default();
     std::fs::write(&path, format!("{front}{mapping}{rest}")).unwrap();
     for _ in 0..10 {
-        let Peer(_child, port) = &Peer::start_with("s7_scl_plc.py", &[&out.join("sdsp.scl")]);
+        let Peer(_child, port) = &Peer::start_with("s7_scl_plc.py", &[&out.join("plc/sdsp.scl")]);
         let gateway = format!("plc=s7://127.0.0.1:{port}");
         let said = typed(folder.path(), &["run", ".", "--format", "json", "--until", "1s", "--gateway", &gateway]);
         assert_eq!(said.code, Some(0), "{said:?}");

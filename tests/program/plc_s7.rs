@@ -22,10 +22,12 @@ fn proxy(server: String, treat: Treat) -> String {
             server.set_nodelay(true).unwrap();
             let (mut asking, mut asked) = (client.try_clone().unwrap(), server.try_clone().unwrap());
             std::thread::spawn(move || {
+                // Either may be gone already.
                 let _ = std::io::copy(&mut asking, &mut asked);
                 let _ = asked.shutdown(Shutdown::Both);
             });
             std::thread::spawn(move || {
+                // Either may be gone already.
                 let _ = answers(server, &client, treat);
                 let _ = client.shutdown(Shutdown::Both);
             });

@@ -107,7 +107,10 @@ fn who_is_not_known_is_not_let_in() {
     let words = ["--opcua", "127.0.0.1:0", "--opcua-user", "operator"];
     let plain = typed(folder.path(), &[&["plc", "."], &words[..]].concat());
     assert_eq!(plain.code, Some(2), "{plain:?}");
-    assert!(plain.err.contains("the password of user `operator` would come over the network in plain text"), "{plain:?}");
+    assert!(
+        plain.err.contains("the password of user `operator` would come over the network in plain text"),
+        "{plain:?}"
+    );
     let permitted = [&words[..], &["--opcua-plain-password"]].concat();
     let plc = Plc::start_with(folder.path(), &permitted, PASSWORD, "right");
     let plain = over_opc_ua(folder.path(), &plc, "user = \"operator\"", "right");

@@ -4,7 +4,7 @@ use std::io::{self, Write};
 use std::path::Path;
 
 use onescan_plc_shim::Diagnostics;
-use onescan_plc_shim::instrument::{File, Project, diff};
+use onescan_plc_shim::instrument::{File, Project, Target, diff};
 use onescan_report::OutputError;
 use serde::Serialize;
 
@@ -113,8 +113,13 @@ fn write_human(
     }
     if let (Some(mapping), Some(whole)) = (mapping, &project.whole) {
         let (mapping, whole) = (mapping.display(), Path::new(whole).file_name().unwrap_or_default().display());
-        writeln!(out, "new      {mapping}\n\n{whole} is the whole project with the shim and its CONFIGURATION.")?;
-        return writeln!(out, "{mapping} says where the gateway finds its signals: `--gateway plc={mapping}`.");
+        let with = if config.target == Target::Scl { ": import it alone" } else { " and its CONFIGURATION" };
+        writeln!(out, "new      {mapping}\n\n{whole} is the whole project with the shim{with}.")?;
+        writeln!(out, "{mapping} says where the gateway finds its signals: `--gateway plc={mapping}`.")?;
+        if config.target != Target::Scl {
+            return Ok(());
+        }
+        return writeln!(out, "Run SDSP_Scheduler first in every cycle, in a task of the highest priority.");
     }
     if let Some(whole) = &project.whole {
         writeln!(out, "\n{whole} is the whole project with the shim: import it alone.")?;

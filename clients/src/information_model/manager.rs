@@ -67,7 +67,7 @@ impl SessionNodes {
         Self { board, namespaces, items, sent_away }
     }
 
-    /// Refuses a client whose certificate was made for another application (OPC 10000-4 6.1.3, BadCertificateUriInvalid).
+    /// Refuses a client whose certificate was made for another application (OPC 10000-4 6.1.3, `Bad_CertificateUriInvalid`).
     fn admitted(&self, context: &RequestContext) -> Result<(), StatusCode> {
         let Some(sent_away) = &self.sent_away else { return Ok(()) };
         let session = context.session.read();

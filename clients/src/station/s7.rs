@@ -64,7 +64,7 @@ impl Cpu {
                 0 => return Ok(()),
                 count => incoming.take(&buffer[..count]),
             }
-            while let Some(message) = incoming.next().map_err(nonsense)? {
+            while let Some(message) = incoming.next_message().map_err(nonsense)? {
                 if self.controller.is_over() {
                     return Ok(());
                 }

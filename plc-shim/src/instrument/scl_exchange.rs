@@ -166,7 +166,7 @@ impl Block {
 
     fn place(&mut self, form: Form) -> String {
         if form.written == "Bool" {
-            if self.bits % 8 == 0 {
+            if self.bits.is_multiple_of(8) {
                 self.at += 1;
                 self.bits = 0;
             }

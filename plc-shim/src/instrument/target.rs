@@ -91,7 +91,9 @@ impl Sources {
         // A TIME has nanoseconds in the one and milliseconds in the other. Only durations of whole seconds are exact
         // in every tool of the one; a number stands behind a TIME (2nd ed. Table 30).
         let (now, now_long) = match target {
-            Target::Iec | Target::OpenPlc | Target::Beremiz => ("T#1s * (TV / 1000000000) + T#1s * (TV MOD 1000000000) / 1000000000", "LT#1ns * TV"),
+            Target::Iec | Target::OpenPlc | Target::Beremiz => {
+                ("T#1s * (TV / 1000000000) + T#1s * (TV MOD 1000000000) / 1000000000", "LT#1ns * TV")
+            }
             Target::TwinCat | Target::Codesys => ("LINT_TO_TIME(TV / 1000000)", "LINT_TO_LTIME(TV)"),
             Target::Scl => ("DINT_TO_TIME(LINT_TO_DINT(#TV / 1000000))", "LINT_TO_LTIME(#TV)"),
         };

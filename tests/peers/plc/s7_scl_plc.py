@@ -1,8 +1,7 @@
 """A PLC on a `python-snap7` server whose data blocks are those of an SCL source, which is the only argument.
 
-The blocks are laid out from their declarations by the rules of standard access, and every byte of them that no member
-has is a trap, as is a block that is somebody else's: when one changes, this ends. Prints its port; runs until it is
-ended.
+The blocks are laid out from their declarations by the rules of standard access. Every byte behind them is a trap, as is
+a block that is somebody else's: when one changes, this ends. Prints its port; runs until it is ended.
 """
 
 import re
@@ -20,6 +19,7 @@ from shear import INPUTS, OUTPUTS, WORDS_IN, WORDS_OUT, Plc
 FORMATS = {"SInt": "b", "Int": "h", "DInt": "i", "LInt": "q", "USInt": "B", "UInt": "H", "UDInt": "I", "ULInt": "Q"}
 FORMATS |= {"Byte": "B", "Word": "H", "DWord": "I", "LWord": "Q", "Real": "f", "LReal": "d"}
 TRAP = 0xA5
+BEHIND = 32
 
 
 class Block:
@@ -42,13 +42,7 @@ class Block:
             self.places[member] = (ty, self.size, None)
             self.size += width
         self.size += self.size % 2
-        self.bytes = bytearray([TRAP] * self.size)
-        self.gaps = set(range(self.size))
-        for ty, at, bit in self.places.values():
-            width = 1 if bit is not None else struct.calcsize(FORMATS[ty])
-            self.gaps -= set(range(at, at + width))
-        for at in set(range(self.size)) - self.gaps:
-            self.bytes[at] = 0
+        self.bytes = bytearray([0] * self.size + [TRAP] * BEHIND)
 
     def get(self, block, member):
         ty, at, bit = self.places[member]
@@ -62,7 +56,7 @@ class Block:
             self.bytes[at] = self.bytes[at] & ~(1 << bit) | bool(value) << bit
 
     def is_whole(self):
-        return all(self.bytes[at] == TRAP for at in self.gaps)
+        return self.bytes[self.size :] == bytearray([TRAP] * BEHIND)
 
 
 def copies(source, pattern):

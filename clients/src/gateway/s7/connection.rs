@@ -44,7 +44,7 @@ impl Connection {
     ///
     /// # Errors
     /// Nobody is there, or who is there does not let this client in.
-    pub(super) fn open(address: &str, options: &Options) -> Result<Self, LinkFault> {
+    pub(super) fn open(address: &str, options: Options) -> Result<Self, LinkFault> {
         let url = || format!("s7://{address}");
         let unreachable = |reason: String| LinkFault::Unreachable { url: url(), reason };
         let stream = host_and_port(address, iso::PORT).and_then(connect).map_err(unreachable)?;
@@ -90,7 +90,7 @@ impl Connection {
         let begun = Instant::now();
         let mut buffer = [0; READ_BYTES];
         loop {
-            if let Some(message) = self.incoming.next().map_err(|bad| LinkFault::Nonsense(bad.to_string()))? {
+            if let Some(message) = self.incoming.next_message().map_err(|bad| LinkFault::Nonsense(bad.to_string()))? {
                 return Ok(message);
             }
             match self.stream.read(&mut buffer) {
@@ -147,16 +147,15 @@ impl Connection {
         Ok(())
     }
 
-    /// Writes values in one message; see [`pdu::fits`].
+    /// Writes bytes of a data block in one message; see [`pdu::write_max`].
     ///
     /// # Errors
     /// See [`Refusal`].
-    pub(super) fn write(&mut self, values: &[(Item, &[u8])]) -> Result<(), Refusal> {
-        match self.call(|number| pdu::write(number, values))? {
-            Answer::Written(codes) if codes.len() == values.len() => {
-                codes.into_iter().find(|code| *code != pdu::DONE).map_or(Ok(()), |code| Err(Refusal::Value(code)))
-            }
-            answer => Err(nonsense(format!("{answer:?} for {} written values", values.len()))),
+    pub(super) fn write(&mut self, item: Item, bytes: &[u8]) -> Result<(), Refusal> {
+        match self.call(|number| pdu::write(number, item, bytes))? {
+            Answer::Written(codes) if codes == [pdu::DONE] => Ok(()),
+            Answer::Written(codes) if codes.len() == 1 => Err(Refusal::Value(codes[0])),
+            answer => Err(nonsense(format!("{answer:?} for a written value"))),
         }
     }
 }

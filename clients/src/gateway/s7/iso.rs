@@ -83,7 +83,7 @@ impl Incoming {
     ///
     /// # Errors
     /// See [`BadTelegram`]; there is nothing to be had of this stream any more.
-    pub fn next(&mut self) -> Result<Option<Message>, BadTelegram> {
+    pub fn next_message(&mut self) -> Result<Option<Message>, BadTelegram> {
         while let Some(length) = self.telegram()? {
             let telegram: Vec<u8> = self.bytes.drain(..length).skip(HEAD).collect();
             if let Some(message) = self.open(&telegram)? {
@@ -188,7 +188,7 @@ mod tests {
         let (mut incoming, mut messages) = (Incoming::default(), Vec::new());
         for part in parts {
             incoming.take(part);
-            while let Some(message) = incoming.next()? {
+            while let Some(message) = incoming.next_message()? {
                 messages.push(message);
             }
         }
@@ -225,7 +225,7 @@ mod tests {
         fn any_bytes_are_borne(bytes in prop::collection::vec(any::<u8>(), 0..200)) {
             let mut incoming = Incoming::default();
             incoming.take(&[&[VERSION, 0, 0], &bytes[..]].concat());
-            while let Ok(Some(_)) = incoming.next() {}
+            while let Ok(Some(_)) = incoming.next_message() {}
         }
     }
 }

@@ -2,7 +2,7 @@
 //!
 //! A PLC does what one message asks for between two scans, but a block that is longer than its PDU takes several. So
 //! of a long block the grant is written last and alone, and it is read twice, the words taken from the first time and
-//! the outputs from the second. Bytes in which no point lies are never written: they may be somebody else's.
+//! the outputs from the second. Of a block with fields of others, only the bytes in which points lie are written.
 
 use std::ops::Range;
 use std::time::Duration;
@@ -21,10 +21,12 @@ pub struct S7Link {
     options: Options,
     exchange: Exchange,
     layouts: Layouts,
-    /// Bytes of the block to the PLC that hold points, all but the grant's.
+    /// Bytes of the block to the PLC that are the gateway's.
+    owned: Vec<Range<usize>>,
+    /// The same without those of the grant.
     before: Vec<Range<usize>>,
-    /// The grant's.
-    grant: Vec<Range<usize>>,
+    /// Those of the grant.
+    grant: Range<usize>,
     connection: Option<Connection>,
     block: Vec<u8>,
 }
@@ -32,14 +34,14 @@ pub struct S7Link {
 impl S7Link {
     /// A link to `address`, a host and perhaps a port.
     pub fn new(address: &str, options: Options, exchange: &Exchange, layouts: Layouts) -> Self {
-        let count = exchange.to_plc().len();
-        let is_grant = |index: usize| index + 1 == count;
+        let (owned, grant) = (layouts.to_plc.owned(), layouts.to_plc.last());
         Self {
             address: address.to_owned(),
             options,
             exchange: exchange.clone(),
-            before: layouts.to_plc.runs(|index| !is_grant(index)),
-            grant: layouts.to_plc.runs(is_grant),
+            before: without(&owned, &grant),
+            owned,
+            grant,
             layouts,
             connection: None,
             block: Vec::new(),
@@ -67,24 +69,25 @@ impl S7Link {
     }
 }
 
-/// The values of a block in these places, as many to a message as it has room for.
-fn messages<'b>(pdu: u16, db: u16, places: &[Range<usize>], block: &'b [u8]) -> Vec<Vec<(Item, &'b [u8])>> {
+/// The bytes of a block in these places, as many to a message as it has room for.
+fn messages<'b>(pdu: u16, db: u16, places: &[Range<usize>], block: &'b [u8]) -> Vec<(Item, &'b [u8])> {
     let at_most = pdu::write_max(pdu) & !1;
-    let mut messages: Vec<Vec<(Item, &[u8])>> = vec![Vec::new()];
-    for place in places {
-        for (index, bytes) in block[place.clone()].chunks(at_most).enumerate() {
+    let parts = places.iter().flat_map(|place| {
+        block[place.clone()].chunks(at_most).enumerate().map(move |(index, bytes)| {
             let item = Item { db, at: (place.start + index * at_most) as u32, len: bytes.len() as u16 };
-            let is_room = |message: &Vec<(Item, &[u8])>| {
-                pdu::fits(pdu, message.iter().map(|(_, bytes)| bytes.len()).chain([bytes.len()]))
-            };
-            match messages.last_mut().filter(|message| is_room(message)) {
-                Some(message) => message.push((item, bytes)),
-                None => messages.push(vec![(item, bytes)]),
-            }
-        }
-    }
-    messages.retain(|message| !message.is_empty());
-    messages
+            (item, bytes)
+        })
+    });
+    parts.collect()
+}
+
+/// These places without one of them.
+fn without(places: &[Range<usize>], one: &Range<usize>) -> Vec<Range<usize>> {
+    let parts = places.iter().flat_map(|place| {
+        let (end, start) = (place.end.min(one.start), place.start.max(one.end));
+        [place.start..end, start..place.end]
+    });
+    parts.filter(|part| !part.is_empty()).collect()
 }
 
 fn fault(refusal: Refusal, db: u16, size: usize) -> LinkFault {
@@ -114,7 +117,7 @@ impl Link for S7Link {
     fn connect(&mut self) -> Result<(), LinkFault> {
         // The old connection goes first: a CPU has few.
         self.connection = None;
-        self.connection = Some(Connection::open(&self.address, &self.options)?);
+        self.connection = Some(Connection::open(&self.address, self.options)?);
         let mut scratch = vec![0; self.exchange.size(Direction::FromPlc)];
         self.read_block(&mut scratch)?;
         // What is to be written is there if it can be read.
@@ -130,13 +133,13 @@ impl Link for S7Link {
         self.layouts.to_plc.encode(to_plc, &mut self.block);
         let connection = self.connection.as_mut().ok_or_else(LinkFault::not_connected)?;
         let pdu = connection.pdu();
-        let mut all = messages(pdu, db, &[&self.before[..], &self.grant].concat(), &self.block);
+        let mut all = messages(pdu, db, &self.owned, &self.block);
         if all.len() > 1 {
             all = messages(pdu, db, &self.before, &self.block);
-            all.extend(messages(pdu, db, &self.grant, &self.block));
+            all.extend(messages(pdu, db, std::slice::from_ref(&self.grant), &self.block));
         }
-        for message in all {
-            connection.write(&message).map_err(|refusal| fault(refusal, db, size))?;
+        for (item, bytes) in all {
+            connection.write(item, bytes).map_err(|refusal| fault(refusal, db, size))?;
         }
         Ok(())
     }
@@ -156,17 +159,21 @@ impl Link for S7Link {
 mod tests {
     use super::*;
 
-    /// The grant is in the last message, whole and alone, unless all is in one.
     #[test]
     fn a_long_block_goes_in_messages_of_even_parts() {
         let block = vec![7; 700];
-        let each = |places: &[Range<usize>]| -> Vec<Vec<(u32, u16)>> {
-            let shape = |message: &Vec<(Item, &[u8])>| message.iter().map(|(item, _)| (item.at, item.len)).collect();
-            messages(240, 3, places, &block).iter().map(shape).collect()
+        let each = |places: &[Range<usize>]| -> Vec<(u32, u16)> {
+            messages(240, 3, places, &block).iter().map(|(item, _)| (item.at, item.len)).collect()
         };
-        assert_eq!(each(&[0..17, 18..38]), [[(0, 17), (18, 20)]]);
-        assert_eq!(each(&[0..500, 502..503]), [vec![(0, 212)], vec![(212, 212)], vec![(424, 76), (502, 1)]]);
-        let many: Vec<Range<usize>> = (0..30).map(|at| at * 4..at * 4 + 1).collect();
-        assert!(each(&many).iter().all(|message| message.len() <= 12), "{:?}", each(&many));
+        assert_eq!(each(&[0..38]), [(0, 38)]);
+        assert_eq!(each(&[0..500, 502..503]), [(0, 212), (212, 212), (424, 76), (502, 1)]);
+    }
+
+    /// The grant is in the last message, whole and alone, unless all is in one.
+    #[test]
+    fn a_grant_may_lie_anywhere() {
+        assert_eq!(without(&[0..38], &(34..38)), [0..34]);
+        assert_eq!(without(&[0..38, 40..50], &(8..12)), [0..8, 12..38, 40..50]);
+        assert_eq!(without(&[34..38], &(34..38)), [0..0; 0]);
     }
 }

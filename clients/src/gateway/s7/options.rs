@@ -25,7 +25,7 @@ impl Default for Options {
 
 impl Options {
     /// The CPU's end of the transport: what the connection is for (1: a programming device), then rack and slot.
-    pub(crate) fn tsap(&self) -> [u8; 2] {
+    pub(crate) fn tsap(self) -> [u8; 2] {
         /// The slots of a rack.
         const SLOTS: u8 = 32;
         [1, self.rack.wrapping_mul(SLOTS) | self.slot & (SLOTS - 1)]

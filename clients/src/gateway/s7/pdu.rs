@@ -80,17 +80,6 @@ pub fn write_max(pdu: u16) -> usize {
     usize::from(pdu).saturating_sub(REQUEST_HEAD + COUNTED + ITEM + VALUE_HEAD)
 }
 
-/// True if one message of `pdu` bytes has room for all of these values of so many bytes.
-pub fn fits(pdu: u16, lengths: impl IntoIterator<Item = usize>) -> bool {
-    let each = |len: usize| ITEM + VALUE_HEAD + len.next_multiple_of(2);
-    let (mut count, mut bytes) = (0, REQUEST_HEAD + COUNTED);
-    for len in lengths {
-        count += 1;
-        bytes += each(len);
-    }
-    count <= ITEMS_MAX && bytes <= usize::from(pdu)
-}
-
 /// A request.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Request {
@@ -117,29 +106,24 @@ fn setup_parameters(pdu: u16) -> Vec<u8> {
 
 /// A message that reads these bytes.
 pub fn read(number: u16, item: Item) -> Vec<u8> {
-    request(number, &addresses(READ, &[item]), &[])
+    request(number, &address(READ, item), &[])
 }
 
-/// A message that writes these bytes, all in one; see [`fits`].
-pub fn write(number: u16, values: &[(Item, &[u8])]) -> Vec<u8> {
-    let items: Vec<Item> = values.iter().map(|(item, _)| *item).collect();
+/// A message that writes these bytes. It could write more, in other places; not every server knows that.
+pub fn write(number: u16, item: Item, bytes: &[u8]) -> Vec<u8> {
     let mut data = Vec::new();
-    for (_, bytes) in values {
-        put_value(&mut data, 0, bytes);
-    }
-    request(number, &addresses(WRITE, &items), &data)
+    put_value(&mut data, 0, bytes);
+    request(number, &address(WRITE, item), &data)
 }
 
-fn addresses(function: u8, items: &[Item]) -> Vec<u8> {
-    let mut parameters = vec![function, items.len() as u8];
-    for Item { db, at, len } in items {
-        // The kind of an address with 10 bytes behind these two: any bytes.
-        parameters.extend([0x12, 10, 0x10, BYTES]);
-        parameters.extend([len.to_be_bytes(), db.to_be_bytes()].concat());
-        // Counted in bits.
-        let bits = (at << 3).to_be_bytes();
-        parameters.extend([AREA_DB, bits[1], bits[2], bits[3]]);
-    }
+/// A function, and one address.
+fn address(function: u8, Item { db, at, len }: Item) -> Vec<u8> {
+    // The kind of an address with 10 bytes behind these two: any bytes.
+    let mut parameters = vec![function, 1, 0x12, 10, 0x10, BYTES];
+    parameters.extend([len.to_be_bytes(), db.to_be_bytes()].concat());
+    // Counted in bits.
+    let bits = (at << 3).to_be_bytes();
+    parameters.extend([AREA_DB, bits[1], bits[2], bits[3]]);
     parameters
 }
 
@@ -283,7 +267,7 @@ fn item_of(item: &[u8; ITEM]) -> Option<Item> {
     };
     let bits = u32::from_be_bytes([0, a2, a1, a0]);
     let len = u16::from_be_bytes([c1, c0]).checked_mul(width)?;
-    (bits % 8 == 0).then_some(Item { db: u16::from_be_bytes([d1, d0]), at: bits / 8, len })
+    bits.is_multiple_of(8).then_some(Item { db: u16::from_be_bytes([d1, d0]), at: bits / 8, len })
 }
 
 /// The answer to [`Request::Setup`].
@@ -335,17 +319,22 @@ mod tests {
         let told = [
             0x32, 1, 0, 0, 0, 9, 0, 14, 0, 7, 5, 1, 0x12, 10, 0x10, 2, 0, 3, 0, 1, 0x84, 0, 0, 16, 0, 4, 0, 24, 1, 2, 3,
         ];
-        assert_eq!(write(9, &[(A, &[1, 2, 3])]), told);
+        assert_eq!(write(9, A, &[1, 2, 3]), told);
     }
 
     #[test]
     fn what_is_asked_is_what_is_understood() {
         assert_eq!(asked(&setup(1, 240)), Some((1, Request::Setup(240))));
         assert_eq!(asked(&read(2, B)), Some((2, Request::Read(vec![Some(B)]))));
-        let values = [(A, &[1, 2, 3][..]), (B, &[4, 5])];
-        let expected = values.iter().map(|(item, bytes)| (Some(*item), bytes.to_vec())).collect();
-        assert_eq!(asked(&write(3, &values)), Some((3, Request::Write(expected))));
-        assert!(fits(write(3, &values).len() as u16 + 1, [3, 2]) && !fits(write(3, &values).len() as u16 - 1, [3, 2]));
+        assert_eq!(asked(&write(3, A, &[1, 2, 3])), Some((3, Request::Write(vec![(Some(A), vec![1, 2, 3])]))));
+        assert_eq!(write(3, A, &vec![7; write_max(240)]).len(), 240);
+        // As another client asks.
+        let parameters = [address(WRITE, A), address(WRITE, B)[2..].to_vec()].concat();
+        let mut data = Vec::new();
+        put_value(&mut data, 0, &[1, 2, 3]);
+        put_value(&mut data, 0, &[4, 5]);
+        let several = Request::Write(vec![(Some(A), vec![1, 2, 3]), (Some(B), vec![4, 5])]);
+        assert_eq!(asked(&request(4, &parameters, &data)), Some((4, several)));
     }
 
     #[test]

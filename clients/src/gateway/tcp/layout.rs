@@ -63,6 +63,8 @@ pub struct Layout {
     order: ByteOrder,
     moves: Vec<Move>,
     size: usize,
+    /// True if the block has no fields but the points, so that all of it is the gateway's and the PLC's own.
+    is_own: bool,
 }
 
 /// Both blocks.
@@ -139,7 +141,7 @@ impl Layout {
             }
             moves.push(Move { packed: point.range(), place });
         }
-        Ok(Self { order: declaration.byte_order, moves, size })
+        Ok(Self { order: declaration.byte_order, moves, size, is_own: fields.is_empty() })
     }
 
     /// Bytes of the block.
@@ -147,11 +149,18 @@ impl Layout {
         self.size
     }
 
-    /// The bytes in which the points lie that are `wanted`, by their index among those of the direction: as few ranges
-    /// as there are, in their order.
-    pub fn runs(&self, wanted: impl Fn(usize) -> bool) -> Vec<Range<usize>> {
-        let chosen = self.moves.iter().enumerate().filter(|(index, _)| wanted(*index));
-        let mut places: Vec<Range<usize>> = chosen.map(|(_, each)| each.place.bytes()).collect();
+    /// The bytes of the last point.
+    pub fn last(&self) -> Range<usize> {
+        self.moves.last().map_or(0..0, |each| each.place.bytes())
+    }
+
+    /// The bytes that may be written: all of a block that has no fields but the points, and otherwise those in which
+    /// points lie. As few ranges as there are, in their order.
+    pub fn owned(&self) -> Vec<Range<usize>> {
+        if self.is_own {
+            return vec![0..self.size];
+        }
+        let mut places: Vec<Range<usize>> = self.moves.iter().map(|each| each.place.bytes()).collect();
         places.sort_by_key(|place| place.start);
         let mut runs: Vec<Range<usize>> = Vec::new();
         for place in places {
