@@ -154,7 +154,8 @@ impl Scenario {
         is_real.then(|| {
             let Agreement { settings, request, exchange, .. } = self.agreement(name)?;
             let link = settings.link(&exchange).map_err(|fault| self.wrong_settings(name, fault))?;
-            Ok(Box::new(FreeGateway::new(request, exchange, link)) as Box<dyn Client>)
+            let patience = settings.patience().reconnect;
+            Ok(Box::new(FreeGateway::new(request, exchange, link, patience)) as Box<dyn Client>)
         })
     }
 
@@ -190,9 +191,22 @@ impl Scenario {
     /// # Errors
     /// The mapping is wrong, or there is no such PLC.
     pub fn agreement_of(&self, name: &ClientName, inputs: Vec<Input>) -> Result<Option<Agreement>, ScenarioError> {
+        self.agreement_of_over(name, inputs, |declared| declared)
+    }
+
+    /// The same over the link that `link` makes of the scenario's.
+    ///
+    /// # Errors
+    /// As above.
+    pub fn agreement_of_over(
+        &self,
+        name: &ClientName,
+        inputs: Vec<Input>,
+        link: impl FnOnce(Settings) -> Settings,
+    ) -> Result<Option<Agreement>, ScenarioError> {
         let builder = Application::builder().memory_limit(self.memory_limit(name)).inputs(inputs);
         let Ok(application) = builder.build() else { return Ok(None) };
-        self.agreement_on(name, self.declared(name), &application).map(Some)
+        self.agreement_on(name, link(self.declared(name)), &application).map(Some)
     }
 
     fn agreement_on(

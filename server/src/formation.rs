@@ -64,12 +64,14 @@ pub enum FormationError {
     #[error(transparent)]
     Refused(#[from] JoinRefusal),
     /// Nobody came.
-    #[error("client {missing} did not join within {} s", patience.as_secs_f64())]
+    #[error("client {missing} did not join within {} s{}", patience.as_secs_f64(), sent_away(refused.as_ref()))]
     Missing {
         /// The names.
         missing: String,
         /// How long the server waited.
         patience: Duration,
+        /// Who tried last and was not let in, and why.
+        refused: Option<String>,
     },
     /// The wait was called off.
     #[error("stopped while waiting for client {missing} to join")]
@@ -83,6 +85,10 @@ pub enum FormationError {
     /// A connection that cannot be used.
     #[error("cannot set up the TCP transport: {0}")]
     Connection(#[from] std::io::Error),
+}
+
+fn sent_away(refused: Option<&String>) -> String {
+    refused.map(|who| format!("; somebody tried and was refused: {who}")).unwrap_or_default()
 }
 
 /// Called while the server waits, with the missing clients' names. False calls the wait off.
@@ -120,24 +126,29 @@ impl Formation {
     ) -> Result<(), FormationError> {
         // How often `while_waiting` is asked, so that Ctrl-C is heard at once.
         const LOOK_UP: Duration = Duration::from_millis(50);
-        let mut waited = Duration::ZERO;
+        let (mut waited, mut refused) = (Duration::ZERO, None);
         while self.session.missing_clients().next().is_some() {
             if !while_waiting(&self.missing()) {
                 return Err(FormationError::Interrupted { missing: self.missing() });
             }
             if let Some(applicant) = door.next_applicant(LOOK_UP) {
-                self.admit(applicant, reply_timeout)?;
+                refused = self.admit(applicant, reply_timeout)?.or(refused);
             } else {
                 waited += LOOK_UP;
             }
             if waited >= patience {
-                return Err(FormationError::Missing { missing: self.missing(), patience });
+                return Err(FormationError::Missing { missing: self.missing(), patience, refused });
             }
         }
         Ok(())
     }
 
-    fn admit(&mut self, applicant: Box<dyn Applicant>, reply_timeout: Duration) -> Result<(), FormationError> {
+    /// Gives why the applicant was sent away, if it was.
+    fn admit(
+        &mut self,
+        applicant: Box<dyn Applicant>,
+        reply_timeout: Duration,
+    ) -> Result<Option<String>, FormationError> {
         let (origin, name) = (applicant.origin(), applicant.request().name.clone());
         match self.session.join(applicant.request()) {
             Ok(id) => {
@@ -145,13 +156,14 @@ impl Formation {
                 let inputs = PortLayout::new(applicant.request().reads.clone());
                 let outputs = PortLayout::new(applicant.request().writes.clone());
                 self.carriers[id.index()] = Some(applicant.admit(&inputs, &outputs, reply_timeout)?);
+                Ok(None)
             }
             Err(refusal) => {
                 tracing::warn!(client = %name, %origin, %refusal, "refused");
                 applicant.refuse(&refusal.to_string());
+                Ok(Some(format!("`{name}` from {origin}: {refusal}")))
             }
         }
-        Ok(())
     }
 
     fn missing(&self) -> String {
@@ -165,7 +177,7 @@ impl Formation {
     /// Somebody is missing, or a signal has no writer.
     pub fn start(self) -> Result<Lockstep, FormationError> {
         if self.session.missing_clients().next().is_some() {
-            return Err(FormationError::Missing { missing: self.missing(), patience: Duration::ZERO });
+            return Err(FormationError::Missing { missing: self.missing(), patience: Duration::ZERO, refused: None });
         }
         let unwritten: Vec<String> = self.session.unwritten_signals().map(|name| format!("`{name}`")).collect();
         if !unwritten.is_empty() {

@@ -34,6 +34,7 @@ mod plc_faults;
 mod plc_garbled;
 mod plc_modes;
 mod plc_peers;
+mod plc_s7;
 mod plc_untrusted;
 mod plcopen_schema;
 mod python;

@@ -177,7 +177,11 @@ fn the_published_node_set_is_what_is_served() {
 #[test]
 fn who_is_not_known_is_not_let_in() {
     let words = ["--until", "1s", "--opcua-client", "plc", "--opcua-user", "panel", "--join-timeout", "20s"];
-    let all = [&["run", ".", "--format", "json", "--opcua", "127.0.0.1:0"], &words[..]].concat();
+    let plain = [&["run", ".", "--format", "json", "--opcua", "127.0.0.1:0"], &words[..]].concat();
+    let refused = typed(&scenario("shear"), &plain);
+    assert_eq!(refused.code, Some(2), "a password in plain text: {refused:?}");
+    assert!(refused.err.contains("--opcua-plain-password"), "{refused:?}");
+    let all = [&plain[..], &["--opcua-plain-password"]].concat();
     let without = typed(&scenario("shear"), &all);
     assert_eq!(without.code, Some(2), "a user without a password: {without:?}");
     let mut command = onescan(&scenario("shear"));
@@ -197,6 +201,29 @@ fn who_is_not_known_is_not_let_in() {
     let known = url.replace("opc.tcp://", "opc.tcp://panel:right@");
     ended(begun("participant.py", &[&known, "plc", "call"]));
     assert_eq!(child.wait().unwrap().code(), Some(0));
+}
+
+/// Nobody has joined in time, but somebody tried: who, and why not.
+#[test]
+fn who_was_refused_is_named_when_nobody_has_joined() {
+    let words = ["--opcua-client", "plc", "--opcua-user", "panel", "--opcua-plain-password", "--join-timeout", "20s"];
+    let mut command = onescan(&scenario("shear"));
+    command.args(["run", ".", "--opcua", "127.0.0.1:0"]).args(words).env("ONESCAN_OPCUA_PASSWORD", "right");
+    let mut child = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+    let mut said = BufReader::new(child.stderr.take().expect("piped"));
+    let mut line = String::new();
+    said.read_line(&mut line).expect("it speaks");
+    let url = line.trim().rsplit(' ').next().expect("an endpoint").replace("opc.tcp://", "opc.tcp://panel:wrong@");
+    let peer = begun("participant.py", &[&url, "plc", "call"]);
+    assert_ne!(Said::from(peer.wait_with_output().expect("it ends")).code, Some(0));
+    assert_eq!(child.wait().unwrap().code(), Some(3));
+    let mut rest = String::new();
+    said.read_to_string(&mut rest).expect("text");
+    assert!(
+        rest.contains("did not join within 20 s; somebody tried and was refused: user `panel` over OPC UA"),
+        "{rest}"
+    );
+    assert!(!rest.contains("ERROR"), "{rest}");
 }
 
 #[test]

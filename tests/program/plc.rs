@@ -124,9 +124,13 @@ fn a_plc_in_stop_and_a_restarted_one_are_told_apart() {
 
 #[test]
 fn a_plc_that_is_not_there_is_unreachable() {
-    let said = typed(&scenario("shear"), &["run", ".", "--gateway", "plc=tcp://127.0.0.1:1"]);
+    let folder = crate::typed::copied_shear();
+    edit(folder.path(), "scenario.toml", "system_words = true", "system_words = true\nreconnect_timeout = \"1s\"");
+    let said = typed(folder.path(), &["run", ".", "--gateway", "plc=tcp://127.0.0.1:1"]);
     assert_eq!(said.code, Some(3), "{said:?}");
     assert!(said.err.contains("unreachable: tcp://127.0.0.1:1"), "{said:?}");
+    assert_eq!(said.err.matches("; trying again for 1s").count(), 1, "told once: {said:?}");
+    assert!(said.err.contains(" times in 1s"), "{said:?}");
     let told = |gateway: &str| typed(&scenario("shear"), &["run", ".", "--gateway", gateway]);
     let all = [told("plc=tpc://127.0.0.1:1"), told("plc=127.0.0.1"), told("plant"), told("plx")];
     assert!(all.iter().all(|said| said.code == Some(2)), "{all:?}");

@@ -65,6 +65,11 @@ fn the_shear_over_opc_ua() {
 }
 
 #[test]
+fn the_shear_over_s7() {
+    every_run_is_that_in_one_process("shear", &SHEAR, "s7://");
+}
+
+#[test]
 fn the_shear_over_ads() {
     every_run_is_that_in_one_process("shear", &SHEAR, "ads://");
 }
@@ -85,6 +90,11 @@ fn the_gantry_robot_over_opc_ua() {
 }
 
 #[test]
+fn the_gantry_robot_over_s7() {
+    every_run_is_that_in_one_process("gantry-robot", &ROBOT, "s7://");
+}
+
+#[test]
 fn the_gantry_robot_over_ads() {
     every_run_is_that_in_one_process("gantry-robot", &ROBOT, "ads://");
 }
@@ -94,7 +104,7 @@ fn without_the_handshake_runs_differ(scenario: &str, until: &str) {
     let folder = prepared(scenario);
     let plc = Plc::start(folder.path(), &["--mode", "freewheel"]);
     let lockstep = run(folder.path(), until, &[]).0;
-    for scheme in ["tcp://", "modbus://", "opc.tcp://", "ads://"] {
+    for scheme in ["tcp://", "s7://", "modbus://", "opc.tcp://", "ads://"] {
         let gateway = plc.gateway(scheme);
         let words = ["--mode", "freewheel", "--runs", "2", "--gateway", &gateway];
         let (mut all, said) = run(folder.path(), until, &words);

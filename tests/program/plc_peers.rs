@@ -13,10 +13,14 @@ struct Peer(Child, u16);
 
 impl Peer {
     fn start(script: &str) -> Self {
+        Self::start_with(script, &[])
+    }
+
+    fn start_with(script: &str, words: &[&Path]) -> Self {
         let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("peers/plc").join(script);
         let packages = ["asyncua==2.1.0", "pyads==3.6.0", "pymodbus==3.16.1", "python-snap7==3.3.0"];
         let mut command = Command::new(python("plc-peers-2", &packages));
-        command.arg(path).env("PYTHONDONTWRITEBYTECODE", "1").stdout(Stdio::piped()).stderr(Stdio::null());
+        command.arg(path).args(words).env("PYTHONDONTWRITEBYTECODE", "1").stdout(Stdio::piped()).stderr(Stdio::null());
         let mut child = command.spawn().expect("Python starts");
         let mut line = String::new();
         BufReader::new(child.stdout.take().expect("piped")).read_line(&mut line).expect("it speaks");
@@ -65,4 +69,30 @@ fn a_plc_on_pymodbus() {
 #[test]
 fn a_plc_on_snap7() {
     equals_the_run_in_process("s7_plc.py", "s7://127.0.0.1:PORT");
+}
+
+/// What `instrument --target scl` emits, block for block, and the mapping that it writes beside: nothing is typed.
+#[test]
+fn the_blocks_that_are_emitted_on_snap7() {
+    let (reports, _) = run_shear(&["--until", "1s"]);
+    let folder = copied_shear();
+    let said = typed(folder.path(), &["instrument", ".", "--target", "scl", "-o", "out"]);
+    assert_eq!(said.code, Some(0), "{said:?}");
+    let out = folder.path().join("out");
+    let mapping = std::fs::read_to_string(out.join("gateway.toml")).expect("a mapping");
+    insta::assert_snapshot!(mapping);
+    let path = folder.path().join("scenario.toml");
+    let text = std::fs::read_to_string(&path).unwrap();
+    let (front, gateway) = text.split_once("[clients.plc.gateway]").expect("a gateway");
+    let rest = gateway.split_once("\n[").map(|(_, rest)| format!("\n[{rest}")).unwrap_or_default();
+    std::fs::write(&path, format!("{front}{mapping}{rest}")).unwrap();
+    for _ in 0..10 {
+        let Peer(_child, port) = &Peer::start_with("s7_scl_plc.py", &[&out.join("plc/sdsp.scl")]);
+        let gateway = format!("plc=s7://127.0.0.1:{port}");
+        let said = typed(folder.path(), &["run", ".", "--format", "json", "--until", "1s", "--gateway", &gateway]);
+        assert_eq!(said.code, Some(0), "{said:?}");
+        assert!(!said.err.contains("SDSP_Layout is 0"), "{said:?}");
+        let report = serde_json::from_str(&said.out).expect("a report");
+        assert_eq!(digests(&[report]), digests(&reports));
+    }
 }

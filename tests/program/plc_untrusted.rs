@@ -56,7 +56,7 @@ fn a_plc_with_another_layout_is_told() {
 fn a_plc_is_not_upset_by_what_is_sent_to_it() {
     let (expected, _) = run_shear(&["--until", "1s"]);
     let mut plc = Plc::start(&scenario("shear"), &[]);
-    for scheme in ["tcp://", "modbus://", "opc.tcp://", "ads://"] {
+    for scheme in ["tcp://", "s7://", "modbus://", "opc.tcp://", "ads://"] {
         let gateway = plc.gateway(scheme);
         let address = gateway.rsplit("://").next().unwrap().to_owned();
         for seed in 0..20_u64 {
@@ -104,12 +104,22 @@ fn assert_equal(said: &Said) {
 #[test]
 fn who_is_not_known_is_not_let_in() {
     let folder = copied_shear();
-    let plc =
-        Plc::start_with(folder.path(), &["--opcua", "127.0.0.1:0", "--opcua-user", "operator"], PASSWORD, "right");
+    let words = ["--opcua", "127.0.0.1:0", "--opcua-user", "operator"];
+    let plain = typed(folder.path(), &[&["plc", "."], &words[..]].concat());
+    assert_eq!(plain.code, Some(2), "{plain:?}");
+    assert!(
+        plain.err.contains("the password of user `operator` would come over the network in plain text"),
+        "{plain:?}"
+    );
+    let permitted = [&words[..], &["--opcua-plain-password"]].concat();
+    let plc = Plc::start_with(folder.path(), &permitted, PASSWORD, "right");
+    let plain = over_opc_ua(folder.path(), &plc, "user = \"operator\"", "right");
+    assert_eq!(plain.code, Some(2), "{plain:?}");
+    assert!(plain.err.contains("the password of user `operator` would go over the network in plain text"), "{plain:?}");
     assert_refused(&over_opc_ua(folder.path(), &plc, "", "right"));
-    assert_refused(&over_opc_ua(folder.path(), &plc, "user = \"operator\"", "wrong"));
-    assert_refused(&over_opc_ua(folder.path(), &plc, "user = \"somebody\"", "right"));
-    assert_equal(&over_opc_ua(folder.path(), &plc, "user = \"operator\"", "right"));
+    assert_refused(&over_opc_ua(folder.path(), &plc, "plain_password = true, user = \"operator\"", "wrong"));
+    assert_refused(&over_opc_ua(folder.path(), &plc, "plain_password = true, user = \"somebody\"", "right"));
+    assert_equal(&over_opc_ua(folder.path(), &plc, "plain_password = true, user = \"operator\"", "right"));
 }
 
 /// What an engineer does with a certificate that was refused and is known.

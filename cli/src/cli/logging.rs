@@ -23,10 +23,9 @@ pub(super) fn start(verbose: u8) {
 
 fn targets_of(verbose: u8) -> Targets {
     match verbose {
-        // What OPC UA has to say of its certificates is in the errors that come of it.
-        0 => ["opcua_client", "opcua_server", "opcua_core", "opcua_crypto"]
-            .into_iter()
-            .fold(Targets::new(), |targets, silent| targets.with_target(silent, LevelFilter::OFF))
+        // What the crates of OPC UA have to say is in the errors that come of it.
+        0 => Targets::new()
+            .with_target("opcua", LevelFilter::OFF)
             .with_default(LevelFilter::WARN)
             .with_target("onescan::notice", LevelFilter::INFO),
         1 => Targets::new().with_default(LevelFilter::INFO),

@@ -22,15 +22,23 @@ pub struct AccessArgs {
     /// Trust the certificate of any OPC UA client
     #[arg(long, requires = "opcua_pki")]
     pub opcua_trust: bool,
+    /// Let a user's password come over a connection without security, where everybody on the way can read it
+    #[arg(long, requires = "opcua_user")]
+    pub opcua_plain_password: bool,
 }
 
 impl AccessArgs {
     /// Who is let in.
     ///
     /// # Errors
-    /// The user has no password.
+    /// The user has no password, or it would come in plain text.
     pub fn access(self) -> Result<Access, CommandError> {
         const PASSWORD: &str = "ONESCAN_OPCUA_PASSWORD";
+        if let (Some(user), None, false) = (&self.opcua_user, &self.opcua_pki, self.opcua_plain_password) {
+            let help = "encrypt it with certificates, `--opcua-pki DIR`, or permit it with `--opcua-plain-password`";
+            let message = format!("the password of user `{user}` would come over the network in plain text");
+            return Err(Usage::new(message, Some(help.to_owned())).into());
+        }
         let user = match self.opcua_user {
             None => None,
             Some(user) => {
@@ -41,6 +49,6 @@ impl AccessArgs {
                 Some((user, password))
             }
         };
-        Ok(Access { user, pki: self.opcua_pki, trust_clients: self.opcua_trust })
+        Ok(Access { user, pki: self.opcua_pki, trust_clients: self.opcua_trust, foreign_uris: false })
     }
 }

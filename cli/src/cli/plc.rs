@@ -37,6 +37,9 @@ pub struct PlcArgs {
     /// this machine]
     #[arg(long, value_name = "ADDRESS:PORT")]
     pub tcp: Option<SocketAddr>,
+    /// Where data blocks are served over ISO-on-TCP, as an S7 does
+    #[arg(long, value_name = "ADDRESS:PORT")]
+    pub s7: Option<SocketAddr>,
     /// Where registers are served over Modbus TCP
     #[arg(long, value_name = "ADDRESS:PORT")]
     pub modbus: Option<SocketAddr>,
@@ -83,12 +86,12 @@ const PLC_COMMANDS: &str = "Commands on standard input:
 pub fn run_plc(args: PlcArgs) -> Result<ExitCode, CommandError> {
     let interrupt = Interrupt::new();
     interrupt.on_signals();
-    let named = [args.tcp, args.modbus, args.ads, args.opcua];
+    let named = [args.tcp, args.s7, args.modbus, args.ads, args.opcua];
     let somewhere = named.iter().all(Option::is_none).then_some(SocketAddr::from((Ipv4Addr::LOCALHOST, 0)));
-    let [tcp, modbus, ads, opcua] = named.map(|address| address.or(somewhere));
+    let [tcp, s7, modbus, ads, opcua] = named.map(|address| address.or(somewhere));
     let access = args.access.access()?;
     let (scenario, client, mode, cycle) = (args.scenario, args.client, args.mode.into(), args.cycle);
-    let config = PlcConfig { scenario, client, mode, cycle, tcp, modbus, ads, opcua, access };
+    let config = PlcConfig { scenario, client, mode, cycle, tcp, s7, modbus, ads, opcua, access };
     Ok(plc::run(&config, &interrupt, &mut std::io::stdout().lock())?)
 }
 

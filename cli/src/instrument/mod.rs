@@ -2,10 +2,12 @@
 //!
 //! | module | subject |
 //! |---|---|
+//! | [`blocks`] | the mapping that goes with data blocks |
 //! | [`project`] | which files are meant, and where the result goes |
 //! | [`gateway`] | the gateway's mapping that goes with it |
 //! | [`report`] | what was changed, for people and machines |
 
+pub mod blocks;
 mod error;
 pub mod gateway;
 pub mod project;
@@ -103,6 +105,7 @@ pub fn instrument(
         Direction::Remove => instrument::remove(&program.inputs),
         Direction::Attach => {
             let agreed = agreed(config, &program)?;
+            mapping = agreed.as_ref().filter(|_| config.target == Target::Scl).and_then(blocks::mapping);
             let exchanged = agreed.as_ref().map(Agreement::exchanged).unwrap_or_default();
             let layout = agreed.and_then(|agreed| agreed.layout);
             let tasks = tasks(config, program.plan);
@@ -167,7 +170,10 @@ fn agreed(config: &InstrumentConfig, program: &Program) -> Result<Option<Agreeme
             None => input,
         })
     });
-    Ok(scenario.agreement_of(client, own.collect())?)
+    Ok(match config.target {
+        Target::Scl => scenario.agreement_of_over(client, own.collect(), blocks::settings)?,
+        _ => scenario.agreement_of(client, own.collect())?,
+    })
 }
 
 /// The scenario, if that is what is instrumented.

@@ -138,7 +138,11 @@ pub(super) fn beside(config: &InstrumentConfig, project: &Project, name: &str) -
     match &config.destination {
         Destination::Nowhere => None,
         Destination::Folder(folder) => Some(folder.join(name)),
-        Destination::InPlace => project.whole.as_ref().map(|whole| Path::new(whole).with_file_name(name)),
+        Destination::InPlace => {
+            let is_own = |file: &&File| Path::new(&file.name).file_name().is_some_and(|name| name == "sdsp.scl");
+            let own = project.files.iter().find(is_own).map(|file| &file.name);
+            project.whole.as_ref().or(own).map(|whole| Path::new(whole).with_file_name(name))
+        }
     }
 }
 

@@ -4,7 +4,7 @@ use std::io::{self, Write};
 use std::path::Path;
 
 use onescan_plc_shim::Diagnostics;
-use onescan_plc_shim::instrument::{File, Project, diff};
+use onescan_plc_shim::instrument::{File, Project, Target, diff};
 use onescan_report::OutputError;
 use serde::Serialize;
 
@@ -116,28 +116,35 @@ fn write_human(
     if config.destination == Destination::Nowhere {
         return Ok(());
     }
-    let is_whole = |file: &File| project.whole.as_deref() == Some(file_name(file));
+    // A project for MatIEC is one file in one place, with its mapping.
+    let is_one = !project.located.is_empty();
     for file in &project.files {
         match mapping {
-            // The whole project goes to one place, with its mapping.
-            Some(Mapped { path, .. }) if is_whole(file) => {
+            Some(Mapped { path, .. }) if is_one && project.whole.as_deref() == Some(file_name(file)) => {
                 let name = Path::new(file_name(file)).file_name().unwrap_or_default();
                 writeln!(out, "{:<8} {}", change(file), path.with_file_name(name).display())?;
             }
-            Some(_) if file.text.is_some() => {}
+            Some(_) if is_one && file.text.is_some() => {}
             _ => writeln!(out, "{:<8} {}", change(file), file_name(file))?,
         }
     }
-    if let (Some(Mapped { path, client }), Some(whole)) = (mapping, &project.whole) {
-        let (mapping, whole) = (path.display(), Path::new(whole).file_name().unwrap_or_default().display());
-        writeln!(out, "new      {mapping}\n\n{whole} is the whole project with the shim and its CONFIGURATION.")?;
-        return writeln!(out, "{mapping} says where the gateway finds its signals: `--gateway {client}={mapping}`.");
+    if let Some(Mapped { path, .. }) = mapping {
+        writeln!(out, "new      {}", path.display())?;
     }
     if let Some(whole) = &project.whole {
-        writeln!(out, "\n{whole} is the whole project with the shim: import it alone.")?;
+        let whole = Path::new(whole).file_name().unwrap_or_default().display();
+        let with = if is_one { " and its CONFIGURATION" } else { ": import it alone" };
+        writeln!(out, "\n{whole} is the whole project with the shim{with}.")?;
+    }
+    if let Some(Mapped { path, client }) = mapping {
+        let (gap, path) = (if project.whole.is_some() { "" } else { "\n" }, path.display());
+        writeln!(out, "{gap}{path} says where the gateway finds its signals: `--gateway {client}={path}`.")?;
+    }
+    if is_one {
+        return Ok(());
     }
     if config.direction == Direction::Attach {
-        let gap = if project.whole.is_some() { "" } else { "\n" };
+        let gap = if project.whole.is_some() || mapping.is_some() { "" } else { "\n" };
         writeln!(out, "{gap}Run SDSP_Scheduler first in every cycle, in a task of the highest priority.")?;
     }
     Ok(())

@@ -23,6 +23,8 @@ pub struct PlcConfig {
     pub cycle: Cycle,
     /// Where its data blocks are served.
     pub tcp: Option<SocketAddr>,
+    /// Where its data blocks are served over ISO-on-TCP.
+    pub s7: Option<SocketAddr>,
     /// Where its registers are served over Modbus TCP.
     pub modbus: Option<SocketAddr>,
     /// Where its symbols are served over ADS.

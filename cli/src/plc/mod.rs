@@ -16,7 +16,7 @@ use onescan_clients::gateway::MappingFault;
 use onescan_clients::gateway::modbus::RegisterMap;
 use onescan_clients::gateway::tcp::Layouts;
 use onescan_clients::opcua_server::{Running, ServeError};
-use onescan_clients::station::{Clockwork, Controller, Wires, ads, modbus, opcua, tcp};
+use onescan_clients::station::{Clockwork, Controller, Wires, ads, modbus, opcua, s7, tcp};
 use onescan_plc_shim::SoftPlc;
 use onescan_report::OutputError;
 use onescan_scenario::file::ClientFile;
@@ -92,6 +92,11 @@ fn serve(
         let layouts = Layouts::new(&program.settings.layout, &program.exchange).map_err(unfit)?;
         let address = tcp::serve(address, controller, layouts).map_err(ListenError::on(address))?;
         urls.push(format!("tcp://{address}"));
+    }
+    if let Some(address) = config.s7 {
+        let layouts = Layouts::new(&program.settings.layout, &program.exchange).map_err(unfit)?;
+        let address = s7::serve(address, controller, program.settings.s7, layouts).map_err(ListenError::on(address))?;
+        urls.push(format!("s7://{address}"));
     }
     if let Some(address) = config.modbus {
         let map = RegisterMap::new(&program.settings.modbus, &program.exchange).map_err(unfit)?;

@@ -1,7 +1,7 @@
 //! Clients that take part over OPC UA, and the server of the session's information model.
 
 use std::net::{Ipv4Addr, SocketAddr};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
@@ -38,6 +38,8 @@ pub(super) struct Seats {
 pub(super) struct Desk {
     board: Arc<Board>,
     service: Service,
+    /// Where certificates are kept.
+    pki: Option<PathBuf>,
     expected: Vec<Expected>,
 }
 
@@ -67,7 +69,8 @@ impl Seats {
         if doors.opcua.is_some() {
             tracing::info!(target: NOTICE, "serving the session at {}", service.url());
         }
-        Ok(Some(Desk { board, service, expected: self.expected }))
+        let pki = doors.access.pki.clone();
+        Ok(Some(Desk { board, service, pki, expected: self.expected }))
     }
 }
 
@@ -102,6 +105,22 @@ impl Desk {
         Ok(())
     }
 
+    /// Who tried to come in last and was sent away, and why.
+    fn refused(&self) -> Option<String> {
+        if let Some(refused) = self.service.refused() {
+            return Some(refused);
+        }
+        let rejected = self.pki.as_ref()?.join("rejected");
+        let is_any = std::fs::read_dir(&rejected).is_ok_and(|mut entries| entries.next().is_some());
+        let told = || {
+            let rejected = rejected.display();
+            format!(
+                "an OPC UA client whose certificate is not trusted; move it from {rejected} to the folder `trusted`"
+            )
+        };
+        is_any.then(told)
+    }
+
     /// Waits until all have started.
     pub(super) fn wait(
         &self,
@@ -123,7 +142,7 @@ impl Desk {
                 return Err(FormationError::Interrupted { missing }.into());
             }
             if Instant::now() > deadline {
-                return Err(FormationError::Missing { missing, patience }.into());
+                return Err(FormationError::Missing { missing, patience, refused: self.refused() }.into());
             }
             self.board.wait_for_start(LOOK_UP);
         }

@@ -5,6 +5,7 @@ use std::time::{Duration, Instant};
 use onescan_server::client::{Client, ClientFault, JoinRequest, Wake};
 use onescan_server::time::VirtualTime;
 
+use super::contact;
 use super::exchange::{Direction, Exchange};
 use super::fault::{GatewayFault, LinkFault};
 use super::handshake::{Ask, Handshake, Notice};
@@ -30,7 +31,7 @@ impl Default for Patience {
 /// An order that is not answered is written again after this; a connection is tried again after this.
 const AGAIN: Duration = Duration::from_millis(200);
 
-/// Answers in a row that cannot be understood before the run ends: one may be garbled on its way, whatever the link.
+/// Answers to one order that cannot be understood before the run ends: one may be garbled on its way, whatever the link.
 const GARBLED_MAX: u32 = 3;
 
 /// The clocks of one order.
@@ -41,7 +42,7 @@ struct Wait {
     written: Instant,
     /// Since when there is no connection.
     lost: Option<Instant>,
-    /// Answers in a row that could not be understood.
+    /// Answers that could not be understood. What is read in between may be well while every write is not.
     garbled: u32,
 }
 
@@ -71,12 +72,12 @@ impl Gateway {
         Self { handshake: self.handshake.expecting(layout), ..self }
     }
 
-    /// Connects and checks the mapping, before any session.
+    /// Connects and checks the mapping, before any session; a PLC that is not there yet is waited for.
     ///
     /// # Errors
     /// See [`LinkFault`].
     pub fn connect(&mut self) -> Result<(), LinkFault> {
-        self.link.connect()?;
+        contact::connect(&mut *self.link, self.request.name.as_str(), self.patience.reconnect)?;
         self.handshake.connected();
         Ok(())
     }
@@ -122,7 +123,6 @@ impl Gateway {
             Ok(true) => {
                 // What the outage took is not the PLC's to answer for.
                 wait.deadline += wait.lost.take().map_or(Duration::ZERO, |since| since.elapsed());
-                wait.garbled = 0;
                 self.handshake.look(self.exchange.report(&self.from_plc))?;
             }
             Ok(false) if wait.lost.is_some_and(|since| since.elapsed() > self.patience.reconnect) => {

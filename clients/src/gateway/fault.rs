@@ -50,6 +50,17 @@ impl LinkFault {
         matches!(self, Self::Unreachable { .. } | Self::Lost(_))
     }
 
+    /// The same, with how often it was tried and for how long.
+    pub(super) fn tried(self, times: u32, within: Duration) -> Self {
+        let times = if times == 1 { "once".to_owned() } else { format!("{times} times") };
+        let told = |reason: String| format!("{reason}; tried {times} in {within:?}");
+        match self {
+            Self::Unreachable { url, reason } => Self::Unreachable { url, reason: told(reason) },
+            Self::Lost(reason) => Self::Lost(told(reason)),
+            other => other,
+        }
+    }
+
     /// True for an answer that may have been garbled on its way.
     pub fn is_garbled(&self) -> bool {
         matches!(self, Self::Nonsense(_))
@@ -127,7 +138,7 @@ pub enum GatewayFault {
     OtherGrant {
         /// The grant under way.
         what: String,
-        /// The grant that the PLC has run last.
+        /// The grant that the PLC has run last, numbered as in this session.
         done: u32,
     },
     /// The PLC takes part in a session of somebody else.

@@ -7,6 +7,7 @@ use onescan_server::client::{Client, ClientFault, JoinRequest, Wake};
 use onescan_server::time::VirtualTime;
 
 use super::answer::Answer;
+use super::contact;
 use super::exchange::{Direction, Exchange};
 use super::fault::GatewayFault;
 use super::handshake::Report;
@@ -22,15 +23,17 @@ pub struct FreeGateway {
     request: JoinRequest,
     exchange: Exchange,
     link: Box<dyn Link>,
+    /// How long the PLC is waited for at first.
+    patience: Duration,
     to_plc: Vec<u8>,
     from_plc: Vec<u8>,
 }
 
 impl FreeGateway {
-    /// A client that speaks over `link`. The words of the handshake stay 0.
-    pub fn new(request: JoinRequest, exchange: Exchange, link: Box<dyn Link>) -> Self {
+    /// A client that speaks over `link`, and waits for the PLC as long as `patience` at first. The words of the handshake stay 0.
+    pub fn new(request: JoinRequest, exchange: Exchange, link: Box<dyn Link>, patience: Duration) -> Self {
         let (to_plc, from_plc) = (vec![0; exchange.size(Direction::ToPlc)], vec![0; exchange.size(Direction::FromPlc)]);
-        Self { request, exchange, link, to_plc, from_plc }
+        Self { request, exchange, link, patience, to_plc, from_plc }
     }
 
     /// A PLC in lockstep would stand still for the whole run, and every run be equal to every other.
@@ -69,7 +72,8 @@ impl Client for FreeGateway {
     fn setup(&mut self, outputs: &mut [u8]) -> Result<(), ClientFault> {
         // What the PLC shows already comes as a change, in the first turn.
         outputs.fill(0);
-        self.link.connect().map_err(|fault| ClientFault::new(fault.to_string()))?;
+        let contact = contact::connect(&mut *self.link, self.request.name.as_str(), self.patience);
+        contact.map_err(|fault| ClientFault::new(fault.to_string()))?;
         self.must_be_free().map_err(|fault| ClientFault::new(fault.to_string()))
     }
 

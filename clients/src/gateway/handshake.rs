@@ -351,7 +351,9 @@ impl Handshake {
                 self.phase = Phase::AtRest;
                 Ok(())
             }
-            _ if report.done > grant => Err(GatewayFault::OtherGrant { what: self.what(), done: report.done }),
+            _ if report.done > grant => {
+                Err(GatewayFault::OtherGrant { what: self.what(), done: report.done - session })
+            }
             // It has joined this session anew, from a late order, and knows nothing of the grants before.
             _ if report.done + 1 < grant => Err(restarted),
             (_, Answer::TimeStandsStill) if self.phase == Phase::Awaiting && grant == session + 1 => Err(restarted),

@@ -12,6 +12,7 @@
 //! | [`layout_number`] | a number that says whether two mappings are the same |
 //! | [`listing`] | all points of a link with their places |
 //! | [`link`] | the interface of all links |
+//! | `contact` | the first contact with a PLC |
 //! | [`client`] | handshake and link as a client of a session |
 //! | [`settings`] | what a scenario says of a link, and the link made of it |
 //! | [`ads`] | symbols of a TwinCAT PLC |
@@ -32,6 +33,7 @@ pub mod ads;
 pub mod answer;
 pub mod byte_order;
 pub mod client;
+mod contact;
 pub mod exchange;
 pub mod fault;
 pub mod freewheel;

@@ -25,17 +25,25 @@ use super::seat::{Holder, Refusal};
 use super::types;
 use super::value::of_item;
 use crate::gateway::opcua::value;
+use crate::opcua_server::Refusals;
 
 /// The nodes of a session and what is asked of them.
 pub struct SessionNodes {
     board: Arc<Board>,
     namespaces: Vec<NamespaceMetadata>,
     items: HashMap<NodeId, Item>,
+    /// Where it is noted whose certificate is that of another application; nothing if such a client is let in.
+    sent_away: Option<Refusals>,
 }
 
 impl SessionNodes {
     /// Adds all nodes of the session on `board`.
-    pub fn new(board: Arc<Board>, context: &ServerContext, space: &mut AddressSpace) -> Self {
+    pub fn new(
+        board: Arc<Board>,
+        sent_away: Option<Refusals>,
+        context: &ServerContext,
+        space: &mut AddressSpace,
+    ) -> Self {
         let indexes = add_namespaces(context, space, &[TYPES_URI, SESSION_URI]);
         let own = Namespaces { types: indexes[0], session: indexes[1] };
         for node in types::nodes() {
@@ -56,7 +64,19 @@ impl SessionNodes {
         let namespaces = [TYPES_URI, SESSION_URI].into_iter().zip(&indexes).map(namespace).collect();
         let nodes: Vec<(Item, NodeId)> = items.iter().map(|(id, item)| (*item, id.clone())).collect();
         tell_subscribers(&board, nodes, Arc::clone(&context.subscriptions));
-        Self { board, namespaces, items }
+        Self { board, namespaces, items, sent_away }
+    }
+
+    /// Refuses a client whose certificate was made for another application (OPC 10000-4 6.1.3, `Bad_CertificateUriInvalid`).
+    fn admitted(&self, context: &RequestContext) -> Result<(), StatusCode> {
+        let Some(sent_away) = &self.sent_away else { return Ok(()) };
+        let session = context.session.read();
+        let Some(certificate) = session.client_certificate() else { return Ok(()) };
+        let uri = &session.application_description().application_uri;
+        certificate.is_application_uri_valid(uri.as_ref()).map_err(|error| {
+            sent_away.note(format!("the OPC UA client `{uri}`, whose certificate was made for another application"));
+            error.status()
+        })
     }
 
     fn write_value(&self, context: &RequestContext, write: &WriteNode, item: Item) -> StatusCode {
@@ -230,6 +250,7 @@ impl InMemoryNodeManagerImpl for SessionNodes {
         space: &RwLock<AddressSpace>,
         nodes: &mut [&mut WriteNode],
     ) -> Result<(), StatusCode> {
+        self.admitted(context)?;
         for write in nodes {
             let item = self.items.get(&write.value().node_id).copied();
             let valid = {
@@ -254,6 +275,7 @@ impl InMemoryNodeManagerImpl for SessionNodes {
         _space: &RwLock<AddressSpace>,
         calls: &mut [&mut &mut MethodCall],
     ) -> Result<(), StatusCode> {
+        self.admitted(context)?;
         for call in calls {
             let status = match self.items.get(call.method_id()).copied() {
                 Some(Item::Session(method)) => {

@@ -10,7 +10,7 @@ use opcua::server::node_manager::memory::InMemoryNodeManagerBuilder;
 
 use super::board::Board;
 use super::manager::SessionNodes;
-use crate::opcua_server::{self, Access, Running, ServeError};
+use crate::opcua_server::{self, Access, Refusals, Running, ServeError};
 
 /// How long clients may take to notice that the session is over, wall clock.
 const FAREWELL_TIMEOUT: Duration = Duration::from_secs(1);
@@ -18,6 +18,7 @@ const FAREWELL_TIMEOUT: Duration = Duration::from_secs(1);
 /// A server that runs until this is dropped; then clients that take part are let to hear of the end.
 pub struct Service {
     board: Arc<Board>,
+    refusals: Refusals,
     running: Running,
 }
 
@@ -25,6 +26,11 @@ impl Service {
     /// Where it listens.
     pub fn address(&self) -> SocketAddr {
         self.running.address()
+    }
+
+    /// Why somebody was not let in last.
+    pub fn refused(&self) -> Option<String> {
+        self.refusals.last()
     }
 
     /// Its endpoint, as an OPC UA client takes it.
@@ -47,7 +53,11 @@ impl Drop for Service {
 /// The address cannot be listened on, or the server cannot be set up.
 pub fn serve(address: SocketAddr, board: &Arc<Board>, access: &Access) -> Result<Service, ServeError> {
     let nodes = Arc::clone(board);
-    let build = move |context: ServerContext, space: &mut AddressSpace| SessionNodes::new(nodes, &context, space);
-    let running = opcua_server::start(address, "session", access, InMemoryNodeManagerBuilder::new(build), |_| Ok(()))?;
-    Ok(Service { board: Arc::clone(board), running })
+    let refusals = Refusals::default();
+    let sent_away = (!access.foreign_uris).then(|| refusals.clone());
+    let build =
+        move |context: ServerContext, space: &mut AddressSpace| SessionNodes::new(nodes, sent_away, &context, space);
+    let manager = InMemoryNodeManagerBuilder::new(build);
+    let running = opcua_server::start(address, "session", access, &refusals, manager, |_| Ok(()))?;
+    Ok(Service { board: Arc::clone(board), refusals, running })
 }

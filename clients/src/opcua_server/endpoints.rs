@@ -1,6 +1,8 @@
 //! An OPC UA server: endpoints, users, certificates, and the thread that it runs on. What it serves is others' business.
 
+use std::collections::BTreeMap;
 use std::net::SocketAddr;
+use std::sync::Arc;
 use std::thread::JoinHandle;
 
 use opcua::crypto::SecurityPolicy;
@@ -9,8 +11,9 @@ use opcua::server::{ANONYMOUS_USER_TOKEN_ID, ServerBuilder, ServerHandle, Server
 use opcua::types::MessageSecurityMode;
 use tokio::net::TcpListener;
 
+use super::doorkeeper::Doorkeeper;
 use super::pki::Pki;
-use super::{Access, ServeError};
+use super::{Access, Refusals, ServeError};
 use crate::listener::bind;
 
 /// Shortest publishing interval, and how often subscriptions are looked at.
@@ -48,6 +51,7 @@ pub(crate) fn start(
     address: SocketAddr,
     name: &str,
     access: &Access,
+    refusals: &Refusals,
     manager: impl NodeManagerBuilder + 'static,
     fill: impl FnOnce(&ServerHandle) -> Result<(), ServeError>,
 ) -> Result<Running, ServeError> {
@@ -56,7 +60,7 @@ pub(crate) fn start(
     let runtime = tokio::runtime::Builder::new_multi_thread().worker_threads(1).enable_all().build()?;
     let (server, handle) = {
         let _inside = runtime.enter();
-        builder(address, name, access, &pki).with_node_manager(manager).build().map_err(ServeError::Setup)?
+        builder(address, name, access, refusals, &pki).with_node_manager(manager).build().map_err(ServeError::Setup)?
     };
     fill(&handle)?;
     let thread = std::thread::spawn(move || {
@@ -74,7 +78,7 @@ pub(crate) fn start(
     Ok(Running { address, handle, thread: Some(thread) })
 }
 
-fn builder(address: SocketAddr, name: &str, access: &Access, pki: &Pki) -> ServerBuilder {
+fn builder(address: SocketAddr, name: &str, access: &Access, refusals: &Refusals, pki: &Pki) -> ServerBuilder {
     let mut builder = ServerBuilder::new()
         .application_name(format!("onescan {name}"))
         .application_uri(format!("urn:onescan:{name}:application"))
@@ -89,14 +93,18 @@ fn builder(address: SocketAddr, name: &str, access: &Access, pki: &Pki) -> Serve
     let limits = &mut builder.limits_mut().subscriptions;
     limits.min_publishing_interval_ms = SUBSCRIPTIONS_MS as f64;
     limits.min_sampling_interval_ms = 0.0;
+    let mut known = BTreeMap::new();
     let mut users = Vec::new();
     match &access.user {
         Some((user, password)) => {
-            builder = builder.add_user_token("user", ServerUserToken::user_pass(user, password));
+            let token = ServerUserToken::user_pass(user, password);
+            builder = builder.add_user_token("user", token.clone());
+            known.insert("user".to_owned(), token);
             users.push("user");
         }
         None => users.push(ANONYMOUS_USER_TOKEN_ID),
     }
+    builder = builder.with_authenticator(Arc::new(Doorkeeper::new(known, refusals.clone())));
     if access.pki.is_none() {
         let none = ("/", SecurityPolicy::None, MessageSecurityMode::None, &users[..]);
         return builder.add_endpoint("none", none);

@@ -3,17 +3,21 @@
 //! | module | subject |
 //! |---|---|
 //! | `endpoints` | the server itself, with the feature `opcua` |
+//! | `doorkeeper` | users, and who was sent away |
 //! | `pki` | the folder for certificates, of servers and of clients |
 //! | `absent` | what stands for it without that feature |
 
 #[cfg(not(feature = "opcua"))]
 mod absent;
 #[cfg(feature = "opcua")]
+mod doorkeeper;
+#[cfg(feature = "opcua")]
 mod endpoints;
 #[cfg(feature = "opcua")]
 pub(crate) mod pki;
 
 use std::path::PathBuf;
+use std::sync::{Arc, Mutex, PoisonError};
 
 use thiserror::Error;
 
@@ -34,6 +38,24 @@ pub struct Access {
     pub pki: Option<PathBuf>,
     /// Trust any client's certificate.
     pub trust_clients: bool,
+    /// Let in clients whose certificate was made for another application.
+    pub foreign_uris: bool,
+}
+
+/// Why somebody was not let in last, in words.
+#[derive(Clone, Debug, Default)]
+pub struct Refusals(Arc<Mutex<Option<String>>>);
+
+impl Refusals {
+    /// Notes why somebody is not let in.
+    pub fn note(&self, why: String) {
+        *self.0.lock().unwrap_or_else(PoisonError::into_inner) = Some(why);
+    }
+
+    /// Why somebody was not let in last.
+    pub fn last(&self) -> Option<String> {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner).clone()
+    }
 }
 
 /// Why there is no server.

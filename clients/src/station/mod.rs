@@ -9,6 +9,7 @@
 //! | `listen` | clients that come one by one |
 //! | [`modbus`] | registers and coils over Modbus TCP |
 //! | [`opcua`] | variables of an OPC UA server |
+//! | [`s7`] | data blocks over ISO-on-TCP |
 //! | [`tcp`] | data blocks over raw TCP |
 //!
 //! # Invariants
@@ -27,6 +28,7 @@ pub mod opcua;
 #[cfg(not(feature = "opcua"))]
 #[path = "opcua_absent.rs"]
 pub mod opcua;
+pub mod s7;
 pub mod tcp;
 pub mod wires;
 

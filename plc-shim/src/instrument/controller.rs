@@ -1,7 +1,7 @@
 //! Execution controllers (`[SDSP]` sec. V-B, Fig. 11): header and footer of every
 //! scheduled program, the footer also before each RETURN.
 
-use super::template::{self, Controller, Number};
+use super::template::{self, Controller, Number, Only};
 use super::{marks, scl};
 use crate::source::edits::Edits;
 use crate::syntax::SourceFile;
@@ -9,10 +9,11 @@ use crate::syntax::ast::{Pou, Statement, StatementKind};
 use crate::syntax::token::Keyword;
 use crate::syntax::walk::{self, Visitor};
 
-/// Adds the execution controller of `pou`; `line` is the type of the line of programs.
-pub(super) fn control(pou: &Pou, number: Number, line: &str, file: &SourceFile, edits: &mut Edits) {
+/// Adds the execution controller of `pou`, with the lines of its template that are `wanted`; `line` is the type of the
+/// line of programs.
+pub(super) fn control(pou: &Pou, number: Number, line: &str, wanted: &[Only], file: &SourceFile, edits: &mut Edits) {
     let is_scl = scl::is_scl(file);
-    let controller = if is_scl { template::scl_controller(number) } else { template::controller(number, line) };
+    let controller = if is_scl { template::scl_controller(number, wanted) } else { template::controller(number, line) };
     let Controller { declarations, header, .. } = &controller;
     let line_break = marks::line_break(file.shown_text());
     let places = Places::of(pou, file);

@@ -17,6 +17,7 @@
 //! | [`controller`] | execution controllers |
 //! | [`exchanged`] | the variables that a gateway writes and reads |
 //! | [`scl`] | SCL of TIA Portal: organization blocks, timers |
+//! | [`scl_exchange`] | what a gateway exchanges with it: data blocks and copies |
 //! | [`plcopen_project`], [`plcopen`], [`plcopen_unit`] | projects in PLCopen XML |
 //! | [`chart`], [`chart_plan`], [`chart_script`], [`chart_action`] | Sequential Function Charts: execution signal, action control, times of steps |
 //! | [`plcopen_chart`], [`plcopen_gate`] | the same of charts that are drawn, in PLCopen XML |
@@ -54,6 +55,7 @@ mod plcopen_project;
 mod plcopen_unit;
 mod port;
 mod scl;
+mod scl_exchange;
 mod scl_port;
 mod single;
 mod survey;
@@ -73,6 +75,7 @@ pub use self::address::Address;
 pub use self::exchanged::{Exchanged, Way};
 pub use self::located::Located;
 use self::plain::Plain;
+pub use self::scl_exchange::{DB_FROM_PLC, DB_TO_PLC, goes_in_blocks};
 use self::survey::{Survey, survey};
 pub use self::target::Target;
 use self::target::{Globals, Sources};
@@ -239,6 +242,11 @@ fn attach(plain: &Plain, options: &Options) -> Result<Attached, InstrumentError>
         return Err(InstrumentError::Text(Diagnostics::new(vec![refused], &plain.sources)));
     }
     findings.append(&mut survey.findings);
+    let exchange = (options.target == Target::Scl).then(|| scl_exchange::text(&options.exchanged)).flatten();
+    if options.target == Target::Scl {
+        findings.extend(scl_exchange::refused(&options.exchanged));
+    }
+    survey.is_exchanged = exchange.is_some();
     let mut motion = motion_use::motion(options.target, &trees, &survey.motion);
     findings.append(&mut motion.findings);
     if findings.iter().any(|found| found.severity == Severity::Error) {
@@ -252,7 +260,7 @@ fn attach(plain: &Plain, options: &Options) -> Result<Attached, InstrumentError>
     forms.extend((!survey.charts.is_empty()).then(clock::on_delay));
     forms.sort_by_key(|form| form.name);
     forms.dedup();
-    let sources = Sources::new(options, &tasks, &forms, &motion.blocks, &survey.charts);
+    let sources = Sources::new(options, &tasks, &forms, &motion.blocks, &survey.charts, exchange);
     if plain.is_xml() {
         let files = vec![plain.edited_xml(&survey, &motion, &tasks, &sources)?];
         let project = Project::of(files, Diagnostics::new(findings, &plain.sources));

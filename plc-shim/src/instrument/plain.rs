@@ -217,7 +217,7 @@ impl Plain {
         }
         for (pou, number) in tasks.numbered().filter(|(pou, _)| pou.chart.is_empty()) {
             changes(pou.name.span.file, &mut |file, edits| {
-                controller::control(pou, number, &line, file, edits);
+                controller::control(pou, number, &line, survey.wanted(), file, edits);
             });
         }
         if let Some(first) = survey.configurations.first() {

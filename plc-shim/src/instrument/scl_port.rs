@@ -7,10 +7,11 @@
 use std::collections::BTreeMap;
 
 use super::plain::Plain;
+use super::scl_exchange;
 use super::survey::survey;
 use super::target::{Source as Own, Target};
 use super::tasks::{Line, TaskTable};
-use super::{File, InstrumentError, Options, Project, entries, instrument, marks, motion_use};
+use super::{Exchanged, File, InstrumentError, Options, Project, entries, instrument, marks, motion_use};
 use crate::application::{Application, Front};
 use crate::diagnostic::{Code, Diagnostic, Diagnostics, Severity};
 use crate::dialect::Dialect;
@@ -42,7 +43,7 @@ pub(super) fn ported(plain: &Plain, options: &Options) -> Result<Project, Instru
     // The second time with the start values that the first has not.
     for _ in 0..2 {
         let text = scl::project(source, &tasks, &values).map_err(wrong)?;
-        let text = attached(&text, &tasks, options).map_err(|wrong| match wrong {
+        let text = attached(&text, &tasks, &homes, options).map_err(|wrong| match wrong {
             InstrumentError::Text(found) => refused(plain, &found),
             other => other,
         })?;
@@ -81,6 +82,7 @@ fn asked(
     let mut survey = survey(&trees, Target::Scl);
     let mut findings = plain.findings.clone();
     findings.append(&mut survey.findings);
+    findings.extend(scl_exchange::refused(&options.exchanged));
     let motion = motion_use::motion(Target::Scl, &trees, &survey.motion).findings;
     // There is nothing in TIA Portal that it could be left to.
     findings.extend(motion.into_iter().map(|found| Diagnostic { severity: Severity::Error, ..found }));
@@ -104,14 +106,36 @@ fn called(tasks: &[Task]) -> Vec<Task> {
 }
 
 /// The translation with the shim, in one text.
-fn attached(text: &str, tasks: &[Task], options: &Options) -> Result<String, InstrumentError> {
-    let options = Options { target: Target::Scl, tasks: Some(called(tasks)), ..options.clone() };
+fn attached(text: &str, tasks: &[Task], homes: &Homes, options: &Options) -> Result<String, InstrumentError> {
+    let moved = |each: &Exchanged| Exchanged { variable: path(homes, &each.variable), ..each.clone() };
+    let exchanged = options.exchanged.iter().map(moved).collect();
+    let options = Options { target: Target::Scl, tasks: Some(called(tasks)), exchanged, ..options.clone() };
     let project = instrument(&[in_scl("project.scl", text)], &options)?;
     let (own, others): (Vec<&File>, Vec<&File>) = project.files.iter().partition(|file| file.before.is_none());
     let texts = |files: Vec<&File>| -> Vec<String> {
         files.into_iter().filter_map(|file| file.text.as_deref().map(marks::plain_text)).collect()
     };
-    Ok(format!("{}\n{}\n{}", marks::WHOLE, texts(own).join("\n").trim_start(), texts(others).join("\n")))
+    let (own, others) = in_order(texts(own).join("\n"), texts(others).join("\n"));
+    Ok(format!("{}\n{}\n{others}", marks::WHOLE, own.trim_start()))
+}
+
+/// What copies between blocks stands behind the blocks of the project and before those that are called by nobody: a
+/// block is read when those that it uses are known.
+fn in_order(mut own: String, others: String) -> (String, String) {
+    let mut cut = |from: &str, to: &str| -> Option<String> {
+        let start = own.find(from)?;
+        let end = start + own.get(start..)?.find(to)? + to.len();
+        Some(own.drain(start..end).collect())
+    };
+    let functions = [scl_exchange::TAKE, scl_exchange::GIVE];
+    let copies: Vec<String> = functions.iter().filter_map(|from| cut(from, "END_FUNCTION\n")).collect();
+    if copies.is_empty() {
+        return (own, others);
+    }
+    let scheduler = cut("ORGANIZATION_BLOCK \"SDSP_Scheduler\"", "END_ORGANIZATION_BLOCK\n").unwrap_or_default();
+    let called = others.find("// Task ").unwrap_or(others.len());
+    let (blocks, organization) = others.split_at(called);
+    (own, format!("{blocks}\n{}\n{scheduler}\n{organization}", copies.join("\n")))
 }
 
 /// The translation is not right: its own words do not help, but say what SCL has not.

@@ -8,6 +8,7 @@ use super::foreign;
 use super::motion::Role;
 use super::scl::{self, TimerCalls};
 use super::target::Target;
+use super::template::Only;
 use crate::application::library;
 use crate::check::{VIRTUAL_TIME_NAME, is_standard_function};
 use crate::diagnostic::{Code, Diagnostic};
@@ -25,6 +26,8 @@ use crate::syntax::{FileId, Span, parse};
 pub(super) struct Survey<'a> {
     /// For whom the project is instrumented.
     pub(super) target: Target,
+    /// True if signals go in data blocks of the shim's.
+    pub(super) is_exchanged: bool,
     /// The programs in their order.
     pub(super) programs: Vec<&'a Pou>,
     /// The first configuration; all its parts, of which each of TwinCAT's task files is one.
@@ -51,6 +54,13 @@ pub(super) struct Survey<'a> {
     globals: BTreeSet<String>,
     /// What cannot be replaced, and names that the shim needs for itself.
     pub(super) findings: Vec<Diagnostic>,
+}
+
+impl Survey<'_> {
+    /// Lines of a controller's template that not every project has.
+    pub(super) fn wanted(&self) -> &'static [Only] {
+        if self.is_exchanged { &[Only::Exchange] } else { &[] }
+    }
 }
 
 /// Looks through all files of a project.

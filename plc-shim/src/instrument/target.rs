@@ -42,6 +42,8 @@ pub(super) struct Sources {
     line: Option<String>,
     /// Variables, for a configuration or a file of their own.
     pub(super) globals: String,
+    /// Data blocks of the signals, in SCL.
+    exchange: Option<String>,
     scheduler: String,
     forms: Vec<Unit>,
     motion: Vec<Part>,
@@ -79,9 +81,11 @@ impl Sources {
         forms: &[&Form],
         blocks: &BTreeMap<String, Use>,
         charts: &[&Pou],
+        exchange: Option<String>,
     ) -> Self {
         let Options { target, layout, .. } = *options;
-        let wanted: &[Only] = if forms.iter().any(|form| form.long) { &[Only::LongTime] } else { &[] };
+        let is_long = forms.iter().any(|form| form.long).then_some(Only::LongTime);
+        let wanted: Vec<Only> = is_long.into_iter().chain(exchange.is_some().then_some(Only::Exchange)).collect();
         let mut names = tasks.names();
         let sizes = [("SDSP_PROGRAMS", tasks.programs.len().to_string())];
         // A TIME has nanoseconds in the one and milliseconds in the other. Only durations of whole seconds are exact
@@ -96,7 +100,7 @@ impl Sources {
         names.extend([("SDSP_NOW_OF_TV", now.to_owned()), ("SDSP_NOWL_OF_TV", now_long.to_owned())]);
         names.push(("SDSP_LAYOUT_NUMBER", layout.unwrap_or(0).to_string()));
         let fill = if target == Target::Scl { template::fill_scl } else { template::fill };
-        let filled = |template: &str| fill(&template::lines_for(&tasks.with_singles(template), wanted), &names);
+        let filled = |template: &str| fill(&template::lines_for(&tasks.with_singles(template), &wanted), &names);
         let unit = |form: &&Form| Unit { name: form.new_name(), text: form.text(target) };
         let (globals, scheduler) = match target {
             Target::Scl => (template::SCL_GLOBALS, template::SCL_SCHEDULER),
@@ -113,6 +117,7 @@ impl Sources {
         Self {
             line: tasks.line_declaration().map(|text| template::fill(text, &sizes)),
             globals: filled(globals),
+            exchange,
             scheduler: filled(scheduler),
             forms: units,
             motion: motion::parts(target, blocks),
@@ -138,8 +143,15 @@ impl Sources {
             Target::Iec | Target::Codesys | Target::Scl | Target::OpenPlc | Target::Beremiz => {
                 let forms = self.forms.into_iter().map(|unit| unit.text);
                 let motion = self.motion.into_iter().map(|part| part.text);
-                let parts: Vec<String> =
-                    self.line.into_iter().chain(own).chain([self.scheduler]).chain(forms).chain(motion).collect();
+                let parts: Vec<String> = self
+                    .line
+                    .into_iter()
+                    .chain(own)
+                    .chain(self.exchange)
+                    .chain([self.scheduler])
+                    .chain(forms)
+                    .chain(motion)
+                    .collect();
                 let text = format!("{}\n{}", marks::FILE, parts.join("\n"));
                 let name = if target == Target::Scl { "sdsp.scl" } else { "sdsp.st" };
                 vec![Source { name: name.to_owned(), text }]

@@ -1,7 +1,7 @@
 //! The shim's sources, and what becomes of them: names in them stand for a project's data.
 //!
 //! Each is program text that can be read and parsed as it is. A line with `(*$ltime` in it is for
-//! projects that use LTIME only, since older systems do not know that type; one with `(*$instances`
+//! projects that use LTIME only, since older systems do not know that type; one with `(*$exchange` for those whose signals go in data blocks, one with `(*$instances`
 //! for programs of which a configuration has several. A line with `(*$each` is repeated for each task with
 //! SINGLE; one with `(*$input`, `(*$external` or `(*$event` for those that are read or started in that way.
 
@@ -28,6 +28,7 @@ pub(super) const TIME_FUNCTION: &str = include_str!("../../iec/shim/time_functio
 
 pub(super) const SCL_GLOBALS: &str = include_str!("../../iec/shim/scl/globals.scl");
 pub(super) const SCL_SCHEDULER: &str = include_str!("../../iec/shim/scl/scheduler.scl");
+pub(super) const SCL_EXCHANGE: &str = include_str!("../../iec/shim/scl/exchange.scl");
 pub(super) const SCL_EXECUTION_CONTROLLER: &str = include_str!("../../iec/shim/scl/execution_controller.scl");
 pub(super) const SCL_ON_DELAY: &str = include_str!("../../iec/shim/scl/on_delay.scl");
 pub(super) const SCL_OFF_DELAY: &str = include_str!("../../iec/shim/scl/off_delay.scl");
@@ -40,6 +41,8 @@ pub(super) enum Only {
     LongTime,
     /// Programs of which there are several instances.
     Instances,
+    /// Projects whose signals go in data blocks.
+    Exchange,
 }
 
 impl Only {
@@ -47,6 +50,7 @@ impl Only {
         match text.split(|one: char| !one.is_ascii_alphabetic()).next() {
             Some("ltime") => Some(Self::LongTime),
             Some("instances") => Some(Self::Instances),
+            Some("exchange") => Some(Self::Exchange),
             _ => None,
         }
     }
@@ -149,14 +153,14 @@ pub(super) fn controller(number: Number, line: &str) -> Controller {
     }
 }
 
-/// The execution controller of an organization block.
-pub(super) fn scl_controller(number: Number) -> Controller {
+/// The execution controller of an organization block; with `Only::Exchange` it gives outputs to the gateway's block.
+pub(super) fn scl_controller(number: Number, wanted: &[Only]) -> Controller {
     let number = match number {
         Number::Fixed(number) => number,
         // Organization blocks have no instances.
         Number::OfInstance => 0,
     };
-    let text = fill_scl(SCL_EXECUTION_CONTROLLER, &[("SDSP_NUMBER", number.to_string())]);
+    let text = fill_scl(&lines_for(SCL_EXECUTION_CONTROLLER, wanted), &[("SDSP_NUMBER", number.to_string())]);
     Controller {
         declarations: between(&text, "(* Declarations *)", "(* Body *)"),
         header: between(&text, "(* Header *)", "(* Regular program begins here *)"),
@@ -245,7 +249,15 @@ mod tests {
 
     #[test]
     fn every_source_in_scl_does_too() {
-        let all = [SCL_GLOBALS, SCL_SCHEDULER, SCL_EXECUTION_CONTROLLER, SCL_ON_DELAY, SCL_OFF_DELAY, SCL_PULSE];
+        let all = [
+            SCL_GLOBALS,
+            SCL_EXCHANGE,
+            SCL_SCHEDULER,
+            SCL_EXECUTION_CONTROLLER,
+            SCL_ON_DELAY,
+            SCL_OFF_DELAY,
+            SCL_PULSE,
+        ];
         for text in all {
             assert!(text.starts_with("(* ") && text.contains("Carlsson et al. 2012, sec. V-"), "{text}");
             let input = Input::from_text("shim.scl", SourceKind::Text, text);

@@ -1,7 +1,7 @@
 //! The gateway's side: as few requests as the map allows.
 
 use std::net::ToSocketAddrs;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use tokio::runtime::Runtime;
 use tokio_modbus::client::{Context, Reader, Writer, tcp};
@@ -14,6 +14,9 @@ use crate::gateway::exchange::Exchange;
 use crate::gateway::fault::{LinkFault, MappingFault};
 use crate::gateway::link::Link;
 use crate::gateway::socket::TIMEOUT;
+
+/// A PLC that is busy is asked again after this.
+const BUSY: Duration = Duration::from_millis(50);
 
 /// Registers and coils over Modbus TCP.
 pub struct ModbusLink {
@@ -70,13 +73,28 @@ impl ModbusLink {
         Err(reason)
     }
 
+    /// Does `request` again while the PLC is busy: it says so for a moment, and asks for that (exceptions 5 and 6).
+    fn patiently<T>(&mut self, request: impl Fn(&mut Self) -> Result<T, Failed>) -> Result<T, Failed> {
+        let begun = Instant::now();
+        loop {
+            match request(self) {
+                Err(Failed::Refused(code)) if is_busy(code) && begun.elapsed() < TIMEOUT => {
+                    std::thread::sleep(BUSY);
+                }
+                done => return done,
+            }
+        }
+    }
+
     /// The point whose register the PLC has not, found by asking for each alone.
     fn refused(&mut self, spans: &[Span], code: ExceptionCode) -> LinkFault {
         let is_asked = |entry: &&Entry| spans.iter().any(|span| span.table == entry.address.table);
         let entries: Vec<Entry> = self.map.to_plc.iter().chain(&self.map.from_plc).filter(is_asked).cloned().collect();
         for Entry { point, address, count } in entries {
             let span = Span { table: address.table, at: address.at, count };
-            if let Err(Failed::Refused(code)) = self.read_span(span) {
+            if let Err(Failed::Refused(code)) = self.read_span(span)
+                && is_of_the_address(code)
+            {
                 let message = format!("`{}` is mapped to {address}, which the PLC refuses: {code}", point.label());
                 return MappingFault::new(&point.name, message).into();
             }
@@ -132,9 +150,23 @@ impl ModbusLink {
         match failed {
             Failed::Lost(reason) => LinkFault::Lost(reason),
             Failed::Nonsense(what) => LinkFault::Nonsense(what),
-            Failed::Refused(code) => self.refused(&[span], code),
+            Failed::Refused(code) if is_of_the_address(code) => self.refused(&[span], code),
+            // The PLC or what lies before it: another attempt may find it well.
+            Failed::Refused(code) => {
+                LinkFault::Lost(format!("the PLC answers `{code}` (Modbus exception {})", u8::from(code)))
+            }
         }
     }
+}
+
+/// True for what the PLC will do if it is asked again.
+fn is_busy(code: ExceptionCode) -> bool {
+    matches!(code, ExceptionCode::Acknowledge | ExceptionCode::ServerDeviceBusy)
+}
+
+/// True for what the PLC says of a request that it will never do: the function, the register or the value.
+fn is_of_the_address(code: ExceptionCode) -> bool {
+    matches!(code, ExceptionCode::IllegalFunction | ExceptionCode::IllegalDataAddress | ExceptionCode::IllegalDataValue)
 }
 
 type Answer<T> = Result<Result<Result<T, ExceptionCode>, Error>, tokio::time::error::Elapsed>;
@@ -159,7 +191,7 @@ impl Link for ModbusLink {
         self.context = Some(self.open().map_err(|reason| LinkFault::Unreachable { url, reason })?);
         // What is written can be read as well: that it is there is seen before anything is written.
         for span in [self.writes.clone(), self.reads.clone()].concat() {
-            if let Err(failed) = self.read_span(span) {
+            if let Err(failed) = self.patiently(|link| link.read_span(span)) {
                 return Err(self.fault(failed, span));
             }
         }
@@ -174,7 +206,7 @@ impl Link for ModbusLink {
             for entry in &self.map.to_plc {
                 registers::put(entry, to_plc, order, &span, &mut words);
             }
-            if let Err(failed) = self.write_span(span, &words) {
+            if let Err(failed) = self.patiently(|link| link.write_span(span, &words)) {
                 return Err(self.fault(failed, span));
             }
         }
@@ -184,7 +216,7 @@ impl Link for ModbusLink {
     fn read(&mut self, _patience: Duration, from_plc: &mut [u8]) -> Result<bool, LinkFault> {
         for index in 0..self.reads.len() {
             let span = self.reads[index];
-            let words = match self.read_span(span) {
+            let words = match self.patiently(|link| link.read_span(span)) {
                 Ok(words) => words,
                 Err(failed) => return Err(self.fault(failed, span)),
             };

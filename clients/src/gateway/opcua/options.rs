@@ -40,6 +40,8 @@ pub struct Options {
     /// The folder with the certificates of this program (`own`, `private`) and those it trusts (`trusted`);
     /// made when it is not there. Without it nothing is kept.
     pub pki: Option<PathBuf>,
+    /// Send the user's password over a connection without security, where everybody on the way can read it.
+    pub plain_password: bool,
     /// Trust any server; otherwise its certificate must lie in `trusted` of the folder.
     pub trust_server: bool,
 }
@@ -55,6 +57,7 @@ impl Default for Options {
             user_certificate: None,
             user_key: None,
             pki: None,
+            plain_password: false,
             trust_server: false,
         }
     }
@@ -87,13 +90,19 @@ impl Options {
     /// Who the client says it is.
     ///
     /// # Errors
-    /// A password or a certificate that is not there.
+    /// A password or a certificate that is not there; a password that would go in plain text.
     pub fn identity(&self) -> Result<IdentityToken, LinkFault> {
         match (&self.user_certificate, &self.user_key, &self.user) {
             (Some(certificate), Some(key), _) => IdentityToken::new_x509_path(certificate, key)
                 .map_err(|error| LinkFault::Setting(format!("the user's certificate: {error}"))),
             (Some(_), None, _) | (None, Some(_), _) => {
                 Err(LinkFault::Setting("`user_certificate` and `user_key` go together".to_owned()))
+            }
+            (None, None, Some(user)) if self.policy == "None" && !self.plain_password => {
+                Err(LinkFault::Setting(format!(
+                    "the password of user `{user}` would go over the network in plain text: set `policy`, or permit it \
+                     with `plain_password = true`"
+                )))
             }
             (None, None, Some(user)) => {
                 let password = std::env::var(&self.password_env).map_err(|_| {

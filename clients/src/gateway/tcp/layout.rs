@@ -5,6 +5,7 @@
 
 use std::collections::BTreeMap;
 use std::fmt;
+use std::ops::Range;
 
 use onescan_base::did_you_mean;
 use onescan_server::signal::SignalType;
@@ -43,10 +44,16 @@ struct Place {
     ty: SignalType,
 }
 
+impl Place {
+    fn bytes(self) -> Range<usize> {
+        self.byte..self.byte + self.ty.size()
+    }
+}
+
 /// A value in packed bytes and in a block.
 #[derive(Clone, Debug, PartialEq, Eq)]
 struct Move {
-    packed: std::ops::Range<usize>,
+    packed: Range<usize>,
     place: Place,
 }
 
@@ -56,6 +63,8 @@ pub struct Layout {
     order: ByteOrder,
     moves: Vec<Move>,
     size: usize,
+    /// True if the block has no fields but the points, so that all of it is the gateway's and the PLC's own.
+    is_own: bool,
 }
 
 /// Both blocks.
@@ -130,12 +139,42 @@ impl Layout {
             }
             moves.push(Move { packed: point.range(), place });
         }
-        Ok(Self { order: declaration.byte_order, moves, size })
+        Ok(Self { order: declaration.byte_order, moves, size, is_own: fields.is_empty() })
     }
 
     /// Bytes of the block.
     pub fn size(&self) -> usize {
         self.size
+    }
+
+    /// The bytes of the last point.
+    pub fn last(&self) -> Range<usize> {
+        self.moves.last().map_or(0..0, |each| each.place.bytes())
+    }
+
+    /// The bytes that may be written: all of a block that has no fields but the points, and otherwise those in which
+    /// points lie. As few ranges as there are, in their order.
+    pub fn owned(&self) -> Vec<Range<usize>> {
+        if self.is_own {
+            return vec![0..self.size];
+        }
+        let mut places: Vec<Range<usize>> = self.moves.iter().map(|each| each.place.bytes()).collect();
+        places.sort_by_key(|place| place.start);
+        let mut runs: Vec<Range<usize>> = Vec::new();
+        for place in places {
+            match runs.last_mut().filter(|last| place.start <= last.end) {
+                Some(last) => last.end = last.end.max(place.end),
+                None => runs.push(place),
+            }
+        }
+        runs
+    }
+
+    /// The points that lie in these bytes of the block in part or whole, by their index and packed bytes.
+    pub(crate) fn touched(&self, bytes: &Range<usize>) -> impl Iterator<Item = (usize, Range<usize>)> {
+        let touches = |place: Range<usize>| place.start < bytes.end && bytes.start < place.end;
+        let chosen = self.moves.iter().enumerate().filter(move |(_, each)| touches(each.place.bytes()));
+        chosen.map(|(index, each)| (index, each.packed.clone()))
     }
 
     /// Puts packed values into a block.

@@ -45,6 +45,7 @@ use std::collections::{BTreeMap, BTreeSet};
 pub(crate) use data::{StartValues, block_of_task};
 use names::{Names, Shape, member};
 use order::{Part, ordered};
+pub(crate) use spec::elementary as elementary_name;
 
 use crate::diagnostic::{Code, Diagnostic};
 use crate::run::Task;

@@ -22,7 +22,7 @@ pub(super) fn refused_union(span: Span) -> Diagnostic {
 }
 
 /// TIA Portal's spelling of an elementary type; nothing for one that it lacks or has in another form.
-pub(super) fn elementary(ty: ElementaryType) -> Option<&'static str> {
+pub(crate) fn elementary(ty: ElementaryType) -> Option<&'static str> {
     use ElementaryType as E;
     Some(match ty {
         E::Bool => "Bool",
