@@ -82,7 +82,7 @@ pub enum ListError {
         help: Option<String>,
     },
     /// There is nothing in it that could be a signal.
-    #[error("{file}: there are no inputs and outputs in this {title}, {left_out} entries left out")]
+    #[error("{file}: there are no inputs and outputs in this {title}{}", left(*.left_out))]
     #[diagnostic(help("inputs and outputs are what is linked or has an address in %I or %Q"))]
     Empty {
         /// The file.
@@ -92,6 +92,14 @@ pub enum ListError {
         /// How many entries cannot be signals.
         left_out: usize,
     },
+}
+
+fn left(count: usize) -> String {
+    match count {
+        0 => String::new(),
+        1 => ", and one entry was left out".to_owned(),
+        count => format!(", and {count} entries were left out"),
+    }
 }
 
 impl Exit for ListError {

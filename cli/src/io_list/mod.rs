@@ -219,3 +219,6 @@ fn guess(path: &Path, bytes: &[u8]) -> Result<ListKind, ListError> {
         }
     })
 }
+
+#[cfg(test)]
+mod tests;

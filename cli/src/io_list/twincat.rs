@@ -32,7 +32,14 @@ struct Plc {
     cycle: Option<TimeSpan>,
     vars: Vec<Var>,
     /// What each variable is linked to.
-    links: BTreeMap<String, String>,
+    links: BTreeMap<String, FarEnd>,
+}
+
+/// The other end of a link, in the words of the tree of devices.
+struct FarEnd {
+    text: String,
+    /// True if it is a variable of the same PLC.
+    is_own: bool,
 }
 
 /// Reads a project, a part of one, or the description of a compiled PLC.
@@ -64,13 +71,19 @@ pub fn read(path: &Path, bytes: &[u8], wanted: Option<&str>) -> Result<IoList, L
         collected.goes_on_in(file);
     }
     for var in &plc.vars {
-        let linked = || plc.links.get(&var.name).map(String::as_str);
+        let linked = plc.links.get(&var.name);
+        if let Some(FarEnd { text, is_own: true }) = linked
+            && var.direction == Direction::Input
+        {
+            collected.leave_out(&var.name, format!("the PLC feeds it itself ({text})"), Some(var.line));
+            continue;
+        }
         let entry = Entry {
             name: &var.name,
             ty: &var.ty,
             direction: var.direction,
             address: None,
-            comment: var.comment.as_deref().or_else(linked),
+            comment: var.comment.as_deref().or(linked.map(|far| far.text.as_str())),
             line: Some(var.line),
         };
         collected.take(&entry, &types)?;
@@ -108,7 +121,11 @@ fn plcs(root: Element, lines: &Lines, path: &Path, types: &mut Types) -> Result<
             continue;
         };
         let part = path.parent().unwrap_or(Path::new("")).join("_Config").join("PLC").join(file.replace('\\', "/"));
-        let size = std::fs::metadata(&part).map_err(Unreadable::at(&part))?.len();
+        let Ok(size) = std::fs::metadata(&part).map(|about| about.len()) else {
+            let what = format!("its PLC is in {}, which is not there", part.display());
+            let help = Some("copy the project with its folder `_Config`".to_owned());
+            return Err(ListError::Other { file: path.display().to_string(), what, help });
+        };
         if size > BYTES_MAX {
             return Err(ListError::TooLarge { file: part.display().to_string(), mib: BYTES_MAX >> 20 });
         }
@@ -159,13 +176,13 @@ fn vars<'d>(group: Element<'d>, lines: &'d Lines) -> impl Iterator<Item = Var> {
 }
 
 /// What the variables of an instance are linked to, in the words of the tree of devices.
-fn links(root: Element, instance: &str) -> BTreeMap<String, String> {
+fn links(root: Element, instance: &str) -> BTreeMap<String, FarEnd> {
     let mut links = BTreeMap::new();
     let is_ours = |owner: Option<&str>| owner.is_some_and(|owner| owner.rsplit('^').next() == Some(instance));
     let variable = |end: &str| end.split_once('^').map_or(end, |(_, name)| name).to_owned();
     let far = |end: &str, owner: Option<&str>| {
         let device = owner.and_then(|owner| owner.rsplit('^').next()).unwrap_or_default();
-        format!("{device}: {}", end.replace('^', ", "))
+        FarEnd { text: format!("{device}: {}", end.replace('^', ", ")), is_own: is_ours(owner) }
     };
     for link in root.below("Link") {
         let (Some(a), Some(b)) = (link.attribute("VarA"), link.attribute("VarB")) else { continue };

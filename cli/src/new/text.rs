@@ -32,6 +32,11 @@ fn one_line(text: &str) -> String {
     }
 }
 
+/// What the list is called; where it lay is nobody's business in a file that is kept.
+fn file_name(list: &IoList) -> String {
+    one_line(list.from.rsplit(['/', '\\']).next().unwrap_or(&list.from))
+}
+
 /// A key of TOML.
 fn key(name: &str) -> String {
     let is_bare = name.chars().all(|c| c.is_ascii_alphanumeric() || matches!(c, '_' | '-'));
@@ -44,7 +49,7 @@ fn step(list: &IoList) -> String {
 
 /// `scenario.toml`.
 pub(super) fn scenario(name: &str, list: &IoList, signals: &[Signal], plc: &Plc) -> String {
-    let from = one_line(&list.from);
+    let from = file_name(list);
     let step = step(list);
     let mut text = format!(
         "# {name}: made of {from} ({title}). README.md says what to do next.
@@ -165,6 +170,10 @@ pub(super) fn stand_in(name: &str, variables: &[(&Signal, String)]) -> String {
         }
         text += "END_VAR\n";
     }
+    // An output that nothing writes is a finding of `check`; the programs that come in its place write it.
+    for (_, variable) in variables.iter().filter(|(signal, _)| signal.point.direction == Direction::Output) {
+        let _ = writeln!(text, "    {variable} := {variable};");
+    }
     text + "END_PROGRAM\n"
 }
 
@@ -202,7 +211,7 @@ What to do next:
    your own, `kind = \"external\"`.
 {sources}3. Say in `[[expect]]` what every run must show.
 ",
-        from = one_line(&list.from),
+        from = file_name(list),
         title = list.kind.title(),
     )
 }
