@@ -16,6 +16,7 @@
 //! | [`session`] | part in a session that another process serves |
 //! | [`plc`] | a soft PLC as a process of its own |
 //! | [`browse`] | what a real PLC has |
+//! | [`map`] | where the points of a gateway lie |
 //! | [`instrument`] | PLC projects made to run in lockstep, and back |
 //! | [`check`] | PLC sources checked without being run |
 //! | [`wiring`] | signals between clients, listed and drawn |
@@ -43,6 +44,7 @@ pub mod freewheel;
 pub mod instrument;
 pub mod interrupt;
 pub mod io_list;
+pub mod map;
 pub mod new;
 pub mod plant;
 pub mod plc;

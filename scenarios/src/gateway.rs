@@ -1,10 +1,14 @@
 //! A scenario's real PLCs: the link of each, its points, and the instrumented program that it runs.
 
-use onescan_clients::gateway::exchange::{SystemWords, is_word};
-use onescan_clients::gateway::{Exchange, FreeGateway, Gateway, LinkFault, Settings, SettingsFault};
+use onescan_clients::gateway::exchange::{Direction, SystemWords};
+use onescan_clients::gateway::layout_number::layout_number;
+use onescan_clients::gateway::mapping::{self, Variables};
+use onescan_clients::gateway::{
+    Exchange, FreeGateway, Gateway, LinkFault, MappingFault, Point, Settings, SettingsFault,
+};
 use onescan_clients::soft_plc::{Bindings, SoftPlcClient};
 use onescan_plc_shim::input::kind::{FileKind, SourceKind};
-use onescan_plc_shim::instrument::{File, InstrumentError, Options, Project, Target, instrument};
+use onescan_plc_shim::instrument::{Exchanged, File, InstrumentError, Options, Project, Target, Way, instrument};
 use onescan_plc_shim::{Application, BuildError, Input, Task, TaskPlan, TimeSpan};
 use onescan_server::client::{Client, JoinRequest};
 use onescan_server::signal::{ClientName, Port, SignalName, did_you_mean};
@@ -21,12 +25,42 @@ pub struct Instrumented {
     pub application: Application,
     /// Its tasks: scheduler first, in every cycle.
     pub plan: TaskPlan,
-    /// Which signal is which variable.
+    /// Which signal is which variable; the variables have the paths of the scenario's own sources.
     pub bindings: Bindings,
     /// Signals and synchronisation words.
     pub exchange: Exchange,
     /// Its link.
     pub settings: Settings,
+}
+
+/// What the gateway of a PLC and the program in that PLC must agree on.
+#[derive(Clone, Debug)]
+pub struct Agreement {
+    /// The link. Its URL is empty if nothing says where the PLC is.
+    pub settings: Settings,
+    /// What the client reads and writes in the session.
+    pub request: JoinRequest,
+    /// Signals and synchronisation words.
+    pub exchange: Exchange,
+    /// The number of the mapping; nothing if the sources of the PLC's program are not known.
+    pub layout: Option<u32>,
+}
+
+impl Agreement {
+    /// The variables that the gateway writes and reads, in the order of its points.
+    pub fn exchanged(&self) -> Vec<Exchanged> {
+        let exchanged = |(direction, way): (Direction, Way)| {
+            let points = self.exchange.points(direction).iter().filter(|point| !point.is_word());
+            points.map(move |point: &Point| Exchanged {
+                signal: point.name.clone(),
+                variable: point.variable.clone().unwrap_or_else(|| point.name.clone()),
+                ty: point.ty,
+                way,
+                address: point.address.clone().filter(|address| address.starts_with('%')),
+            })
+        };
+        [(Direction::ToPlc, Way::ToPlc), (Direction::FromPlc, Way::FromPlc)].into_iter().flat_map(exchanged).collect()
+    }
 }
 
 impl Scenario {
@@ -47,11 +81,9 @@ impl Scenario {
 
     /// The client that speaks for the PLC `name`, connected.
     pub(crate) fn gateway(&self, name: &ClientName) -> Result<Box<dyn Client>, ScenarioError> {
-        let settings = self.settings(name)?;
-        let request = self.request(name)?;
-        let exchange = self.exchange(name, &settings, &request)?;
+        let Agreement { settings, request, exchange, layout } = self.agreement(name)?;
         let link = settings.link(&exchange).map_err(|fault| self.wrong_settings(name, fault))?;
-        let mut gateway = Gateway::new(request, exchange, link, settings.patience());
+        let mut gateway = Gateway::new(request, exchange, link, settings.patience()).expecting(layout);
         gateway.connect().map_err(|fault| self.wrong_settings(name, fault.into()))?;
         Ok(Box::new(gateway))
     }
@@ -64,21 +96,111 @@ impl Scenario {
         let client = self.file().clients.get(name).map(toml::Spanned::get_ref);
         let is_real = matches!(client, Some(ClientFile::Gateway { .. })) || self.gateways.contains_key(name);
         is_real.then(|| {
-            let settings = self.settings(name)?;
-            let request = self.request(name)?;
-            let exchange = self.exchange(name, &settings, &request)?;
+            let Agreement { settings, request, exchange, .. } = self.agreement(name)?;
             let link = settings.link(&exchange).map_err(|fault| self.wrong_settings(name, fault))?;
             Ok(Box::new(FreeGateway::new(request, exchange, link)) as Box<dyn Client>)
         })
     }
 
-    /// The link of PLC `name`, with the URL that counts.
-    pub(crate) fn settings(&self, name: &ClientName) -> Result<Settings, ScenarioError> {
-        let declared = match self.file().clients.get(name).map(toml::Spanned::get_ref) {
+    /// What the gateway of PLC `name`, and the program in it, must agree on.
+    ///
+    /// # Errors
+    /// No such PLC, nothing says where it is, its sources do not compile, or its mapping is wrong.
+    pub fn agreement(&self, name: &ClientName) -> Result<Agreement, ScenarioError> {
+        self.agreement_over(name, self.settings(name)?)
+    }
+
+    /// The same over another link than that of the scenario.
+    ///
+    /// # Errors
+    /// As above.
+    pub fn agreement_over(&self, name: &ClientName, settings: Settings) -> Result<Agreement, ScenarioError> {
+        match self.file().clients.get(name).map(toml::Spanned::get_ref) {
+            Some(ClientFile::SoftPlc { sources, dialect, bind, .. }) => {
+                let compiled = self.compiled(name, sources, *dialect, bind)?;
+                self.agreement_on(name, settings, &compiled.application)
+            }
+            _ => {
+                let request = self.request(name)?;
+                let unknown =
+                    |ports: &[Port]| -> Vec<Variables> { ports.iter().cloned().map(Variables::unknown).collect() };
+                let (inputs, outputs) = (unknown(&request.reads), unknown(&request.writes));
+                let exchange = mapping::exchange(&inputs, &outputs, settings.system(), &settings.map);
+                let exchange = exchange.map_err(|fault| self.wrong_mapping(name, fault))?;
+                Ok(Agreement { settings, request, exchange, layout: None })
+            }
+        }
+    }
+
+    /// What the gateway of the only soft PLC and its program, whose sources are `inputs`, must agree on; nothing if the
+    /// sources do not compile. Where the PLC is need not be known.
+    ///
+    /// # Errors
+    /// The mapping is wrong, or there are several PLCs.
+    pub fn agreement_of(&self, inputs: Vec<Input>) -> Result<Option<Agreement>, ScenarioError> {
+        let is_plc = |client: &toml::Spanned<ClientFile>| matches!(client.get_ref(), ClientFile::SoftPlc { .. });
+        let mut plcs = self.file().clients.iter().filter(|(_, client)| is_plc(client)).map(|(name, _)| name);
+        let (Some(name), None) = (plcs.next(), plcs.next()) else { return Ok(None) };
+        let builder = Application::builder().memory_limit(self.memory_limit(name)).inputs(inputs);
+        let Ok(application) = builder.build() else { return Ok(None) };
+        self.agreement_on(name, self.declared(name), &application).map(Some)
+    }
+
+    fn agreement_on(
+        &self,
+        name: &ClientName,
+        settings: Settings,
+        application: &Application,
+    ) -> Result<Agreement, ScenarioError> {
+        let Some(ClientFile::SoftPlc { tasks, bind, .. }) = self.file().clients.get(name).map(toml::Spanned::get_ref)
+        else {
+            return Err(self.wrong_client(name, format!("client `{name}` is no soft PLC"), None));
+        };
+        let bindings = self.bindings(name, application, &self.paths(name, bind)?)?;
+        let plan = self.task_plan(name, application, tasks)?;
+        let plc = SoftPlcClient::new(name.clone(), application, &plan, &bindings, self.file().step);
+        let request = plc.map_err(|error| self.wrong_client(name, error.to_string(), None))?.join();
+        let exchange = self.exchange(name, &settings, settings.system(), &bindings)?;
+        let layout = Some(layout_number(&settings, &exchange));
+        Ok(Agreement { settings, request, exchange, layout })
+    }
+
+    /// The points of a soft PLC: each variable that it feeds is one.
+    fn exchange(
+        &self,
+        name: &ClientName,
+        settings: &Settings,
+        system: SystemWords,
+        bindings: &Bindings,
+    ) -> Result<Exchange, ScenarioError> {
+        let [inputs, outputs] =
+            [&bindings.inputs, &bindings.outputs].map(|bound| bound.iter().map(Variables::of).collect::<Vec<_>>());
+        let exchange = mapping::exchange(&inputs, &outputs, system, &settings.map);
+        exchange.map_err(|fault| self.wrong_mapping(name, fault))
+    }
+
+    /// Refuses mappings that are none, whoever uses them.
+    pub(crate) fn checked(self) -> Result<Self, ScenarioError> {
+        for name in self.file().clients.keys() {
+            if let Some(fault) = mapping::malformed(&self.declared(name).map) {
+                return Err(self.wrong_mapping(name, fault));
+            }
+        }
+        Ok(self)
+    }
+
+    /// What the scenario says of the link of PLC `name`.
+    pub fn declared(&self, name: &ClientName) -> Settings {
+        match self.file().clients.get(name).map(toml::Spanned::get_ref) {
             Some(ClientFile::SoftPlc { gateway, .. }) => gateway.clone().unwrap_or_default(),
             Some(ClientFile::Gateway { gateway, .. }) => gateway.clone(),
             _ => Settings::default(),
-        };
+        }
+    }
+
+    /// The link of PLC `name`, with the URL that counts.
+    pub(crate) fn settings(&self, name: &ClientName) -> Result<Settings, ScenarioError> {
+        let declared = self.declared(name);
         let url = self.gateways.get(name).cloned().flatten().unwrap_or(declared.url);
         if url.is_empty() {
             let help =
@@ -121,20 +243,6 @@ impl Scenario {
         }
     }
 
-    fn exchange(
-        &self,
-        name: &ClientName,
-        settings: &Settings,
-        request: &JoinRequest,
-    ) -> Result<Exchange, ScenarioError> {
-        let names = || request.reads.iter().chain(&request.writes).map(|port| port.name.as_str());
-        if let Some(unknown) = settings.map.keys().find(|key| !is_word(key) && !names().any(|name| name == *key)) {
-            let message = format!("`map` names `{unknown}`, in which `{name}` takes no part");
-            return Err(self.wrong_client(name, message, did_you_mean(unknown, names())));
-        }
-        Ok(Exchange::new(&request.reads, &request.writes, settings.system(), &settings.map))
-    }
-
     /// The instrumented program of the soft PLC `name`, to be run by a controller of its own, with words about
     /// itself.
     ///
@@ -162,44 +270,34 @@ impl Scenario {
         };
         let inputs = self.inputs(name, sources, *dialect)?;
         let asked = plan_of(tasks);
-        let options = Options { target, tasks: asked.clone().map(|plan| plan.tasks) };
+        let own = self.built_anew(name, inputs.clone())?;
+        let agreed = self.agreement_on(name, self.declared(name), &own)?;
+        let options = Options {
+            target,
+            tasks: asked.clone().map(|plan| plan.tasks),
+            exchanged: agreed.exchanged(),
+            layout: agreed.layout,
+        };
         let project = instrument(&inputs, &options).map_err(|error| match error {
             InstrumentError::Text(findings) => Box::new(PlcReport { client: name.clone(), findings }).into(),
             other => self.wrong_client(name, other.to_string(), None),
         })?;
         let application = self.built_anew(name, project.program().filter_map(input).collect())?;
         let paths = self.paths(name, bind)?;
-        let paths = if project.tasks.is_some() { self.moved_paths(name, inputs, &paths, &project)? } else { paths };
-        let bindings = self.bindings(name, &application, &paths)?;
+        let own = self.bindings(name, &own, &paths)?;
+        let bindings = if project.tasks.is_some() {
+            self.bindings(name, &application, &moved_paths(&own, &project))?
+        } else {
+            self.bindings(name, &application, &paths)?
+        };
         let plan = match project.tasks.map(TaskPlan::new).or(asked) {
             Some(plan) if mode == Mode::Lockstep => in_one_task(&plan),
-            Some(plan) => plan,
+            Some(plan) => with_scheduler(plan),
             None => self.task_plan(name, &application, tasks)?,
         };
         let settings = gateway.clone().unwrap_or_default();
-        let ports = |bound: &[onescan_clients::soft_plc::bind::Bound]| -> Vec<Port> {
-            bound.iter().map(|bound| bound.port.clone()).collect()
-        };
-        let (reads, writes) = (ports(&bindings.inputs), ports(&bindings.outputs));
-        let exchange = Exchange::new(&reads, &writes, SystemWords::Present, &settings.map);
-        Ok(Instrumented { application, plan, bindings, exchange, settings })
-    }
-
-    /// The paths of all signals in a project that was written in another form: signals are found by their names in the
-    /// project's own programs.
-    fn moved_paths(
-        &self,
-        name: &ClientName,
-        inputs: Vec<Input>,
-        paths: &Paths,
-        project: &Project,
-    ) -> Result<Paths, ScenarioError> {
-        let own = self.bindings(name, &self.built_anew(name, inputs)?, paths)?;
-        let moved = own.inputs.into_iter().chain(own.outputs).map(|bound| {
-            let paths = bound.variables.iter().map(|path| project.path(path)).collect();
-            (bound.port.name, paths)
-        });
-        Ok(moved.collect())
+        let exchange = self.exchange(name, &settings, SystemWords::Present, &own)?;
+        Ok(Instrumented { application, plan, bindings: named_as(bindings, &own), exchange, settings })
     }
 
     /// The instrumented sources of PLC `name`, compiled.
@@ -211,11 +309,20 @@ impl Scenario {
         })
     }
 
-    fn wrong_settings(&self, name: &ClientName, fault: SettingsFault) -> ScenarioError {
+    /// An error at the line of the mapping that is wrong; at the client if the signal is not mapped.
+    pub(crate) fn wrong_mapping(&self, name: &ClientName, fault: MappingFault) -> ScenarioError {
+        match self.place_of_mapping(name, &fault.point) {
+            Some(place) => self.wrong_place(place, fault.message, fault.help),
+            None => self.wrong_client(name, fault.message, fault.help),
+        }
+    }
+
+    /// An error of a link, at its place in the file if it has one.
+    pub fn wrong_settings(&self, name: &ClientName, fault: SettingsFault) -> ScenarioError {
         match fault {
             SettingsFault::Url(bad) => self.wrong_client(name, bad.to_string(), bad.help),
             SettingsFault::Mapping(fault) | SettingsFault::Link(LinkFault::Mapping(fault)) => {
-                self.wrong_client(name, fault.message, fault.help)
+                self.wrong_mapping(name, fault)
             }
             SettingsFault::Link(LinkFault::Setting(text)) => self.wrong_client(name, text, None),
             SettingsFault::Link(fault) => ScenarioError::Link { client: name.clone(), fault },
@@ -232,10 +339,42 @@ fn input(file: &File) -> Option<Input> {
     file.text.clone().map(|text| Input::from_text(&file.name, kind, text))
 }
 
+/// The paths of all signals in a project that was written in another form: signals are found by their names in the
+/// project's own programs.
+fn moved_paths(own: &Bindings, project: &Project) -> Paths {
+    let moved = own.inputs.iter().chain(&own.outputs).map(|bound| {
+        let paths = bound.variables.iter().map(|path| project.path(path)).collect();
+        (bound.port.name.clone(), paths)
+    });
+    moved.collect()
+}
+
+/// Bindings whose variables have the paths of the scenario's own sources.
+fn named_as(mut bindings: Bindings, own: &Bindings) -> Bindings {
+    let both = bindings.inputs.iter_mut().zip(&own.inputs).chain(bindings.outputs.iter_mut().zip(&own.outputs));
+    for (bound, own) in both.filter(|(bound, own)| bound.variables.len() == own.variables.len()) {
+        bound.variables.clone_from(&own.variables);
+    }
+    bindings
+}
+
+/// The tasks as they are, and the scheduler before them in every cycle: it says that the program is not simulated.
+fn with_scheduler(plan: TaskPlan) -> TaskPlan {
+    let scheduler = Task {
+        name: "SDSP_Cycle".to_owned(),
+        interval: Some(CYCLE),
+        programs: vec!["SDSP_Scheduler".to_owned()],
+        ..Task::default()
+    };
+    TaskPlan::new(std::iter::once(scheduler).chain(plan.tasks).collect())
+}
+
+/// Shorter than any cycle.
+const CYCLE: TimeSpan = TimeSpan::nanos::<1>();
+
 /// Scheduler and programs in one task, in this order, in every cycle: when a program is due is the scheduler's
 /// business.
 fn in_one_task(plan: &TaskPlan) -> TaskPlan {
-    const CYCLE: TimeSpan = TimeSpan::nanos::<1>();
     let scheduler = std::iter::once("SDSP_Scheduler".to_owned());
     let programs = scheduler.chain(plan.tasks.iter().flat_map(|task| task.programs.iter().cloned())).collect();
     TaskPlan::new(vec![Task { name: "cycle".to_owned(), interval: Some(CYCLE), programs, ..Task::default() }])

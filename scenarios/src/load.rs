@@ -10,6 +10,8 @@ use onescan_clients::soft_plc::{CoverageSink, TraceSink};
 use onescan_server::plan::{Coupling, PlanError, SessionPlan};
 use onescan_server::signal::{ClientName, SignalDecl, SignalName, did_you_mean};
 use onescan_server::time::{TimeSpan, VirtualTime};
+use serde::Deserialize;
+use toml::Spanned;
 
 use super::arrays;
 use super::case::{self, Applied};
@@ -92,7 +94,7 @@ impl Scenario {
         let expectations =
             Expectations::bind(&file, &text).map_err(|found| wrong(found.message, Some(found.place), found.help))?;
         let name = name_of(&path);
-        Ok(Self {
+        let scenario = Self {
             name,
             folder,
             path,
@@ -105,7 +107,8 @@ impl Scenario {
             writers: None,
             gateways: BTreeMap::new(),
             watched: None,
-        })
+        };
+        scenario.checked()
     }
 
     /// The case that is tried.
@@ -223,6 +226,19 @@ impl Scenario {
         wrong(&self.path, &self.text, message, place, help)
     }
 
+    /// An error at a place of the file.
+    pub(crate) fn wrong_place(&self, place: Range<usize>, message: String, help: Option<String>) -> ScenarioError {
+        wrong(&self.path, &self.text, message, Some(place), help)
+    }
+
+    /// The line of `key` in the mapping of client `name`.
+    pub(crate) fn place_of_mapping(&self, name: &ClientName, key: &str) -> Option<Range<usize>> {
+        // The entries of a client's table lose their places where its kind is told from a key.
+        let lines: Lines = toml::from_str(&self.text).ok()?;
+        let map = lines.clients.get(name.as_str())?.gateway.as_ref()?.map.as_ref()?;
+        map.iter().find(|(known, _)| known.get_ref() == key).map(|(known, value)| known.span().start..value.span().end)
+    }
+
     /// An error of an option, which has no place in the file.
     pub(crate) fn wrong_option(&self, message: String, help: Option<String>) -> ScenarioError {
         wrong(&self.path, &self.text, message, None, help)
@@ -233,6 +249,22 @@ impl Scenario {
         let place = self.file.signals.get(name).map(toml::Spanned::span);
         wrong(&self.path, &self.text, message, place, help)
     }
+}
+
+/// The mappings of a `scenario.toml` with their places.
+#[derive(Deserialize)]
+struct Lines {
+    clients: BTreeMap<String, ClientLines>,
+}
+
+#[derive(Deserialize)]
+struct ClientLines {
+    gateway: Option<GatewayLines>,
+}
+
+#[derive(Deserialize)]
+struct GatewayLines {
+    map: Option<BTreeMap<Spanned<String>, Spanned<toml::Value>>>,
 }
 
 /// The name of the folder of a `scenario.toml`; any other file has its own.

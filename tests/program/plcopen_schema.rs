@@ -68,7 +68,7 @@ fn projects() -> Vec<(String, String)> {
 /// What the shim makes of a project for a target.
 fn instrumented(name: &str, text: &str, target: Target) -> Option<String> {
     let input = Input::from_text(&format!("{name}.xml"), SourceKind::PlcOpen, text);
-    match instrument(&[input], &Options { target, tasks: None }) {
+    match instrument(&[input], &Options { target, tasks: None, ..Options::default() }) {
         Ok(project) => project.files[0].text.as_deref().map(str::to_owned),
         // It has a task with SINGLE.
         Err(_) if name == "line" => None,
@@ -91,7 +91,7 @@ fn ported() -> Vec<(String, String)> {
             Input::from_text(path, SourceKind::Text, text).in_dialect(Dialect::Codesys)
         };
         let inputs: Vec<Input> = sources.iter().map(read).collect();
-        let project = instrument(&inputs, &Options { target: Target::Codesys, tasks: None });
+        let project = instrument(&inputs, &Options { target: Target::Codesys, tasks: None, ..Options::default() });
         let project = project.unwrap_or_else(|error| panic!("{name}: {error}"));
         let text = project.program().next().and_then(|file| file.text.as_deref()).expect("one file");
         // See above.

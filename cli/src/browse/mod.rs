@@ -1,7 +1,13 @@
 //! `onescan browse`: what a PLC has, and a mapping to start from.
+//!
+//! | module | subject |
+//! |---|---|
+//! | `matching` | which variable of the PLC is which point |
 
 mod error;
+mod matching;
 
+use std::collections::BTreeMap;
 use std::io::Write;
 use std::path::PathBuf;
 
@@ -11,12 +17,13 @@ use onescan_report::OutputError;
 use onescan_report::file::write_whole;
 use onescan_scenario::Scenario;
 use onescan_scenario::file::ClientFile;
-use onescan_server::signal::{ClientName, nearest};
+use onescan_server::signal::ClientName;
 use serde::Serialize;
 
 pub use error::BrowseError;
 
 use crate::format::Format;
+use crate::map::fragment::{Entry, Fragment, Place};
 
 /// What is asked for.
 #[derive(Clone, Debug)]
@@ -60,18 +67,22 @@ pub fn run(config: &BrowseConfig, out: &mut dyn Write) -> Result<(), BrowseError
     };
     listed.and_then(|()| out.flush()).map_err(OutputError)?;
     let Some(path) = &config.map else { return Ok(()) };
-    let text = match &scenario {
-        Some((scenario, name)) => mapping(scenario, name, &config.url, &found),
+    let fragment = match &scenario {
+        Some((scenario, name)) => {
+            // What is mapped already is not asked for: the mapping is to be made anew.
+            let unmapped = Settings { map: BTreeMap::new(), ..settings };
+            let agreed = scenario.agreement_over(name, unmapped)?;
+            Fragment { client: name.to_string(), url: config.url.clone(), ..matching::mapped(&agreed.exchange, &found) }
+        }
         None => everything(&config.url, &found),
     };
-    Ok(write_whole(path, text.as_bytes())?)
+    Ok(write_whole(path, fragment.to_string().as_bytes())?)
 }
 
 /// The link that the scenario declares.
 fn declared(scenario: &Scenario, name: &ClientName) -> Result<Settings, BrowseError> {
     match scenario.file().clients.get(name).map(toml::Spanned::get_ref) {
-        Some(ClientFile::SoftPlc { gateway, .. }) => Ok(gateway.clone().unwrap_or_default()),
-        Some(ClientFile::Gateway { gateway, .. }) => Ok(gateway.clone()),
+        Some(ClientFile::SoftPlc { .. } | ClientFile::Gateway { .. }) => Ok(scenario.declared(name)),
         _ => Err(scenario.wrong_client(name, format!("`{name}` is no PLC of the scenario"), None).into()),
     }
 }
@@ -96,43 +107,22 @@ fn json(found: &[Found], out: &mut dyn Write) -> std::io::Result<()> {
     Ok(())
 }
 
-/// A line of the mapping; TOML's strings are JSON's, for what a name or an address holds.
-fn entry(name: &str, address: &str) -> String {
-    format!("{} = {}\n", serde_json::Value::from(name), serde_json::Value::from(address))
-}
-
-/// The scenario's signals, each with the variable of its name, or the nearest to look at.
-fn mapping(scenario: &Scenario, client: &ClientName, url: &str, found: &[Found]) -> String {
-    let mut text = format!(
-        "[clients.{client}.gateway]\nurl = {}\n\n[clients.{client}.gateway.map]\n",
-        serde_json::Value::from(url)
-    );
-    let words = onescan_clients::gateway::exchange::WORDS_TO_PLC.iter();
-    let words = words.chain(&onescan_clients::gateway::exchange::WORDS_FROM_PLC).map(|(word, _)| *word);
-    let signals = scenario.file().signals.keys().map(onescan_server::signal::SignalName::as_str);
-    for name in signals.chain(words) {
-        let is_it = |found: &&Found| last(&found.name).eq_ignore_ascii_case(last(name));
-        if let Some(found) = found.iter().find(is_it) {
-            text += &entry(name, &found.address);
-            continue;
+/// Every variable that a signal can be; those that have the same name are the points of one.
+fn everything(url: &str, found: &[Found]) -> Fragment {
+    let mut names: Vec<(&str, Vec<&Found>)> = Vec::new();
+    for found in found.iter().filter(|found| found.ty.is_some()) {
+        match names.iter_mut().find(|(name, _)| *name == found.name) {
+            Some((_, all)) => all.push(found),
+            None => names.push((&found.name, vec![found])),
         }
-        let near = nearest(name, found.iter().map(|found| found.name.as_str()));
-        let near = near.and_then(|near| found.iter().find(|found| found.name == near));
-        let near = near.map(|near| format!("; perhaps {}", near.address)).unwrap_or_default();
-        text.extend(["# ", name, " was not found", &near, "\n"]);
     }
-    text
-}
-
-/// The last name of a path.
-fn last(path: &str) -> &str {
-    path.rsplit('.').next().unwrap_or(path)
-}
-
-/// Every variable that a signal can be.
-fn everything(url: &str, found: &[Found]) -> String {
-    let mut text =
-        format!("[clients.plc.gateway]\nurl = {}\n\n[clients.plc.gateway.map]\n", serde_json::Value::from(url));
-    text.extend(found.iter().filter(|found| found.ty.is_some()).map(|found| entry(&found.name, &found.address)));
-    text
+    let entry = |(name, all): (&str, Vec<&Found>)| {
+        let place = |found: &&Found| match all.len() {
+            1 => Place::Only(found.address.clone()),
+            _ => Place::Next(found.address.clone()),
+        };
+        Entry::Mapped { name: name.to_owned(), places: all.iter().map(place).collect() }
+    };
+    let entries = names.into_iter().map(entry).collect();
+    Fragment { client: "plc".to_owned(), url: url.to_owned(), system_words: false, entries }
 }

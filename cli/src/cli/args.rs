@@ -5,7 +5,7 @@ use clap::{ArgAction, Parser, Subcommand};
 use super::compare::CompareArgs;
 use super::error::CommandError;
 use super::plant::{ComponentsArgs, DescribeArgs, NewArgs, WiringArgs};
-use super::plc::{BrowseArgs, PlcArgs};
+use super::plc::{BrowseArgs, MapArgs, PlcArgs};
 use super::recording::{BisectArgs, DiffArgs, ExportArgs};
 use super::run::RunArgs;
 use super::session::{ControlArgs, JoinArgs};
@@ -72,6 +72,8 @@ pub enum Command {
     Plc(PlcArgs),
     /// List what a real PLC has, and write a mapping to start from
     Browse(BrowseArgs),
+    /// Tell where every signal and word lies in a real PLC: direction, address, signal, variable, type, layout number
+    Map(MapArgs),
     /// List the library of components, or describe one kind in full
     Components(ComponentsArgs),
     /// Tell what a scene is made of: bodies, joints, components, signals
@@ -105,6 +107,7 @@ pub fn dispatch(command: Command) -> Result<ExitCode, CommandError> {
         Command::Instrument(args) => source::instrument(*args),
         Command::Plc(args) => plc::run_plc(args),
         Command::Browse(args) => plc::browse(args),
+        Command::Map(args) => plc::map(args),
         Command::Components(args) => plant::components(&args),
         Command::Describe(args) => plant::describe(&args),
         Command::Wiring(args) => plant::wiring(args),

@@ -9,6 +9,7 @@ use crate::diff::DiffError;
 use crate::error::{Usage, sum_of_errors};
 use crate::export::ExportError;
 use crate::instrument::InstrumentError;
+use crate::map::MapError;
 use crate::new::NewError;
 use crate::plant::PlantError;
 use crate::plc::PlcError;
@@ -51,6 +52,9 @@ sum_of_errors! {
         /// `browse` came to nothing.
         #[diagnostic(transparent)]
         Browse(BrowseError),
+        /// `map` came to nothing.
+        #[diagnostic(transparent)]
+        Map(MapError),
         /// `components` or `describe` came to nothing.
         #[diagnostic(transparent)]
         Plant(PlantError),

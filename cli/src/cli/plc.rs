@@ -1,18 +1,20 @@
-//! With PLCs: `onescan plc` and `browse`.
+//! With PLCs: `onescan plc`, `browse` and `map`.
 
 use std::net::{Ipv4Addr, SocketAddr};
 use std::path::PathBuf;
 
-use clap::Args as ClapArgs;
+use clap::{Args as ClapArgs, ValueEnum};
+use onescan_scenario::Mode;
 use onescan_server::signal::ClientName;
 
 use super::error::CommandError;
 use super::opcua::AccessArgs;
-use super::run::ModeArg;
+use super::run::gateway;
 use super::value::{FormatArg, client_name};
 use crate::browse::BrowseConfig;
 use crate::error::ExitCode;
 use crate::interrupt::Interrupt;
+use crate::map::{self, MapConfig};
 use crate::plc::{self, Cycle, PlcConfig};
 
 /// Options of `plc`.
@@ -27,7 +29,7 @@ pub struct PlcArgs {
     /// `lockstep`: its programs run when they are granted; `freewheel`: by its own clock and tasks, as if there
     /// were no shim
     #[arg(long, value_enum, default_value_t)]
-    pub mode: ModeArg,
+    pub mode: PlcModeArg,
     /// How often it scans, wall clock: a time, or `max` for one scan behind the other
     #[arg(long, default_value = "1ms", value_name = "TIME|max")]
     pub cycle: Cycle,
@@ -47,6 +49,25 @@ pub struct PlcArgs {
     /// Who is let in over OPC UA
     #[command(flatten)]
     pub access: AccessArgs,
+}
+
+/// See [`Mode`]; how a plant keeps its cycle is not the PLC's business.
+#[derive(Clone, Copy, Debug, Default, ValueEnum)]
+pub enum PlcModeArg {
+    /// Programs run when they are granted
+    #[default]
+    Lockstep,
+    /// Programs run by the PLC's own clock; for runs with `--mode freewheel`, `halt` or `follow`
+    Freewheel,
+}
+
+impl From<PlcModeArg> for Mode {
+    fn from(arg: PlcModeArg) -> Self {
+        match arg {
+            PlcModeArg::Lockstep => Self::Lockstep,
+            PlcModeArg::Freewheel => Self::Freewheel,
+        }
+    }
 }
 
 const PLC_COMMANDS: &str = "Commands on standard input:
@@ -102,5 +123,35 @@ pub fn browse(args: BrowseArgs) -> Result<ExitCode, CommandError> {
         format: args.format.into(),
     };
     crate::browse::run(&config, &mut std::io::stdout().lock())?;
+    Ok(ExitCode::Ok)
+}
+
+/// Options of `map`.
+#[derive(Debug, ClapArgs)]
+pub struct MapArgs {
+    /// The scenario: a folder with a `scenario.toml`
+    pub scenario: PathBuf,
+    /// Which of its PLCs [default: the only one]
+    #[arg(long, value_name = "CLIENT", value_parser = client_name)]
+    pub client: Option<ClientName>,
+    /// The link, as in `plc=modbus://192.168.0.1` [default URL: the scenario's]
+    #[arg(long, value_name = "CLIENT[=URL]", value_parser = gateway)]
+    pub gateway: Option<(ClientName, Option<String>)>,
+    /// For people, or one JSON object for machines
+    #[arg(long, value_enum, default_value_t)]
+    pub format: FormatArg,
+    /// Write the mapping into this file, too, as a part of a `scenario.toml` with every address written out
+    #[arg(short, long, value_name = "FILE")]
+    pub output: Option<PathBuf>,
+}
+
+/// Tells where everything lies.
+///
+/// # Errors
+/// See [`CommandError`].
+pub fn map(args: MapArgs) -> Result<ExitCode, CommandError> {
+    let MapArgs { scenario, client, gateway, format, output } = args;
+    let config = MapConfig { scenario, client, gateway, format: format.into(), output };
+    map::run(&config, &mut std::io::stdout().lock())?;
     Ok(ExitCode::Ok)
 }

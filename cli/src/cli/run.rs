@@ -293,7 +293,7 @@ fn pace(text: &str) -> Result<Pace, String> {
     }
 }
 
-fn gateway(text: &str) -> Result<(ClientName, Option<String>), String> {
+pub(super) fn gateway(text: &str) -> Result<(ClientName, Option<String>), String> {
     match text.split_once('=') {
         Some((name, url)) => Ok((client_name(name)?, Some(url.to_owned()))),
         None => Ok((client_name(text)?, None)),

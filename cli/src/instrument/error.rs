@@ -1,6 +1,7 @@
 //! Why a project cannot be instrumented.
 
 use onescan_report::{FileError, OutputError};
+use onescan_scenario::ScenarioError;
 
 use crate::check::CheckError;
 use crate::error::{Unreadable, Usage, sum_of_errors};
@@ -11,6 +12,9 @@ sum_of_errors! {
         /// The sources cannot be read.
         #[diagnostic(transparent)]
         Check(CheckError),
+        /// The scenario is wrong.
+        #[diagnostic(transparent)]
+        Scenario(ScenarioError),
         /// What was typed is wrong.
         #[diagnostic(transparent)]
         Usage(Usage),

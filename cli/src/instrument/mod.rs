@@ -10,11 +10,15 @@ pub mod project;
 pub mod report;
 
 use std::io::Write;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
+use onescan_plc_shim::input::kind::FileKind;
 use onescan_plc_shim::instrument::{self, InstrumentError as Refusal, Options, Target};
-use onescan_plc_shim::{Diagnostics, Task, TaskPlan};
+use onescan_plc_shim::{Diagnostics, Input, Task, TaskPlan};
 use onescan_report::file::write_all_whole;
+use onescan_scenario::Scenario;
+use onescan_scenario::gateway::Agreement;
+use onescan_scenario::load::FILE_NAME;
 
 pub use error::InstrumentError;
 
@@ -87,8 +91,11 @@ pub fn instrument(
     let project = match config.direction {
         Direction::Remove => instrument::remove(&program.inputs),
         Direction::Attach => {
+            let agreed = agreed(config, &program.inputs)?;
+            let exchanged = agreed.as_ref().map(Agreement::exchanged).unwrap_or_default();
+            let layout = agreed.and_then(|agreed| agreed.layout);
             let tasks = tasks(config, program.plan);
-            instrument::instrument(&program.inputs, &Options { target: config.target, tasks })
+            instrument::instrument(&program.inputs, &Options { target: config.target, tasks, exchanged, layout })
         }
     };
     let project = match project {
@@ -113,6 +120,28 @@ pub fn instrument(
     report::write(config, &project, out)?;
     tell(&project.warnings, program.inputs.len(), config, err)?;
     Ok(ExitCode::Ok)
+}
+
+/// What the scenario's gateway and the program must agree on; nothing if there is no scenario, or if its program is
+/// wrong, which is told of the program itself.
+fn agreed(config: &InstrumentConfig, inputs: &[Input]) -> Result<Option<Agreement>, InstrumentError> {
+    let path = &config.project;
+    let is_scenario = path.join(FILE_NAME).is_file() || path.file_name().is_some_and(|name| name == FILE_NAME);
+    if !is_scenario {
+        return Ok(None);
+    }
+    let Ok(plain) = instrument::remove(inputs) else { return Ok(None) };
+    let dialect_of =
+        |name: &str| inputs.iter().find(|input| input.file().name() == name).map(|input| input.file().dialect());
+    let own = plain.files.iter().filter_map(|file| {
+        let Some(FileKind::Source(kind)) = FileKind::of(Path::new(&file.name)) else { return None };
+        let input = Input::from_text(&file.name, kind, file.text.clone()?);
+        Some(match dialect_of(&file.name) {
+            Some(dialect) => input.in_dialect(dialect),
+            None => input,
+        })
+    });
+    Ok(Scenario::load(path)?.agreement_of(own.collect())?)
 }
 
 fn tasks(config: &InstrumentConfig, plan: Option<TaskPlan>) -> Option<Vec<Task>> {

@@ -41,6 +41,21 @@ impl From<i16> for Answer {
 }
 
 impl Answer {
+    /// The number that the scheduler writes.
+    pub fn word(self) -> i16 {
+        match self {
+            Self::Ready => 0,
+            Self::Running => 1,
+            Self::OldGrant => 2,
+            Self::Missing => 3,
+            Self::Held => 4,
+            Self::TimeStandsStill => 5,
+            Self::MustBeStarted => 6,
+            Self::NotSimulated => 7,
+            Self::Other(word) => word,
+        }
+    }
+
     /// Why a grant that was answered so is not done.
     pub fn why(self) -> String {
         match self {

@@ -30,6 +30,9 @@ impl Default for Patience {
 /// An order that is not answered is written again after this; a connection is tried again after this.
 const AGAIN: Duration = Duration::from_millis(200);
 
+/// Answers in a row that cannot be understood before the run ends: one may be garbled on its way, whatever the link.
+const GARBLED_MAX: u32 = 3;
+
 /// The clocks of one order.
 struct Wait {
     /// When its time is over.
@@ -38,6 +41,8 @@ struct Wait {
     written: Instant,
     /// Since when there is no connection.
     lost: Option<Instant>,
+    /// Answers in a row that could not be understood.
+    garbled: u32,
 }
 
 /// What is said here is for the user, also without `--verbose`.
@@ -61,6 +66,11 @@ impl Gateway {
         Self { request, exchange, link, handshake: Handshake::new(), patience, to_plc, from_plc }
     }
 
+    /// The same for a PLC whose program must have been made for the mapping with this number.
+    pub fn expecting(self, layout: Option<u32>) -> Self {
+        Self { handshake: self.handshake.expecting(layout), ..self }
+    }
+
     /// Connects and checks the mapping, before any session.
     ///
     /// # Errors
@@ -73,7 +83,8 @@ impl Gateway {
 
     /// Does what the handshake asks for until it asks for nothing.
     fn drive(&mut self, patience: Duration) -> Result<(), GatewayFault> {
-        let mut wait = Wait { deadline: Instant::now() + patience, written: Instant::now(), lost: None };
+        let now = Instant::now();
+        let mut wait = Wait { deadline: now + patience, written: now, lost: None, garbled: 0 };
         loop {
             let result = match self.handshake.ask() {
                 Ask::Nothing => return Ok(()),
@@ -91,6 +102,11 @@ impl Gateway {
             match result {
                 Ok(()) => {}
                 Err(fault) if fault.is_transient() => self.be_lost(&fault, &mut wait)?,
+                // What came behind a garbled answer cannot be told from it: the connection is made anew.
+                Err(fault) if fault.is_garbled() && wait.garbled + 1 < GARBLED_MAX => {
+                    wait.garbled += 1;
+                    self.be_lost(&fault, &mut wait)?;
+                }
                 Err(fault) => return Err(fault.into()),
             }
             if wait.lost.is_none() && self.handshake.ask() != Ask::Nothing && Instant::now() > wait.deadline {
@@ -106,6 +122,7 @@ impl Gateway {
             Ok(true) => {
                 // What the outage took is not the PLC's to answer for.
                 wait.deadline += wait.lost.take().map_or(Duration::ZERO, |since| since.elapsed());
+                wait.garbled = 0;
                 self.handshake.look(self.exchange.report(&self.from_plc))?;
             }
             Ok(false) if wait.lost.is_some_and(|since| since.elapsed() > self.patience.reconnect) => {
@@ -145,6 +162,10 @@ impl Gateway {
             Some(Notice::Back) => {
                 tracing::info!(target: NOTICE, "connection back, {} is resumed", self.handshake.what());
             }
+            Some(Notice::NoLayout) => {
+                let name = &self.request.name;
+                tracing::info!(target: NOTICE, "client `{name}`: SDSP_Layout is 0: the PLC's program was instrumented without a scenario, so that its mapping cannot be compared");
+            }
             None => {}
         }
     }
@@ -168,8 +189,7 @@ impl Client for Gateway {
     }
 
     fn turn(&mut self, t_v: VirtualTime, inputs: &[u8], outputs: &mut [u8]) -> Result<Wake, ClientFault> {
-        let place = self.exchange.inputs();
-        self.to_plc[place].copy_from_slice(inputs);
+        self.exchange.put_inputs(inputs, &mut self.to_plc);
         let done = self.handshake.grant(t_v).and_then(|()| self.drive(self.patience.grant));
         done.map_err(|fault| ClientFault::new(fault.to_string()))?;
         self.take_outputs(outputs);

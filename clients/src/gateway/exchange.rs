@@ -21,11 +21,40 @@ pub enum Direction {
     FromPlc,
 }
 
-/// One value that is exchanged.
+/// A signal, and the points at which a PLC takes part in it.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Feed {
+    /// The signal as the session has it.
+    pub port: Port,
+    /// Its points: several for a signal that several variables of the PLC read.
+    pub targets: Vec<Target>,
+}
+
+impl Feed {
+    /// A signal that is one point, at `address` if the scenario says where.
+    pub fn whole(port: &Port, address: Option<String>) -> Self {
+        Self { port: port.clone(), targets: vec![Target { variable: None, address }] }
+    }
+}
+
+/// One of the points of a signal.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Target {
+    /// The path of the variable; absent for whatever the PLC has for the signal as a whole.
+    pub variable: Option<String>,
+    /// Where the scenario says that it is.
+    pub address: Option<String>,
+}
+
+/// One value that is exchanged: a variable of a signal, or a word.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Point {
     /// The signal, or the synchronisation word.
     pub name: String,
+    /// The variable's path in the PLC's sources, where they are known.
+    pub variable: Option<String>,
+    /// Its number among the points of its signal, from 1, if there are several.
+    pub ordinal: Option<usize>,
     /// Its type on both sides.
     pub ty: SignalType,
     /// Where the scenario says that it is in the PLC; a link knows a place for it if absent.
@@ -39,6 +68,34 @@ impl Point {
     pub fn range(&self) -> std::ops::Range<usize> {
         self.offset..self.offset + self.ty.size()
     }
+
+    /// What a PLC with symbols calls it: the path of its variable, or else the signal's name. A direct address like
+    /// `%QX0.1` is no symbol.
+    pub fn symbol(&self) -> &str {
+        self.variable.as_deref().filter(|path| !path.starts_with('%')).unwrap_or(&self.name)
+    }
+
+    /// A name that no other point of its direction has: that of the signal, unless it has several.
+    pub fn key(&self) -> String {
+        match (self.ordinal, &self.variable) {
+            (None, _) => self.name.clone(),
+            (Some(_), Some(path)) => path.clone(),
+            (Some(number), None) => format!("{}[{number}]", self.name),
+        }
+    }
+
+    /// Its name for people.
+    pub fn label(&self) -> String {
+        match (self.ordinal, &self.variable) {
+            (Some(_), Some(path)) => format!("{}` at `{path}", self.name),
+            _ => self.key(),
+        }
+    }
+
+    /// True for a synchronisation word or a word about the PLC itself.
+    pub fn is_word(&self) -> bool {
+        is_word(&self.name)
+    }
 }
 
 /// The words that the gateway writes, in this order, the grant last.
@@ -50,8 +107,12 @@ pub const WORDS_TO_PLC: [(&str, SignalType); 4] = [
 ];
 
 /// The words that the gateway reads.
-pub const WORDS_FROM_PLC: [(&str, SignalType); 3] =
-    [("SDSP_Joined", SignalType::UDINT), ("SDSP_Done", SignalType::UDINT), ("SDSP_Answer", SignalType::INT)];
+pub const WORDS_FROM_PLC: [(&str, SignalType); 4] = [
+    ("SDSP_Joined", SignalType::UDINT),
+    ("SDSP_Done", SignalType::UDINT),
+    ("SDSP_Answer", SignalType::INT),
+    ("SDSP_Layout", SignalType::UDINT),
+];
 
 /// A number that the gateway writes to have the PLC started cold: one more than `PLC_Boots`.
 pub const START: (&str, SignalType) = ("PLC_Start", SignalType::UDINT);
@@ -81,6 +142,8 @@ pub enum SystemWords {
 pub struct Exchange {
     to_plc: Vec<Point>,
     from_plc: Vec<Point>,
+    /// For each input its first byte in the session's port, in the order of the points.
+    ports: Vec<usize>,
     /// Bytes of the inputs, before the words.
     input_bytes: usize,
     /// Bytes of the words, before the outputs.
@@ -89,27 +152,47 @@ pub struct Exchange {
 }
 
 impl Exchange {
-    /// The points of a PLC that reads `inputs` and writes `outputs`; `addresses` by signal or word.
-    pub fn new(inputs: &[Port], outputs: &[Port], system: SystemWords, addresses: &BTreeMap<String, String>) -> Self {
-        let words = |words: &[(&str, SignalType)]| -> Vec<(String, SignalType)> {
-            words.iter().map(|(name, ty)| ((*name).to_owned(), *ty)).collect()
+    /// The points of a PLC that reads `inputs` and writes `outputs`; `addresses` are those of words.
+    pub fn new(inputs: &[Feed], outputs: &[Feed], system: SystemWords, addresses: &BTreeMap<String, String>) -> Self {
+        let words = |words: &[(&str, SignalType)]| -> Vec<Point> {
+            let word = |(name, ty): &(&str, SignalType)| Point {
+                name: (*name).to_owned(),
+                variable: None,
+                ordinal: None,
+                ty: *ty,
+                address: addresses.get(*name).cloned(),
+                offset: 0,
+            };
+            words.iter().map(word).collect()
         };
-        let signals = |ports: &[Port]| ports.iter().map(|port| (port.name.to_string(), port.ty)).collect::<Vec<_>>();
         let (start, about) = match system {
             SystemWords::Absent => (Vec::new(), Vec::new()),
             SystemWords::Present => (words(&[START]), words(&[BOOTS, RUNNING])),
         };
-        let inputs = signals(inputs);
-        let input_bytes = inputs.iter().map(|(_, ty)| ty.size()).sum();
+        let (inputs, ports) = (points_of(inputs), ports_of(inputs));
+        let input_bytes = inputs.iter().map(|point| point.ty.size()).sum();
         let read = [words(&WORDS_FROM_PLC), about].concat();
-        let word_bytes = read.iter().map(|(_, ty)| ty.size()).sum();
+        let word_bytes = read.iter().map(|point| point.ty.size()).sum();
         Self {
-            to_plc: points([inputs, start, words(&WORDS_TO_PLC)].concat(), addresses),
-            from_plc: points([read, signals(outputs)].concat(), addresses),
+            to_plc: placed([inputs, start, words(&WORDS_TO_PLC)].concat()),
+            from_plc: placed([read, points_of(outputs)].concat()),
+            ports,
             input_bytes,
             word_bytes,
             system,
         }
+    }
+
+    /// The same points, none of which has an address.
+    pub fn without_addresses(&self) -> Self {
+        let mut plain = self.clone();
+        plain.to_plc.iter_mut().chain(&mut plain.from_plc).for_each(|point| point.address = None);
+        plain
+    }
+
+    /// Whether the PLC serves words about itself.
+    pub fn system(&self) -> SystemWords {
+        self.system
     }
 
     /// What the gateway writes, in order.
@@ -135,9 +218,11 @@ impl Exchange {
         self.points(direction).last().map_or(0, |point| point.range().end)
     }
 
-    /// Where the inputs lie in what is written.
-    pub fn inputs(&self) -> std::ops::Range<usize> {
-        0..self.input_bytes
+    /// Puts the values of the session's port into what is written: each goes to every point of its signal.
+    pub fn put_inputs(&self, port: &[u8], to_plc: &mut [u8]) {
+        for (point, at) in self.to_plc.iter().zip(&self.ports) {
+            to_plc[point.range()].copy_from_slice(&port[*at..at + point.ty.size()]);
+        }
     }
 
     /// Where the outputs lie in what is read.
@@ -167,10 +252,10 @@ impl Exchange {
             |at: usize| u32::from_le_bytes([from_plc[at], from_plc[at + 1], from_plc[at + 2], from_plc[at + 3]]);
         let (boots, running) = match self.system {
             SystemWords::Absent => (None, None),
-            SystemWords::Present => (Some(udint(10)), Some(from_plc[14] != 0)),
+            SystemWords::Present => (Some(udint(14)), Some(from_plc[18] != 0)),
         };
         let answer = Answer::from(i16::from_le_bytes([from_plc[8], from_plc[9]]));
-        Report { joined: udint(0), done: udint(4), answer, boots, running }
+        Report { joined: udint(0), done: udint(4), answer, layout: udint(10), boots, running }
     }
 
     /// The order among what was written: the PLC's side of [`Exchange::put`].
@@ -192,14 +277,42 @@ impl Exchange {
     }
 }
 
-fn points(named: Vec<(String, SignalType)>, addresses: &BTreeMap<String, String>) -> Vec<Point> {
+/// The points of some signals, in the order of the signals.
+fn points_of(feeds: &[Feed]) -> Vec<Point> {
+    let mut points = Vec::new();
+    for Feed { port, targets } in feeds {
+        for (index, target) in targets.iter().enumerate() {
+            points.push(Point {
+                name: port.name.to_string(),
+                variable: target.variable.clone(),
+                ordinal: (targets.len() > 1).then_some(index + 1),
+                ty: port.ty,
+                address: target.address.clone(),
+                offset: 0,
+            });
+        }
+    }
+    points
+}
+
+/// For each point of some signals its first byte in their port.
+fn ports_of(feeds: &[Feed]) -> Vec<usize> {
+    let (mut at, mut ports) = (0, Vec::new());
+    for Feed { port, targets } in feeds {
+        ports.extend(targets.iter().map(|_| at));
+        at += port.ty.size();
+    }
+    ports
+}
+
+/// The points one behind the other.
+fn placed(mut points: Vec<Point>) -> Vec<Point> {
     let mut offset = 0;
-    let point = |(name, ty): (String, SignalType)| {
-        let at = offset;
-        offset += ty.size();
-        Point { address: addresses.get(&name).cloned(), name, ty, offset: at }
-    };
-    named.into_iter().map(point).collect()
+    for point in &mut points {
+        point.offset = offset;
+        offset += point.ty.size();
+    }
+    points
 }
 
 #[cfg(test)]
@@ -212,9 +325,10 @@ mod tests {
     fn words_lie_where_they_are_looked_for() {
         let port = |name: &str, ty| Port { name: SignalName::new(name).unwrap(), ty };
         for system in [SystemWords::Absent, SystemWords::Present] {
+            let feed = |name: &str, ty| Feed::whole(&port(name, ty), None);
             let exchange = Exchange::new(
-                &[port("a", SignalType::BOOL), port("b", SignalType::LREAL)],
-                &[port("c", SignalType::INT)],
+                &[feed("a", SignalType::BOOL), feed("b", SignalType::LREAL)],
+                &[feed("c", SignalType::INT)],
                 system,
                 &BTreeMap::new(),
             );
@@ -238,13 +352,29 @@ mod tests {
             set("SDSP_Joined", &5_u32.to_le_bytes());
             set("SDSP_Done", &6_u32.to_le_bytes());
             set("SDSP_Answer", &(-2_i16).to_le_bytes());
+            set("SDSP_Layout", &11_u32.to_le_bytes());
             set("PLC_Boots", &8_u32.to_le_bytes());
             set("PLC_Running", &[1]);
             let is_told = system == SystemWords::Present;
             let (boots, running) = (is_told.then_some(8), is_told.then_some(true));
-            let report = Report { joined: 5, done: 6, answer: Answer::Other(-2), boots, running };
+            let report = Report { joined: 5, done: 6, answer: Answer::Other(-2), layout: 11, boots, running };
             assert_eq!(exchange.report(&from_plc), report);
             assert_eq!(exchange.outputs().len(), 2);
         }
+    }
+
+    #[test]
+    fn a_signal_goes_to_every_variable_that_reads_it() {
+        let port = |name: &str, ty| Port { name: SignalName::new(name).unwrap(), ty };
+        let target = |path: &str| Target { variable: Some(path.to_owned()), address: None };
+        let several =
+            Feed { port: port("go", SignalType::INT), targets: vec![target("A.go"), target("B.go"), target("C.go")] };
+        let after = Feed::whole(&port("level", SignalType::BOOL), None);
+        let exchange = Exchange::new(&[several, after], &[], SystemWords::Absent, &BTreeMap::new());
+        let mut to_plc = vec![0; exchange.size(Direction::ToPlc)];
+        exchange.put_inputs(&[7, 8, 1], &mut to_plc);
+        assert_eq!(to_plc[..7], [7, 8, 7, 8, 7, 8, 1]);
+        let keys: Vec<_> = exchange.to_plc().iter().take(4).map(Point::key).collect();
+        assert_eq!(keys, ["A.go", "B.go", "C.go", "level"]);
     }
 }

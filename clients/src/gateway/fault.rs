@@ -49,6 +49,11 @@ impl LinkFault {
     pub fn is_transient(&self) -> bool {
         matches!(self, Self::Unreachable { .. } | Self::Lost(_))
     }
+
+    /// True for an answer that may have been garbled on its way.
+    pub fn is_garbled(&self) -> bool {
+        matches!(self, Self::Nonsense(_))
+    }
 }
 
 /// A signal whose address and the PLC do not fit.
@@ -134,8 +139,28 @@ pub enum GatewayFault {
         session: u32,
     },
     /// The program is not instrumented to be simulated.
-    #[error("the PLC does not simulate: SDSP_Simulated is FALSE")]
+    #[error(
+        "the PLC free-wheels: SDSP_Simulated is FALSE, so that it runs no grant; set it to TRUE and start the PLC cold, or run with `--mode freewheel`"
+    )]
     NotSimulated,
+    /// The PLC waits for grants, and nobody would give any.
+    #[error(
+        "the PLC is in lockstep: SDSP_Answer is {answer} and not 7, so that no program runs without a grant; set SDSP_Simulated to FALSE (`onescan plc --mode freewheel`), or run with `--mode lockstep`"
+    )]
+    InLockstep {
+        /// What its scheduler says.
+        answer: i16,
+    },
+    /// The program was made for another mapping.
+    #[error(
+        "the PLC runs a program that was made for another mapping: SDSP_Layout is {found}, that of this scenario is {expected}; run `onescan instrument` again and download the result, or compare the mappings with `onescan map`"
+    )]
+    OtherLayout {
+        /// The number of the scenario's mapping.
+        expected: u32,
+        /// What the PLC shows.
+        found: u32,
+    },
     /// Its programs have run, so that its state is not that of a cold start.
     #[error("the PLC has run since its last start: start it cold, then begin the session")]
     MustBeStarted,

@@ -1,16 +1,21 @@
 //! A PLC that is not driven: its inputs written and its outputs read at a rate of the client's own, as an OPC client
 //! does (`[SDSP]` secs. II-C and III). It exists to show what the handshake removes.
 
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use onescan_server::client::{Client, ClientFault, JoinRequest, Wake};
 use onescan_server::time::VirtualTime;
 
+use super::answer::Answer;
 use super::exchange::{Direction, Exchange};
+use super::fault::GatewayFault;
+use super::handshake::Report;
 use super::link::Link;
 
 /// How long a link that is told of changes is listened to in a turn.
 const GLANCE: Duration = Duration::from_millis(1);
+/// How long a PLC may take for its first cycle, in which its scheduler says whether it is simulated.
+const FIRST_CYCLE: Duration = Duration::from_secs(1);
 
 /// A PLC on its own clock, whose program is not simulated (`SDSP_Simulated` is FALSE).
 pub struct FreeGateway {
@@ -26,6 +31,24 @@ impl FreeGateway {
     pub fn new(request: JoinRequest, exchange: Exchange, link: Box<dyn Link>) -> Self {
         let (to_plc, from_plc) = (vec![0; exchange.size(Direction::ToPlc)], vec![0; exchange.size(Direction::FromPlc)]);
         Self { request, exchange, link, to_plc, from_plc }
+    }
+
+    /// A PLC in lockstep would stand still for the whole run, and every run be equal to every other.
+    fn must_be_free(&mut self) -> Result<(), GatewayFault> {
+        let deadline = Instant::now() + FIRST_CYCLE;
+        let mut last = Report::default();
+        while Instant::now() < deadline {
+            if self.link.read(GLANCE, &mut self.from_plc)? {
+                last = self.exchange.report(&self.from_plc);
+            }
+            match last.answer {
+                Answer::NotSimulated => return Ok(()),
+                // What it says before its scheduler has run for the first time, or in no session.
+                Answer::Ready if last.joined == 0 => {}
+                _ => break,
+            }
+        }
+        Err(GatewayFault::InLockstep { answer: last.answer.word() })
     }
 
     fn exchange(&mut self, outputs: &mut [u8]) -> Result<(), ClientFault> {
@@ -46,12 +69,12 @@ impl Client for FreeGateway {
     fn setup(&mut self, outputs: &mut [u8]) -> Result<(), ClientFault> {
         // What the PLC shows already comes as a change, in the first turn.
         outputs.fill(0);
-        self.link.connect().map_err(|fault| ClientFault::new(fault.to_string()))
+        self.link.connect().map_err(|fault| ClientFault::new(fault.to_string()))?;
+        self.must_be_free().map_err(|fault| ClientFault::new(fault.to_string()))
     }
 
     fn turn(&mut self, _t_v: VirtualTime, inputs: &[u8], outputs: &mut [u8]) -> Result<Wake, ClientFault> {
-        let place = self.exchange.inputs();
-        self.to_plc[place].copy_from_slice(inputs);
+        self.exchange.put_inputs(inputs, &mut self.to_plc);
         self.exchange(outputs)?;
         Ok(Wake::NextPeriod)
     }

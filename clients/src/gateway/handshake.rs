@@ -45,6 +45,8 @@ pub struct Report {
     pub done: u32,
     /// `SDSP_Answer`.
     pub answer: Answer,
+    /// `SDSP_Layout`: of which mapping the program was made, 0 for none.
+    pub layout: u32,
     /// `PLC_Boots`, if the PLC counts its starts.
     pub boots: Option<u32>,
     /// `PLC_Running`, if the PLC tells RUN from STOP.
@@ -71,6 +73,8 @@ pub enum Notice {
     StartPlc,
     /// The connection was lost and is back; the order under way is resumed.
     Back,
+    /// The program was made without a scenario, so that its mapping cannot be held against this one.
+    NoLayout,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -106,6 +110,10 @@ pub struct Handshake {
     last: Report,
     notice: Option<Notice>,
     is_lost: bool,
+    /// The number of the scenario's mapping, if it has one.
+    layout: Option<u32>,
+    /// It has been said that the PLC shows no number.
+    is_layout_told: bool,
 }
 
 impl Default for Handshake {
@@ -126,7 +134,14 @@ impl Handshake {
             last: Report::default(),
             notice: None,
             is_lost: false,
+            layout: None,
+            is_layout_told: false,
         }
+    }
+
+    /// The same for a PLC whose program must have been made for the mapping with this number.
+    pub fn expecting(self, layout: Option<u32>) -> Self {
+        Self { layout, ..self }
     }
 
     /// Begins a session at `t_v`; done when the PLC has joined it.
@@ -242,6 +257,7 @@ impl Handshake {
         if report.answer == Answer::NotSimulated {
             return Err(GatewayFault::NotSimulated);
         }
+        self.compare_layout(report)?;
         // The order was written before the connection broke: it has been taken, or it is written again.
         if self.order.session != 0 && report.joined == self.order.session {
             return self.look_for_join(t_v, report);
@@ -298,6 +314,10 @@ impl Handshake {
         let Order { session, .. } = self.order;
         match (report.joined, report.answer) {
             (joined, _) if joined == session && report.done == session => {
+                self.compare_layout(report)?;
+                if self.layout.is_some() && report.layout == 0 && !std::mem::replace(&mut self.is_layout_told, true) {
+                    self.notice = Some(Notice::NoLayout);
+                }
                 self.boots = report.boots;
                 self.phase = Phase::AtRest;
                 Ok(())
@@ -338,6 +358,16 @@ impl Handshake {
             _ if self.phase == Phase::Surveying => {
                 self.phase = Phase::Writing;
                 Ok(())
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// A program that was made for another mapping has other variables where this gateway writes.
+    fn compare_layout(&self, report: Report) -> Result<(), GatewayFault> {
+        match self.layout {
+            Some(expected) if report.layout != 0 && report.layout != expected => {
+                Err(GatewayFault::OtherLayout { expected, found: report.layout })
             }
             _ => Ok(()),
         }

@@ -17,6 +17,7 @@ struct Plc {
     last: u64,
     is_used: bool,
     boots: u32,
+    layout: u32,
     output: u64,
     log: Vec<(u64, u64)>,
 }
@@ -27,7 +28,7 @@ impl Plc {
         let t_v = t_v.as_nanos();
         if start == self.boots + 1 {
             let log = std::mem::take(&mut self.log);
-            *self = Self { boots: start, log, ..Self::default() };
+            *self = Self { boots: start, layout: self.layout, log, ..Self::default() };
             return;
         }
         self.answer = if session != self.joined {
@@ -63,6 +64,7 @@ impl Plc {
             joined: self.joined,
             done: self.done,
             answer: Answer::from(self.answer),
+            layout: self.layout,
             boots: is_counting.then_some(self.boots),
             running: None,
         }
@@ -264,6 +266,35 @@ fn what_a_plc_may_say_has_a_name() {
     insta::assert_snapshot!(all.join("\n"));
 }
 
+#[test]
+fn a_program_that_was_made_for_another_mapping_is_found_before_the_first_step() {
+    let join = |expected, found| {
+        let mut world = World::new(Vec::new());
+        world.handshake = Handshake::new().expecting(expected);
+        world.plc.layout = found;
+        world.handshake.join(VirtualTime::ZERO);
+        let joined = world.drive(0).map(|_| world.handshake.take_notice());
+        assert_eq!(world.plc.log, []);
+        (joined, world.plc.joined)
+    };
+    assert_eq!(join(Some(7), 7), (Ok(None), 1));
+    assert_eq!(join(Some(7), 8), (Err(GatewayFault::OtherLayout { expected: 7, found: 8 }), 0));
+    // Neither a program without a number nor a scenario without one can be compared.
+    assert_eq!(join(Some(7), 0), (Ok(Some(Notice::NoLayout)), 1));
+    assert_eq!(join(None, 8), (Ok(None), 1));
+}
+
+#[test]
+fn a_program_without_a_number_is_told_once() {
+    let mut world = World::new(Vec::new());
+    world.is_counting = true;
+    world.handshake = Handshake::new().expecting(Some(7));
+    world.session().unwrap();
+    assert_eq!(world.handshake.take_notice(), Some(Notice::NoLayout));
+    world.session().unwrap();
+    assert_eq!(world.handshake.take_notice(), None);
+}
+
 fn luck() -> impl Strategy<Value = Luck> {
     prop_oneof![
         4 => Just(Luck::Good),
@@ -296,7 +327,7 @@ proptest! {
                 Ask::Read => {}
                 Ask::Nothing => drop(handshake.grant(VirtualTime::from_nanos(k as u64 + 1))),
             }
-            let report = Report { joined, done, answer: answer.into(), boots, running: None };
+            let report = Report { joined, done, answer: answer.into(), layout: 0, boots, running: None };
             if handshake.look(report).is_err() {
                 handshake.join(VirtualTime::ZERO);
             }

@@ -7,6 +7,10 @@
 //! | [`fault`] | what can be wrong with a link, told apart by name |
 //! | [`byte_order`] | which byte of a number comes first |
 //! | [`exchange`] | the signals and synchronisation words in their order, as packed bytes |
+//! | [`addresses`] | the addresses of a signal as a scenario writes them |
+//! | [`mapping`] | the variables of each signal, and the address of each |
+//! | [`layout_number`] | a number that says whether two mappings are the same |
+//! | [`listing`] | all points of a link with their places |
 //! | [`link`] | the interface of all links |
 //! | [`client`] | handshake and link as a client of a session |
 //! | [`settings`] | what a scenario says of a link, and the link made of it |
@@ -23,6 +27,7 @@
 //! - No step is run twice and none is skipped, wherever the connection breaks.
 //! - A wall clock decides when to give up, never what a step computes.
 
+pub mod addresses;
 pub mod ads;
 pub mod answer;
 pub mod byte_order;
@@ -31,7 +36,10 @@ pub mod exchange;
 pub mod fault;
 pub mod freewheel;
 pub mod handshake;
+pub mod layout_number;
 pub mod link;
+pub mod listing;
+pub mod mapping;
 pub mod modbus;
 pub mod opcua;
 pub mod s7;
@@ -39,6 +47,7 @@ pub mod settings;
 mod socket;
 pub mod tcp;
 
+pub use addresses::Addresses;
 pub use client::{Gateway, Patience};
 pub use exchange::{Direction, Exchange, Point};
 pub use fault::{GatewayFault, LinkFault, MappingFault};

@@ -10,6 +10,7 @@ use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::Deserialize;
 use thiserror::Error;
 
+use super::addresses::Addresses;
 use super::ads::{self, AdsLink};
 use super::client::Patience;
 use super::exchange::{Exchange, SystemWords};
@@ -34,8 +35,9 @@ pub struct Settings {
     pub reconnect_timeout: Option<Text<TimeSpan>>,
     /// How long a PLC that must be started cold is waited for.
     pub start_timeout: Option<Text<TimeSpan>>,
-    /// Addresses of signals and words that do not lie where the link looks for them.
-    pub map: BTreeMap<String, String>,
+    /// Addresses of signals and words that do not lie where the link looks for them: one; or, for a signal that several
+    /// variables read, a list in the order of their paths, or a table by path.
+    pub map: BTreeMap<String, Addresses>,
     /// Blocks of a raw TCP or an S7 link.
     pub layout: Declaration,
     /// CPU and block numbers of an S7 link.

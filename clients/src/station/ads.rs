@@ -1,5 +1,5 @@
 //! Symbols over ADS: the PLC's side, as a TwinCAT device with its own router. Each point is a symbol under the name by
-//! which a gateway looks for it. A request is answered between two cycles, a sum command as one.
+//! which a gateway looks for it: the path that its variable has in the program. A request is answered between two cycles, a sum command as one.
 
 use std::io::Write;
 use std::net::{Shutdown, SocketAddr, TcpListener, TcpStream};
@@ -79,7 +79,7 @@ impl Device {
                     size: form.size() as u32,
                     base: form.base(),
                     flags,
-                    name: point.address.clone().unwrap_or_else(|| options.symbol(&point.name)),
+                    name: point.address.clone().unwrap_or_else(|| options.symbol(point)),
                     ty: point.ty.to_string(),
                 };
                 entries.push(Entry { symbol, point: point.clone(), direction, index });

@@ -1,5 +1,5 @@
-//! Variables of an OPC UA server: the PLC's side. Each point is a variable under its name; the server takes and
-//! gives them one by one, and the PLC may run a cycle between two, as in a real one.
+//! Variables of an OPC UA server: the PLC's side. Each point is a variable under the path that it has in the
+//! program; the server takes and gives them one by one, and the PLC may run a cycle between two, as in a real one.
 
 use std::net::SocketAddr;
 use std::sync::Arc;
@@ -38,7 +38,7 @@ fn add_variables(manager: &SimpleNodeManager, namespace: u16, controller: &Arc<C
     let directions = [(Direction::ToPlc, exchange.to_plc()), (Direction::FromPlc, exchange.from_plc())];
     for (direction, points) in directions {
         for (index, point) in points.iter().enumerate() {
-            let id = NodeId::new(namespace, point.name.clone());
+            let id = NodeId::new(namespace, identifier(point));
             variable(&id, point, direction).organized_by(&folder).insert(&mut *manager.address_space().write());
             let (reader, ty, range) = (Arc::clone(controller), point.ty, point.range());
             manager.inner().add_read_callback(id.clone(), move |_, _, _| {
@@ -61,9 +61,19 @@ fn add_variables(manager: &SimpleNodeManager, namespace: u16, controller: &Arc<C
     }
 }
 
+/// The name of a point's node: that of the scenario's address if it is one in this namespace or a bare name, or else the
+/// variable's path.
+fn identifier(point: &Point) -> String {
+    let Some(address) = &point.address else { return point.symbol().to_owned() };
+    match address.split_once("s=") {
+        Some((_, name)) => name.to_owned(),
+        None => address.clone(),
+    }
+}
+
 fn variable(id: &NodeId, point: &Point, direction: Direction) -> VariableBuilder {
-    let zero = vec![0; point.ty.size()];
-    let builder = VariableBuilder::new(id, point.name.as_str(), point.name.as_str())
+    let (zero, name) = (vec![0; point.ty.size()], identifier(point));
+    let builder = VariableBuilder::new(id, name.as_str(), name.as_str())
         .data_type(value::data_type(point.ty))
         .value(value::to_variant(point.ty, &zero));
     if direction == Direction::ToPlc { builder.writable() } else { builder }

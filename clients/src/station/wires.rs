@@ -10,7 +10,7 @@ use crate::soft_plc::bind::{Bindings, Bound, Place};
 /// Where a point's value is.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) enum Source {
-    /// In the PLC's memory; an input may have several places.
+    /// In the PLC's memory; a signal that is one point may have several places.
     Memory(Vec<Place>),
     /// `PLC_Start`.
     Start,
@@ -59,7 +59,7 @@ impl Wires {
     pub fn new(exchange: &Exchange, application: &Application, bindings: &Bindings) -> Result<Self, WireError> {
         let wires = |points: &[Point], bound: &[Bound]| -> Result<Vec<Wire>, WireError> {
             let wire = |point: &Point| {
-                let source = source(&point.name, application, bound)?;
+                let source = source(point, application, bound)?;
                 Ok(Wire { point: point.clone(), source })
             };
             points.iter().map(wire).collect()
@@ -85,7 +85,8 @@ impl Wires {
     }
 }
 
-fn source(name: &str, application: &Application, bound: &[Bound]) -> Result<Source, WireError> {
+fn source(point: &Point, application: &Application, bound: &[Bound]) -> Result<Source, WireError> {
+    let name = point.name.as_str();
     if name == START.0 {
         return Ok(Source::Start);
     } else if name == BOOTS.0 {
@@ -98,7 +99,10 @@ fn source(name: &str, application: &Application, bound: &[Bound]) -> Result<Sour
         let found = found.map_err(|cause| WireError::NoShim { word: name.to_owned(), cause })?;
         return Ok(Source::Memory(vec![Place::of(&found)]));
     }
+    let unbound = || WireError::Unbound(point.label());
     let is_it = |bound: &&Bound| SignalName::as_str(&bound.port.name) == name;
-    let found = bound.iter().find(is_it).ok_or_else(|| WireError::Unbound(name.to_owned()))?;
-    Ok(Source::Memory(found.places.clone()))
+    let found = bound.iter().find(is_it).ok_or_else(unbound)?;
+    let Some(path) = &point.variable else { return Ok(Source::Memory(found.places.clone())) };
+    let place = found.variables.iter().zip(&found.places).find(|(known, _)| *known == path);
+    place.map(|(_, place)| Source::Memory(vec![*place])).ok_or_else(unbound)
 }

@@ -56,10 +56,9 @@ pub(super) fn control_statements(pou: &Pou, controller: &Controller, file: &Sour
 fn end(pou: &Pou, controller: &Controller, places: &Places, file: &SourceFile, edits: &mut Edits) {
     let footer = &controller.footer;
     let line_break = marks::line_break(file.shown_text());
-    let mut returns = Returns { starts: Vec::new() };
-    walk::statements(&pou.body, &mut returns);
-    for start in returns.starts {
-        edits.insert(file.shown_range(start, start + 1).start, marks::inline(footer));
+    for start in returns(&pou.body) {
+        let footer: Vec<&str> = footer.split_whitespace().collect();
+        edits.insert(file.shown_range(start, start + 1).start, marks::inline(&footer.join(" ")));
     }
     edits.insert(places.footer, marks::lines(footer, line_break));
 }
@@ -108,6 +107,12 @@ fn empty_body(text: &str, from: u32) -> u32 {
 }
 
 /// Where every RETURN begins.
+pub(super) fn returns(body: &[Statement]) -> Vec<u32> {
+    let mut returns = Returns { starts: Vec::new() };
+    walk::statements(body, &mut returns);
+    returns.starts
+}
+
 struct Returns {
     starts: Vec<u32>,
 }

@@ -15,17 +15,21 @@
 //! | [`configuration`] | a project's CONFIGURATION |
 //! | [`plain`] | a project without the shim, and its changes |
 //! | [`controller`] | execution controllers |
+//! | [`exchanged`] | the variables that a gateway writes and reads |
 //! | [`scl`] | SCL of TIA Portal: organization blocks, timers |
 //! | [`plcopen_project`], [`plcopen`], [`plcopen_unit`] | projects in PLCopen XML |
 //! | [`chart`], [`chart_plan`], [`chart_script`], [`chart_action`] | Sequential Function Charts: execution signal, action control, times of steps |
 //! | [`plcopen_chart`], [`plcopen_gate`] | the same of charts that are drawn, in PLCopen XML |
 //! | [`port`], [`codesys`] | a project in text for a tool that takes another form |
+//! | [`matiec`], [`taken_over`] | a project in text for MatIEC, with all that the gateway exchanges at addresses |
+//! | [`address`], [`located`] | direct addresses, and what lies there |
 //! | [`verify`] | what has been written is checked |
 //! | [`target`], [`twincat`] | the shim's sources as a vendor's tool takes them |
 //!
 //! Invariants: text goes in and comes out, no file is touched; what is not marked stays byte for byte;
 //! instrumenting twice is instrumenting once; what cannot be replaced is told.
 
+mod address;
 mod chart;
 mod chart_action;
 mod chart_plan;
@@ -35,8 +39,11 @@ mod codesys;
 mod configuration;
 mod controller;
 pub mod diff;
+mod exchanged;
 mod foreign;
+mod located;
 mod marks;
+mod matiec;
 mod motion;
 mod motion_use;
 mod plain;
@@ -50,6 +57,7 @@ mod scl;
 mod scl_port;
 mod single;
 mod survey;
+mod taken_over;
 mod target;
 mod tasks;
 mod template;
@@ -58,8 +66,12 @@ mod verify;
 
 use std::sync::Arc;
 
+use onescan_base::TimeSpan;
 use thiserror::Error;
 
+pub use self::address::Address;
+pub use self::exchanged::{Exchanged, Way};
+pub use self::located::Located;
 use self::plain::Plain;
 use self::survey::{Survey, survey};
 pub use self::target::Target;
@@ -81,6 +93,14 @@ pub struct Options {
     /// The tasks; without any, those of the project's CONFIGURATION, or one of 10 ms for all programs
     /// that no other calls.
     pub tasks: Option<Vec<Task>>,
+    /// What the gateway writes and reads, in the order in which it lies there; empty if no scenario is known.
+    pub exchanged: Vec<Exchanged>,
+    /// The number of the scenario's mapping, which the PLC shows as `SDSP_Layout`.
+    pub layout: Option<u32>,
+    /// Where the words of the handshake begin in the PLC's memory, as in `%MD0`; without, where there is room.
+    pub words_at: Option<String>,
+    /// The interval of the emitted task of the scheduler; without, the shortest of the project's tasks.
+    pub cycle: Option<TimeSpan>,
 }
 
 /// Why a project cannot be instrumented.
@@ -122,6 +142,8 @@ pub struct Project {
     pub whole: Option<String>,
     /// The tasks of the program, where they run other units than those that were asked for.
     pub tasks: Option<Vec<Task>>,
+    /// What lies at addresses, where the target has them.
+    pub located: Vec<Located>,
     /// The data blocks that global variables have become members of.
     homes: scl_port::Homes,
 }
@@ -129,7 +151,7 @@ pub struct Project {
 impl Project {
     /// A project whose files all are given to the tool.
     fn of(files: Vec<File>, warnings: Diagnostics) -> Self {
-        Self { files, warnings, whole: None, tasks: None, homes: scl_port::Homes::new() }
+        Self { files, warnings, whole: None, tasks: None, located: Vec::new(), homes: scl_port::Homes::new() }
     }
 
     /// The files that together are the program.
@@ -229,7 +251,7 @@ fn attach(plain: &Plain, options: &Options) -> Result<Attached, InstrumentError>
     forms.extend((!survey.charts.is_empty()).then(clock::on_delay));
     forms.sort_by_key(|form| form.name);
     forms.dedup();
-    let sources = Sources::new(options.target, &tasks, &forms, &motion.blocks, &survey.charts);
+    let sources = Sources::new(options, &tasks, &forms, &motion.blocks, &survey.charts);
     if plain.is_xml() {
         let files = vec![plain.edited_xml(&survey, &motion, &tasks, &sources)?];
         let project = Project::of(files, Diagnostics::new(findings, &plain.sources));

@@ -66,7 +66,7 @@ pub(super) fn differs(target: Target, key: &str) -> Option<&'static str> {
             ("MC_MOVESUPERIMPOSED", "Tc2_MC2 has another block of this name"),
             ("MC_SETPOSITION", "the mode is another in Tc2_MC2"),
         ],
-        Target::Iec | Target::Codesys | Target::Scl => &[],
+        _ => &[],
     };
     differing.iter().find(|(name, _)| *name == key).map(|(_, why)| *why)
 }

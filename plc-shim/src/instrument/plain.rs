@@ -118,6 +118,7 @@ impl Plain {
         let message = match target {
             Target::Scl if scl.is_some() && foreign.is_some() => "beside SCL there are variables only, not programs",
             Target::Scl if scl.is_none() => "the target scl takes program text or SCL sources of TIA Portal",
+            Target::OpenPlc | Target::Beremiz if !self.is_text() => "this target takes program text",
             Target::Iec | Target::TwinCat | Target::Codesys if scl.is_some() => "SCL sources take the target scl",
             Target::Codesys if !self.is_xml() && !self.is_text() => {
                 "the target codesys takes program text or a project in PLCopen XML"

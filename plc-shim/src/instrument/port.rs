@@ -5,7 +5,7 @@
 
 use super::plain::Plain;
 use super::target::Target;
-use super::{InstrumentError, Options, Project, attach, codesys, scl_port};
+use super::{InstrumentError, Options, Project, attach, codesys, matiec, scl_port};
 use crate::dialect::Dialect;
 use crate::input::Input;
 
@@ -30,6 +30,7 @@ pub(super) fn ported(plain: &Plain, options: &Options) -> Option<Result<Project,
         Target::Codesys => codesys::port,
         // SCL is another language: the shim is attached to what is written in it.
         Target::Scl => return Some(scl_port::ported(plain, options)),
+        Target::OpenPlc | Target::Beremiz => return Some(matiec::ported(plain, options)),
         Target::Iec | Target::TwinCat => return None,
     };
     let whole = || {

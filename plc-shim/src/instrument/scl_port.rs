@@ -42,7 +42,7 @@ pub(super) fn ported(plain: &Plain, options: &Options) -> Result<Project, Instru
     // The second time with the start values that the first has not.
     for _ in 0..2 {
         let text = scl::project(source, &tasks, &values).map_err(wrong)?;
-        let text = attached(&text, &tasks).map_err(|wrong| match wrong {
+        let text = attached(&text, &tasks, options).map_err(|wrong| match wrong {
             InstrumentError::Text(found) => refused(plain, &found),
             other => other,
         })?;
@@ -104,8 +104,8 @@ fn called(tasks: &[Task]) -> Vec<Task> {
 }
 
 /// The translation with the shim, in one text.
-fn attached(text: &str, tasks: &[Task]) -> Result<String, InstrumentError> {
-    let options = Options { target: Target::Scl, tasks: Some(called(tasks)) };
+fn attached(text: &str, tasks: &[Task], options: &Options) -> Result<String, InstrumentError> {
+    let options = Options { target: Target::Scl, tasks: Some(called(tasks)), ..options.clone() };
     let project = instrument(&[in_scl("project.scl", text)], &options)?;
     let (own, others): (Vec<&File>, Vec<&File>) = project.files.iter().partition(|file| file.before.is_none());
     let texts = |files: Vec<&File>| -> Vec<String> {

@@ -39,6 +39,7 @@ pub(super) fn check_given(
         let Some(path) = &task.single else { continue };
         let reason = match target {
             Target::TwinCat => "tasks of TwinCAT are cyclic",
+            Target::OpenPlc | Target::Beremiz => "MatIEC connects nothing to the inputs of a program",
             Target::Scl => "SCL does not tell what starts an organization block",
             Target::Codesys if is_xml => "it is not instrumented in PLCopen XML yet",
             Target::Iec | Target::Codesys if !survey.is_global(path) => "the scheduler reads a global variable",

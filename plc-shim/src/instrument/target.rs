@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use super::Options;
 use super::clock::Form;
 use super::marks;
 use super::motion::{self, Part, Use};
@@ -22,6 +23,10 @@ pub enum Target {
     Codesys,
     /// Siemens' TIA Portal: SCL as external source, in one file.
     Scl,
+    /// OpenPLC v3: one file for MatIEC, with addresses that its Modbus server serves.
+    OpenPlc,
+    /// Beremiz: the same.
+    Beremiz,
 }
 
 /// A file of the shim's own.
@@ -69,30 +74,32 @@ pub(super) enum Globals {
 
 impl Sources {
     pub(super) fn new(
-        target: Target,
+        options: &Options,
         tasks: &TaskTable<'_>,
         forms: &[&Form],
         blocks: &BTreeMap<String, Use>,
         charts: &[&Pou],
     ) -> Self {
+        let Options { target, layout, .. } = *options;
         let wanted: &[Only] = if forms.iter().any(|form| form.long) { &[Only::LongTime] } else { &[] };
         let mut names = tasks.names();
         let sizes = [("SDSP_PROGRAMS", tasks.programs.len().to_string())];
         // A TIME has nanoseconds in the one and milliseconds in the other. Only durations of whole seconds are exact
         // in every tool of the one; a number stands behind a TIME (2nd ed. Table 30).
         let (now, now_long) = match target {
-            Target::Iec => ("T#1s * (TV / 1000000000) + T#1s * (TV MOD 1000000000) / 1000000000", "LT#1ns * TV"),
+            Target::Iec | Target::OpenPlc | Target::Beremiz => ("T#1s * (TV / 1000000000) + T#1s * (TV MOD 1000000000) / 1000000000", "LT#1ns * TV"),
             Target::TwinCat | Target::Codesys => ("LINT_TO_TIME(TV / 1000000)", "LINT_TO_LTIME(TV)"),
             Target::Scl => ("DINT_TO_TIME(LINT_TO_DINT(#TV / 1000000))", "LINT_TO_LTIME(#TV)"),
         };
         names.extend([("SDSP_NOW_OF_TV", now.to_owned()), ("SDSP_NOWL_OF_TV", now_long.to_owned())]);
+        names.push(("SDSP_LAYOUT_NUMBER", layout.unwrap_or(0).to_string()));
         let fill = if target == Target::Scl { template::fill_scl } else { template::fill };
         let filled = |template: &str| fill(&template::lines_for(&tasks.with_singles(template), wanted), &names);
         let unit = |form: &&Form| Unit { name: form.new_name(), text: form.text(target) };
         let (globals, scheduler) = match target {
             Target::Scl => (template::SCL_GLOBALS, template::SCL_SCHEDULER),
             _ if tasks.has_singles() => (template::GLOBALS, template::EVENT_SCHEDULER),
-            Target::Iec | Target::TwinCat | Target::Codesys => (template::GLOBALS, template::SCHEDULER),
+            _ => (template::GLOBALS, template::SCHEDULER),
         };
         let mut units: Vec<Unit> = forms.iter().map(unit).collect();
         if !charts.is_empty() {
@@ -126,7 +133,7 @@ impl Sources {
     pub(super) fn files(self, target: Target, globals: Globals) -> Vec<Source> {
         let own = (globals == Globals::InFile).then_some(self.globals);
         match target {
-            Target::Iec | Target::Codesys | Target::Scl => {
+            Target::Iec | Target::Codesys | Target::Scl | Target::OpenPlc | Target::Beremiz => {
                 let forms = self.forms.into_iter().map(|unit| unit.text);
                 let motion = self.motion.into_iter().map(|part| part.text);
                 let parts: Vec<String> =

@@ -45,7 +45,7 @@ fn emitted(inputs: &[Input], project: &Project, target: Target) -> Vec<Input> {
             (None, Target::TwinCat) => Dialect::TwinCat,
             (None, Target::Codesys) => Dialect::Codesys,
             (None, Target::Scl) => Dialect::SiemensScl,
-            (None, Target::Iec) => return Some(input),
+            (None, Target::Iec | Target::OpenPlc | Target::Beremiz) => return Some(input),
         };
         Some(input.in_dialect(dialect))
     };

@@ -3,12 +3,14 @@
 //! | module | in | out |
 //! |---|---|---|
 //! | [`page`] | text | the comments that belong to a declaration |
+//! | [`matiec`] | a project in text | one text that MatIEC compiles |
 //! | [`plcopen`] | a project in text | one file of PLCopen XML, as CODESYS imports it |
 //! | [`scl`] | a project in text | an external source in SCL, as TIA Portal imports it |
 //!
 //! Invariants: statements are taken over as they are written; what a form cannot say is refused with its place, never
 //! left out.
 
+pub(crate) mod matiec;
 pub(crate) mod page;
 pub(crate) mod plcopen;
 pub(crate) mod scl;

@@ -114,7 +114,7 @@ impl Three {
         let single = || TaskPlan::single(&plain, case.interval());
         let plan = configured.clone().unwrap_or_else(single);
         let tasks = configured.is_none().then(|| plan.tasks.clone());
-        let project = instrument(&[input], &Options { tasks, target });
+        let project = instrument(&[input], &Options { tasks, target, ..Options::default() });
         let project = project.map_err(|error| format!("is refused: {}", first_error(&error)))?;
         let files = project.program().map(|file| {
             let text = file.text.as_deref().expect("nothing is deleted");

@@ -63,7 +63,22 @@ fn task(name: &str, ms: u64, priority: u32, program: &str) -> Task {
 
 fn project() -> Project {
     let tasks = vec![task("fast", 1, 2, "Fast"), task("slow", 2, 1, "Slow")];
-    Project { text: TEXT, programs: &["Fast", "Slow"], tasks, expected: EXPECTED }
+    Project { text: TEXT, programs: &["Fast", "Slow"], tasks, changes: &[], expected: EXPECTED }
+}
+
+/// The same where `Fast` is interrupted, whenever it ends: it has counted the grant as done, and everything else may
+/// happen before it hands on, which `Rest` stands for.
+fn project_interrupted() -> Project {
+    let text = "
+VAR_GLOBAL log : LINT; interrupted : BOOL; END_VAR
+PROGRAM Fast log := log * 100 + 10 + TIME_TO_LINT(SDSP_Now); END_PROGRAM
+PROGRAM Slow log := log * 100 + 20 + TIME_TO_LINT(SDSP_Now); END_PROGRAM
+PROGRAM Rest IF interrupted THEN interrupted := FALSE; SDSP_Turn := SDSP_Next[1 + 1]; END_IF; END_PROGRAM";
+    let changes = &[
+        ("SDSP_Turn := SDSP_Next[2];", "interrupted := TRUE;"),
+        ("SDSP_Simulated AND SDSP_Turn = 2", "SDSP_Simulated AND SDSP_Turn = 2 AND NOT interrupted"),
+    ];
+    Project { text, programs: &["Fast", "Slow", "Rest"], changes, ..project() }
 }
 
 /// The same where an edge that `Fast` makes in every second step starts `Slow` behind it (2nd ed. 2.7.2).
@@ -74,7 +89,7 @@ PROGRAM Fast log := log * 100 + 10 + TIME_TO_LINT(SDSP_Now); flag := NOT flag; E
 PROGRAM Slow log := log * 100 + 20 + TIME_TO_LINT(SDSP_Now); END_PROGRAM";
     let slow = Task { single: Some("flag".to_owned()), ..task("slow", 0, 1, "Slow") };
     let expected = [0, 11_21, 11_21_12, 11_21_12_13_23, 11_21_12_13_23_14];
-    Project { text, programs: &["Fast", "Slow"], tasks: vec![task("fast", 1, 2, "Fast"), slow], expected }
+    Project { text, tasks: vec![task("fast", 1, 2, "Fast"), slow], expected, ..project() }
 }
 
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
@@ -219,6 +234,39 @@ fn no_program_runs_twice_or_not_at_all_for_a_grant() {
 #[test]
 fn no_edge_starts_a_program_twice_or_not_at_all_for_a_grant() {
     check("shim with SINGLE", &project_with_single(), &[(3, 4)]);
+}
+
+#[test]
+fn a_program_that_is_interrupted_as_it_ends_runs_neither_twice_nor_not_at_all() {
+    check("shim, a program interrupted as it ends", &project_interrupted(), &[(2, 3)]);
+}
+
+/// Passes of the PLC through its tasks, in this order, that each of four grants takes.
+fn passes(project: &Project, order: &[TaskIndex]) -> [usize; 4] {
+    let mut plc = Plc::new(project, &[]);
+    let session = SESSIONS[0];
+    let mut memory = plc.after(Plc::STARTED, Event::Deliver(Message { session, step: 0 }));
+    let pass = |plc: &mut Plc, memory| order.iter().fold(memory, |memory, task| plc.after(memory, Event::Cycle(*task)));
+    memory = pass(&mut plc, memory);
+    [1, 2, 3, 4].map(|step| {
+        memory = plc.after(memory, Event::Deliver(Message { session, step }));
+        let taken = (1..10).find(|_| {
+            memory = pass(&mut plc, memory);
+            plc.view(memory).done == i64::from(session + step)
+        });
+        taken.expect("it is done")
+    })
+}
+
+/// The scheduler is task 0, `Fast` 1 and `Slow` 2, which comes before `Fast` when both are due.
+#[test]
+fn a_grant_takes_one_cycle_of_the_plc() {
+    assert_eq!(passes(&project(), &[0, 2, 1]), [1; 4]);
+    // A scheduler that runs last sees a grant a cycle later; against the order of the line, each program has its own.
+    assert_eq!(passes(&project(), &[2, 1, 0]), [2; 4]);
+    assert_eq!(passes(&project(), &[0, 1, 2]), [1, 2, 1, 2]);
+    // The scheduler looks for edges behind each task.
+    assert_eq!(passes(&project_with_single(), &[0, 1, 2]), [3, 2, 3, 2]);
 }
 
 fn check(name: &str, project: &Project, sizes: &[(usize, u32)]) {

@@ -61,24 +61,51 @@ fn the_execution_controller_needs_to_hand_on() {
 /// A program that hands the turn to itself, or to nobody in the midst of the line.
 #[test]
 fn the_execution_controller_needs_the_line() {
-    assert!(is_broken(right(), &[("SDSP_Turn := SDSP_Next[1];", "SDSP_Turn := 0;")]));
+    assert!(stuck(&Shim::new(right(), &[("SDSP_Turn := SDSP_Next[1];", "SDSP_Turn := 0;")])) > 0);
     assert!(is_broken(right(), &[("SDSP_Turn := SDSP_Next[1];", "SDSP_Turn := SDSP_Next[0];")]));
 }
 
 /// Behind each task an edge may be due: a grant that is done with its first task leaves programs out.
 #[test]
 fn the_event_scheduler_needs_to_look_behind_each_task() {
-    let changes = [("ELSIF Running AND best = 0 THEN", "ELSIF Running THEN")];
+    let changes = [("SDSP_Next[Rear[k]] := -1;", "SDSP_Next[Rear[k]] := 0;")];
     let checker = Shim::of(&project_with_single(), right(), &changes).checker();
     let checker = checker.finish_when(HasDiscoveries::AnyFailures).spawn_bfs().join();
     checker.assert_any_discovery("nothing is broken");
+}
+
+/// A program that counts the grant as done before others of the line have run, or that begins the next one.
+#[test]
+fn the_execution_controller_needs_to_be_the_last_to_count() {
+    assert!(is_broken(right(), &[("IF SDSP_Next[1] = 0 THEN", "IF TRUE THEN")]));
+    assert!(is_broken(right(), &[("SDSP_Turn := SDSP_Next[2];", "SDSP_Turn := 1;")]));
+}
+
+/// A grant that is counted twice: by the last program, and by the scheduler when it sees that the line is empty.
+#[test]
+fn a_grant_needs_to_be_counted_once() {
+    let seen = "END_IF;\n\n    (* Cold start and reset. *)";
+    let again = "ELSIF Last <> 0 THEN SDSP_Done := SDSP_Done + 1; Last := 0; END_IF;\n\n    (* Cold start and reset. *)";
+    assert!(is_broken(right(), &[(seen, again)]));
+    assert!(is_broken(right(), &[("SDSP_Done := SDSP_Done + 1;", "SDSP_Done := SDSP_Done + 2;")]));
+}
+
+/// A grant that nobody counts is never seen as done.
+#[test]
+fn a_grant_needs_to_be_counted() {
+    let model = Shim::new(right(), &[("SDSP_Done := SDSP_Done + 1;", ";")]);
+    let checker = model.checker().spawn_bfs().join();
+    assert!(checker.discovery("the last session is run to its end").is_none());
 }
 
 /// A grant that is answered with the number that stands there now, perhaps that of a late one, is never
 /// seen as done.
 #[test]
 fn the_scheduler_needs_to_count() {
-    let model = Shim::new(right(), &[("SDSP_Done := SDSP_Done + 1;", "SDSP_Done := Grant;")]);
+    let declared = "SDSP_Turn : INT;\n    SDSP_Done : UDINT;";
+    let beside = "SDSP_Turn : INT;\n    SDSP_Grant : UDINT;\n    SDSP_Done : UDINT;";
+    let changes = [("SDSP_Done := SDSP_Done + 1;", "SDSP_Done := SDSP_Grant;"), (declared, beside)];
+    let model = Shim::new(right(), &changes);
     assert!(stuck(&model) > 0);
 }
 

@@ -23,6 +23,8 @@ pub(crate) struct Project {
     /// In the order in which they write.
     pub(crate) programs: &'static [&'static str],
     pub(crate) tasks: Vec<Task>,
+    /// What stands in its text instead, once it is instrumented.
+    pub(crate) changes: &'static [Change],
     /// What stands in the log behind each grant: program and time of every run.
     pub(crate) expected: [i64; 5],
 }
@@ -72,7 +74,7 @@ impl Plc {
         let instrumented = instrument(&[input], &options).expect("it can be instrumented");
         let files = instrumented.files.into_iter().map(|file| (file.name, file.text.expect("a text").to_string()));
         let mut files: Vec<(String, String)> = files.collect();
-        for (from, to) in changes {
+        for (from, to) in project.changes.iter().chain(changes) {
             assert!(files.iter().any(|(_, text)| text.contains(from)), "nothing reads `{from}`");
             for (_, text) in &mut files {
                 *text = text.replace(from, to);

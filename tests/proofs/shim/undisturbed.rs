@@ -4,7 +4,7 @@
 use stateright::{Model, Property};
 
 use super::gateway::{Gateway, Verdict};
-use super::{SESSIONS, Shim, ShimAct, ShimState, project, project_with_single};
+use super::{SESSIONS, Shim, ShimAct, ShimState, project, project_interrupted, project_with_single};
 use crate::graph::explore;
 use crate::stamped::report;
 
@@ -61,7 +61,7 @@ pub(super) fn stuck(model: &Shim) -> usize {
 
 #[test]
 fn every_grant_is_run_or_the_session_seen_to_be_over() {
-    for project in [project(), project_with_single()] {
+    for project in [project(), project_with_single(), project_interrupted()] {
         let model = Shim::of(&project, Gateway::new(&SESSIONS[..3], 3), &[]);
         assert_eq!(stuck(&model), 0);
     }

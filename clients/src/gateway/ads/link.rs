@@ -128,7 +128,7 @@ impl AdsLink {
     }
 
     fn check_point(&mut self, point: &Point, direction: Direction) -> Result<Symbol, LinkFault> {
-        let name = point.address.clone().unwrap_or_else(|| self.options.symbol(&point.name));
+        let name = point.address.clone().unwrap_or_else(|| self.options.symbol(point));
         let written = [name.as_bytes(), &[0]].concat();
         let entry = self.connected()?.read_write(command::INFO_BY_NAME_EX, 0, ENTRY_MAX, &written);
         let entry = match entry {
@@ -138,17 +138,17 @@ impl AdsLink {
         };
         let symbol = Symbol::take(&mut Bytes(&entry))
             .ok_or_else(|| LinkFault::Nonsense(format!("the entry of `{name}` is cut short")))?;
-        let (point, ty) = (&point.name, point.ty);
+        let (signal, ty, point) = (&point.name, point.ty, point.label());
         if !Form::of(ty).fits(&symbol) {
             let text =
                 format!("type mismatch: `{point}` is {ty}, but `{name}` is {} of {} bytes", symbol.ty, symbol.size);
             let is_short = symbol.ty.eq_ignore_ascii_case("TIME") && Form::of(ty).size() == 8;
             let help = is_short.then(|| "TIME of TwinCAT has 32 bits and counts ms; declare it LTIME there".to_owned());
-            return Err(MappingFault::new(point, text).with_help(help).into());
+            return Err(MappingFault::new(signal, text).with_help(help).into());
         }
         if direction == Direction::ToPlc && symbol.flags & READ_ONLY != 0 {
             let text = format!("`{point}` is written by the gateway, but `{name}` can only be read");
-            return Err(MappingFault::new(point, text).into());
+            return Err(MappingFault::new(signal, text).into());
         }
         Ok(symbol)
     }
@@ -157,7 +157,7 @@ impl AdsLink {
     fn unknown(&mut self, point: &Point, name: &str) -> LinkFault {
         let names: Vec<String> = self.table().unwrap_or_default().into_iter().map(|symbol| symbol.name).collect();
         let help = did_you_mean(name, names.iter().map(String::as_str));
-        let text = format!("`{}` is mapped to `{name}`, which the PLC has not", point.name);
+        let text = format!("`{}` is mapped to `{name}`, which the PLC does not have", point.label());
         MappingFault::new(&point.name, text).with_help(help).into()
     }
 }
@@ -168,7 +168,7 @@ fn all_well(codes: &mut Bytes<'_>, points: &[Point], what: &str) -> Result<(), L
         match codes.u32() {
             Some(0) => {}
             Some(code) => {
-                let text = format!("`{}` cannot be {what}: {}", point.name, told(code));
+                let text = format!("`{}` cannot be {what}: {}", point.label(), told(code));
                 return Err(MappingFault::new(&point.name, text).into());
             }
             None => return Err(LinkFault::Nonsense("a sum that is cut short".to_owned())),

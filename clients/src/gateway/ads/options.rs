@@ -4,6 +4,7 @@ use schemars::JsonSchema;
 use serde::Deserialize;
 
 use super::frame::NetId;
+use crate::gateway::exchange::Point;
 
 /// The keys of `[clients.NAME.gateway.ads]`.
 #[derive(Clone, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
@@ -31,8 +32,8 @@ impl Default for Options {
 
 impl Options {
     /// The symbol of a point without an address.
-    pub fn symbol(&self, name: &str) -> String {
-        let is_word = crate::gateway::exchange::is_word(name) && !self.words.is_empty();
-        if is_word { format!("{}.{name}", self.words) } else { name.to_owned() }
+    pub fn symbol(&self, point: &Point) -> String {
+        let has_list = point.is_word() && !self.words.is_empty();
+        if has_list { format!("{}.{}", self.words, point.name) } else { point.symbol().to_owned() }
     }
 }

@@ -77,7 +77,7 @@ impl ModbusLink {
         for Entry { point, address, count } in entries {
             let span = Span { table: address.table, at: address.at, count };
             if let Err(Failed::Refused(code)) = self.read_span(span) {
-                let message = format!("`{}` is mapped to {address}, which the PLC refuses: {code}", point.name);
+                let message = format!("`{}` is mapped to {address}, which the PLC refuses: {code}", point.label());
                 return MappingFault::new(&point.name, message).into();
             }
         }

@@ -141,8 +141,9 @@ const TO_PLC_AT: u16 = 0;
 const FROM_PLC_AT: u16 = 1000;
 
 impl RegisterMap {
-    /// The places of all points: those of their addresses; the others take holding registers in their order, to
-    /// the PLC from 0, from the PLC from 1000.
+    /// The places of all points: those of their addresses, or else holding registers in the order of the points, to the
+    /// PLC from 0, from the PLC from 1000. A point with an address leaves its register free, so that the others stay
+    /// where they are.
     ///
     /// # Errors
     /// An address that is none, or does not suit its point; two points in one place.
@@ -152,6 +153,11 @@ impl RegisterMap {
             from_plc: entries(exchange.from_plc(), Direction::FromPlc, FROM_PLC_AT)?,
             word_order: options.word_order,
         })
+    }
+
+    /// The addresses of the points of both directions, as a map writes them.
+    pub fn places(&self) -> [Vec<String>; 2] {
+        [&self.to_plc, &self.from_plc].map(|entries| entries.iter().map(|entry| entry.address.to_string()).collect())
     }
 
     /// The requests that write all points, in the order of the points: the grant is in the last.
@@ -169,12 +175,12 @@ fn entries(points: &[Point], direction: Direction, mut next: u16) -> Result<Vec<
     let mut entries: Vec<Entry> = Vec::new();
     for point in points {
         let entry = entry(point, direction, next)?;
-        if point.address.is_none() {
-            next = u16::try_from(entry.end())
-                .map_err(|_| MappingFault::new(&point.name, "there are no more registers"))?;
-        }
+        next = next
+            .checked_add(entry.count)
+            .ok_or_else(|| MappingFault::new(&point.name, "there are no more registers"))?;
         if let Some(other) = entries.iter().find(|other| overlap(other, &entry)) {
-            let message = format!("`{}` and `{}` are both mapped to {}", other.point.name, point.name, entry.address);
+            let (other, label) = (other.point.label(), point.label());
+            let message = format!("`{other}` and `{label}` are both mapped to {}", entry.address);
             return Err(MappingFault::new(&point.name, message));
         }
         entries.push(entry);
@@ -185,7 +191,7 @@ fn entries(points: &[Point], direction: Direction, mut next: u16) -> Result<Vec<
 fn entry(point: &Point, direction: Direction, next: u16) -> Result<Entry, MappingFault> {
     let fault =
         |message: String, help: &str| Err(MappingFault::new(&point.name, message).with_help(Some(help.to_owned())));
-    let (name, ty) = (&point.name, point.ty);
+    let (name, ty) = (point.label(), point.ty);
     let address = match &point.address {
         None => Address { table: Table::HoldingRegister, at: next, bit: None },
         Some(text) => {

@@ -4,7 +4,7 @@ use onescan_server::signal::{Port, SignalName};
 use proptest::prelude::*;
 
 use super::*;
-use crate::gateway::exchange::SystemWords;
+use crate::gateway::exchange::{Feed, SystemWords};
 use crate::gateway::modbus::registers;
 
 const TYPES: [SignalType; 7] = [
@@ -18,10 +18,13 @@ const TYPES: [SignalType; 7] = [
 ];
 
 fn exchange(ports: &[(&str, SignalType)], addresses: &[(&str, &str)]) -> Exchange {
-    let port = |(name, ty): &(&str, SignalType)| Port { name: SignalName::new(*name).unwrap(), ty: *ty };
-    let ports: Vec<Port> = ports.iter().map(port).collect();
-    let addresses: BTreeMap<_, _> = addresses.iter().map(|(a, b)| ((*a).to_owned(), (*b).to_owned())).collect();
-    Exchange::new(&ports, &[], SystemWords::Absent, &addresses)
+    let addresses: BTreeMap<&str, &str> = addresses.iter().copied().collect();
+    let feed = |(name, ty): &(&str, SignalType)| {
+        let port = Port { name: SignalName::new(*name).unwrap(), ty: *ty };
+        Feed::whole(&port, addresses.get(name).map(|address| (*address).to_owned()))
+    };
+    let inputs: Vec<Feed> = ports.iter().map(feed).collect();
+    Exchange::new(&inputs, &[], SystemWords::Absent, &BTreeMap::new())
 }
 
 #[test]
@@ -55,10 +58,11 @@ fn neighbours_share_a_request_and_the_grant_is_in_the_last() {
     let map = RegisterMap::new(&Options::default(), &exchange(&ports, &[("s3", "hr:5000")])).unwrap();
     let writes = map.writes();
     let span = |at, count| Span { table: Table::HoldingRegister, at, count };
-    assert_eq!(writes, [span(0, 6), span(5000, 2), span(6, 122), span(128, 80)]);
+    // The others stay where they are without it.
+    assert_eq!(writes, [span(0, 6), span(5000, 2), span(8, 122), span(130, 80)]);
     let grant = map.to_plc.last().unwrap();
-    assert_eq!((grant.point.name.as_str(), grant.end()), ("SDSP_Grant", 208));
-    assert_eq!(map.reads(), [span(1000, 5)]);
+    assert_eq!((grant.point.name.as_str(), grant.end()), ("SDSP_Grant", 210));
+    assert_eq!(map.reads(), [span(1000, 7)]);
 }
 
 proptest! {

@@ -52,7 +52,7 @@ impl OpcUaLink {
         let connection = self.connected()?;
         let mut nodes = Vec::new();
         for point in points {
-            let address = point.address.as_deref().unwrap_or(&point.name);
+            let address = point.address.as_deref().unwrap_or_else(|| point.symbol());
             let node = connection.node(address, &self.options);
             nodes.push(node.ok_or_else(|| self.unknown(point, "is no node of the server"))?);
         }
@@ -79,13 +79,13 @@ impl OpcUaLink {
         value: &DataValue,
         access: &DataValue,
     ) -> Result<(), LinkFault> {
-        let (name, ty) = (&point.name, point.ty);
-        let address = point.address.as_deref().unwrap_or(name);
-        let fault = |message: String| Err(MappingFault::new(name, message).into());
+        let (name, ty) = (point.label(), point.ty);
+        let address = point.address.as_deref().unwrap_or_else(|| point.symbol());
+        let fault = |message: String| Err(MappingFault::new(&point.name, message).into());
         let status = value.status.unwrap_or(StatusCode::Good);
         let is_missing = [StatusCode::BadNodeIdUnknown, StatusCode::BadNodeIdInvalid];
         if is_missing.iter().any(|code| code.sub_code() == status.sub_code()) {
-            return Err(self.unknown(point, "the server has not"));
+            return Err(self.unknown(point, "the server does not have"));
         }
         if status.is_bad() {
             return fault(format!("`{name}` is mapped to `{address}`, which cannot be read: {status}"));
@@ -105,8 +105,8 @@ impl OpcUaLink {
 
     /// A point without a node, with the nearest that there is.
     fn unknown(&self, point: &Point, what: &str) -> LinkFault {
-        let address = point.address.as_deref().unwrap_or(&point.name);
-        let message = format!("`{}` is mapped to `{address}`, which {what}", point.name);
+        let address = point.address.as_deref().unwrap_or_else(|| point.symbol());
+        let message = format!("`{}` is mapped to `{address}`, which {what}", point.label());
         let found =
             self.connected().and_then(|connection| self.runtime.block_on(browse::variables(&connection.session)));
         let names: Vec<String> =
@@ -159,7 +159,8 @@ impl Link for OpcUaLink {
         match self.exchange.to_plc().iter().zip(statuses).find(|(_, status)| status.is_bad()) {
             None => Ok(()),
             Some((point, status)) => {
-                Err(MappingFault::new(&point.name, format!("`{}` cannot be written: {status}", point.name)).into())
+                let message = format!("`{}` cannot be written: {status}", point.label());
+                Err(MappingFault::new(&point.name, message).into())
             }
         }
     }

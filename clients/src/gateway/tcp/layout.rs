@@ -4,6 +4,7 @@
 //! `[Nyyssönen]` Fig. 18: 16 control bits and seven REALs are 30 bytes an axis.
 
 use std::collections::BTreeMap;
+use std::fmt;
 
 use onescan_base::did_you_mean;
 use onescan_server::signal::SignalType;
@@ -67,11 +68,12 @@ pub struct Layouts {
 }
 
 impl Layouts {
-    /// The blocks for the points of `exchange`. Each point is the field of its address or name, or lies at an
-    /// offset like `12` or, for a BOOL, `0.3`. A direction without declared fields has a field a point.
+    /// The blocks for the points of `exchange`. Each point is the field of its address, of its variable or of its
+    /// signal, or lies at an offset like `12` or, for a BOOL, `0.3`. A direction without declared fields has a field a
+    /// point.
     ///
     /// # Errors
-    /// A point without a field, a field of another type, a declaration that is wrong.
+    /// A point without a field, a field of another type, two points in one place, a declaration that is wrong.
     pub fn new(declaration: &Declaration, exchange: &Exchange) -> Result<Self, MappingFault> {
         Ok(Self {
             to_plc: Layout::new(declaration, &declaration.to_plc, exchange.to_plc(), "to_plc")?,
@@ -80,12 +82,39 @@ impl Layouts {
     }
 }
 
+impl Layouts {
+    /// The offsets of the points of both directions, as a map writes them.
+    pub fn places(&self) -> [Vec<String>; 2] {
+        [&self.to_plc, &self.from_plc].map(|layout| layout.moves.iter().map(|moved| moved.place.to_string()).collect())
+    }
+
+    /// Byte and bit of the points of both directions.
+    pub fn keys(&self) -> [Vec<(usize, u8)>; 2] {
+        let key = |moved: &Move| (moved.place.byte, moved.place.bit);
+        [&self.to_plc, &self.from_plc].map(|layout| layout.moves.iter().map(key).collect())
+    }
+}
+
+impl fmt::Display for Place {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if self.ty == SignalType::BOOL { write!(f, "{}.{}", self.byte, self.bit) } else { write!(f, "{}", self.byte) }
+    }
+}
+
+impl Place {
+    /// True if the two share a bit.
+    fn overlaps(self, other: Self) -> bool {
+        let is_apart = self.ty == SignalType::BOOL && other.ty == SignalType::BOOL && self.bit != other.bit;
+        !is_apart && self.byte < other.byte + other.ty.size() && other.byte < self.byte + self.ty.size()
+    }
+}
+
 impl Layout {
     fn new(declaration: &Declaration, fields: &[String], points: &[Point], block: &str) -> Result<Self, MappingFault> {
         let mut ruler = Ruler { structures: &declaration.structures, places: BTreeMap::new(), at: 0, bits: 0 };
         if fields.is_empty() {
             for point in points {
-                ruler.add(&point.name, &point.ty.to_string(), 0)?;
+                ruler.add(&point.key(), &point.ty.to_string(), 0)?;
             }
         } else {
             for field in fields {
@@ -93,11 +122,16 @@ impl Layout {
             }
         }
         let size = ruler.size();
-        let found = |point: &Point| {
+        let mut moves: Vec<Move> = Vec::new();
+        for point in points {
             let place = place_of(point, &ruler.places, size, block)?;
-            Ok(Move { packed: point.range(), place })
-        };
-        let moves = points.iter().map(found).collect::<Result<_, MappingFault>>()?;
+            if let Some(index) = moves.iter().position(|other| other.place.overlaps(place)) {
+                let (other, label) = (points[index].label(), point.label());
+                let message = format!("`{other}` and `{label}` are both mapped to {place} of `{block}`");
+                return Err(MappingFault::new(&point.name, message));
+            }
+            moves.push(Move { packed: point.range(), place });
+        }
         Ok(Self { order: declaration.byte_order, moves, size })
     }
 
@@ -134,26 +168,31 @@ impl Layout {
 }
 
 fn place_of(point: &Point, places: &BTreeMap<String, Place>, size: usize, block: &str) -> Result<Place, MappingFault> {
-    let address = point.address.as_deref().unwrap_or(&point.name);
-    let place = match (places.get(address), offset(address)) {
+    let own = || {
+        let path = point.variable.as_deref().filter(|path| places.contains_key(*path));
+        path.map_or_else(|| point.key(), str::to_owned)
+    };
+    let address = &point.address.clone().unwrap_or_else(own);
+    let place = match (places.get(address.as_str()), offset(address)) {
         (Some(place), _) => *place,
         (None, Some((byte, bit))) => {
             let is_bool = point.ty == SignalType::BOOL;
             if byte + if is_bool { 1 } else { point.ty.size() } > size || (bit.is_some() != is_bool) {
                 let message =
-                    format!("`{address}` is no place for {} `{}` in a block of {size} bytes", point.ty, point.name);
+                    format!("`{address}` is no place for {} `{}` in a block of {size} bytes", point.ty, point.label());
                 return Err(MappingFault::new(&point.name, message));
             }
             Place { byte, bit: bit.unwrap_or(0), ty: point.ty }
         }
         (None, None) => {
             let help = did_you_mean(address, places.keys().map(String::as_str));
-            let message = format!("`{}` is mapped to `{address}`, which is no field of `{block}`", point.name);
+            let message = format!("`{}` is mapped to `{address}`, which is no field of `{block}`", point.label());
             return Err(MappingFault::new(&point.name, message).with_help(help));
         }
     };
     if place.ty != point.ty {
-        let message = format!("`{}` is {}, but field `{address}` of `{block}` is {}", point.name, point.ty, place.ty);
+        let message =
+            format!("`{}` is {}, but field `{address}` of `{block}` is {}", point.label(), point.ty, place.ty);
         return Err(MappingFault::new(&point.name, message));
     }
     Ok(place)

@@ -2,7 +2,7 @@ use onescan_server::signal::{Port, SignalName};
 use proptest::prelude::*;
 
 use super::*;
-use crate::gateway::exchange::SystemWords;
+use crate::gateway::exchange::{Feed, SystemWords};
 
 fn declaration(text: &str) -> Declaration {
     toml::from_str(text).unwrap()
@@ -20,11 +20,11 @@ AxisCommand = ["Execute: BOOL", "Tracking: BOOL", "TorqueControl: BOOL", "SpeedC
     "TargetTorque: REAL", "_: REAL", "_: REAL"]
 AxisFeedback = ["Enabled: BOOL", "InPosition: BOOL", "ActualPosition: REAL", "ActualSpeed: REAL"]
 ToPlc = ["Session: UDINT", "Limit: UDINT", "TV: LINT", "Grant: UDINT"]
-FromPlc = ["Joined: UDINT", "Done: UDINT", "Answer: INT"]
+FromPlc = ["Joined: UDINT", "Done: UDINT", "Answer: INT", "Layout: UDINT"]
 "#;
 
 fn axis_exchange() -> Exchange {
-    let port = |name: &str, ty| Port { name: SignalName::new(name).unwrap(), ty };
+    let port = |name: &str, ty| Feed::whole(&Port { name: SignalName::new(name).unwrap(), ty }, None);
     let inputs =
         [port("Step_Feeder.InPosition", SignalType::BOOL), port("Linear_Loader.ActualPosition", SignalType::REAL)];
     let outputs = [
@@ -32,7 +32,7 @@ fn axis_exchange() -> Exchange {
         port("Step_Feeder.TargetPosition", SignalType::REAL),
         port("Linear_Loader.Execute", SignalType::BOOL),
     ];
-    let words = ["Session", "Limit", "TV", "Grant", "Joined", "Done", "Answer"];
+    let words = ["Session", "Limit", "TV", "Grant", "Joined", "Done", "Answer", "Layout"];
     let addresses = words.iter().map(|word| (format!("SDSP_{word}"), format!("Sync.{word}"))).collect();
     Exchange::new(&inputs, &outputs, SystemWords::Absent, &addresses)
 }
@@ -40,7 +40,7 @@ fn axis_exchange() -> Exchange {
 #[test]
 fn an_axis_is_thirty_bytes_and_its_feedback_ten() {
     let layouts = Layouts::new(&declaration(AXIS), &axis_exchange()).unwrap();
-    assert_eq!(layouts.from_plc.size(), 30 + 30 + 10);
+    assert_eq!(layouts.from_plc.size(), 30 + 30 + 14);
     assert_eq!(layouts.to_plc.size(), 20 + 10 + 10);
     let exchange = axis_exchange();
     let mut packed = vec![0; exchange.size(crate::gateway::Direction::FromPlc)];
@@ -48,7 +48,7 @@ fn an_axis_is_thirty_bytes_and_its_feedback_ten() {
     packed[outputs.start] = 1;
     packed[outputs.start + 1..outputs.start + 5].copy_from_slice(&1.5_f32.to_le_bytes());
     packed[outputs.start + 5] = 1;
-    let mut block = vec![0; 70];
+    let mut block = vec![0; 74];
     layouts.from_plc.encode(&packed, &mut block);
     // Fig. 18: Enable is bit 0.4, TargetPosition lies at 2.0, big-endian.
     assert_eq!(block[..6], [0b1_0000, 0, 0x3f, 0xc0, 0, 0]);
@@ -81,12 +81,45 @@ fn what_is_wrong_with_a_layout_is_told() {
 fn points_may_lie_at_offsets() {
     let port = Port { name: SignalName::new("Valve").unwrap(), ty: SignalType::BOOL };
     let at = |address: &str| {
-        let addresses = [("Valve".to_owned(), address.to_owned())].into();
-        let exchange = Exchange::new(std::slice::from_ref(&port), &[], SystemWords::Absent, &addresses);
+        let feed = Feed::whole(&port, Some(address.to_owned()));
+        let exchange = Exchange::new(&[feed], &[], SystemWords::Absent, &BTreeMap::new());
         Layouts::new(&Declaration::default(), &exchange).map(|layouts| layouts.to_plc.moves[0].place)
     };
     assert_eq!(at("0.3").unwrap(), Place { byte: 0, bit: 3, ty: SignalType::BOOL });
     assert!(at("900.0").is_err() && at("4").is_err());
+}
+
+#[test]
+fn two_points_share_no_place() {
+    let feed = |name: &str, address: &str| {
+        let port = Port { name: SignalName::new(name).unwrap(), ty: SignalType::BOOL };
+        Feed::whole(&port, Some(address.to_owned()))
+    };
+    let told = |a: &str, b: &str| {
+        let exchange = Exchange::new(&[feed("a", a), feed("b", b)], &[], SystemWords::Absent, &BTreeMap::new());
+        Layouts::new(&Declaration::default(), &exchange).map_or_else(|fault| fault.to_string(), |_| "fine".to_owned())
+    };
+    assert_eq!(told("0.1", "0.0"), "fine");
+    assert_eq!(told("0.1", "0.1"), "`a` and `b` are both mapped to 0.1 of `to_plc`");
+    assert_eq!(told("0.1", "2.0"), "`b` and `SDSP_Session` are both mapped to 2 of `to_plc`");
+}
+
+#[test]
+fn a_variable_is_the_field_of_its_path() {
+    let target = |path: &str| crate::gateway::exchange::Target { variable: Some(path.to_owned()), address: None };
+    let port = Port { name: SignalName::new("go").unwrap(), ty: SignalType::BOOL };
+    let feed = Feed { port, targets: vec![target("P.go"), target("Q.go")] };
+    let exchange = Exchange::new(&[feed], &[], SystemWords::Absent, &BTreeMap::new());
+    let words = "\"SDSP_Session: UDINT\", \"SDSP_Limit: UDINT\", \"SDSP_TV: LINT\", \"SDSP_Grant: UDINT\"";
+    let places = |fields: &str| {
+        let text = format!("to_plc = [{fields}, {words}]\n[structures]\nIn = [\"go: BOOL\"]\n");
+        Layouts::new(&declaration(&text), &exchange).map(|layouts| layouts.places()[0][..2].to_vec())
+    };
+    assert_eq!(places("\"Q: In\", \"P: In\"").unwrap(), ["2.0", "0.0"]);
+    assert_eq!(
+        places("\"go: BOOL\"").unwrap_err().to_string(),
+        "`go` at `P.go` is mapped to `P.go`, which is no field of `to_plc`"
+    );
 }
 
 proptest! {
@@ -95,8 +128,10 @@ proptest! {
     fn values_come_back(types in prop::collection::vec(0..6_usize, 0..40), seed in any::<u64>()) {
         const TYPES: [SignalType; 6] = [SignalType::BOOL, SignalType::BYTE, SignalType::INT,
             SignalType::REAL, SignalType::LREAL, SignalType::BOOL];
-        let port = |(i, ty): (usize, &usize)| Port { name: SignalName::new(format!("s{i}")).unwrap(), ty: TYPES[*ty] };
-        let ports: Vec<Port> = types.iter().enumerate().map(port).collect();
+        let port = |(i, ty): (usize, &usize)| {
+            Feed::whole(&Port { name: SignalName::new(format!("s{i}")).unwrap(), ty: TYPES[*ty] }, None)
+        };
+        let ports: Vec<Feed> = types.iter().enumerate().map(port).collect();
         let exchange = Exchange::new(&ports, &[], SystemWords::Present, &BTreeMap::new());
         let layouts = Layouts::new(&Declaration::default(), &exchange).unwrap();
         let mut state = seed;

@@ -11,9 +11,9 @@ use crate::syntax::constant::{self, Constant, Constants};
 use crate::syntax::{FileId, SourceMap};
 
 /// The data block of global variables that have no block of their own.
-pub(super) const GLOBALS: &str = "Globals";
+pub(in crate::output) const GLOBALS: &str = "Globals";
 /// The same of those that survive a restart.
-pub(super) const RETAINED_GLOBALS: &str = "RetainedGlobals";
+pub(in crate::output) const RETAINED_GLOBALS: &str = "RetainedGlobals";
 
 /// Function blocks that TIA Portal has, and its name where it is another.
 const NATIVE: [(&str, &str); 21] = [
@@ -41,13 +41,13 @@ const NATIVE: [(&str, &str); 21] = [
 ];
 
 /// TIA Portal's name of a standard function block.
-pub(super) fn native(key: &str) -> Option<&'static str> {
+pub(in crate::output) fn native(key: &str) -> Option<&'static str> {
     NATIVE.iter().find(|(name, _)| *name == key).map(|(_, new)| *new)
 }
 
 /// What a type comes to, behind aliases and subranges.
 #[derive(Clone, Copy)]
-pub(super) enum Shape<'a> {
+pub(in crate::output) enum Shape<'a> {
     Elementary(ElementaryType),
     Text { wide: bool },
     Enumeration(ElementaryType),
@@ -58,7 +58,7 @@ pub(super) enum Shape<'a> {
 
 impl Shape<'_> {
     /// The type that holds a value of it.
-    pub(super) fn elementary(self) -> Option<ElementaryType> {
+    pub(in crate::output) fn elementary(self) -> Option<ElementaryType> {
         match self {
             Self::Elementary(ty) | Self::Enumeration(ty) => Some(ty),
             _ => None,
@@ -68,31 +68,31 @@ impl Shape<'_> {
 
 /// A global variable.
 #[derive(Clone, Copy)]
-pub(super) struct Global<'a> {
-    pub(super) name: &'a Ident,
-    pub(super) variable: &'a Variable,
-    pub(super) is_constant: bool,
-    pub(super) is_retained: bool,
+pub(in crate::output) struct Global<'a> {
+    pub(in crate::output) name: &'a Ident,
+    pub(in crate::output) variable: &'a Variable,
+    pub(in crate::output) is_constant: bool,
+    pub(in crate::output) is_retained: bool,
 }
 
 /// A value of an enumeration.
 #[derive(Clone, Copy)]
-pub(super) struct EnumeratedValue<'a> {
-    pub(super) of: &'a TypeDeclaration,
-    pub(super) name: &'a Ident,
-    pub(super) number: i128,
-    pub(super) base: ElementaryType,
+pub(in crate::output) struct EnumeratedValue<'a> {
+    pub(in crate::output) of: &'a TypeDeclaration,
+    pub(in crate::output) name: &'a Ident,
+    pub(in crate::output) number: i128,
+    pub(in crate::output) base: ElementaryType,
 }
 
 /// Whose blocks and types are written.
-pub(super) type Rename<'r> = &'r dyn Fn(&str) -> Option<String>;
+pub(in crate::output) type Rename<'r> = &'r dyn Fn(&str) -> Option<String>;
 
 /// All names of a project.
-pub(super) struct Names<'a> {
-    pub(super) sources: &'a SourceMap,
-    pub(super) units: BTreeMap<String, &'a Pou>,
-    pub(super) types: BTreeMap<String, &'a TypeDeclaration>,
-    pub(super) globals: BTreeMap<String, Global<'a>>,
+pub(in crate::output) struct Names<'a> {
+    pub(in crate::output) sources: &'a SourceMap,
+    pub(in crate::output) units: BTreeMap<String, &'a Pou>,
+    pub(in crate::output) types: BTreeMap<String, &'a TypeDeclaration>,
+    pub(in crate::output) globals: BTreeMap<String, Global<'a>>,
     values: BTreeMap<String, Vec<EnumeratedValue<'a>>>,
     constants: Constants<'a>,
     /// Names that the shim gives to blocks, types and variables.
@@ -102,7 +102,7 @@ pub(super) struct Names<'a> {
 }
 
 impl<'a> Names<'a> {
-    pub(super) fn new(
+    pub(in crate::output) fn new(
         sources: &'a SourceMap,
         units: &'a [(FileId, CompilationUnit)],
         library: &'a BTreeSet<FileId>,
@@ -170,17 +170,17 @@ impl<'a> Names<'a> {
     }
 
     /// True for what the project itself declares.
-    pub(super) fn is_own(&self, file: FileId) -> bool {
+    pub(in crate::output) fn is_own(&self, file: FileId) -> bool {
         !self.library.contains(&file)
     }
 
     /// A constant expression's value, if the text tells it.
-    pub(super) fn integer(&self, expr: &Expr) -> Option<i128> {
+    pub(in crate::output) fn integer(&self, expr: &Expr) -> Option<i128> {
         integer(constant::value(expr, &self.constants)?)
     }
 
     /// The same in a unit that declares constants of its own.
-    pub(super) fn integer_with(&self, expr: &Expr, own: &Constants<'_>) -> Option<i128> {
+    pub(in crate::output) fn integer_with(&self, expr: &Expr, own: &Constants<'_>) -> Option<i128> {
         if own.is_empty() {
             return self.integer(expr);
         }
@@ -190,18 +190,18 @@ impl<'a> Names<'a> {
     }
 
     /// The value of an enumeration by its name; `of` is the enumeration, if it is named.
-    pub(super) fn value(&self, key: &str, of: Option<&str>) -> Option<EnumeratedValue<'a>> {
+    pub(in crate::output) fn value(&self, key: &str, of: Option<&str>) -> Option<EnumeratedValue<'a>> {
         let mut all = self.values.get(key)?.iter();
         all.find(|value| of.is_none_or(|of| value.of.name.key() == of)).copied()
     }
 
     /// The program of this name.
-    pub(super) fn program(&self, key: &str) -> Option<&'a Pou> {
+    pub(in crate::output) fn program(&self, key: &str) -> Option<&'a Pou> {
         self.units.get(key).copied().filter(|pou| pou.kind == PouKind::Program)
     }
 
     /// What a type comes to; nothing if it is not known.
-    pub(super) fn shape(&self, spec: &'a TypeSpec) -> Option<Shape<'a>> {
+    pub(in crate::output) fn shape(&self, spec: &'a TypeSpec) -> Option<Shape<'a>> {
         match &spec.kind {
             TypeSpecKind::String(name, _) => Some(Shape::Text { wide: name.key() == "WSTRING" }),
             TypeSpecKind::Name(name) | TypeSpecKind::Subrange(name, _) => self.named_shape(name),
@@ -230,7 +230,7 @@ impl<'a> Names<'a> {
     }
 
     /// A block's or type's name as it stands in SCL.
-    pub(super) fn block(&self, name: &str) -> String {
+    pub(in crate::output) fn block(&self, name: &str) -> String {
         let key = name.to_ascii_uppercase();
         if let Some(new) = (self.rename)(name) {
             return quoted(&new);
@@ -249,7 +249,7 @@ impl<'a> Names<'a> {
     }
 
     /// A global variable as it stands in SCL; constants are local ones there.
-    pub(super) fn global(&self, key: &str) -> Option<String> {
+    pub(in crate::output) fn global(&self, key: &str) -> Option<String> {
         if let Some(new) = (self.rename)(key) {
             return Some(new);
         }
@@ -262,7 +262,7 @@ impl<'a> Names<'a> {
     }
 
     /// The data block that a global variable is a member of; nothing if it is one itself.
-    pub(super) fn home(&self, global: &Global<'a>) -> Option<&'static str> {
+    pub(in crate::output) fn home(&self, global: &Global<'a>) -> Option<&'static str> {
         match self.shape(&global.variable.spec) {
             Some(Shape::Block(_)) => None,
             _ if global.is_retained => Some(RETAINED_GLOBALS),
@@ -284,17 +284,17 @@ fn base_of(base: Option<&Ident>) -> ElementaryType {
 }
 
 /// Blocks and types that instrumenting puts others in the place of.
-pub(super) fn is_left(key: &str) -> bool {
+pub(in crate::output) fn is_left(key: &str) -> bool {
     key.starts_with("MC_") || key == "AXIS_REF"
 }
 
 /// The sections of global variables of a configuration.
-pub(super) fn sections(configuration: &Configuration) -> impl Iterator<Item = &Section> {
+pub(in crate::output) fn sections(configuration: &Configuration) -> impl Iterator<Item = &Section> {
     configuration.sections.iter().chain(configuration.resources.iter().flat_map(|resource| &resource.sections))
 }
 
 /// `"name"`
-pub(super) fn quoted(name: &str) -> String {
+pub(in crate::output) fn quoted(name: &str) -> String {
     format!("\"{name}\"")
 }
 
@@ -327,6 +327,6 @@ const RESERVED: [&str; 24] = [
 ];
 
 /// A member's or variable's name as it is declared, and behind a point.
-pub(super) fn member(name: &str) -> String {
+pub(in crate::output) fn member(name: &str) -> String {
     if RESERVED.contains(&name.to_ascii_uppercase().as_str()) { quoted(name) } else { name.to_owned() }
 }

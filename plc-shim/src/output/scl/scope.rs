@@ -11,23 +11,23 @@ use crate::syntax::constant::{self, Constants};
 
 /// A variable of a unit, or a function's result.
 #[derive(Clone, Copy)]
-pub(super) struct Local<'a> {
-    pub(super) name: &'a Ident,
-    pub(super) spec: &'a TypeSpec,
-    pub(super) edge: Option<Edge>,
+pub(in crate::output) struct Local<'a> {
+    pub(in crate::output) name: &'a Ident,
+    pub(in crate::output) spec: &'a TypeSpec,
+    pub(in crate::output) edge: Option<Edge>,
     /// True for a function's result, which has the function's name.
-    pub(super) is_result: bool,
+    pub(in crate::output) is_result: bool,
 }
 
 /// The names of a unit.
-pub(super) struct Scope<'a> {
-    pub(super) locals: BTreeMap<String, Local<'a>>,
+pub(in crate::output) struct Scope<'a> {
+    pub(in crate::output) locals: BTreeMap<String, Local<'a>>,
     /// The constants that it declares.
-    pub(super) constants: Constants<'a>,
+    pub(in crate::output) constants: Constants<'a>,
 }
 
 impl<'a> Scope<'a> {
-    pub(super) fn of(pou: &'a Pou) -> Self {
+    pub(in crate::output) fn of(pou: &'a Pou) -> Self {
         let mut scope = Self { locals: BTreeMap::new(), constants: Constants::new() };
         for section in pou.sections.iter().filter(|section| section.kind != SectionKind::External) {
             if section.qualifiers.contains(&Qualifier::Constant) {
@@ -45,7 +45,7 @@ impl<'a> Scope<'a> {
     }
 
     /// What a place comes to.
-    pub(super) fn place(&self, names: &Names<'a>, expr: &Expr) -> Option<Shape<'a>> {
+    pub(in crate::output) fn place(&self, names: &Names<'a>, expr: &Expr) -> Option<Shape<'a>> {
         match &expr.kind {
             ExprKind::Name(name) => {
                 let key = name.key();
@@ -68,7 +68,7 @@ impl<'a> Scope<'a> {
     }
 
     /// The elementary type of a value; nothing if the text does not tell it.
-    pub(super) fn type_of(&self, names: &Names<'a>, expr: &Expr) -> Option<ElementaryType> {
+    pub(in crate::output) fn type_of(&self, names: &Names<'a>, expr: &Expr) -> Option<ElementaryType> {
         match &expr.kind {
             ExprKind::Literal(literal) => of_literal(literal),
             ExprKind::Name(name) if !self.locals.contains_key(&name.key()) => {

@@ -23,7 +23,7 @@ fn compiled(text: &str) -> Application {
 /// Original, instrumented and not simulated, instrumented under grants, with BOOL inputs in a pattern.
 pub(super) fn assert_equal(given: &str, tasks: &[Task], inputs: &[&str]) {
     for target in [Target::Iec, Target::Codesys] {
-        let options = Options { target, tasks: Some(tasks.to_vec()) };
+        let options = Options { target, tasks: Some(tasks.to_vec()), ..Options::default() };
         let project = round_trip(given, &options);
         assert_eq!(project.warnings.to_string(), "");
         if target == Target::Codesys {
@@ -54,7 +54,8 @@ fn changing(plc: &SoftPlc) -> Vec<(String, Vec<u8>)> {
 
 #[test]
 fn a_drawn_chart_is_changed_in_place_and_comes_back_byte_for_byte() {
-    let options = Options { target: Target::Iec, tasks: Some(vec![task("main", 10, 1, &["Mixer"])]) };
+    let options =
+        Options { target: Target::Iec, tasks: Some(vec![task("main", 10, 1, &["Mixer"])]), ..Options::default() };
     let project = round_trip(MIXER, &options);
     assert_eq!(project.warnings.to_string(), "");
     let (chart, _) =
@@ -64,7 +65,10 @@ fn a_drawn_chart_is_changed_in_place_and_comes_back_byte_for_byte() {
     let shown = shown.split_once("<pou name=\"SDSP_Scheduler\"").map_or("", |(shown, _)| shown);
     insta::assert_snapshot!(shown);
     for target in [Target::Iec, Target::Codesys] {
-        round_trip(&MIXER.replace('\n', "\r\n"), &Options { target, tasks: options.tasks.clone() });
+        round_trip(
+            &MIXER.replace('\n', "\r\n"),
+            &Options { target, tasks: options.tasks.clone(), ..Options::default() },
+        );
     }
 }
 
@@ -194,7 +198,8 @@ fn what_of_a_drawn_chart_is_not_instrumented_is_told() {
     let told = |from: &str, to: &str| {
         let given = forms().replace(from, to);
         assert_ne!(given, forms());
-        let options = Options { target: Target::Iec, tasks: Some(vec![task("main", 5, 1, &["P"])]) };
+        let options =
+            Options { target: Target::Iec, tasks: Some(vec![task("main", 5, 1, &["P"])]), ..Options::default() };
         match instrument(&[read(&given)], &options) {
             Ok(_) => panic!("it is instrumented: {to}"),
             Err(error) => error.to_string(),
@@ -223,7 +228,7 @@ proptest! {
     ) {
         let given = Chart::new(&part, &numbers).drawn();
         let tasks = [task("main", 10, 0, &["P"])];
-        let project = round_trip(&given, &Options { target: Target::Iec, tasks: Some(tasks.to_vec()) });
+        let project = round_trip(&given, &Options { target: Target::Iec, tasks: Some(tasks.to_vec()), ..Options::default() });
         let mut plain = SoftPlc::new(&compiled(&given), &TaskPlan::new(tasks.to_vec())).expect("the plan suits");
         let mut driver = Driver::joined(&compiled(&text(&project)), &own_plan(&tasks, Tasks::Moved));
         for (step, inputs) in inputs.into_iter().enumerate() {

@@ -60,7 +60,7 @@ fn configured() -> String {
 }
 
 fn options(target: Target) -> Options {
-    Options { target, tasks: Some(vec![task("main", 10, 1, &PROGRAMS)]) }
+    Options { target, tasks: Some(vec![task("main", 10, 1, &PROGRAMS)]), ..Options::default() }
 }
 
 /// Instrumented, once more, and taken back.
@@ -81,7 +81,7 @@ fn a_project_is_changed_in_place_and_comes_back_byte_for_byte() {
         for given in [line(), line().replace('\n', "\r\n")] {
             round_trip(&given, &options(target));
         }
-        round_trip(&configured(), &Options { target, tasks: None });
+        round_trip(&configured(), &Options { target, tasks: None, ..Options::default() });
     }
     let with_actions = line().replace(
         "</interface><body><FBD>",
@@ -123,7 +123,7 @@ fn every_language_gives_the_same_at_the_same_time() {
 
 #[test]
 fn tasks_of_the_project_get_a_scheduler() {
-    let project = round_trip(&configured(), &Options { target: Target::Iec, tasks: None });
+    let project = round_trip(&configured(), &Options { target: Target::Iec, tasks: None, ..Options::default() });
     let text = text(&project);
     assert!(text.contains("<task name=\"SDSP_Cycle\" priority=\"0\" interval=\"PT0.01S\">"), "{text}");
     let application = match Application::from_inputs([read(&text)]) {
@@ -160,7 +160,7 @@ fn with_twins() -> String {
 #[test]
 fn several_instances_of_a_program_are_numbered() {
     let given = with_twins();
-    let options = Options { target: Target::Iec, tasks: None };
+    let options = Options { target: Target::Iec, tasks: None, ..Options::default() };
     let again = text(&round_trip(&given, &options));
     assert_eq!(again.matches("<configVariable").count(), 8, "{again}");
     // A list that the project has of its own takes them in.
@@ -199,7 +199,8 @@ fn what_is_not_instrumented_is_told() {
     let object = "<TcPlcObject><POU Name=\"A\"><Declaration><![CDATA[PROGRAM A]]></Declaration><Implementation><ST>\
                   <![CDATA[]]></ST></Implementation></POU></TcPlcObject>";
     let object = Input::from_text("A.TcPOU", SourceKind::TwinCat, object);
-    let error = instrument(&[object], &Options { target: Target::Codesys, tasks: None }).expect_err("no XML");
+    let error = instrument(&[object], &Options { target: Target::Codesys, tasks: None, ..Options::default() })
+        .expect_err("no XML");
     assert!(error.to_string().contains("takes program text or a project in PLCopen XML"), "{error}");
 }
 

@@ -18,7 +18,7 @@ fn given(text: &str) -> Input {
 }
 
 fn options(tasks: &[Task]) -> Options {
-    Options { target: Target::Codesys, tasks: Some(tasks.to_vec()) }
+    Options { target: Target::Codesys, tasks: Some(tasks.to_vec()), ..Options::default() }
 }
 
 fn read(file: &File) -> Input {
@@ -137,7 +137,7 @@ fn a_variable_starts_a_task() {
     assert_eq!(assert_equal(text, &tasks, &["P.i"], &times, Tasks::Moved), Ok(()));
     let configured = "PROGRAM P VAR n : INT; END_VAR n := n + 1; END_PROGRAM\nCONFIGURATION C\nVAR_GLOBAL go : BOOL; END_VAR\n\
                       RESOURCE r ON p\nTASK t (SINGLE := go);\nPROGRAM q WITH t : P;\nEND_RESOURCE\nEND_CONFIGURATION\n";
-    let options = Options { target: Target::Codesys, tasks: None };
+    let options = Options { target: Target::Codesys, tasks: None, ..Options::default() };
     let refused = instrument(&[given(configured)], &options).expect_err("no connections");
     assert!(refused.to_string().starts_with("plc/line.st:5:6: error[L0501]: a task with SINGLE is"), "{refused}");
 }

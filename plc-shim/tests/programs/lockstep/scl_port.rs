@@ -14,7 +14,7 @@ use crate::rig::{MS, task};
 
 fn ported(files: &[(&str, &str)], tasks: Option<Vec<Task>>) -> Result<Project, InstrumentError> {
     let inputs: Vec<_> = files.iter().map(|(name, text)| Input::from_text(name, SourceKind::Text, *text)).collect();
-    instrument(&inputs, &Options { target: Target::Scl, tasks })
+    instrument(&inputs, &Options { target: Target::Scl, tasks, ..Options::default() })
 }
 
 fn scenario(name: &str) -> String {

@@ -170,7 +170,7 @@ fn a_project_without_single_has_nothing_of_it() {
 fn what_no_edge_can_start_is_refused() {
     let refused = |text: &str, target: Target, tasks: Option<Vec<Task>>| {
         let input = Input::from_text("c.st", SourceKind::Text, text);
-        instrument(&[input], &Options { target, tasks }).expect_err("refused").to_string()
+        instrument(&[input], &Options { target, tasks, ..Options::default() }).expect_err("refused").to_string()
     };
     let of = |task: &str| {
         format!(

@@ -1,0 +1,88 @@
+//! `onescan map`: every point of a gateway with its address, before anything runs.
+//!
+//! | module | subject |
+//! |---|---|
+//! | [`fragment`] | a mapping as a part of a `scenario.toml` |
+//! | `table` | the mapping for people and machines |
+
+mod error;
+pub mod fragment;
+mod table;
+
+use std::io::Write;
+use std::path::PathBuf;
+
+use onescan_clients::gateway::listing::Listing;
+use onescan_report::OutputError;
+use onescan_report::file::write_whole;
+use onescan_scenario::Scenario;
+use onescan_scenario::file::ClientFile;
+use onescan_server::signal::ClientName;
+
+pub use error::MapError;
+pub use fragment::Fragment;
+
+use self::table::Table;
+use crate::error::Usage;
+use crate::format::Format;
+
+/// What is asked for.
+#[derive(Clone, Debug)]
+pub struct MapConfig {
+    /// The scenario: a folder or a file.
+    pub scenario: PathBuf,
+    /// The PLC; the only one if absent.
+    pub client: Option<ClientName>,
+    /// A PLC and its URL, if that is not where the scenario says.
+    pub gateway: Option<(ClientName, Option<String>)>,
+    /// For people or machines.
+    pub format: Format,
+    /// File for the mapping, as a part of a `scenario.toml`.
+    pub output: Option<PathBuf>,
+}
+
+/// Writes the mapping of a PLC to `out`, and into a file if that is asked for.
+///
+/// # Errors
+/// The scenario or its mapping is wrong, or nothing says where the PLC is.
+pub fn run(config: &MapConfig, out: &mut dyn Write) -> Result<(), MapError> {
+    let mut scenario = Scenario::load(&config.scenario)?;
+    let name = the_plc(&scenario, config)?;
+    if let Some((name, url)) = &config.gateway {
+        scenario.commission(name, url.clone())?;
+    }
+    let agreed = scenario.agreement(&name)?;
+    let listing = Listing::new(&agreed.settings, &agreed.exchange);
+    let listing = listing.map_err(|fault| scenario.wrong_settings(&name, fault))?;
+    let table = Table { client: name.as_str(), url: &agreed.settings.url, layout: agreed.layout, listing: &listing };
+    match config.format {
+        Format::Json => table.write_json(out),
+        Format::Human => table.write(out),
+    }
+    .and_then(|()| out.flush())
+    .map_err(OutputError)?;
+    match &config.output {
+        Some(path) => Ok(write_whole(path, Fragment::of(&name, &agreed, &listing).to_string().as_bytes())?),
+        None => Ok(()),
+    }
+}
+
+/// The PLC that is meant.
+fn the_plc(scenario: &Scenario, config: &MapConfig) -> Result<ClientName, MapError> {
+    let named = config.client.as_ref().or(config.gateway.as_ref().map(|(name, _)| name));
+    if let Some(name) = named {
+        return Ok(name.clone());
+    }
+    let is_plc = |client: &toml::Spanned<ClientFile>| {
+        matches!(client.get_ref(), ClientFile::SoftPlc { .. } | ClientFile::Gateway { .. })
+    };
+    let mut plcs = scenario.file().clients.iter().filter(|(_, client)| is_plc(client)).map(|(name, _)| name);
+    match (plcs.next(), plcs.next()) {
+        (Some(one), None) => Ok(one.clone()),
+        (None, _) => Err(Usage::new("the scenario has no PLC", None).into()),
+        (Some(one), Some(other)) => {
+            let help = Some(format!("say which: `--client {one}` or `--client {other}`"));
+            Err(Usage::new("the scenario has several PLCs", help).into())
+        }
+    }
+}

@@ -1,0 +1,77 @@
+//! Global variables, which a unit of the second edition declares again where it uses them (2nd ed. 2.5.2.2).
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use super::{Finding, Page};
+use crate::source::edits::Edits;
+use crate::syntax::Span;
+use crate::syntax::ast::{Call, Expr, ExprKind, PouKind, SectionKind};
+use crate::syntax::walk::{self, Visitor};
+
+/// Adds the declarations that are missing.
+pub(super) fn declare(page: &Page<'_>, edits: &mut Edits) -> Vec<Finding> {
+    let mut findings = Vec::new();
+    for pou in page.pous() {
+        let scope = page.scope(pou);
+        let external = pou.sections.iter().filter(|section| section.kind == SectionKind::External);
+        let declared: BTreeSet<String> =
+            external.flat_map(|section| &section.variables).flat_map(|each| &each.names).map(|name| name.key()).collect();
+        let mut used = Used::default();
+        walk::unit(pou, &mut used);
+        let members = pou.object.members.iter().map(|member| &member.pou);
+        members.for_each(|member| walk::unit(member, &mut used));
+        let mut text = String::new();
+        for (key, span) in used.names {
+            let Some(global) = page.names.globals.get(&key) else { continue };
+            if scope.locals.contains_key(&key) || declared.contains(&key) {
+                continue;
+            }
+            if pou.kind == PouKind::Function {
+                let what = format!("the global variable `{}` in a function", global.name.text);
+                findings.push(Finding::new(span, &what, "hand it to the function as an input"));
+                continue;
+            }
+            let constant = if global.is_constant { " CONSTANT" } else { "" };
+            let spec = page.text(global.variable.spec.span);
+            text += &format!("VAR_EXTERNAL{constant} {} : {spec}; END_VAR\n", global.name.text);
+        }
+        if !text.is_empty() {
+            let at = pou.sections.last().map_or(pou.name.span.end, |section| section.span.end);
+            edits.insert(at, format!("\n{text}"));
+        }
+    }
+    findings
+}
+
+#[derive(Default)]
+struct Used {
+    names: BTreeMap<String, Span>,
+}
+
+impl Used {
+    fn place(&mut self, place: &Expr) {
+        if let Some(root) = walk::root(place) {
+            self.names.entry(root.key()).or_insert(root.span);
+        }
+    }
+}
+
+impl Visitor for Used {
+    fn target(&mut self, target: &Expr) {
+        self.place(target);
+    }
+
+    fn control(&mut self, name: &crate::syntax::ast::Ident) {
+        self.names.entry(name.key()).or_insert(name.span);
+    }
+
+    fn call(&mut self, call: &Call) {
+        self.place(&call.callee);
+    }
+
+    fn expression(&mut self, expr: &Expr) {
+        if let ExprKind::Name(name) = &expr.kind {
+            self.names.entry(name.key()).or_insert(name.span);
+        }
+    }
+}
