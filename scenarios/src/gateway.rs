@@ -277,6 +277,7 @@ impl Scenario {
             tasks: asked.clone().map(|plan| plan.tasks),
             exchanged: agreed.exchanged(),
             layout: agreed.layout,
+            ..Options::default()
         };
         let project = instrument(&inputs, &options).map_err(|error| match error {
             InstrumentError::Text(findings) => Box::new(PlcReport { client: name.clone(), findings }).into(),

@@ -140,7 +140,8 @@ fn sources_that_a_list_was_read_from_run() {
     assert!(text.contains("press.xml\"") && text.contains("step = \"4ms\""), "{text}");
     let expect = "[[expect]]\nname = \"speed\"\nformula = \"always[20ms,90ms] \\\"Press.Speed\\\" == 7\"\n";
     let plant = "kind = \"operator\"\ninitial = { \"Guard\" = true }";
-    let text = text.replace("kind = \"operator\"", plant).replace("[clients.plant]", &format!("{expect}\n[clients.plant]"));
+    let text =
+        text.replace("kind = \"operator\"", plant).replace("[clients.plant]", &format!("{expect}\n[clients.plant]"));
     std::fs::write(&file, text).unwrap();
     let said = typed(folder, &["run", "line/press", "--until", "100ms"]);
     assert_eq!(said.code, Some(0), "{said:?}");

@@ -13,7 +13,7 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use onescan_plc_shim::input::kind::FileKind;
-use onescan_plc_shim::instrument::{self, InstrumentError as Refusal, Options, Target};
+use onescan_plc_shim::instrument::{self, Inputs, InstrumentError as Refusal, Options, Target};
 use onescan_plc_shim::{Diagnostics, Input, Task, TaskPlan};
 use onescan_report::file::write_all_whole;
 use onescan_scenario::Scenario;
@@ -38,6 +38,8 @@ pub struct InstrumentConfig {
     pub target: Target,
     /// The tasks, if they are not those of a scenario.
     pub tasks: Vec<Task>,
+    /// What becomes of inputs that the PLC's I/O image writes.
+    pub inputs: Inputs,
     /// Where the result goes.
     pub destination: Destination,
     /// Whether the changes are shown.
@@ -95,7 +97,9 @@ pub fn instrument(
             let exchanged = agreed.as_ref().map(Agreement::exchanged).unwrap_or_default();
             let layout = agreed.and_then(|agreed| agreed.layout);
             let tasks = tasks(config, program.plan);
-            instrument::instrument(&program.inputs, &Options { target: config.target, tasks, exchanged, layout })
+            let (target, inputs) = (config.target, config.inputs);
+            let options = Options { target, tasks, exchanged, layout, inputs, ..Options::default() };
+            instrument::instrument(&program.inputs, &options)
         }
     };
     let project = match project {

@@ -203,8 +203,7 @@ mod tests {
     fn openplc_serves_each_area_in_a_range_of_its_own() {
         let all = ["%QX0.0", "%QX1.3", "%IX2.1", "%QW1023", "%MW0", "%MD0", "%MD3", "%ML2", "%IW7"];
         let found: Vec<_> = all.iter().map(|text| modbus(text).expect("it is served")).collect();
-        let expected =
-            ["coil:0", "coil:11", "di:17", "hr:1023", "hr:1024", "hr:2048", "hr:2054", "hr:4104", "ir:7"];
+        let expected = ["coil:0", "coil:11", "di:17", "hr:1023", "hr:1024", "hr:2048", "hr:2054", "hr:4104", "ir:7"];
         assert_eq!(found, expected);
         for text in all.iter().filter(|text| !text.starts_with("%I")) {
             let there = modbus(text).expect("it is served");

@@ -32,7 +32,7 @@ pub(super) fn control(pou: &Pou, number: Number, line: &str, file: &SourceFile, 
 }
 
 /// True for a body in Instruction List.
-fn is_list(pou: &Pou) -> bool {
+pub(super) fn is_list(pou: &Pou) -> bool {
     pou.body.iter().any(|statement| matches!(statement.kind, StatementKind::Instruction(_)))
 }
 
@@ -42,6 +42,17 @@ fn control_list(controller: &Controller, places: &Places, line_break: &str, edit
     edits.insert(places.header, marks::lines(&format!("{declarations}\nACTION SDSP_Body:"), line_break));
     let statements = format!("END_ACTION\n{header}\n    SDSP_Body();\n{footer}");
     edits.insert(places.footer, marks::lines(&statements, line_break));
+}
+
+/// Puts declarations behind those of a unit that has statements, and statements in front of its own.
+pub(super) fn put_in_front(pou: &Pou, declarations: &str, statements: &str, file: &SourceFile, edits: &mut Edits) {
+    let places = Places::of(pou, file);
+    let line_break = marks::line_break(file.shown_text());
+    for (at, text) in [(places.declarations, declarations), (places.header, statements)] {
+        if !text.is_empty() {
+            edits.insert(at, marks::lines(text, line_break));
+        }
+    }
 }
 
 /// The same without its variables, which are declared elsewhere.

@@ -4,13 +4,13 @@
 use std::collections::BTreeMap;
 
 use super::address::{Address, Room};
+use super::exchanged::{Exchanged, Way};
 use super::located::{Carrier, Located, WORDS, wanted};
 use super::plain::Plain;
 use super::survey::{Survey, survey};
 use super::taken_over::{self, Handover};
 use super::target::{Source as Own, Target};
 use super::tasks::{Entry, Line, TaskTable, literal};
-use super::exchanged::{Exchanged, Way};
 use super::{InstrumentError, Options, Project, attach, entries, marks, motion_use};
 use crate::diagnostic::{Code, Diagnostic, Diagnostics, Severity};
 use crate::dialect::Dialect;
@@ -48,7 +48,8 @@ pub(super) fn ported(plain: &Plain, options: &Options) -> Result<Project, Instru
     // What has no form is found in the project as it is, where it has a place that its author knows.
     matiec::lowered(&merged.text, merged.dialect).map_err(|unsaid| wrong(merged.diagnostics(unsaid)))?;
     let mut layout = Layout::new(&merged, &words, options).map_err(|text| wrong(vec![merged.nowhere(&text)]))?;
-    let text = layout.handed_over(&merged, &table, &survey, options).map_err(|text| wrong(vec![merged.nowhere(&text)]))?;
+    let text =
+        layout.handed_over(&merged, &table, &survey, options).map_err(|text| wrong(vec![merged.nowhere(&text)]))?;
     let behind = with_shim(&text, merged.dialect, &table, options)?;
     let lowered = matiec::lowered(&behind, merged.dialect).map_err(|unsaid| wrong(merged.own(unsaid)))?;
     let interval = options.cycle.unwrap_or(table.shortest);
@@ -77,9 +78,11 @@ fn programs(table: &TaskTable<'_>) -> Vec<(String, String)> {
 
 /// A second instance of a program would need a number that the configuration gives it.
 fn refuse_instances(table: &TaskTable<'_>) -> Option<Diagnostic> {
-    let again = table.programs.iter().enumerate().find(|(at, entry)| {
-        table.programs.iter().take(*at).any(|other| std::ptr::eq(other.pou, entry.pou))
-    });
+    let again = table
+        .programs
+        .iter()
+        .enumerate()
+        .find(|(at, entry)| table.programs.iter().take(*at).any(|other| std::ptr::eq(other.pou, entry.pou)));
     again.map(|(_, entry)| {
         let name = &entry.pou.name;
         let message = format!("several instances of program `{}` cannot be had in MatIEC", name.text);
@@ -142,8 +145,7 @@ fn global_sections<'a>(unit: &'a CompilationUnit) -> impl Iterator<Item = &'a Se
 }
 
 fn placed_words(trees: &[(FileId, &CompilationUnit)]) -> Vec<PlacedWord> {
-    let variables =
-        trees.iter().flat_map(|(_, unit)| global_sections(unit)).flat_map(|section| &section.variables);
+    let variables = trees.iter().flat_map(|(_, unit)| global_sections(unit)).flat_map(|section| &section.variables);
     let placed = variables.filter_map(|variable| {
         let ([name], Some(address)) = (variable.names.as_slice(), &variable.address) else { return None };
         let (word, ..) = WORDS.iter().find(|(word, ..)| word.eq_ignore_ascii_case(&name.text))?;
@@ -343,8 +345,7 @@ impl Layout {
             None => (0..table.programs.len()).map(|at| (at, None)).collect(),
         };
         let declaration = Some(format!("{at_address} AT {address} : {}", carrier.type_name()));
-        let found =
-            Found { name: at_address.clone(), carrier, declaration, external: Some(external), programs };
+        let found = Found { name: at_address.clone(), carrier, declaration, external: Some(external), programs };
         self.note(exchanged, &at_address, address, found)
     }
 
@@ -397,7 +398,9 @@ fn program(declaration: &Declaration) -> Option<&Pou> {
 fn within(entry: &str, path: &str) -> Option<String> {
     let instance = entry.rsplit('.').next().unwrap_or(entry);
     [entry, instance].iter().find_map(|name| {
-        let rest = path.get(name.len()..).filter(|_| path.get(..name.len()).is_some_and(|it| it.eq_ignore_ascii_case(name)))?;
+        let rest = path
+            .get(name.len()..)
+            .filter(|_| path.get(..name.len()).is_some_and(|it| it.eq_ignore_ascii_case(name)))?;
         rest.strip_prefix('.').map(str::to_owned)
     })
 }

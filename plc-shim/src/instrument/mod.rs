@@ -16,6 +16,7 @@
 //! | [`plain`] | a project without the shim, and its changes |
 //! | [`controller`] | execution controllers |
 //! | [`exchanged`] | the variables that a gateway writes and reads |
+//! | [`real_inputs`] | inputs that the PLC's I/O image writes, taken over by name |
 //! | [`scl`] | SCL of TIA Portal: organization blocks, timers |
 //! | [`plcopen_project`], [`plcopen`], [`plcopen_unit`] | projects in PLCopen XML |
 //! | [`chart`], [`chart_plan`], [`chart_script`], [`chart_action`] | Sequential Function Charts: execution signal, action control, times of steps |
@@ -53,6 +54,7 @@ mod plcopen_gate;
 mod plcopen_project;
 mod plcopen_unit;
 mod port;
+mod real_inputs;
 mod scl;
 mod scl_port;
 mod single;
@@ -73,6 +75,7 @@ pub use self::address::Address;
 pub use self::exchanged::{Exchanged, Way};
 pub use self::located::Located;
 use self::plain::Plain;
+pub use self::real_inputs::Inputs;
 use self::survey::{Survey, survey};
 pub use self::target::Target;
 use self::target::{Globals, Sources};
@@ -101,6 +104,8 @@ pub struct Options {
     pub words_at: Option<String>,
     /// The interval of the emitted task of the scheduler; without, the shortest of the project's tasks.
     pub cycle: Option<TimeSpan>,
+    /// What becomes of inputs that the PLC's I/O image writes.
+    pub inputs: Inputs,
 }
 
 /// Why a project cannot be instrumented.
@@ -210,6 +215,9 @@ pub fn instrument(inputs: &[Input], options: &Options) -> Result<Project, Instru
     if let Some(own) = plain.only_own() {
         return Err(InstrumentError::OnlyOwn(own.to_owned()));
     }
+    if let Some(refused) = plain.without_inputs(options) {
+        return Err(InstrumentError::Text(Diagnostics::new(vec![refused], &plain.sources)));
+    }
     let project = match port::ported(&plain, options) {
         Some(ported) => ported?,
         None => attach(&plain, options)?.project,
@@ -238,6 +246,10 @@ fn attach(plain: &Plain, options: &Options) -> Result<Attached, InstrumentError>
         return Err(InstrumentError::Text(Diagnostics::new(vec![refused], &plain.sources)));
     }
     findings.append(&mut survey.findings);
+    if options.inputs == Inputs::Taken {
+        survey.inputs = real_inputs::find(&trees, &plain.sources);
+        findings.append(&mut survey.inputs.findings);
+    }
     let mut motion = motion_use::motion(options.target, &trees, &survey.motion);
     findings.append(&mut motion.findings);
     if findings.iter().any(|found| found.severity == Severity::Error) {
@@ -251,7 +263,8 @@ fn attach(plain: &Plain, options: &Options) -> Result<Attached, InstrumentError>
     forms.extend((!survey.charts.is_empty()).then(clock::on_delay));
     forms.sort_by_key(|form| form.name);
     forms.dedup();
-    let sources = Sources::new(options, &tasks, &forms, &motion.blocks, &survey.charts);
+    let mut sources = Sources::new(options, &tasks, &forms, &motion.blocks, &survey.charts);
+    sources.add(&survey.inputs.additions(&plain.sources));
     if plain.is_xml() {
         let files = vec![plain.edited_xml(&survey, &motion, &tasks, &sources)?];
         let project = Project::of(files, Diagnostics::new(findings, &plain.sources));

@@ -6,6 +6,7 @@ use super::Options;
 use super::clock::Form;
 use super::marks;
 use super::motion::{self, Part, Use};
+use super::real_inputs::Additions;
 use super::tasks::TaskTable;
 use super::template::{self, Only};
 use super::twincat;
@@ -87,7 +88,9 @@ impl Sources {
         // A TIME has nanoseconds in the one and milliseconds in the other. Only durations of whole seconds are exact
         // in every tool of the one; a number stands behind a TIME (2nd ed. Table 30).
         let (now, now_long) = match target {
-            Target::Iec | Target::OpenPlc | Target::Beremiz => ("T#1s * (TV / 1000000000) + T#1s * (TV MOD 1000000000) / 1000000000", "LT#1ns * TV"),
+            Target::Iec | Target::OpenPlc | Target::Beremiz => {
+                ("T#1s * (TV / 1000000000) + T#1s * (TV MOD 1000000000) / 1000000000", "LT#1ns * TV")
+            }
             Target::TwinCat | Target::Codesys => ("LINT_TO_TIME(TV / 1000000)", "LINT_TO_LTIME(TV)"),
             Target::Scl => ("DINT_TO_TIME(LINT_TO_DINT(#TV / 1000000))", "LINT_TO_LTIME(#TV)"),
         };
@@ -114,6 +117,17 @@ impl Sources {
             scheduler: filled(scheduler),
             forms: units,
             motion: motion::parts(target, blocks),
+        }
+    }
+
+    /// Adds what inputs need that are taken over.
+    pub(super) fn add(&mut self, additions: &Additions) {
+        if let Some(end) = self.globals.rfind("END_VAR") {
+            self.globals.insert_str(end, &additions.globals);
+        }
+        let Additions { externals, statements, .. } = additions;
+        for (line, more) in [("VAR_EXTERNAL\n", externals), ("    IF NOT SDSP_Simulated THEN\n", statements)] {
+            self.scheduler = self.scheduler.replacen(line, &format!("{line}{more}"), 1);
         }
     }
 

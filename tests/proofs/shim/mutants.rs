@@ -85,7 +85,8 @@ fn the_execution_controller_needs_to_be_the_last_to_count() {
 #[test]
 fn a_grant_needs_to_be_counted_once() {
     let seen = "END_IF;\n\n    (* Cold start and reset. *)";
-    let again = "ELSIF Last <> 0 THEN SDSP_Done := SDSP_Done + 1; Last := 0; END_IF;\n\n    (* Cold start and reset. *)";
+    let again =
+        "ELSIF Last <> 0 THEN SDSP_Done := SDSP_Done + 1; Last := 0; END_IF;\n\n    (* Cold start and reset. *)";
     assert!(is_broken(right(), &[(seen, again)]));
     assert!(is_broken(right(), &[("SDSP_Done := SDSP_Done + 1;", "SDSP_Done := SDSP_Done + 2;")]));
 }

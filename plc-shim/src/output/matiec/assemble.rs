@@ -122,8 +122,11 @@ fn declaration(page: &Page<'_>, named: &TypeDeclaration) -> String {
     let spec = match &named.spec.kind {
         TypeSpecKind::Struct(fields) => {
             let field = |field: &crate::syntax::ast::Field| {
-                let initial =
-                    field.initial.as_ref().map(|initial| format!(" := {}", page.text(initial.span))).unwrap_or_default();
+                let initial = field
+                    .initial
+                    .as_ref()
+                    .map(|initial| format!(" := {}", page.text(initial.span)))
+                    .unwrap_or_default();
                 format!("        {} : {}{initial};\n", field.name.text, page.text(field.spec.span))
             };
             let fields: String = fields.iter().map(field).collect();

@@ -14,8 +14,11 @@ pub(super) fn declare(page: &Page<'_>, edits: &mut Edits) -> Vec<Finding> {
     for pou in page.pous() {
         let scope = page.scope(pou);
         let external = pou.sections.iter().filter(|section| section.kind == SectionKind::External);
-        let declared: BTreeSet<String> =
-            external.flat_map(|section| &section.variables).flat_map(|each| &each.names).map(|name| name.key()).collect();
+        let declared: BTreeSet<String> = external
+            .flat_map(|section| &section.variables)
+            .flat_map(|each| &each.names)
+            .map(|name| name.key())
+            .collect();
         let mut used = Used::default();
         walk::unit(pou, &mut used);
         let members = pou.object.members.iter().map(|member| &member.pou);

@@ -67,7 +67,8 @@ pub(super) fn unroll(page: &Page<'_>, edits: &mut Edits) -> Vec<Finding> {
         };
         let mut loops = Loops { found: Vec::new() };
         walk::unit(pou, &mut loops);
-        let chosen: Vec<_> = loops.found.into_iter().map(|(span, each)| (span, choices(&each, &arrays), each)).collect();
+        let chosen: Vec<_> =
+            loops.found.into_iter().map(|(span, each)| (span, choices(&each, &arrays), each)).collect();
         let chosen: Vec<_> = chosen.into_iter().filter(|(_, choices, _)| !choices.is_empty()).collect();
         for (span, choices, each) in &chosen {
             let is_inner = |(other, _, _): &&(Span, Vec<Span>, ForStatement)| {

@@ -4,8 +4,8 @@ use super::{Finding, Page};
 use crate::ir::ElementaryType;
 use crate::source::edits::Edits;
 use crate::syntax::ast::{
-    BinaryOp, Configuration, Declaration, Expr, ExprKind, Literal, MemberKind, Pou, PouKind, SectionKind, Statement, StatementKind,
-    TypeSpec, TypeSpecKind,
+    BinaryOp, Configuration, Declaration, Expr, ExprKind, Literal, MemberKind, Pou, PouKind, SectionKind, Statement,
+    StatementKind, TypeSpec, TypeSpecKind,
 };
 use crate::syntax::walk::{self, Visitor};
 

@@ -4,11 +4,11 @@
 use super::{Finding, Page};
 use crate::output::scl::scope::Scope;
 use crate::source::edits::Edits;
+use crate::syntax::Span;
 use crate::syntax::ast::{Expr, ExprKind, ForStatement, Literal, Pou, Statement, StatementKind, UnaryOp};
 use crate::syntax::lexer::tokenize_in;
 use crate::syntax::token::{Keyword, TokenKind};
 use crate::syntax::walk::{self, Visitor};
-use crate::syntax::Span;
 
 /// Loops with no other inside; the next round takes those around them.
 pub(super) fn lower(page: &Page<'_>, edits: &mut Edits) -> Vec<Finding> {
@@ -16,7 +16,11 @@ pub(super) fn lower(page: &Page<'_>, edits: &mut Edits) -> Vec<Finding> {
     for pou in page.pous() {
         let mut loops = Loops { found: Vec::new() };
         walk::unit(pou, &mut loops);
-        let inner: Vec<_> = loops.found.iter().filter(|(span, _)| !loops.found.iter().any(|(other, _)| within(*other, *span))).collect();
+        let inner: Vec<_> = loops
+            .found
+            .iter()
+            .filter(|(span, _)| !loops.found.iter().any(|(other, _)| within(*other, *span)))
+            .collect();
         let scope = page.scope(pou);
         for (number, (span, inner)) in inner.into_iter().enumerate() {
             let place = Place { page, pou, scope: &scope, span: *span, number: number + 1 };
@@ -65,9 +69,12 @@ impl Place<'_, '_> {
         let ForStatement { variable, from, to, by, .. } = inner;
         let step = match by {
             None => 1,
-            Some(by) => self.page.names.integer_with(by, &self.scope.constants).filter(|step| *step != 0).ok_or_else(
-                || Finding::new(by.span, "BY other than a constant", "write the loop with WHILE"),
-            )?,
+            Some(by) => self
+                .page
+                .names
+                .integer_with(by, &self.scope.constants)
+                .filter(|step| *step != 0)
+                .ok_or_else(|| Finding::new(by.span, "BY other than a constant", "write the loop with WHILE"))?,
         };
         let Some((end, behind)) = end_of(self.page, self.span) else { return Ok(()) };
         let [name, first, last] = [variable, from, to].map(|part| self.page.text(part.span));
