@@ -1,5 +1,7 @@
 //! A scenario's real PLCs: the link of each, its points, and the instrumented program that it runs.
 
+use std::collections::BTreeMap;
+
 use onescan_clients::gateway::exchange::{Direction, SystemWords};
 use onescan_clients::gateway::layout_number::layout_number;
 use onescan_clients::gateway::mapping::{self, Variables};
@@ -8,10 +10,13 @@ use onescan_clients::gateway::{
 };
 use onescan_clients::soft_plc::{Bindings, SoftPlcClient};
 use onescan_plc_shim::input::kind::{FileKind, SourceKind};
-use onescan_plc_shim::instrument::{Exchanged, File, InstrumentError, Options, Project, Target, Way, instrument};
+use onescan_plc_shim::instrument::{
+    Address as DirectAddress, Exchanged, File, InstrumentError, Options, Project, Target, Way, instrument,
+};
 use onescan_plc_shim::{Application, BuildError, Input, Task, TaskPlan, TimeSpan};
 use onescan_server::client::{Client, JoinRequest};
 use onescan_server::signal::{ClientName, Port, SignalName, did_you_mean};
+use serde::Deserialize;
 
 use super::compose::{Compiled, Paths, plan_of};
 use super::error::{PlcReport, ScenarioError};
@@ -56,11 +61,34 @@ impl Agreement {
                 variable: point.variable.clone().unwrap_or_else(|| point.name.clone()),
                 ty: point.ty,
                 way,
-                address: point.address.clone().filter(|address| address.starts_with('%')),
+                address: point.address.clone().filter(|address| is_direct(address)),
             })
         };
         [(Direction::ToPlc, Way::ToPlc), (Direction::FromPlc, Way::FromPlc)].into_iter().flat_map(exchanged).collect()
     }
+}
+
+/// A file with links alone.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct LinkFile {
+    clients: BTreeMap<ClientName, LinkTable>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct LinkTable {
+    gateway: Settings,
+}
+
+/// True for what stands in the place of a URL and is a file with a link.
+fn is_file(url: &str) -> bool {
+    !url.contains("://") && url.ends_with(".toml")
+}
+
+/// True for an address of the standard's, and for one by which Modbus finds it in OpenPLC.
+fn is_direct(address: &str) -> bool {
+    address.starts_with('%') || DirectAddress::at_modbus(address).is_some()
 }
 
 impl Scenario {
@@ -75,8 +103,36 @@ impl Scenario {
             Some(_) => return Err(self.wrong_client(name, format!("client `{name}` is no PLC"), None)),
             None => return Err(self.wrong_client(name, format!("the scenario has no client `{name}`"), help())),
         }
-        self.gateways.insert(name.clone(), url);
+        match url {
+            Some(path) if is_file(&path) => {
+                let settings = self.settings_in(name, &path)?;
+                self.links.insert(name.clone(), settings);
+                self.gateways.insert(name.clone(), None);
+            }
+            url => {
+                self.gateways.insert(name.clone(), url);
+            }
+        }
         Ok(())
+    }
+
+    /// The link of PLC `name` in a file of its own, as `onescan instrument` and `onescan map` write one.
+    fn settings_in(&self, name: &ClientName, path: &str) -> Result<Settings, ScenarioError> {
+        let wrong = |why: String, help: &str| self.wrong_client(name, format!("{path}: {why}"), Some(help.to_owned()));
+        let text = std::fs::read_to_string(path)
+            .map_err(|error| wrong(error.to_string(), "name a file with the table `[clients.NAME.gateway]`"))?;
+        let mut file: LinkFile = toml::from_str(&text)
+            .map_err(|error| wrong(error.to_string(), "write what `[clients.NAME.gateway]` of a scenario has"))?;
+        let link = file.clients.remove(name).ok_or_else(|| {
+            let known = file.clients.keys().map(ClientName::as_str);
+            let help = did_you_mean(name.as_str(), known);
+            let help = help.unwrap_or_else(|| format!("write `[clients.{name}.gateway]`"));
+            wrong(format!("there is no link of client `{name}`"), &help)
+        })?;
+        match mapping::malformed(&link.gateway.map) {
+            Some(fault) => Err(wrong(fault.message, &fault.help.unwrap_or_default())),
+            None => Ok(link.gateway),
+        }
     }
 
     /// The client that speaks for the PLC `name`, connected.
@@ -191,6 +247,9 @@ impl Scenario {
 
     /// What the scenario says of the link of PLC `name`.
     pub fn declared(&self, name: &ClientName) -> Settings {
+        if let Some(settings) = self.links.get(name) {
+            return settings.clone();
+        }
         match self.file().clients.get(name).map(toml::Spanned::get_ref) {
             Some(ClientFile::SoftPlc { gateway, .. }) => gateway.clone().unwrap_or_default(),
             Some(ClientFile::Gateway { gateway, .. }) => gateway.clone(),
@@ -291,7 +350,10 @@ impl Scenario {
         } else {
             self.bindings(name, &application, &paths)?
         };
+        // With a configuration of its own the scheduler is in its tasks.
+        let is_configured = !project.located.is_empty();
         let plan = match project.tasks.map(TaskPlan::new).or(asked) {
+            Some(plan) if is_configured => plan,
             Some(plan) if mode == Mode::Lockstep => in_one_task(&plan),
             Some(plan) => with_scheduler(plan),
             None => self.task_plan(name, &application, tasks)?,

@@ -5,6 +5,7 @@ use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
+use onescan_clients::gateway::Settings;
 use onescan_clients::soft_plc::watch::Sightings;
 use onescan_clients::soft_plc::{CoverageSink, TraceSink};
 use onescan_server::plan::{Coupling, PlanError, SessionPlan};
@@ -50,6 +51,8 @@ pub struct Scenario {
     writers: Option<(BTreeSet<SignalName>, TraceSink)>,
     /// The soft PLCs that a real one stands in for, with its URL where the file's does not count.
     pub(crate) gateways: BTreeMap<ClientName, Option<String>>,
+    /// Their links, where files of their own say them.
+    pub(crate) links: BTreeMap<ClientName, Settings>,
     /// What soft PLCs look at, if that is asked for.
     pub(crate) watched: Option<Watched>,
 }
@@ -106,6 +109,7 @@ impl Scenario {
             coverage: None,
             writers: None,
             gateways: BTreeMap::new(),
+            links: BTreeMap::new(),
             watched: None,
         };
         scenario.checked()

@@ -27,15 +27,15 @@ fn the_ads_crate_sees_a_device() {
     insta::assert_snapshot!(symbols.iter().map(told).collect::<Vec<_>>().join("\n"));
     assert!(types.is_empty(), "all of them are elementary");
 
-    let position = Handle::new(device, "Position_1").unwrap();
+    let position = Handle::new(device, "Shear.Position_1").unwrap();
     position.write_value(&-0.125_f64).unwrap();
     assert_eq!(position.read_value::<f64>().unwrap().to_bits(), (-0.125_f64).to_bits());
-    let strokes = Handle::new(device, "strokes").expect("names are found in any case");
+    let strokes = Handle::new(device, "shear.strokes").expect("names are found in any case");
     assert_eq!(strokes.read_value::<i32>().unwrap(), 0);
     let refused = [
         strokes.write_value(&1_i32).unwrap_err().to_string(),
         position.write_value(&1_u8).unwrap_err().to_string(),
-        Handle::new(device, "Strokse").map(|handle| handle.raw()).unwrap_err().to_string(),
+        Handle::new(device, "Shear.Strokse").map(|handle| handle.raw()).unwrap_err().to_string(),
         device.read(0x4021, 0, &mut [0; 4]).unwrap_err().to_string(),
         device.write(0x4040, 0xFFFF, &[0]).unwrap_err().to_string(),
         device.get_info().and_then(|_| device.write_control(AdsState::Config, 0)).unwrap_err().to_string(),
@@ -71,9 +71,9 @@ fn run_against(url: &str, settings: &str) -> Said {
 fn what_does_not_fit_is_told_at_connect() {
     let plc = Plc::start(&scenario("shear"), &["--ads", "127.0.0.1:0"]);
     let wrong = [
-        "map = { Strokes = \"Strokse\" }",
-        "map = { Strokes = \"Position_1\" }",
-        "map = { Sensor_1 = \"Aligned\" }",
+        "map = { Strokes = \"Shear.Strokse\" }",
+        "map = { Strokes = \"Shear.Position_1\" }",
+        "map = { Sensor_1 = [\"Alignment.Aligned\", \"Shear.Sensor_1\"] }",
         "ads = { words = \"GVL\" }",
         "ads = { net_id = \"1.2.3\" }",
     ];

@@ -8,7 +8,7 @@ use crate::plc::Plc;
 use crate::typed::{Said, copied_shear, digests, edit, onescan, run_shear, scenario, typed};
 
 /// Bytes of the shear's block from the PLC, with the words about the PLC itself.
-const BLOCK_BYTES: usize = 24;
+const BLOCK_BYTES: usize = 28;
 const PASSWORD: &str = "ONESCAN_OPCUA_PASSWORD";
 
 /// A PLC that sends the same block again and again.
@@ -49,7 +49,7 @@ fn a_plc_with_another_layout_is_told() {
     });
     let said = typed(folder.path(), &["run", ".", "--gateway", &format!("plc=tcp://{address}")]);
     assert_eq!(said.code, Some(3), "{said:?}");
-    assert!(said.out.contains("closed after 23 of the 24 bytes of a block"), "{said:?}");
+    assert!(said.out.contains("closed after 27 of the 28 bytes of a block"), "{said:?}");
 }
 
 #[test]

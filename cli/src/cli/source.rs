@@ -14,6 +14,7 @@ use crate::check::collect::logix;
 use crate::check::stubs::{self, StubsConfig};
 use crate::check::{self, CheckConfig, CheckFormat, Warnings};
 use crate::error::ExitCode;
+use crate::error::Usage;
 use crate::instrument::{Destination, Diff, Direction, InstrumentConfig};
 
 /// Options of `check`.
@@ -122,13 +123,22 @@ pub struct InstrumentArgs {
     pub project: PathBuf,
     /// For whom the shim's own sources are written: `iec`: program text of the standard, or
     /// PLCopen XML if the project is, `twincat`: TwinCAT 3 objects, `codesys`: PLCopen XML for CODESYS, `scl`:
-    /// external sources for TIA Portal; to the last two a project in program text is put as a whole
+    /// external sources for TIA Portal; to the last two a project in program text is put as a whole; `openplc` and
+    /// `beremiz`: one file for MatIEC, with tasks and addresses, and the gateway's mapping beside it
     #[arg(long, value_enum, default_value_t)]
     pub target: TargetArg,
     /// A task and its programs, as in `fast:10ms:0=Main,Alarms`; may be given several times [default: the
     /// scenario's tasks, or one of 10 ms with all programs]
     #[arg(long = "task", value_name = "NAME:INTERVAL:PRIORITY=PROGRAM,...", value_parser = plc_task)]
     pub tasks: Vec<Task>,
+    /// How often the PLC runs the task that is written for it, as in `1ms`: virtual time goes on by the steps of the
+    /// session, however fast that is; for `openplc` and `beremiz` [default: the shortest interval of the tasks]
+    #[arg(long, value_name = "TIME", conflicts_with = "remove")]
+    pub cycle: Option<TimeSpan>,
+    /// The first address of the words of the handshake, as in `%MD100`; for `openplc` and `beremiz` [default: the
+    /// first that the project leaves free]
+    #[arg(long, value_name = "ADDRESS", conflicts_with = "remove")]
+    pub words_at: Option<String>,
     /// Write the result into this folder
     #[arg(short, long, value_name = "DIR", conflicts_with = "in_place")]
     pub output: Option<PathBuf>,
@@ -165,6 +175,10 @@ pub enum TargetArg {
     Codesys,
     /// SCL as TIA Portal imports it
     Scl,
+    /// One file for OpenPLC v3
+    Openplc,
+    /// One file for Beremiz
+    Beremiz,
     /// Refused with its reason
     #[value(hide = true)]
     L5x,
@@ -177,6 +191,8 @@ impl TargetArg {
             Self::Twincat => Ok(Target::TwinCat),
             Self::Codesys => Ok(Target::Codesys),
             Self::Scl => Ok(Target::Scl),
+            Self::Openplc => Ok(Target::OpenPlc),
+            Self::Beremiz => Ok(Target::Beremiz),
             Self::L5x => Err(logix("--target l5x").into()),
         }
     }
@@ -192,12 +208,22 @@ pub fn instrument(args: InstrumentArgs) -> Result<ExitCode, CommandError> {
         None if args.in_place => Destination::InPlace,
         None => Destination::Nowhere,
     };
+    let target = args.target.target()?;
+    if !matches!(target, Target::OpenPlc | Target::Beremiz)
+        && let Some(option) = args.cycle.map(|_| "--cycle").or(args.words_at.as_ref().map(|_| "--words-at"))
+    {
+        let help = "set it in the PLC's tool, or choose the target openplc or beremiz".to_owned();
+        let message = format!("`{option}` is for targets whose tasks and addresses are written");
+        return Err(Usage::new(message, Some(help)).into());
+    }
     let config = InstrumentConfig {
         project: args.project,
         direction: if args.remove { Direction::Remove } else { Direction::Attach },
-        target: args.target.target()?,
+        target,
         tasks: args.tasks,
         inputs: if args.take_inputs { Inputs::Taken } else { Inputs::Left },
+        cycle: args.cycle,
+        words_at: args.words_at,
         destination,
         diff: if args.diff { Diff::Shown } else { Diff::Hidden },
         format: args.format.into(),

@@ -3,9 +3,11 @@
 //! | module | subject |
 //! |---|---|
 //! | [`project`] | which files are meant, and where the result goes |
+//! | [`gateway`] | the gateway's mapping that goes with it |
 //! | [`report`] | what was changed, for people and machines |
 
 mod error;
+pub mod gateway;
 pub mod project;
 pub mod report;
 
@@ -14,8 +16,8 @@ use std::path::{Path, PathBuf};
 
 use onescan_plc_shim::input::kind::FileKind;
 use onescan_plc_shim::instrument::{self, Inputs, InstrumentError as Refusal, Options, Target};
-use onescan_plc_shim::{Diagnostics, Input, Task, TaskPlan};
-use onescan_report::file::write_all_whole;
+use onescan_plc_shim::{Diagnostics, Input, Task, TaskPlan, TimeSpan};
+use onescan_report::file::{Write as FileWrite, write_all_whole};
 use onescan_scenario::Scenario;
 use onescan_scenario::gateway::Agreement;
 use onescan_scenario::load::FILE_NAME;
@@ -40,6 +42,10 @@ pub struct InstrumentConfig {
     pub tasks: Vec<Task>,
     /// What becomes of inputs that the PLC's I/O image writes.
     pub inputs: Inputs,
+    /// The interval of the task that is written for the PLC, if it is not the shortest of the tasks.
+    pub cycle: Option<TimeSpan>,
+    /// Where the words of the handshake begin.
+    pub words_at: Option<String>,
     /// Where the result goes.
     pub destination: Destination,
     /// Whether the changes are shown.
@@ -90,6 +96,7 @@ pub fn instrument(
     err: &mut dyn Write,
 ) -> Result<ExitCode, InstrumentError> {
     let program = project::program(&config.project)?;
+    let mut mapping = None;
     let project = match config.direction {
         Direction::Remove => instrument::remove(&program.inputs),
         Direction::Attach => {
@@ -97,9 +104,18 @@ pub fn instrument(
             let exchanged = agreed.as_ref().map(Agreement::exchanged).unwrap_or_default();
             let layout = agreed.and_then(|agreed| agreed.layout);
             let tasks = tasks(config, program.plan);
-            let (target, inputs) = (config.target, config.inputs);
-            let options = Options { target, tasks, exchanged, layout, inputs, ..Options::default() };
-            instrument::instrument(&program.inputs, &options)
+            let (cycle, words_at, inputs) = (config.cycle, config.words_at.clone(), config.inputs);
+            let options = Options { target: config.target, tasks, exchanged, layout, words_at, cycle, inputs };
+            let project = instrument::instrument(&program.inputs, &options);
+            match project {
+                Ok(project) if !project.located.is_empty() => {
+                    // What lies where is known now, and so is the number of the mapping.
+                    let found = gateway::mapping(scenario(config)?.as_ref(), &project.located)?;
+                    mapping = Some(found.text);
+                    instrument::instrument(&program.inputs, &Options { layout: found.layout, ..options })
+                }
+                other => other,
+            }
         }
     };
     let project = match project {
@@ -119,9 +135,13 @@ pub fn instrument(
         report::findings(&project.warnings, program.inputs.len(), config.format, out)?;
         return Ok(ExitCode::Unmet);
     }
-    let writes = project::writes(config, &project)?;
+    let mut writes = project::writes(config, &project)?;
+    let mapped = mapping.and_then(|text| Some((project::beside(config, &project, gateway::FILE)?, text)));
+    if let Some((path, text)) = &mapped {
+        writes.push(FileWrite { path: path.clone(), bytes: Some(text.clone().into_bytes()) });
+    }
     write_all_whole(&writes)?;
-    report::write(config, &project, out)?;
+    report::write(config, &project, mapped.as_ref().map(|(path, _)| path.as_path()), out)?;
     tell(&project.warnings, program.inputs.len(), config, err)?;
     Ok(ExitCode::Ok)
 }
@@ -129,11 +149,7 @@ pub fn instrument(
 /// What the scenario's gateway and the program must agree on; nothing if there is no scenario, or if its program is
 /// wrong, which is told of the program itself.
 fn agreed(config: &InstrumentConfig, inputs: &[Input]) -> Result<Option<Agreement>, InstrumentError> {
-    let path = &config.project;
-    let is_scenario = path.join(FILE_NAME).is_file() || path.file_name().is_some_and(|name| name == FILE_NAME);
-    if !is_scenario {
-        return Ok(None);
-    }
+    let Some(scenario) = scenario(config)? else { return Ok(None) };
     let Ok(plain) = instrument::remove(inputs) else { return Ok(None) };
     let dialect_of =
         |name: &str| inputs.iter().find(|input| input.file().name() == name).map(|input| input.file().dialect());
@@ -145,7 +161,14 @@ fn agreed(config: &InstrumentConfig, inputs: &[Input]) -> Result<Option<Agreemen
             None => input,
         })
     });
-    Ok(Scenario::load(path)?.agreement_of(own.collect())?)
+    Ok(scenario.agreement_of(own.collect())?)
+}
+
+/// The scenario, if that is what is instrumented.
+fn scenario(config: &InstrumentConfig) -> Result<Option<Scenario>, InstrumentError> {
+    let path = &config.project;
+    let is_scenario = path.join(FILE_NAME).is_file() || path.file_name().is_some_and(|name| name == FILE_NAME);
+    Ok(if is_scenario { Some(Scenario::load(path)?) } else { None })
 }
 
 fn tasks(config: &InstrumentConfig, plan: Option<TaskPlan>) -> Option<Vec<Task>> {

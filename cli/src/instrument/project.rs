@@ -94,6 +94,12 @@ pub(super) fn writes(config: &InstrumentConfig, project: &Project) -> Result<Vec
             Destination::InPlace if !file.is_changed() => continue,
             Destination::InPlace => PathBuf::from(&file.name),
             Destination::Folder(_) if file.text.is_none() => continue,
+            // What is imported alone needs no copies of the sources beside it.
+            Destination::Folder(_) if !project.located.is_empty() && !is_whole(file, project) => continue,
+            // The tool is given one file, and not a folder.
+            Destination::Folder(folder) if !project.located.is_empty() => {
+                folder.join(Path::new(&file.name).file_name().unwrap_or_default())
+            }
             Destination::Folder(folder) => folder.join(relative(file, &config.project)?),
         };
         let bytes = match &file.text {
@@ -107,6 +113,19 @@ pub(super) fn writes(config: &InstrumentConfig, project: &Project) -> Result<Vec
         writes.push(Write { path, bytes });
     }
     Ok(writes)
+}
+
+fn is_whole(file: &File, project: &Project) -> bool {
+    project.whole.as_ref() == Some(&file.name)
+}
+
+/// Where a file goes that belongs to the whole project; nothing if nothing is written.
+pub(super) fn beside(config: &InstrumentConfig, project: &Project, name: &str) -> Option<PathBuf> {
+    match &config.destination {
+        Destination::Nowhere => None,
+        Destination::Folder(folder) => Some(folder.join(name)),
+        Destination::InPlace => project.whole.as_ref().map(|whole| Path::new(whole).with_file_name(name)),
+    }
 }
 
 /// A file's path within the project.

@@ -1,6 +1,7 @@
 //! What was changed, for people and machines.
 
 use std::io::{self, Write};
+use std::path::Path;
 
 use onescan_plc_shim::Diagnostics;
 use onescan_plc_shim::instrument::{File, Project, diff};
@@ -21,6 +22,9 @@ struct Json<'a> {
     /// The file that alone is to be given to the tool, if one holds the whole project.
     #[serde(skip_serializing_if = "Option::is_none")]
     whole: Option<&'a str>,
+    /// The file with the gateway's mapping, where the target has addresses.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    mapping: Option<String>,
     findings: Vec<Line<'a>>,
 }
 
@@ -56,15 +60,25 @@ pub fn findings(
 ///
 /// # Errors
 /// Those of `out`.
-pub fn write(config: &InstrumentConfig, project: &Project, out: &mut dyn Write) -> Result<(), InstrumentError> {
+pub fn write(
+    config: &InstrumentConfig,
+    project: &Project,
+    mapping: Option<&Path>,
+    out: &mut dyn Write,
+) -> Result<(), InstrumentError> {
     let written = match config.format {
-        Format::Json => write_json(config, project, out),
-        Format::Human => write_human(config, project, out),
+        Format::Json => write_json(config, project, mapping, out),
+        Format::Human => write_human(config, project, mapping, out),
     };
     Ok(written.map_err(OutputError)?)
 }
 
-fn write_json(config: &InstrumentConfig, project: &Project, out: &mut dyn Write) -> io::Result<()> {
+fn write_json(
+    config: &InstrumentConfig,
+    project: &Project,
+    mapping: Option<&Path>,
+    out: &mut dyn Write,
+) -> io::Result<()> {
     let file = |file| JsonFile {
         file: file_name(file),
         change: change(file),
@@ -73,12 +87,18 @@ fn write_json(config: &InstrumentConfig, project: &Project, out: &mut dyn Write)
     };
     let findings = project.warnings.findings().iter().map(Line::from).collect();
     let whole = project.whole.as_deref();
-    let report = Json { files: project.files.iter().map(file).collect(), whole, findings };
+    let mapping = mapping.map(|path| path.display().to_string());
+    let report = Json { files: project.files.iter().map(file).collect(), whole, mapping, findings };
     serde_json::to_writer(&mut *out, &report)?;
     writeln!(out)
 }
 
-fn write_human(config: &InstrumentConfig, project: &Project, out: &mut dyn Write) -> io::Result<()> {
+fn write_human(
+    config: &InstrumentConfig,
+    project: &Project,
+    mapping: Option<&Path>,
+    out: &mut dyn Write,
+) -> io::Result<()> {
     if config.diff == Diff::Shown {
         for file in &project.files {
             write!(out, "{}", diff::unified(file))?;
@@ -87,8 +107,14 @@ fn write_human(config: &InstrumentConfig, project: &Project, out: &mut dyn Write
     if config.destination == Destination::Nowhere {
         return Ok(());
     }
-    for file in &project.files {
+    let is_told = |file: &&File| project.located.is_empty() || file.is_changed() || file.text.is_none();
+    for file in project.files.iter().filter(is_told) {
         writeln!(out, "{:<8} {}", change(file), file_name(file))?;
+    }
+    if let (Some(mapping), Some(whole)) = (mapping, &project.whole) {
+        let (mapping, whole) = (mapping.display(), Path::new(whole).file_name().unwrap_or_default().display());
+        writeln!(out, "new      {mapping}\n\n{whole} is the whole project with the shim and its CONFIGURATION.")?;
+        return writeln!(out, "{mapping} says where the gateway finds its signals: `--gateway plc={mapping}`.");
     }
     if let Some(whole) = &project.whole {
         writeln!(out, "\n{whole} is the whole project with the shim: import it alone.")?;

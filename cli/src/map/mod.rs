@@ -47,10 +47,8 @@ pub struct MapConfig {
 /// The scenario or its mapping is wrong, or nothing says where the PLC is.
 pub fn run(config: &MapConfig, out: &mut dyn Write) -> Result<(), MapError> {
     let mut scenario = Scenario::load(&config.scenario)?;
-    let name = the_plc(&scenario, config)?;
-    if let Some((name, url)) = &config.gateway {
-        scenario.commission(name, url.clone())?;
-    }
+    let (name, url) = the_plc(&scenario, config)?;
+    scenario.commission(&name, url)?;
     let agreed = scenario.agreement(&name)?;
     let listing = Listing::new(&agreed.settings, &agreed.exchange);
     let listing = listing.map_err(|fault| scenario.wrong_settings(&name, fault))?;
@@ -67,18 +65,23 @@ pub fn run(config: &MapConfig, out: &mut dyn Write) -> Result<(), MapError> {
     }
 }
 
-/// The PLC that is meant.
-fn the_plc(scenario: &Scenario, config: &MapConfig) -> Result<ClientName, MapError> {
-    let named = config.client.as_ref().or(config.gateway.as_ref().map(|(name, _)| name));
-    if let Some(name) = named {
-        return Ok(name.clone());
+/// The PLC that is meant, and its URL if that is not the scenario's.
+fn the_plc(scenario: &Scenario, config: &MapConfig) -> Result<(ClientName, Option<String>), MapError> {
+    match (&config.client, &config.gateway) {
+        (Some(client), Some((name, _))) if client != name => {
+            let message = format!("--client {client} and --gateway {name} are two PLCs");
+            return Err(Usage::new(message, Some("one mapping is printed at a time".to_owned())).into());
+        }
+        (_, Some((name, url))) => return Ok((name.clone(), url.clone())),
+        (Some(name), None) => return Ok((name.clone(), None)),
+        (None, None) => {}
     }
     let is_plc = |client: &toml::Spanned<ClientFile>| {
         matches!(client.get_ref(), ClientFile::SoftPlc { .. } | ClientFile::Gateway { .. })
     };
     let mut plcs = scenario.file().clients.iter().filter(|(_, client)| is_plc(client)).map(|(name, _)| name);
     match (plcs.next(), plcs.next()) {
-        (Some(one), None) => Ok(one.clone()),
+        (Some(one), None) => Ok((one.clone(), None)),
         (None, _) => Err(Usage::new("the scenario has no PLC", None).into()),
         (Some(one), Some(other)) => {
             let help = Some(format!("say which: `--client {one}` or `--client {other}`"));

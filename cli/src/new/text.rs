@@ -7,6 +7,8 @@ use serde_json::Value;
 
 use super::from_list::{Plc, Signal};
 use crate::io_list::{Direction, IoList, ListLink};
+use crate::map::Fragment;
+use crate::map::fragment::{Entry, Place};
 
 /// Comments are cut to a length that a line can have.
 const ABOUT_CHARACTERS_MAX: usize = 160;
@@ -137,23 +139,21 @@ fn table(name: &str, entries: &[(String, String)]) -> String {
 
 /// How the real PLC is reached, as far as the list says.
 fn gateway(list: &IoList, signals: &[Signal]) -> String {
-    let mut text = match &list.link {
+    let (about, url, port) = match &list.link {
         None => return String::new(),
-        Some(ListLink::Server(url)) => format!("\n[clients.plc.gateway]\nurl = {}\n", quoted(url)),
+        Some(ListLink::Server(url)) => ("", url.as_str(), None),
         Some(ListLink::Ads(port)) => {
-            let port = port.map(|port| format!("\n[clients.plc.gateway.ads]\nport = {port}\n"));
-            format!(
-                "\n# The real PLC: `--gateway plc=ads://HOST`.\n[clients.plc.gateway]\n{}",
-                port.unwrap_or_default()
-            )
+            ("# The real PLC; a TwinCAT on another machine is `ads://ITS-ADDRESS`.\n", "ads://127.0.0.1", *port)
         }
     };
-    let mapped = signals.iter().filter_map(|signal| {
-        let symbol = signal.point.symbol.clone()?;
-        Some((signal.name.clone(), symbol))
-    });
-    text += &table("clients.plc.gateway.map", &mapped.collect::<Vec<_>>());
-    text
+    let entry = |signal: &Signal| {
+        let places = vec![Place::Only(signal.point.symbol.clone()?)];
+        Some(Entry::Mapped { name: signal.name.clone(), places })
+    };
+    let entries = signals.iter().filter_map(entry).collect();
+    let fragment = Fragment { client: "plc".to_owned(), url: url.to_owned(), system_words: false, entries };
+    let port = port.map(|port| format!("\n[clients.plc.gateway.ads]\nport = {port}\n")).unwrap_or_default();
+    format!("\n{about}{fragment}{port}")
 }
 
 /// `plc/main.st`, for a list that has no program.

@@ -111,6 +111,12 @@ fn feed(signal: &Variables, addresses: Option<&Addresses>) -> Result<Feed, Mappi
         (Some(Addresses::Table(table)), _) => tabled(port, &paths, table)?,
         (Some(Addresses::Wrong(what)), _) => return Err(no_address(port.name.as_str(), what)),
     };
+    if targets.is_empty() {
+        let help = Some(format!("write at least one: {} = \"…\"", port.name));
+        return Err(
+            MappingFault::new(port.name.as_str(), format!("`{}` is mapped to no address", port.name)).with_help(help)
+        );
+    }
     Ok(Feed { port: port.clone(), targets })
 }
 

@@ -44,15 +44,16 @@ fn control_list(controller: &Controller, places: &Places, line_break: &str, edit
     edits.insert(places.footer, marks::lines(&statements, line_break));
 }
 
-/// Puts declarations behind those of a unit that has statements, and statements in front of its own.
-pub(super) fn put_in_front(pou: &Pou, declarations: &str, statements: &str, file: &SourceFile, edits: &mut Edits) {
-    let places = Places::of(pou, file);
-    let line_break = marks::line_break(file.shown_text());
-    for (at, text) in [(places.declarations, declarations), (places.header, statements)] {
-        if !text.is_empty() {
-            edits.insert(at, marks::lines(text, line_break));
-        }
-    }
+/// Puts declarations behind those of a unit that has statements.
+pub(super) fn declare_in(pou: &Pou, declarations: &str, file: &SourceFile, edits: &mut Edits) {
+    let at = Places::of(pou, file).declarations;
+    edits.insert(at, marks::lines(declarations, marks::line_break(file.shown_text())));
+}
+
+/// Puts statements in front of those of a unit.
+pub(super) fn put_in_front(pou: &Pou, statements: &str, file: &SourceFile, edits: &mut Edits) {
+    let at = Places::of(pou, file).header;
+    edits.insert(at, marks::lines(statements, marks::line_break(file.shown_text())));
 }
 
 /// The same without its variables, which are declared elsewhere.

@@ -86,7 +86,8 @@ impl Carrier {
 pub(super) fn wanted(exchanged: &Exchanged, carrier: Carrier) -> Result<Option<Address>, String> {
     let Some(text) = &exchanged.address else { return Ok(None) };
     let name = &exchanged.signal;
-    let address = Address::parse(text).ok_or_else(|| format!("`{name}` is to lie at `{text}`, which is no address"))?;
+    let found = Address::parse(text).or_else(|| Address::at_modbus(text));
+    let address = found.ok_or_else(|| format!("`{name}` is to lie at `{text}`, which is no address"))?;
     if address.width() != carrier.width {
         return Err(format!("`{name}` is {}, and {address} does not hold that", exchanged.ty));
     }

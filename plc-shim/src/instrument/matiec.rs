@@ -60,7 +60,13 @@ pub(super) fn ported(plain: &Plain, options: &Options) -> Result<Project, Instru
     let whole = files.last().map(|file| file.name.clone());
     plain.delete_stale(&mut files);
     let warnings = Diagnostics::new(findings, &plain.sources);
-    Ok(Project { whole, located: layout.located, ..Project::of(files, warnings) })
+    let task = Task {
+        name: "Res0.SDSP_Cycle".to_owned(),
+        interval: Some(interval),
+        programs: cycle.programs.iter().map(|(instance, _)| format!("Res0.{instance}")).collect(),
+        ..Task::default()
+    };
+    Ok(Project { whole, located: layout.located, tasks: Some(vec![task]), ..Project::of(files, warnings) })
 }
 
 /// The scheduler comes first, then the programs in the order of the line.
@@ -246,7 +252,8 @@ impl Layout {
         let globals = matiec::globals(&merged.text, merged.dialect);
         let own = globals.addresses.iter().chain(words.iter().map(|word| &word.address)).map(String::as_str);
         let asked = options.exchanged.iter().filter_map(|each| each.address.as_deref());
-        let used: Vec<Address> = own.chain(asked).filter_map(Address::parse).collect();
+        let used = own.chain(asked).filter_map(|text| Address::parse(text).or_else(|| Address::at_modbus(text)));
+        let used: Vec<Address> = used.collect();
         let words_at = options.words_at.as_deref().map(|text| {
             Address::parse(text).ok_or_else(|| format!("`{text}` is no address such as %MD0, where words could begin"))
         });

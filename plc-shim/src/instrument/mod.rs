@@ -167,7 +167,8 @@ impl Project {
 
     /// The path in the program of what has this path in the project.
     pub fn path(&self, path: &str) -> String {
-        scl_port::path(&self.homes, path)
+        let located = self.located.iter().find(|each| each.variable.eq_ignore_ascii_case(path));
+        located.map_or_else(|| scl_port::path(&self.homes, path), |located| located.carrier.clone())
     }
 }
 

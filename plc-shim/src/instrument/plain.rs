@@ -228,10 +228,8 @@ impl Plain {
         for span in &survey.cuts {
             changes(span.file, &mut |file, edits| scl::cut(*span, file, edits));
         }
-        // A unit without a controller of its own may need something in front of its statements, too; where both
-        // declare, the controller's comes second.
         for (id, _) in self.sources.iter() {
-            changes(id, &mut |file, edits| survey.inputs.edit(id, file, tasks, edits));
+            changes(id, &mut |file, edits| survey.inputs.declare(id, file, tasks, edits));
         }
         let line = tasks.line_type();
         for pou in &survey.charts {
@@ -245,6 +243,10 @@ impl Plain {
             changes(pou.name.span.file, &mut |file, edits| {
                 controller::control(pou, number, &line, file, edits);
             });
+        }
+        // Statements stand behind all declarations, those of controllers too.
+        for (id, _) in self.sources.iter() {
+            changes(id, &mut |file, edits| survey.inputs.assign(id, file, edits));
         }
         if let Some(first) = survey.configurations.first() {
             let is_object = self.is_object(first.name.span);

@@ -250,8 +250,8 @@ impl<'a> RealInputs<'a> {
         added
     }
 
-    /// The changes of one file.
-    pub(super) fn edit(&self, id: FileId, file: &SourceFile, tasks: &TaskTable<'_>, edits: &mut Edits) {
+    /// Changes the declarations of one file, and addresses in its statements.
+    pub(super) fn declare(&self, id: FileId, file: &SourceFile, tasks: &TaskTable<'_>, edits: &mut Edits) {
         let of_units = self.units.iter().flat_map(|(_, variables)| variables.iter().copied());
         for variable in self.globals.iter().map(|(_, variable)| *variable).chain(of_units) {
             if let (Some(name), Some(address)) = (variable.names.first(), &variable.address)
@@ -268,8 +268,40 @@ impl<'a> RealInputs<'a> {
             }
         }
         for pou in self.touched().into_iter().filter(|pou| pou.name.span.file == id) {
-            self.head(pou, file, tasks, edits);
+            let externals = self.externals(pou, tasks);
+            if !externals.is_empty() {
+                controller::declare_in(pou, &format!("VAR_EXTERNAL\n{externals}END_VAR\n"), file, edits);
+            }
         }
+    }
+
+    /// Puts assignments at the heads of the units of one file.
+    pub(super) fn assign(&self, id: FileId, file: &SourceFile, edits: &mut Edits) {
+        for (pou, variables) in self.units.iter().filter(|(pou, _)| pou.name.span.file == id) {
+            let names = variables.iter().filter_map(|variable| variable.names.first());
+            let copies: String =
+                names.map(|name| format!("        {} := {};\n", name.text, twin(&name.text))).collect();
+            controller::put_in_front(
+                pou,
+                &format!("    IF NOT SDSP_Simulated THEN\n{copies}    END_IF;\n"),
+                file,
+                edits,
+            );
+        }
+    }
+
+    /// What a unit must declare to see the shim's variables.
+    fn externals(&self, pou: &Pou, tasks: &TaskTable<'_>) -> String {
+        let used =
+            self.direct.iter().filter(|(_, direct)| direct.uses.iter().any(|(unit, _)| std::ptr::eq(*unit, pou)));
+        let externals = used.map(|(name, direct)| format!("    SDSP_{name} : {};\n", type_name(direct.width)));
+        let mut externals: String = externals.collect();
+        let assigns = self.units.iter().any(|(unit, _)| std::ptr::eq(*unit, pou));
+        // The controller of a scheduled program declares it.
+        if assigns && !tasks.numbered().any(|(numbered, _)| std::ptr::eq(numbered, pou)) {
+            externals += "    SDSP_Simulated : BOOL;\n";
+        }
+        externals
     }
 
     /// The units that something is put in front of.
@@ -281,29 +313,6 @@ impl<'a> RealInputs<'a> {
             }
         }
         units
-    }
-
-    /// What a unit needs in front of its statements.
-    fn head(&self, pou: &Pou, file: &SourceFile, tasks: &TaskTable<'_>, edits: &mut Edits) {
-        let variables = self.units.iter().find(|(unit, _)| std::ptr::eq(*unit, pou)).map(|(_, variables)| variables);
-        let names = variables.into_iter().flatten().filter_map(|variable| variable.names.first());
-        let copies: String = names.map(|name| format!("        {} := {};\n", name.text, twin(&name.text))).collect();
-        let used =
-            self.direct.iter().filter(|(_, direct)| direct.uses.iter().any(|(unit, _)| std::ptr::eq(*unit, pou)));
-        let mut externals: String =
-            used.map(|(name, direct)| format!("    SDSP_{name} : {};\n", type_name(direct.width))).collect();
-        // The controller of a scheduled program declares it.
-        if !copies.is_empty() && !tasks.numbered().any(|(numbered, _)| std::ptr::eq(numbered, pou)) {
-            externals += "    SDSP_Simulated : BOOL;\n";
-        }
-        let declarations =
-            if externals.is_empty() { String::new() } else { format!("VAR_EXTERNAL\n{externals}END_VAR\n") };
-        let statements = if copies.is_empty() {
-            String::new()
-        } else {
-            format!("    IF NOT SDSP_Simulated THEN\n{copies}    END_IF;\n")
-        };
-        controller::put_in_front(pou, &declarations, &statements, file, edits);
     }
 }
 

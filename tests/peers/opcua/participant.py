@@ -33,11 +33,17 @@ class Plc:
         from shear import Shear
 
         self.programs = Shear()
-        return self.programs.out
+        return self.outputs()
 
     def turn(self, t_v_ns, inputs):
-        self.programs.scan(t_v_ns, inputs)
-        return self.programs.out
+        from shear import INPUTS
+
+        # Each program has the signals as variables of its own.
+        self.programs.scan(t_v_ns, {path: inputs[path.split(".")[1]] for path in INPUTS})
+        return self.outputs()
+
+    def outputs(self):
+        return {path.split(".")[1]: value for path, value in self.programs.out.items()}
 
 
 async def main(url, name, how):

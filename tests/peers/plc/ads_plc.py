@@ -10,12 +10,12 @@ from shear import INPUTS, OUTPUTS, WORDS_IN, WORDS_OUT, Plc
 
 # struct's letter, ADS type and the name of the type; a symbol of the shim is in the list SDSP.
 FORMS = {
-    "Position_1": ("<d", constants.ADST_REAL64, "LREAL"),
-    "Position_2": ("<d", constants.ADST_REAL64, "LREAL"),
+    "Shear.Position_1": ("<d", constants.ADST_REAL64, "LREAL"),
+    "Shear.Position_2": ("<d", constants.ADST_REAL64, "LREAL"),
     "SDSP_TV": ("<q", constants.ADST_INT64, "LINT"),
     "SDSP_Answer": ("<h", constants.ADST_INT16, "INT"),
-    "AlignedCount": ("<i", constants.ADST_INT32, "DINT"),
-    "Strokes": ("<i", constants.ADST_INT32, "DINT"),
+    "Alignment.AlignedCount": ("<i", constants.ADST_INT32, "DINT"),
+    "Shear.Strokes": ("<i", constants.ADST_INT32, "DINT"),
 }
 UDINT = ("<I", constants.ADST_UINT32, "UDINT")
 BOOL = ("<?", constants.ADST_BIT, "BOOL")

@@ -10,12 +10,12 @@ from shear import INPUTS, OUTPUTS, WORDS_IN, WORDS_OUT, Plc
 
 # struct's letters; everything big-endian, the high word first.
 FORMS = {
-    "Position_1": ">d",
-    "Position_2": ">d",
+    "Shear.Position_1": ">d",
+    "Shear.Position_2": ">d",
     "SDSP_TV": ">q",
     "SDSP_Answer": ">h",
-    "AlignedCount": ">i",
-    "Strokes": ">i",
+    "Alignment.AlignedCount": ">i",
+    "Shear.Strokes": ">i",
 }
 
 

@@ -8,12 +8,12 @@ from asyncua import Server, ua
 from shear import INPUTS, OUTPUTS, WORDS_IN, WORDS_OUT, Plc
 
 TYPES = {
-    "Position_1": ua.VariantType.Double,
-    "Position_2": ua.VariantType.Double,
+    "Shear.Position_1": ua.VariantType.Double,
+    "Shear.Position_2": ua.VariantType.Double,
     "SDSP_TV": ua.VariantType.Int64,
     "SDSP_Answer": ua.VariantType.Int16,
-    "AlignedCount": ua.VariantType.Int32,
-    "Strokes": ua.VariantType.Int32,
+    "Alignment.AlignedCount": ua.VariantType.Int32,
+    "Shear.Strokes": ua.VariantType.Int32,
 }
 
 

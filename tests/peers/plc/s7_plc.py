@@ -14,7 +14,7 @@ def main():
     with socket.socket() as free:
         free.bind(("127.0.0.1", 0))
         port = free.getsockname()[1]
-    to_plc, from_plc = bytearray(38), bytearray(20)
+    to_plc, from_plc = bytearray(38), bytearray(24)
     server = Server(log=False)
     server.register_area(SrvArea.DB, 1, to_plc)
     server.register_area(SrvArea.DB, 2, from_plc)
@@ -26,13 +26,13 @@ def main():
         p1, p2 = struct.unpack_from(">dd", block, 0)
         bits = block[16]
         words = struct.unpack_from(">IIqI", block, 18)
-        taken = dict(zip(INPUTS, (p1, p2, bits & 1, bits >> 1 & 1))) | dict(zip(WORDS_IN, words))
+        taken = dict(zip(INPUTS, (p1, p2, *(bits >> bit & 1 for bit in range(4))))) | dict(zip(WORDS_IN, words))
         given = plc.cycle(taken)
         bits = sum(given[name] << bit for bit, name in enumerate(OUTPUTS[:5]))
-        outputs = struct.pack(">Bxii", bits, given["AlignedCount"], given["Strokes"])
+        outputs = struct.pack(">Bxii", bits, given["Alignment.AlignedCount"], given["Shear.Strokes"])
         # Outputs before the words: who sees a grant done sees its outputs.
-        from_plc[10:20] = outputs
-        from_plc[0:10] = struct.pack(">IIh", *(given[name] for name in WORDS_OUT))
+        from_plc[14:24] = outputs
+        from_plc[0:14] = struct.pack(">IIhI", *(given[name] for name in WORDS_OUT))
         time.sleep(0.001)
 
 

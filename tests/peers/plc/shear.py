@@ -7,10 +7,26 @@ PERIOD_NS = 10_000_000
 LOWER_LIMIT_M = -0.10
 REST_NS = 100_000_000
 
-INPUTS = ["Position_1", "Position_2", "Sensor_1", "Sensor_2"]
+# Each program has inputs of its own, as in a real PLC: by signal, then by path.
+INPUTS = [
+    "Shear.Position_1",
+    "Shear.Position_2",
+    "Alignment.Sensor_1",
+    "Shear.Sensor_1",
+    "Alignment.Sensor_2",
+    "Shear.Sensor_2",
+]
 WORDS_IN = ["SDSP_Session", "SDSP_Limit", "SDSP_TV", "SDSP_Grant"]
-WORDS_OUT = ["SDSP_Joined", "SDSP_Done", "SDSP_Answer"]
-OUTPUTS = ["Actuator_1_Down", "Actuator_1_Up", "Actuator_2_Down", "Actuator_2_Up", "Aligned", "AlignedCount", "Strokes"]
+WORDS_OUT = ["SDSP_Joined", "SDSP_Done", "SDSP_Answer", "SDSP_Layout"]
+OUTPUTS = [
+    "Shear.Actuator_1_Down",
+    "Shear.Actuator_1_Up",
+    "Shear.Actuator_2_Down",
+    "Shear.Actuator_2_Up",
+    "Alignment.Aligned",
+    "Alignment.AlignedCount",
+    "Shear.Strokes",
+]
 
 
 class OnDelay:
@@ -49,22 +65,24 @@ class Shear:
         self.is_down = False
         self.dwell = OnDelay()
         self.a, self.b, self.c = RisingEdge(), RisingEdge(), RisingEdge()
-        self.out = {name: 0 if name in ("AlignedCount", "Strokes") else False for name in OUTPUTS}
+        numbers = ("Alignment.AlignedCount", "Shear.Strokes")
+        self.out = {name: 0 if name in numbers else False for name in OUTPUTS}
 
     def scan(self, now_ns, i):
-        s1, s2, p1, p2 = bool(i["Sensor_1"]), bool(i["Sensor_2"]), i["Position_1"], i["Position_2"]
+        s1, s2 = bool(i["Shear.Sensor_1"]), bool(i["Shear.Sensor_2"])
+        p1, p2 = i["Shear.Position_1"], i["Shear.Position_2"]
         if self.dwell(s1 and s2 and not self.is_down, REST_NS, now_ns):
             self.is_down = True
-            self.out["Strokes"] += 1
+            self.out["Shear.Strokes"] += 1
         elif p1 <= LOWER_LIMIT_M and p2 <= LOWER_LIMIT_M:
             self.is_down = False
-        self.out["Actuator_1_Up"] = not self.is_down and not s1
-        self.out["Actuator_2_Up"] = not self.is_down and not s2
-        self.out["Actuator_1_Down"] = self.is_down and p1 > LOWER_LIMIT_M
-        self.out["Actuator_2_Down"] = self.is_down and p2 > LOWER_LIMIT_M
-        a, b = self.a(s1), self.b(s2)
-        self.out["Aligned"] = self.c(a and b)
-        self.out["AlignedCount"] += self.out["Aligned"]
+        self.out["Shear.Actuator_1_Up"] = not self.is_down and not s1
+        self.out["Shear.Actuator_2_Up"] = not self.is_down and not s2
+        self.out["Shear.Actuator_1_Down"] = self.is_down and p1 > LOWER_LIMIT_M
+        self.out["Shear.Actuator_2_Down"] = self.is_down and p2 > LOWER_LIMIT_M
+        a, b = self.a(bool(i["Alignment.Sensor_1"])), self.b(bool(i["Alignment.Sensor_2"]))
+        self.out["Alignment.Aligned"] = self.c(a and b)
+        self.out["Alignment.AlignedCount"] += self.out["Alignment.Aligned"]
 
 
 class Plc:
@@ -105,5 +123,6 @@ class Plc:
             if self.due <= tv:
                 self.due += ((tv - self.due) // PERIOD_NS + 1) * PERIOD_NS
                 self.shear.scan(tv, i)
-        words = dict(zip(WORDS_OUT, (self.joined, self.done, self.answer)))
+        # It was made without a scenario: there is no number of a mapping.
+        words = dict(zip(WORDS_OUT, (self.joined, self.done, self.answer, 0)))
         return {**self.shear.out, **words}

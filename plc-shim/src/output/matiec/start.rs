@@ -9,7 +9,7 @@ use crate::syntax::ast::{Initialiser, InitialiserKind, Pou, PouKind, TypeSpec, T
 /// Takes them out of their declarations, and assigns them.
 pub(super) fn lower(page: &Page<'_>, edits: &mut Edits) -> Vec<Finding> {
     let mut findings = Vec::new();
-    let mut cut = |spec: &TypeSpec, initial: &Initialiser, edits: &mut Edits| {
+    let cut = |spec: &TypeSpec, initial: &Initialiser, edits: &mut Edits| {
         edits.replace(spec.span.end..initial.span.end, "");
     };
     for pou in page.pous() {

@@ -55,7 +55,7 @@ fn the_simulated_value_is_seen_in_simulation_and_the_real_one_without() {
     let mut real = Driver::started(&application, &plan);
     real.rig.set("SDSP_Simulated", 0);
     for (name, value) in
-        [("SDSP_IN_Guard", 1), ("SDSP_IN_IX1_3", 1), ("Main.SDSP_IN_Raw", 7), ("Main.One.SDSP_IN_Speed", 9)]
+        [("SDSP_IN_Guard", 1), ("SDSP_IN_IX1_3", 1 << 3), ("Main.SDSP_IN_Raw", 7), ("Main.One.SDSP_IN_Speed", 9)]
     {
         real.rig.set(name, value);
     }
