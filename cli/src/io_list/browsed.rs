@@ -10,8 +10,8 @@ use super::error::ListError;
 use super::point::{Direction, IoPoint, LeftOut, Place};
 use super::{IoList, ListKind, ListLink};
 
-/// Browses a PLC; the words of the handshake are no signals. What may be written is taken for an input of the PLC, everything else for an output: an address
-/// space does not know what is which.
+/// Browses a PLC; the words of the handshake are no signals. What may be written is taken for an input of the PLC,
+/// everything else for an output: an address space does not know what is which.
 ///
 /// # Errors
 /// The server cannot be reached or has too many variables.

@@ -16,8 +16,8 @@
 //! | `remark` | what sources say about their variables |
 //! | [`browsed`] | what a PLC says it has |
 //!
-//! Invariants. No file can make a reader fail otherwise than by an error, whatever is in it: sizes are bounded, entities
-//! are not expanded. What is not taken over is named, with its line.
+//! Invariants. No file can make a reader fail otherwise than by an error, whatever is in it: sizes are bounded,
+//! entities are not expanded. What is not taken over is named, with its line.
 
 pub mod browsed;
 pub mod codesys;
@@ -135,33 +135,35 @@ pub fn read(wanted: &Wanted) -> Result<IoList, ListError> {
     let path = PathBuf::from(&wanted.from);
     let project = path.is_dir().then(|| project_in(&path)).transpose()?.flatten();
     let path = project.unwrap_or(path);
-    if path.is_dir() {
-        return sources::read(&path);
+    let mut list = if path.is_dir() { sources::read(&path)? } else { of_file(&path, wanted)? };
+    list.from = path.display().to_string();
+    if list.points.is_empty() {
+        let (title, left_out) = (list.kind.title(), list.left_out.len());
+        return Err(ListError::Empty { file: list.from, title, left_out });
     }
-    let size = std::fs::metadata(&path).map_err(Unreadable::at(&path))?.len();
+    Ok(list)
+}
+
+fn of_file(path: &Path, wanted: &Wanted) -> Result<IoList, ListError> {
+    let size = std::fs::metadata(path).map_err(Unreadable::at(path))?.len();
     if size > BYTES_MAX {
         return Err(ListError::TooLarge { file: path.display().to_string(), mib: BYTES_MAX >> 20 });
     }
-    let bytes = std::fs::read(&path).map_err(Unreadable::at(&path))?;
+    let bytes = std::fs::read(path).map_err(Unreadable::at(path))?;
     let kind = match wanted.kind {
         Some(kind) => kind,
-        None => guess(&path, &bytes)?,
+        None => guess(path, &bytes)?,
     };
-    let mut list = match kind {
-        ListKind::TwinCat => twincat::read(&path, &bytes, wanted.plc.as_deref())?,
-        ListKind::Eni => eni::read(&path, &bytes)?,
-        ListKind::TiaXlsx => tia_xlsx::read(&path, bytes)?,
-        ListKind::TiaXml => tia_xml::read(&path, &bytes)?,
-        ListKind::TiaText => tia_text::read(&path, &bytes)?,
-        ListKind::Codesys => codesys::read(&path, &bytes)?,
-        ListKind::Sources => sources::read(&path)?,
-        ListKind::Server => browsed::read(&wanted.from)?,
-    };
-    list.from = path.display().to_string();
-    if list.points.is_empty() {
-        return Err(ListError::Empty { file: list.from, title: kind.title(), left_out: list.left_out.len() });
+    match kind {
+        ListKind::TwinCat => twincat::read(path, &bytes, wanted.plc.as_deref()),
+        ListKind::Eni => eni::read(path, &bytes),
+        ListKind::TiaXlsx => tia_xlsx::read(path, bytes),
+        ListKind::TiaXml => tia_xml::read(path, &bytes),
+        ListKind::TiaText => tia_text::read(path, &bytes),
+        ListKind::Codesys => codesys::read(path, &bytes),
+        ListKind::Sources => sources::read(path),
+        ListKind::Server => browsed::read(&wanted.from),
     }
-    Ok(list)
 }
 
 /// The only TwinCAT project in a folder or in the folders in it.

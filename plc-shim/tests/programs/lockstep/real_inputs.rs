@@ -115,7 +115,10 @@ fn what_cannot_be_taken_over_is_refused_or_named() {
     assert!(said(empty, Target::Iec).contains("no place for an assignment"), "{}", said(empty, Target::Iec));
     let right = "PROGRAM P VAR a AT %IW0 : INT; b : INT; END_VAR b := a; END_PROGRAM";
     assert!(said(right, Target::Scl).contains("not in PLCopen XML or SCL"), "{}", said(right, Target::Scl));
-    assert_eq!(said(right, Target::Iec), "");
+    for target in [Target::Iec, Target::Codesys] {
+        assert_eq!(said(right, target), "");
+        assert_eq!(said(&PROGRAM.replace("%I*", "%IW8"), target), "");
+    }
 }
 
 #[test]
