@@ -138,7 +138,7 @@ fn sources_that_a_list_was_read_from_run() {
     let file = folder.join("line/press/scenario.toml");
     let text = std::fs::read_to_string(&file).unwrap();
     assert!(text.contains("press.xml\"") && text.contains("step = \"4ms\""), "{text}");
-    let expect = "[[expect]]\nname = \"speed\"\nformula = \"always[20ms,90ms] \\\"Press.Speed\\\" == 7\"\n";
+    let expect = "[[expect]]\nname = \"speed\"\nformula = \"always[20ms,90ms] Press.Speed == 7\"\n";
     let plant = "kind = \"operator\"\ninitial = { \"Guard\" = true }";
     let text =
         text.replace("kind = \"operator\"", plant).replace("[clients.plant]", &format!("{expect}\n[clients.plant]"));
@@ -157,7 +157,7 @@ fn a_list_for_machines_is_one_object() {
     assert_eq!(report["signals"][0]["name"], "Guard closed");
     assert_eq!(report["signals"][0]["address"], "%I0.0");
     assert_eq!(report["left_out"][1]["name"], "Drive");
-    assert_eq!(report["left_out"][1]["line"], 43);
+    assert_eq!(report["left_out"][1]["line"], 42);
 }
 
 #[test]
