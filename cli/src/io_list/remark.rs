@@ -48,7 +48,7 @@ impl Remarks {
     fn file(&mut self, file: &SourceFile) {
         let text = file.text();
         let tokens = tokenize_in(file.dialect(), text);
-        let (mut unit, mut is_in_section) = (String::new(), false);
+        let (mut unit, mut is_in_section, mut is_global) = (String::new(), false, false);
         let significant = tokens.into_iter().filter(|token| !token.kind.is_trivia());
         let significant = significant.filter_map(|Token { kind, start, end }| {
             let (start, end) = (start as usize, end as usize);
@@ -65,7 +65,10 @@ impl Remarks {
                     unit.clear()
                 }
                 TokenKind::Keyword(Keyword::EndVar) => is_in_section = false,
-                TokenKind::Keyword(keyword) if keyword.text().starts_with("VAR") => is_in_section = true,
+                TokenKind::Keyword(keyword) if keyword.text().starts_with("VAR") => {
+                    is_in_section = true;
+                    is_global = *keyword == Keyword::VarGlobal;
+                }
                 TokenKind::Identifier if is_in_section => {
                     let before = index.checked_sub(1).and_then(|before| significant.get(before));
                     // Names stand at the beginning of a declaration and behind commas; types behind colons.
@@ -75,9 +78,13 @@ impl Remarks {
                     let declares = next
                         .is_some_and(|(_, _, piece)| matches!(*piece, ":" | ",") || piece.eq_ignore_ascii_case("AT"));
                     if begins && declares {
-                        let line = file.shown_line_column(*at as u32).line;
+                        let shown = file.shown_range(*at as u32, (*at + piece.len()) as u32).start as usize;
+                        let before = file.shown_text().get(..shown).unwrap_or_default();
+                        let line = before.matches('\n').count() as u32 + 1;
                         let comment = comment(file, *at + piece.len());
-                        let key = (unit.clone(), piece.to_ascii_uppercase());
+                        // A resource declares its globals behind its programs, too.
+                        let unit = if is_global { String::new() } else { unit.clone() };
+                        let key = (unit, piece.to_ascii_uppercase());
                         self.0.entry(key).or_insert(Remark { line, comment });
                     }
                 }

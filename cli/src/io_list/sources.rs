@@ -81,9 +81,14 @@ struct Taken {
 impl Taken {
     /// Everything that has an address in the I/O image.
     fn located(&mut self, application: &Application) -> Result<(), ListError> {
+        let mut places = BTreeSet::new();
         for leaf in application.leaves() {
             let Some((root, address)) = home(application, &leaf) else { continue };
             let Some(direction) = direction(&address) else { continue };
+            // A variable that a program declares as external is the global one once more.
+            if !places.insert((leaf.offset, leaf.bit)) {
+                continue;
+            }
             let of_whole = (root == leaf.path).then_some(address.as_str());
             self.take(&leaf.path, &leaf, direction, of_whole)?;
         }
