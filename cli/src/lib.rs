@@ -23,6 +23,7 @@
 //! | [`plant`] | scenes and components, described without a session |
 //! | [`export`] | recordings in other forms |
 //! | [`new`] | scenarios to begin with |
+//! | [`io_list`] | inputs and outputs of a PLC, as engineering tools list them |
 //! | [`interrupt`] | Ctrl-C |
 //! | [`format`] | for whom the output is |
 //! | [`error`] | errors of several commands, and exit codes |
@@ -42,6 +43,7 @@ pub mod format;
 pub mod freewheel;
 pub mod instrument;
 pub mod interrupt;
+pub mod io_list;
 pub mod map;
 pub mod new;
 pub mod plant;

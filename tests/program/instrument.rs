@@ -206,3 +206,23 @@ fn an_instrumented_scenario_that_is_not_simulated_has_the_same_digest() {
     );
     assert_eq!(run(), plain);
 }
+
+/// Inputs at addresses are taken over when that is asked for, and come back.
+#[test]
+fn inputs_at_addresses_are_taken_over_and_come_back() {
+    let folder = tempfile::tempdir().unwrap();
+    let text = "PROGRAM Main\nVAR\n    Guard AT %IX0.0 : BOOL;\n    Seen : BOOL;\nEND_VAR\n    Seen := Guard AND %IX0.1;\nEND_PROGRAM\n";
+    std::fs::write(folder.path().join("main.st"), text).unwrap();
+    let said = instrumented(folder.path(), &[".", "--diff", "--take-inputs"]);
+    assert_eq!((said.code, said.err.as_str()), (Some(0), ""), "{said:?}");
+    for line in ["+    SDSP_IN_Guard AT %IX0.0 : BOOL;", "SDSP_IX0_1(*@sdsp was %IX0.1*)", "Guard := SDSP_IN_Guard;"] {
+        assert!(said.out.contains(line), "{line}: {}", said.out);
+    }
+    let said = instrumented(folder.path(), &[".", "--in-place", "--take-inputs"]);
+    assert_eq!(said.code, Some(0), "{said:?}");
+    let said = instrumented(folder.path(), &[".", "--in-place", "--remove"]);
+    assert_eq!(said.code, Some(0), "{said:?}");
+    assert_eq!(std::fs::read_to_string(folder.path().join("main.st")).unwrap(), text);
+    let said = instrumented(folder.path(), &[".", "--diff", "--take-inputs", "--target", "scl"]);
+    assert!(said.code == Some(2) && said.out.contains("not in PLCopen XML or SCL"), "{said:?}");
+}

@@ -84,3 +84,106 @@ fn a_sensor_is_added_by_what_the_program_says() {
     let said = typed(folder.path(), &["run", "my-cell", "--signal", "Box_At_End", "--plot", "end.svg"]);
     assert_eq!((said.code, said.err.as_str()), (Some(0), ""), "{said:?}");
 }
+
+/// The lists that the readers' own tests have.
+fn list(name: &str) -> String {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../cli/src/io_list/fixtures");
+    folder.join(name).canonicalize().expect("a fixture").display().to_string()
+}
+
+/// What was said, without where the lists are.
+fn placeless(text: &str) -> String {
+    let folder = list("press.st").replace("press.st", "");
+    text.replace(&folder, "")
+}
+
+#[test]
+fn a_scenario_made_of_a_list_runs_and_checks_at_once() {
+    let lists =
+        ["press.tsproj", "term.xti", "press.tmc", "press-eni.xml", "press-tags.xml", "press.sdf", "press-tags.csv"];
+    for name in lists.into_iter().chain(["press-mapping.csv", "press.st", "press-plcopen.xml"]) {
+        let folder = tempfile::tempdir().unwrap();
+        let said = typed(folder.path(), &["new", "press", "--from", &list(name)]);
+        assert_eq!((said.code, said.err.as_str()), (Some(0), ""), "{name}");
+        insta::assert_snapshot!(format!("new_from_{name}"), placeless(&said.out));
+        let said = typed(folder.path(), &["run", "press", "--until", "100ms", "--runs", "2"]);
+        assert_eq!(said.code, Some(0), "{name}: {said:?}");
+        let said = typed(folder.path(), &["check", "press"]);
+        assert_eq!(said.code, Some(0), "{name}: {said:?}");
+        let said = typed(folder.path(), &["wiring", "press"]);
+        assert_eq!(said.code, Some(0), "{name}: {said:?}");
+        let again = typed(folder.path(), &["new", "press", "--from", &list(name)]);
+        assert_eq!(again.code, Some(2), "{name}: {again:?}");
+    }
+}
+
+#[test]
+fn the_files_made_of_a_list_are_as_they_are() {
+    let folder = tempfile::tempdir().unwrap();
+    typed(folder.path(), &["new", "press", "--from", &list("press.tsproj")]);
+    let read = |file: &str| std::fs::read_to_string(folder.path().join("press").join(file)).unwrap();
+    let files = ["scenario.toml", "plc/main.st", "README.md"].map(|file| format!("==== {file}\n{}", read(file)));
+    insta::assert_snapshot!("new_from_list_files", files.concat());
+    let said = typed(folder.path(), &["check", "press", "--deny-warnings"]);
+    assert_eq!(said.code, Some(0), "{said:?}");
+}
+
+/// Sources run themselves: an input of the list reaches the program.
+#[test]
+fn sources_that_a_list_was_read_from_run() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    std::fs::copy(list("press-plcopen.xml"), folder.join("press.xml")).unwrap();
+    typed(folder, &["new", "line/press", "--from", "press.xml"]);
+    let file = folder.join("line/press/scenario.toml");
+    let text = std::fs::read_to_string(&file).unwrap();
+    assert!(text.contains("press.xml\"") && text.contains("step = \"4ms\""), "{text}");
+    let expect = "[[expect]]\nname = \"speed\"\nformula = \"always[20ms,90ms] Press.Speed == 7\"\n";
+    let plant = "kind = \"operator\"\ninitial = { \"Application.Guard\" = true }";
+    let text =
+        text.replace("kind = \"operator\"", plant).replace("[clients.plant]", &format!("{expect}\n[clients.plant]"));
+    std::fs::write(&file, text).unwrap();
+    let said = typed(folder, &["run", "line/press", "--until", "100ms"]);
+    assert_eq!(said.code, Some(0), "{said:?}");
+}
+
+#[test]
+fn a_list_for_machines_is_one_object() {
+    let folder = tempfile::tempdir().unwrap();
+    let said = typed(folder.path(), &["new", "press", "--from", &list("press-tags.xml"), "--format", "json"]);
+    let report: serde_json::Value = serde_json::from_str(&said.out).expect("one JSON object");
+    assert_eq!((report["inputs"].as_u64(), report["outputs"].as_u64()), (Some(1), Some(1)), "{report}");
+    assert_eq!(report["signals"][0]["signal"], "Guard_closed");
+    assert_eq!(report["signals"][0]["name"], "Guard closed");
+    assert_eq!(report["signals"][0]["address"], "%I0.0");
+    assert_eq!(report["left_out"][1]["name"], "Drive");
+    assert_eq!(report["left_out"][1]["line"], 42);
+}
+
+#[test]
+fn what_is_no_list_is_named_and_nothing_is_written() {
+    let folder = tempfile::tempdir().unwrap();
+    let write = |name: &str, text: &str| std::fs::write(folder.path().join(name), text).unwrap();
+    write("cut.tsproj", "<TcSmProject><Project>");
+    write("none.tsproj", "<TcSmProject/>");
+    write("picture.png", "png");
+    write("book.xlsx", "no book");
+    write("wrong.st", "PROGRAM P x := 1; END_PROGRAM");
+    let mut all = String::new();
+    for words in [
+        &["new", "n", "--from", "missing.tsproj"][..],
+        &["new", "n", "--from", "cut.tsproj"],
+        &["new", "n", "--from", "none.tsproj"],
+        &["new", "n", "--from", "picture.png"],
+        &["new", "n", "--from", "book.xlsx"],
+        &["new", "n", "--from", "wrong.st"],
+        &["new", "n", "--from", "none.tsproj", "--plc", "Press"],
+        &["new", "n", "--as", "eni"],
+    ] {
+        let said = typed(folder.path(), words);
+        assert_eq!((said.code, said.out.as_str()), (Some(2), ""), "{words:?}");
+        all += &format!("$ onescan {}\n{}\n", words.join(" "), said.err);
+    }
+    assert!(!folder.path().join("n").exists());
+    insta::assert_snapshot!("new_from_no_list", all);
+}

@@ -81,7 +81,7 @@ pub enum Command {
     /// Tell and draw how the signals of a scenario connect its clients, and what is unconnected, doubly written
     /// or of unequal type
     Wiring(WiringArgs),
-    /// Write a small scenario that runs at once, to begin with
+    /// Write a scenario that runs at once, to begin with: a small one, or one made of an I/O list
     New(NewArgs),
     /// Explain a code of `check`, with an example that is wrong and one that is right
     Explain(ExplainArgs),
@@ -111,7 +111,7 @@ pub fn dispatch(command: Command) -> Result<ExitCode, CommandError> {
         Command::Components(args) => plant::components(&args),
         Command::Describe(args) => plant::describe(&args),
         Command::Wiring(args) => plant::wiring(args),
-        Command::New(args) => plant::new(&args),
+        Command::New(args) => plant::new(args),
         Command::Explain(args) => source::explain(&args),
     }
 }

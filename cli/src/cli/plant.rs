@@ -7,6 +7,8 @@ use clap::{Args as ClapArgs, ValueEnum};
 use super::error::CommandError;
 use super::value::FormatArg;
 use crate::error::ExitCode;
+use crate::io_list::{ListKind, Wanted};
+use crate::new::from_list::FromListConfig;
 use crate::new::{self, Template};
 use crate::plant::{components, describe};
 use crate::wiring::{self, WiringConfig};
@@ -80,6 +82,55 @@ pub struct NewArgs {
     /// What to begin with
     #[arg(long, value_enum, default_value_t)]
     pub template: TemplateArg,
+    /// Make it of an I/O list: a TwinCAT project, an ENI, a tag table of TIA Portal, an I/O mapping of CODESYS,
+    /// PLC sources (PLCopen XML too), or a PLC that can be browsed
+    #[arg(long, value_name = "FILE|FOLDER|URL", conflicts_with = "template")]
+    pub from: Option<String>,
+    /// What wrote the list [default: what its name and text say]
+    #[arg(long = "as", value_name = "KIND", value_enum, requires = "from")]
+    pub kind: Option<ListKindArg>,
+    /// Of a TwinCAT project with several PLCs, which one
+    #[arg(long, value_name = "NAME", requires = "from")]
+    pub plc: Option<String>,
+    /// What was taken over: for people, or one JSON object for machines
+    #[arg(long, value_enum, default_value_t, requires = "from")]
+    pub format: FormatArg,
+}
+
+/// See [`ListKind`].
+#[derive(Clone, Copy, Debug, ValueEnum)]
+pub enum ListKindArg {
+    /// A TwinCAT project, `.tsproj`, `.xti` or `.tmc`
+    Twincat,
+    /// EtherCAT Network Information
+    Eni,
+    /// PLC tags of TIA Portal, `.xlsx`
+    TiaXlsx,
+    /// PLC tags of TIA Portal, XML
+    TiaXml,
+    /// PLC tags of TIA Portal or STEP 7, `.sdf` or CSV
+    TiaText,
+    /// I/O mapping of CODESYS, CSV
+    Codesys,
+    /// PLC sources
+    Sources,
+    /// A PLC at a URL
+    Server,
+}
+
+impl From<ListKindArg> for ListKind {
+    fn from(arg: ListKindArg) -> Self {
+        match arg {
+            ListKindArg::Twincat => Self::TwinCat,
+            ListKindArg::Eni => Self::Eni,
+            ListKindArg::TiaXlsx => Self::TiaXlsx,
+            ListKindArg::TiaXml => Self::TiaXml,
+            ListKindArg::TiaText => Self::TiaText,
+            ListKindArg::Codesys => Self::Codesys,
+            ListKindArg::Sources => Self::Sources,
+            ListKindArg::Server => Self::Server,
+        }
+    }
 }
 
 /// See [`Template`].
@@ -108,7 +159,14 @@ impl From<TemplateArg> for Template {
 ///
 /// # Errors
 /// See [`CommandError`].
-pub fn new(args: &NewArgs) -> Result<ExitCode, CommandError> {
-    new::write(&args.folder, args.template.into(), &mut std::io::stdout().lock())?;
+pub fn new(args: NewArgs) -> Result<ExitCode, CommandError> {
+    let mut out = std::io::stdout().lock();
+    if let Some(from) = args.from {
+        let list = Wanted { from, kind: args.kind.map(Into::into), plc: args.plc };
+        let config = FromListConfig { folder: args.folder, list, format: args.format.into() };
+        new::from_list::write(&config, &mut out)?;
+        return Ok(ExitCode::Ok);
+    }
+    new::write(&args.folder, args.template.into(), &mut out)?;
     Ok(ExitCode::Ok)
 }

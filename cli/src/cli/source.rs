@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use clap::{Args as ClapArgs, ValueEnum};
-use onescan_plc_shim::instrument::Target;
+use onescan_plc_shim::instrument::{Inputs, Target};
 use onescan_plc_shim::{Dialect, MemoryLimit, Task};
 use onescan_report::OutputError;
 use onescan_server::signal::ClientName;
@@ -152,6 +152,10 @@ pub struct InstrumentArgs {
     /// Show the changes as a unified diff
     #[arg(long)]
     pub diff: bool,
+    /// Take over inputs that the PLC's I/O image writes, `AT %I…` and `%IX0.0` in statements, so that the gateway can
+    /// write them: each gives its address to a twin `SDSP_IN_…`, whose value it has while `SDSP_Simulated` is FALSE
+    #[arg(long, conflicts_with = "remove")]
+    pub take_inputs: bool,
     /// Take the shim off: every file as it was, byte for byte
     #[arg(long)]
     pub remove: bool,
@@ -222,6 +226,7 @@ pub fn instrument(args: InstrumentArgs) -> Result<ExitCode, CommandError> {
         target,
         tasks: args.tasks,
         client: args.client,
+        inputs: if args.take_inputs { Inputs::Taken } else { Inputs::Left },
         cycle: args.cycle,
         words_at: args.words_at,
         destination,

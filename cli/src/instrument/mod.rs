@@ -17,7 +17,7 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use onescan_plc_shim::input::kind::FileKind;
-use onescan_plc_shim::instrument::{self, InstrumentError as Refusal, Options, Target};
+use onescan_plc_shim::instrument::{self, Inputs, InstrumentError as Refusal, Options, Target};
 use onescan_plc_shim::{Diagnostics, Input, Task, TaskPlan, TimeSpan};
 use onescan_report::file::{Write as FileWrite, write_all_whole};
 use onescan_scenario::Scenario;
@@ -46,6 +46,8 @@ pub struct InstrumentConfig {
     pub target: Target,
     /// The tasks, if they are not those of a scenario.
     pub tasks: Vec<Task>,
+    /// What becomes of inputs that the PLC's I/O image writes.
+    pub inputs: Inputs,
     /// The interval of the task that is written for the PLC, if it is not the shortest of the tasks.
     pub cycle: Option<TimeSpan>,
     /// Where the words of the handshake begin.
@@ -109,8 +111,8 @@ pub fn instrument(
             let exchanged = agreed.as_ref().map(Agreement::exchanged).unwrap_or_default();
             let layout = agreed.and_then(|agreed| agreed.layout);
             let tasks = tasks(config, program.plan);
-            let (cycle, words_at) = (config.cycle, config.words_at.clone());
-            let options = Options { target: config.target, tasks, exchanged, layout, words_at, cycle };
+            let (cycle, words_at, inputs) = (config.cycle, config.words_at.clone(), config.inputs);
+            let options = Options { target: config.target, tasks, exchanged, layout, words_at, cycle, inputs };
             let project = instrument::instrument(&program.inputs, &options);
             match project {
                 Ok(project) if !project.located.is_empty() => {

@@ -3,6 +3,7 @@
 use onescan_report::{FileError, OutputError};
 
 use crate::error::{Usage, sum_of_errors};
+use crate::io_list::ListError;
 
 sum_of_errors! {
     /// Why there is no new scenario.
@@ -10,6 +11,9 @@ sum_of_errors! {
         /// What was typed is wrong.
         #[diagnostic(transparent)]
         Usage(Usage),
+        /// The I/O list cannot be read.
+        #[diagnostic(transparent)]
+        List(ListError),
         /// A file cannot be written.
         File(FileError),
         /// The report cannot be written.

@@ -1,6 +1,17 @@
-//! Scenarios to begin with: small, complete, commented, green at once.
+//! Scenarios to begin with: complete, commented, green at once.
+//!
+//! | module | subject |
+//! |---|---|
+//! | [`from_list`] | a scenario made of an I/O list |
+//! | `names` | names that signals and variables can have |
+//! | `text` | the files of such a scenario |
+//! | [`listed`] | what was taken over and what was not |
 
 mod error;
+pub mod from_list;
+pub mod listed;
+mod names;
+mod text;
 
 use std::io::Write;
 use std::path::Path;
@@ -54,15 +65,7 @@ impl Template {
 /// # Errors
 /// The folder is there, its name cannot be a scenario's, or it cannot be written.
 pub fn write(folder: &Path, template: Template, out: &mut dyn Write) -> Result<(), NewError> {
-    let name = folder.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
-    ClientName::new(name.as_str()).map_err(|BadName(name)| {
-        let help = "use letters, digits, `_` and `-`, beginning with a letter".to_owned();
-        Usage::new(format!("`{name}` cannot name a scenario"), Some(help))
-    })?;
-    if folder.exists() {
-        let help = "choose another name, or remove it first".to_owned();
-        return Err(Usage::new(format!("{} is there already", folder.display()), Some(help)).into());
-    }
+    let name = name_of(folder)?;
     let place = folder.display().to_string();
     let filled = |text: &str| text.replace("{name}", &name);
     let written = template
@@ -74,4 +77,18 @@ pub fn write(folder: &Path, template: Template, out: &mut dyn Write) -> Result<(
         writeln!(out, "{}", folder.join(file).display()).map_err(OutputError)?;
     }
     Ok(writeln!(out, "\nnext: onescan run {place}").map_err(OutputError)?)
+}
+
+/// The name of the scenario that a folder is to hold.
+fn name_of(folder: &Path) -> Result<String, Usage> {
+    let name = folder.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
+    ClientName::new(name.as_str()).map_err(|BadName(name)| {
+        let help = "use letters, digits, `_` and `-`, beginning with a letter".to_owned();
+        Usage::new(format!("`{name}` cannot name a scenario"), Some(help))
+    })?;
+    if folder.exists() {
+        let help = "choose another name, or remove it first".to_owned();
+        return Err(Usage::new(format!("{} is there already", folder.display()), Some(help)));
+    }
+    Ok(name)
 }

@@ -99,6 +99,7 @@ pub fn bind(
     paths: &BTreeMap<SignalName, Vec<String>>,
 ) -> Result<Bindings, BindError> {
     let mut bindings = Bindings::default();
+    let own = Own::of(application);
     for signal in signals {
         let written = signal.writer.as_ref() == Some(plc);
         let variables = match paths.get(&signal.name) {
@@ -106,8 +107,8 @@ pub fn bind(
             Some(paths) => {
                 paths.iter().map(|path| at_path(application, &signal.name, path)).collect::<Result<_, _>>()?
             }
-            None if written => vec![output_named(application, &signal.name)?],
-            None => inputs_named(application, &signal.name),
+            None if written => vec![own.output(&signal.name)?],
+            None => own.input(&signal.name),
         };
         if variables.is_empty() {
             continue;
@@ -142,29 +143,45 @@ fn own_name(variable: &Variable) -> &str {
     variable.path.rsplit('.').next().unwrap_or(&variable.path)
 }
 
-fn output_named(application: &Application, signal: &SignalName) -> Result<Variable, BindError> {
-    let outputs: Vec<Variable> = application.programs().flat_map(|program| program.outputs).collect();
-    let found: Vec<&Variable> =
-        outputs.iter().filter(|variable| own_name(variable).eq_ignore_ascii_case(signal.as_str())).collect();
-    match found[..] {
-        [one] => Ok(one.clone()),
-        [] => Err(BindError {
-            signal: signal.clone(),
-            message: format!("the PLC is to write signal `{signal}`, but no program has a VAR_OUTPUT of that name"),
-            help: nearest(signal.as_str(), outputs.iter().map(own_name))
-                .map(|name| format!("did you mean `{name}`? Another variable is named under `bind`")),
-        }),
-        [first, second, ..] => Err(BindError {
-            signal: signal.clone(),
-            message: format!("signal `{signal}` may be `{}` or `{}`", first.path, second.path),
-            help: Some(format!("say which under `bind`: {signal} = \"{}\"", first.path)),
-        }),
-    }
+/// What programs take in and give out, by name in capitals; programs of thousands of variables are looked through once.
+struct Own {
+    inputs: BTreeMap<String, Vec<Variable>>,
+    outputs: BTreeMap<String, Vec<Variable>>,
 }
 
-fn inputs_named(application: &Application, signal: &SignalName) -> Vec<Variable> {
-    let inputs = application.programs().flat_map(|program| program.inputs);
-    inputs.filter(|variable| own_name(variable).eq_ignore_ascii_case(signal.as_str())).collect()
+impl Own {
+    fn of(application: &Application) -> Self {
+        let mut own = Self { inputs: BTreeMap::new(), outputs: BTreeMap::new() };
+        for program in application.programs() {
+            for (all, of_program) in [(&mut own.inputs, program.inputs), (&mut own.outputs, program.outputs)] {
+                for variable in of_program {
+                    all.entry(own_name(&variable).to_ascii_uppercase()).or_default().push(variable);
+                }
+            }
+        }
+        own
+    }
+
+    fn output(&self, signal: &SignalName) -> Result<Variable, BindError> {
+        match self.outputs.get(&signal.as_str().to_ascii_uppercase()).map(Vec::as_slice) {
+            Some([one]) => Ok(one.clone()),
+            Some([first, second, ..]) => Err(BindError {
+                signal: signal.clone(),
+                message: format!("signal `{signal}` may be `{}` or `{}`", first.path, second.path),
+                help: Some(format!("say which under `bind`: {signal} = \"{}\"", first.path)),
+            }),
+            _ => Err(BindError {
+                signal: signal.clone(),
+                message: format!("the PLC is to write signal `{signal}`, but no program has a VAR_OUTPUT of that name"),
+                help: nearest(signal.as_str(), self.outputs.values().flatten().map(own_name))
+                    .map(|name| format!("did you mean `{name}`? Another variable is named under `bind`")),
+            }),
+        }
+    }
+
+    fn input(&self, signal: &SignalName) -> Vec<Variable> {
+        self.inputs.get(&signal.as_str().to_ascii_uppercase()).cloned().unwrap_or_default()
+    }
 }
 
 fn checked_place(signal: &SignalDecl, variable: &Variable) -> Result<Place, BindError> {

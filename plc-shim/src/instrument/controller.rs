@@ -33,7 +33,7 @@ pub(super) fn control(pou: &Pou, number: Number, line: &str, wanted: &[Only], fi
 }
 
 /// True for a body in Instruction List.
-fn is_list(pou: &Pou) -> bool {
+pub(super) fn is_list(pou: &Pou) -> bool {
     pou.body.iter().any(|statement| matches!(statement.kind, StatementKind::Instruction(_)))
 }
 
@@ -43,6 +43,18 @@ fn control_list(controller: &Controller, places: &Places, line_break: &str, edit
     edits.insert(places.header, marks::lines(&format!("{declarations}\nACTION SDSP_Body:"), line_break));
     let statements = format!("END_ACTION\n{header}\n    SDSP_Body();\n{footer}");
     edits.insert(places.footer, marks::lines(&statements, line_break));
+}
+
+/// Puts declarations behind those of a unit that has statements.
+pub(super) fn declare_in(pou: &Pou, declarations: &str, file: &SourceFile, edits: &mut Edits) {
+    let at = Places::of(pou, file).declarations;
+    edits.insert(at, marks::lines(declarations, marks::line_break(file.shown_text())));
+}
+
+/// Puts statements in front of those of a unit.
+pub(super) fn put_in_front(pou: &Pou, statements: &str, file: &SourceFile, edits: &mut Edits) {
+    let at = Places::of(pou, file).header;
+    edits.insert(at, marks::lines(statements, marks::line_break(file.shown_text())));
 }
 
 /// The same without its variables, which are declared elsewhere.

@@ -16,6 +16,7 @@
 //! | [`plain`] | a project without the shim, and its changes |
 //! | [`controller`] | execution controllers |
 //! | [`exchanged`] | the variables that a gateway writes and reads |
+//! | [`real_inputs`] | inputs that the PLC's I/O image writes, taken over by name |
 //! | [`scl`] | SCL of TIA Portal: organization blocks, timers |
 //! | [`scl_exchange`] | what a gateway exchanges with it: data blocks and copies |
 //! | [`plcopen_project`], [`plcopen`], [`plcopen_unit`] | projects in PLCopen XML |
@@ -54,6 +55,7 @@ mod plcopen_gate;
 mod plcopen_project;
 mod plcopen_unit;
 mod port;
+mod real_inputs;
 mod scl;
 mod scl_exchange;
 mod scl_port;
@@ -76,6 +78,7 @@ pub use self::exchanged::{Exchanged, Way};
 pub use self::located::Located;
 use self::plain::Plain;
 pub use self::scl_exchange::{DB_FROM_PLC, DB_TO_PLC, goes_in_blocks};
+pub use self::real_inputs::Inputs;
 use self::survey::{Survey, survey};
 pub use self::target::Target;
 use self::target::{Globals, Sources};
@@ -104,6 +107,8 @@ pub struct Options {
     pub words_at: Option<String>,
     /// The interval of the emitted task of the scheduler; without, the shortest of the project's tasks.
     pub cycle: Option<TimeSpan>,
+    /// What becomes of inputs that the PLC's I/O image writes.
+    pub inputs: Inputs,
 }
 
 /// Why a project cannot be instrumented.
@@ -214,6 +219,9 @@ pub fn instrument(inputs: &[Input], options: &Options) -> Result<Project, Instru
     if let Some(own) = plain.only_own() {
         return Err(InstrumentError::OnlyOwn(own.to_owned()));
     }
+    if let Some(refused) = plain.without_inputs(options) {
+        return Err(InstrumentError::Text(Diagnostics::new(vec![refused], &plain.sources)));
+    }
     let project = match port::ported(&plain, options) {
         Some(ported) => ported?,
         None => attach(&plain, options)?.project,
@@ -247,6 +255,10 @@ fn attach(plain: &Plain, options: &Options) -> Result<Attached, InstrumentError>
         findings.extend(scl_exchange::refused(&options.exchanged));
     }
     survey.is_exchanged = exchange.is_some();
+    if options.inputs == Inputs::Taken {
+        survey.inputs = real_inputs::find(&trees, &plain.sources);
+        findings.append(&mut survey.inputs.findings);
+    }
     let mut motion = motion_use::motion(options.target, &trees, &survey.motion);
     findings.append(&mut motion.findings);
     if findings.iter().any(|found| found.severity == Severity::Error) {
@@ -260,7 +272,8 @@ fn attach(plain: &Plain, options: &Options) -> Result<Attached, InstrumentError>
     forms.extend((!survey.charts.is_empty()).then(clock::on_delay));
     forms.sort_by_key(|form| form.name);
     forms.dedup();
-    let sources = Sources::new(options, &tasks, &forms, &motion.blocks, &survey.charts, exchange);
+    let mut sources = Sources::new(options, &tasks, &forms, &motion.blocks, &survey.charts, exchange);
+    sources.add(&survey.inputs.additions(&plain.sources));
     if plain.is_xml() {
         let files = vec![plain.edited_xml(&survey, &motion, &tasks, &sources)?];
         let project = Project::of(files, Diagnostics::new(findings, &plain.sources));

@@ -11,7 +11,7 @@ use super::motion_use::Motion;
 use super::survey::Survey;
 use super::target::{self, Target};
 use super::tasks::TaskTable;
-use super::{File, InstrumentError, Options, chart, configuration, controller, scl, single, twincat};
+use super::{File, Inputs, InstrumentError, Options, chart, configuration, controller, scl, single, twincat};
 use crate::diagnostic::{Code, Diagnostic, Diagnostics};
 use crate::input::Input;
 use crate::input::encoding::Encoding;
@@ -131,6 +131,27 @@ impl Plain {
         Some(found.with_help("export the project in that form, or choose another target"))
     }
 
+    /// Inputs cannot be taken over in every form of a project.
+    pub(super) fn without_inputs(&self, options: &Options) -> Option<Diagnostic> {
+        let is_text = !self.is_xml() && !self.sources.iter().any(|(_, file)| scl::is_scl(file));
+        let takes = matches!(options.target, Target::Iec | Target::TwinCat | Target::Codesys);
+        if options.inputs == Inputs::Left || (is_text && takes) {
+            return None;
+        }
+        let (message, help) = match options.target {
+            Target::OpenPlc | Target::Beremiz => (
+                "this target has an address for every signal",
+                "give inputs addresses in %M or %Q in the scenario's mapping",
+            ),
+            _ => (
+                "inputs are taken over in program text and TwinCAT objects, not in PLCopen XML or SCL",
+                "export program text; in TIA Portal, copy tags of %I into a data block and read that",
+            ),
+        };
+        let found = Diagnostic::error(Code::UnsupportedFeature, Span::new(FileId(0), 0, 0), message);
+        Some(found.with_help(help))
+    }
+
     fn damaged(&mut self, name: &str, text: &Arc<str>, damaged: &marks::DamagedMarks) {
         let id = self.sources.add(SourceFile::new(name, text.clone()));
         let span = Span::new(id, damaged.at.start, damaged.at.end);
@@ -207,6 +228,9 @@ impl Plain {
         for span in &survey.cuts {
             changes(span.file, &mut |file, edits| scl::cut(*span, file, edits));
         }
+        for (id, _) in self.sources.iter() {
+            changes(id, &mut |file, edits| survey.inputs.declare(id, file, tasks, edits));
+        }
         let line = tasks.line_type();
         for pou in &survey.charts {
             let number = tasks.numbered().find(|(numbered, _)| std::ptr::eq(*numbered, *pou));
@@ -219,6 +243,10 @@ impl Plain {
             changes(pou.name.span.file, &mut |file, edits| {
                 controller::control(pou, number, &line, survey.wanted(), file, edits);
             });
+        }
+        // Statements stand behind all declarations, those of controllers too.
+        for (id, _) in self.sources.iter() {
+            changes(id, &mut |file, edits| survey.inputs.assign(id, file, edits));
         }
         if let Some(first) = survey.configurations.first() {
             let is_object = self.is_object(first.name.span);

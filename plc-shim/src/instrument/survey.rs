@@ -6,6 +6,7 @@ use super::chart_plan::charts;
 use super::clock::{self, Fate, Form, Kind};
 use super::foreign;
 use super::motion::Role;
+use super::real_inputs::RealInputs;
 use super::scl::{self, TimerCalls};
 use super::target::Target;
 use super::template::Only;
@@ -40,6 +41,8 @@ pub(super) struct Survey<'a> {
     called_members: BTreeSet<String>,
     /// Programs and function blocks that are charts, or have actions that are.
     pub(super) charts: Vec<&'a Pou>,
+    /// Inputs that are taken over.
+    pub(super) inputs: RealInputs<'a>,
     /// Names to be replaced.
     pub(super) renames: Vec<(Ident, &'static Form)>,
     /// Names of blocks and types of motion control.

@@ -6,6 +6,7 @@ use super::Options;
 use super::clock::Form;
 use super::marks;
 use super::motion::{self, Part, Use};
+use super::real_inputs::Additions;
 use super::tasks::TaskTable;
 use super::template::{self, Only};
 use super::twincat;
@@ -121,6 +122,17 @@ impl Sources {
             scheduler: filled(scheduler),
             forms: units,
             motion: motion::parts(target, blocks),
+        }
+    }
+
+    /// Adds what inputs need that are taken over.
+    pub(super) fn add(&mut self, additions: &Additions) {
+        if let Some(end) = self.globals.rfind("END_VAR") {
+            self.globals.insert_str(end, &additions.globals);
+        }
+        let Additions { externals, statements, .. } = additions;
+        for (line, more) in [("VAR_EXTERNAL\n", externals), ("    IF NOT SDSP_Simulated THEN\n", statements)] {
+            self.scheduler = self.scheduler.replacen(line, &format!("{line}{more}"), 1);
         }
     }
 

@@ -15,6 +15,7 @@ mod plcopen_xml;
 mod ported;
 pub(crate) mod random;
 mod random_single;
+mod real_inputs;
 mod rewriting;
 mod scl;
 mod scl_port;

@@ -7,7 +7,7 @@ use onescan_plc_shim::instrument::{InstrumentError, Options, Project, Target, di
 use super::corpus::cases;
 use crate::rig::task;
 
-fn inputs(files: &[(&str, SourceKind, &str)]) -> Vec<Input> {
+pub(super) fn inputs(files: &[(&str, SourceKind, &str)]) -> Vec<Input> {
     files.iter().map(|(name, kind, text)| Input::from_text(name, *kind, *text)).collect()
 }
 

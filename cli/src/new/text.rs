@@ -1,0 +1,217 @@
+//! The files of a scenario that is made of an I/O list.
+
+use std::fmt::Write;
+
+use onescan_server::time::TimeSpan;
+use serde_json::Value;
+
+use super::from_list::{Plc, Signal};
+use crate::io_list::{Direction, IoList, ListLink};
+use crate::map::Fragment;
+use crate::map::fragment::{Entry, Place};
+
+/// Comments are cut to a length that a line can have.
+const ABOUT_CHARACTERS_MAX: usize = 160;
+
+/// How many signals a plot shows to begin with.
+const PLOTTED: usize = 8;
+
+const CYCLE: TimeSpan = TimeSpan::millis::<10>();
+
+/// Text of a file of TOML: a quoted string of JSON is one of TOML.
+pub(super) fn quoted(text: &str) -> String {
+    Value::from(text).to_string()
+}
+
+/// One line without control characters.
+fn one_line(text: &str) -> String {
+    let words: Vec<_> =
+        text.split(|c: char| c.is_whitespace() || c.is_control()).filter(|word| !word.is_empty()).collect();
+    let text = words.join(" ");
+    match text.char_indices().nth(ABOUT_CHARACTERS_MAX) {
+        Some((end, _)) => format!("{}…", &text[..end]),
+        None => text,
+    }
+}
+
+/// What the list is called; where it lay is nobody's business in a file that is kept.
+fn file_name(list: &IoList) -> String {
+    one_line(list.from.rsplit(['/', '\\']).next().unwrap_or(&list.from))
+}
+
+/// A key of TOML.
+fn key(name: &str) -> String {
+    let is_bare = name.chars().all(|c| c.is_ascii_alphanumeric() || matches!(c, '_' | '-'));
+    if is_bare { name.to_owned() } else { quoted(name) }
+}
+
+fn step(list: &IoList) -> String {
+    list.cycle.unwrap_or(CYCLE).to_string().replace(' ', "")
+}
+
+/// `scenario.toml`.
+pub(super) fn scenario(name: &str, list: &IoList, signals: &[Signal], plc: &Plc) -> String {
+    let from = file_name(list);
+    let step = step(list);
+    let mut text = format!(
+        "# {name}: made of {from} ({title}). README.md says what to do next.
+
+version = 1
+title = {headline}
+step = \"{step}\"
+until = \"10s\"
+
+# The I/O list, in its order: what the PLC reads is written by the plant, everything else by the PLC.
+[signals]
+",
+        title = list.kind.title(),
+        headline = quoted(&format!("{name}: {} signals of {from}", signals.len())),
+    );
+    for signal in signals {
+        let point = &signal.point;
+        let writer = if point.direction == Direction::Input { "plant" } else { "plc" };
+        let _ = write!(text, "{} = {{ type = \"{}\", writer = \"{writer}\"", key(&signal.name), point.ty);
+        if let Some(comment) = &point.comment {
+            let _ = write!(text, ", about = {}", quoted(&one_line(comment)));
+        }
+        text += " }";
+        if let Some(address) = &point.address {
+            let _ = write!(text, "  # {}", one_line(address));
+        }
+        text += "\n";
+    }
+    text += "
+# The plant, to be: an operator whose signals are 0 and FALSE until a case or somebody sets them. With a scene,
+# `kind = \"plant\"` and `scene = \"plant.toml\"` stand here.
+[clients.plant]
+kind = \"operator\"
+
+";
+    text += &client(plc, &step);
+    text += &gateway(list, signals);
+    if signals.len() > PLOTTED {
+        let first: Vec<_> = signals.iter().take(PLOTTED).map(|signal| quoted(&signal.name)).collect();
+        let _ = write!(text, "\n# What `--plot` draws.\n[plot]\nsignals = [{}]\n", first.join(", "));
+    }
+    text
+}
+
+fn client(plc: &Plc, step: &str) -> String {
+    let mut text = String::new();
+    match plc {
+        Plc::StandIn { bind } => {
+            let _ = write!(
+                text,
+                "# A stand-in for the PLC, with its inputs and outputs and no program: put the PLC's own sources here.
+[clients.plc]
+kind = \"soft-plc\"
+sources = [\"plc/main.st\"]
+tasks = [{{ name = \"main\", interval = \"{step}\", programs = [\"Main\"] }}]
+"
+            );
+            text += &table("clients.plc.bind", bind);
+        }
+        Plc::Sources { files, programs, bind } => {
+            text += "[clients.plc]\nkind = \"soft-plc\"\nsources = [\n";
+            for file in files {
+                let _ = writeln!(text, "    {},", quoted(file));
+            }
+            text += "]\n";
+            if !programs.is_empty() {
+                let programs: Vec<_> = programs.iter().map(|program| quoted(program)).collect();
+                let programs = programs.join(", ");
+                let _ =
+                    writeln!(text, "tasks = [{{ name = \"main\", interval = \"{step}\", programs = [{programs}] }}]");
+            }
+            text += &table("clients.plc.bind", bind);
+        }
+    }
+    text
+}
+
+fn table(name: &str, entries: &[(String, String)]) -> String {
+    if entries.is_empty() {
+        return String::new();
+    }
+    let lines = entries.iter().map(|(name, value)| format!("{} = {}\n", key(name), quoted(value)));
+    format!("\n[{name}]\n{}", lines.collect::<String>())
+}
+
+/// How the real PLC is reached, as far as the list says.
+fn gateway(list: &IoList, signals: &[Signal]) -> String {
+    let (about, url, port) = match &list.link {
+        None => return String::new(),
+        Some(ListLink::Server(url)) => ("", url.as_str(), None),
+        Some(ListLink::Ads(port)) => {
+            ("# The real PLC; a TwinCAT on another machine is `ads://ITS-ADDRESS`.\n", "ads://127.0.0.1", *port)
+        }
+    };
+    let entry = |signal: &Signal| {
+        let places = vec![Place::Only(signal.point.symbol.clone()?)];
+        Some(Entry::Mapped { name: signal.name.clone(), places })
+    };
+    let entries = signals.iter().filter_map(entry).collect();
+    let fragment = Fragment { client: "plc".to_owned(), url: url.to_owned(), system_words: false, entries };
+    let port = port.map(|port| format!("\n[clients.plc.gateway.ads]\nport = {port}\n")).unwrap_or_default();
+    format!("\n{about}{fragment}{port}")
+}
+
+/// `plc/main.st`, for a list that has no program.
+pub(super) fn stand_in(name: &str, variables: &[(&Signal, String)]) -> String {
+    let mut text = format!("(* The inputs and outputs of {name}, and no program. *)\n\nPROGRAM Main\n");
+    for (direction, section) in [(Direction::Input, "VAR_INPUT"), (Direction::Output, "VAR_OUTPUT")] {
+        let mut of_section = variables.iter().filter(|(signal, _)| signal.point.direction == direction).peekable();
+        if of_section.peek().is_none() {
+            continue;
+        }
+        let _ = writeln!(text, "{section}");
+        for (signal, variable) in of_section {
+            let _ = writeln!(text, "    {variable} : {};", signal.point.ty);
+        }
+        text += "END_VAR\n";
+    }
+    // An output that nothing writes is a finding of `check`; the programs that come in its place write it.
+    for (_, variable) in variables.iter().filter(|(signal, _)| signal.point.direction == Direction::Output) {
+        let _ = writeln!(text, "    {variable} := {variable};");
+    }
+    text + "END_PROGRAM\n"
+}
+
+/// `README.md`.
+pub(super) fn readme(name: &str, list: &IoList, plc: &Plc) -> String {
+    let main = match plc {
+        Plc::StandIn { .. } => "| `plc/main.st` | a stand-in for the PLC: inputs and outputs, no program |\n",
+        Plc::Sources { .. } => "",
+    };
+    let sources = match plc {
+        Plc::StandIn { .. } => {
+            "2. Name the PLC's sources in `[clients.plc]`, and in `bind` the variable of each signal that is called \
+             otherwise.\n"
+        }
+        Plc::Sources { .. } => "2. Look at `bind` in `scenario.toml`: it names the variable of each signal.\n",
+    };
+    format!(
+        "# {name}
+
+Made of {from} ({title}).
+
+| file | what it is |
+|---|---|
+| `scenario.toml` | the session: the signals of the list, the clients |
+{main}
+```sh
+onescan run {name}       # run it: all inputs of the PLC are 0 and FALSE
+onescan wiring {name}    # show which signal connects what
+onescan check {name}     # check the PLC's sources
+```
+
+What to do next:
+
+1. Write the plant as a scene, `plant.toml`, and name it in `[clients.plant]`; or let `[clients.plant]` be a program of
+   your own, `kind = \"external\"`.
+{sources}3. Say in `[[expect]]` what every run must show.
+",
+        from = file_name(list),
+        title = list.kind.title(),
+    )
+}
