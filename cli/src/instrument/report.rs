@@ -4,7 +4,7 @@ use std::io::{self, Write};
 use std::path::Path;
 
 use onescan_plc_shim::Diagnostics;
-use onescan_plc_shim::instrument::{File, Project, Target, diff};
+use onescan_plc_shim::instrument::{File, Project, diff};
 use onescan_report::OutputError;
 use serde::Serialize;
 

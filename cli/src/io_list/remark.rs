@@ -62,7 +62,7 @@ impl Remarks {
                     unit = next.map_or_else(String::new, |(_, _, name)| name.to_ascii_uppercase());
                 }
                 TokenKind::Keyword(Keyword::EndProgram | Keyword::EndFunctionBlock | Keyword::EndFunction) => {
-                    unit.clear()
+                    unit.clear();
                 }
                 TokenKind::Keyword(Keyword::EndVar) => is_in_section = false,
                 TokenKind::Keyword(keyword) if keyword.text().starts_with("VAR") => {

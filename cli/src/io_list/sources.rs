@@ -66,7 +66,7 @@ pub fn read(path: &Path) -> Result<IoList, ListError> {
     let programs: Vec<_> = if plan.is_none() { entries.collect() } else { Vec::new() };
     // Variables alone do not run.
     let runs = plan.is_some() || !programs.is_empty();
-    let sources = runs.then(|| Sources { files, programs, variables: taken.variables });
+    let sources = runs.then_some(Sources { files, programs, variables: taken.variables });
     Ok(IoList { cycle, sources, ..taken.collected.list(ListKind::Sources) })
 }
 
@@ -170,7 +170,7 @@ fn home(application: &Application, leaf: &Variable) -> Option<(String, String)> 
         let root = leaf.path.get(..end)?;
         Some((root.to_owned(), application.variable(root).ok()?.address?))
     })
-    .last()
+    .next_back()
 }
 
 fn common_divisor(a: u64, b: u64) -> u64 {

@@ -57,8 +57,15 @@ pub struct Input {
     file: SourceFile,
     encoding: Option<Encoding>,
     diagnostics: Vec<Diagnostic>,
-    /// For a file of a library, the namespace that its names are known by, if there is one.
-    library: Option<Option<String>>,
+    owner: Owner,
+}
+
+/// Whose file it is.
+#[derive(Debug, Clone, PartialEq, Eq)]
+enum Owner {
+    Program,
+    /// A library, whose names are known by this namespace, too, if it has one.
+    Library(Option<String>),
 }
 
 impl Input {
@@ -70,8 +77,8 @@ impl Input {
     /// Reads the bytes of the file `name` of a library. Its names are known with its namespace before them, and
     /// without. Program text says for itself which namespace it is in.
     pub fn of_library(namespace: Option<&str>, name: &str, kind: SourceKind, bytes: &[u8]) -> Self {
-        let library = Some(namespace.map(str::to_owned));
-        Self { library, ..Self::read_in(namespace, name, kind, bytes) }
+        let owner = Owner::Library(namespace.map(str::to_owned));
+        Self { owner, ..Self::read_in(namespace, name, kind, bytes) }
     }
 
     fn read_in(namespace: Option<&str>, name: &str, kind: SourceKind, bytes: &[u8]) -> Self {
@@ -99,7 +106,7 @@ impl Input {
                 }
                 let (dialect, diagnostics) = dialect_of(name, &text);
                 let file = SourceFile::new(name, text).in_dialect(dialect);
-                return Self { file, encoding: None, diagnostics, library: None };
+                return Self { file, encoding: None, diagnostics, owner: Owner::Program };
             }
             SourceKind::TwinCat => twincat::extract(&text, namespace),
             SourceKind::PlcOpen => plcopen::extract(&text),
@@ -107,7 +114,7 @@ impl Input {
         let taken = read.unwrap_or_else(|error| Taken::malformed(&error));
         let (extracted, origin) = taken.extract.finish(text);
         let file = SourceFile::extracted(name, extracted, origin).in_dialect(taken.dialect);
-        Self { file, encoding: None, diagnostics: taken.diagnostics, library: None }
+        Self { file, encoding: None, diagnostics: taken.diagnostics, owner: Owner::Program }
     }
 
     fn holding_no_program(name: &str, text: &Arc<str>, foreign: Foreign) -> Self {
@@ -120,7 +127,7 @@ impl Input {
         }
         let (extracted, origin) = taken.extract.finish(text.clone());
         let file = SourceFile::extracted(name, extracted, origin).in_dialect(Dialect::of_file(name));
-        Self { file, encoding: None, diagnostics: taken.diagnostics, library: None }
+        Self { file, encoding: None, diagnostics: taken.diagnostics, owner: Owner::Program }
     }
 
     /// A project that lists files that are not there: each is reported at its place. What is missed of them is an error
@@ -137,14 +144,14 @@ impl Input {
             file: SourceFile::extracted(name, extracted, origin),
             encoding: None,
             diagnostics: taken.diagnostics,
-            library: None,
+            owner: Owner::Program,
         }
     }
 
     /// A file of which nothing is read.
     pub fn unreadable(name: &str, code: Code, message: impl Into<String>) -> Self {
         let found = Diagnostic::error(code, Span::new(UNNUMBERED, 0, 0), message);
-        Self { file: SourceFile::new(name, ""), encoding: None, diagnostics: vec![found], library: None }
+        Self { file: SourceFile::new(name, ""), encoding: None, diagnostics: vec![found], owner: Owner::Program }
     }
 
     /// The same file, read as `dialect` whatever its name says.

@@ -6,7 +6,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::Input;
+use super::{Input, Owner};
 use crate::syntax::ast::{Declaration, Section, TypeDeclaration, TypeSpecKind};
 use crate::syntax::token::TokenKind;
 use crate::syntax::{SourceMap, parse_source, tokenize_in};
@@ -38,12 +38,13 @@ pub fn needed(inputs: Vec<Input>) -> Vec<Input> {
 /// that asks for it, and one that declares nothing that could be named.
 fn names_of_library(input: &Input) -> BTreeSet<String> {
     let mut names = BTreeSet::new();
-    if input.library.is_some() && !is_always_linked(input.file.text()) {
+    let Owner::Library(namespace) = &input.owner else { return names };
+    if !is_always_linked(input.file.text()) {
         let file = SourceMap::default().add(input.file.clone());
         collect(&parse_source(file, &input.file).unit.declarations, &mut names);
     }
     // The name of the library itself stands before all that it has.
-    if let Some(Some(namespace)) = &input.library {
+    if let Some(namespace) = namespace {
         names.remove(&namespace.to_ascii_uppercase());
     }
     names
@@ -80,7 +81,7 @@ fn collect_type(declaration: &TypeDeclaration, names: &mut BTreeSet<String>) {
 }
 
 fn collect_variables(section: &Section, names: &mut BTreeSet<String>) {
-    names.extend(section.variables.iter().flat_map(|variable| &variable.names).map(|name| name.key()));
+    names.extend(section.variables.iter().flat_map(|variable| &variable.names).map(crate::syntax::ast::Ident::key));
 }
 
 /// The names in a file's text, in capitals.

@@ -2,6 +2,7 @@
 //! CONFIGURATION, and the gateway's variables at addresses. The project's files stay as they are.
 
 use std::collections::BTreeMap;
+use std::fmt::Write as _;
 
 use super::address::{Address, Room};
 use super::exchanged::{Exchanged, Way};
@@ -51,9 +52,8 @@ pub(super) fn ported(plain: &Plain, options: &Options) -> Result<Project, Instru
     let merged = Merged::of(plain, &trees, &words);
     // What has no form is found in the project as it is, where it has a place that its author knows.
     matiec::lowered(&merged.text, merged.dialect).map_err(|unsaid| wrong(merged.diagnostics(unsaid)))?;
-    let mut layout = Layout::new(&merged, &words, options).map_err(|text| wrong(vec![merged.nowhere(&text)]))?;
-    let text =
-        layout.handed_over(&merged, &table, &survey, options).map_err(|text| wrong(vec![merged.nowhere(&text)]))?;
+    let mut layout = Layout::new(&merged, &words, options).map_err(|text| wrong(vec![nowhere(&text)]))?;
+    let text = layout.handed_over(&merged, &table, &survey, options).map_err(|text| wrong(vec![nowhere(&text)]))?;
     let behind = with_shim(&text, merged.dialect, &table, options)?;
     let lowered = matiec::lowered(&behind, merged.dialect).map_err(|unsaid| wrong(merged.own(unsaid)))?;
     let interval = options.cycle.unwrap_or(table.shortest);
@@ -231,10 +231,11 @@ impl Merged {
     fn own(&self, unsaid: Vec<Unsaid>) -> Vec<Diagnostic> {
         self.diagnostics(unsaid.into_iter().map(|each| Unsaid { line: None, ..each }).collect())
     }
+}
 
-    fn nowhere(&self, text: &str) -> Diagnostic {
-        Diagnostic::error(Code::UnsupportedFeature, Span::new(FileId(0), 0, 0), text.to_owned())
-    }
+/// What is wrong with the whole project.
+fn nowhere(text: &str) -> Diagnostic {
+    Diagnostic::error(Code::UnsupportedFeature, Span::new(FileId(0), 0, 0), text.to_owned())
 }
 
 fn unit_of(configuration: &crate::syntax::ast::Configuration) -> Vec<&Section> {
@@ -296,7 +297,7 @@ impl Layout {
         for exchanged in &options.exchanged {
             let found = self.place(exchanged, table, survey)?;
             if let Some(declaration) = &found.declaration {
-                declared += &format!("    {declaration};\n");
+                let _ = writeln!(declared, "    {declaration};");
             }
             for (at, path) in found.programs {
                 let Some(handover) = handovers.get_mut(at) else { continue };
@@ -307,7 +308,7 @@ impl Layout {
         }
         let mut text = merged.text.clone();
         if !declared.is_empty() {
-            text += &format!("\nVAR_GLOBAL\n{declared}END_VAR\n");
+            let _ = writeln!(text, "\nVAR_GLOBAL\n{declared}END_VAR");
         }
         let file = SourceFile::new("project.st", text).in_dialect(merged.dialect);
         let unit = parse_source(FileId(0), &file).unit;
@@ -341,13 +342,13 @@ impl Layout {
         let own = self.globals.variables.iter().find(|global| global.name.eq_ignore_ascii_case(root));
         let own = own.and_then(|global| global.address.as_deref()).and_then(Address::parse);
         if let Some(address) = own.filter(|_| is_whole_global) {
-            return self.note(exchanged, &root.to_owned(), address, Found::direct(carrier));
+            return self.note(exchanged, root, address, Found::direct(carrier));
         }
         let none = || format!("there is no place for `{name}` that Modbus reaches");
         let address = asked.or_else(|| self.room.next(carrier.width, exchanged.way)).ok_or_else(none)?;
         if is_whole_global && carrier.is_own() {
             self.addresses.insert(root.to_ascii_uppercase(), address.to_string());
-            return self.note(exchanged, &root.to_owned(), address, Found::direct(carrier));
+            return self.note(exchanged, root, address, Found::direct(carrier));
         }
         let at_address = self.fresh(&exchanged.variable);
         let external = format!("{at_address} : {}", carrier.type_name());

@@ -12,6 +12,7 @@
 //! function blocks at the head of the body.
 
 use std::collections::BTreeMap;
+use std::fmt::Write as _;
 use std::ops::Range;
 
 use super::tasks::TaskTable;
@@ -230,21 +231,20 @@ impl<'a> RealInputs<'a> {
         let mut added = Additions::default();
         for (name, direct) in &self.direct {
             let (own, twin, ty) = (format!("SDSP_{name}"), twin(name), type_name(direct.width));
-            added.globals += &format!("    {own} : {ty};    (* {} in statements *)\n", direct.address);
-            added.globals += &format!("    {twin} AT {} : {ty};\n", direct.address);
-            added.externals += &format!("    {own} : {ty};\n    {twin} : {ty};\n");
-            added.statements += &format!("        {own} := {twin};\n");
+            let _ = writeln!(added.globals, "    {own} : {ty};    (* {} in statements *)", direct.address);
+            let _ = writeln!(added.globals, "    {twin} AT {} : {ty};", direct.address);
+            let _ = writeln!(added.externals, "    {own} : {ty};\n    {twin} : {ty};");
+            let _ = writeln!(added.statements, "        {own} := {twin};");
         }
         for (home, variable) in &self.globals {
             let Some(name) = variable.names.first().map(|name| name.text.as_str()) else { continue };
             let twin = twin(name);
             let ty = sources.text(variable.spec.span);
-            match home {
-                Some(home) => added.statements += &format!("        {home}.{name} := {home}.{twin};\n"),
-                None => {
-                    added.externals += &format!("    {name} : {ty};\n    {twin} : {ty};\n");
-                    added.statements += &format!("        {name} := {twin};\n");
-                }
+            if let Some(home) = home {
+                let _ = writeln!(added.statements, "        {home}.{name} := {home}.{twin};");
+            } else {
+                let _ = writeln!(added.externals, "    {name} : {ty};\n    {twin} : {ty};");
+                let _ = writeln!(added.statements, "        {name} := {twin};");
             }
         }
         added

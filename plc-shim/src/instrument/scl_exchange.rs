@@ -6,6 +6,7 @@
 //! else on the next even byte.
 
 use std::collections::BTreeSet;
+use std::fmt::Write as _;
 
 use onescan_base::{ElementaryType, SignalType};
 
@@ -45,8 +46,12 @@ pub(super) fn text(exchanged: &[Exchanged]) -> Option<String> {
     let (inputs, outputs) = (of(Way::ToPlc), of(Way::FromPlc));
     let (mut to_plc, mut from_plc) = (Block::default(), Block::default());
     let taken: String = inputs.into_iter().map(|each| to_plc.taken(each)).collect();
-    WORDS_TO_PLC.iter().for_each(|(word, form)| to_plc.add(word, *form, ""));
-    WORDS_FROM_PLC.iter().for_each(|(word, form)| from_plc.add(word, *form, ""));
+    for (word, form) in &WORDS_TO_PLC {
+        to_plc.add(word, *form, "");
+    }
+    for (word, form) in &WORDS_FROM_PLC {
+        from_plc.add(word, *form, "");
+    }
     let given: String = outputs.into_iter().map(|each| from_plc.given(each)).collect();
     let replaced = [
         ("SDSP_NUMBER_TO", DB_TO_PLC.to_string()),
@@ -95,12 +100,13 @@ impl Form {
 fn form(ty: SignalType) -> Option<Form> {
     match ty {
         SignalType::Elementary(ElementaryType::Time) => Some(Form { is_time: true, ..Form::LINT }),
-        // These count something else there.
-        SignalType::Elementary(ElementaryType::Date | ElementaryType::Tod) => None,
+        // Dates and times of day count something else there, and strings begin with two lengths.
+        SignalType::Elementary(ElementaryType::Date | ElementaryType::Tod)
+        | SignalType::String(_)
+        | SignalType::Wstring(_) => None,
         SignalType::Elementary(ty) => {
             scl::elementary_name(ty).map(|written| Form { size: ty.size() as usize, written, is_time: false })
         }
-        SignalType::String(_) | SignalType::Wstring(_) => None,
     }
 }
 
@@ -161,7 +167,7 @@ impl Block {
         let about = if signal.is_empty() { String::new() } else { format!(" {signal}") };
         self.names.insert(name.to_ascii_uppercase());
         let (name, ty) = (scl::members(name), form.written);
-        self.lines += &format!("      {name} : {ty}; // {place}{about}\n");
+        let _ = writeln!(self.lines, "      {name} : {ty}; // {place}{about}");
     }
 
     fn place(&mut self, form: Form) -> String {
@@ -186,7 +192,7 @@ impl Block {
 fn variable(path: &str) -> String {
     if path.starts_with('%') {
         // Bits need no letter there.
-        return path.replacen("X", "", 1);
+        return path.replacen('X', "", 1);
     }
     let end = path.find(['.', '[']).unwrap_or(path.len());
     let (block, rest) = path.split_at(end);

@@ -64,7 +64,7 @@ fn wrap(pou: &Pou, handover: &Handover, file: &SourceFile, edits: &mut Edits) {
         edits.replace(keyword.start..keyword.end, "FUNCTION_BLOCK");
     }
     edits.replace(pou.name.span.start..pou.name.span.end, format!("{name}_Chart"));
-    if let Some(keyword) = inside().filter(|token| word(Keyword::EndProgram)(token.kind)).last() {
+    if let Some(keyword) = inside().rfind(|token| word(Keyword::EndProgram)(token.kind)) {
         let program = format!(
             "END_FUNCTION_BLOCK\n\nPROGRAM {name}\nVAR\n    Chart : {name}_Chart;\nEND_VAR\n{}{}    Chart();\n{}END_PROGRAM\n",
             handover.declarations(),

@@ -28,12 +28,11 @@ impl Collector<'_> {
             })
             .collect();
         for (slot, path, instances, is_null) in &found {
-            let ty = match self.only_own(instances).filter(|_| !is_null) {
-                Some(block) => Ty::Pointer(ReferenceKind::Reference, Box::new(Ty::Declared(block))),
-                None => {
-                    let interface = self.common_interface(instances).unwrap_or_else(|| self.new_interface(path));
-                    self.ty_of(&interface)
-                }
+            let ty = if let Some(block) = self.only_own(instances).filter(|_| !is_null) {
+                Ty::Pointer(ReferenceKind::Reference, Box::new(Ty::Declared(block)))
+            } else {
+                let interface = self.common_interface(instances).unwrap_or_else(|| self.new_interface(path));
+                self.ty_of(&interface)
             };
             self.slots.settle(*slot, ty);
         }

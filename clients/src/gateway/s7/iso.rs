@@ -215,7 +215,7 @@ mod tests {
         assert_eq!(told(&[3, 0, 0, 5, 0]), BadTelegram::Length(5));
         assert_eq!(told(&[3, 0, 0, 7, 9, DATA, LAST]), BadTelegram::Length(7));
         assert_eq!(told(&[3, 0, 0, 7, 2, 0x20, LAST]), BadTelegram::Kind(0x20));
-        let part = telegram(&[DATA, 0], &[0; 40_000]);
+        let part = telegram(&[DATA, 0], &vec![0; 40_000]);
         assert_eq!(told(&[part.clone(), part].concat()), BadTelegram::Endless);
     }
 

@@ -165,15 +165,15 @@ mod tests {
         let each = |places: &[Range<usize>]| -> Vec<(u32, u16)> {
             messages(240, 3, places, &block).iter().map(|(item, _)| (item.at, item.len)).collect()
         };
-        assert_eq!(each(&[0..38]), [(0, 38)]);
+        assert_eq!(each(std::slice::from_ref(&(0..38))), [(0, 38)]);
         assert_eq!(each(&[0..500, 502..503]), [(0, 212), (212, 212), (424, 76), (502, 1)]);
     }
 
     /// The grant is in the last message, whole and alone, unless all is in one.
     #[test]
     fn a_grant_may_lie_anywhere() {
-        assert_eq!(without(&[0..38], &(34..38)), [0..34]);
+        assert_eq!(without(std::slice::from_ref(&(0..38)), &(34..38)), std::slice::from_ref(&(0..34)));
         assert_eq!(without(&[0..38, 40..50], &(8..12)), [0..8, 12..38, 40..50]);
-        assert_eq!(without(&[34..38], &(34..38)), [0..0; 0]);
+        assert!(without(std::slice::from_ref(&(34..38)), &(34..38)).is_empty());
     }
 }

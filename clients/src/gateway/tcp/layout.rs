@@ -156,7 +156,7 @@ impl Layout {
     /// points lie. As few ranges as there are, in their order.
     pub fn owned(&self) -> Vec<Range<usize>> {
         if self.is_own {
-            return vec![0..self.size];
+            return std::iter::once(0..self.size).collect();
         }
         let mut places: Vec<Range<usize>> = self.moves.iter().map(|each| each.place.bytes()).collect();
         places.sort_by_key(|place| place.start);

@@ -2,6 +2,7 @@
 //! task, in the order of the line.
 
 use std::collections::{BTreeMap, BTreeSet};
+use std::fmt::Write as _;
 
 use super::Page;
 use crate::syntax::Span;
@@ -143,9 +144,9 @@ fn configuration(page: &Page<'_>, addresses: &BTreeMap<String, String>, cycle: &
         text += &variables(page, section, addresses);
     }
     text += "    RESOURCE Res0 ON PLC\n";
-    text += &format!("        TASK SDSP_Cycle(INTERVAL := {}, PRIORITY := 0);\n", cycle.interval);
+    let _ = writeln!(text, "        TASK SDSP_Cycle(INTERVAL := {}, PRIORITY := 0);", cycle.interval);
     for (instance, program) in &cycle.programs {
-        text += &format!("        PROGRAM {instance} WITH SDSP_Cycle : {program};\n");
+        let _ = writeln!(text, "        PROGRAM {instance} WITH SDSP_Cycle : {program};");
     }
     text + "    END_RESOURCE\nEND_CONFIGURATION"
 }
@@ -167,7 +168,7 @@ fn variables(page: &Page<'_>, section: &Section, addresses: &BTreeMap<String, St
             let at = address.map(|address| format!(" AT {address}")).unwrap_or_default();
             let initial =
                 variable.initial.as_ref().map(|initial| format!(" := {}", page.text(initial.span))).unwrap_or_default();
-            text += &format!("        {}{at} : {}{initial};\n", name.text, page.text(variable.spec.span));
+            let _ = writeln!(text, "        {}{at} : {}{initial};", name.text, page.text(variable.spec.span));
         }
     }
     text + "    END_VAR\n"

@@ -1,8 +1,11 @@
 //! Global variables, which a unit of the second edition declares again where it uses them (2nd ed. 2.5.2.2).
 
+use std::fmt::Write as _;
+
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::{Finding, Page};
+use crate::output::scl::scope::Scope;
 use crate::source::edits::Edits;
 use crate::syntax::Span;
 use crate::syntax::ast::{Call, Expr, ExprKind, PouKind, SectionKind};
@@ -12,12 +15,12 @@ use crate::syntax::walk::{self, Visitor};
 pub(super) fn declare(page: &Page<'_>, edits: &mut Edits) -> Vec<Finding> {
     let mut findings = Vec::new();
     for pou in page.pous() {
-        let scope = page.scope(pou);
+        let scope = Scope::of(pou);
         let external = pou.sections.iter().filter(|section| section.kind == SectionKind::External);
         let declared: BTreeSet<String> = external
             .flat_map(|section| &section.variables)
             .flat_map(|each| &each.names)
-            .map(|name| name.key())
+            .map(crate::syntax::ast::Ident::key)
             .collect();
         let mut used = Used::default();
         walk::unit(pou, &mut used);
@@ -36,7 +39,7 @@ pub(super) fn declare(page: &Page<'_>, edits: &mut Edits) -> Vec<Finding> {
             }
             let constant = if global.is_constant { " CONSTANT" } else { "" };
             let spec = page.text(global.variable.spec.span);
-            text += &format!("VAR_EXTERNAL{constant} {} : {spec}; END_VAR\n", global.name.text);
+            let _ = writeln!(text, "VAR_EXTERNAL{constant} {} : {spec}; END_VAR", global.name.text);
         }
         if !text.is_empty() {
             let at = pou.sections.last().map_or(pou.name.span.end, |section| section.span.end);

@@ -1,6 +1,8 @@
 //! Arrays of function blocks, which MatIEC has not: each instance becomes a variable of its own, and a loop that chooses
 //! one by its variable is written round by round.
 
+use std::fmt::Write as _;
+
 use std::collections::BTreeMap;
 
 use super::repeat::{Loops, end_of};
@@ -56,7 +58,7 @@ fn bounds(page: &Page<'_>, scope: &Scope<'_>, dimension: &Dimension) -> Option<(
 pub(super) fn unroll(page: &Page<'_>, edits: &mut Edits) -> Vec<Finding> {
     let mut findings = Vec::new();
     for pou in page.pous() {
-        let scope = page.scope(pou);
+        let scope = Scope::of(pou);
         let arrays = match arrays(page, pou, &scope) {
             Ok(arrays) if arrays.is_empty() => continue,
             Ok(arrays) => arrays,
@@ -123,7 +125,7 @@ fn rounds(
     let mut index = from;
     let is_more = |index: i128| if step > 0 { index <= to } else { index >= to };
     while is_more(index) && (index - from).abs() < MOST * step.abs() {
-        whole += &format!("{variable} := {index};\n");
+        let _ = writeln!(whole, "{variable} := {index};");
         let mut at = start;
         for choice in choices {
             whole += text.get(at as usize..choice.start as usize).unwrap_or("");
@@ -134,7 +136,7 @@ fn rounds(
         whole.push('\n');
         index += step;
     }
-    whole += &format!("{variable} := {index}");
+    let _ = write!(whole, "{variable} := {index}");
     Ok((whole, behind))
 }
 
@@ -155,7 +157,7 @@ fn jumps(list: &[Statement]) -> bool {
 pub(super) fn name(page: &Page<'_>, edits: &mut Edits) -> Vec<Finding> {
     let mut findings = Vec::new();
     for pou in page.pous() {
-        let scope = page.scope(pou);
+        let scope = Scope::of(pou);
         let Ok(arrays) = arrays(page, pou, &scope) else { continue };
         if arrays.is_empty() {
             continue;

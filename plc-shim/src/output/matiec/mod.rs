@@ -10,7 +10,7 @@
 //! | [`repeat`] | FOR, which MatIEC passes over where its first value is its last | WHILE |
 //! | [`empty`] | branches without statements | a loop that never runs |
 //! | [`start`] | initial values of arrays of structures | assignments in the first scan |
-//! | [`external`] | global variables that a unit uses | their VAR_EXTERNAL |
+//! | [`external`] | global variables that a unit uses | their `VAR_EXTERNAL` |
 //! | [`refuse`] | what there is no way for | nothing: it is refused |
 //! | [`assemble`] | types, functions, blocks, programs, global variables | the same in that order, and a CONFIGURATION |
 //!
@@ -31,7 +31,6 @@ use std::collections::BTreeMap;
 
 use super::Refused;
 use super::scl::names::Names;
-use super::scl::scope::Scope;
 use crate::dialect::Dialect;
 use crate::input::Input;
 use crate::input::kind::SourceKind;
@@ -112,10 +111,6 @@ impl<'a> Page<'a> {
         }
         sections
     }
-
-    pub(super) fn scope(&self, pou: &'a Pou) -> Scope<'a> {
-        Scope::of(pou)
-    }
 }
 
 fn global_sections(configuration: &Configuration) -> impl Iterator<Item = &Section> {
@@ -133,7 +128,7 @@ const ROUNDS: usize = 16;
 /// # Errors
 /// What MatIEC has no form for.
 pub(crate) fn lowered(text: &str, dialect: Dialect) -> Result<Lowered, Vec<Unsaid>> {
-    let mut text = Text { text: text.to_owned(), dialect, origins: None };
+    let mut text = Text { current: text.to_owned(), dialect, origins: None };
     text.step(refuse::find)?;
     text.replace(comment::plain);
     text.step(list::split)?;
@@ -152,13 +147,13 @@ pub(crate) fn lowered(text: &str, dialect: Dialect) -> Result<Lowered, Vec<Unsai
     text.step(empty::fill)?;
     text.step(start::lower)?;
     text.step(external::declare)?;
-    Ok(Lowered { text: text.text })
+    Ok(Lowered { text: text.current })
 }
 
 /// The whole file: what `text` declares in MatIEC's order, with a configuration.
 pub(crate) fn assembled(text: &str, dialect: Dialect, addresses: &BTreeMap<String, String>, cycle: &Cycle) -> String {
     let mut whole = String::new();
-    let text = Text { text: text.to_owned(), dialect, origins: None };
+    let text = Text { current: text.to_owned(), dialect, origins: None };
     text.read(|page| whole = assemble::whole(page, addresses, cycle));
     whole
 }
@@ -166,14 +161,14 @@ pub(crate) fn assembled(text: &str, dialect: Dialect, addresses: &BTreeMap<Strin
 /// The global variables that a text declares, and the addresses that it gives them.
 pub(crate) fn globals(text: &str, dialect: Dialect) -> Globals {
     let mut found = Globals::default();
-    let text = Text { text: text.to_owned(), dialect, origins: None };
+    let text = Text { current: text.to_owned(), dialect, origins: None };
     text.read(|page| found = assemble::globals(page));
     found
 }
 
 /// A text between two steps.
 struct Text {
-    text: String,
+    current: String,
     dialect: Dialect,
     /// For each line the line of the text that was given; nothing while it is that text itself.
     origins: Option<LineMap>,
@@ -181,7 +176,7 @@ struct Text {
 
 impl Text {
     fn read(&self, look: impl FnOnce(&Page<'_>) + Send) {
-        let input = Input::from_text("project.st", SourceKind::Text, self.text.as_str()).in_dialect(self.dialect);
+        let input = Input::from_text("project.st", SourceKind::Text, self.current.as_str()).in_dialect(self.dialect);
         crate::application::with_room(|| {
             let parsed = crate::application::Parsed::new([input]);
             let rename = |_: &str| None;
@@ -204,7 +199,7 @@ impl Text {
         if edits.is_empty() {
             return Ok(false);
         }
-        let edited = edits.apply(&self.text).map_err(|conflict| {
+        let edited = edits.apply(&self.current).map_err(|conflict| {
             let span = Span::new(FileId(0), conflict.at, conflict.at);
             vec![self.unsaid(Finding::new(span, "what stands here", "write it in simpler statements"))]
         })?;
@@ -213,13 +208,13 @@ impl Text {
     }
 
     fn replace(&mut self, change: fn(&str, Dialect) -> Edits) {
-        if let Ok(edited) = change(&self.text, self.dialect).apply(&self.text) {
+        if let Ok(edited) = change(&self.current, self.dialect).apply(&self.current) {
             self.now(edited.text, edited.lines);
         }
     }
 
     fn now(&mut self, text: String, lines: LineMap) {
-        self.text = text;
+        self.current = text;
         self.origins = Some(match self.origins.take() {
             None => lines,
             Some(before) => {
@@ -229,7 +224,7 @@ impl Text {
     }
 
     fn unsaid(&self, finding: Finding) -> Unsaid {
-        let before = self.text.get(..finding.span.start as usize).unwrap_or("");
+        let before = self.current.get(..finding.span.start as usize).unwrap_or("");
         let line = before.matches('\n').count() as u32 + 1;
         let line = self.origins.as_ref().map_or(Some(line), |origins| origins.original(line));
         Unsaid { line, message: finding.message, help: finding.help }

@@ -21,7 +21,7 @@ pub(super) fn lower(page: &Page<'_>, edits: &mut Edits) -> Vec<Finding> {
             .iter()
             .filter(|(span, _)| !loops.found.iter().any(|(other, _)| within(*other, *span)))
             .collect();
-        let scope = page.scope(pou);
+        let scope = Scope::of(pou);
         for (number, (span, inner)) in inner.into_iter().enumerate() {
             let place = Place { page, pou, scope: &scope, span: *span, number: number + 1 };
             if let Err(found) = place.lower(inner, edits) {
@@ -48,7 +48,7 @@ impl Visitor for Loops {
     }
 }
 
-/// Where the word END_FOR of a loop begins and ends.
+/// Where the word `END_FOR` of a loop begins and ends.
 pub(super) fn end_of(page: &Page<'_>, span: Span) -> Option<(u32, u32)> {
     let tokens = tokenize_in(page.file.dialect(), page.file.text());
     let inside = tokens.iter().rev().skip_while(|token| token.start >= span.end);

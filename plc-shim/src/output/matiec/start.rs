@@ -55,15 +55,14 @@ fn is_structure(page: &Page<'_>, key: &str) -> bool {
 fn values(page: &Page<'_>, name: &str, spec: &TypeSpec, initial: &Initialiser) -> Option<String> {
     let TypeSpecKind::Array(dimensions, _) = &spec.kind else { return None };
     let ([only], InitialiserKind::Array(elements)) = (dimensions.as_slice(), &initial.kind) else { return None };
-    let mut index = page.names.integer(&only.low)?;
+    let low = page.names.integer(&only.low)?;
     let mut text = String::new();
-    for element in elements {
+    for (index, element) in (low..).zip(elements) {
         let InitialiserKind::Struct(members) = &element.kind else { return None };
         for member in members {
             let InitialiserKind::Value(value) = &member.value.kind else { return None };
             let _ = writeln!(text, "        {name}[{index}].{} := {};", member.name.text, page.text(value.span));
         }
-        index += 1;
     }
     Some(text)
 }

@@ -18,14 +18,12 @@ pub(super) fn lower(page: &Page<'_>, edits: &mut Edits) -> Vec<Finding> {
     let mut writer = Writer { page, scope: None, edits, done: BTreeSet::new(), findings: Vec::new() };
     for declaration in &page.unit.declarations {
         match declaration {
-            Declaration::Type(named) => {
-                if !matches!(named.spec.kind, TypeSpecKind::Enumeration(..)) {
-                    writer.spec(&named.spec);
-                    named.initial.iter().for_each(|initial| writer.initial(initial));
-                }
+            Declaration::Type(named) if !matches!(named.spec.kind, TypeSpecKind::Enumeration(..)) => {
+                writer.spec(&named.spec);
+                named.initial.iter().for_each(|initial| writer.initial(initial));
             }
             Declaration::Pou(pou) => {
-                writer.scope = Some(page.scope(pou));
+                writer.scope = Some(Scope::of(pou));
                 pou.result.iter().for_each(|result| writer.spec(result));
                 walk::unit(pou, &mut writer);
                 for member in pou.object.members.iter().map(|member| &member.pou) {
@@ -37,7 +35,7 @@ pub(super) fn lower(page: &Page<'_>, edits: &mut Edits) -> Vec<Finding> {
         }
     }
     for (pou, section) in page.sections() {
-        writer.scope = pou.map(|pou| page.scope(pou));
+        writer.scope = pou.map(Scope::of);
         for variable in &section.variables {
             writer.first_value(&variable.spec, variable.initial.is_some());
             writer.spec(&variable.spec);

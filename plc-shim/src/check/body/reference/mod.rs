@@ -98,9 +98,8 @@ impl Body<'_, '_> {
             Some(Operand::Typed(Expr { kind: ExprKind::Load(place), .. })) if place.storage == Storage::Referred => {
                 Some(Some(Located { place, access: Access::ReadWrite }))
             }
-            Some(_) => None,
             None if self.declarations.has_found_since(known) => Some(None),
-            None => None,
+            _ => None,
         }
     }
 
