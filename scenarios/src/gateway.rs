@@ -1,6 +1,7 @@
 //! A scenario's real PLCs: the link of each, its points, and the instrumented program that it runs.
 
 use std::collections::BTreeMap;
+use std::path::Path;
 
 use onescan_clients::gateway::exchange::{Direction, SystemWords};
 use onescan_clients::gateway::layout_number::layout_number;
@@ -83,7 +84,7 @@ struct LinkTable {
 
 /// True for what stands in the place of a URL and is a file with a link.
 fn is_file(url: &str) -> bool {
-    !url.contains("://") && url.ends_with(".toml")
+    !url.contains("://") && Path::new(url).extension().is_some_and(|extension| extension.eq_ignore_ascii_case("toml"))
 }
 
 /// True for an address of the standard's, and for one by which Modbus finds it in OpenPLC.

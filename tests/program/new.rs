@@ -182,7 +182,7 @@ fn what_is_no_list_is_named_and_nothing_is_written() {
     ] {
         let said = typed(folder.path(), words);
         assert_eq!((said.code, said.out.as_str()), (Some(2), ""), "{words:?}");
-        all += &format!("$ onescan {}\n{}\n", words.join(" "), said.err);
+        all.extend([format!("$ onescan {}\n{}\n", words.join(" "), said.err)]);
     }
     assert!(!folder.path().join("n").exists());
     insta::assert_snapshot!("new_from_no_list", all);

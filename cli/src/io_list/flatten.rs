@@ -90,8 +90,11 @@ fn take_apart(
     }
 }
 
+/// The least and the greatest index of each dimension.
+type Bounds = Vec<(i64, i64)>;
+
 /// Bounds and elements of `ARRAY [0..3, 1..2] OF BYTE`; no bounds if they are no numbers.
-fn array(ty: &str) -> Option<(Option<Vec<(i64, i64)>>, &str)> {
+fn array(ty: &str) -> Option<(Option<Bounds>, &str)> {
     let ty = ty.trim();
     let rest = ty.get(..5).filter(|head| head.eq_ignore_ascii_case("array")).and(ty.get(5..))?.trim_start();
     let (bounds, element) = rest.strip_prefix('[')?.split_once(']')?;

@@ -104,13 +104,13 @@ fn shown(list: &IoList) -> String {
 
 #[test]
 fn each_kind_of_list_is_read() {
-    let mut all = String::new();
-    for (name, kind, bytes) in CASES {
+    let lists = CASES.iter().map(|(name, kind, bytes)| {
         let list = read_bytes(name, *kind, bytes).unwrap_or_else(|error| panic!("{name}: {error}"));
         assert_eq!(guess(Path::new(name), bytes).unwrap(), *kind, "{name}");
-        all += &format!("{name}\n{}\n", shown(&list));
-    }
-    all += &format!("tags.xlsx\n{}", shown(&read_bytes("tags.xlsx", ListKind::TiaXlsx, &tags()).unwrap()));
+        format!("{name}\n{}\n", shown(&list))
+    });
+    let workbook = shown(&read_bytes("tags.xlsx", ListKind::TiaXlsx, &tags()).unwrap());
+    let all: String = lists.chain([format!("tags.xlsx\n{workbook}")]).collect();
     insta::assert_snapshot!(all);
 }
 

@@ -87,7 +87,9 @@ impl Rows {
     fn end(&mut self) -> Result<(), ListError> {
         let cells = std::mem::take(&mut self.cells);
         if self.columns.name.is_none() {
-            cells.iter().for_each(|(column, text)| self.columns.take(text, *column));
+            for (column, text) in &cells {
+                self.columns.take(text, *column);
+            }
             return Ok(());
         }
         let cell = |wanted: Option<u32>| {
