@@ -137,8 +137,25 @@ fn text_becomes_a_source_of_tia_portal_and_goes_again() {
     let said = instrumented(folder.path(), &[".", "--in-place", "--remove"]);
     assert_eq!(said.code, Some(0), "{said:?}");
     assert_eq!(files(folder.path()), before);
-    assert!(after.remove("plc/sdsp.scl").is_some());
+    assert!(after.remove("plc/sdsp.scl").is_some() && after.remove("plc/gateway.toml").is_some());
     assert_eq!(after, before);
+}
+
+/// A file of the user's with the mapping's name is neither written over nor deleted.
+#[test]
+fn a_mapping_of_somebody_else_is_left_as_it_is() {
+    let folder = copied_shear();
+    let own = folder.path().join("plc/gateway.toml");
+    std::fs::write(&own, "mine = true\n").unwrap();
+    let said = instrumented(folder.path(), &[".", "--target", "scl", "--in-place"]);
+    assert_eq!(said.code, Some(2), "{said:?}");
+    insta::assert_snapshot!(said.err);
+    assert!(!folder.path().join("plc/sdsp.scl").exists(), "nothing is written");
+    let said = instrumented(folder.path(), &[".", "--target", "twincat", "--in-place"]);
+    assert_eq!(said.code, Some(0), "{said:?}");
+    let said = instrumented(folder.path(), &[".", "--in-place", "--remove"]);
+    assert_eq!(said.code, Some(0), "{said:?}");
+    assert_eq!(std::fs::read_to_string(&own).unwrap(), "mine = true\n");
 }
 
 /// What SCL has not is told, and nothing is written.

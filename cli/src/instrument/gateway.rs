@@ -13,8 +13,6 @@ use super::error::InstrumentError;
 use crate::map::Fragment;
 use crate::map::fragment::{Entry, Place};
 
-/// The name of the file that it is written to.
-pub const FILE: &str = "gateway.toml";
 /// Where a PLC of which nothing is known is looked for.
 const SOMEWHERE: &str = "modbus://127.0.0.1:502";
 

@@ -10,6 +10,7 @@
 pub mod blocks;
 mod error;
 pub mod gateway;
+mod mapping_file;
 pub mod project;
 pub mod report;
 
@@ -19,7 +20,7 @@ use std::path::{Path, PathBuf};
 use onescan_plc_shim::input::kind::FileKind;
 use onescan_plc_shim::instrument::{self, Inputs, InstrumentError as Refusal, Options, Target};
 use onescan_plc_shim::{Diagnostics, Input, Task, TaskPlan, TimeSpan};
-use onescan_report::file::{Write as FileWrite, write_all_whole};
+use onescan_report::file::write_all_whole;
 use onescan_scenario::Scenario;
 use onescan_scenario::gateway::Agreement;
 use onescan_scenario::load::FILE_NAME;
@@ -144,9 +145,10 @@ pub fn instrument(
         return Ok(ExitCode::Unmet);
     }
     let mut writes = project::writes(config, &project)?;
-    let mapped = mapping.and_then(|text| Some((project::beside(config, &project, gateway::FILE)?, text)));
-    if let Some((path, text)) = &mapped {
-        writes.push(FileWrite { path: path.clone(), bytes: Some(text.clone().into_bytes()) });
+    let mapped = mapping.and_then(|text| Some((mapping_file::place(config, &project)?, text)));
+    match &mapped {
+        Some((path, text)) => writes.push(mapping_file::written(path, text)?),
+        None => writes.extend(mapping_file::deleted(config, &project)?),
     }
     write_all_whole(&writes)?;
     let client = program.client.as_ref().map_or("plc", ClientName::as_str);

@@ -133,19 +133,6 @@ fn is_whole(file: &File, project: &Project) -> bool {
     project.whole.as_ref() == Some(&file.name)
 }
 
-/// Where a file goes that belongs to the whole project; nothing if nothing is written.
-pub(super) fn beside(config: &InstrumentConfig, project: &Project, name: &str) -> Option<PathBuf> {
-    match &config.destination {
-        Destination::Nowhere => None,
-        Destination::Folder(folder) => Some(folder.join(name)),
-        Destination::InPlace => {
-            let is_own = |file: &&File| Path::new(&file.name).file_name().is_some_and(|name| name == "sdsp.scl");
-            let own = project.files.iter().find(is_own).map(|file| &file.name);
-            project.whole.as_ref().or(own).map(|whole| Path::new(whole).with_file_name(name))
-        }
-    }
-}
-
 /// A file's path within the project.
 pub(super) fn relative<'f>(file: &'f File, project: &Path) -> Result<&'f Path, InstrumentError> {
     let root = if project.is_dir() { project } else { project.parent().unwrap_or(Path::new("")) };

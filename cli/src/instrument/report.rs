@@ -132,7 +132,8 @@ fn write_human(
         writeln!(out, "new      {}", path.display())?;
     }
     if let Some(whole) = &project.whole {
-        let whole = Path::new(whole).file_name().unwrap_or_default().display();
+        let shown = Path::new(whole);
+        let whole = if is_one { Path::new(shown.file_name().unwrap_or_default()) } else { shown }.display();
         let with = if is_one { " and its CONFIGURATION" } else { ": import it alone" };
         writeln!(out, "\n{whole} is the whole project with the shim{with}.")?;
     }
