@@ -3,7 +3,7 @@
 use onescan_plc_shim::input::kind::SourceKind;
 use onescan_plc_shim::{Input, inspect};
 
-use crate::drawings::{LEVEL, RUNGS, VESSEL, changed, findings};
+use crate::drawings::{LEVEL, RUNGS, VESSEL, changed, findings, with_a_condition_at_en};
 
 /// The findings with one place of a drawing changed.
 fn told(text: &str, from: &str, to: &str) -> String {
@@ -78,14 +78,9 @@ fn elements_of_networks_that_cannot_be_read() {
 }
 
 #[test]
-fn a_value_that_nothing_gives_while_en_is_false() {
-    let at = RUNGS.find("t=\"BoxTreeTerminator\"").expect("the rail");
-    let (before, behind) = RUNGS.split_at(at);
-    let end = behind.find("</o>\n").expect("its flags");
-    let operand = "t=\"BoxTreeOperand\"><o n=\"Operand\" t=\"Operand\"><v n=\"Operand\">\"go\"</v></o>";
-    let rest = &behind[end + 5..];
-    let text = format!("{before}{operand}{rest}");
-    insta::assert_snapshot!(findings(&text), @"Drawing.TcPOU:459:23: error[L0501]: what `EQ` (id 65) hands on while its EN is FALSE is not known: connect its EN to the power rail, or give its output a variable");
+fn a_value_that_is_taken_while_en_is_false() {
+    let text = with_a_condition_at_en();
+    insta::assert_snapshot!(findings(&text), @"Drawing.TcPOU:459:23: warning[L0501]: what `EQ` (id 65) hands on while its EN is FALSE is not documented, and is FALSE or 0 here: connect its EN to the power rail, or give its output a variable");
 }
 
 #[test]

@@ -91,6 +91,26 @@ fn networks_become_statements_in_their_order() {
     insta::assert_snapshot!(made_of(RUNGS));
 }
 
+/// The comparison is looked at where `go` is TRUE, and a coil takes its value all the same.
+pub(crate) fn with_a_condition_at_en() -> String {
+    let at = RUNGS.find("t=\"BoxTreeTerminator\"").expect("the rail");
+    let (before, behind) = RUNGS.split_at(at);
+    let end = behind.find("</o>\n").expect("its flags");
+    let operand = "t=\"BoxTreeOperand\"><o n=\"Operand\" t=\"Operand\"><v n=\"Operand\">\"go\"</v></o>";
+    format!("{before}{operand}{}", &behind[end + 5..])
+}
+
+#[test]
+fn a_box_that_is_not_enabled_hands_on_false() {
+    let mut rig = rig(&with_a_condition_at_en());
+    let mut idle = |go| {
+        rig.set("Rungs.go", go);
+        rig.scan().expect("no fault");
+        rig.int("Rungs.idle")
+    };
+    assert_eq!([idle(0), idle(1), idle(0)], [0, 1, 0]);
+}
+
 #[test]
 fn contacts_coils_and_branches_do_what_is_drawn() {
     let mut rig = rig(RUNGS);

@@ -250,3 +250,56 @@ fn pvoid_is_a_number_as_wide_as_a_pointer() {
         30,
     );
 }
+
+#[test]
+fn a_negative_literal_is_the_unsigned_number_of_its_bits_and_is_reported() {
+    let text = "PROGRAM P VAR a : UINT := -1; b : ULINT; c : USINT; r : DINT; END_VAR
+         b := -2; c := -128; r := a; IF b = 18446744073709551614 THEN r := r + c; END_IF; END_PROGRAM";
+    gives(text, 65_535 + 128);
+    for dialect in VENDORS {
+        let found = findings_in(dialect, text);
+        assert!(found.findings().iter().all(|each| each.diagnostic().severity == Severity::Warning), "{found}");
+        assert!(found.to_string().contains("-1 becomes 65535 as UINT"), "{found}");
+        let found = findings_in(dialect, "PROGRAM P VAR a : USINT; END_VAR a := -129; END_PROGRAM").to_string();
+        assert!(found.contains("T0202"), "{found}");
+    }
+    let found = findings_in(Dialect::Iec3, "PROGRAM P VAR a : UINT; END_VAR a := -1; END_PROGRAM").to_string();
+    assert!(found.contains("-1 does not fit UINT"), "{found}");
+}
+
+#[test]
+fn what_gives_a_reference_is_a_variable() {
+    gives(
+        "FUNCTION_BLOCK Counter VAR_IN_OUT n : DINT; END_VAR n := n + 1; END_FUNCTION_BLOCK
+         FUNCTION_BLOCK Holder VAR value : DINT := 40; END_VAR
+           PROPERTY Kept : REFERENCE TO DINT GET Kept REF= value; END_GET END_PROPERTY
+           METHOD Where : REFERENCE TO DINT Where REF= value; END_METHOD END_FUNCTION_BLOCK
+         PROGRAM P VAR h : Holder; c : Counter; r : DINT; END_VAR
+           c(n := h.Kept); c(n := h.Where()); r := h.Kept; END_PROGRAM",
+        42,
+    );
+    let found = findings_in(
+        TwinCat,
+        "FUNCTION_BLOCK Counter VAR_IN_OUT n : DINT; END_VAR n := n + 1; END_FUNCTION_BLOCK
+         FUNCTION_BLOCK Holder PROPERTY Kept : DINT GET Kept := 1; END_GET END_PROPERTY END_FUNCTION_BLOCK
+         PROGRAM P VAR h : Holder; c : Counter; END_VAR c(n := h.Kept); END_PROGRAM",
+    );
+    assert!(found.to_string().contains("`Kept` is a property, which is no variable"), "{found}");
+}
+
+#[test]
+fn a_longer_string_stands_behind_a_reference_to_a_shorter_one() {
+    gives(
+        "FUNCTION Fill : DINT VAR_INPUT text : REFERENCE TO STRING(5); END_VAR text := 'abcdefgh'; Fill := LEN(text);
+         END_FUNCTION
+         PROGRAM P VAR s : STRING(20) := 'something longer'; r : DINT; END_VAR
+           r := Fill(s) * 100 + LEN(s); END_PROGRAM",
+        505,
+    );
+    let found = findings_in(
+        TwinCat,
+        "FUNCTION Fill : DINT VAR_INPUT text : REFERENCE TO STRING(20); END_VAR text := 'abcdefgh'; Fill := 1;
+         END_FUNCTION PROGRAM P VAR s : STRING(5); r : DINT; END_VAR r := Fill(s); END_PROGRAM",
+    );
+    assert!(found.to_string().contains("T0201"), "a shorter one would be written beyond its end: {found}");
+}

@@ -23,11 +23,19 @@ fn rig(program: &str) -> Rig {
         library("open.TcGVL", object("GVL", "Limits", "VAR_GLOBAL CONSTANT Teeth : INT := 12; END_VAR", "")),
         library("size.TcDUT", object("DUT", "ST_Size", "TYPE ST_Size : STRUCT x, y : INT; END_STRUCT END_TYPE", "")),
         library("run.TcPOU", object("POU", "RUN", "FUNCTION RUN", "GVL_Gears.made := GVL_Gears.made + Teeth;")),
+        library("mill.TcPOU", object("POU", "Mill", "PROGRAM Mill VAR turns : INT; END_VAR", "turns := turns + 1;")),
         library("size_of.TcPOU", object("POU", "Bytes", "FUNCTION Bytes : UDINT", "Bytes := SIZEOF(ST_Size);")),
         Input::from_text("main.st", SourceKind::Text, program).in_dialect(Dialect::TwinCat),
     ];
     let application = Application::from_inputs(inputs).unwrap_or_else(|found| panic!("{found}"));
     Rig::with_plan(&application, &TaskPlan::single(&application, TimeSpan::millis::<10>()))
+}
+
+#[test]
+fn a_program_of_a_library_is_its_instance_with_the_namespace_and_without() {
+    let mut rig = rig("PROGRAM P VAR a : INT; END_VAR Mill(); Gears.Mill(); a := Gears.Mill.turns; END_PROGRAM");
+    rig.scan().expect("no fault");
+    assert_eq!((rig.int("P.a"), rig.int("Mill.turns")), (2, 2));
 }
 
 #[test]

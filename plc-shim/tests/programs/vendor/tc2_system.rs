@@ -143,3 +143,25 @@ fn events_are_kept_and_counted() {
         ],
     );
 }
+
+#[test]
+fn an_alarm_is_active_until_it_is_cleared_and_confirmed() {
+    hold(
+        Dialect::TwinCat,
+        "alarm : FB_TcAlarm; message : FB_TcMessage; h : HRESULT; json : STRING(100) := 'old'; name : STRING(255) := 'old';
+         entry : TcEventEntry := (nEventID := 7, eSeverity := TcEventSeverity.Error); other : TcEventEntry;
+         raised, waits, cleared, confirmed, asked : BOOL; state : TcEventConfirmationState; any : I_TcMessage;",
+        "h := alarm.CreateEx(entry, TRUE, 0); h := message.CreateEx(entry, 0); any := message;
+         h := alarm.Raise(0); raised := alarm.bRaised; waits := alarm.bActive; state := alarm.eConfirmationState;
+         h := alarm.Clear(0, FALSE); cleared := alarm.bActive AND NOT alarm.bRaised;
+         h := alarm.Confirm(0); confirmed := NOT alarm.bActive;
+         h := message.SetJsonAttribute('{}'); h := any.GetJsonAttribute(json, SIZEOF(json));
+         asked := any.RequestEventText(1033, name, SIZEOF(name));",
+        &[
+            "raised AND waits AND cleared AND confirmed AND state = TcEventConfirmationState.WaitForConfirmation",
+            "message.EqualsTo(alarm) AND message.EqualsToEventEntryEx(entry) AND NOT message.EqualsToEventEntryEx(other)",
+            "message.EqualsToEventEntry(entry.uuidEventClass, 7, TcEventSeverity.Error) AND any.stEventEntry.nEventID = 7",
+            "json = '{}' AND asked AND name = ''",
+        ],
+    );
+}

@@ -94,7 +94,8 @@ impl Body<'_, '_> {
             return None;
         }
         let known = self.declarations.mark();
-        match self.given_value(expr)? {
+        let given = self.given_value(expr)?.map(|value| self.referred_result(value));
+        match given {
             Some(Operand::Typed(Expr { kind: ExprKind::Load(place), .. })) if place.storage == Storage::Referred => {
                 Some(Some(Located { place, access: Access::ReadWrite }))
             }
