@@ -105,6 +105,33 @@ fn addresses_are_chosen_or_given() {
     assert!(said.err.contains("`--cycle` is for targets whose tasks and addresses are written"), "{}", said.err);
 }
 
+/// The rest of the file stays where a configuration puts a word at an address.
+#[test]
+fn a_word_in_a_configuration_stays_where_it_is() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let text = "PROGRAM P
+VAR_INPUT go : BOOL; END_VAR
+VAR_EXTERNAL total : INT; END_VAR
+    IF go THEN total := total + 1; END_IF;
+END_PROGRAM
+CONFIGURATION C
+    VAR_GLOBAL SDSP_Session AT %MD100 : UDINT; total : INT; END_VAR
+    RESOURCE R ON PLC
+        VAR_GLOBAL other : INT; END_VAR
+        TASK T(INTERVAL := T#10ms, PRIORITY := 1);
+        PROGRAM p1 WITH T : P;
+    END_RESOURCE
+END_CONFIGURATION
+";
+    std::fs::write(folder.path().join("p.st"), text).expect("a file");
+    let said = typed(folder.path(), &["instrument", "p.st", "--target", "openplc", "-o", "out"]);
+    assert_eq!(said.code, Some(0), "{}{}", said.out, said.err);
+    let text = read(folder.path(), "sdsp.st");
+    assert_eq!(text.matches("SDSP_Session AT %MD100 : UDINT;").count(), 1, "{text}");
+    assert!(text.contains("total : INT;") && text.contains("other : INT;"), "{text}");
+    assert_eq!(compiles(folder.path()), compiler().map(|_| ()));
+}
+
 /// The page that an engineer types, as far as no PLC is needed.
 #[test]
 fn the_walk_of_the_page_is_as_written() {

@@ -49,7 +49,7 @@ pub(super) fn ported(plain: &Plain, options: &Options) -> Result<Project, Instru
     let tasks = plain.tasks(&survey, options)?;
     let table = TaskTable::new(&tasks, &entries(&survey), Line::Named)?;
     refuse_instances(&table).map_or(Ok(()), |found| Err(wrong(vec![found])))?;
-    let merged = Merged::of(plain, &trees, &words);
+    let merged = Merged::of(plain, &trees, &words)?;
     // What has no form is found in the project as it is, where it has a place that its author knows.
     matiec::lowered(&merged.text, merged.dialect).map_err(|unsaid| wrong(merged.diagnostics(unsaid)))?;
     let mut layout = Layout::new(&merged, &words, options).map_err(|text| wrong(vec![nowhere(&text)]))?;
@@ -146,9 +146,7 @@ fn global_sections<'a>(unit: &'a CompilationUnit) -> impl Iterator<Item = &'a Se
     unit.declarations.iter().flat_map(|declaration| -> Vec<&'a Section> {
         match declaration {
             Declaration::Globals(section) => vec![section],
-            Declaration::Configuration(own) => {
-                own.sections.iter().chain(own.resources.iter().flat_map(|resource| &resource.sections)).collect()
-            }
+            Declaration::Configuration(own) => own.all_sections().collect(),
             _ => Vec::new(),
         }
     })
@@ -179,7 +177,7 @@ struct Merged {
 }
 
 impl Merged {
-    fn of(plain: &Plain, trees: &[(FileId, &CompilationUnit)], words: &[PlacedWord]) -> Self {
+    fn of(plain: &Plain, trees: &[(FileId, &CompilationUnit)], words: &[PlacedWord]) -> Result<Self, InstrumentError> {
         let dialect = plain.sources.iter().next().map_or_else(Dialect::default, |(_, file)| file.dialect());
         let mut merged = Self { text: String::new(), dialect, places: Vec::new() };
         for ((id, file), (_, unit)) in plain.sources.iter().zip(trees) {
@@ -187,13 +185,15 @@ impl Merged {
             let text = file.text();
             for declaration in &unit.declarations {
                 if let Declaration::Configuration(configuration) = declaration {
-                    let span = configuration.span;
-                    let written = |section: &Section| {
-                        text.get(section.span.start as usize..section.span.end as usize).unwrap_or("").to_owned()
-                    };
-                    let inner = unit_of(configuration);
-                    let sections: Vec<String> = inner.iter().map(|section| written(section)).collect();
-                    edits.replace(span.start..span.end, sections.join("\n"));
+                    // Its sections stay, and what is around them goes.
+                    let mut sections: Vec<Span> = configuration.all_sections().map(|section| section.span).collect();
+                    sections.sort_by_key(|span| span.start);
+                    let mut at = configuration.span.start;
+                    for section in sections {
+                        edits.replace(at..section.start, "\n");
+                        at = section.end;
+                    }
+                    edits.replace(at..configuration.span.end, "\n");
                 }
             }
             for word in words.iter().filter(|word| word.name.file == id) {
@@ -201,8 +201,9 @@ impl Merged {
                 let semicolon = text.get(end as usize..).and_then(|rest| rest.find(';')).map_or(0, |at| at as u32 + 1);
                 edits.replace(start..end + semicolon, "");
             }
-            // Two changes overlap only where a word stands in a configuration; then the word's is left out.
-            let Ok(edited) = edits.apply(text) else { continue };
+            let edited = edits
+                .apply(text)
+                .map_err(|conflict| InstrumentError::Conflict { file: file.name().to_owned(), conflict })?;
             let mut starts: Vec<u32> = vec![0];
             starts.extend(text.match_indices('\n').map(|(at, _)| at as u32 + 1));
             for at in 0..edited.text.lines().count() {
@@ -215,7 +216,7 @@ impl Merged {
                 merged.text.push('\n');
             }
         }
-        merged
+        Ok(merged)
     }
 
     fn diagnostics(&self, unsaid: Vec<Unsaid>) -> Vec<Diagnostic> {
@@ -236,11 +237,6 @@ impl Merged {
 /// What is wrong with the whole project.
 fn nowhere(text: &str) -> Diagnostic {
     Diagnostic::error(Code::UnsupportedFeature, Span::new(FileId(0), 0, 0), text.to_owned())
-}
-
-fn unit_of(configuration: &crate::syntax::ast::Configuration) -> Vec<&Section> {
-    let resources = configuration.resources.iter().flat_map(|resource| &resource.sections);
-    configuration.sections.iter().chain(resources).collect()
 }
 
 /// Which variable lies where.

@@ -115,8 +115,7 @@ impl Reader {
         match declaration {
             Declaration::Globals(section) => Self::variables(section, &mut self.globals),
             Declaration::Configuration(configuration) => {
-                let resources = configuration.resources.iter().flat_map(|resource| &resource.sections);
-                for section in configuration.sections.iter().chain(resources) {
+                for section in configuration.all_sections() {
                     Self::variables(section, &mut self.globals);
                 }
             }

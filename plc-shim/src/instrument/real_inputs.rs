@@ -92,9 +92,11 @@ fn type_name(width: Width) -> &'static str {
 /// Looks for inputs in all files of a project in text.
 pub(super) fn find<'a>(units: &[(FileId, &'a CompilationUnit)], sources: &SourceMap) -> RealInputs<'a> {
     let mut found = RealInputs::default();
-    for (_, unit) in units {
+    for (id, unit) in units {
+        let Some(file) = sources.get(*id) else { continue };
+        let addresses = addresses(*id, file);
         for declaration in &unit.declarations {
-            found.declaration(declaration, None, sources);
+            found.declaration(declaration, None, (file, &addresses));
         }
     }
     found.refuse_shared(sources);
@@ -102,18 +104,22 @@ pub(super) fn find<'a>(units: &[(FileId, &'a CompilationUnit)], sources: &Source
 }
 
 impl<'a> RealInputs<'a> {
-    fn declaration(&mut self, declaration: &'a Declaration, home: Option<&str>, sources: &SourceMap) {
+    fn declaration(
+        &mut self,
+        declaration: &'a Declaration,
+        home: Option<&str>,
+        (file, addresses): (&SourceFile, &[(DirectAddress, Span)]),
+    ) {
         match declaration {
-            Declaration::Pou(pou) => self.unit(pou, sources),
+            Declaration::Pou(pou) => self.unit(pou, file, addresses),
             Declaration::Globals(section) => self.section(section, home),
             Declaration::Namespace(namespace) => {
                 for each in &namespace.declarations {
-                    self.declaration(each, Some(&namespace.name.text), sources);
+                    self.declaration(each, Some(&namespace.name.text), (file, addresses));
                 }
             }
             Declaration::Configuration(configuration) => {
-                let resources = configuration.resources.iter().flat_map(|resource| &resource.sections);
-                for section in configuration.sections.iter().chain(resources) {
+                for section in configuration.all_sections() {
                     self.section(section, home);
                 }
                 for given in &configuration.instances {
@@ -132,8 +138,7 @@ impl<'a> RealInputs<'a> {
         }
     }
 
-    fn unit(&mut self, pou: &'a Pou, sources: &SourceMap) {
-        let Some(file) = sources.get(pou.name.span.file) else { return };
+    fn unit(&mut self, pou: &'a Pou, file: &SourceFile, addresses: &[(DirectAddress, Span)]) {
         let variables: Vec<_> = pou.sections.iter().flat_map(inputs).collect();
         let has_place = matches!(pou.kind, PouKind::Program | PouKind::FunctionBlock)
             && pou.chart.is_empty()
@@ -148,30 +153,24 @@ impl<'a> RealInputs<'a> {
             Some(_) => self.units.push((pou, variables)),
             None => {}
         }
-        self.statements(pou, file);
+        self.statements(pou, file, addresses);
     }
 
     /// Addresses in the statements of a unit.
-    fn statements(&mut self, pou: &'a Pou, file: &SourceFile) {
+    fn statements(&mut self, pou: &'a Pou, file: &SourceFile, addresses: &[(DirectAddress, Span)]) {
         let declared: Vec<Span> = pou
             .sections
             .iter()
             .flat_map(|section| &section.variables)
             .filter_map(|each| Some(each.address.as_ref()?.span))
             .collect();
-        for token in tokenize_in(file.dialect(), file.text()) {
-            let is_here = pou.span.start <= token.start && token.end <= pou.span.end;
-            if !is_here || token.kind != TokenKind::DirectAddress {
+        for (address, span) in addresses {
+            let span = *span;
+            let is_here = pou.span.start <= span.start && span.end <= pou.span.end;
+            if !is_here || declared.iter().any(|each| each.start <= span.start && span.end <= each.end) {
                 continue;
             }
-            let span = Span::new(pou.name.span.file, token.start, token.end);
-            let written = file.text().get(token.start as usize..token.end as usize).unwrap_or_default();
-            let Ok(address) = DirectAddress::parse(written) else { continue };
-            if address.area != Area::Input
-                || declared.iter().any(|each| each.start <= span.start && span.end <= each.end)
-            {
-                continue;
-            }
+            let written = file.text().get(span.start as usize..span.end as usize).unwrap_or("");
             let has_place = matches!(pou.kind, PouKind::Program | PouKind::FunctionBlock) && !pou.body.is_empty();
             if !has_place || !pou.chart.is_empty() {
                 self.told(span, "this unit cannot declare what would stand for the address: it stays");
@@ -314,6 +313,17 @@ impl<'a> RealInputs<'a> {
         }
         units
     }
+}
+
+/// The addresses in %I that stand in a file.
+fn addresses(id: FileId, file: &SourceFile) -> Vec<(DirectAddress, Span)> {
+    let tokens = tokenize_in(file.dialect(), file.text());
+    let tokens = tokens.iter().filter(|token| token.kind == TokenKind::DirectAddress);
+    let parsed = tokens.filter_map(|token| {
+        let written = file.text().get(token.start as usize..token.end as usize)?;
+        Some((DirectAddress::parse(written).ok()?, Span::new(id, token.start, token.end)))
+    });
+    parsed.filter(|(address, _)| address.area == Area::Input).collect()
 }
 
 /// The variables of a section that lie in %I.

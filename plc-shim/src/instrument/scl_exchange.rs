@@ -69,7 +69,7 @@ pub fn goes_in_blocks(exchanged: &[Exchanged]) -> bool {
     !exchanged.is_empty() && refused(exchanged).is_none()
 }
 
-/// What is told of a signal that has no place in a data block; over OPC UA it goes as it is.
+/// The warning about a signal that has no place in a data block; over OPC UA it goes as it is.
 pub(super) fn refused(exchanged: &[Exchanged]) -> Option<Diagnostic> {
     let each = exchanged.iter().find(|each| form(each.ty).is_none())?;
     let message = format!(

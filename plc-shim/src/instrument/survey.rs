@@ -123,9 +123,7 @@ impl Names {
             Declaration::Namespace(namespace) => namespace.declarations.iter().for_each(|each| self.add(each)),
             Declaration::Using(_) => {}
             Declaration::Configuration(configuration) => {
-                let resources = configuration.resources.iter().flat_map(|resource| &resource.sections);
-                let sections = configuration.sections.iter().chain(resources);
-                self.globals.extend(sections.flat_map(variable_names));
+                self.globals.extend(configuration.all_sections().flat_map(variable_names));
             }
         }
     }
@@ -222,8 +220,7 @@ impl<'a> Surveyor<'_, 'a> {
         if first.is_none_or(|first| first.name.key() == configuration.name.key()) {
             self.survey.configurations.push(configuration);
         }
-        let resources = configuration.resources.iter().flat_map(|resource| &resource.sections);
-        configuration.sections.iter().chain(resources).for_each(|section| self.globals(section));
+        configuration.all_sections().for_each(|section| self.globals(section));
         configuration.access.iter().for_each(|access| self.spec(&access.spec));
         configuration.instances.iter().for_each(|instance| self.spec(&instance.spec));
     }

@@ -84,8 +84,7 @@ impl<'a> Index<'a> {
             }
             Declaration::Using(_) => {}
             Declaration::Configuration(configuration) => {
-                let resources = configuration.resources.iter().flat_map(|resource| &resource.sections);
-                self.globals.extend(configuration.sections.iter().chain(resources));
+                self.globals.extend(configuration.all_sections());
                 self.configurations.push(configuration);
             }
         }

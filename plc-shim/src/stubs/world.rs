@@ -112,8 +112,7 @@ impl<'a> World<'a> {
                 Declaration::Namespace(namespace) => self.add_namespace(namespace, home, library),
                 Declaration::Using(_) => {}
                 Declaration::Configuration(configuration) => {
-                    let resources = configuration.resources.iter().flat_map(|resource| &resource.sections);
-                    for section in configuration.sections.iter().chain(resources) {
+                    for section in configuration.all_sections() {
                         self.add_globals(section, home);
                     }
                 }

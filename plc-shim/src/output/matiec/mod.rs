@@ -35,7 +35,7 @@ use crate::dialect::Dialect;
 use crate::input::Input;
 use crate::input::kind::SourceKind;
 use crate::source::edits::{Edits, LineMap};
-use crate::syntax::ast::{CompilationUnit, Configuration, Declaration, Pou, Section};
+use crate::syntax::ast::{CompilationUnit, Declaration, Pou, Section};
 use crate::syntax::{FileId, SourceFile, Span};
 
 pub(crate) use assemble::{Cycle, Globals};
@@ -104,17 +104,13 @@ impl<'a> Page<'a> {
                 }
                 Declaration::Globals(section) => sections.push((None, section)),
                 Declaration::Configuration(configuration) => {
-                    sections.extend(global_sections(configuration).map(|section| (None, section)));
+                    sections.extend(configuration.all_sections().map(|section| (None, section)));
                 }
                 _ => {}
             }
         }
         sections
     }
-}
-
-fn global_sections(configuration: &Configuration) -> impl Iterator<Item = &Section> {
-    configuration.sections.iter().chain(configuration.resources.iter().flat_map(|resource| &resource.sections))
 }
 
 /// One step: the changes it makes, and what it cannot say.

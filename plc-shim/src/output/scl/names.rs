@@ -4,8 +4,8 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use crate::ir::ElementaryType;
 use crate::syntax::ast::{
-    CompilationUnit, Configuration, Declaration, EnumValue, Expr, Field, Ident, Pou, PouKind, Qualifier, Section,
-    TypeDeclaration, TypeSpec, TypeSpecKind, Variable,
+    CompilationUnit, Declaration, EnumValue, Expr, Field, Ident, Pou, PouKind, Qualifier, Section, TypeDeclaration,
+    TypeSpec, TypeSpecKind, Variable,
 };
 use crate::syntax::constant::{self, Constant, Constants};
 use crate::syntax::{FileId, SourceMap};
@@ -134,7 +134,7 @@ impl<'a> Names<'a> {
             Declaration::Type(named) => self.add_type(named),
             Declaration::Globals(section) => self.add_globals(section),
             Declaration::Configuration(configuration) => {
-                sections(configuration).for_each(|section| self.add_globals(section));
+                configuration.all_sections().for_each(|section| self.add_globals(section));
             }
             Declaration::Namespace(_) | Declaration::Using(_) => {}
         }
@@ -286,11 +286,6 @@ fn base_of(base: Option<&Ident>) -> ElementaryType {
 /// Blocks and types that instrumenting puts others in the place of.
 pub(in crate::output) fn is_left(key: &str) -> bool {
     key.starts_with("MC_") || key == "AXIS_REF"
-}
-
-/// The sections of global variables of a configuration.
-pub(in crate::output) fn sections(configuration: &Configuration) -> impl Iterator<Item = &Section> {
-    configuration.sections.iter().chain(configuration.resources.iter().flat_map(|resource| &resource.sections))
 }
 
 /// `"name"`

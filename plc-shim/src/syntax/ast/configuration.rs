@@ -20,6 +20,11 @@ pub struct Configuration {
 }
 
 impl Configuration {
+    /// Its sections of global variables, then those of its resources.
+    pub fn all_sections(&self) -> impl Iterator<Item = &Section> {
+        self.sections.iter().chain(self.resources.iter().flat_map(|resource| &resource.sections))
+    }
+
     /// Takes over what another part of the same configuration declares.
     pub(crate) fn absorb(&mut self, part: Self) {
         self.sections.extend(part.sections);
