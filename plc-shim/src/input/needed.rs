@@ -7,7 +7,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::{Input, Owner};
-use crate::syntax::ast::{Declaration, Section, TypeDeclaration, TypeSpecKind};
+use crate::syntax::ast::{Declaration, Ident, Section, TypeDeclaration, TypeSpecKind};
 use crate::syntax::token::TokenKind;
 use crate::syntax::{SourceMap, parse_source, tokenize_in};
 
@@ -24,7 +24,7 @@ pub fn needed(inputs: Vec<Input>) -> Vec<Input> {
     let mut unread: Vec<usize> = (0..inputs.len()).filter(|index| is_needed[*index]).collect();
     while let Some(index) = unread.pop() {
         for name in mentioned(&inputs[index]) {
-            for index in declared.remove(&name).unwrap_or_default() {
+            for index in declared.remove(&name).into_iter().flatten() {
                 if !std::mem::replace(&mut is_needed[index], true) {
                     unread.push(index);
                 }
@@ -81,7 +81,7 @@ fn collect_type(declaration: &TypeDeclaration, names: &mut BTreeSet<String>) {
 }
 
 fn collect_variables(section: &Section, names: &mut BTreeSet<String>) {
-    names.extend(section.variables.iter().flat_map(|variable| &variable.names).map(crate::syntax::ast::Ident::key));
+    names.extend(section.variables.iter().flat_map(|variable| &variable.names).map(Ident::key));
 }
 
 /// The names in a file's text, in capitals.

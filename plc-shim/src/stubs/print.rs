@@ -48,9 +48,7 @@ impl Collector<'_> {
             }
         }
     }
-}
 
-impl Collector<'_> {
     /// Makes a constant a value of an enumeration that is a stub already.
     fn add_to_enumeration(&mut self, ty: &str, key: &str, global: &Global) {
         let Some(named) = self.world.types.get(ty).filter(|named| named.ast.external) else { return };

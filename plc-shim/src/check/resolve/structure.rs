@@ -69,7 +69,7 @@ impl<'a> Written<'_, 'a> {
             // The members behind a wrong one are looked at, too.
             let around = reserved.filter(|_| member.initial.is_some()).map(|ty| {
                 let place = Place::whole(Storage::Instance(0), ty, span);
-                Surrounding { place, fields: making.fields.clone() }
+                Surrounding { place, declared: making.fields.clone() }
             });
             let outer = self.body.surround(around);
             sound &= self.member(&mut making, member, (sharing, span)).is_some();

@@ -68,12 +68,13 @@ pub(super) struct Block {
     pub(super) callee: Callee,
     /// What comes to EN.
     pub(super) enable: Signal,
-    /// A result is wanted while EN is FALSE, too: the call itself takes EN.
-    pub(super) always: bool,
     pub(super) arguments: Vec<Argument>,
     /// The result of a function comes first; ENO is none of them.
     pub(super) outputs: Vec<Output>,
 }
+
+/// The input of every call that may forbid it (2nd ed. 2.5.1.2).
+pub(super) const EN: &str = "EN";
 
 impl Sheet<'_> {
     /// Calls a box where it is enabled, and hands on its outputs.
@@ -83,19 +84,13 @@ impl Sheet<'_> {
             let message = format!("`{}` is nothing that could be called", block.callee.name());
             return self.report(&place, Code::MalformedXml, message);
         }
-        let Some(mut arguments) = self.arguments(&block) else { return };
-        let is_conditional = matches!(block.enable, Signal::Value(_)) && !block.always;
+        let Some(arguments) = self.arguments(&block) else { return };
+        let is_conditional = matches!(block.enable, Signal::Value(_));
         if let Signal::Value(enable) = block.enable {
-            if block.always {
-                let mut text = Text::word("EN := ", &place);
-                text.append(enable);
-                arguments.insert(0, text);
-            } else {
-                let mut text = Text::word("IF ", &place);
-                text.append(enable);
-                text.push(" THEN\n", &place);
-                self.line(text);
-            }
+            let mut text = Text::word("IF ", &place);
+            text.append(enable);
+            text.push(" THEN\n", &place);
+            self.line(text);
         }
         match &block.callee {
             Callee::Instance(name) => {
@@ -170,6 +165,7 @@ impl Sheet<'_> {
         let mut sound = true;
         let mut found = Vec::new();
         for (index, argument) in block.arguments.iter().enumerate() {
+            let named = named || argument.name == EN;
             let Some(value) = argument.value.clone() else {
                 if !named {
                     let message = format!("nothing is connected to input {} of `{name}` (id {})", index + 1, block.id);

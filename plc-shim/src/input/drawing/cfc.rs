@@ -263,7 +263,7 @@ impl Chart<'_, '_, '_> {
             BoxKind::Function => Callee::function(type_name),
         };
         let (place, id) = (element.place.clone(), element.id.clone());
-        self.sheet.call(Block { place, id, callee, enable: Signal::On, always: false, arguments, outputs });
+        self.sheet.call(Block { place, id, callee, enable: Signal::On, arguments, outputs });
     }
 
     fn arguments(&mut self, element: &Element<'_>, is_kept: bool) -> Vec<Argument> {

@@ -6,7 +6,7 @@
 use std::ops::Range;
 
 use super::archive::{Object, Written};
-use super::call::{Argument, Block, Callee, Output, Taker};
+use super::call::{Argument, Block, Callee, EN, Output, Taker};
 use super::network::{Networks, flag, is_given, outputs};
 use super::sheet::{Signal, Storing, is_name};
 use crate::diagnostic::Code;
@@ -172,7 +172,13 @@ impl Networks<'_, '_> {
         if item.kind == "BoxTreeTerminator" && !is_enable { None } else { self.tree(item) }
     }
 
-    fn call(&mut self, shape: Shape<'_>, enable: Signal, arguments: Vec<Argument>, is_wanted: bool) -> Option<Signal> {
+    fn call(
+        &mut self,
+        shape: Shape<'_>,
+        enable: Signal,
+        mut arguments: Vec<Argument>,
+        is_wanted: bool,
+    ) -> Option<Signal> {
         let wanted = if is_wanted { Some(self.wanted(&shape)?) } else { None };
         let is_instance = matches!(shape.callee, Callee::Instance(_));
         let mut value = None;
@@ -201,7 +207,7 @@ impl Networks<'_, '_> {
         if is_instance {
             taken.retain(|output| !matches!(output.taker, Taker::Nobody));
         }
-        let mut always = false;
+        let mut given_always = None;
         let signal = match wanted {
             Some(0) if shape.has_eno => Some(enable.clone()),
             Some(index) => match (&shape.callee, shape.slots.get(index)) {
@@ -214,8 +220,8 @@ impl Networks<'_, '_> {
                     None
                 }
                 (Callee::Function(name), _) => {
-                    if matches!(enable, Signal::Value(_)) {
-                        always = true;
+                    if let Signal::Value(condition) = &enable {
+                        given_always = Some(condition.clone());
                         let message = format!(
                             "what `{name}` (id {}) hands on while its EN is FALSE is not documented, and is FALSE or 0 here: \
                              connect its EN to the power rail, or give its output a variable",
@@ -229,7 +235,15 @@ impl Networks<'_, '_> {
             None => None,
         };
         let Shape { place, id, callee, .. } = shape;
-        self.sheet.call(Block { place, id, callee, enable, always, arguments, outputs: taken });
+        let enable = match given_always {
+            // The call itself takes EN, so that there is a value in any case.
+            Some(condition) => {
+                arguments.push(Argument { name: EN.to_owned(), value: Some(condition), place: place.clone() });
+                Signal::On
+            }
+            None => enable,
+        };
+        self.sheet.call(Block { place, id, callee, enable, arguments, outputs: taken });
         signal
     }
 

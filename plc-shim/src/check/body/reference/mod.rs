@@ -80,8 +80,8 @@ impl Body<'_, '_> {
         }
     }
 
-    /// What a property or a call gives that is a reference: its target, which is a variable as any other. Nothing for
-    /// all that is none.
+    /// The target of the reference that a property or a call gives, which is a variable like any other. Nothing for
+    /// other expressions.
     pub(super) fn referred_place(&mut self, expr: &ast::Expr) -> Meant<Located> {
         let may_refer = match &expr.kind {
             ast::ExprKind::Name(name) | ast::ExprKind::Member(_, name) => {

@@ -42,30 +42,21 @@ impl<'a> Body<'_, 'a> {
         let mut statements = Vec::new();
         for start in starts {
             let known = self.declarations.mark();
-            let around = start.within.and_then(|within| self.structure_around(base, start.offset, within));
-            let done = match around {
-                Some(around) => {
-                    let outer = self.surround(Some(around));
-                    let done = self.perform_at_home(base, start, occasion);
-                    self.surround(outer);
-                    done
-                }
-                None => self.perform_at_home(base, start, occasion),
-            };
-            statements.extend(done);
+            let around = start.within.and_then(|within| Surrounding::of(base, start.offset, within));
+            let outer = around.map(|around| self.surround(Some(around)));
+            statements.extend(match &start.home {
+                Some(home) => self.seen_from(home.clone(), |body| body.perform(base, start, occasion)),
+                None => self.perform(base, start, occasion),
+            });
+            if let Some(outer) = outer {
+                self.surround(outer);
+            }
             // What is wrong with a type's text is told once, however often it is used.
             if self.declarations.has_found_since(known) && !self.declarations.is_first_fault(start.span, occasion) {
                 self.declarations.forget_since(known);
             }
         }
         statements
-    }
-
-    fn perform_at_home(&mut self, base: &Place, start: &Start<'a>, occasion: Occasion) -> Vec<Statement> {
-        match &start.home {
-            Some(home) => self.seen_from(home.clone(), |body| body.perform(base, start, occasion)),
-            None => self.perform(base, start, occasion),
-        }
     }
 
     fn seen_from<T>(&mut self, home: Arc<Home>, make: impl FnOnce(&mut Self) -> T) -> T {

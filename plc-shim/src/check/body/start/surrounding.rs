@@ -9,10 +9,19 @@ use crate::syntax::ast::Ident;
 /// The structure in one of whose initial values an expression stands.
 #[derive(Debug, Clone)]
 pub(in crate::check) struct Surrounding {
-    /// Where it lies; its type is complete when something is done at a start, and not while it is being declared.
+    /// Where it lies.
     pub(in crate::check) place: Place,
-    /// The members that there are so far.
-    pub(in crate::check) fields: Vec<Field>,
+    /// The members that there are so far while it is being declared; its type has them when something is done at a start.
+    pub(in crate::check) declared: Vec<Field>,
+}
+
+impl Surrounding {
+    /// The structure that a start belongs to which is done at `offset` of `base`.
+    pub(super) fn of(base: &Place, offset: u32, within: Within) -> Option<Self> {
+        let begin = offset.checked_sub(within.offset)?;
+        let place = super::part(base, begin, within.structure, base.span);
+        Some(Self { place, declared: Vec::new() })
+    }
 }
 
 impl Body<'_, '_> {
@@ -21,18 +30,15 @@ impl Body<'_, '_> {
         std::mem::replace(&mut self.surrounding, by)
     }
 
-    /// The structure that a start belongs to which is done at `offset` of `base`.
-    pub(super) fn structure_around(&self, base: &Place, offset: u32, within: Within) -> Option<Surrounding> {
-        let Type::Struct { fields, .. } = self.declarations.types().get(within.structure) else { return None };
-        let begin = offset.checked_sub(within.offset)?;
-        let place = super::part(base, begin, within.structure, base.span);
-        Some(Surrounding { place, fields: fields.clone() })
-    }
-
     /// The member that a name alone means in the initial value of another.
     pub(in crate::check::body) fn sibling(&self, name: &Ident) -> Option<Located> {
         let around = self.surrounding.as_ref()?;
-        let field = around.fields.iter().find(|field| field.name.eq_ignore_ascii_case(&name.text))?;
+        let complete = match self.declarations.types().get(around.place.ty) {
+            Type::Struct { fields, .. } => fields.as_slice(),
+            _ => &[],
+        };
+        let mut fields = around.declared.iter().chain(complete);
+        let field = fields.find(|field| field.name.eq_ignore_ascii_case(&name.text))?;
         let place = super::part(&around.place, field.offset, field.ty, name.span);
         let access = if field.bit.is_some() { Access::Constant } else { Access::ReadWrite };
         Some(Located { place, access })
