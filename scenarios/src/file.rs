@@ -170,6 +170,13 @@ pub enum ClientFile {
     },
 }
 
+impl ClientFile {
+    /// True for a PLC, whether its program is run here or elsewhere.
+    pub fn is_plc(&self) -> bool {
+        matches!(self, Self::SoftPlc { .. } | Self::Gateway { .. })
+    }
+}
+
 /// One task of a soft PLC (IEC 61131-3 2.7.2).
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]

@@ -100,7 +100,7 @@ impl Scenario {
     pub fn commission(&mut self, name: &ClientName, url: Option<String>) -> Result<(), ScenarioError> {
         let help = || did_you_mean(name.as_str(), self.file().clients.keys().map(ClientName::as_str));
         match self.file().clients.get(name).map(toml::Spanned::get_ref) {
-            Some(ClientFile::SoftPlc { .. } | ClientFile::Gateway { .. }) => {}
+            Some(client) if client.is_plc() => {}
             Some(_) => return Err(self.wrong_client(name, format!("client `{name}` is no PLC"), None)),
             None => return Err(self.wrong_client(name, format!("the scenario has no client `{name}`"), help())),
         }

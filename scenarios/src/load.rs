@@ -237,7 +237,7 @@ impl Scenario {
 
     /// The line of `key` in the mapping of client `name`.
     pub(crate) fn place_of_mapping(&self, name: &ClientName, key: &str) -> Option<Range<usize>> {
-        // The entries of a client's table lose their places where its kind is told from a key.
+        // The entries of a client's table lose their places because its kind is one of its keys.
         let lines: Lines = toml::from_str(&self.text).ok()?;
         let map = lines.clients.get(name.as_str())?.gateway.as_ref()?.map.as_ref()?;
         map.iter().find(|(known, _)| known.get_ref() == key).map(|(known, value)| known.span().start..value.span().end)

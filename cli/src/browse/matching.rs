@@ -1,22 +1,18 @@
 //! Which variable of the PLC is which point: by the path of the variable, or else by the name of the signal where that
-//! is clear. What is not clear is told and left to a person.
+//! is clear. What is not clear is reported and left to a person.
 
 use onescan_clients::gateway::addresses::ALL;
 use onescan_clients::gateway::exchange::{BOOTS, Exchange, Point, RUNNING, START, SystemWords};
 use onescan_clients::gateway::link::Found;
 use onescan_server::signal::nearest;
 
-use crate::map::fragment::{Entry, Fragment, Place};
+use crate::map::fragment::{Entry, Fragment, Place, by_name};
 
 /// The points of a scenario, each with its variable; client and URL are the caller's to name.
 pub(super) fn mapped(exchange: &Exchange, found: &[Found]) -> Fragment {
-    let mut entries: Vec<Entry> = Vec::new();
-    let points: Vec<&Point> = exchange.to_plc().iter().chain(exchange.from_plc()).collect();
-    let signals = points.iter().filter(|point| !is_system(&point.name));
-    for first in signals.filter(|point| point.ordinal.is_none_or(|number| number == 1)) {
-        let own: Vec<&Point> = points.iter().copied().filter(|point| point.name == first.name).collect();
-        entries.extend(signal(&own, found));
-    }
+    let points = exchange.to_plc().iter().chain(exchange.from_plc());
+    let signals = by_name(points.filter(|point| !is_system(&point.name)).map(|point| (point.name.as_str(), point)));
+    let mut entries: Vec<Entry> = signals.iter().flat_map(|(_, points)| signal(points, found)).collect();
     let system = [START.0, BOOTS.0, RUNNING.0].map(|word| (word, named(word, found)));
     let is_served = system.iter().all(|(_, hits)| hits.len() == 1);
     for (word, hits) in &system {

@@ -16,14 +16,13 @@ use onescan_clients::gateway::link::Found;
 use onescan_report::OutputError;
 use onescan_report::file::write_whole;
 use onescan_scenario::Scenario;
-use onescan_scenario::file::ClientFile;
 use onescan_server::signal::ClientName;
 use serde::Serialize;
 
 pub use error::BrowseError;
 
 use crate::format::Format;
-use crate::map::fragment::{Entry, Fragment, Place};
+use crate::map::fragment::{Entry, Fragment, Place, by_name};
 
 /// What is asked for.
 #[derive(Clone, Debug)]
@@ -82,7 +81,7 @@ pub fn run(config: &BrowseConfig, out: &mut dyn Write) -> Result<(), BrowseError
 /// The link that the scenario declares.
 fn declared(scenario: &Scenario, name: &ClientName) -> Result<Settings, BrowseError> {
     match scenario.file().clients.get(name).map(toml::Spanned::get_ref) {
-        Some(ClientFile::SoftPlc { .. } | ClientFile::Gateway { .. }) => Ok(scenario.declared(name)),
+        Some(client) if client.is_plc() => Ok(scenario.declared(name)),
         _ => Err(scenario.wrong_client(name, format!("`{name}` is no PLC of the scenario"), None).into()),
     }
 }
@@ -109,13 +108,8 @@ fn json(found: &[Found], out: &mut dyn Write) -> std::io::Result<()> {
 
 /// Every variable that a signal can be; those that have the same name are the points of one.
 fn everything(url: &str, found: &[Found]) -> Fragment {
-    let mut names: Vec<(&str, Vec<&Found>)> = Vec::new();
-    for found in found.iter().filter(|found| found.ty.is_some()) {
-        match names.iter_mut().find(|(name, _)| *name == found.name) {
-            Some((_, all)) => all.push(found),
-            None => names.push((&found.name, vec![found])),
-        }
-    }
+    let typed = found.iter().filter(|found| found.ty.is_some());
+    let names = by_name(typed.map(|found| (found.name.as_str(), found)));
     let entry = |(name, all): (&str, Vec<&Found>)| {
         let place = |found: &&Found| match all.len() {
             1 => Place::Only(found.address.clone()),

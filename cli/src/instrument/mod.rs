@@ -159,7 +159,7 @@ pub fn instrument(
 }
 
 /// What the scenario's gateway and the program must agree on; nothing if there is no scenario, or if its program is
-/// wrong, which is told of the program itself.
+/// wrong, which is reported for the program itself.
 fn agreed(config: &InstrumentConfig, program: &Program) -> Result<Option<Agreement>, InstrumentError> {
     let inputs = program.inputs.as_slice();
     let (Some(scenario), Some(client)) = (scenario(config)?, &program.client) else { return Ok(None) };

@@ -41,7 +41,7 @@ struct JsonFile<'a> {
 /// The file with the gateway's mapping.
 #[derive(Clone, Copy)]
 pub struct Mapped<'a> {
-    /// Where it is.
+    /// Where it was written; relative if the project was named so.
     pub path: &'a Path,
     /// The client that it is the link of.
     pub client: &'a str,

@@ -145,11 +145,7 @@ pub fn read(wanted: &Wanted) -> Result<IoList, ListError> {
 }
 
 fn of_file(path: &Path, wanted: &Wanted) -> Result<IoList, ListError> {
-    let size = std::fs::metadata(path).map_err(Unreadable::at(path))?.len();
-    if size > BYTES_MAX {
-        return Err(ListError::TooLarge { file: path.display().to_string(), mib: BYTES_MAX >> 20 });
-    }
-    let bytes = std::fs::read(path).map_err(Unreadable::at(path))?;
+    let bytes = bytes_of(path)?;
     let kind = match wanted.kind {
         Some(kind) => kind,
         None => guess(path, &bytes)?,
@@ -164,6 +160,15 @@ fn of_file(path: &Path, wanted: &Wanted) -> Result<IoList, ListError> {
         ListKind::Sources => sources::read(path),
         ListKind::Server => browsed::read(&wanted.from),
     }
+}
+
+/// What is in a file, unless it is too large to be a list.
+fn bytes_of(path: &Path) -> Result<Vec<u8>, ListError> {
+    let size = std::fs::metadata(path).map_err(Unreadable::at(path))?.len();
+    if size > BYTES_MAX {
+        return Err(ListError::TooLarge { file: path.display().to_string(), mib: BYTES_MAX >> 20 });
+    }
+    Ok(std::fs::read(path).map_err(Unreadable::at(path))?)
 }
 
 /// The only TwinCAT project in a folder or in the folders in it.

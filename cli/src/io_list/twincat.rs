@@ -10,8 +10,8 @@ use super::error::ListError;
 use super::point::Direction;
 use super::twincat_types::{Types, written};
 use super::xml::{Element, Lines, document, text};
-use super::{BYTES_MAX, IoList, ListKind, ListLink};
-use crate::error::{Unreadable, Usage};
+use super::{IoList, ListKind, ListLink, bytes_of};
+use crate::error::Usage;
 
 /// A variable of a process image.
 struct Var {
@@ -121,16 +121,12 @@ fn plcs(root: Element, lines: &Lines, path: &Path, types: &mut Types) -> Result<
             continue;
         };
         let part = path.parent().unwrap_or(Path::new("")).join("_Config").join("PLC").join(file.replace('\\', "/"));
-        let Ok(size) = std::fs::metadata(&part).map(|about| about.len()) else {
+        if !part.exists() {
             let what = format!("its PLC is in {}, which is not there", part.display());
             let help = Some("copy the project with its folder `_Config`".to_owned());
             return Err(ListError::Other { file: path.display().to_string(), what, help });
-        };
-        if size > BYTES_MAX {
-            return Err(ListError::TooLarge { file: part.display().to_string(), mib: BYTES_MAX >> 20 });
         }
-        let bytes = std::fs::read(&part).map_err(Unreadable::at(&part))?;
-        let text = text(&part, &bytes)?;
+        let text = text(&part, &bytes_of(&part)?)?;
         let document = document(&part, &text)?;
         let (root, lines) = (Element::root(&document), Lines::of(&text));
         types.take(root);

@@ -1,6 +1,7 @@
 //! A mapping as a part of a `scenario.toml`: `[clients.NAME.gateway]` and its `map`. Whatever writes a mapping writes it
 //! here.
 
+use std::collections::BTreeMap;
 use std::fmt;
 
 use onescan_clients::gateway::addresses::ALL;
@@ -49,24 +50,19 @@ pub enum Place {
 impl Fragment {
     /// The mapping with every address written out.
     pub fn of(client: &ClientName, agreed: &Agreement, listing: &Listing) -> Self {
-        let mut entries: Vec<Entry> = Vec::new();
-        for Row { point, address } in listing.to_plc.rows.iter().chain(&listing.from_plc.rows) {
+        let place = |Row { point, address }: &Row| {
             let is_several = agreed.layout.is_some() && point.variable.is_none() && !point.is_word();
-            let place = match (&point.variable, point.ordinal) {
+            match (&point.variable, point.ordinal) {
                 (Some(path), Some(_)) => Place::Of(path.clone(), address.clone()),
                 (None, Some(_)) => Place::Next(address.clone()),
                 (None, None) if is_several => Place::Of(ALL.to_owned(), address.clone()),
                 (_, None) => Place::Only(address.clone()),
-            };
-            let known = entries.iter_mut().find_map(|entry| match entry {
-                Entry::Mapped { name, places } if *name == point.name => Some(places),
-                _ => None,
-            });
-            match known {
-                Some(places) => places.push(place),
-                None => entries.push(Entry::Mapped { name: point.name.clone(), places: vec![place] }),
             }
-        }
+        };
+        let rows = listing.to_plc.rows.iter().chain(&listing.from_plc.rows);
+        let places = by_name(rows.map(|row| (row.point.name.as_str(), place(row))));
+        let entries =
+            places.into_iter().map(|(name, places)| Entry::Mapped { name: name.to_owned(), places }).collect();
         Self {
             client: client.to_string(),
             url: agreed.settings.url.clone(),
@@ -74,6 +70,20 @@ impl Fragment {
             entries,
         }
     }
+}
+
+/// What has the same name together, in the order in which the names come first.
+pub(crate) fn by_name<'n, T>(items: impl IntoIterator<Item = (&'n str, T)>) -> Vec<(&'n str, Vec<T>)> {
+    let mut places: BTreeMap<&str, usize> = BTreeMap::new();
+    let mut groups: Vec<(&str, Vec<T>)> = Vec::new();
+    for (name, item) in items {
+        let place = *places.entry(name).or_insert(groups.len());
+        match groups.get_mut(place) {
+            Some((_, group)) => group.push(item),
+            None => groups.push((name, vec![item])),
+        }
+    }
+    groups
 }
 
 impl fmt::Display for Fragment {

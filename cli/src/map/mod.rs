@@ -16,7 +16,6 @@ use onescan_clients::gateway::listing::Listing;
 use onescan_report::OutputError;
 use onescan_report::file::write_whole;
 use onescan_scenario::Scenario;
-use onescan_scenario::file::ClientFile;
 use onescan_server::signal::ClientName;
 
 pub use error::MapError;
@@ -76,10 +75,8 @@ fn the_plc(scenario: &Scenario, config: &MapConfig) -> Result<(ClientName, Optio
         (Some(name), None) => return Ok((name.clone(), None)),
         (None, None) => {}
     }
-    let is_plc = |client: &toml::Spanned<ClientFile>| {
-        matches!(client.get_ref(), ClientFile::SoftPlc { .. } | ClientFile::Gateway { .. })
-    };
-    let mut plcs = scenario.file().clients.iter().filter(|(_, client)| is_plc(client)).map(|(name, _)| name);
+    let clients = scenario.file().clients.iter();
+    let mut plcs = clients.filter(|(_, client)| client.get_ref().is_plc()).map(|(name, _)| name);
     match (plcs.next(), plcs.next()) {
         (Some(one), None) => Ok((one.clone(), None)),
         (None, _) => Err(Usage::new("the scenario has no PLC", None).into()),

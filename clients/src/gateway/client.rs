@@ -103,7 +103,7 @@ impl Gateway {
             match result {
                 Ok(()) => {}
                 Err(fault) if fault.is_transient() => self.be_lost(&fault, &mut wait)?,
-                // What came behind a garbled answer cannot be told from it: the connection is made anew.
+                // Where a garbled answer ends is not known, so the connection is made anew.
                 Err(fault) if fault.is_garbled() && wait.garbled + 1 < GARBLED_MAX => {
                     wait.garbled += 1;
                     self.be_lost(&fault, &mut wait)?;

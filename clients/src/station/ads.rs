@@ -1,12 +1,13 @@
 //! Symbols over ADS: the PLC's side, as a TwinCAT device with its own router. Each point is a symbol under the name by
-//! which a gateway looks for it: the path that its variable has in the program. A request is answered between two cycles, a sum command as one.
+//! which a gateway looks for it: the path that its variable has in the program. A request is answered between two cycles, a sum
+//! command as one.
 
 use std::io::Write;
-use std::net::{Shutdown, SocketAddr, TcpListener, TcpStream};
+use std::net::{SocketAddr, TcpStream};
 use std::sync::Arc;
 
 use super::controller::{Controller, Snapshot};
-use super::listen::accept;
+use super::listen::serve_each;
 use crate::gateway::ads::Options;
 use crate::gateway::ads::command::{self, SUM_MAX};
 use crate::gateway::ads::frame::{Bytes, Frame, Kind, MAX_DATA};
@@ -29,21 +30,8 @@ const DEVICE: &[u8; 20] = b"\x01\x00\x00\x00onescan plc\0\0\0\0\0";
 pub fn serve(address: SocketAddr, controller: &Arc<Controller>, options: &Options) -> std::io::Result<SocketAddr> {
     let (listener, address) = bind(address)?;
     let device = Arc::new(Device::new(Arc::clone(controller), options));
-    std::thread::spawn(move || serve_all(&listener, &device));
+    std::thread::spawn(move || serve_each(&listener, (&device, &device.controller), "ADS", Device::attend));
     Ok(address)
-}
-
-fn serve_all(listener: &TcpListener, device: &Arc<Device>) {
-    accept(listener, &device.controller, |stream, peer| {
-        let device = Arc::clone(device);
-        std::thread::spawn(move || {
-            if let Err(error) = device.attend(&stream) {
-                tracing::info!(%peer, %error, "an ADS client has gone");
-            }
-            // It may be gone already.
-            let _ = stream.shutdown(Shutdown::Both);
-        });
-    });
 }
 
 /// A symbol, its point, and the point's number among those of its direction.

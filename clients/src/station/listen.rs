@@ -1,6 +1,7 @@
 //! Listening, and clients that come one by one, for servers with a thread a client.
 
-use std::net::{SocketAddr, TcpListener, TcpStream};
+use std::net::{Shutdown, SocketAddr, TcpListener, TcpStream};
+use std::sync::Arc;
 use std::time::Duration;
 
 use super::controller::Controller;
@@ -25,6 +26,26 @@ pub(super) fn accept(listener: &TcpListener, controller: &Controller, mut attend
             }
         }
     }
+}
+
+/// Serves each client by `attend` in a thread of its own, until all is over. A client of the `protocol` that goes, or
+/// says what nobody answers, is let go.
+pub(super) fn serve_each<Server: Send + Sync + 'static>(
+    listener: &TcpListener,
+    (server, controller): (&Arc<Server>, &Controller),
+    protocol: &'static str,
+    attend: fn(&Server, &TcpStream) -> std::io::Result<()>,
+) {
+    accept(listener, controller, |stream, peer| {
+        let server = Arc::clone(server);
+        std::thread::spawn(move || {
+            if let Err(error) = attend(&server, &stream) {
+                tracing::info!(%peer, %error, "a client over {protocol} has gone");
+            }
+            // It may be gone already.
+            let _ = stream.shutdown(Shutdown::Both);
+        });
+    });
 }
 
 /// For requests that are answered one by one, by a thread of their own.

@@ -2,12 +2,12 @@
 //! asks for is done between two cycles.
 
 use std::io::{Read, Write};
-use std::net::{Shutdown, SocketAddr, TcpListener, TcpStream};
+use std::net::{SocketAddr, TcpStream};
 use std::ops::Range;
 use std::sync::Arc;
 
 use super::controller::Controller;
-use super::listen::accept;
+use super::listen::serve_each;
 use crate::gateway::exchange::Direction;
 use crate::gateway::s7::Options;
 use crate::gateway::s7::iso::{self, Incoming, Message};
@@ -31,21 +31,8 @@ pub fn serve(
 ) -> std::io::Result<SocketAddr> {
     let (listener, address) = bind(address)?;
     let cpu = Arc::new(Cpu { controller: Arc::clone(controller), options, layouts });
-    std::thread::spawn(move || serve_all(&listener, &cpu));
+    std::thread::spawn(move || serve_each(&listener, (&cpu, &cpu.controller), "S7", Cpu::attend));
     Ok(address)
-}
-
-fn serve_all(listener: &TcpListener, cpu: &Arc<Cpu>) {
-    accept(listener, &cpu.controller, |stream, peer| {
-        let cpu = Arc::clone(cpu);
-        std::thread::spawn(move || {
-            if let Err(error) = cpu.attend(&stream) {
-                tracing::info!(%peer, %error, "an S7 client has gone");
-            }
-            // It may be gone already.
-            let _ = stream.shutdown(Shutdown::Both);
-        });
-    });
 }
 
 struct Cpu {
