@@ -144,7 +144,7 @@ fn body(body: &Body) -> String {
     format!("{}: {kind}{shape}{mass}", body.name)
 }
 
-/// A component: what it is bound to, what of it is not preset, and its wires.
+/// A component: what it is bound to, what of it is not preset, its wires, and its inputs without one.
 fn one(component: &Component, scene: &Scene) -> String {
     let mut lines = vec![format!("{}: {}", component.name, component.kind)];
     let Some(kind) = kinds().into_iter().find(|kind| kind.name == component.kind) else { return lines.concat() };
@@ -158,9 +158,11 @@ fn one(component: &Component, scene: &Scene) -> String {
             lines.push(format!("{} = {setting}", parameter.key));
         }
     }
+    let mut open = Vec::new();
     for (input, wire) in kind.inputs.iter().zip(&component.inputs) {
         match wire {
-            Wire::Open => {}
+            Wire::Open => open.extend(input.preset.map(|preset| format!("{} = {preset}", input.key))),
+            Wire::Constant(value) => lines.push(format!("{} = {value}", input.key)),
             Wire::Signal(name) => lines.push(format!("{} <- {name}", input.key)),
             Wire::Output { component, output } => {
                 let from = &scene.components[*component];
@@ -168,6 +170,9 @@ fn one(component: &Component, scene: &Scene) -> String {
                 lines.push(format!("{} <- {}.{}", input.key, from.name, key.unwrap_or_default()));
             }
         }
+    }
+    if !open.is_empty() {
+        lines.push(format!("driven by nobody: {}", open.join(", ")));
     }
     for (output, name) in kind.outputs.iter().zip(&component.outputs) {
         lines.extend(name.as_ref().map(|name| format!("{} -> {name}", output.key)));

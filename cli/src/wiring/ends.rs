@@ -1,5 +1,6 @@
 //! Where signals begin and end inside of a client: at components of a scene, at variables of a PLC.
 
+use onescan_clients::plant::component::kind::Setting;
 use onescan_clients::plant::component::kinds;
 use onescan_clients::plant::scene::model::{Drive, Scene, When, Wire};
 use onescan_clients::soft_plc::{BindError, bind};
@@ -21,6 +22,8 @@ pub(super) struct End {
 pub(super) struct Ends {
     pub(super) reads: Vec<End>,
     pub(super) writes: Vec<End>,
+    /// Inputs of components that nobody drives, each with the value that it has.
+    pub(super) open: Vec<(String, Setting)>,
     /// Signals that cannot be bound, each with the reason.
     pub(super) unbound: Vec<BindError>,
 }
@@ -36,8 +39,22 @@ pub(super) fn of_plant(scene: &Scene) -> Ends {
     Ends {
         reads: scene.reads.iter().map(end).collect(),
         writes: scene.writes.iter().map(end).collect(),
+        open: open_inputs(scene),
         unbound: Vec::new(),
     }
+}
+
+/// The inputs of components that have no wire, with their presets.
+fn open_inputs(scene: &Scene) -> Vec<(String, Setting)> {
+    let kinds = kinds();
+    let mut open = Vec::new();
+    for component in &scene.components {
+        let Some(kind) = kinds.iter().find(|kind| kind.name == component.kind) else { continue };
+        for (input, _) in kind.inputs.iter().zip(&component.inputs).filter(|(_, wire)| **wire == Wire::Open) {
+            open.extend(input.preset.map(|preset| (format!("{}.{}", component.name, input.key), preset)));
+        }
+    }
+    open
 }
 
 /// Every place of a scene that a signal has, in the scene's order.

@@ -100,6 +100,12 @@ library! {
         contact_sensor::ContactSensor,
         collision_monitor::CollisionMonitor,
         line_scanner::LineScanner,
+        camera::Camera,
+        laser_distance::LaserDistance,
+        axis_encoder::AxisEncoder,
+        pose_sensor::PoseSensor,
+        inclinometer::Inclinometer,
+        accelerometer::Accelerometer,
     }
     process {
         tank::Tank,
