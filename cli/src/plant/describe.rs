@@ -3,7 +3,7 @@
 use std::io::{self, Write};
 use std::path::Path;
 
-use onescan_clients::plant::component::kinds;
+use onescan_clients::plant::component::{kinds, open_inputs};
 use onescan_clients::plant::scene::model::{Body, BodyKind, Component, Mass, Moved, Scene, Sensing, Shape, Wire};
 use onescan_report::OutputError;
 use onescan_scenario::compose::report;
@@ -89,6 +89,7 @@ fn tree(scene: &Scene, out: &mut dyn Write) -> io::Result<()> {
         }),
     )?;
     section(out, "components", scene.components.iter().map(|component| one(component, scene)))?;
+    section(out, "remarks", scene.remarks.iter().cloned())?;
     section(out, "reads", scene.reads.iter().map(|port| format!("{} : {}", port.name, port.ty)))?;
     section(out, "writes", scene.writes.iter().map(|port| format!("{} : {}", port.name, port.ty)))
 }
@@ -158,10 +159,9 @@ fn one(component: &Component, scene: &Scene) -> String {
             lines.push(format!("{} = {setting}", parameter.key));
         }
     }
-    let mut open = Vec::new();
     for (input, wire) in kind.inputs.iter().zip(&component.inputs) {
         match wire {
-            Wire::Open => open.extend(input.preset.map(|preset| format!("{} = {preset}", input.key))),
+            Wire::Open => {}
             Wire::Constant(value) => lines.push(format!("{} = {value}", input.key)),
             Wire::Signal(name) => lines.push(format!("{} <- {name}", input.key)),
             Wire::Output { component, output } => {
@@ -171,6 +171,7 @@ fn one(component: &Component, scene: &Scene) -> String {
             }
         }
     }
+    let open: Vec<_> = open_inputs(component).iter().map(|(key, preset)| format!("{key} = {preset}")).collect();
     if !open.is_empty() {
         lines.push(format!("driven by nobody: {}", open.join(", ")));
     }

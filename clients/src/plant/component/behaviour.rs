@@ -49,6 +49,11 @@ pub(crate) trait Component: Sized + Send + 'static {
         None
     }
 
+    /// Whether an input, by its place in the table, is of use with these parameters.
+    fn uses(_parameters: &Self::Parameters, _input: usize) -> bool {
+        true
+    }
+
     /// Its state at the set-up.
     fn initial(&self, start: &Start<SeenBy<Self>>) -> Self::State;
 

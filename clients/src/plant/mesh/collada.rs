@@ -3,7 +3,7 @@
 //! As ROS does, the file's unit counts and its `<up_axis>` does not: robots' descriptions turn their
 //! meshes themselves. Sources: Khronos, COLLADA 1.4.1 (2008), chs. 5 and 6.
 
-use std::collections::HashMap;
+use std::collections::BTreeMap;
 
 use rapier3d::glamx::{DMat3, DQuat, DVec3};
 use roxmltree::{Document, Node, ParsingOptions};
@@ -30,7 +30,7 @@ impl Place {
 
 struct File<'d> {
     /// Every element with an `id`.
-    known: HashMap<&'d str, Node<'d, 'd>>,
+    known: BTreeMap<&'d str, Node<'d, 'd>>,
     mesh: Mesh,
     budget: usize,
 }
