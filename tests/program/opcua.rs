@@ -124,8 +124,9 @@ fn what_is_wrong_is_refused_and_changes_nothing() {
 #[test]
 fn a_client_that_fails_is_told_by_name() {
     for (how, patience, told) in [
-        ("dies", "3s", "is not done within 3 s: its OPC UA client is dead, hangs or does not write `Done`"),
-        ("leaves", "60s", "its OPC UA session has ended while grant "),
+        ("dies", "60s", "its OPC UA connection or session has ended while grant "),
+        ("hangs", "3s", "is not done within 3 s: its OPC UA client is dead, hangs or does not write `Done`"),
+        ("leaves", "60s", "its OPC UA connection or session has ended while grant "),
         ("fault", "60s", "client `plc` failed in state run at t_v = 0.200 s: the valve is stuck"),
     ] {
         let words = ["--until", "1h", "--opcua-client", "plc", "--reply-timeout", patience];

@@ -13,7 +13,7 @@ use super::controller::Controller;
 use crate::gateway::exchange::{Direction, Point};
 use crate::gateway::opcua::options::NAMESPACE;
 use crate::gateway::opcua::value;
-use crate::opcua_server::{self, Access, Refusals, Running, ServeError};
+use crate::opcua_server::{self, Access, Channels, Refusals, Running, ServeError};
 
 /// Serves the PLC's variables at `address`, until what is returned is dropped.
 ///
@@ -22,7 +22,7 @@ use crate::opcua_server::{self, Access, Refusals, Running, ServeError};
 pub fn serve(address: SocketAddr, controller: &Arc<Controller>, access: &Access) -> Result<Running, ServeError> {
     let namespace = NamespaceMetadata { namespace_uri: NAMESPACE.to_owned(), ..Default::default() };
     let manager = simple_node_manager(namespace, "plc");
-    opcua_server::start(address, "plc", access, &Refusals::default(), manager, |handle| {
+    opcua_server::start(address, "plc", access, &Refusals::default(), &Channels::default(), manager, |handle| {
         let missing = |what: &str| ServeError::Setup(format!("{what} is missing"));
         let namespace = handle.get_namespace_index(NAMESPACE).ok_or_else(|| missing("the namespace"))?;
         let manager = handle.node_managers().get_of_type::<SimpleNodeManager>();
