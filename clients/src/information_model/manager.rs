@@ -25,15 +25,13 @@ use super::seat::{Holder, Refusal};
 use super::types;
 use super::value::of_item;
 use crate::gateway::opcua::value;
-use crate::opcua_server::{Channels, Refusals};
+use crate::opcua_server::Channels;
 
 /// The nodes of a session and what is asked of them.
 pub struct SessionNodes {
     board: Arc<Board>,
     namespaces: Vec<NamespaceMetadata>,
     items: HashMap<NodeId, Item>,
-    /// Where it is noted whose certificate is that of another application; nothing if such a client is let in.
-    sent_away: Option<Refusals>,
     /// The connections that are there.
     channels: Channels,
 }
@@ -42,7 +40,6 @@ impl SessionNodes {
     /// Adds all nodes of the session on `board`.
     pub(super) fn new(
         board: Arc<Board>,
-        sent_away: Option<Refusals>,
         channels: Channels,
         context: &ServerContext,
         space: &mut AddressSpace,
@@ -67,19 +64,7 @@ impl SessionNodes {
         let namespaces = [TYPES_URI, SESSION_URI].into_iter().zip(&indexes).map(namespace).collect();
         let nodes: Vec<(Item, NodeId)> = items.iter().map(|(id, item)| (*item, id.clone())).collect();
         tell_subscribers(&board, nodes, Arc::clone(&context.subscriptions));
-        Self { board, namespaces, items, sent_away, channels }
-    }
-
-    /// Refuses a client whose certificate was made for another application (OPC 10000-4 6.1.3, `Bad_CertificateUriInvalid`).
-    fn admitted(&self, context: &RequestContext) -> Result<(), StatusCode> {
-        let Some(sent_away) = &self.sent_away else { return Ok(()) };
-        let session = context.session.read();
-        let Some(certificate) = session.client_certificate() else { return Ok(()) };
-        let uri = &session.application_description().application_uri;
-        certificate.is_application_uri_valid(uri.as_ref()).map_err(|error| {
-            sent_away.note(format!("the OPC UA client `{uri}`, whose certificate was made for another application"));
-            error.status()
-        })
+        Self { board, namespaces, items, channels }
     }
 
     /// Whether the client has gone: its session is in the server's hands alone, and ends when they let go; without a
@@ -258,7 +243,6 @@ impl InMemoryNodeManagerImpl for SessionNodes {
         space: &RwLock<AddressSpace>,
         nodes: &mut [&mut WriteNode],
     ) -> Result<(), StatusCode> {
-        self.admitted(context)?;
         for write in nodes {
             let item = self.items.get(&write.value().node_id).copied();
             let valid = {
@@ -283,7 +267,6 @@ impl InMemoryNodeManagerImpl for SessionNodes {
         _space: &RwLock<AddressSpace>,
         calls: &mut [&mut &mut MethodCall],
     ) -> Result<(), StatusCode> {
-        self.admitted(context)?;
         for call in calls {
             let status = match self.items.get(call.method_id()).copied() {
                 Some(Item::Session(method)) => {

@@ -10,7 +10,7 @@ use opcua::server::node_manager::memory::InMemoryNodeManagerBuilder;
 
 use super::board::Board;
 use super::manager::SessionNodes;
-use crate::opcua_server::{self, Access, Channels, Refusals, Running, ServeError};
+use crate::opcua_server::{self, Access, Admitted, Channels, Refusals, Running, ServeError};
 
 /// How long clients may take to notice that the session is over, wall clock.
 const FAREWELL_TIMEOUT: Duration = Duration::from_secs(1);
@@ -58,7 +58,7 @@ pub fn serve(address: SocketAddr, board: &Arc<Board>, access: &Access) -> Result
     let channels = Channels::default();
     let open = channels.clone();
     let build = move |context: ServerContext, space: &mut AddressSpace| {
-        SessionNodes::new(nodes, sent_away, open, &context, space)
+        Admitted::new(SessionNodes::new(nodes, open, &context, space), sent_away)
     };
     let manager = InMemoryNodeManagerBuilder::new(build);
     let running = opcua_server::start(address, "session", access, &refusals, &channels, manager, |_| Ok(()))?;
