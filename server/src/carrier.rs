@@ -95,6 +95,9 @@ pub trait Carrier: Send {
 pub trait Door {
     /// The next one that wants to join, if one comes within `patience` (wall clock).
     fn next_applicant(&self, patience: Duration) -> Option<Box<dyn Applicant>>;
+
+    /// Nobody is let in from here on: whoever still comes is told so and sent away.
+    fn shut(&self);
 }
 
 /// A client that wants to join and waits for the answer.

@@ -111,6 +111,11 @@ impl Cycle {
         self.seats[client.index()].ready = true;
     }
 
+    /// Takes the ready signal of `client` back: it has gone before the session began.
+    pub fn withdraw_ready(&mut self, client: ClientId) {
+        self.seats[client.index()].ready = false;
+    }
+
     /// Asks for a delay of `client` from the commit on: it sleeps through every step before `wake`.
     pub fn sleep_until(&mut self, client: ClientId, wake: VirtualTime) {
         let seat = &mut self.seats[client.index()];

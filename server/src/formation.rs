@@ -1,13 +1,15 @@
 //! A session that is being formed: clients join until nobody is missing.
 
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use thiserror::Error;
 
 use crate::carrier::{Applicant, Carrier, Door, InProcess};
-use crate::client::{Client, ClientId};
+use crate::client::{Client, ClientId, JoinRequest};
 use crate::join::JoinRefusal;
 use crate::lockstep::Lockstep;
+use crate::mailbox::{Mailbox, Request};
+use crate::operation::{Control, Operation};
 use crate::plan::SessionPlan;
 use crate::session::Session;
 use crate::signal::PortLayout;
@@ -55,6 +57,7 @@ use crate::signal::PortLayout;
 pub struct Formation {
     session: Session,
     carriers: Vec<Option<Box<dyn Carrier>>>,
+    mailbox: Mailbox,
 }
 
 /// Why a session cannot begin.
@@ -70,10 +73,10 @@ pub enum FormationError {
         missing: String,
         /// How long the server waited.
         patience: Duration,
-        /// Who tried last and was not let in, and why.
+        /// Who tried last and was not let in or has gone again, and why.
         refused: Option<String>,
     },
-    /// The wait was called off.
+    /// The wait was called off, here or by an operator.
     #[error("stopped while waiting for client {missing} to join")]
     Interrupted {
         /// The names.
@@ -88,7 +91,7 @@ pub enum FormationError {
 }
 
 fn sent_away(refused: Option<&String>) -> String {
-    refused.map(|who| format!("; somebody tried and was refused: {who}")).unwrap_or_default()
+    refused.map(|who| format!("; {who}")).unwrap_or_default()
 }
 
 /// Called while the server waits, with the missing clients' names. False calls the wait off.
@@ -99,7 +102,13 @@ impl Formation {
     pub fn new(plan: SessionPlan) -> Self {
         let session = Session::new(plan);
         let carriers = session.clients().map(|_| None).collect();
-        Self { session, carriers }
+        Self { session, carriers, mailbox: Mailbox::new() }
+    }
+
+    /// Takes wishes of operators from `mailbox` while it waits: how the session is, and its end. All others wait for
+    /// its beginning.
+    pub fn set_mailbox(&mut self, mailbox: Mailbox) {
+        self.mailbox = mailbox;
     }
 
     /// A client of this process joins.
@@ -126,21 +135,67 @@ impl Formation {
     ) -> Result<(), FormationError> {
         // How often `while_waiting` is asked, so that Ctrl-C is heard at once.
         const LOOK_UP: Duration = Duration::from_millis(50);
-        let (mut waited, mut refused) = (Duration::ZERO, None);
+        // Whoever comes and is sent away, however often, does not hold the wait open.
+        let (begun, mut refused, mut later) = (Instant::now(), None, Vec::new());
         while self.session.missing_clients().next().is_some() {
-            if !while_waiting(&self.missing()) {
+            if !while_waiting(&self.missing()) || self.is_called_off(&mut later) {
                 return Err(FormationError::Interrupted { missing: self.missing() });
             }
-            if let Some(applicant) = door.next_applicant(LOOK_UP) {
-                refused = self.admit(applicant, reply_timeout)?.or(refused);
-            } else {
-                waited += LOOK_UP;
+            match door.next_applicant(LOOK_UP) {
+                Some(applicant) => {
+                    // Who comes back may be there before it is seen that it had gone.
+                    let gone = if self.is_in(applicant.request()) { self.let_go_who_left() } else { None };
+                    refused = self.admit(applicant, reply_timeout)?.or(gone).or(refused);
+                }
+                None => refused = self.let_go_who_left().or(refused),
             }
-            if waited >= patience {
+            if begun.elapsed() >= patience {
                 return Err(FormationError::Missing { missing: self.missing(), patience, refused });
             }
         }
+        door.shut();
+        later.into_iter().for_each(|request| self.mailbox.post(request));
         Ok(())
+    }
+
+    /// Answers operators; true if one of them has ended the session. What acts on a session that runs is left for `later`.
+    fn is_called_off(&self, later: &mut Vec<Request>) -> bool {
+        while let Some(request) = self.mailbox.take() {
+            let ends = request.operation.as_ref().and_then(Operation::control) == Some(Control::Stop);
+            if !ends && request.operation.is_some() {
+                later.push(request);
+                continue;
+            }
+            if let Some(reply) = request.reply
+                && reply.send(Ok(self.session.status())).is_err()
+            {
+                tracing::debug!("the operator left before it heard how the session is");
+            }
+            if ends {
+                return true;
+            }
+        }
+        false
+    }
+
+    fn is_in(&self, request: &JoinRequest) -> bool {
+        let id = self.session.plan().client_id(&request.name);
+        id.is_some_and(|id| self.session.member(id).is_some())
+    }
+
+    /// Frees the places of clients that have gone since they joined; who went last, and why.
+    fn let_go_who_left(&mut self) -> Option<String> {
+        let mut last = None;
+        for (id, carrier) in (0..).map(ClientId::from_index).zip(&mut self.carriers) {
+            let Some(cause) = carrier.as_mut().and_then(|carrier| carrier.find_lost()) else { continue };
+            let Some(name) = self.session.plan().clients().get(id.index()).cloned() else { continue };
+            if self.session.leave(id) {
+                tracing::warn!(client = %name, %cause, "has gone before the session began");
+                last = Some(format!("`{name}` had joined, and has gone: {cause}"));
+                *carrier = None;
+            }
+        }
+        last
     }
 
     /// Gives why the applicant was sent away, if it was.
@@ -161,7 +216,7 @@ impl Formation {
             Err(refusal) => {
                 tracing::warn!(client = %name, %origin, %refusal, "refused");
                 applicant.refuse(&refusal.to_string());
-                Ok(Some(format!("`{name}` from {origin}: {refusal}")))
+                Ok(Some(format!("somebody tried and was refused: `{name}` from {origin}: {refusal}")))
             }
         }
     }

@@ -7,7 +7,7 @@ use crate::client::JoinRequest;
 use crate::image::PortMap;
 use crate::layout::ImageLayout;
 use crate::plan::{SessionPlan, hint};
-use crate::signal::{ClientName, Port, PortLayout, SignalId, SignalName, SignalType};
+use crate::signal::{ClientName, Port, PortLayout, SignalDecl, SignalId, SignalName, SignalType};
 use crate::time::TimeSpan;
 
 /// A client that is in.
@@ -84,6 +84,14 @@ pub enum JoinRefusal {
         /// Who writes it.
         writer: ClientName,
     },
+    /// A signal that is the client's to write, and that it does not.
+    #[error("client `{client}` does not write signal `{signal}`, which the session has no other writer for")]
+    Unwritten {
+        /// Who wanted in.
+        client: ClientName,
+        /// The signal.
+        signal: SignalName,
+    },
     /// The same signal twice in one port.
     #[error("client `{client}` names signal `{signal}` twice")]
     Doubled {
@@ -109,7 +117,9 @@ pub fn admit(
     }
     let reads = resolve(&request.name, &request.reads, plan)?;
     let writes = resolve(&request.name, &request.writes, plan)?;
+    let mut written = vec![false; plan.signals().len()];
     for id in &writes {
+        written[id.index()] = true;
         let signal = &plan.signals()[id.index()];
         let writer = written_by[id.index()].as_ref().or(signal.writer.as_ref());
         if let Some(writer) = writer.filter(|writer| **writer != request.name) {
@@ -119,6 +129,12 @@ pub fn admit(
                 writer: writer.clone(),
             });
         }
+    }
+    let is_missing = |signal: &&SignalDecl| signal.writer.as_ref() == Some(&request.name);
+    if let Some(signal) =
+        plan.signals().iter().enumerate().filter(|(index, _)| !written[*index]).map(|(_, s)| s).find(is_missing)
+    {
+        return Err(JoinRefusal::Unwritten { client: request.name.clone(), signal: signal.name.clone() });
     }
     Ok(Membership {
         period: request.period,

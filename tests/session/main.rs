@@ -6,6 +6,7 @@ mod digest;
 mod failure;
 mod granted;
 mod joining;
+mod lobby;
 mod peer;
 mod shim;
 mod targets;

@@ -13,7 +13,7 @@ use onescan_tests::run::{PATIENCE, loopback, run};
 use onescan_tests::toy::{ring, ring_plan};
 use onescan_tests::{at_ms, run::boxed};
 
-fn frame(json: &str) -> Vec<u8> {
+pub(crate) fn frame(json: &str) -> Vec<u8> {
     let mut bytes = (json.len() as u32 + 1).to_le_bytes().to_vec();
     bytes.push(b'J');
     bytes.extend_from_slice(json.as_bytes());
@@ -21,7 +21,7 @@ fn frame(json: &str) -> Vec<u8> {
 }
 
 /// Sends `bytes` and gives all that the server answers until it closes, as text.
-fn send(address: SocketAddr, bytes: &[u8]) -> String {
+pub(crate) fn send(address: SocketAddr, bytes: &[u8]) -> String {
     let mut stream = TcpStream::connect(address).unwrap();
     stream.set_read_timeout(Some(PATIENCE)).unwrap();
     stream.write_all(bytes).unwrap();
@@ -32,7 +32,7 @@ fn send(address: SocketAddr, bytes: &[u8]) -> String {
     String::from_utf8_lossy(&answer).into_owned()
 }
 
-const HELLO: &str = r#"{"hello":{"protocol":{"min":1,"max":1},"role":"client","agent":"test"}}"#;
+pub(crate) const HELLO: &str = r#"{"hello":{"protocol":{"min":1,"max":1},"role":"client","agent":"test"}}"#;
 
 #[test]
 fn garbage_in_the_lobby_does_not_keep_clients_out() {

@@ -80,6 +80,7 @@ fn form(
     processes: &mut Processes,
 ) -> Result<Formed, RunError> {
     let mut formation = Formation::new(scenario.plan().clone());
+    formation.set_mailbox(interrupt.mailbox());
     let (mut remote, mut seats) = (Vec::new(), Seats::default());
     for name in scenario.plan().clients() {
         // Also a client that will run in its own process is made here: its faults are found at once.

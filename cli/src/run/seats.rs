@@ -142,7 +142,8 @@ impl Desk {
                 return Err(FormationError::Interrupted { missing }.into());
             }
             if Instant::now() > deadline {
-                return Err(FormationError::Missing { missing, patience, refused: self.refused() }.into());
+                let refused = self.refused().map(|who| format!("somebody tried and was refused: {who}"));
+                return Err(FormationError::Missing { missing, patience, refused }.into());
             }
             self.board.wait_for_start(LOOK_UP);
         }

@@ -114,11 +114,6 @@ impl Lockstep {
     }
 
     pub(super) fn status(&self) -> Status {
-        Status {
-            state: self.session.cycle().server(),
-            t_v: self.session.t_v(),
-            steps: self.session.cycle().steps(),
-            held: self.session.is_held(),
-        }
+        self.session.status()
     }
 }

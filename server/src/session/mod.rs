@@ -140,6 +140,23 @@ impl Session {
         Ok(id)
     }
 
+    /// Lets a client go that has joined a session in `start`: its place is free again.
+    ///
+    /// False once the session has begun; then nothing has changed, for the client is part of what has happened.
+    pub fn leave(&mut self, id: ClientId) -> bool {
+        if self.cycle.server() != ServerState::Start || self.end.is_some() {
+            return false;
+        }
+        if let Some(membership) = self.members[id.index()].take() {
+            let writers = Arc::make_mut(&mut self.writers);
+            for signal in &membership.writes {
+                writers[signal.index()] = None;
+            }
+            self.cycle.withdraw_ready(id);
+        }
+        true
+    }
+
     /// Clients that the session still waits for in `start`.
     pub fn missing_clients(&self) -> impl Iterator<Item = &ClientName> {
         self.plan.clients().iter().zip(&self.members).filter(|(_, member)| member.is_none()).map(|(name, _)| name)

@@ -9,6 +9,7 @@ use crate::layout::ImageLayout;
 use crate::plan::SessionPlan;
 use crate::signal::{ClientName, SignalId};
 use crate::time::{TimeSpan, VirtualTime};
+use crate::wire::message::Status;
 
 impl Session {
     /// The member in `client`'s seat, if it has joined.
@@ -70,6 +71,11 @@ impl Session {
     /// True while virtual time is held at a boundary by request.
     pub fn is_held(&self) -> bool {
         self.mode == Mode::Held && self.cycle.is_at_boundary()
+    }
+
+    /// How the session is.
+    pub fn status(&self) -> Status {
+        Status { state: self.cycle.server(), t_v: self.t_v(), steps: self.cycle.steps(), held: self.is_held() }
     }
 
     /// True if a single step or a reset has been asked for and not been done.

@@ -1,15 +1,18 @@
 //! The lobby: listens, greets, and hands those who want to join to the session's thread.
 
-use std::net::SocketAddr;
+use std::collections::BTreeMap;
+use std::net::{IpAddr, SocketAddr};
 use std::ops::ControlFlow;
-use std::sync::mpsc::{Receiver, Sender, channel};
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::mpsc::{Receiver, SendError, Sender, channel};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
+use bytes::Bytes;
 use futures_util::{SinkExt, StreamExt};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 use tokio::net::{TcpListener, TcpStream};
+use tokio::sync::mpsc::{UnboundedReceiver, UnboundedSender, unbounded_channel};
 use tokio::sync::{Notify, Semaphore, oneshot};
 use tokio_util::codec::Framed;
 use tokio_util::task::TaskTracker;
@@ -29,8 +32,16 @@ use crate::wire::{
     VERSIONS,
 };
 
-/// Connections that may be in the lobby at once, operators included.
+/// Connections that may be in the lobby at once before they have said who they are, or wait for a place.
 const GUESTS_MAX: usize = 64;
+
+/// Operators that may be connected at once, and of them from one address: they may stay, and must not take the places of
+/// clients, or of each other.
+const OPERATORS_MAX: usize = 64;
+const OPERATORS_OF_ADDRESS_MAX: usize = 16;
+
+/// Who comes when the session has begun is told this.
+const BEGUN: &str = "the session has begun: nobody can join any more";
 
 type Connection = Framed<TcpStream, FrameCodec>;
 
@@ -42,6 +53,13 @@ struct Guest {
     request: JoinRequest,
     peer: SocketAddr,
     stream: std::net::TcpStream,
+    turned_away: UnboundedSender<TurnedAway>,
+}
+
+/// A connection, and why it is closed. Whoever decides that has no time to wait for the farewell.
+struct TurnedAway {
+    stream: std::net::TcpStream,
+    why: String,
 }
 
 impl Applicant for Guest {
@@ -73,14 +91,9 @@ impl Applicant for Guest {
     }
 
     fn refuse(self: Box<Self>, why: &str) {
-        let refused = ServerMessage::Refused { message: why.to_owned() };
-        let sent = FrameStream::new(self.stream, FRAME_BYTES_MAX, HANDSHAKE_TIMEOUT).map(|mut connection| {
-            let sent = connection.send_message(&refused);
-            connection.farewell();
-            sent
-        });
-        if !matches!(sent, Ok(Ok(()))) {
-            // A client that is gone needs no reason.
+        let Self { stream, turned_away, .. } = *self;
+        if turned_away.send(TurnedAway { stream, why: why.to_owned() }).is_err() {
+            // The lobby is closed, and with it all that wait in it.
             tracing::debug!(peer = %self.peer, "was gone before it heard that it is refused");
         }
     }
@@ -89,17 +102,21 @@ impl Applicant for Guest {
 /// A listener with a thread of its own; closed when dropped.
 pub struct Lobby {
     address: SocketAddr,
-    applicants: Mutex<Receiver<Guest>>,
+    /// Nothing once the door is shut.
+    applicants: Mutex<Option<Receiver<Guest>>>,
     close: Arc<Notify>,
     thread: Option<std::thread::JoinHandle<()>>,
 }
 
 /// What every greeting needs.
 struct Host {
-    welcome: ServerMessage,
+    /// `welcome`, as it is sent.
+    welcome: Bytes,
     applicants: Sender<Guest>,
+    turned_away: UnboundedSender<TurnedAway>,
     mailbox: Mailbox,
     seats: Semaphore,
+    operators: Operators,
     /// Operators that wait for an answer.
     answers: TaskTracker,
 }
@@ -122,15 +139,24 @@ impl Lobby {
             frame_bytes_max: FRAME_BYTES_MAX as u32,
             signals: plan.signals().to_vec(),
         };
-        let seats = Semaphore::new(GUESTS_MAX);
-        let host = Host { welcome, applicants: sender, mailbox, seats, answers: TaskTracker::new() };
+        let welcome = Bytes::from(crate::wire::frame::to_json(&welcome)?);
+        let (turned_away, leaving) = unbounded_channel();
+        let host = Host {
+            welcome,
+            applicants: sender,
+            turned_away,
+            mailbox,
+            seats: Semaphore::new(GUESTS_MAX),
+            operators: Operators::default(),
+            answers: TaskTracker::new(),
+        };
         let close = Arc::new(Notify::new());
         let closing = Arc::clone(&close);
         let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build()?;
         let thread = std::thread::Builder::new()
             .name("lobby".to_owned())
-            .spawn(move || runtime.block_on(receive_guests(listener, Arc::new(host), closing)))?;
-        Ok(Self { address, applicants: Mutex::new(receiver), close, thread: Some(thread) })
+            .spawn(move || runtime.block_on(receive_guests(listener, Arc::new(host), leaving, closing)))?;
+        Ok(Self { address, applicants: Mutex::new(Some(receiver)), close, thread: Some(thread) })
     }
 
     /// Where it listens; tells the port where none was asked for.
@@ -142,7 +168,14 @@ impl Lobby {
 impl Door for Lobby {
     fn next_applicant(&self, patience: Duration) -> Option<Box<dyn Applicant>> {
         let waiting = self.applicants.lock().unwrap_or_else(PoisonError::into_inner);
-        waiting.recv_timeout(patience).ok().map(|guest| Box::new(guest) as Box<dyn Applicant>)
+        let guest = waiting.as_ref()?.recv_timeout(patience).ok()?;
+        Some(Box::new(guest))
+    }
+
+    fn shut(&self) {
+        let waiting = self.applicants.lock().unwrap_or_else(PoisonError::into_inner).take();
+        // Who was waiting is told; who comes later finds nobody to wait for.
+        waiting.iter().flat_map(Receiver::try_iter).for_each(|guest| Box::new(guest).refuse(BEGUN));
     }
 }
 
@@ -156,14 +189,28 @@ impl Drop for Lobby {
     }
 }
 
-async fn receive_guests(listener: std::net::TcpListener, host: Arc<Host>, closing: Arc<Notify>) {
+async fn receive_guests(
+    listener: std::net::TcpListener,
+    host: Arc<Host>,
+    mut leaving: UnboundedReceiver<TurnedAway>,
+    closing: Arc<Notify>,
+) {
     let listener = match TcpListener::from_std(listener) {
         Ok(listener) => listener,
         Err(error) => return tracing::error!(%error, "the lobby cannot listen"),
     };
     loop {
         let accepted = tokio::select! {
-            () = closing.notified() => return part_from_operators(&host).await,
+            () = closing.notified() => {
+                while let Ok(away) = leaving.try_recv() {
+                    host.answers.spawn(turn_away(away));
+                }
+                return part_from_operators(&host).await;
+            }
+            Some(away) = leaving.recv() => {
+                host.answers.spawn(turn_away(away));
+                continue;
+            }
             accepted = listener.accept() => accepted,
         };
         match accepted {
@@ -194,10 +241,20 @@ async fn part_from_operators(host: &Host) {
     let _ = tokio::time::timeout(FAREWELL_TIMEOUT, host.answers.wait()).await;
 }
 
+/// Tells a guest that it cannot join, and why.
+async fn turn_away(TurnedAway { stream, why }: TurnedAway) {
+    let Ok(stream) = TcpStream::from_std(stream) else { return };
+    let mut connection = Framed::new(stream, FrameCodec::new(FRAME_BYTES_MAX));
+    if let Err(error) = refuse(&mut connection, &why).await {
+        // A client that is gone needs no reason.
+        tracing::debug!(%error, "was gone before it heard that it is refused");
+    }
+}
+
 async fn greet(stream: TcpStream, peer: SocketAddr, host: &Host) -> Result<(), ReceiveError> {
     stream.set_nodelay(true).map_err(FrameError::from)?;
     let mut connection = Framed::new(stream, FrameCodec::new(HANDSHAKE_FRAME_BYTES_MAX));
-    let Ok(_seat) = host.seats.try_acquire() else {
+    let Ok(seat) = host.seats.try_acquire() else {
         return refuse(&mut connection, "too many connections are waiting in the lobby").await;
     };
     let (protocol, role, agent) = match receive(&mut connection, HANDSHAKE_TIMEOUT).await {
@@ -213,10 +270,58 @@ async fn greet(stream: TcpStream, peer: SocketAddr, host: &Host) -> Result<(), R
         let why = format!("no common protocol version: this server speaks {VERSIONS}, {agent} speaks {protocol}");
         return refuse(&mut connection, &why).await;
     }
-    send(&mut connection, &host.welcome).await?;
+    // A session may have more signals than a handshake has room for: a `join` that names them all twice is in order.
+    connection.codec_mut().set_limit(FRAME_BYTES_MAX);
+    connection.send(FrameRef::Json(&host.welcome)).await?;
+    connection.codec_mut().set_limit((HANDSHAKE_FRAME_BYTES_MAX + 2 * host.welcome.len()).min(FRAME_BYTES_MAX));
     match role {
-        Role::Operator => serve_operator(connection, host).await,
+        Role::Operator => {
+            drop(seat);
+            let Some(_place) = host.operators.come(peer.ip()) else {
+                return refuse(&mut connection, "too many operators are connected").await;
+            };
+            serve_operator(connection, host).await
+        }
         Role::Client => take_application(connection, peer, host).await,
+    }
+}
+
+/// How many operators are connected, by address.
+#[derive(Default)]
+struct Operators(Mutex<BTreeMap<IpAddr, usize>>);
+
+impl Operators {
+    fn lock(&self) -> MutexGuard<'_, BTreeMap<IpAddr, usize>> {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// A place for one more, until it is dropped; none if there are too many.
+    fn come(&self, address: IpAddr) -> Option<OperatorPlace<'_>> {
+        let mut connected = self.lock();
+        let of_address = connected.get(&address).copied().unwrap_or(0);
+        if connected.values().sum::<usize>() >= OPERATORS_MAX || of_address >= OPERATORS_OF_ADDRESS_MAX {
+            return None;
+        }
+        connected.insert(address, of_address + 1);
+        Some(OperatorPlace { operators: self, address })
+    }
+}
+
+/// The place of one operator.
+struct OperatorPlace<'o> {
+    operators: &'o Operators,
+    address: IpAddr,
+}
+
+impl Drop for OperatorPlace<'_> {
+    fn drop(&mut self) {
+        let mut connected = self.operators.lock();
+        if let Some(count) = connected.get_mut(&self.address) {
+            *count -= 1;
+            if *count == 0 {
+                connected.remove(&self.address);
+            }
+        }
     }
 }
 
@@ -235,8 +340,10 @@ async fn take_application(mut connection: Connection, peer: SocketAddr, host: &H
         return refuse(&mut connection, "a client must wait for the answer to `join`").await;
     }
     let stream = parts.io.into_std().map_err(FrameError::from)?;
-    // If the session no longer takes anybody the stream is closed by this.
-    let _ = host.applicants.send(Guest { request, peer, stream });
+    let guest = Guest { request, peer, stream, turned_away: host.turned_away.clone() };
+    if let Err(SendError(guest)) = host.applicants.send(guest) {
+        Box::new(guest).refuse(BEGUN);
+    }
     Ok(())
 }
 
