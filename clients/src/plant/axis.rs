@@ -11,9 +11,10 @@ use onescan_server::client::ClientFault;
 use onescan_server::signal::{PortLayout, SignalName, SlotError};
 use rapier3d::prelude::*;
 
+use super::actuator::Motor;
 use super::command::{Command, NumberSlot};
 use super::coordinate::Measured;
-use super::motor::Motor;
+use super::effort::{Mark, Path};
 use super::scene::Scene;
 use super::scene::model::{self, Moved};
 use super::setpoint::{Bounds, Setpoint};
@@ -93,11 +94,11 @@ impl Axis {
         match &self.mover {
             Mover::Joint(motor) => {
                 let (joint, speed) = (motor.joint(), self.bounds.speed);
-                let position = measured.positions[joint];
-                let velocity = || measured.gauges[joint].velocity(world).clamp(-speed, speed);
+                let Mark { position, velocity } = measured.motions[joint];
+                let velocity = || velocity.clamp(-speed, speed);
                 let from = setpoint.near(position, speed * dt_s, velocity);
                 let to = self.command.advance(name, from, &self.bounds, dt_s, inputs)?;
-                motor.follow([from.position, to.position], measured, dt_s, None, world)?;
+                motor.follow(Path { from, to, turn_s: dt_s }, None, world)?;
                 *setpoint = to;
             }
             Mover::Belt { body, direction } => {
@@ -114,14 +115,14 @@ impl Axis {
     pub(super) fn feed_back(&self, setpoint: Setpoint, measured: Measured<'_>, world: &World, outputs: &mut [u8]) {
         if let Some(slot) = self.position {
             let position = match &self.mover {
-                Mover::Joint(motor) => measured.positions[motor.joint()],
+                Mover::Joint(motor) => measured.motions[motor.joint()].position,
                 Mover::Belt { .. } => setpoint.position,
             };
             slot.set(outputs, position);
         }
         if let Some(slot) = self.velocity {
             let velocity = match &self.mover {
-                Mover::Joint(motor) => measured.gauges[motor.joint()].velocity(world),
+                Mover::Joint(motor) => measured.motions[motor.joint()].velocity,
                 Mover::Belt { body, direction } => world.body(*body).linvel().dot(*direction),
             };
             slot.set(outputs, velocity);

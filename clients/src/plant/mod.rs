@@ -13,7 +13,11 @@
 //! | `coordinate` | where a joint stands, measured from the poses of its bodies |
 //! | `setpoint` | the motion a drive wants: ramps and trapezoids in closed form |
 //! | `command` | what the PLC commands of a drive |
-//! | `motor` | the motor of a joint, as axes and components drive it |
+//! | `effort` | what a drive does to its joint, and what the joint tells the drive |
+//! | `actuator` | what drives a joint: along a path, or by a component's equations |
+//! | `fitting` | what is fitted to a joint beside its drive |
+//! | `mechanism` | bodies on joints, moved by the joints' coordinates |
+//! | `articulation` | mechanisms and the engine: who moves which bodies |
 //! | `axis` | a driven axis: command, setpoint, what it moves, feedback |
 //! | `sensor` | end-position and proximity sensors |
 //! | [`component`] | the library: cylinders, motors, sensors, … by their equations |
@@ -38,6 +42,8 @@
 //! - Nothing sleeps: a body at rest costs time, but never wakes late.
 //! - A world that is no longer finite or leaves its extent is a fault that names the body.
 
+mod actuator;
+mod articulation;
 mod axis;
 mod channel;
 mod client;
@@ -45,11 +51,13 @@ mod command;
 pub mod component;
 mod coordinate;
 pub mod coupling;
+mod effort;
 mod failure;
+mod fitting;
 mod identity;
 mod machine;
+mod mechanism;
 pub mod mesh;
-mod motor;
 mod part;
 mod placement;
 mod pose;

@@ -7,6 +7,9 @@ use onescan_server::time::TimeSpan;
 use rapier3d::glamx::{DMat3, DQuat};
 use rapier3d::prelude::*;
 
+use super::actuator::Actuator;
+use super::articulation::Articulation;
+use super::effort::Drives;
 use super::machine::Misfit;
 use super::pose;
 use super::scene::model::{Attached, Body, BodyKind, Collisions, Joint, JointKind, Mass, Scene, Shape};
@@ -31,7 +34,12 @@ pub(crate) struct World {
     ground: RigidBodyHandle,
     bodies: Vec<RigidBodyHandle>,
     shapes: Vec<ColliderHandle>,
-    joints: Vec<ImpulseJointHandle>,
+    pub(super) joints: Vec<ImpulseJointHandle>,
+    /// Joints that brake driven joints as dry friction does.
+    pub(super) frictions: Vec<ImpulseJointHandle>,
+    /// What drives joints.
+    pub(super) actuators: Vec<Actuator>,
+    pub(super) articulation: Articulation,
     /// Belts, and where they stay while their surfaces run.
     belts: Vec<(RigidBodyHandle, Pose)>,
     substeps: u32,
@@ -55,25 +63,31 @@ impl World {
                 insert_joint(&mut physics, joint, parent, bodies[joint.child])
             })
             .collect();
-        Self {
+        let mut world = Self {
             physics,
             ground,
             bodies,
             shapes,
             joints,
+            frictions: Vec::new(),
+            actuators: Vec::new(),
+            articulation: Articulation::empty(),
             belts: Vec::new(),
             substeps: scene.substeps,
             extent_m: scene.extent_m,
-        }
+        };
+        world.articulation = Articulation::build(scene, &mut world);
+        world
     }
 
     /// Moves the world by one period.
     ///
     /// # Errors
     /// A body whose state is no longer finite or that has left the world.
-    pub(super) fn step(&mut self, scene: &Scene) -> Result<(), ClientFault> {
-        for _ in 0..self.substeps {
-            self.physics.step();
+    pub(super) fn step(&mut self, scene: &Scene, drives: &mut dyn Drives) -> Result<(), ClientFault> {
+        for index in 0..self.substeps {
+            let part = [index, index + 1].map(|step| f64::from(step) / f64::from(self.substeps));
+            self.substep(part, drives);
             self.put_belts_back()?;
             if let Some(lost) = self.physics.quarantine().bodies().first() {
                 return Err(self.fault(scene, *lost, "its position or velocity is no longer a finite number"));
@@ -130,7 +144,7 @@ impl World {
     pub(super) fn check(&self, physics: &PhysicsWorld) -> Result<(), Misfit> {
         let bodies = self.bodies.iter().chain([&self.ground]).all(|handle| physics.bodies.contains(*handle));
         let shapes = self.shapes.iter().all(|handle| physics.colliders.contains(*handle));
-        let joints = self.joints.iter().all(|handle| physics.impulse_joints.contains(*handle));
+        let joints = self.joints.iter().chain(&self.frictions).all(|handle| physics.impulse_joints.contains(*handle));
         if bodies && shapes && joints {
             return Ok(());
         }
@@ -216,6 +230,7 @@ impl World {
     /// A body that there is not, as in all that follow.
     pub(super) fn take_out(&mut self, handle: RigidBodyHandle) -> Result<(), ClientFault> {
         self.body_mut(handle)?.set_enabled(false);
+        self.find_mechanisms_of(handle);
         Ok(())
     }
 
@@ -227,6 +242,7 @@ impl World {
         body.set_position(pose, true);
         body.set_linvel(Vector::ZERO, true);
         body.set_angvel(AngVector::ZERO, true);
+        self.find_mechanisms_of(handle);
         Ok(())
     }
 
@@ -241,6 +257,29 @@ impl World {
         body.ok_or_else(|| ClientFault::new("a body of the scene is not in the world"))
     }
 
+    fn find_mechanisms_of(&mut self, body: RigidBodyHandle) {
+        if self.hangs(body) {
+            self.find_mechanisms();
+        }
+    }
+
+    /// A joint beside a joint of the scene that leaves its coordinate free and brakes it.
+    pub(super) fn add_friction(&mut self, joint: usize, along: JointAxis, gain: f64) -> Option<ImpulseJointHandle> {
+        let beside = self.physics.impulse_joints.get(self.joints[joint])?;
+        let (one, other) = (beside.body1(), beside.body2());
+        let mut brake = GenericJointBuilder::new(JointAxesMask::empty())
+            .local_frame1(beside.data.local_frame1)
+            .local_frame2(beside.data.local_frame2)
+            .contacts_enabled(beside.data.contacts_enabled())
+            .build();
+        brake.set_motor_model(along, MotorModel::AccelerationBased);
+        brake.set_motor_velocity(along, 0.0, gain);
+        brake.set_motor_max_force(along, 0.0);
+        let handle = self.physics.insert_impulse_joint(one, other, brake);
+        self.frictions.push(handle);
+        Some(handle)
+    }
+
     /// True if a body hangs on a joint.
     pub(super) fn hangs(&self, handle: RigidBodyHandle) -> bool {
         self.physics.impulse_joints.attached_joints(handle).next().is_some()
@@ -250,7 +289,9 @@ impl World {
     pub(super) fn hold(&mut self, holder: RigidBodyHandle, held: RigidBodyHandle) -> ImpulseJointHandle {
         let between = self.body(holder).position().inv_mul(self.body(held).position());
         let joint = FixedJointBuilder::new().local_frame1(between).contacts_enabled(false);
-        self.physics.insert_impulse_joint(holder, held, joint)
+        let joint = self.physics.insert_impulse_joint(holder, held, joint);
+        self.find_mechanisms();
+        joint
     }
 
     /// Removes the joint that [`hold`](Self::hold) gave.
@@ -259,6 +300,7 @@ impl World {
     /// A joint that there is not.
     pub(super) fn let_go(&mut self, joint: ImpulseJointHandle) -> Result<(), ClientFault> {
         let removed = self.physics.remove_impulse_joint(joint);
+        self.find_mechanisms();
         removed.map(|_| ()).ok_or_else(|| ClientFault::new("the joint that holds a body is not in the world"))
     }
 }

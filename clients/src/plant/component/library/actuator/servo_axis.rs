@@ -24,10 +24,13 @@ use crate::plant::component::behaviour::{Component, Conflict, Start, Turn};
 use crate::plant::component::declare::{failures, own_types, parameters, signals};
 use crate::plant::component::dynamics::{Resistance, Travel, ramp, substeps};
 use crate::plant::component::profile::{Limits, Point, Profile};
-use crate::plant::coupling::{Coordinate, Move, Slides};
+use crate::plant::coupling::{Coordinate, Slides};
+use crate::plant::effort::{Effort, Motion};
 
 /// Longest sub-step.
 const LONGEST_S: f64 = 0.25e-3;
+/// Time constant of the velocity loop's integral part, in those of the loop itself.
+const INTEGRAL_LOOPS: f64 = 5.0;
 /// How far the position loop may go beyond the greatest speed.
 const OVERSPEED: f64 = 1.2;
 
@@ -58,7 +61,7 @@ parameters! {
         feed_forward_ratio: f64 = 0.0 => 0.0, 1.0;
         /// time constant of the velocity loop
         velocity_loop_s: f64 = 0.003 => 0.0001, 1.0;
-        /// all that moves
+        /// all that moves; on a joint its bodies do, and the velocity loop is tuned to this or to what they are at the set-up, whichever is more
         moving_kg: f64 = 20.0 => 0.001, 1e6;
         /// greatest force of motor and drive
         force_max_n: f64 = 1000.0 => 0.001, 1e7;
@@ -142,9 +145,16 @@ failures! {
 pub(crate) enum Doing {
     Off,
     Standing,
-    Moving { profile: Profile, start_m: f64, since_s: f64 },
+    Moving {
+        profile: Profile,
+        start_m: f64,
+        since_s: f64,
+    },
     /// At a velocity: jogging, homing; 0 to stop.
-    Velocity { wanted_m_s: f64, homing: bool },
+    Velocity {
+        wanted_m_s: f64,
+        homing: bool,
+    },
     Error,
 }
 
@@ -164,8 +174,10 @@ pub(crate) struct State {
     set: Point,
     /// Where the axis is.
     axis: Travel,
-    /// Where the axis was as the period began.
-    from_m: f64,
+    /// Integral part of the velocity loop.
+    integral_n: f64,
+    /// Mass that the velocity loop is tuned to on a joint.
+    tuned_kg: Option<f64>,
     /// What the drive knows of where the axis is.
     encoder_m: f64,
     /// Coordinate that the drive calls 0.
@@ -175,6 +187,13 @@ pub(crate) struct State {
     target_m: Option<f64>,
     /// `execute`, `home` and `reset` of the last period.
     before: [bool; 3],
+}
+
+impl State {
+    /// Whether the drive holds the axis.
+    const fn held(&self) -> bool {
+        !matches!(self.doing, Doing::Off | Doing::Error)
+    }
 }
 
 /// An axis by its parameters.
@@ -286,14 +305,18 @@ impl ServoAxis {
         }
     }
 
-    fn substep(&self, state: &mut State, turn: &Turn<Option<Coordinate>>, dt_s: f64) {
+    /// The velocity that the position loop asks for.
+    fn asked(&self, state: &State) -> f64 {
         let p = &self.p;
-        let held = !matches!(state.doing, Doing::Off | Doing::Error);
         let most = OVERSPEED * p.speed_m_s;
         let wanted = p.feed_forward_ratio * state.set.velocity + p.gain_1_s * (state.set.way - state.encoder_m);
-        let velocity = wanted.clamp(-most, most);
+        wanted.clamp(-most, most)
+    }
+
+    fn substep(&self, state: &mut State, turn: &Turn<Option<Coordinate>>, dt_s: f64) {
+        let p = &self.p;
         // without the drive a brake takes hold, as strong as the motor
-        let asked = if held { velocity } else { 0.0 };
+        let asked = if state.held() { self.asked(state) } else { 0.0 };
         let loop_s = p.velocity_loop_s.max(dt_s);
         let hold_n = p.moving_kg * (asked - state.axis.velocity) / loop_s + p.load_n;
         state.force_n = hold_n.clamp(-p.force_max_n, p.force_max_n);
@@ -326,7 +349,7 @@ impl Component for ServoAxis {
     ];
     const SOURCE: &'static str =
         "L. Biagiotti, C. Melchiorri, Trajectory Planning, 2008, 3.4; PLCopen Motion Control 2.0 (states)";
-    own_types!(moves Slides);
+    own_types!(sees Slides);
 
     fn new(p: Parameters) -> Self {
         Self { p, longest_s: LONGEST_S }
@@ -340,7 +363,8 @@ impl Component for ServoAxis {
         if !inside(p.initial_m) {
             return Some(Conflict { key: "initial_m", wanted: "a number from `lower_m` to `upper_m`" });
         }
-        (!inside(p.reference_m)).then_some(Conflict { key: "reference_m", wanted: "a number from `lower_m` to `upper_m`" })
+        (!inside(p.reference_m))
+            .then_some(Conflict { key: "reference_m", wanted: "a number from `lower_m` to `upper_m`" })
     }
 
     fn initial(&self, start: &Start<Option<Coordinate>>) -> State {
@@ -349,7 +373,8 @@ impl Component for ServoAxis {
             doing: Doing::Off,
             set: Point { way: position, velocity: 0.0 },
             axis: Travel { position, velocity: 0.0 },
-            from_m: position,
+            integral_n: 0.0,
+            tuned_kg: None,
             encoder_m: position,
             zero_m: position,
             homed: false,
@@ -360,17 +385,61 @@ impl Component for ServoAxis {
     }
 
     fn drive(&self, state: &mut State, inputs: &Inputs, turn: &Turn<Option<Coordinate>>) {
-        state.axis.yield_to(turn.seen, state.axis.velocity.abs() * turn.dt_s + 1e-4);
-        state.from_m = state.axis.position;
         self.decide(state, inputs, turn);
+        if turn.seen.is_some() {
+            return;
+        }
         let (count, dt_s) = substeps(turn.dt_s, self.longest_s);
         for _ in 0..count {
             self.substep(state, turn, dt_s);
         }
     }
 
-    fn effect(&self, state: &State) -> Move {
-        Move { from: state.from_m, to: state.axis.position, effort_max: self.p.force_max_n }
+    fn longest_s(&self) -> f64 {
+        self.longest_s
+    }
+
+    fn stops(&self) -> Option<[f64; 2]> {
+        Some([self.p.lower_m, self.p.upper_m])
+    }
+
+    fn advance(
+        &self,
+        state: &mut State,
+        _: &Inputs,
+        turn: &Turn<Option<Coordinate>>,
+        motion: Motion,
+        dt_s: f64,
+    ) -> Effort {
+        let p = &self.p;
+        let Motion { position, velocity, mass, exerted } = motion;
+        state.axis = Travel { position, velocity };
+        state.force_n = exerted;
+        if !turn.failed.has(Failure::EncoderFrozen) {
+            state.encoder_m = position;
+        }
+        if turn.failed.has(Failure::Blocked) {
+            self.set(state, dt_s);
+            return Effort::BLOCKED;
+        }
+        if !state.held() {
+            state.integral_n = 0.0;
+            self.set(state, dt_s);
+            // the brake takes hold, as strong as the motor
+            return Effort { dry: p.friction_n + p.force_max_n, ..Effort::of(-p.load_n) };
+        }
+        // while it moves by hand of the engine the mass is not told
+        let seen_kg = if mass.is_finite() { mass } else { p.moving_kg };
+        let tuned_kg = *state.tuned_kg.get_or_insert(seen_kg.max(p.moving_kg));
+        let gain = tuned_kg / p.velocity_loop_s.max(dt_s);
+        let off = self.asked(state) - velocity;
+        // at its greatest force the integral waits
+        if (gain * off + state.integral_n).abs() < p.force_max_n {
+            state.integral_n += gain * off * dt_s / (INTEGRAL_LOOPS * p.velocity_loop_s.max(dt_s));
+        }
+        self.set(state, dt_s);
+        let force = gain * off + state.integral_n;
+        Effort { slope: gain, most: p.force_max_n, dry: p.friction_n, ..Effort::of(force) }
     }
 
     fn sense(&self, state: &mut State, _: &Inputs, turn: &Turn<Option<Coordinate>>) -> Outputs {

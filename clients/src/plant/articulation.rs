@@ -1,0 +1,259 @@
+//! Mechanisms and the engine: who moves which bodies in a step.
+//!
+//! In every step the engine moves all bodies, with the joints and motors that it has for them. Then, of
+//! each mechanism none of whose bodies touched another in that step, the engine's result is put aside
+//! and the mechanism's own, exact to a high order, takes its place. Where a body touched, the engine's
+//! result stands, for it alone knows of contacts; the mechanism takes its coordinates from there.
+//!
+//! Which of the two applies follows from the contacts of the step alone, so that it is the same in
+//! every run, and after a restore.
+
+use rapier3d::prelude::*;
+
+use super::actuator::{Acts, Actuator};
+use super::coordinate::Gauge;
+use super::effort::{Drives, Mark, Motion};
+use super::fitting::Fitting;
+use super::machine::Misfit;
+use super::mechanism::{Coordinates, Link, Mechanism, Surroundings, mechanisms};
+use super::scene::Scene;
+use super::scene::model::JointKind;
+use super::world::{World, local_frames};
+
+/// Mechanisms, fittings of joints, and how joints were measured last.
+pub(super) struct Articulation {
+    mechanisms: Vec<Member>,
+    /// Joints that are in no mechanism, which the engine moves always.
+    others: Vec<usize>,
+    pub(super) fittings: Vec<Fitting>,
+    gauges: Vec<Gauge>,
+    /// All joints of the scene, with their coordinates.
+    motions: Vec<Mark>,
+    /// The scene's joints.
+    links: Vec<Link>,
+}
+
+/// A mechanism and the shapes of its bodies that collide.
+struct Member {
+    mechanism: Mechanism,
+    colliders: Vec<ColliderHandle>,
+    /// The actuators of its joints.
+    actuators: Vec<usize>,
+}
+
+impl Articulation {
+    pub(super) fn empty() -> Self {
+        Self {
+            mechanisms: Vec::new(),
+            others: Vec::new(),
+            fittings: Vec::new(),
+            gauges: Vec::new(),
+            motions: Vec::new(),
+            links: Vec::new(),
+        }
+    }
+
+    /// The mechanisms of a world that still stands in the scene's pose.
+    pub(super) fn build(scene: &Scene, world: &mut World) -> Self {
+        let bodies: Vec<_> = world.physics.bodies.iter().map(|(handle, _)| handle).collect();
+        for handle in bodies {
+            // the masses of shapes, which the engine else gathers in its first step
+            world.physics.bodies[handle].recompute_mass_properties_from_colliders(&world.physics.colliders);
+        }
+        let links = scene.joints.iter().enumerate().map(|(index, joint)| {
+            let bodies = [world.handle(joint.parent), world.handle(Some(joint.child))];
+            let frames = local_frames(&world.physics, joint, bodies[0], bodies[1]);
+            Link { joint: Some(index), kind: joint.kind, bodies, frames }
+        });
+        Self {
+            links: links.collect(),
+            fittings: scene.joints.iter().map(Fitting::new).collect(),
+            gauges: scene.joints.iter().map(|joint| Gauge::new(world, joint)).collect(),
+            motions: scene.joints.iter().map(|joint| Mark { position: joint.initial, velocity: 0.0 }).collect(),
+            ..Self::empty()
+        }
+    }
+
+    /// Finds the mechanisms anew: a body is held or let go, taken out or put in.
+    fn find(&mut self, holds: &[Link], physics: &PhysicsWorld, actuators: &[Actuator]) {
+        let links: Vec<_> = self.links.iter().chain(holds).copied().collect();
+        let last = |joint: usize| self.motions[joint].position - self.fittings[joint].initial;
+        let (found, others) = mechanisms(&links, &physics.bodies, last);
+        self.others = others;
+        self.mechanisms = found
+            .into_iter()
+            .map(|mechanism| {
+                let shapes = mechanism.bodies().flat_map(|body| physics.bodies[body].colliders().to_vec());
+                let collides =
+                    |shape: &ColliderHandle| physics.colliders[*shape].collision_groups().memberships != Group::NONE;
+                let colliders = shapes.filter(collides).collect();
+                let own = |actuator: &Actuator| mechanism.joints().any(|(joint, ..)| joint == actuator.joint);
+                let actuators = (0..actuators.len()).filter(|index| own(&actuators[*index])).collect();
+                Member { mechanism, colliders, actuators }
+            })
+            .collect();
+    }
+}
+
+impl Member {
+    /// True if a shape of it has a pair that `counts`.
+    fn meets(&self, narrow: &NarrowPhase, counts: impl Fn(&ContactPair) -> bool) -> bool {
+        self.colliders.iter().any(|collider| narrow.contact_pairs_with(*collider).any(&counts))
+    }
+}
+
+impl World {
+    /// Finds the mechanisms of the joints that there are now.
+    pub(super) fn find_mechanisms(&mut self) {
+        let Self { physics, actuators, articulation, joints, frictions, .. } = self;
+        let known = |handle: ImpulseJointHandle| joints.contains(&handle) || frictions.contains(&handle);
+        let holds = physics.impulse_joints.iter().filter(|(handle, _)| !known(*handle));
+        let holds = holds.map(|(_, joint)| Link {
+            joint: None,
+            kind: JointKind::Fixed,
+            bodies: [joint.body1(), joint.body2()],
+            frames: [joint.data.local_frame1, joint.data.local_frame2],
+        });
+        let holds: Vec<_> = holds.collect();
+        articulation.find(&holds, physics, actuators);
+    }
+
+    /// The coordinate and velocity of a joint.
+    pub(super) fn motion(&self, joint: usize) -> Mark {
+        self.articulation.motions[joint]
+    }
+
+    /// Gives a joint stops, beside those that it has.
+    pub(super) fn restrict(&mut self, joint: usize, [lower, upper]: [f64; 2]) {
+        let fitting = &mut self.articulation.fittings[joint];
+        fitting.lower = fitting.lower.max(lower - fitting.initial).min(0.0);
+        fitting.upper = fitting.upper.min(upper - fitting.initial).max(0.0);
+        let limits = [fitting.lower.max(-Real::MAX), fitting.upper.min(Real::MAX)];
+        let handle = self.joint(joint);
+        let along = super::world::measured_axis(self.articulation.links[joint].kind);
+        if let Some(joint) = self.physics.impulse_joints.get_mut(handle, false) {
+            joint.data.set_limits(along, limits);
+        }
+    }
+
+    /// One step of the engine and of all mechanisms, which is this part of the turn.
+    pub(super) fn substep(&mut self, part: [f64; 2], drives: &mut dyn Drives) {
+        let dt_s = self.physics.integration_parameters.dt;
+        self.arm(part, dt_s, drives);
+        self.physics.step();
+        let Self { physics, actuators, articulation, .. } = self;
+        let Articulation { mechanisms, others, fittings, gauges, motions, .. } = articulation;
+        let iterations = physics.integration_parameters.num_solver_iterations;
+        let follow = |index: usize, to: Mark, from: Mark, actuators: &mut [Actuator], drives: &mut dyn Drives| {
+            let actuator = &mut actuators[index];
+            actuator.read(&physics.impulse_joints, dt_s, iterations);
+            if let Acts::Law { drive } = actuator.acts {
+                let velocity = (to.position - from.position) / dt_s;
+                let motion =
+                    Motion { position: from.position, velocity, mass: f64::INFINITY, exerted: actuator.exerted };
+                advance(drives, drive, motion, dt_s);
+            }
+        };
+        let mut free = Vec::with_capacity(mechanisms.len());
+        for member in mechanisms.iter_mut() {
+            let touched = member.meets(&physics.narrow_phase, ContactPair::has_any_active_contact);
+            let gravity = physics.gravity;
+            let mut around = Surroundings { gravity, fittings, actuators, drives, part };
+            let alone = !touched && member.mechanism.advance(dt_s, &mut around);
+            if !alone {
+                member.mechanism.measure(&physics.bodies);
+            }
+            for (joint, position, velocity) in member.mechanism.joints() {
+                let now = Mark { position: fittings[joint].initial + position, velocity };
+                let before = std::mem::replace(&mut motions[joint], now);
+                let own = member.actuators.iter().find(|index| actuators[**index].joint == joint);
+                if let Some(index) = own.filter(|_| !alone) {
+                    follow(*index, now, before, actuators, drives);
+                }
+            }
+            free.push(alone);
+        }
+        for joint in others.iter().copied() {
+            let (bodies, gauge) = (&physics.bodies, &gauges[joint]);
+            let now =
+                Mark { position: gauge.position(bodies, motions[joint].position), velocity: gauge.velocity(bodies) };
+            let before = std::mem::replace(&mut motions[joint], now);
+            if let Some(index) = actuators.iter().position(|actuator| actuator.joint == joint) {
+                follow(index, now, before, actuators, drives);
+            }
+        }
+        for (member, _) in mechanisms.iter_mut().zip(free).filter(|(_, alone)| *alone) {
+            member.mechanism.put(&mut physics.bodies);
+        }
+    }
+
+    /// Makes all actuators motors of the engine.
+    fn arm(&mut self, part: [f64; 2], dt_s: f64, drives: &dyn Drives) {
+        let Self { physics, actuators, articulation, .. } = self;
+        let mut near = vec![true; actuators.len()];
+        for member in &articulation.mechanisms {
+            if !member.actuators.is_empty() && !member.meets(&physics.narrow_phase, |_| true) {
+                for index in &member.actuators {
+                    near[*index] = false;
+                }
+            }
+        }
+        for (actuator, near) in actuators.iter().zip(near) {
+            let Mark { position, velocity } = articulation.motions[actuator.joint];
+            let motion = Motion { position, velocity, mass: f64::INFINITY, exerted: actuator.exerted };
+            actuator.arm(motion, part, dt_s, near, drives, &mut physics.impulse_joints);
+        }
+    }
+
+    /// What the mechanisms remember.
+    pub(super) fn coordinates(&self) -> ArticulationMemory {
+        ArticulationMemory {
+            motions: self.articulation.motions.clone(),
+            mechanisms: self.articulation.mechanisms.iter().map(|member| member.mechanism.memory()).collect(),
+            exerted: self.actuators.iter().map(|actuator| actuator.exerted).collect(),
+        }
+    }
+
+    /// Takes in what mechanisms remembered, in a world whose engine's state is restored.
+    ///
+    /// # Errors
+    /// A memory of other mechanisms.
+    pub(super) fn restore_coordinates(&mut self, memory: ArticulationMemory) -> Result<(), Misfit> {
+        let counts = (memory.motions.len(), memory.exerted.len());
+        if counts != (self.articulation.motions.len(), self.actuators.len()) {
+            return Err(Misfit("it has other joints and drives".to_owned()));
+        }
+        self.articulation.motions = memory.motions;
+        self.find_mechanisms();
+        let members = &mut self.articulation.mechanisms;
+        if members.len() != memory.mechanisms.len()
+            || !members.iter().zip(&memory.mechanisms).all(|(member, memory)| member.mechanism.fits(memory))
+        {
+            return Err(Misfit("its mechanisms are others".to_owned()));
+        }
+        for (member, memory) in members.iter_mut().zip(memory.mechanisms) {
+            member.mechanism.restore(memory);
+        }
+        for (actuator, exerted) in self.actuators.iter_mut().zip(memory.exerted) {
+            actuator.exerted = exerted;
+        }
+        Ok(())
+    }
+}
+
+/// What mechanisms and actuators remember between two turns.
+#[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+pub(super) struct ArticulationMemory {
+    motions: Vec<Mark>,
+    mechanisms: Vec<Coordinates>,
+    exerted: Vec<f64>,
+}
+
+/// Moves a drive's state by a step of constant velocity, in sub-steps as short as it wants them.
+fn advance(drives: &mut dyn Drives, drive: usize, motion: Motion, dt_s: f64) {
+    let (count, part_s) = super::component::dynamics::substeps(dt_s, drives.longest_s(drive));
+    for index in 0..count {
+        let position = motion.position + motion.velocity * part_s * f64::from(index);
+        drives.advance(drive, Motion { position, ..motion }, part_s);
+    }
+}
