@@ -10,6 +10,7 @@ use onescan_server::client::ClientFault;
 use rapier3d::prelude::*;
 
 use super::effort::{Drives, Effort, Motion, Path};
+use super::fitting::Fitting;
 use super::mechanism::CORRECTED_A_TURN;
 use super::scene::Scene;
 use super::world::{World, measured_axis};
@@ -45,14 +46,68 @@ pub(crate) struct Actuator {
     pub(super) effort: f64,
     handle: ImpulseJointHandle,
     along: JointAxis,
-    /// A joint that leaves all free and brakes as the drive's dry friction does.
-    friction: Option<ImpulseJointHandle>,
+}
+
+/// A joint of the engine's that leaves all free and brakes as dry friction does.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Friction {
+    pub(super) handle: ImpulseJointHandle,
+    along: JointAxis,
+}
+
+impl Friction {
+    /// Puts one beside a joint of the scene.
+    pub(super) fn beside(joint: ImpulseJointHandle, along: JointAxis, physics: &mut PhysicsWorld) -> Option<Self> {
+        let (mut brake, [one, other]) = free_beside(joint, physics)?;
+        brake.set_motor_model(along, MotorModel::AccelerationBased);
+        brake.set_motor_velocity(along, 0.0, RIGID_PER_S);
+        brake.set_motor_max_force(along, 0.0);
+        Some(Self { handle: physics.insert_impulse_joint(one, other, brake), along })
+    }
+
+    /// How much it brakes in the step that begins.
+    pub(super) fn brake(&self, most: f64, joints: &mut ImpulseJointSet) {
+        if let Some(joint) = joints.get_mut(self.handle, false) {
+            joint.data.set_motor_max_force(self.along, most.min(Real::MAX));
+        }
+    }
+}
+
+/// Puts spring, damper and counterweight beside a joint of the scene, for the engine.
+pub(super) fn spring_beside(
+    joint: ImpulseJointHandle,
+    along: JointAxis,
+    fitting: &Fitting,
+    physics: &mut PhysicsWorld,
+) -> Option<ImpulseJointHandle> {
+    let (mut spring, [one, other]) = free_beside(joint, physics)?;
+    spring.set_motor_model(along, MotorModel::ForceBased);
+    if fitting.spring > 0.0 {
+        let rest = fitting.rest + fitting.balance / fitting.spring;
+        spring.set_motor(along, rest, 0.0, fitting.spring, fitting.damping);
+    } else {
+        let slope = fitting.damping.max(FLAT);
+        spring.set_motor_velocity(along, fitting.balance / slope, slope);
+    }
+    Some(physics.insert_impulse_joint(one, other, spring))
+}
+
+/// A joint between the bodies of another that leaves all free.
+fn free_beside(joint: ImpulseJointHandle, physics: &PhysicsWorld) -> Option<(GenericJoint, [RigidBodyHandle; 2])> {
+    let beside = physics.impulse_joints.get(joint)?;
+    let free = GenericJointBuilder::new(JointAxesMask::empty())
+        .local_frame1(beside.data.local_frame1)
+        .local_frame2(beside.data.local_frame2)
+        .contacts_enabled(beside.data.contacts_enabled())
+        .build();
+    Some((free, [beside.body1(), beside.body2()]))
 }
 
 impl Actuator {
     /// Makes it a motor of the engine for a step, whose part of the turn this is, from where the joint is.
     ///
-    /// A law whose mechanism has nothing `near` goes on with the force that it had.
+    /// A law whose mechanism has nothing `near` goes on with the force that it had. What it gives back
+    /// is its dry friction.
     pub(super) fn arm(
         &self,
         motion: Motion,
@@ -61,7 +116,7 @@ impl Actuator {
         near: bool,
         drives: &dyn Drives,
         joints: &mut ImpulseJointSet,
-    ) {
+    ) -> f64 {
         let line = match self.acts {
             Acts::Along(path) => {
                 let missing = path.at(from) - motion.position;
@@ -79,9 +134,7 @@ impl Actuator {
             joint.data.set_motor_velocity(self.along, line.velocity, gain);
             joint.data.set_motor_max_force(self.along, line.most.min(Real::MAX));
         }
-        if let Some(joint) = self.friction.and_then(|handle| joints.get_mut(handle, false)) {
-            joint.data.set_motor_max_force(self.along, line.dry.min(Real::MAX));
-        }
+        line.dry
     }
 
     /// What the engine's motor exerted in its last iteration, of which there are so many in a step.
@@ -129,7 +182,7 @@ impl Motor {
     /// effort up to the greatest, N or N·m, or with as much as it takes.
     pub(super) fn bind(joint: usize, effort_max: Option<f64>, scene: &Scene, world: &mut World) -> Self {
         let along = measured_axis(scene.joints[joint].kind);
-        let mut actuator = Actuator {
+        let actuator = Actuator {
             joint,
             acts: Acts::Along(Path::at_rest(scene.joints[joint].initial)),
             most: effort_max.unwrap_or(f64::INFINITY),
@@ -138,21 +191,22 @@ impl Motor {
             effort: 0.0,
             handle: world.joint(joint),
             along,
-            friction: None,
         };
         if let Some(joint) = world.physics.impulse_joints.get_mut(actuator.handle, true) {
             joint.data.set_motor_model(along, MotorModel::AccelerationBased);
             joint.data.set_motor_velocity(along, 0.0, RIGID_PER_S);
             joint.data.set_motor_max_force(along, actuator.most.min(Real::MAX));
         }
-        actuator.friction = world.add_friction(joint, along, RIGID_PER_S);
         world.actuators.push(actuator);
         Self { joint, actuator: world.actuators.len() - 1 }
     }
 
     /// From now on the joint is driven by the equations of a component.
     pub(super) fn obey(&self, world: &mut World) {
-        world.actuators[self.actuator].acts = Acts::Law { drive: self.actuator };
+        let Actuator { acts, joint, .. } = &mut world.actuators[self.actuator];
+        *acts = Acts::Law { drive: self.actuator };
+        let joint = *joint;
+        world.add_friction(joint);
     }
 
     /// Index of the joint in the scene.
@@ -168,6 +222,12 @@ impl Motor {
     /// What it exerted in the last step, N or N·m.
     pub(super) fn effort(&self, world: &World) -> f64 {
         world.actuators[self.actuator].effort
+    }
+
+    /// Whether it exerted all that it can, but for rounding, in the last sub-step.
+    pub(super) fn is_at_its_limit(&self, world: &World) -> bool {
+        let actuator = &world.actuators[self.actuator];
+        actuator.exerted.abs() >= actuator.most * (1.0 - 1e-9)
     }
 
     /// Moves the joint along a path in the turn that begins, with a new greatest effort if there is one.

@@ -18,7 +18,7 @@ use super::machine::Misfit;
 use super::mechanism::{Coordinates, Link, Mechanism, Surroundings, mechanisms};
 use super::scene::Scene;
 use super::scene::model::JointKind;
-use super::world::{World, local_frames};
+use super::world::{World, local_frames, measured_axis};
 
 /// Mechanisms, fittings of joints, and how joints were measured last.
 pub(super) struct Articulation {
@@ -67,11 +67,16 @@ impl Articulation {
         });
         Self {
             links: links.collect(),
-            fittings: scene.joints.iter().map(Fitting::new).collect(),
+            fittings: (0..scene.joints.len()).map(|joint| Fitting::new(scene, joint)).collect(),
             gauges: scene.joints.iter().map(|joint| Gauge::new(world, joint)).collect(),
             motions: scene.joints.iter().map(|joint| Mark { position: joint.initial, velocity: 0.0 }).collect(),
             ..Self::empty()
         }
+    }
+
+    /// The engine's axis of a joint's coordinate.
+    pub(super) fn along(&self, joint: usize) -> JointAxis {
+        measured_axis(self.links[joint].kind)
     }
 
     /// Finds the mechanisms anew: a body is held or let go, taken out or put in.
@@ -105,8 +110,11 @@ impl Member {
 impl World {
     /// Finds the mechanisms of the joints that there are now.
     pub(super) fn find_mechanisms(&mut self) {
-        let Self { physics, actuators, articulation, joints, frictions, .. } = self;
-        let known = |handle: ImpulseJointHandle| joints.contains(&handle) || frictions.contains(&handle);
+        let Self { physics, actuators, articulation, joints, frictions, springs, .. } = self;
+        let beside = |handle: ImpulseJointHandle| {
+            springs.contains(&handle) || frictions.iter().any(|(_, friction)| friction.handle == handle)
+        };
+        let known = |handle: ImpulseJointHandle| joints.contains(&handle) || beside(handle);
         let holds = physics.impulse_joints.iter().filter(|(handle, _)| !known(*handle));
         let holds = holds.map(|(_, joint)| Link {
             joint: None,
@@ -130,7 +138,7 @@ impl World {
         fitting.upper = fitting.upper.min(upper - fitting.initial).max(0.0);
         let limits = [fitting.lower.max(-Real::MAX), fitting.upper.min(Real::MAX)];
         let handle = self.joint(joint);
-        let along = super::world::measured_axis(self.articulation.links[joint].kind);
+        let along = self.articulation.along(joint);
         if let Some(joint) = self.physics.impulse_joints.get_mut(handle, false) {
             joint.data.set_limits(along, limits);
         }
@@ -189,7 +197,7 @@ impl World {
 
     /// Makes all actuators motors of the engine.
     fn arm(&mut self, part: [f64; 2], dt_s: f64, drives: &dyn Drives) {
-        let Self { physics, actuators, articulation, .. } = self;
+        let Self { physics, actuators, articulation, frictions, .. } = self;
         let mut near = vec![true; actuators.len()];
         for member in &articulation.mechanisms {
             if !member.actuators.is_empty() && !member.meets(&physics.narrow_phase, |_| true) {
@@ -198,10 +206,19 @@ impl World {
                 }
             }
         }
+        for (joint, friction) in frictions.iter() {
+            let dry = articulation.fittings[*joint].dry(articulation.motions[*joint].velocity);
+            friction.brake(dry, &mut physics.impulse_joints);
+        }
         for (actuator, near) in actuators.iter().zip(near) {
             let Mark { position, velocity } = articulation.motions[actuator.joint];
             let motion = Motion { position, velocity, mass: f64::INFINITY, exerted: actuator.exerted };
-            actuator.arm(motion, part, dt_s, near, drives, &mut physics.impulse_joints);
+            let own = frictions.iter().find(|(joint, _)| *joint == actuator.joint).map(|(_, friction)| *friction);
+            let fitted = articulation.fittings[actuator.joint].dry(velocity);
+            let dry = actuator.arm(motion, part, dt_s, near, drives, &mut physics.impulse_joints);
+            if let Some(friction) = own {
+                friction.brake(dry + fitted, &mut physics.impulse_joints);
+            }
         }
     }
 

@@ -8,7 +8,7 @@
 //! The drive of a belt has no loops: nothing that lies on a belt can slow it.
 
 use onescan_server::client::ClientFault;
-use onescan_server::signal::{PortLayout, SignalName, SlotError};
+use onescan_server::signal::{PortLayout, SignalName, Slot, SlotError};
 use rapier3d::prelude::*;
 
 use super::actuator::Motor;
@@ -33,6 +33,8 @@ pub(super) struct Axis {
     bounds: Bounds,
     position: Option<NumberSlot>,
     velocity: Option<NumberSlot>,
+    effort: Option<NumberSlot>,
+    limit: Option<Slot<bool>>,
 }
 
 impl Axis {
@@ -66,6 +68,8 @@ impl Axis {
             bounds,
             position: feedback(&axis.position)?,
             velocity: feedback(&axis.velocity)?,
+            effort: feedback(&axis.effort)?,
+            limit: axis.limit.as_ref().map(|name| writes.slot(name.as_str())).transpose()?,
         })
     }
 
@@ -126,6 +130,13 @@ impl Axis {
                 Mover::Belt { body, direction } => world.body(*body).linvel().dot(*direction),
             };
             slot.set(outputs, velocity);
+        }
+        let Mover::Joint(motor) = &self.mover else { return };
+        if let Some(slot) = self.effort {
+            slot.set(outputs, motor.effort(world));
+        }
+        if let Some(slot) = self.limit {
+            slot.set(outputs, motor.is_at_its_limit(world));
         }
     }
 }

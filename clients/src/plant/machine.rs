@@ -1,7 +1,7 @@
 //! A whole plant in motion: world, axes, sensors and components, one turn at a time.
 
 use onescan_server::client::ClientFault;
-use onescan_server::signal::PortLayout;
+use onescan_server::signal::{PortLayout, Slot, SlotError};
 use onescan_server::time::{TimeSpan, VirtualTime};
 use rapier3d::prelude::PhysicsWorld;
 use serde::{Deserialize, Serialize};
@@ -15,8 +15,8 @@ use super::coordinate::Measured;
 use super::effort::{Drives, Effort, Mark, Motion};
 use super::part::{Moment, Part, PartMemory, Unbuilt};
 use super::placement::Placement;
-use super::scene::Scene;
 use super::scene::failures::FoundMode;
+use super::scene::{Scene, model};
 use super::sensor::Sensor;
 use super::setpoint::Setpoint;
 use super::world::World;
@@ -53,6 +53,8 @@ pub(super) struct Machine {
     parts: Vec<Part>,
     /// The part that is the drive of each number, if one is.
     drivers: Vec<Option<usize>>,
+    /// Brakes that signals release, by the joint.
+    brakes: Vec<(usize, Slot<bool>)>,
     /// The outputs of all parts, for those that are wired to them.
     given: Vec<Vec<Value>>,
     /// Signals in and out, where the scene says that something happens to them.
@@ -86,6 +88,7 @@ impl Machine {
         Ok(Self {
             motions: (0..scene.joints.len()).map(|joint| world.motion(joint)).collect(),
             drivers: drivers(&parts, &world),
+            brakes: brakes(scene, &reads)?,
             setpoints: axes.iter().map(|axis| axis.rest(scene)).collect(),
             detected: vec![false; sensors.len()],
             given: parts.iter().map(|part| part.given().to_vec()).collect(),
@@ -220,8 +223,11 @@ impl Machine {
     }
 
     fn inner_turn(&mut self, scene: &Scene, now_ns: u64, inputs: &[u8], outputs: &mut [u8]) -> Result<(), ClientFault> {
-        let Self { world, motions, setpoints, axes, parts, given, dt_s, drivers, .. } = self;
+        let Self { world, motions, setpoints, axes, parts, given, dt_s, drivers, brakes, .. } = self;
         let measured = Measured { motions };
+        for (joint, release) in brakes.iter() {
+            world.articulation.fittings[*joint].set_brake(release.get(inputs));
+        }
         for ((axis, setpoint), described) in axes.iter().zip(setpoints).zip(&scene.axes) {
             axis.drive(&described.name, setpoint, measured, *dt_s, inputs, world)?;
         }
@@ -282,6 +288,14 @@ impl Drives for Driving<'_> {
     fn foresee(&self, drive: usize, motion: Motion, dt_s: f64) -> Effort {
         self.part(drive).map_or(Effort::of(0.0), |part| part.foresee(motion, dt_s))
     }
+}
+
+/// The brakes that signals release.
+fn brakes(scene: &Scene, reads: &PortLayout) -> Result<Vec<(usize, Slot<bool>)>, SlotError> {
+    let released =
+        |fitting: &model::Fitting| fitting.brake.as_ref()?.release.as_ref().map(|name| (fitting.joint, name.clone()));
+    let each = scene.fittings.iter().filter_map(released);
+    each.map(|(joint, name)| reads.slot(name.as_str()).map(|slot| (joint, slot))).collect()
 }
 
 /// Which part is the drive of each number.

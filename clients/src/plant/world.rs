@@ -7,7 +7,7 @@ use onescan_server::time::TimeSpan;
 use rapier3d::glamx::{DMat3, DQuat};
 use rapier3d::prelude::*;
 
-use super::actuator::Actuator;
+use super::actuator::{Actuator, Friction, spring_beside};
 use super::articulation::Articulation;
 use super::effort::Drives;
 use super::machine::Misfit;
@@ -35,8 +35,10 @@ pub(crate) struct World {
     bodies: Vec<RigidBodyHandle>,
     shapes: Vec<ColliderHandle>,
     pub(super) joints: Vec<ImpulseJointHandle>,
-    /// Joints that brake driven joints as dry friction does.
-    pub(super) frictions: Vec<ImpulseJointHandle>,
+    /// Joints that brake joints of the scene, by their index, as dry friction does.
+    pub(super) frictions: Vec<(usize, Friction)>,
+    /// Joints that stand in for springs, dampers and counterweights of joints.
+    pub(super) springs: Vec<ImpulseJointHandle>,
     /// What drives joints.
     pub(super) actuators: Vec<Actuator>,
     pub(super) articulation: Articulation,
@@ -70,6 +72,7 @@ impl World {
             shapes,
             joints,
             frictions: Vec::new(),
+            springs: Vec::new(),
             actuators: Vec::new(),
             articulation: Articulation::empty(),
             belts: Vec::new(),
@@ -77,6 +80,17 @@ impl World {
             extent_m: scene.extent_m,
         };
         world.articulation = Articulation::build(scene, &mut world);
+        for index in 0..scene.joints.len() {
+            let fitting = world.articulation.fittings[index];
+            let along = measured_axis(scene.joints[index].kind);
+            if fitting.pushes() {
+                let spring = spring_beside(world.joints[index], along, &fitting, &mut world.physics);
+                world.springs.extend(spring);
+            }
+            if !fitting.is_smooth() {
+                world.add_friction(index);
+            }
+        }
         world
     }
 
@@ -144,7 +158,12 @@ impl World {
     pub(super) fn check(&self, physics: &PhysicsWorld) -> Result<(), Misfit> {
         let bodies = self.bodies.iter().chain([&self.ground]).all(|handle| physics.bodies.contains(*handle));
         let shapes = self.shapes.iter().all(|handle| physics.colliders.contains(*handle));
-        let joints = self.joints.iter().chain(&self.frictions).all(|handle| physics.impulse_joints.contains(*handle));
+        let joints = self
+            .joints
+            .iter()
+            .chain(&self.springs)
+            .chain(self.frictions.iter().map(|(_, friction)| &friction.handle))
+            .all(|handle| physics.impulse_joints.contains(*handle));
         if bodies && shapes && joints {
             return Ok(());
         }
@@ -263,21 +282,13 @@ impl World {
         }
     }
 
-    /// A joint beside a joint of the scene that leaves its coordinate free and brakes it.
-    pub(super) fn add_friction(&mut self, joint: usize, along: JointAxis, gain: f64) -> Option<ImpulseJointHandle> {
-        let beside = self.physics.impulse_joints.get(self.joints[joint])?;
-        let (one, other) = (beside.body1(), beside.body2());
-        let mut brake = GenericJointBuilder::new(JointAxesMask::empty())
-            .local_frame1(beside.data.local_frame1)
-            .local_frame2(beside.data.local_frame2)
-            .contacts_enabled(beside.data.contacts_enabled())
-            .build();
-        brake.set_motor_model(along, MotorModel::AccelerationBased);
-        brake.set_motor_velocity(along, 0.0, gain);
-        brake.set_motor_max_force(along, 0.0);
-        let handle = self.physics.insert_impulse_joint(one, other, brake);
-        self.frictions.push(handle);
-        Some(handle)
+    /// Gives a joint of the scene dry friction in the engine too, if it has none yet.
+    pub(super) fn add_friction(&mut self, joint: usize) {
+        if self.frictions.iter().all(|(known, _)| *known != joint) {
+            let along = self.articulation.along(joint);
+            let friction = Friction::beside(self.joints[joint], along, &mut self.physics);
+            self.frictions.extend(friction.map(|friction| (joint, friction)));
+        }
     }
 
     /// True if a body hangs on a joint.

@@ -1,5 +1,6 @@
 //! The plant as a client, driven turn by turn without a session around it.
 
+mod arm;
 mod arrays;
 mod belt;
 mod bench;
@@ -7,6 +8,7 @@ mod components;
 mod drives;
 mod failures;
 mod faults;
+mod fittings;
 mod handling;
 mod mechanism;
 mod meshes;

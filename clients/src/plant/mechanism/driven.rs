@@ -109,7 +109,7 @@ impl Mechanism {
             let (q, v) = (self.now.q[position], self.now.v[k]);
             self.room.force[k] = -self.equations.bias[k];
             if let Some(fitting) = joint.map(|joint| &around.fittings[joint]) {
-                self.room.force[k] += fitting.force(q, v);
+                self.room.force[k] += fitting.force(q);
                 self.resist(k, fitting.dry(v), fitting.damping, dt_s);
             }
         }

@@ -33,7 +33,7 @@ impl Mechanism {
                 let (position, joint) = self.axes[k];
                 let fitted = joint.map_or(0.0, |joint| {
                     let fitting = &around.fittings[joint];
-                    fitting.force(room.q[position], room.v[k]) - fitting.damping * room.v[k]
+                    fitting.force(room.q[position]) - fitting.damping * room.v[k]
                 });
                 room.force[k] = fitted - self.equations.bias[k];
             }
