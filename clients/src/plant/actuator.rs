@@ -106,14 +106,12 @@ fn free_beside(joint: ImpulseJointHandle, physics: &PhysicsWorld) -> Option<(Gen
 impl Actuator {
     /// Makes it a motor of the engine for a step, whose part of the turn this is, from where the joint is.
     ///
-    /// A law whose mechanism has nothing `near` goes on with the force that it had. What it gives back
-    /// is its dry friction.
+    /// What it gives back is its dry friction.
     pub(super) fn arm(
         &self,
         motion: Motion,
         [from, to]: [f64; 2],
         dt_s: f64,
-        near: bool,
         drives: &dyn Drives,
         joints: &mut ImpulseJointSet,
     ) -> f64 {
@@ -123,8 +121,7 @@ impl Actuator {
                 let velocity = (path.at(to) - path.at(from)) / dt_s + CORRECTED_A_TURN * missing / path.turn_s;
                 Line { velocity, slope: f64::INFINITY, most: self.most, dry: 0.0 }
             }
-            Acts::Law { drive } if near => Line::of(|motion| drives.foresee(drive, motion, dt_s), motion),
-            Acts::Law { .. } => Line { velocity: self.exerted / FLAT, slope: FLAT, most: f64::INFINITY, dry: 0.0 },
+            Acts::Law { drive } => Line::of(|motion| drives.foresee(drive, motion, dt_s), motion),
         };
         if let Some(joint) = joints.get_mut(self.handle, false) {
             let rigid = line.slope == f64::INFINITY;

@@ -5,6 +5,10 @@
 //! and the mechanism's own, exact to a high order, takes its place. Where a body touched, the engine's
 //! result stands, for it alone knows of contacts; the mechanism takes its coordinates from there.
 //!
+//! A mechanism with nothing near has no joints in the engine, which then has little to do for it. They are
+//! back in the step after a body has come near; should it touch in its first step there, its contacts
+//! are those of single bodies, and their impulses go into the mechanism by its momentum.
+//!
 //! Which of the two applies follows from the contacts of the step alone, so that it is the same in
 //! every run, and after a restore.
 
@@ -39,6 +43,10 @@ struct Member {
     colliders: Vec<ColliderHandle>,
     /// The actuators of its joints.
     actuators: Vec<usize>,
+    /// All of the engine's joints between its bodies.
+    handles: Vec<ImpulseJointHandle>,
+    /// Whether the engine has these joints now; not known of a mechanism that was found anew.
+    attached: Option<bool>,
 }
 
 impl Articulation {
@@ -63,7 +71,7 @@ impl Articulation {
         let links = scene.joints.iter().enumerate().map(|(index, joint)| {
             let bodies = [world.handle(joint.parent), world.handle(Some(joint.child))];
             let frames = local_frames(&world.physics, joint, bodies[0], bodies[1]);
-            Link { joint: Some(index), kind: joint.kind, bodies, frames }
+            Link { joint: Some(index), handle: world.joint(index), kind: joint.kind, bodies, frames }
         });
         Self {
             links: links.collect(),
@@ -80,7 +88,13 @@ impl Articulation {
     }
 
     /// Finds the mechanisms anew: a body is held or let go, taken out or put in.
-    fn find(&mut self, holds: &[Link], physics: &PhysicsWorld, actuators: &[Actuator]) {
+    fn find(
+        &mut self,
+        holds: &[Link],
+        extra: &[(usize, ImpulseJointHandle)],
+        physics: &PhysicsWorld,
+        actuators: &[Actuator],
+    ) {
         let links: Vec<_> = self.links.iter().chain(holds).copied().collect();
         let last = |joint: usize| self.motions[joint].position - self.fittings[joint].initial;
         let (found, others) = mechanisms(&links, &physics.bodies, last);
@@ -94,7 +108,13 @@ impl Articulation {
                 let colliders = shapes.filter(collides).collect();
                 let own = |actuator: &Actuator| mechanism.joints().any(|(joint, ..)| joint == actuator.joint);
                 let actuators = (0..actuators.len()).filter(|index| own(&actuators[*index])).collect();
-                Member { mechanism, colliders, actuators }
+                let mut handles = Vec::new();
+                for link in mechanism.links() {
+                    handles.push(link.handle);
+                    let beside = extra.iter().filter(|(joint, _)| Some(*joint) == link.joint);
+                    handles.extend(beside.map(|(_, handle)| *handle));
+                }
+                Member { mechanism, colliders, actuators, handles, attached: None }
             })
             .collect();
     }
@@ -112,18 +132,28 @@ impl World {
     pub(super) fn find_mechanisms(&mut self) {
         let Self { physics, actuators, articulation, joints, frictions, springs, .. } = self;
         let beside = |handle: ImpulseJointHandle| {
-            springs.contains(&handle) || frictions.iter().any(|(_, friction)| friction.handle == handle)
+            springs.iter().any(|(_, spring)| *spring == handle)
+                || frictions.iter().any(|(_, friction)| friction.handle == handle)
         };
         let known = |handle: ImpulseJointHandle| joints.contains(&handle) || beside(handle);
         let holds = physics.impulse_joints.iter().filter(|(handle, _)| !known(*handle));
-        let holds = holds.map(|(_, joint)| Link {
+        let holds = holds.map(|(handle, joint)| Link {
             joint: None,
+            handle,
             kind: JointKind::Fixed,
             bodies: [joint.body1(), joint.body2()],
             frames: [joint.data.local_frame1, joint.data.local_frame2],
         });
         let holds: Vec<_> = holds.collect();
-        articulation.find(&holds, physics, actuators);
+        let extra: Vec<_> = frictions.iter().map(|(joint, friction)| (*joint, friction.handle)).chain(springs.iter().copied()).collect();
+        articulation.find(&holds, &extra, physics, actuators);
+        // what the engine is to move it has whole, unless a body of it is out of the world
+        for joint in &articulation.others {
+            let extra = extra.iter().filter(|(known, _)| known == joint).map(|(_, handle)| *handle);
+            for handle in extra.chain([joints[*joint]]) {
+                attach(&mut physics.impulse_joints, &physics.bodies, handle, true);
+            }
+        }
     }
 
     /// The coordinate and velocity of a joint.
@@ -162,7 +192,6 @@ impl World {
                 advance(drives, drive, motion, dt_s);
             }
         };
-        let mut free = Vec::with_capacity(mechanisms.len());
         for member in mechanisms.iter_mut() {
             let touched = member.meets(&physics.narrow_phase, ContactPair::has_any_active_contact);
             let gravity = physics.gravity;
@@ -179,7 +208,11 @@ impl World {
                     follow(*index, now, before, actuators, drives);
                 }
             }
-            free.push(alone);
+            // without its joints the engine let its bodies go their own ways for this step; the impulses
+            // of the contacts, that they met so, are in their momenta
+            if alone || member.attached == Some(false) {
+                member.mechanism.put(&mut physics.bodies);
+            }
         }
         for joint in others.iter().copied() {
             let (bodies, gauge) = (&physics.bodies, &gauges[joint]);
@@ -190,32 +223,37 @@ impl World {
                 follow(index, now, before, actuators, drives);
             }
         }
-        for (member, _) in mechanisms.iter_mut().zip(free).filter(|(_, alone)| *alone) {
-            member.mechanism.put(&mut physics.bodies);
-        }
     }
 
     /// Makes all actuators motors of the engine.
     fn arm(&mut self, part: [f64; 2], dt_s: f64, drives: &dyn Drives) {
         let Self { physics, actuators, articulation, frictions, .. } = self;
-        let mut near = vec![true; actuators.len()];
-        for member in &articulation.mechanisms {
-            if !member.actuators.is_empty() && !member.meets(&physics.narrow_phase, |_| true) {
-                for index in &member.actuators {
-                    near[*index] = false;
+        let mut moves = vec![true; actuators.len()];
+        for member in &mut articulation.mechanisms {
+            let near = member.meets(&physics.narrow_phase, |pair| may_touch(pair, physics));
+            if member.attached != Some(near) {
+                member.attached = Some(near);
+                for handle in &member.handles {
+                    attach(&mut physics.impulse_joints, &physics.bodies, *handle, near);
                 }
             }
+            for index in member.actuators.iter().filter(|_| !near) {
+                moves[*index] = false;
+            }
         }
-        for (joint, friction) in frictions.iter() {
+        let detached = |joint: usize| {
+            actuators.iter().zip(&moves).any(|(actuator, moves)| actuator.joint == joint && !moves)
+        };
+        for (joint, friction) in frictions.iter().filter(|(joint, _)| !detached(*joint)) {
             let dry = articulation.fittings[*joint].dry(articulation.motions[*joint].velocity);
             friction.brake(dry, &mut physics.impulse_joints);
         }
-        for (actuator, near) in actuators.iter().zip(near) {
+        for (actuator, _) in actuators.iter().zip(&moves).filter(|(_, moves)| **moves) {
             let Mark { position, velocity } = articulation.motions[actuator.joint];
             let motion = Motion { position, velocity, mass: f64::INFINITY, exerted: actuator.exerted };
             let own = frictions.iter().find(|(joint, _)| *joint == actuator.joint).map(|(_, friction)| *friction);
             let fitted = articulation.fittings[actuator.joint].dry(velocity);
-            let dry = actuator.arm(motion, part, dt_s, near, drives, &mut physics.impulse_joints);
+            let dry = actuator.arm(motion, part, dt_s, drives, &mut physics.impulse_joints);
             if let Some(friction) = own {
                 friction.brake(dry + fitted, &mut physics.impulse_joints);
             }
@@ -255,6 +293,25 @@ impl World {
             actuator.exerted = exerted;
         }
         Ok(())
+    }
+}
+
+/// Whether the shapes of a pair collide at all: not if a joint between their bodies keeps them apart.
+fn may_touch(pair: &ContactPair, physics: &PhysicsWorld) -> bool {
+    let body = |shape: ColliderHandle| physics.colliders.get(shape).and_then(Collider::parent);
+    let (Some(one), Some(other)) = (body(pair.collider1), body(pair.collider2)) else { return true };
+    let mut between = physics.impulse_joints.joints_between(one, other);
+    between.all(|(_, joint)| joint.data.contacts_enabled())
+}
+
+/// Gives the engine a joint, or takes it away; one of a body that is out of the world is not there.
+fn attach(joints: &mut ImpulseJointSet, bodies: &RigidBodySet, handle: ImpulseJointHandle, attached: bool) {
+    let Some(joint) = joints.get(handle) else { return };
+    let whole = [joint.body1(), joint.body2()].iter().all(|body| bodies[*body].is_enabled());
+    if whole && joint.data.is_enabled() != attached
+        && let Some(joint) = joints.get_mut(handle, false)
+    {
+        joint.data.set_enabled(attached);
     }
 }
 

@@ -38,7 +38,7 @@ pub(crate) struct World {
     /// Joints that brake joints of the scene, by their index, as dry friction does.
     pub(super) frictions: Vec<(usize, Friction)>,
     /// Joints that stand in for springs, dampers and counterweights of joints.
-    pub(super) springs: Vec<ImpulseJointHandle>,
+    pub(super) springs: Vec<(usize, ImpulseJointHandle)>,
     /// What drives joints.
     pub(super) actuators: Vec<Actuator>,
     pub(super) articulation: Articulation,
@@ -85,7 +85,7 @@ impl World {
             let along = measured_axis(scene.joints[index].kind);
             if fitting.pushes() {
                 let spring = spring_beside(world.joints[index], along, &fitting, &mut world.physics);
-                world.springs.extend(spring);
+                world.springs.extend(spring.map(|spring| (index, spring)));
             }
             if !fitting.is_smooth() {
                 world.add_friction(index);
@@ -161,7 +161,7 @@ impl World {
         let joints = self
             .joints
             .iter()
-            .chain(&self.springs)
+            .chain(self.springs.iter().map(|(_, spring)| spring))
             .chain(self.frictions.iter().map(|(_, friction)| &friction.handle))
             .all(|handle| physics.impulse_joints.contains(*handle));
         if bodies && shapes && joints {

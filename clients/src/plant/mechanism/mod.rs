@@ -130,6 +130,11 @@ impl Mechanism {
         self.tree.members.iter().filter_map(|member| member.body)
     }
 
+    /// The engine's joints between its bodies.
+    pub(crate) fn links(&self) -> impl Iterator<Item = &Link> {
+        self.tree.joints.iter().map(|jointed| &jointed.link)
+    }
+
     /// The joints of the scene whose coordinates it has, each with coordinate, from the scene's pose, and
     /// velocity.
     pub(crate) fn joints(&self) -> impl Iterator<Item = (usize, f64, f64)> {

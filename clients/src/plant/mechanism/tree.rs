@@ -10,6 +10,8 @@ use crate::plant::scene::model::JointKind;
 pub(crate) struct Link {
     /// Its index in the scene.
     pub(crate) joint: Option<usize>,
+    /// The engine's joint.
+    pub(crate) handle: ImpulseJointHandle,
     pub(crate) kind: JointKind,
     /// Parent and child.
     pub(crate) bodies: [RigidBodyHandle; 2],
