@@ -134,10 +134,11 @@ impl Actuator {
         line.dry
     }
 
-    /// What the engine's motor exerted in its last iteration, of which there are so many in a step.
+    /// What the engine's motor exerted in its last iteration, of which there are so many in a step; it counts
+    /// its impulse on the parent.
     pub(super) fn read(&mut self, joints: &ImpulseJointSet, dt_s: f64, iterations: usize) {
         let motor = joints.get(self.handle).and_then(|joint| joint.data.motor(self.along).copied());
-        self.exerted = motor.map_or(0.0, |motor| motor.impulse * iterations as f64 / dt_s);
+        self.exerted = motor.map_or(0.0, |motor| -motor.impulse * iterations as f64 / dt_s);
         self.effort = self.exerted;
     }
 }

@@ -255,3 +255,50 @@ fn a_cylinder_with_a_joint_moves_as_one_without() {
         }
     }
 }
+
+#[test]
+fn what_lies_on_a_lift_is_lifted_and_told() {
+    // 10 kg on the slide, 5 kg lying on it: in contact all the time
+    let scene = r#"
+        version = 1
+        [[body]]
+        name = "table"
+        kind = "dynamic"
+        shape = "box"
+        size_m = [0.5, 0.5, 0.1]
+        mass_kg = 10.0
+        [[body]]
+        name = "part"
+        kind = "dynamic"
+        shape = "box"
+        size_m = [0.2, 0.2, 0.2]
+        mass_kg = 5.0
+        position_m = [0.0, 0.0, 0.15]
+        [[joint]]
+        name = "slide"
+        kind = "prismatic"
+        parent = "ground"
+        child = "table"
+        axis = [0.0, 0.0, 1.0]
+        [[axis]]
+        name = "lift"
+        joint = "slide"
+        drive = "position"
+        command_signal = "To"
+        speed_m_s = 0.5
+        acceleration_m_s2 = 2.0
+        force_max_n = 500.0
+        position_signal = "Way"
+        force_signal = "Force"
+        limit_signal = "Limit"
+    "#;
+    for period_us in PERIODS_US {
+        let mut bench = bench(scene, period_us);
+        bench.command("To", 0.3);
+        run(&mut bench, 1_500_000, period_us);
+        let (force_n, way_m): (f64, f64) = (bench.read("Force"), bench.read("Way"));
+        println!("{period_us} {force_n} {way_m} {}", bench.read::<bool>("Limit"));
+        assert!((force_n - 15.0 * 9.81).abs() < 0.5, "{period_us}: {force_n}");
+        assert!((way_m - 0.3).abs() < 1e-5 && !bench.read::<bool>("Limit"), "{period_us}: {way_m}");
+    }
+}
