@@ -16,6 +16,7 @@ use rapier3d::prelude::*;
 
 use super::actuator::{Acts, Actuator};
 use super::coordinate::Gauge;
+use super::coupled::Coupled;
 use super::effort::{Drives, Mark, Motion};
 use super::fitting::Fitting;
 use super::machine::Misfit;
@@ -35,6 +36,7 @@ pub(super) struct Articulation {
     motions: Vec<Mark>,
     /// The scene's joints.
     links: Vec<Link>,
+    couplings: Vec<Coupled>,
 }
 
 /// A mechanism and the shapes of its bodies that collide.
@@ -58,6 +60,7 @@ impl Articulation {
             gauges: Vec::new(),
             motions: Vec::new(),
             links: Vec::new(),
+            couplings: Vec::new(),
         }
     }
 
@@ -75,6 +78,7 @@ impl Articulation {
         });
         Self {
             links: links.collect(),
+            couplings: Coupled::all(scene),
             fittings: (0..scene.joints.len()).map(|joint| Fitting::new(scene, joint)).collect(),
             gauges: scene.joints.iter().map(|joint| Gauge::new(world, joint)).collect(),
             motions: scene.joints.iter().map(|joint| Mark { position: joint.initial, velocity: 0.0 }).collect(),
@@ -97,7 +101,7 @@ impl Articulation {
     ) {
         let links: Vec<_> = self.links.iter().chain(holds).copied().collect();
         let last = |joint: usize| self.motions[joint].position - self.fittings[joint].initial;
-        let (found, others) = mechanisms(&links, &physics.bodies, last);
+        let (found, others) = mechanisms(&links, &self.couplings, &physics.bodies, last);
         self.others = others;
         self.mechanisms = found
             .into_iter()
@@ -145,7 +149,11 @@ impl World {
             frames: [joint.data.local_frame1, joint.data.local_frame2],
         });
         let holds: Vec<_> = holds.collect();
-        let extra: Vec<_> = frictions.iter().map(|(joint, friction)| (*joint, friction.handle)).chain(springs.iter().copied()).collect();
+        let extra: Vec<_> = frictions
+            .iter()
+            .map(|(joint, friction)| (*joint, friction.handle))
+            .chain(springs.iter().copied())
+            .collect();
         articulation.find(&holds, &extra, physics, actuators);
         // what the engine is to move it has whole, unless a body of it is out of the world
         for joint in &articulation.others {
@@ -154,6 +162,13 @@ impl World {
                 attach(&mut physics.impulse_joints, &physics.bodies, handle, true);
             }
         }
+    }
+
+    /// The first coupling whose joints are in no mechanism, which alone keeps couplings; its index.
+    pub(super) fn uncoupled(&self) -> Option<usize> {
+        let Articulation { mechanisms, couplings, .. } = &self.articulation;
+        let kept = |joint: usize| mechanisms.iter().any(|member| member.mechanism.coupled().any(|own| own == joint));
+        couplings.iter().position(|coupled| !kept(coupled.joint))
     }
 
     /// The coordinate and velocity of a joint.
@@ -197,9 +212,7 @@ impl World {
             let gravity = physics.gravity;
             let mut around = Surroundings { gravity, fittings, actuators, drives, part };
             let alone = !touched && member.mechanism.advance(dt_s, &mut around);
-            if !alone {
-                member.mechanism.measure(&physics.bodies);
-            }
+            let reconciled = !alone && member.mechanism.measure(&physics.bodies);
             for (joint, position, velocity) in member.mechanism.joints() {
                 let now = Mark { position: fittings[joint].initial + position, velocity };
                 let before = std::mem::replace(&mut motions[joint], now);
@@ -210,7 +223,7 @@ impl World {
             }
             // without its joints the engine let its bodies go their own ways for this step; the impulses
             // of the contacts, that they met so, are in their momenta
-            if alone || member.attached == Some(false) {
+            if alone || reconciled || member.attached == Some(false) {
                 member.mechanism.put(&mut physics.bodies);
             }
         }
@@ -241,9 +254,8 @@ impl World {
                 moves[*index] = false;
             }
         }
-        let detached = |joint: usize| {
-            actuators.iter().zip(&moves).any(|(actuator, moves)| actuator.joint == joint && !moves)
-        };
+        let detached =
+            |joint: usize| actuators.iter().zip(&moves).any(|(actuator, moves)| actuator.joint == joint && !moves);
         for (joint, friction) in frictions.iter().filter(|(joint, _)| !detached(*joint)) {
             let dry = articulation.fittings[*joint].dry(articulation.motions[*joint].velocity);
             friction.brake(dry, &mut physics.impulse_joints);
@@ -308,7 +320,8 @@ fn may_touch(pair: &ContactPair, physics: &PhysicsWorld) -> bool {
 fn attach(joints: &mut ImpulseJointSet, bodies: &RigidBodySet, handle: ImpulseJointHandle, attached: bool) {
     let Some(joint) = joints.get(handle) else { return };
     let whole = [joint.body1(), joint.body2()].iter().all(|body| bodies[*body].is_enabled());
-    if whole && joint.data.is_enabled() != attached
+    if whole
+        && joint.data.is_enabled() != attached
         && let Some(joint) = joints.get_mut(handle, false)
     {
         joint.data.set_enabled(attached);

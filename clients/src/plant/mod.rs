@@ -15,6 +15,7 @@
 //! | `command` | what the PLC commands of a drive |
 //! | `effort` | what a drive does to its joint, and what the joint tells the drive |
 //! | `actuator` | what drives a joint: along a path, or by a component's equations |
+//! | `coupled` | what couples the coordinate of a joint to those of others |
 //! | `fitting` | what is fitted to a joint beside its drive |
 //! | `mechanism` | bodies on joints, moved by the joints' coordinates |
 //! | `articulation` | mechanisms and the engine: who moves which bodies |
@@ -50,6 +51,7 @@ mod client;
 mod command;
 pub mod component;
 mod coordinate;
+mod coupled;
 pub mod coupling;
 mod effort;
 mod failure;

@@ -99,6 +99,13 @@ impl World {
     /// # Errors
     /// A body whose state is no longer finite or that has left the world.
     pub(super) fn step(&mut self, scene: &Scene, drives: &mut dyn Drives) -> Result<(), ClientFault> {
+        if let Some(index) = self.uncoupled() {
+            let name = &scene.couplings[index].name;
+            return Err(ClientFault::new(format!(
+                "coupling `{name}`: its joints must be in trees that stand on the ground or on fixed bodies; \
+                 here they close a loop, or stand on nothing"
+            )));
+        }
         for index in 0..self.substeps {
             let part = [index, index + 1].map(|step| f64::from(step) / f64::from(self.substeps));
             self.substep(part, drives);

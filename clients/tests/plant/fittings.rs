@@ -29,6 +29,7 @@ fn block(vertical: bool, initial_m: f64, fitting: &str) -> String {
         axis = {axis}
         initial_m = {initial_m:?}
         [[fitting]]
+        name = "fitting"
         joint = "slide"
         {fitting}
         "#

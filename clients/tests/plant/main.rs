@@ -5,6 +5,7 @@ mod arrays;
 mod belt;
 mod bench;
 mod components;
+mod couplings;
 mod drives;
 mod failures;
 mod faults;

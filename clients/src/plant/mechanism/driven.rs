@@ -122,6 +122,7 @@ impl Mechanism {
             let acceleration: f64 = line.iter().zip(&self.room.force).map(|(inverse, force)| inverse * force).sum();
             self.room.v[k] += dt_s * acceleration;
         }
+        self.couple(dt_s);
         self.stop(dt_s, around.fittings);
         self.rows.solve(&self.room.inverse, &mut self.room.v);
         for row in &self.rows.rows {

@@ -12,6 +12,7 @@
 //! | `tree` | which bodies hang together |
 //! | `dynamics` | the equations of motion of a tree |
 //! | `rows` | drives, friction and stops within their bounds |
+//! | `coupled` | gears, racks, screws, differentials, cams between joints |
 //! | `free` | steps of what only smooth forces move: Runge-Kutta of order 4 |
 //! | `driven` | steps with drives, friction, stops |
 //!
@@ -19,6 +20,7 @@
 //! - What is computed follows from positions, velocities and the drives' states; how often, too.
 //! - Only operations of IEC 60559 and `libm`.
 
+mod coupled;
 mod driven;
 mod dynamics;
 mod free;
@@ -31,9 +33,11 @@ use rapier3d::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use super::actuator::Actuator;
+use super::coupled::Coupled;
 use super::effort::Drives;
 use super::fitting::Fitting;
 use super::scene::model::JointKind;
+use coupled::Bond;
 pub(crate) use driven::CORRECTED_A_TURN;
 use dynamics::Equations;
 use rows::Rows;
@@ -55,6 +59,7 @@ pub(crate) struct Mechanism {
     equations: Equations,
     /// For each velocity: its position and the joint of the scene that it is the coordinate of.
     axes: Vec<(usize, Option<usize>)>,
+    bonds: Vec<Bond>,
     rows: Rows,
     room: Room,
 }
@@ -89,12 +94,14 @@ pub(crate) struct Surroundings<'s> {
 /// cannot be one.
 pub(crate) fn mechanisms(
     links: &[Link],
+    couplings: &[Coupled],
     bodies: &RigidBodySet,
     last: impl Fn(usize) -> f64,
 ) -> (Vec<Mechanism>, Vec<usize>) {
-    let forest = tree::forest(links, bodies);
+    let forest = tree::forest(links, couplings, bodies);
     let mechanisms = forest.trees.into_iter().map(|tree| {
         let mut mechanism = Mechanism::new(tree);
+        mechanism.bind(couplings);
         for jointed in &mechanism.tree.joints {
             // a turn is told from the next by where the joint was
             if let (Some(joint), JointKind::Revolute) = (jointed.link.joint, jointed.link.kind) {
@@ -122,7 +129,15 @@ impl Mechanism {
             }
         }
         let now = Coordinates { q: vec![0.0; tree.positions], v: vec![0.0; tree.velocities] };
-        Self { now, equations: Equations::new(&tree), tree, axes, rows: Rows::default(), room: Room::default() }
+        Self {
+            now,
+            equations: Equations::new(&tree),
+            tree,
+            axes,
+            bonds: Vec::new(),
+            rows: Rows::default(),
+            room: Room::default(),
+        }
     }
 
     /// Its bodies.
@@ -157,8 +172,9 @@ impl Mechanism {
         self.now = memory;
     }
 
-    /// Takes its coordinates from where its bodies are and how they move.
-    pub(crate) fn measure(&mut self, bodies: &RigidBodySet) {
+    /// Takes its coordinates from where its bodies are and how they move; true if couplings have changed
+    /// them.
+    pub(crate) fn measure(&mut self, bodies: &RigidBodySet) -> bool {
         for jointed in &self.tree.joints {
             let (slid, turned, rotation) = tree::between(&jointed.link, bodies);
             let first = jointed.first[0];
@@ -188,9 +204,11 @@ impl Mechanism {
             })
         };
         let Coordinates { q, v } = &mut self.now;
-        if !self.equations.project(&self.tree, q, own, v) {
-            v.fill(0.0);
+        if self.equations.project(&self.tree, q, own, v) {
+            return self.reconcile();
         }
+        v.fill(0.0);
+        false
     }
 
     /// Puts its bodies where its coordinates say.
@@ -217,7 +235,8 @@ impl Mechanism {
     /// True if no drive, friction, brake or coupling acts on it.
     fn is_smooth(&self, around: &Surroundings<'_>) -> bool {
         let joints = self.axes.iter().filter_map(|(_, joint)| *joint);
-        joints.clone().all(|joint| around.fittings[joint].is_smooth())
+        self.bonds.is_empty()
+            && joints.clone().all(|joint| around.fittings[joint].is_smooth())
             && !around.actuators.iter().any(|actuator| joints.clone().any(|joint| joint == actuator.joint))
     }
 }

@@ -24,8 +24,8 @@ const SWEEPS: usize = 200;
 pub(super) struct Row {
     /// The coordinate that it acts on.
     pub(super) on: usize,
-    /// A second one, with a factor: `u = v[on] + factor v[other]`.
-    pub(super) with: Option<(usize, f64)>,
+    /// Others, with factors: `u = v[on] + Σ factor v[other]`.
+    pub(super) with: [Option<(usize, f64)>; 2],
     pub(super) wanted: f64,
     pub(super) softness: f64,
     pub(super) least: f64,
@@ -39,18 +39,26 @@ pub(super) struct Row {
 impl Row {
     /// A row of one coordinate that wants a velocity with an impulse up to `most` either way.
     pub(super) const fn rigid(on: usize, wanted: f64, most: f64) -> Self {
-        Self { on, with: None, wanted, softness: 0.0, least: -most, most, impulse: 0.0, actuator: None }
+        Self { on, with: [None; 2], wanted, softness: 0.0, least: -most, most, impulse: 0.0, actuator: None }
+    }
+
+    /// The coordinates that it acts on, with their factors.
+    fn parts(&self) -> impl Iterator<Item = (usize, f64)> {
+        [Some((self.on, 1.0)), self.with[0], self.with[1]].into_iter().flatten()
     }
 
     fn velocity(&self, v: &[f64]) -> f64 {
-        v[self.on] + self.with.map_or(0.0, |(other, factor)| factor * v[other])
+        self.parts().map(|(axis, factor)| factor * v[axis]).sum()
+    }
+
+    /// What one unit of its impulse adds to a velocity.
+    fn adds(&self, axis: usize, inverse: &[f64], n: usize) -> f64 {
+        self.parts().map(|(other, factor)| factor * inverse[axis * n + other]).sum()
     }
 
     /// `J M⁻¹ J'ᵀ` of two rows.
     fn between(&self, other: &Self, inverse: &[f64], n: usize) -> f64 {
-        let along =
-            |i: usize| inverse[i * n + other.on] + other.with.map_or(0.0, |(j, factor)| factor * inverse[i * n + j]);
-        along(self.on) + self.with.map_or(0.0, |(i, factor)| factor * along(i))
+        self.parts().map(|(axis, factor)| factor * other.adds(axis, inverse, n)).sum()
     }
 }
 
@@ -87,10 +95,8 @@ impl Rows {
             _ => self.search(inverse, v),
         }
         for row in &self.rows {
-            for k in 0..n {
-                let along =
-                    inverse[k * n + row.on] + row.with.map_or(0.0, |(other, factor)| factor * inverse[k * n + other]);
-                v[k] += along * row.impulse;
+            for (axis, v) in v.iter_mut().enumerate() {
+                *v += row.adds(axis, inverse, n) * row.impulse;
             }
         }
     }
@@ -244,7 +250,7 @@ mod tests {
 
     #[test]
     fn a_coupling_keeps_its_ratio() {
-        let gear = Row { with: Some((1, -3.0)), ..Row::rigid(0, 0.0, f64::INFINITY) };
+        let gear = Row { with: [Some((1, -3.0)), None], ..Row::rigid(0, 0.0, f64::INFINITY) };
         let (v, _) = solved(&[gear], &[1.0, 0.0, 0.0, 0.2], &[1.0, 0.0]);
         assert!((v[0] - 3.0 * v[1]).abs() < 1e-12, "{v:?}");
     }

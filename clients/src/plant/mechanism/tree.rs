@@ -3,6 +3,7 @@
 use rapier3d::glamx::{DMat3, DQuat};
 use rapier3d::prelude::*;
 
+use crate::plant::coupled::Coupled;
 use crate::plant::scene::model::JointKind;
 
 /// A joint between two bodies: one of the scene, or one that holds a body fast.
@@ -159,7 +160,7 @@ pub(super) struct Forest {
 }
 
 /// The forest of these joints.
-pub(super) fn forest(links: &[Link], bodies: &RigidBodySet) -> Forest {
+pub(super) fn forest(links: &[Link], couplings: &[Coupled], bodies: &RigidBodySet) -> Forest {
     let mut forest = Forest { trees: Vec::new(), others: Vec::new() };
     let moved = |handle: RigidBodyHandle| bodies[handle].is_dynamic();
     let mut done = vec![false; links.len()];
@@ -167,7 +168,7 @@ pub(super) fn forest(links: &[Link], bodies: &RigidBodySet) -> Forest {
         if done[start] {
             continue;
         }
-        let together = together(links, start, &moved);
+        let together = together(links, couplings, start, &moved);
         for index in &together {
             done[*index] = true;
         }
@@ -179,18 +180,26 @@ pub(super) fn forest(links: &[Link], bodies: &RigidBodySet) -> Forest {
     forest
 }
 
-/// All joints that hang together with one by bodies that forces move, in order.
-fn together(links: &[Link], start: usize, moved: &impl Fn(RigidBodyHandle) -> bool) -> Vec<usize> {
+/// All joints that hang together with one, by bodies that forces move or by couplings, in order.
+fn together(
+    links: &[Link],
+    couplings: &[Coupled],
+    start: usize,
+    moved: &impl Fn(RigidBodyHandle) -> bool,
+) -> Vec<usize> {
     let mut found = vec![start];
-    let mut reached: Vec<_> = links[start].bodies.into_iter().filter(|body| moved(*body)).collect();
     let mut next = 0;
-    while next < reached.len() {
-        let body = reached[next];
+    while next < found.len() {
+        let one = &links[found[next]];
         next += 1;
-        for (index, link) in links.iter().enumerate() {
-            if link.bodies.contains(&body) && !found.contains(&index) {
+        for (index, other) in links.iter().enumerate() {
+            let share = other.bodies.into_iter().any(|body| moved(body) && one.bodies.contains(&body));
+            let bound = |coupled: &Coupled| {
+                let joins = |joint: Option<usize>| joint.is_some_and(|joint| coupled.joins(joint));
+                joins(one.joint) && joins(other.joint)
+            };
+            if !found.contains(&index) && (share || couplings.iter().any(bound)) {
                 found.push(index);
-                reached.extend(link.bodies.into_iter().filter(|other| moved(*other) && *other != body));
             }
         }
     }

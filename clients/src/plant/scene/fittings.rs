@@ -17,8 +17,14 @@ use super::text;
 const STRIBECK: f64 = 0.01;
 
 pub(super) fn check(file: &SceneFile, joints: &Names, signals: &mut Signals, faults: &mut Faults<'_>) -> Vec<Fitting> {
-    // a second one of a joint would be a second name of the same
-    Names::gather(Thing::Joint, file.fitting.iter().map(|fitting| &fitting.get_ref().joint), faults);
+    Names::gather(Thing::Fitting, file.fitting.iter().map(|fitting| &fitting.get_ref().name), faults);
+    for (index, fitting) in file.fitting.iter().map(Placed::get_ref).enumerate() {
+        let mut before = file.fitting[..index].iter().map(Placed::get_ref);
+        if let Some(first) = before.find(|first| text(&first.joint) == text(&fitting.joint)) {
+            let (name, first) = (text(&fitting.joint).to_owned(), text(&first.name).to_owned());
+            faults.add(fitting.joint.span(), SceneFaultKind::FittedTwice { name, first });
+        }
+    }
     let each = file.fitting.iter().map(Placed::get_ref);
     each.filter_map(|written| fitting(written, file, joints, signals, faults)).collect()
 }
@@ -41,7 +47,7 @@ fn fitting(
         );
         return None;
     };
-    let whose = format!("fitting of joint `{}`", text(&written.joint));
+    let whose = format!("fitting `{}`", text(&written.name));
     let mut number =
         |metre: (&'static str, &Option<Placed<f64>>), radian: (&'static str, &Option<Placed<f64>>), allowed| {
             let [metre, radian] = [metre, radian].map(|(key, value)| Entry::new(key, value.as_ref()));
@@ -74,6 +80,7 @@ fn fitting(
         faults.add(name.span(), SceneFaultKind::Missing { whose: whose.clone(), key });
     }
     Some(Fitting {
+        name: written.name.get_ref().clone(),
         joint,
         friction,
         stiction: stiction.unwrap_or(friction),

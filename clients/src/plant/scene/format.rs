@@ -31,6 +31,8 @@ pub(super) struct SceneFile {
     #[serde(default)]
     pub(super) fitting: Vec<Placed<FittingTable>>,
     #[serde(default)]
+    pub(super) coupling: Vec<Placed<CouplingTable>>,
+    #[serde(default)]
     pub(super) axis: Vec<Placed<AxisTable>>,
     #[serde(default)]
     pub(super) sensor: Vec<Placed<SensorTable>>,
@@ -198,10 +200,24 @@ pub(super) struct JointTable {
     pub(super) contacts: Option<bool>,
 }
 
+/// `[[coupling]]`: a joint that others lead.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub(super) struct CouplingTable {
+    pub(super) name: Placed<String>,
+    pub(super) joint: Placed<String>,
+    pub(super) of: Vec<Placed<String>>,
+    pub(super) ratio: Option<Placed<Vec<f64>>>,
+    pub(super) cam: Option<Placed<Vec<[f64; 2]>>>,
+    pub(super) backlash_m: Option<Placed<f64>>,
+    pub(super) backlash_rad: Option<Placed<f64>>,
+}
+
 /// `[[fitting]]`: what is fitted to a joint beside its drive.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(super) struct FittingTable {
+    pub(super) name: Placed<String>,
     pub(super) joint: Placed<String>,
     pub(super) friction_n: Option<Placed<f64>>,
     pub(super) friction_nm: Option<Placed<f64>>,

@@ -31,6 +31,8 @@ pub struct Scene {
     pub joints: Vec<Joint>,
     /// What is fitted to joints, in the file's order.
     pub fittings: Vec<Fitting>,
+    /// Couplings between joints, in the file's order.
+    pub couplings: Vec<Coupling>,
     /// Driven axes in the file's order.
     pub axes: Vec<Axis>,
     /// Sensors in the file's order.
@@ -203,6 +205,8 @@ pub struct Joint {
 /// What is fitted to a joint beside its drive. All forces are in N or N·m.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Fitting {
+    /// Its name.
+    pub name: String,
     /// Index of the joint, prismatic or revolute.
     pub joint: usize,
     /// Dry friction while it moves.
@@ -221,6 +225,37 @@ pub struct Fitting {
     pub balance: f64,
     /// A brake, which a spring applies.
     pub brake: Option<Brake>,
+}
+
+/// A joint that others lead.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Coupling {
+    /// Its name.
+    pub name: String,
+    /// Index of the joint that is led.
+    pub joint: usize,
+    /// What leads it: its coordinate is the sum of what they ask for.
+    pub of: Vec<Share>,
+    /// Play, m or rad of the joint that is led.
+    pub backlash: f64,
+}
+
+/// What one joint has of leading another.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Share {
+    /// Index of the joint that leads.
+    pub joint: usize,
+    /// What it asks for.
+    pub law: CouplingLaw,
+}
+
+/// What a joint asks of one that it leads.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub enum CouplingLaw {
+    /// So much of its own way, counted from the scene's pose.
+    Ratio(f64),
+    /// The curve through these points of coordinates, the leading one first.
+    Cam(Vec<[f64; 2]>),
 }
 
 /// A brake that a spring applies and a signal releases.
