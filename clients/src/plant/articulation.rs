@@ -6,8 +6,8 @@
 //! result stands, for it alone knows of contacts; the mechanism takes its coordinates from there.
 //!
 //! A mechanism with nothing near has no joints in the engine, which then has little to do for it. They are
-//! back in the step after a body has come near; should it touch in its first step there, its contacts
-//! are those of single bodies, and their impulses go into the mechanism by its momentum.
+//! back in the step after a body has come near. Should one touch in its first step there, the engine has
+//! the contacts of single bodies; what they changed in the bodies' momenta goes into the mechanism.
 //!
 //! Which of the two applies follows from the contacts of the step alone, so that it is the same in
 //! every run, and after a restore.
@@ -210,8 +210,14 @@ impl World {
         for member in mechanisms.iter_mut() {
             let touched = member.meets(&physics.narrow_phase, ContactPair::has_any_active_contact);
             let gravity = physics.gravity;
+            // without its joints the engine let its bodies go their own ways for this step
+            let loose = touched && member.attached == Some(false);
+            let blow = loose.then(|| member.mechanism.blow(dt_s, gravity, &physics.bodies));
             let mut around = Surroundings { gravity, fittings, actuators, drives, part };
-            let alone = !touched && member.mechanism.advance(dt_s, &mut around);
+            let alone = (!touched || loose) && member.mechanism.advance(dt_s, &mut around);
+            if let Some(blow) = blow.filter(|_| alone) {
+                member.mechanism.take(&blow, dt_s);
+            }
             let reconciled = !alone && member.mechanism.measure(&physics.bodies);
             for (joint, position, velocity) in member.mechanism.joints() {
                 let now = Mark { position: fittings[joint].initial + position, velocity };
@@ -221,9 +227,7 @@ impl World {
                     follow(*index, now, before, actuators, drives);
                 }
             }
-            // without its joints the engine let its bodies go their own ways for this step; the impulses
-            // of the contacts, that they met so, are in their momenta
-            if alone || reconciled || member.attached == Some(false) {
+            if alone || reconciled {
                 member.mechanism.put(&mut physics.bodies);
             }
         }

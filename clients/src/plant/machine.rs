@@ -13,6 +13,7 @@ use super::channel::{Channels, ChannelsMemory, inner_ports};
 use super::component::declare::Value;
 use super::coordinate::Measured;
 use super::effort::{Drives, Effort, Mark, Motion};
+use super::follower::Follower;
 use super::part::{Moment, Part, PartMemory, Unbuilt};
 use super::placement::Placement;
 use super::scene::failures::FoundMode;
@@ -48,6 +49,7 @@ pub(super) struct Machine {
     motions: Vec<Mark>,
     setpoints: Vec<Setpoint>,
     detected: Vec<bool>,
+    followers: Vec<Follower>,
     axes: Vec<Axis>,
     sensors: Vec<Sensor>,
     parts: Vec<Part>,
@@ -71,6 +73,7 @@ impl Machine {
         let reads = PortLayout::new(inner_ports(&scene.reads, &scene.conditions));
         let writes = PortLayout::new(inner_ports(&scene.writes, &scene.conditions));
         let mut world = World::build(scene, period);
+        let followers = Follower::all(scene, &mut world);
         let axes = scene
             .axes
             .iter()
@@ -93,6 +96,7 @@ impl Machine {
             detected: vec![false; sensors.len()],
             given: parts.iter().map(|part| part.given().to_vec()).collect(),
             world,
+            followers,
             axes,
             sensors,
             parts,
@@ -223,8 +227,11 @@ impl Machine {
     }
 
     fn inner_turn(&mut self, scene: &Scene, now_ns: u64, inputs: &[u8], outputs: &mut [u8]) -> Result<(), ClientFault> {
-        let Self { world, motions, setpoints, axes, parts, given, dt_s, drivers, brakes, .. } = self;
+        let Self { world, motions, setpoints, followers, axes, parts, given, dt_s, drivers, brakes, .. } = self;
         let measured = Measured { motions };
+        for follower in followers {
+            follower.drive(measured, *dt_s, world)?;
+        }
         for (joint, release) in brakes.iter() {
             world.articulation.fittings[*joint].set_brake(release.get(inputs));
         }

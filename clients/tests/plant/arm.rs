@@ -58,6 +58,7 @@ const GRIPPER: &str = r#"
     body = "flange"
     targets = ["part"]
     stroke_s = 0.001
+    jaw_n = 2000.0
     close_signal = "close"
     holding_signal = "holding"
 "#;

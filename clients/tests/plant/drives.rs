@@ -218,7 +218,9 @@ fn a_cylinder_that_is_too_weak_rests_on_its_bottom() {
 #[test]
 fn an_end_switch_has_one_edge() {
     for period_us in PERIODS_US {
-        let mut bench = bench(&push(&format!("{PNEUMATIC}\nextended_signal = \"Out\""), ""), period_us);
+        // a cushion that is open far enough not to throw the rod back
+        let keys = "extended_signal = \"Out\"\ncushion_l_s_bar = 1.0";
+        let mut bench = bench(&push(&format!("{PNEUMATIC}\n{keys}"), ""), period_us);
         let (mut edges, mut before) = (0, false);
         bench.command("Extend", true);
         for _ in 0..1_000_000 / period_us {

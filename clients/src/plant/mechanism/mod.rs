@@ -193,22 +193,49 @@ impl Mechanism {
                 }
             }
         }
-        let about = self.equations.about;
-        let members = &self.tree.members;
-        let own = |index: usize| {
-            let body = members[index].body.map(|handle| &bodies[handle]);
-            body.map_or_else(Twist::default, |body| {
-                let angular = body.angvel();
-                let lever = about - body.mass_properties().world_com;
-                Twist { angular, linear: body.linvel() + angular.cross(lever) }
-            })
-        };
         let Coordinates { q, v } = &mut self.now;
+        let own = own_motion(&self.tree, self.equations.about, bodies);
         if self.equations.project(&self.tree, q, own, v) {
             return self.reconcile();
         }
         v.fill(0.0);
         false
+    }
+
+    /// What contacts changed in its velocities in a step in which the engine moved each body by itself,
+    /// under gravity and contacts alone: what their momenta have beyond gravity's, as the joints allow it.
+    pub(crate) fn blow(&mut self, dt_s: f64, gravity: Vector, bodies: &RigidBodySet) -> Vec<f64> {
+        let Self { tree, now, equations, .. } = self;
+        let mut blow = vec![0.0; tree.velocities];
+        let own = own_motion(tree, equations.about, bodies);
+        if !equations.project(tree, &now.q, own, &mut blow) {
+            return vec![0.0; tree.velocities];
+        }
+        let rest = vec![0.0; tree.velocities];
+        equations.evaluate(tree, &now.q, &rest, gravity);
+        if equations.factor(tree) {
+            let mut fall = equations.bias.clone();
+            matrix::solve(&equations.mass, tree.velocities, &mut fall);
+            for ((blow, v), fall) in blow.iter_mut().zip(&now.v).zip(fall) {
+                // the bias at rest is what would hold it against gravity
+                *blow += dt_s * fall - v;
+            }
+        }
+        blow
+    }
+
+    /// Adds what contacts changed in a step that it has made.
+    pub(crate) fn take(&mut self, blow: &[f64], dt_s: f64) {
+        let Self { tree, now, room, .. } = self;
+        room.rates[0].resize(tree.positions, 0.0);
+        dynamics::rates(tree, &now.q, blow, &mut room.rates[0]);
+        for (q, rate) in now.q.iter_mut().zip(&room.rates[0]) {
+            *q += dt_s * rate;
+        }
+        dynamics::normalise(tree, &mut now.q);
+        for (v, blow) in now.v.iter_mut().zip(blow) {
+            *v += blow;
+        }
     }
 
     /// Puts its bodies where its coordinates say.
@@ -238,5 +265,17 @@ impl Mechanism {
         self.bonds.is_empty()
             && joints.clone().all(|joint| around.fittings[joint].is_smooth())
             && !around.actuators.iter().any(|actuator| joints.clone().any(|joint| joint == actuator.joint))
+    }
+}
+
+/// How the engine has each member move, about a point.
+fn own_motion<'b>(tree: &'b Tree, about: Vector, bodies: &'b RigidBodySet) -> impl Fn(usize) -> Twist + 'b {
+    move |index| {
+        let body = tree.members[index].body.map(|handle| &bodies[handle]);
+        body.map_or_else(Twist::default, |body| {
+            let angular = body.angvel();
+            let lever = about - body.mass_properties().world_com;
+            Twist { angular, linear: body.linvel() + angular.cross(lever) }
+        })
     }
 }
