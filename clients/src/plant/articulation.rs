@@ -212,12 +212,11 @@ impl World {
             let gravity = physics.gravity;
             // without its joints the engine let its bodies go their own ways for this step
             let loose = touched && member.attached == Some(false);
-            let blow = loose.then(|| member.mechanism.blow(dt_s, gravity, &physics.bodies));
+            if loose {
+                member.mechanism.take_blow(dt_s, gravity, &physics.bodies);
+            }
             let mut around = Surroundings { gravity, fittings, actuators, drives, part };
             let alone = (!touched || loose) && member.mechanism.advance(dt_s, &mut around);
-            if let Some(blow) = blow.filter(|_| alone) {
-                member.mechanism.take(&blow, dt_s);
-            }
             let reconciled = !alone && member.mechanism.measure(&physics.bodies);
             for (joint, position, velocity) in member.mechanism.joints() {
                 let now = Mark { position: fittings[joint].initial + position, velocity };

@@ -202,39 +202,25 @@ impl Mechanism {
         false
     }
 
-    /// What contacts changed in its velocities in a step in which the engine moved each body by itself,
-    /// under gravity and contacts alone: what their momenta have beyond gravity's, as the joints allow it.
-    pub(crate) fn blow(&mut self, dt_s: f64, gravity: Vector, bodies: &RigidBodySet) -> Vec<f64> {
+    /// Adds to its velocities what contacts changed in a step in which the engine moved each body by
+    /// itself, under gravity and contacts alone: what their momenta have beyond gravity's, as the joints
+    /// allow it. The mechanism's own step comes after it, in which drives and stops resist.
+    pub(crate) fn take_blow(&mut self, dt_s: f64, gravity: Vector, bodies: &RigidBodySet) {
         let Self { tree, now, equations, .. } = self;
-        let mut blow = vec![0.0; tree.velocities];
+        let mut moved = vec![0.0; tree.velocities];
         let own = own_motion(tree, equations.about, bodies);
-        if !equations.project(tree, &now.q, own, &mut blow) {
-            return vec![0.0; tree.velocities];
+        if !equations.project(tree, &now.q, own, &mut moved) {
+            return;
         }
         let rest = vec![0.0; tree.velocities];
         equations.evaluate(tree, &now.q, &rest, gravity);
         if equations.factor(tree) {
-            let mut fall = equations.bias.clone();
-            matrix::solve(&equations.mass, tree.velocities, &mut fall);
-            for ((blow, v), fall) in blow.iter_mut().zip(&now.v).zip(fall) {
-                // the bias at rest is what would hold it against gravity
-                *blow += dt_s * fall - v;
+            // the bias at rest is what would hold it against gravity
+            let mut held = equations.bias.clone();
+            matrix::solve(&equations.mass, tree.velocities, &mut held);
+            for ((v, moved), held) in now.v.iter_mut().zip(moved).zip(held) {
+                *v = moved + dt_s * held;
             }
-        }
-        blow
-    }
-
-    /// Adds what contacts changed in a step that it has made.
-    pub(crate) fn take(&mut self, blow: &[f64], dt_s: f64) {
-        let Self { tree, now, room, .. } = self;
-        room.rates[0].resize(tree.positions, 0.0);
-        dynamics::rates(tree, &now.q, blow, &mut room.rates[0]);
-        for (q, rate) in now.q.iter_mut().zip(&room.rates[0]) {
-            *q += dt_s * rate;
-        }
-        dynamics::normalise(tree, &mut now.q);
-        for (v, blow) in now.v.iter_mut().zip(blow) {
-            *v += blow;
         }
     }
 

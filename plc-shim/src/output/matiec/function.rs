@@ -114,9 +114,8 @@ impl<'a> Reader<'_, 'a> {
                 self.findings.push(Finding::new(place.span, what, help));
             }
             let inner = inner_call(place).filter(|_| kind == SectionKind::Input && !self.is_function);
-            let writes = |inner: &Call| {
-                handed_over(self.page, inner).iter().any(|(kind, _)| *kind != SectionKind::Input)
-            };
+            let writes =
+                |inner: &Call| handed_over(self.page, inner).iter().any(|(kind, _)| *kind != SectionKind::Input);
             if inner.as_ref().is_some_and(writes) && self.function(call).is_some() {
                 let what = "a call with VAR_IN_OUT or VAR_OUTPUT inside of another";
                 self.findings.push(Finding::new(place.span, what, "give its value to a variable first"));
@@ -165,9 +164,7 @@ fn is_chosen(place: &Expr, in_function: bool) -> bool {
             let is_number = |index: &Expr| matches!(index.kind, ExprKind::Literal(Literal::Integer(_)));
             !in_function || !list.iter().all(is_number) || is_chosen(base, in_function)
         }
-        ExprKind::Member(inner, _) | ExprKind::Part(inner, _) | ExprKind::Paren(inner) => {
-            is_chosen(inner, in_function)
-        }
+        ExprKind::Member(inner, _) | ExprKind::Part(inner, _) | ExprKind::Paren(inner) => is_chosen(inner, in_function),
         _ => false,
     }
 }
