@@ -9,6 +9,7 @@
 //! | [`robot`] | robots described in URDF, xacro and MJCF |
 //! | [`scene`] | the scene file: read, checked, plain data |
 //! | `pose` | orientations and joint frames from angles and directions |
+//! | `solid` | the bodies of a scene and their shapes, as the engine has them |
 //! | `world` | the scene as a world of rigid bodies |
 //! | `reach` | which bodies are too far away to be looked at |
 //! | `coordinate` | where a joint stands, measured from the poses of its bodies |
@@ -72,6 +73,7 @@ pub mod robot;
 pub mod scene;
 mod sensor;
 mod setpoint;
+mod solid;
 mod state;
 mod world;
 
