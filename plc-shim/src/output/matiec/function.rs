@@ -43,13 +43,9 @@ fn unread(ty: &str) -> String {
 
 /// A value and an input for a function that has none.
 fn complete(pou: &Pou, edits: &mut Edits) {
-    let mut head = String::new();
-    if pou.result.is_none() {
-        head += " : BOOL";
-    }
-    if has_no_parameters(pou) {
-        head += &format!("\nVAR_INPUT {UNUSED} : BOOL; END_VAR");
-    }
+    let result = if pou.result.is_none() { " : BOOL" } else { "" };
+    let input = if has_no_parameters(pou) { format!("\nVAR_INPUT {UNUSED} : BOOL; END_VAR") } else { String::new() };
+    let head = format!("{result}{input}");
     if !head.is_empty() {
         edits.insert(pou.result.as_ref().map_or(pou.name.span.end, |result| result.span.end), head);
     }
