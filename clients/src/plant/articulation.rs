@@ -226,7 +226,8 @@ impl World {
                     follow(*index, now, before, actuators, drives);
                 }
             }
-            if alone || reconciled {
+            // what the engine moved without joints must not come apart
+            if alone || reconciled || member.attached == Some(false) {
                 member.mechanism.put(&mut physics.bodies);
             }
         }
