@@ -58,6 +58,10 @@ fn open_of(scene: &Scene) -> Vec<(String, Setting)> {
 /// Every place of a scene that a signal has, in the scene's order.
 fn places_of(scene: &Scene) -> Vec<(SignalName, String)> {
     let mut places = Vec::new();
+    for fitting in &scene.fittings {
+        let release = fitting.brake.as_ref().and_then(|brake| brake.release.clone());
+        places.extend(release.map(|signal| (signal, format!("{}.release", scene.joints[fitting.joint].name))));
+    }
     for axis in &scene.axes {
         let mut at = |signal: &SignalName, what: &str| places.push((signal.clone(), format!("{}.{what}", axis.name)));
         match &axis.drive {
@@ -69,6 +73,8 @@ fn places_of(scene: &Scene) -> Vec<(SignalName, String)> {
         }
         axis.position.iter().for_each(|signal| at(signal, "position"));
         axis.velocity.iter().for_each(|signal| at(signal, "velocity"));
+        axis.effort.iter().for_each(|signal| at(signal, "effort"));
+        axis.limit.iter().for_each(|signal| at(signal, "limit"));
     }
     places.extend(scene.sensors.iter().map(|sensor| (sensor.signal.clone(), sensor.name.clone())));
     let kinds = kinds();

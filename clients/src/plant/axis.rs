@@ -8,12 +8,13 @@
 //! The drive of a belt has no loops: nothing that lies on a belt can slow it.
 
 use onescan_server::client::ClientFault;
-use onescan_server::signal::{PortLayout, SignalName, SlotError};
+use onescan_server::signal::{PortLayout, SignalName, Slot, SlotError};
 use rapier3d::prelude::*;
 
+use super::actuator::Motor;
 use super::command::{Command, NumberSlot};
 use super::coordinate::Measured;
-use super::motor::Motor;
+use super::effort::{Mark, Path};
 use super::scene::Scene;
 use super::scene::model::{self, Moved};
 use super::setpoint::{Bounds, Setpoint};
@@ -32,6 +33,8 @@ pub(super) struct Axis {
     bounds: Bounds,
     position: Option<NumberSlot>,
     velocity: Option<NumberSlot>,
+    effort: Option<NumberSlot>,
+    limit: Option<Slot<bool>>,
 }
 
 impl Axis {
@@ -65,6 +68,8 @@ impl Axis {
             bounds,
             position: feedback(&axis.position)?,
             velocity: feedback(&axis.velocity)?,
+            effort: feedback(&axis.effort)?,
+            limit: axis.limit.as_ref().map(|name| writes.slot(name.as_str())).transpose()?,
         })
     }
 
@@ -93,11 +98,11 @@ impl Axis {
         match &self.mover {
             Mover::Joint(motor) => {
                 let (joint, speed) = (motor.joint(), self.bounds.speed);
-                let position = measured.positions[joint];
-                let velocity = || measured.gauges[joint].velocity(world).clamp(-speed, speed);
+                let Mark { position, velocity } = measured.motions[joint];
+                let velocity = || velocity.clamp(-speed, speed);
                 let from = setpoint.near(position, speed * dt_s, velocity);
                 let to = self.command.advance(name, from, &self.bounds, dt_s, inputs)?;
-                motor.follow([from.position, to.position], measured, dt_s, None, world)?;
+                motor.follow(Path { from, to, turn_s: dt_s }, None, world)?;
                 *setpoint = to;
             }
             Mover::Belt { body, direction } => {
@@ -114,17 +119,24 @@ impl Axis {
     pub(super) fn feed_back(&self, setpoint: Setpoint, measured: Measured<'_>, world: &World, outputs: &mut [u8]) {
         if let Some(slot) = self.position {
             let position = match &self.mover {
-                Mover::Joint(motor) => measured.positions[motor.joint()],
+                Mover::Joint(motor) => measured.motions[motor.joint()].position,
                 Mover::Belt { .. } => setpoint.position,
             };
             slot.set(outputs, position);
         }
         if let Some(slot) = self.velocity {
             let velocity = match &self.mover {
-                Mover::Joint(motor) => measured.gauges[motor.joint()].velocity(world),
+                Mover::Joint(motor) => measured.motions[motor.joint()].velocity,
                 Mover::Belt { body, direction } => world.body(*body).linvel().dot(*direction),
             };
             slot.set(outputs, velocity);
+        }
+        let Mover::Joint(motor) = &self.mover else { return };
+        if let Some(slot) = self.effort {
+            slot.set(outputs, motor.effort(world));
+        }
+        if let Some(slot) = self.limit {
+            slot.set(outputs, motor.is_at_its_limit(world));
         }
     }
 }

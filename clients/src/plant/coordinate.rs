@@ -7,17 +7,16 @@
 use std::f64::consts::{PI, TAU};
 
 use rapier3d::math::Pose;
-use rapier3d::prelude::RigidBodyHandle;
+use rapier3d::prelude::{RigidBodyHandle, RigidBodySet};
 
+use super::effort::Mark;
 use super::scene::model::{Joint, JointKind};
 use super::world::{World, local_frames};
 
 /// The joints as they were measured last, in the scene's order.
 #[derive(Clone, Copy)]
 pub(crate) struct Measured<'m> {
-    pub(super) gauges: &'m [Gauge],
-    /// m or rad.
-    pub(super) positions: &'m [f64],
+    pub(super) motions: &'m [Mark],
 }
 
 /// How a joint is measured.
@@ -40,9 +39,9 @@ impl Gauge {
 
     /// The joint's coordinate in m or rad; `last` is the one measured a period ago, which tells a
     /// turn from the next. Zero for a joint without a coordinate.
-    pub(super) fn position(&self, world: &World, last: f64) -> f64 {
-        let parent = *world.body(self.parent).position() * self.parent_frame;
-        let child = *world.body(self.child).position() * self.child_frame;
+    pub(super) fn position(&self, bodies: &RigidBodySet, last: f64) -> f64 {
+        let parent = *bodies[self.parent].position() * self.parent_frame;
+        let child = *bodies[self.child].position() * self.child_frame;
         let between = parent.inv_mul(&child);
         match self.kind {
             JointKind::Prismatic => self.initial + between.translation.x,
@@ -56,8 +55,8 @@ impl Gauge {
     }
 
     /// The velocity of the joint's coordinate in m/s or rad/s.
-    pub(super) fn velocity(&self, world: &World) -> f64 {
-        let (parent, child) = (world.body(self.parent), world.body(self.child));
+    pub(super) fn velocity(&self, bodies: &RigidBodySet) -> f64 {
+        let (parent, child) = (&bodies[self.parent], &bodies[self.child]);
         let frame = *parent.position() * self.parent_frame;
         let point = (*child.position() * self.child_frame).translation;
         let linear = || child.velocity_at_point(point) - parent.velocity_at_point(point);
@@ -71,7 +70,7 @@ impl Gauge {
 }
 
 /// The angle that is `angle` but for whole turns and lies within half a turn of `last`.
-fn nearest_turn(angle: f64, last: f64) -> f64 {
+pub(super) fn nearest_turn(angle: f64, last: f64) -> f64 {
     let apart = angle - last;
     if apart.abs() <= PI { angle } else { angle - TAU * (apart / TAU).round() }
 }

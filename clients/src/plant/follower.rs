@@ -4,10 +4,12 @@
 
 use onescan_server::client::ClientFault;
 
+use super::actuator::Motor;
 use super::coordinate::Measured;
-use super::motor::Motor;
+use super::effort::{Mark, Path};
 use super::scene::Scene;
 use super::scene::model::Follows;
+use super::setpoint::Setpoint;
 use super::world::World;
 
 /// A joint that follows another.
@@ -30,8 +32,10 @@ impl Follower {
     /// A joint that the world does not have, which no checked scene causes.
     pub(super) fn drive(&self, measured: Measured<'_>, dt_s: f64, world: &mut World) -> Result<(), ClientFault> {
         let Follows { joint, factor, offset } = self.follows;
-        let from = factor * measured.positions[joint] + offset;
-        let to = from + factor * measured.gauges[joint].velocity(world) * dt_s;
-        self.motor.follow([from, to], measured, dt_s, None, world)
+        let Mark { position, velocity } = measured.motions[joint];
+        let (position, velocity) = (factor * position + offset, factor * velocity);
+        let from = Setpoint { position, velocity };
+        let to = Setpoint { position: position + velocity * dt_s, velocity };
+        self.motor.follow(Path { from, to, turn_s: dt_s }, None, world)
     }
 }

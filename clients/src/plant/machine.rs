@@ -1,21 +1,23 @@
 //! A whole plant in motion: world, axes, sensors and components, one turn at a time.
 
 use onescan_server::client::ClientFault;
-use onescan_server::signal::PortLayout;
+use onescan_server::signal::{PortLayout, Slot, SlotError};
 use onescan_server::time::{TimeSpan, VirtualTime};
 use rapier3d::prelude::PhysicsWorld;
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
+use super::articulation::ArticulationMemory;
 use super::axis::Axis;
 use super::channel::{Channels, ChannelsMemory, inner_ports};
 use super::component::declare::Value;
-use super::coordinate::{Gauge, Measured};
+use super::coordinate::Measured;
+use super::effort::{Drives, Effort, Mark, Motion};
 use super::follower::Follower;
 use super::part::{Moment, Part, PartMemory, Unbuilt};
 use super::placement::Placement;
-use super::scene::Scene;
 use super::scene::failures::FoundMode;
+use super::scene::{Scene, model};
 use super::sensor::Sensor;
 use super::setpoint::Setpoint;
 use super::world::World;
@@ -23,8 +25,8 @@ use super::world::World;
 /// What the plant remembers between two turns, beside the state of its world.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct Memory {
-    /// Coordinate of every joint.
-    positions: Vec<f64>,
+    /// Joints and mechanisms.
+    articulation: ArticulationMemory,
     /// Setpoint of every axis.
     setpoints: Vec<Setpoint>,
     /// What every sensor sees.
@@ -43,14 +45,18 @@ pub(super) struct Misfit(pub(super) String);
 /// A plant in motion.
 pub(super) struct Machine {
     pub(super) world: World,
-    positions: Vec<f64>,
+    /// The joints as they were measured last.
+    motions: Vec<Mark>,
     setpoints: Vec<Setpoint>,
     detected: Vec<bool>,
-    gauges: Vec<Gauge>,
     followers: Vec<Follower>,
     axes: Vec<Axis>,
     sensors: Vec<Sensor>,
     parts: Vec<Part>,
+    /// The part that is the drive of each number, if one is.
+    drivers: Vec<Option<usize>>,
+    /// Brakes that signals release, by the joint.
+    brakes: Vec<(usize, Slot<bool>)>,
     /// The outputs of all parts, for those that are wired to them.
     given: Vec<Vec<Value>>,
     /// Signals in and out, where the scene says that something happens to them.
@@ -67,7 +73,6 @@ impl Machine {
         let reads = PortLayout::new(inner_ports(&scene.reads, &scene.conditions));
         let writes = PortLayout::new(inner_ports(&scene.writes, &scene.conditions));
         let mut world = World::build(scene, period);
-        let gauges: Vec<_> = scene.joints.iter().map(|joint| Gauge::new(&world, joint)).collect();
         let followers = Follower::all(scene, &mut world);
         let axes = scene
             .axes
@@ -80,14 +85,17 @@ impl Machine {
         for described in &scene.components {
             parts.push(Part::build(described, scene, seed, &mut world, [&reads, &writes])?);
         }
+        // now that all drives are known
+        world.find_mechanisms();
         let channels = (!scene.conditions.is_empty()).then(|| Channels::pair(scene, seed));
         Ok(Self {
-            positions: scene.joints.iter().map(|joint| joint.initial).collect(),
+            motions: (0..scene.joints.len()).map(|joint| world.motion(joint)).collect(),
+            drivers: drivers(&parts, &world),
+            brakes: brakes(scene, &reads)?,
             setpoints: axes.iter().map(|axis| axis.rest(scene)).collect(),
             detected: vec![false; sensors.len()],
             given: parts.iter().map(|part| part.given().to_vec()).collect(),
             world,
-            gauges,
             followers,
             axes,
             sensors,
@@ -103,7 +111,7 @@ impl Machine {
     /// A component's state that does not go into bytes, which none is.
     pub(super) fn memory(&self) -> Result<Memory, postcard::Error> {
         Ok(Memory {
-            positions: self.positions.clone(),
+            articulation: self.world.coordinates(),
             setpoints: self.setpoints.clone(),
             detected: self.detected.clone(),
             parts: self.parts.iter().map(Part::memory).collect::<Result<_, _>>()?,
@@ -136,13 +144,14 @@ impl Machine {
     pub(super) fn restore(&mut self, scene: &Scene, physics: PhysicsWorld, memory: Memory) -> Result<(), Misfit> {
         self.check(scene, &physics, &memory)?;
         self.world.physics = physics;
+        self.world.restore_coordinates(memory.articulation)?;
         for ((part, described), memory) in self.parts.iter_mut().zip(&scene.components).zip(memory.parts) {
             part.restore(memory, &described.name)?;
         }
         for (channels, memory) in self.channels.iter_mut().flatten().zip(memory.channels.into_iter().flatten()) {
             channels.restore(memory);
         }
-        self.positions = memory.positions;
+        self.motions = (0..scene.joints.len()).map(|joint| self.world.motion(joint)).collect();
         self.setpoints = memory.setpoints;
         self.detected = memory.detected;
         for (given, part) in self.given.iter_mut().zip(&self.parts) {
@@ -154,7 +163,6 @@ impl Machine {
 
     fn check(&self, scene: &Scene, physics: &PhysicsWorld, memory: &Memory) -> Result<(), Misfit> {
         let counts = [
-            ("joints", self.positions.len(), memory.positions.len()),
             ("axes", self.setpoints.len(), memory.setpoints.len()),
             ("sensors", self.detected.len(), memory.detected.len()),
             ("components", self.parts.len(), memory.parts.len()),
@@ -219,10 +227,13 @@ impl Machine {
     }
 
     fn inner_turn(&mut self, scene: &Scene, now_ns: u64, inputs: &[u8], outputs: &mut [u8]) -> Result<(), ClientFault> {
-        let Self { world, positions, setpoints, gauges, followers, axes, parts, given, dt_s, .. } = self;
-        let measured = Measured { gauges, positions };
+        let Self { world, motions, setpoints, followers, axes, parts, given, dt_s, drivers, brakes, .. } = self;
+        let measured = Measured { motions };
         for follower in followers {
             follower.drive(measured, *dt_s, world)?;
+        }
+        for (joint, release) in brakes.iter() {
+            world.articulation.fittings[*joint].set_brake(release.get(inputs));
         }
         for ((axis, setpoint), described) in axes.iter().zip(setpoints).zip(&scene.axes) {
             axis.drive(&described.name, setpoint, measured, *dt_s, inputs, world)?;
@@ -231,22 +242,22 @@ impl Machine {
         for (part, described) in parts.iter_mut().zip(&scene.components) {
             part.drive(described, &moment, given, world)?;
         }
-        self.world.step(scene)?;
+        world.step(scene, &mut Driving { parts, drivers })?;
         self.observe(scene, now_ns, inputs, outputs)
     }
 
     /// Measures every joint, lets every sensor and component look and writes all signals.
     fn observe(&mut self, scene: &Scene, now_ns: u64, inputs: &[u8], outputs: &mut [u8]) -> Result<(), ClientFault> {
-        let Self { world, positions, setpoints, detected, gauges, axes, sensors, parts, given, dt_s, .. } = self;
-        for (gauge, position) in gauges.iter().zip(positions.iter_mut()) {
-            *position = gauge.position(world, *position);
+        let Self { world, motions, setpoints, detected, axes, sensors, parts, given, dt_s, .. } = self;
+        for (joint, motion) in motions.iter_mut().enumerate() {
+            *motion = world.motion(joint);
         }
-        let measured = Measured { gauges, positions };
+        let measured = Measured { motions };
         for (axis, setpoint) in axes.iter().zip(setpoints) {
             axis.feed_back(*setpoint, measured, world, outputs);
         }
         for (sensor, detected) in sensors.iter().zip(detected) {
-            *detected = sensor.detects(world, positions, *detected);
+            *detected = sensor.detects(world, motions, *detected);
             sensor.write(*detected, outputs);
         }
         let moment = Moment { t_v_ns: now_ns, dt_s: *dt_s, inputs, measured };
@@ -257,4 +268,44 @@ impl Machine {
         }
         Ok(())
     }
+}
+
+/// The parts as the drives of a world.
+struct Driving<'p> {
+    parts: &'p mut [Part],
+    drivers: &'p [Option<usize>],
+}
+
+impl Driving<'_> {
+    fn part(&self, drive: usize) -> Option<&Part> {
+        self.drivers.get(drive).copied().flatten().and_then(|part| self.parts.get(part))
+    }
+}
+
+impl Drives for Driving<'_> {
+    fn longest_s(&self, drive: usize) -> f64 {
+        self.part(drive).map_or(f64::INFINITY, Part::longest_s)
+    }
+
+    fn advance(&mut self, drive: usize, motion: Motion, dt_s: f64) -> Effort {
+        let part = self.drivers.get(drive).copied().flatten().and_then(|part| self.parts.get_mut(part));
+        part.map_or(Effort::of(0.0), |part| part.advance(motion, dt_s))
+    }
+
+    fn foresee(&self, drive: usize, motion: Motion, dt_s: f64) -> Effort {
+        self.part(drive).map_or(Effort::of(0.0), |part| part.foresee(motion, dt_s))
+    }
+}
+
+/// The brakes that signals release.
+fn brakes(scene: &Scene, reads: &PortLayout) -> Result<Vec<(usize, Slot<bool>)>, SlotError> {
+    let released =
+        |fitting: &model::Fitting| fitting.brake.as_ref()?.release.as_ref().map(|name| (fitting.joint, name.clone()));
+    let each = scene.fittings.iter().filter_map(released);
+    each.map(|(joint, name)| reads.slot(name.as_str()).map(|slot| (joint, slot))).collect()
+}
+
+/// Which part is the drive of each number.
+fn drivers(parts: &[Part], world: &World) -> Vec<Option<usize>> {
+    (0..world.actuators.len()).map(|drive| parts.iter().position(|part| part.drive_number() == Some(drive))).collect()
 }

@@ -9,12 +9,18 @@
 //! | [`robot`] | robots described in URDF, xacro and MJCF |
 //! | [`scene`] | the scene file: read, checked, plain data |
 //! | `pose` | orientations and joint frames from angles and directions |
+//! | `solid` | the bodies of a scene and their shapes, as the engine has them |
 //! | `world` | the scene as a world of rigid bodies |
 //! | `reach` | which bodies are too far away to be looked at |
 //! | `coordinate` | where a joint stands, measured from the poses of its bodies |
 //! | `setpoint` | the motion a drive wants: ramps and trapezoids in closed form |
 //! | `command` | what the PLC commands of a drive |
-//! | `motor` | the motor of a joint, as axes and components drive it |
+//! | `effort` | what a drive does to its joint, and what the joint tells the drive |
+//! | `actuator` | what drives a joint: along a path, or by a component's equations |
+//! | `coupled` | what couples the coordinate of a joint to those of others |
+//! | `fitting` | what is fitted to a joint beside its drive |
+//! | `mechanism` | bodies on joints, moved by the joints' coordinates |
+//! | `articulation` | mechanisms and the engine: who moves which bodies |
 //! | `follower` | a joint that follows another |
 //! | `axis` | a driven axis: command, setpoint, what it moves, feedback |
 //! | `sensor` | end-position and proximity sensors |
@@ -40,19 +46,24 @@
 //! - Nothing sleeps: a body at rest costs time, but never wakes late.
 //! - A world that is no longer finite or leaves its extent is a fault that names the body.
 
+mod actuator;
+mod articulation;
 mod axis;
 mod channel;
 mod client;
 mod command;
 pub mod component;
 mod coordinate;
+mod coupled;
 pub mod coupling;
+mod effort;
 mod failure;
+mod fitting;
 mod follower;
 mod identity;
 mod machine;
+mod mechanism;
 pub mod mesh;
-mod motor;
 mod part;
 mod placement;
 mod pose;
@@ -62,6 +73,7 @@ pub mod robot;
 pub mod scene;
 mod sensor;
 mod setpoint;
+mod solid;
 mod state;
 mod world;
 

@@ -12,6 +12,7 @@ use super::component::kind::Values;
 use super::component::library::entry;
 use super::coordinate::Measured;
 use super::coupling::Unbound;
+use super::effort::{Effort, Motion};
 use super::machine::Misfit;
 use super::random::seed_for;
 use super::scene::Scene;
@@ -210,6 +211,26 @@ impl Part {
             }
         }
         Ok(())
+    }
+
+    /// The number of the drive that it is, if it drives a joint by its own equations.
+    pub(super) fn drive_number(&self) -> Option<usize> {
+        self.running.drive_number()
+    }
+
+    /// The longest sub-step of its equations, s.
+    pub(super) fn longest_s(&self) -> f64 {
+        self.running.longest_s()
+    }
+
+    /// Moves its state by a sub-step in which its joint moves so.
+    pub(super) fn advance(&mut self, motion: Motion, dt_s: f64) -> Effort {
+        self.running.advance(motion, dt_s)
+    }
+
+    /// What it would exert at the end of a step in which its joint moves so.
+    pub(super) fn foresee(&self, motion: Motion, dt_s: f64) -> Effort {
+        self.running.foresee(motion, dt_s)
     }
 
     /// The outputs of the last turn.

@@ -4,6 +4,7 @@ use onescan_server::signal::{PortLayout, Slot, SlotError};
 use rapier3d::math::Vector;
 use rapier3d::prelude::{Ray, RigidBodyHandle};
 
+use super::effort::Mark;
 use super::scene::model;
 use super::world::World;
 
@@ -74,9 +75,9 @@ impl Sensor {
     }
 
     /// Looks; `before` is what the sensor saw a period ago.
-    pub(super) fn detects(&self, world: &World, positions: &[f64], before: bool) -> bool {
+    pub(super) fn detects(&self, world: &World, motions: &[Mark], before: bool) -> bool {
         match &self.sensing {
-            Sensing::EndPosition(range) => range.detects(positions[range.joint], before),
+            Sensing::EndPosition(range) => range.detects(motions[range.joint].position, before),
             Sensing::Proximity(ray) => ray.detects(world),
         }
     }

@@ -27,11 +27,11 @@ impl Bounds {
 
 /// Where an ideal axis is and how fast.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub(super) struct Setpoint {
+pub(crate) struct Setpoint {
     /// m or rad
-    pub(super) position: f64,
+    pub(crate) position: f64,
     /// m/s or rad/s
-    pub(super) velocity: f64,
+    pub(crate) velocity: f64,
 }
 
 impl Setpoint {

@@ -1,20 +1,18 @@
 //! The scene as a world of rigid bodies, built in the order of the file.
 
-use std::f64::consts::FRAC_1_SQRT_2;
-
 use onescan_server::client::ClientFault;
 use onescan_server::time::TimeSpan;
-use rapier3d::glamx::{DMat3, DQuat};
 use rapier3d::parry::bounding_volume::{BoundingSphere, BoundingVolume};
 use rapier3d::prelude::*;
 
+use super::actuator::{Actuator, Friction, spring_beside};
+use super::articulation::Articulation;
+use super::effort::Drives;
 use super::machine::Misfit;
 use super::pose;
 use super::reach::Reach;
-use super::scene::model::{Attached, Body, BodyKind, Collisions, FrictionRule, Joint, JointKind, Mass, Scene, Shape};
-
-/// Bodies without a group are members of this one.
-const UNGROUPED: Group = Group::GROUP_32;
+use super::scene::model::{Joint, JointKind, Scene};
+use super::solid::{attach, insert_body};
 
 /// Sweeps over all joints and contacts in one solver iteration.
 const SWEEPS: usize = 4;
@@ -33,7 +31,14 @@ pub(crate) struct World {
     ground: RigidBodyHandle,
     bodies: Vec<RigidBodyHandle>,
     shapes: Vec<ColliderHandle>,
-    joints: Vec<ImpulseJointHandle>,
+    pub(super) joints: Vec<ImpulseJointHandle>,
+    /// Joints that brake joints of the scene, by their index, as dry friction does.
+    pub(super) frictions: Vec<(usize, Friction)>,
+    /// Joints that stand in for springs, dampers and counterweights of joints.
+    pub(super) springs: Vec<(usize, ImpulseJointHandle)>,
+    /// What drives joints.
+    pub(super) actuators: Vec<Actuator>,
+    pub(super) articulation: Articulation,
     /// Belts, and where they stay while their surfaces run.
     belts: Vec<(RigidBodyHandle, Pose)>,
     reach: Reach,
@@ -58,26 +63,51 @@ impl World {
                 insert_joint(&mut physics, joint, parent, bodies[joint.child])
             })
             .collect();
-        Self {
+        let mut world = Self {
             reach: Reach::of(&physics),
             physics,
             ground,
             bodies,
             shapes,
             joints,
+            frictions: Vec::new(),
+            springs: Vec::new(),
+            actuators: Vec::new(),
+            articulation: Articulation::empty(),
             belts: Vec::new(),
             substeps: scene.substeps,
             extent_m: scene.extent_m,
+        };
+        world.articulation = Articulation::build(scene, &mut world);
+        for index in 0..scene.joints.len() {
+            let fitting = world.articulation.fittings[index];
+            let along = measured_axis(scene.joints[index].kind);
+            if fitting.pushes() {
+                let spring = spring_beside(world.joints[index], along, &fitting, &mut world.physics);
+                world.springs.extend(spring.map(|spring| (index, spring)));
+            }
+            if !fitting.is_smooth() {
+                world.add_friction(index);
+            }
         }
+        world
     }
 
     /// Moves the world by one period.
     ///
     /// # Errors
     /// A body whose state is no longer finite or that has left the world.
-    pub(super) fn step(&mut self, scene: &Scene) -> Result<(), ClientFault> {
-        for _ in 0..self.substeps {
-            self.physics.step();
+    pub(super) fn step(&mut self, scene: &Scene, drives: &mut dyn Drives) -> Result<(), ClientFault> {
+        if let Some(index) = self.uncoupled() {
+            let name = &scene.couplings[index].name;
+            return Err(ClientFault::new(format!(
+                "coupling `{name}`: its joints must be in trees that stand on the ground or on fixed bodies; \
+                 here they close a loop, or stand on nothing"
+            )));
+        }
+        for index in 0..self.substeps {
+            let part = [index, index + 1].map(|step| f64::from(step) / f64::from(self.substeps));
+            self.substep(part, drives);
             self.put_belts_back()?;
             if let Some(lost) = self.physics.quarantine().bodies().first() {
                 return Err(self.fault(scene, *lost, "its position or velocity is no longer a finite number"));
@@ -134,7 +164,12 @@ impl World {
     pub(super) fn check(&self, physics: &PhysicsWorld) -> Result<(), Misfit> {
         let bodies = self.bodies.iter().chain([&self.ground]).all(|handle| physics.bodies.contains(*handle));
         let shapes = self.shapes.iter().all(|handle| physics.colliders.contains(*handle));
-        let joints = self.joints.iter().all(|handle| physics.impulse_joints.contains(*handle));
+        let joints = self
+            .joints
+            .iter()
+            .chain(self.springs.iter().map(|(_, spring)| spring))
+            .chain(self.frictions.iter().map(|(_, friction)| &friction.handle))
+            .all(|handle| physics.impulse_joints.contains(*handle));
         if bodies && shapes && joints {
             return Ok(());
         }
@@ -243,6 +278,7 @@ impl World {
     /// A body that there is not, as in all that follow.
     pub(super) fn take_out(&mut self, handle: RigidBodyHandle) -> Result<(), ClientFault> {
         self.body_mut(handle)?.set_enabled(false);
+        self.find_mechanisms_of(handle);
         Ok(())
     }
 
@@ -254,6 +290,7 @@ impl World {
         body.set_position(pose, true);
         body.set_linvel(Vector::ZERO, true);
         body.set_angvel(AngVector::ZERO, true);
+        self.find_mechanisms_of(handle);
         Ok(())
     }
 
@@ -266,6 +303,21 @@ impl World {
     fn body_mut(&mut self, handle: RigidBodyHandle) -> Result<&mut RigidBody, ClientFault> {
         let body = self.physics.bodies.get_mut(handle);
         body.ok_or_else(|| ClientFault::new("a body of the scene is not in the world"))
+    }
+
+    fn find_mechanisms_of(&mut self, body: RigidBodyHandle) {
+        if self.hangs(body) {
+            self.find_mechanisms();
+        }
+    }
+
+    /// Gives a joint of the scene dry friction in the engine too, if it has none yet.
+    pub(super) fn add_friction(&mut self, joint: usize) {
+        if self.frictions.iter().all(|(known, _)| *known != joint) {
+            let along = self.articulation.along(joint);
+            let friction = Friction::beside(self.joints[joint], along, &mut self.physics);
+            self.frictions.extend(friction.map(|friction| (joint, friction)));
+        }
     }
 
     /// Acceleration of free fall.
@@ -282,7 +334,9 @@ impl World {
     pub(super) fn hold(&mut self, holder: RigidBodyHandle, held: RigidBodyHandle) -> ImpulseJointHandle {
         let between = self.body(holder).position().inv_mul(self.body(held).position());
         let joint = FixedJointBuilder::new().local_frame1(between).contacts_enabled(false);
-        self.physics.insert_impulse_joint(holder, held, joint)
+        let joint = self.physics.insert_impulse_joint(holder, held, joint);
+        self.find_mechanisms();
+        joint
     }
 
     /// Removes the joint that [`hold`](Self::hold) gave.
@@ -291,6 +345,7 @@ impl World {
     /// A joint that there is not.
     pub(super) fn let_go(&mut self, joint: ImpulseJointHandle) -> Result<(), ClientFault> {
         let removed = self.physics.remove_impulse_joint(joint);
+        self.find_mechanisms();
         removed.map(|_| ()).ok_or_else(|| ClientFault::new("the joint that holds a body is not in the world"))
     }
 }
@@ -305,114 +360,6 @@ fn integration(scene: &Scene, period: TimeSpan) -> IntegrationParameters {
         warmstart_joints: true,
         ..IntegrationParameters::default()
     }
-}
-
-fn insert_body(physics: &mut PhysicsWorld, body: &Body) -> RigidBodyHandle {
-    let builder = match body.kind {
-        BodyKind::Fixed => RigidBodyBuilder::fixed(),
-        BodyKind::Dynamic => RigidBodyBuilder::dynamic(),
-        BodyKind::Kinematic => RigidBodyBuilder::kinematic_velocity_based(),
-    };
-    let builder = builder
-        .pose(pose::from_rpy_deg(body.position_m, body.rpy_deg))
-        .linvel(Vector::from_array(body.velocity_m_s))
-        .can_sleep(false)
-        .additional_mass_properties(stated(body));
-    match &body.shape {
-        None => physics.insert_body(builder),
-        Some(shape) => physics.insert(builder, collider(body, shape)).0,
-    }
-}
-
-/// Mass properties that a body has beside those of its shapes.
-fn stated(body: &Body) -> MassProperties {
-    let Mass::Stated { kg, centre_m, inertia_kg_m2: [xx, yy, zz, xy, xz, yz] } = body.mass else {
-        return MassProperties::default();
-    };
-    let place = pose::from_rpy_deg(body.position_m, body.rpy_deg);
-    let world = DMat3::from_cols(Vector::new(xx, xy, xz), Vector::new(xy, yy, yz), Vector::new(xz, yz, zz));
-    let turned = DMat3::from_quat(place.rotation);
-    let centre = place.inverse_transform_point(Vector::from_array(centre_m));
-    MassProperties::with_inertia_matrix(centre, kg, turned.transpose() * world * turned)
-}
-
-/// Attaches a shape to its body, which still stands in the scene's pose.
-fn attach(physics: &mut PhysicsWorld, shape: &Attached, scene: &Scene, body: RigidBodyHandle) -> ColliderHandle {
-    let place = pose::from_rpy_deg(shape.position_m, shape.rpy_deg);
-    let local = physics.bodies[body].position().inv_mul(&place);
-    let own = form(&shape.shape);
-    let turned = local * own.position;
-    let collisions = if shape.collides { scene.bodies[shape.body].collisions } else { Collisions::None };
-    let weighed = match shape.density_kg_m3 {
-        Some(density_kg_m3) => own.density(density_kg_m3),
-        None => own.mass(shape.mass_kg),
-    };
-    let collider = weighed
-        .position(turned)
-        .friction(shape.friction)
-        .friction_combine_rule(combined(shape.friction_rule))
-        .restitution(shape.restitution)
-        .collision_groups(groups(collisions));
-    physics.insert_collider(collider, Some(body))
-}
-
-fn collider(body: &Body, shape: &Shape) -> ColliderBuilder {
-    let builder = form(shape);
-    let builder = match body.mass {
-        Mass::Total { kg } => builder.mass(kg),
-        Mass::Density { kg_m3 } => builder.density(kg_m3),
-        Mass::Stated { .. } => builder.mass(0.0),
-    };
-    builder
-        .friction(body.friction)
-        .friction_combine_rule(combined(body.friction_rule))
-        .restitution(body.restitution)
-        .collision_groups(groups(body.collisions))
-}
-
-/// The engine's rule; of two it takes the later one in its own order, which is that of the scene's rules.
-fn combined(rule: FrictionRule) -> CoefficientCombineRule {
-    match rule {
-        FrictionRule::Mean => CoefficientCombineRule::Average,
-        FrictionRule::Least => CoefficientCombineRule::Min,
-        FrictionRule::Product => CoefficientCombineRule::Multiply,
-        FrictionRule::Greatest => CoefficientCombineRule::Max,
-    }
-}
-
-fn form(shape: &Shape) -> ColliderBuilder {
-    match *shape {
-        Shape::Box { size_m: [x, y, z] } => ColliderBuilder::cuboid(x * 0.5, y * 0.5, z * 0.5),
-        Shape::Sphere { radius_m } => ColliderBuilder::ball(radius_m),
-        // the engine's cylinder stands along y; a quarter turn about x puts it along z
-        Shape::Cylinder { radius_m, length_m } => ColliderBuilder::cylinder(length_m * 0.5, radius_m)
-            .position(Pose::from_rotation(DQuat::from_xyzw(FRAC_1_SQRT_2, 0.0, 0.0, FRAC_1_SQRT_2))),
-        Shape::Capsule { radius_m, length_m } => ColliderBuilder::capsule_z(length_m * 0.5, radius_m),
-        // a checked scene has meshes with a hull and with triangles only
-        Shape::Hull { ref corners_m, .. } => {
-            ColliderBuilder::convex_hull(&points(corners_m)).unwrap_or_else(|| ColliderBuilder::ball(0.0))
-        }
-        Shape::Surface { ref corners_m, ref triangles, .. } => {
-            let surface = ColliderBuilder::trimesh(points(corners_m), triangles.clone());
-            surface.unwrap_or_else(|_| ColliderBuilder::ball(0.0))
-        }
-    }
-}
-
-fn points(corners_m: &[[f64; 3]]) -> Vec<Vector> {
-    corners_m.iter().map(|corner| Vector::from_array(*corner)).collect()
-}
-
-fn groups(collisions: Collisions) -> InteractionGroups {
-    let (memberships, filter) = match collisions {
-        Collisions::None => (Group::NONE, Group::NONE),
-        Collisions::All => (UNGROUPED, Group::ALL),
-        Collisions::OutsideGroup(index) => {
-            let own = Group::from_bits_truncate(1 << index);
-            (own, Group::ALL.difference(own))
-        }
-    };
-    InteractionGroups::new(memberships, filter, InteractionTestMode::And)
 }
 
 /// Locked axes of a joint in its frame, and the one that its coordinate is measured along.

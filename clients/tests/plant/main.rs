@@ -1,16 +1,21 @@
 //! The plant as a client, driven turn by turn without a session around it.
 
+mod arm;
 mod arrays;
 mod belt;
 mod bench;
 mod components;
 mod constants;
+mod couplings;
+mod drives;
 mod failures;
 mod faults;
+mod fittings;
 mod friction;
 mod handling;
 mod holding;
 mod measuring;
+mod mechanism;
 mod meshes;
 mod motion;
 mod robots;

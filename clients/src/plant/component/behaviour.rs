@@ -9,9 +9,11 @@ use serde::Serialize;
 use serde::de::DeserializeOwned;
 
 use super::declare::{Failed, FailureSet, ParameterSet, SignalSet, Value};
+use super::dynamics::substeps;
 use super::kind::{Dependence, Kind, Signal};
 use crate::plant::coordinate::Measured;
 use crate::plant::coupling::{Coupling, Tie, Unbound};
+use crate::plant::effort::{Effort, Motion};
 use crate::plant::scene::Scene;
 use crate::plant::scene::model::Bound;
 use crate::plant::world::World;
@@ -31,7 +33,7 @@ pub(crate) trait Component: Sized + Send + 'static {
     /// What describes one of its kind.
     type Parameters: ParameterSet;
     /// What it takes.
-    type Inputs: SignalSet;
+    type Inputs: SignalSet + Send;
     /// What it gives.
     type Outputs: SignalSet;
     /// How it fails.
@@ -59,6 +61,29 @@ pub(crate) trait Component: Sized + Send + 'static {
 
     /// Moves the state by one period.
     fn drive(&self, _state: &mut Self::State, _inputs: &Self::Inputs, _turn: &Turn<SeenBy<Self>>) {}
+
+    /// The longest sub-step of its equations on a joint, s.
+    fn longest_s(&self) -> f64 {
+        f64::INFINITY
+    }
+
+    /// The way that its own stops leave to a joint, m or rad.
+    fn stops(&self) -> Option<[f64; 2]> {
+        None
+    }
+
+    /// Moves the state by a sub-step in which its joint moves so; what it exerts on the joint. A
+    /// component that drives a joint has its equations here; without a joint, in [`drive`](Self::drive).
+    fn advance(
+        &self,
+        _state: &mut Self::State,
+        _inputs: &Self::Inputs,
+        _turn: &Turn<SeenBy<Self>>,
+        _motion: Motion,
+        _dt_s: f64,
+    ) -> Effort {
+        Effort::of(0.0)
+    }
 
     /// What it does to the world in the period that `drive` has begun.
     fn effect(&self, state: &Self::State) -> EffectOf<Self>;
@@ -114,6 +139,14 @@ pub(crate) trait Running: Send {
     fn drive(&mut self, inputs: &[Value], around: &Surroundings<'_>, world: &mut World) -> Result<(), ClientFault>;
     /// Second half of a turn.
     fn sense(&mut self, inputs: &[Value], around: &Surroundings<'_>, world: &World, outputs: &mut Vec<Value>);
+    /// The number of the drive that it is, if it drives a joint by its own equations.
+    fn drive_number(&self) -> Option<usize>;
+    /// The longest sub-step of its equations, s.
+    fn longest_s(&self) -> f64;
+    /// Moves the state by a sub-step in which its joint moves so.
+    fn advance(&mut self, motion: Motion, dt_s: f64) -> Effort;
+    /// What it would exert at the end of a step in which its joint moves so; the state stays.
+    fn foresee(&self, motion: Motion, dt_s: f64) -> Effort;
     /// The state as bytes.
     fn save(&self) -> postcard::Result<Vec<u8>>;
     /// Checks that bytes are a state of such a component.
@@ -127,6 +160,8 @@ struct Runner<C: Component> {
     component: C,
     state: C::State,
     tie: C::Tie,
+    /// What it takes and sees in the turn that goes on.
+    turn: Option<(C::Inputs, Turn<SeenBy<C>>)>,
 }
 
 /// What a [`Runner`] remembers.
@@ -145,7 +180,10 @@ pub(super) fn run<C: Component>(
 ) -> Result<Box<dyn Running>, Unbound> {
     let tie = C::Tie::bind(bound, scene, world)?;
     let state = component.initial(&Start { seen: tie.at_start(), seed });
-    Ok(Box::new(Runner { component, state, tie }))
+    if let (Some(stops), Some(driven)) = (component.stops(), tie.driven()) {
+        world.restrict(driven.joint, stops);
+    }
+    Ok(Box::new(Runner { component, state, tie, turn: None }))
 }
 
 impl<C: Component> Runner<C> {
@@ -158,7 +196,9 @@ impl<C: Component> Runner<C> {
 impl<C: Component> Running for Runner<C> {
     fn drive(&mut self, inputs: &[Value], around: &Surroundings<'_>, world: &mut World) -> Result<(), ClientFault> {
         let turn = self.turn(around, world);
-        self.component.drive(&mut self.state, &C::Inputs::read(inputs), &turn);
+        let inputs = C::Inputs::read(inputs);
+        self.component.drive(&mut self.state, &inputs, &turn);
+        self.turn = Some((inputs, turn));
         let effect = self.component.effect(&self.state);
         self.tie.apply(effect, around.measured, around.dt_s, world)
     }
@@ -166,6 +206,31 @@ impl<C: Component> Running for Runner<C> {
     fn sense(&mut self, inputs: &[Value], around: &Surroundings<'_>, world: &World, outputs: &mut Vec<Value>) {
         let turn = self.turn(around, world);
         self.component.sense(&mut self.state, &C::Inputs::read(inputs), &turn).write(outputs);
+    }
+
+    fn drive_number(&self) -> Option<usize> {
+        self.tie.driven().map(|driven| driven.drive)
+    }
+
+    fn longest_s(&self) -> f64 {
+        self.component.longest_s()
+    }
+
+    fn advance(&mut self, motion: Motion, dt_s: f64) -> Effort {
+        let Self { component, state, turn, .. } = self;
+        turn.as_ref().map_or(Effort::of(0.0), |(inputs, turn)| component.advance(state, inputs, turn, motion, dt_s))
+    }
+
+    fn foresee(&self, motion: Motion, dt_s: f64) -> Effort {
+        let Some((inputs, turn)) = &self.turn else { return Effort::of(0.0) };
+        let mut state = self.state.clone();
+        let (count, part_s) = substeps(dt_s, self.component.longest_s());
+        let mut effort = Effort::of(0.0);
+        for index in 0..count {
+            let position = motion.position + motion.velocity * part_s * f64::from(index);
+            effort = self.component.advance(&mut state, inputs, turn, Motion { position, ..motion }, part_s);
+        }
+        effort
     }
 
     fn save(&self) -> postcard::Result<Vec<u8>> {

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::plant::coupling::Coordinate;
+use crate::plant::effort::Motion;
 
 /// How many equal sub-steps of at most `longest_s` make `dt_s`, and how long each is.
 pub(crate) fn substeps(dt_s: f64, longest_s: f64) -> (u32, f64) {
@@ -84,14 +84,17 @@ impl Travel {
         }
     }
 
-    /// Takes over where a joint really is, if it is farther away than `slack`: something holds it.
-    pub(crate) fn yield_to(&mut self, joint: Option<Coordinate>, slack: f64) {
-        let Some(joint) = joint else { return };
-        let held = self.position.clamp(joint.position - slack, joint.position + slack);
-        if held != self.position {
-            *self = Self { position: held, velocity: joint.velocity };
-        }
+    /// Where a joint has it, between stops.
+    pub(crate) fn on_joint(motion: &Motion, range: (f64, f64)) -> Self {
+        Self { position: motion.position.clamp(range.0, range.1), velocity: motion.velocity }
     }
+}
+
+/// By how much a spring's force falls with the velocity in a sub-step that is taken implicitly: for a
+/// spring too stiff for the mass at its end, which would else swing up. For all others nothing: taken
+/// semi-implicitly they keep their energy.
+pub(crate) fn slope_of(stiffness: f64, motion: &Motion, dt_s: f64) -> f64 {
+    if stiffness * dt_s * dt_s > motion.mass { stiffness * dt_s } else { 0.0 }
 }
 
 /// Whether a proximity switch sees what is so far away: within its switching distance, and by the

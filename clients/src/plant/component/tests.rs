@@ -5,6 +5,7 @@ use super::declare::{Failed, FailureSet, SignalSet, Value};
 use super::kind::{Form, Setting, Values, unit};
 use super::library::{ENTRIES, entry, kinds};
 use crate::plant::coupling::{Coordinate, Grasp, Hit, InField, Load, Moving, Targets};
+use crate::plant::effort::Motion;
 use crate::plant::random::Random;
 
 /// What is seen of so many targets.
@@ -156,8 +157,14 @@ where
         let turn = weather.turn(modes);
         let (mut one, mut again) = (Vec::new(), Vec::new());
         first.drive(&mut state, &taken, &turn);
+        let motion = Motion { position: 0.1, velocity: 0.01 * f64::from(k % 7), mass: 5.0, exerted: 1.0 };
+        let dt_s = first.longest_s().min(1e-3);
+        let own = first.advance(&mut state, &taken, &turn, motion, dt_s);
         if k >= 100 {
             second.drive(&mut other, &taken, &turn);
+            let effort = second.advance(&mut other, &taken, &turn, motion, dt_s);
+            assert_eq!(effort, own, "{} {k}", C::NAME);
+            assert!(effort.force.is_finite() && effort.slope >= 0.0, "{} {k}: {effort:?}", C::NAME);
             assert_eq!(second.effect(&other), first.effect(&state), "{} {k}", C::NAME);
             second.sense(&mut other, &taken, &turn).write(&mut again);
         }

@@ -2,11 +2,13 @@
 
 use onescan_server::client::ClientFault;
 
-use super::{BindingKey, Names, Tie, Unbound, needed, optional, wanted, without_effect};
+use super::{BindingKey, DrivenJoint, Names, Tie, Unbound, needed, optional, wanted, without_effect};
+use crate::plant::actuator::Motor;
 use crate::plant::coordinate::Measured;
-use crate::plant::motor::Motor;
+use crate::plant::effort::{Mark, Path};
 use crate::plant::scene::Scene;
 use crate::plant::scene::model::{Bound, Driven, JointKind};
+use crate::plant::setpoint::Setpoint;
 use crate::plant::world::World;
 
 /// Coordinate of a joint and its velocity, in m or rad and per second.
@@ -21,16 +23,17 @@ impl Coordinate {
         Self { position: scene.joints[joint].initial, velocity: 0.0 }
     }
 
-    fn measured(joint: usize, measured: Measured<'_>, world: &World) -> Self {
-        Self { position: measured.positions[joint], velocity: measured.gauges[joint].velocity(world) }
+    fn measured(joint: usize, measured: Measured<'_>) -> Self {
+        let Mark { position, velocity } = measured.motions[joint];
+        Self { position, velocity }
     }
 }
 
-/// Moves the joint from one coordinate to another, with an effort up to the greatest, N or N·m.
+/// Moves the joint along a path, with an effort up to the greatest, N or N·m.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Move {
-    pub(crate) from: f64,
-    pub(crate) to: f64,
+pub(crate) struct Follow {
+    pub(crate) from: Setpoint,
+    pub(crate) to: Setpoint,
     pub(crate) effort_max: f64,
 }
 
@@ -49,21 +52,25 @@ impl Moves {
         }
     }
 
-    fn see(&self, measured: Measured<'_>, world: &World) -> Option<Coordinate> {
-        self.0.as_ref().map(|(motor, _)| Coordinate::measured(motor.joint(), measured, world))
+    /// As [`bind`](Self::bind), for a component that drives by its own equations.
+    fn bind_law(bound: &Bound, scene: &Scene, world: &mut World) -> Result<Self, Unbound> {
+        let bound = Self::bind(bound, scene, world)?;
+        if let Some((motor, _)) = &bound.0 {
+            motor.obey(world);
+        }
+        Ok(bound)
     }
 
-    fn apply(
-        &self,
-        Move { from, to, effort_max }: Move,
-        measured: Measured<'_>,
-        dt_s: f64,
-        world: &mut World,
-    ) -> Result<(), ClientFault> {
-        match &self.0 {
-            None => Ok(()),
-            Some((motor, _)) => motor.follow([from, to], measured, dt_s, Some(effort_max), world),
-        }
+    fn at_start(&self) -> Option<Coordinate> {
+        self.0.as_ref().map(|(_, initial)| *initial)
+    }
+
+    fn see(&self, measured: Measured<'_>) -> Option<Coordinate> {
+        self.0.as_ref().map(|(motor, _)| Coordinate::measured(motor.joint(), measured))
+    }
+
+    fn driven(&self) -> Option<DrivenJoint> {
+        self.0.as_ref().map(|(motor, _)| DrivenJoint { joint: motor.joint(), drive: motor.number() })
     }
 }
 
@@ -83,34 +90,23 @@ macro_rules! moves {
             const NAME: &'static str = $name;
             const KEYS: &'static [BindingKey] = &[optional("joint", Names::DrivenJoint($kind), $about)];
             type Seen = Option<Coordinate>;
-            type Effect = Move;
-            type Memory = ();
+            without_effect!();
 
             fn bind(bound: &Bound, scene: &Scene, world: &mut World) -> Result<Self, Unbound> {
-                Moves::bind(bound, scene, world).map(Self)
+                Moves::bind_law(bound, scene, world).map(Self)
             }
 
             fn at_start(&self) -> Option<Coordinate> {
-                self.0.0.as_ref().map(|(_, initial)| *initial)
+                self.0.at_start()
             }
 
-            fn see(&self, measured: Measured<'_>, world: &World) -> Option<Coordinate> {
-                self.0.see(measured, world)
+            fn see(&self, measured: Measured<'_>, _: &World) -> Option<Coordinate> {
+                self.0.see(measured)
             }
 
-            fn apply(
-                &mut self,
-                effect: Move,
-                measured: Measured<'_>,
-                dt_s: f64,
-                world: &mut World,
-            ) -> Result<(), ClientFault> {
-                self.0.apply(effect, measured, dt_s, world)
+            fn driven(&self) -> Option<DrivenJoint> {
+                self.0.driven()
             }
-
-            fn memory(&self) {}
-
-            fn restore(&mut self, (): ()) {}
 
             fn in_words(bound: &Bound, scene: &Scene) -> String {
                 drives_in_words(bound, scene)
@@ -120,13 +116,52 @@ macro_rules! moves {
 }
 
 moves! {
-    /// A prismatic joint that a component moves, or nothing: then it moves by itself.
+    /// A prismatic joint that a component moves by its equations, or nothing: then it moves by itself.
     Slides, "slides", JointKind::Prismatic, "prismatic joint that it moves; by itself if absent"
 }
 
 moves! {
-    /// A revolute joint that a component turns, or nothing: then it turns by itself.
+    /// A revolute joint that a component turns by its equations, or nothing: then it turns by itself.
     Turns, "turns", JointKind::Revolute, "revolute joint that it turns; by itself if absent"
+}
+
+/// A revolute joint that a component turns along a path, or nothing: then it turns by itself.
+pub(crate) struct Indexes(Moves);
+
+impl Tie for Indexes {
+    const NAME: &'static str = "turns";
+    const KEYS: &'static [BindingKey] = Turns::KEYS;
+    type Seen = Option<Coordinate>;
+    type Effect = Follow;
+    type Memory = ();
+
+    fn bind(bound: &Bound, scene: &Scene, world: &mut World) -> Result<Self, Unbound> {
+        Moves::bind(bound, scene, world).map(Self)
+    }
+
+    fn at_start(&self) -> Option<Coordinate> {
+        self.0.at_start()
+    }
+
+    fn see(&self, measured: Measured<'_>, _: &World) -> Option<Coordinate> {
+        self.0.see(measured)
+    }
+
+    fn apply(&mut self, effect: Follow, _: Measured<'_>, dt_s: f64, world: &mut World) -> Result<(), ClientFault> {
+        let Follow { from, to, effort_max } = effect;
+        match &self.0.0 {
+            None => Ok(()),
+            Some((motor, _)) => motor.follow(Path { from, to, turn_s: dt_s }, Some(effort_max), world),
+        }
+    }
+
+    fn memory(&self) {}
+
+    fn restore(&mut self, (): ()) {}
+
+    fn in_words(bound: &Bound, scene: &Scene) -> String {
+        drives_in_words(bound, scene)
+    }
 }
 
 /// A joint that a component measures.
@@ -151,8 +186,8 @@ impl Tie for Measures {
         self.initial
     }
 
-    fn see(&self, measured: Measured<'_>, world: &World) -> Coordinate {
-        Coordinate::measured(self.joint, measured, world)
+    fn see(&self, measured: Measured<'_>, _: &World) -> Coordinate {
+        Coordinate::measured(self.joint, measured)
     }
 
     fn in_words(bound: &Bound, scene: &Scene) -> String {

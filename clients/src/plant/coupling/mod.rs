@@ -48,7 +48,7 @@ pub(crate) use belt::{Belt, Run};
 pub(crate) use collect::{Collect, Remove};
 pub(crate) use field::{Field, InField};
 pub(crate) use hold::{Grasp, Hold, Holds, Load};
-pub(crate) use joint::{Coordinate, Measures, Move, Slides, Turns};
+pub(crate) use joint::{Coordinate, Follow, Indexes, Measures, Slides, Turns};
 pub(crate) use meet::Meet;
 pub(crate) use motion::{Motion, Moving};
 pub(crate) use place::{Place, Put};
@@ -186,6 +186,11 @@ pub(crate) trait Tie: Sized + Send + 'static {
     /// What a component sees now.
     fn see(&self, measured: Measured<'_>, world: &World) -> Self::Seen;
 
+    /// The joint that a component drives by its own equations.
+    fn driven(&self) -> Option<DrivenJoint> {
+        None
+    }
+
     /// Does what a component does in the period of `dt_s` that begins.
     ///
     /// # Errors
@@ -206,6 +211,13 @@ pub(crate) trait Tie: Sized + Send + 'static {
 
     /// What a component is bound to, for people.
     fn in_words(bound: &Bound, scene: &Scene) -> String;
+}
+
+/// A joint, by its index in the scene, and the number of the drive that moves it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct DrivenJoint {
+    pub(crate) joint: usize,
+    pub(crate) drive: usize,
 }
 
 /// A binding without what its coupling needs.

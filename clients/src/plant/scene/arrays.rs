@@ -12,8 +12,8 @@ use super::placed::Placed;
 use super::error::SceneFaultKind;
 use super::faults::Faults;
 use super::format::{
-    AxisTable, BodyTable, ComponentTable, FailureTable, JointTable, SceneFile, SensorTable, ShapeTable, SignalTable,
-    Triple,
+    AxisTable, BodyTable, ComponentTable, CouplingTable, FailureTable, FittingTable, JointTable, SceneFile,
+    SensorTable, ShapeTable, SignalTable, Triple,
 };
 use crate::array::{ArrayError, at_index, indices, name_at, names};
 
@@ -34,6 +34,8 @@ pub(super) fn expand(written: &mut SceneFile, faults: &mut Faults<'_>) {
     tables(&mut written.body, faults);
     tables(&mut written.shape, faults);
     tables(&mut written.joint, faults);
+    tables(&mut written.fitting, faults);
+    tables(&mut written.coupling, faults);
     tables(&mut written.axis, faults);
     tables(&mut written.sensor, faults);
     tables(&mut written.component, faults);
@@ -154,15 +156,40 @@ macro_rules! table {
 table!(BodyTable, name, [], [group], placed here);
 table!(ShapeTable, name, [body], [], placed here);
 table!(JointTable, name, [parent, child], []);
+
+table!(FittingTable, name, [joint], [release_signal]);
 table!(
     AxisTable,
     name,
     [],
-    [joint, belt, forward_signal, reverse_signal, command_signal, position_signal, velocity_signal]
+    [
+        joint,
+        belt,
+        forward_signal,
+        reverse_signal,
+        command_signal,
+        position_signal,
+        velocity_signal,
+        force_signal,
+        torque_signal,
+        limit_signal
+    ]
 );
 table!(SensorTable, name, [signal], [joint, body]);
 table!(FailureTable, component, [], [signal]);
 table!(SignalTable, name, [], []);
+
+impl Table for CouplingTable {
+    fn name(&self) -> Option<Text> {
+        Some(self.name.clone())
+    }
+
+    fn become_copy(&mut self, name: String, index: usize) {
+        renamed(&mut self.name, name);
+        counted(&mut self.joint, index);
+        self.of.iter_mut().for_each(|one| counted(one, index));
+    }
+}
 
 impl Table for ComponentTable {
     fn name(&self) -> Option<Text> {

@@ -119,6 +119,24 @@ fn axis(written: &AxisTable, moved: Moved, unit: Unit, signals: &mut Signals, fa
     let position = feedback(written.position_signal.as_ref(), faults);
     let velocity = feedback(written.velocity_signal.as_ref(), faults);
     let (speed, acceleration, effort_max) = limits?;
+    let whose = format!("axis `{}`", text(&written.name));
+    let belt = matches!(moved, Moved::Belt { .. });
+    let [force, torque] = [written.force_signal.as_ref(), written.torque_signal.as_ref()];
+    let (right, wrong) = match unit {
+        Unit::Metre => (force, torque.map(|name| (name, "torque_signal"))),
+        Unit::Radian => (torque, force.map(|name| (name, "force_signal"))),
+    };
+    let of_belt = [(force, "force_signal"), (written.limit_signal.as_ref(), "limit_signal")];
+    let misplaced = of_belt.into_iter().filter(|_| belt).filter_map(|(name, key)| name.map(|name| (name, key)));
+    for (name, key) in wrong.into_iter().chain(misplaced) {
+        faults.add(name.span(), SceneFaultKind::Misplaced { whose: whose.clone(), key });
+    }
+    let effort = right.and_then(|name| signals.write(name, number, faults));
+    let limit = written.limit_signal.as_ref().and_then(|name| signals.write(name, SignalType::BOOL, faults));
+    if let (Some(name), None, false) = (&written.limit_signal, effort_max, belt) {
+        let key = if unit == Unit::Metre { "force_max_n" } else { "torque_max_nm" };
+        faults.add(name.span(), SceneFaultKind::Missing { whose, key });
+    }
     Some(Axis {
         name: written.name.get_ref().clone(),
         moved,
@@ -128,6 +146,8 @@ fn axis(written: &AxisTable, moved: Moved, unit: Unit, signals: &mut Signals, fa
         effort_max,
         position,
         velocity,
+        effort,
+        limit,
         number: written.signal_type,
     })
 }

@@ -86,6 +86,10 @@ pub enum Thing {
     Shape,
     /// `[[joint]]`
     Joint,
+    /// `[[fitting]]`, by its joint
+    Fitting,
+    /// `[[coupling]]`
+    Coupling,
     /// `[[axis]]`
     Axis,
     /// `[[sensor]]`
@@ -102,6 +106,8 @@ impl fmt::Display for Thing {
             Self::Body => "body",
             Self::Shape => "shape",
             Self::Joint => "joint",
+            Self::Fitting => "fitting",
+            Self::Coupling => "coupling",
             Self::Axis => "axis",
             Self::Sensor => "sensor",
             Self::Component => "component",
@@ -250,6 +256,14 @@ pub enum SceneFaultKind {
         joint: String,
         /// Its kind.
         kind: &'static str,
+    },
+    /// A joint with two fittings.
+    #[error("joint `{name}` has fitting `{first}` already")]
+    FittedTwice {
+        /// The joint.
+        name: String,
+        /// Its first fitting.
+        first: String,
     },
     /// A joint or a belt that two axes drive.
     #[error("{thing} `{name}` is driven twice; first by {first}")]

@@ -30,6 +30,10 @@ pub(super) struct SceneFile {
     #[serde(default)]
     pub(super) joint: Vec<Placed<JointTable>>,
     #[serde(default)]
+    pub(super) fitting: Vec<Placed<FittingTable>>,
+    #[serde(default)]
+    pub(super) coupling: Vec<Placed<CouplingTable>>,
+    #[serde(default)]
     pub(super) axis: Vec<Placed<AxisTable>>,
     #[serde(default)]
     pub(super) sensor: Vec<Placed<SensorTable>>,
@@ -245,6 +249,44 @@ pub(super) struct FollowTable {
     pub(super) offset: f64,
 }
 
+/// `[[coupling]]`: a joint that others lead.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub(super) struct CouplingTable {
+    pub(super) name: Placed<String>,
+    pub(super) joint: Placed<String>,
+    pub(super) of: Vec<Placed<String>>,
+    pub(super) ratio: Option<Placed<Vec<f64>>>,
+    pub(super) cam: Option<Placed<Vec<[f64; 2]>>>,
+    pub(super) backlash_m: Option<Placed<f64>>,
+    pub(super) backlash_rad: Option<Placed<f64>>,
+}
+
+/// `[[fitting]]`: what is fitted to a joint beside its drive.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub(super) struct FittingTable {
+    pub(super) name: Placed<String>,
+    pub(super) joint: Placed<String>,
+    pub(super) friction_n: Option<Placed<f64>>,
+    pub(super) friction_nm: Option<Placed<f64>>,
+    pub(super) stiction_n: Option<Placed<f64>>,
+    pub(super) stiction_nm: Option<Placed<f64>>,
+    pub(super) stribeck_m_s: Option<Placed<f64>>,
+    pub(super) stribeck_rad_s: Option<Placed<f64>>,
+    pub(super) damping_n_s_m: Option<Placed<f64>>,
+    pub(super) damping_nm_s_rad: Option<Placed<f64>>,
+    pub(super) spring_n_m: Option<Placed<f64>>,
+    pub(super) spring_nm_rad: Option<Placed<f64>>,
+    pub(super) rest_m: Option<Placed<f64>>,
+    pub(super) rest_rad: Option<Placed<f64>>,
+    pub(super) balance_n: Option<Placed<f64>>,
+    pub(super) balance_nm: Option<Placed<f64>>,
+    pub(super) brake_n: Option<Placed<f64>>,
+    pub(super) brake_nm: Option<Placed<f64>>,
+    pub(super) release_signal: Option<Placed<String>>,
+}
+
 /// How an axis is commanded.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
@@ -289,6 +331,9 @@ pub(super) struct AxisTable {
     pub(super) torque_max_nm: Option<Placed<f64>>,
     pub(super) position_signal: Option<Placed<String>>,
     pub(super) velocity_signal: Option<Placed<String>>,
+    pub(super) force_signal: Option<Placed<String>>,
+    pub(super) torque_signal: Option<Placed<String>>,
+    pub(super) limit_signal: Option<Placed<String>>,
     #[serde(default)]
     pub(super) signal_type: NumberType,
 }

@@ -52,6 +52,23 @@
 //! | `lower_m`, `upper_m` or `lower_rad`, `upper_rad` | limits of the coordinate |
 //! | `contacts` | whether the two bodies collide, false if absent |
 //!
+//! | `[[fitting]]` | meaning: what is fitted to a prismatic or revolute joint beside its drive |
+//! |---|---|
+//! | `name`, `joint` | also a joint of a robot |
+//! | `friction_n`, `stiction_n`, `stribeck_m_s` (or `_nm`, `_rad_s`) | dry friction while it moves; at rest, as much if absent; the velocity over which it falls, 0.01 if absent |
+//! | `damping_n_s_m` or `damping_nm_s_rad` | viscous friction |
+//! | `spring_n_m`, `rest_m` or `spring_nm_rad`, `rest_rad` | a spring, and the coordinate at which it is at rest, 0 if absent |
+//! | `balance_n` or `balance_nm` | a constant force up the coordinate: a counterweight |
+//! | `brake_n` or `brake_nm`, `release_signal` | a brake that a spring applies, and the BOOL that releases it |
+//!
+//! | `[[coupling]]` | meaning: a prismatic or revolute joint that one or two others lead, and that leads them back |
+//! |---|---|
+//! | `name` | |
+//! | `joint`, `of` | the joint, and a list of those that lead it |
+//! | `ratio` | for each of them, how far the joint goes when it goes by 1: of a gear, a belt, a rack (1/radius or radius), a screw (lead/2π), a differential (two) |
+//! | `cam` | in its place, points `[leading, led]` of a curve |
+//! | `backlash_m` or `backlash_rad` | play of the joint, none if absent |
+//!
 //! | `[[axis]]` | meaning |
 //! |---|---|
 //! | `name` | |
@@ -62,6 +79,7 @@
 //! | `acceleration_m_s2` or `acceleration_rad_s2` | of every ramp |
 //! | `force_max_n` or `torque_max_nm` | of a joint's drive, as much as it takes if absent |
 //! | `position_signal`, `velocity_signal` | coordinate of the joint or travel of the belt, and its velocity over the last period |
+//! | `force_signal` or `torque_signal`, `limit_signal` | of a joint's drive: the mean force over the last period; a BOOL: it is at its greatest |
 //! | `signal_type` | `LREAL` or `REAL`, of all number signals of the axis; `LREAL` if absent |
 //!
 //! | `[[sensor]]` | meaning |
@@ -117,7 +135,7 @@
 //! | `number`, `names` | what a number and a name must be |
 //! | `arrays` | one table for many things |
 //! | `robots`, `robot_tables` | robots' files, and the tables that one stands for |
-//! | `bodies`, `shapes`, `meshes`, `joints`, `axes`, `sensors`, `signals` | the second pass, one sort of table each |
+//! | `bodies`, `shapes`, `meshes`, `joints`, `fittings`, `couplings`, `axes`, `sensors`, `signals` | the second pass, one sort of table each |
 //! | `components`, `bindings`, `failures`, `conditions` | the same, for components and what surrounds them |
 //! | [`model`] | the checked scene |
 //! | [`error`] | what can be wrong |
@@ -130,9 +148,11 @@ mod bodies;
 mod component_model;
 mod components;
 mod conditions;
+mod couplings;
 pub mod error;
 pub(super) mod failures;
 mod faults;
+mod fittings;
 mod format;
 mod joints;
 mod meshes;
@@ -225,6 +245,8 @@ fn check(written: &SceneFile, faults: &mut Faults<'_>) -> Scene {
     let scene_bodies = bodies::check(&written.body, rule, faults);
     let scene_shapes = shapes::check(&written.shape, &written.body, rule, &bodies, faults);
     let scene_joints = joints::check(&written.joint, &written.body, &bodies, faults);
+    let fittings = fittings::check(written, &joints, &mut signals, faults);
+    let couplings = couplings::check(written, &joints, &scene_joints, faults);
     let axes = axes::check(written, &bodies, &joints, &mut signals, faults);
     let sensors = sensors::check(written, &bodies, &joints, &mut signals, faults);
     let placed = Lookup { file: written, bodies: &bodies, shapes: &shapes, joints: &joints, axes: &axes };
@@ -242,6 +264,8 @@ fn check(written: &SceneFile, faults: &mut Faults<'_>) -> Scene {
         bodies: scene_bodies,
         shapes: scene_shapes,
         joints: scene_joints,
+        fittings,
+        couplings,
         axes,
         sensors,
         components,

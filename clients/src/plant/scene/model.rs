@@ -29,6 +29,10 @@ pub struct Scene {
     pub shapes: Vec<Attached>,
     /// Joints in the file's order, which is the order of their insertion.
     pub joints: Vec<Joint>,
+    /// What is fitted to joints, in the file's order.
+    pub fittings: Vec<Fitting>,
+    /// Couplings between joints, in the file's order.
+    pub couplings: Vec<Coupling>,
     /// Driven axes in the file's order.
     pub axes: Vec<Axis>,
     /// Sensors in the file's order.
@@ -224,6 +228,71 @@ pub struct Follows {
     pub offset: f64,
 }
 
+/// What is fitted to a joint beside its drive. All forces are in N or N·m.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Fitting {
+    /// Its name.
+    pub name: String,
+    /// Index of the joint, prismatic or revolute.
+    pub joint: usize,
+    /// Dry friction while it moves.
+    pub friction: f64,
+    /// Dry friction at rest, not below the one while it moves.
+    pub stiction: f64,
+    /// Velocity by which the friction at rest has fallen to a third of what it is above the other, m/s or rad/s.
+    pub stribeck: f64,
+    /// Viscous friction, N·s/m or N·m·s/rad.
+    pub damping: f64,
+    /// Stiffness of a spring, N/m or N·m/rad.
+    pub spring: f64,
+    /// Coordinate at which the spring is at rest, m or rad.
+    pub rest: f64,
+    /// A constant force up the coordinate, as of a counterweight.
+    pub balance: f64,
+    /// A brake, which a spring applies.
+    pub brake: Option<Brake>,
+}
+
+/// A joint that others lead.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Coupling {
+    /// Its name.
+    pub name: String,
+    /// Index of the joint that is led.
+    pub joint: usize,
+    /// What leads it: its coordinate is the sum of what they ask for.
+    pub of: Vec<Share>,
+    /// Play, m or rad of the joint that is led.
+    pub backlash: f64,
+}
+
+/// What one joint has of leading another.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Share {
+    /// Index of the joint that leads.
+    pub joint: usize,
+    /// What it asks for.
+    pub law: CouplingLaw,
+}
+
+/// What a joint asks of one that it leads.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub enum CouplingLaw {
+    /// So much of its own way, counted from the scene's pose.
+    Ratio(f64),
+    /// The curve through these points of coordinates, the leading one first.
+    Cam(Vec<[f64; 2]>),
+}
+
+/// A brake that a spring applies and a signal releases.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Brake {
+    /// What it holds.
+    pub most: f64,
+    /// The BOOL that releases it; without one it is always applied.
+    pub release: Option<SignalName>,
+}
+
 /// One driven axis.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Axis {
@@ -243,6 +312,10 @@ pub struct Axis {
     pub position: Option<SignalName>,
     /// Where the coordinate's velocity is written.
     pub velocity: Option<SignalName>,
+    /// Where the drive's mean force or torque over the last period is written.
+    pub effort: Option<SignalName>,
+    /// Where it is written that the drive is at its greatest force or torque, a BOOL.
+    pub limit: Option<SignalName>,
     /// Type of the axis's number signals.
     pub number: NumberType,
 }

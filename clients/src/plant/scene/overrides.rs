@@ -14,7 +14,8 @@ use super::error::SceneFaultKind;
 use super::faults::Faults;
 
 /// Tables of a scene whose entries have names.
-const SECTIONS: [&str; 7] = ["body", "joint", "axis", "sensor", "component", "signal", "failure"];
+const SECTIONS: [&str; 9] =
+    ["body", "joint", "fitting", "coupling", "axis", "sensor", "component", "signal", "failure"];
 
 /// A value for one key of a scene.
 #[derive(Clone, Debug, PartialEq, Eq)]

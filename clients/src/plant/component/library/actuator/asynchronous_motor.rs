@@ -20,7 +20,8 @@ use crate::plant::component::behaviour::{Component, Start, Turn};
 use crate::plant::component::declare::{failures, own_types, parameters, signals};
 use crate::plant::component::dynamics::{Travel, ramp, substeps};
 use crate::plant::component::kind::Dependence;
-use crate::plant::coupling::{Coordinate, Move, Turns};
+use crate::plant::coupling::{Coordinate, Turns};
+use crate::plant::effort::{Effort, Motion};
 
 /// Longest sub-step.
 const LONGEST_S: f64 = 0.5e-3;
@@ -99,7 +100,6 @@ pub(crate) struct State {
     frequency_hz: f64,
     torque_nm: f64,
     shaft: Travel,
-    from_rad: f64,
 }
 
 /// A motor by its parameters.
@@ -119,6 +119,25 @@ impl AsynchronousMotor {
         2.0 * self.p.pull_out_nm * related / (1.0 + related * related)
     }
 
+    /// Moves the frequency by a sub-step; the part of its torque that the motor has.
+    fn feed(&self, state: &mut State, inputs: &Inputs, turn: &Turn<Option<Coordinate>>, dt_s: f64) -> f64 {
+        let tripped = turn.failed.has(Failure::Tripped);
+        let sign = if inputs.reverse { -1.0 } else { 1.0 };
+        let wanted = if inputs.run && !tripped { sign * inputs.setpoint.clamp(0.0, 1.0) } else { 0.0 };
+        let wanted_hz = wanted * self.p.frequency_hz;
+        state.frequency_hz = if self.p.ramp_s > 0.0 {
+            ramp(state.frequency_hz, wanted_hz, self.p.frequency_hz / self.p.ramp_s, dt_s)
+        } else {
+            wanted_hz
+        };
+        let fed = !tripped && (inputs.run || state.frequency_hz != 0.0);
+        match (fed, turn.failed.has(Failure::PhaseLoss)) {
+            (false, _) => 0.0,
+            (true, true) => 0.5,
+            (true, false) => 1.0,
+        }
+    }
+
     fn substep(&self, state: &mut State, part: f64, dt_s: f64) {
         let v = state.shaft.velocity;
         let driving_nm = |velocity: f64| {
@@ -127,7 +146,11 @@ impl AsynchronousMotor {
         };
         let at_rest_nm = driving_nm(0.0);
         // the load is against the motion, and at rest against what would move it
-        let load_nm = if v == 0.0 { self.p.load_nm.min(at_rest_nm.abs()).copysign(at_rest_nm) } else { self.p.load_nm.copysign(v) };
+        let load_nm = if v == 0.0 {
+            self.p.load_nm.min(at_rest_nm.abs()).copysign(at_rest_nm)
+        } else {
+            self.p.load_nm.copysign(v)
+        };
         let rate = |velocity: f64| (driving_nm(velocity) - load_nm) / self.p.inertia_kg_m2;
         let k1 = rate(v);
         let k2 = rate(v + 0.5 * dt_s * k1);
@@ -149,7 +172,7 @@ impl Component for AsynchronousMotor {
         &["ω_s = 2π f / p", "s = (ω_s - ω) / ω_s,N", "M = 2 M_k / (s/s_k + s_k/s)", "J dω/dt = M - M_load - d ω"];
     const SOURCE: &'static str = "M. Kloss, Archiv für Elektrotechnik 5 (1916)";
     const DEPENDENCES: &'static [Dependence] = &[Dependence { inputs: &["reverse", "setpoint"], on: &["run"] }];
-    own_types!(moves Turns);
+    own_types!(sees Turns);
 
     fn new(p: Parameters) -> Self {
         let rated_rad_s = TAU * p.frequency_hz / f64::from(p.pole_pairs);
@@ -159,29 +182,16 @@ impl Component for AsynchronousMotor {
     fn initial(&self, start: &Start<Option<Coordinate>>) -> State {
         let position = start.seen.map_or(0.0, |joint| joint.position);
         let shaft = Travel { position, velocity: 0.0 };
-        State { frequency_hz: 0.0, torque_nm: 0.0, shaft, from_rad: position }
+        State { frequency_hz: 0.0, torque_nm: 0.0, shaft }
     }
 
     fn drive(&self, state: &mut State, inputs: &Inputs, turn: &Turn<Option<Coordinate>>) {
-        let tripped = turn.failed.has(Failure::Tripped);
-        let sign = if inputs.reverse { -1.0 } else { 1.0 };
-        let wanted = if inputs.run && !tripped { sign * inputs.setpoint.clamp(0.0, 1.0) } else { 0.0 };
-        let wanted_hz = wanted * self.p.frequency_hz;
-        state.shaft.yield_to(turn.seen, state.shaft.velocity.abs() * turn.dt_s + 1e-3);
-        state.from_rad = state.shaft.position;
+        if turn.seen.is_some() {
+            return;
+        }
         let (count, dt_s) = substeps(turn.dt_s, self.longest_s);
         for _ in 0..count {
-            state.frequency_hz = if self.p.ramp_s > 0.0 {
-                ramp(state.frequency_hz, wanted_hz, self.p.frequency_hz / self.p.ramp_s, dt_s)
-            } else {
-                wanted_hz
-            };
-            let fed = !tripped && (inputs.run || state.frequency_hz != 0.0);
-            let part = match (fed, turn.failed.has(Failure::PhaseLoss)) {
-                (false, _) => 0.0,
-                (true, true) => 0.5,
-                (true, false) => 1.0,
-            };
+            let part = self.feed(state, inputs, turn, dt_s);
             if turn.failed.has(Failure::Blocked) {
                 state.shaft.velocity = 0.0;
             } else {
@@ -191,8 +201,30 @@ impl Component for AsynchronousMotor {
         }
     }
 
-    fn effect(&self, state: &State) -> Move {
-        Move { from: state.from_rad, to: state.shaft.position, effort_max: self.p.pull_out_nm }
+    fn longest_s(&self) -> f64 {
+        self.longest_s
+    }
+
+    fn advance(
+        &self,
+        state: &mut State,
+        inputs: &Inputs,
+        turn: &Turn<Option<Coordinate>>,
+        motion: Motion,
+        dt_s: f64,
+    ) -> Effort {
+        let Motion { position, velocity, .. } = motion;
+        state.shaft = Travel { position, velocity };
+        let part = self.feed(state, inputs, turn, dt_s);
+        if turn.failed.has(Failure::Blocked) {
+            state.torque_nm = part * self.torque_nm(state.frequency_hz, 0.0);
+            return Effort::BLOCKED;
+        }
+        let torque_nm = |velocity: f64| part * self.torque_nm(state.frequency_hz, velocity);
+        let (now_nm, step_rad_s) = (torque_nm(velocity), 1e-3 * self.rated_rad_s);
+        let slope = (now_nm - torque_nm(velocity + step_rad_s)) / step_rad_s;
+        state.torque_nm = now_nm;
+        Effort { slope: slope.max(0.0), dry: self.p.load_nm, viscous: self.p.viscous_nm_s, ..Effort::of(now_nm) }
     }
 
     fn sense(&self, state: &mut State, inputs: &Inputs, turn: &Turn<Option<Coordinate>>) -> Outputs {

@@ -24,9 +24,10 @@ use serde::{Deserialize, Serialize};
 
 use crate::plant::component::behaviour::{Component, Conflict, Start, Turn};
 use crate::plant::component::declare::{choice, failures, own_types, parameters, signals};
-use crate::plant::component::dynamics::{Resistance, Travel, lag, substeps};
+use crate::plant::component::dynamics::{Resistance, Travel, lag, slope_of, substeps};
 use crate::plant::component::fluid::{BAR_PA, implicit_pa, oil_m3_s};
-use crate::plant::coupling::{Coordinate, Move, Slides};
+use crate::plant::coupling::{Coordinate, Slides};
+use crate::plant::effort::{Effort, Motion};
 
 /// Longest sub-step.
 const LONGEST_S: f64 = 50e-6;
@@ -72,7 +73,7 @@ parameters! {
         dead_cm3: f64 = 100.0 => 1.0, 1e6;
         /// leakage over the piston
         leak_l_s_bar: f64 = 0.0 => 0.0, 1.0;
-        /// all that moves with the rod
+        /// all that moves with the rod; on a joint its bodies do
         moving_kg: f64 = 200.0 => 0.1, 1e6;
         /// constant load against the way out
         load_n: f64 = 0.0 => -1e7, 1e7;
@@ -136,8 +137,6 @@ pub(crate) struct State {
     cap_pa: f64,
     rod_pa: f64,
     rod: Travel,
-    /// Where the rod was before this period.
-    from_m: f64,
 }
 
 /// A cylinder by its parameters.
@@ -154,11 +153,8 @@ impl HydraulicCylinder {
     /// The command of the spool that lets the rod move at a velocity, by the pressures of now.
     fn fed_forward(&self, state: &State, velocity_m_s: f64, supply_pa: f64) -> f64 {
         let out = velocity_m_s >= 0.0;
-        let (area, drop_pa) = if out {
-            (self.cap_m2, supply_pa - state.cap_pa)
-        } else {
-            (self.ring_m2, supply_pa - state.rod_pa)
-        };
+        let (area, drop_pa) =
+            if out { (self.cap_m2, supply_pa - state.cap_pa) } else { (self.ring_m2, supply_pa - state.rod_pa) };
         // never asks for more than a tenth of the rated difference would need
         let least_pa = 0.1 * self.p.rated_bar * BAR_PA;
         (area * velocity_m_s / (self.gain * drop_pa.max(least_pa).sqrt())).clamp(-1.0, 1.0)
@@ -177,8 +173,19 @@ impl HydraulicCylinder {
         }
     }
 
-    fn substep(&self, state: &mut State, supply_pa: f64, turn: &Turn<Option<Coordinate>>, dt_s: f64) {
+    /// Moves spool and pressures by a sub-step in which the rod goes on as it does.
+    fn flow(&self, state: &mut State, inputs: &Inputs, turn: &Turn<Option<Coordinate>>, dt_s: f64) {
         let p = &self.p;
+        let lost = turn.failed.has(Failure::NoSupply);
+        let supply_pa = if lost { p.tank_bar } else { p.supply_bar } * BAR_PA;
+        let wanted = match (inputs.enable, p.command) {
+            (false, _) => 0.0,
+            (true, Command::Spool) => inputs.command.clamp(-1.0, 1.0),
+            (true, Command::Velocity) => self.fed_forward(state, inputs.command, supply_pa),
+        };
+        if !turn.failed.has(Failure::SpoolStuck) {
+            state.spool = lag(state.spool, wanted, p.spool_s, dt_s);
+        }
         let (x, v) = (state.rod.position, state.rod.velocity);
         let (dead_m3, bulk_pa) = (p.dead_cm3 * 1e-6, p.bulk_bar * BAR_PA);
         let cap_m3 = dead_m3 + self.cap_m2 * x;
@@ -197,14 +204,22 @@ impl HydraulicCylinder {
         // oil does not pull: below zero it would turn to vapour
         state.cap_pa = implicit_pa(cap_pa, dt_s, cap_rate).max(0.0);
         state.rod_pa = implicit_pa(rod_pa, dt_s, rod_rate).max(0.0);
+    }
+
+    fn force_n(&self, state: &State) -> f64 {
+        state.cap_pa * self.cap_m2 - state.rod_pa * self.ring_m2 - self.p.load_n
+    }
+
+    fn substep(&self, state: &mut State, inputs: &Inputs, turn: &Turn<Option<Coordinate>>, dt_s: f64) {
+        let p = &self.p;
+        self.flow(state, inputs, turn, dt_s);
         if turn.failed.has(Failure::Jammed) {
             state.rod.velocity = 0.0;
             return;
         }
-        let force_n = state.cap_pa * self.cap_m2 - state.rod_pa * self.ring_m2 - p.load_n;
         let resistance =
             Resistance { mass: p.moving_kg, dry: p.friction_n, viscous: p.viscous_n_s_m, range: (0.0, p.stroke_m) };
-        state.rod.push(force_n, &resistance, dt_s);
+        state.rod.push(self.force_n(state), &resistance, dt_s);
     }
 }
 
@@ -218,7 +233,7 @@ impl Component for HydraulicCylinder {
         "fed forward: u = A v / (Q_N √(Δp/Δp_N))",
     ];
     const SOURCE: &'static str = "M. Jelali, A. Kroll, Hydraulic Servo-systems, 2003, ch. 4; Nyyssönen 2018, 3.1.4";
-    own_types!(moves Slides);
+    own_types!(sees Slides);
 
     fn new(p: Parameters) -> Self {
         let cap_m2 = FRAC_PI_4 * p.bore_m * p.bore_m;
@@ -243,32 +258,50 @@ impl Component for HydraulicCylinder {
             cap_pa: load_n.max(0.0) / self.cap_m2,
             rod_pa: (-load_n).max(0.0) / self.ring_m2,
             rod: Travel { position, velocity: 0.0 },
-            from_m: position,
         }
     }
 
     fn drive(&self, state: &mut State, inputs: &Inputs, turn: &Turn<Option<Coordinate>>) {
-        let lost = turn.failed.has(Failure::NoSupply);
-        let supply_pa = if lost { self.p.tank_bar } else { self.p.supply_bar } * BAR_PA;
-        state.rod.yield_to(turn.seen, state.rod.velocity.abs() * turn.dt_s + 1e-4);
-        state.from_m = state.rod.position;
+        if turn.seen.is_some() {
+            return;
+        }
         let (count, dt_s) = substeps(turn.dt_s, self.longest_s);
         for _ in 0..count {
-            let wanted = match (inputs.enable, self.p.command) {
-                (false, _) => 0.0,
-                (true, Command::Spool) => inputs.command.clamp(-1.0, 1.0),
-                (true, Command::Velocity) => self.fed_forward(state, inputs.command, supply_pa),
-            };
-            if !turn.failed.has(Failure::SpoolStuck) {
-                state.spool = lag(state.spool, wanted, self.p.spool_s, dt_s);
-            }
-            self.substep(state, supply_pa, turn, dt_s);
+            self.substep(state, inputs, turn, dt_s);
         }
     }
 
-    fn effect(&self, state: &State) -> Move {
-        let greatest = (state.cap_pa * self.cap_m2).max(state.rod_pa * self.ring_m2);
-        Move { from: state.from_m, to: state.rod.position, effort_max: greatest }
+    fn longest_s(&self) -> f64 {
+        self.longest_s
+    }
+
+    fn stops(&self) -> Option<[f64; 2]> {
+        Some([0.0, self.p.stroke_m])
+    }
+
+    fn advance(
+        &self,
+        state: &mut State,
+        inputs: &Inputs,
+        turn: &Turn<Option<Coordinate>>,
+        motion: Motion,
+        dt_s: f64,
+    ) -> Effort {
+        let p = &self.p;
+        state.rod = Travel::on_joint(&motion, (0.0, p.stroke_m));
+        self.flow(state, inputs, turn, dt_s);
+        if turn.failed.has(Failure::Jammed) {
+            return Effort::BLOCKED;
+        }
+        let (x, dead_m3) = (state.rod.position, p.dead_cm3 * 1e-6);
+        let spring = |area: f64, left_m: f64| p.bulk_bar * BAR_PA * area * area / (dead_m3 + area * left_m);
+        let stiffness = spring(self.cap_m2, x) + spring(self.ring_m2, p.stroke_m - x);
+        Effort {
+            slope: slope_of(stiffness, &motion, dt_s),
+            dry: p.friction_n,
+            viscous: p.viscous_n_s_m,
+            ..Effort::of(self.force_n(state))
+        }
     }
 
     fn sense(&self, state: &mut State, _: &Inputs, turn: &Turn<Option<Coordinate>>) -> Outputs {
@@ -346,8 +379,7 @@ mod tests {
         let out = rig.run(spool(0.0), 0.01, 500);
         let c = &rig.component;
         let volume = |area: f64| 100e-6 + area * 0.25;
-        let stiffness =
-            1.2e9 * (c.cap_m2 * c.cap_m2 / volume(c.cap_m2) + c.ring_m2 * c.ring_m2 / volume(c.ring_m2));
+        let stiffness = 1.2e9 * (c.cap_m2 * c.cap_m2 / volume(c.cap_m2) + c.ring_m2 * c.ring_m2 / volume(c.ring_m2));
         let exact = -load_n / stiffness;
         // the volumes change by the way itself, 1e-4 m of 0.25 m
         assert!(((out.position_m - 0.25) / exact - 1.0).abs() < 2e-3, "{} {exact}", out.position_m - 0.25);

@@ -22,9 +22,10 @@ use serde::{Deserialize, Serialize};
 
 use crate::plant::component::behaviour::{Component, Conflict, Start, Turn};
 use crate::plant::component::declare::{choice, failures, own_types, parameters, signals};
-use crate::plant::component::dynamics::{OnDelay, Resistance, Travel, substeps};
+use crate::plant::component::dynamics::{OnDelay, Resistance, Travel, slope_of, substeps};
 use crate::plant::component::fluid::{AIR_J_KG_K, ATMOSPHERE_PA, BAR_PA, ZERO_DEGC_K, air_kg_s, implicit_pa};
-use crate::plant::coupling::{Coordinate, Move, Slides};
+use crate::plant::coupling::{Coordinate, Slides};
+use crate::plant::effort::{Effort, Motion};
 
 /// Longest sub-step.
 const LONGEST_S: f64 = 50e-6;
@@ -72,7 +73,7 @@ parameters! {
         cushion_l_s_bar: f64 = 0.05 => 0.0, 1000.0;
         /// volume of each chamber and its tube at its end
         dead_cm3: f64 = 20.0 => 0.1, 1e5;
-        /// all that moves with the rod
+        /// all that moves with the rod; on a joint its bodies do
         moving_kg: f64 = 5.0 => 0.01, 1e5;
         /// constant load against the way out
         load_n: f64 = 0.0 => -1e6, 1e6;
@@ -151,8 +152,6 @@ pub(crate) struct State {
     cap_pa: f64,
     rod_pa: f64,
     rod: Travel,
-    /// Where the rod was before this period.
-    from_m: f64,
 }
 
 /// A cylinder by its parameters.
@@ -202,7 +201,14 @@ impl PneumaticCylinder {
         air_kg_s(conductance * CONDUCTANCE, self.p.critical_ratio, port_pa, chamber_pa)
     }
 
-    fn substep(&self, state: &mut State, ports: [Option<f64>; 2], turn: &Turn<Option<Coordinate>>, dt_s: f64) {
+    /// Where the valve connects the chambers to in this turn.
+    fn connected(&self, state: &State, turn: &Turn<Option<Coordinate>>) -> [Option<f64>; 2] {
+        let lost = turn.failed.has(Failure::NoSupply);
+        self.ports(state.spool, ATMOSPHERE_PA + if lost { 0.0 } else { self.p.supply_bar * BAR_PA })
+    }
+
+    /// Moves the pressures by a sub-step in which the rod goes on as it does.
+    fn breathe(&self, state: &mut State, ports: [Option<f64>; 2], turn: &Turn<Option<Coordinate>>, dt_s: f64) {
         let p = &self.p;
         let (x, v) = (state.rod.position, state.rod.velocity);
         let (cap_left, rod_left) = (x, p.stroke_m - x);
@@ -218,6 +224,11 @@ impl PneumaticCylinder {
             let mass = self.inflow(ports[1], pa, rod_left) + air_kg_s(leak, p.critical_ratio, cap_pa, pa);
             p.polytropic / rod_m3 * (self.heat_j_kg * mass + pa * self.ring_m2 * v)
         });
+    }
+
+    fn substep(&self, state: &mut State, ports: [Option<f64>; 2], turn: &Turn<Option<Coordinate>>, dt_s: f64) {
+        let p = &self.p;
+        self.breathe(state, ports, turn, dt_s);
         if turn.failed.has(Failure::Jammed) {
             state.rod.velocity = 0.0;
             return;
@@ -242,7 +253,7 @@ impl Component for PneumaticCylinder {
         "m dv/dt = p_A A_A - p_B A_B - p_0 A_rod - F_load - d v - F_c sgn(v)",
     ];
     const SOURCE: &'static str = "ISO 6358-1:2013; P. Beater, Pneumatic Drives, 2007, ch. 3 and 5";
-    own_types!(moves Slides);
+    own_types!(sees Slides);
 
     fn new(p: Parameters) -> Self {
         let cap_m2 = FRAC_PI_4 * p.bore_m * p.bore_m;
@@ -265,7 +276,6 @@ impl Component for PneumaticCylinder {
             cap_pa,
             rod_pa,
             rod: Travel { position, velocity: 0.0 },
-            from_m: position,
         }
     }
 
@@ -275,20 +285,47 @@ impl Component for PneumaticCylinder {
         if state.switching.holds(wanted != state.spool && !stuck, self.p.valve_delay_s, turn.dt_s) {
             state.spool = wanted;
         }
-        let lost = turn.failed.has(Failure::NoSupply);
-        let supply_pa = ATMOSPHERE_PA + if lost { 0.0 } else { self.p.supply_bar * BAR_PA };
-        let ports = self.ports(state.spool, supply_pa);
-        state.rod.yield_to(turn.seen, state.rod.velocity.abs() * turn.dt_s + 1e-4);
-        state.from_m = state.rod.position;
+        if turn.seen.is_some() {
+            return;
+        }
+        let ports = self.connected(state, turn);
         let (count, dt_s) = substeps(turn.dt_s, self.longest_s);
         for _ in 0..count {
             self.substep(state, ports, turn, dt_s);
         }
     }
 
-    fn effect(&self, state: &State) -> Move {
-        let greatest = (state.cap_pa * self.cap_m2).max(state.rod_pa * self.ring_m2);
-        Move { from: state.from_m, to: state.rod.position, effort_max: greatest }
+    fn longest_s(&self) -> f64 {
+        self.longest_s
+    }
+
+    fn stops(&self) -> Option<[f64; 2]> {
+        Some([0.0, self.p.stroke_m])
+    }
+
+    fn advance(
+        &self,
+        state: &mut State,
+        _: &Inputs,
+        turn: &Turn<Option<Coordinate>>,
+        motion: Motion,
+        dt_s: f64,
+    ) -> Effort {
+        let p = &self.p;
+        state.rod = Travel::on_joint(&motion, (0.0, p.stroke_m));
+        self.breathe(state, self.connected(state, turn), turn, dt_s);
+        if turn.failed.has(Failure::Jammed) {
+            return Effort::BLOCKED;
+        }
+        let (x, dead_m3) = (state.rod.position, p.dead_cm3 * 1e-6);
+        let spring = |pa: f64, area: f64, left_m: f64| p.polytropic * pa * area * area / (dead_m3 + area * left_m);
+        let stiffness = spring(state.cap_pa, self.cap_m2, x) + spring(state.rod_pa, self.ring_m2, p.stroke_m - x);
+        Effort {
+            slope: slope_of(stiffness, &motion, dt_s),
+            dry: p.friction_n,
+            viscous: p.viscous_n_s_m,
+            ..Effort::of(self.force_n(state))
+        }
     }
 
     fn sense(&self, state: &mut State, _: &Inputs, turn: &Turn<Option<Coordinate>>) -> Outputs {

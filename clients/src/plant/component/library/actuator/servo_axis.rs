@@ -25,10 +25,13 @@ use crate::plant::component::declare::{failures, own_types, parameters, signals}
 use crate::plant::component::dynamics::{Resistance, Travel, ramp, substeps};
 use crate::plant::component::kind::Dependence;
 use crate::plant::component::profile::{Limits, Point, Profile};
-use crate::plant::coupling::{Coordinate, Move, Slides};
+use crate::plant::coupling::{Coordinate, Slides};
+use crate::plant::effort::{Effort, Motion};
 
 /// Longest sub-step.
 const LONGEST_S: f64 = 0.25e-3;
+/// Time constant of the velocity loop's integral part, in those of the loop itself.
+const INTEGRAL_LOOPS: f64 = 5.0;
 /// How far the position loop may go beyond the greatest speed.
 const OVERSPEED: f64 = 1.2;
 
@@ -59,7 +62,7 @@ parameters! {
         feed_forward_ratio: f64 = 0.0 => 0.0, 1.0;
         /// time constant of the velocity loop
         velocity_loop_s: f64 = 0.003 => 0.0001, 1.0;
-        /// all that moves
+        /// all that moves; on a joint its bodies do, and the velocity loop is tuned to this or to what they are at the set-up, whichever is more
         moving_kg: f64 = 20.0 => 0.001, 1e6;
         /// greatest force of motor and drive
         force_max_n: f64 = 1000.0 => 0.001, 1e7;
@@ -143,9 +146,16 @@ failures! {
 pub(crate) enum Doing {
     Off,
     Standing,
-    Moving { profile: Profile, start_m: f64, since_s: f64 },
+    Moving {
+        profile: Profile,
+        start_m: f64,
+        since_s: f64,
+    },
     /// At a velocity: jogging, homing; 0 to stop.
-    Velocity { wanted_m_s: f64, homing: bool },
+    Velocity {
+        wanted_m_s: f64,
+        homing: bool,
+    },
     Error,
 }
 
@@ -165,8 +175,10 @@ pub(crate) struct State {
     set: Point,
     /// Where the axis is.
     axis: Travel,
-    /// Where the axis was as the period began.
-    from_m: f64,
+    /// Integral part of the velocity loop.
+    integral_n: f64,
+    /// Mass that the velocity loop is tuned to on a joint.
+    tuned_kg: Option<f64>,
     /// What the drive knows of where the axis is.
     encoder_m: f64,
     /// Coordinate that the drive calls 0.
@@ -176,6 +188,13 @@ pub(crate) struct State {
     target_m: Option<f64>,
     /// `execute`, `home` and `reset` of the last period.
     before: [bool; 3],
+}
+
+impl State {
+    /// Whether the drive holds the axis.
+    const fn held(&self) -> bool {
+        !matches!(self.doing, Doing::Off | Doing::Error)
+    }
 }
 
 /// An axis by its parameters.
@@ -287,14 +306,18 @@ impl ServoAxis {
         }
     }
 
-    fn substep(&self, state: &mut State, turn: &Turn<Option<Coordinate>>, dt_s: f64) {
+    /// The velocity that the position loop asks for.
+    fn asked(&self, state: &State) -> f64 {
         let p = &self.p;
-        let held = !matches!(state.doing, Doing::Off | Doing::Error);
         let most = OVERSPEED * p.speed_m_s;
         let wanted = p.feed_forward_ratio * state.set.velocity + p.gain_1_s * (state.set.way - state.encoder_m);
-        let velocity = wanted.clamp(-most, most);
+        wanted.clamp(-most, most)
+    }
+
+    fn substep(&self, state: &mut State, turn: &Turn<Option<Coordinate>>, dt_s: f64) {
+        let p = &self.p;
         // without the drive a brake takes hold, as strong as the motor
-        let asked = if held { velocity } else { 0.0 };
+        let asked = if state.held() { self.asked(state) } else { 0.0 };
         let loop_s = p.velocity_loop_s.max(dt_s);
         let hold_n = p.moving_kg * (asked - state.axis.velocity) / loop_s + p.load_n;
         state.force_n = hold_n.clamp(-p.force_max_n, p.force_max_n);
@@ -329,7 +352,7 @@ impl Component for ServoAxis {
         "L. Biagiotti, C. Melchiorri, Trajectory Planning, 2008, 3.4; PLCopen Motion Control 2.0 (states)";
     const DEPENDENCES: &'static [Dependence] =
         &[Dependence { inputs: &["execute", "home", "jog_forward", "jog_reverse"], on: &["enable"] }];
-    own_types!(moves Slides);
+    own_types!(sees Slides);
 
     fn new(p: Parameters) -> Self {
         Self { p, longest_s: LONGEST_S }
@@ -343,7 +366,8 @@ impl Component for ServoAxis {
         if !inside(p.initial_m) {
             return Some(Conflict { key: "initial_m", wanted: "a number from `lower_m` to `upper_m`" });
         }
-        (!inside(p.reference_m)).then_some(Conflict { key: "reference_m", wanted: "a number from `lower_m` to `upper_m`" })
+        (!inside(p.reference_m))
+            .then_some(Conflict { key: "reference_m", wanted: "a number from `lower_m` to `upper_m`" })
     }
 
     fn initial(&self, start: &Start<Option<Coordinate>>) -> State {
@@ -352,7 +376,8 @@ impl Component for ServoAxis {
             doing: Doing::Off,
             set: Point { way: position, velocity: 0.0 },
             axis: Travel { position, velocity: 0.0 },
-            from_m: position,
+            integral_n: 0.0,
+            tuned_kg: None,
             encoder_m: position,
             zero_m: position,
             homed: false,
@@ -363,17 +388,61 @@ impl Component for ServoAxis {
     }
 
     fn drive(&self, state: &mut State, inputs: &Inputs, turn: &Turn<Option<Coordinate>>) {
-        state.axis.yield_to(turn.seen, state.axis.velocity.abs() * turn.dt_s + 1e-4);
-        state.from_m = state.axis.position;
         self.decide(state, inputs, turn);
+        if turn.seen.is_some() {
+            return;
+        }
         let (count, dt_s) = substeps(turn.dt_s, self.longest_s);
         for _ in 0..count {
             self.substep(state, turn, dt_s);
         }
     }
 
-    fn effect(&self, state: &State) -> Move {
-        Move { from: state.from_m, to: state.axis.position, effort_max: self.p.force_max_n }
+    fn longest_s(&self) -> f64 {
+        self.longest_s
+    }
+
+    fn stops(&self) -> Option<[f64; 2]> {
+        Some([self.p.lower_m, self.p.upper_m])
+    }
+
+    fn advance(
+        &self,
+        state: &mut State,
+        _: &Inputs,
+        turn: &Turn<Option<Coordinate>>,
+        motion: Motion,
+        dt_s: f64,
+    ) -> Effort {
+        let p = &self.p;
+        let Motion { position, velocity, mass, exerted } = motion;
+        state.axis = Travel { position, velocity };
+        state.force_n = exerted;
+        if !turn.failed.has(Failure::EncoderFrozen) {
+            state.encoder_m = position;
+        }
+        if turn.failed.has(Failure::Blocked) {
+            self.set(state, dt_s);
+            return Effort::BLOCKED;
+        }
+        if !state.held() {
+            state.integral_n = 0.0;
+            self.set(state, dt_s);
+            // the brake takes hold, as strong as the motor
+            return Effort { dry: p.friction_n + p.force_max_n, ..Effort::of(-p.load_n) };
+        }
+        // while it moves by hand of the engine the mass is not told
+        let seen_kg = if mass.is_finite() { mass } else { p.moving_kg };
+        let tuned_kg = *state.tuned_kg.get_or_insert(seen_kg.max(p.moving_kg));
+        let gain = tuned_kg / p.velocity_loop_s.max(dt_s);
+        let off = self.asked(state) - velocity;
+        // at its greatest force the integral waits
+        if (gain * off + state.integral_n).abs() < p.force_max_n {
+            state.integral_n += gain * off * dt_s / (INTEGRAL_LOOPS * p.velocity_loop_s.max(dt_s));
+        }
+        self.set(state, dt_s);
+        let force = gain * off + state.integral_n;
+        Effort { slope: gain, most: p.force_max_n, dry: p.friction_n, ..Effort::of(force) }
     }
 
     fn sense(&self, state: &mut State, _: &Inputs, turn: &Turn<Option<Coordinate>>) -> Outputs {
@@ -394,118 +463,5 @@ impl Component for ServoAxis {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::plant::component::tests::Rig;
-
-    const ON: Inputs = Inputs {
-        enable: true,
-        execute: false,
-        target_m: 0.0,
-        speed_m_s: 0.0,
-        home: false,
-        jog_forward: false,
-        jog_reverse: false,
-        halt: false,
-        reset: false,
-    };
-
-    fn go(target_m: f64) -> Inputs {
-        Inputs { execute: true, target_m, ..ON }
-    }
-
-    fn free() -> Parameters {
-        Parameters { friction_n: 0.0, needs_homing: false, initial_m: 0.0, ..Parameters::default() }
-    }
-
-    /// An axis that is switched on.
-    fn rig(p: Parameters) -> Rig<ServoAxis> {
-        let mut rig = Rig::new(ServoAxis::new(p));
-        rig.run(ON, 0.01, 2);
-        rig
-    }
-
-    #[test]
-    fn the_following_error_is_speed_over_gain() {
-        for jerk_m_s3 in [0.0, 20.0] {
-            let mut rig = rig(Parameters { jerk_m_s3, ..free() });
-            let out = rig.run(go(0.9), 0.001, 1000);
-            // 0.5 m/s by 50 1/s; the loops have settled to rounding of positions near 1
-            assert!((out.following_m - 0.01).abs() < 1e-9 && out.busy, "{out:?}");
-            assert!((out.velocity_m_s - 0.5).abs() < 1e-9);
-        }
-        let mut fed = rig(Parameters { feed_forward_ratio: 1.0, ..free() });
-        assert!(fed.run(go(0.9), 0.001, 1000).following_m.abs() < 1e-9, "nothing is left to the loop");
-    }
-
-    #[test]
-    fn a_move_ends_in_its_time_at_its_target() {
-        let mut rig = rig(free());
-        // 0.8/0.5 + 0.5/2 + 2/20 = 1.95 s of set motion
-        assert!(rig.run(go(0.8), 0.01, 194).busy);
-        assert!(!rig.run(go(0.8), 0.01, 2).busy);
-        let out = rig.run(go(0.8), 0.01, 30);
-        assert!(out.in_position && (out.position_m - 0.8).abs() < 1e-6, "{out:?}");
-    }
-
-    #[test]
-    fn halving_the_step_halves_the_error() {
-        let reached = |longest_s: f64| {
-            let mut rig = Rig::new(ServoAxis::new(free()));
-            rig.component.longest_s = longest_s;
-            rig.run(ON, 0.01, 2);
-            rig.run(go(0.9), 0.01, 20).position_m
-        };
-        let finest = reached(1e-6);
-        let errors: Vec<_> = [0.4e-3, 0.2e-3, 0.1e-3].iter().map(|h| (reached(*h) - finest).abs()).collect();
-        for pair in errors.windows(2) {
-            assert!((pair[0] / pair[1] - 2.0).abs() < 0.3, "{errors:?}");
-        }
-    }
-
-    #[test]
-    fn homing_finds_the_switch_and_makes_it_zero() {
-        let p = Parameters { reference_m: 0.02, initial_m: 0.3, ..Parameters::default() };
-        let mut rig = rig(p);
-        assert!(rig.run(go(0.1), 0.01, 2).error, "no target before homing");
-        rig.run(Inputs { reset: true, ..ON }, 0.01, 3);
-        let out = rig.run(Inputs { home: true, ..ON }, 0.01, 800);
-        assert!(out.homed && !out.busy && !out.error, "{out:?}");
-        let out = rig.run(go(0.25), 0.01, 300);
-        assert!(out.in_position && (rig.state.axis.position - 0.27).abs() < 1e-4, "{out:?} {:?}", rig.state.axis);
-    }
-
-    #[test]
-    fn jogging_and_halting() {
-        let mut rig = rig(free());
-        let jog = Inputs { jog_forward: true, speed_m_s: 0.1, ..ON };
-        assert!((rig.run(jog, 0.01, 100).velocity_m_s - 0.1).abs() < 1e-6);
-        let out = rig.run(ON, 0.01, 100);
-        assert!(!out.busy && out.velocity_m_s.abs() < 1e-9);
-        rig.run(go(0.9), 0.01, 40);
-        let out = rig.run(Inputs { halt: true, ..go(0.9) }, 0.01, 100);
-        assert!(!out.busy && !out.in_position && out.velocity_m_s.abs() < 1e-9, "{out:?}");
-    }
-
-    #[test]
-    fn a_load_beyond_the_force_is_a_following_error() {
-        let mut rig = rig(Parameters { force_max_n: 30.0, acceleration_m_s2: 10.0, ..free() });
-        assert!(rig.run(go(0.9), 0.01, 100).error);
-    }
-
-    #[test]
-    fn targets_beyond_the_ends_are_refused() {
-        assert!(rig(free()).run(go(1.5), 0.01, 2).error);
-    }
-
-    #[test]
-    fn each_failure_has_its_effect() {
-        let after = |mode: Failure| rig(free()).failing(mode).run(go(0.5), 0.01, 100);
-        assert!(after(Failure::DriveFault).error);
-        assert!(after(Failure::Blocked).error, "it does not follow");
-        assert!(after(Failure::EncoderFrozen).error, "it seems not to follow");
-        let mut blind = rig(Parameters { initial_m: 0.1, ..free() }).failing(Failure::ReferenceDead);
-        let out = blind.run(Inputs { home: true, ..ON }, 0.01, 1000);
-        assert!(out.error && !out.homed, "it runs into the stop: {out:?}");
-    }
-}
+#[path = "servo_axis_tests.rs"]
+mod tests;

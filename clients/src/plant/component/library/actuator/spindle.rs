@@ -16,7 +16,8 @@ use crate::plant::component::behaviour::{Component, Start, Turn};
 use crate::plant::component::declare::{failures, own_types, parameters, signals};
 use crate::plant::component::dynamics::{Travel, ramp, substeps};
 use crate::plant::component::kind::Dependence;
-use crate::plant::coupling::{Coordinate, Move, Turns};
+use crate::plant::coupling::{Coordinate, Turns};
+use crate::plant::effort::{Effort, Motion};
 
 parameters! {
     /// Its parameters.
@@ -25,7 +26,7 @@ parameters! {
         speed_1_min: f64 = 12000.0 => 1.0, 1e6;
         /// greatest torque
         torque_max_nm: f64 = 20.0 => 1e-4, 1e6;
-        /// inertia with the tool
+        /// inertia with the tool; on a joint its bodies have it
         inertia_kg_m2: f64 = 0.01 => 1e-9, 1e5;
         /// friction that grows with the speed
         viscous_nm_s: f64 = 0.0 => 0.0, 1e4;
@@ -80,7 +81,6 @@ failures! {
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(crate) struct State {
     shaft: Travel,
-    from_rad: f64,
     torque_nm: f64,
     clamp: f64,
 }
@@ -93,13 +93,20 @@ pub(crate) struct Spindle {
 /// Longest sub-step.
 const LONGEST_S: f64 = 1e-3;
 
+impl Spindle {
+    fn wanted_rad_s(&self, state: &State, inputs: &Inputs) -> f64 {
+        let wanted = if inputs.run && state.clamp >= 1.0 { inputs.command_1_min } else { 0.0 };
+        wanted.clamp(-self.p.speed_1_min, self.p.speed_1_min) * TAU / 60.0
+    }
+}
+
 impl Component for Spindle {
     const NAME: &'static str = "spindle";
     const SUMMARY: &'static str = "spindle with a ramp, a load and a tool clamp";
     const FORMULA: &'static [&'static str] = &["J dω/dt = M - M_cut - d ω, |M| ≤ M_max"];
     const SOURCE: &'static str = "closed form";
     const DEPENDENCES: &'static [Dependence] = &[Dependence { inputs: &["command_1_min"], on: &["run"] }];
-    own_types!(moves Turns);
+    own_types!(sees Turns);
 
     fn new(p: Parameters) -> Self {
         Self { p }
@@ -107,7 +114,7 @@ impl Component for Spindle {
 
     fn initial(&self, start: &Start<Option<Coordinate>>) -> State {
         let position = start.seen.map_or(0.0, |joint| joint.position);
-        State { shaft: Travel { position, velocity: 0.0 }, from_rad: position, clamp: 1.0, ..State::default() }
+        State { shaft: Travel { position, velocity: 0.0 }, clamp: 1.0, ..State::default() }
     }
 
     fn drive(&self, state: &mut State, inputs: &Inputs, turn: &Turn<Option<Coordinate>>) {
@@ -115,11 +122,11 @@ impl Component for Spindle {
         let closing = inputs.clamp && !turn.failed.has(Failure::ClampOpen);
         let rate_1_s = if p.clamp_s > 0.0 { 1.0 / p.clamp_s } else { f64::MAX };
         state.clamp = ramp(state.clamp, f64::from(u8::from(closing)), rate_1_s, turn.dt_s);
-        state.shaft.yield_to(turn.seen, state.shaft.velocity.abs() * turn.dt_s + 1e-3);
-        state.from_rad = state.shaft.position;
+        if turn.seen.is_some() {
+            return;
+        }
         let fed = !turn.failed.has(Failure::DriveFault);
-        let wanted = if inputs.run && state.clamp >= 1.0 { inputs.command_1_min } else { 0.0 };
-        let wanted = wanted.clamp(-p.speed_1_min, p.speed_1_min) * TAU / 60.0;
+        let wanted = self.wanted_rad_s(state, inputs);
         let (count, dt_s) = substeps(turn.dt_s, LONGEST_S);
         for _ in 0..count {
             let v = state.shaft.velocity;
@@ -133,8 +140,28 @@ impl Component for Spindle {
         }
     }
 
-    fn effect(&self, state: &State) -> Move {
-        Move { from: state.from_rad, to: state.shaft.position, effort_max: self.p.torque_max_nm }
+    fn longest_s(&self) -> f64 {
+        LONGEST_S
+    }
+
+    fn advance(
+        &self,
+        state: &mut State,
+        inputs: &Inputs,
+        turn: &Turn<Option<Coordinate>>,
+        motion: Motion,
+        _: f64,
+    ) -> Effort {
+        state.shaft = Travel { position: motion.position, velocity: motion.velocity };
+        state.torque_nm = motion.exerted;
+        let fed = !turn.failed.has(Failure::DriveFault);
+        Effort {
+            sought: fed.then(|| self.wanted_rad_s(state, inputs)),
+            most: self.p.torque_max_nm,
+            dry: inputs.cutting_nm.max(0.0),
+            viscous: self.p.viscous_nm_s,
+            ..Effort::of(0.0)
+        }
     }
 
     fn sense(&self, state: &mut State, inputs: &Inputs, turn: &Turn<Option<Coordinate>>) -> Outputs {

@@ -15,7 +15,7 @@ use serde::{Deserialize, Serialize};
 use crate::plant::component::behaviour::{Component, Start, Turn};
 use crate::plant::component::declare::{failures, own_types, parameters, signals};
 use crate::plant::component::kind::Dependence;
-use crate::plant::coupling::{Coordinate, Move, Turns};
+use crate::plant::coupling::{Coordinate, Follow, Indexes};
 use crate::plant::setpoint::{Bounds, Setpoint};
 
 parameters! {
@@ -76,7 +76,7 @@ failures! {
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(crate) struct State {
     wheel: Setpoint,
-    from_rad: f64,
+    from: Setpoint,
     target_rad: Option<f64>,
     stepped: bool,
 }
@@ -99,7 +99,7 @@ impl Component for Turntable {
     const FORMULA: &'static [&'static str] = &["dω/dt = ±α until ω = k ω_N", "stations 2π/n apart"];
     const SOURCE: &'static str = "closed form; wheels of the filling machine (Sivtoft 2002, ch. 5)";
     const DEPENDENCES: &'static [Dependence] = &[Dependence { inputs: &["fraction"], on: &["run"] }];
-    own_types!(moves Turns);
+    own_types!(moves Indexes);
 
     fn new(p: Parameters) -> Self {
         Self { p }
@@ -107,7 +107,11 @@ impl Component for Turntable {
 
     fn initial(&self, start: &Start<Option<Coordinate>>) -> State {
         let position = start.seen.map_or(0.0, |joint| joint.position);
-        State { wheel: Setpoint { position, velocity: 0.0 }, from_rad: position, ..State::default() }
+        State {
+            wheel: Setpoint { position, velocity: 0.0 },
+            from: Setpoint { position, velocity: 0.0 },
+            ..State::default()
+        }
     }
 
     fn drive(&self, state: &mut State, inputs: &Inputs, turn: &Turn<Option<Coordinate>>) {
@@ -117,7 +121,7 @@ impl Component for Turntable {
             let slack = self.p.speed_rad_s * turn.dt_s;
             state.wheel = state.wheel.near(joint.position, slack, || joint.velocity);
         }
-        state.from_rad = state.wheel.position;
+        state.from = state.wheel;
         if turn.failed.has(Failure::Blocked) {
             state.wheel.velocity = 0.0;
             return;
@@ -139,8 +143,8 @@ impl Component for Turntable {
             state.target_rad.filter(|target| state.wheel.position != *target || state.wheel.velocity != 0.0);
     }
 
-    fn effect(&self, state: &State) -> Move {
-        Move { from: state.from_rad, to: state.wheel.position, effort_max: self.p.torque_max_nm }
+    fn effect(&self, state: &State) -> Follow {
+        Follow { from: state.from, to: state.wheel, effort_max: self.p.torque_max_nm }
     }
 
     fn sense(&self, state: &mut State, _: &Inputs, turn: &Turn<Option<Coordinate>>) -> Outputs {

@@ -1,0 +1,350 @@
+//! Mechanisms and the engine: who moves which bodies in a step.
+//!
+//! In every step the engine moves all bodies, with the joints and motors that it has for them. Then, of
+//! each mechanism none of whose bodies touched another in that step, the engine's result is put aside
+//! and the mechanism's own, exact to a high order, takes its place. Where a body touched, the engine's
+//! result stands, for it alone knows of contacts; the mechanism takes its coordinates from there.
+//!
+//! A mechanism with nothing near has no joints in the engine, which then has little to do for it. They are
+//! back in the step after a body has come near. Should one touch in its first step there, the engine has
+//! the contacts of single bodies; what they changed in the bodies' momenta goes into the mechanism.
+//!
+//! Which of the two applies follows from the contacts of the step alone, so that it is the same in
+//! every run, and after a restore.
+
+use rapier3d::prelude::*;
+
+use super::actuator::{Acts, Actuator};
+use super::coordinate::Gauge;
+use super::coupled::Coupled;
+use super::effort::{Drives, Mark, Motion};
+use super::fitting::Fitting;
+use super::machine::Misfit;
+use super::mechanism::{Coordinates, Link, Mechanism, Surroundings, mechanisms};
+use super::scene::Scene;
+use super::scene::model::JointKind;
+use super::world::{World, local_frames, measured_axis};
+
+/// Mechanisms, fittings of joints, and how joints were measured last.
+pub(super) struct Articulation {
+    mechanisms: Vec<Member>,
+    /// Joints that are in no mechanism, which the engine moves always.
+    others: Vec<usize>,
+    pub(super) fittings: Vec<Fitting>,
+    gauges: Vec<Gauge>,
+    /// All joints of the scene, with their coordinates.
+    motions: Vec<Mark>,
+    /// The scene's joints.
+    links: Vec<Link>,
+    couplings: Vec<Coupled>,
+}
+
+/// A mechanism and the shapes of its bodies that collide.
+struct Member {
+    mechanism: Mechanism,
+    colliders: Vec<ColliderHandle>,
+    /// The actuators of its joints.
+    actuators: Vec<usize>,
+    /// All of the engine's joints between its bodies.
+    handles: Vec<ImpulseJointHandle>,
+    /// Whether the engine has these joints now; not known of a mechanism that was found anew.
+    attached: Option<bool>,
+}
+
+impl Articulation {
+    pub(super) fn empty() -> Self {
+        Self {
+            mechanisms: Vec::new(),
+            others: Vec::new(),
+            fittings: Vec::new(),
+            gauges: Vec::new(),
+            motions: Vec::new(),
+            links: Vec::new(),
+            couplings: Vec::new(),
+        }
+    }
+
+    /// The mechanisms of a world that still stands in the scene's pose.
+    pub(super) fn build(scene: &Scene, world: &mut World) -> Self {
+        let bodies: Vec<_> = world.physics.bodies.iter().map(|(handle, _)| handle).collect();
+        for handle in bodies {
+            // the masses of shapes, which the engine else gathers in its first step
+            world.physics.bodies[handle].recompute_mass_properties_from_colliders(&world.physics.colliders);
+        }
+        let links = scene.joints.iter().enumerate().map(|(index, joint)| {
+            let bodies = [world.handle(joint.parent), world.handle(Some(joint.child))];
+            let frames = local_frames(&world.physics, joint, bodies[0], bodies[1]);
+            Link { joint: Some(index), handle: world.joint(index), kind: joint.kind, bodies, frames }
+        });
+        Self {
+            links: links.collect(),
+            couplings: Coupled::all(scene),
+            fittings: (0..scene.joints.len()).map(|joint| Fitting::new(scene, joint)).collect(),
+            gauges: scene.joints.iter().map(|joint| Gauge::new(world, joint)).collect(),
+            motions: scene.joints.iter().map(|joint| Mark { position: joint.initial, velocity: 0.0 }).collect(),
+            ..Self::empty()
+        }
+    }
+
+    /// The engine's axis of a joint's coordinate.
+    pub(super) fn along(&self, joint: usize) -> JointAxis {
+        measured_axis(self.links[joint].kind)
+    }
+
+    /// Finds the mechanisms anew: a body is held or let go, taken out or put in.
+    fn find(
+        &mut self,
+        holds: &[Link],
+        extra: &[(usize, ImpulseJointHandle)],
+        physics: &PhysicsWorld,
+        actuators: &[Actuator],
+    ) {
+        let links: Vec<_> = self.links.iter().chain(holds).copied().collect();
+        let last = |joint: usize| self.motions[joint].position - self.fittings[joint].initial;
+        let (found, others) = mechanisms(&links, &self.couplings, &physics.bodies, last);
+        self.others = others;
+        self.mechanisms = found
+            .into_iter()
+            .map(|mechanism| {
+                let shapes = mechanism.bodies().flat_map(|body| physics.bodies[body].colliders().to_vec());
+                let collides =
+                    |shape: &ColliderHandle| physics.colliders[*shape].collision_groups().memberships != Group::NONE;
+                let colliders = shapes.filter(collides).collect();
+                let own = |actuator: &Actuator| mechanism.joints().any(|(joint, ..)| joint == actuator.joint);
+                let actuators = (0..actuators.len()).filter(|index| own(&actuators[*index])).collect();
+                let mut handles = Vec::new();
+                for link in mechanism.links() {
+                    handles.push(link.handle);
+                    let beside = extra.iter().filter(|(joint, _)| Some(*joint) == link.joint);
+                    handles.extend(beside.map(|(_, handle)| *handle));
+                }
+                Member { mechanism, colliders, actuators, handles, attached: None }
+            })
+            .collect();
+    }
+}
+
+impl Member {
+    /// True if a shape of it has a pair that `counts`.
+    fn meets(&self, narrow: &NarrowPhase, counts: impl Fn(&ContactPair) -> bool) -> bool {
+        self.colliders.iter().any(|collider| narrow.contact_pairs_with(*collider).any(&counts))
+    }
+}
+
+impl World {
+    /// Finds the mechanisms of the joints that there are now.
+    pub(super) fn find_mechanisms(&mut self) {
+        let Self { physics, actuators, articulation, joints, frictions, springs, .. } = self;
+        let beside = |handle: ImpulseJointHandle| {
+            springs.iter().any(|(_, spring)| *spring == handle)
+                || frictions.iter().any(|(_, friction)| friction.handle == handle)
+        };
+        let known = |handle: ImpulseJointHandle| joints.contains(&handle) || beside(handle);
+        let holds = physics.impulse_joints.iter().filter(|(handle, _)| !known(*handle));
+        let holds = holds.map(|(handle, joint)| Link {
+            joint: None,
+            handle,
+            kind: JointKind::Fixed,
+            bodies: [joint.body1(), joint.body2()],
+            frames: [joint.data.local_frame1, joint.data.local_frame2],
+        });
+        let holds: Vec<_> = holds.collect();
+        let extra: Vec<_> = frictions
+            .iter()
+            .map(|(joint, friction)| (*joint, friction.handle))
+            .chain(springs.iter().copied())
+            .collect();
+        articulation.find(&holds, &extra, physics, actuators);
+        // what the engine is to move it has whole, unless a body of it is out of the world
+        for joint in &articulation.others {
+            let extra = extra.iter().filter(|(known, _)| known == joint).map(|(_, handle)| *handle);
+            for handle in extra.chain([joints[*joint]]) {
+                attach(&mut physics.impulse_joints, &physics.bodies, handle, true);
+            }
+        }
+    }
+
+    /// The first coupling whose joints are in no mechanism, which alone keeps couplings; its index.
+    pub(super) fn uncoupled(&self) -> Option<usize> {
+        let Articulation { mechanisms, couplings, .. } = &self.articulation;
+        let kept = |joint: usize| mechanisms.iter().any(|member| member.mechanism.coupled().any(|own| own == joint));
+        couplings.iter().position(|coupled| !kept(coupled.joint))
+    }
+
+    /// The coordinate and velocity of a joint.
+    pub(super) fn motion(&self, joint: usize) -> Mark {
+        self.articulation.motions[joint]
+    }
+
+    /// Gives a joint stops, beside those that it has.
+    pub(super) fn restrict(&mut self, joint: usize, [lower, upper]: [f64; 2]) {
+        let fitting = &mut self.articulation.fittings[joint];
+        fitting.lower = fitting.lower.max(lower - fitting.initial).min(0.0);
+        fitting.upper = fitting.upper.min(upper - fitting.initial).max(0.0);
+        let limits = [fitting.lower.max(-Real::MAX), fitting.upper.min(Real::MAX)];
+        let handle = self.joint(joint);
+        let along = self.articulation.along(joint);
+        if let Some(joint) = self.physics.impulse_joints.get_mut(handle, false) {
+            joint.data.set_limits(along, limits);
+        }
+    }
+
+    /// One step of the engine and of all mechanisms, which is this part of the turn.
+    pub(super) fn substep(&mut self, part: [f64; 2], drives: &mut dyn Drives) {
+        let dt_s = self.physics.integration_parameters.dt;
+        self.arm(part, dt_s, drives);
+        self.physics.step();
+        let Self { physics, actuators, articulation, .. } = self;
+        let Articulation { mechanisms, others, fittings, gauges, motions, .. } = articulation;
+        let iterations = physics.integration_parameters.num_solver_iterations;
+        let follow = |index: usize, to: Mark, from: Mark, actuators: &mut [Actuator], drives: &mut dyn Drives| {
+            let actuator = &mut actuators[index];
+            actuator.read(&physics.impulse_joints, dt_s, iterations);
+            if let Acts::Law { drive } = actuator.acts {
+                let velocity = (to.position - from.position) / dt_s;
+                let motion =
+                    Motion { position: from.position, velocity, mass: f64::INFINITY, exerted: actuator.exerted };
+                advance(drives, drive, motion, dt_s);
+            }
+        };
+        for member in mechanisms.iter_mut() {
+            let touched = member.meets(&physics.narrow_phase, ContactPair::has_any_active_contact);
+            let gravity = physics.gravity;
+            // without its joints the engine let its bodies go their own ways for this step
+            let loose = touched && member.attached == Some(false);
+            if loose {
+                member.mechanism.take_blow(dt_s, gravity, &physics.bodies);
+            }
+            let mut around = Surroundings { gravity, fittings, actuators, drives, part };
+            let alone = (!touched || loose) && member.mechanism.advance(dt_s, &mut around);
+            let reconciled = !alone && member.mechanism.measure(&physics.bodies);
+            for (joint, position, velocity) in member.mechanism.joints() {
+                let now = Mark { position: fittings[joint].initial + position, velocity };
+                let before = std::mem::replace(&mut motions[joint], now);
+                let own = member.actuators.iter().find(|index| actuators[**index].joint == joint);
+                if let Some(index) = own.filter(|_| !alone) {
+                    follow(*index, now, before, actuators, drives);
+                }
+            }
+            // what the engine moved without joints must not come apart
+            if alone || reconciled || member.attached == Some(false) {
+                member.mechanism.put(&mut physics.bodies);
+            }
+        }
+        for joint in others.iter().copied() {
+            let (bodies, gauge) = (&physics.bodies, &gauges[joint]);
+            let now =
+                Mark { position: gauge.position(bodies, motions[joint].position), velocity: gauge.velocity(bodies) };
+            let before = std::mem::replace(&mut motions[joint], now);
+            if let Some(index) = actuators.iter().position(|actuator| actuator.joint == joint) {
+                follow(index, now, before, actuators, drives);
+            }
+        }
+    }
+
+    /// Makes all actuators motors of the engine.
+    fn arm(&mut self, part: [f64; 2], dt_s: f64, drives: &dyn Drives) {
+        let Self { physics, actuators, articulation, frictions, .. } = self;
+        let mut moves = vec![true; actuators.len()];
+        for member in &mut articulation.mechanisms {
+            let near = member.meets(&physics.narrow_phase, |pair| may_touch(pair, physics));
+            if member.attached != Some(near) {
+                member.attached = Some(near);
+                for handle in &member.handles {
+                    attach(&mut physics.impulse_joints, &physics.bodies, *handle, near);
+                }
+            }
+            for index in member.actuators.iter().filter(|_| !near) {
+                moves[*index] = false;
+            }
+        }
+        let detached =
+            |joint: usize| actuators.iter().zip(&moves).any(|(actuator, moves)| actuator.joint == joint && !moves);
+        for (joint, friction) in frictions.iter().filter(|(joint, _)| !detached(*joint)) {
+            let dry = articulation.fittings[*joint].dry(articulation.motions[*joint].velocity);
+            friction.brake(dry, &mut physics.impulse_joints);
+        }
+        for (actuator, _) in actuators.iter().zip(&moves).filter(|(_, moves)| **moves) {
+            let Mark { position, velocity } = articulation.motions[actuator.joint];
+            let motion = Motion { position, velocity, mass: f64::INFINITY, exerted: actuator.exerted };
+            let own = frictions.iter().find(|(joint, _)| *joint == actuator.joint).map(|(_, friction)| *friction);
+            let fitted = articulation.fittings[actuator.joint].dry(velocity);
+            let dry = actuator.arm(motion, part, dt_s, drives, &mut physics.impulse_joints);
+            if let Some(friction) = own {
+                friction.brake(dry + fitted, &mut physics.impulse_joints);
+            }
+        }
+    }
+
+    /// What the mechanisms remember.
+    pub(super) fn coordinates(&self) -> ArticulationMemory {
+        ArticulationMemory {
+            motions: self.articulation.motions.clone(),
+            mechanisms: self.articulation.mechanisms.iter().map(|member| member.mechanism.memory()).collect(),
+            exerted: self.actuators.iter().map(|actuator| actuator.exerted).collect(),
+        }
+    }
+
+    /// Takes in what mechanisms remembered, in a world whose engine's state is restored.
+    ///
+    /// # Errors
+    /// A memory of other mechanisms.
+    pub(super) fn restore_coordinates(&mut self, memory: ArticulationMemory) -> Result<(), Misfit> {
+        let counts = (memory.motions.len(), memory.exerted.len());
+        if counts != (self.articulation.motions.len(), self.actuators.len()) {
+            return Err(Misfit("it has other joints and drives".to_owned()));
+        }
+        self.articulation.motions = memory.motions;
+        self.find_mechanisms();
+        let members = &mut self.articulation.mechanisms;
+        if members.len() != memory.mechanisms.len()
+            || !members.iter().zip(&memory.mechanisms).all(|(member, memory)| member.mechanism.fits(memory))
+        {
+            return Err(Misfit("its mechanisms are others".to_owned()));
+        }
+        for (member, memory) in members.iter_mut().zip(memory.mechanisms) {
+            member.mechanism.restore(memory);
+        }
+        for (actuator, exerted) in self.actuators.iter_mut().zip(memory.exerted) {
+            actuator.exerted = exerted;
+        }
+        Ok(())
+    }
+}
+
+/// Whether the shapes of a pair collide at all: not if a joint between their bodies keeps them apart.
+fn may_touch(pair: &ContactPair, physics: &PhysicsWorld) -> bool {
+    let body = |shape: ColliderHandle| physics.colliders.get(shape).and_then(Collider::parent);
+    let (Some(one), Some(other)) = (body(pair.collider1), body(pair.collider2)) else { return true };
+    let mut between = physics.impulse_joints.joints_between(one, other);
+    between.all(|(_, joint)| joint.data.contacts_enabled())
+}
+
+/// Gives the engine a joint, or takes it away; one of a body that is out of the world is not there.
+fn attach(joints: &mut ImpulseJointSet, bodies: &RigidBodySet, handle: ImpulseJointHandle, attached: bool) {
+    let Some(joint) = joints.get(handle) else { return };
+    let whole = [joint.body1(), joint.body2()].iter().all(|body| bodies[*body].is_enabled());
+    if whole
+        && joint.data.is_enabled() != attached
+        && let Some(joint) = joints.get_mut(handle, false)
+    {
+        joint.data.set_enabled(attached);
+    }
+}
+
+/// What mechanisms and actuators remember between two turns.
+#[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+pub(super) struct ArticulationMemory {
+    motions: Vec<Mark>,
+    mechanisms: Vec<Coordinates>,
+    exerted: Vec<f64>,
+}
+
+/// Moves a drive's state by a step of constant velocity, in sub-steps as short as it wants them.
+fn advance(drives: &mut dyn Drives, drive: usize, motion: Motion, dt_s: f64) {
+    let (count, part_s) = super::component::dynamics::substeps(dt_s, drives.longest_s(drive));
+    for index in 0..count {
+        let position = motion.position + motion.velocity * part_s * f64::from(index);
+        drives.advance(drive, Motion { position, ..motion }, part_s);
+    }
+}

@@ -1,0 +1,138 @@
+//! What couples the coordinate of a joint to those of others, as data of a checked scene with the
+//! coordinates counted from the scene's pose.
+
+use super::scene::Scene;
+use super::scene::model;
+
+/// A joint that others lead.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Coupled {
+    /// Index of the joint in the scene.
+    pub(crate) joint: usize,
+    /// The joints that lead it, two at most.
+    pub(crate) of: Vec<Of>,
+    /// Play between the flanks, m or rad of the joint.
+    pub(crate) backlash: f64,
+}
+
+/// A joint that leads, and what it asks for.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Of {
+    pub(crate) joint: usize,
+    law: Law,
+}
+
+#[derive(Clone, Debug, PartialEq)]
+enum Law {
+    Ratio(f64),
+    /// Points of a cam and the slopes there, both counted from the scene's pose.
+    Cam(Vec<Knot>),
+}
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Knot {
+    x: f64,
+    y: f64,
+    slope: f64,
+}
+
+impl Coupled {
+    /// The couplings of a scene.
+    pub(crate) fn all(scene: &Scene) -> Vec<Self> {
+        scene.couplings.iter().map(|coupling| Self::new(coupling, scene)).collect()
+    }
+
+    /// Whether it is about this joint.
+    pub(crate) fn joins(&self, joint: usize) -> bool {
+        self.joint == joint || self.of.iter().any(|of| of.joint == joint)
+    }
+
+    fn new(coupling: &model::Coupling, scene: &Scene) -> Self {
+        let initial = |joint: usize| scene.joints[joint].initial;
+        let of = coupling.of.iter().map(|share| {
+            let law = match &share.law {
+                model::CouplingLaw::Ratio(ratio) => Law::Ratio(*ratio),
+                model::CouplingLaw::Cam(points) => {
+                    let [x, y] = [initial(share.joint), initial(coupling.joint)];
+                    Law::Cam(knots(&points.iter().map(|point| [point[0] - x, point[1] - y]).collect::<Vec<_>>()))
+                }
+            };
+            Of { joint: share.joint, law }
+        });
+        Self { joint: coupling.joint, of: of.collect(), backlash: coupling.backlash }
+    }
+}
+
+/// The slopes at a cam's points are those of the parabola through three of them, so that it has no
+/// corners; at its ends it goes on straight.
+fn knots(points: &[[f64; 2]]) -> Vec<Knot> {
+    let secant = |k: usize| (points[k + 1][1] - points[k][1]) / (points[k + 1][0] - points[k][0]);
+    let slope = |k: usize| match (k, k + 1 == points.len()) {
+        (0, _) => secant(0),
+        (k, true) => secant(k - 1),
+        (k, false) => {
+            let [before, after] = [points[k][0] - points[k - 1][0], points[k + 1][0] - points[k][0]];
+            (secant(k - 1) * after + secant(k) * before) / (before + after)
+        }
+    };
+    points.iter().enumerate().map(|(k, [x, y])| Knot { x: *x, y: *y, slope: slope(k) }).collect()
+}
+
+impl Of {
+    /// What it asks for at a coordinate, and the slope there.
+    pub(crate) fn at(&self, x: f64) -> (f64, f64) {
+        match &self.law {
+            Law::Ratio(ratio) => (ratio * x, *ratio),
+            Law::Cam(knots) => cam(knots, x),
+        }
+    }
+}
+
+/// Where the cam through these points has the joint that is led.
+pub(crate) fn on_cam(points: &[[f64; 2]], x: f64) -> f64 {
+    cam(&knots(points), x).0
+}
+
+fn cam(knots: &[Knot], x: f64) -> (f64, f64) {
+    let after = knots.partition_point(|knot| knot.x <= x);
+    let straight = |knot: &Knot| (knot.y + knot.slope * (x - knot.x), knot.slope);
+    let (Some(one), Some(other)) = (after.checked_sub(1).and_then(|k| knots.get(k)), knots.get(after)) else {
+        // a checked cam has two points at least
+        return knots.get(after.saturating_sub(1)).map_or((0.0, 0.0), straight);
+    };
+    let (wide, t) = (other.x - one.x, (x - one.x) / (other.x - one.x));
+    let rest = 1.0 - t;
+    let value = rest * rest * ((1.0 + 2.0 * t) * one.y + t * wide * one.slope)
+        + t * t * ((3.0 - 2.0 * t) * other.y - rest * wide * other.slope);
+    let slope = 6.0 * t * rest * (other.y - one.y) / wide
+        + rest * (1.0 - 3.0 * t) * one.slope
+        + t * (3.0 * t - 2.0) * other.slope;
+    (value, slope)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_cam_goes_through_its_points_without_corners() {
+        let points = [[0.0, 0.0], [1.0, 0.5], [2.0, 2.0], [4.0, 2.0]];
+        let knots = knots(&points);
+        for [x, y] in points {
+            assert!((cam(&knots, x).0 - y).abs() < 1e-15);
+        }
+        for k in -10..60 {
+            let x = 0.1 * f64::from(k) + 0.013;
+            let (step, (before, _), (after, _)) = (1e-6, cam(&knots, x - 1e-6), cam(&knots, x + 1e-6));
+            // central differences: third derivatives times 1e-12, roundings of 1e-16/1e-6
+            assert!(((after - before) / (2.0 * step) - cam(&knots, x).1).abs() < 1e-8, "{x}");
+        }
+    }
+
+    #[test]
+    fn a_cam_of_a_parabola_is_that_parabola_inside() {
+        let points: Vec<_> = (0..6).map(|k| [f64::from(k), f64::from(k * k)]).collect();
+        let knots = knots(&points);
+        assert!((cam(&knots, 2.5).0 - 6.25).abs() < 1e-14 && (cam(&knots, 2.5).1 - 5.0).abs() < 1e-14);
+    }
+}

@@ -1,0 +1,235 @@
+//! The equations of motion of a tree of bodies: `H(q) dv/dt + b(q, v) = τ`.
+//!
+//! `H` by the composite rigid body algorithm, `b` (gravity, Coriolis and centrifugal forces) by the
+//! recursive Newton-Euler algorithm, both in the world's axes about a point of the tree itself, so that
+//! a machine far from the origin is as exact as one that stands there.
+//!
+//! Source: R. Featherstone, *Rigid Body Dynamics Algorithms*, Springer 2008, ch. 5 and 6.
+
+use rapier3d::glamx::{DMat3, DQuat};
+use rapier3d::math::{Pose, Vector};
+
+use super::matrix;
+use super::spatial::{Inertia, Twist, Wrench};
+use super::tree::{Freedom, Tree};
+
+/// Room for the equations of a tree, used again in every step.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Equations {
+    /// Where the members' joints and bodies are.
+    pub(super) poses: Vec<Pose>,
+    /// The motion that one unit of each velocity is.
+    axes: Vec<Twist>,
+    pub(super) motions: Vec<Twist>,
+    accelerations: Vec<Twist>,
+    forces: Vec<Wrench>,
+    inertias: Vec<Inertia>,
+    composites: Vec<Inertia>,
+    /// `H`, or its factor once [`factor`](Self::factor) has run.
+    pub(super) mass: Vec<f64>,
+    pub(super) bias: Vec<f64>,
+    /// The point that all is taken about.
+    pub(super) about: Vector,
+}
+
+impl Equations {
+    pub(super) fn new(tree: &Tree) -> Self {
+        let (members, n) = (tree.members.len(), tree.velocities);
+        Self {
+            poses: vec![Pose::IDENTITY; members],
+            axes: vec![Twist::default(); n],
+            motions: vec![Twist::default(); members],
+            accelerations: vec![Twist::default(); members],
+            forces: vec![Wrench::default(); members],
+            inertias: vec![Inertia::default(); members],
+            composites: vec![Inertia::default(); members],
+            mass: vec![0.0; n * n],
+            bias: vec![0.0; n],
+            about: tree.members.first().map_or(Vector::ZERO, |root| root.place.translation),
+        }
+    }
+
+    /// Where everything is at these positions.
+    pub(super) fn place(&mut self, tree: &Tree, q: &[f64]) {
+        for (index, member) in tree.members.iter().enumerate() {
+            let frame = match member.on {
+                Some(on) => self.poses[on] * member.place,
+                None => member.place,
+            };
+            let [position, velocity] = member.first;
+            let about = self.about;
+            let through = frame.translation - about;
+            let moved = match member.freedom {
+                Freedom::Weld => frame,
+                Freedom::Slide(axis) => {
+                    self.axes[velocity] = Twist::sliding(frame.rotation * axis);
+                    frame * Pose::from_translation(axis * q[position])
+                }
+                Freedom::Turn(axis) => {
+                    self.axes[velocity] = Twist::turning(frame.rotation * axis, through);
+                    frame * Pose::from_rotation(turn(axis, q[position]))
+                }
+                Freedom::Ball => {
+                    let rotation = frame.rotation * quaternion(&q[position..position + 4]);
+                    for (k, axis) in [Vector::X, Vector::Y, Vector::Z].into_iter().enumerate() {
+                        self.axes[velocity + k] = Twist::turning(rotation * axis, through);
+                    }
+                    Pose::from_parts(frame.translation, rotation)
+                }
+            };
+            self.poses[index] = moved * member.tip;
+        }
+    }
+
+    /// The motion of every member at these velocities, where it was placed.
+    pub(super) fn moves(&mut self, tree: &Tree, v: &[f64]) {
+        for (index, member) in tree.members.iter().enumerate() {
+            let base = member.on.map_or_else(Twist::default, |on| self.motions[on]);
+            self.motions[index] = base.plus(self.own(member.first[1], member.freedom, v));
+        }
+    }
+
+    fn own(&self, first: usize, freedom: Freedom, v: &[f64]) -> Twist {
+        let each = (first..first + freedom.velocities()).map(|k| self.axes[k].times(v[k]));
+        each.fold(Twist::default(), Twist::plus)
+    }
+
+    fn weigh(&mut self, tree: &Tree) {
+        for (index, member) in tree.members.iter().enumerate() {
+            self.inertias[index] = if member.mass > 0.0 {
+                let pose = self.poses[index];
+                let turned = DMat3::from_quat(pose.rotation);
+                let tensor = turned * member.tensor * turned.transpose();
+                Inertia::of(member.mass, pose * member.centre - self.about, tensor)
+            } else {
+                Inertia::default()
+            };
+        }
+    }
+
+    /// The whole equations at these positions and velocities.
+    pub(super) fn evaluate(&mut self, tree: &Tree, q: &[f64], v: &[f64], gravity: Vector) {
+        self.place(tree, q);
+        self.weigh(tree);
+        self.newton_euler(tree, v, gravity);
+        self.composite(tree);
+    }
+
+    fn newton_euler(&mut self, tree: &Tree, v: &[f64], gravity: Vector) {
+        // what stands still in a field of gravity is as what is accelerated against it
+        let ground = (Twist::default(), Twist::sliding(-gravity));
+        for (index, member) in tree.members.iter().enumerate() {
+            let (motion, acceleration) = member.on.map_or(ground, |on| (self.motions[on], self.accelerations[on]));
+            let own = self.own(member.first[1], member.freedom, v);
+            let motion = motion.plus(own);
+            let acceleration = acceleration.plus(motion.carries(own));
+            let inertia = &self.inertias[index];
+            self.forces[index] = inertia.times(acceleration).plus(motion.carries_force(inertia.times(motion)));
+            (self.motions[index], self.accelerations[index]) = (motion, acceleration);
+        }
+        self.gather(tree);
+    }
+
+    /// Sums the members' forces from the tips down, and what of them acts on each coordinate: `bias`.
+    fn gather(&mut self, tree: &Tree) {
+        for (index, member) in tree.members.iter().enumerate().rev() {
+            let force = self.forces[index];
+            let first = member.first[1];
+            for k in first..first + member.freedom.velocities() {
+                self.bias[k] = self.axes[k].power(force);
+            }
+            if let Some(on) = member.on {
+                self.forces[on] = self.forces[on].plus(force);
+            }
+        }
+    }
+
+    fn composite(&mut self, tree: &Tree) {
+        let n = tree.velocities;
+        self.composites.copy_from_slice(&self.inertias);
+        self.mass.fill(0.0);
+        for (index, member) in tree.members.iter().enumerate().rev() {
+            let composite = self.composites[index];
+            let first = member.first[1];
+            for k in first..first + member.freedom.velocities() {
+                let force = composite.times(self.axes[k]);
+                let mut below = Some(index);
+                while let Some(other) = below {
+                    let member = &tree.members[other];
+                    let start = member.first[1];
+                    for j in start..start + member.freedom.velocities() {
+                        let entry = self.axes[j].power(force);
+                        self.mass[k * n + j] = entry;
+                        self.mass[j * n + k] = entry;
+                    }
+                    below = member.on;
+                }
+            }
+            if let Some(on) = member.on {
+                self.composites[on] = self.composites[on].plus(composite);
+            }
+        }
+    }
+
+    /// Factors `H`; false where the masses are so far apart that it cannot be.
+    #[must_use]
+    pub(super) fn factor(&mut self, tree: &Tree) -> bool {
+        matrix::factor(&mut self.mass, tree.velocities)
+    }
+
+    /// The velocities that have the momentum of the bodies' own motions: of all that the joints allow,
+    /// those that are nearest to them by kinetic energy.
+    #[must_use]
+    pub(super) fn project(&mut self, tree: &Tree, q: &[f64], own: impl Fn(usize) -> Twist, v: &mut [f64]) -> bool {
+        self.place(tree, q);
+        self.weigh(tree);
+        for (index, inertia) in self.inertias.iter().enumerate() {
+            self.forces[index] = inertia.times(own(index));
+        }
+        self.gather(tree);
+        self.composite(tree);
+        v.copy_from_slice(&self.bias);
+        let factored = self.factor(tree);
+        if factored {
+            matrix::solve(&self.mass, tree.velocities, v);
+        }
+        factored
+    }
+}
+
+/// A quaternion as it stands among the positions.
+pub(super) fn quaternion(q: &[f64]) -> DQuat {
+    DQuat::from_xyzw(q[0], q[1], q[2], q[3])
+}
+
+fn turn(axis: Vector, angle: f64) -> DQuat {
+    let (sine, cosine) = libm::sincos(0.5 * angle);
+    DQuat::from_xyzw(axis.x * sine, axis.y * sine, axis.z * sine, cosine)
+}
+
+/// How positions change with these velocities; for a ball half the quaternion's product with its turning.
+pub(super) fn rates(tree: &Tree, q: &[f64], v: &[f64], rates: &mut [f64]) {
+    for member in &tree.members {
+        let [position, velocity] = member.first;
+        match member.freedom {
+            Freedom::Weld => {}
+            Freedom::Slide(_) | Freedom::Turn(_) => rates[position] = v[velocity],
+            Freedom::Ball => {
+                let turning = DQuat::from_xyzw(0.5 * v[velocity], 0.5 * v[velocity + 1], 0.5 * v[velocity + 2], 0.0);
+                let rate = quaternion(&q[position..position + 4]) * turning;
+                rates[position..position + 4].copy_from_slice(&rate.to_array());
+            }
+        }
+    }
+}
+
+/// Takes the rounding of a step out of the quaternions.
+pub(super) fn normalise(tree: &Tree, q: &mut [f64]) {
+    for member in &tree.members {
+        if member.freedom == Freedom::Ball {
+            let [position, _] = member.first;
+            let unit = quaternion(&q[position..position + 4]).normalize();
+            q[position..position + 4].copy_from_slice(&unit.to_array());
+        }
+    }
+}

@@ -1,0 +1,267 @@
+//! Mechanisms: bodies on joints, moved by the coordinates of their joints and nothing else.
+//!
+//! A tree of joints that stands on the ground or on fixed bodies is integrated here, as long as none of
+//! its bodies touches another. Joints are then exact: there is nothing that could come apart. Where
+//! bodies touch, the engine computes the step (see [`super::articulation`]), and the mechanism takes
+//! its coordinates from where the engine has put the bodies.
+//!
+//! | module | subject |
+//! |---|---|
+//! | `spatial` | motions, forces and inertias as vectors of six |
+//! | `matrix` | symmetric matrices of a few rows |
+//! | `tree` | which bodies hang together |
+//! | `dynamics` | the equations of motion of a tree |
+//! | `rows` | drives, friction and stops within their bounds |
+//! | `coupled` | gears, racks, screws, differentials, cams between joints |
+//! | `free` | steps of what only smooth forces move: Runge-Kutta of order 4 |
+//! | `driven` | steps with drives, friction, stops |
+//!
+//! # Invariants
+//! - What is computed follows from positions, velocities and the drives' states; how often, too.
+//! - Only operations of IEC 60559 and `libm`.
+
+mod coupled;
+mod driven;
+mod dynamics;
+mod free;
+mod matrix;
+mod rows;
+mod spatial;
+mod tree;
+
+use rapier3d::prelude::*;
+use serde::{Deserialize, Serialize};
+
+use super::actuator::Actuator;
+use super::coupled::Coupled;
+use super::effort::Drives;
+use super::fitting::Fitting;
+use super::scene::model::JointKind;
+use coupled::Bond;
+pub(crate) use driven::CORRECTED_A_TURN;
+use dynamics::Equations;
+use rows::Rows;
+use spatial::Twist;
+pub(crate) use tree::Link;
+use tree::Tree;
+
+/// What a mechanism remembers.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub(crate) struct Coordinates {
+    q: Vec<f64>,
+    v: Vec<f64>,
+}
+
+/// A tree of bodies in motion.
+pub(crate) struct Mechanism {
+    tree: Tree,
+    now: Coordinates,
+    equations: Equations,
+    /// For each velocity: its position and the joint of the scene that it is the coordinate of.
+    axes: Vec<(usize, Option<usize>)>,
+    bonds: Vec<Bond>,
+    rows: Rows,
+    room: Room,
+}
+
+/// Room for steps, used again.
+#[derive(Default)]
+struct Room {
+    q: Vec<f64>,
+    v: Vec<f64>,
+    rates: [Vec<f64>; 4],
+    accelerations: [Vec<f64>; 4],
+    force: Vec<f64>,
+    inverse: Vec<f64>,
+    driven: Vec<bool>,
+    /// Axes that go on with their new velocity in a sub-step.
+    exact: Vec<bool>,
+}
+
+/// What a mechanism moves in.
+pub(crate) struct Surroundings<'s> {
+    pub(crate) gravity: Vector,
+    /// Fittings of the scene's joints.
+    pub(crate) fittings: &'s [Fitting],
+    /// Actuators of the scene.
+    pub(crate) actuators: &'s mut [Actuator],
+    pub(crate) drives: &'s mut dyn Drives,
+    /// Parts of the turn at which the step begins and ends.
+    pub(crate) part: [f64; 2],
+}
+
+/// The mechanisms that joints make of bodies, and the joints, by their index in the scene, of what
+/// cannot be one.
+pub(crate) fn mechanisms(
+    links: &[Link],
+    couplings: &[Coupled],
+    bodies: &RigidBodySet,
+    last: impl Fn(usize) -> f64,
+) -> (Vec<Mechanism>, Vec<usize>) {
+    let forest = tree::forest(links, couplings, bodies);
+    let mechanisms = forest.trees.into_iter().map(|tree| {
+        let mut mechanism = Mechanism::new(tree);
+        mechanism.bind(couplings);
+        for jointed in &mechanism.tree.joints {
+            // a turn is told from the next by where the joint was
+            if let (Some(joint), JointKind::Revolute) = (jointed.link.joint, jointed.link.kind) {
+                mechanism.now.q[jointed.first[0]] = last(joint);
+            }
+        }
+        mechanism.measure(bodies);
+        mechanism
+    });
+    (mechanisms.collect(), forest.others)
+}
+
+impl Mechanism {
+    fn new(tree: Tree) -> Self {
+        let mut axes = vec![(0, None); tree.velocities];
+        for member in &tree.members {
+            let [position, velocity] = member.first;
+            for k in 0..member.freedom.velocities() {
+                axes[velocity + k].0 = position + k;
+            }
+        }
+        for jointed in &tree.joints {
+            if matches!(jointed.link.kind, JointKind::Prismatic | JointKind::Revolute | JointKind::Slot) {
+                axes[jointed.first[1]].1 = jointed.link.joint;
+            }
+        }
+        let now = Coordinates { q: vec![0.0; tree.positions], v: vec![0.0; tree.velocities] };
+        Self {
+            now,
+            equations: Equations::new(&tree),
+            tree,
+            axes,
+            bonds: Vec::new(),
+            rows: Rows::default(),
+            room: Room::default(),
+        }
+    }
+
+    /// Its bodies.
+    pub(crate) fn bodies(&self) -> impl Iterator<Item = RigidBodyHandle> {
+        self.tree.members.iter().filter_map(|member| member.body)
+    }
+
+    /// The engine's joints between its bodies.
+    pub(crate) fn links(&self) -> impl Iterator<Item = &Link> {
+        self.tree.joints.iter().map(|jointed| &jointed.link)
+    }
+
+    /// The joints of the scene whose coordinates it has, each with coordinate, from the scene's pose, and
+    /// velocity.
+    pub(crate) fn joints(&self) -> impl Iterator<Item = (usize, f64, f64)> {
+        let each = self.axes.iter().zip(&self.now.v);
+        each.filter_map(|((position, joint), v)| joint.map(|joint| (joint, self.now.q[*position], *v)))
+    }
+
+    /// What it remembers.
+    pub(crate) fn memory(&self) -> Coordinates {
+        self.now.clone()
+    }
+
+    /// Whether a memory is one of such a mechanism.
+    pub(crate) fn fits(&self, memory: &Coordinates) -> bool {
+        (memory.q.len(), memory.v.len()) == (self.now.q.len(), self.now.v.len())
+    }
+
+    /// Takes a memory in that [`fits`](Self::fits).
+    pub(crate) fn restore(&mut self, memory: Coordinates) {
+        self.now = memory;
+    }
+
+    /// Takes its coordinates from where its bodies are and how they move; true if couplings have changed
+    /// them.
+    pub(crate) fn measure(&mut self, bodies: &RigidBodySet) -> bool {
+        for jointed in &self.tree.joints {
+            let (slid, turned, rotation) = tree::between(&jointed.link, bodies);
+            let first = jointed.first[0];
+            let q = &mut self.now.q;
+            match jointed.link.kind {
+                JointKind::Fixed => {}
+                JointKind::Prismatic => q[first] = slid.x,
+                JointKind::Revolute => q[first] = super::coordinate::nearest_turn(turned, q[first]),
+                JointKind::Slot => {
+                    q[first] = slid.y;
+                    q[jointed.second] = super::coordinate::nearest_turn(turned, q[jointed.second]);
+                }
+                JointKind::Ball => {
+                    let rotation = if jointed.reversed { rotation.inverse() } else { rotation };
+                    q[first..first + 4].copy_from_slice(&rotation.to_array());
+                }
+            }
+        }
+        let Coordinates { q, v } = &mut self.now;
+        let own = own_motion(&self.tree, self.equations.about, bodies);
+        if self.equations.project(&self.tree, q, own, v) {
+            return self.reconcile();
+        }
+        v.fill(0.0);
+        false
+    }
+
+    /// Adds to its velocities what contacts changed in a step in which the engine moved each body by
+    /// itself, under gravity and contacts alone: what their momenta have beyond gravity's, as the joints
+    /// allow it. The mechanism's own step comes after it, in which drives and stops resist.
+    pub(crate) fn take_blow(&mut self, dt_s: f64, gravity: Vector, bodies: &RigidBodySet) {
+        let Self { tree, now, equations, .. } = self;
+        let mut moved = vec![0.0; tree.velocities];
+        let own = own_motion(tree, equations.about, bodies);
+        if !equations.project(tree, &now.q, own, &mut moved) {
+            return;
+        }
+        let rest = vec![0.0; tree.velocities];
+        equations.evaluate(tree, &now.q, &rest, gravity);
+        if equations.factor(tree) {
+            // the bias at rest is what would hold it against gravity
+            let mut held = equations.bias.clone();
+            matrix::solve(&equations.mass, tree.velocities, &mut held);
+            for ((v, moved), held) in now.v.iter_mut().zip(moved).zip(held) {
+                *v = moved + dt_s * held;
+            }
+        }
+    }
+
+    /// Puts its bodies where its coordinates say.
+    pub(crate) fn put(&mut self, bodies: &mut RigidBodySet) {
+        self.equations.place(&self.tree, &self.now.q);
+        self.equations.moves(&self.tree, &self.now.v);
+        for (index, member) in self.tree.members.iter().enumerate() {
+            let Some(body) = member.body.and_then(|handle| bodies.get_mut(handle)) else { continue };
+            let (pose, motion) = (self.equations.poses[index], self.equations.motions[index]);
+            let centre = pose * member.centre - self.equations.about;
+            body.set_position(pose, false);
+            body.set_linvel(motion.linear + motion.angular.cross(centre), false);
+            body.set_angvel(motion.angular, false);
+        }
+    }
+
+    /// Moves it by a step that nothing touches it in; false, and unmoved, if its equations cannot be
+    /// solved.
+    #[must_use]
+    pub(crate) fn advance(&mut self, dt_s: f64, around: &mut Surroundings<'_>) -> bool {
+        (self.is_smooth(around) && self.step_freely(dt_s, around)) || self.step_driven(dt_s, around)
+    }
+
+    /// True if no drive, friction, brake or coupling acts on it.
+    fn is_smooth(&self, around: &Surroundings<'_>) -> bool {
+        let joints = self.axes.iter().filter_map(|(_, joint)| *joint);
+        self.bonds.is_empty()
+            && joints.clone().all(|joint| around.fittings[joint].is_smooth())
+            && !around.actuators.iter().any(|actuator| joints.clone().any(|joint| joint == actuator.joint))
+    }
+}
+
+/// How the engine has each member move, about a point.
+fn own_motion<'b>(tree: &'b Tree, about: Vector, bodies: &'b RigidBodySet) -> impl Fn(usize) -> Twist + 'b {
+    move |index| {
+        let body = tree.members[index].body.map(|handle| &bodies[handle]);
+        body.map_or_else(Twist::default, |body| {
+            let angular = body.angvel();
+            let lever = about - body.mass_properties().world_com;
+            Twist { angular, linear: body.linvel() + angular.cross(lever) }
+        })
+    }
+}
