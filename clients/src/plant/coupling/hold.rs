@@ -153,15 +153,12 @@ impl Tie for Holds {
         let Some(place) = wanted else { return Ok(()) };
         let body = target(&self.touched.targets, place)?;
         let velocity_m_s = world.body(body).linvel().to_array();
-        self.held = Some(match self.held {
-            Some(held) => {
-                let acceleration_m_s2 = held.acceleration(world, body).to_array();
-                Held { velocity_m_s, acceleration_m_s2, dt_s, ..held }
-            }
-            None => {
-                let joint = world.hold(self.touched.surface.body, body);
-                Held { target: place, joint, velocity_m_s, acceleration_m_s2: [0.0; 3], dt_s }
-            }
+        self.held = Some(if let Some(held) = self.held {
+            let acceleration_m_s2 = held.acceleration(world, body).to_array();
+            Held { velocity_m_s, acceleration_m_s2, dt_s, ..held }
+        } else {
+            let joint = world.hold(self.touched.surface.body, body);
+            Held { target: place, joint, velocity_m_s, acceleration_m_s2: [0.0; 3], dt_s }
         });
         Ok(())
     }

@@ -249,7 +249,7 @@ impl Expander<'_> {
         let foreign = element
             .attributes
             .iter()
-            .find(|given| !known(&given.key) && !(element.name == "call" && given.key == "macro"));
+            .find(|given| !(known(&given.key) || element.name == "call" && given.key == "macro"));
         if let Some(foreign) = foreign {
             let near = nearest(&foreign.key, parameters.iter().map(|parameter| parameter.name.as_str()));
             let wrong = foreign.place.wrong(format!("macro `{name}` has no parameter `{}`", foreign.key));
