@@ -52,11 +52,6 @@ impl AccessArgs {
                 Some((user, password))
             }
         };
-        Ok(Access {
-            user,
-            pki: self.opcua_pki,
-            trust_clients: self.opcua_trust,
-            foreign_uris: self.opcua_foreign_uri,
-        })
+        Ok(Access { user, pki: self.opcua_pki, trust_clients: self.opcua_trust, foreign_uris: self.opcua_foreign_uri })
     }
 }

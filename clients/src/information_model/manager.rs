@@ -72,9 +72,7 @@ impl SessionNodes {
     fn is_gone(&self, context: &RequestContext) -> IsGone {
         let session: Weak<_> = Arc::downgrade(&context.session);
         let channels = self.channels.clone();
-        Arc::new(move || {
-            session.upgrade().is_none_or(|session| channels.is_closed(session.read().secure_channel_id()))
-        })
+        Arc::new(move || session.upgrade().is_none_or(|session| channels.is_closed(session.read().secure_channel_id())))
     }
 
     fn write_value(&self, context: &RequestContext, write: &WriteNode, item: Item) -> StatusCode {
@@ -157,7 +155,6 @@ pub(super) fn packed(ty: SignalType, given: &Variant) -> Result<Vec<u8>, StatusC
     ty.canonicalise(&mut bytes).map_err(|_| StatusCode::BadOutOfRange)?;
     Ok(bytes)
 }
-
 
 /// Values that change are sampled for those who subscribe to them.
 fn tell_subscribers(board: &Arc<Board>, nodes: Vec<(Item, NodeId)>, subscriptions: Arc<SubscriptionCache>) {

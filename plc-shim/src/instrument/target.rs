@@ -105,9 +105,7 @@ impl Sources {
         // in every tool of the one; a number stands behind a TIME (2nd ed. Table 30).
         let (now, now_long) = match target {
             Target::OpenPlc | Target::Beremiz => ("SDSP_Duration(Value := TV)", "LT#1ns * TV"),
-            Target::Iec => {
-                ("T#1s * (TV / 1000000000) + T#1s * (TV MOD 1000000000) / 1000000000", "LT#1ns * TV")
-            }
+            Target::Iec => ("T#1s * (TV / 1000000000) + T#1s * (TV MOD 1000000000) / 1000000000", "LT#1ns * TV"),
             Target::TwinCat | Target::Codesys => ("LINT_TO_TIME(TV / 1000000)", "LINT_TO_LTIME(TV)"),
             Target::Scl => ("DINT_TO_TIME(LINT_TO_DINT(#TV / 1000000))", "LINT_TO_LTIME(#TV)"),
         };

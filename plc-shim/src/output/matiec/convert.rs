@@ -64,9 +64,7 @@ fn number_of(from: ElementaryType, to: ElementaryType) -> (String, String) {
     match to {
         ElementaryType::Lint => (format!("({inner}"), format!("{closed} / 1000000)")),
         ElementaryType::Lreal => (format!("(LINT_TO_LREAL({inner}"), format!("{closed}) / 1000000.0)")),
-        ElementaryType::Real => {
-            (format!("LREAL_TO_REAL(LINT_TO_LREAL({inner}"), format!("{closed}) / 1000000.0)"))
-        }
+        ElementaryType::Real => (format!("LREAL_TO_REAL(LINT_TO_LREAL({inner}"), format!("{closed}) / 1000000.0)")),
         _ => (format!("LINT_TO_{}({inner}", to.name()), format!("{closed} / 1000000)")),
     }
 }

@@ -43,13 +43,9 @@ fn unread(ty: &str) -> String {
 
 /// A value and an input for a function that has none.
 fn complete(pou: &Pou, edits: &mut Edits) {
-    let mut head = String::new();
-    if pou.result.is_none() {
-        head += " : BOOL";
-    }
-    if has_no_parameters(pou) {
-        head += &format!("\nVAR_INPUT {UNUSED} : BOOL; END_VAR");
-    }
+    let result = if pou.result.is_none() { " : BOOL" } else { "" };
+    let input = if has_no_parameters(pou) { format!("\nVAR_INPUT {UNUSED} : BOOL; END_VAR") } else { String::new() };
+    let head = format!("{result}{input}");
     if !head.is_empty() {
         edits.insert(pou.result.as_ref().map_or(pou.name.span.end, |result| result.span.end), head);
     }
@@ -114,9 +110,8 @@ impl<'a> Reader<'_, 'a> {
                 self.findings.push(Finding::new(place.span, what, help));
             }
             let inner = inner_call(place).filter(|_| kind == SectionKind::Input && !self.is_function);
-            let writes = |inner: &Call| {
-                handed_over(self.page, inner).iter().any(|(kind, _)| *kind != SectionKind::Input)
-            };
+            let writes =
+                |inner: &Call| handed_over(self.page, inner).iter().any(|(kind, _)| *kind != SectionKind::Input);
             if inner.as_ref().is_some_and(writes) && self.function(call).is_some() {
                 let what = "a call with VAR_IN_OUT or VAR_OUTPUT inside of another";
                 self.findings.push(Finding::new(place.span, what, "give its value to a variable first"));
@@ -165,9 +160,7 @@ fn is_chosen(place: &Expr, in_function: bool) -> bool {
             let is_number = |index: &Expr| matches!(index.kind, ExprKind::Literal(Literal::Integer(_)));
             !in_function || !list.iter().all(is_number) || is_chosen(base, in_function)
         }
-        ExprKind::Member(inner, _) | ExprKind::Part(inner, _) | ExprKind::Paren(inner) => {
-            is_chosen(inner, in_function)
-        }
+        ExprKind::Member(inner, _) | ExprKind::Part(inner, _) | ExprKind::Paren(inner) => is_chosen(inner, in_function),
         _ => false,
     }
 }

@@ -34,8 +34,10 @@ fn is_of_library(key: &str) -> bool {
 
 /// Gives other names to variables, inputs, outputs and members that have such a one.
 pub(super) fn rename(page: &Page<'_>, edits: &mut Edits) -> Vec<Finding> {
-    let tokens: Vec<Token> =
-        tokenize_in(page.file.dialect(), page.file.text()).into_iter().filter(|token| !token.kind.is_trivia()).collect();
+    let tokens: Vec<Token> = tokenize_in(page.file.dialect(), page.file.text())
+        .into_iter()
+        .filter(|token| !token.kind.is_trivia())
+        .collect();
     let mut renamed = Renamed { page, edits, names: BTreeMap::new(), findings: Vec::new() };
     renamed.collect(&tokens);
     if !renamed.names.is_empty() {

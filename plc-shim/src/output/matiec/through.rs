@@ -1,5 +1,5 @@
 //! Global variables in functions, which a function of the second edition cannot reach (2nd ed. 2.5.1): each is handed
-//! to it by whoever calls it, as an input if the function only reads it, else as VAR_IN_OUT.
+//! to it by whoever calls it, as an input if the function only reads it, else as `VAR_IN_OUT`.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -133,7 +133,7 @@ impl Visitor for Written<'_, '_> {
         self.note(target);
     }
 
-    /// What goes to a VAR_IN_OUT may be written there.
+    /// What goes to a `VAR_IN_OUT` may be written there.
     fn call(&mut self, call: &Call) {
         for (argument, place) in super::function::handed_over(self.page, call) {
             if argument == SectionKind::InOut {
