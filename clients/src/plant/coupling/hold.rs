@@ -17,8 +17,9 @@ use crate::plant::scene::Scene;
 use crate::plant::scene::model::Bound;
 use crate::plant::world::World;
 
-/// Time constant of what lies between holder and part: a blow shorter than this does not tear them apart.
-const YIELD_S: f64 = 0.005;
+/// Time constant of what lies between holder and part, lips and pads of rubber: a blow shorter than this does
+/// not tear them apart.
+const YIELD_S: f64 = 0.02;
 
 const TOUCHED: [BindingKey; 3] = keys(Which::Dynamic);
 
@@ -153,15 +154,15 @@ impl Tie for Holds {
         let Some(place) = wanted else { return Ok(()) };
         let body = target(&self.touched.targets, place)?;
         let velocity_m_s = world.body(body).linvel().to_array();
-        self.held = Some(match self.held {
-            Some(held) => {
-                let acceleration_m_s2 = held.acceleration(world, body).to_array();
-                Held { velocity_m_s, acceleration_m_s2, dt_s, ..held }
-            }
-            None => {
-                let joint = world.hold(self.touched.surface.body, body);
-                Held { target: place, joint, velocity_m_s, acceleration_m_s2: [0.0; 3], dt_s }
-            }
+        let holder = world.body(self.touched.surface.body);
+        // what is caught is at rest on its holder at once, and is not lost by that
+        let caught_m_s = holder.velocity_at_point(world.body(body).center_of_mass()).to_array();
+        self.held = Some(if let Some(held) = self.held {
+            let acceleration_m_s2 = held.acceleration(world, body).to_array();
+            Held { velocity_m_s, acceleration_m_s2, dt_s, ..held }
+        } else {
+            let joint = world.hold(self.touched.surface.body, body);
+            Held { target: place, joint, velocity_m_s: caught_m_s, acceleration_m_s2: [0.0; 3], dt_s }
         });
         Ok(())
     }

@@ -188,10 +188,12 @@ impl<'d> File<'d> {
 fn transform(node: Node<'_, '_>) -> Result<Place, MeshError> {
     let numbers = numbers(node)?;
     Ok(match (node.tag_name().name(), &numbers[..]) {
-        ("matrix", [a, b, c, x, d, e, f, y, g, h, i, z, ..]) => Place {
-            linear: DMat3::from_cols(DVec3::new(*a, *d, *g), DVec3::new(*b, *e, *h), DVec3::new(*c, *f, *i)),
-            shift: DVec3::new(*x, *y, *z),
-        },
+        // three rows of four, and a fourth that says nothing
+        ("matrix", rows) if rows.len() == 16 => {
+            let [x, y, z, shift] =
+                [0, 1, 2, 3].map(|column| DVec3::new(rows[column], rows[column + 4], rows[column + 8]));
+            Place { linear: DMat3::from_cols(x, y, z), shift }
+        }
         ("translate", [x, y, z]) => Place { shift: DVec3::new(*x, *y, *z), ..Place::IDENTITY },
         ("scale", [x, y, z]) => Place { linear: DMat3::from_diagonal(DVec3::new(*x, *y, *z)), ..Place::IDENTITY },
         ("rotate", [x, y, z, angle_deg]) => {

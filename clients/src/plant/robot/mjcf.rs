@@ -94,7 +94,7 @@ pub(super) fn robot(root: &Element) -> Result<Robot, Vec<RobotFault>> {
     if !faults.is_empty() {
         return Err(faults);
     }
-    let (links, joints) = sorted(links, joints, root).map_err(|fault| vec![fault])?;
+    let (links, joints) = sorted(&links, &joints, root).map_err(|fault| vec![fault])?;
     Ok(Robot { links, joints, remarks })
 }
 
@@ -240,7 +240,7 @@ impl<'e> Reader<'e> {
         let limits = limits.filter(|_| matches!(freedom, Freedom::Turns | Freedom::Slides));
         let name = joint.get("name").map_or(base.name, str::to_owned);
         let (anchor_m, place) = (joint.triple("pos", [0.0; 3])?, joint.place.clone());
-        Ok(Joint { name, freedom, axis, limits, anchor_m, place, ..base })
+        Ok(Joint { name, freedom, anchor_m, axis, limits, place, ..base })
     }
 
     /// A shape; none for what is only shown, and for planes, of which a robot has none.

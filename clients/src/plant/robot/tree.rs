@@ -7,11 +7,7 @@ use super::{Joint, Link};
 ///
 /// # Errors
 /// Links that are no tree.
-pub(super) fn sorted(
-    links: Vec<Link>,
-    joints: Vec<Joint>,
-    root: &Element,
-) -> Result<(Vec<Link>, Vec<Joint>), RobotFault> {
+pub(super) fn sorted(links: &[Link], joints: &[Joint], root: &Element) -> Result<(Vec<Link>, Vec<Joint>), RobotFault> {
     let carried = |link: usize| joints.iter().any(|joint| joint.child == link);
     let roots: Vec<usize> = (0..links.len()).filter(|link| !carried(*link)).collect();
     let [first] = roots[..] else {

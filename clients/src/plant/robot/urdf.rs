@@ -47,7 +47,7 @@ pub(super) fn robot(root: &Element) -> Result<Robot, Vec<RobotFault>> {
     if !faults.is_empty() {
         return Err(faults);
     }
-    let (links, joints) = sorted(links, joints, root).map_err(|fault| vec![fault])?;
+    let (links, joints) = sorted(&links, &joints, root).map_err(|fault| vec![fault])?;
     Ok(Robot { links, joints, remarks })
 }
 

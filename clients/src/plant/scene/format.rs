@@ -107,6 +107,7 @@ pub enum FrictionRule {
 
 impl FrictionRule {
     /// Whether it is the one that holds where nothing is said.
+    #[expect(clippy::trivially_copy_pass_by_ref, reason = "serde passes a reference")]
     pub(crate) fn is_preset(&self) -> bool {
         *self == Self::Mean
     }

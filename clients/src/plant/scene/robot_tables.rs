@@ -336,9 +336,8 @@ impl Tables<'_> {
 fn is_nothing(geometry: &Geometry) -> bool {
     match geometry {
         Geometry::Box(size_m) => size_m.contains(&0.0),
-        Geometry::Sphere(radius_m) => *radius_m == 0.0,
+        Geometry::Sphere(radius_m) | Geometry::Capsule(radius_m, _) => *radius_m == 0.0,
         Geometry::Cylinder(radius_m, length_m) => *radius_m == 0.0 || *length_m == 0.0,
-        Geometry::Capsule(radius_m, _) => *radius_m == 0.0,
         Geometry::Mesh(_, stretch) => stretch.contains(&0.0),
     }
 }

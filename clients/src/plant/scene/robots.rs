@@ -46,7 +46,9 @@ fn one(table: &UrdfTable, written: &mut SceneFile, faults: &mut Faults<'_>) -> O
     let mut robot = match Robot::read(&path, text.ok()?, &reading) {
         Ok(robot) => robot,
         Err(found) => {
-            found.into_iter().for_each(|fault| refuse(table, fault, faults));
+            for fault in found {
+                refuse(table, fault, faults);
+            }
             return None;
         }
     };
@@ -62,7 +64,9 @@ fn one(table: &UrdfTable, written: &mut SceneFile, faults: &mut Faults<'_>) -> O
         Err(mut found) => {
             // a macro that is called twice
             found.dedup();
-            found.into_iter().for_each(|fault| refuse(table, fault, faults));
+            for fault in found {
+                refuse(table, fault, faults);
+            }
             return None;
         }
     }
@@ -125,12 +129,11 @@ fn coordinates(table: &UrdfTable, robot: &mut Robot, faults: &mut Faults<'_>) ->
     {
         for (name, value) in keys.iter().flatten() {
             let joint = robot.joints.iter().position(|joint| joint.name == *name && joint.freedom == wanted);
-            match joint.filter(|at| robot.joints[*at].mimic.is_none()) {
-                Some(joint) => right &= place(&robot.joints[joint], value, unit, &mut given[joint], faults),
-                None => {
-                    refuse_joint(table, robot, (name, value.span()), unit, faults);
-                    right = false;
-                }
+            if let Some(joint) = joint.filter(|at| robot.joints[*at].mimic.is_none()) {
+                right &= place(&robot.joints[joint], value, unit, &mut given[joint], faults);
+            } else {
+                refuse_joint(table, robot, (name, value.span()), unit, faults);
+                right = false;
             }
         }
     }

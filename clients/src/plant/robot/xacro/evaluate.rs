@@ -164,9 +164,8 @@ fn binary(sign: &str, left: &Value, right: &Value) -> Evaluated {
             return Ok(Value::Whole(whole));
         }
     }
-    let (one, other) = match (left.number(), right.number()) {
-        (Some(one), Some(other)) => (one, other),
-        _ => return Err(format!("`{sign}` does not go with {} and {}", quoted(left), quoted(right))),
+    let (Some(one), Some(other)) = (left.number(), right.number()) else {
+        return Err(format!("`{sign}` does not go with {} and {}", quoted(left), quoted(right)));
     };
     if matches!(sign, "/" | "//" | "%") && other == 0.0 {
         return Err("division by 0".to_owned());

@@ -36,6 +36,8 @@ use value::Value;
 /// Most elements of an expanded robot, and deepest nesting of macros and files.
 const ELEMENTS_MAX: usize = 200_000;
 const DEPTH_MAX: usize = 48;
+/// Deepest nesting of elements, those of all open macros and files together.
+const LEVELS_MAX: usize = 256;
 
 /// A macro.
 #[derive(Debug)]
@@ -51,7 +53,7 @@ struct Macro {
 pub(super) fn expand(root: &Element, path: &Path, reading: &Reading<'_>) -> Result<Element, RobotFault> {
     let given = reading.arguments.iter().map(|(name, text)| (name.clone(), Value::literal(text)));
     let scope = Scope::new(reading.packages, path, given.collect());
-    let mut expander = Expander { scope, macros: Vec::new(), made: 0, depth: 0 };
+    let mut expander = Expander { scope, macros: Vec::new(), made: 0, depth: 0, levels: 0 };
     let children = expander.all(&root.children)?;
     Ok(Element { children, attributes: expander.attributes(root)?, ..bare(root) })
 }
@@ -67,21 +69,32 @@ struct Expander<'r> {
     macros: Vec<(String, Arc<Macro>)>,
     made: usize,
     depth: usize,
+    levels: usize,
 }
 
 type Expanded = Result<Vec<Element>, RobotFault>;
 
 impl Expander<'_> {
     fn all(&mut self, elements: &[Element]) -> Expanded {
+        self.levels += 1;
+        let expanded = self.level(elements);
+        self.levels -= 1;
+        expanded
+    }
+
+    fn level(&mut self, elements: &[Element]) -> Expanded {
         let mut expanded = Vec::new();
         for element in elements {
-            if element.is_xacro {
-                expanded.extend(self.own(element)?);
-                continue;
+            if self.levels > LEVELS_MAX {
+                return Err(element.wrong(format!("elements and macros are nested more than {LEVELS_MAX} deep")));
             }
             self.made += 1;
             if self.made > ELEMENTS_MAX {
                 return Err(element.wrong(format!("the robot has more than {ELEMENTS_MAX} elements")));
+            }
+            if element.is_xacro {
+                expanded.extend(self.own(element)?);
+                continue;
             }
             let attributes = self.attributes(element)?;
             expanded.push(Element { attributes, children: self.all(&element.children)?, ..bare(element) });
@@ -249,7 +262,7 @@ impl Expander<'_> {
         let foreign = element
             .attributes
             .iter()
-            .find(|given| !known(&given.key) && !(element.name == "call" && given.key == "macro"));
+            .find(|given| !(known(&given.key) || element.name == "call" && given.key == "macro"));
         if let Some(foreign) = foreign {
             let near = nearest(&foreign.key, parameters.iter().map(|parameter| parameter.name.as_str()));
             let wrong = foreign.place.wrong(format!("macro `{name}` has no parameter `{}`", foreign.key));
@@ -306,4 +319,91 @@ impl Expander<'_> {
 /// Whether a property is written by its own former value, which is gone later.
 fn needs_now(text: &str, name: &str) -> bool {
     text.contains('$') && text.contains(name)
+}
+
+#[cfg(test)]
+mod tests {
+    use std::path::Path;
+
+    use crate::plant::robot::{Packages, Reading, Robot};
+
+    fn links(inner: &str) -> Result<Vec<String>, String> {
+        let text = format!("<robot xmlns:xacro=\"http://wiki.ros.org/xacro\">\n{inner}\n</robot>");
+        let (packages, arguments) = (Packages::default(), [("given".to_owned(), "2".to_owned())]);
+        let reading = Reading { file: "arm.xacro", packages: &packages, arguments: &arguments };
+        let robot = Robot::read(Path::new("arm.xacro"), text, &reading).map_err(|faults| faults[0].to_string())?;
+        Ok(robot.links.into_iter().map(|link| link.name).collect())
+    }
+
+    fn name_of(inner: &str) -> String {
+        links(inner).map_or_else(|told| told, |links| links.concat())
+    }
+
+    #[test]
+    fn properties_are_seen_where_ros_sees_them() {
+        let cases = [
+            // a property is worth what it says when somebody asks
+            (
+                r#"<xacro:property name="a" value="${b + 1}"/><xacro:property name="b" value="2"/><link name="l${a}"/>"#,
+                "l3",
+            ),
+            (
+                r#"<xacro:property name="a" value="1"/><xacro:property name="a" value="${a + 1}"/><link name="l${a}"/>"#,
+                "l2",
+            ),
+            (
+                r#"<xacro:property name="a" default="1"/><xacro:property name="a" default="2"/><link name="l${a}"/>"#,
+                "l1",
+            ),
+            (
+                r#"<xacro:arg name="given" default="7"/><xacro:arg name="other" default="x"/><link name="$(arg given)$(arg other)"/>"#,
+                "2x",
+            ),
+            (
+                r#"<xacro:macro name="m" params="a"><xacro:property name="b" value="${a}" scope="parent"/></xacro:macro>
+                <xacro:m a="5"/><link name="l${b}"/>"#,
+                "l5",
+            ),
+            (
+                r#"<xacro:property name="a" value="out"/><xacro:macro name="m" params="b:=^|9 c:=${2*3} d:=''">
+                <link name="${a}${b}${c}${d}"/></xacro:macro><xacro:m/>"#,
+                "out96",
+            ),
+            (
+                r#"<xacro:macro name="m" params="*one **many"><xacro:insert_block name="one"/><xacro:insert_block name="many"/>
+                </xacro:macro><xacro:m><link name="a"/><g/></xacro:m>"#,
+                "a",
+            ),
+            (
+                r#"<xacro:unless value="${1 == 2}"><link name="yes"/></xacro:unless><xacro:if value="false"><link name="no"/></xacro:if>"#,
+                "yes",
+            ),
+            (r#"<link name="a$${b}"/>"#, "a${b}"),
+            (r#"<xacro:property name="l" value="${[1, 2]}"/><link name="${len(l)}${'_'}${l[1]}"/>"#, "2_2"),
+        ];
+        for (inner, name) in cases {
+            assert_eq!(name_of(inner), name, "{inner}");
+        }
+    }
+
+    #[test]
+    fn what_has_no_end_is_told() {
+        let told = |inner: &str| links(inner).expect_err("refused");
+        let endless = r#"<xacro:macro name="m" params=""><xacro:m/></xacro:macro><xacro:m/>"#;
+        assert!(told(endless).contains("nested more than 48 deep"), "{}", told(endless));
+        let growing = r#"<xacro:macro name="m" params=""><a><a><a><a><a><a><a><a><xacro:m/></a></a></a></a></a></a></a></a></xacro:macro><xacro:m/>"#;
+        assert!(told(growing).contains("nested more than 256 deep"), "{}", told(growing));
+        let wide = r#"<xacro:macro name="m" params="n"><a/><a/><xacro:if value="${n > 0}"><xacro:m n="${n - 1}"/><xacro:m n="${n - 1}"/></xacro:if></xacro:macro><xacro:m n="40"/>"#;
+        assert!(told(wide).contains("more than 200000 elements"), "{}", told(wide));
+        assert!(
+            told(
+                r#"<xacro:property name="a" value="${b}"/><xacro:property name="b" value="${a}"/><link name="${a}"/>"#
+            )
+            .contains("needs itself")
+        );
+        assert!(told(r#"<link name="$(env HOME)"/>"#).contains("does not depend on the environment"));
+        assert!(told(r#"<link name="${1"/>"#).contains("has no end"));
+        assert!(told(r#"<xacro:include filename="arm.xacro"/>"#).contains("cannot be read"));
+        assert!(told(r#"<xacro:element xacro:name="a"/>"#).contains("is not understood here"));
+    }
 }

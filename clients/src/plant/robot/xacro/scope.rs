@@ -176,18 +176,17 @@ fn closing(text: &str, open: char, close: char) -> Option<usize> {
     let mut depth = 0_usize;
     let mut quote = None;
     for (at, letter) in text.char_indices() {
-        match quote {
-            Some(mark) if mark == letter => quote = None,
-            Some(_) => {}
-            None if matches!(letter, '\'' | '"') && open == '{' => quote = Some(letter),
-            None if letter == open => depth += 1,
-            None if letter == close => {
-                depth -= 1;
-                if depth == 0 {
-                    return Some(at);
-                }
+        if let Some(mark) = quote {
+            quote = (mark != letter).then_some(mark);
+        } else if open == '{' && matches!(letter, '\'' | '"') {
+            quote = Some(letter);
+        } else if letter == open {
+            depth += 1;
+        } else if letter == close {
+            depth -= 1;
+            if depth == 0 {
+                return Some(at);
             }
-            None => {}
         }
     }
     None

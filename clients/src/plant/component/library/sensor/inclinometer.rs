@@ -44,6 +44,8 @@ signals! {
         pitch_deg: f64,
         /// both tilts together: from the body's z to the vertical
         tilt_deg: f64,
+        /// it has its supply
+        valid: bool,
     }
 }
 
@@ -105,7 +107,7 @@ impl Component for Inclinometer {
         if turn.failed.has(Failure::NoSupply) {
             return Outputs::default();
         }
-        Outputs { roll_deg, pitch_deg, tilt_deg }
+        Outputs { roll_deg, pitch_deg, tilt_deg, valid: true }
     }
 }
 
