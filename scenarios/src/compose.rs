@@ -5,7 +5,7 @@ use std::path::PathBuf;
 
 use miette::{NamedSource, SourceSpan};
 use onescan_clients::operator::Operator;
-use onescan_clients::plant::{Plant, Scene, SceneError, SceneFault};
+use onescan_clients::plant::{Inside, Plant, Scene, SceneError, SceneFault};
 use onescan_clients::soft_plc::{Bindings, SoftPlcClient, bind};
 use onescan_plc_shim::input::kind::{FileKind, SourceKind};
 use onescan_plc_shim::{Application, Builder, Dialect, Input, MemoryLimit, Task, TaskPlan};
@@ -322,12 +322,21 @@ fn read(path: &PathBuf) -> Result<String, ScenarioError> {
 
 /// A scene's faults, the first in front.
 pub fn report(error: &SceneError, file: &str, text: &str) -> SceneReport {
-    let one = |fault: &SceneFault| SceneReport {
-        message: fault.kind.to_string(),
-        file: NamedSource::new(file, text.to_owned()),
-        place: Some(SourceSpan::from(fault.span.clone())),
-        help: fault.hint.clone(),
-        others: Vec::new(),
+    let one = |fault: &SceneFault| match &fault.inside {
+        None => SceneReport {
+            message: fault.kind.to_string(),
+            file: NamedSource::new(file, text.to_owned()),
+            place: Some(SourceSpan::from(fault.span.clone())),
+            help: fault.hint.clone(),
+            others: Vec::new(),
+        },
+        Some(Inside { told, place }) => SceneReport {
+            message: format!("{told} (named at {})", fault.place),
+            file: NamedSource::new(&place.source.file, place.source.text.clone()),
+            place: Some(SourceSpan::from(place.span.clone())),
+            help: fault.hint.clone(),
+            others: Vec::new(),
+        },
     };
     match error.faults() {
         [] => SceneReport {

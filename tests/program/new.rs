@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use crate::typed::{Said, onescan, typed};
+use crate::typed::{Said, onescan, scenario, typed};
 
 /// Types a command where Python finds the package `onescan_client`.
 fn with_python(folder: &Path, words: &[&str]) -> Said {
@@ -115,6 +115,31 @@ fn a_scenario_made_of_a_list_runs_and_checks_at_once() {
         let again = typed(folder.path(), &["new", "press", "--from", &list(name)]);
         assert_eq!(again.code, Some(2), "{name}: {again:?}");
     }
+}
+
+/// A PLC that is browsed gives the same signals over both links, and its words are none of them.
+#[test]
+fn a_scenario_made_of_a_browsed_plc_runs_at_once() {
+    let plc = crate::plc::Plc::start(&scenario("shear"), &[]);
+    let folder = tempfile::tempdir().unwrap();
+    let made = ["opc.tcp://", "ads://"].map(|scheme| {
+        let url = plc.gateway(scheme).trim_start_matches("plc=").to_owned();
+        let name = scheme.split([':', '.']).next().expect("a name");
+        let said = typed(folder.path(), &["new", name, "--from", &url]);
+        assert_eq!((said.code, said.err.as_str()), (Some(0), ""), "{url}");
+        assert!(said.out.contains("13 signals of "), "{}", said.out);
+        let said = typed(folder.path(), &["run", name, "--until", "100ms", "--runs", "2"]);
+        assert_eq!(said.code, Some(0), "{said:?}");
+        let text = std::fs::read_to_string(folder.path().join(name).join("scenario.toml")).unwrap();
+        assert!(text.contains(&format!("url = \"{url}\"\nsystem_words = true\n")), "{text}");
+        text
+    });
+    let signals = made.map(|text| {
+        let signals = text.split("[signals]\n").nth(1).and_then(|rest| rest.split("\n\n").next()).map(str::to_owned);
+        signals.expect("signals")
+    });
+    assert_eq!(signals[0], signals[1]);
+    insta::assert_snapshot!("new_from_browsed_signals", signals[0]);
 }
 
 #[test]

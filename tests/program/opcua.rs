@@ -42,6 +42,12 @@ impl Server {
         Self { child, url, said }
     }
 
+    /// Ends it before anybody has taken part.
+    fn stop(&mut self) {
+        self.child.kill().expect("it runs");
+        self.child.wait().expect("it ends");
+    }
+
     fn end(mut self) -> Said {
         let mut err = String::new();
         self.said.read_to_string(&mut err).expect("text");
@@ -124,8 +130,9 @@ fn what_is_wrong_is_refused_and_changes_nothing() {
 #[test]
 fn a_client_that_fails_is_told_by_name() {
     for (how, patience, told) in [
-        ("dies", "3s", "is not done within 3 s: its OPC UA client is dead, hangs or does not write `Done`"),
-        ("leaves", "60s", "its OPC UA session has ended while grant "),
+        ("dies", "60s", "its OPC UA connection or session has ended while grant "),
+        ("hangs", "3s", "is not done within 3 s: its OPC UA client is dead, hangs or does not write `Done`"),
+        ("leaves", "60s", "its OPC UA connection or session has ended while grant "),
         ("fault", "60s", "client `plc` failed in state run at t_v = 0.200 s: the valve is stuck"),
     ] {
         let words = ["--until", "1h", "--opcua-client", "plc", "--reply-timeout", patience];
@@ -226,6 +233,29 @@ fn who_was_refused_is_named_when_nobody_has_joined() {
         "{rest}"
     );
     assert!(!rest.contains("ERROR"), "{rest}");
+}
+
+/// A certificate that was made for another application lets nobody take part, unless that is asked for.
+#[test]
+fn a_certificate_for_another_application_is_refused() {
+    for (more, uri, told) in [
+        (&[][..], "urn:a:panel", "Good"),
+        (&[], "urn:another", "BadCertificateUriInvalid"),
+        (&["--opcua-foreign-uri"], "urn:another", "Good"),
+    ] {
+        let folder = tempfile::tempdir().expect("a folder");
+        let text = |path: std::path::PathBuf| path.to_str().expect("text").to_owned();
+        let (pki, own) = (text(folder.path().join("pki")), text(folder.path().to_owned()));
+        let words = ["--opcua-client", "plc", "--join-timeout", "20s", "--opcua-pki", &pki, "--opcua-trust"];
+        let mut server = Server::start(&scenario("shear"), &[&words[..], more].concat());
+        assert_eq!(ended(begun("stranger.py", &[&server.url, "session", &own, uri])).trim(), told, "{more:?} {uri}");
+        server.stop();
+        let folder = tempfile::tempdir().expect("a folder");
+        let (pki, own) = (text(folder.path().join("pki")), text(folder.path().to_owned()));
+        let plc = crate::plc::Plc::start(&scenario("shear"), &[&["--opcua-pki", &pki, "--opcua-trust"], more].concat());
+        let url = plc.gateway("opc.tcp://").rsplit('=').next().expect("a URL").to_owned();
+        assert_eq!(ended(begun("stranger.py", &[&url, "plc", &own, uri])).trim(), told, "{more:?} {uri}");
+    }
 }
 
 #[test]

@@ -61,7 +61,7 @@ fn the_shear_becomes_one_file_and_its_mapping() {
 
 #[test]
 fn what_becomes_of_every_scenario_compiles() {
-    for (name, more) in [("shear", &[][..]), ("filling-machine", &["--client", "plc"][..])] {
+    for (name, more) in [("shear", &[][..]), ("filling-machine", &["--client", "plc"][..]), ("gantry-robot", &[])] {
         let (folder, said) = instrumented(name, more);
         assert_eq!(said.code, Some(0), "{name}: {}{}", said.out, said.err);
         if compiles(folder.path()).is_none() {
@@ -72,11 +72,18 @@ fn what_becomes_of_every_scenario_compiles() {
 
 #[test]
 fn what_matiec_has_not_is_refused_with_its_place() {
-    let (folder, said) = instrumented("gantry-robot", &[]);
+    let folder = tempfile::tempdir().expect("a folder");
+    let text = "VAR_GLOBAL\n    Limit : INT;\nEND_VAR\n\nPROGRAM Main\nVAR\n    Probe : MC_TouchProbe;\n    Span : LTIME;\n\
+                END_VAR\n    Limit := Limit + 1;\nEND_PROGRAM\n";
+    std::fs::write(folder.path().join("main.st"), text).expect("a file");
+    let said = typed(folder.path(), &["instrument", "main.st", "--target", "openplc", "-o", "out"]);
     assert_eq!(said.code, Some(2));
-    assert!(said.out.contains("robot.st:12:22"), "{}", said.out);
-    assert!(said.out.contains("`MC_Power` of motion control cannot be had in MatIEC"), "{}", said.out);
+    assert!(said.out.contains("main.st:7:13") && said.out.contains("`MC_TouchProbe` is not replaced"), "{}", said.out);
     assert!(!folder.path().join("out").exists());
+    std::fs::write(folder.path().join("main.st"), text.replace("    Probe : MC_TouchProbe;\n", "")).expect("a file");
+    let said = typed(folder.path(), &["instrument", "main.st", "--target", "openplc", "-o", "out"]);
+    assert_eq!(said.code, Some(2));
+    assert!(said.out.contains("the type LTIME cannot be had in MatIEC"), "{}", said.out);
     let (_, said) = instrumented("filling-machine", &[]);
     assert!(said.err.contains("say which: `--client panel` or `--client plc`"), "{}", said.err);
 }

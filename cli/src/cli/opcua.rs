@@ -22,6 +22,9 @@ pub struct AccessArgs {
     /// Trust the certificate of any OPC UA client
     #[arg(long, requires = "opcua_pki")]
     pub opcua_trust: bool,
+    /// Let in OPC UA clients whose certificate was made for an application of another URI
+    #[arg(long, requires = "opcua_pki")]
+    pub opcua_foreign_uri: bool,
     /// Let a user's password come over a connection without security, where everybody on the way can read it
     #[arg(long, requires = "opcua_user")]
     pub opcua_plain_password: bool,
@@ -49,6 +52,6 @@ impl AccessArgs {
                 Some((user, password))
             }
         };
-        Ok(Access { user, pki: self.opcua_pki, trust_clients: self.opcua_trust, foreign_uris: false })
+        Ok(Access { user, pki: self.opcua_pki, trust_clients: self.opcua_trust, foreign_uris: self.opcua_foreign_uri })
     }
 }

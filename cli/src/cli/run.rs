@@ -6,7 +6,6 @@ use std::path::PathBuf;
 use std::time::Duration;
 
 use clap::{Args as ClapArgs, ValueEnum};
-use onescan_clients::opcua_server::Access;
 use onescan_recording::Choice;
 use onescan_scenario::Mode;
 use onescan_scenario::watch::WatchRequest;
@@ -115,9 +114,6 @@ pub struct RunArgs {
     /// Who is let in over OPC UA
     #[command(flatten)]
     pub access: AccessArgs,
-    /// Let in OPC UA clients whose certificate was made for an application of another URI
-    #[arg(long, requires = "opcua_pki")]
-    pub opcua_foreign_uri: bool,
     /// How long to wait for clients to join
     #[arg(long, default_value = "60s", value_name = "TIME")]
     pub join_timeout: TimeSpan,
@@ -243,7 +239,7 @@ pub fn run(args: RunArgs) -> Result<ExitCode, CommandError> {
 }
 
 fn config(args: RunArgs) -> Result<RunConfig, CommandError> {
-    let access = Access { foreign_uris: args.opcua_foreign_uri, ..args.access.access()? };
+    let access = args.access.access()?;
     let format = args.format.into();
     let record = args.record.map(|folder| RecordRequest {
         folder,

@@ -90,8 +90,13 @@ impl ListKind {
 pub enum ListLink {
     /// Symbols of a TwinCAT PLC at this AMS port.
     Ads(Option<u16>),
-    /// Variables that this server has.
-    Server(String),
+    /// Variables of a server.
+    Server {
+        /// Where it is.
+        url: String,
+        /// True if it has words about the PLC itself.
+        system_words: bool,
+    },
 }
 
 /// A list as it was read.

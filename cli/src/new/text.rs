@@ -34,8 +34,11 @@ fn one_line(text: &str) -> String {
     }
 }
 
-/// What the list is called; where it lay is nobody's business in a file that is kept.
+/// What the list is called; where a file lay is nobody's business in one that is kept.
 fn file_name(list: &IoList) -> String {
+    if let Some(ListLink::Server { url, .. }) = &list.link {
+        return one_line(url);
+    }
     one_line(list.from.rsplit(['/', '\\']).next().unwrap_or(&list.from))
 }
 
@@ -141,7 +144,7 @@ fn table(name: &str, entries: &[(String, String)]) -> String {
 fn gateway(list: &IoList, signals: &[Signal]) -> String {
     let (about, url, port) = match &list.link {
         None => return String::new(),
-        Some(ListLink::Server(url)) => ("", url.as_str(), None),
+        Some(ListLink::Server { url, .. }) => ("", url.as_str(), None),
         Some(ListLink::Ads(port)) => {
             ("# The real PLC; a TwinCAT on another machine is `ads://ITS-ADDRESS`.\n", "ads://127.0.0.1", *port)
         }
@@ -151,7 +154,8 @@ fn gateway(list: &IoList, signals: &[Signal]) -> String {
         Some(Entry::Mapped { name: signal.name.clone(), places })
     };
     let entries = signals.iter().filter_map(entry).collect();
-    let fragment = Fragment { client: "plc".to_owned(), url: url.to_owned(), system_words: false, entries };
+    let system_words = matches!(list.link, Some(ListLink::Server { system_words: true, .. }));
+    let fragment = Fragment { client: "plc".to_owned(), url: url.to_owned(), system_words, entries };
     let port = port.map(|port| format!("\n[clients.plc.gateway.ads]\nport = {port}\n")).unwrap_or_default();
     format!("\n{about}{fragment}{port}")
 }

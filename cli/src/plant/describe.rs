@@ -3,7 +3,7 @@
 use std::io::{self, Write};
 use std::path::Path;
 
-use onescan_clients::plant::component::kinds;
+use onescan_clients::plant::component::{kinds, open_inputs};
 use onescan_clients::plant::scene::model::{Body, BodyKind, Component, Mass, Moved, Scene, Sensing, Shape, Wire};
 use onescan_report::OutputError;
 use onescan_scenario::compose::report;
@@ -89,6 +89,7 @@ fn tree(scene: &Scene, out: &mut dyn Write) -> io::Result<()> {
         }),
     )?;
     section(out, "components", scene.components.iter().map(|component| one(component, scene)))?;
+    section(out, "remarks", scene.remarks.iter().cloned())?;
     section(out, "reads", scene.reads.iter().map(|port| format!("{} : {}", port.name, port.ty)))?;
     section(out, "writes", scene.writes.iter().map(|port| format!("{} : {}", port.name, port.ty)))
 }
@@ -144,7 +145,7 @@ fn body(body: &Body) -> String {
     format!("{}: {kind}{shape}{mass}", body.name)
 }
 
-/// A component: what it is bound to, what of it is not preset, and its wires.
+/// A component: what it is bound to, what of it is not preset, its wires, and its inputs without one.
 fn one(component: &Component, scene: &Scene) -> String {
     let mut lines = vec![format!("{}: {}", component.name, component.kind)];
     let Some(kind) = kinds().into_iter().find(|kind| kind.name == component.kind) else { return lines.concat() };
@@ -161,6 +162,7 @@ fn one(component: &Component, scene: &Scene) -> String {
     for (input, wire) in kind.inputs.iter().zip(&component.inputs) {
         match wire {
             Wire::Open => {}
+            Wire::Constant(value) => lines.push(format!("{} = {value}", input.key)),
             Wire::Signal(name) => lines.push(format!("{} <- {name}", input.key)),
             Wire::Output { component, output } => {
                 let from = &scene.components[*component];
@@ -168,6 +170,10 @@ fn one(component: &Component, scene: &Scene) -> String {
                 lines.push(format!("{} <- {}.{}", input.key, from.name, key.unwrap_or_default()));
             }
         }
+    }
+    let open: Vec<_> = open_inputs(component).iter().map(|(key, preset)| format!("{key} = {preset}")).collect();
+    if !open.is_empty() {
+        lines.push(format!("driven by nobody: {}", open.join(", ")));
     }
     for (output, name) in kind.outputs.iter().zip(&component.outputs) {
         lines.extend(name.as_ref().map(|name| format!("{} -> {name}", output.key)));

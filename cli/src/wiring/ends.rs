@@ -1,7 +1,8 @@
 //! Where signals begin and end inside of a client: at components of a scene, at variables of a PLC.
 
-use onescan_clients::plant::component::kinds;
-use onescan_clients::plant::scene::model::{Drive, Scene, When, Wire};
+use onescan_clients::plant::component::kind::Setting;
+use onescan_clients::plant::component::{kinds, open_inputs};
+use onescan_clients::plant::scene::model::{Component, Drive, Scene, When, Wire};
 use onescan_clients::soft_plc::{BindError, bind};
 use onescan_plc_shim::Application;
 use onescan_scenario::compose::Paths;
@@ -21,6 +22,8 @@ pub(super) struct End {
 pub(super) struct Ends {
     pub(super) reads: Vec<End>,
     pub(super) writes: Vec<End>,
+    /// Inputs of components that nobody drives, each with the value that it has.
+    pub(super) open: Vec<(String, Setting)>,
     /// Signals that cannot be bound, each with the reason.
     pub(super) unbound: Vec<BindError>,
 }
@@ -36,8 +39,20 @@ pub(super) fn of_plant(scene: &Scene) -> Ends {
     Ends {
         reads: scene.reads.iter().map(end).collect(),
         writes: scene.writes.iter().map(end).collect(),
+        open: open_of(scene),
         unbound: Vec::new(),
     }
+}
+
+/// The inputs of components that nobody drives, with their presets.
+fn open_of(scene: &Scene) -> Vec<(String, Setting)> {
+    let open = |component: &Component| {
+        open_inputs(component)
+            .into_iter()
+            .map(|(key, preset)| (format!("{}.{key}", component.name), preset))
+            .collect::<Vec<_>>()
+    };
+    scene.components.iter().flat_map(open).collect()
 }
 
 /// Every place of a scene that a signal has, in the scene's order.

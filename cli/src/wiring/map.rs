@@ -1,5 +1,6 @@
 //! The map: every signal with its writer, its readers and what is wrong with it.
 
+use onescan_clients::plant::component::kind::Setting;
 use onescan_scenario::compose::Compiled;
 use onescan_scenario::file::ClientFile;
 use onescan_scenario::{Scenario, ScenarioError};
@@ -15,8 +16,21 @@ pub struct Map {
     pub clients: Vec<Member>,
     /// The declared signals by name.
     pub signals: Vec<Wired>,
+    /// Inputs of a plant's components that nobody drives: no fault, but a reason to look.
+    pub open: Vec<OpenInput>,
     /// What is wrong, signal by signal.
     pub troubles: Vec<Trouble>,
+}
+
+/// An input of a component that nobody drives.
+#[derive(Clone, Debug, Serialize)]
+pub struct OpenInput {
+    /// The plant.
+    pub client: String,
+    /// Component and input.
+    pub input: String,
+    /// What it is all the time.
+    pub preset: Setting,
 }
 
 /// A client.
@@ -117,7 +131,7 @@ impl Map {
             clients.push(Member { name: name.to_string(), kind, known: ends.is_some() });
             found.push((name.clone(), ends));
         }
-        let mut map = Self { clients, signals: Vec::new(), troubles: Vec::new() };
+        let mut map = Self { clients, signals: Vec::new(), open: open(&found), troubles: Vec::new() };
         for (name, signal) in &scenario.file().signals {
             let signal = signal.get_ref();
             let wired = Wired {
@@ -197,6 +211,16 @@ impl Map {
             }
         }
     }
+}
+
+fn open(found: &[(ClientName, Option<Ends>)]) -> Vec<OpenInput> {
+    let mut open = Vec::new();
+    for (client, ends) in found {
+        for (input, preset) in ends.iter().flat_map(|ends| &ends.open) {
+            open.push(OpenInput { client: client.to_string(), input: input.clone(), preset: *preset });
+        }
+    }
+    open
 }
 
 #[derive(Clone, Copy)]

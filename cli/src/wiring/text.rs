@@ -3,7 +3,7 @@
 use std::io::{self, Write};
 
 use super::fold::{Line, fold, fold_names};
-use super::map::{Hook, Map, TroubleKind, Wired};
+use super::map::{Hook, Map, OpenInput, TroubleKind, Wired};
 
 /// Most ends of a signal that are all named.
 const ENDS_MAX: usize = 3;
@@ -33,7 +33,17 @@ pub(super) fn write(map: &Map, out: &mut dyn Write) -> io::Result<()> {
             writeln!(out, "  {}: {}", line[0], line[1])?;
         }
     }
-    Ok(())
+    open(map, out)
+}
+
+/// The inputs of components that nobody drives, and what they are.
+fn open(map: &Map, out: &mut dyn Write) -> io::Result<()> {
+    let line = |open: &OpenInput| vec![open.client.clone(), open.input.clone(), open.preset.to_string()];
+    let lines: Vec<Line> = map.open.iter().map(line).collect();
+    if !lines.is_empty() {
+        writeln!(out, "\ninputs of components that nobody drives ({})", lines.len())?;
+    }
+    fold(&lines).iter().try_for_each(|line| writeln!(out, "  {}: {} = {}", line[0], line[1], line[2]))
 }
 
 /// The signals by route, as in `plant -> plc`, in the order of the clients.

@@ -29,6 +29,11 @@ pub trait Link: Send {
     /// # Errors
     /// The connection is gone, or what came is no value.
     fn read(&mut self, patience: Duration, from_plc: &mut [u8]) -> Result<bool, LinkFault>;
+
+    /// True for a link that asks the PLC each time, false for one that is told of changes.
+    fn is_polled(&self) -> bool {
+        true
+    }
 }
 
 /// A variable that a PLC says it has.

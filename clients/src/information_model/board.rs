@@ -71,8 +71,8 @@ pub enum SeatFault {
     /// It said so.
     #[error("{0}")]
     Told(String),
-    /// Its OPC UA session was closed or has run out.
-    #[error("its OPC UA session has ended while grant {grant} waits for `Done`")]
+    /// Its connection was closed or lost, or its OPC UA session has run out.
+    #[error("its OPC UA connection or session has ended while grant {grant} waits for `Done`")]
     Gone {
         /// The grant.
         grant: u64,

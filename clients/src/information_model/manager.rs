@@ -25,22 +25,22 @@ use super::seat::{Holder, Refusal};
 use super::types;
 use super::value::of_item;
 use crate::gateway::opcua::value;
-use crate::opcua_server::Refusals;
+use crate::opcua_server::Channels;
 
 /// The nodes of a session and what is asked of them.
 pub struct SessionNodes {
     board: Arc<Board>,
     namespaces: Vec<NamespaceMetadata>,
     items: HashMap<NodeId, Item>,
-    /// Where it is noted whose certificate is that of another application; nothing if such a client is let in.
-    sent_away: Option<Refusals>,
+    /// The connections that are there.
+    channels: Channels,
 }
 
 impl SessionNodes {
     /// Adds all nodes of the session on `board`.
-    pub fn new(
+    pub(super) fn new(
         board: Arc<Board>,
-        sent_away: Option<Refusals>,
+        channels: Channels,
         context: &ServerContext,
         space: &mut AddressSpace,
     ) -> Self {
@@ -64,19 +64,15 @@ impl SessionNodes {
         let namespaces = [TYPES_URI, SESSION_URI].into_iter().zip(&indexes).map(namespace).collect();
         let nodes: Vec<(Item, NodeId)> = items.iter().map(|(id, item)| (*item, id.clone())).collect();
         tell_subscribers(&board, nodes, Arc::clone(&context.subscriptions));
-        Self { board, namespaces, items, sent_away }
+        Self { board, namespaces, items, channels }
     }
 
-    /// Refuses a client whose certificate was made for another application (OPC 10000-4 6.1.3, `Bad_CertificateUriInvalid`).
-    fn admitted(&self, context: &RequestContext) -> Result<(), StatusCode> {
-        let Some(sent_away) = &self.sent_away else { return Ok(()) };
-        let session = context.session.read();
-        let Some(certificate) = session.client_certificate() else { return Ok(()) };
-        let uri = &session.application_description().application_uri;
-        certificate.is_application_uri_valid(uri.as_ref()).map_err(|error| {
-            sent_away.note(format!("the OPC UA client `{uri}`, whose certificate was made for another application"));
-            error.status()
-        })
+    /// Whether the client has gone: its session is in the server's hands alone, and ends when they let go; without a
+    /// connection it takes part in nothing.
+    fn is_gone(&self, context: &RequestContext) -> IsGone {
+        let session: Weak<_> = Arc::downgrade(&context.session);
+        let channels = self.channels.clone();
+        Arc::new(move || session.upgrade().is_none_or(|session| channels.is_closed(session.read().secure_channel_id())))
     }
 
     fn write_value(&self, context: &RequestContext, write: &WriteNode, item: Item) -> StatusCode {
@@ -116,7 +112,7 @@ impl SessionNodes {
     ) -> Result<(), StatusCode> {
         let board = &self.board;
         let done = match (of, given) {
-            (number::CLIENT_START, Variant::Boolean(true)) => board.start(seat, who, is_gone(context)),
+            (number::CLIENT_START, Variant::Boolean(true)) => board.start(seat, who, self.is_gone(context)),
             (number::CLIENT_START, Variant::Boolean(false)) => board.attempt(seat, |seat| seat.withdraw(who)),
             (number::DONE, Variant::UInt64(grant)) => board.attempt(seat, |seat| seat.done(who, *grant)),
             (number::WAKE, Variant::Int64(wake_ns)) => board.attempt(seat, |seat| seat.wake(who, *wake_ns)),
@@ -158,12 +154,6 @@ pub(super) fn packed(ty: SignalType, given: &Variant) -> Result<Vec<u8>, StatusC
     }
     ty.canonicalise(&mut bytes).map_err(|_| StatusCode::BadOutOfRange)?;
     Ok(bytes)
-}
-
-/// The session of an OPC UA client is in the server's hands alone: when they let go, it has ended.
-pub(super) fn is_gone(context: &RequestContext) -> IsGone {
-    let session: Weak<_> = Arc::downgrade(&context.session);
-    Arc::new(move || session.strong_count() == 0)
 }
 
 /// Values that change are sampled for those who subscribe to them.
@@ -250,7 +240,6 @@ impl InMemoryNodeManagerImpl for SessionNodes {
         space: &RwLock<AddressSpace>,
         nodes: &mut [&mut WriteNode],
     ) -> Result<(), StatusCode> {
-        self.admitted(context)?;
         for write in nodes {
             let item = self.items.get(&write.value().node_id).copied();
             let valid = {
@@ -275,15 +264,14 @@ impl InMemoryNodeManagerImpl for SessionNodes {
         _space: &RwLock<AddressSpace>,
         calls: &mut [&mut &mut MethodCall],
     ) -> Result<(), StatusCode> {
-        self.admitted(context)?;
         for call in calls {
             let status = match self.items.get(call.method_id()).copied() {
                 Some(Item::Session(method)) => {
-                    self.board.operated_by(Holder(context.session_id), is_gone(context));
+                    self.board.operated_by(Holder(context.session_id), self.is_gone(context));
                     call::operate(&self.board, method, call.arguments()).await
                 }
                 Some(Item::Seat(seat, number::TURN)) => {
-                    let who = (Holder(context.session_id), is_gone(context));
+                    let who = (Holder(context.session_id), self.is_gone(context));
                     match call::turn(&self.board, seat, who, call.arguments()).await {
                         Ok(given) => {
                             call.set_outputs(given);

@@ -10,7 +10,7 @@ use opcua::server::node_manager::memory::InMemoryNodeManagerBuilder;
 
 use super::board::Board;
 use super::manager::SessionNodes;
-use crate::opcua_server::{self, Access, Refusals, Running, ServeError};
+use crate::opcua_server::{self, Access, Admitted, Channels, Refusals, Running, ServeError};
 
 /// How long clients may take to notice that the session is over, wall clock.
 const FAREWELL_TIMEOUT: Duration = Duration::from_secs(1);
@@ -55,9 +55,12 @@ pub fn serve(address: SocketAddr, board: &Arc<Board>, access: &Access) -> Result
     let nodes = Arc::clone(board);
     let refusals = Refusals::default();
     let sent_away = (!access.foreign_uris).then(|| refusals.clone());
-    let build =
-        move |context: ServerContext, space: &mut AddressSpace| SessionNodes::new(nodes, sent_away, &context, space);
+    let channels = Channels::default();
+    let open = channels.clone();
+    let build = move |context: ServerContext, space: &mut AddressSpace| {
+        Admitted::new(SessionNodes::new(nodes, open, &context, space), sent_away)
+    };
     let manager = InMemoryNodeManagerBuilder::new(build);
-    let running = opcua_server::start(address, "session", access, &refusals, manager, |_| Ok(()))?;
+    let running = opcua_server::start(address, "session", access, &refusals, &channels, manager, |_| Ok(()))?;
     Ok(Service { board: Arc::clone(board), refusals, running })
 }

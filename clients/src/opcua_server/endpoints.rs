@@ -1,8 +1,9 @@
 //! An OPC UA server: endpoints, users, certificates, and the thread that it runs on. What it serves is others' business.
 
 use std::collections::BTreeMap;
-use std::net::SocketAddr;
+use std::net::{Ipv4Addr, SocketAddr};
 use std::sync::Arc;
+use std::sync::atomic::Ordering;
 use std::thread::JoinHandle;
 
 use opcua::crypto::SecurityPolicy;
@@ -11,6 +12,7 @@ use opcua::server::{ANONYMOUS_USER_TOKEN_ID, ServerBuilder, ServerHandle, Server
 use opcua::types::MessageSecurityMode;
 use tokio::net::TcpListener;
 
+use super::door::{self, Channels};
 use super::doorkeeper::Doorkeeper;
 use super::pki::Pki;
 use super::{Access, Refusals, ServeError};
@@ -52,6 +54,7 @@ pub(crate) fn start(
     name: &str,
     access: &Access,
     refusals: &Refusals,
+    channels: &Channels,
     manager: impl NodeManagerBuilder + 'static,
     fill: impl FnOnce(&ServerHandle) -> Result<(), ServeError>,
 ) -> Result<Running, ServeError> {
@@ -63,11 +66,18 @@ pub(crate) fn start(
         builder(address, name, access, refusals, &pki).with_node_manager(manager).build().map_err(ServeError::Setup)?
     };
     fill(&handle)?;
+    let (entered, channels) = (handle.clone(), channels.clone());
     let thread = std::thread::spawn(move || {
         let _kept = pki;
         let ended = runtime.block_on(async {
-            let listener = TcpListener::from_std(listener).map_err(|error| error.to_string())?;
-            server.run_with(listener).await
+            let outside = TcpListener::from_std(listener).map_err(|error| error.to_string())?;
+            let inside = TcpListener::bind((Ipv4Addr::LOCALHOST, 0)).await.map_err(|error| error.to_string())?;
+            let server_at = inside.local_addr().map_err(|error| error.to_string())?;
+            tokio::spawn(async move {
+                own_port(&entered, server_at.port(), address.port()).await;
+                door::let_in(outside, server_at, channels).await;
+            });
+            server.run_with(inside).await
         });
         if let Err(error) = ended {
             tracing::warn!(%error, "the OPC UA server has ended");
@@ -76,6 +86,15 @@ pub(crate) fn start(
         runtime.shutdown_background();
     });
     Ok(Running { address, handle, thread: Some(thread) })
+}
+
+/// Lets endpoints name the port that clients come to: the server takes that of its own listener when it starts.
+async fn own_port(handle: &ServerHandle, inside: u16, outside: u16) {
+    let port = &handle.info().port;
+    while port.load(Ordering::Relaxed) != inside {
+        tokio::task::yield_now().await;
+    }
+    port.store(outside, Ordering::Relaxed);
 }
 
 fn builder(address: SocketAddr, name: &str, access: &Access, refusals: &Refusals, pki: &Pki) -> ServerBuilder {

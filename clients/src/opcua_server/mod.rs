@@ -3,12 +3,18 @@
 //! | module | subject |
 //! |---|---|
 //! | `endpoints` | the server itself, with the feature `opcua` |
+//! | `admitted` | nodes for clients that are who their certificate says |
+//! | `door` | where connections come in, and which of them are closed |
 //! | `doorkeeper` | users, and who was sent away |
 //! | `pki` | the folder for certificates, of servers and of clients |
 //! | `absent` | what stands for it without that feature |
 
 #[cfg(not(feature = "opcua"))]
 mod absent;
+#[cfg(feature = "opcua")]
+mod admitted;
+#[cfg(feature = "opcua")]
+mod door;
 #[cfg(feature = "opcua")]
 mod doorkeeper;
 #[cfg(feature = "opcua")]
@@ -23,6 +29,10 @@ use thiserror::Error;
 
 #[cfg(not(feature = "opcua"))]
 pub use absent::{ABSENT, Running};
+#[cfg(feature = "opcua")]
+pub(crate) use admitted::Admitted;
+#[cfg(feature = "opcua")]
+pub(crate) use door::Channels;
 #[cfg(feature = "opcua")]
 pub use endpoints::Running;
 #[cfg(feature = "opcua")]

@@ -12,7 +12,7 @@ use serde_json::{Map, Value};
 use super::component::kind::Kind;
 use super::component::library::entry;
 use super::scene::Scene;
-use super::scene::model::Component;
+use super::scene::model::{Component, Wire};
 
 /// What a plant's state depends on, beside its inputs, operations and failures.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -95,7 +95,11 @@ fn name_values(described: &Component, tree: &mut Value) -> Result<(), serde_json
     let settings = settings.into_iter().map(bare).collect();
     let keys = parameters.iter().map(|parameter| parameter.key.to_owned()).collect();
     fields.insert("settings".to_owned(), keyed(keys, settings));
-    let wires = described.inputs.iter().map(serde_json::to_value).collect::<Result<_, _>>()?;
+    let wire = |wire: &Wire| match wire {
+        Wire::Constant(setting) => serde_json::to_value(setting).map(bare),
+        Wire::Open | Wire::Signal(_) | Wire::Output { .. } => serde_json::to_value(wire),
+    };
+    let wires = described.inputs.iter().map(wire).collect::<Result<_, _>>()?;
     fields.insert("inputs".to_owned(), keyed(inputs.iter().map(|input| input.key.to_owned()).collect(), wires));
     let wires = described.outputs.iter().map(serde_json::to_value).collect::<Result<_, _>>()?;
     fields.insert("outputs".to_owned(), keyed(outputs.iter().map(|output| output.key.to_owned()).collect(), wires));

@@ -11,6 +11,7 @@ use super::axis::Axis;
 use super::channel::{Channels, ChannelsMemory, inner_ports};
 use super::component::declare::Value;
 use super::coordinate::{Gauge, Measured};
+use super::follower::Follower;
 use super::part::{Moment, Part, PartMemory, Unbuilt};
 use super::placement::Placement;
 use super::scene::Scene;
@@ -46,6 +47,7 @@ pub(super) struct Machine {
     setpoints: Vec<Setpoint>,
     detected: Vec<bool>,
     gauges: Vec<Gauge>,
+    followers: Vec<Follower>,
     axes: Vec<Axis>,
     sensors: Vec<Sensor>,
     parts: Vec<Part>,
@@ -66,6 +68,7 @@ impl Machine {
         let writes = PortLayout::new(inner_ports(&scene.writes, &scene.conditions));
         let mut world = World::build(scene, period);
         let gauges: Vec<_> = scene.joints.iter().map(|joint| Gauge::new(&world, joint)).collect();
+        let followers = Follower::all(scene, &mut world);
         let axes = scene
             .axes
             .iter()
@@ -85,6 +88,7 @@ impl Machine {
             given: parts.iter().map(|part| part.given().to_vec()).collect(),
             world,
             gauges,
+            followers,
             axes,
             sensors,
             parts,
@@ -215,8 +219,11 @@ impl Machine {
     }
 
     fn inner_turn(&mut self, scene: &Scene, now_ns: u64, inputs: &[u8], outputs: &mut [u8]) -> Result<(), ClientFault> {
-        let Self { world, positions, setpoints, gauges, axes, parts, given, dt_s, .. } = self;
+        let Self { world, positions, setpoints, gauges, followers, axes, parts, given, dt_s, .. } = self;
         let measured = Measured { gauges, positions };
+        for follower in followers {
+            follower.drive(measured, *dt_s, world)?;
+        }
         for ((axis, setpoint), described) in axes.iter().zip(setpoints).zip(&scene.axes) {
             axis.drive(&described.name, setpoint, measured, *dt_s, inputs, world)?;
         }

@@ -5,15 +5,17 @@
 //!
 //! | module | subject |
 //! |---|---|
-//! | [`mesh`] | corners and triangles from STL and OBJ files |
-//! | [`urdf`] | robots described in URDF |
+//! | [`mesh`] | corners and triangles from STL, OBJ, COLLADA and glTF files |
+//! | [`robot`] | robots described in URDF, xacro and MJCF |
 //! | [`scene`] | the scene file: read, checked, plain data |
 //! | `pose` | orientations and joint frames from angles and directions |
 //! | `world` | the scene as a world of rigid bodies |
+//! | `reach` | which bodies are too far away to be looked at |
 //! | `coordinate` | where a joint stands, measured from the poses of its bodies |
 //! | `setpoint` | the motion a drive wants: ramps and trapezoids in closed form |
 //! | `command` | what the PLC commands of a drive |
 //! | `motor` | the motor of a joint, as axes and components drive it |
+//! | `follower` | a joint that follows another |
 //! | `axis` | a driven axis: command, setpoint, what it moves, feedback |
 //! | `sensor` | end-position and proximity sensors |
 //! | [`component`] | the library: cylinders, motors, sensors, … by their equations |
@@ -46,6 +48,7 @@ pub mod component;
 mod coordinate;
 pub mod coupling;
 mod failure;
+mod follower;
 mod identity;
 mod machine;
 pub mod mesh;
@@ -54,14 +57,15 @@ mod part;
 mod placement;
 mod pose;
 mod random;
+mod reach;
+pub mod robot;
 pub mod scene;
 mod sensor;
 mod setpoint;
 mod state;
-pub mod urdf;
 mod world;
 
 pub use client::Plant;
 pub use failure::FailureRefused;
 pub use placement::{BodyPose, Placement};
-pub use scene::{Scene, SceneError, SceneFault, SceneFaultKind, UnknownFailure};
+pub use scene::{Inside, Scene, SceneError, SceneFault, SceneFaultKind, UnknownFailure};

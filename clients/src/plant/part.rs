@@ -75,9 +75,13 @@ impl ValueSlot {
 
 /// Where an input comes from.
 enum Feed {
-    Open,
+    /// A constant of the scene, or the kind's preset.
+    Unchanging,
     Port(ValueSlot),
-    Output { part: usize, output: usize },
+    Output {
+        part: usize,
+        output: usize,
+    },
 }
 
 /// When a mode of failure is on.
@@ -133,9 +137,14 @@ impl Part {
         let entry = entry(described.kind).ok_or_else(|| Unbuilt::UnknownKind(name()))?;
         let kind = (entry.kind)();
         let mut feeds = Vec::new();
-        for (wire, input) in described.inputs.iter().zip(&kind.inputs) {
+        let mut taken = (entry.unconnected)();
+        for ((wire, input), value) in described.inputs.iter().zip(&kind.inputs).zip(&mut taken) {
             feeds.push(match wire {
-                Wire::Open => Feed::Open,
+                Wire::Open => Feed::Unchanging,
+                Wire::Constant(setting) => {
+                    *value = Value::of(*setting).unwrap_or(*value);
+                    Feed::Unchanging
+                }
                 Wire::Signal(name) => Feed::Port(ValueSlot::find(reads, name, input.values, described.number)?),
                 Wire::Output { component, output } => Feed::Output { part: *component, output: *output },
             });
@@ -152,7 +161,7 @@ impl Part {
             feeds,
             outputs,
             switches: switches(described, reads)?,
-            taken: (entry.unconnected)(),
+            taken,
             given: kind.outputs.iter().map(|output| Value::zero(output.values)).collect(),
             failed: Failed::default(),
         })
@@ -256,7 +265,7 @@ impl Part {
     ) -> Result<(), ClientFault> {
         for (index, feed) in self.feeds.iter().enumerate() {
             let value = match feed {
-                Feed::Open => continue,
+                Feed::Unchanging => continue,
                 Feed::Port(slot) => slot.get(moment.inputs),
                 Feed::Output { part, output } => others[*part][*output],
             };
@@ -265,7 +274,7 @@ impl Part {
             {
                 let name = match &described.inputs[index] {
                     Wire::Signal(name) => name.as_str(),
-                    Wire::Open | Wire::Output { .. } => "a wire",
+                    Wire::Open | Wire::Constant(_) | Wire::Output { .. } => "a wire",
                 };
                 let told = format!("component `{}` gets {number} from {name}, which is not finite", described.name);
                 return Err(ClientFault::new(told));

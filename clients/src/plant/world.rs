@@ -5,11 +5,13 @@ use std::f64::consts::FRAC_1_SQRT_2;
 use onescan_server::client::ClientFault;
 use onescan_server::time::TimeSpan;
 use rapier3d::glamx::{DMat3, DQuat};
+use rapier3d::parry::bounding_volume::{BoundingSphere, BoundingVolume};
 use rapier3d::prelude::*;
 
 use super::machine::Misfit;
 use super::pose;
-use super::scene::model::{Attached, Body, BodyKind, Collisions, Joint, JointKind, Mass, Scene, Shape};
+use super::reach::Reach;
+use super::scene::model::{Attached, Body, BodyKind, Collisions, FrictionRule, Joint, JointKind, Mass, Scene, Shape};
 
 /// Bodies without a group are members of this one.
 const UNGROUPED: Group = Group::GROUP_32;
@@ -34,6 +36,7 @@ pub(crate) struct World {
     joints: Vec<ImpulseJointHandle>,
     /// Belts, and where they stay while their surfaces run.
     belts: Vec<(RigidBodyHandle, Pose)>,
+    reach: Reach,
     substeps: u32,
     extent_m: f64,
 }
@@ -56,6 +59,7 @@ impl World {
             })
             .collect();
         Self {
+            reach: Reach::of(&physics),
             physics,
             ground,
             bodies,
@@ -164,13 +168,36 @@ impl World {
 
     /// True if a ray meets the shape of a body within its range.
     pub(super) fn ray_meets(&self, ray: &Ray, range_m: f64, handle: RigidBodyHandle) -> bool {
-        self.shapes(handle).any(|(pose, shape)| shape.intersects_ray(&pose, ray, range_m))
+        self.is_near_ray(ray, handle)
+            && self.shapes(handle).any(|(pose, shape)| shape.intersects_ray(&pose, ray, range_m))
     }
 
     /// How far along a ray it meets the shape of a body.
     pub(super) fn ray_distance(&self, ray: &Ray, handle: RigidBodyHandle) -> Option<f64> {
+        if !self.is_near_ray(ray, handle) {
+            return None;
+        }
         let hits = self.shapes(handle).filter_map(|(pose, shape)| shape.cast_ray(&pose, ray, self.extent_m, true));
         hits.reduce(f64::min)
+    }
+
+    fn is_near_ray(&self, ray: &Ray, handle: RigidBodyHandle) -> bool {
+        self.reach.meets_ray(handle, self.body(handle).translation(), ray)
+    }
+
+    /// A ball around a surface; none for one without a shape.
+    pub(super) fn ball_around(&self, one: Surface) -> Option<BoundingSphere> {
+        let alone = one.shape.and_then(|shape| self.physics.colliders.get(shape)).map(|collider| {
+            let local = collider.position_wrt_parent().copied().unwrap_or(Pose::IDENTITY);
+            collider.shape().compute_bounding_sphere(&(*self.body(one.body).position() * local))
+        });
+        let all = || self.shapes(one.body).map(|(pose, shape)| shape.compute_bounding_sphere(&pose));
+        alone.or_else(|| all().reduce(|one, other| one.merged(&other)))
+    }
+
+    /// False only if a body cannot touch anything in a ball.
+    pub(super) fn is_near_ball(&self, ball: &BoundingSphere, handle: RigidBodyHandle) -> bool {
+        self.reach.meets_ball(handle, self.body(handle).translation(), ball.center, ball.radius)
     }
 
     /// True if a surface touches a body or is in it, whether they collide or not.
@@ -239,6 +266,11 @@ impl World {
     fn body_mut(&mut self, handle: RigidBodyHandle) -> Result<&mut RigidBody, ClientFault> {
         let body = self.physics.bodies.get_mut(handle);
         body.ok_or_else(|| ClientFault::new("a body of the scene is not in the world"))
+    }
+
+    /// Acceleration of free fall.
+    pub(super) fn gravity(&self) -> Vector {
+        self.physics.gravity
     }
 
     /// True if a body hangs on a joint.
@@ -311,10 +343,14 @@ fn attach(physics: &mut PhysicsWorld, shape: &Attached, scene: &Scene, body: Rig
     let own = form(&shape.shape);
     let turned = local * own.position;
     let collisions = if shape.collides { scene.bodies[shape.body].collisions } else { Collisions::None };
-    let collider = own
+    let weighed = match shape.density_kg_m3 {
+        Some(density_kg_m3) => own.density(density_kg_m3),
+        None => own.mass(shape.mass_kg),
+    };
+    let collider = weighed
         .position(turned)
-        .mass(shape.mass_kg)
         .friction(shape.friction)
+        .friction_combine_rule(combined(shape.friction_rule))
         .restitution(shape.restitution)
         .collision_groups(groups(collisions));
     physics.insert_collider(collider, Some(body))
@@ -327,7 +363,21 @@ fn collider(body: &Body, shape: &Shape) -> ColliderBuilder {
         Mass::Density { kg_m3 } => builder.density(kg_m3),
         Mass::Stated { .. } => builder.mass(0.0),
     };
-    builder.friction(body.friction).restitution(body.restitution).collision_groups(groups(body.collisions))
+    builder
+        .friction(body.friction)
+        .friction_combine_rule(combined(body.friction_rule))
+        .restitution(body.restitution)
+        .collision_groups(groups(body.collisions))
+}
+
+/// The engine's rule; of two it takes the later one in its own order, which is that of the scene's rules.
+fn combined(rule: FrictionRule) -> CoefficientCombineRule {
+    match rule {
+        FrictionRule::Mean => CoefficientCombineRule::Average,
+        FrictionRule::Least => CoefficientCombineRule::Min,
+        FrictionRule::Product => CoefficientCombineRule::Multiply,
+        FrictionRule::Greatest => CoefficientCombineRule::Max,
+    }
 }
 
 fn form(shape: &Shape) -> ColliderBuilder {

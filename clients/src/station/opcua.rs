@@ -4,16 +4,20 @@
 use std::net::SocketAddr;
 use std::sync::Arc;
 
-use opcua::server::address_space::VariableBuilder;
+use opcua::server::address_space::{AddressSpace, VariableBuilder};
 use opcua::server::diagnostics::NamespaceMetadata;
-use opcua::server::node_manager::memory::{SimpleNodeManager, simple_node_manager};
+use opcua::server::node_manager::ServerContext;
+use opcua::server::node_manager::memory::{
+    InMemoryNodeManager, InMemoryNodeManagerBuilder, InMemoryNodeManagerImplBuilder, SimpleNodeManagerBuilder,
+    SimpleNodeManagerImpl,
+};
 use opcua::types::{DataValue, NodeId, ObjectId, StatusCode, Variant};
 
 use super::controller::Controller;
 use crate::gateway::exchange::{Direction, Point};
 use crate::gateway::opcua::options::NAMESPACE;
 use crate::gateway::opcua::value;
-use crate::opcua_server::{self, Access, Refusals, Running, ServeError};
+use crate::opcua_server::{self, Access, Admitted, Channels, Refusals, Running, ServeError};
 
 /// Serves the PLC's variables at `address`, until what is returned is dropped.
 ///
@@ -21,17 +25,24 @@ use crate::opcua_server::{self, Access, Refusals, Running, ServeError};
 /// The address cannot be listened on, or the server cannot be set up.
 pub fn serve(address: SocketAddr, controller: &Arc<Controller>, access: &Access) -> Result<Running, ServeError> {
     let namespace = NamespaceMetadata { namespace_uri: NAMESPACE.to_owned(), ..Default::default() };
-    let manager = simple_node_manager(namespace, "plc");
-    opcua_server::start(address, "plc", access, &Refusals::default(), manager, |handle| {
+    let refusals = Refusals::default();
+    let sent_away = (!access.foreign_uris).then(|| refusals.clone());
+    let manager = InMemoryNodeManagerBuilder::new(move |context: ServerContext, space: &mut AddressSpace| {
+        Admitted::new(SimpleNodeManagerBuilder::new(namespace, "plc").build(context, space), sent_away)
+    });
+    opcua_server::start(address, "plc", access, &refusals, &Channels::default(), manager, |handle| {
         let missing = |what: &str| ServeError::Setup(format!("{what} is missing"));
         let namespace = handle.get_namespace_index(NAMESPACE).ok_or_else(|| missing("the namespace"))?;
-        let manager = handle.node_managers().get_of_type::<SimpleNodeManager>();
+        let manager = handle.node_managers().get_of_type::<Nodes>();
         add_variables(&*manager.ok_or_else(|| missing("the manager"))?, namespace, controller);
         Ok(())
     })
 }
 
-fn add_variables(manager: &SimpleNodeManager, namespace: u16, controller: &Arc<Controller>) {
+/// The variables' nodes.
+type Nodes = InMemoryNodeManager<Admitted<SimpleNodeManagerImpl>>;
+
+fn add_variables(manager: &Nodes, namespace: u16, controller: &Arc<Controller>) {
     let folder = NodeId::new(namespace, "PLC");
     manager.address_space().write().add_folder(&folder, "PLC", "PLC", &NodeId::from(ObjectId::ObjectsFolder));
     let exchange = controller.wires().exchange().clone();
@@ -41,14 +52,14 @@ fn add_variables(manager: &SimpleNodeManager, namespace: u16, controller: &Arc<C
             let id = NodeId::new(namespace, identifier(point));
             variable(&id, point, direction).organized_by(&folder).insert(&mut *manager.address_space().write());
             let (reader, ty, range) = (Arc::clone(controller), point.ty, point.range());
-            manager.inner().add_read_callback(id.clone(), move |_, _, _| {
+            manager.inner().inner().add_read_callback(id.clone(), move |_, _, _| {
                 let mut value = vec![0; range.len()];
                 reader.read_point(direction, index, &mut value);
                 Ok(DataValue::new_now(value::to_variant(ty, &value)))
             });
             if direction == Direction::ToPlc {
                 let writer = Arc::clone(controller);
-                manager.inner().add_write_callback(id, move |written, _| {
+                manager.inner().inner().add_write_callback(id, move |written, _| {
                     let mut value = vec![0; ty.size()];
                     if !value::from_variant(ty, &written.value.unwrap_or(Variant::Empty), &mut value) {
                         return StatusCode::BadTypeMismatch;

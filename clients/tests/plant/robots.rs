@@ -1,8 +1,8 @@
-//! Robots from URDF files.
+//! Robots from their makers' files.
 
 use onescan_clients::plant::{Plant, SceneError};
 use onescan_server::client::Client;
-use onescan_server::signal::ClientName;
+use onescan_server::signal::{ClientName, PortLayout};
 use onescan_server::time::VirtualTime;
 
 use crate::bench::PERIOD;
@@ -100,9 +100,173 @@ fn what_is_wrong_with_a_robot_is_told_with_both_lines() {
     let said = told(SCENE, &PENDULUM.replace("tip.obj", "tap.obj"));
     assert!(said.contains("of which no folder around it has `meshes/tap.obj`"), "{said}");
     let said = told(SCENE, &PENDULUM.replace("type=\"fixed\"", "type=\"floating\""));
-    assert!(said.contains("link `tip` moves and has no <inertial>"), "{said}");
+    assert!(said.contains("link `tip` moves and has no mass (`density_kg_m3 = 2700` in the table"), "{said}");
     let said = told(&SCENE.replace("pendulum.urdf", "none.urdf"), PENDULUM);
     assert!(said.contains(":6:8: robot `robots/urdf/none.urdf` cannot be read: "), "{said}");
     let said = told(&SCENE.replace("clock.swing", "clock.swign"), PENDULUM);
     assert!(said.contains("no joint `clock.swign` in this scene (did you mean `clock.swing`?)"), "{said}");
+}
+
+/// A robot as many are published: without masses, with a frame of mass 0, a joint that cannot stand at 0,
+/// fingers of which one follows the other, a mesh of COLLADA that is mirrored.
+const PUBLISHED: &str = r#"<?xml version="1.0"?>
+<robot name="arm" xmlns:xacro="http://wiki.ros.org/xacro">
+  <xacro:arg name="reach" default="0.4"/>
+  <xacro:include filename="parts.xacro"/>
+  <link name="world"/>
+  <link name="base"><collision><geometry><box size="0.2 0.2 0.1"/></geometry></collision></link>
+  <joint name="stand" type="fixed"><parent link="world"/><child link="base"/></joint>
+  <xacro:rod name="upper" reach="$(arg reach)"/>
+  <joint name="shoulder" type="revolute">
+    <parent link="base"/><child link="upper"/><axis xyz="0 1 0"/><limit lower="-3" upper="-1" effort="9" velocity="9"/>
+  </joint>
+  <link name="flange"><inertial><mass value="0"/><inertia ixx="0" iyy="0" izz="0"/></inertial></link>
+  <joint name="end" type="fixed"><parent link="upper"/><child link="flange"/><origin xyz="0 0 ${0.5 * 0.8}"/></joint>
+  <xacro:finger side="left" sign="1"/>
+  <xacro:finger side="right" sign="-1">
+  </xacro:finger>
+</robot>"#;
+
+const PARTS: &str = r#"<robot xmlns:xacro="http://wiki.ros.org/xacro">
+  <xacro:property name="width" value="0.05"/>
+  <xacro:macro name="rod" params="name reach radius:=${width / 2}">
+    <link name="${name}">
+      <collision><origin xyz="0 0 ${reach / 2}"/><geometry><cylinder radius="${radius}" length="${reach}"/></geometry></collision>
+    </link>
+  </xacro:macro>
+  <xacro:macro name="finger" params="side sign">
+    <link name="${side}">
+      <collision><geometry><mesh filename="package://robots/meshes/tip.dae" scale="${sign} 1 1"/></geometry></collision>
+    </link>
+    <joint name="${side}" type="prismatic">
+      <parent link="flange"/><child link="${side}"/><axis xyz="${sign} 0 0"/>
+      <limit lower="0" upper="0.04" effort="9" velocity="9"/>
+      <xacro:if value="${side == 'right'}"><mimic joint="left" multiplier="0.5" offset="0.01"/></xacro:if>
+    </joint>
+  </xacro:macro>
+</robot>"#;
+
+const HAND: &str = r#"
+version = 1
+
+[[urdf]]
+name = "arm"
+file = "robots/urdf/arm.xacro"
+density_kg_m3 = 2700
+arguments = { reach = 0.8 }
+initial_m = { left = 0.02 }
+
+[[axis]]
+name = "shoulder"
+joint = "arm.shoulder"
+drive = "position"
+command_signal = "Angle"
+position_signal = "Angle_Is"
+speed_rad_s = 1.0
+acceleration_rad_s2 = 2.0
+
+[[axis]]
+name = "hand"
+joint = "arm.left"
+drive = "position"
+command_signal = "Width"
+speed_m_s = 0.05
+acceleration_m_s2 = 0.5
+"#;
+
+fn hand(scene: &str, arm: &str, parts: &str) -> Result<Plant, SceneError> {
+    let folder = tempfile::tempdir().expect("a folder");
+    let write = |name: &str, text: &str| {
+        let path = folder.path().join(name);
+        std::fs::create_dir_all(path.parent().expect("inside")).expect("a folder");
+        std::fs::write(path, text).expect("written");
+    };
+    write("robots/package.xml", "<package><name>robots</name></package>");
+    write("robots/urdf/arm.xacro", arm);
+    write("robots/urdf/parts.xacro", parts);
+    write("robots/meshes/tip.dae", DAE);
+    write("plant.toml", scene);
+    Plant::load(&folder.path().join("plant.toml"), ClientName::new("plant").expect("a name"), PERIOD)
+}
+
+/// A tetrahedron with edges of 50 mm.
+const DAE: &str = r##"<COLLADA xmlns="http://www.collada.org/2005/11/COLLADASchema" version="1.4.1">
+  <asset><unit meter="0.001"/></asset>
+  <library_geometries><geometry id="g"><mesh>
+    <source id="s"><float_array count="12">0 0 0 50 0 0 0 50 0 0 0 50</float_array></source>
+    <vertices id="v"><input semantic="POSITION" source="#s"/></vertices>
+    <triangles count="4"><input semantic="VERTEX" source="#v" offset="0"/><p>0 2 1 0 1 3 0 3 2 1 2 3</p></triangles>
+  </mesh></geometry></library_geometries>
+</COLLADA>"##;
+
+#[test]
+fn a_robot_as_it_is_published_holds_its_pose_and_its_fingers_follow() {
+    let mut plant = hand(HAND, PUBLISHED, PARTS).expect("a scene");
+    let names: Vec<_> = plant.scene().bodies.iter().map(|body| body.name.as_str()).collect();
+    assert_eq!(names, ["arm.world", "arm.upper", "arm.left", "arm.right"], "frames are no bodies");
+    assert_eq!(
+        plant.scene().remarks,
+        [
+            "arm: link `flange` has a mass of 0: it is a frame",
+            "arm: joint `shoulder` cannot stand at 0: it begins at -2"
+        ]
+    );
+    let joints: Vec<_> = plant.scene().joints.iter().map(|joint| (joint.name.as_str(), joint.initial)).collect();
+    assert_eq!(joints, [("arm.shoulder", -2.0), ("arm.left", 0.02), ("arm.right", 0.02)]);
+    let join = plant.join();
+    let (reads, writes) = (PortLayout::new(join.reads), PortLayout::new(join.writes));
+    let (mut inputs, mut outputs) = (vec![0; reads.size()], vec![0; writes.size()]);
+    plant.setup(&mut outputs).expect("a set-up");
+    reads.slot::<f64>("Angle").expect("an input").set(&mut inputs, -2.0);
+    reads.slot::<f64>("Width").expect("an input").set(&mut inputs, 0.04);
+    for k in 1..=300_u64 {
+        plant.turn(VirtualTime::from_nanos(k * 10_000_000), &inputs, &mut outputs).expect("a turn");
+    }
+    let angle = writes.slot::<f64>("Angle_Is").expect("an output").get(&outputs);
+    assert!((angle + 2.0).abs() < 0.01, "{angle}");
+    let at = |name: &str| plant.poses().find(|pose| pose.name == name).expect("a body").position_m;
+    let (left, right, upper) = (at("arm.left"), at("arm.right"), at("arm.upper"));
+    let apart = |one: [f64; 3], other: [f64; 3]| {
+        one.iter().zip(&other).map(|(one, other)| (one - other).powi(2)).sum::<f64>().sqrt()
+    };
+    // the right finger slides the other way, half as far and 10 mm
+    assert!((apart(left, right) - (0.04 + 0.5 * 0.04 + 0.01)).abs() < 1e-3, "{left:?} {right:?}");
+    // both 0.4 m along the rod, which is 0.8 m long; the left one 40 mm beside it
+    assert!((apart(left, upper) - (0.4_f64.powi(2) + 0.04_f64.powi(2)).sqrt()).abs() < 1e-3, "{left:?} {upper:?}");
+}
+
+#[test]
+fn all_that_is_wrong_with_a_robot_is_told_at_once_in_its_own_file() {
+    let told = |scene: &str, arm: &str, parts: &str| {
+        let error = hand(scene, arm, parts).err().expect("refused");
+        let one = |fault: &onescan_clients::plant::SceneFault| {
+            let place = fault.inside.as_ref().map(|inside| inside.place.start().to_string()).unwrap_or_default();
+            let place = place.rsplit('/').next().unwrap_or_default().to_owned();
+            let hint = fault.hint.as_ref().map(|hint| format!(" ({hint})")).unwrap_or_default();
+            let said = fault.inside.as_ref().map_or_else(|| fault.kind.to_string(), |inside| inside.told.clone());
+            format!("{place}: {said}{hint}")
+        };
+        error.faults().iter().map(one).collect::<Vec<_>>().join("\n")
+    };
+    let mut all = vec![
+        told(&HAND.replace("density_kg_m3 = 2700\n", ""), PUBLISHED, PARTS),
+        told(&HAND.replace("left = 0.02", "left = 0.05, right = 0.01, lefd = 0.01, shoulder = 0.1"), PUBLISHED, PARTS),
+        told(&HAND.replace("\"arm.left\"", "\"arm.right\""), PUBLISHED, PARTS),
+        told(HAND, &PUBLISHED.replace("<xacro:rod ", "<xacro:rot "), PARTS),
+        told(HAND, &PUBLISHED.replace(" reach=\"$(arg reach)\"", ""), PARTS),
+        told(HAND, &PUBLISHED.replace("$(arg reach)", "$(arg raech)"), PARTS),
+        told(HAND, &PUBLISHED.replace("parts.xacro", "$(find elsewhere)/parts.xacro"), PARTS),
+        told(HAND, PUBLISHED, &PARTS.replace("${width / 2}", "${widht / 2}")),
+        told(HAND, PUBLISHED, &PARTS.replace("value=\"0.05\"", "value=\"${width * 2}\"")),
+        told(HAND, PUBLISHED, &PARTS.replace("side == 'right'", "side + 'right'")),
+        told(HAND, PUBLISHED, &PARTS.replace("tip.dae", "tap.dae")),
+        told(
+            HAND,
+            PUBLISHED,
+            &PARTS.replace("multiplier=\"0.5\"", "multiplier=\"half\"").replace("upper=\"0.04\"", "upper=\"-1\""),
+        ),
+        told(HAND, PUBLISHED, &PARTS.replace("params=\"side sign\"", "params=\"side *:=1\"")),
+    ];
+    all.retain(|said| !said.is_empty());
+    insta::assert_snapshot!(all.join("\n---\n"));
 }

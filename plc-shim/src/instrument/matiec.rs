@@ -12,7 +12,7 @@ use super::survey::{Survey, survey};
 use super::taken_over::{self, Handover};
 use super::target::{Source as Own, Target};
 use super::tasks::{Entry, Line, TaskTable, literal};
-use super::{InstrumentError, Options, Project, attach, entries, marks};
+use super::{InstrumentError, Options, Project, attach, entries, marks, motion_use};
 use crate::diagnostic::{Code, Diagnostic, Diagnostics, Severity};
 use crate::dialect::Dialect;
 use crate::input::Input;
@@ -37,11 +37,9 @@ pub(super) fn ported(plain: &Plain, options: &Options) -> Result<Project, Instru
     let words = placed_words(&trees);
     let mut survey = survey(&trees, Target::Iec);
     findings.extend(survey.findings.drain(..).filter(|found| !words.iter().any(|word| word.is(found))));
-    findings.extend(survey.motion.iter().map(|(name, _)| {
-        let message = format!("`{}` of motion control cannot be had in MatIEC, which has no such library", name.text);
-        let help = "move the axis with statements of the program, or choose a target with motion control";
-        Diagnostic::error(Code::UnsupportedFeature, name.span, message).with_help(help)
-    }));
+    let motion = motion_use::motion(options.target, &trees, &survey.motion).findings;
+    // What the shim does not replace is not there: MatIEC has no motion control.
+    findings.extend(motion.into_iter().map(|found| Diagnostic { severity: Severity::Error, ..found }));
     if findings.iter().any(|found| found.severity == Severity::Error) {
         return Err(wrong(findings));
     }
@@ -121,7 +119,7 @@ fn with_shim(
         ..Task::default()
     };
     let tasks = table.rows.iter().enumerate().map(task).collect();
-    let inner = Options { target: Target::Iec, tasks: Some(tasks), layout: options.layout, ..Options::default() };
+    let inner = Options { target: options.target, tasks: Some(tasks), layout: options.layout, ..Options::default() };
     let attached = attach(&Plain::of(&[input])?, &inner)?;
     let texts = attached.project.files.iter().filter_map(|file| file.text.as_deref().map(marks::plain_text));
     Ok(texts.collect::<Vec<_>>().join("\n"))

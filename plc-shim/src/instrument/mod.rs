@@ -264,7 +264,7 @@ fn attach(plain: &Plain, options: &Options) -> Result<Attached, InstrumentError>
     if findings.iter().any(|found| found.severity == Severity::Error) {
         return Err(InstrumentError::Text(Diagnostics::new(findings, &plain.sources)));
     }
-    let is_text = options.target == Target::Iec && !plain.is_xml();
+    let is_text = options.target.is_text() && !plain.is_xml();
     let line = if is_text { Line::Named } else { Line::InPlace };
     let declared = plain.tasks(&survey, options)?;
     let tasks = TaskTable::new(&declared, &entries(&survey), line)?;

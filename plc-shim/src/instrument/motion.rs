@@ -115,14 +115,18 @@ pub(super) fn parts(target: Target, used: &BTreeMap<String, Use>) -> Vec<Part> {
     }
     let library = Library::get();
     let name = |written: &str| renamed(target, written);
-    // Enumerations are the PLC's own.
-    let types = library.types.values().filter(|part| !part.name.starts_with("MC_"));
+    // PLCopen's enumerations are the PLC's own where it has motion control.
+    let is_needed = |part: &&Type| !(target.has_motion() && part.name.starts_with("MC_"));
+    let types = library.types.values().filter(is_needed);
     let types = types.map(|part| {
-        let text = if part.name == "AXIS_REF" { with_own_axis(&part.text) } else { part.text.clone() };
+        let has_own = part.name == "AXIS_REF" && target.has_motion();
+        let text = if has_own { with_own_axis(&part.text) } else { part.text.clone() };
         let text = format!("TYPE\n    {}\nEND_TYPE\n", template::fill_with(&text, &name));
-        Part { name: name(&part.name).unwrap_or_default(), text, is_type: true }
+        Part { name: name(&part.name).unwrap_or_else(|| part.name.clone()), text, is_type: true }
     });
     let blocks = used.iter().filter_map(|(key, uses)| Some((library.blocks.get(key)?, Some(uses))));
+    // Where the PLC has no such block there is none to hand anything on to.
+    let blocks = blocks.map(|(unit, uses)| (unit, uses.filter(|_| target.has_motion())));
     let common = library.needed_by(used).into_iter().map(|unit| (unit, None));
     let units = common.chain(blocks).map(|(part, uses)| {
         let text = uses.map_or_else(|| part.text.to_owned(), |uses| part.handing_on(uses));

@@ -39,7 +39,7 @@ pub(super) fn motion(target: Target, units: &[(FileId, &CompilationUnit)], names
     // In TIA Portal axes are technology objects, unless the project has them as PLCopen does.
     let has_axes = names.iter().any(|(_, role)| *role == Role::Axis);
     let is_foreign = target == Target::Scl && !has_axes;
-    let mut reader = Reader { has_own_axis: target != Target::Scl, ..Reader::default() };
+    let mut reader = Reader { has_own_axis: target.has_motion(), ..Reader::default() };
     for (name, role) in names {
         let why = match role {
             Role::Foreign(why) => Some(*why),

@@ -30,6 +30,18 @@ pub enum Target {
     Beremiz,
 }
 
+impl Target {
+    /// True for a PLC that has PLCopen's motion control of its own, which moves its axes while not simulated.
+    pub(super) fn has_motion(self) -> bool {
+        !matches!(self, Self::Scl | Self::OpenPlc | Self::Beremiz)
+    }
+
+    /// True for text of the standard.
+    pub(super) fn is_text(self) -> bool {
+        matches!(self, Self::Iec | Self::OpenPlc | Self::Beremiz)
+    }
+}
+
 /// A file of the shim's own.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct Source {
@@ -92,9 +104,8 @@ impl Sources {
         // A TIME has nanoseconds in the one and milliseconds in the other. Only durations of whole seconds are exact
         // in every tool of the one; a number stands behind a TIME (2nd ed. Table 30).
         let (now, now_long) = match target {
-            Target::Iec | Target::OpenPlc | Target::Beremiz => {
-                ("T#1s * (TV / 1000000000) + T#1s * (TV MOD 1000000000) / 1000000000", "LT#1ns * TV")
-            }
+            Target::OpenPlc | Target::Beremiz => ("SDSP_Duration(Value := TV)", "LT#1ns * TV"),
+            Target::Iec => ("T#1s * (TV / 1000000000) + T#1s * (TV MOD 1000000000) / 1000000000", "LT#1ns * TV"),
             Target::TwinCat | Target::Codesys => ("LINT_TO_TIME(TV / 1000000)", "LINT_TO_LTIME(TV)"),
             Target::Scl => ("DINT_TO_TIME(LINT_TO_DINT(#TV / 1000000))", "LINT_TO_LTIME(#TV)"),
         };
@@ -111,6 +122,9 @@ impl Sources {
         let mut units: Vec<Unit> = forms.iter().map(unit).collect();
         if !charts.is_empty() {
             units.extend(chart_units());
+        }
+        if matches!(target, Target::OpenPlc | Target::Beremiz) {
+            units.push(Unit { name: "SDSP_Duration".to_owned(), text: template::DURATION.to_owned() });
         }
         if tasks.has_events() {
             units.push(Unit { name: "SDSP_Follow".to_owned(), text: filled(template::FOLLOW) });

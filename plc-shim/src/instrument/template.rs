@@ -24,6 +24,7 @@ pub(super) const ON_DELAY: &str = include_str!("../../iec/shim/on_delay.st");
 pub(super) const OFF_DELAY: &str = include_str!("../../iec/shim/off_delay.st");
 pub(super) const PULSE: &str = include_str!("../../iec/shim/pulse.st");
 pub(super) const REAL_TIME_CLOCK: &str = include_str!("../../iec/shim/real_time_clock.st");
+pub(super) const DURATION: &str = include_str!("../../iec/shim/duration.st");
 pub(super) const TIME_FUNCTION: &str = include_str!("../../iec/shim/time_function.st");
 
 pub(super) const SCL_GLOBALS: &str = include_str!("../../iec/shim/scl/globals.scl");

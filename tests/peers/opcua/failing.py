@@ -1,6 +1,7 @@
-"""A PLC of the shear that fails after 20 steps: it dies without a word, leaves, or says why it cannot go on.
+"""A PLC of the shear that fails after 20 steps: it dies without a word, leaves, hangs, or says why it
+cannot go on.
 
-    failing.py URL dies|leaves|fault
+    failing.py URL dies|leaves|hangs|fault
 """
 
 import asyncio
@@ -39,6 +40,7 @@ async def main(url, how):
         except Over:
             if how == "fault":
                 await place.write([place.Fault], [ua.Variant("the valve is stuck", ua.VariantType.String)])
+            if how in ("fault", "hangs"):
                 while await place.State.read_value() != ENDED:
                     pass
 

@@ -71,6 +71,10 @@ impl Link for TcpLink {
         stream.write_all(&self.outgoing).map_err(|error| lost(&error))
     }
 
+    fn is_polled(&self) -> bool {
+        false
+    }
+
     fn read(&mut self, patience: Duration, from_plc: &mut [u8]) -> Result<bool, LinkFault> {
         let stream = self.stream.as_mut().ok_or_else(LinkFault::not_connected)?;
         if self.patience != Some(patience) {

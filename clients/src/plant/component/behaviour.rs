@@ -9,7 +9,7 @@ use serde::Serialize;
 use serde::de::DeserializeOwned;
 
 use super::declare::{Failed, FailureSet, ParameterSet, SignalSet, Value};
-use super::kind::Kind;
+use super::kind::{Dependence, Kind, Signal};
 use crate::plant::coordinate::Measured;
 use crate::plant::coupling::{Coupling, Tie, Unbound};
 use crate::plant::scene::Scene;
@@ -26,6 +26,8 @@ pub(crate) trait Component: Sized + Send + 'static {
     const FORMULA: &'static [&'static str];
     /// Where they come from.
     const SOURCE: &'static str;
+    /// Which inputs mean nothing unless another one is driven.
+    const DEPENDENCES: &'static [Dependence] = &[];
     /// What describes one of its kind.
     type Parameters: ParameterSet;
     /// What it takes.
@@ -45,6 +47,11 @@ pub(crate) trait Component: Sized + Send + 'static {
     /// A conflict between two parameters: the key at fault and what it must be.
     fn conflict(_parameters: &Self::Parameters) -> Option<Conflict> {
         None
+    }
+
+    /// Whether an input, by its place in the table, is of use with these parameters.
+    fn uses(_parameters: &Self::Parameters, _input: usize) -> bool {
+        true
     }
 
     /// Its state at the set-up.
@@ -186,8 +193,15 @@ pub(super) fn kind<C: Component>() -> Kind {
         source: C::SOURCE,
         coupling: Coupling::of::<C::Tie>(),
         parameters: C::Parameters::table(),
-        inputs: C::Inputs::table(),
+        inputs: inputs::<C>(),
         outputs: C::Outputs::table(),
+        dependences: C::DEPENDENCES,
         failures: C::Failure::table(),
     }
+}
+
+/// The inputs of a kind, with what they are if nobody drives them.
+fn inputs<C: Component>() -> Vec<Signal> {
+    let presets = C::Inputs::unconnected().into_iter().map(|value| Some(value.setting()));
+    C::Inputs::table().into_iter().zip(presets).map(|(input, preset)| Signal { preset, ..input }).collect()
 }

@@ -148,6 +148,25 @@ impl Value {
         }
     }
 
+    /// What a scene says with the same meaning; a word is no value of a signal.
+    pub(crate) const fn of(setting: Setting) -> Option<Self> {
+        match setting {
+            Setting::Flag(flag) => Some(Self::Bool(flag)),
+            Setting::Number(number) => Some(Self::Number(number)),
+            Setting::Count(whole) => Some(Self::Whole(whole as i32)),
+            Setting::Choice(_) => None,
+        }
+    }
+
+    /// As a scene would say it.
+    pub(crate) const fn setting(self) -> Setting {
+        match self {
+            Self::Bool(flag) => Setting::Flag(flag),
+            Self::Number(number) => Setting::Number(number),
+            Self::Whole(whole) => Setting::Count(whole as i64),
+        }
+    }
+
     /// What values a signal takes that holds this one.
     pub(crate) const fn values(&self) -> Values {
         match self {
@@ -223,6 +242,7 @@ macro_rules! signals {
                     key: stringify!($key),
                     about: concat!($($about),+).trim().to_owned(),
                     values: <$ty as $crate::plant::component::declare::SignalType>::VALUES,
+                    preset: None,
                 }, )* ]
             }
 

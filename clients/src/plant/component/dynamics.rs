@@ -19,6 +19,11 @@ pub(crate) fn lag(value: f64, input: f64, time_constant_s: f64, dt_s: f64) -> f6
     input + (value - input) * libm::exp(-dt_s / time_constant_s)
 }
 
+/// The multiple of a quantum that is nearest to a value; the value itself without a quantum.
+pub(crate) fn quantised(value: f64, quantum: f64) -> f64 {
+    if quantum > 0.0 { (value / quantum).round() * quantum } else { value }
+}
+
 /// A value on its way to another at a limited rate.
 pub(crate) fn ramp(value: f64, wanted: f64, rate_1_s: f64, dt_s: f64) -> f64 {
     let step = rate_1_s * dt_s;

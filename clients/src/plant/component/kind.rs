@@ -23,8 +23,27 @@ pub struct Kind {
     pub inputs: Vec<Signal>,
     /// What it gives to the PLC, and to other components.
     pub outputs: Vec<Signal>,
+    /// Which inputs mean nothing without another one.
+    pub dependences: &'static [Dependence],
     /// How it may fail.
     pub failures: Vec<Failure>,
+}
+
+impl Kind {
+    /// True if a scene may give an input a constant: `INPUT = value`. A parameter of the same name takes
+    /// precedence.
+    pub fn takes_constant(&self, input: &str) -> bool {
+        self.parameters.iter().all(|parameter| parameter.key != input)
+    }
+}
+
+/// Inputs that mean nothing unless one of some others, which are off where nobody drives them, is driven.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+pub struct Dependence {
+    /// The inputs.
+    pub inputs: &'static [&'static str],
+    /// The others.
+    pub on: &'static [&'static str],
 }
 
 /// One parameter of a kind.
@@ -131,6 +150,22 @@ pub struct Signal {
     pub about: String,
     /// What values it takes.
     pub values: Values,
+    /// What an input is if nobody drives it; none for an output.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub preset: Option<Setting>,
+}
+
+impl Signal {
+    /// What a value of a scene says of the signal for good, if the signal takes it.
+    pub(crate) fn constant(&self, value: &toml::Value) -> Option<Setting> {
+        match (self.values, value) {
+            (Values::Bool, toml::Value::Boolean(flag)) => Some(Setting::Flag(*flag)),
+            (Values::Number, toml::Value::Float(number)) if number.is_finite() => Some(Setting::Number(*number)),
+            (Values::Number, toml::Value::Integer(whole)) => Some(Setting::Number(*whole as f64)),
+            (Values::Whole, toml::Value::Integer(whole)) => i32::try_from(*whole).ok().map(|_| Setting::Count(*whole)),
+            _ => None,
+        }
+    }
 }
 
 /// What values a signal takes.
@@ -143,6 +178,17 @@ pub enum Values {
     Number,
     /// DINT.
     Whole,
+}
+
+impl Values {
+    /// What a constant of these values is, in words.
+    pub(crate) const fn in_words(self) -> &'static str {
+        match self {
+            Self::Bool => "`true` or `false`",
+            Self::Number => "a finite number",
+            Self::Whole => "a whole number from -2147483648 to 2147483647",
+        }
+    }
 }
 
 impl std::fmt::Display for Values {

@@ -27,4 +27,4 @@ pub(crate) mod profile;
 #[cfg(test)]
 mod tests;
 
-pub use library::kinds;
+pub use library::{kinds, open_inputs};

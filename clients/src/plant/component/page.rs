@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use super::kind::{Form, Kind, Parameter, Signal, unit};
+use super::kind::{Dependence, Form, Kind, Parameter, Signal, unit};
 use super::library::kinds;
 
 /// The page of a kind.
@@ -29,8 +29,8 @@ pub fn page(kind: &Kind) -> String {
             let _ = writeln!(page, "| `{key}` | {preset} | {unit} | {} | {about} |", range(form));
         }
     }
-    signals(&mut page, "input", &kind.inputs);
-    signals(&mut page, "output", &kind.outputs);
+    inputs(&mut page, kind);
+    outputs(&mut page, &kind.outputs);
     page.push_str("\n| failure mode | |\n|---|---|\n");
     for failure in &kind.failures {
         let _ = writeln!(page, "| `{}` | {} |", failure.mode, failure.about);
@@ -48,12 +48,30 @@ fn range(form: &Form) -> String {
     }
 }
 
-fn signals(page: &mut String, direction: &str, signals: &[Signal]) {
-    if signals.is_empty() {
-        return;
+fn inputs(page: &mut String, kind: &Kind) {
+    if !kind.inputs.is_empty() {
+        page.push_str("\n| input | type | preset | unit | |\n|---|---|---|---|---|\n");
     }
-    let _ = writeln!(page, "\n| {direction} | type | unit | |\n|---|---|---|---|");
-    for Signal { key, about, values } in signals {
+    for Signal { key, about, values, preset } in &kind.inputs {
+        let unit = unit(key).1.unwrap_or_default();
+        let preset = preset.as_ref().map(ToString::to_string).unwrap_or_default();
+        let _ = writeln!(page, "| `{key}` | {values} | {preset} | {unit} | {about} |");
+    }
+    for Dependence { inputs, on } in kind.dependences {
+        let _ = writeln!(page, "\nWithout {} nothing comes of {}.", any_of(on), any_of(inputs));
+    }
+}
+
+/// Keys in words, as in "`run` or `reverse`".
+fn any_of(keys: &[&str]) -> String {
+    keys.iter().map(|key| format!("`{key}`")).collect::<Vec<_>>().join(" or ")
+}
+
+fn outputs(page: &mut String, outputs: &[Signal]) {
+    if !outputs.is_empty() {
+        page.push_str("\n| output | type | unit | |\n|---|---|---|---|\n");
+    }
+    for Signal { key, about, values, .. } in outputs {
         let unit = unit(key).1.unwrap_or_default();
         let _ = writeln!(page, "| `{key}` | {values} | {unit} | {about} |");
     }
@@ -67,7 +85,8 @@ pub fn catalogue() -> String {
          them.\n\n\
          A scene names a component in a table `[[component]]` with `name`, `kind`, its parameters and what it is bound \
          to. `INPUT_signal` and `OUTPUT_signal` name the session's signals; `INPUT_from = \"component.output\"` wires \
-         an input to another component. A table `[[failure]]` switches a failure mode, by a signal or by virtual \
+         an input to another component, and `INPUT = value` gives it a constant. An input that nobody drives has its \
+         preset. A table `[[failure]]` switches a failure mode, by a signal or by virtual \
          time.\n\n| kind | |\n|---|---|\n",
     );
     for kind in kinds() {

@@ -4,12 +4,18 @@ use super::behaviour::{Component, SeenBy, Start, Turn};
 use super::declare::{Failed, FailureSet, SignalSet, Value};
 use super::kind::{Form, Setting, Values, unit};
 use super::library::{ENTRIES, entry, kinds};
-use crate::plant::coupling::{Coordinate, Hit, Targets};
+use crate::plant::coupling::{Coordinate, Grasp, Hit, InField, Load, Moving, Targets};
 use crate::plant::random::Random;
 
 /// What is seen of so many targets.
 pub(crate) fn touched(count: u32) -> Targets {
     Targets { first: (count > 0).then_some(0), count }
+}
+
+/// What a holder sees of so many targets, of which holding one takes a force.
+pub(crate) fn grasped(count: u32, force_n: f64) -> Grasp {
+    let force_n = if count > 0 { force_n } else { 0.0 };
+    Grasp { targets: touched(count), load: Load { force_n, pull_n: None, beside_m: 0.0 } }
 }
 
 /// A component alone.
@@ -105,6 +111,29 @@ impl Sight for Targets {
     fn in_weather(random: &mut Random) -> Self {
         let count = (random.bits() % 3) as u32;
         Self { first: (count > 0).then(|| count - 1), count }
+    }
+}
+
+impl Sight for Grasp {
+    fn in_weather(random: &mut Random) -> Self {
+        let force_n = 1000.0 * random.uniform();
+        let pull_n = (random.uniform() < 0.5).then(|| force_n * random.uniform());
+        let load = Load { force_n, pull_n, beside_m: 0.1 * random.uniform() };
+        Self { targets: Targets::in_weather(random), load }
+    }
+}
+
+impl Sight for Moving {
+    fn in_weather(random: &mut Random) -> Self {
+        let mut any = || [(); 3].map(|()| random.normal());
+        Self { position_m: any(), rpy_deg: any(), velocity_m_s: any(), turning_rad_s: any(), felt_m_s2: any() }
+    }
+}
+
+impl Sight for InField {
+    fn in_weather(random: &mut Random) -> Self {
+        let position_m = [(); 3].map(|()| random.normal());
+        Self { targets: Targets::in_weather(random), position_m, turned_deg: 100.0 * random.normal() }
     }
 }
 

@@ -39,7 +39,9 @@ impl Tie for Collect {
     }
 
     fn see(&self, _: Measured<'_>, world: &World) -> Targets {
-        Targets::see(&self.targets, |target| !world.hangs(target) && world.touch(self.surface, target))
+        let Some(ball) = world.ball_around(self.surface) else { return Targets::default() };
+        let touches = |target| world.is_near_ball(&ball, target) && world.touch(self.surface, target);
+        Targets::see(&self.targets, |target| touches(target) && !world.hangs(target))
     }
 
     fn apply(&mut self, Remove(taken): Remove, _: Measured<'_>, _: f64, world: &mut World) -> Result<(), ClientFault> {

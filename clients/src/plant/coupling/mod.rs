@@ -6,7 +6,10 @@
 //! | `joint` | moves a joint, or measures it |
 //! | `belt` | runs the surface of a body |
 //! | `ray` | meets bodies along a line |
-//! | `touch` | is touched by bodies, and may hold one |
+//! | `touch` | is touched by bodies |
+//! | `hold` | is touched by bodies, and holds one as long as its force suffices |
+//! | `field` | is a field that bodies are in |
+//! | `motion` | sees how a body moves |
 //! | `meet` | counts pairs of bodies in contact |
 //! | `collect` | takes bodies out of the world |
 //! | `place` | puts bodies into the world |
@@ -32,19 +35,25 @@ use super::world::World;
 
 mod belt;
 mod collect;
+mod field;
+mod hold;
 mod joint;
 mod meet;
+mod motion;
 mod place;
 mod ray;
 mod touch;
 
 pub(crate) use belt::{Belt, Run};
 pub(crate) use collect::{Collect, Remove};
+pub(crate) use field::{Field, InField};
+pub(crate) use hold::{Grasp, Hold, Holds, Load};
 pub(crate) use joint::{Coordinate, Measures, Move, Slides, Turns};
 pub(crate) use meet::Meet;
+pub(crate) use motion::{Motion, Moving};
 pub(crate) use place::{Place, Put};
 pub(crate) use ray::{Hit, Ray};
-pub(crate) use touch::{Contact, Hold, Holds, Touch};
+pub(crate) use touch::{Contact, Touch};
 
 /// A key that binds a component.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -49,7 +49,9 @@ impl Tie for Place {
 
     fn see(&self, _: Measured<'_>, world: &World) -> Targets {
         let seen = Targets::see(&self.targets, |target| !world.body(target).is_enabled());
-        let free = !self.targets.iter().any(|target| world.touch(self.surface, *target));
+        let ball = world.ball_around(self.surface);
+        let near = |target| ball.as_ref().is_some_and(|ball| world.is_near_ball(ball, target));
+        let free = !self.targets.iter().any(|target| near(*target) && world.touch(self.surface, *target));
         Targets { first: seen.first.filter(|_| free), ..seen }
     }
 

@@ -59,7 +59,14 @@ fn drivable(
         faults.add(direction.span(), SceneFaultKind::Misplaced { whose, key: "direction" });
     }
     let joint = joints.find(name, faults)?;
-    let kind = *file.joint[joint].get_ref().kind.get_ref();
+    let table = file.joint[joint].get_ref();
+    if let Some(follows) = &table.follows {
+        let first = format!("joint `{}`, which it follows", text(&follows.joint));
+        let twice = SceneFaultKind::DrivenTwice { thing: Thing::Joint, name: text(name).to_owned(), first };
+        faults.add(name.span(), twice);
+        return None;
+    }
+    let kind = *table.kind.get_ref();
     if let (JointKind::Prismatic | JointKind::Revolute, Some(unit)) = (kind, unit(kind)) {
         return Some((Moved::Joint(joint), unit));
     }

@@ -161,7 +161,13 @@ impl Lookup<'_> {
         };
         let axis = self.axes.iter().find(|axis| by_axis(axis.moved) == wanted);
         let component = components.iter().find(|(_, known)| known.drives == Some(wanted));
-        axis.map(|axis| format!("axis `{}`", axis.name))
+        let leader = match wanted {
+            Driven::Joint(joint) => self.file.joint[joint].get_ref().follows.as_ref(),
+            Driven::Belt(_) => None,
+        };
+        leader
+            .map(|leader| format!("joint `{}`, which it follows", text(&leader.joint)))
+            .or_else(|| axis.map(|axis| format!("axis `{}`", axis.name)))
             .or_else(|| component.map(|(name, _)| format!("component `{name}`")))
     }
 

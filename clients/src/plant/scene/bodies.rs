@@ -6,7 +6,7 @@ use super::error::SceneFaultKind;
 use super::faults::Faults;
 use super::format::{BodyKind, BodyTable};
 use super::meshes::MeshKeys;
-use super::model::{Body, Collisions, GROUPS_MAX, Mass, Shape};
+use super::model::{Body, Collisions, FrictionRule, GROUPS_MAX, Mass, Shape};
 use super::number::{Allowed, Entry};
 use super::shapes::Measures;
 use super::text;
@@ -18,16 +18,21 @@ pub(super) const GROUND: &str = "ground";
 // range in which a double is precise, long before it overflows.
 pub(super) const LENGTH_M: Allowed = Allowed::Within(1e-4, 1e4);
 pub(super) const MASS_KG: Allowed = Allowed::Within(1e-6, 1e9);
-const DENSITY_KG_M3: Allowed = Allowed::Within(1e-2, 1e5);
+pub(super) const DENSITY_KG_M3: Allowed = Allowed::Within(1e-2, 1e5);
 pub(super) const FRICTION: f64 = 0.5;
 pub(super) const RESTITUTION: f64 = 0.0;
 
-pub(super) fn check(tables: &[Placed<BodyTable>], faults: &mut Faults<'_>) -> Vec<Body> {
+pub(super) fn check(tables: &[Placed<BodyTable>], rule: FrictionRule, faults: &mut Faults<'_>) -> Vec<Body> {
     let mut groups = Vec::new();
-    tables.iter().filter_map(|table| body(table, &mut groups, faults)).collect()
+    tables.iter().filter_map(|table| body(table, rule, &mut groups, faults)).collect()
 }
 
-fn body<'f>(table: &'f Placed<BodyTable>, groups: &mut Vec<&'f str>, faults: &mut Faults<'_>) -> Option<Body> {
+fn body<'f>(
+    table: &'f Placed<BodyTable>,
+    rule: FrictionRule,
+    groups: &mut Vec<&'f str>,
+    faults: &mut Faults<'_>,
+) -> Option<Body> {
     let written = table.get_ref();
     if text(&written.name) == GROUND {
         faults.add(written.name.span(), SceneFaultKind::Reserved(GROUND.to_owned()));
@@ -51,6 +56,7 @@ fn body<'f>(table: &'f Placed<BodyTable>, groups: &mut Vec<&'f str>, faults: &mu
         velocity_m_s: faults.triple("velocity_m_s", written.velocity_m_s.as_ref()).unwrap_or_default(),
         mass: mass?,
         friction: faults.number(friction, Allowed::NotNegative).unwrap_or(FRICTION),
+        friction_rule: written.friction_rule.unwrap_or(rule),
         restitution: faults.number(restitution, Allowed::NotNegative).unwrap_or(RESTITUTION),
         collisions: collisions(written, groups, faults),
     })
@@ -61,7 +67,7 @@ fn shape(table: &Placed<BodyTable>, faults: &mut Faults<'_>) -> Option<Shape> {
     let written = table.get_ref();
     let name = text(&written.name);
     let Some(kind) = &written.shape else {
-        if written.kind == BodyKind::Dynamic && written.inertia_kg_m2.is_none() {
+        if written.kind == BodyKind::Dynamic && written.inertia_kg_m2.is_none() && !written.weighed_by_shapes {
             let whose = format!("dynamic body `{name}`");
             faults.add(written.name.span(), SceneFaultKind::Missing { whose, key: "shape" });
         }
@@ -73,7 +79,12 @@ fn shape(table: &Placed<BodyTable>, faults: &mut Faults<'_>) -> Option<Shape> {
         size_m: written.size_m.as_ref(),
         radius_m: written.radius_m.as_ref(),
         length_m: written.length_m.as_ref(),
-        mesh: MeshKeys { mesh: written.mesh.as_ref(), unit_m: written.unit_m.as_ref(), hull: written.hull.as_ref() },
+        mesh: MeshKeys {
+            mesh: written.mesh.as_ref(),
+            unit_m: written.unit_m.as_ref(),
+            hull: written.hull.as_ref(),
+            stretch: None,
+        },
         dynamic: written.kind == BodyKind::Dynamic,
     };
     measures.shape(faults)
@@ -90,6 +101,9 @@ fn mass(written: &BodyTable, faults: &mut Faults<'_>) -> Option<Mass> {
                 faults.add(value.span(), SceneFaultKind::Misplaced { whose, key: entry.key });
             }
         }
+        return Some(Mass::Total { kg: 0.0 });
+    }
+    if written.weighed_by_shapes {
         return Some(Mass::Total { kg: 0.0 });
     }
     if written.centre_m.is_some() || written.inertia_kg_m2.is_some() {

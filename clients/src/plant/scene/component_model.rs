@@ -60,6 +60,8 @@ pub enum Driven {
 pub enum Wire {
     /// Nowhere: it keeps the value that its kind gives it.
     Open,
+    /// The scene itself: a constant.
+    Constant(Setting),
     /// A signal of the session.
     Signal(SignalName),
     /// An output of a component, both by index.

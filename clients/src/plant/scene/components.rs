@@ -15,7 +15,7 @@ use super::model::{Bound, Component, Wire};
 use super::names::Names;
 use super::signals::Signals;
 use super::text;
-use crate::plant::component::kind::{Kind, Parameter, Setting, Values, unit};
+use crate::plant::component::kind::{Dependence, Kind, Parameter, Setting, Signal, Values, unit};
 use crate::plant::component::library::{ENTRIES, Entry, entry};
 
 /// One `[[component]]` with its name and kind.
@@ -148,6 +148,7 @@ fn refuse_unknown_keys(one: &Known<'_>, faults: &mut Faults<'_>) {
     right.extend(kind.coupling.keys().iter().map(|binding| binding.key.to_owned()));
     right.extend(kind.parameters.iter().map(|parameter| parameter.key.to_owned()));
     right.extend(kind.inputs.iter().flat_map(|input| [format!("{}_signal", input.key), format!("{}_from", input.key)]));
+    right.extend(kind.inputs.iter().map(|input| input.key.to_owned()));
     right.extend(kind.outputs.iter().map(|output| format!("{}_signal", output.key)));
     for key in keys.table.keys().filter(|key| !right.contains(key.get_ref())) {
         let wrong = SceneFaultKind::ComponentKey { whose: keys.whose(), key: key.get_ref().clone() };
@@ -231,20 +232,52 @@ fn inputs(
     let mut wires = Vec::new();
     for input in &one.kind.inputs {
         let (by_signal, by_wire) = (format!("{}_signal", input.key), format!("{}_from", input.key));
+        let written = one.keys.get(input.key).filter(|_| one.kind.takes_constant(input.key));
+        let sources = [written, one.keys.get(&by_signal), one.keys.get(&by_wire)];
+        if let Some(second) = sources.into_iter().flatten().nth(1) {
+            faults.add(second.span(), SceneFaultKind::WiredTwice { whose: one.keys.whose(), input: input.key });
+        }
         let signal = one.keys.text(&by_signal, SIGNAL, faults);
         let from = one.keys.text(&by_wire, "\"component.output\"", faults);
-        let wire = match (signal, from) {
-            (Some(name), None) => signals.read(&name, elementary(input.values, number), faults).map(Wire::Signal),
-            (None, Some(from)) => output_of(&from, &by_wire, input.values, known, faults),
-            (None, None) => None,
-            (Some(_), Some(from)) => {
-                faults.add(from.span(), SceneFaultKind::WiredTwice { whose: one.keys.whose(), input: input.key });
-                None
-            }
+        let wire = match (written, signal, from) {
+            (Some(value), ..) => constant(input, value, faults),
+            (None, Some(name), _) => signals.read(&name, elementary(input.values, number), faults).map(Wire::Signal),
+            (None, None, Some(from)) => output_of(&from, &by_wire, input.values, known, faults),
+            (None, None, None) => None,
         };
         wires.push(wire.unwrap_or(Wire::Open));
     }
+    refuse_idle(one, &wires, faults);
     wires
+}
+
+fn constant(input: &Signal, value: &Placed<Value>, faults: &mut Faults<'_>) -> Option<Wire> {
+    let constant = input.constant(value.get_ref());
+    if constant.is_none() {
+        faults.add(value.span(), SceneFaultKind::Text { key: input.key.to_owned(), wanted: input.values.in_words() });
+    }
+    constant.map(Wire::Constant)
+}
+
+/// Inputs that are driven and of which nothing comes, because nobody drives what they depend on.
+fn refuse_idle(one: &Known<'_>, wires: &[Wire], faults: &mut Faults<'_>) {
+    let Known { keys, kind, .. } = one;
+    let written = |input: &str| {
+        let ways = [input.to_owned(), format!("{input}_signal"), format!("{input}_from")];
+        ways.into_iter().find_map(|key| keys.get(&key).map(|value| (key, value.span())))
+    };
+    let open = |key: &str| kind.inputs.iter().zip(wires).any(|(input, wire)| input.key == key && *wire == Wire::Open);
+    for Dependence { inputs, on } in kind.dependences {
+        // a key that is written and wrong has its own fault
+        if !on.iter().all(|key| open(key) && written(key).is_none()) {
+            continue;
+        }
+        for (key, span) in inputs.iter().filter_map(|input| written(input)) {
+            let idle = SceneFaultKind::Idle { whose: keys.whose(), key, on: on.join("` or `") };
+            let hint = format!("bind `{0}_signal`, or write `{0} = true`", on[0]);
+            faults.add_hinted(span, idle, Some(hint));
+        }
+    }
 }
 
 /// The output that `"component.output"` names.

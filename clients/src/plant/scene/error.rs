@@ -49,9 +49,20 @@ pub struct SceneFault {
     pub span: std::ops::Range<usize>,
     /// What the user could do.
     pub hint: Option<String>,
+    /// The place in another file that the scene names, where the fault is that file's.
+    pub inside: Option<Inside>,
     /// Which of the overrides is at fault, from 0; nothing if the file itself is. `span` then lies
     /// behind the text.
     pub overridden: Option<usize>,
+}
+
+/// A fault in a file that a scene names.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Inside {
+    /// What is wrong, for a reader who sees the place.
+    pub told: String,
+    /// Where.
+    pub place: crate::plant::robot::Place,
 }
 
 impl fmt::Display for SceneFault {
@@ -298,6 +309,16 @@ pub enum SceneFaultKind {
         whose: String,
         /// The input.
         input: &'static str,
+    },
+    /// An input that is driven and of which nothing comes.
+    #[error("nothing comes of `{key}`: nobody drives `{on}` of {whose}")]
+    Idle {
+        /// The component.
+        whose: String,
+        /// The key that drives the input.
+        key: String,
+        /// What it depends on.
+        on: String,
     },
     /// A body without a shape, where one is needed.
     #[error("body `{0}` has no shape, and nothing can touch it")]

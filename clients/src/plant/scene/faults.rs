@@ -7,7 +7,7 @@ use super::placed::Placed;
 use onescan_base::nearest;
 use onescan_server::client::SourcePlace;
 
-use super::error::{SceneError, SceneFault, SceneFaultKind, Thing};
+use super::error::{Inside, SceneError, SceneFault, SceneFaultKind, Thing};
 use super::overrides::index_of;
 
 /// The faults found so far in one file.
@@ -15,11 +15,13 @@ pub(super) struct Faults<'t> {
     text: &'t str,
     file: &'t str,
     found: Vec<SceneFault>,
+    /// Beginnings of names that are not there because a robot was refused.
+    lost: Vec<String>,
 }
 
 impl<'t> Faults<'t> {
     pub(super) fn new(text: &'t str, file: &'t str) -> Self {
-        Self { text, file, found: Vec::new() }
+        Self { text, file, found: Vec::new(), lost: Vec::new() }
     }
 
     /// The file's text.
@@ -59,7 +61,21 @@ impl<'t> Faults<'t> {
     pub(super) fn add_hinted(&mut self, span: Range<usize>, kind: SceneFaultKind, hint: Option<String>) {
         let place = self.place(span.start);
         let overridden = index_of(&span, self.text);
-        self.found.push(SceneFault { kind, place, span, hint, overridden });
+        self.found.push(SceneFault { kind, place, span, hint, inside: None, overridden });
+    }
+
+    /// A fault in a file that the scene names.
+    pub(super) fn add_inside(
+        &mut self,
+        span: Range<usize>,
+        kind: SceneFaultKind,
+        hint: Option<String>,
+        inside: Inside,
+    ) {
+        self.add_hinted(span, kind, hint);
+        if let Some(fault) = self.found.last_mut() {
+            fault.inside = Some(inside);
+        }
     }
 
     /// The fault in the form of a file that the TOML reader stopped at.
@@ -75,8 +91,16 @@ impl<'t> Faults<'t> {
         name: &Placed<String>,
         candidates: impl IntoIterator<Item = &'n str>,
     ) {
+        if self.lost.iter().any(|lost| name.get_ref().starts_with(lost)) {
+            return;
+        }
         let hint = nearest(name.get_ref(), candidates).map(|near| format!("did you mean `{near}`?"));
         self.add_hinted(name.span(), SceneFaultKind::Unknown { thing, name: name.get_ref().clone() }, hint);
+    }
+
+    /// From now on nobody misses what begins so.
+    pub(super) fn lose(&mut self, beginning: String) {
+        self.lost.push(beginning);
     }
 
     /// What was found so far, as an error.

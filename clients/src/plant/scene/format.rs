@@ -20,6 +20,7 @@ pub(super) struct SceneFile {
     pub(super) extent_m: Option<Placed<f64>>,
     pub(super) substeps: Option<Placed<i64>>,
     pub(super) solver_iterations: Option<Placed<i64>>,
+    pub(super) friction_rule: Option<FrictionRule>,
     #[serde(default)]
     pub(super) body: Vec<Placed<BodyTable>>,
     #[serde(default)]
@@ -85,6 +86,28 @@ pub enum BodyKind {
     Kinematic,
 }
 
+/// How the coefficients of friction of two bodies become one. Of two rules the later one here holds.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum FrictionRule {
+    /// Their arithmetic mean.
+    #[default]
+    Mean,
+    /// The least: what is slippery is slippery with everything.
+    Least,
+    /// Their product.
+    Product,
+    /// The greatest: what grips grips everything.
+    Greatest,
+}
+
+impl FrictionRule {
+    /// Whether it is the one that holds where nothing is said.
+    pub(crate) fn is_preset(&self) -> bool {
+        *self == Self::Mean
+    }
+}
+
 /// The form of a body's only shape.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
@@ -117,11 +140,15 @@ pub(super) struct BodyTable {
     pub(super) centre_m: Option<Triple>,
     pub(super) inertia_kg_m2: Option<Placed<[f64; 6]>>,
     pub(super) friction: Option<Placed<f64>>,
+    pub(super) friction_rule: Option<FrictionRule>,
     pub(super) restitution: Option<Placed<f64>>,
     pub(super) collides: Option<bool>,
     pub(super) group: Option<Placed<String>>,
     pub(super) turn_about_m: Option<Triple>,
     pub(super) step_m: Option<Triple>,
+    /// Whether its `[[shape]]`s give it all of its mass: a link of a robot.
+    #[serde(skip)]
+    pub(super) weighed_by_shapes: bool,
 }
 
 /// `[[shape]]`: one more shape of a body.
@@ -140,11 +167,16 @@ pub(super) struct ShapeTable {
     pub(super) position_m: Option<Triple>,
     pub(super) rpy_deg: Option<Triple>,
     pub(super) mass_kg: Option<Placed<f64>>,
+    pub(super) density_kg_m3: Option<Placed<f64>>,
     pub(super) friction: Option<Placed<f64>>,
+    pub(super) friction_rule: Option<FrictionRule>,
     pub(super) restitution: Option<Placed<f64>>,
     pub(super) collides: Option<bool>,
     pub(super) turn_about_m: Option<Triple>,
     pub(super) step_m: Option<Triple>,
+    /// What 1 means in a robot's mesh along each axis.
+    #[serde(skip)]
+    pub(super) stretch: Option<[f64; 3]>,
 }
 
 /// `[[urdf]]`: bodies, shapes and joints from a file.
@@ -158,6 +190,12 @@ pub(super) struct UrdfTable {
     pub(super) fixed: Option<bool>,
     pub(super) collides: Option<bool>,
     pub(super) friction: Option<Placed<f64>>,
+    pub(super) density_kg_m3: Option<Placed<f64>>,
+    pub(super) initial_rad: Option<BTreeMap<String, Placed<f64>>>,
+    pub(super) initial_m: Option<BTreeMap<String, Placed<f64>>>,
+    pub(super) packages: Option<BTreeMap<String, Placed<String>>>,
+    #[schemars(with = "Option<BTreeMap<String, serde_json::Value>>")]
+    pub(super) arguments: Option<BTreeMap<String, Placed<toml::Value>>>,
 }
 
 /// What a joint leaves free.
@@ -194,6 +232,17 @@ pub(super) struct JointTable {
     pub(super) upper_m: Option<Placed<f64>>,
     pub(super) upper_rad: Option<Placed<f64>>,
     pub(super) contacts: Option<bool>,
+    /// What a joint of a robot follows.
+    #[serde(skip)]
+    pub(super) follows: Option<FollowTable>,
+}
+
+/// What a joint follows.
+#[derive(Clone, Debug)]
+pub(super) struct FollowTable {
+    pub(super) joint: Placed<String>,
+    pub(super) factor: f64,
+    pub(super) offset: f64,
 }
 
 /// How an axis is commanded.

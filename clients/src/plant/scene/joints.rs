@@ -8,7 +8,7 @@ use super::bodies::GROUND;
 use super::error::SceneFaultKind;
 use super::faults::Faults;
 use super::format::{BodyKind, BodyTable, JointKind, JointTable, Triple};
-use super::model::Joint;
+use super::model::{Follows, Joint};
 use super::names::Names;
 use super::number::{Allowed, Entry, Unit};
 use super::text;
@@ -22,7 +22,17 @@ pub(super) fn check(
     bodies: &Names,
     faults: &mut Faults<'_>,
 ) -> Vec<Joint> {
-    tables.iter().filter_map(|table| joint(table.get_ref(), body_tables, bodies, faults)).collect()
+    let mut joints: Vec<Joint> =
+        tables.iter().filter_map(|table| joint(table.get_ref(), body_tables, bodies, faults)).collect();
+    // a robot's file, which was checked, is the only one to say this
+    for table in tables.iter().map(Placed::get_ref) {
+        let Some(follows) = &table.follows else { continue };
+        let place = |name: &str| joints.iter().position(|joint| joint.name == name);
+        if let (Some(at), Some(leader)) = (place(text(&table.name)), place(text(&follows.joint))) {
+            joints[at].follows = Some(Follows { joint: leader, factor: follows.factor, offset: follows.offset });
+        }
+    }
+    joints
 }
 
 /// The unit of a joint's coordinate; none for a joint that has no coordinate of its own.
@@ -70,6 +80,7 @@ fn joint(
         lower: coordinate.lower,
         upper: coordinate.upper,
         contacts: written.contacts.unwrap_or(false),
+        follows: None,
     })
 }
 

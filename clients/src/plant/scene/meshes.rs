@@ -27,6 +27,8 @@ pub(super) struct MeshKeys<'f> {
     pub(super) mesh: Option<&'f Placed<String>>,
     pub(super) unit_m: Option<&'f Placed<f64>>,
     pub(super) hull: Option<&'f Placed<bool>>,
+    /// What 1 means along each axis, of a robot's mesh.
+    pub(super) stretch: Option<[f64; 3]>,
 }
 
 impl MeshKeys<'_> {
@@ -58,7 +60,9 @@ impl MeshKeys<'_> {
                 return None;
             }
         };
-        let corners_m: Vec<_> = mesh.corners.iter().map(|corner| corner.map(|number| number * unit_m)).collect();
+        let stretch = self.stretch.unwrap_or([unit_m; 3]);
+        let corners_m: Vec<_> =
+            mesh.corners.iter().map(|corner| [0, 1, 2].map(|axis| corner[axis] * stretch[axis])).collect();
         if let Some(cause) = flaw(&corners_m) {
             faults.add(name.span(), SceneFaultKind::Mesh { file, cause });
             return None;

@@ -11,6 +11,7 @@
 //! | `extent_m` | a body farther from the origin than this is a fault; 10 km if absent |
 //! | `substeps` | world steps in a turn, 1 if absent |
 //! | `solver_iterations` | in a world step, 8 if absent |
+//! | `friction_rule` | of bodies that have none of their own, `mean` if absent |
 //!
 //! | `[[body]]` | meaning |
 //! |---|---|
@@ -21,20 +22,24 @@
 //! | `mass_kg` or `density_kg_m3` | of a dynamic body |
 //! | `centre_m`, `inertia_kg_m2` | centre of mass and `[ixx, iyy, izz, ixy, ixz, iyz]` about it along the world's axes, with `mass_kg`, in place of those of the shape |
 //! | `friction`, `restitution` | 0.5 and 0 if absent |
+//! | `friction_rule` | how the friction of two bodies becomes one: `mean`, `least`, `product`, `greatest`; of two rules the later of these |
 //! | `collides`, `group` | `collides = false` for a body that only sensors see; bodies of one group do not collide with each other |
 //!
 //! | `[[shape]]` | meaning: one more shape of a body |
 //! |---|---|
 //! | `name`, `body` | |
 //! | `shape`, its measures, `position_m`, `rpy_deg`, `friction`, `restitution`, `collides` | as of a body |
-//! | `mass_kg` | what it adds to a dynamic body, nothing if absent |
+//! | `mass_kg` or `density_kg_m3` | what it adds to a dynamic body, nothing if absent |
 //!
-//! | `[[urdf]]` | meaning: a robot from a URDF file |
+//! | `[[urdf]]` | meaning: a robot from a file: URDF, xacro, MJCF |
 //! |---|---|
 //! | `name`, `file` | a link `upper` of robot `arm` is body `arm.upper`, a joint `elbow` is joint `arm.elbow` |
 //! | `position_m`, `rpy_deg` | of its root link |
 //! | `fixed` | whether the root stays in place, true if absent |
 //! | `collides`, `friction` | of all of its shapes; links of one robot do not collide with each other |
+//! | `density_kg_m3` | of each link that moves and has no mass |
+//! | `initial_rad`, `initial_m` | coordinates of its joints in the scene's pose, by name |
+//! | `packages`, `arguments` | folders of packages and arguments of a xacro, by name |
 //!
 //! | `[[joint]]` | meaning |
 //! |---|---|
@@ -74,6 +79,7 @@
 //! | `joint`, `belt`, `body`, … | what it is bound to, as its kind has it |
 //! | `INPUT_signal`, `OUTPUT_signal` | the session's signal for an input or an output of its kind |
 //! | `INPUT_from` | `"component.output"`: another component's output for an input |
+//! | `INPUT` | a constant for an input, its preset if nothing is written |
 //! | `signal_type` | `LREAL` or `REAL`, of all its number signals; `LREAL` if absent |
 //!
 //! | `[[failure]]` | meaning |
@@ -110,7 +116,7 @@
 //! | `placed` | a value with its place in the file |
 //! | `number`, `names` | what a number and a name must be |
 //! | `arrays` | one table for many things |
-//! | `robots` | the tables that a URDF file stands for |
+//! | `robots`, `robot_tables` | robots' files, and the tables that one stands for |
 //! | `bodies`, `shapes`, `meshes`, `joints`, `axes`, `sensors`, `signals` | the second pass, one sort of table each |
 //! | `components`, `bindings`, `failures`, `conditions` | the same, for components and what surrounds them |
 //! | [`model`] | the checked scene |
@@ -135,6 +141,7 @@ mod names;
 mod number;
 pub mod overrides;
 mod placed;
+mod robot_tables;
 mod robots;
 pub mod schema;
 mod sensors;
@@ -145,7 +152,7 @@ use placed::Placed;
 use serde::Deserialize;
 use toml::de::DeTable;
 
-pub use error::{SceneError, SceneFault, SceneFaultKind, Thing};
+pub use error::{Inside, SceneError, SceneFault, SceneFaultKind, Thing};
 pub use failures::UnknownFailure;
 pub use model::Scene;
 pub use overrides::Override;
@@ -193,8 +200,8 @@ impl Scene {
         match SceneFile::deserialize(toml::Deserializer::from(document)) {
             Ok(mut written) => {
                 arrays::expand(&mut written, &mut faults);
-                robots::expand(&mut written, &mut faults);
-                let scene = check(&written, &mut faults);
+                let remarks = robots::expand(&mut written, &mut faults);
+                let scene = Self { remarks, ..check(&written, &mut faults) };
                 faults.into_result(scene)
             }
             Err(error) => Err(faults.into_form_error(&error)),
@@ -214,8 +221,9 @@ fn check(written: &SceneFile, faults: &mut Faults<'_>) -> Scene {
     let shapes = Names::gather(Thing::Shape, written.shape.iter().map(|shape| &shape.get_ref().name), faults);
     let mut signals = Signals::new();
     let extent = Entry::new("extent_m", written.extent_m.as_ref());
-    let scene_bodies = bodies::check(&written.body, faults);
-    let scene_shapes = shapes::check(&written.shape, &written.body, &bodies, faults);
+    let rule = written.friction_rule.unwrap_or_default();
+    let scene_bodies = bodies::check(&written.body, rule, faults);
+    let scene_shapes = shapes::check(&written.shape, &written.body, rule, &bodies, faults);
     let scene_joints = joints::check(&written.joint, &written.body, &bodies, faults);
     let axes = axes::check(written, &bodies, &joints, &mut signals, faults);
     let sensors = sensors::check(written, &bodies, &joints, &mut signals, faults);
@@ -238,6 +246,7 @@ fn check(written: &SceneFile, faults: &mut Faults<'_>) -> Scene {
         sensors,
         components,
         conditions,
+        remarks: Vec::new(),
         reads,
         writes,
     }

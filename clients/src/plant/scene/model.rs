@@ -6,7 +6,7 @@ use onescan_server::signal::{Port, SignalName};
 use serde::Serialize;
 
 pub use super::component_model::{Between, Bound, Component, Condition, Driven, FailureSwitch, Range, When, Wire};
-pub use super::format::{BodyKind, JointKind, NumberType};
+pub use super::format::{BodyKind, FrictionRule, JointKind, NumberType};
 
 /// Most collision groups of a scene; one bit of 32 stands for the bodies without a group.
 pub const GROUPS_MAX: usize = 31;
@@ -37,6 +37,9 @@ pub struct Scene {
     pub components: Vec<Component>,
     /// What happens to signals between the plant and the session.
     pub conditions: Vec<Condition>,
+    /// What of robots' files was read otherwise than it is written, for people.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub remarks: Vec<String>,
     /// Signals that the plant reads, in the order of axes, then components.
     pub reads: Vec<Port>,
     /// Signals that the plant writes: those of axes, sensors, then components.
@@ -62,6 +65,9 @@ pub struct Body {
     pub mass: Mass,
     /// Coefficient of friction.
     pub friction: f64,
+    /// How it becomes one with that of another body.
+    #[serde(skip_serializing_if = "FrictionRule::is_preset")]
+    pub friction_rule: FrictionRule,
     /// Coefficient of restitution.
     pub restitution: f64,
     /// What it collides with.
@@ -83,8 +89,14 @@ pub struct Attached {
     pub rpy_deg: [f64; 3],
     /// What it adds to the mass of its body.
     pub mass_kg: f64,
+    /// What it adds to the mass of its body in each part of its volume, in place of `mass_kg`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub density_kg_m3: Option<f64>,
     /// Coefficient of friction.
     pub friction: f64,
+    /// How it becomes one with that of another body.
+    #[serde(skip_serializing_if = "FrictionRule::is_preset")]
+    pub friction_rule: FrictionRule,
     /// Coefficient of restitution.
     pub restitution: f64,
     /// Whether it collides as its body does, or only sensors see it.
@@ -196,6 +208,20 @@ pub struct Joint {
     pub upper: Option<f64>,
     /// Whether the joined bodies collide with each other.
     pub contacts: bool,
+    /// The joint that it follows, whatever drives that one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub follows: Option<Follows>,
+}
+
+/// What a joint follows: `factor` times the coordinate of another joint, and `offset`.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Follows {
+    /// Index of the other joint.
+    pub joint: usize,
+    /// Of its coordinate.
+    pub factor: f64,
+    /// Added to it, m or rad.
+    pub offset: f64,
 }
 
 /// One driven axis.

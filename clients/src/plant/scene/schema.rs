@@ -6,7 +6,7 @@ use serde_json::{Map, Value, json};
 
 use super::VERSION;
 use super::format::SceneFile;
-use crate::plant::component::kind::{Form, Kind, Parameter, Setting, unit};
+use crate::plant::component::kind::{Form, Kind, Parameter, Setting, Signal, Values, unit};
 use crate::plant::component::library::kinds;
 use crate::plant::coupling::{BindingKey, Names};
 
@@ -85,6 +85,9 @@ fn component(kind: &Kind) -> Value {
         properties.insert(parameter.key.to_owned(), setting(parameter));
     }
     for input in &kind.inputs {
+        if kind.takes_constant(input.key) {
+            properties.insert(input.key.to_owned(), constant(input));
+        }
         properties.insert(format!("{}_signal", input.key), described(text(), &input.about));
         let wire = json!({ "type": TEXT, "pattern": r"^.+\..+$" });
         properties.insert(format!("{}_from", input.key), described(wire, &input.about));
@@ -107,13 +110,30 @@ fn setting(parameter: &Parameter) -> Value {
         None => parameter.about.clone(),
     };
     let mut schema = described(schema, &about);
-    schema["default"] = match parameter.preset {
+    schema["default"] = plain(parameter.preset);
+    schema
+}
+
+fn constant(input: &Signal) -> Value {
+    let ty = match input.values {
+        Values::Bool => FLAG,
+        Values::Number => NUMBER,
+        Values::Whole => WHOLE,
+    };
+    let mut schema = described(json!({ "type": ty }), &input.about);
+    if let Some(preset) = input.preset {
+        schema["default"] = plain(preset);
+    }
+    schema
+}
+
+fn plain(setting: Setting) -> Value {
+    match setting {
         Setting::Number(number) => json!(number),
         Setting::Count(whole) => json!(whole),
         Setting::Flag(flag) => json!(flag),
         Setting::Choice(word) => json!(word),
-    };
-    schema
+    }
 }
 
 fn described(mut schema: Value, about: &str) -> Value {

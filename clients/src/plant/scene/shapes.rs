@@ -2,12 +2,12 @@
 
 use super::placed::Placed;
 
-use super::bodies::{FRICTION, LENGTH_M, MASS_KG, RESTITUTION};
+use super::bodies::{DENSITY_KG_M3, FRICTION, LENGTH_M, MASS_KG, RESTITUTION};
 use super::error::SceneFaultKind;
 use super::faults::Faults;
 use super::format::{BodyKind, BodyTable, ShapeKind, ShapeTable, Triple};
 use super::meshes::MeshKeys;
-use super::model::{Attached, Shape};
+use super::model::{Attached, FrictionRule, Shape};
 use super::names::Names;
 use super::number::{Allowed, Entry};
 use super::text;
@@ -15,15 +15,17 @@ use super::text;
 pub(super) fn check(
     tables: &[Placed<ShapeTable>],
     of: &[Placed<BodyTable>],
+    rule: FrictionRule,
     bodies: &Names,
     faults: &mut Faults<'_>,
 ) -> Vec<Attached> {
-    tables.iter().filter_map(|table| attached(table.get_ref(), of, bodies, faults)).collect()
+    tables.iter().filter_map(|table| attached(table.get_ref(), of, rule, bodies, faults)).collect()
 }
 
 fn attached(
     written: &ShapeTable,
     of: &[Placed<BodyTable>],
+    rule: FrictionRule,
     bodies: &Names,
     faults: &mut Faults<'_>,
 ) -> Option<Attached> {
@@ -34,25 +36,39 @@ fn attached(
         size_m: written.size_m.as_ref(),
         radius_m: written.radius_m.as_ref(),
         length_m: written.length_m.as_ref(),
-        mesh: MeshKeys { mesh: written.mesh.as_ref(), unit_m: written.unit_m.as_ref(), hull: written.hull.as_ref() },
+        mesh: MeshKeys {
+            mesh: written.mesh.as_ref(),
+            unit_m: written.unit_m.as_ref(),
+            hull: written.hull.as_ref(),
+            stretch: written.stretch,
+        },
         dynamic: body.is_some_and(|body| of[body].get_ref().kind == BodyKind::Dynamic),
     };
     let shape = measures.shape(faults);
     let mass = Entry::new("mass_kg", written.mass_kg.as_ref());
-    if let (Some(body), Some(value)) = (body, mass.value)
-        && of[body].get_ref().kind != BodyKind::Dynamic
-    {
-        let whose = format!("`{}`, whose body no force moves,", text(&written.name));
-        faults.add(value.span(), SceneFaultKind::Misplaced { whose, key: "mass_kg" });
+    let density = Entry::new("density_kg_m3", written.density_kg_m3.as_ref());
+    for entry in [mass, density] {
+        if let (Some(body), Some(value)) = (body, entry.value)
+            && of[body].get_ref().kind != BodyKind::Dynamic
+        {
+            let whose = format!("`{}`, whose body no force moves,", text(&written.name));
+            faults.add(value.span(), SceneFaultKind::Misplaced { whose, key: entry.key });
+        }
+    }
+    if let (Some(_), Some(value)) = (mass.value, density.value) {
+        let whose = format!("shape `{}` with a mass", text(&written.name));
+        faults.add(value.span(), SceneFaultKind::Misplaced { whose, key: density.key });
     }
     let friction = Entry::new("friction", written.friction.as_ref());
     let restitution = Entry::new("restitution", written.restitution.as_ref());
     Some(Attached {
         name: written.name.get_ref().clone(),
         mass_kg: faults.number(mass, MASS_KG).unwrap_or(0.0),
+        density_kg_m3: faults.number(density, DENSITY_KG_M3),
         position_m: faults.triple("position_m", written.position_m.as_ref()).unwrap_or_default(),
         rpy_deg: faults.triple("rpy_deg", written.rpy_deg.as_ref()).unwrap_or_default(),
         friction: faults.number(friction, Allowed::NotNegative).unwrap_or(FRICTION),
+        friction_rule: written.friction_rule.unwrap_or(rule),
         restitution: faults.number(restitution, Allowed::NotNegative).unwrap_or(RESTITUTION),
         collides: written.collides.unwrap_or(true),
         body: body?,

@@ -8,12 +8,11 @@ use super::{Finding, Page};
 use crate::output::scl::scope::Scope;
 use crate::source::edits::Edits;
 use crate::syntax::Span;
-use crate::syntax::ast::{Call, Expr, ExprKind, PouKind, SectionKind};
+use crate::syntax::ast::{Call, Expr, ExprKind, SectionKind};
 use crate::syntax::walk::{self, Visitor};
 
 /// Adds the declarations that are missing.
 pub(super) fn declare(page: &Page<'_>, edits: &mut Edits) -> Vec<Finding> {
-    let mut findings = Vec::new();
     for pou in page.pous() {
         let scope = Scope::of(pou);
         let external = pou.sections.iter().filter(|section| section.kind == SectionKind::External);
@@ -27,14 +26,9 @@ pub(super) fn declare(page: &Page<'_>, edits: &mut Edits) -> Vec<Finding> {
         let members = pou.object.members.iter().map(|member| &member.pou);
         members.for_each(|member| walk::unit(member, &mut used));
         let mut text = String::new();
-        for (key, span) in used.names {
+        for key in used.names.into_keys() {
             let Some(global) = page.names.globals.get(&key) else { continue };
             if scope.locals.contains_key(&key) || declared.contains(&key) {
-                continue;
-            }
-            if pou.kind == PouKind::Function {
-                let what = format!("the global variable `{}` in a function", global.name.text);
-                findings.push(Finding::new(span, &what, "hand it to the function as an input"));
                 continue;
             }
             let constant = if global.is_constant { " CONSTANT" } else { "" };
@@ -46,12 +40,13 @@ pub(super) fn declare(page: &Page<'_>, edits: &mut Edits) -> Vec<Finding> {
             edits.insert(at, format!("\n{text}"));
         }
     }
-    findings
+    Vec::new()
 }
 
+/// The names that a unit uses, each with a place.
 #[derive(Default)]
-struct Used {
-    names: BTreeMap<String, Span>,
+pub(super) struct Used {
+    pub(super) names: BTreeMap<String, Span>,
 }
 
 impl Used {

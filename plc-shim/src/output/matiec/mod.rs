@@ -6,10 +6,14 @@
 //! | [`comment`] | `//`, nested comments, pragmas, which MatIEC takes for C | one comment each, or nothing |
 //! | [`list`] | `a, b, c : R_TRIG;` | one declaration each |
 //! | [`value`] | enumerations, their values, `TO_DINT(x)` | INT, numbers, `INT_TO_DINT(x)` |
+//! | [`convert`] | conversions of durations, and of bits to BOOL, which MatIEC does otherwise | what they mean |
 //! | [`instance`] | arrays of function blocks, loops over them | one instance each, the loop's rounds one by one |
 //! | [`repeat`] | FOR, which MatIEC passes over where its first value is its last | WHILE |
 //! | [`empty`] | branches without statements | a loop that never runs |
 //! | [`start`] | initial values of arrays of structures | assignments in the first scan |
+//! | [`reserved`] | variables with names that MatIEC keeps for itself | the same by other names |
+//! | [`through`] | global variables that a function uses | parameters of it |
+//! | [`function`] | functions called as statements, without inputs or without a value | assignments, with both |
 //! | [`external`] | global variables that a unit uses | their `VAR_EXTERNAL` |
 //! | [`refuse`] | what there is no way for | nothing: it is refused |
 //! | [`assemble`] | types, functions, blocks, programs, global variables | the same in that order, and a CONFIGURATION |
@@ -18,13 +22,17 @@
 
 mod assemble;
 mod comment;
+mod convert;
 mod empty;
 mod external;
+mod function;
 mod instance;
 mod list;
 mod refuse;
 mod repeat;
+mod reserved;
 mod start;
+mod through;
 mod value;
 
 use std::collections::BTreeMap;
@@ -128,7 +136,9 @@ pub(crate) fn lowered(text: &str, dialect: Dialect) -> Result<Lowered, Vec<Unsai
     text.step(refuse::find)?;
     text.replace(comment::plain);
     text.step(list::split)?;
+    text.step(reserved::rename)?;
     text.step(value::lower)?;
+    text.step(convert::lower)?;
     for _ in 0..ROUNDS {
         if !text.step(instance::unroll)? {
             break;
@@ -142,6 +152,12 @@ pub(crate) fn lowered(text: &str, dialect: Dialect) -> Result<Lowered, Vec<Unsai
     }
     text.step(empty::fill)?;
     text.step(start::lower)?;
+    for _ in 0..ROUNDS {
+        if !text.step(through::hand)? {
+            break;
+        }
+    }
+    text.step(function::lower)?;
     text.step(external::declare)?;
     Ok(Lowered { text: text.current })
 }

@@ -116,3 +116,82 @@ fn the_file_has_an_order_and_a_configuration() {
     assert!(whole.contains("g AT %MW0 : INT := 7;") && whole.contains("h AT %MW3 : INT;"), "{whole}");
     assert!(whole.contains("PROGRAM Run_P WITH SDSP_Cycle : P;"), "{whole}");
 }
+
+#[test]
+fn variables_get_other_names_where_matiec_keeps_them() {
+    let text = low("TYPE T : STRUCT left, step : INT; END_STRUCT; END_TYPE\n\
+                    FUNCTION_BLOCK B VAR_INPUT limit : INT; END_VAR VAR_OUTPUT len : INT; END_VAR len := limit; \
+                    END_FUNCTION_BLOCK\n\
+                    PROGRAM P\nVAR move : B; t : T; n : INT; ramp : TON; s : STRING; END_VAR\n\
+                    CASE n OF 1: move(limit := t.left); ELSE ramp(IN := n > 1); END_CASE;\n\
+                    t.step := move.len + LEN(s) + LIMIT(0, n, 5);\nEND_PROGRAM\n");
+    assert!(text.contains("VAR_INPUT limit_v : INT;") && text.contains("len_v := limit_v;"), "{text}");
+    assert!(text.contains("1: move_v(limit_v := t.left);") && text.contains("ramp_v(IN := n > 1)"), "{text}");
+    assert!(text.contains("move_v : B;") && text.contains("ramp_v : TON;"), "{text}");
+    assert!(text.contains("t.step_v := move_v.len_v + LEN(s) + LIMIT(0, n, 5);"), "{text}");
+    assert_eq!(
+        refused("VAR_GLOBAL limit : INT; END_VAR\nPROGRAM P\nVAR n : INT; END_VAR\nn := limit;\nEND_PROGRAM\n"),
+        [(Some(1), "a global variable of the name `limit` cannot be had in MatIEC".to_owned())]
+    );
+}
+
+#[test]
+fn functions_get_the_global_variables_that_they_use() {
+    let text = words(&low("VAR_GLOBAL g, h : INT; END_VAR\nVAR_GLOBAL CONSTANT k : INT := 2; END_VAR\n\
+         FUNCTION Inner : INT VAR_INPUT a : INT; END_VAR VAR_EXTERNAL g : INT; END_VAR g := g + a * k; Inner := g; \
+         END_FUNCTION\n\
+         FUNCTION Outer : INT VAR_INPUT b : INT; END_VAR Outer := Inner(b) + h; END_FUNCTION\n\
+         PROGRAM P\nVAR n : INT; END_VAR\nn := Outer(b := 1);\nEND_PROGRAM\n"));
+    assert!(text.contains("FUNCTION Inner : INT VAR_IN_OUT g : INT; END_VAR VAR_INPUT k : INT; END_VAR"), "{text}");
+    assert!(text.contains("Outer := Inner(g, k, b) + h;"), "{text}");
+    assert!(text.contains("n := Outer(g := g, k := k, h := h, b := 1);"), "{text}");
+    assert!(text.contains("VAR_EXTERNAL g : INT; END_VAR VAR_EXTERNAL h : INT; END_VAR"), "{text}");
+    let found = refused(
+        "VAR_GLOBAL g : INT; END_VAR\nFUNCTION F : INT g := 1; F := g; END_FUNCTION\n\
+         PROGRAM P\nVAR g : INT; END_VAR\ng := F();\nEND_PROGRAM\n",
+    );
+    let what = "a variable `g` that hides the global one which `F` uses cannot be had in MatIEC";
+    assert_eq!(found, [(Some(5), what.to_owned())]);
+}
+
+#[test]
+fn functions_are_called_for_their_values_alone() {
+    let text = words(&low("FUNCTION F : INT VAR_INPUT a : INT; END_VAR F := a; END_FUNCTION\n\
+         FUNCTION G VAR n : INT; END_VAR n := 1; END_FUNCTION\n\
+         PROGRAM P\nVAR n : INT; END_VAR\nF(a := 1);\nG();\nEND_PROGRAM\n"));
+    assert!(text.contains("FUNCTION G : BOOL VAR_INPUT Unused_Input : BOOL; END_VAR VAR n : INT;"), "{text}");
+    assert!(text.contains("VAR Unread_BOOL : BOOL; END_VAR VAR Unread_INT : INT; END_VAR"), "{text}");
+    assert!(text.contains("Unread_INT := F(a := 1); Unread_BOOL := G(Unused_Input := FALSE);"), "{text}");
+    let block = "FUNCTION F : INT VAR_IN_OUT a : INT; END_VAR F := a; END_FUNCTION\n\
+                 FUNCTION H : INT VAR_INPUT a : INT; END_VAR H := a; END_FUNCTION\n";
+    let found = refused(&format!(
+        "{block}PROGRAM P\nVAR n : ARRAY [1..2] OF INT; m : INT; END_VAR\nm := F(a := n[1]);\nm := H(F(a := m));\n\
+         END_PROGRAM\n"
+    ));
+    let found: Vec<_> = found.iter().map(|(line, message)| format!("{line:?} {message}")).collect();
+    let expected = [
+        "Some(5) an element of an array as VAR_IN_OUT of a function cannot be had in MatIEC",
+        "Some(6) a call with VAR_IN_OUT or VAR_OUTPUT inside of another cannot be had in MatIEC",
+    ];
+    assert_eq!(found, expected);
+}
+
+#[test]
+fn conversions_mean_what_they_do_in_the_project() {
+    let source = "PROGRAM P\nVAR t : TIME; d : DINT; l : LREAL; r : REAL; w : WORD; b : BOOL; o : TOD; END_VAR\n\
+                  d := TIME_TO_DINT(t); l := TIME_TO_LREAL(t + T#1s); t := DINT_TO_TIME(d); t := REAL_TO_TIME(r);\n\
+                  b := WORD_TO_BOOL(w); d := TOD_TO_DINT(o); t := TO_TIME(d);\nEND_PROGRAM\n";
+    let text = low(source);
+    for expected in [
+        "d := LINT_TO_DINT(SDSP_Nanoseconds(t) / 1000000);",
+        "l := (LINT_TO_LREAL(SDSP_Nanoseconds(t + T#1s)) / 1000000.0);",
+        "t := SDSP_Duration(DINT_TO_LINT(d) * 1000000);",
+        "t := SDSP_Duration(LREAL_TO_LINT(REAL_TO_LREAL(r) * 1000000.0));",
+        "b := (((w) AND WORD#1) <> WORD#0);",
+        "d := LINT_TO_DINT(SDSP_Nanoseconds((o) - TOD#00:00:00) / 1000000);",
+    ] {
+        assert!(text.contains(expected), "{expected}: {text}");
+    }
+    let own = lowered(source, Dialect::Matiec).map(|lowered| lowered.text).unwrap_or_default();
+    assert!(own.contains("d := TIME_TO_DINT(t);") && own.contains("b := WORD_TO_BOOL(w);"), "{own}");
+}

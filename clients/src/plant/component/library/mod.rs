@@ -22,7 +22,7 @@ use super::declare::{ParameterSet, SignalSet, Value};
 use super::kind::{Kind, Setting};
 use crate::plant::coupling::Unbound;
 use crate::plant::scene::Scene;
-use crate::plant::scene::model::Bound;
+use crate::plant::scene::model::{self, Bound, Wire};
 use crate::plant::world::World;
 
 /// Makes a component of its settings, its seed and what it is bound to.
@@ -37,6 +37,8 @@ pub(crate) struct Entry {
     /// A component with these settings, one for each parameter, a seed of its own and what it is
     /// bound to, in a world that still stands in the scene's pose.
     pub(crate) start: Starter,
+    /// Whether an input, by its place, is of use with these settings.
+    pub(crate) uses: fn(&[Setting], usize) -> bool,
     /// What its inputs hold where nothing is connected.
     pub(crate) unconnected: fn() -> Vec<Value>,
     /// What holds for every kind, tried on this one.
@@ -46,6 +48,10 @@ pub(crate) struct Entry {
 
 fn conflict<C: Component>(settings: &[Setting]) -> Option<Conflict> {
     C::conflict(&C::Parameters::read(settings))
+}
+
+fn uses<C: Component>(settings: &[Setting], input: usize) -> bool {
+    C::uses(&C::Parameters::read(settings), input)
 }
 
 fn start<C: Component>(
@@ -68,6 +74,7 @@ macro_rules! library {
             kind: behaviour::kind::<$group::$module::$component>,
             conflict: conflict::<$group::$module::$component>,
             start: start::<$group::$module::$component>,
+            uses: uses::<$group::$module::$component>,
             unconnected: <$group::$module::$component as Component>::Inputs::unconnected,
             #[cfg(test)]
             laws: super::tests::laws::<$group::$module::$component>,
@@ -100,6 +107,12 @@ library! {
         contact_sensor::ContactSensor,
         collision_monitor::CollisionMonitor,
         line_scanner::LineScanner,
+        camera::Camera,
+        laser_distance::LaserDistance,
+        axis_encoder::AxisEncoder,
+        pose_sensor::PoseSensor,
+        inclinometer::Inclinometer,
+        accelerometer::Accelerometer,
     }
     process {
         tank::Tank,
@@ -121,6 +134,14 @@ library! {
 /// Every kind of component.
 pub fn kinds() -> Vec<Kind> {
     ENTRIES.iter().map(|entry| (entry.kind)()).collect()
+}
+
+/// The inputs of a component that are of use and that nobody drives, each with what it is all the time.
+pub fn open_inputs(component: &model::Component) -> Vec<(&'static str, Setting)> {
+    let Some(entry) = entry(component.kind) else { return Vec::new() };
+    let inputs = (entry.kind)().inputs.into_iter().zip(&component.inputs).enumerate();
+    let open = inputs.filter(|(at, (_, wire))| **wire == Wire::Open && (entry.uses)(&component.settings, *at));
+    open.filter_map(|(_, (input, _))| Some((input.key, input.preset?))).collect()
 }
 
 /// The kind of this name.

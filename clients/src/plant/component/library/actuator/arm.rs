@@ -2,7 +2,8 @@
 //!
 //! # Equations
 //! - the signal `drop` false is `Grip`, true is `Drop`; `hold` is the same the right way round;
-//! - on gripping, the arm holds fast the first target that touches its body, until it drops it.
+//! - on gripping, the arm holds fast the first target that touches its body, until it drops it;
+//! - it loses what asks for more than `force_n`: `m |a - g|` of what it really carries.
 //!
 //! # Source
 //! class Arm of the filling machine (Sivtoft 2002, 4.2.3 and A5).
@@ -11,11 +12,14 @@ use serde::{Deserialize, Serialize};
 
 use crate::plant::component::behaviour::{Component, Start, Turn};
 use crate::plant::component::declare::{failures, own_types, parameters, signals};
-use crate::plant::coupling::{Hold, Holds, Targets};
+use crate::plant::coupling::{Grasp, Hold, Holds};
 
 parameters! {
     /// Its parameters.
-    Parameters {}
+    Parameters {
+        /// greatest force that it holds with
+        force_n: f64 = 1000.0 => 0.0, 1e9;
+    }
 }
 
 signals! {
@@ -33,6 +37,8 @@ signals! {
     Outputs {
         /// it holds something
         holding: bool,
+        /// force that the held part asks for
+        load_n: f64,
     }
 }
 
@@ -50,55 +56,64 @@ failures! {
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(crate) struct State {
     held: Option<u32>,
+    /// It has lost what it held, and grips again only after it has let go.
+    lost: bool,
 }
 
 /// An arm that grips and drops packages, with reversed logic.
-pub(crate) struct Arm;
+pub(crate) struct Arm {
+    p: Parameters,
+}
 
 impl Component for Arm {
     const NAME: &'static str = "arm";
     const SUMMARY: &'static str = "arm with reversed logic: false grips, true drops";
-    const FORMULA: &'static [&'static str] = &["drop = false or hold: holds what touches it", "drop = true: lets go"];
+    const FORMULA: &'static [&'static str] =
+        &["drop = false or hold: holds what touches it, while m |a - g| ≤ force_n", "drop = true: lets go"];
     const SOURCE: &'static str = "class Arm of the filling machine (Sivtoft 2002, 4.2.3 and A5)";
     own_types!(moves Holds);
 
-    fn new(_: Parameters) -> Self {
-        Self
+    fn new(p: Parameters) -> Self {
+        Self { p }
     }
 
-    fn initial(&self, _: &Start<Targets>) -> State {
+    fn initial(&self, _: &Start<Grasp>) -> State {
         State::default()
     }
 
-    fn drive(&self, state: &mut State, inputs: &Inputs, turn: &Turn<Targets>) {
-        let drop = inputs.drop && !inputs.hold;
-        state.held = match (drop && !turn.failed.has(Failure::Stuck), turn.failed.has(Failure::Weak)) {
-            (true, _) | (_, true) => None,
-            (false, false) => state.held.or(turn.seen.first),
-        };
+    fn drive(&self, state: &mut State, inputs: &Inputs, turn: &Turn<Grasp>) {
+        let drop = inputs.drop && !inputs.hold && !turn.failed.has(Failure::Stuck);
+        let wanted = state.held.or(turn.seen.targets.first);
+        if drop || wanted.is_none() {
+            *state = State { held: None, lost: state.lost && !drop };
+            return;
+        }
+        let holds = turn.seen.load.force_n <= self.p.force_n && !turn.failed.has(Failure::Weak) && !state.lost;
+        *state = State { held: wanted.filter(|_| holds), lost: state.lost || (state.held.is_some() && !holds) };
     }
 
     fn effect(&self, state: &State) -> Hold {
         Hold(state.held)
     }
 
-    fn sense(&self, state: &mut State, _: &Inputs, _: &Turn<Targets>) -> Outputs {
-        Outputs { holding: state.held.is_some() }
+    fn sense(&self, state: &mut State, _: &Inputs, turn: &Turn<Grasp>) -> Outputs {
+        let load_n = if state.held.is_some() { turn.seen.load.force_n } else { 0.0 };
+        Outputs { holding: state.held.is_some(), load_n }
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::plant::component::tests::{Rig, touched};
+    use crate::plant::component::tests::{Rig, grasped};
 
     const GRIP: Inputs = Inputs { drop: false, hold: false };
     const DROP: Inputs = Inputs { drop: true, hold: false };
     const HOLD: Inputs = Inputs { drop: true, hold: true };
 
     fn rig() -> Rig<Arm> {
-        let mut rig = Rig::new(Arm::new(Parameters {}));
-        rig.seen = touched(1);
+        let mut rig = Rig::new(Arm::new(Parameters::default()));
+        rig.seen = grasped(1, 20.0);
         rig
     }
 
@@ -106,7 +121,7 @@ mod tests {
     fn false_grips_and_true_drops() {
         let mut rig = rig();
         assert!(!rig.run(DROP, 0.01, 1).holding && rig.run(GRIP, 0.01, 1).holding);
-        rig.seen = touched(0);
+        rig.seen = grasped(0, 20.0);
         assert!(rig.run(GRIP, 0.01, 1).holding, "held, whether it touches or not");
         assert_eq!(rig.component.effect(&rig.state), Hold(Some(0)));
         assert!(!rig.run(DROP, 0.01, 1).holding && !rig.run(GRIP, 0.01, 1).holding, "nothing there");
@@ -116,6 +131,20 @@ mod tests {
     fn hold_is_the_right_way_round() {
         let mut rig = rig();
         assert!(rig.run(HOLD, 0.01, 1).holding && !rig.run(DROP, 0.01, 1).holding);
+    }
+
+    #[test]
+    fn what_asks_for_too_much_is_lost_until_the_next_grip() {
+        let mut rig = rig();
+        assert!(rig.run(GRIP, 0.01, 1).holding);
+        rig.seen = grasped(1, 1000.1);
+        assert!(!rig.run(GRIP, 0.01, 1).holding);
+        rig.seen = grasped(1, 20.0);
+        assert!(!rig.run(GRIP, 0.01, 5).holding, "it does not catch what it has lost");
+        assert!(!rig.run(DROP, 0.01, 1).holding && rig.run(GRIP, 0.01, 1).holding);
+        rig.seen = grasped(1, 1000.1);
+        rig.state = State::default();
+        assert!(!rig.run(GRIP, 0.01, 1).holding, "too heavy from the start");
     }
 
     #[test]

@@ -19,6 +19,7 @@ use serde::{Deserialize, Serialize};
 use crate::plant::component::behaviour::{Component, Start, Turn};
 use crate::plant::component::declare::{failures, own_types, parameters, signals};
 use crate::plant::component::dynamics::{Travel, ramp, substeps};
+use crate::plant::component::kind::Dependence;
 use crate::plant::coupling::{Coordinate, Move, Turns};
 
 /// Longest sub-step.
@@ -147,6 +148,7 @@ impl Component for AsynchronousMotor {
     const FORMULA: &'static [&'static str] =
         &["ω_s = 2π f / p", "s = (ω_s - ω) / ω_s,N", "M = 2 M_k / (s/s_k + s_k/s)", "J dω/dt = M - M_load - d ω"];
     const SOURCE: &'static str = "M. Kloss, Archiv für Elektrotechnik 5 (1916)";
+    const DEPENDENCES: &'static [Dependence] = &[Dependence { inputs: &["reverse", "setpoint"], on: &["run"] }];
     own_types!(moves Turns);
 
     fn new(p: Parameters) -> Self {

@@ -14,6 +14,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::plant::component::behaviour::{Component, Start, Turn};
 use crate::plant::component::declare::{failures, own_types, parameters, signals};
+use crate::plant::component::kind::Dependence;
 use crate::plant::coupling::{Belt, Run};
 use crate::plant::setpoint::{Bounds, Setpoint};
 
@@ -79,6 +80,7 @@ impl Component for Conveyor {
     const SUMMARY: &'static str = "conveyor belt with a ramp, which carries what lies on it";
     const FORMULA: &'static [&'static str] = &["dv/dt = ±a until v = k v_N", "travel = ∫ v dt"];
     const SOURCE: &'static str = "closed form; speed levels: Sivtoft 2002, ch. 5";
+    const DEPENDENCES: &'static [Dependence] = &[Dependence { inputs: &["fraction", "reverse"], on: &["run"] }];
     own_types!(moves Belt);
 
     fn new(p: Parameters) -> Self {

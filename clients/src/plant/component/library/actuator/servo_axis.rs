@@ -23,6 +23,7 @@ use serde::{Deserialize, Serialize};
 use crate::plant::component::behaviour::{Component, Conflict, Start, Turn};
 use crate::plant::component::declare::{failures, own_types, parameters, signals};
 use crate::plant::component::dynamics::{Resistance, Travel, ramp, substeps};
+use crate::plant::component::kind::Dependence;
 use crate::plant::component::profile::{Limits, Point, Profile};
 use crate::plant::coupling::{Coordinate, Move, Slides};
 
@@ -326,6 +327,8 @@ impl Component for ServoAxis {
     ];
     const SOURCE: &'static str =
         "L. Biagiotti, C. Melchiorri, Trajectory Planning, 2008, 3.4; PLCopen Motion Control 2.0 (states)";
+    const DEPENDENCES: &'static [Dependence] =
+        &[Dependence { inputs: &["execute", "home", "jog_forward", "jog_reverse"], on: &["enable"] }];
     own_types!(moves Slides);
 
     fn new(p: Parameters) -> Self {

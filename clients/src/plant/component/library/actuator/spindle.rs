@@ -15,6 +15,7 @@ use serde::{Deserialize, Serialize};
 use crate::plant::component::behaviour::{Component, Start, Turn};
 use crate::plant::component::declare::{failures, own_types, parameters, signals};
 use crate::plant::component::dynamics::{Travel, ramp, substeps};
+use crate::plant::component::kind::Dependence;
 use crate::plant::coupling::{Coordinate, Move, Turns};
 
 parameters! {
@@ -97,6 +98,7 @@ impl Component for Spindle {
     const SUMMARY: &'static str = "spindle with a ramp, a load and a tool clamp";
     const FORMULA: &'static [&'static str] = &["J dω/dt = M - M_cut - d ω, |M| ≤ M_max"];
     const SOURCE: &'static str = "closed form";
+    const DEPENDENCES: &'static [Dependence] = &[Dependence { inputs: &["command_1_min"], on: &["run"] }];
     own_types!(moves Turns);
 
     fn new(p: Parameters) -> Self {

@@ -14,6 +14,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::plant::component::behaviour::{Component, Start, Turn};
 use crate::plant::component::declare::{failures, own_types, parameters, signals};
+use crate::plant::component::kind::Dependence;
 use crate::plant::coupling::{Coordinate, Move, Turns};
 use crate::plant::setpoint::{Bounds, Setpoint};
 
@@ -97,6 +98,7 @@ impl Component for Turntable {
     const SUMMARY: &'static str = "turntable or wheel: runs on, or steps from station to station";
     const FORMULA: &'static [&'static str] = &["dω/dt = ±α until ω = k ω_N", "stations 2π/n apart"];
     const SOURCE: &'static str = "closed form; wheels of the filling machine (Sivtoft 2002, ch. 5)";
+    const DEPENDENCES: &'static [Dependence] = &[Dependence { inputs: &["fraction"], on: &["run"] }];
     own_types!(moves Turns);
 
     fn new(p: Parameters) -> Self {

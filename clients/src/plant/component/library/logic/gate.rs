@@ -133,6 +133,10 @@ impl Component for Gate {
         Self { p }
     }
 
+    fn uses(p: &Parameters, input: usize) -> bool {
+        input < p.inputs as usize
+    }
+
     fn initial(&self, _: &Start) -> State {
         State::default()
     }

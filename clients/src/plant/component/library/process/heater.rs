@@ -12,6 +12,7 @@ use serde::{Deserialize, Serialize};
 use crate::plant::component::behaviour::{Component, Start, Turn};
 use crate::plant::component::declare::{failures, own_types, parameters, signals};
 use crate::plant::component::dynamics::lag;
+use crate::plant::component::kind::Dependence;
 
 parameters! {
     /// Its parameters.
@@ -82,6 +83,7 @@ impl Component for Heater {
     const SUMMARY: &'static str = "heater with a thermal mass";
     const FORMULA: &'static [&'static str] = &["C dϑ/dt = P k - G (ϑ - ϑ_a)"];
     const SOURCE: &'static str = "Newton's law of cooling, in closed form";
+    const DEPENDENCES: &'static [Dependence] = &[Dependence { inputs: &["fraction"], on: &["on"] }];
     own_types!();
 
     fn new(p: Parameters) -> Self {

@@ -1,7 +1,11 @@
-//! Meshes from files: STL, text or binary, and Wavefront OBJ. Only corners and triangles are read.
+//! Meshes from files: STL, text or binary, Wavefront OBJ, COLLADA and glTF. Only corners and triangles are
+//! read.
 //!
 //! Sources: STL as of 3D Systems' Stereolithography Interface Specification (1989); OBJ as of Wavefront's
 //! Advanced Visualizer, appendix B1, of which faces may have any number of corners.
+
+mod collada;
+mod gltf;
 
 use std::path::Path;
 
@@ -21,7 +25,7 @@ pub enum MeshError {
     #[error("cannot be read: {0}")]
     Unreadable(String),
     /// Its name does not end as that of a mesh.
-    #[error("is no mesh that this program reads: `.stl` or `.obj`")]
+    #[error("is no mesh that this program reads: `.stl`, `.obj`, `.dae`, `.gltf` or `.glb`")]
     Kind,
     /// It is cut short or has something else in it.
     #[error("line {line}: {cause}")]
@@ -39,6 +43,9 @@ pub enum MeshError {
         /// The bytes that it has.
         bytes: usize,
     },
+    /// Something in it does not go together.
+    #[error("{0}")]
+    Content(String),
     /// No triangle at all, or too many.
     #[error("has {0} triangles; from 1 to {TRIANGLES_MAX} are of use")]
     Count(usize),
@@ -63,13 +70,15 @@ impl Mesh {
     /// See [`MeshError`].
     pub fn read(path: &Path) -> Result<Self, MeshError> {
         let ending = path.extension().map(|ending| ending.to_string_lossy().to_ascii_lowercase());
-        let reader: fn(&[u8]) -> Result<Self, MeshError> = match ending.as_deref() {
-            Some("stl") => Self::stl,
-            Some("obj") => Self::obj,
+        let reader: fn(&[u8], &Path) -> Result<Self, MeshError> = match ending.as_deref() {
+            Some("stl") => |bytes, _| Self::stl(bytes),
+            Some("obj") => |bytes, _| Self::obj(bytes),
+            Some("dae") => |bytes, _| collada::read(bytes),
+            Some("gltf" | "glb") => gltf::read,
             _ => return Err(MeshError::Kind),
         };
         let bytes = std::fs::read(path).map_err(|error| MeshError::Unreadable(error.to_string()))?;
-        reader(&bytes)?.checked()
+        reader(&bytes, path)?.checked()
     }
 
     fn checked(self) -> Result<Self, MeshError> {

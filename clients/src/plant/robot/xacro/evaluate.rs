@@ -1,0 +1,390 @@
+//! What expressions are worth.
+
+use onescan_base::nearest;
+
+use super::expression::Expression;
+use super::value::Value;
+
+/// What an expression asks for outside of itself.
+pub(super) trait Names {
+    /// The value of a property.
+    ///
+    /// # Errors
+    /// A property whose own expression is at fault.
+    fn value(&mut self, name: &str) -> Result<Option<Value>, String>;
+    /// The contents of a YAML file.
+    ///
+    /// # Errors
+    /// A file that cannot be read.
+    fn yaml(&mut self, file: &str) -> Result<Value, String>;
+    /// An argument of the robot.
+    ///
+    /// # Errors
+    /// An argument that is not given.
+    fn argument(&mut self, name: &str) -> Result<Value, String>;
+}
+
+type Evaluated = Result<Value, String>;
+
+/// The value of an expression.
+///
+/// # Errors
+/// Why it has none.
+pub(super) fn evaluate(expression: &Expression, names: &mut dyn Names) -> Evaluated {
+    match expression {
+        Expression::Constant(value) => Ok(value.clone()),
+        Expression::Name(name) => self::name(name, names),
+        Expression::List(list) => {
+            list.iter().map(|inner| evaluate(inner, names)).collect::<Result<_, _>>().map(Value::List)
+        }
+        Expression::Index(of, index) => {
+            let (of, index) = (evaluate(of, names)?, evaluate(index, names)?);
+            item(&of, &index)
+        }
+        Expression::Member(of, member) => {
+            if let Expression::Name(space) = &**of
+                && matches!(space.as_str(), "math" | "numpy" | "np")
+            {
+                return self::name(member, names);
+            }
+            item(&evaluate(of, names)?, &Value::Text(member.clone()))
+        }
+        Expression::Call(callee, plain, named) => call(callee, plain, named, names),
+        Expression::Minus(inner) => match evaluate(inner, names)? {
+            Value::Whole(whole) => Ok(whole.checked_neg().map_or(Value::Number(-(whole as f64)), Value::Whole)),
+            other => numeric(&other).map(|number| Value::Number(-number)),
+        },
+        Expression::Not(inner) => Ok(Value::Bool(!evaluate(inner, names)?.is_true())),
+        Expression::Binary(sign, left, right) => {
+            let (left, right) = (evaluate(left, names)?, evaluate(right, names)?);
+            binary(sign, &left, &right)
+        }
+        Expression::Compare(first, others) => {
+            let mut left = evaluate(first, names)?;
+            for (operator, right) in others {
+                let right = evaluate(right, names)?;
+                if !compare(operator, &left, &right)? {
+                    return Ok(Value::Bool(false));
+                }
+                left = right;
+            }
+            Ok(Value::Bool(true))
+        }
+        Expression::And(left, right) => {
+            let left = evaluate(left, names)?;
+            if left.is_true() { evaluate(right, names) } else { Ok(left) }
+        }
+        Expression::Or(left, right) => {
+            let left = evaluate(left, names)?;
+            if left.is_true() { Ok(left) } else { evaluate(right, names) }
+        }
+        Expression::Choice(condition, then, otherwise) => {
+            let chosen = if evaluate(condition, names)?.is_true() { then } else { otherwise };
+            evaluate(chosen, names)
+        }
+    }
+}
+
+fn name(name: &str, names: &mut dyn Names) -> Evaluated {
+    if let Some(value) = names.value(name)? {
+        return Ok(value);
+    }
+    match name {
+        "pi" => Ok(Value::Number(std::f64::consts::PI)),
+        "e" => Ok(Value::Number(std::f64::consts::E)),
+        "tau" => Ok(Value::Number(std::f64::consts::TAU)),
+        "inf" => Ok(Value::Number(f64::INFINITY)),
+        _ => Err(format!("there is no property `{name}`")),
+    }
+}
+
+fn numeric(value: &Value) -> Result<f64, String> {
+    value.number().ok_or_else(|| format!("{} is no number", quoted(value)))
+}
+
+fn quoted(value: &Value) -> String {
+    match value {
+        Value::Text(text) => format!("the text '{text}'"),
+        other => other.sort().to_owned(),
+    }
+}
+
+/// `of[index]`, or `of.index` of a dictionary.
+fn item(of: &Value, index: &Value) -> Evaluated {
+    let at = |length: usize| match index {
+        Value::Whole(whole) if *whole < 0 => usize::try_from(-whole).ok().and_then(|back| length.checked_sub(back)),
+        Value::Whole(whole) => usize::try_from(*whole).ok(),
+        _ => None,
+    };
+    match of {
+        Value::Map(map) => {
+            let key = index.to_string();
+            let found = map.iter().find(|(known, _)| *known == key).map(|(_, value)| value.clone());
+            found.ok_or_else(|| {
+                let near = nearest(&key, map.iter().map(|(known, _)| known.as_str()));
+                let near = near.map(|near| format!("; did you mean '{near}'?")).unwrap_or_default();
+                format!("the dictionary has no '{key}'{near}")
+            })
+        }
+        Value::List(list) => {
+            at(list.len()).and_then(|at| list.get(at)).cloned().ok_or_else(|| format!("the list has no item {index}"))
+        }
+        Value::Text(text) => {
+            let count = text.chars().count();
+            let letter = at(count).and_then(|at| text.chars().nth(at));
+            letter
+                .map(|letter| Value::Text(letter.to_string()))
+                .ok_or_else(|| format!("'{text}' has no letter {index}"))
+        }
+        Value::None | Value::Bool(_) | Value::Whole(_) | Value::Number(_) => {
+            Err(format!("{} has no items", quoted(of)))
+        }
+    }
+}
+
+fn binary(sign: &str, left: &Value, right: &Value) -> Evaluated {
+    if sign == "+" {
+        match (left, right) {
+            (Value::Text(one), Value::Text(other)) => return Ok(Value::Text(format!("{one}{other}"))),
+            (Value::List(one), Value::List(other)) => return Ok(Value::List([one.as_slice(), other].concat())),
+            _ => {}
+        }
+    }
+    if let (Value::Whole(one), Value::Whole(other)) = (left, right) {
+        let whole = match sign {
+            "+" => one.checked_add(*other),
+            "-" => one.checked_sub(*other),
+            "*" => one.checked_mul(*other),
+            "//" if *other > 0 => one.checked_div_euclid(*other),
+            "%" if *other > 0 => one.checked_rem_euclid(*other),
+            "**" => u32::try_from(*other).ok().and_then(|exponent| one.checked_pow(exponent)),
+            _ => None,
+        };
+        if let Some(whole) = whole {
+            return Ok(Value::Whole(whole));
+        }
+    }
+    let (one, other) = match (left.number(), right.number()) {
+        (Some(one), Some(other)) => (one, other),
+        _ => return Err(format!("`{sign}` does not go with {} and {}", quoted(left), quoted(right))),
+    };
+    if matches!(sign, "/" | "//" | "%") && other == 0.0 {
+        return Err("division by 0".to_owned());
+    }
+    Ok(Value::Number(match sign {
+        "+" => one + other,
+        "-" => one - other,
+        "*" => one * other,
+        "/" => one / other,
+        "//" => libm::floor(one / other),
+        "%" => one - other * libm::floor(one / other),
+        _ => libm::pow(one, other),
+    }))
+}
+
+fn compare(operator: &str, left: &Value, right: &Value) -> Result<bool, String> {
+    match operator {
+        "==" => return Ok(left.equals(right)),
+        "!=" => return Ok(!left.equals(right)),
+        "in" => return contains(right, left),
+        "not in" => return contains(right, left).map(|found| !found),
+        _ => {}
+    }
+    let order = match (left, right) {
+        (Value::Text(one), Value::Text(other)) => Some(one.cmp(other)),
+        _ => numeric(left)?.partial_cmp(&numeric(right)?),
+    };
+    Ok(order.is_some_and(|order| match operator {
+        "<" => order.is_lt(),
+        "<=" => order.is_le(),
+        ">" => order.is_gt(),
+        _ => order.is_ge(),
+    }))
+}
+
+fn contains(whole: &Value, part: &Value) -> Result<bool, String> {
+    match (whole, part) {
+        (Value::Text(text), Value::Text(part)) => Ok(text.contains(part.as_str())),
+        (Value::List(list), _) => Ok(list.iter().any(|item| item.equals(part))),
+        (Value::Map(map), _) => Ok(map.iter().any(|(key, _)| *key == part.to_string())),
+        _ => Err(format!("nothing is in {}", quoted(whole))),
+    }
+}
+
+fn call(callee: &Expression, plain: &[Expression], named: &[(String, Expression)], names: &mut dyn Names) -> Evaluated {
+    let values: Vec<Value> = plain.iter().map(|inner| evaluate(inner, names)).collect::<Result<_, _>>()?;
+    let function = match callee {
+        Expression::Name(name) => name.as_str(),
+        Expression::Member(of, name) => match &**of {
+            Expression::Name(space) if matches!(space.as_str(), "xacro" | "math" | "python" | "numpy" | "np") => name,
+            of => return method(&evaluate(of, names)?, name, &values),
+        },
+        _ => return Err("what is called is no function".to_owned()),
+    };
+    match (function, &values[..]) {
+        ("load_yaml", [Value::Text(file)]) => names.yaml(file),
+        ("arg", [Value::Text(name)]) => names.argument(name),
+        ("dict", []) => {
+            let entries = named.iter().map(|(key, inner)| Ok((key.clone(), evaluate(inner, names)?)));
+            entries.collect::<Result<_, String>>().map(Value::Map)
+        }
+        // what a robot's author tells of is for who runs xacro
+        ("warning" | "message" | "print_location", _) => Ok(Value::Text(String::new())),
+        ("error" | "fatal", [told]) => Err(told.to_string()),
+        ("len", [Value::Text(text)]) => Ok(Value::Whole(text.chars().count() as i64)),
+        ("len", [Value::List(list)]) => Ok(Value::Whole(list.len() as i64)),
+        ("len", [Value::Map(map)]) => Ok(Value::Whole(map.len() as i64)),
+        ("str", [value]) => Ok(Value::Text(value.to_string())),
+        ("bool", [value]) => Ok(Value::Bool(value.is_true())),
+        ("int", [value]) => {
+            let number = Value::literal(&value.to_string());
+            Ok(Value::Whole(libm::trunc(numeric(&number)?) as i64))
+        }
+        ("float", [value]) => numeric(&Value::literal(&value.to_string())).map(Value::Number),
+        ("list" | "tuple", [Value::List(list)]) => Ok(Value::List(list.clone())),
+        ("min" | "max", [Value::List(list)]) => extreme(function, list),
+        ("min" | "max", list @ [_, _, ..]) => extreme(function, list),
+        _ => mathematics(function, &values),
+    }
+}
+
+fn extreme(function: &str, list: &[Value]) -> Evaluated {
+    let mut best = list.first().cloned().ok_or_else(|| format!("`{function}` of nothing"))?;
+    for value in &list[1..] {
+        let (new, old) = (numeric(value)?, numeric(&best)?);
+        if if function == "min" { new < old } else { new > old } {
+            best = value.clone();
+        }
+    }
+    Ok(best)
+}
+
+fn mathematics(function: &str, values: &[Value]) -> Evaluated {
+    let numbers: Vec<f64> = values.iter().map(numeric).collect::<Result<_, _>>()?;
+    let value = match (function, &numbers[..]) {
+        ("radians", [x]) => x.to_radians(),
+        ("degrees", [x]) => x.to_degrees(),
+        ("sin", [x]) => libm::sin(*x),
+        ("cos", [x]) => libm::cos(*x),
+        ("tan", [x]) => libm::tan(*x),
+        ("asin", [x]) => libm::asin(*x),
+        ("acos", [x]) => libm::acos(*x),
+        ("atan", [x]) => libm::atan(*x),
+        ("atan2", [y, x]) => libm::atan2(*y, *x),
+        ("hypot", [y, x]) => libm::hypot(*y, *x),
+        ("sqrt", [x]) => x.sqrt(),
+        ("exp", [x]) => libm::exp(*x),
+        ("log", [x]) => libm::log(*x),
+        ("pow", [x, y]) => libm::pow(*x, *y),
+        ("abs" | "fabs", [x]) => x.abs(),
+        ("floor", [x]) => libm::floor(*x),
+        ("ceil", [x]) => libm::ceil(*x),
+        ("round", [x]) => libm::rint(*x),
+        _ => return Err(format!("there is no function `{function}` of {} arguments", values.len())),
+    };
+    Ok(Value::Number(value))
+}
+
+fn method(of: &Value, name: &str, values: &[Value]) -> Evaluated {
+    match (of, name, values) {
+        (Value::Text(text), "split", []) => {
+            Ok(Value::List(text.split_whitespace().map(|part| Value::Text(part.to_owned())).collect()))
+        }
+        (Value::Text(text), "split", [Value::Text(by)]) if !by.is_empty() => {
+            Ok(Value::List(text.split(by.as_str()).map(|part| Value::Text(part.to_owned())).collect()))
+        }
+        (Value::Text(text), "replace", [Value::Text(from), Value::Text(to)]) => Ok(Value::Text(text.replace(from, to))),
+        (Value::Text(text), "strip", []) => Ok(Value::Text(text.trim().to_owned())),
+        (Value::Text(text), "lower", []) => Ok(Value::Text(text.to_lowercase())),
+        (Value::Text(text), "upper", []) => Ok(Value::Text(text.to_uppercase())),
+        (Value::Text(text), "startswith", [Value::Text(part)]) => Ok(Value::Bool(text.starts_with(part.as_str()))),
+        (Value::Text(text), "endswith", [Value::Text(part)]) => Ok(Value::Bool(text.ends_with(part.as_str()))),
+        (Value::Map(map), "keys", []) => Ok(Value::List(map.iter().map(|(key, _)| Value::Text(key.clone())).collect())),
+        (Value::Map(_), "get", [key]) => Ok(item(of, key).unwrap_or(Value::None)),
+        (Value::Map(_), "get", [key, preset]) => Ok(item(of, key).unwrap_or_else(|_| preset.clone())),
+        _ => Err(format!("{} has no `{name}` of {} arguments", quoted(of), values.len())),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    struct Arm;
+
+    impl Names for Arm {
+        fn value(&mut self, name: &str) -> Result<Option<Value>, String> {
+            Ok(match name {
+                "length" => Some(Value::Number(0.5)),
+                "count" => Some(Value::Whole(7)),
+                "name" => Some(Value::Text("ur5e".to_owned())),
+                "limits" => Some(Value::Map(vec![("lower".to_owned(), Value::Number(-1.5))])),
+                _ => None,
+            })
+        }
+
+        fn yaml(&mut self, file: &str) -> Result<Value, String> {
+            Err(format!("{file} cannot be read"))
+        }
+
+        fn argument(&mut self, name: &str) -> Result<Value, String> {
+            Err(format!("argument `{name}` is not given"))
+        }
+    }
+
+    fn worth(text: &str) -> Result<String, String> {
+        evaluate(&Expression::parse(text)?, &mut Arm).map(|value| value.to_string())
+    }
+
+    #[test]
+    fn expressions_are_worth_what_python_says() {
+        // each by `python3 -c "print(…)"`
+        let cases = [
+            ("1 + 2 * 3 ** 2", "19"),
+            ("-2 ** 2", "-4"),
+            ("2 ** -1", "0.5"),
+            ("7 / 2", "3.5"),
+            ("7 // 2", "3"),
+            ("-7 % 4", "1"),
+            ("1/12.0 * 3 * (length**2 + length**2)", "0.125"),
+            ("radians(180) == pi", "True"),
+            ("'a' if count > 5 and not name == '' else 'b'", "a"),
+            ("1 < count <= 7", "True"),
+            ("'5' in name", "True"),
+            ("limits['lower'] * 2", "-3.0"),
+            ("limits.lower", "-1.5"),
+            ("name + '_' + str(count)", "ur5e_7"),
+            ("'0.1 0.2 0.3'.split(' ')[1]", "0.2"),
+            ("[1, 2.5, 'x'][-1]", "x"),
+            ("min(3, 1, 2)", "1"),
+            ("None or 'preset'", "preset"),
+            ("math.sqrt(16)", "4.0"),
+            ("dict(a=1, b='c')['b']", "c"),
+            ("not not count", "True"),
+        ];
+        for (text, value) in cases {
+            assert_eq!(worth(text).as_deref(), Ok(value), "{text}");
+        }
+    }
+
+    #[test]
+    fn what_has_no_value_is_told() {
+        let cases = [
+            ("lenght", "there is no property `lenght`"),
+            ("1 +", "the expression ends where a value should stand"),
+            ("(1", "the expression lacks a `)`"),
+            ("1 / 0", "division by 0"),
+            ("name * 2", "`*` does not go with the text 'ur5e' and a number"),
+            ("limits['loer']", "the dictionary has no 'loer'; did you mean 'lower'?"),
+            ("import os", "`import os` is no expression that is understood here"),
+            ("system('ls')", "the text 'ls' is no number"),
+            ("1 ; 2", "`;` means nothing in an expression"),
+            ("xacro.load_yaml('none.yaml')", "none.yaml cannot be read"),
+        ];
+        for (text, told) in cases {
+            assert_eq!(worth(text), Err(told.to_owned()), "{text}");
+        }
+        assert!(worth(&"(".repeat(10_000)).is_err() && worth(&"-".repeat(5_000)).is_err());
+        assert!(worth(&"2**".repeat(900)).is_err());
+    }
+}

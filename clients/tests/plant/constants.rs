@@ -1,0 +1,73 @@
+//! Inputs of components that a scene gives a constant, and inputs that nobody drives.
+
+use crate::bench::Bench;
+use onescan_clients::plant::Scene;
+use onescan_server::client::Client;
+
+fn heater(keys: &str) -> String {
+    format!(
+        "version = 1\n[[component]]\nname = \"oven\"\nkind = \"heater\"\n{keys}temperature_degc_signal = \"Heat\"\n\
+         power_w_signal = \"Power\"\n"
+    )
+}
+
+fn refusal(scene: &str) -> String {
+    Scene::parse(scene, "scene.toml").expect_err("refused").to_string()
+}
+
+#[test]
+fn a_constant_drives_an_input_for_good() {
+    let mut bench = Bench::new(&heater("on = true\nfraction_signal = \"Part\"\n"));
+    bench.command("Part", 0.25);
+    bench.turn();
+    assert_eq!(bench.read::<f64>("Power"), 500.0);
+    let mut bench = Bench::new(&heater("on_signal = \"On\"\nfraction = 0.5\nheat_w = 100\n"));
+    bench.turn();
+    assert_eq!(bench.read::<f64>("Power"), 0.0);
+    bench.command("On", true);
+    bench.turn();
+    assert_eq!(bench.read::<f64>("Power"), 1000.0);
+    // C/G = 500 s; the first period heats with 100 W, the second with 1100 W
+    let [start, first_gain, second_gain] = [20.0, 100.0 / 10.0, 1100.0 / 10.0];
+    let share = -libm::expm1(-0.01 / 500.0);
+    let warmed = first_gain * share;
+    let exact = start + warmed + (second_gain - warmed) * share;
+    assert!((bench.read::<f64>("Heat") - exact).abs() < 1e-12, "{}", bench.read::<f64>("Heat"));
+}
+
+#[test]
+fn a_state_of_another_constant_is_refused_by_its_key() {
+    let state = Bench::new(&heater("on = true\nfraction = 0.5\n")).plant.save().expect("a state");
+    let mut other = Bench::new(&heater("on = true\nfraction = 0.75\n"));
+    let refused = other.plant.restore(&state).expect_err("refused").to_string();
+    assert!(refused.contains("another `fraction` at component `oven`, 0.5 in the state and 0.75 here"), "{refused}");
+}
+
+#[test]
+fn what_cannot_act_is_told_with_its_place() {
+    let told: Vec<_> = [
+        "fraction_signal = \"Part\"\n",
+        "fraction = 0.5\n",
+        "on = 1\n",
+        "on = true\non_signal = \"On\"\n",
+        "on = true\nfraction = \"half\"\n",
+        "on = true\nfraction = nan\n",
+    ]
+    .into_iter()
+    .map(|keys| refusal(&heater(keys)))
+    .collect();
+    insta::assert_snapshot!(told.join("\n"));
+}
+
+/// A parameter of the same name takes precedence, so no constant can be written for such an input.
+const HIDDEN: &[(&str, &str)] = &[("hydraulic_cylinder", "command"), ("servo_axis", "speed_m_s")];
+
+#[test]
+fn every_input_takes_a_constant_but_those_that_are_listed() {
+    for kind in onescan_clients::plant::component::kinds() {
+        for input in &kind.inputs {
+            let hidden = HIDDEN.contains(&(kind.name, input.key));
+            assert_eq!(kind.takes_constant(input.key), !hidden, "{} {}", kind.name, input.key);
+        }
+    }
+}
