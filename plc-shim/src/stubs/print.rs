@@ -372,10 +372,9 @@ impl Printer<'_, '_> {
         match ty {
             Ty::Unknown => self.type_text(&super::hint::of_name(name), name),
             Ty::Integer => "DINT".to_owned(),
-            Ty::Wide(found) => found.name().to_owned(),
             Ty::Any => "ANY".to_owned(),
             Ty::Real => "LREAL".to_owned(),
-            Ty::Elementary(found) => found.name().to_owned(),
+            Ty::Elementary(found) | Ty::Wide(found) => found.name().to_owned(),
             Ty::Text(wide) => if *wide { "WSTRING(255)" } else { "STRING(255)" }.to_owned(),
             Ty::Declared(key) => self.declared_name(key),
             Ty::Foreign(key) => {

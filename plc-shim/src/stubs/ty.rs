@@ -188,6 +188,12 @@ impl Slots {
         if kept.is_some() {
             return kept;
         }
+        // An address, which is given as a pointer here and as a number there.
+        let is_pointer = |ty: &Ty| matches!(ty, Ty::Pointer(..));
+        let is_number = |ty: &Ty| matches!(ty, Ty::Elementary(found) if found.is_integer() || found.is_bits() && *found != ElementaryType::Bool);
+        if from.iter().any(is_pointer) && from.iter().any(is_number) {
+            return Some(Ty::Elementary(ElementaryType::Lword));
+        }
         let built = |ty: &&Ty| matches!(ty, Ty::Array(..) | Ty::Pointer(..));
         // One that a declaration tells goes before one that is only indexed or followed.
         let told = |ty: &&Ty| match ty {
@@ -259,7 +265,7 @@ impl Slots {
 
     /// What a parameter is that takes arrays of several lengths.
     pub(super) fn array_of_any_length(&self, parameter: impl Iterator<Item = Slot>) -> Option<Ty> {
-        let given = parameter.flat_map(|slot| self.all.get(slot.0)).flat_map(|each| &each.from);
+        let given = parameter.filter_map(|slot| self.all.get(slot.0)).flat_map(|each| &each.from);
         let arrays: Vec<(Vec<String>, Box<Ty>)> = given
             .filter_map(|ty| match self.resolved(ty) {
                 Ty::Array(bounds, element) if bounds.iter().all(|each| each != ANY_BOUNDS) => Some((bounds, element)),
