@@ -72,6 +72,7 @@ const PARTS: &[Part] = parts![
     TwinCat BOTH, "tc2_utilities_memory";
     TwinCat BOTH, "tc2_utilities_strings";
     TwinCat BOTH, "tc2_utilities_time";
+    TwinCat BOTH, "tc2_ethercat";
     TwinCat BOTH, "tc3_eventlogger";
     TwinCat BOTH, "tc3_system_info";
     Codesys BOTH, "codesys_util";

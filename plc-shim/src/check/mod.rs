@@ -27,7 +27,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use self::body::check_unit;
 use self::configuration::{Configured, Configurer};
-use self::declare::{Declarations, Occasion, Outcome, stages};
+use self::declare::{Declarations, Occasion, Outcome, Templates, stages};
 use self::resolve::Resolver;
 use crate::diagnostic::Diagnostic;
 use crate::dialect::AddressUnit;
@@ -36,8 +36,8 @@ use crate::syntax::ast::CompilationUnit;
 use crate::syntax::{FileId, Span};
 
 pub(crate) use self::declare::{
-    CALL_DEPTH_OFFSET, INIT_RETAINS_OFFSET, Kept, Overrides, VIRTUAL_TIME_NAME, VIRTUAL_TIME_OFFSET, find_key, joined,
-    short_inside,
+    CALL_DEPTH_OFFSET, INIT_RETAINS_OFFSET, Kept, Overrides, VIRTUAL_TIME_NAME, VIRTUAL_TIME_OFFSET, find_key,
+    is_library_name, is_list, joined, short_inside,
 };
 pub(crate) use self::standard::vendor::{is_qualified_only, of_pointer_width};
 pub(crate) use self::standard::{exists as is_standard_function, is_known as knows_function};
@@ -84,8 +84,11 @@ pub(crate) fn check(
     limit: MemoryLimit,
 ) -> (Checked, Vec<Diagnostic>) {
     let stages = stages(units);
-    let mut declarations = Declarations::new(library, &stages, (overrides, limit), &Resolver);
+    let given = (overrides, limit);
+    let templates = Templates::of(units, (library, &stages), given, &Resolver);
+    let mut declarations = Declarations::new(library, (&stages, &templates), given, &Resolver);
     declarations.collect(units);
+    templates.findings().iter().for_each(|found| declarations.report(found.clone()));
     declarations.link_classes();
     declarations.resolve_declarations();
     declarations.check_inheritance();

@@ -349,6 +349,11 @@ features! {
     Exceptions "`__TRY`",
     ShortPrefixes "literals as `W#16#FF`, `L#5`, `S5T#2s`",
     DivOperator "the operator `DIV`",
+    Recursion "a method or function that calls itself",
+    RepeatedArguments "a parameter given twice in a call: the last value counts",
+    EmptyArrays "an array without elements, `ARRAY [0..-1]`",
+    LooseUnderscores "two underscores between the digits of a number",
+    GenericConstants "generic blocks: `VAR_GENERIC CONSTANT`, `FB<8>`",
 }
 
 impl Feature {

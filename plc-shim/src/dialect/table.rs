@@ -116,6 +116,15 @@ pub const FEATURES: &[FeatureRow] = &[
     row(Feature::Exceptions, &[Codesys, TwinCat], "CODESYS and TwinCAT: operators __TRY, __CATCH, __FINALLY, __ENDTRY"),
     row(Feature::ShortPrefixes, &[SiemensScl], "TIA Portal: constants; S7-SCL V5.3: 7.4"),
     row(Feature::DivOperator, &[SiemensScl], "S7-SCL V5.3: 10.3"),
+    row(
+        Feature::Recursion,
+        &[Codesys, TwinCat],
+        "CODESYS: attribute estimated-stack-usage, recursive calls; TwinCAT: accepts it, as projects show",
+    ),
+    row(Feature::RepeatedArguments, &[Codesys, TwinCat], "TwinCAT: accepts it, as public projects show"),
+    row(Feature::EmptyArrays, &[Codesys, TwinCat], "TwinCAT: accepts it, as public projects show"),
+    row(Feature::LooseUnderscores, &[TwinCat], "TwinCAT: accepts it, as public projects show"),
+    row(Feature::GenericConstants, &[Codesys, TwinCat], "CODESYS and TwinCAT: VAR_GENERIC CONSTANT"),
 ];
 
 /// How a dialect behaves, and where that is written.

@@ -33,7 +33,7 @@ impl Retention {
             Qualifier::NonRetain => Some(Self::NonRetain),
             Qualifier::Retain => Some(Self::Retain),
             Qualifier::Persistent => Some(Self::Persistent),
-            Qualifier::Constant | Qualifier::Access(_) => None,
+            Qualifier::Constant | Qualifier::Access(_) | Qualifier::Generic => None,
         });
         each.max()
     }

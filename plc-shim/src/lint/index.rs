@@ -4,8 +4,8 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use crate::application::Front;
 use crate::syntax::ast::{
-    Configuration, Connection, Declaration, Expr, ExprKind, Ident, Pou, PouKind, Section, SectionKind, TypeSpec,
-    TypeSpecKind, Variable,
+    Configuration, Connection, Declaration, Expr, ExprKind, Ident, Pou, PouKind, Section, SectionKind, TemplateUse,
+    TypeSpec, TypeSpecKind, Variable,
 };
 use crate::syntax::walk::root;
 
@@ -24,6 +24,8 @@ pub(super) struct Index<'a> {
     in_outs: BTreeSet<String>,
     /// First names of namespaces and of lists of global variables.
     namespaces: BTreeSet<String>,
+    /// Where generic blocks are named with their constants.
+    templates: Vec<&'a TemplateUse>,
 }
 
 impl<'a> Index<'a> {
@@ -39,6 +41,7 @@ impl<'a> Index<'a> {
             configurations: Vec::new(),
             in_outs: BTreeSet::new(),
             namespaces: BTreeSet::new(),
+            templates: front.units.iter().flat_map(|(_, unit)| &unit.templates).collect(),
         };
         for (file, unit) in &front.units {
             let library = front.library.contains(file);
@@ -65,7 +68,7 @@ impl<'a> Index<'a> {
                 } else {
                     self.own.push(pou);
                     for base in &pou.object.extends {
-                        let key = base.key();
+                        let key = base.template_key();
                         let last = key.rsplit('.').next().unwrap_or(&key).to_owned();
                         self.derived.entry(last).or_default().push(pou);
                     }
@@ -116,6 +119,17 @@ impl<'a> Index<'a> {
             }
         }
         found
+    }
+
+    /// What the constants of generic blocks are given, everywhere or in one unit.
+    pub(super) fn constants_given(&self, unit: Option<&Pou>) -> impl Iterator<Item = &'a Expr> {
+        let inside = |each: &&&TemplateUse| {
+            unit.is_none_or(|pou| {
+                let (all, part) = (pou.span, each.span);
+                all.file == part.file && all.start <= part.start && part.end <= all.end
+            })
+        };
+        self.templates.iter().filter(inside).flat_map(|each| &each.arguments).collect::<Vec<_>>().into_iter()
     }
 
     pub(super) fn unit(&self, key: &str) -> Option<&'a Pou> {
@@ -214,7 +228,7 @@ impl<'a> Index<'a> {
     pub(super) fn block(&self, spec: &'a TypeSpec) -> Option<&'a Pou> {
         match &self.resolved(spec).kind {
             TypeSpecKind::Name(name) | TypeSpecKind::Instance(name, _) => {
-                self.unit(&name.key()).filter(|pou| pou.kind == PouKind::FunctionBlock)
+                self.unit(&name.template_key()).filter(|pou| pou.kind == PouKind::FunctionBlock)
             }
             TypeSpecKind::Array(_, element) => self.block(element),
             _ => None,

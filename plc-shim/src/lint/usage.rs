@@ -43,6 +43,7 @@ impl Usage {
                 collector.section(section);
             }
             walk::unit(each, &mut collector);
+            index.constants_given(Some(each)).for_each(|value| walk::expression(value, &mut collector));
         }
         collector.usage
     }
@@ -56,6 +57,7 @@ impl Usage {
         for spec in index.type_specs() {
             collector.spec(spec);
         }
+        index.constants_given(None).for_each(|value| walk::expression(value, &mut collector));
         let (read, written) = index.configured();
         for expr in read {
             walk::expression(expr, &mut collector);

@@ -50,6 +50,29 @@ impl<'a> Collector<'a> {
                 }
             }
         }
+        self.alike(signature);
+    }
+
+    /// A parameter is one, be it given with its name or without; what a test expects is what it finds.
+    fn alike(&mut self, signature: &Signature) {
+        let places = signature.positional.iter().map(|argument| argument.slot);
+        let pairs: Vec<_> = signature
+            .in_order()
+            .iter()
+            .map(|(_, argument)| argument.slot)
+            .zip(places)
+            .filter(|(a, b)| a != b)
+            .collect();
+        for (named, nameless) in pairs {
+            self.beside(&Ty::Slot(named), &Ty::Slot(nameless));
+        }
+        let slot = |name: &str| {
+            let found = signature.named.iter().find(|named| named.name.eq_ignore_ascii_case(name));
+            found.map(|named| Ty::Slot(named.argument.slot))
+        };
+        if let (Some(expected), Some(actual)) = (slot("Expected"), slot("Actual")) {
+            self.beside(&expected, &actual);
+        }
     }
 
     fn nameless(&mut self, signature: &mut Signature, path: &str, position: usize, is_place: bool, found: &Ty) {

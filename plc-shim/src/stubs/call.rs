@@ -464,7 +464,7 @@ impl<'a> Collector<'a> {
                 values.get(1..).unwrap_or_default().windows(2).for_each(|pair| self.beside_pair(pair));
                 let rest = values.get(1..).unwrap_or_default();
                 rest.iter()
-                    .find(|ty| !matches!(ty, Ty::Integer | Ty::Real))
+                    .find(|ty| !matches!(ty, Ty::Integer | Ty::Wide(_) | Ty::Real))
                     .or(rest.first())
                     .cloned()
                     .unwrap_or(Ty::Unknown)
@@ -478,6 +478,10 @@ impl<'a> Collector<'a> {
                 let count = if key == "__QUERYINTERFACE" { 2 } else { 1 };
                 values.iter().take(count).for_each(|value| self.asked(value));
                 elementary(E::Bool)
+            }
+            "__DELETE" => {
+                self.flow(&first, &Ty::Pointer(ReferenceKind::Pointer, Box::new(Ty::Unknown)));
+                Ty::Unknown
             }
             "__ISVALIDREF" | "GT" | "GE" | "EQ" | "LE" | "LT" | "NE" => elementary(E::Bool),
             _ => Ty::Unknown,

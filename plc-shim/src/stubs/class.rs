@@ -2,7 +2,7 @@
 
 use super::collect::Collector;
 use super::ty::Ty;
-use super::world::{Home, Part};
+use super::world::{Home, Part, VALUE, has_value};
 use crate::syntax::ast::{Pou, PouKind, TypeSpecKind};
 
 impl<'a> Collector<'a> {
@@ -19,6 +19,10 @@ impl<'a> Collector<'a> {
             if let Some(unit) = self.world.units.get(&next) {
                 if let Some((spec, _)) = unit.variables.get(&key) {
                     return Some(Found::Variable(self.type_of(spec, &unit.home, 0)));
+                }
+                let variables = unit.pou.sections.iter().flat_map(|section| &section.variables);
+                if variables.into_iter().any(|variable| has_value(&variable.spec, &key)) {
+                    return Some(Found::Variable(VALUE));
                 }
                 if let Some(method) = unit.members.get(&(Part::Method, key.clone())) {
                     return Some(Found::Method(method, unit.home.clone()));

@@ -6,7 +6,7 @@ use super::world::{Home, Unit, World};
 use crate::ElementaryType;
 use crate::check::of_pointer_width;
 use crate::syntax::ast::{
-    Expr, ExprKind, Ident, Literal, Pou, PouKind, Section, TransitionCondition, TypeSpec, TypeSpecKind,
+    BinaryOp, Expr, ExprKind, Ident, Literal, Pou, PouKind, Section, TransitionCondition, TypeSpec, TypeSpecKind,
 };
 
 /// Greatest number of types that stand for one another in a row.
@@ -134,11 +134,12 @@ impl<'a> Collector<'a> {
             }
             TypeSpecKind::String(name, _) => Ty::Text(name.key() == "WSTRING"),
             TypeSpecKind::Array(dimensions, inner) => {
-                let bounds = dimensions.iter().map(|each| match (number(&each.low), number(&each.high)) {
-                    (Some(low), Some(high)) => format!("{low}..{high}"),
-                    _ => super::ty::ANY_BOUNDS.to_owned(),
-                });
-                Ty::Array(bounds.collect(), Box::new(self.type_of(inner, home, depth)))
+                let bounds =
+                    dimensions.iter().map(|each| match (self.bound(&each.low, home), self.bound(&each.high, home)) {
+                        (Some(low), Some(high)) => format!("{low}..{high}"),
+                        _ => super::ty::ANY_BOUNDS.to_owned(),
+                    });
+                Ty::Array(bounds.collect::<Vec<_>>(), Box::new(self.type_of(inner, home, depth)))
             }
             TypeSpecKind::OpenArray(count, inner) => {
                 let bounds = (0..*count).map(|_| super::ty::ANY_BOUNDS.to_owned()).collect();
@@ -149,8 +150,36 @@ impl<'a> Collector<'a> {
         }
     }
 
+    /// The text of a bound that means the same in the file of stubs: of numbers and global constants.
+    fn bound(&self, expr: &Expr, home: &Home) -> Option<String> {
+        if let Some(value) = number(expr) {
+            return Some(value.to_string());
+        }
+        match &expr.kind {
+            ExprKind::Paren(inner) => self.bound(inner, home),
+            ExprKind::Binary(op @ (BinaryOp::Add | BinaryOp::Subtract | BinaryOp::Multiply), left, right) => {
+                Some(format!("({} {} {})", self.bound(left, home)?, op.text(), self.bound(right, home)?))
+            }
+            _ => {
+                let path = super::names::path_of(expr)?;
+                let key = path.iter().map(|name| name.key()).collect::<Vec<_>>().join(".");
+                let known = self.world.global_key(home, &key);
+                let foreign = self.needs.globals.get(&key).filter(|global| global.is_constant);
+                known.or_else(|| foreign.map(|global| global.name.clone()))
+            }
+        }
+    }
+
     /// What a type's name means; what it names is foreign if nobody declares it.
     pub(super) fn named(&mut self, name: &Ident, home: &Home, depth: u8) -> Ty {
+        if let Some((template, given)) = name.text.split_once('<') {
+            let ty = self.named(&Ident { text: template.to_owned(), span: name.span }, home, depth);
+            if let Ty::Foreign(key) = &ty {
+                let found = self.foreign(key);
+                found.constants = found.constants.max(arguments_in(given));
+            }
+            return ty;
+        }
         let key = name.key();
         if let Some(elementary) = ElementaryType::find(&key) {
             return Ty::Elementary(elementary);
@@ -162,7 +191,7 @@ impl<'a> Collector<'a> {
             "STRING" => return Ty::Text(false),
             "WSTRING" => return Ty::Text(true),
             "BIT" => return Ty::Elementary(ElementaryType::Bool),
-            _ if key.starts_with("ANY") && super::is_generic(&key) => return Ty::Unknown,
+            _ if key.starts_with("ANY") && super::is_generic(&key) => return Ty::Any,
             _ => {}
         }
         if let Some(unit) = self.world.unit_key(home, &key) {
@@ -254,4 +283,19 @@ fn number(expr: &Expr) -> Option<i128> {
         ExprKind::Paren(inner) => number(inner),
         _ => None,
     }
+}
+
+/// How many constants a generic block is given, by the text behind its name.
+fn arguments_in(given: &str) -> usize {
+    let mut depth = 0_u32;
+    let mut count = 1;
+    for character in given.chars() {
+        match character {
+            '(' => depth += 1,
+            ')' => depth = depth.saturating_sub(1),
+            ',' if depth == 0 => count += 1,
+            _ => {}
+        }
+    }
+    count
 }

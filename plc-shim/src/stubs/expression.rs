@@ -123,7 +123,7 @@ impl<'a> Collector<'a> {
     fn literal(&mut self, literal: &Literal, expr: &Expr, scope: &Scope<'a>) -> Ty {
         match literal {
             Literal::Bool(_) => elementary(E::Bool),
-            Literal::Integer(_) => Ty::Integer,
+            Literal::Integer(value) => integer(*value),
             Literal::Real(_) => Ty::Real,
             Literal::LongDuration(_) => elementary(E::Ltime),
             Literal::Duration { long, .. } => elementary(if *long { E::Ltime } else { E::Time }),
@@ -222,6 +222,15 @@ impl<'a> Collector<'a> {
         if !is_time(&known_left) && !is_time(&known_right) && !is_pointer(&known_left) && !is_pointer(&known_right) {
             self.beside(&left, &right);
         }
+        // What is added to a duration, or taken from one, is one.
+        if matches!(op, BinaryOp::Add | BinaryOp::Subtract) {
+            let is_duration = |ty: &Ty| matches!(ty, Ty::Elementary(found) if found.is_duration());
+            if is_duration(&known_left) && is_open(&known_right) {
+                self.beside(&right, &known_left);
+            } else if is_duration(&known_right) && is_open(&known_left) && op == BinaryOp::Subtract {
+                self.beside(&left, &known_right);
+            }
+        }
         joined(known_left, known_right, left, right)
     }
 }
@@ -243,4 +252,11 @@ fn joined(known_left: Ty, known_right: Ty, left: Ty, right: Ty) -> Ty {
 
 fn is_super(expr: &Expr) -> bool {
     matches!(&expr.kind, ExprKind::Name(name) if name.key() == "SUPER")
+}
+
+/// What a number without a type says: one that fits an INT could be of any integer type.
+fn integer(value: i128) -> Ty {
+    let fits = |ty: &E| ty.wrap(value) == value;
+    let wide = [E::Int, E::Uint, E::Dint, E::Udint, E::Lint, E::Ulint].into_iter().find(fits);
+    wide.filter(|ty| *ty != E::Int).map_or(Ty::Integer, Ty::Wide)
 }

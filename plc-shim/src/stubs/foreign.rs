@@ -89,6 +89,8 @@ pub(super) struct Foreign {
     /// The members' keys, in the order in which they were found.
     pub(super) order: Vec<String>,
     pub(super) called: bool,
+    /// So many constants are given to it, as a generic block.
+    pub(super) constants: usize,
     /// So many inputs are given without names.
     pub(super) inputs: usize,
     pub(super) base_of_block: bool,

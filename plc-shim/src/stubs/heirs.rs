@@ -13,8 +13,10 @@ impl<'a> Collector<'a> {
     pub(super) fn overrides(&mut self, key: &str, unit: &'a Unit<'a>) {
         let mut above: Vec<String> = self.foreign_base(key).into_iter().collect();
         for name in &unit.pou.object.implements {
-            if let Ty::Foreign(interface) = self.named(name, &unit.home, 0) {
-                above.push(interface);
+            match self.named(name, &unit.home, 0) {
+                Ty::Foreign(interface) => above.push(interface),
+                Ty::Declared(interface) => above.extend(self.foreign_base(&interface)),
+                _ => {}
             }
         }
         for base in above {

@@ -4,8 +4,9 @@ use super::class::Found;
 use super::collect::{Collector, Scope};
 use super::names::Access;
 use super::ty::Ty;
+use crate::ElementaryType;
 use crate::syntax::ast::{
-    Argument, Expr, InitArguments, Initialiser, InitialiserKind, Section, TypeSpec, TypeSpecKind,
+    Argument, Expr, InitArguments, Initialiser, InitialiserKind, Qualifier, Section, TypeSpec, TypeSpecKind,
 };
 
 impl<'a> Collector<'a> {
@@ -13,8 +14,13 @@ impl<'a> Collector<'a> {
         for variable in &section.variables {
             self.constants_of(&variable.spec, scope);
             let ty = self.type_of(&variable.spec, &scope.home, 0);
-            if let Some(initial) = &variable.initial {
-                self.initial(&ty, initial, scope);
+            match variable.initial.as_ref().map(|initial| (&initial.kind, initial)) {
+                Some((InitialiserKind::Value(value), _)) if section.qualifiers.contains(&Qualifier::Constant) => {
+                    let found = self.place(value, Access::Constant, scope);
+                    self.flow(&found, &ty);
+                }
+                Some((_, initial)) => self.initial(&ty, initial, scope),
+                None => {}
             }
         }
     }
@@ -71,7 +77,9 @@ impl<'a> Collector<'a> {
                 let ty = self.named(name, &scope.home, 0);
                 self.init_arguments(&ty, arguments, scope);
             }
-            TypeSpecKind::String(_, Some(length)) => self.constant(length, scope),
+            TypeSpecKind::String(_, Some(length)) => {
+                self.constant(length, scope);
+            }
             TypeSpecKind::Subrange(_, bounds) => {
                 self.constant(&bounds.low, scope);
                 self.constant(&bounds.high, scope);
@@ -84,8 +92,14 @@ impl<'a> Collector<'a> {
                     field.initial.iter().for_each(|initial| self.initial(&ty, initial, scope));
                 }
             }
-            TypeSpecKind::Enumeration(values, _) => {
-                values.iter().filter_map(|each| each.value.as_ref()).for_each(|value| self.constant(value, scope));
+            TypeSpecKind::Enumeration(values, base) => {
+                let base = base.as_ref().and_then(|base| ElementaryType::find(&base.key()));
+                for value in values.iter().filter_map(|each| each.value.as_ref()) {
+                    let found = self.constant(value, scope);
+                    if let (Ty::Slot(slot), Some(base)) = (found, base) {
+                        self.slots.taken(slot, &Ty::Elementary(base));
+                    }
+                }
             }
             _ => {}
         }
@@ -102,12 +116,13 @@ impl<'a> Collector<'a> {
         }
     }
 
-    fn constant(&mut self, expr: &Expr, scope: &Scope<'a>) {
+    fn constant(&mut self, expr: &Expr, scope: &Scope<'a>) -> Ty {
         let found = self.place(expr, Access::Constant, scope);
         self.flow(&found, &Ty::Integer);
         if let Ty::Slot(slot) = found {
             self.slots.given(slot, &Ty::Integer);
         }
+        found
     }
 
     fn initial(&mut self, ty: &Ty, initial: &Initialiser, scope: &Scope<'a>) {

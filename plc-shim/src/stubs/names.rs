@@ -5,7 +5,8 @@ use super::collect::{Collector, Scope};
 use super::foreign::{Function, Global, Head};
 use super::hint;
 use super::ty::Ty;
-use crate::check::joined;
+use super::world::{VALUE, has_value};
+use crate::check::{is_list, joined};
 use crate::syntax::ast::{Expr, ExprKind, Ident};
 
 /// What is done to a place.
@@ -77,6 +78,9 @@ impl<'a> Collector<'a> {
                     if variable.names.iter().any(|each| each.key() == key) {
                         return Some(self.type_of(&variable.spec, &scope.home, 0));
                     }
+                    if has_value(&variable.spec, &key) {
+                        return Some(VALUE);
+                    }
                 }
             }
             if local.name.key() == key {
@@ -110,6 +114,9 @@ impl<'a> Collector<'a> {
         }
         if let Some(found) = self.world.enumerators.get(key) {
             return Some(Ty::Declared(found.clone()));
+        }
+        if self.world.loose_values.contains(key) {
+            return Some(VALUE);
         }
         if let Some(found) = self.world.unit_key(&scope.home, key) {
             return Some(Ty::Declared(found));
@@ -277,6 +284,13 @@ impl<'a> Collector<'a> {
             if !self.needs.libraries.contains_key(&key) && !self.world.is_library(&key) {
                 break;
             }
+            rest = behind;
+        }
+        // A list of global variables in a library.
+        if rest.len() < path.len()
+            && let [list, behind @ ..] = rest
+            && is_list(&list.text)
+        {
             rest = behind;
         }
         (rest, rest.len() < path.len())

@@ -153,7 +153,8 @@ impl Printer<'_, '_> {
             Shape::Alias(ty) => format!("{{external}}\nTYPE {name} : {}; END_TYPE\n", self.type_text(ty, name)),
             Shape::Enumeration => {
                 let values = if found.values.is_empty() { format!("{name}_0") } else { found.values.join(", ") };
-                format!("{{external}}\nTYPE {name} : ({values}); END_TYPE\n")
+                let base = self.collector.base_of(found).map(|base| format!(" {}", base.name())).unwrap_or_default();
+                format!("{{external}}\nTYPE {name} : ({values}){base}; END_TYPE\n")
             }
             Shape::Structure => {
                 let fields = self.fields(found);
@@ -166,7 +167,8 @@ impl Printer<'_, '_> {
             }
             Shape::Block => {
                 let (above, members) = (self.above(key, found, " IMPLEMENTS "), self.block_members(key, found));
-                format!("{{external}}\nFUNCTION_BLOCK {name}{above}\n{members}END_FUNCTION_BLOCK\n")
+                let constants = generic_constants(found.constants);
+                format!("{{external}}\nFUNCTION_BLOCK {name}{constants}{above}\n{members}END_FUNCTION_BLOCK\n")
             }
         }
     }
@@ -370,8 +372,9 @@ impl Printer<'_, '_> {
         match ty {
             Ty::Unknown => self.type_text(&super::hint::of_name(name), name),
             Ty::Integer => "DINT".to_owned(),
+            Ty::Any => "ANY".to_owned(),
             Ty::Real => "LREAL".to_owned(),
-            Ty::Elementary(found) => found.name().to_owned(),
+            Ty::Elementary(found) | Ty::Wide(found) => found.name().to_owned(),
             Ty::Text(wide) => if *wide { "WSTRING(255)" } else { "STRING(255)" }.to_owned(),
             Ty::Declared(key) => self.declared_name(key),
             Ty::Foreign(key) => {
@@ -427,4 +430,13 @@ fn members(found: &Foreign) -> impl Iterator<Item = &Member> {
     // What a drawing knows by its number has no name that could be declared.
     let named = |member: &&Member| !member.name.starts_with('`');
     found.order.iter().filter_map(|key| found.members.get(key)).filter(named)
+}
+
+/// The section of a generic block, whose constants have no names that anybody would know.
+fn generic_constants(count: usize) -> String {
+    if count == 0 {
+        return String::new();
+    }
+    let lines: String = (1..=count).map(|index| format!("    generic{index} : DINT := 1;\n")).collect();
+    format!("\nVAR_GENERIC CONSTANT\n{lines}END_VAR")
 }

@@ -4,6 +4,7 @@ use super::collect::Collector;
 use super::foreign::Foreign;
 use super::hint::{self, TypeHint};
 use super::ty::Ty;
+use crate::ElementaryType;
 
 /// What a stub of a type is.
 #[derive(Debug, Clone, PartialEq)]
@@ -21,7 +22,7 @@ impl Collector<'_> {
         if found.implemented || found.base_of_interface {
             return Shape::Interface;
         }
-        if found.base_of_block || found.called || found.init.is_some() {
+        if found.base_of_block || found.called || found.init.is_some() || found.constants > 0 {
             return Shape::Block;
         }
         if found.base_of_structure {
@@ -52,6 +53,15 @@ impl Collector<'_> {
             None => {}
         }
         self.by_value(found)
+    }
+
+    /// The type of an enumeration's numbers, where an INT would not hold what goes into it.
+    pub(super) fn base_of(&self, found: &Foreign) -> Option<ElementaryType> {
+        let numbers = self.slots.evidence(found.value?).filter_map(|ty| match ty {
+            Ty::Elementary(found) if found.is_integer() => Some(found),
+            _ => None,
+        });
+        numbers.filter(|ty| !ty.widens_to(ElementaryType::Int)).max_by_key(|ty| (ty.size(), ty.is_signed()))
     }
 
     /// Nothing of it is used but the value as a whole.
@@ -89,6 +99,7 @@ impl Collector<'_> {
                     Ty::Elementary(_) | Ty::Text(_) => return Some(ty),
                     Ty::Real => literal = Some(Ty::Elementary(hint::real(&found.name))),
                     Ty::Integer if literal.is_none() => literal = Some(hint::integer(&found.name)),
+                    Ty::Wide(wide) if literal.is_none() => literal = Some(Ty::Elementary(wide)),
                     Ty::Foreign(key) => open.extend(self.needs.types.get(&key).filter(|each| each.members.is_empty())),
                     _ => {}
                 }

@@ -159,6 +159,9 @@ impl<'c> Printer<'c, '_> {
         if mixed && is_place {
             return ("VAR_INPUT", "ANY".to_owned());
         }
+        if let Some(ty) = slots.array_of_any_length(all.iter().map(|argument| argument.slot)) {
+            return ("VAR_INPUT", self.type_text(&ty, name));
+        }
         let best = all.iter().find(|argument| slots.decided(argument.slot).is_some()).unwrap_or(first);
         let ty = slots.last_choice(best.slot);
         let is_block = match &ty {

@@ -252,3 +252,68 @@ VAR task : Task; i : T_Index; list : ARRAY [0..MAX_LIST] OF INT; wide : UINT; na
 END_FUNCTION_BLOCK"
     ));
 }
+
+/// What stubs take over of the constants that a project gives.
+#[test]
+fn a_generic_block_has_as_many_constants_as_it_is_given() {
+    let text = stubs(
+        "FUNCTION_BLOCK Own EXTENDS Lib.Base<3> END_FUNCTION_BLOCK
+PROGRAM P VAR l : Lib.Pairs<(1 + 2), 8>; o : Own; n : DINT; END_VAR l.Add(5); n := l.Count; o(); END_PROGRAM",
+    );
+    assert!(text.contains("FUNCTION_BLOCK Base\nVAR_GENERIC CONSTANT\n    generic1 : DINT := 1;\nEND_VAR\n"), "{text}");
+    assert!(text.contains("generic2 : DINT := 1;") && !text.contains("generic3"), "{text}");
+}
+
+#[test]
+fn bounds_keep_their_constants_and_lengths_that_differ_are_open() {
+    let text = stubs(
+        "FUNCTION_BLOCK Own EXTENDS Tester
+VAR a : ARRAY [0..2] OF INT; b : ARRAY [1..5] OF INT; END_VAR
+  Same(Expected := a, Actual := b); Same(Expected := b, Actual := b);
+END_FUNCTION_BLOCK
+PROGRAM P VAR o : Own; p : ARRAY [0..Parameters.Most] OF LREAL; m : Mover; END_VAR
+  o(); p := m.Places; m.Places := p; END_PROGRAM",
+    );
+    assert!(text.contains("Expected : ARRAY [*] OF INT;") && text.contains("Actual : ARRAY [1..5] OF INT;"), "{text}");
+    assert!(text.contains("Places : ARRAY [0..Parameters.Most] OF LREAL;"), "{text}");
+}
+
+#[test]
+fn what_is_handed_on_and_what_goes_away_is_of_their_types() {
+    let text = stubs(
+        "FUNCTION_BLOCK Own EXTENDS Base
+METHOD Put : BOOL VAR_INPUT v : ANY; END_VAR Put := Store(v); __DELETE(rest); END_METHOD
+END_FUNCTION_BLOCK
+PROGRAM P VAR CONSTANT wait : TIME := T#5s; most : UINT := Parameters.Most + 1; END_VAR
+VAR o : Own; i : INT; t : Stopwatch; left : TIME; c : Counter; END_VAR
+  o.Put(i); left := wait - t.Elapsed; c.Limit := 16#FFEF0000; c.Add(134052566194980000);
+END_PROGRAM",
+    );
+    assert!(text.contains("p1 : ANY;") && text.contains("rest : POINTER TO BYTE;"), "{text}");
+    assert!(
+        text.contains("Elapsed : TIME;") && text.contains("Limit : UDINT;") && text.contains("p1 : LINT;"),
+        "{text}"
+    );
+    assert!(text.contains("CONSTANT\n    Most : "), "{text}");
+}
+
+#[test]
+fn values_of_enumerations_without_a_name_are_declared() {
+    let text = stubs(
+        "FUNCTION_BLOCK Own EXTENDS Base
+VAR state : (Waiting, Running); END_VAR
+METHOD Go : BOOL state := Running; Go := state = Waiting; END_METHOD
+  CASE state OF Waiting: state := Running; END_CASE
+END_FUNCTION_BLOCK
+PROGRAM P VAR o : Own; END_VAR o(); END_PROGRAM",
+    );
+    assert!(!text.contains("Waiting") && !text.contains("Running"), "{text}");
+}
+
+#[test]
+fn an_enumeration_holds_the_numbers_that_go_into_it() {
+    let text = stubs(
+        "PROGRAM P VAR e : E_Command; n : UDINT; END_VAR e := n; IF e = E_Command.Stop THEN n := 0; END_IF END_PROGRAM",
+    );
+    assert!(text.contains("TYPE E_Command : (Stop) UDINT; END_TYPE"), "{text}");
+}

@@ -13,6 +13,8 @@ pub(super) enum Ty {
     Unknown,
     /// An integer without a type of its own.
     Integer,
+    /// The same, one that needs at least this type.
+    Wide(ElementaryType),
     /// A real number without a type of its own.
     Real,
     /// A standard type.
@@ -25,6 +27,8 @@ pub(super) enum Ty {
     Foreign(String),
     /// Dimensions as they are written, and the elements.
     Array(Vec<String>, Box<Ty>),
+    /// A generic input of vendors: what it is given for is one, too.
+    Any,
     /// A pointer or reference.
     Pointer(ReferenceKind, Box<Ty>),
     /// The type of something that nobody declares.
@@ -166,6 +170,9 @@ impl Slots {
         }
         let resolved = |list: &[Ty]| -> Vec<Ty> { list.iter().map(|ty| self.resolved(ty)).collect() };
         let (from, to, beside) = (resolved(&each.from), resolved(&each.to), resolved(&each.beside));
+        if from.contains(&Ty::Any) {
+            return Some(Ty::Any);
+        }
         let in_order = || to.iter().chain(&from).chain(&beside);
         let named = |ty: &&Ty| matches!(ty, Ty::Declared(_) | Ty::Foreign(_));
         // What is indexed is no instance, whatever it is given.
@@ -180,6 +187,12 @@ impl Slots {
         let kept = each.decided.clone().filter(|ty| matches!(ty, Ty::Foreign(_)));
         if kept.is_some() {
             return kept;
+        }
+        // An address, which is given as a pointer here and as a number there.
+        let is_pointer = |ty: &Ty| matches!(ty, Ty::Pointer(..));
+        let is_number = |ty: &Ty| matches!(ty, Ty::Elementary(found) if found.is_integer() || found.is_bits() && *found != ElementaryType::Bool);
+        if from.iter().any(is_pointer) && from.iter().any(is_number) {
+            return Some(Ty::Elementary(ElementaryType::Lword));
         }
         let built = |ty: &&Ty| matches!(ty, Ty::Array(..) | Ty::Pointer(..));
         // One that a declaration tells goes before one that is only indexed or followed.
@@ -214,8 +227,18 @@ impl Slots {
         if has(&Ty::Real) {
             return Ty::Elementary(hint::real(telling));
         }
-        if has(&Ty::Integer) {
-            return hint::integer(telling);
+        let wide = linked.iter().flat_map(|each| each.all()).filter_map(|ty| match ty {
+            Ty::Wide(found) => Some(*found),
+            _ => None,
+        });
+        let wide = wide.max_by_key(|ty| (ty.size(), ty.is_signed()));
+        if has(&Ty::Integer) || wide.is_some() {
+            return match (hint::integer(telling), wide) {
+                (Ty::Elementary(named), Some(wide)) if named.size() <= wide.size() && !named.is_bits() => {
+                    Ty::Elementary(wide)
+                }
+                (named, _) => named,
+            };
         }
         hint::of_name(telling)
     }
@@ -238,6 +261,21 @@ impl Slots {
     /// Everything that a slot is known to meet.
     pub(super) fn evidence(&self, slot: Slot) -> impl Iterator<Item = Ty> + '_ {
         self.all.get(slot.0).into_iter().flat_map(|each| each.all().map(|ty| self.resolved(ty)))
+    }
+
+    /// What a parameter is that takes arrays of several lengths.
+    pub(super) fn array_of_any_length(&self, parameter: impl Iterator<Item = Slot>) -> Option<Ty> {
+        let given = parameter.filter_map(|slot| self.all.get(slot.0)).flat_map(|each| &each.from);
+        let arrays: Vec<(Vec<String>, Box<Ty>)> = given
+            .filter_map(|ty| match self.resolved(ty) {
+                Ty::Array(bounds, element) if bounds.iter().all(|each| each != ANY_BOUNDS) => Some((bounds, element)),
+                _ => None,
+            })
+            .collect();
+        let ((first, element), rest) = arrays.split_first()?;
+        let differ = rest.iter().any(|(bounds, _)| bounds != first);
+        let alike = rest.iter().all(|(bounds, other)| bounds.len() == first.len() && other == element);
+        (differ && alike).then(|| Ty::Array(vec!["*".to_owned(); first.len()], element.clone()))
     }
 
     /// True if what is given for a parameter has no type in common.
@@ -335,8 +373,8 @@ fn push(list: &mut Vec<Ty>, ty: &Ty, slot: Slot) {
 /// Types of one group are converted into one another.
 fn group(ty: &Ty) -> Option<String> {
     Some(match ty {
-        Ty::Unknown | Ty::Slot(_) => return None,
-        Ty::Integer | Ty::Real => "number".to_owned(),
+        Ty::Unknown | Ty::Slot(_) | Ty::Any => return None,
+        Ty::Integer | Ty::Wide(_) | Ty::Real => "number".to_owned(),
         Ty::Elementary(found) if found.is_number() || found.is_bits() && *found != ElementaryType::Bool => {
             "number".to_owned()
         }

@@ -2,10 +2,12 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use crate::check::{find_key, joined, knows_function, short_inside};
+use super::ty::Ty;
+use crate::ElementaryType;
+use crate::check::{find_key, is_library_name, is_list, joined, knows_function, short_inside};
 use crate::syntax::ast::{
-    CompilationUnit, Declaration, Ident, MemberKind, Namespace, NamespaceKind, Pou, PouKind, Section, SectionKind,
-    TypeDeclaration, TypeSpec, TypeSpecKind,
+    CompilationUnit, Declaration, EnumValue, Ident, MemberKind, Namespace, NamespaceKind, Pou, PouKind, Section,
+    SectionKind, TypeDeclaration, TypeSpec, TypeSpecKind,
 };
 use crate::syntax::{FileId, SourceMap};
 
@@ -69,6 +71,8 @@ pub(super) struct World<'a> {
     libraries: BTreeSet<String>,
     /// The types of values of enumerations, by the value's name.
     pub(super) enumerators: BTreeMap<String, String>,
+    /// Values of enumerations without names, in lists of globals.
+    pub(super) loose_values: BTreeSet<String>,
     /// What stands outside of units and has values: types and lists of globals.
     pub(super) loose: Vec<(&'a Section, Home)>,
     pub(super) sources: &'a SourceMap,
@@ -88,6 +92,7 @@ impl<'a> World<'a> {
             namespaces: BTreeSet::new(),
             libraries: BTreeSet::new(),
             enumerators: BTreeMap::new(),
+            loose_values: BTreeSet::new(),
             loose: Vec::new(),
             sources,
         };
@@ -173,6 +178,7 @@ impl<'a> World<'a> {
 
     fn add_globals(&mut self, section: &'a Section, home: &Home) {
         for variable in &section.variables {
+            self.loose_values.extend(values(&variable.spec).map(|value| value.name.key()));
             for name in &variable.names {
                 let key = joined(&home.namespace, &name.key());
                 OpenNames::note(&mut self.open.globals, home, name, &key);
@@ -193,7 +199,7 @@ impl<'a> World<'a> {
             return Some(found);
         }
         let (first, rest) = key.split_once('.')?;
-        if self.libraries.contains(first) || is_standard_library(first) {
+        if self.libraries.contains(first) || is_standard_library(first) || is_library_name(first) || is_list(first) {
             return self.full_key(map, open, home, rest);
         }
         None
@@ -238,6 +244,24 @@ impl<'a> World<'a> {
 fn is_library(namespace: &Namespace) -> bool {
     let is_list = namespace.declarations.iter().all(|each| matches!(each, Declaration::Globals(_)));
     namespace.kind == NamespaceKind::Open && !is_list
+}
+
+/// The type of a value of an enumeration that has no name.
+pub(super) const VALUE: Ty = Ty::Elementary(ElementaryType::Int);
+
+/// The values of an enumeration that a variable is declared with.
+fn values(spec: &TypeSpec) -> impl Iterator<Item = &EnumValue> {
+    let mut inner = spec;
+    while let TypeSpecKind::Array(_, element) = &inner.kind {
+        inner = element;
+    }
+    let list = if let TypeSpecKind::Enumeration(values, _) = &inner.kind { values.as_slice() } else { &[] };
+    list.iter()
+}
+
+/// True if a variable is declared with an enumeration that has the value.
+pub(super) fn has_value(spec: &TypeSpec, key: &str) -> bool {
+    values(spec).any(|value| value.name.key() == key)
 }
 
 fn variables(pou: &Pou) -> BTreeMap<String, (&TypeSpec, SectionKind)> {

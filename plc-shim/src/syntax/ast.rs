@@ -50,6 +50,12 @@ impl Ident {
     pub fn is_quoted(&self) -> bool {
         self.text.starts_with('"')
     }
+
+    /// The key without the constants of a generic block: that of `List` for `List<8>`.
+    pub fn template_key(&self) -> String {
+        let key = self.key();
+        key.split_once('<').map_or(key.as_str(), |(template, _)| template).to_owned()
+    }
 }
 
 /// What a file declares, in its order.
@@ -59,4 +65,17 @@ pub struct CompilationUnit {
     pub dialect: Dialect,
     /// The declarations.
     pub declarations: Vec<Declaration>,
+    /// Where generic blocks are named with their constants.
+    pub templates: Vec<TemplateUse>,
+}
+
+/// `List<8>`: a block that is made of a generic one (CODESYS, TwinCAT). The whole of it stands as one name in the tree.
+#[derive(Debug, Clone)]
+pub struct TemplateUse {
+    /// The name of the generic block.
+    pub template: Ident,
+    /// Its constants.
+    pub arguments: Vec<Expr>,
+    /// Where all of it stands.
+    pub span: Span,
 }

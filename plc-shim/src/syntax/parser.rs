@@ -69,7 +69,8 @@ fn parse_text(dialect: Dialect, file: FileId, text: &str, origin: Option<&Origin
     let mut cursor = Cursor::new(dialect, file, text, &tokens).taken_out_of(origin);
     report_lexical_errors(&mut cursor, &tokens);
     conditional::apply(&mut cursor, &tokens);
-    let unit = CompilationUnit { dialect, ..cursor.compilation_unit() };
+    let declared = cursor.compilation_unit();
+    let unit = CompilationUnit { dialect, templates: cursor.take_templates(), ..declared };
     let mut diagnostics = cursor.into_diagnostics();
     if unit.declarations.is_empty() {
         leave_out_rubbish(&mut diagnostics);

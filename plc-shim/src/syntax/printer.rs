@@ -39,7 +39,9 @@ impl Printer {
 
     /// A name where it is declared or needs no telling apart; SCL allows any text between quotes.
     fn name(&mut self, name: &Ident) {
-        if name.text.split('.').all(is_plain) {
+        // The constants of a generic block stand as they were written.
+        let plain = name.text.split('<').next().unwrap_or(&name.text);
+        if plain.split('.').all(is_plain) {
             self.word(&name.text);
         } else {
             self.word(&format!("\"{}\"", name.text));

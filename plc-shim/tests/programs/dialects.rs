@@ -131,6 +131,22 @@ fn use_in_projects(feature: Feature) -> &'static str {
              PROGRAM P VAR f1 : F; END_VAR f1(); f1.q; END_PROGRAM"
         }
         Feature::Exceptions => "PROGRAM P VAR a : INT; END_VAR __TRY a := 1; __CATCH a := 2; __ENDTRY END_PROGRAM",
+        Feature::Recursion => {
+            "FUNCTION F : INT VAR_INPUT n : INT; END_VAR IF n > 0 THEN F := F(n - 1); END_IF; END_FUNCTION
+             PROGRAM P VAR a : INT; END_VAR a := F(a); END_PROGRAM"
+        }
+        Feature::RepeatedArguments => {
+            "FUNCTION F : INT VAR_INPUT a : INT; END_VAR F := a; END_FUNCTION
+             PROGRAM P VAR n : INT; END_VAR n := F(a := 1, a := 2); END_PROGRAM"
+        }
+        Feature::LooseUnderscores => "PROGRAM P VAR w : WORD; END_VAR w := 16#7F__00; END_PROGRAM",
+        Feature::EmptyArrays => {
+            "PROGRAM P VAR a : ARRAY [0..-1] OF INT; b : ARRAY [0..0] OF INT; END_VAR b[0] := 1; END_PROGRAM"
+        }
+        Feature::GenericConstants => {
+            "FUNCTION_BLOCK F VAR_GENERIC CONSTANT n : INT := 1; END_VAR VAR a : ARRAY [1..n] OF INT; END_VAR a[1] := n; END_FUNCTION_BLOCK
+             PROGRAM P VAR f1 : F<2>; END_VAR f1(); END_PROGRAM"
+        }
         other => panic!("{other:?} has no program"),
     }
 }
@@ -151,7 +167,11 @@ fn every_construct_is_for_its_dialects_alone() {
 }
 
 /// Constructs whose absence is no syntax of its own: another error says it.
-const TOLD_OTHERWISE: [Feature; 33] = [
+const TOLD_OTHERWISE: [Feature; 37] = [
+    Feature::LooseUnderscores,
+    Feature::RepeatedArguments,
+    Feature::Recursion,
+    Feature::EmptyArrays,
     Feature::AssignedValues,
     Feature::DynamicMemory,
     Feature::AlikeStructures,

@@ -303,3 +303,136 @@ fn a_longer_string_stands_behind_a_reference_to_a_shorter_one() {
     );
     assert!(found.to_string().contains("T0201"), "a shorter one would be written beyond its end: {found}");
 }
+
+#[test]
+fn a_method_is_called_on_what_a_property_or_method_gives() {
+    let blocks = "FUNCTION_BLOCK Inner VAR n : DINT; END_VAR
+           METHOD Next : DINT n := n + 1; Next := n; END_METHOD END_FUNCTION_BLOCK
+         FUNCTION_BLOCK Outer VAR i : Inner; END_VAR
+           PROPERTY Copy : Inner GET Copy := i; END_GET END_PROPERTY
+           PROPERTY Own : REFERENCE TO Inner GET Own REF= i; END_GET END_PROPERTY
+           METHOD Get : Inner Get := i; END_METHOD END_FUNCTION_BLOCK";
+    gives(
+        &format!(
+            "{blocks} PROGRAM P VAR o : Outer; r : DINT; END_VAR
+               o.Own.Next(); o.Copy.Next();
+               r := o.Copy.Next() * 100 + o.Get().Next() * 10 + o.Own.Next(); END_PROGRAM"
+        ),
+        222,
+    );
+}
+
+#[test]
+fn what_is_derived_is_given_for_its_base() {
+    gives(
+        "FUNCTION_BLOCK Base VAR_OUTPUT n : DINT; END_VAR
+           METHOD Take : DINT VAR_INPUT other : Base; END_VAR Take := other.n * 10 + other.Kind(); other.n := 9; END_METHOD
+           METHOD Kind : DINT Kind := 1; END_METHOD END_FUNCTION_BLOCK
+         FUNCTION_BLOCK Derived EXTENDS Base VAR more : DINT := 5; END_VAR
+           METHOD Kind : DINT Kind := more; END_METHOD
+           METHOD Go : DINT n := 7; Go := Take(THIS^); END_METHOD END_FUNCTION_BLOCK
+         PROGRAM P VAR d : Derived; r : DINT; END_VAR r := d.Go() * 100 + d.n * 10 + d.Kind(); END_PROGRAM",
+        7175,
+    );
+}
+
+#[test]
+fn an_array_may_have_no_elements() {
+    gives(
+        "PROGRAM P VAR CONSTANT n : DINT := 0; END_VAR VAR none : ARRAY [0..n - 1] OF DINT; r : DINT := 5; END_VAR
+           r := r + SIZEOF(none); END_PROGRAM",
+        5,
+    );
+    let text = "PROGRAM P VAR none : ARRAY [0..-1] OF DINT; i : DINT; END_VAR none[i] := 1; END_PROGRAM";
+    for dialect in VENDORS {
+        let fault = Rig::in_dialect(dialect, text).scan().expect_err("there is no element");
+        assert_eq!(fault.kind, FaultKind::IndexOutOfRange, "{dialect}");
+    }
+    let text =
+        "PROGRAM P VAR a : ARRAY [0..-1] OF DINT; b : ARRAY [3..1] OF DINT; END_VAR a[0] := 1; b[3] := 1; END_PROGRAM";
+    insta::assert_snapshot!(findings_in(Codesys, text), @r"
+    test.st:1:53: error[D0408]: bounds 3..1 are reversed or beyond 32 bits
+    test.st:1:78: error[T0205]: index 0 is outside of 0..-1
+    ");
+    insta::assert_snapshot!(findings_in(Dialect::Iec3, text), @r"
+    test.st:1:26: error[D0408]: bounds 0..-1 are reversed or beyond 32 bits
+    test.st:1:53: error[D0408]: bounds 3..1 are reversed or beyond 32 bits
+    ");
+}
+
+#[test]
+fn strings_are_made_while_a_program_runs() {
+    gives(
+        "PROGRAM P VAR p : POINTER TO STRING(10); q : POINTER TO STRING; r : DINT; END_VAR
+           p := __NEW(STRING(10)); p^ := 'abcdefghijklm'; q := __NEW(STRING); q^ := CONCAT(p^, 'xy');
+           r := LEN(p^) * 100 + LEN(q^); __DELETE(p); __DELETE(q); END_PROGRAM",
+        1012,
+    );
+}
+
+#[test]
+fn an_enumeration_begins_with_a_value_of_its_own() {
+    gives(
+        "TYPE {attribute 'qualified_only'} Valve : (Shut := 3, Open := 4) USINT := Open; END_TYPE
+         TYPE Door : (Open, Closed) := Closed; END_TYPE
+         PROGRAM P VAR v : Valve; d : Door; r : DINT; END_VAR r := v * 10 + d; END_PROGRAM",
+        41,
+    );
+}
+
+#[test]
+fn words_of_charts_are_names_of_members() {
+    gives(
+        "TYPE T : STRUCT Step : REFERENCE TO DINT; Transition : DINT; END_STRUCT END_TYPE
+         PROGRAM P VAR t1 : T; r : DINT; END_VAR
+           t1.Step REF= r; t1.Step := 4; t1.Transition := r; END_PROGRAM",
+        4,
+    );
+}
+
+#[test]
+fn of_a_parameter_given_twice_the_last_value_counts() {
+    let text = "FUNCTION_BLOCK B VAR_INPUT a, b : DINT; END_VAR VAR_OUTPUT q : DINT; END_VAR q := a * 10 + b; END_FUNCTION_BLOCK
+         FUNCTION F : DINT VAR_INPUT a : DINT; END_VAR F := a; END_FUNCTION
+         PROGRAM P VAR b1 : B; r : DINT; END_VAR b1(a := 1, b := 2, a := 3); r := b1.q * 10 + F(a := 4, a := 5); END_PROGRAM";
+    gives(text, 325);
+    insta::assert_snapshot!(findings_in(TwinCat, text), @r"
+    test.st:3:69: warning[C0304]: this parameter is given twice, and the last value counts
+    test.st:3:105: warning[C0304]: this parameter is given twice, and the last value counts
+    ");
+}
+
+#[test]
+fn an_instance_that_is_only_read_may_be_derived() {
+    gives(
+        "FUNCTION_BLOCK Base VAR_OUTPUT n : DINT; END_VAR
+           METHOD Kind : DINT Kind := 1; END_METHOD
+           METHOD Read : DINT VAR_IN_OUT CONSTANT other : Base; END_VAR Read := other.n * 10 + other.Kind(); END_METHOD
+         END_FUNCTION_BLOCK
+         FUNCTION_BLOCK Derived EXTENDS Base METHOD Kind : DINT Kind := 2; END_METHOD
+           METHOD Go : DINT n := 7; Go := Read(THIS^); END_METHOD END_FUNCTION_BLOCK
+         PROGRAM P VAR d : Derived; b : Base; r : DINT; END_VAR r := d.Go() * 100 + b.Read(d); END_PROGRAM",
+        7272,
+    );
+}
+
+#[test]
+fn a_real_is_joined_with_a_wide_integer() {
+    gives(
+        "PROGRAM P VAR x : REAL := 20.5; u : ULINT := 8; l : LINT := -3; r : DINT; END_VAR
+           r := REAL_TO_DINT((x - u + l) * 10); END_PROGRAM",
+        95,
+    );
+}
+
+#[test]
+fn a_value_of_an_enumeration_takes_no_more_room_than_its_number() {
+    gives(
+        "TYPE Mode : (Off := 0, Far := 200) WORD; END_TYPE
+         PROGRAM P VAR b : BYTE; r : DINT; END_VAR b := Mode.Far; r := b; END_PROGRAM",
+        200,
+    );
+    let text =
+        "TYPE Mode : (Off := 0, Far := 300) WORD; END_TYPE PROGRAM P VAR b : BYTE; END_VAR b := Mode.Far; END_PROGRAM";
+    insta::assert_snapshot!(findings_in(TwinCat, text), @"test.st:1:88: error[T0201]: BYTE is wanted, this is WORD (convert it with WORD_TO_BYTE)");
+}

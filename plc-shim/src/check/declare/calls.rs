@@ -73,11 +73,15 @@ impl Declarations<'_> {
         Some(index)
     }
 
-    /// Guards the units that a call which only a run decides can come back to.
+    /// Guards the units that a call can come back to.
     pub(in crate::check) fn guard_circles(&mut self, checked: &mut BTreeMap<PouId, Pou>) {
         let mut circular = BTreeSet::new();
         let (forward, backward) = self.call_graph();
-        for caller in self.calls.dynamic.keys() {
+        for caller in forward.keys() {
+            // What is known to lie on a circle needs no other look.
+            if circular.contains(caller) {
+                continue;
+            }
             let ahead = reached(*caller, &forward);
             if ahead.contains(caller) {
                 circular.extend(reached(*caller, &backward).intersection(&ahead).copied());

@@ -95,7 +95,7 @@ impl Declarations<'_> {
     fn link(&mut self, id: PouId) {
         let ast = self.pou(id).ast;
         let (kind, object) = (ast.kind, &ast.object);
-        if object.extends.is_empty() && object.implements.is_empty() {
+        if object.extends.is_empty() && object.implements.is_empty() || self.lacks_constants(id) {
             return;
         }
         if kind != PouKind::Interface
@@ -107,20 +107,20 @@ impl Declarations<'_> {
         let wanted = |found: PouKind| found == kind || kind == PouKind::FunctionBlock && found == PouKind::Class;
         if kind == PouKind::Interface {
             for name in &object.extends {
-                let found = self.base_named(name, |found| found == PouKind::Interface, "an interface");
+                let found = self.base_named(id, name, |found| found == PouKind::Interface, "an interface");
                 let class = self.classes.entry(id).or_default();
                 class.lacks_base |= found.is_none();
                 class.interfaces.extend(found);
             }
         } else if let Some(name) = object.extends.first() {
             let what = if kind == PouKind::Class { "a class" } else { "a function block or class" };
-            let base = self.base_named(name, |found| found.has_instances() && wanted(found), what);
+            let base = self.base_named(id, name, |found| found.has_instances() && wanted(found), what);
             let base = base.filter(|base| self.may_be_extended(*base, name));
             let class = self.classes.entry(id).or_default();
             (class.base, class.lacks_base) = (base, base.is_none());
         }
         for name in &object.implements {
-            let found = self.base_named(name, |found| found == PouKind::Interface, "an interface");
+            let found = self.base_named(id, name, |found| found == PouKind::Interface, "an interface");
             let class = self.classes.entry(id).or_default();
             class.lacks_interface |= found.is_none();
             class.interfaces.extend(found);
@@ -135,8 +135,11 @@ impl Declarations<'_> {
         true
     }
 
-    fn base_named(&mut self, name: &Ident, accept: impl Fn(PouKind) -> bool, what: &str) -> Option<PouId> {
-        let Some(id) = self.pou_named(&name.key()) else {
+    fn base_named(&mut self, unit: PouId, name: &Ident, accept: impl Fn(PouKind) -> bool, what: &str) -> Option<PouId> {
+        let Some(id) = self.unit_meant(Some(unit), name) else {
+            if self.is_wrong_template(name) {
+                return None;
+            }
             let known = self.pous.iter().filter(|pou| pou.membership.is_none() && accept(pou.ast.kind));
             let help = did_you_mean(&name.text, known.map(|pou| pou.ast.name.text.as_str()));
             let message = format!("{what} is wanted, and `{}` is not declared", name.text);

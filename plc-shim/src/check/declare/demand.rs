@@ -33,6 +33,14 @@ pub(in crate::check) trait Resolve {
         qualifiers: &[Qualifier],
     ) -> Option<Variable>;
 
+    /// The value of a constant that a generic block is given, where the unit names it.
+    fn template_argument(
+        &self,
+        declarations: &mut Declarations<'_>,
+        unit: Option<PouId>,
+        argument: &ast::Expr,
+    ) -> Option<i128>;
+
     /// The variables of a unit, and its instances.
     fn unit<'a>(&self, declarations: &mut Declarations<'a>, id: PouId) -> Declared<'a>;
 }
@@ -208,7 +216,7 @@ impl Declarations<'_> {
         }
         for index in 0..self.pous.len() {
             let id = PouId(index as u32);
-            if !self.is_library(id) && self.stage_of(id).is_none() {
+            if !self.is_library(id) && self.stage_of(id).is_none() && !self.lacks_constants(id) {
                 self.declare(id, None);
                 if !self.is_prototype(id) {
                     self.enqueue(id);

@@ -37,6 +37,14 @@ impl Findings {
     pub(super) fn into_list(self) -> Vec<Diagnostic> {
         self.diagnostics
     }
+
+    /// Leaves out what has been reported of another block that is made of the same text.
+    pub(super) fn leave_out_repeated(&mut self) {
+        let mut known = BTreeSet::new();
+        self.diagnostics.retain(|found| {
+            known.insert((found.span.file, found.span.start, found.span.end, found.code, found.message.clone()))
+        });
+    }
 }
 
 /// How much had been found at some point: later findings can be taken back.
@@ -71,6 +79,11 @@ impl Declarations<'_> {
     /// True if something has been found since.
     pub(in crate::check) fn has_found_since(&self, mark: Mark) -> bool {
         self.findings.diagnostics.len() > mark.0
+    }
+
+    /// What has been found since.
+    pub(super) fn found_since(&self, mark: Mark) -> &[Diagnostic] {
+        self.findings.diagnostics.get(mark.0..).unwrap_or_default()
     }
 
     /// Takes back what has been found since: a trial, or what is reported elsewhere.

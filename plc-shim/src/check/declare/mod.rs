@@ -25,6 +25,7 @@ mod recursion;
 mod scope;
 mod start;
 mod stub;
+mod template;
 mod too_large;
 mod unknown;
 mod variable;
@@ -59,12 +60,13 @@ pub(crate) use self::layout::{CALL_DEPTH_OFFSET, INIT_RETAINS_OFFSET, VIRTUAL_TI
 pub(super) use self::layout::{INIT_RETAINS_NAME, align_up};
 pub(super) use self::located::Placement;
 pub(super) use self::namespace::Home;
-pub(crate) use self::namespace::{find_key, joined, short_inside};
+pub(crate) use self::namespace::{find_key, is_library_name, is_list, joined, short_inside};
 pub(super) use self::numbered::Numbered;
 pub(crate) use self::overrides::Overrides;
 pub(super) use self::query::Outcome;
 pub(super) use self::scope::Scope;
 pub(super) use self::start::{Given, Occasion, Start, StartKind, Started, Starts, Within, moved, stages};
+pub(super) use self::template::Templates;
 pub(super) use self::visibility::method_visibility;
 
 /// Greatest number of types, constants or instances that need each other in a row.
@@ -75,6 +77,7 @@ pub(super) struct Declarations<'a> {
     resolver: &'static dyn Resolve,
     library: &'a BTreeSet<FileId>,
     stages: &'a Stages,
+    templates: &'a Templates,
     overrides: &'a Overrides,
     /// What is done at a start outside of units.
     started: Vec<Started<'a>>,
@@ -139,7 +142,7 @@ impl<'a> Declarations<'a> {
 impl<'a> Declarations<'a> {
     pub(super) fn new(
         library: &'a BTreeSet<FileId>,
-        stages: &'a Stages,
+        (stages, templates): (&'a Stages, &'a Templates),
         (overrides, memory_limit): (&'a Overrides, MemoryLimit),
         resolver: &'static dyn Resolve,
     ) -> Self {
@@ -147,6 +150,7 @@ impl<'a> Declarations<'a> {
             resolver,
             library,
             stages,
+            templates,
             overrides,
             started: Vec::new(),
             dialects: BTreeMap::new(),

@@ -34,6 +34,13 @@ impl<'a> Declarations<'a> {
         if !is_own_function && self.is_taken(&ast.name) {
             return;
         }
+        self.add_unit(ast);
+        // What is made of a generic block stands where that does.
+        let templates = self.templates;
+        templates.made_of(ast).for_each(|made| self.add_unit(made));
+    }
+
+    fn add_unit(&mut self, ast: &'a ast::Pou) {
         let id = self.add_pou(ast, None);
         let key = self.home.key(&ast.name);
         if let Some(short) = self.home.short_key(&ast.name) {

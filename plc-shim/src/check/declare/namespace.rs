@@ -39,8 +39,13 @@ const LIBRARIES: [&str; 22] = [
     "TC3_EVENTLOGGER",
 ];
 
+/// True for the name of a vendor's library, in capitals.
+pub(crate) fn is_library_name(key: &str) -> bool {
+    LIBRARIES.contains(&key)
+}
+
 /// True for a list of global variables in TwinCAT's libraries, which may stand between a library and a name.
-fn is_list(name: &str) -> bool {
+pub(crate) fn is_list(name: &str) -> bool {
     ["GLOBAL_VARIABLES", "GLOBAL_CONSTANTS"].iter().any(|list| list.eq_ignore_ascii_case(name))
 }
 

@@ -25,7 +25,7 @@ impl<'t> Numbered<'t> {
         Some(Self { direction, number: number()?, count: number()? })
     }
 
-    /// What is told if a block has other inputs and outputs than the drawing.
+    /// What is reported if a block has other inputs and outputs than the drawing.
     pub(in crate::check) fn lost(self, block: &str) -> String {
         let what = if self.direction == "in" { "inputs" } else { "outputs" };
         let count = self.count;

@@ -157,7 +157,10 @@ impl<'a> Declarations<'a> {
         self.unit_ids().filter_map(declared).collect()
     }
 
-    pub(in crate::check) fn into_outcome(self) -> Outcome {
+    pub(in crate::check) fn into_outcome(mut self) -> Outcome {
+        if !self.templates.is_empty() {
+            self.findings.leave_out_repeated();
+        }
         Outcome {
             types: self.types,
             programs: self.programs,

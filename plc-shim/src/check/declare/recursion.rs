@@ -1,10 +1,14 @@
-//! Units do not call themselves, be it by way of others (2nd ed. 2.5).
+//! Units do not call themselves, be it by way of others (2nd ed. 2.5). Vendors let methods and functions: as deep as
+//! [`guard_circles`](Declarations::guard_circles) lets them.
 
 use std::collections::BTreeSet;
 
 use super::Declarations;
 use crate::diagnostic::{Code, Diagnostic};
+use crate::dialect::Feature;
 use crate::ir::PouId;
+use crate::syntax::Span;
+use crate::syntax::ast::PouKind;
 
 impl Declarations<'_> {
     /// Reports each call that closes a circle. Walks the calls depth first, with its own stack.
@@ -13,6 +17,12 @@ impl Declarations<'_> {
         for root in self.queued() {
             self.walk(root, &mut done);
         }
+    }
+
+    /// True for a call that may lead back to its unit.
+    fn may_recur(&self, called: PouId, at: Span) -> bool {
+        let kind = self.pou(called).ast.kind;
+        matches!(kind, PouKind::Function | PouKind::Method) && self.dialect(at).has(Feature::Recursion)
     }
 
     fn walk(&mut self, root: PouId, done: &mut BTreeSet<PouId>) {
@@ -29,6 +39,9 @@ impl Declarations<'_> {
                     done.insert(caller);
                 }
                 Some((next_unit, span)) if on_path.contains(&next_unit) => {
+                    if self.may_recur(next_unit, span) {
+                        continue;
+                    }
                     let name = self.display_name(next_unit);
                     let message = format!("this call makes `{name}` call itself");
                     self.report(Diagnostic::error(Code::Recursion, span, message));

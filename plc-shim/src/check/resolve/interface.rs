@@ -47,6 +47,33 @@ pub(super) fn declared<'a>(declarations: &mut Declarations<'a>, id: PouId) -> De
     Declared { scope: written.body.into_scope(), align, image, starts, fleeting, kept }
 }
 
+/// The value of a constant that a generic block is given: of the unit's variables it sees the constants.
+pub(super) fn template_argument(declarations: &mut Declarations<'_>, id: PouId, argument: &ast::Expr) -> Option<i128> {
+    let ast = declarations.pou(id).ast();
+    let mut interface = Interface::new(declarations, id);
+    let is_constant = |section: &&Section| section.qualifiers.contains(&Qualifier::Constant);
+    for section in ast.sections.iter().filter(is_constant) {
+        section.variables.iter().for_each(|variable| interface.declare_variables(section, variable));
+    }
+    let others = ast.sections.iter().filter(|section| !is_constant(section)).flat_map(|section| &section.variables);
+    let is_variable = |name: &Ident| others.clone().flat_map(|each| &each.names).any(|each| each.key() == name.key());
+    if let Some(name) = names_in(argument).into_iter().find(|name| is_variable(name)) {
+        interface.report(Diagnostic::error(Code::NotConstant, name.span, "a constant is wanted here"));
+        return None;
+    }
+    interface.written.body.constant_integer(argument)
+}
+
+/// The names that begin places in an expression.
+fn names_in(expr: &ast::Expr) -> Vec<&Ident> {
+    match &expr.kind {
+        ast::ExprKind::Name(name) => vec![name],
+        ast::ExprKind::Paren(inner) | ast::ExprKind::Unary(_, inner) => names_in(inner),
+        ast::ExprKind::Binary(_, left, right) => [names_in(left), names_in(right)].concat(),
+        _ => Vec::new(),
+    }
+}
+
 /// A unit's variables while they are declared.
 pub(in crate::check) struct Interface<'c, 'a> {
     written: Written<'c, 'a>,

@@ -5,7 +5,7 @@
 //!
 //! | module | subject |
 //! |---|---|
-//! | [`written`], [`subrange`], [`structure`], [`union`], [`text`] | types as written to types |
+//! | [`written`], [`subrange`], [`structure`], [`union`] | types as written to types |
 //! | [`initial`], [`start`] | initial values to bytes, and to what a start adds |
 //! | [`instance_arguments`] | instances with arguments for their `FB_init` |
 //! | [`generic`] | inputs of generic types |
@@ -28,7 +28,6 @@ mod start;
 mod storage;
 mod structure;
 mod subrange;
-mod text;
 mod union;
 mod written;
 
@@ -62,6 +61,18 @@ impl Resolve for Resolver {
         qualifiers: &[Qualifier],
     ) -> Option<Variable> {
         Written::outside(declarations).global_variable(name, ast, qualifiers)
+    }
+
+    fn template_argument(
+        &self,
+        declarations: &mut Declarations<'_>,
+        unit: Option<PouId>,
+        argument: &ast::Expr,
+    ) -> Option<i128> {
+        match unit {
+            Some(id) => interface::template_argument(declarations, id, argument),
+            None => Body::outside(declarations).constant_integer(argument),
+        }
     }
 
     fn unit<'a>(&self, declarations: &mut Declarations<'a>, id: PouId) -> Declared<'a> {

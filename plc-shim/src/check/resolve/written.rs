@@ -8,6 +8,7 @@ use crate::check::declare::{Enumerator, Need, Rank, StartKind, TypedImage};
 use crate::check::standard::vendor::{is_qualified_only, of_pointer_width};
 use crate::check::types::generic::Generic;
 use crate::diagnostic::{Code, Diagnostic, did_you_mean};
+use crate::dialect::Feature;
 use crate::ir::{Dimension, ElementaryType, TypeId};
 use crate::syntax::Span;
 use crate::syntax::ast::{self, EnumValue, Ident, PouKind, TypeSpec, TypeSpecKind};
@@ -64,7 +65,7 @@ impl<'a> Written<'_, 'a> {
             TypeSpecKind::Union(fields) => self.union("UNION", None, fields, spec.span),
             TypeSpecKind::Enumeration(values, base) => self.enumeration("enumeration", values, base.as_ref(), false),
             TypeSpecKind::String(name, length) => {
-                let ty = self.text_type(name.key() == "WSTRING", length.as_deref(), spec.span)?;
+                let ty = self.body.text_type(name.key() == "WSTRING", length.as_deref(), spec.span)?;
                 let size = u64::from(self.declarations().types().size(ty));
                 self.declarations_mut().charge_image(size, spec.span)?;
                 Some(self.whole(ty))
@@ -111,7 +112,7 @@ impl<'a> Written<'_, 'a> {
         if key == "BIT" {
             return Some(self.whole(ElementaryType::Bool.into()));
         }
-        if let Some(id) = self.declarations().pou_named(&key) {
+        if let Some(id) = self.declarations().unit_meant(self.body.unit(), name) {
             self.declarations_mut().check_internal(id, name.span);
             let ast = self.declarations().pou(id).ast();
             if ast.kind == PouKind::Interface {
@@ -133,7 +134,9 @@ impl<'a> Written<'_, 'a> {
             self.report(Diagnostic::error(Code::UnknownType, name.span, message));
             return None;
         }
-        self.report_unknown_type(name);
+        if !self.declarations().is_wrong_template(name) {
+            self.report_unknown_type(name);
+        }
         None
     }
 
@@ -182,8 +185,12 @@ impl<'a> Written<'_, 'a> {
         let high = self.body.constant_integer(&ast.high);
         let (low, high) = (low?, high?);
         let span = ast.low.span.to(ast.high.span);
+        // One below `low` is an array without elements.
+        let is_empty = high.checked_add(1) == Some(low) && self.declarations().dialect(span).has(Feature::EmptyArrays);
         match (i32::try_from(low), i32::try_from(high)) {
-            (Ok(low), Ok(high)) if low <= high => Some(Dimension { low: i64::from(low), high: i64::from(high) }),
+            (Ok(low), Ok(high)) if low <= high || is_empty => {
+                Some(Dimension { low: i64::from(low), high: i64::from(high) })
+            }
             _ => {
                 let message = format!("bounds {low}..{high} are reversed or beyond 32 bits");
                 self.report(Diagnostic::error(Code::InvalidRange, span, message));

@@ -30,7 +30,7 @@ pub(in crate::check) fn is_reserved(key: &str) -> bool {
 }
 
 /// True for every function that is no unit: those of the standard, those on memory, places and instances, and what of
-/// a vendor's runtime is told by its name.
+/// a vendor's runtime is known by its name.
 pub(crate) fn is_known(key: &str) -> bool {
     exists(key)
         || memory::exists(key)

@@ -58,6 +58,8 @@ impl Costs {
             // What may come back to itself is guarded at its beginning, which only a function has.
             let guarded = pous.get(id).is_none_or(|pou| pou.guard != Guard::None);
             let cost = costs.units.entry(*id).or_default();
+            // It is called before it is known what it costs: it pays itself.
+            (cost.metered, cost.call) = (guarded, u64::from(guarded));
             cost.inside = stays_inside;
             cost.size = own.nodes.saturating_add(inside);
             cost.inlined = !guarded && (cost.size <= TINY || (cost.sites == 1 && cost.size <= LONE));
@@ -94,7 +96,7 @@ impl Costs {
     }
 }
 
-/// Depth first with its own stack; the checker has refused circles.
+/// Depth first with its own stack. What calls itself stands behind all else that it calls.
 fn callees_first(sizes: &BTreeMap<PouId, Size>) -> Vec<PouId> {
     let mut order = Vec::with_capacity(sizes.len());
     let mut seen = BTreeSet::new();

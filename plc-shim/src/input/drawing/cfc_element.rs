@@ -165,7 +165,7 @@ fn called<'e>(file: &str, object: Object<'e>, read: Element<'e>) -> Element<'e> 
         "Program" => BoxKind::Program,
         "Action" => BoxKind::Action,
         "FunctionBlock" => BoxKind::Instance,
-        // A box that was never resolved is told an operator; an instance says what it is.
+        // A box that was never resolved is said to be an operator; an instance shows what it is.
         "Operator" if !instance.is_empty() => BoxKind::Instance,
         "Operator" | "Function" | "LocalMethod" => BoxKind::Function,
         _ => return Element { inputs, outputs, ..read },

@@ -156,21 +156,21 @@ impl Chart<'_, '_> {
             return Vec::new();
         }
         let attributes = Attributes::read(self.sheet.file, element);
-        let told = attributes.is_set(super::chart_element::PARALLEL);
+        let declared = attributes.is_set(super::chart_element::PARALLEL);
         let drawn =
             legs.iter().any(|leg| leg.inner("ElementList").first().is_some_and(|first| first.kind == "SFCStep"));
-        if told != drawn {
+        if declared != drawn {
             let message = format!(
-                "the legs of branch {} begin with {}, but it is told to be {}",
+                "the legs of branch {} begin with {}, but it says that it is {}",
                 element.id(self.sheet.file),
                 if drawn { "steps" } else { "transitions" },
-                if told { "simultaneous" } else { "alternative" }
+                if declared { "simultaneous" } else { "alternative" }
             );
             self.sheet.report(&place, Code::MalformedXml, message);
             return Vec::new();
         }
         let ends: Vec<Vec<Open>> = legs.into_iter().map(|leg| self.line(leg, open.to_vec(), depth)).collect();
-        if told { self.together(ends, &place) } else { ends.into_iter().flatten().collect() }
+        if declared { self.together(ends, &place) } else { ends.into_iter().flatten().collect() }
     }
 
     /// The ends of simultaneous legs: one step of each is active.

@@ -57,6 +57,10 @@ impl Refused {
         if let Some(base) = pou.object.extends.first() {
             self.add(base.span, "EXTENDS", "declare an instance of the other block, and call it");
         }
+        let generic = pou.sections.iter().filter(|section| section.is_generic());
+        for section in generic {
+            self.add(section.span, "a generic block", "write a block for each list of constants");
+        }
         let methods = pou.object.members.iter().filter(|member| member.kind != MemberKind::Action);
         for member in methods {
             self.add(member.pou.name.span, "a method or property", "write it as a function block of its own");

@@ -57,6 +57,7 @@ fn qualifiers(section: &Section) -> Written {
             Qualifier::Retain => " retain=\"true\"",
             Qualifier::NonRetain => " nonretain=\"true\"",
             Qualifier::Persistent => " persistent=\"true\"",
+            Qualifier::Generic => return Err(Refused::plcopen(section.span, "VAR_GENERIC")),
             Qualifier::Access(access) => {
                 return Err(Refused::plcopen(section.span, &format!("{} of variables", access.text())));
             }

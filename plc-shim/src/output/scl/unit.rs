@@ -28,6 +28,9 @@ fn unsuited(pou: &Pou) -> Option<Diagnostic> {
     if matches!(pou.kind, PouKind::Class | PouKind::Interface | PouKind::Method | PouKind::Action) {
         return Some(refused(at, "classes, interfaces, methods and actions", "write a function block"));
     }
+    if let Some(section) = pou.sections.iter().find(|section| section.is_generic()) {
+        return Some(refused(section.span, "generic blocks", "write a block for each list of constants"));
+    }
     if let Some(member) = object.members.first() {
         let help = "write a function, or a function block of its own";
         return Some(refused(member.pou.name.span, "methods, properties and actions", help));

@@ -109,6 +109,8 @@ pub enum Qualifier {
     Access(Modifier),
     /// `PERSISTENT`, of vendors.
     Persistent,
+    /// `VAR_GENERIC`, of vendors: whoever declares an instance gives the values.
+    Generic,
 }
 
 /// `VAR .. END_VAR` of any kind.
@@ -122,6 +124,13 @@ pub struct Section {
     pub variables: Vec<Variable>,
     /// Where it stands.
     pub span: Span,
+}
+
+impl Section {
+    /// True for the constants of a generic block.
+    pub fn is_generic(&self) -> bool {
+        self.qualifiers.contains(&Qualifier::Generic)
+    }
 }
 
 /// `a, b AT %MW1 : INT := 5;`

@@ -7,7 +7,7 @@ use crate::diagnostic::{Code, Diagnostic};
 use crate::dialect::{Dialect, Feature};
 use crate::source::origin::Origin;
 use crate::source::{FileId, Span};
-use crate::syntax::ast::{Expr, Ident};
+use crate::syntax::ast::{Expr, Ident, TemplateUse};
 use crate::syntax::pragma::behind_pragma;
 use crate::syntax::token::{Keyword, Punctuation, Token, TokenKind};
 
@@ -39,6 +39,8 @@ pub(super) struct Cursor<'a> {
     in_external: bool,
     /// The unit's constants without a type, by their keys.
     constants: BTreeMap<String, Expr>,
+    /// Where generic blocks are named with their constants.
+    templates: Vec<TemplateUse>,
 }
 
 impl<'a> Cursor<'a> {
@@ -76,6 +78,7 @@ impl<'a> Cursor<'a> {
             qualified_only,
             in_external: false,
             constants: BTreeMap::new(),
+            templates: Vec::new(),
         }
     }
 
@@ -105,6 +108,14 @@ impl<'a> Cursor<'a> {
 
     pub(super) fn dialect(&self) -> Dialect {
         self.dialect
+    }
+
+    pub(super) fn note_template(&mut self, found: TemplateUse) {
+        self.templates.push(found);
+    }
+
+    pub(super) fn take_templates(&mut self) -> Vec<TemplateUse> {
+        std::mem::take(&mut self.templates)
     }
 
     pub(super) fn into_diagnostics(mut self) -> Vec<Diagnostic> {
@@ -432,7 +443,9 @@ fn promote_soft_keywords(tokens: &mut [Token], text: &str) {
         };
         if is_name && let Some(word) = spelling(&tokens[at]).and_then(Keyword::find) {
             let named = at.checked_sub(1).and_then(|before| spelling(&tokens[before])).is_some_and(names_what_follows);
-            let soft = next_is_name && (word.is_soft() || word.is_of_chart() && !named);
+            let is_member =
+                at.checked_sub(1).is_some_and(|before| tokens[before].kind == TokenKind::Punctuation(Punctuation::Dot));
+            let soft = next_is_name && !is_member && (word.is_soft() || word.is_of_chart() && !named);
             if soft || word == Keyword::Transition && ranked() == Some(true) {
                 tokens[at].kind = TokenKind::Keyword(word);
             }

@@ -12,6 +12,9 @@ use crate::syntax::ast::{
 };
 use crate::syntax::token::{Keyword, Punctuation, TokenKind};
 
+/// Begins the section of a generic block's constants.
+const GENERIC: &str = "VAR_GENERIC";
+
 /// Keywords at which a file can go on after an error outside of a unit's body.
 pub(super) fn begins_declaration(kind: TokenKind) -> bool {
     use Keyword as K;
@@ -114,7 +117,21 @@ impl Cursor<'_> {
             self.require(Feature::InstanceSection, self.span());
             return Some(SectionKind::Instance);
         }
+        if self.at_word(GENERIC) {
+            self.require(Feature::GenericConstants, self.span());
+            return Some(SectionKind::Local);
+        }
         section_kind(self.peek())
+    }
+
+    /// The constants of a generic block, which stand before its bases.
+    pub(super) fn generic_sections(&mut self) -> Vec<Section> {
+        let mut found = Vec::new();
+        while self.at_word(GENERIC) {
+            self.require(Feature::GenericConstants, self.span());
+            found.push(self.section(SectionKind::Local));
+        }
+        found
     }
 
     pub(super) fn body(&mut self, end: Keyword, parts: &mut UnitParts) -> Vec<Statement> {
@@ -158,8 +175,10 @@ impl Cursor<'_> {
 
     pub(super) fn section(&mut self, kind: SectionKind) -> Section {
         let start = self.span();
+        let generic = self.at_word(GENERIC).then_some(Qualifier::Generic);
         self.advance();
-        let qualifiers = self.qualifiers();
+        let mut qualifiers = self.qualifiers();
+        qualifiers.extend(generic);
         let mut variables = Vec::new();
         // One with nothing before it declares nothing.
         self.take_semicolons();

@@ -37,6 +37,11 @@ impl Cursor<'_> {
         self.node(ExprKind::Assign(Box::new(target), Box::new(value)), span, height)
     }
 
+    /// An expression that ends before `<` and `>`.
+    pub(super) fn operand_of_comparison(&mut self) -> Expr {
+        self.binary(BinaryOp::Greater.precedence())
+    }
+
     fn binary(&mut self, minimum: u8) -> Expr {
         let span = self.span();
         self.nested(|cursor| cursor.operator_chain(minimum)).unwrap_or_else(|| error_at(span))
@@ -333,6 +338,9 @@ impl Cursor<'_> {
                     return value;
                 }
                 ExprKind::Name(Self::written_name(text, span))
+            }
+            Some(TokenKind::Integer) if text.contains("__") && self.dialect().has(Feature::LooseUnderscores) => {
+                self.literal(span, parse_integer(&text.replace("__", "_")).map(Literal::Integer))
             }
             Some(TokenKind::Integer) => self.literal(span, parse_integer(text).map(Literal::Integer)),
             Some(TokenKind::Real) => self.literal(span, parse_real(text).map(Literal::Real)),

@@ -46,10 +46,12 @@ impl Cursor<'_> {
         let name = self.expect_identifier("the unit's name")?;
         let has_result = matches!(kind, PouKind::Function | PouKind::Method) && self.result_follows();
         let result = has_result.then(|| self.type_spec()).filter(|result| !self.is_void(result));
+        let generic = self.generic_sections();
         self.heritage(&mut object);
         self.take_mark(Punctuation::Semicolon);
         let around = self.replace_result_name(result.is_some().then(|| name.text.clone()));
-        let unit = self.unit_behind_head(kind, end, (name, result, object), start);
+        let mut unit = self.unit_behind_head(kind, end, (name, result, object), start);
+        unit.sections.splice(0..0, generic);
         self.replace_result_name(around);
         Some(unit)
     }
@@ -122,7 +124,8 @@ impl Cursor<'_> {
         let mut list = Vec::new();
         loop {
             let Some(name) = self.expect_identifier(what) else { return list };
-            list.push(self.qualified(name));
+            let name = self.qualified(name);
+            list.push(self.with_constants(name));
             if !self.take_mark(Punctuation::Comma) {
                 return list;
             }

@@ -5,7 +5,8 @@ use onescan_base::ElementaryType;
 use super::cursor::Cursor;
 use crate::dialect::Feature;
 use crate::syntax::ast::{
-    Dimension, EnumValue, Expr, Field, Ident, InitArguments, ReferenceKind, Subrange, TypeSpec, TypeSpecKind,
+    Dimension, EnumValue, Expr, Field, Ident, InitArguments, ReferenceKind, Subrange, TemplateUse, TypeSpec,
+    TypeSpecKind,
 };
 use crate::syntax::token::{Keyword, Punctuation, TokenKind};
 
@@ -46,6 +47,7 @@ impl Cursor<'_> {
             self.require(Feature::GenericInputs, name.span);
         }
         let name = self.qualified(name);
+        let name = self.with_constants(name);
         if self.at_mark(Punctuation::LeftParen) && ElementaryType::find(&name.text).is_none() {
             return self.instance_type(name);
         }
@@ -72,6 +74,30 @@ impl Cursor<'_> {
             return self.counted_array(name);
         }
         TypeSpecKind::Name(name)
+    }
+
+    /// The rest of `List<8>`: a generic block with its constants is one name.
+    pub(super) fn with_constants(&mut self, template: Ident) -> Ident {
+        if !self.at_mark(Punctuation::Less) {
+            return template;
+        }
+        self.require(Feature::GenericConstants, template.span);
+        let from = self.span().start;
+        self.advance();
+        let mut arguments = Vec::new();
+        loop {
+            arguments.push(self.operand_of_comparison());
+            if !self.take_mark(Punctuation::Comma) {
+                break;
+            }
+        }
+        let end = self.span();
+        self.expect_mark(Punctuation::Greater);
+        let given: String = self.text(from, end.end).split_whitespace().collect();
+        let span = template.span.to(end);
+        let name = Ident { text: format!("{}{given}", template.text), span };
+        self.note_template(TemplateUse { template, arguments, span });
+        name
     }
 
     /// `FB(a := 1)`, or `Base (0..10)`, which the checker refuses unless `Base` is an integer type.

@@ -41,6 +41,11 @@ impl Printer {
             self.word(" : ");
             self.type_spec(result);
         }
+        let generic = pou.sections.iter().filter(|section| section.is_generic());
+        for section in generic {
+            self.end_line();
+            self.section(section);
+        }
         self.heritage(&pou.object);
         self.end_head(pou);
         self.unit_behind_head(pou, end);
@@ -49,6 +54,7 @@ impl Printer {
     pub(super) fn section(&mut self, section: &Section) {
         self.begin_line();
         self.word(match section.kind {
+            SectionKind::Local if section.is_generic() => "VAR_GENERIC",
             SectionKind::Local => "VAR",
             SectionKind::Input => "VAR_INPUT",
             SectionKind::Output => "VAR_OUTPUT",
@@ -59,7 +65,7 @@ impl Printer {
             SectionKind::Global => "VAR_GLOBAL",
             SectionKind::External => "VAR_EXTERNAL",
         });
-        for qualifier in &section.qualifiers {
+        for qualifier in section.qualifiers.iter().filter(|each| **each != Qualifier::Generic) {
             self.word(" ");
             self.word(match qualifier {
                 Qualifier::Constant => "CONSTANT",
@@ -67,6 +73,8 @@ impl Printer {
                 Qualifier::NonRetain => "NON_RETAIN",
                 Qualifier::Persistent => "PERSISTENT",
                 Qualifier::Access(access) => access.text(),
+                // Its section has a word of its own.
+                Qualifier::Generic => "",
             });
         }
         self.end_line();

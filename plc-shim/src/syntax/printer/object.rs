@@ -38,7 +38,7 @@ impl Printer {
         if !pou.object.using.is_empty() {
             self.using(&pou.object.using);
         }
-        for section in &pou.sections {
+        for section in pou.sections.iter().filter(|section| !section.is_generic()) {
             self.section(section);
         }
         for member in &pou.object.members {

@@ -75,7 +75,22 @@ impl Body<'_, '_> {
         if self.is_reference_to(parameter.ty) {
             return self.referring_argument(parameter.ty, expr, passing).map(Argument::Value);
         }
+        if self.is_instance_type(parameter.ty) && self.declarations.dialect(expr.span).has(Feature::InstanceCopies) {
+            return self.instance_argument(parameter.ty, expr, passing).map(Argument::Value);
+        }
         self.expression_for(expr, parameter.ty).map(Argument::Value)
+    }
+
+    /// An instance for an input, which is a copy: of one that is derived, what the base has of it.
+    fn instance_argument(&mut self, wanted: TypeId, expr: &ast::Expr, passing: &mut Passing) -> Option<Expr> {
+        match self.within(None, |body| body.expression(expr))? {
+            Operand::Typed(value) if value.ty != wanted && self.derives(value.ty, wanted) => {
+                let memory = self.temporary(wanted, expr.span)?;
+                passing.before.push(self.copied_as_base(memory.clone(), value, expr.span));
+                Some(Expr { kind: ExprKind::Load(memory), ty: wanted, span: expr.span })
+            }
+            other => self.coerce(other, wanted),
+        }
     }
 
     /// The variable given for a `VAR_IN_OUT`. One in a register or in a bit goes through memory.
@@ -109,6 +124,20 @@ impl Body<'_, '_> {
 
     /// `VAR_IN_OUT CONSTANT` takes constants and values as well, which the unit reads only (CODESYS, TwinCAT).
     fn constant_reference(&mut self, parameter: &Variable, expr: &ast::Expr, passing: &mut Passing) -> Option<Place> {
+        if self.is_instance_type(parameter.ty) {
+            let operand = self.within(None, |body| body.expression(expr))?;
+            return match operand {
+                Operand::Typed(Expr { kind: ExprKind::Load(place), ty, .. })
+                    if ty == parameter.ty || self.derives(ty, parameter.ty) =>
+                {
+                    Some(Place { ty: parameter.ty, ..place })
+                }
+                other => {
+                    let (wanted, found) = (self.type_name(parameter.ty), self.describe(&other));
+                    self.mismatch(&wanted, &found, expr.span)
+                }
+            };
+        }
         let value = self.expression_for(expr, parameter.ty)?;
         match value.kind {
             ExprKind::Load(place) if place.has_address() => Some(Place { ty: parameter.ty, ..place }),

@@ -284,10 +284,16 @@ impl Body<'_, '_> {
                 }
             };
             // One EN has been taken out already.
-            if name == EN || matched.inputs.insert(name, expr).is_some() {
+            let is_control = name == EN;
+            if is_control || matched.inputs.insert(name, expr).is_some() {
                 let message = "this parameter is given twice";
-                self.report(Diagnostic::error(Code::DuplicateArgument, span, message));
-                sound = false;
+                if !is_control && self.declarations.dialect(span).has(Feature::RepeatedArguments) {
+                    let message = format!("{message}, and the last value counts");
+                    self.report(Diagnostic::warning(Code::DuplicateArgument, span, message));
+                } else {
+                    self.report(Diagnostic::error(Code::DuplicateArgument, span, message));
+                    sound = false;
+                }
             }
         }
         sound.then_some(matched)

@@ -52,7 +52,10 @@ impl Body<'_, '_> {
             (Operand::Typed(expr), None) if self.is_alike_structure(expr.ty, target, expr.span) => {
                 Some(Expr { ty: target, ..expr })
             }
-            (Operand::Typed(expr), Some(wanted)) => self.widen(expr, wanted),
+            (Operand::Typed(expr), Some(wanted)) => match self.value_as_number(&expr, wanted) {
+                Some(value) => Some(value),
+                None => self.widen(expr, wanted),
+            },
             (Operand::Integer { value, span }, Some(wanted)) => self.literal_integer(value, wanted, span),
             (Operand::Real { value, span }, Some(wanted)) => self.literal_real(value, wanted, span),
             (Operand::Text { text, span }, Some(wanted)) if wanted.is_character() => {

@@ -189,7 +189,13 @@ impl Body<'_, '_> {
             let both = as_number(left).is_integer() && as_number(right).is_integer();
             (has && both && (as_number(left) == E::Ulint || as_number(right) == E::Ulint)).then_some(E::Ulint)
         };
-        left.common(right).or_else(numbers).or_else(unsigned)
+        // As where one is assigned to the other: digits may be lost.
+        let real = || {
+            let has = self.declarations.dialect(span).has(Feature::LossyReals);
+            let (one, other) = if left.is_real() { (left, right) } else { (right, left) };
+            (has && one.is_real() && other.is_integer()).then_some(one)
+        };
+        left.common(right).or_else(numbers).or_else(unsigned).or_else(real)
     }
 
     /// `AND_THEN`, `OR_ELSE`: the right operand is evaluated only if the left one does not tell.

@@ -5,7 +5,7 @@ use crate::check::body::Body;
 use crate::check::declare::Enumerator;
 use crate::check::types::operand::Operand;
 use crate::dialect::Feature;
-use crate::ir::{ElementaryType, Expr, Type, TypeId};
+use crate::ir::{ElementaryType, Expr, ExprKind, Type, TypeId, Value};
 use crate::syntax::{Span, ast};
 
 impl Body<'_, '_> {
@@ -35,6 +35,16 @@ impl Body<'_, '_> {
         Some(enumeration_value(found.ty, found.value, span))
     }
 
+    /// The value of this name that a declaration outside of units wants: the initial value of an enumeration is one of
+    /// its own, even if these are known behind its name only (CODESYS, TwinCAT).
+    pub(in crate::check::body) fn own_value(&self, name: &ast::Ident) -> Option<Expr> {
+        let has = self.declarations.dialect(name.span).has(Feature::ValuesByContext);
+        let wanted = self.enumeration.filter(|_| has && self.pou.is_none())?;
+        let Type::Enumeration { values, .. } = self.declarations.types().get(wanted) else { return None };
+        let (_, value) = values.iter().find(|(known, _)| known.eq_ignore_ascii_case(&name.text))?;
+        Some(enumeration_value(wanted, *value, name.span))
+    }
+
     /// Both operands of an operator; one may say of which enumeration the other is.
     pub(super) fn both_operands(&mut self, left: &ast::Expr, right: &ast::Expr) -> (Option<Operand>, Option<Operand>) {
         let type_of = |operand: &Option<Operand>| match operand {
@@ -53,6 +63,15 @@ impl Body<'_, '_> {
     fn is_value_of_several(&self, expr: &ast::Expr) -> bool {
         let ast::ExprKind::Name(name) = &expr.kind else { return false };
         self.declarations.enumerators(&self.declarations.behind_libraries(name).key()).len() > 1
+    }
+
+    /// The number of an enumeration's value that a narrower type holds: a constant needs no more room than it takes.
+    pub(super) fn value_as_number(&self, expr: &Expr, wanted: ElementaryType) -> Option<Expr> {
+        self.base_of_enumeration(expr.ty, expr.span)?;
+        let ExprKind::Constant(value) = &expr.kind else { return None };
+        let number = value.as_int().filter(|number| wanted.wrap(*number) == *number)?;
+        let is_number = wanted.is_integer() || wanted.is_bits() && wanted != ElementaryType::Bool;
+        is_number.then(|| Expr { kind: ExprKind::Constant(Value::Int(number)), ty: wanted.into(), span: expr.span })
     }
 
     /// A value of an enumeration as its number, where the dialect has that; all else as it is.

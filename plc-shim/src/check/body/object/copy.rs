@@ -2,10 +2,12 @@
 
 use crate::check::body::Body;
 use crate::check::types::build::{assign, load};
-use crate::check::types::operand::Operand;
+use crate::check::types::operand::{Operand, constant};
 use crate::diagnostic::{Code, Diagnostic};
 use crate::dialect::Feature;
-use crate::ir::{ElementaryType, Expr, ExprKind, Place, Statement, StatementKind, Storage, Type, TypeId, TypeTable};
+use crate::ir::{
+    ElementaryType, Expr, ExprKind, Place, Statement, StatementKind, Storage, Type, TypeId, TypeTable, Value,
+};
 use crate::syntax::Span;
 
 impl Body<'_, '_> {
@@ -51,6 +53,22 @@ impl Body<'_, '_> {
         if is_numbered {
             statements.push(assign(&begins, load(&kept)));
         }
+        let all = Expr { kind: ExprKind::After(statements, None), ty: TypeTable::nothing(), span };
+        Statement { kind: StatementKind::Evaluate(all), span }
+    }
+
+    /// What a base has of an instance, in memory of its own that begins with the base's number.
+    pub(in crate::check::body) fn copied_as_base(&mut self, memory: Place, value: Expr, span: Span) -> Statement {
+        let ty = memory.ty;
+        let number = match self.declarations.types().get(ty) {
+            Type::FunctionBlock { pou, .. } => self.declarations.class(*pou).and_then(|class| class.type_id),
+            _ => None,
+        };
+        let begins = memory.clone().member(0, ElementaryType::Udint.into());
+        let mut statements = vec![Statement { kind: StatementKind::Copy(memory, Expr { ty, ..value }), span }];
+        statements.extend(
+            number.map(|number| assign(&begins, constant(Value::Int(i128::from(number)), ElementaryType::Udint, span))),
+        );
         let all = Expr { kind: ExprKind::After(statements, None), ty: TypeTable::nothing(), span };
         Statement { kind: StatementKind::Evaluate(all), span }
     }

@@ -155,6 +155,8 @@ impl Body<'_, '_> {
             (Type::FunctionBlock { pou, .. }, ExprKind::Load(place)) => {
                 (*pou, if may_be_derived(place) { Known::Reference } else { Known::Exactly })
             }
+            // What a property or function gives is a copy, of its own type.
+            (Type::FunctionBlock { pou, .. }, ExprKind::Call(_) | ExprKind::After(..)) => (*pou, Known::Exactly),
             _ => return None,
         };
         Some(Some(Object { address, class, known }))

@@ -286,6 +286,9 @@ impl Body<'_, '_> {
             None => {}
         }
         let bare = self.declarations.behind_libraries(name);
+        if let Some(value) = self.own_value(&bare) {
+            return Some(Meaning::Value(value));
+        }
         let found = self.declarations.enumerators(&bare.key());
         match found {
             [only] => Some(Meaning::Value(enumeration_value(only.ty, only.value, name.span))),

@@ -303,6 +303,7 @@ impl Body<'_, '_> {
         if let ExprKind::Address(source) = &value.kind {
             self.require_address(source, value.span)?;
         }
+        self.note_assigned(&place);
         Some(Statement { kind: StatementKind::Assign(place, value), span })
     }
 

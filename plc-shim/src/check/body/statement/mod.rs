@@ -184,9 +184,14 @@ impl Body<'_, '_> {
                 self.report(Diagnostic::warning(Code::AssignToInput, span, message));
             }
         }
-        let result = self.scope.result().map(|result| result.storage);
-        self.result_assigned |= result == Some(located.place.storage);
+        self.note_assigned(&located.place);
         Some(located.place)
+    }
+
+    /// Notes that the unit's result has a value, if that is what is assigned.
+    pub(in crate::check::body) fn note_assigned(&mut self, place: &Place) {
+        let result = self.scope.result().map(|result| result.storage);
+        self.result_assigned |= result == Some(place.storage);
     }
 
     fn if_statement(&mut self, inner: &ast::IfStatement) -> StatementKind {

@@ -2,6 +2,7 @@
 
 pub(super) mod character;
 pub(super) mod conversion;
+mod declared;
 pub(super) mod function;
 
 use super::Body;

@@ -101,10 +101,11 @@ impl Emitter<'_, '_> {
         self.fault_if(FaultKind::EndlessLoop, span);
     }
 
-    /// Lets a large unit pay before all its code; returns what is left to pay for its callers.
-    pub(super) fn pay_at_entry(&mut self) -> u64 {
+    /// Lets a large unit pay before all its code, and one that may come back to itself; returns what is left to pay for
+    /// its callers.
+    pub(super) fn pay_at_entry(&mut self, may_recur: bool) -> u64 {
         let cost = self.code.cost();
-        if cost <= SMALL {
+        if cost <= SMALL && !may_recur {
             return cost;
         }
         self.metered = true;

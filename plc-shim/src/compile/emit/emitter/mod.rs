@@ -32,7 +32,7 @@ use crate::compile::analyse::{Address, Effects, Entry, Extent, Known, Program, R
 use crate::compile::fault::{FaultKind, Mark, Unit};
 use crate::compile::points::Points;
 use crate::ir::elementary::Kind;
-use crate::ir::{ElementaryType, LocalId, Place, Pou, PouId, TypeId};
+use crate::ir::{ElementaryType, Guard, LocalId, Place, Pou, PouId, TypeId};
 use crate::syntax::Span;
 
 pub(crate) use self::budget::globals;
@@ -220,7 +220,8 @@ impl<'s, 'p> Emitter<'s, 'p> {
     /// The function's body, its marks by byte offset, and the units that they belong to.
     pub(crate) fn finish(mut self, id: PouId) -> (Function, Vec<(u32, Mark)>, Vec<Unit>) {
         self.emit(Instruction::End);
-        let call = self.pay_at_entry();
+        let is_guarded = self.program().pou(id).is_some_and(|pou| pou.guard != Guard::None);
+        let call = self.pay_at_entry(is_guarded);
         self.shared.program.found(id, call, self.metered);
         let (function, marks) = self.code.finish(self.registers.locals());
         (function, marks, self.units)

@@ -1,18 +1,18 @@
 //! The type that `STRING[n]` names (2nd ed. 2.4.3.1).
 
-use super::Written;
+use crate::check::body::Body;
 use crate::diagnostic::{Code, Diagnostic};
 use crate::ir::TypeId;
 use crate::ir::text::{MAX_CAPACITY, TextShape};
 use crate::syntax::{Span, ast};
 
-impl<'a> Written<'_, 'a> {
+impl Body<'_, '_> {
     /// The type that `STRING[n]` names.
-    pub(super) fn text_type(&mut self, wide: bool, length: Option<&'a ast::Expr>, span: Span) -> Option<TypeId> {
+    pub(in crate::check) fn text_type(&mut self, wide: bool, length: Option<&ast::Expr>, span: Span) -> Option<TypeId> {
         let capacity = match length {
-            None => self.declarations().dialect(span).string_length(),
+            None => self.declarations.dialect(span).string_length(),
             Some(expr) => {
-                let length = self.body.constant_integer(expr)?;
+                let length = self.constant_integer(expr)?;
                 let fits = u16::try_from(length).ok().filter(|length| (1..=MAX_CAPACITY).contains(length));
                 let Some(capacity) = fits else {
                     let message = format!("a string's length is 1 to {MAX_CAPACITY}, not {length}");
@@ -22,7 +22,7 @@ impl<'a> Written<'_, 'a> {
                 capacity
             }
         };
-        let memory = self.declarations().dialect(span).strings();
-        Some(self.declarations_mut().types_mut().string(TextShape { wide, capacity, memory }))
+        let memory = self.declarations.dialect(span).strings();
+        Some(self.declarations.types_mut().string(TextShape { wide, capacity, memory }))
     }
 }
