@@ -151,11 +151,39 @@ fn a_mapping_of_somebody_else_is_left_as_it_is() {
     assert_eq!(said.code, Some(2), "{said:?}");
     insta::assert_snapshot!(said.err);
     assert!(!folder.path().join("plc/sdsp.scl").exists(), "nothing is written");
-    let said = instrumented(folder.path(), &[".", "--target", "twincat", "--in-place"]);
+    let said = instrumented(folder.path(), &[".", "--target", "iec", "--in-place"]);
     assert_eq!(said.code, Some(0), "{said:?}");
     let said = instrumented(folder.path(), &[".", "--in-place", "--remove"]);
     assert_eq!(said.code, Some(0), "{said:?}");
     assert_eq!(std::fs::read_to_string(&own).unwrap(), "mine = true\n");
+}
+
+/// PLCs with symbols: TwinCAT's, and nodes of CODESYS, where global variables are in lists.
+#[test]
+fn a_mapping_of_symbols_goes_with_the_shim() {
+    for (name, target) in [("shear", "twincat"), ("gantry-robot", "codesys")] {
+        let folder = tempfile::tempdir().unwrap();
+        let out = folder.path().to_str().expect("text");
+        let said = typed(&scenario(name), &["instrument", ".", "--target", target, "--output", out]);
+        assert_eq!(said.code, Some(0), "{said:?}");
+        let mapping = std::fs::read_to_string(folder.path().join("gateway.toml")).unwrap();
+        insta::assert_snapshot!(format!("mapping_for_{target}"), mapping);
+        if target == "twincat" {
+            let plc = crate::plc::Plc::start(&scenario(name), &[]);
+            let url = plc.gateway("ads://");
+            let mapping = mapping.replace("ads://127.0.0.1", url.trim_start_matches("plc="));
+            std::fs::write(folder.path().join("gateway.toml"), mapping).unwrap();
+            let gateway = format!("plc={out}/gateway.toml");
+            let words = ["run", ".", "--format", "json", "--until", "1s"];
+            let soft = typed(&scenario(name), &words);
+            let real = typed(&scenario(name), &[&words[..], &["--gateway", &gateway]].concat());
+            let digest = |said: &Said| {
+                let report: serde_json::Value = serde_json::from_str(&said.out).expect("a report");
+                report["digest"].as_str().expect("a digest").to_owned()
+            };
+            assert_eq!(digest(&soft), digest(&real), "{real:?}");
+        }
+    }
 }
 
 /// What SCL has not is told, and nothing is written.

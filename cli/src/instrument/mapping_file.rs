@@ -35,11 +35,7 @@ pub(super) fn deleted(config: &InstrumentConfig, project: &Project) -> Result<Op
     if config.destination != Destination::InPlace {
         return Ok(None);
     }
-    let is_shim = |path: &&Path| {
-        path.file_name().is_some_and(|name| name.to_string_lossy().to_ascii_lowercase().starts_with("sdsp"))
-    };
-    let shim = project.files.iter().map(|file| Path::new(&file.name)).find(is_shim);
-    let Some(path) = shim.map(|shim| shim.with_file_name(FILE)).filter(|path| path.exists()) else { return Ok(None) };
+    let Some(path) = beside_shim(project).filter(|path| path.exists()) else { return Ok(None) };
     Ok(if is_own(&path)? { Some(FileWrite { path, bytes: None }) } else { None })
 }
 
@@ -54,9 +50,16 @@ pub(super) fn place(config: &InstrumentConfig, project: &Project) -> Option<Path
         Destination::Nowhere => None,
         Destination::Folder(folder) => Some(folder.join(FILE)),
         Destination::InPlace => {
-            let is_own = |name: &&String| Path::new(name).file_name().is_some_and(|name| name == "sdsp.scl");
-            let own = project.files.iter().map(|file| &file.name).find(is_own);
-            project.whole.as_ref().or(own).map(|whole| Path::new(whole).with_file_name(FILE))
+            project.whole.as_ref().map(|whole| Path::new(whole).with_file_name(FILE)).or_else(|| beside_shim(project))
         }
     }
+}
+
+/// The file beside the first of the shim's own.
+fn beside_shim(project: &Project) -> Option<PathBuf> {
+    let is_shim = |path: &&Path| {
+        path.file_name().is_some_and(|name| name.to_string_lossy().to_ascii_lowercase().starts_with("sdsp"))
+    };
+    let mut files = project.files.iter().map(|file| Path::new(&file.name));
+    files.find(is_shim).map(|shim| shim.with_file_name(FILE))
 }

@@ -6,6 +6,7 @@
 //! | [`project`] | which files are meant, and where the result goes |
 //! | [`gateway`] | the gateway's mapping that goes with it |
 //! | [`report`] | what was changed, for people and machines |
+//! | [`symbols`] | the mapping that goes with symbols |
 
 pub mod blocks;
 mod error;
@@ -13,6 +14,7 @@ pub mod gateway;
 mod mapping_file;
 pub mod project;
 pub mod report;
+mod symbols;
 
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -110,7 +112,7 @@ pub fn instrument(
             let agreed = agreed(config, &program)?;
             mapping = agreed.as_ref().filter(|_| config.target == Target::Scl).and_then(blocks::mapping);
             let exchanged = agreed.as_ref().map(Agreement::exchanged).unwrap_or_default();
-            let layout = agreed.and_then(|agreed| agreed.layout);
+            let layout = agreed.as_ref().and_then(|agreed| agreed.layout);
             let tasks = tasks(config, program.plan);
             let (cycle, words_at, inputs) = (config.cycle, config.words_at.clone(), config.inputs);
             let options = Options { target: config.target, tasks, exchanged, layout, words_at, cycle, inputs };
@@ -123,7 +125,12 @@ pub fn instrument(
                     mapping = Some(found.text);
                     instrument::instrument(&program.inputs, &Options { layout: found.layout, ..options })
                 }
-                other => other,
+                Ok(project) => {
+                    let symbols = agreed.and_then(|agreed| symbols::mapping(config.target, &agreed, &project));
+                    mapping = mapping.or(symbols);
+                    Ok(project)
+                }
+                refused => refused,
             }
         }
     };

@@ -1,0 +1,92 @@
+//! The mapping that goes with a project whose PLC has symbols, TwinCAT over ADS and CODESYS over OPC UA, as a part of a
+//! `scenario.toml`.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+
+use onescan_clients::gateway::exchange::Point;
+use onescan_clients::gateway::listing::{Listing, Row};
+use onescan_clients::gateway::settings::Settings;
+use onescan_plc_shim::instrument::{Project, Target};
+use onescan_scenario::gateway::Agreement;
+use roxmltree::Document;
+
+use crate::map::Fragment;
+
+/// Where a TwinCAT of which nothing is known is looked for.
+const TWINCAT: &str = "ads://127.0.0.1";
+/// The same of CODESYS.
+const CODESYS: &str = "opc.tcp://127.0.0.1:4840";
+/// The variables of a CODESYS, below its device and application.
+const VARIABLES: &str = "nsu=CODESYSSPV3/3S/IecVarAccess;s=|var|";
+/// The device that a new project of CODESYS has on a PC, and its application.
+const APPLICATION: &str = "CODESYS Control Win V3 x64.Application";
+/// The list of the shim's own variables.
+const WORDS: &str = "SDSP";
+
+/// The mapping; nothing for another target.
+pub(super) fn mapping(target: Target, agreed: &Agreement, project: &Project) -> Option<String> {
+    match target {
+        Target::TwinCat => text(&over(agreed, "ads://", TWINCAT), |listing| listing),
+        Target::Codesys => {
+            let lists = global_lists(project);
+            let named = |mut listing: Listing| {
+                let rows = listing.to_plc.rows.iter_mut().chain(&mut listing.from_plc.rows);
+                rows.filter(|row| row.point.address.is_none()).for_each(|row| row.address = node(row, &lists));
+                listing
+            };
+            let map = text(&over(agreed, "opc.tcp://", CODESYS), named)?;
+            Some(format!(
+                "# Nodes of the device and application `{APPLICATION}`: another one has its name in all of them. `onescan browse\n\
+                 # --map` writes them as the PLC has them. The symbol configuration must hold the variables.\n{map}"
+            ))
+        }
+        Target::Iec | Target::Scl | Target::OpenPlc | Target::Beremiz => None,
+    }
+}
+
+/// The agreement over a link of its own, unless the scenario's is of that kind: addresses of another mean nothing there.
+fn over(agreed: &Agreement, scheme: &str, somewhere: &str) -> Agreement {
+    if agreed.settings.url.starts_with(scheme) {
+        return agreed.clone();
+    }
+    let settings = Settings { url: somewhere.to_owned(), system_words: false, ..agreed.settings.clone() };
+    Agreement { settings, exchange: agreed.exchange.without_addresses(), ..agreed.clone() }
+}
+
+fn text(agreed: &Agreement, named: impl FnOnce(Listing) -> Listing) -> Option<String> {
+    let listing = named(Listing::new(&agreed.settings, &agreed.exchange).ok()?);
+    Some(Fragment::of(&agreed.request.name, agreed, &listing).to_string())
+}
+
+/// The node of a variable in CODESYS: global ones are in lists.
+fn node(row: &Row, lists: &BTreeMap<String, String>) -> String {
+    let Point { name, .. } = &row.point;
+    let symbol = row.point.symbol();
+    let path = if row.point.is_word() {
+        format!("{WORDS}.{name}")
+    } else {
+        let root = symbol.split(['.', '[']).next().unwrap_or(symbol).to_ascii_uppercase();
+        lists.get(&root).map_or_else(|| symbol.to_owned(), |list| format!("{list}.{symbol}"))
+    };
+    format!("{VARIABLES}{APPLICATION}.{path}")
+}
+
+/// The list of each global variable, by its name in capitals.
+fn global_lists(project: &Project) -> BTreeMap<String, String> {
+    let mut lists = BTreeMap::new();
+    let files = project.files.iter().filter(|file| is_xml(&file.name)).filter_map(|file| file.text.as_deref());
+    // What was emitted has been checked already.
+    for document in files.filter_map(|text| Document::parse(text).ok()) {
+        for list in document.descendants().filter(|node| node.tag_name().name() == "globalVars") {
+            let Some(name) = list.attribute("name") else { continue };
+            let variables = list.children().filter_map(|variable| variable.attribute("name"));
+            lists.extend(variables.map(|variable| (variable.to_ascii_uppercase(), name.to_owned())));
+        }
+    }
+    lists
+}
+
+fn is_xml(name: &str) -> bool {
+    Path::new(name).extension().is_some_and(|extension| extension.eq_ignore_ascii_case("xml"))
+}
