@@ -71,7 +71,7 @@ impl Mechanism {
         let Self { bonds, rows, room, now, axes, .. } = self;
         for bond in bonds {
             let q = |axis: usize| now.q[axes[axis].0];
-            rows.rows.extend(bond.rows(q, dt_s, CATCH_UP).into_iter().flatten());
+            rows.all.extend(bond.rows(q, dt_s, CATCH_UP).into_iter().flatten());
             for axis in bond.of.into_iter().flatten().chain([bond.on]) {
                 room.exact[axis] = true;
             }
@@ -105,10 +105,10 @@ impl Mechanism {
 
     fn solve_bonds(&mut self, dt_s: f64, fastest: f64) {
         let Self { bonds, rows, room, now, axes, .. } = self;
-        rows.rows.clear();
+        rows.all.clear();
         for bond in bonds {
             let q = |axis: usize| now.q[axes[axis].0];
-            rows.rows.extend(bond.rows(q, dt_s, fastest).into_iter().flatten());
+            rows.all.extend(bond.rows(q, dt_s, fastest).into_iter().flatten());
         }
         rows.solve(&room.inverse, &mut room.v);
     }

@@ -101,7 +101,7 @@ impl Mechanism {
 
     fn substep(&mut self, dt_s: f64, part: [f64; 2], own: &[(usize, usize)], around: &mut Surroundings<'_>) {
         let n = self.tree.velocities;
-        self.rows.rows.clear();
+        self.rows.all.clear();
         self.room.exact.clone_from(&self.room.driven);
         self.room.force.resize(n, 0.0);
         for k in 0..n {
@@ -125,7 +125,7 @@ impl Mechanism {
         self.couple(dt_s);
         self.stop(dt_s, around.fittings);
         self.rows.solve(&self.room.inverse, &mut self.room.v);
-        for row in &self.rows.rows {
+        for row in &self.rows.all {
             if let Some(index) = row.actuator {
                 let actuator = &mut around.actuators[index];
                 actuator.exerted = row.impulse / dt_s;
@@ -138,11 +138,11 @@ impl Mechanism {
     /// Dry and viscous friction of an axis.
     fn resist(&mut self, axis: usize, dry: f64, viscous: f64, dt_s: f64) {
         if dry > 0.0 {
-            self.rows.rows.push(Row::rigid(axis, 0.0, dry * dt_s));
+            self.rows.all.push(Row::rigid(axis, 0.0, dry * dt_s));
         }
         let part = viscous * dt_s * self.room.inverse[axis * self.tree.velocities + axis];
         if part > EXPLICIT_MAX {
-            self.rows.rows.push(Row { softness: 1.0 / (viscous * dt_s), ..Row::rigid(axis, 0.0, f64::INFINITY) });
+            self.rows.all.push(Row { softness: 1.0 / (viscous * dt_s), ..Row::rigid(axis, 0.0, f64::INFINITY) });
         } else if part > 0.0 {
             self.room.force[axis] -= viscous * self.now.v[axis];
         }
@@ -182,7 +182,7 @@ impl Mechanism {
                 }
             }
         };
-        self.rows.rows.push(Row { actuator: Some(index), ..drive });
+        self.rows.all.push(Row { actuator: Some(index), ..drive });
     }
 
     /// The rows of the stops that axes may come to in a sub-step.
@@ -193,12 +193,12 @@ impl Mechanism {
             let reach = 2.0 * dt_s * (self.now.v[axis].abs() + self.room.v[axis].abs()) + NEAR;
             if q - fitting.lower < reach {
                 let wanted = (fitting.lower - q) / dt_s;
-                self.rows.rows.push(Row { least: 0.0, ..Row::rigid(axis, wanted, f64::INFINITY) });
+                self.rows.all.push(Row { least: 0.0, ..Row::rigid(axis, wanted, f64::INFINITY) });
                 self.room.exact[axis] = true;
             }
             if fitting.upper - q < reach {
                 let wanted = (fitting.upper - q) / dt_s;
-                self.rows.rows.push(Row { most: 0.0, ..Row::rigid(axis, wanted, f64::INFINITY) });
+                self.rows.all.push(Row { most: 0.0, ..Row::rigid(axis, wanted, f64::INFINITY) });
                 self.room.exact[axis] = true;
             }
         }

@@ -29,17 +29,11 @@ pub(super) fn factor(matrix: &mut [f64], n: usize) -> bool {
 /// Solves `L Lᵀ x = b` in place of `b`.
 pub(super) fn solve(lower: &[f64], n: usize, b: &mut [f64]) {
     for row in 0..n {
-        let mut sum = b[row];
-        for k in 0..row {
-            sum -= lower[row * n + k] * b[k];
-        }
+        let sum = (0..row).fold(b[row], |sum, k| sum - lower[row * n + k] * b[k]);
         b[row] = sum / lower[row * n + row];
     }
     for row in (0..n).rev() {
-        let mut sum = b[row];
-        for k in row + 1..n {
-            sum -= lower[k * n + row] * b[k];
-        }
+        let sum = (row + 1..n).fold(b[row], |sum, k| sum - lower[k * n + row] * b[k]);
         b[row] = sum / lower[row * n + row];
     }
 }

@@ -73,7 +73,7 @@ enum Held {
 /// The problem of all rows of a mechanism in a sub-step, with room that is used again.
 #[derive(Default)]
 pub(super) struct Rows {
-    pub(super) rows: Vec<Row>,
+    pub(super) all: Vec<Row>,
     between: Vec<f64>,
     held: Vec<Held>,
     free: Vec<usize>,
@@ -86,7 +86,7 @@ impl Rows {
     /// Finds all impulses and gives the velocities `v` that they lead to; `inverse` is `M⁻¹`.
     pub(super) fn solve(&mut self, inverse: &[f64], v: &mut [f64]) {
         let n = v.len();
-        match self.rows.as_mut_slice() {
+        match self.all.as_mut_slice() {
             [] => return,
             [only] => {
                 let stiffness = only.between(only, inverse, n) + only.softness;
@@ -94,7 +94,7 @@ impl Rows {
             }
             _ => self.search(inverse, v),
         }
-        for row in &self.rows {
+        for row in &self.all {
             for (axis, v) in v.iter_mut().enumerate() {
                 *v += row.adds(axis, inverse, n) * row.impulse;
             }
@@ -102,10 +102,10 @@ impl Rows {
     }
 
     fn search(&mut self, inverse: &[f64], v: &[f64]) {
-        let (n, count) = (v.len(), self.rows.len());
+        let (n, count) = (v.len(), self.all.len());
         self.between.clear();
-        for (r, row) in self.rows.iter().enumerate() {
-            for (s, other) in self.rows.iter().enumerate() {
+        for (r, row) in self.all.iter().enumerate() {
+            for (s, other) in self.all.iter().enumerate() {
                 let mut entry = row.between(other, inverse, n);
                 if r == s {
                     entry += row.softness + REGULAR * entry;
@@ -114,7 +114,7 @@ impl Rows {
             }
         }
         self.start.clear();
-        self.start.extend(self.rows.iter().map(|row| row.wanted - row.velocity(v)));
+        self.start.extend(self.all.iter().map(|row| row.wanted - row.velocity(v)));
         self.held.clear();
         self.held.resize(count, Held::Free);
         for _ in 0..4 * count + 4 {
@@ -130,15 +130,15 @@ impl Rows {
 
     /// Solves for the impulses of all free rows, the others at their bounds.
     fn solve_free(&mut self) -> bool {
-        let count = self.rows.len();
-        for (row, held) in self.rows.iter_mut().zip(&self.held) {
+        let count = self.all.len();
+        for (row, held) in self.all.iter_mut().zip(&self.held) {
             match held {
                 Held::Free => {}
                 Held::Least => row.impulse = row.least,
                 Held::Most => row.impulse = row.most,
             }
         }
-        let Self { rows, between, held, free, reduced, right, start } = self;
+        let Self { all: rows, between, held, free, reduced, right, start } = self;
         free.clear();
         free.extend((0..count).filter(|index| held[*index] == Held::Free));
         reduced.clear();
@@ -160,9 +160,9 @@ impl Rows {
 
     /// Sets rows to the bounds that they break and frees those that want back; false if none does.
     fn revise(&mut self) -> bool {
-        let count = self.rows.len();
+        let count = self.all.len();
         let mut revised = false;
-        for (row, held) in self.rows.iter().zip(self.held.iter_mut()) {
+        for (row, held) in self.all.iter().zip(self.held.iter_mut()) {
             if *held == Held::Free && row.impulse < row.least {
                 (*held, revised) = (Held::Least, true);
             } else if *held == Held::Free && row.impulse > row.most {
@@ -177,7 +177,7 @@ impl Rows {
             if held == Held::Free {
                 continue;
             }
-            let reached: f64 = (0..count).map(|s| self.between[r * count + s] * self.rows[s].impulse).sum();
+            let reached: f64 = (0..count).map(|s| self.between[r * count + s] * self.all[s].impulse).sum();
             let missing = self.start[r] - reached;
             // less than what rounding leaves of the largest term is nothing
             let slack = 1e-12 * (self.start[r].abs() + reached.abs());
@@ -189,8 +189,8 @@ impl Rows {
     }
 
     fn sweep(&mut self) {
-        let count = self.rows.len();
-        for row in &mut self.rows {
+        let count = self.all.len();
+        for row in &mut self.all {
             row.impulse = row.impulse.clamp(row.least, row.most);
             if !row.impulse.is_finite() {
                 row.impulse = 0.0;
@@ -198,8 +198,8 @@ impl Rows {
         }
         for _ in 0..SWEEPS {
             for r in 0..count {
-                let reached: f64 = (0..count).map(|s| self.between[r * count + s] * self.rows[s].impulse).sum();
-                let row = &mut self.rows[r];
+                let reached: f64 = (0..count).map(|s| self.between[r * count + s] * self.all[s].impulse).sum();
+                let row = &mut self.all[r];
                 let change = (self.start[r] - reached) / self.between[r * count + r];
                 row.impulse = (row.impulse + change).clamp(row.least, row.most);
             }
@@ -212,10 +212,10 @@ mod tests {
     use super::*;
 
     fn solved(rows: &[Row], inverse: &[f64], v: &[f64]) -> (Vec<f64>, Vec<f64>) {
-        let mut problem = Rows { rows: rows.to_vec(), ..Rows::default() };
+        let mut problem = Rows { all: rows.to_vec(), ..Rows::default() };
         let mut v = v.to_vec();
         problem.solve(inverse, &mut v);
-        (v, problem.rows.iter().map(|row| row.impulse).collect())
+        (v, problem.all.iter().map(|row| row.impulse).collect())
     }
 
     #[test]
