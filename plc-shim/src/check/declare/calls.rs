@@ -77,14 +77,14 @@ impl Declarations<'_> {
     pub(in crate::check) fn guard_circles(&mut self, checked: &mut BTreeMap<PouId, Pou>) {
         let mut circular = BTreeSet::new();
         let (forward, backward) = self.call_graph();
-        for caller in forward.keys() {
+        for caller in leading_to_circles(&forward, &backward) {
             // What is known to lie on a circle needs no other look.
-            if circular.contains(caller) {
+            if circular.contains(&caller) {
                 continue;
             }
-            let ahead = reached(*caller, &forward);
-            if ahead.contains(caller) {
-                circular.extend(reached(*caller, &backward).intersection(&ahead).copied());
+            let ahead = reached(caller, &forward);
+            if ahead.contains(&caller) {
+                circular.extend(reached(caller, &backward).intersection(&ahead).copied());
             }
         }
         let ids: Vec<PouId> = checked.keys().copied().collect();
@@ -119,6 +119,25 @@ impl Declarations<'_> {
 }
 
 type Graph = BTreeMap<PouId, BTreeSet<PouId>>;
+
+/// The units from which a circle is reached: what calls none of them is left out, over and over. Of most programs
+/// nothing is left.
+fn leading_to_circles(forward: &Graph, backward: &Graph) -> BTreeSet<PouId> {
+    let mut left: BTreeMap<PouId, usize> = forward.iter().map(|(caller, callees)| (*caller, callees.len())).collect();
+    let mut open: Vec<PouId> = backward.keys().filter(|callee| !forward.contains_key(callee)).copied().collect();
+    while let Some(done) = open.pop() {
+        for caller in backward.get(&done).into_iter().flatten() {
+            if let Some(calls) = left.get_mut(caller) {
+                *calls -= 1;
+                if *calls == 0 {
+                    left.remove(caller);
+                    open.push(*caller);
+                }
+            }
+        }
+    }
+    left.into_keys().collect()
+}
 
 /// All that can be reached from `start` in one step or more.
 fn reached(start: PouId, graph: &Graph) -> BTreeSet<PouId> {
