@@ -186,20 +186,12 @@ impl Scenario {
         Ok(Agreement { settings, request, exchange, layout: None })
     }
 
-    /// What the gateway of the soft PLC `name` and its program, whose sources are `inputs`, must agree on; nothing if the
-    /// sources do not compile. Where the PLC is need not be known.
+    /// What the gateway of the soft PLC `name` and its program, whose sources are `inputs`, must agree on over the link that
+    /// `link` makes of the scenario's; nothing if the sources do not compile. Where the PLC is need not be known.
     ///
     /// # Errors
     /// The mapping is wrong, or there is no such PLC.
-    pub fn agreement_of(&self, name: &ClientName, inputs: Vec<Input>) -> Result<Option<Agreement>, ScenarioError> {
-        self.agreement_of_over(name, inputs, |declared| declared)
-    }
-
-    /// The same over the link that `link` makes of the scenario's.
-    ///
-    /// # Errors
-    /// As above.
-    pub fn agreement_of_over(
+    pub fn agreement_of(
         &self,
         name: &ClientName,
         inputs: Vec<Input>,

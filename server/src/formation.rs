@@ -137,7 +137,14 @@ impl Formation {
         const LOOK_UP: Duration = Duration::from_millis(50);
         // Whoever comes and is sent away, however often, does not hold the wait open.
         let (begun, mut refused, mut later) = (Instant::now(), None, Vec::new());
-        while self.session.missing_clients().next().is_some() {
+        loop {
+            // A session does not begin with one who has gone meanwhile.
+            if self.session.missing_clients().next().is_none() {
+                match self.let_go_who_left() {
+                    None => break,
+                    gone => refused = gone,
+                }
+            }
             if !while_waiting(&self.missing()) || self.is_called_off(&mut later) {
                 return Err(FormationError::Interrupted { missing: self.missing() });
             }
@@ -154,7 +161,9 @@ impl Formation {
             }
         }
         door.shut();
-        later.into_iter().for_each(|request| self.mailbox.post(request));
+        for request in later {
+            self.mailbox.post(request);
+        }
         Ok(())
     }
 

@@ -32,6 +32,7 @@ const STANDS_ON: &[(&str, &[&str])] = &[
 /// Where a wall clock is read, and for what. A folder stands for all that is in it.
 const CLOCKS: &[(&str, &str)] = &[
     ("server/src/pacing.rs", "virtual time beside wall time, if it is asked for"),
+    ("server/src/formation.rs", "how long clients are waited for"),
     ("server/src/transport", "how long an answer is waited for"),
     ("clients/src/gateway", "how long a PLC is waited for"),
     ("clients/src/station", "a PLC on a clock of its own"),

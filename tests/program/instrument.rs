@@ -59,6 +59,7 @@ fn a_scenario_becomes_plcopen_xml_and_comes_back() {
     let out = files(&folder.path().join("out"));
     let mut made = out.clone();
     let xml = made.remove("plc/sdsp.xml").expect("the whole project");
+    assert!(made.remove("gateway.toml").is_some(), "the mapping that goes with it");
     assert!(made.iter().all(|(name, bytes)| before.get(name) == Some(bytes)) && made.len() == 2, "{:?}", made.keys());
     // Both the file alone, and the folder in which the sources are, are a program without errors.
     for path in ["out/plc/sdsp.xml", "out"] {
@@ -73,7 +74,7 @@ fn a_scenario_becomes_plcopen_xml_and_comes_back() {
     }
     let after = files(folder.path());
     assert_eq!(after.get("plc/sdsp.xml"), Some(&xml));
-    assert_eq!(after.len(), before.len() + 1);
+    assert_eq!(after.len(), before.len() + 2);
     let said = instrumented(folder.path(), &[".", "--in-place", "--remove"]);
     assert_eq!(said.code, Some(0), "{said:?}");
     assert_eq!(files(folder.path()), before);

@@ -30,6 +30,7 @@ fn every_refusal_says_what_is_wrong() {
         refusal("plc", 10, &[("Sensor_1", T::INT)], &[]),
         refusal("plc", 10, &[], &[("Sensor_1", T::BOOL)]),
         refusal("plc", 10, &[("Sensor_1", T::BOOL), ("Sensor_1", T::BOOL)], &[]),
+        refusal("plant", 10, &[], &[("Sensor_1", T::BOOL)]),
         refusal("plant", 20, &[("Drive_1", T::LREAL)], &[("Sensor_1", T::BOOL), ("Position_1", T::LREAL)]),
     ];
     insta::assert_snapshot!(cases.join("\n"));
@@ -38,7 +39,8 @@ fn every_refusal_says_what_is_wrong() {
 #[test]
 fn nobody_joins_twice_or_late() {
     let mut session = session();
-    let request = JoinRequest { name: client("plant"), period: span_ms(10), reads: vec![], writes: vec![] };
+    let writes = vec![port("Sensor_1", T::BOOL), port("Position_1", T::LREAL)];
+    let request = JoinRequest { name: client("plant"), period: span_ms(10), reads: vec![], writes };
     session.join(&request).unwrap();
     assert_eq!(session.join(&request).unwrap_err().to_string(), "client `plant` has already joined");
 }

@@ -56,11 +56,18 @@ fn ring_takes_part(address: SocketAddr) -> Vec<std::thread::JoinHandle<()>> {
     let take_part = |mut client: Box<dyn Client>| {
         std::thread::spawn(move || {
             while let Err(error) = take_part(client.as_mut(), address) {
-                assert!(matches!(error, ParticipantError::Refused(_)), "{error}");
+                let is_taken = matches!(&error, ParticipantError::Refused(why) if why.contains("has already joined"));
+                assert!(is_taken, "{error}");
             }
         })
     };
     boxed(ring()).into_iter().map(take_part).collect()
+}
+
+fn all_have_taken_part(threads: Vec<std::thread::JoinHandle<()>>) {
+    for thread in threads {
+        thread.join().expect("it has taken part");
+    }
 }
 
 #[test]
@@ -74,7 +81,7 @@ fn one_who_comes_when_the_session_has_begun_is_told_so() {
         assert!(said.contains("the session has begun: nobody can join any more"), "{said}");
     }
     run(formation.start().expect("all have joined"), at_ms(100));
-    threads.into_iter().for_each(|thread| thread.join().expect("it has taken part"));
+    all_have_taken_part(threads);
 }
 
 #[test]
@@ -110,7 +117,7 @@ fn those_who_are_refused_and_stay_hold_nobody_up() {
     let threads = ring_takes_part(address);
     formation.admit_from(&lobby, Duration::from_secs(10), PATIENCE, &mut |_| true).expect("all come in time");
     run(formation.start().expect("all have joined"), at_ms(100));
-    threads.into_iter().for_each(|thread| thread.join().expect("it has taken part"));
+    all_have_taken_part(threads);
     drop(strangers);
 }
 
@@ -129,7 +136,7 @@ fn silent_operators_take_nobodys_place() {
     let threads = ring_takes_part(address);
     formation.admit_from(&lobby, PATIENCE, PATIENCE, &mut |_| true).expect("all come");
     run(formation.start().expect("all have joined"), at_ms(100));
-    threads.into_iter().for_each(|thread| thread.join().expect("it has taken part"));
+    all_have_taken_part(threads);
     drop(silent);
 }
 
@@ -139,7 +146,7 @@ fn one_who_has_joined_and_gone_leaves_the_place_free() {
     let address = lobby.address();
     let joiner = std::thread::spawn(move || {
         drop(until(address, &[frame(HELLO), frame(ALPHA)].concat(), "joined"));
-        ring_takes_part(address).into_iter().for_each(|thread| thread.join().expect("it has taken part"));
+        all_have_taken_part(ring_takes_part(address));
     });
     formation.admit_from(&lobby, PATIENCE, PATIENCE, &mut |_| true).expect("all come");
     run(formation.start().expect("all have joined"), at_ms(100));
@@ -170,7 +177,7 @@ fn who_would_leave_a_signal_unwritten_is_refused() {
     let joiner = std::thread::spawn(move || {
         let said = send(address, &[frame(HELLO), frame(nothing)].concat());
         assert!(said.contains("client `alpha` does not write signal `alpha.out`"), "{said}");
-        ring_takes_part(address).into_iter().for_each(|thread| thread.join().expect("it has taken part"));
+        all_have_taken_part(ring_takes_part(address));
     });
     formation.admit_from(&lobby, PATIENCE, PATIENCE, &mut |_| true).expect("all come");
     run(formation.start().expect("all have joined"), at_ms(100));

@@ -182,8 +182,8 @@ fn agreed(config: &InstrumentConfig, program: &Program) -> Result<Option<Agreeme
         })
     });
     Ok(match config.target {
-        Target::Scl => scenario.agreement_of_over(client, own.collect(), blocks::settings)?,
-        _ => scenario.agreement_of(client, own.collect())?,
+        Target::Scl => scenario.agreement_of(client, own.collect(), blocks::settings)?,
+        target => scenario.agreement_of(client, own.collect(), |declared| symbols::settings(target, declared))?,
     })
 }
 

@@ -13,6 +13,8 @@ use roxmltree::Document;
 
 use crate::map::Fragment;
 
+const ADS: &str = "ads://";
+const OPC_UA: &str = "opc.tcp://";
 /// Where a TwinCAT of which nothing is known is looked for.
 const TWINCAT: &str = "ads://127.0.0.1";
 /// The same of CODESYS.
@@ -24,34 +26,39 @@ const APPLICATION: &str = "CODESYS Control Win V3 x64.Application";
 /// The list of the shim's own variables.
 const WORDS: &str = "SDSP";
 
-/// The mapping; nothing for another target.
+/// The link that the target has, if the scenario has none with addresses of another kind: its PLC has no words about itself.
+pub(super) fn settings(target: Target, declared: Settings) -> Settings {
+    let (scheme, somewhere) = match target {
+        Target::TwinCat => (ADS, TWINCAT),
+        Target::Codesys => (OPC_UA, CODESYS),
+        Target::Iec | Target::Scl | Target::OpenPlc | Target::Beremiz => return declared,
+    };
+    if declared.url.starts_with(scheme) || !declared.map.is_empty() {
+        return declared;
+    }
+    Settings { url: somewhere.to_owned(), system_words: false, ..declared }
+}
+
+/// The mapping; nothing for another target, or another link.
 pub(super) fn mapping(target: Target, agreed: &Agreement, project: &Project) -> Option<String> {
     match target {
-        Target::TwinCat => text(&over(agreed, "ads://", TWINCAT), |listing| listing),
-        Target::Codesys => {
+        Target::TwinCat if agreed.settings.url.starts_with(ADS) => text(agreed, |listing| listing),
+        Target::Codesys if agreed.settings.url.starts_with(OPC_UA) => {
             let lists = global_lists(project);
             let named = |mut listing: Listing| {
                 let rows = listing.to_plc.rows.iter_mut().chain(&mut listing.from_plc.rows);
                 rows.filter(|row| row.point.address.is_none()).for_each(|row| row.address = node(row, &lists));
                 listing
             };
-            let map = text(&over(agreed, "opc.tcp://", CODESYS), named)?;
+            let map = text(agreed, named)?;
             Some(format!(
-                "# Nodes of the device and application `{APPLICATION}`: another one has its name in all of them. `onescan browse\n\
-                 # --map` writes them as the PLC has them. The symbol configuration must hold the variables.\n{map}"
+                "# Nodes of the device and application `{APPLICATION}`: another one has its name in all of them.\n\
+                 # `onescan browse --map` writes them as the PLC has them. The symbol configuration must hold the variables.\n\
+                 {map}"
             ))
         }
-        Target::Iec | Target::Scl | Target::OpenPlc | Target::Beremiz => None,
+        _ => None,
     }
-}
-
-/// The agreement over a link of its own, unless the scenario's is of that kind: addresses of another mean nothing there.
-fn over(agreed: &Agreement, scheme: &str, somewhere: &str) -> Agreement {
-    if agreed.settings.url.starts_with(scheme) {
-        return agreed.clone();
-    }
-    let settings = Settings { url: somewhere.to_owned(), system_words: false, ..agreed.settings.clone() };
-    Agreement { settings, exchange: agreed.exchange.without_addresses(), ..agreed.clone() }
 }
 
 fn text(agreed: &Agreement, named: impl FnOnce(Listing) -> Listing) -> Option<String> {

@@ -1,11 +1,15 @@
 //! An arm of six joints: falling, and driven along a path by position drives.
 
+use std::fmt::Write as _;
+
 use onescan_server::time::TimeSpan;
 
 use crate::bench::Bench;
 
-/// Name, where its joint is, the joint's axis, its box (centre along x, length) and mass; greatest torque.
-const LINKS: [(&str, f64, [f64; 3], f64, f64, f64); 6] = [
+/// Name, where its joint is, the joint's axis, its box (length along x) and mass; greatest torque.
+type Link = (&'static str, f64, [f64; 3], f64, f64, f64);
+
+const LINKS: [Link; 6] = [
     ("turret", 0.0, [0.0, 0.0, 1.0], 0.2, 20.0, 300.0),
     ("upper", 0.2, [0.0, 1.0, 0.0], 0.4, 15.0, 600.0),
     ("fore", 0.6, [0.0, 1.0, 0.0], 0.3, 8.0, 300.0),
@@ -20,19 +24,22 @@ fn arm(drives: bool, strong: bool) -> String {
     let mut parent = "ground";
     for (name, x_m, [ax, ay, az], length_m, kg, torque_nm) in LINKS {
         let centre_m = x_m + 0.5 * length_m;
-        scene += &format!(
+        write!(
+            scene,
             "[[body]]\nname = \"{name}\"\nkind = \"dynamic\"\nshape = \"box\"\nsize_m = [{length_m}, 0.1, 0.1]\n\
              mass_kg = {kg:?}\nposition_m = [{centre_m}, 0.0, 1.0]\ngroup = \"arm\"\n\
              [[joint]]\nname = \"{name}\"\nkind = \"revolute\"\nparent = \"{parent}\"\nchild = \"{name}\"\n\
              anchor_m = [{x_m}, 0.0, 1.0]\naxis = [{ax:?}, {ay:?}, {az:?}]\n"
-        );
+        )
+        .expect("a text takes it");
         if drives {
             let torque = if strong { String::new() } else { format!("torque_max_nm = {torque_nm:?}\n") };
-            scene += &format!(
+            write!(
+            scene,
                 "[[axis]]\nname = \"{name}\"\njoint = \"{name}\"\ndrive = \"position\"\ncommand_signal = \"to_{name}\"\n\
                  speed_rad_s = 1.5\nacceleration_rad_s2 = 6.0\nposition_signal = \"at_{name}\"\n\
                  torque_signal = \"torque_{name}\"\n{torque}"
-            );
+            ).expect("a text takes it");
         }
         parent = name;
     }
@@ -67,14 +74,16 @@ const GRIPPER: &str = r#"
 fn setpoints() -> String {
     let mut scene = "version = 1\ngravity_m_s2 = [0.0, 0.0, 0.0]\n".to_owned();
     for (name, ..) in LINKS {
-        scene += &format!(
+        write!(
+            scene,
             "[[body]]\nname = \"{name}\"\nkind = \"dynamic\"\nshape = \"sphere\"\nradius_m = 0.1\nmass_kg = 1.0\n\
              collides = false\n\
              [[joint]]\nname = \"{name}\"\nkind = \"revolute\"\nparent = \"ground\"\nchild = \"{name}\"\n\
              axis = [0.0, 0.0, 1.0]\n\
              [[axis]]\nname = \"{name}\"\njoint = \"{name}\"\ndrive = \"position\"\ncommand_signal = \"to_{name}\"\n\
              speed_rad_s = 1.5\nacceleration_rad_s2 = 6.0\nposition_signal = \"at_{name}\"\n"
-        );
+        )
+        .expect("a text takes it");
     }
     scene
 }

@@ -299,7 +299,6 @@ fn what_lies_on_a_lift_is_lifted_and_told() {
         bench.command("To", 0.3);
         run(&mut bench, 1_500_000, period_us);
         let (force_n, way_m): (f64, f64) = (bench.read("Force"), bench.read("Way"));
-        println!("{period_us} {force_n} {way_m} {}", bench.read::<bool>("Limit"));
         assert!((force_n - 15.0 * 9.81).abs() < 0.5, "{period_us}: {force_n}");
         assert!((way_m - 0.3).abs() < 1e-5 && !bench.read::<bool>("Limit"), "{period_us}: {way_m}");
     }

@@ -63,6 +63,7 @@ pub(super) fn differs(target: Target, key: &str) -> Option<&'static str> {
     let differing: &[(&str, &str)] = match target {
         Target::TwinCat => &[
             ("MC_GEARIN", "the ratio is of other types in Tc2_MC2"),
+            ("MC_READACTUALTORQUE", "Tc2_MC2 has no such block: take `NcToPlc.ActTorque` of the axis"),
             ("MC_MOVESUPERIMPOSED", "Tc2_MC2 has another block of this name"),
             ("MC_SETPOSITION", "the mode is another in Tc2_MC2"),
         ],
