@@ -116,7 +116,7 @@ fn addresses_are_chosen_or_given() {
 #[test]
 fn a_word_in_a_configuration_stays_where_it_is() {
     let folder = tempfile::tempdir().expect("a folder");
-    let text = "PROGRAM P
+    let text = "PROGRAM Counting
 VAR_INPUT go : BOOL; END_VAR
 VAR_EXTERNAL total : INT; END_VAR
     IF go THEN total := total + 1; END_IF;
@@ -126,7 +126,7 @@ CONFIGURATION C
     RESOURCE R ON PLC
         VAR_GLOBAL other : INT; END_VAR
         TASK T(INTERVAL := T#10ms, PRIORITY := 1);
-        PROGRAM p1 WITH T : P;
+        PROGRAM p1 WITH T : Counting;
     END_RESOURCE
 END_CONFIGURATION
 ";
