@@ -70,6 +70,12 @@ fn all_have_taken_part(threads: Vec<std::thread::JoinHandle<()>>) {
     }
 }
 
+/// A session in which all have joined runs to its end, with all of them.
+fn completes(formation: Formation, threads: Vec<std::thread::JoinHandle<()>>) {
+    run(formation.start().expect("all have joined"), at_ms(100));
+    all_have_taken_part(threads);
+}
+
 #[test]
 fn one_who_comes_when_the_session_has_begun_is_told_so() {
     let (lobby, mut formation, _) = open();
@@ -80,8 +86,7 @@ fn one_who_comes_when_the_session_has_begun_is_told_so() {
         let said = send(address, &[frame(HELLO), frame(ALPHA)].concat());
         assert!(said.contains("the session has begun: nobody can join any more"), "{said}");
     }
-    run(formation.start().expect("all have joined"), at_ms(100));
-    all_have_taken_part(threads);
+    completes(formation, threads);
 }
 
 #[test]
@@ -116,8 +121,7 @@ fn those_who_are_refused_and_stay_hold_nobody_up() {
         .collect();
     let threads = ring_takes_part(address);
     formation.admit_from(&lobby, Duration::from_secs(10), PATIENCE, &mut |_| true).expect("all come in time");
-    run(formation.start().expect("all have joined"), at_ms(100));
-    all_have_taken_part(threads);
+    completes(formation, threads);
     drop(strangers);
 }
 
@@ -135,8 +139,7 @@ fn silent_operators_take_nobodys_place() {
     until(address, &frame(&hello), "too many operators are connected");
     let threads = ring_takes_part(address);
     formation.admit_from(&lobby, PATIENCE, PATIENCE, &mut |_| true).expect("all come");
-    run(formation.start().expect("all have joined"), at_ms(100));
-    all_have_taken_part(threads);
+    completes(formation, threads);
     drop(silent);
 }
 

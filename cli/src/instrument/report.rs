@@ -133,7 +133,7 @@ fn write_human(
     }
     if let Some(whole) = &project.whole {
         let shown = Path::new(whole);
-        let whole = if is_one { Path::new(shown.file_name().unwrap_or_default()) } else { shown }.display();
+        let whole = shown.file_name().filter(|_| is_one).map_or(shown, Path::new).display();
         let with = if is_one { " and its CONFIGURATION" } else { ": import it alone" };
         writeln!(out, "\n{whole} is the whole project with the shim{with}.")?;
     }

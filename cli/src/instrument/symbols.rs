@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 use onescan_clients::gateway::exchange::Point;
-use onescan_clients::gateway::listing::{Listing, Row};
+use onescan_clients::gateway::listing::Listing;
 use onescan_clients::gateway::settings::Settings;
 use onescan_plc_shim::instrument::{Project, Target};
 use onescan_scenario::gateway::Agreement;
@@ -42,15 +42,13 @@ pub(super) fn settings(target: Target, declared: Settings) -> Settings {
 /// The mapping; nothing for another target, or another link.
 pub(super) fn mapping(target: Target, agreed: &Agreement, project: &Project) -> Option<String> {
     match target {
-        Target::TwinCat if agreed.settings.url.starts_with(ADS) => text(agreed, |listing| listing),
+        Target::TwinCat if agreed.settings.url.starts_with(ADS) => Some(text(agreed, &listing(agreed)?)),
         Target::Codesys if agreed.settings.url.starts_with(OPC_UA) => {
             let lists = global_lists(project);
-            let named = |mut listing: Listing| {
-                let rows = listing.to_plc.rows.iter_mut().chain(&mut listing.from_plc.rows);
-                rows.filter(|row| row.point.address.is_none()).for_each(|row| row.address = node(row, &lists));
-                listing
-            };
-            let map = text(agreed, named)?;
+            let mut listing = listing(agreed)?;
+            let rows = listing.to_plc.rows.iter_mut().chain(&mut listing.from_plc.rows);
+            rows.filter(|row| row.point.address.is_none()).for_each(|row| row.address = node(&row.point, &lists));
+            let map = text(agreed, &listing);
             Some(format!(
                 "# Nodes of the device and application `{APPLICATION}`: another one has its name in all of them.\n\
                  # `onescan browse --map` writes them as the PLC has them. The symbol configuration must hold the variables.\n\
@@ -61,17 +59,21 @@ pub(super) fn mapping(target: Target, agreed: &Agreement, project: &Project) -> 
     }
 }
 
-fn text(agreed: &Agreement, named: impl FnOnce(Listing) -> Listing) -> Option<String> {
-    let listing = named(Listing::new(&agreed.settings, &agreed.exchange).ok()?);
-    Some(Fragment::of(&agreed.request.name, agreed, &listing).to_string())
+/// The points over a link with symbols, where each has a place: none only for a URL that names no link, and its scheme has
+/// been looked at.
+fn listing(agreed: &Agreement) -> Option<Listing> {
+    Listing::new(&agreed.settings, &agreed.exchange).ok()
+}
+
+fn text(agreed: &Agreement, listing: &Listing) -> String {
+    Fragment::of(&agreed.request.name, agreed, listing).to_string()
 }
 
 /// The node of a variable in CODESYS: global ones are in lists.
-fn node(row: &Row, lists: &BTreeMap<String, String>) -> String {
-    let Point { name, .. } = &row.point;
-    let symbol = row.point.symbol();
-    let path = if row.point.is_word() {
-        format!("{WORDS}.{name}")
+fn node(point: &Point, lists: &BTreeMap<String, String>) -> String {
+    let symbol = point.symbol();
+    let path = if point.is_word() {
+        format!("{WORDS}.{}", point.name)
     } else {
         let root = symbol.split(['.', '[']).next().unwrap_or(symbol).to_ascii_uppercase();
         lists.get(&root).map_or_else(|| symbol.to_owned(), |list| format!("{list}.{symbol}"))

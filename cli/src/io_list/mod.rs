@@ -92,7 +92,7 @@ pub enum ListLink {
     Ads(Option<u16>),
     /// Variables of a server.
     Server {
-        /// Where it is.
+        /// Its URL, as a gateway takes it.
         url: String,
         /// True if it has words about the PLC itself.
         system_words: bool,

@@ -25,9 +25,9 @@ pub struct Map {
 /// An input of a component that nobody drives.
 #[derive(Clone, Debug, Serialize)]
 pub struct OpenInput {
-    /// The plant.
+    /// The plant that has the component.
     pub client: String,
-    /// Component and input.
+    /// Component and input, as in `heater.on`.
     pub input: String,
     /// What it is all the time.
     pub preset: Setting,

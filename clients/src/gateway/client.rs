@@ -44,7 +44,7 @@ const GARBLED_MAX: u32 = 3;
 struct Wait {
     /// When its time is over.
     deadline: Instant,
-    /// When it began.
+    /// When the order was first given: how long it has taken decides how often the PLC is asked.
     begun: Instant,
     /// When it was written last.
     written: Instant,

@@ -30,7 +30,7 @@ pub trait Link: Send {
     /// The connection is gone, or what came is no value.
     fn read(&mut self, patience: Duration, from_plc: &mut [u8]) -> Result<bool, LinkFault>;
 
-    /// True for a link that asks the PLC each time, false for one that is told of changes.
+    /// True for a link that asks the PLC each time, false for one to which the PLC sends its changes.
     fn is_polled(&self) -> bool {
         true
     }

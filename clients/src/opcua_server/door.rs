@@ -64,7 +64,7 @@ async fn hand_on(mut stream: TcpStream, server: SocketAddr, channels: &Channels)
     let mut seen = Seen { channels, channel: None };
     // Whoever closes first ends both ways.
     tokio::select! {
-        ended = requests(from_client, to_server) => ended,
+        ended = pump(from_client, to_server) => ended,
         ended = answers(from_server, to_client, &mut seen) => ended,
     }
 }
@@ -80,7 +80,8 @@ async fn hello(stream: &mut TcpStream) -> io::Result<[u8; 8]> {
     Ok(head)
 }
 
-async fn requests(mut from: OwnedReadHalf, mut to: OwnedWriteHalf) -> io::Result<()> {
+/// Hands on what comes until there is no more.
+async fn pump(mut from: OwnedReadHalf, mut to: OwnedWriteHalf) -> io::Result<()> {
     let mut piece = vec![0; PIECE];
     loop {
         let count = from.read(&mut piece).await?;
@@ -107,14 +108,7 @@ async fn answers(mut from: OwnedReadHalf, mut to: OwnedWriteHalf, seen: &mut See
             return Ok(());
         }
     }
-    let mut piece = vec![0; PIECE];
-    loop {
-        let count = from.read(&mut piece).await?;
-        if count == 0 {
-            return Ok(());
-        }
-        to.write_all(&piece[..count]).await?;
-    }
+    pump(from, to).await
 }
 
 /// The channel of a connection, which is closed with it.

@@ -222,7 +222,7 @@ impl Motor {
         world.actuators[self.actuator].effort
     }
 
-    /// Whether it exerted all that it can, but for rounding, in the last sub-step.
+    /// Whether it exerted all that it can in the last sub-step, to within rounding.
     pub(super) fn is_at_its_limit(&self, world: &World) -> bool {
         let actuator = &world.actuators[self.actuator];
         actuator.exerted.abs() >= actuator.most * (1.0 - 1e-9)

@@ -2,8 +2,6 @@
 
 use std::fmt::Write as _;
 
-use onescan_server::time::TimeSpan;
-
 use crate::bench::Bench;
 
 /// Name, where its joint is, the joint's axis, its box (length along x) and mass; greatest torque.
@@ -92,18 +90,12 @@ fn angles(bench: &Bench) -> [f64; 6] {
     LINKS.map(|(name, ..)| bench.read(&format!("at_{name}")))
 }
 
-fn bench(scene: &str, period_us: u64) -> Bench {
-    Bench::with_period(scene, TimeSpan::from_nanos(period_us * 1000).expect("not zero"))
-}
-
 #[test]
 fn a_falling_arm_converges_by_the_fourth_power_of_the_step() {
     let scene = arm(false, true);
     let flange = |period_us: u64| {
-        let mut bench = bench(&scene, period_us);
-        for _ in 0..1_000_000 / period_us {
-            bench.turn();
-        }
+        let mut bench = Bench::at_us(&scene, period_us);
+        bench.run_us(1_000_000);
         bench.plant.poses().last().expect("a flange").position_m
     };
     let apart = |a: [f64; 3], b: [f64; 3]| (0..3).map(|i| (a[i] - b[i]).abs()).fold(0.0, f64::max);
@@ -119,7 +111,7 @@ fn a_falling_arm_converges_by_the_fourth_power_of_the_step() {
 fn position_drives_follow_their_path_under_load() {
     const TARGETS: [[f64; 6]; 2] = [[1.0, -0.6, 0.9, 0.7, -0.8, 1.5], [-0.4, 0.5, -0.3, -1.0, 0.6, -2.0]];
     for (strong, grips) in [(true, false), (true, true), (false, false), (false, true)] {
-        let (mut arm, mut drives) = (bench(&arm(true, strong), 10_000), bench(&setpoints(), 10_000));
+        let (mut arm, mut drives) = (Bench::at_us(&arm(true, strong), 10_000), Bench::at_us(&setpoints(), 10_000));
         arm.command("close", grips);
         for target in TARGETS {
             for (k, (name, ..)) in LINKS.into_iter().enumerate() {
@@ -144,13 +136,11 @@ fn position_drives_follow_their_path_under_load() {
 #[test]
 fn a_drive_tells_the_weight_that_it_holds() {
     for period_us in [100, 1_000, 10_000] {
-        let mut bench = bench(&arm(true, true), period_us);
+        let mut bench = Bench::at_us(&arm(true, true), period_us);
         let centre = |k: usize| LINKS[k].1 + 0.5 * LINKS[k].3;
         for (grips, part_kg) in [(false, 0.0), (true, 5.0)] {
             bench.command("close", grips);
-            for _ in 0..100_000 / period_us {
-                bench.turn();
-            }
+            bench.run_us(100_000);
             // stretched out: the moment of all weights beyond the joint at 0.2 m, down about +y
             let moment: f64 = (1..6).map(|k| LINKS[k].4 * (centre(k) - 0.2)).sum();
             let moment_nm = -9.81 * (moment + part_kg * (1.19 - 0.2));

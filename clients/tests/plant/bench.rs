@@ -35,6 +35,18 @@ impl Bench {
         bench
     }
 
+    /// The same with a period in microseconds.
+    pub(crate) fn at_us(scene: &str, period_us: u64) -> Self {
+        Self::with_period(scene, TimeSpan::from_micros(period_us).expect("not zero"))
+    }
+
+    /// Turns for so long.
+    pub(crate) fn run_us(&mut self, time_us: u64) {
+        for _ in 0..time_us * 1000 / self.period.as_nanos() {
+            self.turn();
+        }
+    }
+
     /// Sets the plant up, again if need be; inputs and outputs begin at zero.
     pub(crate) fn set_up(&mut self) {
         self.inputs.fill(0);

@@ -1,9 +1,7 @@
 //! Gears, racks, screws, differentials and cams between joints.
 
-use onescan_clients::plant::Scene;
-use onescan_server::time::TimeSpan;
-
 use crate::bench::Bench;
+use onescan_clients::plant::Scene;
 
 const PERIODS_US: [u64; 3] = [100, 1_000, 10_000];
 
@@ -53,16 +51,6 @@ child = "carriage"
 axis = [0.0, 0.0, 1.0]
 "#;
 
-fn bench(scene: &str, period_us: u64) -> Bench {
-    Bench::with_period(scene, TimeSpan::from_nanos(period_us * 1000).expect("not zero"))
-}
-
-fn run(bench: &mut Bench, time_us: u64, period_us: u64) {
-    for _ in 0..time_us / period_us {
-        bench.turn();
-    }
-}
-
 fn height(bench: &Bench) -> f64 {
     bench.plant.poses().find(|pose| pose.name == "carriage").expect("a carriage").position_m[2]
 }
@@ -78,8 +66,8 @@ fn a_rack_turns_its_wheel_as_it_falls() {
     // r = 0.5 m: a = m g / (m + J/r²) = 10 g / (10 + 2/0.25)
     let scene = format!("{WHEELS}[[coupling]]\nname = \"rack\"\njoint = \"slide\"\nof = [\"one\"]\nratio = [0.5]\n");
     for period_us in PERIODS_US {
-        let mut bench = bench(&scene, period_us);
-        run(&mut bench, 500_000, period_us);
+        let mut bench = Bench::at_us(&scene, period_us);
+        bench.run_us(500_000);
         let (fallen, exact) = (height(&bench), -0.5 * 9.81 * 10.0 / 18.0 * 0.25);
         // of first order in sub-steps of at most 1 ms
         assert!((fallen / exact - 1.0).abs() < 3e-3, "{period_us}: {fallen} {exact}");
@@ -94,8 +82,8 @@ fn a_differential_divides_force_and_adds_ways() {
         "{WHEELS}[[coupling]]\nname = \"differential\"\njoint = \"slide\"\nof = [\"one\", \"other\"]\nratio = [0.5, 0.5]\n"
     );
     for period_us in PERIODS_US {
-        let mut bench = bench(&scene, period_us);
-        run(&mut bench, 500_000, period_us);
+        let mut bench = Bench::at_us(&scene, period_us);
+        bench.run_us(500_000);
         let [one, other] = ["one", "other"].map(|wheel| angle(&bench, wheel));
         assert!((one / other - 4.0).abs() < 1e-9, "{period_us}: {one} {other}");
         assert!((height(&bench) - 0.5 * (one + other)).abs() < 1e-12, "{period_us}");
@@ -111,10 +99,10 @@ fn a_gear_with_backlash_takes_along_after_its_play() {
          [[fitting]]\nname = \"bearing\"\njoint = \"other\"\nfriction_nm = 50.0\n"
     );
     for period_us in PERIODS_US {
-        let mut bench = bench(&scene, period_us);
+        let mut bench = Bench::at_us(&scene, period_us);
         for (to, rests) in [(1.0, 0.25 - 0.01), (0.0, 0.01), (1.0, 0.25 - 0.01)] {
             bench.command("To", to);
-            run(&mut bench, 2_000_000, period_us);
+            bench.run_us(2_000_000);
             assert!((bench.read::<f64>("At") - to).abs() < 1e-9);
             let at = angle(&bench, "other");
             // the wheel leaves the flank as the motor brakes, and friction stops it within its play
@@ -133,12 +121,12 @@ fn a_cam_leads_its_follower() {
          acceleration_rad_s2 = 5.0\ntorque_signal = \"Torque\"\n"
     );
     for period_us in PERIODS_US {
-        let mut bench = bench(&scene, period_us);
+        let mut bench = Bench::at_us(&scene, period_us);
         bench.command("To", 2.0);
-        run(&mut bench, 2_500_000, period_us);
+        bench.run_us(2_500_000);
         assert!((height(&bench) - 0.3).abs() < 1e-9, "{period_us}: {}", height(&bench));
         bench.command("To", 1.0);
-        run(&mut bench, 2_500_000, period_us);
+        bench.run_us(2_500_000);
         assert!((height(&bench) - 0.1).abs() < 1e-9, "{period_us}: {}", height(&bench));
         // the slope at 1 rad is that of the parabola, 0.15 m/rad, and it bears 10 kg
         let torque_nm: f64 = bench.read("Torque");
@@ -154,8 +142,8 @@ fn a_coupling_holds_in_contact_too() {
            position_m = [2.0, 0.0, -0.2]\n\
            [[coupling]]\nname = \"rack\"\njoint = \"slide\"\nof = [\"one\"]\nratio = [0.5]\n";
     for period_us in PERIODS_US {
-        let mut bench = bench(&scene, period_us);
-        run(&mut bench, 2_000_000, period_us);
+        let mut bench = Bench::at_us(&scene, period_us);
+        bench.run_us(2_000_000);
         let at = height(&bench);
         assert!((at + 0.1).abs() < 5e-3, "{period_us}: {at}");
         assert!((angle(&bench, "one") - at / 0.5).abs() < 1e-9, "{period_us}");

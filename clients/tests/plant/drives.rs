@@ -1,21 +1,8 @@
 //! Drives on joints feel what they move: forces, pressures and stops at 100 µs, 1 ms and 10 ms.
 
-use onescan_server::time::TimeSpan;
-
 use crate::bench::Bench;
 
 const PERIODS_US: [u64; 3] = [100, 1_000, 10_000];
-
-fn bench(scene: &str, period_us: u64) -> Bench {
-    Bench::with_period(scene, TimeSpan::from_nanos(period_us * 1000).expect("not zero"))
-}
-
-/// Runs for so long.
-fn run(bench: &mut Bench, time_us: u64, period_us: u64) {
-    for _ in 0..time_us / period_us {
-        bench.turn();
-    }
-}
 
 /// A body of so many kilograms on a vertical slide, moved by a component.
 fn lift(kg: f64, component: &str) -> String {
@@ -88,9 +75,9 @@ const ANVIL: &str = r#"
 fn a_press_builds_its_pressure_whatever_the_step() {
     for period_us in PERIODS_US {
         let heavy = push(HYDRAULIC, ANVIL).replace("mass_kg = 5.0", "mass_kg = 200.0");
-        let mut bench = bench(&heavy, period_us);
+        let mut bench = Bench::at_us(&heavy, period_us);
         bench.command("Command", 1.0);
-        run(&mut bench, 3_000_000, period_us);
+        bench.run_us(3_000_000);
         let (cap_bar, rod_bar): (f64, f64) = (bench.read("Cap"), bench.read("Rod"));
         // supply and tank; flow below 0.1 bar is laminar and dies out exponentially
         assert!((cap_bar - 160.0).abs() < 0.1 && rod_bar < 0.1, "{period_us}: {cap_bar} {rod_bar}");
@@ -103,9 +90,9 @@ fn a_press_builds_its_pressure_whatever_the_step() {
 #[test]
 fn a_pneumatic_cylinder_presses_with_all_of_its_pressure() {
     for period_us in PERIODS_US {
-        let mut bench = bench(&push(PNEUMATIC, ANVIL), period_us);
+        let mut bench = Bench::at_us(&push(PNEUMATIC, ANVIL), period_us);
         bench.command("Extend", true);
-        run(&mut bench, 3_000_000, period_us);
+        bench.run_us(3_000_000);
         let cap_bar: f64 = bench.read("Cap");
         assert!((cap_bar - 6.0).abs() < 1e-3, "{period_us}: {cap_bar}");
     }
@@ -135,9 +122,9 @@ fn a_cylinder_pushes_what_its_force_can_push() {
                 friction = 0.0
                 "#
             );
-            let mut bench = bench(&push(PNEUMATIC, &rest), period_us);
+            let mut bench = Bench::at_us(&push(PNEUMATIC, &rest), period_us);
             bench.command("Extend", true);
-            run(&mut bench, 3_000_000, period_us);
+            bench.run_us(3_000_000);
             let way_m: f64 = bench.read("Way");
             assert!((way_m > 0.19) == moves, "{kg} kg at {period_us} us: {way_m}");
         }
@@ -149,9 +136,9 @@ fn a_hydraulic_lift_feels_its_load() {
     let component = "kind = \"hydraulic_cylinder\"\ncommand_signal = \"Command\"\nstroke_m = 2.0\n\
                      cap_bar_signal = \"Cap\"\nrod_bar_signal = \"Rod\"\nvelocity_m_s_signal = \"Speed\"";
     for period_us in PERIODS_US {
-        let mut bench = bench(&lift(200.0, component), period_us);
+        let mut bench = Bench::at_us(&lift(200.0, component), period_us);
         bench.command("Command", 0.5);
-        run(&mut bench, 2_000_000, period_us);
+        bench.run_us(2_000_000);
         let [cap_bar, rod_bar, speed_m_s]: [f64; 3] = ["Cap", "Rod", "Speed"].map(|name| bench.read(name));
         // A p_A - a p_B = m g + F_c + d v, q_A = A v, q_B = a v
         let (area, ring) = (0.063_f64, 0.036_f64);
@@ -174,21 +161,21 @@ fn a_servo_axis_tells_what_it_lifts() {
                      following_m_signal = \"Lag\"\nbusy_signal = \"Busy\"";
     for period_us in PERIODS_US {
         for kg in [7.0, 52.0] {
-            let mut bench = bench(&lift(kg, component), period_us);
+            let mut bench = Bench::at_us(&lift(kg, component), period_us);
             bench.command("On", true);
-            run(&mut bench, 200_000, period_us);
+            bench.run_us(200_000);
             bench.command("To", 0.4);
             bench.command("Go", true);
             let moving_n: f64 = {
-                run(&mut bench, 700_000, period_us);
+                bench.run_us(700_000);
                 assert!(bench.read::<bool>("Busy"));
                 bench.read("Force")
             };
             // at constant speed weight and friction
             assert!((moving_n - kg * 9.81 - 5.0).abs() < 0.02 * kg * 9.81, "{kg} kg, {period_us}: {moving_n}");
-            run(&mut bench, 1_500_000, period_us);
+            bench.run_us(1_500_000);
             let (rests_n, lag_m, way_m): (f64, f64, f64) = (bench.read("Force"), bench.read("Lag"), bench.read("Way"));
-            // at rest the weight, but for what friction takes of it
+            // at rest the weight, less what friction takes of it
             assert!((rests_n - kg * 9.81).abs() < 5.1, "{kg} kg, {period_us}: {rests_n}");
             assert!(lag_m.abs() < 2e-5 && (way_m - 0.4).abs() < 2e-5, "{kg} kg, {period_us}: {lag_m} {way_m}");
         }
@@ -201,15 +188,15 @@ fn a_cylinder_that_is_too_weak_rests_on_its_bottom() {
                      retracted_signal = \"Down\"";
     for period_us in PERIODS_US {
         for kg in [150.0, 500.0] {
-            let mut bench = bench(&lift(kg, component), period_us);
+            let mut bench = Bench::at_us(&lift(kg, component), period_us);
             bench.command("Extend", true);
-            run(&mut bench, 3_000_000, period_us);
+            bench.run_us(3_000_000);
             assert_eq!(bench.read::<f64>("Way"), 0.0, "{kg} kg, {period_us}");
             assert!(bench.read::<bool>("Down"));
         }
-        let mut bench = bench(&lift(50.0, component), period_us);
+        let mut bench = Bench::at_us(&lift(50.0, component), period_us);
         bench.command("Extend", true);
-        run(&mut bench, 3_000_000, period_us);
+        bench.run_us(3_000_000);
         // to the rounding of the way in its pose
         assert!((bench.read::<f64>("Way") - 0.2).abs() < 1e-15, "{period_us}");
     }
@@ -220,7 +207,7 @@ fn an_end_switch_has_one_edge() {
     for period_us in PERIODS_US {
         // a cushion that is open far enough not to throw the rod back
         let keys = "extended_signal = \"Out\"\ncushion_l_s_bar = 1.0";
-        let mut bench = bench(&push(&format!("{PNEUMATIC}\n{keys}"), ""), period_us);
+        let mut bench = Bench::at_us(&push(&format!("{PNEUMATIC}\n{keys}"), ""), period_us);
         let (mut edges, mut before) = (0, false);
         bench.command("Extend", true);
         for _ in 0..1_000_000 / period_us {
@@ -241,8 +228,8 @@ fn a_cylinder_with_a_joint_moves_as_one_without() {
     // the body of the joint has the mass that the cylinder has by itself
     for period_us in PERIODS_US {
         let jointed = push(PNEUMATIC, "");
-        let mut bodies = bench(&jointed, period_us);
-        let mut alone = bench(&jointed.replace("joint = \"slide\"", ""), period_us);
+        let mut bodies = Bench::at_us(&jointed, period_us);
+        let mut alone = Bench::at_us(&jointed.replace("joint = \"slide\"", ""), period_us);
         for extend in [true, false] {
             for bench in [&mut bodies, &mut alone] {
                 bench.command("Extend", extend);
@@ -295,9 +282,9 @@ fn what_lies_on_a_lift_is_lifted_and_told() {
         limit_signal = "Limit"
     "#;
     for period_us in PERIODS_US {
-        let mut bench = bench(scene, period_us);
+        let mut bench = Bench::at_us(scene, period_us);
         bench.command("To", 0.3);
-        run(&mut bench, 1_500_000, period_us);
+        bench.run_us(1_500_000);
         let (force_n, way_m): (f64, f64) = (bench.read("Force"), bench.read("Way"));
         assert!((force_n - 15.0 * 9.81).abs() < 0.5, "{period_us}: {force_n}");
         assert!((way_m - 0.3).abs() < 1e-5 && !bench.read::<bool>("Limit"), "{period_us}: {way_m}");

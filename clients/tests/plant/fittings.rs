@@ -1,9 +1,7 @@
 //! Springs, dampers, friction, counterweights and brakes of joints against their closed forms.
 
-use onescan_clients::plant::Scene;
-use onescan_server::time::TimeSpan;
-
 use crate::bench::Bench;
+use onescan_clients::plant::Scene;
 
 const PERIODS_US: [u64; 3] = [100, 1_000, 10_000];
 
@@ -36,27 +34,18 @@ fn block(vertical: bool, initial_m: f64, fitting: &str) -> String {
     )
 }
 
-fn bench(scene: &str, period_us: u64) -> Bench {
-    Bench::with_period(scene, TimeSpan::from_nanos(period_us * 1000).expect("not zero"))
-}
-
 fn way(bench: &Bench) -> f64 {
     let [x, _, z] = bench.plant.poses().next().expect("a block").position_m;
     x + z
-}
-
-fn run(bench: &mut Bench, time_us: u64, period_us: u64) {
-    for _ in 0..time_us / period_us {
-        bench.turn();
-    }
 }
 
 #[test]
 fn a_spring_swings_by_its_closed_form() {
     // ω² = 200/2, δ = 4/(2·2): x = x0 e^(-δt) (cos ωd t + δ/ωd sin ωd t) about rest at 0.1
     for period_us in PERIODS_US {
-        let mut bench = bench(&block(false, 0.2, "spring_n_m = 200.0\nrest_m = 0.1\ndamping_n_s_m = 4.0"), period_us);
-        run(&mut bench, 700_000, period_us);
+        let mut bench =
+            Bench::at_us(&block(false, 0.2, "spring_n_m = 200.0\nrest_m = 0.1\ndamping_n_s_m = 4.0"), period_us);
+        bench.run_us(700_000);
         let (decay, t) = (1.0_f64, 0.7_f64);
         let turns = (100.0 - decay * decay).sqrt();
         let exact = 0.1 + 0.1 * (-decay * t).exp() * ((turns * t).cos() + decay / turns * (turns * t).sin());
@@ -68,8 +57,8 @@ fn a_spring_swings_by_its_closed_form() {
 #[test]
 fn a_counterweight_balances() {
     for period_us in PERIODS_US {
-        let mut bench = bench(&block(true, 0.0, &format!("balance_n = {:?}", 2.0 * 9.81)), period_us);
-        run(&mut bench, 1_000_000, period_us);
+        let mut bench = Bench::at_us(&block(true, 0.0, &format!("balance_n = {:?}", 2.0 * 9.81)), period_us);
+        bench.run_us(1_000_000);
         assert!(way(&bench).abs() < 1e-12, "{period_us}: {}", way(&bench));
     }
 }
@@ -77,12 +66,12 @@ fn a_counterweight_balances() {
 #[test]
 fn dry_friction_holds_what_it_can_and_brakes_the_rest() {
     for period_us in PERIODS_US {
-        let mut held = bench(&block(true, 0.0, "friction_n = 20.0"), period_us);
-        run(&mut held, 1_000_000, period_us);
+        let mut held = Bench::at_us(&block(true, 0.0, "friction_n = 20.0"), period_us);
+        held.run_us(1_000_000);
         assert_eq!(way(&held), 0.0, "{period_us}");
         // 2 kg · 9.81 m/s² less 10 N
-        let mut slides = bench(&block(true, 0.0, "friction_n = 10.0"), period_us);
-        run(&mut slides, 1_000_000, period_us);
+        let mut slides = Bench::at_us(&block(true, 0.0, "friction_n = 10.0"), period_us);
+        slides.run_us(1_000_000);
         let exact = -0.5 * (9.81 - 5.0);
         // of first order in sub-steps of at most 1 ms
         assert!((way(&slides) - exact).abs() < 3e-3, "{period_us}: {} {exact}", way(&slides));
@@ -93,8 +82,8 @@ fn dry_friction_holds_what_it_can_and_brakes_the_rest() {
 fn it_breaks_away_from_its_stiction_and_then_slides() {
     for period_us in PERIODS_US {
         let at = |fitting: &str| {
-            let mut bench = bench(&block(true, 0.0, fitting), period_us);
-            run(&mut bench, 500_000, period_us);
+            let mut bench = Bench::at_us(&block(true, 0.0, fitting), period_us);
+            bench.run_us(500_000);
             way(&bench)
         };
         assert_eq!(at("friction_n = 5.0\nstiction_n = 20.0"), 0.0);
@@ -108,15 +97,15 @@ fn it_breaks_away_from_its_stiction_and_then_slides() {
 #[test]
 fn a_brake_holds_until_it_is_released() {
     for period_us in PERIODS_US {
-        let mut bench = bench(&block(true, 0.0, "brake_n = 100.0\nrelease_signal = \"Release\""), period_us);
-        run(&mut bench, 500_000, period_us);
+        let mut bench = Bench::at_us(&block(true, 0.0, "brake_n = 100.0\nrelease_signal = \"Release\""), period_us);
+        bench.run_us(500_000);
         assert_eq!(way(&bench), 0.0);
         bench.command("Release", true);
-        run(&mut bench, 100_000, period_us);
+        bench.run_us(100_000);
         let fallen = way(&bench);
         assert!((fallen + 0.5 * 9.81 * 0.01).abs() < 1e-3, "{period_us}: {fallen}");
         bench.command("Release", false);
-        run(&mut bench, 500_000, period_us);
+        bench.run_us(500_000);
         // v² / 2a with a = 100/2 - 9.81
         let exact = fallen - 0.5 * (0.981 * 0.981) / (50.0 - 9.81);
         assert!((way(&bench) - exact).abs() < 1e-3, "{period_us}: {} {exact}", way(&bench));
@@ -133,8 +122,8 @@ fn a_fitting_acts_in_contact_too() {
     };
     for period_us in PERIODS_US {
         let at = |fitting: &str| {
-            let mut bench = bench(&scene(fitting), period_us);
-            run(&mut bench, 1_000_000, period_us);
+            let mut bench = Bench::at_us(&scene(fitting), period_us);
+            bench.run_us(1_000_000);
             way(&bench)
         };
         // a contact is looked for from 2 mm on; the floor's top is 5 mm below

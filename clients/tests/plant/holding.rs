@@ -1,7 +1,5 @@
 //! What holders hold, and what they lose: by force, friction and acceleration of what they really carry.
 
-use onescan_server::time::TimeSpan;
-
 use crate::bench::Bench;
 
 /// A holder at an axis above a box on a table; at the set-up it touches the box.
@@ -63,8 +61,7 @@ const ARM: &str = "kind = \"arm\"\ndrop = false\nforce_n = 100\n";
 
 /// Waits, lifts by half a metre, and says whether the box came along; and the greatest load on the way.
 fn comes_along(kg: f64, acceleration_m_s2: f64, holder: &str, period_us: u64) -> (bool, f64) {
-    let period = TimeSpan::from_micros(period_us).expect("not zero");
-    let mut bench = Bench::with_period(&lift(kg, acceleration_m_s2, holder), period);
+    let mut bench = Bench::at_us(&lift(kg, acceleration_m_s2, holder), period_us);
     let turns = |seconds: u64| seconds * 1_000_000 / period_us;
     (0..turns(1)).for_each(|_| bench.turn());
     bench.command("Height", 0.5);

@@ -1,7 +1,5 @@
 //! Sensors for quantities of bodies and joints, against closed forms.
 
-use onescan_server::time::TimeSpan;
-
 use crate::bench::Bench;
 
 const G: f64 = 9.81;
@@ -120,10 +118,8 @@ angle_deg_signal = "Crate_Angle"
 "#;
 
 fn after(period_us: u64, seconds: f64) -> Bench {
-    let mut bench = Bench::with_period(SCENE, TimeSpan::from_micros(period_us).expect("not zero"));
-    for _ in 0..(seconds * 1e6) as u64 / period_us {
-        bench.turn();
-    }
+    let mut bench = Bench::at_us(SCENE, period_us);
+    bench.run_us((seconds * 1e6) as u64);
     bench
 }
 
@@ -163,7 +159,7 @@ fn a_body_at_rest_feels_its_support_and_a_camera_sees_where_it_lies() {
 fn a_passive_joint_is_measured_without_a_motor() {
     let off =
         SCENE.replace("position_m = [3.0, 0.0, 2.5]", "position_m = [3.0, 0.0, 2.5]\nvelocity_m_s = [0.2, 0.0, 0.0]");
-    let mut bench = Bench::with_period(&off, TimeSpan::from_micros(1_000).expect("not zero"));
+    let mut bench = Bench::at_us(&off, 1_000);
     let (mut most_deg, mut crossings, mut before) = (0.0_f64, Vec::new(), 0.0);
     for k in 1..=5_000_u32 {
         bench.turn();
@@ -191,7 +187,7 @@ fn a_passive_joint_is_measured_without_a_motor() {
 fn an_inclinometer_at_a_pivot_shows_the_joint_s_angle() {
     let off =
         SCENE.replace("position_m = [3.0, 0.0, 2.5]", "position_m = [3.0, 0.0, 2.5]\nvelocity_m_s = [0.2, 0.0, 0.0]");
-    let mut bench = Bench::with_period(&off, TimeSpan::from_micros(1_000).expect("not zero"));
+    let mut bench = Bench::at_us(&off, 1_000);
     let mut most = 0.0_f64;
     for k in 0..1_000 {
         bench.turn();

@@ -1,8 +1,7 @@
 //! Mechanisms that nothing touches, against closed forms and by halving the step.
 
-use onescan_server::time::TimeSpan;
-
 use crate::bench::Bench;
+use crate::motion::BALL;
 
 /// A pendulum of 1 m from the horizontal, measured by an encoder of 31 bits.
 fn pendulum() -> String {
@@ -52,11 +51,8 @@ fn double_pendulum() -> String {
 
 /// Where a body is after so long, with turns of so many microseconds.
 fn after(scene: &str, body: &str, time_us: u64, period_us: u64) -> [f64; 3] {
-    let period = TimeSpan::from_nanos(period_us * 1000).expect("not zero");
-    let mut bench = Bench::with_period(scene, period);
-    for _ in 0..time_us / period_us {
-        bench.turn();
-    }
+    let mut bench = Bench::at_us(scene, period_us);
+    bench.run_us(time_us);
     place(&bench, body)
 }
 
@@ -98,24 +94,7 @@ fn a_double_pendulum_converges_by_the_fourth_power_of_the_step() {
 
 #[test]
 fn a_ball_keeps_energy_and_spin() {
-    let scene = r#"
-        version = 1
-        [[body]]
-        name = "bob"
-        kind = "dynamic"
-        shape = "sphere"
-        radius_m = 0.05
-        mass_kg = 2.0
-        position_m = [1.0, 0.0, 0.0]
-        velocity_m_s = [0.0, 1.0, 0.0]
-        [[joint]]
-        name = "string"
-        kind = "ball"
-        parent = "ground"
-        child = "bob"
-        anchor_m = [0.0, 0.0, 0.0]
-    "#;
-    let mut bench = Bench::new(scene);
+    let mut bench = Bench::new(BALL);
     let mut last = place(&bench, "bob");
     for k in 0..1000 {
         bench.turn();

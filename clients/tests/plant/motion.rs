@@ -246,26 +246,28 @@ fn a_turntable_counts_its_turns() {
     }
 }
 
+/// A ball on a string of 1 m, thrown across it.
+pub(crate) const BALL: &str = r#"
+    version = 1
+    [[body]]
+    name = "bob"
+    kind = "dynamic"
+    shape = "sphere"
+    radius_m = 0.05
+    mass_kg = 2.0
+    position_m = [1.0, 0.0, 0.0]
+    velocity_m_s = [0.0, 1.0, 0.0]
+    [[joint]]
+    name = "string"
+    kind = "ball"
+    parent = "ground"
+    child = "bob"
+    anchor_m = [0.0, 0.0, 0.0]
+"#;
+
 #[test]
 fn a_ball_joint_keeps_its_distance() {
-    let scene = r#"
-        version = 1
-        [[body]]
-        name = "bob"
-        kind = "dynamic"
-        shape = "sphere"
-        radius_m = 0.05
-        mass_kg = 2.0
-        position_m = [1.0, 0.0, 0.0]
-        velocity_m_s = [0.0, 1.0, 0.0]
-        [[joint]]
-        name = "string"
-        kind = "ball"
-        parent = "ground"
-        child = "bob"
-        anchor_m = [0.0, 0.0, 0.0]
-    "#;
-    let mut bench = Bench::new(scene);
+    let mut bench = Bench::new(BALL);
     for k in 0..300 {
         bench.turn();
         let [x, y, z] = bench.plant.poses().next().expect("a bob").position_m;

@@ -84,10 +84,24 @@ impl Travel {
         }
     }
 
+    /// Where a joint has it.
+    pub(crate) fn of(motion: &Motion) -> Self {
+        Self { position: motion.position, velocity: motion.velocity }
+    }
+
     /// Where a joint has it, between stops.
     pub(crate) fn on_joint(motion: &Motion, range: (f64, f64)) -> Self {
-        Self { position: motion.position.clamp(range.0, range.1), velocity: motion.velocity }
+        Self { position: motion.position.clamp(range.0, range.1), ..Self::of(motion) }
     }
+}
+
+/// What a mass in a body feels along three axes, through a lag of `lag_s`; at the first look as it is. If it `stands`, what
+/// was felt before.
+pub(crate) fn felt(before: &mut Option<[f64; 3]>, now: [f64; 3], lag_s: f64, dt_s: f64, stands: bool) -> [f64; 3] {
+    let last = before.unwrap_or(now);
+    let felt = if stands { last } else { [0, 1, 2].map(|axis| lag(last[axis], now[axis], lag_s, dt_s)) };
+    *before = Some(felt);
+    felt
 }
 
 /// By how much a spring's force falls with the velocity in a sub-step that is taken implicitly: for a

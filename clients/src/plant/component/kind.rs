@@ -40,9 +40,9 @@ impl Kind {
 /// Inputs that mean nothing unless one of some others, which are off where nobody drives them, is driven.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 pub struct Dependence {
-    /// The inputs.
+    /// Those that mean nothing, by their keys.
     pub inputs: &'static [&'static str],
-    /// The others.
+    /// Those of which one must be driven, by their keys.
     pub on: &'static [&'static str],
 }
 

@@ -53,8 +53,9 @@ fn inputs(page: &mut String, kind: &Kind) {
         page.push_str("\n| input | type | preset | unit | |\n|---|---|---|---|---|\n");
     }
     for Signal { key, about, values, preset } in &kind.inputs {
-        let unit = unit(key).1.unwrap_or_default();
-        let preset = preset.as_ref().map(ToString::to_string).unwrap_or_default();
+        // An empty cell for what has no unit or no preset.
+        let unit = unit(key).1.unwrap_or("");
+        let preset = preset.as_ref().map_or_else(String::new, ToString::to_string);
         let _ = writeln!(page, "| `{key}` | {values} | {preset} | {unit} | {about} |");
     }
     for Dependence { inputs, on } in kind.dependences {

@@ -56,7 +56,7 @@ pub(crate) struct Load {
 impl Load {
     /// What is across the direction, or all of it without one.
     pub(crate) fn aside_n(self) -> f64 {
-        let pull_n = self.pull_n.unwrap_or_default();
+        let pull_n = self.pull_n.unwrap_or(0.0);
         (self.force_n * self.force_n - pull_n * pull_n).max(0.0).sqrt()
     }
 }

@@ -103,7 +103,7 @@ pub(crate) fn mechanisms(
         let mut mechanism = Mechanism::new(tree);
         mechanism.bind(couplings);
         for jointed in &mechanism.tree.joints {
-            // a turn is told from the next by where the joint was
+            // where the joint was distinguishes a turn from the next
             if let (Some(joint), JointKind::Revolute) = (jointed.link.joint, jointed.link.kind) {
                 mechanism.now.q[jointed.first[0]] = last(joint);
             }

@@ -75,7 +75,8 @@ fn child<'d>(node: Node<'d, 'd>, name: &str) -> Option<Node<'d, 'd>> {
 }
 
 fn numbers(node: Node<'_, '_>) -> Result<Vec<f64>, MeshError> {
-    let parsed = node.text().unwrap_or_default().split_whitespace().map(str::parse).collect::<Result<_, _>>();
+    // An element without text is an empty list.
+    let parsed = node.text().unwrap_or("").split_whitespace().map(str::parse).collect::<Result<_, _>>();
     parsed.map_err(|_| wrong(node, "a number is expected"))
 }
 
@@ -126,12 +127,13 @@ impl<'d> File<'d> {
     fn faces(&mut self, faces: Node<'d, 'd>, kind: &str, place: Place) -> Result<(), MeshError> {
         let inputs = || faces.children().filter(|inner| inner.tag_name().name() == "input");
         let offset = |input: Node<'_, '_>| input.attribute("offset").and_then(|text| text.parse::<usize>().ok());
-        let stride = 1 + inputs().filter_map(offset).max().unwrap_or_default();
+        // An input without an offset has the first place. The greatest number that a file can give is no count.
+        let stride = inputs().filter_map(offset).max().unwrap_or(0).saturating_add(1);
         let vertex = inputs().find(|input| input.attribute("semantic") == Some("VERTEX"));
         let Some(vertex) = vertex.filter(|_| stride < 64) else { return Err(wrong(faces, "it has no corners")) };
         let first = self.corners(vertex, place)?;
         let count = self.mesh.corners.len() - first;
-        let at = offset(vertex).unwrap_or_default();
+        let at = offset(vertex).unwrap_or(0);
         let counts = child(faces, "vcount").map(numbers).transpose()?;
         for list in faces.children().filter(|inner| inner.tag_name().name() == "p") {
             let indices: Vec<u32> = numbers(list)?
@@ -242,6 +244,7 @@ mod tests {
         let told = |from: &str, to: &str| read(SQUARE.replacen(from, to, 1).as_bytes()).unwrap_err().to_string();
         assert_eq!(told("0 0 1 0 2 0 3 0", "0 0 1 0 2 0 9 0"), "line 8: it names a corner that is not there");
         assert_eq!(told("<vcount>4", "<vcount>5"), "line 8: it has fewer corners than it says");
+        assert_eq!(told("offset=\"1\"", "offset=\"18446744073709551615\""), "line 7: it has no corners");
         assert_eq!(told("0 0 5", "0 0"), "line 11: it has another count of numbers than it should");
         assert_eq!(told("url=\"#g\"", "url=\"#h\""), "line 11: it names a geometry that is not there");
         assert_eq!(told("<source id=\"s\">", "<source id=\"t\">"), "line 7: its corners are not there");

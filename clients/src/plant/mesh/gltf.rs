@@ -128,7 +128,7 @@ pub(super) fn read(bytes: &[u8], path: &Path) -> Result<Mesh, MeshError> {
     // y up becomes z up: a quarter turn about x
     let turned = DMat3::from_cols(DVec3::X, DVec3::Z, -DVec3::Y);
     let above = Place { linear: turned, shift: DVec3::ZERO };
-    let scene = file.document.scenes.get(file.document.scene.unwrap_or_default());
+    let scene = file.document.scenes.get(file.document.scene.unwrap_or(0));
     let roots = scene.map_or_else(Vec::new, |scene| scene.nodes.clone());
     for root in roots {
         file.node(root, above, DEPTH_MAX)?;
@@ -147,6 +147,7 @@ fn chunks(bytes: &[u8]) -> Result<(&[u8], Option<&[u8]>), MeshError> {
         match kind {
             JSON => json = json.or(Some(chunk)),
             BINARY => binary = binary.or(Some(chunk)),
+            // glTF 2.0, 4.4.3.1: chunks of unknown types are passed over
             _ => {}
         }
         at += 8 + length as usize;
@@ -272,7 +273,7 @@ impl NodeFields {
         let [x, y, z, w] = self.rotation.unwrap_or([0.0, 0.0, 0.0, 1.0]);
         let scale = DMat3::from_diagonal(DVec3::from_array(self.scale.unwrap_or([1.0; 3])));
         let linear = DMat3::from_quat(DQuat::from_xyzw(x, y, z, w)) * scale;
-        Place { linear, shift: DVec3::from_array(self.translation.unwrap_or_default()) }
+        Place { linear, shift: self.translation.map_or(DVec3::ZERO, DVec3::from_array) }
     }
 }
 

@@ -206,7 +206,7 @@ fn refuse_lost_leaders(root: &Element, joints: &[Joint], faults: &mut Vec<RobotF
             _ if mimic.joint == joint.name => "follows itself".to_owned(),
             Some(leader) if matches!(leader.freedom, Freedom::Turns | Freedom::Slides) => continue,
             Some(_) => format!("follows `{}`, which has no coordinate", mimic.joint),
-            // a joint that is at fault has been told of
+            // a joint that is at fault has been reported
             None if root.all("joint").any(|element| element.get("name") == Some(&mimic.joint)) => continue,
             None => format!("follows `{}`, which is no joint of this robot", mimic.joint),
         };

@@ -21,7 +21,7 @@ pub(super) fn check(file: &SceneFile, joints: &Names, checked: &[Joint], faults:
     let each = file.coupling.iter().map(Placed::get_ref);
     let found = each.filter_map(|written| {
         let coupling = coupling(written, file, joints, faults)?;
-        // joints at fault are told as such
+        // joints at fault are reported as such
         if checked.len() == file.joint.len() {
             refuse_off(written, &coupling, checked, faults);
         }

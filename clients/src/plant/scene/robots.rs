@@ -52,7 +52,7 @@ fn one(table: &UrdfTable, written: &mut SceneFile, faults: &mut Faults<'_>) -> O
             return None;
         }
     };
-    // told of as the link's or the joint's, so that one of a hundred joints is found
+    // reported as the link's or the joint's, so that one of a hundred joints is found
     let coordinates = coordinates(table, &mut robot, faults)?;
     let density = Entry::new("density_kg_m3", table.density_kg_m3.as_ref());
     let density_kg_m3 = faults.number(density, Allowed::Within(1e-2, 1e5));
@@ -73,7 +73,7 @@ fn one(table: &UrdfTable, written: &mut SceneFile, faults: &mut Faults<'_>) -> O
     Some(robot.remarks)
 }
 
-/// A fault in a robot's file, told at the file's name in the scene.
+/// A fault in a robot's file, reported at the file's name in the scene.
 fn refuse(table: &UrdfTable, fault: RobotFault, faults: &mut Faults<'_>) {
     let file = table.file.get_ref().clone();
     let start = fault.place.start();

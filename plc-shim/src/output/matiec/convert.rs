@@ -58,9 +58,10 @@ impl Writer<'_, '_> {
 
 /// From a TIME or TOD, of which a number counts the milliseconds.
 fn number_of(from: ElementaryType, to: ElementaryType) -> (String, String) {
-    let since_midnight = if from == ElementaryType::Tod { " - TOD#00:00:00" } else { "" };
-    let inner = if since_midnight.is_empty() { "SDSP_Nanoseconds" } else { "SDSP_Nanoseconds(" };
-    let closed = if since_midnight.is_empty() { String::new() } else { format!("{since_midnight})") };
+    let (inner, closed) = match from {
+        ElementaryType::Tod => ("SDSP_Nanoseconds(", " - TOD#00:00:00)"),
+        _ => ("SDSP_Nanoseconds", ""),
+    };
     match to {
         ElementaryType::Lint => (format!("({inner}"), format!("{closed} / 1000000)")),
         ElementaryType::Lreal => (format!("(LINT_TO_LREAL({inner}"), format!("{closed}) / 1000000.0)")),

@@ -40,7 +40,7 @@ const GUESTS_MAX: usize = 64;
 const OPERATORS_MAX: usize = 64;
 const OPERATORS_OF_ADDRESS_MAX: usize = 16;
 
-/// Who comes when the session has begun is told this.
+/// The refusal of whoever comes when the session has begun.
 const BEGUN: &str = "the session has begun: nobody can join any more";
 
 type Connection = Framed<TcpStream, FrameCodec>;

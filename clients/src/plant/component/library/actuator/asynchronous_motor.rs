@@ -213,8 +213,8 @@ impl Component for AsynchronousMotor {
         motion: Motion,
         dt_s: f64,
     ) -> Effort {
-        let Motion { position, velocity, .. } = motion;
-        state.shaft = Travel { position, velocity };
+        let velocity = motion.velocity;
+        state.shaft = Travel::of(&motion);
         let part = self.feed(state, inputs, turn, dt_s);
         if turn.failed.has(Failure::Blocked) {
             state.torque_nm = part * self.torque_nm(state.frequency_hz, 0.0);

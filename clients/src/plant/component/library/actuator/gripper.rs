@@ -88,7 +88,7 @@ impl Gripper {
         let p = &self.p;
         let jaw_n = p.jaw_n / p.safety_ratio;
         let slipping_n = load.aside_n() * (1.0 + load.beside_m / p.pad_m);
-        slipping_n <= 2.0 * p.friction * jaw_n && load.pull_n.unwrap_or_default().abs() <= jaw_n
+        slipping_n <= 2.0 * p.friction * jaw_n && load.pull_n.map_or(0.0, f64::abs) <= jaw_n
     }
 }
 

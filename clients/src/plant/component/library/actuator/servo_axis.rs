@@ -431,7 +431,7 @@ impl Component for ServoAxis {
             // the brake takes hold, as strong as the motor
             return Effort { dry: p.friction_n + p.force_max_n, ..Effort::of(-p.load_n) };
         }
-        // while it moves by hand of the engine the mass is not told
+        // while the engine moves it, the mass is not known
         let seen_kg = if mass.is_finite() { mass } else { p.moving_kg };
         let tuned_kg = *state.tuned_kg.get_or_insert(seen_kg.max(p.moving_kg));
         let gain = tuned_kg / p.velocity_loop_s.max(dt_s);

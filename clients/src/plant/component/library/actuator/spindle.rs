@@ -152,7 +152,7 @@ impl Component for Spindle {
         motion: Motion,
         _: f64,
     ) -> Effort {
-        state.shaft = Travel { position: motion.position, velocity: motion.velocity };
+        state.shaft = Travel::of(&motion);
         state.torque_nm = motion.exerted;
         let fed = !turn.failed.has(Failure::DriveFault);
         Effort {

@@ -12,7 +12,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::plant::component::behaviour::{Component, Start, Turn};
 use crate::plant::component::declare::{failures, own_types, parameters, signals};
-use crate::plant::component::dynamics::{lag, quantised};
+use crate::plant::component::dynamics::{felt, quantised};
 use crate::plant::coupling::{Motion, Moving};
 use crate::plant::random::Random;
 
@@ -64,7 +64,7 @@ failures! {
 /// What it remembers.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct State {
-    /// None before the first look.
+    /// Behind the lag; none before the first look.
     felt_m_s2: Option<[f64; 3]>,
     random: Random,
 }
@@ -92,14 +92,8 @@ impl Component for Accelerometer {
 
     fn sense(&self, state: &mut State, _: &Inputs, turn: &Turn<Moving>) -> Outputs {
         let p = &self.p;
-        let now = turn.seen.felt_m_s2;
-        let before = state.felt_m_s2.unwrap_or(now);
-        let felt = if turn.failed.has(Failure::Stuck) {
-            before
-        } else {
-            [0, 1, 2].map(|axis| lag(before[axis], now[axis], p.lag_s, turn.dt_s))
-        };
-        state.felt_m_s2 = Some(felt);
+        let stands = turn.failed.has(Failure::Stuck);
+        let felt = felt(&mut state.felt_m_s2, turn.seen.felt_m_s2, p.lag_s, turn.dt_s, stands);
         let [x_m_s2, y_m_s2, z_m_s2] = felt.map(|felt| {
             let noisy = felt + p.bias_m_s2 + p.noise_m_s2 * state.random.normal();
             quantised(noisy, p.quantum_m_s2).clamp(-p.range_m_s2, p.range_m_s2)

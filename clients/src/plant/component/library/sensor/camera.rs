@@ -20,7 +20,7 @@ parameters! {
     Parameters {
         /// from one picture to the next
         frame_s: f64 = 0.04 => 0.0, 60.0;
-        /// from a picture to what is told of it; at most until the next picture
+        /// from a picture to its result; at most until the next picture
         latency_s: f64 = 0.02 => 0.0, 60.0;
         /// standard deviation of each coordinate's noise
         noise_m: f64 = 0.0 => 0.0, 10.0;
@@ -52,7 +52,7 @@ signals! {
         y_m: f64,
         /// how far the first is turned about the field's z
         angle_deg: f64,
-        /// pictures told of
+        /// pictures whose results have come
         pictures: i32,
     }
 }
@@ -114,7 +114,7 @@ impl Component for Camera {
     const NAME: &'static str = "camera";
     const SUMMARY: &'static str = "camera above a field: presence, count, and where the first body lies";
     const FORMULA: &'static [&'static str] =
-        &["a picture every frame_s, told of latency_s later", "x = q round((x + N(0, σ))/q)"];
+        &["a picture every frame_s, its result latency_s later", "x = q round((x + N(0, σ))/q)"];
     const SOURCE: &'static str = "closed form; EMVA 1288 (noise); VDI/VDE/VDMA 2632-2 (frame, latency)";
     own_types!(sees Field);
 
@@ -175,12 +175,12 @@ mod tests {
     fn pictures_come_at_their_rate_and_are_told_of_later() {
         let mut rig = rig(Parameters::default());
         let counts: Vec<_> = (0..10).map(|_| rig.run(ON, 0.01, 1).pictures).collect();
-        // taken in turns 1, 5, 9; told of two turns later
+        // taken in turns 1, 5, 9; their results two turns later
         assert_eq!(counts, [0, 0, 1, 1, 1, 1, 2, 2, 2, 2]);
         rig.seen = seen(0, 0.0);
         assert!(rig.run(ON, 0.01, 1).present && !rig.run(ON, 0.01, 4).present);
         let off = Inputs { enable: false };
-        // one that was taken before may still be told of
+        // the result of one that was taken before may still come
         let last = rig.run(off, 0.01, 5).pictures;
         assert_eq!(rig.run(off, 0.01, 100).pictures, last);
     }
