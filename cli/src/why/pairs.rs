@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 use std::ops::Range;
 
+use super::record::Place;
 use onescan_clients::soft_plc::journal::Part;
 use onescan_plc_shim::{Application, Declaration, Statement, StatementId, Variable, Way, WayId};
 use similar::{Algorithm, DiffOp, capture_diff_slices};
@@ -46,6 +47,12 @@ impl Statements {
     /// The statement that a statement is in the other program.
     pub(super) fn partner(&self, side: usize, id: StatementId) -> Option<StatementId> {
         self.partner[side].get(&id).copied()
+    }
+
+    /// Where a statement stands in its program.
+    pub(super) fn place(&self, side: usize, id: StatementId) -> Option<Place> {
+        let partner = self.partner(side, id).and_then(|other| self.known[1 - side].get(&other));
+        self.known[side].get(&id).map(|own| Place::of(own, partner))
     }
 
     /// True if a statement reads in the other program as it does in its own.
@@ -103,7 +110,7 @@ impl Declarations {
         let theirs: BTreeMap<_, _> = b.into_iter().map(|each| (key(&each), each)).collect();
         let mut changed: BTreeMap<String, Vec<[Declaration; 2]>> = BTreeMap::new();
         for ours in a {
-            if let Some(other) = theirs.get(&key(&ours)).filter(|other| other.text != ours.text) {
+            if let Some(other) = theirs.get(&key(&ours)).filter(|other| other.rows != ours.rows) {
                 changed.entry(ours.name.to_ascii_lowercase()).or_default().push([ours, other.clone()]);
             }
         }
