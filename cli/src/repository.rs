@@ -50,8 +50,10 @@ impl Repository {
     /// # Errors
     /// There is no such commit.
     pub fn commit(&self, name: &str) -> Result<String, RepositoryError> {
-        let words = ["rev-parse", "--verify", "--end-of-options", &format!("{name}^{{commit}}")];
-        Ok(git(&self.root, &words)?.trim_end().to_owned())
+        let words = ["rev-parse", "--verify", "--quiet", "--end-of-options", &format!("{name}^{{commit}}")];
+        let commit = git(&self.root, &words);
+        let unknown = |_| Usage::new(format!("the repository has no commit `{name}`"), None);
+        Ok(commit.map_err(unknown)?.trim_end().to_owned())
     }
 
     /// The last commit that changed a file of the scenario; nothing if none has.

@@ -58,7 +58,7 @@ impl Statements {
     /// True if a statement reads in the other program as it does in its own.
     pub(super) fn is_unchanged(&self, side: usize, id: StatementId) -> bool {
         let other = self.partner[side].get(&id).and_then(|other| self.known[1 - side].get(other));
-        self.known[side].get(&id).is_some_and(|own| other.is_some_and(|other| other.text == own.text))
+        self.known[side].get(&id).is_some_and(|own| other.is_some_and(|other| own_text(other) == own_text(own)))
     }
 
     /// True if two decisions went the same way.
@@ -66,6 +66,11 @@ impl Statements {
         let branch = |side: usize, way: WayId| self.ways[side].get(&way).map(|way| way.branch);
         branch(0, a) == branch(1, b)
     }
+}
+
+/// All that a statement says itself, wherever its lines are broken.
+pub(super) fn own_text(statement: &Statement) -> String {
+    statement.rows.iter().map(|(_, row)| row.as_str()).collect::<Vec<_>>().join(" ")
 }
 
 /// The statements of each unit in the order of the text; names do not heed case.
@@ -82,7 +87,7 @@ fn by_unit(list: &Vec<Statement>) -> BTreeMap<String, Vec<&Statement>> {
 
 /// What is the same, and what stands in the place of what.
 fn pairs(ours: &[&Statement], theirs: &[&Statement]) -> Vec<(StatementId, StatementId)> {
-    let texts = |list: &[&Statement]| list.iter().map(|statement| statement.text.clone()).collect::<Vec<_>>();
+    let texts = |list: &[&Statement]| list.iter().map(|statement| own_text(statement)).collect::<Vec<_>>();
     let operations = capture_diff_slices(Algorithm::Myers, &texts(ours), &texts(theirs));
     let mut found = Vec::new();
     for operation in operations {

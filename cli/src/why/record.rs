@@ -4,6 +4,8 @@ use onescan_plc_shim::{Declaration, Statement};
 use onescan_server::signal::ClientName;
 use onescan_server::time::VirtualTime;
 
+use super::pairs::own_text;
+
 /// A statement of one run, as it stands in the sources.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Place {
@@ -21,7 +23,7 @@ impl Place {
     /// A statement; where its partner in the other program reads otherwise, the first line that does.
     pub(super) fn of(statement: &Statement, partner: Option<&Statement>) -> Self {
         let Statement { unit, file, line, text, rows, .. } = statement;
-        let other = partner.filter(|other| other.text != *text).and_then(|other| {
+        let other = partner.filter(|other| own_text(other) != own_text(statement)).and_then(|other| {
             let texts = |rows: &[(u32, String)]| rows.iter().map(|(_, row)| row.clone()).collect::<Vec<_>>();
             rows.get(first_other(&texts(rows), &texts(&other.rows)))
         });
