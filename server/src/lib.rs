@@ -25,6 +25,8 @@
 //! | [`carrier`] | how a client is reached |
 //! | [`checkpoint`] | a session as a value |
 //! | [`lockstep`] | the driver of a running session |
+//! | [`access`] | tokens: who may do what |
+//! | [`lobby`] | who comes, who may stay, and for how long: machines without a socket or a clock |
 //! | [`formation`] | clients come together |
 //! | [`wire`] | the protocol of clients outside this process |
 //! | [`transport`] | a carrier of its frames: TCP |
@@ -33,6 +35,7 @@
 //! number, no iteration in hash order, and after the start nothing is allocated by a step. Nothing
 //! here knows what a PLC or a plant is, nor how a scenario is written.
 
+pub mod access;
 pub mod carrier;
 pub mod checkpoint;
 pub mod client;
@@ -44,6 +47,7 @@ pub mod image;
 mod interference;
 pub mod join;
 pub mod layout;
+pub mod lobby;
 pub mod lockstep;
 pub mod mailbox;
 pub mod observer;

@@ -1,9 +1,10 @@
 //! The client's side of TCP: joins a session and takes part until it ends.
 
-use std::net::{SocketAddr, TcpStream};
+use std::net::SocketAddr;
 
 use thiserror::Error;
 
+use super::entrance::{Entrance, connect};
 use super::stream::FrameStream;
 use super::{AGENT, HANDSHAKE_TIMEOUT, ReceiveError};
 use crate::client::{Client, ClientFault, Wake};
@@ -11,9 +12,7 @@ use crate::end::SessionEnd;
 use crate::signal::PortLayout;
 use crate::time::{StepCount, VirtualTime};
 use crate::wire::message::Role;
-use crate::wire::{
-    ClientMessage, Duty, Endpoint, EndpointError, FRAME_BYTES_MAX, Frame, FrameError, FrameRef, ServerMessage, VERSIONS,
-};
+use crate::wire::{ClientMessage, Duty, Endpoint, EndpointError, Frame, FrameError, FrameRef, ServerMessage, VERSIONS};
 
 /// Why a client did not stay to the end.
 #[derive(Debug, Error)]
@@ -25,6 +24,14 @@ pub enum ParticipantError {
         address: SocketAddr,
         /// Why.
         source: std::io::Error,
+    },
+    /// TLS does not come about.
+    #[error("cannot speak TLS with the server at {address}: {why}")]
+    Tls {
+        /// Where.
+        address: SocketAddr,
+        /// Why.
+        why: String,
     },
     /// The server does not want it.
     #[error("the server refused: {0}")]
@@ -53,27 +60,22 @@ pub enum ParticipantError {
     },
 }
 
-/// Joins the session at `address` as `client` and takes part until it ends.
+/// Joins the session behind `entrance` as `client` and takes part until it ends.
 ///
 /// # Errors
 /// See [`ParticipantError`].
-pub fn take_part(client: &mut dyn Client, address: SocketAddr) -> Result<SessionEnd, ParticipantError> {
-    let mut connection = connect(address)?;
-    shake_hands(&mut connection, client)?;
+pub fn take_part(client: &mut dyn Client, entrance: impl Into<Entrance>) -> Result<SessionEnd, ParticipantError> {
+    let entrance = entrance.into();
+    let mut connection = connect(&entrance)?;
+    shake_hands(&mut connection, client, &entrance)?;
     serve(connection, client)
 }
 
-/// A connection, not yet greeted.
-pub(super) fn connect(address: SocketAddr) -> Result<FrameStream, ParticipantError> {
-    let refused = |source| ParticipantError::Connect { address, source };
-    let stream = TcpStream::connect_timeout(&address, HANDSHAKE_TIMEOUT).map_err(refused)?;
-    FrameStream::new(stream, FRAME_BYTES_MAX, HANDSHAKE_TIMEOUT).map_err(refused)
-}
-
 /// `hello` and its answer.
-pub(super) fn greet(connection: &mut FrameStream, role: Role) -> Result<(), ParticipantError> {
+pub(super) fn greet(connection: &mut FrameStream, role: Role, entrance: &Entrance) -> Result<(), ParticipantError> {
     let broken = |e: FrameError| ParticipantError::Handshake(e.into());
-    let hello = ClientMessage::Hello { protocol: VERSIONS, role, agent: AGENT.to_owned() };
+    let token = entrance.token.as_ref().map(|token| token.reveal().to_owned());
+    let hello = ClientMessage::Hello { protocol: VERSIONS, role, agent: AGENT.to_owned(), token };
     connection.send_message(&hello).map_err(broken)?;
     match connection.receive_message(HANDSHAKE_TIMEOUT).map_err(ParticipantError::Handshake)? {
         ServerMessage::Welcome { .. } => Ok(()),
@@ -83,8 +85,8 @@ pub(super) fn greet(connection: &mut FrameStream, role: Role) -> Result<(), Part
 }
 
 /// `hello` and `join`. The answer to `join` may take as long as the session takes to form.
-fn shake_hands(connection: &mut FrameStream, client: &dyn Client) -> Result<(), ParticipantError> {
-    greet(connection, Role::Client)?;
+fn shake_hands(connection: &mut FrameStream, client: &dyn Client, entrance: &Entrance) -> Result<(), ParticipantError> {
+    greet(connection, Role::Client, entrance)?;
     let broken = |e: FrameError| ParticipantError::Handshake(e.into());
     connection.send_message(&ClientMessage::Join(client.join())).map_err(broken)?;
     let Frame::Json(text) = connection.receive(None).map_err(ParticipantError::Handshake)? else {
