@@ -37,7 +37,8 @@ pub fn one_line(text: &str) -> Cow<'_, str> {
         }
         if count > CHARACTERS_MAX {
             shown.truncate(cut_at);
-            shown += &format!(" … (cut, {} bytes)", text.len());
+            let cut = format!(" … (cut, {} bytes)", text.len());
+            shown.push_str(&cut);
             break;
         }
     }

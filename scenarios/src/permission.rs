@@ -75,7 +75,8 @@ mod tests {
     #[test]
     fn links_and_dots_do_not_lead_out() {
         let place = tempfile::tempdir().unwrap();
-        let (own, other) = (place.path().join("own"), place.path().join("other"));
+        let own = place.path().join("own");
+        let other = place.path().join("other");
         for folder in [&own, &other] {
             std::fs::create_dir(folder).unwrap();
             std::fs::write(folder.join("a.st"), "").unwrap();

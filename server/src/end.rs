@@ -4,7 +4,7 @@ use onescan_base::foreign::deserialize_line;
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
-use crate::client::ClientFault;
+use crate::fault::ClientFault;
 use crate::signal::{BadValue, ClientName, SignalName};
 use crate::state::ClientState;
 use crate::time::{StepCount, VirtualTime};

@@ -7,6 +7,7 @@
 //! |---|---|
 //! | [`time`] | virtual time, integer nanoseconds |
 //! | [`signal`] | typed values with one writer, and the ports through which clients see them |
+//! | [`fault`] | why a client cannot go on |
 //! | [`client`] | the interface of everything that takes part |
 //! | [`plan`] | a session before anybody joins |
 //! | [`operation`] | what is done to a session from outside, as data |
@@ -42,6 +43,7 @@ pub mod client;
 pub mod cycle;
 pub mod digest;
 pub mod end;
+pub mod fault;
 pub mod formation;
 pub mod image;
 mod interference;

@@ -50,6 +50,24 @@ fn outputs(csv: &str, signals: &[(&str, SignalType)]) -> Vec<Vec<u8>> {
 }
 
 #[test]
+fn a_plant_in_python_shows_its_token_under_tls() {
+    let shear = copied_shear();
+    let plant = package().join("examples/shear.py");
+    let command = format!("[\"python3\", \"-B\", \"{}\", \"--server\", \"{{server}}\"]", plant.display());
+    let external = format!("kind = \"external\"\ncommand = {command}");
+    edit(shear.path(), "scenario.toml", "kind = \"plant\"\nscene = \"plant.toml\"", &external);
+    let run = |more: &[&str]| {
+        let words = ["run", ".", "--until", "1s", "--format", "json"];
+        let mut command = onescan(shear.path());
+        let output = command.args(words).args(more).env("PYTHONPATH", package().join("src")).output().unwrap();
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        digests(&[serde_json::from_slice::<Value>(&output.stdout).expect("JSON")])
+    };
+    let (place, _) = crate::access::access(&[], &[]);
+    assert_eq!(run(&["--access", place.path().to_str().unwrap()]), run(&[]));
+}
+
+#[test]
 fn a_plant_in_python_is_as_good_as_its_recording() {
     let shear = copied_shear();
     let plant = package().join("examples/shear.py");

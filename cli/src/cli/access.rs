@@ -23,7 +23,7 @@ pub struct EntranceArgs {
     pub token: Option<String>,
     /// Speak TLS, and trust sessions whose certificate this authority has signed: the `ca.pem` of the session's
     /// `--access` folder
-    #[arg(long, env = "ONESCAN_TLS_CA", value_name = "FILE")]
+    #[arg(long, env = "ONESCAN_TLS_CA", hide_env_values = true, value_name = "FILE")]
     pub tls_ca: Option<PathBuf>,
 }
 

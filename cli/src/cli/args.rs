@@ -33,10 +33,10 @@ pub struct Args {
     #[arg(short, long, action = ArgAction::Count, global = true)]
     pub verbose: u8,
     /// Let scenarios read this file or folder, too; may be given several times [default: their own folder only]
-    #[arg(long = "allow-path", env = "ONESCAN_ALLOW_PATH", value_name = "PATH", global = true, value_delimiter = PATHS)]
+    #[arg(long = "allow-path", env = "ONESCAN_ALLOW_PATH", hide_env_values = true, value_name = "PATH", global = true, value_delimiter = PATHS)]
     pub allowed_paths: Vec<PathBuf>,
     /// Do not start the programs that scenarios name as `command`
-    #[arg(long, env = "ONESCAN_NO_COMMANDS", global = true, value_parser = clap::builder::FalseyValueParser::new(), action = ArgAction::SetTrue)]
+    #[arg(long, env = "ONESCAN_NO_COMMANDS", hide_env_values = true, global = true, value_parser = clap::builder::FalseyValueParser::new(), action = ArgAction::SetTrue)]
     pub no_commands: bool,
 }
 

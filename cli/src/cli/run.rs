@@ -247,7 +247,10 @@ pub fn run(args: RunArgs) -> Result<ExitCode, CommandError> {
 }
 
 fn config(args: RunArgs) -> Result<RunConfig, CommandError> {
-    let access = args.opcua_access.access()?;
+    let access = match &args.access {
+        Some(folder) if args.opcua.is_some() => args.opcua_access.access_with_tokens(folder)?,
+        _ => args.opcua_access.access()?,
+    };
     let admission = match args.access {
         Some(folder) => Admission::Holders(folder),
         None if args.listen_insecure => Admission::Anybody,

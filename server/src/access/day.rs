@@ -126,7 +126,7 @@ mod tests {
     #[test]
     fn a_moment_has_its_day() {
         assert_eq!(Day::of(Duration::from_secs(86_399)), Day(0));
-        assert_eq!(Day::of(Duration::from_secs(86_400)).later(30), Day(31));
+        assert_eq!(Day::of(Duration::from_hours(24)).later(30), Day(31));
         assert_eq!(Day::of(Duration::MAX), Day::LAST);
     }
 }

@@ -1,7 +1,7 @@
 //! One connection of the lobby: its bytes go to the reception, and what that decides is done.
 
 use std::net::SocketAddr;
-use std::sync::{Arc, mpsc};
+use std::sync::Arc;
 
 use bytes::BytesMut;
 use rustls::StreamOwned;
@@ -15,12 +15,11 @@ use tokio_rustls::server::TlsStream;
 use tokio_util::codec::Encoder;
 use tokio_util::either::Either;
 
-use super::guest::Guest;
-use super::lobby::Host;
+use super::host::Host;
+use super::order::{Application, Order};
 use super::socket::Socket;
 use super::{FAREWELL_TIMEOUT, HANDSHAKE_TIMEOUT};
-use crate::client::JoinRequest;
-use crate::lobby::{Action, Visitor};
+use crate::lobby::Visitor;
 use crate::mailbox::Request;
 use crate::operation::{Operation, OperationError};
 use crate::transport::tls::reason;
@@ -34,30 +33,6 @@ const TLS_HANDSHAKE: u8 = 0x16;
 
 /// The answer of the session to an operator.
 type Answer = oneshot::Receiver<Result<Status, OperationError>>;
-
-/// What is to be done with a connection.
-pub(super) enum Order {
-    Send(Arc<ServerMessage>),
-    Apply(JoinRequest),
-    /// The connection goes over to the session's thread.
-    HandOver(mpsc::Sender<std::io::Result<Socket>>),
-    Ask(Option<Operation>),
-    Part,
-    Close,
-}
-
-impl Order {
-    /// The order of an action, and for whom it is.
-    pub(super) fn of(action: Action) -> (Visitor, Self) {
-        match action {
-            Action::Send(visitor, message) => (visitor, Self::Send(message)),
-            Action::Apply(visitor, request) => (visitor, Self::Apply(request)),
-            Action::Ask(visitor, operation) => (visitor, Self::Ask(operation)),
-            Action::Part(visitor) => (visitor, Self::Part),
-            Action::Close(visitor) => (visitor, Self::Close),
-        }
-    }
-}
 
 /// A connection, in plain text or under TLS.
 pub(super) struct Connection(Either<TcpStream, Box<TlsStream<TcpStream>>>);
@@ -166,7 +141,7 @@ pub(super) async fn attend(
             biased;
             order = orders.recv() => match order {
                 Some(Order::Apply(request)) => {
-                    host.wait_for_seat(Guest { visitor, request, peer, host: Arc::clone(&host) });
+                    host.wait_for_seat(Application { visitor, request, peer });
                 }
                 Some(Order::HandOver(to)) => {
                     // Whoever waits for it has the error, if it is one.

@@ -6,7 +6,7 @@ use rustls::pki_types::ServerName;
 use rustls::{ClientConnection, StreamOwned};
 
 use super::HANDSHAKE_TIMEOUT;
-use super::participant::ParticipantError;
+use super::error::ParticipantError;
 use super::socket::Socket;
 use super::stream::FrameStream;
 use crate::access::Token;

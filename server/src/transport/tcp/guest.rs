@@ -2,35 +2,32 @@
 //! seat.
 
 use std::io::{Error, ErrorKind};
-use std::net::SocketAddr;
 use std::sync::Arc;
 use std::time::Duration;
 
-use super::lobby::Host;
+use super::host::Host;
+use super::order::Application;
 use super::remote::Remote;
 use super::stream::FrameStream;
 use crate::carrier::{Applicant, Carrier};
 use crate::client::JoinRequest;
-use crate::lobby::Visitor;
 use crate::signal::PortLayout;
 use crate::wire::message::placed;
 use crate::wire::{FRAME_BYTES_MAX, ServerMessage};
 
 /// A client that wants to join and waits for the answer.
 pub(super) struct Guest {
-    pub(super) visitor: Visitor,
-    pub(super) request: JoinRequest,
-    pub(super) peer: SocketAddr,
+    pub(super) application: Application,
     pub(super) host: Arc<Host>,
 }
 
 impl Applicant for Guest {
     fn request(&self) -> &JoinRequest {
-        &self.request
+        &self.application.request
     }
 
     fn origin(&self) -> String {
-        self.peer.to_string()
+        self.application.peer.to_string()
     }
 
     fn admit(
@@ -45,7 +42,8 @@ impl Applicant for Guest {
             output_bytes: outputs.size() as u32,
             outputs: placed(outputs),
         };
-        let socket = self.host.hand_over(self.visitor).ok_or_else(|| Error::from(ErrorKind::NotConnected))?;
+        let socket =
+            self.host.hand_over(self.application.visitor).ok_or_else(|| Error::from(ErrorKind::NotConnected))?;
         let connection = FrameStream::new(socket, FRAME_BYTES_MAX, reply_timeout)?;
         let mut remote = Remote::new(connection, reply_timeout);
         // A peer that is gone already shows at the set-up.
@@ -54,6 +52,6 @@ impl Applicant for Guest {
     }
 
     fn refuse(self: Box<Self>, why: &str) {
-        self.host.act(|reception, now| reception.refused(self.visitor, why, now));
+        self.host.act(|reception, now| reception.refused(self.application.visitor, why, now));
     }
 }

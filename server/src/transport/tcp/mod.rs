@@ -3,8 +3,10 @@
 //! | module | subject |
 //! |---|---|
 //! | [`lobby`] | the listener; a thread of its own, asynchronous |
-//! | `attend` | one connection of it |
-//! | `guest` | a client on its way to the session's thread |
+//! | `order`, `host` | what is to be done with its connections; what they share |
+//! | `attend` | one of them |
+//! | `guest` | a client that waits for a seat, seen from the session's thread |
+//! | `error` | why nobody could take part |
 //! | [`entrance`] | where a session is, and what it takes to be let in |
 //! | `socket` | a blocking socket, in plain text or under TLS |
 //! | `stream` | frames over it |
@@ -18,9 +20,12 @@
 
 mod attend;
 pub mod entrance;
+mod error;
 mod guest;
+mod host;
 pub mod lobby;
 pub mod operator;
+mod order;
 pub mod participant;
 mod remote;
 mod socket;

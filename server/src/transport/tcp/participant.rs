@@ -1,8 +1,6 @@
 //! The client's side of TCP: joins a session and takes part until it ends.
 
-use std::net::SocketAddr;
-
-use thiserror::Error;
+pub use super::error::ParticipantError;
 
 use super::entrance::{Entrance, connect};
 use super::stream::FrameStream;
@@ -12,53 +10,7 @@ use crate::end::SessionEnd;
 use crate::signal::PortLayout;
 use crate::time::{StepCount, VirtualTime};
 use crate::wire::message::Role;
-use crate::wire::{ClientMessage, Duty, Endpoint, EndpointError, Frame, FrameError, FrameRef, ServerMessage, VERSIONS};
-
-/// Why a client did not stay to the end.
-#[derive(Debug, Error)]
-pub enum ParticipantError {
-    /// Nobody there.
-    #[error("cannot connect to the server at {address}: {source}")]
-    Connect {
-        /// Where.
-        address: SocketAddr,
-        /// Why.
-        source: std::io::Error,
-    },
-    /// TLS does not come about.
-    #[error("cannot speak TLS with the server at {address}: {why}")]
-    Tls {
-        /// Where.
-        address: SocketAddr,
-        /// Why.
-        why: String,
-    },
-    /// The server does not want it.
-    #[error("the server refused: {0}")]
-    Refused(String),
-    /// The server is gone or silent in the handshake.
-    #[error("in the handshake: {0}")]
-    Handshake(ReceiveError),
-    /// The connection broke in the session.
-    #[error("lost the server at t_v = {t_v}: {source}")]
-    Lost {
-        /// Virtual time of the last grant.
-        t_v: VirtualTime,
-        /// Why.
-        source: ReceiveError,
-    },
-    /// The server broke the protocol.
-    #[error(transparent)]
-    Server(#[from] EndpointError),
-    /// The client itself could not go on; the server has been told.
-    #[error("at t_v = {t_v}: {fault}")]
-    Fault {
-        /// Virtual time of the turn.
-        t_v: VirtualTime,
-        /// What happened.
-        fault: ClientFault,
-    },
-}
+use crate::wire::{ClientMessage, Duty, Endpoint, Frame, FrameError, FrameRef, ServerMessage, VERSIONS};
 
 /// Joins the session behind `entrance` as `client` and takes part until it ends.
 ///
