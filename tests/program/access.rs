@@ -21,7 +21,9 @@ pub(crate) fn access(hosts: &[&str], tokens: &[(&str, &str)]) -> (tempfile::Temp
     let place = tempfile::tempdir().expect("a folder");
     let folder = place.path().to_str().expect("text");
     let mut words = vec!["certificate", "new", "--access", folder];
-    hosts.iter().for_each(|host| words.extend(["--host", host]));
+    for host in hosts {
+        words.extend(["--host", host]);
+    }
     let said = typed(place.path(), &words);
     assert_eq!(said.code, Some(0), "{said:?}");
     let made = tokens.iter().map(|(name, role)| {

@@ -1,7 +1,7 @@
 //! Reception and seats with connections around them, moved as the TCP lobby and the formation move them, and what must
 //! never be.
 
-use std::collections::{BTreeMap, VecDeque};
+use std::collections::{BTreeMap, BTreeSet, VecDeque};
 use std::net::IpAddr;
 use std::sync::Arc;
 use std::time::Duration;
@@ -26,8 +26,6 @@ pub(super) struct Line {
     pub(super) closed: bool,
     /// The other side has closed it.
     pub(super) hung_up: bool,
-    /// Whoever is behind it may get in: as this client, or as an operator.
-    pub(super) is_let_in: bool,
 }
 
 impl Line {
@@ -44,6 +42,8 @@ pub(super) struct Hall {
     pub(super) seating: Seating,
     pub(super) now: Duration,
     pub(super) lines: BTreeMap<Visitor, Line>,
+    /// Connections behind which are those who may get in.
+    pub(super) let_in: BTreeSet<Visitor>,
     /// What waits for the session's thread.
     pub(super) applications: VecDeque<(Visitor, JoinRequest)>,
     pub(super) wishes: VecDeque<Visitor>,
@@ -120,6 +120,7 @@ impl Hall {
             seating: Seating::new(plan),
             now: Duration::ZERO,
             lines: BTreeMap::new(),
+            let_in: BTreeSet::new(),
             applications: VecDeque::new(),
             wishes: VecDeque::new(),
             seats: BTreeMap::new(),
@@ -133,7 +134,10 @@ impl Hall {
     }
 
     pub(super) fn open(&mut self, visitor: Visitor, address: IpAddr, is_let_in: bool) {
-        self.lines.insert(visitor, Line { is_let_in, ..Line::default() });
+        self.lines.insert(visitor, Line::default());
+        if is_let_in {
+            self.let_in.insert(visitor);
+        }
         let actions = self.reception.opened(visitor, address, self.moment());
         self.act(actions);
     }
@@ -249,11 +253,11 @@ impl Hall {
     fn hear(&mut self, visitor: Visitor, what: char) {
         let line = self.line(visitor);
         line.heard.push(what);
-        let (is_settled, is_let_in) = (line.parted || line.closed, line.is_let_in);
+        let is_settled = line.parted || line.closed;
         if is_settled {
             self.broken = Some("something is said after the last message");
         }
-        if matches!(what, 'j' | 's') && !is_let_in {
+        if matches!(what, 'j' | 's') && !self.let_in.contains(&visitor) {
             self.broken = Some("a stranger is let in");
         }
     }

@@ -227,8 +227,9 @@ impl Model for Lobby {
                 state.hall.is_begun && state.ways[0].tries == TRIES
             }),
             Property::sometimes("a stranger is refused while others are in", |_, state: &LobbyState| {
-                let refused = |line: &super::hall::Line| !line.is_let_in && line.heard == "r";
-                !state.hall.seats.is_empty() && state.hall.lines.values().any(refused)
+                let hall = &state.hall;
+                let mut strangers = hall.lines.iter().filter(|(visitor, _)| !hall.let_in.contains(visitor));
+                !hall.seats.is_empty() && strangers.any(|(_, line)| line.heard == "r")
             }),
         ]
     }

@@ -187,8 +187,10 @@ impl<'t> History<'t> {
         self.behind.insert(visitor, index);
         let who = self.people[index];
         let address = IpAddr::from([10, 0, 0, if matches!(who, Who::Stranger(_)) { 9 } else { 1 }]);
-        let is_let_in = !matches!(who, Who::Stranger(manner) if manner != Manner::Idle && manner != Manner::Hasty)
-            && !(self.asks_tokens && matches!(who, Who::Stranger(_)));
+        let is_let_in = match who {
+            Who::Client(_) | Who::Operator => true,
+            Who::Stranger(manner) => !self.asks_tokens && matches!(manner, Manner::Idle | Manner::Hasty),
+        };
         self.hall.open(visitor, address, is_let_in);
         let role = match who {
             Who::Operator | Who::Stranger(Manner::Idle | Manner::Hasty) => "operator",
