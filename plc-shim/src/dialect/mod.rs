@@ -353,6 +353,12 @@ features! {
     RepeatedArguments "a parameter given twice in a call: the last value counts",
     EmptyArrays "an array without elements, `ARRAY [0..-1]`",
     LooseUnderscores "two underscores between the digits of a number",
+    Views "a view of another variable's memory, `b AT a : DWORD`",
+    ElseColon "`ELSE:` in a `CASE`",
+    LooseParts "a bit of an enumeration's number, or `.0` of a BOOL",
+    OutputsHandedOn "an instance's output for a `VAR_IN_OUT`",
+    EmptyBases "a comma behind the last base, `EXTENDS A,`",
+    ShiftedLiterals "a shift of a literal without a type, `SHL(1, n)`",
     GenericConstants "generic blocks: `VAR_GENERIC CONSTANT`, `FB<8>`",
 }
 

@@ -280,7 +280,7 @@ impl Printer<'_, '_> {
                 others.push_str(&self.method(name, signature, *result));
             } else if member.is_constant && !member.written_inside && !member.written_outside {
                 let number = FIRST_CONSTANT + constants.lines().count();
-                let _ = writeln!(constants, "    {name} : DINT := {number};");
+                let _ = writeln!(constants, "    {name} : INT := {number};");
             } else {
                 let ty = self.slot_text(member.field, name);
                 if member.via_super && member.written_below {
