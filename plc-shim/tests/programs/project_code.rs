@@ -532,3 +532,19 @@ fn what_a_stub_is_begun_with_is_not_asked_for() {
         5,
     );
 }
+
+#[test]
+fn a_reference_begins_at_a_variable_that_is_declared_later() {
+    gives(
+        "INTERFACE I METHOD M : DINT END_METHOD END_INTERFACE
+         FUNCTION_BLOCK Off IMPLEMENTS I METHOD M : DINT M := 7; END_METHOD END_FUNCTION_BLOCK
+         FUNCTION_BLOCK Machine VAR state : I := off1; off1 : Off; p : POINTER TO DINT := ADR(list[1]); list : ARRAY [0..1] OF DINT := [1, 50];
+           b : REFERENCE TO DINT REF= list2[0]; list2 : ARRAY [0..1] OF DINT := [600, 2]; END_VAR
+           VAR_OUTPUT q : DINT; END_VAR q := state.M() + p^ + b; END_FUNCTION_BLOCK
+         PROGRAM P VAR m : Machine; r : DINT; END_VAR m(); r := m.q; END_PROGRAM",
+        657,
+    );
+    // The value of a later variable is not there yet.
+    let value = "PROGRAM P VAR a : DINT := b; b : DINT := 5; END_VAR a := b; END_PROGRAM";
+    insta::assert_snapshot!(findings_in(TwinCat, value), @"test.st:1:27: error[N0101]: `b` is not declared");
+}
