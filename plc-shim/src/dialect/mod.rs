@@ -313,6 +313,7 @@ features! {
     ComputedInitialValues "an initial value that is no constant",
     BitArithmetic "a bit string as a number, or a number as a bit string",
     EnumerationsAsIntegers "an enumeration as an integer, or an integer as an enumeration",
+    NamedValues "named values as numbers of their type, and the other way, `TYPE C : INT (A := 1);`",
     SignChange "an integer as one of the other sign, without conversion",
     LossyReals "a REAL from an LREAL or a wide integer, without conversion",
     CharactersAsBytes "characters `s[0]` as BYTE, with a 0 behind the last",

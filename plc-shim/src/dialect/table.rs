@@ -48,6 +48,11 @@ pub const FEATURES: &[FeatureRow] = &[
     row(Feature::ComputedInitialValues, &[Codesys, TwinCat], "CODESYS and TwinCAT: initialization of variables"),
     row(Feature::BitArithmetic, &[Codesys, TwinCat], "CODESYS and TwinCAT: integer data types list BYTE to LWORD"),
     row(Feature::EnumerationsAsIntegers, &[Codesys, TwinCat], "CODESYS and TwinCAT: enumerations that are not strict"),
+    row(
+        Feature::NamedValues,
+        &[Iec3, Codesys, TwinCat],
+        "3rd ed. 6.4.4.3; CODESYS and TwinCAT: enumerations that are not strict",
+    ),
     row(Feature::SignChange, &[Codesys, TwinCat], "CODESYS and TwinCAT: implicit conversion, a warning only"),
     row(Feature::LossyReals, &[Codesys, TwinCat], "CODESYS and TwinCAT: implicit conversion, a warning only"),
     row(

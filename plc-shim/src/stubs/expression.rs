@@ -29,7 +29,11 @@ impl<'a> Collector<'a> {
             ExprKind::DirectAddress(_) | ExprKind::Type(_) | ExprKind::Error => Ty::Unknown,
             ExprKind::Member(base, name) => self.member_expression(expr, base, name, access, scope),
             ExprKind::Part(base, part) => {
-                self.infer(base, scope);
+                let whole = self.infer(base, scope);
+                if let (Ty::Slot(slot), true) = (&whole, part.text.contains('%')) {
+                    // So written, only a bit string has parts.
+                    self.slots.given(*slot, &elementary(E::Dword));
+                }
                 let is_bit = part
                     .text
                     .trim_start_matches(['.', '%'])

@@ -103,6 +103,9 @@ fn use_of(feature: Feature) -> &'static str {
 /// The same of what projects brought to light.
 fn use_in_projects(feature: Feature) -> &'static str {
     match feature {
+        Feature::NamedValues => {
+            "TYPE C : INT (A := 1, B := 2); END_TYPE PROGRAM P VAR c1 : C; i : INT; END_VAR i := c1; c1 := i; END_PROGRAM"
+        }
         Feature::Views => {
             "PROGRAM P VAR a : DWORD; b AT a : ARRAY [0..3] OF BYTE; c : BYTE; END_VAR c := b[0]; END_PROGRAM"
         }
@@ -185,7 +188,8 @@ fn every_construct_is_for_its_dialects_alone() {
 }
 
 /// Constructs whose absence is no syntax of its own: another error says it.
-const TOLD_OTHERWISE: [Feature; 40] = [
+const TOLD_OTHERWISE: [Feature; 41] = [
+    Feature::NamedValues,
     Feature::LooseParts,
     Feature::OutputsHandedOn,
     Feature::ShiftedLiterals,

@@ -224,7 +224,7 @@ fn units_may_be_called_as_parts_of_charts_are() {
 }
 
 #[test]
-fn a_shifted_number_without_a_width_is_refused() {
+fn a_shifted_number_without_a_width_is_told() {
     let text = "PROGRAM P VAR w : WORD; n : INT := 9; END_VAR w := SHL(1, n); END_PROGRAM";
     for dialect in VENDORS {
         let findings = findings_in(dialect, text);

@@ -85,6 +85,8 @@ fn a_dint_becomes_a_real_by_itself() {
         BEGIN n := ROUND(n + 0.4); r := d; i := REAL_TO_DINT(r); END_PROGRAM";
     let rig = after_a_scan(text);
     assert_eq!((rig.real("P.n"), rig.int("P.i")), (7.0, 16_777_216));
+    let beside = "PROGRAM P VAR d : DINT := 3; r, q : REAL := 4.5; END_VAR BEGIN r := (q - r) / d + q * d; END_PROGRAM";
+    assert_eq!(after_a_scan(beside).real("P.r"), 13.5);
     let lossy = "PROGRAM P VAR l : LREAL; r : REAL; END_VAR BEGIN r := l; END_PROGRAM";
     assert!(findings_in(SiemensScl, lossy).iter().any(|found| found.code.text() == "T0201"));
 }
@@ -119,6 +121,23 @@ fn what_is_written_through_a_view_is_in_the_variable_and_in_its_other_views() {
     assert_eq!(rig.int("P.d"), 0xAB01_01CD);
     assert_eq!(["r.x", "r.y", "w"].map(|name| rig.int(&format!("P.{name}"))), [40, 3, 0x3f80]);
     assert!((rig.real("P.f") - f64::from(f32::from_bits(0x3f80_0001))).abs() < f64::EPSILON);
+}
+
+#[test]
+fn an_output_is_written_through_its_view() {
+    let text = "FUNCTION_BLOCK F VAR_OUTPUT q : WORD; flags AT q : ARRAY [0..15] OF BOOL; END_VAR
+          BEGIN flags[0] := TRUE; END_FUNCTION_BLOCK
+        PROGRAM P VAR f1 : F; w : WORD; END_VAR BEGIN f1(q => w); END_PROGRAM";
+    assert_eq!(after_a_scan(text).int("P.w"), 0x0100);
+    assert!(findings_in(SiemensScl, text).is_empty());
+}
+
+#[test]
+fn a_view_of_one_byte() {
+    let text = "PROGRAM P VAR b : BYTE := B#16#81; flags AT b : ARRAY [0..7] OF BOOL; r : BOOL; one : BOOL; ob AT one : ARRAY [0..0] OF BOOL; END_VAR
+        BEGIN r := flags[7]; flags[0] := FALSE; ob[0] := TRUE; END_PROGRAM";
+    let rig = after_a_scan(text);
+    assert_eq!((rig.int("P.b"), rig.bool("P.r"), rig.bool("P.one")), (0x80, true, true));
 }
 
 #[test]

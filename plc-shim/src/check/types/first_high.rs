@@ -27,6 +27,9 @@ pub(in crate::check) enum Cell {
 pub(in crate::check) fn cells(types: &TypeTable, ty: TypeId) -> Option<Vec<Cell>> {
     let mut layout = Layout { types, cells: Vec::new(), bit: 0 };
     layout.add(ty, 0)?;
+    while layout.cells.last() == Some(&Cell::Gap) {
+        layout.cells.pop();
+    }
     Some(layout.cells)
 }
 
