@@ -193,10 +193,10 @@ impl Scenario {
         bind: &BTreeMap<String, String>,
     ) -> Result<Compiled, ScenarioError> {
         let inputs = self.inputs(name, sources, dialect)?;
-        let built = match (self.writers(), self.coverage()) {
-            (Some(_), _) => self.built(name, &inputs, Builder::traced),
-            (None, Some(_)) => self.built(name, &inputs, Builder::covered),
-            (None, None) => self.built(name, &inputs, |plain| plain),
+        let built = match (self.is_traced(), self.coverage()) {
+            (true, _) => self.built(name, &inputs, Builder::traced),
+            (false, Some(_)) => self.built(name, &inputs, Builder::covered),
+            (false, None) => self.built(name, &inputs, |plain| plain),
         };
         let application = built?.map_err(|findings| Box::new(PlcReport { client: name.clone(), findings }))?;
         for warning in application.warnings().iter() {
@@ -223,6 +223,9 @@ impl Scenario {
         }
         if let Some((signals, sink)) = self.writers() {
             client.trace(signals, sink.clone());
+        }
+        if let Some(journalling) = self.journalling() {
+            client.journal(journalling);
         }
         if let Some(watched) = &self.watched {
             let (watches, changes, sink) = watched.of(name);
@@ -252,7 +255,10 @@ impl Scenario {
     }
 
     /// Which signal is which variable of the PLC.
-    pub(crate) fn bindings(
+    ///
+    /// # Errors
+    /// A signal without a variable, or with one of another type.
+    pub fn bindings(
         &self,
         name: &ClientName,
         application: &Application,

@@ -81,6 +81,13 @@ impl Application {
     pub(super) fn shown(&self, span: Span) -> String {
         on_one_line(self.sources().text(span))
     }
+
+    /// The conditions of a statement that has other statements in it.
+    pub(super) fn conditions(&self, span: Span) -> Option<String> {
+        let heads = heads(self.sources().text(span));
+        let whole = heads.iter().map(|head| on_one_line(head)).collect::<Vec<_>>().join(" … ");
+        (!whole.is_empty()).then_some(whole)
+    }
 }
 
 /// Blanks drawn together; the beginning of a long text.
