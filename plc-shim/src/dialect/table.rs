@@ -142,7 +142,11 @@ pub const FEATURES: &[FeatureRow] = &[
     ),
     row(Feature::OutputsHandedOn, &[Codesys, TwinCat], "TwinCAT: accepts it, as public projects show"),
     row(Feature::EmptyBases, &[Codesys, TwinCat], "TwinCAT: accepts it, as public projects show"),
-    row(Feature::ShiftedLiterals, &[Codesys, TwinCat], "CODESYS and TwinCAT: SHL, \"the number of bits for the arithmetic operation is given by the data type of the input\"; constants, the smallest type"),
+    row(
+        Feature::ShiftedLiterals,
+        &[Codesys, TwinCat],
+        "CODESYS and TwinCAT: SHL, \"the number of bits for the arithmetic operation is given by the data type of the input\"; constants, the smallest type",
+    ),
     row(Feature::GenericConstants, &[Codesys, TwinCat], "CODESYS and TwinCAT: VAR_GENERIC CONSTANT"),
 ];
 

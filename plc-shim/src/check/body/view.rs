@@ -44,10 +44,8 @@ impl View {
 fn copied(source: &Place, from: Cell, target: &Place, to: Cell) -> Vec<Statement> {
     let byte = |place: &Place, offset| place.clone().member(offset, ElementaryType::Byte.into());
     let bool_at = |place: &Place, offset| place.clone().member(offset, ElementaryType::Bool.into());
-    let bit_of = |place: &Place, offset, bit: usize| Place {
-        part: Some(Part::bit(bit as u8)),
-        ..bool_at(place, offset)
-    };
+    let bit_of =
+        |place: &Place, offset, bit: usize| Place { part: Some(Part::bit(bit as u8)), ..bool_at(place, offset) };
     let bits = |cell: Cell, place: &Place| -> [Option<Place>; 8] {
         match cell {
             Cell::Byte(offset) => std::array::from_fn(|bit| Some(bit_of(place, offset, bit))),
@@ -90,7 +88,8 @@ impl Body<'_, '_> {
         };
         let (seen, looked_at) = (self.cells_of(&own, name.span)?, self.cells_of(&base, viewed.span)?);
         if seen.len() > looked_at.len() {
-            let message = format!("`{}` has {} bytes, and `{}` {}", name.text, seen.len(), viewed.text, looked_at.len());
+            let message =
+                format!("`{}` has {} bytes, and `{}` {}", name.text, seen.len(), viewed.text, looked_at.len());
             let found = Diagnostic::error(Code::UnsuitableAddress, name.span, message);
             self.report(found.with_help("a view is no larger than what it looks at"));
             return None;

@@ -154,9 +154,10 @@ fn last_of(nodes: &[Node<'_>], inside: &[usize], faults: &mut Vec<Fault>) -> usi
             keepers.iter().max_by_key(|(_, node)| node.order).map_or(first, |(index, _)| *index)
         }
         [(one, node), ..] => {
-            let message = "several elements keep values in this loop, and `executionOrderId` does not say of each when it \
+            let message =
+                "several elements keep values in this loop, and `executionOrderId` does not say of each when it \
                            comes: those without come last, the highest first, then the one furthest left"
-                .into();
+                    .into();
             faults.push(Fault { place: node.place(), code: Code::FeedbackWithoutOrder, message });
             keepers.iter().map(|(index, _)| *index).max_by_key(|index| key(nodes, *index)).unwrap_or(*one)
         }

@@ -71,7 +71,12 @@ impl Writer<'_> {
         }
         for fault in faults {
             if fault.code == Code::FeedbackWithoutOrder {
-                self.taken.warn(fault.place, fault.code, &fault.message, Some("give each of them an `executionOrderId`"));
+                self.taken.warn(
+                    fault.place,
+                    fault.code,
+                    &fault.message,
+                    Some("give each of them an `executionOrderId`"),
+                );
             } else {
                 self.taken.report(fault.place, fault.code, &fault.message);
             }

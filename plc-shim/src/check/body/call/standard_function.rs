@@ -252,8 +252,7 @@ impl Body<'_, '_> {
     /// what [`Self::unify_all`] takes.
     fn selected_values(&mut self, operands: Vec<Operand>, span: Span) -> Option<(Vec<Expr>, TypeId)> {
         let aggregate = operands.iter().find_map(|operand| match operand {
-            Operand::Typed(expr) => Some(expr.ty)
-                .filter(|ty| self.is_selected_whole(*ty)),
+            Operand::Typed(expr) => Some(expr.ty).filter(|ty| self.is_selected_whole(*ty)),
             _ => None,
         });
         let Some(ty) = aggregate else {

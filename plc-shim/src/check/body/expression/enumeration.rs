@@ -12,8 +12,7 @@ impl Body<'_, '_> {
     pub(in crate::check::body) fn base_of_enumeration(&self, ty: TypeId, span: Span) -> Option<ElementaryType> {
         let Type::Enumeration { base, has_base, .. } = self.declarations.types().get(ty) else { return None };
         let dialect = self.declarations.dialect(span);
-        let is_number =
-            dialect.has(Feature::EnumerationsAsIntegers) || *has_base && dialect.has(Feature::NamedValues);
+        let is_number = dialect.has(Feature::EnumerationsAsIntegers) || *has_base && dialect.has(Feature::NamedValues);
         is_number.then_some(*base)
     }
 
