@@ -31,11 +31,11 @@ struct Side {
 }
 
 impl View {
-    fn from_base(&self) -> Vec<Statement> {
+    fn shown(&self) -> Vec<Statement> {
         self.cells.iter().flat_map(|(own, base)| copied(&self.base.place, *base, &self.own.place, *own)).collect()
     }
 
-    fn to_base(&self) -> Vec<Statement> {
+    fn written_back(&self) -> Vec<Statement> {
         self.cells.iter().flat_map(|(own, base)| copied(&self.own.place, *own, &self.base.place, *base)).collect()
     }
 }
@@ -72,7 +72,7 @@ impl Body<'_, '_> {
                 self.views.extend(view);
             }
         }
-        self.views.iter().flat_map(View::from_base).collect()
+        self.views.iter().flat_map(View::shown).collect()
     }
 
     fn view(&mut self, name: &Ident, viewed: &Ident) -> Option<View> {
@@ -156,7 +156,7 @@ impl Body<'_, '_> {
             return Vec::new();
         };
         let (own, others): (Vec<&View>, Vec<&View>) = group.iter().partition(|view| view.own.key == *written);
-        own.into_iter().flat_map(View::to_base).chain(others.into_iter().flat_map(View::from_base)).collect()
+        own.into_iter().flat_map(View::written_back).chain(others.into_iter().flat_map(View::shown)).collect()
     }
 
     fn refuse_as_control(&mut self, control: &ast::Expr) {
@@ -174,7 +174,7 @@ impl Body<'_, '_> {
 #[derive(Debug, Default)]
 struct Writes {
     sure: BTreeSet<String>,
-    /// Those that a call is given, which may be for a VAR_IN_OUT.
+    /// Those that a call is given, which may be for a `VAR_IN_OUT`.
     possible: BTreeSet<String>,
 }
 
