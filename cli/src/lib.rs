@@ -10,6 +10,8 @@
 //! | [`bisect`] | the commit since which a run is another |
 //! | [`diff`] | where two recordings or snapshots part, and why |
 //! | [`regress`] | all cases run, compared with reviewed snapshots, reported |
+//! | [`why`] | the way from a signal back to the statement in which two runs part |
+//! | [`repository`] | what a scenario was at other commits |
 //! | [`snapshot`] | trajectories as small text, compared |
 //! | [`run`] | runs of a scenario: in lockstep or not, recorded, reported |
 //! | [`freewheel`] | running without lockstep, to show what it is good for |
@@ -49,8 +51,10 @@ pub mod new;
 pub mod plant;
 pub mod plc;
 pub mod regress;
+pub mod repository;
 pub mod review;
 pub mod run;
 pub mod session;
 pub mod snapshot;
+pub mod why;
 pub mod wiring;

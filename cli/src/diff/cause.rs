@@ -15,8 +15,8 @@ use onescan_server::time::VirtualTime;
 
 use super::first::Difference;
 use super::parting::{Parting, parting};
-use super::why::{self, Side, Why};
 use crate::run::rerun::{Rerun, rerun};
+use crate::why::{self, Side, Why};
 
 /// Who wrote one signal.
 #[derive(Clone, Debug, PartialEq, Eq)]

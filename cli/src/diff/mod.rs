@@ -7,7 +7,6 @@
 //! | [`parting`] | the first decision of a PLC that went another way |
 //! | [`sources`] | what differs between the recorded scenarios |
 //! | [`report`] | for people and machines |
-//! | [`why`] | the way from a signal back to the statement in which two runs part |
 //! | [`trajectory`] | two snapshots of trajectories |
 
 pub mod cause;
@@ -17,7 +16,6 @@ pub mod parting;
 pub mod report;
 pub mod sources;
 pub mod trajectory;
-pub mod why;
 
 use std::io::Write;
 use std::path::{Path, PathBuf};

@@ -11,7 +11,8 @@ use super::cause::{Cause, Causes};
 use super::first::{Around, Basis, Divergence};
 use super::parting::Parting;
 use super::sources::FileDifference;
-use super::why;
+use crate::why;
+use crate::why::report::Runs;
 
 /// Signals that are listed for people.
 const LISTED: usize = 20;
@@ -74,7 +75,7 @@ impl Report {
             write_parting(parting, out)?;
         }
         if let Some(way_back) = &self.causes.why {
-            why::report::write(way_back, out)?;
+            why::report::write(way_back, &Runs::named(NAMES), out)?;
         }
         for (name, why) in NAMES.iter().zip(&self.causes.unknown) {
             if let Some(why) = why {

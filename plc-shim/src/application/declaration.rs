@@ -14,8 +14,8 @@ pub struct Declaration {
     pub file: String,
     /// Its line, from 1.
     pub line: u32,
-    /// From its name to the semicolon, on one line.
-    pub text: String,
+    /// From its name to the semicolon, line by line.
+    pub rows: Vec<String>,
 }
 
 impl Application {
@@ -34,7 +34,8 @@ impl Application {
         let (file, place) = self.sources().locate(variable.span);
         let whole = self.sources().get(variable.span.file).map(|file| file.text().as_ref());
         let rest = whole.and_then(|text| text.get(variable.span.start as usize..)).unwrap_or_default();
-        let text = rest.split(';').next().unwrap_or_default().split_whitespace().collect::<Vec<_>>().join(" ");
-        Declaration { unit, name: variable.name.clone(), file: file.to_owned(), line: place.line, text }
+        let whole = rest.split(';').next().unwrap_or_default();
+        let rows = whole.lines().map(|row| row.split_whitespace().collect::<Vec<_>>().join(" ")).collect();
+        Declaration { unit, name: variable.name.clone(), file: file.to_owned(), line: place.line, rows }
     }
 }

@@ -7,7 +7,7 @@ use std::ops::Range;
 
 use super::fault::{self, WriteSite};
 use super::trace::{Frames, Writer};
-use super::way::WayId;
+use super::way::{WayId, rows};
 use crate::application::Application;
 use crate::compile::points::PointKind;
 
@@ -58,6 +58,8 @@ pub struct Statement {
     pub column: u32,
     /// Its text on one line; of one with statements in it, its conditions alone.
     pub text: String,
+    /// The same line by line, each with its number.
+    pub rows: Vec<(u32, String)>,
 }
 
 /// What a scan did.
@@ -149,8 +151,9 @@ impl Application {
         let statement = |(point, id): (&crate::compile::points::Point, u32)| {
             let (file, place) = self.sources().locate(point.span);
             let (file, unit) = (file.to_owned(), point.unit.clone());
+            let rows = rows(self.sources().text(point.span), place.line);
             let text = self.conditions(point.span).unwrap_or_else(|| self.shown(point.span));
-            Statement { id: StatementId(id), unit, file, line: place.line, column: place.column, text }
+            Statement { id: StatementId(id), unit, file, line: place.line, column: place.column, text, rows }
         };
         statements.map(statement).collect()
     }

@@ -6,7 +6,7 @@ use super::emitter::Emitter;
 use crate::compile::analyse::{Address, Extent};
 use crate::compile::points::{PointKind, Points};
 use crate::compile::trace::index;
-use crate::ir::{Expr, ExprKind, Place, Statement, StatementKind, Step, Storage};
+use crate::ir::{Expr, ExprKind, Place, PouId, Statement, StatementKind, Step, Storage};
 use crate::syntax::Span;
 
 impl Emitter<'_, '_> {
@@ -45,6 +45,12 @@ impl Emitter<'_, '_> {
             emitter.emit(Instruction::I32Const(size as i32));
             emitter.emit(Instruction::Call(index(3)));
         });
+    }
+
+    /// True if a unit is no user's.
+    pub(crate) fn is_of_library(&self, pou: PouId) -> bool {
+        let span = self.program().pou(pou).map(|pou| pou.span);
+        self.shared().points().is_some_and(|points| span.is_some_and(|span| !points.is_own(span)))
     }
 
     /// Tells that a statement ends, if the program is traced.

@@ -282,7 +282,9 @@ impl Walk<'_> {
     /// The declaration of what a text names, if it is another in the other program.
     fn declared(&mut self, text: &str, unit: &str) -> Option<usize> {
         let both = self.flow.declarations.named_in(text, unit)?;
-        let (at, name) = (both.each_ref().map(|each| Some(Place::from(each))), both[0].name.clone());
+        let [ours, theirs] = both;
+        let at = [Some(Place::declared(ours, theirs)), Some(Place::declared(theirs, ours))];
+        let name = ours.name.clone();
         Some(self.add(at, What::Declared(name), Origin::Here))
     }
 
@@ -313,7 +315,7 @@ impl Walk<'_> {
             let used = known.and_then(|statement| self.unsaid(&statement.text, &statement.unit));
             return used.map_or(Origin::Here, Origin::Earlier);
         }
-        let at = [0, 1].map(|side| self.flow.statements.known[side].get(&found[side]?).map(Place::of));
+        let at = [0, 1].map(|side| self.flow.statements.place(side, found[side]?));
         Origin::Earlier(self.add(at, What::Text, Origin::Here))
     }
 
@@ -343,9 +345,10 @@ impl Walk<'_> {
     /// The statement that wrote; the one that is gone through if it wrote nothing.
     fn place(&self, side: usize, wrote: Option<&Wrote>, node: &Node) -> Option<Place> {
         if let Some(site) = wrote.and_then(|wrote| self.flow.applications[side].site(wrote)) {
-            let (unit, file, line) = (site.at.to_string(), site.at.file, site.at.line);
-            return Some(Place { file, line, unit, text: site.statement });
+            let own = wrote.and_then(|wrote| self.flow.statements.place(side, wrote.statement?));
+            let line = own.map_or(site.at.line, |own| own.line);
+            return Some(Place { unit: site.at.to_string(), file: site.at.file, line, text: site.statement });
         }
-        self.flow.statements.known[side].get(&node.statement?).map(Place::of)
+        self.flow.statements.place(side, node.statement?)
     }
 }

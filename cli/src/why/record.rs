@@ -4,6 +4,8 @@ use onescan_plc_shim::{Declaration, Statement};
 use onescan_server::signal::ClientName;
 use onescan_server::time::VirtualTime;
 
+use super::pairs::own_text;
+
 /// A statement of one run, as it stands in the sources.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Place {
@@ -18,17 +20,35 @@ pub struct Place {
 }
 
 impl Place {
-    pub(super) fn of(statement: &Statement) -> Self {
-        let Statement { unit, file, line, text, .. } = statement;
-        Self { file: file.clone(), line: *line, unit: unit.clone(), text: text.clone() }
+    /// A statement; where its partner in the other program reads otherwise, the first line that does.
+    pub(super) fn of(statement: &Statement, partner: Option<&Statement>) -> Self {
+        let Statement { unit, file, line, text, rows, .. } = statement;
+        let other = partner.filter(|other| own_text(other) != own_text(statement)).and_then(|other| {
+            let texts = |rows: &[(u32, String)]| rows.iter().map(|(_, row)| row.clone()).collect::<Vec<_>>();
+            rows.get(first_other(&texts(rows), &texts(&other.rows)))
+        });
+        Self {
+            file: file.clone(),
+            line: other.map_or(*line, |(line, _)| *line),
+            unit: unit.clone(),
+            text: text.clone(),
+        }
+    }
+
+    /// A declaration, at the first line that reads otherwise than in the other program.
+    pub(super) fn declared(declaration: &Declaration, other: &Declaration) -> Self {
+        let Declaration { unit, file, line, rows, .. } = declaration;
+        let unit = if unit.is_empty() { "global variables".to_owned() } else { unit.clone() };
+        let at = first_other(rows, &other.rows);
+        let text = rows.get(at).cloned().unwrap_or_default();
+        Self { file: file.clone(), line: line + at as u32, unit, text }
     }
 }
 
-impl From<&Declaration> for Place {
-    fn from(Declaration { unit, file, line, text, .. }: &Declaration) -> Self {
-        let unit = if unit.is_empty() { "global variables".to_owned() } else { unit.clone() };
-        Self { file: file.clone(), line: *line, unit, text: text.clone() }
-    }
+/// The first of `rows` that is another in `others`; the last if there are just more of them there.
+fn first_other(rows: &[String], others: &[String]) -> usize {
+    let same = rows.iter().zip(others).take_while(|(row, other)| row == other).count();
+    same.min(rows.len().saturating_sub(1))
 }
 
 /// What differs.

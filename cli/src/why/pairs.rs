@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 use std::ops::Range;
 
+use super::record::Place;
 use onescan_clients::soft_plc::journal::Part;
 use onescan_plc_shim::{Application, Declaration, Statement, StatementId, Variable, Way, WayId};
 use similar::{Algorithm, DiffOp, capture_diff_slices};
@@ -48,10 +49,16 @@ impl Statements {
         self.partner[side].get(&id).copied()
     }
 
+    /// Where a statement stands in its program.
+    pub(super) fn place(&self, side: usize, id: StatementId) -> Option<Place> {
+        let partner = self.partner(side, id).and_then(|other| self.known[1 - side].get(&other));
+        self.known[side].get(&id).map(|own| Place::of(own, partner))
+    }
+
     /// True if a statement reads in the other program as it does in its own.
     pub(super) fn is_unchanged(&self, side: usize, id: StatementId) -> bool {
         let other = self.partner[side].get(&id).and_then(|other| self.known[1 - side].get(other));
-        self.known[side].get(&id).is_some_and(|own| other.is_some_and(|other| other.text == own.text))
+        self.known[side].get(&id).is_some_and(|own| other.is_some_and(|other| own_text(other) == own_text(own)))
     }
 
     /// True if two decisions went the same way.
@@ -59,6 +66,11 @@ impl Statements {
         let branch = |side: usize, way: WayId| self.ways[side].get(&way).map(|way| way.branch);
         branch(0, a) == branch(1, b)
     }
+}
+
+/// All that a statement says itself, wherever its lines are broken.
+pub(super) fn own_text(statement: &Statement) -> String {
+    statement.rows.iter().map(|(_, row)| row.as_str()).collect::<Vec<_>>().join(" ")
 }
 
 /// The statements of each unit in the order of the text; names do not heed case.
@@ -75,7 +87,7 @@ fn by_unit(list: &Vec<Statement>) -> BTreeMap<String, Vec<&Statement>> {
 
 /// What is the same, and what stands in the place of what.
 fn pairs(ours: &[&Statement], theirs: &[&Statement]) -> Vec<(StatementId, StatementId)> {
-    let texts = |list: &[&Statement]| list.iter().map(|statement| statement.text.clone()).collect::<Vec<_>>();
+    let texts = |list: &[&Statement]| list.iter().map(|statement| own_text(statement)).collect::<Vec<_>>();
     let operations = capture_diff_slices(Algorithm::Myers, &texts(ours), &texts(theirs));
     let mut found = Vec::new();
     for operation in operations {
@@ -103,7 +115,7 @@ impl Declarations {
         let theirs: BTreeMap<_, _> = b.into_iter().map(|each| (key(&each), each)).collect();
         let mut changed: BTreeMap<String, Vec<[Declaration; 2]>> = BTreeMap::new();
         for ours in a {
-            if let Some(other) = theirs.get(&key(&ours)).filter(|other| other.text != ours.text) {
+            if let Some(other) = theirs.get(&key(&ours)).filter(|other| other.rows != ours.rows) {
                 changed.entry(ours.name.to_ascii_lowercase()).or_default().push([ours, other.clone()]);
             }
         }

@@ -5,16 +5,36 @@ use std::io::{self, Write};
 use serde_json::{Value, json};
 
 use super::{Origin, Place, Record, What, Why};
-use crate::diff::report::NAMES;
 
 /// Links that are shown at each end of a long way.
 const SHOWN: usize = 5;
+
+/// What the two runs are called.
+#[derive(Clone, Debug)]
+pub struct Runs {
+    /// Their names.
+    pub names: [String; 2],
+    /// The same as part of a sentence: a value is so `in A`, `at HEAD`, `now`.
+    pub there: [String; 2],
+}
+
+impl Runs {
+    /// Two runs that are compared, neither being the older.
+    pub fn named(names: [&str; 2]) -> Self {
+        Self { names: names.map(str::to_owned), there: names.map(|name| format!("in {name}")) }
+    }
+
+    /// A run as it was at a commit, and as it is.
+    pub fn since(commit: &str) -> Self {
+        Self { names: [commit.to_owned(), "now".to_owned()], there: [format!("at {commit}"), "now".to_owned()] }
+    }
+}
 
 /// Writes the way back for people.
 ///
 /// # Errors
 /// `out` takes no more.
-pub fn write(why: &Why, out: &mut dyn Write) -> io::Result<()> {
+pub fn write(why: &Why, runs: &Runs, out: &mut dyn Write) -> io::Result<()> {
     match &why.signal {
         Some(signal) => writeln!(out, "\nwhy {signal} differs, from the last difference back to the first")?,
         None => writeln!(out, "\nno output differs; inside the PLC, from the last difference back to the first")?,
@@ -27,23 +47,18 @@ pub fn write(why: &Why, out: &mut dyn Write) -> io::Result<()> {
             }
             continue;
         }
-        write_link(link, out)?;
+        write_link(link, runs, out)?;
     }
     Ok(())
 }
 
-fn write_link(Record { client, t_v, at, what, origin }: &Record, out: &mut dyn Write) -> io::Result<()> {
-    match what {
-        What::Value { path, values: [a, b] } => writeln!(out, "  {t_v}  {client}: {path} is {a} in A, {b} in B")?,
-        What::Way([a, b]) => writeln!(out, "  {t_v}  {client}: goes to {a} in A, to {b} in B")?,
-        What::Run => writeln!(out, "  {t_v}  {client}: executes other statements in A than in B")?,
-        What::Declared(name) => writeln!(out, "  {client}: {name} is declared otherwise in A than in B")?,
-        What::Text => writeln!(out, "  {t_v}  {client}: a statement is another in A than in B")?,
-    }
+fn write_link(record: &Record, runs: &Runs, out: &mut dyn Write) -> io::Result<()> {
+    let Record { at, origin, .. } = record;
+    writeln!(out, "  {}", subject(record, runs))?;
     match at {
         [Some(a), Some(b)] if a == b => write_place("", a, out)?,
         _ => {
-            for (name, place) in NAMES.iter().zip(at) {
+            for (name, place) in runs.names.iter().zip(at) {
                 match place {
                     Some(place) => write_place(name, place, out)?,
                     None if at.iter().any(Option::is_some) => writeln!(out, "       {name} nothing")?,
@@ -59,6 +74,17 @@ fn write_link(Record { client, t_v, at, what, origin }: &Record, out: &mut dyn W
         Origin::Input => writeln!(out, "       it is an input: what writes it differs"),
         Origin::Feedback(_) => writeln!(out, "       it is an input, and follows the PLC's outputs"),
         Origin::Earlier(_) => Ok(()),
+    }
+}
+
+/// What differs, in a line.
+pub fn subject(Record { client, t_v, what, .. }: &Record, Runs { there: [first, second], .. }: &Runs) -> String {
+    match what {
+        What::Value { path, values: [a, b] } => format!("{t_v}  {client}: {path} is {a} {first}, {b} {second}"),
+        What::Way([a, b]) => format!("{t_v}  {client}: goes to {a} {first}, to {b} {second}"),
+        What::Run => format!("{t_v}  {client}: the statements that are executed {first} are not those {second}"),
+        What::Declared(name) => format!("{client}: {name} is declared otherwise {second} than {first}"),
+        What::Text => format!("{t_v}  {client}: a statement is another {second} than {first}"),
     }
 }
 
