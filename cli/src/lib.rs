@@ -15,6 +15,7 @@
 //! | [`snapshot`] | trajectories as small text, compared |
 //! | [`run`] | runs of a scenario: in lockstep or not, recorded, reported |
 //! | [`freewheel`] | running without lockstep, to show what it is good for |
+//! | [`access`] | who may take part in sessions over a network |
 //! | [`session`] | part in a session that another process serves |
 //! | [`plc`] | a soft PLC as a process of its own |
 //! | [`browse`] | what a real PLC has |
@@ -33,6 +34,7 @@
 //! Invariants. This is the only crate that starts processes and prints. What a session computes is decided
 //! in the crates below; nothing here can change a digest.
 
+pub mod access;
 pub mod bisect;
 pub mod browse;
 pub mod check;

@@ -17,6 +17,7 @@ use super::case::value::bytes_of;
 use super::error::{PlcReport, ScenarioError, SceneReport};
 use super::file::{ClientFile, TaskFile};
 use super::load::Scenario;
+use super::permission;
 
 /// A client of a scenario.
 pub enum Member {
@@ -138,6 +139,7 @@ impl Scenario {
             }
             None => SourceKind::Text,
         };
+        permission::granted().check(self.folder(), &path)?;
         let bytes = std::fs::read(&path).map_err(|source| ScenarioError::Unreadable { path, source, help: None })?;
         let input = Input::read(source, kind, &bytes);
         Ok(match dialect {
@@ -152,6 +154,7 @@ impl Scenario {
     /// A file that cannot be read or is no scene.
     pub fn scene_of(&self, file: &str) -> Result<Scene, ScenarioError> {
         let path = self.folder().join(file);
+        permission::granted().check(self.folder(), &path)?;
         let text = read(&path)?;
         let named = path.display().to_string();
         let scene = Scene::parse(&text, &named).map_err(|error| Box::new(report(&error, &named, &text)))?;
@@ -161,6 +164,7 @@ impl Scenario {
     /// The scene of plant `name` as the case wants it.
     fn scene_in_case(&self, name: &ClientName, file: &str) -> Result<Scene, ScenarioError> {
         let path = self.folder().join(file);
+        permission::granted().check(self.folder(), &path)?;
         let (text, named) = (read(&path)?, path.display().to_string());
         let error = |error: &SceneError| ScenarioError::from(Box::new(report(error, &named, &text)));
         let overrides = self.overrides(name);

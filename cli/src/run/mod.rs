@@ -8,6 +8,7 @@
 //! | [`error`] | why nothing came of it |
 //! | [`lockstep`] | one run in lockstep |
 //! | [`processes`] | clients as processes of their own |
+//! | `environment` | what they see of the environment |
 //! | [`freewheel`] | one run without lockstep |
 //! | [`progress`] | a bar on a terminal |
 //! | `chosen` | signals chosen by name, as numbers |
@@ -25,7 +26,8 @@ mod check;
 mod chosen;
 pub mod config;
 pub mod coverage;
-pub mod error;
+mod environment;
+mod error;
 pub mod expectation;
 mod freewheel;
 mod lockstep;

@@ -7,7 +7,7 @@ use onescan_recording::recorder::EVENTS;
 use onescan_recording::{Provenance, Recorder, SourceFile};
 use onescan_report::OutputError;
 use onescan_report::{FileError, file};
-use onescan_scenario::{Mode, Scenario, ScenarioError};
+use onescan_scenario::{Mode, Scenario, ScenarioError, permission};
 use onescan_server::time::VirtualTime;
 
 use super::config::{RecordRequest, Subject};
@@ -81,6 +81,7 @@ fn copy_scenario(scenario: &Scenario, target: &Path) -> Result<(String, Vec<Sour
     let mut copied = Vec::new();
     for file in files {
         let path = scenario.folder().join(&file);
+        permission::granted().check(scenario.folder(), &path)?;
         let bytes = std::fs::read(&path).map_err(|source| ScenarioError::Unreadable { path, source, help: None })?;
         match within(&own_folder, &file) {
             Some(place) => {
