@@ -80,9 +80,8 @@ impl Emitter<'_, '_> {
 /// True if the way to a place does nothing but read and reckon.
 fn is_pure(place: &Place) -> bool {
     place.steps.iter().all(|step| match step {
-        Step::Offset(_) => true,
         Step::Index { index, .. } => is_pure_value(index),
-        Step::Pointer { .. } | Step::Open { .. } => true,
+        Step::Offset(_) | Step::Pointer { .. } | Step::Open { .. } => true,
     })
 }
 
