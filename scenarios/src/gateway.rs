@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
+use onescan_base::regular;
 use onescan_clients::gateway::exchange::{Direction, SystemWords};
 use onescan_clients::gateway::layout_number::layout_number;
 use onescan_clients::gateway::mapping::{self, Variables};
@@ -120,7 +121,7 @@ impl Scenario {
     /// The link of PLC `name` in a file of its own, as `onescan instrument` and `onescan map` write one.
     fn settings_in(&self, name: &ClientName, path: &str) -> Result<Settings, ScenarioError> {
         let wrong = |why: String, help: &str| self.wrong_client(name, format!("{path}: {why}"), Some(help.to_owned()));
-        let text = std::fs::read_to_string(path)
+        let text = regular::read_text(Path::new(path))
             .map_err(|error| wrong(error.to_string(), "name a file with the table `[clients.NAME.gateway]`"))?;
         let mut file: LinkFile = toml::from_str(&text)
             .map_err(|error| wrong(error.to_string(), "write what `[clients.NAME.gateway]` of a scenario has"))?;

@@ -5,6 +5,7 @@ use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
+use onescan_base::regular;
 use onescan_clients::gateway::Settings;
 use onescan_clients::soft_plc::watch::Sightings;
 use onescan_clients::soft_plc::{CoverageSink, TraceSink};
@@ -64,7 +65,7 @@ impl Scenario {
     /// See [`ScenarioError`].
     pub fn load(path: &Path) -> Result<Self, ScenarioError> {
         let path = if path.is_dir() { path.join(FILE_NAME) } else { path.to_owned() };
-        let text = std::fs::read_to_string(&path).map_err(|source| ScenarioError::Unreadable {
+        let text = regular::read_text(&path).map_err(|source| ScenarioError::Unreadable {
             path: path.clone(),
             help: (source.kind() == std::io::ErrorKind::NotFound)
                 .then(|| format!("a scenario is a folder with a `{FILE_NAME}`; give the folder")),

@@ -37,6 +37,7 @@ mod plc_peers;
 mod plc_s7;
 mod plc_untrusted;
 mod plcopen_schema;
+mod processes;
 mod python;
 mod recording;
 mod regression;

@@ -2,6 +2,7 @@
 
 use std::net::{Ipv4Addr, SocketAddr};
 
+use onescan_base::regular::{self, Limit};
 use onescan_recording::{Recording, event};
 use onescan_report::file;
 use onescan_scenario::Scenario;
@@ -100,6 +101,7 @@ fn form(
             (Member::External(command), _) => remote.push((name, Some(command))),
         }
     }
+    interrupt.heed();
     let desk = seats.open(&config.doors, scenario.plan(), interrupt)?;
     if let Some(desk) = &desk {
         for client in desk.clients(config.reach.reply_timeout) {
@@ -179,7 +181,7 @@ fn operator_inputs(path: &std::path::Path) -> Result<Vec<OperatorInput>, RunErro
 }
 
 fn resume(lockstep: &mut Lockstep, path: &std::path::Path) -> Result<(), RunError> {
-    let bytes = std::fs::read(path).map_err(Unreadable::at(path))?;
+    let bytes = regular::read(path, Limit::DATA).map_err(Unreadable::at(path))?;
     let wrong = |source| RunError::Resume { path: path.to_owned(), source };
     lockstep.resume(&Checkpoint::from_bytes(&bytes).map_err(wrong)?).map_err(wrong)
 }
