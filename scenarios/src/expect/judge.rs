@@ -224,6 +224,7 @@ mod tests {
             "(a < 100) until (b > 100)",
             "always ((historically b < 9) implies not (c since[3ns,70ns] b > 6))",
             "eventually[200ns,500ns] changed(c)",
+            "always[0,100ns] eventually[0,30ns] c",
         ];
         let judged = |steps: u64| {
             let mut judge = Judge::new(texts.map(expectation), 3);

@@ -136,6 +136,8 @@ impl Monitor {
             self.said.truncate(1);
             self.said.shrink_to_fit();
             self.done = true;
+            // Its operands have been heard: what they still keep is for nobody.
+            self.part = Part::Constant(false);
         }
     }
 
